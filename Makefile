@@ -1,0 +1,238 @@
+# The front door. `make` alone prints the menu; products go to build/ and out/ and nowhere else.
+
+VERSION := 0.1.0
+
+# ---- what there is (the figures are further down, one line each) --------------------------------
+
+# The source of each main; a program is called like its main.
+mains := implicit_moment/implicit_moment.cpp
+
+# Methods of the talk without a program so far.
+not_built_yet := cic pic flip mpm_explicit mpm_implicit explicit_em
+
+# The run that `make bench` times, as  program:case ; shortened by these overrides.
+benchmarks := implicit_moment:gem
+bench_overrides := time.end=2
+
+# ---- how: everything here can be set on the command line, e.g. make CXX=clang++-14 test ---------
+
+ifeq ($(origin CXX),default)
+CXX := g++
+endif
+EIGEN    ?= /usr/include/eigen3
+ARCH     ?= -march=native
+OPTIMIZE ?= $(if $(SANITIZE),-O1 -g,-O3)
+SANITIZE ?=
+JOBS     ?= 2
+ARGS     ?=
+CLANG_FORMAT ?= clang-format
+
+BUILD   := build$(if $(SANITIZE),/sanitize)
+objects := $(BUILD)/objects
+
+warnings := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wno-psabi
+sanitize := $(if $(SANITIZE),-fsanitize=$(SANITIZE) -fno-sanitize-recover=all -fno-omit-frame-pointer)
+
+# Wide vectors where the machine has them; there, g++ 12 takes intrinsics that Eigen uses for
+# uninitialized. The compiler is asked when it is first used, not when make starts: `make deps` may
+# have installed it in between.
+machine = $(eval machine := $(shell $(CXX) $(ARCH) -dM -E -x c++ /dev/null 2>/dev/null | awk '\
+    /__AVX512F__/ { wide = 1 } /__clang__/ { clang = 1 } \
+    END { if (wide) print "-mprefer-vector-width=512"; if (wide && !clang) print "-Wno-maybe-uninitialized" }'))$(machine)
+
+flags   = -std=c++20 $(OPTIMIZE) $(ARCH) -fopenmp $(sanitize) $(warnings) $(machine) $(CXXFLAGS)
+defines = -DEIGEN_DONT_PARALLELIZE -DPROGRAM_VERSION=\"$(VERSION)\" -DBUILD_FOLDER=\"$(BUILD)\"
+include_paths = -I. -isystem $(EIGEN) $(CPPFLAGS)
+libraries = -lgsl -lgslcblas -lm $(LDLIBS)
+
+# With `make deps fig09`, also with -j, everything waits until the packages are there.
+packages_first := $(filter deps deps-dev,$(MAKECMDGOALS))
+
+# $(call need,command): stop with a cure where a tool is missing.
+need = @command -v $(1) >/dev/null || { echo "'$(1)' is not installed: run 'make deps'" >&2; exit 2; }
+
+programs  := $(basename $(notdir $(mains)))
+tests     := $(basename $(notdir $(wildcard tests/*.cpp)))
+shared    := $(patsubst %.cpp,$(objects)/%.o,$(wildcard common/*.cpp))
+sources   := $(wildcard */*.hpp */*.cpp)
+folder_of  = $(patsubst %/,%,$(dir $(filter %/$(1).cpp,$(mains))))
+
+MAKEFLAGS += --no-builtin-rules
+.SUFFIXES:
+.DELETE_ON_ERROR:
+.SECONDEXPANSION:
+.PRECIOUS: $(objects)/%.o out/%/.complete
+.PHONY: menu deps deps-dev all figures test tests test-long bench notes format clean FORCE \
+        $(programs) $(not_built_yet)
+
+# ---- the menu ------------------------------------------------------------------------------------
+
+define menu_text
+The particle-in-cell family in running code
+
+  make deps              install the packages that are missing (apt-get); elsewhere: say which
+  make implicit_moment   build one program: $(programs)
+  make all               build every program
+  make fig09             run what is stale and draw into out/figures/: $(figures)
+  make figures           draw them all
+  make test              the facts, at most ten minutes   (make test ARGS='-R gmres': some of them)
+  make test-long         every figure at full length, its numbers checked
+  make bench             particle-steps per second on 1 and 2 threads, and where the time goes
+  make notes             refresh the code and the numbers in the lecture notes
+  make format            clang-format all sources
+  make clean             remove build/ and out/, with all programs, runs and figures
+
+  make SANITIZE=address,undefined test     the facts under the sanitizers, in build/sanitize/
+  make CXX=clang++-14 all                  another compiler; also ARCH=, OPTIMIZE=, EIGEN=, CXXFLAGS=
+endef
+export menu_text
+
+menu:
+	@printf '%s\n' "$$menu_text"
+
+# ---- packages ------------------------------------------------------------------------------------
+
+deps:
+	@CXX='$(CXX)' EIGEN='$(EIGEN)' sh common/packages.sh
+
+deps-dev: | $(filter deps,$(MAKECMDGOALS))
+	@sh common/packages.sh clang-format
+
+# ---- programs ------------------------------------------------------------------------------------
+
+all: $(programs)
+tests: $(tests:%=$(BUILD)/tests/%)
+$(programs): %: $(BUILD)/%
+
+$(not_built_yet):
+	@echo "'$@' is not built yet; there is: $(programs)" >&2; exit 2
+
+# The flags and a fingerprint of compiler and machine: when they change, everything is built again.
+$(BUILD)/flags: FORCE | $(packages_first)
+	$(call need,$(firstword $(CXX)))
+	@mkdir -p $(@D)
+	@{ echo '$(CXX) $(flags) $(include_paths) $(libraries)'; \
+	   $(CXX) $(flags) $(defines) -dM -E -x c++ /dev/null | cksum; } > $@.new
+	@cmp -s $@.new $@ || cp $@.new $@; rm -f $@.new
+
+$(objects)/%.o: %.cpp $(BUILD)/flags
+	@mkdir -p $(@D)
+	$(CXX) $(flags) $(defines) $(include_paths) -MMD -MP -c -o $@ $<
+
+# The reader of case files must refuse bad input with a message, never with an assertion of its library.
+$(objects)/common/case_file.o: private defines += -DNDEBUG
+
+$(foreach m,$(mains),$(eval $(BUILD)/$(basename $(notdir $m)): $(objects)/$(m:.cpp=.o)))
+$(tests:%=$(BUILD)/tests/%): $(BUILD)/tests/%: $(objects)/tests/%.o
+
+$(programs:%=$(BUILD)/%) $(tests:%=$(BUILD)/tests/%): $(shared) $(BUILD)/flags
+	@mkdir -p $(@D)
+	$(CXX) $(flags) -o $@ $(filter %.o,$^) $(libraries)
+
+-include $(patsubst %.cpp,$(objects)/%.d,$(mains) $(wildcard common/*.cpp tests/*.cpp))
+
+# ---- runs and figures ----------------------------------------------------------------------------
+
+# A run is fresh when it ended with status 0 after the last change of its program and its case, and
+# nobody has started another run in its folder since: every start writes a new case.toml.
+define runs_of_program
+out/$(1)/%/.complete: $(2)/cases/%.toml $(BUILD)/$(1) $$$$(wildcard out/$(1)/$$$$*/case.toml) | $(packages_first)
+	@rm -f $$@
+	$(BUILD)/$(1) $$< --out $$(@D) --force
+	@touch $$@
+endef
+$(foreach p,$(programs),$(eval $(call runs_of_program,$p,$(call folder_of,$p))))
+
+# $(call figure,name,method folder,folder of the run): after the run, the picture.
+define figure
+.PHONY: $(1)
+figures += $(1)
+$(1): out/figures/$(1).png
+	@echo "figure: out/figures/$(1).png"
+out/figures/$(1).png: $(2)/figures/$(1).gp $(3)/.complete $(wildcard common/*.gp $(2)/*/*.csv) | $(packages_first)
+	$$(call need,gnuplot)
+	@mkdir -p $$(@D)
+	LC_ALL=C.UTF-8 gnuplot -e "run='$(3)'; out='$$@'" $$<
+	@test -s $$@
+endef
+
+# $(call series,script,program,cases,folder): several runs, by  sh SCRIPT PROGRAM FOLDER .
+define series
+$(4)/.complete: $(1) $(BUILD)/$(2) $(3) | $(packages_first)
+	@rm -f $$@
+	@mkdir -p $$(@D)
+	sh $(1) $(BUILD)/$(2) $$(@D)
+	@touch $$@
+endef
+
+$(eval $(call figure,fig08,implicit_moment,out/implicit_moment/gem))
+$(eval $(call figure,fig09,implicit_moment,out/implicit_moment/gem))
+
+$(eval $(call figure,implicit_moment_dispersion,implicit_moment,out/implicit_moment/dispersion))
+$(eval $(call series,implicit_moment/figures/implicit_moment_dispersion.sh,implicit_moment,$(wildcard \
+    implicit_moment/cases/light_wave.toml implicit_moment/cases/langmuir.toml),out/implicit_moment/dispersion))
+
+figures: $(figures)
+
+# Figures of the talk whose method has no program so far.
+fig01 fig04 fig07: method := mpm_implicit
+fig02 fig05:       method := mpm_explicit
+fig03 fig06:       method := the comparison of mpm_implicit with mpm_explicit
+fig10:             method := the comparison of implicit_moment with explicit_em
+fig11 fig12 fig13 fig14 fig15: method := the thin current sheet of implicit_moment
+figures_to_come := $(filter-out $(figures),$(foreach n,01 02 03 04 05 06 07 08 09 10 11 12 13 14 15,fig$n))
+.PHONY: $(figures_to_come)
+$(figures_to_come):
+	@echo "figure $(patsubst 0%,%,$(@:fig%=%)) belongs to $(method), which is not built yet; there is: $(figures)" >&2; exit 2
+
+# ---- tests ---------------------------------------------------------------------------------------
+
+ctest = cd $(BUILD) && env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL \
+        ctest --output-on-failure --no-tests=error -j$(JOBS) $(ARGS)
+
+$(BUILD)/CTestTestfile.cmake: Makefile | $(packages_first)
+	@mkdir -p $(@D)
+	@printf '%s\n' 'set(build_folder "$(BUILD)")' 'set(patience $(if $(SANITIZE),10,1))' \
+	    'subdirs($(if $(SANITIZE),../)../tests)' > $@
+
+test: all tests $(BUILD)/CTestTestfile.cmake | $(packages_first)
+	$(call need,ctest)
+	$(ctest) -LE long
+
+test-long: all tests figures $(BUILD)/CTestTestfile.cmake | $(packages_first)
+	$(call need,ctest)
+	$(ctest) -L long
+
+# ---- speed ---------------------------------------------------------------------------------------
+
+bench: all
+	@set -e; for b in $(benchmarks); do \
+	    program=$${b%%:*}; case=$${b#*:}; folder=out/bench/$$program/$$case; \
+	    source=$$(ls */cases/$$case.toml | head -n 1); \
+	    for threads in 1 2; do \
+	        echo "$$program $$source $(bench_overrides) --threads $$threads"; \
+	        $(BUILD)/$$program $$source $(bench_overrides) --threads $$threads \
+	            --out $$folder/$$threads --force --quiet > /dev/null; \
+	    done; \
+	    for threads in 1 2; do \
+	        awk -f common/json_lines.awk $$folder/$$threads/summary.json; \
+	    done | awk '$$1 !~ /^performance[.]/ { next } \
+	        { name = substr($$1, 13); if (name in first) second[name] = $$2; \
+	          else { first[name] = $$2; names[++n] = name } } \
+	        END { printf "\n%-40s %16s %16s %8s\n", "", "1 thread", "2 threads", "ratio"; \
+	              for (i = 1; i <= n; i++) { a = first[names[i]]; b = second[names[i]]; \
+	                  printf "%-40s %16.6g %16.6g %8.3f\n", names[i], a, b, a ? b / a : 0 } }'; \
+	done
+
+# ---- notes, format, clean ------------------------------------------------------------------------
+
+notes:
+	@sh common/notes.sh refresh; status=$$?; sh common/notes.sh write && exit $$status
+
+format:
+	@command -v $(CLANG_FORMAT) >/dev/null || \
+	    { echo "'$(CLANG_FORMAT)' is not installed: run 'make deps-dev'" >&2; exit 2; }
+	$(CLANG_FORMAT) -i $(sources)
+
+clean:
+	rm -rf build out

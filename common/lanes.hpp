@@ -1,0 +1,68 @@
+// Eight numbers that are worked on at once: one AVX-512 register, or two or four smaller ones
+// where the machine has those.
+#pragma once
+
+#include <cmath>
+
+namespace common {
+
+inline constexpr int lane_count = 8;
+
+/// Eight doubles with +, -, *, / and comparisons per lane; a plain double meets all lanes.
+using Lanes [[gnu::vector_size(lane_count * sizeof(double))]] = double;
+
+/// Lanes holding from[0], ..., from[count-1]; the lanes beyond count repeat from[0], so that they
+/// stay harmless.
+inline Lanes load_lanes(const double* from, long count) {
+    Lanes lanes;
+    if (count >= lane_count) {
+        __builtin_memcpy(&lanes, from, sizeof lanes);
+    } else {
+        for (int l = 0; l < lane_count; ++l) lanes[l] = from[l < count ? l : 0];
+    }
+    return lanes;
+}
+
+/// Writes the first count lanes.
+inline void store_lanes(const Lanes& lanes, double* to, long count) {
+    if (count >= lane_count) {
+        __builtin_memcpy(to, &lanes, sizeof lanes);
+    } else {
+        for (int l = 0; l < count; ++l) to[l] = lanes[l];
+    }
+}
+
+/// 1 in the first count lanes and 0 in the rest.
+inline Lanes first_lanes(long count) {
+    Lanes lanes{};
+    for (int l = 0; l < lane_count; ++l) lanes[l] = l < count ? 1.0 : 0.0;
+    return lanes;
+}
+
+/// Sum of the eight lanes, always in the order ((0+4)+(2+6)) + ((1+5)+(3+7)).
+inline double sum_of_lanes(const Lanes& lanes) {
+    using Half [[gnu::vector_size(4 * sizeof(double))]] = double;
+    using Quarter [[gnu::vector_size(2 * sizeof(double))]] = double;
+    const Half half = __builtin_shufflevector(lanes, lanes, 0, 1, 2, 3) +
+                      __builtin_shufflevector(lanes, lanes, 4, 5, 6, 7);
+    const Quarter quarter =
+        __builtin_shufflevector(half, half, 0, 1) + __builtin_shufflevector(half, half, 2, 3);
+    return quarter[0] + quarter[1];
+}
+
+/// Larger of a and b, lane by lane, and the magnitude; overloads let one formula serve a single
+/// number and lanes.
+inline Lanes larger(const Lanes& a, const Lanes& b) { return a > b ? a : b; }
+inline Lanes magnitude(const Lanes& a) { return a < 0.0 ? -a : a; }
+inline double larger(double a, double b) { return a > b ? a : b; }
+inline double magnitude(double a) { return std::fabs(a); }
+
+/// Largest of the eight lanes; NaN in any lane gives NaN.
+inline double largest_lane(const Lanes& lanes) {
+    double largest = lanes[0];
+    for (int l = 1; l < lane_count; ++l) largest = lanes[l] <= largest ? largest : lanes[l];
+    return largest;
+}
+inline double largest_lane(double a) { return a; }
+
+}  // namespace common

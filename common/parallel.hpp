@@ -1,0 +1,63 @@
+// Parallel loops whose result does not depend on the number of threads. All OpenMP of the project
+// lives here.
+//
+// Work is cut into pieces that are fixed by the problem alone. Threads choose which piece they
+// take next, never how the pieces are cut or in which order partial sums are added; so one thread
+// and forty give the same bits.
+#pragma once
+
+#include <omp.h>
+
+#include <array>
+
+namespace common {
+
+/// Number of pieces a loop over particles is cut into; any machine's threads share these.
+inline constexpr int block_count = 16;
+
+/// Calls work(block, begin, end) once for each of block_count contiguous pieces of [0, count).
+template <class Work>
+void for_each_block(long count, const Work& work) {
+#pragma omp parallel for schedule(dynamic, 1)
+    for (int block = 0; block < block_count; ++block) {
+        work(block, count * block / block_count, count * (block + 1) / block_count);
+    }
+}
+
+/// Sum of partial(begin, end) over the blocks of [0, count), added in block order.
+template <class Partial>
+double sum_over_blocks(long count, const Partial& partial) {
+    std::array<double, block_count> part{};
+    for_each_block(count, [&](int block, long begin, long end) {
+        part[static_cast<std::size_t>(block)] = partial(begin, end);
+    });
+    double total = 0;
+    for (const double p : part) total += p;
+    return total;
+}
+
+/// Calls work(row) for every row in [0, rows); rows must not write to each other's data.
+template <class Work>
+void for_each_row(long rows, const Work& work) {
+#pragma omp parallel for schedule(dynamic, 1)
+    for (long row = 0; row < rows; ++row) work(row);
+}
+
+/// Calls work(row) for every row, rows three apart at the same time: a row that writes to itself
+/// and its two neighbors then meets nobody else's writes, and every sum on the mesh is added in
+/// the same order whatever the number of threads.
+template <class Work>
+void for_each_row_three_apart(long rows, const Work& work) {
+#pragma omp parallel
+    for (long color = 0; color < 3; ++color) {
+#pragma omp for schedule(dynamic, 1)
+        for (long row = color; row < rows; row += 3) work(row);
+    }
+}
+
+inline int thread_count() { return omp_get_max_threads(); }
+inline void set_thread_count(int threads) {
+    if (threads > 0) omp_set_num_threads(threads);
+}
+
+}  // namespace common

@@ -1,0 +1,154 @@
+// The table of a program's parameters, and the command line that fills it.
+//
+// One table drives the case file, the overrides on the command line, --help and the dump of the effective
+// case. It binds names to the fields of a plain struct, whose initial values are the defaults.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace common {
+
+/// Impossible input: one sentence that says where, what and what to do. The program ends with status 2.
+struct InputError : std::runtime_error {
+    using runtime_error::runtime_error;
+};
+
+/// A computation that failed: one sentence that says where and when. The program ends with status 3.
+struct NumericalError : std::runtime_error {
+    using runtime_error::runtime_error;
+};
+
+/// The values a number may take; an open end is not among them.
+struct Range {
+    double low, high;
+    bool open_low = false;
+};
+Range anything();
+Range at_least(double low);
+Range above(double low);
+Range between(double low, double high);
+
+/// One value of a case file or of the command line, with the place it came from for messages.
+struct Setting {
+    std::string name;
+    std::variant<bool, long, double, std::string> value;
+    std::string place;
+};
+
+class ParameterTable {
+   public:
+    /// A heading in --help.
+    void group(const std::string& title) { groups_.push_back({title, {}}); }
+
+    void real(const std::string& name, double& value, const std::string& unit, Range allowed,
+              const std::string& meaning);
+    /// A whole number; 1e5 is one.
+    void whole(const std::string& name, long& value, const std::string& unit, Range allowed,
+               const std::string& meaning);
+    void flag(const std::string& name, bool& value, const std::string& meaning);
+    void choice(const std::string& name, std::string& value,
+                const std::vector<std::string>& choices, const std::string& meaning);
+
+    /// Named sub-tables: [name.item] appends an Item whose member `name` is "item", and describe()
+    /// binds its fields to parameters that begin with the prefix "name.item".
+    template <class Item>
+    void list(const std::string& name, std::vector<Item>& items,
+              void (*describe)(ParameterTable&, const std::string& prefix, Item&),
+              const std::string& meaning) {
+        items.reserve(most_items);  // the table points into it
+        add_list(name, meaning, [this, name, &items, describe](const std::string& item) {
+            items.emplace_back();
+            items.back().name = item;
+            describe(*this, name + "." + item, items.back());
+        });
+        Item pattern;
+        describe_pattern(name, [&] { describe(*this, name + ".<name>", pattern); });
+    }
+
+    /// Names, or beginnings that end in '.', that may differ between a checkpoint's case and a restart.
+    void may_change_on_restart(const std::vector<std::string>& names) { changeable_ = names; }
+    bool is_changeable(const std::string& name) const;
+
+    /// Whether a parameter takes text, so that it may stand without quotes on the command line.
+    bool takes_text(const std::string& name);
+
+    /// Gives a parameter its value. errors: InputError for an unknown name, a wrong type or a value out of
+    /// range, with the place and the cure.
+    void set(const Setting& setting);
+
+    /// All parameters with unit, range and default, under their headings.
+    std::string help() const;
+
+    /// Complete TOML text of all values. exact: reading it gives the same values and the same text.
+    std::string effective_case() const;
+
+   private:
+    static constexpr std::size_t most_items = 64;
+    struct Entry {
+        std::string name, unit, meaning;
+        std::variant<bool*, long*, double*, std::string*> target;
+        Range allowed;
+        std::vector<std::string> choices;
+        std::string initial;  // the default, as text
+    };
+    struct Group {
+        std::string title;
+        std::vector<std::size_t> entries;
+    };
+    struct List {
+        std::string name, meaning;
+        std::function<void(const std::string&)> append;
+        std::vector<std::string> items;
+        std::vector<Entry> pattern;
+    };
+
+    void add(Entry entry);
+    void add_list(const std::string& name, const std::string& meaning,
+                  const std::function<void(const std::string&)>& append);
+    void describe_pattern(const std::string& name, const std::function<void()>& describe);
+    Entry* find(const std::string& name);
+    void make_item(const Setting& setting);
+    std::string nearest(const std::string& name) const;
+
+    std::vector<Entry> entries_;
+    std::vector<Group> groups_;
+    std::vector<List> lists_;
+    std::vector<Entry>* pattern_ = nullptr;  // where entries go while a list's pattern is described
+    std::vector<std::string> changeable_;
+};
+
+/// What a program says about itself.
+struct About {
+    std::string program, version, one_line;
+    std::string default_case;  // relative to the project's root
+};
+
+/// What the command line said, besides parameters.
+struct CommandLine {
+    std::string case_path, case_name;  // the file, and its name without ending
+    std::string out_dir;               // --out, or out/<program>/<case name>
+    std::string restart_path;          // "" without --restart
+    int threads = 0;                   // 0: as many as OpenMP likes
+    bool dry_run = false, quiet = false, force = false;
+};
+
+/// Reads case file and overrides into the table. --help and --version print and end the program.
+/// With --restart the case is the one stored in the checkpoint, and only parameters that may change can be overridden.
+/// errors: InputError with the place and the cure; nothing has been written then.
+CommandLine read_command_line(int argc, char** argv, const About& about, ParameterTable& table);
+
+/// The settings in the text of a case file, in order. errors: InputError with source:line:column.
+std::vector<Setting> read_case(const std::string& text, const std::string& source);
+
+/// Shortest text that reads back as the same number.
+std::string number_text(double value);
+
+/// Whole content of a regular file. errors: InputError that says why it cannot be read.
+std::string read_file(const std::string& path);
+
+}  // namespace common

@@ -1,0 +1,91 @@
+// What every run owns besides its physics: the output folder, history, summary, checkpoints, progress and signals.
+#pragma once
+
+#include <chrono>
+#include <csignal>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "common/checkpoint.hpp"
+#include "common/history.hpp"
+#include "common/parameters.hpp"
+#include "common/summary.hpp"
+
+namespace common {
+
+class Session {
+   public:
+    /// Prepares the output folder, writes case.toml there and starts to listen to SIGINT and SIGTERM.
+    /// errors: InputError when the folder holds something else, or an earlier run without --force.
+    Session(const About& about, const CommandLine& command, const ParameterTable& table);
+    Session(const Session&) = delete;
+    Session& operator=(const Session&) = delete;
+    ~Session();
+
+    History history;
+    Summary summary;
+    long checkpoint_steps = 0;  // steps between checkpoints; 0: only when a signal stops the run
+
+    bool restarting() const { return !command_.restart_path.empty(); }
+
+    /// Reads the checkpoint named by --restart into state, history and step.
+    template <class State>
+    void restore(State& state, long& step) {
+        CheckpointReader reader(about_, command_.restart_path);
+        std::vector<double> rows;
+        reader("step", step);
+        reader("history", rows);
+        archive(reader, state);
+        history.restore(rows);
+        first_step_ = step;
+    }
+
+    /// False at the end of the run, or when a signal has asked to stop.
+    bool keep_going(long step, long steps) const;
+
+    /// Shows progress; writes a checkpoint when one is due, at the end, or when a signal has asked to stop.
+    template <class State>
+    void end_of_step(long step, long steps, double time, State& state) {
+        show_progress(step, steps, time);
+        const bool due = checkpoint_steps > 0 && (step % checkpoint_steps == 0 || step == steps);
+        if (!due && stopped_by() == 0) return;
+        history.flush();
+        CheckpointWriter writer(about_, effective_case_);
+        writer("step", step);
+        writer("history", history.all());
+        archive(writer, state);
+        write_checkpoint(writer, step);
+    }
+
+    /// Writes summary.json and prints the results. out: the exit status: 0 done, 130 or 143 stopped by a signal, 3 for a result that is not finite.
+    /// in: step, how many steps the run has come to; count, particles (or what else is advanced) in each.
+    int finish(long step, double count);
+
+    /// Writes summary.json for a run that has failed. out: the exit status.
+    int fail(int status, const std::string& message);
+
+    std::string path(const std::string& file) const { return command_.out_dir + "/" + file; }
+
+    /// The signal that has asked to stop, or 0.
+    static int stopped_by();
+
+   private:
+    void prepare_folder();
+    void show_progress(long step, long steps, double time);
+    void write_checkpoint(CheckpointWriter& writer, long step);
+
+    About about_;
+    CommandLine command_;
+    std::string effective_case_, last_note_;
+    long first_step_ = 0;
+    std::chrono::steady_clock::time_point start_, shown_;
+    long tenths_shown_ = 0;
+    bool terminal_ = false, line_open_ = false;
+};
+
+/// Runs a program and turns errors into one sentence on stderr and the exit status: 2 bad input, 3 numerical failure.
+/// in: run(session) builds the session in place, so that a failed run still leaves its summary.
+int guarded(const About& about, const std::function<int(std::optional<Session>&)>& run);
+
+}  // namespace common

@@ -1,0 +1,47 @@
+// B-splines S^(0) ... S^(3), the shape functions of the whole family.
+//
+// S^(l) is the l-fold convolution of the top-hat with itself, in units of the cell: symmetric,
+// unit integral, support (l+1) cells, l-1
+// continuous derivatives. Everything the methods rely on follows from two facts:
+//     sum_g S^(l)(x - g) = 1                                    partition of unity: totals on the
+//     mesh are totals of the particles
+//     d S^(l)/dx (x)     = S^(l-1)(x + 1/2) - S^(l-1)(x - 1/2)   a derivative is a difference of
+//     the next lower spline
+#pragma once
+
+#include <cmath>
+
+namespace common {
+
+/// S^(order)(x) with x in cells, order 0 to 3. The top-hat is 1 on [-1/2, 1/2).
+inline double spline(int order, double x) {
+    if (order == 0) return x >= -0.5 && x < 0.5 ? 1.0 : 0.0;
+    const double r = std::fabs(x);
+    const auto cube = [](double t) { return t * t * t; };
+    if (order == 1) return r < 1 ? 1 - r : 0;
+    if (order == 2) return r < 0.5 ? 0.75 - r * r : r < 1.5 ? 0.5 * (1.5 - r) * (1.5 - r) : 0;
+    return r < 1 ? 2.0 / 3 - r * r + 0.5 * r * r * r : r < 2 ? cube(2 - r) / 6 : 0;
+}
+
+/// d S^(order)/dx per cell, order 1 to 3, as the difference of the next lower spline (exact; at a
+/// kink the mean of the two sides is not taken).
+inline double spline_gradient(int order, double x) {
+    return spline(order - 1, x + 0.5) - spline(order - 1, x - 0.5);
+}
+
+/// The quadratic and linear weights that a particle at distance d (in cells, |d| <= 1/2) from its
+/// nearest node gives to its neighbors:
+///     quadratic[0..2] = S^(2) to the nodes -1, 0, +1          linear[0..1] = S^(1) to the
+///     midpoints -1/2, +1/2
+/// Real is double, or Lanes for eight particles at once. S^(0) to the nearest node is 1.
+template <class Real>
+struct QuadraticWeights {
+    Real quadratic[3];
+    Real linear[2];
+
+    explicit QuadraticWeights(const Real& d)
+        : quadratic{0.5 * (0.5 - d) * (0.5 - d), 0.75 - d * d, 0.5 * (0.5 + d) * (0.5 + d)},
+          linear{0.5 - d, 0.5 + d} {}
+};
+
+}  // namespace common

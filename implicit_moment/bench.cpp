@@ -1,0 +1,84 @@
+// How fast the loop of implicit_moment.cpp is, and where its time goes: the same calls with a
+// clock between them, on the GEM default case, by one thread and by two. `make bench` runs it.
+#include <sys/resource.h>
+
+#include <chrono>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "implicit_moment/initial_state.hpp"
+#include "implicit_moment/solve_field.hpp"
+
+namespace {
+
+using namespace implicit_moment;
+
+struct Split {
+    double moments = 0, field = 0, mover = 0, sort = 0;  // seconds
+    double iterations = 0;
+    double total() const { return moments + field + mover + sort; }
+};
+
+Split time_steps(const Case& wanted, long steps, int threads, long& particle_count) {
+    common::set_thread_count(threads);
+    const Grid& grid = wanted.grid;
+    State state = initial_state(wanted);
+    std::vector<Particles>& particles = state.plasma.species;
+    const std::vector<double> charge_over_mass = state.plasma.charge_over_mass();
+    std::vector<Moments> moments(particles.size(), Moments(grid));
+    FieldSolver solver(grid, wanted.field);
+    PushField push;
+    SortScratch scratch;
+    particle_count = state.plasma.count();
+
+    Split split;
+    const auto timed = [](double& seconds, const auto& work) {
+        const auto start = std::chrono::steady_clock::now();
+        work();
+        seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    };
+    for (long step = 0; step < steps; ++step) {
+        timed(split.moments, [&] { deposit_moments(particles, grid, moments); });
+        timed(split.field, [&] {
+            split.iterations +=
+                solve_field(solver, moments, charge_over_mass, wanted.dt, state.field).iterations;
+            pack_push_field(solver, state.field, push);
+        });
+        timed(split.mover, [&] { move_particles(push, grid, wanted.dt, wanted.mover, particles); });
+        timed(split.field, [&] { advance_field(solver, wanted.dt, state.field); });
+        timed(split.sort, [&] { sort_particles(grid, scratch, particles); });
+    }
+    split.iterations /= static_cast<double>(steps);
+    return split;
+}
+
+}  // namespace
+
+int main() {
+    const Case wanted;  // the defaults are the GEM challenge
+    const long steps = 400;
+    long particles = 0;
+    double one_thread = 0;
+    std::printf("implicit_moment, GEM default case, %ld steps\n\n", steps);
+    std::printf("%8s %16s %9s %9s %9s %9s %9s %11s\n", "threads", "particle-steps/s", "speed-up",
+                "moments", "field", "mover", "sort", "iterations");
+    for (const int threads : {1, 2}) {
+        const Split split = time_steps(wanted, steps, threads, particles);
+        const double rate =
+            static_cast<double>(particles) * static_cast<double>(steps) / split.total();
+        if (threads == 1) one_thread = rate;
+        const auto percent = [&](double seconds) { return 100 * seconds / split.total(); };
+        std::printf("%8d %16.4g %9.2f %8.1f%% %8.1f%% %8.1f%% %8.1f%% %11.1f\n", threads, rate,
+                    rate / one_thread, percent(split.moments), percent(split.field),
+                    percent(split.mover), percent(split.sort), split.iterations);
+    }
+    struct rusage usage {};
+    getrusage(RUSAGE_SELF, &usage);
+    const double carried = 5 * sizeof(double), scratch = sizeof(double) + sizeof(int);
+    std::printf(
+        "\n%ld particles, %.0f bytes each (%.0f carried, %.0f to sort); peak memory %.1f MiB\n",
+        particles, carried + scratch, carried, scratch,
+        static_cast<double>(usage.ru_maxrss) / 1024);
+    return 0;
+}

@@ -1,0 +1,191 @@
+// particles -> grid: charge, current and stress of one species, each with its own spline. [IMM-9]
+//
+// The slide gives rho the spline S^(l), J the spline S^(l-1) and P the spline S^(l-2). Here l = 2,
+// and the order drops only in the direction that is differentiated, because d S^(l)/dx is a
+// difference of S^(l-1):
+//
+//     rho   nodes    S2(x) S2(z)          P_xx  nodes    S0(x) S2(z)
+//     J_x   x-edges  S1(x) S2(z)          P_zz  nodes    S2(x) S0(z)
+//     J_y   nodes    S2(x) S2(z)          P_xz  faces    S1(x) S1(z)
+//     J_z   z-edges  S2(x) S1(z)          P_xy  x-edges  S1(x) S2(z)
+//                                         P_yz  z-edges  S2(x) S1(z)
+//
+// so that, for particles in free flight, d rho/dt + div J = 0 and dJ/dt + div P = 0 hold exactly
+// at every instant.
+#pragma once
+
+#include <array>
+
+#include "common/lanes.hpp"
+#include "common/splines.hpp"
+#include "implicit_moment/particles.hpp"
+
+namespace implicit_moment {
+
+using common::Lanes;
+
+/// The moments of one species, per unit area of the mesh; P carries the charge like J: P = sum q
+/// v v S (divide by q/m for a pressure).
+struct Moments {
+    Field rho, J_x, J_y, J_z, P_xx, P_zz, P_xz, P_xy, P_yz;
+    double kinetic_energy = 0;         // sum of m v^2 / 2 over the particles
+    std::array<double, 3> momentum{};  // sum of m v
+
+    explicit Moments(const Grid& grid) {
+        for (Field* f : all()) f->setZero(grid.size());
+    }
+    std::array<Field*, 9> all() {
+        return {&rho, &J_x, &J_y, &J_z, &P_xx, &P_zz, &P_xz, &P_xy, &P_yz};
+    }
+};
+
+inline constexpr common::Place on_nodes = common::on_nodes, on_x_edges = common::on_x_edges,
+                               on_z_edges = common::on_z_edges, on_faces = common::on_faces;
+
+namespace detail {
+
+// The sums of one node's particles over its 3 x 3 surroundings, eight partial sums each.
+struct NodeSums {
+    Lanes rho[3][3]{}, J_y[3][3]{};
+    Lanes J_x[3][2]{}, P_xy[3][2]{};
+    Lanes J_z[2][3]{}, P_yz[2][3]{};
+    Lanes P_xz[2][2]{};
+    Lanes P_xx[3]{}, P_zz[3]{};
+
+    // Adds eight particles at distance (d_x, d_z) from the node, velocity v; present is 0 for
+    // lanes that hold none.
+    void add(const Lanes& d_x, const Lanes& d_z, const Lanes& v_x, const Lanes& v_y,
+             const Lanes& v_z, const Lanes& present) {
+        const common::QuadraticWeights<Lanes> S_x(d_x), S_z(d_z);
+        for (int j = 0; j < 3; ++j) {
+            const Lanes S = S_z.quadratic[j] * present;
+            P_xx[j] += S * v_x * v_x;
+            for (int i = 0; i < 3; ++i) {
+                const Lanes w = S_x.quadratic[i] * S;
+                rho[j][i] += w;
+                J_y[j][i] += w * v_y;
+            }
+            for (int i = 0; i < 2; ++i) {
+                const Lanes w_v = S_x.linear[i] * S * v_x;
+                J_x[j][i] += w_v;
+                P_xy[j][i] += w_v * v_y;
+            }
+        }
+        for (int j = 0; j < 2; ++j) {
+            const Lanes S_v = S_z.linear[j] * present * v_z;
+            for (int i = 0; i < 3; ++i) {
+                const Lanes w_v = S_x.quadratic[i] * S_v;
+                J_z[j][i] += w_v;
+                P_yz[j][i] += w_v * v_y;
+            }
+            for (int i = 0; i < 2; ++i) P_xz[j][i] += S_x.linear[i] * S_v * v_x;
+        }
+        const Lanes zz = present * v_z * v_z;
+        for (int i = 0; i < 3; ++i) P_zz[i] += S_x.quadratic[i] * zz;
+    }
+};
+
+}  // namespace detail
+
+/// Deposits the moments of one species.
+///     rho_g = sum_p q_p S(x_g - x_p) / (dx dz),  J_g = sum_p q_p v_p S' / (dx dz),  P_g = sum_p
+///     q_p v_p v_p S'' / (dx dz)
+/// in: particles sorted by nearest node. out: moments with ghosts filled.
+/// exact: total charge and current; the mesh continuity equations in continuous time.   source:
+///        [IMM-9]
+/// note: the slide weighs P with the mass; with the charge, J and P enter [IMM-12] alike. Walls
+///        mirror the plasma: a particle's image has the same charge and the opposite normal
+///        velocity, so J_n is odd and vanishes on the wall, and a node on the wall counts its
+///        half cell twice.
+inline void deposit_moments(const Particles& particles, const Grid& grid, Moments& moments) {
+    for (Field* f : moments.all()) f->setZero();
+    const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing();
+    const double q = particles.q_p / grid.cell_area();
+    const long columns = nodes_x(grid), stride = grid.stride();
+    // Per row of nodes: sums of v_x, v_y, v_z and v^2.
+    std::vector<std::array<double, 4>> sums_of_row(static_cast<std::size_t>(nodes_z(grid)));
+
+    common::for_each_row_three_apart(nodes_z(grid), [&](long row) {
+        const double z_node = grid.z.at(static_cast<double>(row));
+        Lanes total_x{}, total_y{}, total_z{}, total_squared{};
+        for (long column = 0; column < columns; ++column) {
+            const std::size_t node = static_cast<std::size_t>(row * columns + column);
+            const long begin = particles.first_of_node[node],
+                       end = particles.first_of_node[node + 1];
+            if (begin == end) continue;
+            const double x_node = grid.x.at(static_cast<double>(column));
+
+            detail::NodeSums sums;
+            for (long p = begin; p < end; p += common::lane_count) {
+                const long count = end - p;
+                const Lanes present = common::first_lanes(count);
+                const Lanes v_x = common::load_lanes(&particles.vx_p[p], count);
+                const Lanes v_y = common::load_lanes(&particles.vy_p[p], count);
+                const Lanes v_z = common::load_lanes(&particles.vz_p[p], count);
+                sums.add((common::load_lanes(&particles.x_p[p], count) - x_node) * per_dx,
+                         (common::load_lanes(&particles.z_p[p], count) - z_node) * per_dz, v_x, v_y,
+                         v_z, present);
+                total_x += present * v_x;
+                total_y += present * v_y;
+                total_z += present * v_z;
+                total_squared += present * (v_x * v_x + v_y * v_y + v_z * v_z);
+            }
+
+            // Hand the sums to the mesh; the stencil's corner is the node down left of this one.
+            const long corner = grid.index(column - 1, row - 1);
+            const auto give = [&](Field& f, long i, long j, const Lanes& sum) {
+                f[corner + j * stride + i] += q * common::sum_of_lanes(sum);
+            };
+            for (long j = 0; j < 3; ++j) {
+                give(moments.P_xx, 1, j, sums.P_xx[j]);
+                for (long i = 0; i < 3; ++i) {
+                    give(moments.rho, i, j, sums.rho[j][i]);
+                    give(moments.J_y, i, j, sums.J_y[j][i]);
+                }
+                for (long i = 0; i < 2; ++i) {
+                    give(moments.J_x, i, j, sums.J_x[j][i]);
+                    give(moments.P_xy, i, j, sums.P_xy[j][i]);
+                }
+            }
+            for (long i = 0; i < 3; ++i) {
+                give(moments.P_zz, i, 1, sums.P_zz[i]);
+                for (long j = 0; j < 2; ++j) {
+                    give(moments.J_z, i, j, sums.J_z[j][i]);
+                    give(moments.P_yz, i, j, sums.P_yz[j][i]);
+                }
+            }
+            for (long j = 0; j < 2; ++j) {
+                for (long i = 0; i < 2; ++i) give(moments.P_xz, i, j, sums.P_xz[j][i]);
+            }
+        }
+        sums_of_row[static_cast<std::size_t>(row)] = {
+            common::sum_of_lanes(total_x), common::sum_of_lanes(total_y),
+            common::sum_of_lanes(total_z), common::sum_of_lanes(total_squared)};
+    });
+
+    moments.kinetic_energy = 0;
+    moments.momentum = {};
+    for (const auto& sums : sums_of_row) {
+        for (std::size_t a = 0; a < 3; ++a) moments.momentum[a] += particles.m_p * sums[a];
+        moments.kinetic_energy += 0.5 * particles.m_p * sums[3];
+    }
+
+    // A component is odd behind a wall once for every index normal to the wall.
+    common::fold_ghosts(grid, on_nodes, {+1, +1}, moments.rho.data());
+    common::fold_ghosts(grid, on_x_edges, {-1, +1}, moments.J_x.data());
+    common::fold_ghosts(grid, on_nodes, {+1, +1}, moments.J_y.data());
+    common::fold_ghosts(grid, on_z_edges, {+1, -1}, moments.J_z.data());
+    common::fold_ghosts(grid, on_nodes, {+1, +1}, moments.P_xx.data());
+    common::fold_ghosts(grid, on_nodes, {+1, +1}, moments.P_zz.data());
+    common::fold_ghosts(grid, on_faces, {-1, -1}, moments.P_xz.data());
+    common::fold_ghosts(grid, on_x_edges, {-1, +1}, moments.P_xy.data());
+    common::fold_ghosts(grid, on_z_edges, {+1, -1}, moments.P_yz.data());
+}
+
+/// The moments of all species.
+inline void deposit_moments(const std::vector<Particles>& species, const Grid& grid,
+                            std::vector<Moments>& moments) {
+    for (std::size_t k = 0; k < species.size(); ++k) deposit_moments(species[k], grid, moments[k]);
+}
+
+}  // namespace implicit_moment

@@ -1,0 +1,35 @@
+# Figure 8 of the talk: magnetic field lines (contours of A_y) and out-of-plane current density (color) of the GEM challenge at four times. The sheet thins at
+# the X-line in the middle and is drawn out into the separatrices, while the island at the ends of the periodic box swallows the flux.
+wide = 1500; high = 900
+load 'common/style.gp'
+file(n) = sprintf('%s/fields_%06d.dat', run, n)
+first = file(0)
+A = col(first, 'A_y'); J = col(first, 'J_y')
+steps = '0 800 1200 1600'
+eval field_frame
+eval colors(inferno)
+unset key
+set xrange [-12.8:12.8]; set yrange [-6.4:6.4]
+set xtics -12, 4; set ytics -6, 3
+# J_y in units of its value in the middle of the initial sheet, c B0/(4 pi lambda); files have it in e n0 c, and B0 = 1/(c/v_A).
+B0 = 1.0 / real(system(sprintf("awk -F= '/^light_over_alfven/ { print $2 }' '%s/case.toml'", run)))
+J0 = B0 / 0.5
+set cbrange [0:1.4]
+set multiplot title 'GEM challenge: field lines and out-of-plane current' font ',22'
+do for [k = 1:4] {
+    n = int(word(steps, k))
+    left = k % 2 == 1 ? 0.06 : 0.48
+    bottom = k <= 2 ? 0.52 : 0.09
+    set lmargin at screen left; set rmargin at screen left + 0.39
+    set bmargin at screen bottom; set tmargin at screen bottom + 0.36
+    set title sprintf('t Ω_{ci} = %.0f', n * 0.3 * B0) offset 0, -0.6
+    if (k > 2) { set xlabel 'x / d_i' } else { unset xlabel }
+    if (k % 2 == 1) { set ylabel 'z / d_i' offset 1, 0 } else { unset ylabel }
+    if (k == 2) { set colorbox user origin 0.91, 0.25 size 0.014, 0.48; set cblabel 'J_y / J_0' offset 0.5, 0 } else { unset colorbox }
+    set table $lines; set contour base; unset surface
+    set cntrparam levels incremental -0.4, 0.02, 0.4
+    splot file(n) using 1:2:A
+    unset table; unset contour; set surface
+    plot file(n) using 1:2:(column(J) / J0) with image notitle, $lines using 1:2 @contours notitle
+}
+unset multiplot

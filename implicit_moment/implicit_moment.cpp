@@ -1,0 +1,86 @@
+// The implicit moment method: kinetic particles, and fluid equations that predict their current,
+// so that fields can be advanced with time steps longer than the plasma period and cells larger
+// than the Debye length.
+//
+// The default case is the GEM magnetic reconnection challenge with the numbers of the talk.
+// Run:   build/implicit_moment
+// Run:   build/implicit_moment implicit_moment/cases/gem.toml time.end=400 field.theta=1
+// Run:   build/implicit_moment implicit_moment/cases/two_stream.toml uniform.particles_per_cell=256
+//
+// Reading order: units.hpp, particles.hpp, deposit_moments.hpp, predict_current.hpp,
+// solve_field.hpp, move_particles.hpp.
+#include <cstdio>
+#include <optional>
+
+#include "common/session.hpp"
+#include "implicit_moment/compare_with_theory.hpp"
+#include "implicit_moment/record.hpp"
+#include "implicit_moment/write_output.hpp"
+
+namespace {
+
+using namespace implicit_moment;
+
+const common::About about{
+    "implicit_moment", PROGRAM_VERSION,
+    "implicit moment method in 2.5 dimensions; the default case is the GEM reconnection challenge",
+    "implicit_moment/cases/gem.toml"};
+
+int run(int argc, char** argv, std::optional<common::Session>& holder) {
+    // 1. The case: defaults, file, command line; refuse, warn, or only describe.
+    Case wanted;
+    common::ParameterTable table = describe(wanted);
+    const common::CommandLine command = common::read_command_line(argc, argv, about, table);
+    refuse_impossible(wanted);
+    if (wanted.wave != "none") theory_of_mode(wanted);
+    const Scales scales = scales_of(wanted);
+    const std::vector<std::string> warnings = closure_warnings(wanted, scales);  // [IMM-13]
+    for (const std::string& warning : warnings)
+        std::fprintf(stderr, "warning: %s\n", warning.c_str());
+    if (!command.quiet) std::printf("%s", describe_scales(wanted, scales).c_str());
+    if (command.dry_run) return 0;
+
+    // 2. Particles and fields at t = 0.
+    common::set_thread_count(command.threads);
+    common::Session& session = holder.emplace(about, command, table);
+    for (const std::string& warning : warnings) session.summary.warning(warning);
+    session.checkpoint_steps = wanted.checkpoint_steps;
+    const Grid& grid = wanted.grid;
+    State state = initial_state(wanted);
+    std::vector<Particles>& particles = state.plasma.species;
+    const std::vector<double> charge_over_mass = state.plasma.charge_over_mass();
+    std::vector<Moments> moments(particles.size(), Moments(grid));
+    FieldSolver solver(grid, wanted.field);
+    PushField push;
+    SortScratch scratch;
+    Recorder recorder(wanted, state, session.history);
+
+    // 3. The loop of the slide.
+    long step = 0;
+    if (session.restarting()) session.restore(state, step);
+    while (session.keep_going(step, scales.steps)) {
+        deposit_moments(particles, grid, moments);  // [IMM-9]
+        recorder.record(step, state, moments, session);
+        solve_field(solver, moments, charge_over_mass, wanted.dt, state.field);  // [IMM-10, 11, 12]
+        pack_push_field(solver, state.field, push);
+        move_particles(push, grid, wanted.dt, wanted.mover, particles);
+        advance_field(solver, wanted.dt, state.field);  // [IMM-10]
+        sort_particles(grid, scratch, particles);
+        ++step;
+        session.end_of_step(step, scales.steps, static_cast<double>(step) * wanted.dt, state);
+    }
+
+    // 4. The last row, the results against theory, summary.json.
+    if (step == scales.steps) {
+        deposit_moments(particles, grid, moments);
+        recorder.record(step, state, moments, session);
+        recorder.finish(state, moments, session);
+    }
+    return session.finish(step, static_cast<double>(state.plasma.count()));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    return common::guarded(about, [&](auto& session) { return run(argc, argv, session); });
+}

@@ -1,0 +1,130 @@
+// One row of history per step, snapshots when they are due, results at the end.
+#pragma once
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "common/session.hpp"
+#include "implicit_moment/compare_with_theory.hpp"
+#include "implicit_moment/write_output.hpp"
+
+namespace implicit_moment {
+
+/// What the loop hands its results to. Rows belong to t^n: moments, E and B of the same time level.
+class Recorder {
+   public:
+    Recorder(const Case& wanted, const State& state, common::History& history)
+        : wanted_(wanted), harris_(wanted.setup == "harris") {
+        std::vector<common::Column> columns{{"time", "1/omega_pi"}};
+        if (harris_) columns.push_back({"time_Omega_ci", "1/Omega_ci"});
+        columns.insert(
+            columns.end(),
+            {{"energy", unit_}, {"energy_drift", "1"}, {"electric", unit_}, {"magnetic", unit_}});
+        for (const Particles& s : state.plasma.species)
+            columns.push_back({"kinetic_" + s.name, unit_});
+        columns.insert(columns.end(), {{"momentum_x", "m_i*c*n0*d_i^2"},
+                                       {"momentum_y", "m_i*c*n0*d_i^2"},
+                                       {"momentum_z", "m_i*c*n0*d_i^2"},
+                                       {"div_B", "B*omega_pi/c"},
+                                       {"gauss_residual", "4pi*e*n0"}});
+        if (harris_) columns.insert(columns.end(), {{"flux", "B0*d_i"}, {"quadrupole", "B0"}});
+        if (!harris_)
+            columns.insert(columns.end(),
+                           {{"mode_re", wanted.component}, {"mode_im", wanted.component}});
+        history.columns(columns);
+    }
+
+    /// One row for t^n. errors: NumericalError when the energy is not finite or beyond ten times
+    /// the initial.
+    void record(long step, const State& state, const std::vector<Moments>& moments,
+                common::Session& session) {
+        const Grid& grid = wanted_.grid;
+        const FieldState& field = state.field;
+        const double time = static_cast<double>(step) * wanted_.dt;
+        const double electric_energy = field_energy(grid, field.E),
+                     magnetic_energy = field_energy(grid, field.B);
+        double energy = electric_energy + magnetic_energy;
+        std::array<double, 3> momentum{};
+        for (const Moments& m : moments) {
+            energy += m.kinetic_energy;
+            for (std::size_t a = 0; a < 3; ++a) momentum[a] += m.momentum[a];
+        }
+        if (step == 0) initial_energy_ = energy;
+        if (initial_energy_ == 0) initial_energy_ = n0 * session.history.column("energy").front();
+        if (!(energy <= 10 * initial_energy_)) {
+            throw common::NumericalError("the energy is " + shown(energy / initial_energy_) +
+                                         " times the initial energy at step " +
+                                         std::to_string(step) + ", t = " + shown(time) +
+                                         ": reduce time.dt or refine the mesh");
+        }
+
+        rho_.setZero(grid.size());
+        for (const Moments& m : moments) rho_ += m.rho;
+        smooth(grid, on_nodes, {+1, +1}, wanted_.field.smoothing, rho_.data(), scratch_);
+        gauss_.resize(grid.size());
+        gauss_residual(grid, field.E, rho_, gauss_);
+
+        row_ = {time};
+        if (harris_) row_.push_back(time * harris_sheet(wanted_.harris).Omega_ci);
+        row_.insert(row_.end(), {energy / n0, energy / initial_energy_ - 1, electric_energy / n0,
+                                 magnetic_energy / n0});
+        for (const Moments& m : moments) row_.push_back(m.kinetic_energy / n0);
+        row_.insert(row_.end(),
+                    {momentum[0] / n0, momentum[1] / n0, momentum[2] / n0,
+                     largest_divergence(grid, field.B, gauss_scratch_), gauss_error(grid, gauss_)});
+        if (harris_) {
+            const double B0 = harris_sheet(wanted_.harris).B0;
+            row_.insert(row_.end(),
+                        {reconnected_flux(grid, field.B) / B0, quadrupole(grid, field.B) / B0});
+        } else {
+            const auto mode = mode_amplitude(grid, field, wanted_.component, wanted_.uniform.mode_x,
+                                             wanted_.uniform.mode_z);
+            row_.insert(row_.end(), {mode.real(), mode.imag()});
+        }
+        session.history.row(row_);
+        if (due(wanted_.fields_interval, step)) {
+            write_fields(session.path("."), step, grid, field, state.plasma, moments, wanted_.vtk);
+        }
+        if (due(wanted_.particles_interval, step))
+            write_particles(session.path("."), step, state.plasma, wanted_.vtk);
+    }
+
+    /// The results of the whole run, after its last row.
+    void finish(const State& state, const std::vector<Moments>& moments,
+                common::Session& session) const {
+        const common::History& history = session.history;
+        common::Summary& summary = session.summary;
+        if (harris_ && wanted_.harris.perturbation != 0)
+            compare_reconnection(wanted_, history, summary);
+        if (harris_ && wanted_.harris.perturbation == 0)
+            compare_equilibrium(wanted_, state.plasma, moments, history, summary);
+        if (!harris_) compare_mode(wanted_, history, summary);
+        const auto largest = [&](const char* name) {
+            double most = 0;
+            for (const double value : history.column(name)) most = std::max(most, std::fabs(value));
+            return most;
+        };
+        summary.conservation("largest_energy_drift", largest("energy_drift"), "1");
+        summary.conservation("largest_div_B", largest("div_B"), "B*omega_pi/c");
+        summary.conservation("largest_gauss_residual", largest("gauss_residual"), "4pi*e*n0");
+        summary.performance("particles", static_cast<double>(state.plasma.count()));
+    }
+
+   private:
+    // Whether a snapshot of the given interval falls on this step.
+    bool due(double interval, long step) const {
+        if (interval <= 0) return false;
+        const long every = std::max(1L, std::lround(interval / wanted_.dt));
+        return step % every == 0;
+    }
+
+    const Case& wanted_;
+    bool harris_;
+    double initial_energy_ = 0;
+    Field rho_, gauss_, scratch_, gauss_scratch_;
+    std::vector<double> row_;
+    static constexpr const char* unit_ = "n0*m_i*c^2*d_i^2";
+};
+
+}  // namespace implicit_moment

@@ -1,0 +1,329 @@
+// on the grid: E^{n+theta} from Maxwell's equations and the predicted current, then E and B at
+// n+1.                     [IMM-10]
+//
+// Faraday and Ampere at n+theta, with J^{n+1/2} = J_hat + chi E/(4 pi theta dt) and a = c theta dt:
+//
+//     (1 + chi) E + a^2 curl curl E = E^n + a curl B^n - 4 pi theta dt J_hat + a^2 grad G
+//     (i)
+//
+// where G = div E - 4 pi rho at n+theta, Gauss's law with the predicted charge. The paper
+// replaces curl curl E by grad div E - lap E and puts Gauss's law
+// in for div E; that is (i). Its divergence, with [IMM-11], says what becomes of an error in
+// Gauss's law:
+//
+//     (1 - a^2 lap) G^{n+theta} = G^n,       G = 0 on walls
+//     (ii)
+//
+// so the error left by the finite number of particles decays and needs no projection step;
+// Poisson's equation is imposed on the boundary only, as G = 0. We solve (ii) first, directly,
+// and (i) by GMRES: together they are the second-order equation, with an operator that stays
+// near-symmetric.
+// source: [IMM-10..12]; Ricci, Lapenta and Brackbill, J. Comput. Phys. 183, 117 (2002).
+#pragma once
+
+#include <string>
+
+#include "common/gmres.hpp"
+#include "common/newton_krylov.hpp"
+#include "common/parameters.hpp"
+#include "implicit_moment/mesh_modes.hpp"
+#include "implicit_moment/predict_current.hpp"
+#include "implicit_moment/push_field.hpp"
+
+namespace implicit_moment {
+
+struct FieldSettings {
+    std::string solver = "gmres";
+    double theta = 0.5;
+    double tolerance = 1e-8;
+    long max_iterations = 200;
+    SmoothingSettings smoothing;
+};
+
+struct FieldState {
+    VectorField E, B;     // at t^n, ghosts filled
+    VectorField E_theta;  // E^{n+theta} of the last step
+    explicit FieldState(const Grid& grid) : E(grid), B(grid), E_theta(grid) {}
+};
+
+struct FieldReport {
+    int iterations = 0;
+    double residual = 0;
+};
+
+/// Everything the solver keeps between steps; nothing of it is state.
+struct FieldSolver {
+    Grid grid;
+    FieldSettings settings;
+    MeshModes modes;
+    PlasmaResponse response;
+    Field gauss, scratch;
+    VectorField source, ghosted, turned, B_theta;
+    std::array<Eigen::MatrixXf, 3> amplitude, unknowns;
+    std::array<Eigen::MatrixXf, 6> half_way;
+    Eigen::MatrixXf U_x, V_x, U_z, V_z;        // the modes again, for the preconditioner
+    Eigen::VectorXd smoothing_x, smoothing_z;  // what smoothing does to each mode
+    std::array<double, 3> mean_chi{};
+    common::GmresWorkspace krylov;
+    common::NewtonWorkspace newton;
+
+    FieldSolver(const Grid& g, const FieldSettings& s)
+        : grid(g),
+          settings(s),
+          modes(g),
+          response(g),
+          gauss(Field::Zero(g.size())),
+          scratch(Field::Zero(g.size())),
+          source(g),
+          ghosted(g),
+          turned(g),
+          B_theta(g) {
+        const auto factors = [&](const AxisModes& axis) {
+            return axis.angle.unaryExpr(
+                [&](double angle) { return smoothing_factor(s.smoothing, angle); });
+        };
+        U_x = modes.x.U.cast<float>(), V_x = modes.x.V.cast<float>();
+        U_z = modes.z.U.cast<float>(), V_z = modes.z.V.cast<float>();
+        smoothing_x = factors(modes.x);
+        smoothing_z = factors(modes.z);
+    }
+};
+
+/// out = (1 + chi) E + a^2 curl curl E on the unknowns of E, zero elsewhere, with chi between two
+/// smoothings: S chi S.
+/// note: particles feel the smoothed field and their current is smoothed; with chi between the
+///        same two smoothings the predicted current does the work that the particles receive.
+inline void apply_field_operator(FieldSolver& solver, double a, const Eigen::VectorXd& E,
+                                 Eigen::VectorXd& out) {
+    const Grid& grid = solver.grid;
+    const SmoothingSettings& smoothing = solver.settings.smoothing;
+    VectorField &ghosted = solver.ghosted, &turned = solver.turned;
+    ghosted.all = E;
+    fill_ghosts(grid, electric, ghosted);
+    curl_of_electric(grid, ghosted.all.data(), turned.all.data());
+    fill_ghosts(grid, magnetic, turned);
+    curl_of_magnetic(grid, turned.all.data(), out.data());
+    smooth(grid, electric, smoothing, ghosted.all.data(), solver.scratch);
+    apply_tensor(grid, solver.response.chi, ghosted.all.data(), false, turned.all.data());
+    fill_ghosts(grid, current, turned);
+    smooth(grid, current, smoothing, turned.all.data(), solver.scratch);
+    out = E + turned.all + a * a * out;
+    keep_unknowns(grid, out.data());
+}
+
+/// out = [ 1 + w^2 chi_0 + a^2 curl curl ]^{-1} r, exactly, for a uniform diagonal chi_0 and the
+/// smoothing factor w of each mode.
+/// note: in single precision, which flexible GMRES takes without losing the solution's double one.
+///       With the mean susceptibility of each direction the number of iterations stays the same
+///        from omega_p dt = 0.1 to 100 in a uniform plasma, and is bounded by the contrast of
+///        density and of magnetization otherwise.
+inline void precondition_field(FieldSolver& solver, double a, const Eigen::VectorXd& r,
+                               Eigen::VectorXd& out) {
+    const Grid& grid = solver.grid;
+    const AxisModes &x = solver.modes.x, &z = solver.modes.z;
+    const long m = grid.size();
+    // The modes of each component, along x and along z, by its place on the mesh.
+    const std::array<const Eigen::MatrixXf*, 3> X{&solver.U_x, &solver.V_x, &solver.V_x};
+    const std::array<const Eigen::MatrixXf*, 3> Z{&solver.V_z, &solver.V_z, &solver.U_z};
+    const long nx = grid.x.cells, nz = grid.z.cells;
+    for (std::size_t k = 0; k < 3; ++k) {
+        solver.unknowns[k] =
+            detail::interior(grid, r.data() + static_cast<long>(k) * m).cast<float>();
+        solver.amplitude[k].resize(nx, nz);
+    }
+    common::for_each_row(6, [&](long task) {
+        const auto k = static_cast<std::size_t>(task / 2), t = static_cast<std::size_t>(task);
+        const long first = task % 2 * (nz / 2), columns = task % 2 == 0 ? nz / 2 : nz - nz / 2;
+        solver.half_way[t].noalias() = solver.unknowns[k] * Z[k]->middleCols(first, columns);
+        solver.amplitude[k].middleCols(first, columns).noalias() =
+            X[k]->transpose() * solver.half_way[t];
+    });
+
+    // Every mode alone: a 2 x 2 system in the plane, one number for e_y.
+    const auto chi_x = static_cast<float>(solver.mean_chi[0]),
+               chi_y = static_cast<float>(solver.mean_chi[1]),
+               chi_z = static_cast<float>(solver.mean_chi[2]);
+    auto &e_x = solver.amplitude[0], &e_y = solver.amplitude[1], &e_z = solver.amplitude[2];
+    for (long l = 0; l < grid.z.cells; ++l) {
+        const auto k_z = static_cast<float>(a * z.sigma[l]);
+        for (long k = 0; k < grid.x.cells; ++k) {
+            const auto k_x = static_cast<float>(a * x.sigma[k]);
+            const auto w = static_cast<float>(solver.smoothing_x[k] * solver.smoothing_z[l]);
+            const float w2 = w * w;
+            const float xx = 1 + w2 * chi_x + k_z * k_z, zz = 1 + w2 * chi_z + k_x * k_x;
+            const float xz = k_x * k_z, per_determinant = 1 / (xx * zz - xz * xz);
+            const float r_x = e_x(k, l), r_z = e_z(k, l);
+            e_x(k, l) = (zz * r_x + xz * r_z) * per_determinant;
+            e_z(k, l) = (xx * r_z + xz * r_x) * per_determinant;
+            e_y(k, l) /= 1 + w2 * chi_y + k_x * k_x + k_z * k_z;
+        }
+    }
+
+    // Back to the mesh.
+    out.resize(r.size());
+    common::for_each_row(6, [&](long task) {
+        const auto k = static_cast<std::size_t>(task / 2), t = static_cast<std::size_t>(task);
+        const long first = task % 2 * (nz / 2), columns = task % 2 == 0 ? nz / 2 : nz - nz / 2;
+        solver.half_way[t].noalias() =
+            solver.amplitude[k] * Z[k]->middleRows(first, columns).transpose();
+        solver.unknowns[k].middleCols(first, columns).noalias() = *X[k] * solver.half_way[t];
+    });
+    for (std::size_t k = 0; k < 3; ++k) {
+        detail::interior(grid, out.data() + static_cast<long>(k) * m) =
+            solver.unknowns[k].cast<double>();
+    }
+    keep_unknowns(grid, out.data());
+}
+
+/// The uniform part of chi that the preconditioner assumes: the mean of each diagonal entry.
+inline void prepare_preconditioner(FieldSolver& solver) {
+    for (std::size_t a = 0; a < 3; ++a) {
+        solver.mean_chi[a] =
+            detail::interior(solver.grid, solver.response.chi.entry[4 * a].data()).mean();
+    }
+}
+
+/// div E - 4 pi rho on nodes, zero on walls. in: E at t^n with ghosts, rho smoothed.
+inline void gauss_residual(const Grid& grid, const VectorField& E, const Field& rho, Field& G) {
+    divergence_of_electric(grid, E.all.data(), G);
+    G -= 4 * pi * rho;
+    if (grid.x.periodic && grid.z.periodic) {
+        // Nothing but a uniform background can hold a net charge in a periodic box.
+        G.array() -= detail::interior(grid, G.data()).mean();
+    }
+    common::fill_ghosts(grid, common::on_nodes, {-1, -1}, G.data());
+}
+
+/// The right-hand side of (i) without J_hat: E^n + a curl B^n + a^2 grad G.
+inline void maxwell_source(FieldSolver& solver, const FieldState& field, double a) {
+    const Grid& grid = solver.grid;
+    gauss_residual(grid, field.E, solver.response.rho, solver.gauss);
+    Field& G = solver.scratch;
+    G = solver.gauss;
+    solve_helmholtz(grid, solver.modes, a, G);
+    VectorField& source = solver.source;
+    curl_of_magnetic(grid, field.B.all.data(), source.all.data());
+    const long s = grid.stride();
+    const double by_dx = a * a / grid.x.spacing(), by_dz = a * a / grid.z.spacing();
+    const double *E_x = field.E.x(), *E_y = field.E.y(), *E_z = field.E.z(), *g = G.data();
+    double *x = source.x(), *y = source.y(), *z = source.z();
+    for_each_point(grid, [=](long n) {
+        x[n] = E_x[n] + a * x[n] + by_dx * (g[n + 1] - g[n]);
+        y[n] = E_y[n] + a * y[n];
+        z[n] = E_z[n] + a * z[n] + by_dz * (g[n + s] - g[n]);
+    });
+    keep_unknowns(grid, source.all.data());
+}
+
+/// Solves for E^{n+theta}.
+/// in: moments of all species at t^n, E and B at t^n. out: field.E_theta, ghosts filled;
+///        solver.gauss, the Gauss residual at t^n.
+/// exact: |residual| <= tolerance |source|; on periodic meshes and inside walls the Gauss
+///        residual obeys (ii) to that tolerance.
+/// errors: NumericalError when the solver does not converge; the field is then not used.
+///        source: [IMM-10..12]
+/// note: "gmres" turns the current in B^n, as the slide does; "newton_krylov" turns it in
+///        B^{n+theta} = B^n - a curl E^{n+theta}, which makes the equations nonlinear.
+inline FieldReport solve_field(FieldSolver& solver, const std::vector<Moments>& moments,
+                               const std::vector<double>& charge_over_mass, double dt,
+                               FieldState& field) {
+    const Grid& grid = solver.grid;
+    const FieldSettings& settings = solver.settings;
+    const double a = c * settings.theta * dt, by_J = 4 * pi * settings.theta * dt;
+    PlasmaResponse& response = solver.response;
+
+    predict_current(grid, moments, charge_over_mass, field.B.all.data(), dt, settings.theta,
+                    response);
+    smooth(grid, current, settings.smoothing, response.J_hat.all.data(), solver.scratch);
+    smooth(grid, common::on_nodes, {+1, +1}, settings.smoothing, response.rho.data(),
+           solver.scratch);
+    prepare_preconditioner(solver);
+    maxwell_source(solver, field, a);
+
+    const auto precondition = [&](const Eigen::VectorXd& r, Eigen::VectorXd& out) {
+        precondition_field(solver, a, r, out);
+    };
+    Eigen::VectorXd& E = field.E_theta.all;
+    keep_unknowns(grid, E.data());
+    FieldReport report;
+    if (settings.solver == "gmres") {
+        solver.source.all -= by_J * response.J_hat.all;
+        keep_unknowns(grid, solver.source.all.data());
+        const auto apply = [&](const Eigen::VectorXd& v, Eigen::VectorXd& out) {
+            out.resize(v.size());
+            apply_field_operator(solver, a, v, out);
+        };
+        const auto result =
+            common::gmres(apply, precondition, solver.source.all, E, settings.tolerance,
+                          static_cast<int>(settings.max_iterations), 40, solver.krylov);
+        if (!result.converged) {
+            throw common::NumericalError(
+                "the field equations did not converge: " + result.reason + " (relative residual " +
+                std::to_string(result.residual) + " after " + std::to_string(result.iterations) +
+                " iterations); reduce time.dt or raise field.max_iterations");
+        }
+        report = {result.iterations, result.residual};
+    } else {
+        const auto residual = [&](const Eigen::VectorXd& v, Eigen::VectorXd& F) {
+            F.resize(v.size());
+            solver.ghosted.all = v;
+            fill_ghosts(grid, electric, solver.ghosted);
+            curl_of_electric(grid, solver.ghosted.all.data(), solver.B_theta.all.data());
+            solver.B_theta.all = field.B.all - a * solver.B_theta.all;
+            fill_ghosts(grid, magnetic, solver.B_theta);
+            predict_current(grid, moments, charge_over_mass, solver.B_theta.all.data(), dt,
+                            settings.theta, response);
+            smooth(grid, current, settings.smoothing, response.J_hat.all.data(), solver.scratch);
+            apply_field_operator(solver, a, v, F);
+            F += by_J * response.J_hat.all - solver.source.all;
+            keep_unknowns(grid, F.data());
+        };
+        const double scale = std::max(common::safe_norm(solver.source.all),
+                                      by_J * common::safe_norm(response.J_hat.all));
+        if (scale > 0) {
+            const auto result =
+                common::newton_krylov(residual, precondition, E, scale, settings.tolerance, 30,
+                                      static_cast<int>(settings.max_iterations), solver.newton);
+            if (!result.converged) {
+                throw common::NumericalError(
+                    "the nonlinear field equations did not converge: " + result.reason +
+                    " (relative residual " + std::to_string(result.residual) +
+                    "); reduce time.dt or raise field.max_iterations");
+            }
+            report = {result.linear_iterations, result.residual};
+        } else {
+            E.setZero();
+        }
+    }
+    fill_ghosts(grid, electric, field.E_theta);
+    return report;
+}
+
+/// E^{n+1} = [E^{n+theta} - (1 - theta) E^n] / theta,   B^{n+1} = B^n - c dt curl E^{n+theta}.
+/// in/out: field, ghosts filled.   exact: div B is unchanged to round-off.   source: [IMM-10]
+inline void advance_field(FieldSolver& solver, double dt, FieldState& field) {
+    const Grid& grid = solver.grid;
+    const double theta = solver.settings.theta;
+    curl_of_electric(grid, field.E_theta.all.data(), solver.turned.all.data());
+    field.B.all -= c * dt * solver.turned.all;
+    field.E.all = (field.E_theta.all - (1 - theta) * field.E.all) / theta;
+    fill_ghosts(grid, electric, field.E);
+    fill_ghosts(grid, magnetic, field.B);
+}
+
+/// Packs what pushes particles: a smoothed copy of E^{n+theta}, and the B in which the solver
+/// rotated the current.
+inline void pack_push_field(FieldSolver& solver, const FieldState& field, PushField& push) {
+    const Grid& grid = solver.grid;
+    const VectorField& B = solver.settings.solver == "gmres" ? field.B : solver.B_theta;
+    solver.ghosted.all = field.E_theta.all;
+    smooth(grid, electric, solver.settings.smoothing, solver.ghosted.all.data(), solver.scratch);
+    const VectorField& E = solver.ghosted;
+    push.resize(static_cast<std::size_t>(grid.size()));
+    for (long n = 0; n < grid.size(); ++n) {
+        push[static_cast<std::size_t>(n)] = {E.x()[n], E.y()[n], E.z()[n],
+                                             B.x()[n], B.y()[n], B.z()[n]};
+    }
+}
+
+}  // namespace implicit_moment

@@ -1,0 +1,140 @@
+// E, B and J on the staggered mesh, and the differences between them.
+//
+// With forward differences from nodes to midpoints and backward differences from midpoints to
+// nodes, curl takes E to the places of B and back, and div curl = 0, curl grad = 0 hold to
+// round-off. No operator averages, so none has a checkerboard null space.
+#pragma once
+
+#include <array>
+
+#include "common/grid.hpp"
+
+namespace implicit_moment {
+
+using common::Field;
+using common::Grid;
+using common::Parity;
+using common::Place;
+
+/// Three components in one column vector, each grid.size() long: the form that GMRES works on.
+struct VectorField {
+    Eigen::VectorXd all;
+
+    explicit VectorField(const Grid& grid) : all(Eigen::VectorXd::Zero(3 * grid.size())) {}
+    long size() const { return all.size() / 3; }
+    double* x() { return all.data(); }
+    double* y() { return all.data() + size(); }
+    double* z() { return all.data() + 2 * size(); }
+    const double* x() const { return all.data(); }
+    const double* y() const { return all.data() + size(); }
+    const double* z() const { return all.data() + 2 * size(); }
+};
+
+/// Places and wall parities of a vector's three components.
+struct VectorKind {
+    std::array<Place, 3> place;
+    std::array<Parity, 3> parity;
+};
+/// E at an ideal conductor: tangential parts odd (zero on the wall), normal part even.
+inline constexpr VectorKind electric{{common::on_x_edges, common::on_nodes, common::on_z_edges},
+                                     {{{+1, -1}, {-1, -1}, {-1, +1}}}};
+/// B at an ideal conductor: normal part odd, tangential parts even.
+inline constexpr VectorKind magnetic{{common::on_z_edges, common::on_faces, common::on_x_edges},
+                                     {{{-1, +1}, {+1, +1}, {+1, -1}}}};
+/// J of particles that are reflected: normal part odd, tangential parts even.
+inline constexpr VectorKind current{{common::on_x_edges, common::on_nodes, common::on_z_edges},
+                                    {{{-1, +1}, {+1, +1}, {+1, -1}}}};
+
+inline void fill_ghosts(const Grid& grid, const VectorKind& kind, double* all) {
+    for (long a = 0; a < 3; ++a) {
+        const auto k = static_cast<std::size_t>(a);
+        common::fill_ghosts(grid, kind.place[k], kind.parity[k], all + a * grid.size());
+    }
+}
+inline void fill_ghosts(const Grid& grid, const VectorKind& kind, VectorField& f) {
+    fill_ghosts(grid, kind, f.all.data());
+}
+
+/// Calls at(n) for every storage index n of rows j_first .. j_last, columns -1+1 .. N: all points
+/// whose neighbors are stored.
+template <class Work>
+inline void for_each_point(const Grid& grid, const Work& work) {
+    for (long j = 0; j <= grid.z.cells; ++j) {
+        const long begin = grid.index(0, j), end = begin + grid.x.cells + 1;
+#pragma omp simd
+        for (long n = begin; n < end; ++n) work(n);
+    }
+}
+
+/// curl E on the places of B:  x: -dE_y/dz   y: dE_x/dz - dE_z/dx   z: dE_y/dx
+/// in: E, ghosts filled. out: values on rows and columns 0..N.
+inline void curl_of_electric(const Grid& grid, const double* E, double* curl) {
+    const long s = grid.stride(), m = grid.size();
+    const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing();
+    const double *E_x = E, *E_y = E + m, *E_z = E + 2 * m;
+    double *x = curl, *y = curl + m, *z = curl + 2 * m;
+    for_each_point(grid, [=](long n) {
+        x[n] = -(E_y[n + s] - E_y[n]) * per_dz;
+        y[n] = (E_x[n + s] - E_x[n]) * per_dz - (E_z[n + 1] - E_z[n]) * per_dx;
+        z[n] = (E_y[n + 1] - E_y[n]) * per_dx;
+    });
+}
+
+/// curl B on the places of E:  x: -dB_y/dz   y: dB_x/dz - dB_z/dx   z: dB_y/dx
+/// in: B, ghosts filled. out: values on rows and columns 0..N.
+inline void curl_of_magnetic(const Grid& grid, const double* B, double* curl) {
+    const long s = grid.stride(), m = grid.size();
+    const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing();
+    const double *B_x = B, *B_y = B + m, *B_z = B + 2 * m;
+    double *x = curl, *y = curl + m, *z = curl + 2 * m;
+    for_each_point(grid, [=](long n) {
+        x[n] = -(B_y[n] - B_y[n - s]) * per_dz;
+        y[n] = (B_x[n] - B_x[n - s]) * per_dz - (B_z[n] - B_z[n - 1]) * per_dx;
+        z[n] = (B_y[n] - B_y[n - 1]) * per_dx;
+    });
+}
+
+/// div of a vector on the places of E, on nodes. in: ghosts filled.
+inline void divergence_of_electric(const Grid& grid, const double* E, Field& div) {
+    const long s = grid.stride(), m = grid.size();
+    const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing();
+    const double *E_x = E, *E_z = E + 2 * m;
+    double* out = div.data();
+    for_each_point(grid, [=](long n) {
+        out[n] = (E_x[n] - E_x[n - 1]) * per_dx + (E_z[n] - E_z[n - s]) * per_dz;
+    });
+}
+
+/// div B on faces... B_x lives on z-edges and B_z on x-edges, so their divergence lives on faces.
+/// in: ghosts filled.
+inline void divergence_of_magnetic(const Grid& grid, const double* B, Field& div) {
+    const long s = grid.stride(), m = grid.size();
+    const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing();
+    const double *B_x = B, *B_z = B + 2 * m;
+    double* out = div.data();
+    for_each_point(grid, [=](long n) {
+        out[n] = (B_x[n + 1] - B_x[n]) * per_dx + (B_z[n + s] - B_z[n]) * per_dz;
+    });
+}
+
+/// Sets to zero everything that is not an unknown of the field equations: ghosts, images, and
+/// tangential E on walls.
+inline void keep_unknowns(const Grid& grid, double* E) {
+    const long nx = grid.x.cells, nz = grid.z.cells;
+    for (std::size_t a = 0; a < 3; ++a) {
+        double* f = E + static_cast<long>(a) * grid.size();
+        const bool wall_x = !grid.x.periodic && !electric.place[a].half_x;
+        const bool wall_z = !grid.z.periodic && !electric.place[a].half_z;
+        for (long j = -1; j <= nz + 1; ++j) {
+            double* row = f + grid.index(0, j);
+            if (j < 0 || j >= nz || (wall_z && j == 0)) {
+                std::fill_n(row - 1, grid.stride(), 0.0);
+            } else {
+                row[-1] = row[nx] = row[nx + 1] = 0;
+                if (wall_x) row[0] = 0;
+            }
+        }
+    }
+}
+
+}  // namespace implicit_moment

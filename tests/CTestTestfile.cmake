@@ -1,0 +1,94 @@
+# What CTest runs. `make test` reaches this file through build/CTestTestfile.cmake, which sets
+#   build_folder   where programs and tests were built, relative to the project's root
+#   patience       factor on all time limits, above 1 for slow builds
+#
+# Every tests/NAME.cpp is a doctest program, and each of its facts
+#   TEST_CASE("a fact as a sentence") {
+#   TEST_CASE("a fact about physics" * doctest::description("physics")) {
+# becomes the CTest test "NAME.a fact as a sentence". The description is the label:
+#   unit (the default, up to 60 s), physics or robust (300 s), figure (600 s), long (3600 s; run by
+#   `make test-long` only). Names may not contain , ; [ ] " \ * or ?, which mean something to CTest or doctest.
+# All tests start in the root of the project, so that paths read as in the README.
+
+get_filename_component(root "${CMAKE_CURRENT_LIST_DIR}/.." ABSOLUTE)
+
+set(time_unit 60)
+set(time_physics 300)
+set(time_robust 300)
+set(time_figure 600)
+set(time_long 3600)
+set(time_notes 60)
+set(time_documented 60)
+
+function(describe_test name label)
+    math(EXPR seconds "${time_${label}} * ${patience}")
+    set_tests_properties("${name}" PROPERTIES
+        LABELS "${label}"
+        TIMEOUT "${seconds}"
+        WORKING_DIRECTORY "${root}"
+        ENVIRONMENT "OMP_NUM_THREADS=2;OMP_WAIT_POLICY=passive;LC_ALL=C.UTF-8")
+endfunction()
+
+# ---- the facts -----------------------------------------------------------------------------------
+file(GLOB programs "${root}/tests/*.cpp")
+foreach(source IN LISTS programs)
+    get_filename_component(program "${source}" NAME_WE)
+    file(READ "${source}" text)
+    string(REGEX MATCHALL "TEST_CASE[A-Z_]*[(]" mentioned "${text}")
+    string(REGEX MATCHALL "\nTEST_CASE[(][^{]*{" facts "${text}")
+    list(LENGTH mentioned mentions)
+    list(LENGTH facts registered)
+    if(NOT mentions EQUAL registered)
+        message(FATAL_ERROR "${source}: ${registered} of ${mentions} TEST_CASEs can be registered; "
+            "each must begin a line, be a plain TEST_CASE(\"name\") and have no ; or [ in its name")
+    endif()
+    foreach(fact IN LISTS facts)
+        string(REGEX REPLACE "\"[ \n]+\"" "" fact "${fact}")
+        if(NOT fact MATCHES "^\nTEST_CASE[(][ \n]*\"([^],;\\\"*?[]+)\"([^{]*)[)] {$")
+            message(FATAL_ERROR "${source}: a name may not contain , ; [ ] \" \\ * or ?:${fact}")
+        endif()
+        set(name "${CMAKE_MATCH_1}")
+        string(REGEX REPLACE "[ \n]+" "" decorator "${CMAKE_MATCH_2}")
+        set(label unit)
+        if(decorator MATCHES "^[*](doctest::)?description[(]\"(unit|physics|robust|figure|long)\"[)]$")
+            set(label "${CMAKE_MATCH_2}")
+        elseif(decorator)
+            message(FATAL_ERROR "${source}: the description of \"${name}\" is none of "
+                "unit, physics, robust, figure, long:${decorator}")
+        endif()
+        add_test("${program}.${name}" "${root}/${build_folder}/tests/${program}" "--test-case=${name}")
+        describe_test("${program}.${name}" "${label}")
+        # doctest is content when no fact has the name that it was asked for.
+        set_tests_properties("${program}.${name}" PROPERTIES FAIL_REGULAR_EXPRESSION "test cases: +0 ")
+    endforeach()
+endforeach()
+
+# ---- the notes -----------------------------------------------------------------------------------
+add_test(notes.code_and_numbers_are_fresh sh common/notes.sh check)
+describe_test(notes.code_and_numbers_are_fresh notes)
+add_test(notes.every_label_of_the_ledger_exists sh common/notes.sh ledger)
+describe_test(notes.every_label_of_the_ledger_exists notes)
+add_test(notes.numbers_agree_with_the_runs sh common/notes.sh compare)
+describe_test(notes.numbers_agree_with_the_runs long)
+
+# ---- what the documentation says must run --------------------------------------------------------
+# The commands `build/...` and `make ...` of README files, and the lines  // Run:   build/...  of
+# program headers, each with --dry-run (which make understands as well).
+file(GLOB documents "${root}/README.md" "${root}/*/README.md" "${root}/*/*.cpp")
+foreach(document IN LISTS documents)
+    file(RELATIVE_PATH where "${root}" "${document}")
+    if(document MATCHES "[.]md$")
+        file(STRINGS "${document}" lines REGEX "^ *(build/|make )")
+    else()
+        file(STRINGS "${document}" lines REGEX "^// Run: +build/")
+    endif()
+    foreach(line IN LISTS lines)
+        string(REGEX REPLACE "^// Run:" "" command "${line}")
+        string(REGEX REPLACE "#.*$" "" command "${command}")
+        string(STRIP "${command}" command)
+        set(name "documented.${command} (${where})")
+        string(REGEX REPLACE "^build/" "${build_folder}/" command "${command}")
+        add_test("${name}" sh -c "env -u MAKEFLAGS -u MAKELEVEL ${command} --dry-run")
+        describe_test("${name}" documented)
+    endforeach()
+endforeach()

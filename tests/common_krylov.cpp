@@ -1,0 +1,370 @@
+// Facts about the solvers of linear and nonlinear systems: every ending of GMRES and of
+// Newton-Krylov is the documented one, and their answers agree with other methods.
+#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#include <doctest/doctest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <limits>
+#include <unsupported/Eigen/IterativeSolvers>
+
+#include "common/gmres.hpp"
+#include "common/newton_krylov.hpp"
+
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+auto times(const MatrixXd& A) {
+    return [&A](const VectorXd& v, VectorXd& w) { w = A * v; };
+}
+
+// A diagonally dominant nonsymmetric matrix, different for every seed.
+MatrixXd random_matrix(int n, unsigned seed) {
+    std::srand(seed);
+    MatrixXd A = MatrixXd::Random(n, n);
+    A.diagonal().array() += 3.0 * std::sqrt(double(n));
+    return A;
+}
+
+double true_residual(const MatrixXd& A, const VectorXd& x, const VectorXd& b) {
+    return (b - A * x).norm() / b.norm();
+}
+
+}  // namespace
+
+TEST_CASE("GMRES agrees with dense LU and with BiCGSTAB and GMRES of Eigen") {
+    for (unsigned seed = 1; seed <= 5; ++seed) {
+        const MatrixXd A = random_matrix(80, seed);
+        const VectorXd b = VectorXd::Random(80);
+        const VectorXd exact = A.partialPivLu().solve(b);
+        VectorXd x = VectorXd::Zero(80);
+        const auto result = common::gmres(times(A), b, x, 1e-12, 400, 40);
+        CHECK(result.converged);
+        CHECK((x - exact).norm() <= 1e-10 * exact.norm());
+        CHECK(std::abs(result.residual - true_residual(A, x, b)) <= 1e-14);
+
+        const Eigen::SparseMatrix<double> sparse = A.sparseView();
+        Eigen::BiCGSTAB<Eigen::SparseMatrix<double>> bicgstab(sparse);
+        bicgstab.setTolerance(1e-12);
+        CHECK((x - bicgstab.solve(b)).norm() <= 1e-10 * exact.norm());
+        Eigen::GMRES<Eigen::SparseMatrix<double>, Eigen::IdentityPreconditioner> theirs(sparse);
+        theirs.setTolerance(1e-12);
+        theirs.set_restart(40);
+        CHECK((x - theirs.solve(b)).norm() <= 1e-10 * exact.norm());
+        CHECK(std::abs(result.iterations - int(theirs.iterations())) <= 2);
+    }
+}
+
+TEST_CASE("GMRES ends within as many iterations as there are distinct eigenvalues") {
+    VectorXd d(60);
+    for (int i = 0; i < 60; ++i) d[i] = 1.0 + i % 4;
+    const MatrixXd A = d.asDiagonal();
+    VectorXd x = VectorXd::Zero(60);
+    const auto result = common::gmres(times(A), VectorXd::Ones(60), x, 1e-13, 100, 30);
+    CHECK(result.converged);
+    CHECK(result.iterations == 4);
+}
+
+TEST_CASE("GMRES with an exact preconditioner needs one iteration") {
+    const MatrixXd A = random_matrix(50, 7);
+    const auto lu = A.partialPivLu();
+    const auto exact = [&](const VectorXd& v, VectorXd& w) { w = lu.solve(v); };
+    const VectorXd b = VectorXd::Random(50);
+    VectorXd x = VectorXd::Zero(50);
+    common::GmresWorkspace work;
+    const auto result = common::gmres(times(A), exact, b, x, 1e-12, 100, 30, work);
+    CHECK(result.converged);
+    CHECK(result.iterations == 1);
+    CHECK(true_residual(A, x, b) <= 1e-12);
+}
+
+TEST_CASE("GMRES never needs fewer iterations with a shorter restart") {
+    const MatrixXd A = random_matrix(120, 3);
+    const VectorXd b = VectorXd::Random(120);
+    int before = 0;
+    for (const int restart : {120, 12, 6, 3, 1}) {
+        VectorXd x = VectorXd::Zero(120);
+        const auto result = common::gmres(times(A), b, x, 1e-10, 2000, restart);
+        CHECK(result.converged);
+        CHECK(result.residual <= 1e-10);
+        CHECK(result.iterations >= before);
+        before = result.iterations;
+    }
+}
+
+TEST_CASE("GMRES with a kept workspace repeats its answer bit for bit") {
+    const MatrixXd A = random_matrix(90, 5);
+    const auto leave = [](const VectorXd& v, VectorXd& w) { w = v; };
+    const VectorXd b = VectorXd::Random(90), other = VectorXd::Random(90);
+    common::GmresWorkspace work;
+    VectorXd first = VectorXd::Zero(90), between = other, second = VectorXd::Zero(90);
+    common::gmres(times(A), leave, b, first, 1e-9, 60, 20, work);
+    common::gmres(times(A), leave, other, between, 1e-9, 60, 20, work);
+    common::gmres(times(A), leave, b, second, 1e-9, 60, 20, work);
+    CHECK((first.array() == second.array()).all());
+}
+
+TEST_CASE("GMRES returns zero for a zero right-hand side whatever the guess") {
+    const MatrixXd A = random_matrix(20, 1);
+    VectorXd x = VectorXd::Random(20);
+    const auto result = common::gmres(times(A), VectorXd::Zero(20), x, 1e-10, 100, 10);
+    CHECK(result.converged);
+    CHECK(result.iterations == 0);
+    CHECK(result.residual == 0.0);
+    CHECK(x.cwiseAbs().maxCoeff() == 0.0);
+}
+
+TEST_CASE("GMRES leaves a good enough guess untouched") {
+    const MatrixXd A = random_matrix(40, 2);
+    const VectorXd b = VectorXd::Random(40);
+    VectorXd x = A.partialPivLu().solve(b);
+    const VectorXd guess = x;
+    const auto result = common::gmres(times(A), b, x, 1e-10, 100, 10);
+    CHECK(result.converged);
+    CHECK(result.iterations == 0);
+    CHECK((x.array() == guess.array()).all());
+}
+
+TEST_CASE("GMRES takes a lucky breakdown for success") {
+    MatrixXd A = MatrixXd::Identity(30, 30);
+    A.topLeftCorner(3, 3) << 2, 1, 0, 0, 3, 1, 1, 0, 4;
+    VectorXd b = VectorXd::Zero(30), x = VectorXd::Zero(30);
+    b.head(3) << 1, 2, 3;
+    const auto result = common::gmres(times(A), b, x, 1e-14, 100, 30);
+    CHECK(result.converged);
+    CHECK(result.iterations <= 3);
+    CHECK(true_residual(A, x, b) <= 1e-14);
+}
+
+TEST_CASE("GMRES reports a zero operator and keeps a finite solution") {
+    const MatrixXd A = MatrixXd::Zero(10, 10);
+    VectorXd x = VectorXd::Ones(10);
+    const auto result = common::gmres(times(A), VectorXd::Ones(10), x, 1e-8, 100, 10);
+    CHECK_FALSE(result.converged);
+    CHECK(result.residual == 1.0);
+    CHECK(x.allFinite());
+    CHECK(result.reason == "the operator is singular");
+}
+
+TEST_CASE("GMRES reports a singular system that has no solution") {
+    VectorXd d = VectorXd::LinSpaced(12, 1.0, 2.0);
+    d[5] = 0.0;
+    const MatrixXd A = d.asDiagonal();
+    const VectorXd b = VectorXd::Ones(12);
+    VectorXd x = VectorXd::Zero(12);
+    const auto result = common::gmres(times(A), b, x, 1e-8, 500, 30);
+    CHECK_FALSE(result.converged);
+    CHECK(x.allFinite());
+    CHECK(x.norm() <= 1e3);
+    CHECK(result.residual >= 1.0 / std::sqrt(12.0) - 1e-12);
+    CHECK(result.residual <= 1.0);
+}
+
+TEST_CASE("GMRES solves a singular system whose right-hand side can be reached") {
+    VectorXd d = VectorXd::LinSpaced(12, 1.0, 2.0), b = VectorXd::Ones(12);
+    d[5] = b[5] = 0.0;
+    const MatrixXd A = d.asDiagonal();
+    VectorXd x = VectorXd::Zero(12);
+    const auto result = common::gmres(times(A), b, x, 1e-12, 100, 30);
+    CHECK(result.converged);
+    CHECK(true_residual(A, x, b) <= 1e-12);
+}
+
+TEST_CASE("GMRES stops at once when the right-hand side or the guess is not finite") {
+    const MatrixXd A = random_matrix(10, 4);
+    for (const double bad : {not_a_number, infinity, -infinity}) {
+        VectorXd b = VectorXd::Ones(10), x = VectorXd::Ones(10);
+        b[3] = bad;
+        auto result = common::gmres(times(A), b, x, 1e-8, 1000, 10);
+        CHECK_FALSE(result.converged);
+        CHECK(result.iterations == 0);
+        CHECK((x.array() == 1.0).all());
+        b[3] = 1.0;
+        x[7] = bad;
+        result = common::gmres(times(A), b, x, 1e-8, 1000, 10);
+        CHECK_FALSE(result.converged);
+        CHECK(result.iterations == 0);
+        CHECK(x.allFinite());
+    }
+}
+
+TEST_CASE("GMRES stops at once when the operator or the preconditioner is not finite") {
+    const MatrixXd A = random_matrix(40, 6);
+    const VectorXd b = VectorXd::Ones(40);
+    for (const int last : {0, 1, 3}) {
+        int calls = 0;
+        const auto fails = [&](const VectorXd& v, VectorXd& w) {
+            w = A * v;
+            if (calls++ >= last) w[9] = not_a_number;
+        };
+        VectorXd x = VectorXd::Zero(40);
+        const auto result = common::gmres(fails, b, x, 1e-12, 1000, 10);
+        CHECK_FALSE(result.converged);
+        CHECK(result.iterations == last + 1);
+        CHECK(x.allFinite());
+
+        common::GmresWorkspace work;
+        calls = 0;
+        x.setZero();
+        const auto other = common::gmres(times(A), fails, b, x, 1e-12, 1000, 10, work);
+        CHECK_FALSE(other.converged);
+        CHECK(other.iterations == last + 1);
+        CHECK(x.allFinite());
+    }
+}
+
+TEST_CASE("GMRES survives numbers whose squares overflow or underflow") {
+    const MatrixXd A = random_matrix(30, 8);
+    const VectorXd b = VectorXd::Random(30);
+    VectorXd plain = VectorXd::Zero(30);
+    const auto expected = common::gmres(times(A), b, plain, 1e-10, 100, 30);
+    for (const double factor : {1e160, 1e-200}) {
+        const VectorXd scaled = factor * b;
+        VectorXd x = VectorXd::Zero(30);
+        const auto result = common::gmres(times(A), scaled, x, 1e-10, 100, 30);
+        CHECK(result.converged);
+        CHECK(result.iterations == expected.iterations);
+        CHECK((x / factor - plain).norm() <= 1e-9 * plain.norm());
+
+        const MatrixXd large = factor * A;
+        x.setZero();
+        const auto other = common::gmres(times(large), b, x, 1e-10, 100, 30);
+        CHECK(other.converged);
+        CHECK((x * factor - plain).norm() <= 1e-9 * plain.norm());
+    }
+    const MatrixXd too_large = 1e308 * A;
+    VectorXd x = VectorXd::Zero(30);
+    const auto result = common::gmres(times(too_large), b, x, 1e-10, 100, 30);
+    CHECK_FALSE(result.converged);
+    CHECK(x.allFinite());
+}
+
+TEST_CASE("GMRES without convergence returns the best solution and its true residual") {
+    const MatrixXd A = random_matrix(100, 9);
+    const VectorXd b = VectorXd::Random(100);
+    double before = 1.0;
+    for (const int limit : {0, 1, 2, 5, 9}) {
+        VectorXd x = VectorXd::Zero(100);
+        const auto result = common::gmres(times(A), b, x, 1e-14, limit, 30);
+        CHECK_FALSE(result.converged);
+        CHECK(result.iterations == limit);
+        CHECK(result.residual <= before);
+        CHECK(std::abs(result.residual - true_residual(A, x, b)) <= 1e-14);
+        before = result.residual;
+    }
+}
+
+TEST_CASE("GMRES reports the stagnation of a cyclic shift and solves it with a full space") {
+    MatrixXd A = MatrixXd::Zero(20, 20);
+    for (int i = 0; i < 20; ++i) A(i, (i + 1) % 20) = 1.0;
+    VectorXd b = VectorXd::Zero(20), x = VectorXd::Zero(20);
+    b[0] = 1.0;
+    const auto shorter = common::gmres(times(A), b, x, 1e-10, 10000, 10);
+    CHECK_FALSE(shorter.converged);
+    CHECK(shorter.iterations == 10);
+    const auto full = common::gmres(times(A), b, x, 1e-10, 10000, 20);
+    CHECK(full.converged);
+    CHECK(full.iterations == 20);
+}
+
+TEST_CASE("Newton converges quadratically on a smooth problem") {
+    // x_i + x_i^3 / 3 + (x_i-1 + x_i+1) / 10 = c_i, with a known solution.
+    constexpr int n = 40;
+    VectorXd solution(n), c(n);
+    for (int i = 0; i < n; ++i) solution[i] = std::sin(0.7 * i);
+    const auto left_side = [](const VectorXd& x, VectorXd& F) {
+        F = x.array() + x.array().cube() / 3.0;
+        for (int i = 0; i < n; ++i) F[i] += 0.1 * (x[(i + 1) % n] + x[(i + n - 1) % n]);
+    };
+    left_side(solution, c);
+    const auto residual = [&](const VectorXd& x, VectorXd& F) {
+        left_side(x, F);
+        F -= c;
+    };
+    const auto leave = [](const VectorXd& v, VectorXd& w) { w = v; };
+    common::NewtonWorkspace work;
+    common::NewtonOptions options;
+    options.first_forcing = options.largest_forcing = options.smallest_forcing = 1e-7;
+
+    // Take the steps one at a time and watch the error.
+    VectorXd x = solution.array() + 0.3;
+    double error = (x - solution).norm();
+    for (int step = 0; step < 3; ++step) {
+        const auto result =
+            common::newton_krylov(residual, leave, x, 1.0, 1e-300, 1, 100, work, options);
+        CHECK(result.newton_iterations == 1);
+        const double after = (x - solution).norm();
+        CHECK(after <= 0.5 * error * error + 1e-7 * error);
+        error = after;
+    }
+    CHECK(error <= 1e-5);
+
+    x = VectorXd::Zero(n);
+    const auto result = common::newton_krylov(residual, x, c.norm(), 1e-12, 20, 100);
+    CHECK(result.converged);
+    CHECK(result.newton_iterations <= 7);
+    CHECK((x - solution).norm() <= 1e-11 * solution.norm());
+}
+
+TEST_CASE("Newton shortens its steps where the full step diverges") {
+    // Newton on arctan diverges from |x| > 1.3917.
+    const auto residual = [](const VectorXd& x, VectorXd& F) { F = x.array().atan(); };
+    VectorXd x(2);
+    x << 10.0, -3.0;
+    const auto result = common::newton_krylov(residual, x, 1.0, 1e-12, 30, 10);
+    CHECK(result.converged);
+    CHECK(x.norm() <= 1e-11);
+}
+
+TEST_CASE("Newton leaves a good enough guess untouched") {
+    const auto residual = [](const VectorXd& x, VectorXd& F) { F = x.array().square() - 4.0; };
+    VectorXd x = VectorXd::Constant(5, 2.0);
+    const auto result = common::newton_krylov(residual, x, 1.0, 1e-12, 30, 10);
+    CHECK(result.converged);
+    CHECK(result.newton_iterations == 0);
+    CHECK(result.linear_iterations == 0);
+    CHECK((x.array() == 2.0).all());
+}
+
+TEST_CASE("Newton stops at once when the residual of the guess is not finite") {
+    const auto residual = [](const VectorXd& x, VectorXd& F) { F = x.array().log(); };
+    VectorXd x = VectorXd::Constant(3, -1.0);
+    const auto result = common::newton_krylov(residual, x, 1.0, 1e-12, 30, 10);
+    CHECK_FALSE(result.converged);
+    CHECK(result.newton_iterations == 0);
+    CHECK((x.array() == -1.0).all());
+}
+
+TEST_CASE("Newton steps back from where the residual is not finite") {
+    // From x = 4 the full step for log x = 0 leads to a negative x.
+    const auto residual = [](const VectorXd& x, VectorXd& F) { F = x.array().log(); };
+    VectorXd x = VectorXd::Constant(3, 4.0);
+    const auto result = common::newton_krylov(residual, x, 1.0, 1e-12, 30, 10);
+    CHECK(result.converged);
+    CHECK((x.array() - 1.0).abs().maxCoeff() <= 1e-11);
+}
+
+TEST_CASE("Newton reports a problem without solution and keeps a finite point") {
+    const auto residual = [](const VectorXd& x, VectorXd& F) { F = x.array().square() + 1.0; };
+    VectorXd x = VectorXd::Constant(3, 0.7);
+    const auto result = common::newton_krylov(residual, x, 1.0, 1e-10, 50, 10);
+    CHECK_FALSE(result.converged);
+    CHECK(x.allFinite());
+    CHECK(result.residual >= std::sqrt(3.0));
+    CHECK(result.residual <= std::sqrt(3.0) * (0.49 + 1.0));
+}
+
+TEST_CASE("Newton reports the limit of its steps with the true residual") {
+    const auto residual = [](const VectorXd& x, VectorXd& F) { F = x.array().cube() - 8.0; };
+    VectorXd x = VectorXd::Constant(4, 20.0), F(4);
+    const auto result = common::newton_krylov(residual, x, 2.0, 1e-12, 2, 10);
+    CHECK_FALSE(result.converged);
+    CHECK(result.newton_iterations == 2);
+    residual(x, F);
+    CHECK(std::abs(result.residual - F.norm() / 2.0) <= 1e-12 * result.residual);
+}

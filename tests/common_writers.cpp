@@ -1,0 +1,251 @@
+// Facts about the files that gnuplot and ParaView read.
+#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#include <doctest/doctest.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "common/random.hpp"
+#include "common/writers.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// A folder of its own for each test, removed at its end.
+struct Folder {
+    fs::path path = fs::temp_directory_path() / ("writers_" + std::to_string(getpid()));
+    Folder() { fs::create_directories(path); }
+    ~Folder() { fs::remove_all(path); }
+    std::string file(const std::string& name) const { return (path / name).string(); }
+};
+
+std::string read_all(const std::string& path) {
+    std::ifstream in(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::vector<double> awkward_numbers(int n) {
+    std::vector<double> values;
+    for (int i = 0; i < n; ++i)
+        values.push_back(common::gaussian(1, 0, i, 0) * std::pow(10.0, i % 40 - 20));
+    values[0] = 0.1;
+    values[1] = -0.0;
+    values[2] = std::numeric_limits<double>::denorm_min();
+    values[3] = std::numeric_limits<double>::max();
+    return values;
+}
+
+bool same_bits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+
+// Checks that tags open and close in order and returns their number, or -1.
+int count_tags(const std::string& xml) {
+    std::vector<std::string> open;
+    int tags = 0;
+    for (std::size_t at = xml.find('<'); at != std::string::npos; at = xml.find('<', at + 1)) {
+        const std::size_t end = xml.find('>', at);
+        if (end == std::string::npos) return -1;
+        std::string tag = xml.substr(at + 1, end - at - 1);
+        if (tag[0] == '?') continue;
+        if (tag.find('<') != std::string::npos) return -1;
+        if (tag[0] == '/') {
+            if (open.empty() || open.back() != tag.substr(1)) return -1;
+            open.pop_back();
+        } else {
+            if (std::count(tag.begin(), tag.end(), '"') % 2 != 0) return -1;
+            open.push_back(tag.substr(0, tag.find(' ')));
+            ++tags;
+        }
+    }
+    return open.empty() ? tags : -1;
+}
+
+// The numbers of the data array of that name.
+template <class Number>
+std::vector<Number> data_array(const std::string& xml, const std::string& name) {
+    const std::size_t at = xml.find("Name=\"" + name + "\"");
+    REQUIRE(at != std::string::npos);
+    const std::size_t begin = xml.find(">\n", at) + 2, end = xml.find('\n', begin);
+    const std::string letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string bytes;
+    unsigned bits = 0;
+    int have = 0;
+    for (std::size_t i = begin; i < end && xml[i] != '='; ++i) {
+        bits = (bits << 6) | unsigned(letters.find(xml[i]));
+        have += 6;
+        if (have >= 8) bytes += char((bits >> (have -= 8)) & 255u);
+    }
+    CHECK((end - begin) % 4 == 0);
+    std::uint64_t size = 0;
+    std::memcpy(&size, bytes.data(), 8);
+    CHECK(bytes.size() == size + 8);
+    std::vector<Number> numbers(size / sizeof(Number));
+    if (size > 0) std::memcpy(numbers.data(), bytes.data() + 8, size);
+    return numbers;
+}
+
+}  // namespace
+
+TEST_CASE("a table read back has the bits that were written") {
+    const Folder folder;
+    const auto a = awkward_numbers(500), b = std::vector<double>(500, 1.0 / 3.0);
+    common::write_table(folder.file("t.dat"), {{"time", "1/omega_pi", a}, {"b", "", b}});
+    std::ifstream in(folder.file("t.dat"));
+    std::string line, first, second;
+    std::getline(in, line);
+    CHECK(line == "# 1:time[1/omega_pi] 2:b[]");
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        in >> first >> second;
+        CHECK(same_bits(std::strtod(first.c_str(), nullptr), a[i]));
+        CHECK(same_bits(std::strtod(second.c_str(), nullptr), b[i]));
+    }
+    const bool more = bool(in >> first);
+    CHECK_FALSE(more);
+    CHECK_FALSE(fs::exists(folder.file("t.dat.partial")));
+}
+
+TEST_CASE("a field file has an empty line after each row of the mesh") {
+    const Folder folder;
+    std::vector<double> f;
+    for (int k = 0; k < 12; ++k) f.push_back(k * k);
+    common::write_fields(folder.file("f.dat"), {"x", "d_i", -1.0, 0.5, 4},
+                         {"z", "d_i", 2.0, 0.25, 3}, {{"f", "B0", f}});
+    std::istringstream in(read_all(folder.file("f.dat")));
+    std::string line;
+    std::getline(in, line);
+    CHECK(line == "# 1:x[d_i] 2:z[d_i] 3:f[B0]");
+    for (int j = 0; j < 3; ++j) {
+        for (int i = 0; i < 4; ++i) {
+            std::getline(in, line);
+            double x = 0, z = 0, value = 0;
+            std::istringstream(line) >> x >> z >> value;
+            CHECK(x == -1.0 + 0.5 * i);
+            CHECK(z == 2.0 + 0.25 * j);
+            CHECK(value == f[4 * j + i]);
+        }
+        std::getline(in, line);
+        CHECK(line.empty());
+    }
+    const bool more = bool(std::getline(in, line));
+    CHECK_FALSE(more);
+}
+
+TEST_CASE("an image file is well-formed XML that holds every value") {
+    const Folder folder;
+    const auto s = awkward_numbers(15), x = awkward_numbers(15), y = std::vector<double>(15, 2.0),
+               z = std::vector<double>(15, -3.0);
+    common::write_vti(folder.file("f.vti"),
+                      {{{"x", "d_i", -1.0, 0.5, 5}, {}, {"z", "d_i", 0.0, 0.25, 3}}},
+                      {{"a<b & \"c\"", "", s}}, {{"B", "B0", x, y, z}});
+    const std::string xml = read_all(folder.file("f.vti"));
+    CHECK(count_tags(xml) == 7);
+    CHECK(xml.find(
+              "<ImageData WholeExtent=\"0 4 0 0 0 2\" Origin=\"-1 0 0\" Spacing=\"0.5 1 0.25\">") !=
+          std::string::npos);
+    const auto scalars = data_array<double>(xml, "a&lt;b &amp; &quot;c&quot;");
+    const auto vectors = data_array<double>(xml, "B [B0]");
+    CHECK(scalars.size() == 15);
+    CHECK(vectors.size() == 45);
+    for (std::size_t i = 0; i < 15; ++i) {
+        CHECK(same_bits(scalars[i], s[i]));
+        CHECK(same_bits(vectors[3 * i], x[i]));
+        CHECK(vectors[3 * i + 1] == 2.0);
+        CHECK(vectors[3 * i + 2] == -3.0);
+    }
+}
+
+TEST_CASE("a particle file is well-formed XML that holds every particle") {
+    const Folder folder;
+    for (const std::size_t n : {std::size_t{0}, std::size_t{1}, std::size_t{7}}) {
+        auto x = awkward_numbers(10);
+        x.resize(n);
+        const std::vector<double> zero(n, 0.0), w(n, 1.5);
+        common::write_vtp(folder.file("p.vtp"), {"position", "d_i", x, zero, x},
+                          {{"weight", "", w}}, {{"v", "c", x, x, zero}});
+        const std::string xml = read_all(folder.file("p.vtp"));
+        CHECK(count_tags(xml) == 11);
+        const std::string count = "\"" + std::to_string(n) + "\"";
+        CHECK(xml.find("NumberOfPoints=" + count + " NumberOfVerts=" + count) != std::string::npos);
+        const auto points = data_array<double>(xml, "Points");
+        const auto offsets = data_array<std::int64_t>(xml, "offsets");
+        const auto connectivity = data_array<std::int64_t>(xml, "connectivity");
+        CHECK(points.size() == 3 * n);
+        CHECK(data_array<double>(xml, "weight").size() == n);
+        CHECK(data_array<double>(xml, "v [c]").size() == 3 * n);
+        REQUIRE(offsets.size() == n);
+        REQUIRE(connectivity.size() == n);
+        for (std::size_t i = 0; i < n; ++i) {
+            CHECK(same_bits(points[3 * i + 2], x[i]));
+            CHECK(connectivity[i] == std::int64_t(i));
+            CHECK(offsets[i] == std::int64_t(i + 1));
+        }
+    }
+}
+
+TEST_CASE("a file that cannot be written is refused with its path") {
+    const Folder folder;
+    const std::vector<double> a(3, 1.0), b(4, 1.0);
+    const auto message = [&](const std::string& path,
+                             const std::vector<common::ScalarColumn>& columns) {
+        try {
+            common::write_table(path, columns);
+        } catch (const common::InputError& error) {
+            return std::string(error.what());
+        }
+        return std::string("written");
+    };
+    const std::string missing = folder.file("no/such/folder/t.dat");
+    CHECK(message(missing, {{"a", "", a}}).find(missing) == 0);
+    CHECK(message("/dev/null", {{"a", "", a}}).find("not a regular file") != std::string::npos);
+    CHECK(message(folder.file("t.dat"), {{"a", "", a}, {"b", "", b}}).find("column 'b'") !=
+          std::string::npos);
+    CHECK_FALSE(fs::exists(folder.file("t.dat")));
+    fs::create_directories(folder.file("folder.dat"));
+    CHECK(message(folder.file("folder.dat"), {{"a", "", a}}).find("not a regular file") !=
+          std::string::npos);
+}
+
+TEST_CASE("a file that was not finished leaves nothing behind and keeps the old one") {
+    const Folder folder;
+    const std::string path = folder.file("t.dat");
+    common::write_table(path, {{"a", "", std::vector<double>(2, 1.0)}});
+    const std::string before = read_all(path);
+    {
+        common::OutputFile file(path);
+        file.text("half of it");
+    }
+    CHECK(read_all(path) == before);
+    CHECK_FALSE(fs::exists(path + ".partial"));
+}
+
+TEST_CASE("a full disk is reported with the path and leaves nothing behind") {
+    const Folder folder;
+    const std::string path = folder.file("t.dat");
+    const std::vector<double> many(100000, 1.0 / 3.0);
+    std::signal(SIGXFSZ, SIG_IGN);
+    rlimit before{};
+    getrlimit(RLIMIT_FSIZE, &before);
+    rlimit limit = before;
+    limit.rlim_cur = 100000;
+    setrlimit(RLIMIT_FSIZE, &limit);
+    std::string message = "written";
+    try {
+        common::write_table(path, {{"a", "", many}});
+    } catch (const common::InputError& error) {
+        message = error.what();
+    }
+    setrlimit(RLIMIT_FSIZE, &before);
+    CHECK(message.find(path + ": cannot be written") == 0);
+    CHECK_FALSE(fs::exists(path));
+    CHECK_FALSE(fs::exists(path + ".partial"));
+}
