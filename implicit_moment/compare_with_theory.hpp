@@ -114,7 +114,10 @@ inline void compare_equilibrium(const Case& w, const Plasma& plasma,
     double density = 0, current_y = 0;
     for (long j = 1; j < grid.z.cells; ++j) {
         const double z = grid.z.at(static_cast<double>(j)) - (grid.z.low + 0.5 * grid.z.length);
-        const double in_sheet = n0 / std::pow(std::cosh(z / w.harris.thickness), 2);
+        const double in_sheet =
+            n0 * common::spline_average(
+                     [&](double at) { return std::pow(std::cosh(at / w.harris.thickness), -2); }, z,
+                     grid.z.spacing());
         const double n = in_sheet + n0 * w.harris.background;
         // A row of nodes counts the particles of one row of cells; its relative noise is that of
         // their number.
@@ -233,7 +236,7 @@ inline void compare_mode(const Case& w, const common::History& history, common::
     if (!theory.of_scheme && growth > 0.05 * std::abs(theory.omega)) {
         std::vector<double> amplitude;
         for (std::size_t n = 0; n < re.size(); ++n) amplitude.push_back(std::hypot(re[n], im[n]));
-        const common::GrowthFit fit = common::fit_growth(times, amplitude);
+        const common::GrowthFit fit = common::fit_growth(times, amplitude, {3.0, 0.1});
         summary.result(
             "growth_over_theory", fit.rate / growth, "", 1, tolerance,
             theory.source + "; fitted from t = " + shown(fit.begin) + " to " + shown(fit.end));

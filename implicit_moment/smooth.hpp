@@ -12,7 +12,7 @@
 namespace implicit_moment {
 
 struct SmoothingSettings {
-    long passes = 1;
+    long passes = 2;
     bool compensate = true;
 };
 

@@ -1,0 +1,134 @@
+// One particle through one step with all care: where it leaves the neighborhood of its node,
+// meets a wall, or crosses more than a cell.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "implicit_moment/push_field.hpp"
+#include "implicit_moment/units.hpp"
+
+namespace implicit_moment {
+
+struct MoverSettings {
+    double tolerance =
+        1e-3;  // the midpoint stands still when an iteration moves it by less [cells]
+    long max_iterations = 20;
+};
+
+template <class Real>
+struct Velocity {
+    Real x, y, z;
+};
+
+/// Mean velocity of a step: vbar = v_t + (v_t x O) + ... solved for vbar = v_t + vbar x O.
+///     vbar = [ v_t + v_t x O + (v_t . O) O ] / (1 + O^2),   v_t = v + q dt/2m E,   O = q dt B /
+///     (2 m c)
+/// in: v^n; local fields; half_kick = q dt / 2m.   exact: vbar - vbar x O = v_t.   source:
+///        [IMM-12] for one particle.
+template <class Real>
+inline Velocity<Real> mean_velocity(const Velocity<Real>& v, const LocalField<Real>& at,
+                                    double half_kick) {
+    const Real t_x = v.x + half_kick * at.E_x, t_y = v.y + half_kick * at.E_y,
+               t_z = v.z + half_kick * at.E_z;
+    const double per_c = half_kick / c;
+    const Real O_x = per_c * at.B_x, O_y = per_c * at.B_y, O_z = per_c * at.B_z;
+    const Real dot = t_x * O_x + t_y * O_y + t_z * O_z;
+    const Real scale = 1.0 / (1.0 + O_x * O_x + O_y * O_y + O_z * O_z);
+    return {scale * (t_x + t_y * O_z - t_z * O_y + dot * O_x),
+            scale * (t_y + t_z * O_x - t_x * O_z + dot * O_y),
+            scale * (t_z + t_x * O_y - t_y * O_x + dot * O_z)};
+}
+
+namespace detail {
+
+// Position of a midpoint for the gather: periodic image, or the wall itself while the path is
+// behind it.
+inline double seen_at(const common::Axis& axis, double x) {
+    if (axis.periodic) return x - axis.length * std::floor((x - axis.low) / axis.length);
+    return std::clamp(x, axis.low, axis.high());
+}
+
+// Mean velocity of a step of length 2h; false when the iteration does not converge.
+inline bool find_mean_velocity(const Grid& grid, const PushField& field,
+                               const MoverSettings& settings, double charge_over_mass, double h,
+                               double x, double z, const Velocity<double>& v, Velocity<double>& u) {
+    const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing();
+    u = v;
+    for (long iteration = 0; iteration < settings.max_iterations; ++iteration) {
+        const double s = (seen_at(grid.x, x + h * u.x) - grid.x.low) * per_dx;
+        const double t = (seen_at(grid.z, z + h * u.z) - grid.z.low) * per_dz;
+        const long i = static_cast<long>(s + 0.5), j = static_cast<long>(t + 0.5);
+        const auto at =
+            gather_field(&field[static_cast<std::size_t>(grid.index(i - 1, j - 1))], grid.stride(),
+                         s - static_cast<double>(i), t - static_cast<double>(j));
+        const Velocity<double> next = mean_velocity(v, at, charge_over_mass * h);
+        const double change =
+            h * std::max(std::fabs(next.x - u.x) * per_dx, std::fabs(next.z - u.z) * per_dz);
+        u = next;
+        if (change <= settings.tolerance && iteration > 0) return true;
+    }
+    return false;
+}
+
+// The part of a displacement after which a coordinate stands on a wall; 1 when it meets none.
+inline double part_to_wall(const common::Axis& axis, double x, double displacement) {
+    if (axis.periodic) return 1;
+    if (x + displacement < axis.low) return std::clamp((axis.low - x) / displacement, 0.0, 1.0);
+    if (x + displacement > axis.high())
+        return std::clamp((axis.high() - x) / displacement, 0.0, 1.0);
+    return 1;
+}
+
+// After a displacement: the periodic image, or a reflection where the wall has been reached.
+inline void arrive(const common::Axis& axis, bool at_wall, double& x, double& v) {
+    if (axis.periodic) {
+        x = seen_at(axis, x);
+        if (x >= axis.high()) x = axis.low;
+        return;
+    }
+    x = std::clamp(x, axis.low, axis.high());
+    if (at_wall) {
+        const bool outward = x - axis.low < axis.high() - x ? v < 0 : v > 0;
+        if (outward) v = -v;
+    }
+}
+
+}  // namespace detail
+
+/// Moves one particle by dt in `parts` equal sub-steps; a sub-step that ends behind a wall is cut
+/// where it meets the wall, the particle is reflected there, and goes on with the rest.
+/// out: false when a sub-step crosses more than a cell or does not converge; the particle is then
+///        not to be used.
+/// note: a reflection at the end of the step instead would turn the velocity in the wrong sense
+///        for the rest of the step, and drive a current along magnetized walls.
+inline bool move_one(const Grid& grid, const PushField& field, const MoverSettings& settings,
+                     double charge_over_mass, double dt, int parts, double& x, double& z,
+                     Velocity<double>& v) {
+    const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing();
+    for (int part = 0; part < parts; ++part) {
+        double left = dt / parts;
+        for (int bounce = 0; left > 0; ++bounce) {
+            Velocity<double> u;
+            const auto step = [&](double time) {
+                return detail::find_mean_velocity(grid, field, settings, charge_over_mass,
+                                                  0.5 * time, x, z, v, u) &&
+                       time * std::fabs(u.x) * per_dx <= 1 && time * std::fabs(u.z) * per_dz <= 1;
+            };
+            if (!step(left) || bounce == 100) return false;
+            const double to_x = detail::part_to_wall(grid.x, x, left * u.x);
+            const double to_z = detail::part_to_wall(grid.z, z, left * u.z);
+            const double time = left * std::min(to_x, to_z);
+            if (time < left && !step(time)) return false;
+            x += time * u.x;
+            z += time * u.z;
+            v = {2 * u.x - v.x, 2 * u.y - v.y, 2 * u.z - v.z};
+            detail::arrive(grid.x, to_x < 1 && to_x <= to_z, x, v.x);
+            detail::arrive(grid.z, to_z < 1 && to_z <= to_x, z, v.z);
+            left -= time;
+        }
+    }
+    return true;
+}
+
+}  // namespace implicit_moment
