@@ -10,9 +10,8 @@ mains := implicit_moment/implicit_moment.cpp
 # Methods of the talk without a program so far.
 not_built_yet := cic pic flip mpm_explicit mpm_implicit explicit_em
 
-# The run that `make bench` times, as  program:case ; shortened by these overrides.
-benchmarks := implicit_moment:gem
-bench_overrides := time.end=2
+# Programs that time the loop of a main, step by step; `make bench` runs them all.
+benches := implicit_moment/bench.cpp
 
 # ---- how: everything here can be set on the command line, e.g. make CXX=clang++-14 test ---------
 
@@ -52,6 +51,7 @@ packages_first := $(filter deps deps-dev,$(MAKECMDGOALS))
 need = @command -v $(1) >/dev/null || { echo "'$(1)' is not installed: run 'make deps'" >&2; exit 2; }
 
 programs  := $(basename $(notdir $(mains)))
+bench_programs := $(benches:%/bench.cpp=$(BUILD)/bench/%)
 tests     := $(basename $(notdir $(wildcard tests/*.cpp)))
 shared    := $(patsubst %.cpp,$(objects)/%.o,$(wildcard common/*.cpp))
 sources   := $(wildcard */*.hpp */*.cpp)
@@ -125,11 +125,13 @@ $(objects)/common/case_file.o: private defines += -DNDEBUG
 $(foreach m,$(mains),$(eval $(BUILD)/$(basename $(notdir $m)): $(objects)/$(m:.cpp=.o)))
 $(tests:%=$(BUILD)/tests/%): $(BUILD)/tests/%: $(objects)/tests/%.o
 
-$(programs:%=$(BUILD)/%) $(tests:%=$(BUILD)/tests/%): $(shared) $(BUILD)/flags
+$(bench_programs): $(BUILD)/bench/%: $(objects)/%/bench.o
+
+$(programs:%=$(BUILD)/%) $(tests:%=$(BUILD)/tests/%) $(bench_programs): $(shared) $(BUILD)/flags
 	@mkdir -p $(@D)
 	$(CXX) $(flags) -o $@ $(filter %.o,$^) $(libraries)
 
--include $(patsubst %.cpp,$(objects)/%.d,$(mains) $(wildcard common/*.cpp tests/*.cpp))
+-include $(patsubst %.cpp,$(objects)/%.d,$(mains) $(benches) $(wildcard common/*.cpp tests/*.cpp))
 
 # ---- runs and figures ----------------------------------------------------------------------------
 
@@ -205,24 +207,8 @@ test-long: all tests figures $(BUILD)/CTestTestfile.cmake | $(packages_first)
 
 # ---- speed ---------------------------------------------------------------------------------------
 
-bench: all
-	@set -e; for b in $(benchmarks); do \
-	    program=$${b%%:*}; case=$${b#*:}; folder=out/bench/$$program/$$case; \
-	    source=$$(ls */cases/$$case.toml | head -n 1); \
-	    for threads in 1 2; do \
-	        echo "$$program $$source $(bench_overrides) --threads $$threads"; \
-	        $(BUILD)/$$program $$source $(bench_overrides) --threads $$threads \
-	            --out $$folder/$$threads --force --quiet > /dev/null; \
-	    done; \
-	    for threads in 1 2; do \
-	        awk -f common/json_lines.awk $$folder/$$threads/summary.json; \
-	    done | awk '$$1 !~ /^performance[.]/ { next } \
-	        { name = substr($$1, 13); if (name in first) second[name] = $$2; \
-	          else { first[name] = $$2; names[++n] = name } } \
-	        END { printf "\n%-40s %16s %16s %8s\n", "", "1 thread", "2 threads", "ratio"; \
-	              for (i = 1; i <= n; i++) { a = first[names[i]]; b = second[names[i]]; \
-	                  printf "%-40s %16.6g %16.6g %8.3f\n", names[i], a, b, a ? b / a : 0 } }'; \
-	done
+bench: $(bench_programs)
+	@set -e; for b in $^; do $$b; done
 
 # ---- notes, format, clean ------------------------------------------------------------------------
 

@@ -11,9 +11,8 @@
 namespace implicit_moment {
 
 struct MoverSettings {
-    double tolerance =
-        1e-3;  // the midpoint stands still when an iteration moves it by less [cells]
-    long max_iterations = 20;
+    double tolerance = 1e-4;   // a midpoint is found when an iteration moves it by less [cells]
+    long max_iterations = 20;  // before the step is halved
 };
 
 template <class Real>

@@ -119,7 +119,6 @@ struct PlasmaResponse {
     VectorField J_free;  // sum over species of J_hat before rotation... one species at a time
     VectorField J_hat;   // current without field, rotated, not yet smoothed
     Tensor R, chi;       // rotation of one species; susceptibility of all
-    double mean_chi = 0;
 
     explicit PlasmaResponse(const Grid& grid)
         : rho(Field::Zero(grid.size())), J_free(grid), J_hat(grid), R(grid), chi(grid) {}

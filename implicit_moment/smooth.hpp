@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -18,18 +19,21 @@ struct SmoothingSettings {
 
 namespace detail {
 
-// One pass of (side, middle, side) in both directions over rows [begin, end), out of place.
+// One pass of (side, middle, side) in both directions over rows [begin, end), out of place: across
+// the rows into `across`, then along them.
 inline void stencil_rows(const Grid& grid, double side, double middle, const double* f, double* out,
                          long begin, long end) {
-    const long s = grid.stride();
-    const double corner = side * side, edge = side * middle, center = middle * middle;
+    const long s = grid.stride(), points = grid.x.cells + 1;
+    std::array<double, 4099> across;
     for (long j = begin; j < end; ++j) {
-        const long first = grid.index(0, j), last = first + grid.x.cells;
-#pragma omp simd
-        for (long n = first; n <= last; ++n) {
-            out[n] = center * f[n] + edge * ((f[n - 1] + f[n + 1]) + (f[n - s] + f[n + s])) +
-                     corner * ((f[n - s - 1] + f[n - s + 1]) + (f[n + s - 1] + f[n + s + 1]));
+        const double* row = f + grid.index(-1, j);
+        double* target = out + grid.index(0, j);
+        for (long i = 0; i < points + 2; ++i) {
+            across[static_cast<std::size_t>(i)] =
+                middle * row[i] + side * (row[i - s] + row[i + s]);
         }
+        const double* a = across.data() + 1;
+        for (long i = 0; i < points; ++i) target[i] = middle * a[i] + side * (a[i - 1] + a[i + 1]);
     }
 }
 

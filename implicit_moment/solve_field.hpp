@@ -51,6 +51,11 @@ struct FieldReport {
     double residual = 0;
 };
 
+/// The inverse of the uniform field operator for every mode: 2 x 2 in the plane, one number for y.
+struct ModeInverse {
+    Eigen::ArrayXXf xx, xz, zz, yy;
+};
+
 /// Everything the solver keeps between steps; nothing of it is state.
 struct FieldSolver {
     Grid grid;
@@ -63,7 +68,8 @@ struct FieldSolver {
     std::array<Eigen::MatrixXf, 6> half_way;
     Eigen::MatrixXf U_x, V_x, U_z, V_z;        // the modes again, for the preconditioner
     Eigen::VectorXd smoothing_x, smoothing_z;  // what smoothing does to each mode
-    std::array<double, 3> mean_chi{};
+    ModeInverse inverse;
+    Eigen::ArrayXXf rotated;
     common::GmresWorkspace krylov;
     common::NewtonWorkspace newton;
 
@@ -111,16 +117,43 @@ inline void apply_field_operator(FieldSolver& solver, double a, const Eigen::Vec
     keep_unknowns(grid, out.data());
 }
 
-/// out = [ 1 + w^2 chi_0 + a^2 curl curl ]^{-1} r, exactly, for a uniform diagonal chi_0 and the
-/// smoothing factor w of each mode.
-/// note: in single precision, which flexible GMRES takes without losing the solution's double one.
-///       With the mean susceptibility of each direction the number of iterations stays the same
-///        from omega_p dt = 0.1 to 100 in a uniform plasma, and is bounded by the contrast of
-///        density and of magnetization otherwise.
-inline void precondition_field(FieldSolver& solver, double a, const Eigen::VectorXd& r,
+/// Inverts the operator with a uniform diagonal chi_0, the mean of chi, mode by mode.
+/// note: the number of iterations then does not grow with omega_p dt in a uniform plasma, and is
+///        bounded by the contrasts of density and magnetization otherwise.
+inline void prepare_preconditioner(FieldSolver& solver, double a) {
+    const Grid& grid = solver.grid;
+    std::array<double, 3> chi_0{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        chi_0[k] = detail::interior(grid, solver.response.chi.entry[4 * k].data()).mean();
+    }
+    ModeInverse& inverse = solver.inverse;
+    for (Eigen::ArrayXXf* f : {&inverse.xx, &inverse.xz, &inverse.zz, &inverse.yy}) {
+        f->resize(grid.x.cells, grid.z.cells);
+    }
+    for (long l = 0; l < grid.z.cells; ++l) {
+        const double k_z = a * solver.modes.z.sigma[l];
+        for (long k = 0; k < grid.x.cells; ++k) {
+            const double k_x = a * solver.modes.x.sigma[k];
+            const double w = solver.smoothing_x[k] * solver.smoothing_z[l];
+            const double xx = 1 + w * w * chi_0[0] + k_z * k_z;
+            const double zz = 1 + w * w * chi_0[2] + k_x * k_x;
+            const double yy = 1 + w * w * chi_0[1] + k_x * k_x + k_z * k_z;
+            const double determinant = xx * zz - k_x * k_x * k_z * k_z;
+            inverse.xx(k, l) = static_cast<float>(zz / determinant);
+            inverse.xz(k, l) = static_cast<float>(k_x * k_z / determinant);
+            inverse.zz(k, l) = static_cast<float>(xx / determinant);
+            inverse.yy(k, l) = static_cast<float>(1 / yy);
+        }
+    }
+}
+
+/// out = [ 1 + w^2 chi_0 + a^2 curl curl ]^{-1} r for a uniform diagonal chi_0, w the smoothing
+/// factor of each mode.
+/// exact: to single precision, which flexible GMRES takes without losing the double one of its
+///        solution. in: what prepare_preconditioner has prepared.
+inline void precondition_field(FieldSolver& solver, const Eigen::VectorXd& r,
                                Eigen::VectorXd& out) {
     const Grid& grid = solver.grid;
-    const AxisModes &x = solver.modes.x, &z = solver.modes.z;
     const long m = grid.size();
     // The modes of each component, along x and along z, by its place on the mesh.
     const std::array<const Eigen::MatrixXf*, 3> X{&solver.U_x, &solver.V_x, &solver.V_x};
@@ -139,25 +172,13 @@ inline void precondition_field(FieldSolver& solver, double a, const Eigen::Vecto
             X[k]->transpose() * solver.half_way[t];
     });
 
-    // Every mode alone: a 2 x 2 system in the plane, one number for e_y.
-    const auto chi_x = static_cast<float>(solver.mean_chi[0]),
-               chi_y = static_cast<float>(solver.mean_chi[1]),
-               chi_z = static_cast<float>(solver.mean_chi[2]);
+    // Every mode alone.
     auto &e_x = solver.amplitude[0], &e_y = solver.amplitude[1], &e_z = solver.amplitude[2];
-    for (long l = 0; l < grid.z.cells; ++l) {
-        const auto k_z = static_cast<float>(a * z.sigma[l]);
-        for (long k = 0; k < grid.x.cells; ++k) {
-            const auto k_x = static_cast<float>(a * x.sigma[k]);
-            const auto w = static_cast<float>(solver.smoothing_x[k] * solver.smoothing_z[l]);
-            const float w2 = w * w;
-            const float xx = 1 + w2 * chi_x + k_z * k_z, zz = 1 + w2 * chi_z + k_x * k_x;
-            const float xz = k_x * k_z, per_determinant = 1 / (xx * zz - xz * xz);
-            const float r_x = e_x(k, l), r_z = e_z(k, l);
-            e_x(k, l) = (zz * r_x + xz * r_z) * per_determinant;
-            e_z(k, l) = (xx * r_z + xz * r_x) * per_determinant;
-            e_y(k, l) /= 1 + w2 * chi_y + k_x * k_x + k_z * k_z;
-        }
-    }
+    const ModeInverse& inverse = solver.inverse;
+    e_y.array() *= inverse.yy;
+    solver.rotated = inverse.xx * e_x.array() + inverse.xz * e_z.array();
+    e_z.array() = inverse.xz * e_x.array() + inverse.zz * e_z.array();
+    e_x.array() = solver.rotated;
 
     // Back to the mesh.
     out.resize(r.size());
@@ -173,14 +194,6 @@ inline void precondition_field(FieldSolver& solver, double a, const Eigen::Vecto
             solver.unknowns[k].cast<double>();
     }
     keep_unknowns(grid, out.data());
-}
-
-/// The uniform part of chi that the preconditioner assumes: the mean of each diagonal entry.
-inline void prepare_preconditioner(FieldSolver& solver) {
-    for (std::size_t a = 0; a < 3; ++a) {
-        solver.mean_chi[a] =
-            detail::interior(solver.grid, solver.response.chi.entry[4 * a].data()).mean();
-    }
 }
 
 /// div E - 4 pi rho on nodes, zero on walls. in: E at t^n with ghosts, rho smoothed.
@@ -237,11 +250,11 @@ inline FieldReport solve_field(FieldSolver& solver, const std::vector<Moments>& 
     smooth(grid, current, settings.smoothing, response.J_hat.all.data(), solver.scratch);
     smooth(grid, common::on_nodes, {+1, +1}, settings.smoothing, response.rho.data(),
            solver.scratch);
-    prepare_preconditioner(solver);
+    prepare_preconditioner(solver, a);
     maxwell_source(solver, field, a);
 
     const auto precondition = [&](const Eigen::VectorXd& r, Eigen::VectorXd& out) {
-        precondition_field(solver, a, r, out);
+        precondition_field(solver, r, out);
     };
     Eigen::VectorXd& E = field.E_theta.all;
     keep_unknowns(grid, E.data());
