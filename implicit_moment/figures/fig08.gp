@@ -1,6 +1,6 @@
 # Figure 8 of the talk: magnetic field lines (contours of A_y) and out-of-plane current density (color) of the GEM challenge at four times. The sheet thins at
 # the X-line in the middle and is drawn out into the separatrices, while the island at the ends of the periodic box swallows the flux.
-wide = 1500; high = 900
+wide = 1500; high = 940
 load 'common/style.gp'
 file(n) = sprintf('%s/fields_%06d.dat', run, n)
 first = file(0)
@@ -18,14 +18,14 @@ set cbrange [0:1.4]
 set multiplot title 'GEM challenge: field lines and out-of-plane current' font ',22'
 do for [k = 1:4] {
     n = int(word(steps, k))
-    left = k % 2 == 1 ? 0.06 : 0.48
-    bottom = k <= 2 ? 0.52 : 0.09
+    left = k % 2 == 1 ? 0.07 : 0.48
+    bottom = k <= 2 ? 0.545 : 0.12
     set lmargin at screen left; set rmargin at screen left + 0.39
-    set bmargin at screen bottom; set tmargin at screen bottom + 0.36
+    set bmargin at screen bottom; set tmargin at screen bottom + 0.33
     set title sprintf('t Ω_{ci} = %.0f', n * 0.3 * B0) offset 0, -0.6
-    if (k > 2) { set xlabel 'x / d_i' } else { unset xlabel }
-    if (k % 2 == 1) { set ylabel 'z / d_i' offset 1, 0 } else { unset ylabel }
-    if (k == 2) { set colorbox user origin 0.91, 0.25 size 0.014, 0.48; set cblabel 'J_y / J_0' offset 0.5, 0 } else { unset colorbox }
+    if (k > 2) { set xlabel 'x / d_i' } else { set xlabel '' }
+    if (k % 2 == 1) { set ylabel 'z / d_i' offset 1, 0; set ytics -6, 3 } else { set ylabel ''; set ytics ('' -6, '' -3, '' 0, '' 3, '' 6) }
+    if (k == 2) { set colorbox user origin 0.895, 0.25 size 0.014, 0.48; set cblabel 'J_y / J_0' offset -0.5, 0 } else { unset colorbox }
     set table $lines; set contour base; unset surface
     set cntrparam levels incremental -0.4, 0.02, 0.4
     splot file(n) using 1:2:A

@@ -11,8 +11,9 @@ set key top left
 t1 = result('time_at_unit_flux')
 set arrow from t1, 0 to t1, 1 nohead dt 3 lc rgb gray
 set label sprintf('ΔΨ = 1 at t Ω_{ci} = %.1f', t1) at t1 + 0.6, 0.12 textcolor rgb ink font ',16'
-plot history using t:psi @measured title 'this run', \
-     sample [15:28] '+' using 1:(1 + 0.24 * ($1 - t1)) @theory title 'slope 0.24 (Pritchett 2001)', \
-     data using 1:2 skip 5 every 1 @published title 'full particle (Birn et al. 2001)', \
+set datafile separator ' ,'   # history.dat has blanks, the published data commas
+plot sample [15:28] '+' using 1:(1 + 0.24 * ($1 - t1)) @theory title 'slope 0.24 (Pritchett 2001)', \
+     history using t:psi @measured title 'this run', \
+     data using 1:2 skip 5 @published title 'full particle (Birn et al. 2001)', \
      data using 1:3 skip 5 with points pt 4 ps 1 lw 1.6 lc rgb green title 'hybrid', \
      data using 1:4 skip 5 with points pt 8 ps 1 lw 1.6 lc rgb amber title 'Hall MHD'

@@ -1,0 +1,188 @@
+// Whole runs of implicit_moment against exact and published values, by the numbers that the program itself puts into summary.json.
+#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace {
+
+using Json = nlohmann::json;
+
+// Runs the program in a folder of the test's own and returns its summary.
+Json run(const std::string& name, const std::string& arguments) {
+    const std::string folder = std::string(BUILD_FOLDER) + "/tests/runs/" + name;
+    const std::string command = std::string(BUILD_FOLDER) + "/implicit_moment " + arguments +
+                                " --out " + folder + " --force --quiet";
+    REQUIRE(std::system(command.c_str()) == 0);
+    std::ifstream file(folder + "/summary.json");
+    REQUIRE(file.good());
+    return Json::parse(file);
+}
+
+double value(const Json& summary, const std::string& result) {
+    REQUIRE(summary["results"].contains(result));
+    return summary["results"][result]["value"].get<double>();
+}
+
+// Every result that is compared with something must pass.
+void check_results(const Json& summary, int at_least) {
+    int compared = 0;
+    for (const auto& [name, result] : summary["results"].items()) {
+        if (!result.contains("pass")) continue;
+        INFO(name << " = " << result.dump());
+        CHECK(result["pass"].get<bool>());
+        ++compared;
+    }
+    CHECK(compared >= at_least);
+}
+
+void check_gem(const std::string& seed) {
+    const Json summary = run("gem_" + seed,
+                             "implicit_moment/cases/gem.toml time.end=640 output.fields_interval=0 "
+                             "--threads 1 plasma.seed=" +
+                                 seed);
+    check_results(summary, 6);
+    CHECK(std::fabs(value(summary, "flux_initial") - 0.2) <= 0.005);
+    CHECK(value(summary, "time_at_unit_flux") >= 13.5);
+    CHECK(value(summary, "time_at_unit_flux") <= 18.0);
+    CHECK(value(summary, "peak_reconnection_rate") >= 0.2);
+    CHECK(value(summary, "peak_reconnection_rate") <= 0.45);
+    CHECK(value(summary, "flux_at_t30") >= 3.0);
+    CHECK(value(summary, "flux_at_t30") <= 4.6);
+    CHECK(std::fabs(value(summary, "energy_drift_at_t30")) <= 0.03);
+    CHECK(value(summary, "quadrupole_at_unit_flux") > 0.005);
+    // div B in units of B0/dx, and a bounded Gauss residual.
+    CHECK(summary["conservation"]["largest_div_B"]["value"].get<double>() <= 1e-12 * 0.05 / 0.4);
+    CHECK(summary["conservation"]["largest_gauss_residual"]["value"].get<double>() <= 0.05);
+}
+
+std::string text(double number) {
+    char words[32];
+    std::snprintf(words, sizeof words, "%.17g", number);
+    return words;
+}
+
+// A cold wave at the four time steps and three theta of the tables.
+void check_wave(const std::string& name, const std::string& file, double angle_per_dt) {
+    for (const double theta : {0.5, 0.6, 1.0}) {
+        for (const double angle : {0.1, 0.3, 1.0, 1.5}) {
+            INFO(name << " theta " << theta << " angle " << angle);
+            const Json summary =
+                run(name, file + " field.theta=" + text(theta) +
+                              " time.dt=" + text(angle / angle_per_dt) +
+                              " time.end=" + text(std::max(40.0, 60 * angle) / angle_per_dt));
+            CHECK(std::fabs(value(summary, "omega_over_theory") - 1) <= 0.005);
+            if (theta == 0.5) {
+                CHECK(std::fabs(value(summary, "damping")) <= 2e-4 * angle_per_dt);
+            } else {
+                CHECK(std::fabs(value(summary, "damping_over_theory") - 1) <= 0.005);
+            }
+        }
+    }
+}
+
+}  // namespace
+
+TEST_CASE("GEM with seed 1 reconnects in the published windows" * doctest::description("physics")) {
+    check_gem("1");
+}
+TEST_CASE("GEM with seed 2 reconnects in the published windows" * doctest::description("physics")) {
+    check_gem("2");
+}
+TEST_CASE("GEM with seed 3 reconnects in the published windows" * doctest::description("physics")) {
+    check_gem("3");
+}
+
+TEST_CASE("light waves in vacuum have the frequency and damping of the theta scheme" *
+          doctest::description("physics")) {
+    const double K = 2 / 0.1 * std::sin(3.14159265358979324 / 64);
+    check_wave("light", "implicit_moment/cases/light_wave.toml", K);
+}
+
+TEST_CASE("cold Langmuir waves have the frequency and damping of the theta scheme" *
+          doctest::description("physics")) {
+    check_wave("langmuir", "implicit_moment/cases/langmuir.toml", 1);
+}
+
+TEST_CASE("two cold streams grow at the rate of linear theory" * doctest::description("physics")) {
+    check_results(run("two_stream", "implicit_moment/cases/two_stream.toml"), 1);
+    // Half the wave number: k v0 = 0.306, gamma^2 = (2a^2 + 1/4)^(1/2) - a^2 - 1/2.
+    const Json longer = run("two_stream_long",
+                            "implicit_moment/cases/two_stream.toml grid.length_x=4.106 "
+                            "grid.length_z=0.257 time.end=50");
+    check_results(longer, 1);
+    const double a = 0.2 * 2 * 3.14159265358979324 / 4.106;
+    const double gamma = std::sqrt(std::sqrt(2 * a * a + 0.25) - a * a - 0.5);
+    CHECK(std::fabs(value(longer, "theory_growth") / gamma - 1) <= 1e-6);
+}
+
+TEST_CASE("two cold streams of short wave length are stable" * doctest::description("physics")) {
+    // k v0 = 1.2 omega_p is beyond the cut-off: the mode must not outgrow its seed by more than noise.
+    const std::string arguments =
+        "implicit_moment/cases/two_stream.toml grid.length_x=1.0472 grid.length_z=0.0655 "
+        "theory.wave=none";
+    const Json summary = run("two_stream_short", arguments);
+    std::ifstream history(std::string(BUILD_FOLDER) + "/tests/runs/two_stream_short/history.dat");
+    std::string line;
+    double first = 0, last = 0;
+    while (std::getline(history, line)) {
+        if (line[0] == '#') continue;
+        std::vector<double> row;
+        std::istringstream words(line);
+        for (double number; words >> number;) row.push_back(number);
+        const double size = std::hypot(row[row.size() - 2], row.back());
+        if (row[0] <= 10) first = std::max(first, size);
+        last = size;
+    }
+    CHECK(first > 0);
+    CHECK(last <= 10 * first);
+}
+
+TEST_CASE("Weibel filaments grow at the rate of linear theory" * doctest::description("physics")) {
+    check_results(run("weibel", "implicit_moment/cases/weibel.toml"), 1);
+}
+
+TEST_CASE("a whistler has the frequency of the cold dispersion relation" *
+          doctest::description("physics")) {
+    const Json summary = run("whistler", "implicit_moment/cases/whistler.toml");
+    check_results(summary, 1);
+    CHECK(std::fabs(value(summary, "theory_omega") / 0.05 - 1.498601) <= 1e-5);
+}
+
+TEST_CASE("an ion cyclotron wave has the frequency of the cold dispersion relation" *
+          doctest::description("physics")) {
+    // The other polarization: v_s = (q_s/m_s) E0/(omega - Omega_s) with omega = 0.615325 Omega_ci.
+    const double omega = 0.615325 * 0.05, B = 5e-4, E = B * omega;
+    const double ions = E / (omega - 0.05), electrons = -25 * E / (omega + 1.25);
+    const std::string e = text(E), i = text(ions), l = text(electrons);
+    const Json summary = run(
+        "ion_cyclotron",
+        "implicit_moment/cases/whistler.toml time.end=400 theory.near=0.031 uniform.wave_E_y=" + e +
+            " uniform.wave_E_z=" + e +
+            " uniform.phase_E_z=-90 uniform.phase_B_y=90 species.ions.wave_y=" + i +
+            " species.ions.wave_z=" + i + " species.ions.phase_z=0 species.electrons.wave_y=" + l +
+            " species.electrons.wave_z=" + l + " species.electrons.phase_z=0");
+    check_results(summary, 1);
+    CHECK(std::fabs(value(summary, "theory_omega") / 0.05 - 0.615325) <= 1e-5);
+}
+
+TEST_CASE("a Harris sheet at rest keeps its profiles within noise" *
+          doctest::description("physics")) {
+    const Json summary = run("harris_equilibrium", "implicit_moment/cases/harris_equilibrium.toml");
+    check_results(summary, 3);
+    CHECK(std::fabs(value(summary, "energy_drift")) <= 0.005);
+}
+
+TEST_CASE("Newton and GMRES agree on the reconnected flux" * doctest::description("physics")) {
+    const std::string arguments =
+        "implicit_moment/cases/gem.toml time.end=60 output.fields_interval=0 "
+        "harris.particles=50000 field.solver=";
+    const double linear = value(run("gem_gmres", arguments + "gmres"), "flux_initial");
+    const Json newton = run("gem_newton", arguments + "newton_krylov");
+    CHECK(std::fabs(value(newton, "flux_initial") - linear) <= 1e-12);
+    CHECK(newton["conservation"]["largest_energy_drift"]["value"].get<double>() <= 0.01);
+}
