@@ -41,6 +41,9 @@ std::size_t sequence_length(const std::string& text, std::size_t k) {
     return 0;
 }
 
+// Also bounds how deeply names can be nested: one level takes two letters.
+constexpr std::size_t longest_line = 2000;
+
 // Refuses what is not UTF-8 text; the library is not safe on other bytes.
 void refuse_bad_bytes(const std::string& text, const std::string& source) {
     std::size_t line = 1, column = 1;
@@ -55,6 +58,10 @@ void refuse_bad_bytes(const std::string& text, const std::string& source) {
             throw InputError(at(source, line, column) +
                              ": a control character; this is not a text file, or it is damaged");
         }
+        if (column > longest_line) {
+            throw InputError(at(source, line, column) + ": the line has more than " +
+                             std::to_string(longest_line) + " letters; this is not a case file");
+        }
         column = byte == '\n' ? 1 : column + 1;
         if (byte == '\n') ++line;
         k += length;
@@ -68,19 +75,33 @@ struct Placed {
     std::pair<std::size_t, std::size_t> position;
 };
 
+bool is_name_letter(char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-';
+}
+
 bool is_override(const std::string& source) { return source.compare(0, 13, "command line:") == 0; }
 
 void flatten(const toml::table& table, const std::string& prefix, const std::string& source,
              std::vector<Placed>& settings) {
     for (const auto& [key, node] : table) {
-        const std::string name = prefix + std::string(key.str());
+        const std::string word(key.str());
+        const std::string name = prefix + word;
         const auto begin = node.source().begin;
         const std::string place =
             is_override(source) ? source : at(source, begin.line, begin.column);
         const auto add = [&](const auto& value) {
             settings.push_back({{name, value, place}, {begin.line, begin.column}});
         };
-        if (const auto* inner = node.as_table()) {
+        if (!std::all_of(word.begin(), word.end(), is_name_letter)) {
+            throw InputError(place + ": '" + word +
+                             "' is not a name: use letters, digits and '_', and dots only between "
+                             "section and key");
+        }
+        const auto* inner = node.as_table();
+        if (inner != nullptr && inner->empty()) {
+            add(EmptySection{});
+        } else if (inner != nullptr) {
             flatten(*inner, name + ".", source, settings);
         } else if (const auto* truth = node.as_boolean()) {
             add(truth->get());
@@ -89,7 +110,12 @@ void flatten(const toml::table& table, const std::string& prefix, const std::str
         } else if (const auto* real = node.as_floating_point()) {
             add(real->get());
         } else if (const auto* text = node.as_string()) {
-            add(text->get());
+            const std::string& letters = text->get();
+            if (std::any_of(letters.begin(), letters.end(),
+                            [](unsigned char c) { return c < 0x20; }))
+                throw InputError(place + ": '" + name +
+                                 "' holds a control character; write plain text");
+            add(letters);
         } else {
             throw InputError(place + ": '" + name +
                              "' is a list or a date; parameters are numbers, text, true or false");

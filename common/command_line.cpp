@@ -9,7 +9,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
+#include <set>
 
 #include "common/checkpoint.hpp"
 #include "common/parameters.hpp"
@@ -92,10 +92,13 @@ std::string read_file(const std::string& path) {
     if (fs::is_directory(status)) throw InputError(path + ": is a folder, not a file");
     if (!fs::is_regular_file(status)) throw InputError(path + ": is not a regular file");
     std::ifstream file(path, std::ios::binary);
-    std::ostringstream content;
-    if (fs::file_size(path) > 0) content << file.rdbuf();
-    if (!file || !content) throw InputError(path + ": cannot be read: " + std::strerror(errno));
-    return content.str();
+    std::string content;
+    for (char piece[4096]; file.good();) {
+        file.read(piece, sizeof piece);
+        content.append(piece, static_cast<std::size_t>(file.gcount()));
+    }
+    if (!file.eof()) throw InputError(path + ": cannot be read: " + std::strerror(errno));
+    return content;
 }
 
 CommandLine read_command_line(int argc, char** argv, const About& about, ParameterTable& table) {
@@ -148,6 +151,8 @@ CommandLine read_command_line(int argc, char** argv, const About& about, Paramet
                 (guess.empty() ? "; --help lists all options" : "; did you mean '" + guess + "'?"));
         } else if (argument.find('=') != std::string::npos && !fs::exists(argument)) {
             overrides.push_back(argument);
+        } else if (argument.empty()) {
+            throw InputError("an empty argument: give the path of a case file, or leave it out");
         } else if (command.case_path.empty()) {
             command.case_path = argument;
         } else {
@@ -167,7 +172,8 @@ CommandLine read_command_line(int argc, char** argv, const About& about, Paramet
             throw InputError("--restart takes its case from the checkpoint: leave out '" +
                              command.case_path + "'");
         }
-        const CheckpointReader checkpoint(about, command.restart_path);
+        CheckpointReader checkpoint(about, command.restart_path);
+        checkpoint("step", command.restart_step);
         for (const Setting& setting : read_case(checkpoint.effective_case(), command.restart_path))
             table.set(setting);
         command.case_name = "restart";
@@ -182,7 +188,15 @@ CommandLine read_command_line(int argc, char** argv, const About& about, Paramet
         if (command.out_dir.empty())
             command.out_dir = "out/" + about.program + "/" + command.case_name;
     }
-    for (const std::string& one : overrides) apply_override(one, restarting, table);
+    std::set<std::string> seen;
+    for (const std::string& one : overrides) {
+        const std::string name = one.substr(0, one.find('='));
+        if (!seen.insert(name).second) {
+            throw InputError("command line: '" + one + "': '" + name +
+                             "' is given twice; keep one of them");
+        }
+        apply_override(one, restarting, table);
+    }
     return command;
 }
 

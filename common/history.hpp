@@ -49,6 +49,14 @@ class History {
         if (now - flushed_ > std::chrono::seconds(1)) flush();
     }
 
+    /// The first value of a column. errors: logic_error for a name that is not a column, or no row.
+    double first(const std::string& name) const {
+        for (std::size_t k = 0; k < columns_.size() && k < values_.size(); ++k) {
+            if (columns_[k].name == name) return values_[k];
+        }
+        throw std::logic_error("history: no value in '" + name + "'");
+    }
+
     /// Everything recorded so far in one column. errors: logic_error for a name that is not a column.
     std::vector<double> column(const std::string& name) const {
         for (std::size_t k = 0; k < columns_.size(); ++k) {
@@ -88,8 +96,8 @@ class History {
         if (file_ == nullptr) throw InputError(path_ + ": cannot be created");
         std::string line = "#";
         for (std::size_t k = 0; k < columns_.size(); ++k) {
-            line +=
-                " " + std::to_string(k + 1) + ":" + columns_[k].name + "[" + columns_[k].unit + "]";
+            line.append(" ").append(std::to_string(k + 1)).append(":");
+            line.append(columns_[k].name).append("[").append(columns_[k].unit).append("]");
         }
         std::fputs((line + "\n").c_str(), file_);
         flush();
@@ -97,7 +105,8 @@ class History {
 
     void write(std::span<const double> values) {
         std::string line;
-        for (const double value : values) line += (line.empty() ? "" : " ") + number_text(value);
+        for (const double value : values)
+            line.append(line.empty() ? "" : " ").append(number_text(value));
         line += "\n";
         if (std::fputs(line.c_str(), file_) < 0)
             throw InputError(path_ + ": cannot be written; is the disk full?");

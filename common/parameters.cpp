@@ -54,9 +54,10 @@ struct Shown {
     std::string operator()(const std::string* value) const { return quoted(*value); }
 };
 
-std::string kind_of(const std::variant<bool, long, double, std::string>& value) {
-    constexpr const char* names[] = {"true or false", "a whole number", "a number", "text"};
-    return names[value.index()];
+std::string kind_of(const Setting& setting) {
+    constexpr const char* names[] = {"true or false", "a whole number", "a number", "text",
+                                     "a section"};
+    return names[setting.value.index()];
 }
 
 bool is_word(const std::string& text) {
@@ -152,11 +153,9 @@ std::string ParameterTable::nearest(const std::string& name) const {
     };
     for (const Entry& entry : entries_) consider(entry.name);
     // The right key in the wrong section is the other common slip.
-    if (best.empty()) {
-        const std::string key = name.substr(name.rfind('.') + 1);
-        for (const Entry& entry : entries_) {
-            if (entry.name.substr(entry.name.rfind('.') + 1) == key) best = entry.name;
-        }
+    const std::string key = name.substr(name.rfind('.') + 1);
+    for (const Entry& entry : entries_) {
+        if (least > 2 && entry.name.substr(entry.name.rfind('.') + 1) == key) return entry.name;
     }
     return best;
 }
@@ -165,7 +164,7 @@ std::string ParameterTable::nearest(const std::string& name) const {
 void ParameterTable::make_item(const Setting& setting) {
     for (List& list : lists_) {
         const std::string start = list.name + ".";
-        if (setting.name.compare(0, start.size(), start) != 0) continue;
+        if (setting.name.compare(0, start.size(), start) != 0 || setting.name == start) continue;
         const std::size_t dot = setting.name.find('.', start.size());
         if (dot == std::string::npos) {
             throw InputError(setting.place + ": '" + setting.name +
@@ -189,7 +188,30 @@ void ParameterTable::make_item(const Setting& setting) {
     }
 }
 
+// A section may be empty, and [species.beam] makes a beam of defaults; but it must be a section.
+void ParameterTable::accept_empty_section(const Setting& setting) {
+    const std::string start = setting.name + ".";
+    make_item({start, {}, setting.place});
+    const auto is_inside = [&](const std::string& name) {
+        return name.compare(0, start.size(), start) == 0;
+    };
+    const bool known = std::any_of(entries_.begin(), entries_.end(),
+                                   [&](const Entry& entry) { return is_inside(entry.name); }) ||
+                       std::any_of(lists_.begin(), lists_.end(),
+                                   [&](const List& list) { return list.name == setting.name; });
+    if (known) return;
+    const std::string guess = nearest(setting.name);
+    throw InputError(setting.place + ": unknown section [" + setting.name + "]" +
+                     (guess.empty()
+                          ? "; --help lists all"
+                          : "; did you mean [" + guess.substr(0, guess.rfind('.')) + "]?"));
+}
+
 void ParameterTable::set(const Setting& setting) {
+    if (std::holds_alternative<EmptySection>(setting.value) && find(setting.name) == nullptr) {
+        accept_empty_section(setting);
+        return;
+    }
     make_item(setting);
     Entry* entry = find(setting.name);
     if (entry == nullptr) {
@@ -200,7 +222,7 @@ void ParameterTable::set(const Setting& setting) {
     }
     const auto wrong_type = [&](const std::string& wanted) {
         return InputError(setting.place + ": '" + setting.name + "' takes " + wanted + ", not " +
-                          kind_of(setting.value));
+                          kind_of(setting));
     };
     const auto refuse_outside = [&](double value) {
         if (!std::isfinite(value)) {

@@ -33,10 +33,13 @@ Range at_least(double low);
 Range above(double low);
 Range between(double low, double high);
 
+/// A section of a case file without any key.
+struct EmptySection {};
+
 /// One value of a case file or of the command line, with the place it came from for messages.
 struct Setting {
     std::string name;
-    std::variant<bool, long, double, std::string> value;
+    std::variant<bool, long, double, std::string, EmptySection> value;
     std::string place;
 };
 
@@ -113,6 +116,7 @@ class ParameterTable {
     void describe_pattern(const std::string& name, const std::function<void()>& describe);
     Entry* find(const std::string& name);
     void make_item(const Setting& setting);
+    void accept_empty_section(const Setting& setting);
     std::string nearest(const std::string& name) const;
 
     std::vector<Entry> entries_;
@@ -133,6 +137,7 @@ struct CommandLine {
     std::string case_path, case_name;  // the file, and its name without ending
     std::string out_dir;               // --out, or out/<program>/<case name>
     std::string restart_path;          // "" without --restart
+    long restart_step = 0;             // the step of that checkpoint
     int threads = 0;                   // 0: as many as OpenMP likes
     bool dry_run = false, quiet = false, force = false;
 };

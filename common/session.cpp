@@ -39,11 +39,38 @@ bool begins(const std::string& text, const std::string& start) {
 }
 
 // Whether a file of this name is one that a run writes.
-bool is_ours(const std::string& name) {
-    const bool numbered =
-        begins(name, "fields_") || begins(name, "particles_") || begins(name, "checkpoint_");
-    return name == "case.toml" || name == "history.dat" || name == "summary.json" || numbered ||
-           (name.size() > 8 && name.substr(name.size() - 8) == ".partial");
+bool is_ours(std::string name) {
+    const std::string partial = ".partial";
+    if (name.size() > partial.size() &&
+        name.compare(name.size() - partial.size(), partial.size(), partial) == 0) {
+        name.resize(name.size() - partial.size());
+    }
+    for (const char* plain : {"case.toml", "history.dat", "summary.json"}) {
+        if (name == plain) return true;
+    }
+    for (const char* start : {"fields_", "particles_", "checkpoint_"}) {
+        if (!begins(name, start)) continue;
+        const std::size_t digits = std::string(start).size();
+        const std::size_t ending =
+            std::min(name.find_first_not_of("0123456789", digits), name.size());
+        if (ending < digits + 6) return false;
+        for (const char* known : {".dat", ".vti", ".vtp", ".bin"}) {
+            if (name.compare(ending, std::string::npos, known) == 0) return true;
+        }
+    }
+    return false;
+}
+
+// A message as one line that a terminal can show.
+std::string printable(const std::string& text) {
+    std::string result;
+    for (const char letter : text) {
+        const auto byte = static_cast<unsigned char>(letter);
+        char code[8];
+        std::snprintf(code, sizeof code, "\\x%02x", byte);
+        result += byte < 0x20 || byte == 0x7F ? std::string(code) : std::string(1, letter);
+    }
+    return result;
 }
 
 std::string clock_text(double seconds) {
@@ -94,7 +121,11 @@ void Session::prepare_folder() {
 
     std::vector<fs::path> ours;
     bool foreign = false;
-    for (const auto& entry : fs::directory_iterator(folder, error)) {
+    const fs::directory_iterator entries(folder, error);
+    if (error)
+        throw InputError(command_.out_dir + ": cannot be looked into: " + error.message() +
+                         "; choose another --out");
+    for (const auto& entry : entries) {
         const std::string name = entry.path().filename().string();
         if (is_ours(name)) ours.push_back(entry.path());
         if (!is_ours(name) && name[0] != '.') foreign = true;
@@ -210,13 +241,29 @@ int Session::fail(int status, const std::string& message) {
     return status;
 }
 
+void refuse_before_start(const CommandLine& command, long steps, double bytes) {
+    if (command.restart_step > steps) {
+        throw InputError(command.restart_path + ": is at step " +
+                         std::to_string(command.restart_step) + ", and the run ends at step " +
+                         std::to_string(steps) + ": raise time.end");
+    }
+    const double there =
+        static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+    if (bytes > there) {
+        char sizes[80];
+        std::snprintf(sizes, sizeof sizes, "the case needs %.3g GiB of memory, and there is %.3g",
+                      bytes / 1073741824, there / 1073741824);
+        throw InputError(std::string(sizes) + ": use fewer particles or cells");
+    }
+}
+
 int guarded(const About& about, const std::function<int(std::optional<Session>&)>& run) {
     std::signal(SIGPIPE, SIG_IGN);
     std::optional<Session> session;
     const auto end = [&](int status, const std::string& message) {
         if (session) session->fail(status, message);
         session.reset();
-        std::fprintf(stderr, "%s: %s\n", about.program.c_str(), message.c_str());
+        std::fprintf(stderr, "%s: %s\n", about.program.c_str(), printable(message).c_str());
         return status;
     };
     try {

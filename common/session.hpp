@@ -84,6 +84,10 @@ class Session {
     bool terminal_ = false, line_open_ = false;
 };
 
+/// Refuses, before anything is written, a restart beyond the end of the run and a case larger than
+/// the machine's memory. in: steps of the whole run; bytes it will take.
+void refuse_before_start(const CommandLine& command, long steps, double bytes);
+
 /// Runs a program and turns errors into one sentence on stderr and the exit status: 2 bad input, 3 numerical failure.
 /// in: run(session) builds the session in place, so that a failed run still leaves its summary.
 int guarded(const About& about, const std::function<int(std::optional<Session>&)>& run);

@@ -39,7 +39,8 @@ Split time_steps(const Case& wanted, long steps, int threads, long& particle_cou
         seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     };
     for (long step = 0; step < steps; ++step) {
-        timed(split.moments, [&] { deposit_moments(particles, grid, moments); });
+        timed(split.moments,
+              [&] { deposit_moments(particles, grid, state.field.B, wanted.dt, moments); });
         timed(split.field, [&] {
             split.iterations +=
                 solve_field(solver, moments, charge_over_mass, wanted.dt, state.field).iterations;

@@ -126,10 +126,11 @@ inline common::ParameterTable describe(Case& w) {
     table.whole("plasma.seed", w.seed, "", between(0, 1e9), "another number, another realization");
 
     table.group("Harris current sheet (plasma.setup = harris)");
-    table.real("harris.mass_ratio", w.harris.mass_ratio, "", at_least(1), "m_i/m_e");
-    table.real("harris.light_over_alfven", w.harris.light_over_alfven, "", above(1),
+    table.real("harris.mass_ratio", w.harris.mass_ratio, "", between(1, 1e6), "m_i/m_e");
+    table.real("harris.light_over_alfven", w.harris.light_over_alfven, "", between(1, 1e6),
                "c/v_A; B0 is its inverse");
-    table.real("harris.temperature_ratio", w.harris.temperature_ratio, "", above(0), "T_i/T_e");
+    table.real("harris.temperature_ratio", w.harris.temperature_ratio, "", between(1e-6, 1e6),
+               "T_i/T_e");
     table.real("harris.thickness", w.harris.thickness, "d_i", above(0),
                "lambda of B_x = B0 tanh(z/lambda)");
     table.real("harris.background", w.harris.background, "n0", at_least(0),

@@ -102,9 +102,11 @@ inline void refuse_impossible(Case& w) {
                    " c (drift or three thermal speeds), and the mover is not relativistic: raise "
                    "harris.light_over_alfven above " +
                    shown(h.light_over_alfven * fastest));
-        refuse(!w.uniform.species.empty(), "[species." + w.uniform.species.front().name +
-                                               "] belongs to plasma.setup = \"uniform\"; the "
-                                               "Harris sheet makes its own ions and electrons");
+        for (const SpeciesCase& s : w.uniform.species) {
+            refuse(true, "[species." + s.name +
+                             "] belongs to plasma.setup = \"uniform\"; the Harris sheet makes its "
+                             "own ions and electrons");
+        }
         refuse(w.wave != "none",
                "theory.wave = \"" + w.wave + "\" needs plasma.setup = \"uniform\"");
         // Pressure and current balance hold by construction; a wrong edit of harris_sheet ends
@@ -168,6 +170,9 @@ inline void refuse_impossible(Case& w) {
     refuse(w.wave != "light" && w.wave != "none" && u.species.empty(),
            "theory.wave = \"" + w.wave + "\" needs a [species.<name>]");
     if (w.wave == "langmuir") {
+        refuse(std::all_of(u.species.begin(), u.species.end(),
+                           [](const SpeciesCase& s) { return s.charge == 0; }),
+               "theory.wave = \"langmuir\" needs charges: give a species a charge");
         for (const SpeciesCase& s : u.species) {
             refuse(s.temperature_x > 0 || s.temperature_y > 0 || s.temperature_z > 0 ||
                        s.drift_x != 0 || s.drift_z != 0,

@@ -12,13 +12,24 @@
 //
 // so that, for particles in free flight, d rho/dt + div J = 0 and dJ/dt + div P = 0 hold exactly
 // at every instant.
+//
+// In a magnetic field what counts is the mean velocity of the coming step, which the mover will
+// find as vbar = R v with the rotation R of [IMM-12]. So for the field equations the particles
+// are turned one by one before they are counted: J and P are then sums of vbar and vbar vbar, and
+//
+//     J^{n+1/2} = J - dt/2 div P + (answer to E)
+//
+// is the flux through the midpoints that the particles will really have, to second order in their
+// displacement, for any Omega dt.
 #pragma once
 
 #include <array>
 
 #include "common/lanes.hpp"
 #include "common/splines.hpp"
+#include "implicit_moment/move_one.hpp"
 #include "implicit_moment/particles.hpp"
+#include "implicit_moment/vector_field.hpp"
 
 namespace implicit_moment {
 
@@ -52,11 +63,10 @@ struct NodeSums {
     Lanes P_xz[2][2]{};
     Lanes P_xx[3]{}, P_zz[3]{};
 
-    // Adds eight particles at distance (d_x, d_z) from the node, velocity v; present is 0 for
-    // lanes that hold none.
-    void add(const Lanes& d_x, const Lanes& d_z, const Lanes& v_x, const Lanes& v_y,
-             const Lanes& v_z, const Lanes& present) {
-        const common::QuadraticWeights<Lanes> S_x(d_x), S_z(d_z);
+    // Adds eight particles of velocity v with the splines S; present is 0 for lanes that hold none.
+    void add(const common::QuadraticWeights<Lanes>& S_x, const common::QuadraticWeights<Lanes>& S_z,
+             const Lanes& v_x, const Lanes& v_y, const Lanes& v_z, const Lanes& present) {
+        // [splines]
         for (int j = 0; j < 3; ++j) {
             const Lanes S = S_z.quadratic[j] * present;
             P_xx[j] += S * v_x * v_x;
@@ -82,22 +92,44 @@ struct NodeSums {
         }
         const Lanes zz = present * v_z * v_z;
         for (int i = 0; i < 3; ++i) P_zz[i] += S_x.quadratic[i] * zz;
+        // [/splines]
     }
 };
 
-}  // namespace detail
+// B as the deposit reads it: the three components at the stencil's corner, q dt / 2mc, and the
+// distance between rows.
+struct Turn {
+    const double *B_x, *B_y, *B_z;
+    double k;
+    long stride;
 
-/// Deposits the moments of one species.
-///     rho_g = sum_p q_p S(x_g - x_p) / (dx dz),  J_g = sum_p q_p v_p S' / (dx dz),  P_g = sum_p
-///     q_p v_p v_p S'' / (dx dz)
-/// in: particles sorted by nearest node. out: moments with ghosts filled.
-/// exact: total charge and current; the mesh continuity equations in continuous time.   source:
-///        [IMM-9]
-/// note: the slide weighs P with the mass; with the charge, J and P enter [IMM-12] alike. Walls
-///        mirror the plasma: a particle's image has the same charge and the opposite normal
-///        velocity, so J_n is odd and vanishes on the wall, and a node on the wall counts its
-///        half cell twice.
-inline void deposit_moments(const Particles& particles, const Grid& grid, Moments& moments) {
+    // vbar = [ v + v x O + (v . O) O ] / (1 + O^2),  O = k B, with B at eight particles.
+    void operator()(long corner, const common::QuadraticWeights<Lanes>& S_x,
+                    const common::QuadraticWeights<Lanes>& S_z, Velocity<Lanes>& v) const {
+        const auto& q_x = S_x.quadratic;
+        const auto& l_x = S_x.linear;
+        Lanes b_x{}, b_y{}, b_z{};
+        for (int j = 0; j < 3; ++j) {
+            const double* f = B_z + corner + j * stride;
+            b_z += S_z.quadratic[j] * (l_x[0] * f[0] + l_x[1] * f[1]);
+        }
+        for (int j = 0; j < 2; ++j) {
+            const double *f = B_x + corner + j * stride, *g = B_y + corner + j * stride;
+            b_x += S_z.linear[j] * (q_x[0] * f[0] + q_x[1] * f[1] + q_x[2] * f[2]);
+            b_y += S_z.linear[j] * (l_x[0] * g[0] + l_x[1] * g[1]);
+        }
+        v = mean_velocity<Lanes>(v, {Lanes{}, Lanes{}, Lanes{}, b_x, b_y, b_z}, k * c);
+    }
+};
+
+struct NoTurn {
+    void operator()(long, const common::QuadraticWeights<Lanes>&,
+                    const common::QuadraticWeights<Lanes>&, Velocity<Lanes>&) const {}
+};
+
+template <class TurnOrNot>
+inline void deposit(const Particles& particles, const Grid& grid, const TurnOrNot& turn,
+                    Moments& moments) {
     for (Field* f : moments.all()) f->setZero();
     const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing();
     const double q = particles.q_p / grid.cell_area();
@@ -114,25 +146,27 @@ inline void deposit_moments(const Particles& particles, const Grid& grid, Moment
                        end = particles.first_of_node[node + 1];
             if (begin == end) continue;
             const double x_node = grid.x.at(static_cast<double>(column));
+            const long corner = grid.index(column - 1, row - 1);  // the node down left of this one
 
-            detail::NodeSums sums;
+            NodeSums sums;
             for (long p = begin; p < end; p += common::lane_count) {
                 const long count = end - p;
                 const Lanes present = common::first_lanes(count);
-                const Lanes v_x = common::load_lanes(&particles.vx_p[p], count);
-                const Lanes v_y = common::load_lanes(&particles.vy_p[p], count);
-                const Lanes v_z = common::load_lanes(&particles.vz_p[p], count);
-                sums.add((common::load_lanes(&particles.x_p[p], count) - x_node) * per_dx,
-                         (common::load_lanes(&particles.z_p[p], count) - z_node) * per_dz, v_x, v_y,
-                         v_z, present);
-                total_x += present * v_x;
-                total_y += present * v_y;
-                total_z += present * v_z;
-                total_squared += present * (v_x * v_x + v_y * v_y + v_z * v_z);
+                const Lanes d_x = (common::load_lanes(&particles.x_p[p], count) - x_node) * per_dx;
+                const Lanes d_z = (common::load_lanes(&particles.z_p[p], count) - z_node) * per_dz;
+                const common::QuadraticWeights<Lanes> S_x(d_x), S_z(d_z);
+                Velocity<Lanes> v{common::load_lanes(&particles.vx_p[p], count),
+                                  common::load_lanes(&particles.vy_p[p], count),
+                                  common::load_lanes(&particles.vz_p[p], count)};
+                total_x += present * v.x;
+                total_y += present * v.y;
+                total_z += present * v.z;
+                total_squared += present * (v.x * v.x + v.y * v.y + v.z * v.z);
+                turn(corner, S_x, S_z, v);
+                sums.add(S_x, S_z, v.x, v.y, v.z, present);
             }
 
-            // Hand the sums to the mesh; the stencil's corner is the node down left of this one.
-            const long corner = grid.index(column - 1, row - 1);
+            // Hand the sums to the mesh.
             const auto give = [&](Field& f, long i, long j, const Lanes& sum) {
                 f[corner + j * stride + i] += q * common::sum_of_lanes(sum);
             };
@@ -182,10 +216,43 @@ inline void deposit_moments(const Particles& particles, const Grid& grid, Moment
     common::fold_ghosts(grid, on_z_edges, {+1, -1}, moments.P_yz.data());
 }
 
-/// The moments of all species.
+}  // namespace detail
+
+/// Deposits the moments of one species as the slide has them.
+///     rho_g = sum_p q_p S(x_g - x_p) / (dx dz),  J_g = sum_p q_p v_p S' / (dx dz),
+///     P_g = sum_p q_p v_p v_p S'' / (dx dz)
+/// in: particles sorted by nearest node. out: moments with ghosts filled.
+/// exact: total charge and current; the mesh continuity equations in continuous time.
+/// source: [IMM-9]
+/// note: the slide weighs P with the mass; with the charge, J and P enter [IMM-12] alike. Walls
+///        mirror the plasma: a particle's image has the same charge and the opposite normal
+///        velocity, so J_n is odd and vanishes on the wall, and a node on the wall counts its
+///        half cell twice.
+inline void deposit_moments(const Particles& particles, const Grid& grid, Moments& moments) {
+    detail::deposit(particles, grid, detail::NoTurn{}, moments);
+}
+
+/// Deposits the moments of one species with the mean velocities vbar = R v of the coming step in
+/// place of v; energy and momentum are those of v.
+/// in: B at t^n, ghosts filled; dt of the coming step.
+/// exact: without B the moments of the slide. In any B, rho^{n+1} - rho^n + dt div(J - dt/2 div P)
+///        vanishes for particles in no field E, but for terms of third order in vbar dt/dx and of
+///        the change of B along the way.   source: [IMM-9, IMM-12]
+/// note: the slide turns the sums instead, R [J - dt/2 div P]. For a pressure that is not
+///        isotropic the two differ as soon as Omega dt is not small, and the sum turned on the
+///        mesh feeds an instability (see the notes, "Turn the particles").
+inline void deposit_moments(const Particles& particles, const Grid& grid, const VectorField& B,
+                            double dt, Moments& moments) {
+    const double k = 0.5 * dt * particles.q_p / (particles.m_p * c);
+    detail::deposit(particles, grid, detail::Turn{B.x(), B.y(), B.z(), k, grid.stride()}, moments);
+}
+
+/// The moments of all species, turned.
 inline void deposit_moments(const std::vector<Particles>& species, const Grid& grid,
-                            std::vector<Moments>& moments) {
-    for (std::size_t k = 0; k < species.size(); ++k) deposit_moments(species[k], grid, moments[k]);
+                            const VectorField& B, double dt, std::vector<Moments>& moments) {
+    for (std::size_t k = 0; k < species.size(); ++k) {
+        deposit_moments(species[k], grid, B, dt, moments[k]);
+    }
 }
 
 }  // namespace implicit_moment

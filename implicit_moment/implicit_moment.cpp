@@ -39,6 +39,7 @@ int run(int argc, char** argv, std::optional<common::Session>& holder) {
         std::fprintf(stderr, "warning: %s\n", warning.c_str());
     if (!command.quiet) std::printf("%s", describe_scales(wanted, scales).c_str());
     if (command.dry_run) return 0;
+    common::refuse_before_start(command, scales.steps, scales.bytes);
 
     // 2. Particles and fields at t = 0.
     common::set_thread_count(command.threads);
@@ -56,25 +57,29 @@ int run(int argc, char** argv, std::optional<common::Session>& holder) {
     Recorder recorder(wanted, state, session.history);
 
     // 3. The loop of the slide.
+    const double dt = wanted.dt;
+    const long steps = scales.steps;
     long step = 0;
     if (session.restarting()) session.restore(state, step);
-    while (session.keep_going(step, scales.steps)) {
-        deposit_moments(particles, grid, moments);  // [IMM-9]
-        recorder.record(step, state, moments, session);
-        solve_field(solver, moments, charge_over_mass, wanted.dt, state.field);  // [IMM-10, 11, 12]
-        pack_push_field(solver, state.field, push);
-        move_particles(push, grid, wanted.dt, wanted.mover, particles);
-        advance_field(solver, wanted.dt, state.field);  // [IMM-10]
-        sort_particles(grid, scratch, particles);
+    // [loop]
+    while (session.keep_going(step, steps)) {
+        deposit_moments(particles, grid, state.field.B, dt, moments);     // [IMM-9]
+        recorder.record(step, state, moments, session);                   // the row of t^n
+        solve_field(solver, moments, charge_over_mass, dt, state.field);  // [IMM-10, 11, 12]
+        pack_push_field(solver, state.field, push);                       // grid -> particles
+        move_particles(push, grid, dt, wanted.mover, particles);          // particles move
+        advance_field(solver, dt, state.field);                           // [IMM-10]
+        sort_particles(grid, scratch, particles);                         // for the next step
         ++step;
-        session.end_of_step(step, scales.steps, static_cast<double>(step) * wanted.dt, state);
+        session.end_of_step(step, steps, static_cast<double>(step) * dt, state);
     }
+    // [/loop]
 
     // 4. The last row, the results against theory, summary.json.
-    if (step == scales.steps) {
-        deposit_moments(particles, grid, moments);
+    if (step == steps) {
+        deposit_moments(particles, grid, state.field.B, dt, moments);
         recorder.record(step, state, moments, session);
-        recorder.finish(state, moments, session);
+        recorder.finish(state, session);
     }
     return session.finish(step, static_cast<double>(state.plasma.count()));
 }

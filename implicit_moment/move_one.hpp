@@ -25,6 +25,7 @@ struct Velocity {
 ///     (2 m c)
 /// in: v^n; local fields; half_kick = q dt / 2m.   exact: vbar - vbar x O = v_t.   source:
 ///        [IMM-12] for one particle.
+// [midpoint]
 template <class Real>
 inline Velocity<Real> mean_velocity(const Velocity<Real>& v, const LocalField<Real>& at,
                                     double half_kick) {
@@ -38,6 +39,7 @@ inline Velocity<Real> mean_velocity(const Velocity<Real>& v, const LocalField<Re
             scale * (t_y + t_z * O_x - t_x * O_z + dot * O_y),
             scale * (t_z + t_x * O_y - t_y * O_x + dot * O_z)};
 }
+// [/midpoint]
 
 namespace detail {
 

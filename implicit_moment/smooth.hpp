@@ -13,7 +13,7 @@
 namespace implicit_moment {
 
 struct SmoothingSettings {
-    long passes = 2;
+    long passes = 4;
     bool compensate = true;
 };
 

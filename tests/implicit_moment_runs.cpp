@@ -33,7 +33,8 @@ void check_results(const Json& summary, int at_least) {
     int compared = 0;
     for (const auto& [name, result] : summary["results"].items()) {
         if (!result.contains("pass")) continue;
-        INFO(name << " = " << result.dump());
+        const std::string shown = name + " = " + result.dump();
+        INFO(shown);
         CHECK(result["pass"].get<bool>());
         ++compared;
     }
