@@ -60,7 +60,9 @@ inline double magnitude(double a) { return std::fabs(a); }
 /// Largest of the eight lanes; NaN in any lane gives NaN.
 inline double largest_lane(const Lanes& lanes) {
     double largest = lanes[0];
-    for (int l = 1; l < lane_count; ++l) largest = lanes[l] <= largest ? largest : lanes[l];
+    for (int l = 1; l < lane_count; ++l) {
+        largest = lanes[l] > largest || lanes[l] != lanes[l] ? lanes[l] : largest;
+    }
     return largest;
 }
 inline double largest_lane(double a) { return a; }

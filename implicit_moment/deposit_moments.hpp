@@ -39,6 +39,7 @@ using common::Lanes;
 /// v v S (divide by q/m for a pressure).
 struct Moments {
     Field rho, J_x, J_y, J_z, P_xx, P_zz, P_xz, P_xy, P_yz;
+    Field density;                     // charge density of the plasma itself, up to the walls
     double kinetic_energy = 0;         // sum of m v^2 / 2 over the particles
     std::array<double, 3> momentum{};  // sum of m v
 
@@ -96,6 +97,9 @@ struct NodeSums {
     }
 };
 
+// What stands behind a wall: the plasma's own mirror image, or the image charges of a conductor.
+enum class Images { plasma, conductor };
+
 // B as the deposit reads it: the three components at the stencil's corner, q dt / 2mc, and the
 // distance between rows.
 struct Turn {
@@ -129,7 +133,7 @@ struct NoTurn {
 
 template <class TurnOrNot>
 inline void deposit(const Particles& particles, const Grid& grid, const TurnOrNot& turn,
-                    Moments& moments) {
+                    Images images, Moments& moments) {
     for (Field* f : moments.all()) f->setZero();
     const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing();
     const double q = particles.q_p / grid.cell_area();
@@ -204,16 +208,20 @@ inline void deposit(const Particles& particles, const Grid& grid, const TurnOrNo
         moments.kinetic_energy += 0.5 * particles.m_p * sums[3];
     }
 
-    // A component is odd behind a wall once for every index normal to the wall.
-    common::fold_ghosts(grid, on_nodes, {+1, +1}, moments.rho.data());
-    common::fold_ghosts(grid, on_x_edges, {-1, +1}, moments.J_x.data());
-    common::fold_ghosts(grid, on_nodes, {+1, +1}, moments.J_y.data());
-    common::fold_ghosts(grid, on_z_edges, {+1, -1}, moments.J_z.data());
-    common::fold_ghosts(grid, on_nodes, {+1, +1}, moments.P_xx.data());
-    common::fold_ghosts(grid, on_nodes, {+1, +1}, moments.P_zz.data());
-    common::fold_ghosts(grid, on_faces, {-1, -1}, moments.P_xz.data());
-    common::fold_ghosts(grid, on_x_edges, {-1, +1}, moments.P_xy.data());
-    common::fold_ghosts(grid, on_z_edges, {+1, -1}, moments.P_yz.data());
+    // The density that answers to a field is that of the plasma and its mirror image.
+    moments.density = moments.rho;
+    common::fold_ghosts(grid, on_nodes, {+1, +1}, moments.density.data());
+    const int w = images == Images::plasma ? +1 : -1;
+    common::fold_ghosts(grid, on_nodes, {w, w}, moments.rho.data());
+    common::fold_ghosts(grid, on_x_edges, {-w, w}, moments.J_x.data());
+    common::fold_ghosts(grid, on_nodes, {w, w}, moments.J_y.data());
+    common::fold_ghosts(grid, on_z_edges, {w, -w}, moments.J_z.data());
+    // P_nn on the wall is the push of the wall on the particles that it reflects.
+    common::fold_ghosts(grid, on_nodes, {+1, w}, moments.P_xx.data());
+    common::fold_ghosts(grid, on_nodes, {w, +1}, moments.P_zz.data());
+    common::fold_ghosts(grid, on_faces, {-w, -w}, moments.P_xz.data());
+    common::fold_ghosts(grid, on_x_edges, {-w, w}, moments.P_xy.data());
+    common::fold_ghosts(grid, on_z_edges, {w, -w}, moments.P_yz.data());
 }
 
 }  // namespace detail
@@ -229,7 +237,7 @@ inline void deposit(const Particles& particles, const Grid& grid, const TurnOrNo
 ///        velocity, so J_n is odd and vanishes on the wall, and a node on the wall counts its
 ///        half cell twice.
 inline void deposit_moments(const Particles& particles, const Grid& grid, Moments& moments) {
-    detail::deposit(particles, grid, detail::NoTurn{}, moments);
+    detail::deposit(particles, grid, detail::NoTurn{}, detail::Images::plasma, moments);
 }
 
 /// Deposits the moments of one species with the mean velocities vbar = R v of the coming step in
@@ -238,13 +246,17 @@ inline void deposit_moments(const Particles& particles, const Grid& grid, Moment
 /// exact: without B the moments of the slide. In any B, rho^{n+1} - rho^n + dt div(J - dt/2 div P)
 ///        vanishes for particles in no field E, but for terms of third order in vbar dt/dx and of
 ///        the change of B along the way.   source: [IMM-9, IMM-12]
+/// note: behind a wall stand the image charges of the conductor: opposite charge, opposite normal
+///        velocity. rho and J then have the parities of E, the gather is the transpose of the
+///        deposit, and a charge that touches the wall makes no field.
 /// note: the slide turns the sums instead, R [J - dt/2 div P]. For a pressure that is not
 ///        isotropic the two differ as soon as Omega dt is not small, and the sum turned on the
 ///        mesh feeds an instability (see the notes, "Turn the particles").
 inline void deposit_moments(const Particles& particles, const Grid& grid, const VectorField& B,
                             double dt, Moments& moments) {
     const double k = 0.5 * dt * particles.q_p / (particles.m_p * c);
-    detail::deposit(particles, grid, detail::Turn{B.x(), B.y(), B.z(), k, grid.stride()}, moments);
+    detail::deposit(particles, grid, detail::Turn{B.x(), B.y(), B.z(), k, grid.stride()},
+                    detail::Images::conductor, moments);
 }
 
 /// The moments of all species, turned.

@@ -298,10 +298,10 @@ inline State initial_state(const Case& wanted) {
     Field rho = Field::Zero(grid.size());
     Moments moments(grid);
     for (const Particles& species : state.plasma.species) {
-        deposit_moments(species, grid, moments);
+        deposit_moments(species, grid, state.field.B, 0, moments);
         rho += moments.rho;
     }
-    smooth(grid, on_nodes, {+1, +1}, wanted.field.smoothing, rho.data(), moments.rho);
+    smooth(grid, on_nodes, {-1, -1}, wanted.field.smoothing, rho.data(), moments.rho);
     add_electrostatic_field(grid, MeshModes(grid), rho, state.field);
     state.field.E_theta = state.field.E;
     return state;

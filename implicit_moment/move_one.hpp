@@ -15,6 +15,8 @@ struct MoverSettings {
     long max_iterations = 20;  // before the step is halved
 };
 
+inline constexpr int most_bounces = 50;  // of one particle in one sub-step
+
 template <class Real>
 struct Velocity {
     Real x, y, z;
@@ -57,6 +59,8 @@ inline bool find_mean_velocity(const Grid& grid, const PushField& field,
     const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing();
     u = v;
     for (long iteration = 0; iteration < settings.max_iterations; ++iteration) {
+        // Too far for this step, or not a number: the caller halves it.
+        if (!(h * std::fabs(u.x) * per_dx <= 1 && h * std::fabs(u.z) * per_dz <= 1)) return false;
         const double s = (seen_at(grid.x, x + h * u.x) - grid.x.low) * per_dx;
         const double t = (seen_at(grid.z, z + h * u.z) - grid.z.low) * per_dz;
         const long i = static_cast<long>(s + 0.5), j = static_cast<long>(t + 0.5);
@@ -116,10 +120,12 @@ inline bool move_one(const Grid& grid, const PushField& field, const MoverSettin
                                                   0.5 * time, x, z, v, u) &&
                        time * std::fabs(u.x) * per_dx <= 1 && time * std::fabs(u.z) * per_dz <= 1;
             };
-            if (!step(left) || bounce == 100) return false;
+            if (!step(left)) return false;
             const double to_x = detail::part_to_wall(grid.x, x, left * u.x);
             const double to_z = detail::part_to_wall(grid.z, z, left * u.z);
-            const double time = left * std::min(to_x, to_z);
+            // A particle that is pressed against the wall bounces ever lower: let it slide.
+            const bool slides = bounce == most_bounces;
+            const double time = slides ? left : left * std::min(to_x, to_z);
             if (time < left && !step(time)) return false;
             x += time * u.x;
             z += time * u.z;

@@ -63,7 +63,7 @@ class Recorder {
 
         rho_.setZero(grid.size());
         for (const Moments& m : moments) rho_ += m.rho;
-        smooth(grid, on_nodes, {+1, +1}, wanted_.field.smoothing, rho_.data(), scratch_);
+        smooth(grid, on_nodes, {-1, -1}, wanted_.field.smoothing, rho_.data(), scratch_);
         gauss_.resize(grid.size());
         gauss_residual(grid, field.E, rho_, gauss_);
 

@@ -19,13 +19,13 @@ struct SmoothingSettings {
 
 namespace detail {
 
-// One pass of (side, middle, side) in both directions over rows [begin, end), out of place: across
-// the rows into `across`, then along them.
-inline void stencil_rows(const Grid& grid, double side, double middle, const double* f, double* out,
-                         long begin, long end) {
+// One pass of (side, middle, side) in both directions, out of place: across the rows into
+// `across`, then along them.
+inline void stencil_rows(const Grid& grid, double side, double middle, const double* f,
+                         double* out) {
     const long s = grid.stride(), points = grid.x.cells + 1;
     std::array<double, 4099> across;
-    for (long j = begin; j < end; ++j) {
+    for (long j = 0; j <= grid.z.cells; ++j) {
         const double* row = f + grid.index(-1, j);
         double* target = out + grid.index(0, j);
         for (long i = 0; i < points + 2; ++i) {
@@ -37,29 +37,25 @@ inline void stencil_rows(const Grid& grid, double side, double middle, const dou
     }
 }
 
-// All passes over several quantities that are stored one behind the other.
+// All passes over several quantities that are stored one behind the other, each on one thread: a
+// quantity stays in its cache, and nobody waits between passes.
 inline void smooth_all(const Grid& grid, long count, const Place* place, const Parity* parity,
                        const SmoothingSettings& settings, double* f, Field& scratch) {
     if (settings.passes == 0) return;
-    constexpr long pieces = 4;
-    const long rows = grid.z.cells + 1, size = grid.size();
+    const long size = grid.size();
     if (scratch.size() < count * size) scratch.setZero(count * size);
-    double *from = f, *to = scratch.data();
-    const auto pass = [&](double side, double middle) {
-        common::for_each_row(count * pieces, [&](long task) {
-            const long offset = task / pieces * size, piece = task % pieces;
-            stencil_rows(grid, side, middle, from + offset, to + offset, rows * piece / pieces,
-                         rows * (piece + 1) / pieces);
-        });
-        for (long k = 0; k < count; ++k) {
-            common::fill_ghosts(grid, place[k], parity[k], to + k * size);
-        }
-        std::swap(from, to);
-    };
-    for (long k = 0; k < settings.passes; ++k) pass(0.25, 0.5);
-    const double a = 0.25 * static_cast<double>(settings.passes);
-    if (settings.compensate) pass(-a, 1 + 2 * a);
-    if (from != f) std::copy_n(from, count * size, f);
+    common::for_each_row(count, [&](long k) {
+        double *from = f + k * size, *to = scratch.data() + k * size;
+        const auto pass = [&](double side, double middle) {
+            stencil_rows(grid, side, middle, from, to);
+            common::fill_ghosts(grid, place[k], parity[k], to);
+            std::swap(from, to);
+        };
+        for (long n = 0; n < settings.passes; ++n) pass(0.25, 0.5);
+        const double a = 0.25 * static_cast<double>(settings.passes);
+        if (settings.compensate) pass(-a, 1 + 2 * a);
+        if (from != f + k * size) std::copy_n(from, size, f + k * size);
+    });
 }
 
 }  // namespace detail

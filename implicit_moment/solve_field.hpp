@@ -109,12 +109,11 @@ inline void apply_field_operator(FieldSolver& solver, double a, const Eigen::Vec
     curl_of_electric(grid, ghosted.all.data(), turned.all.data());
     fill_ghosts(grid, magnetic, turned);
     curl_of_magnetic(grid, turned.all.data(), out.data());
-    fill_ghosts(grid, current, ghosted);
-    smooth(grid, current, smoothing, ghosted.all.data(), solver.scratch);
+    smooth(grid, electric, smoothing, ghosted.all.data(), solver.scratch);
     apply_tensor(grid, solver.response.chi, ghosted.all.data(), false, solver.response.scratch,
                  turned.all.data());
-    fill_ghosts(grid, current, turned);
-    smooth(grid, current, smoothing, turned.all.data(), solver.scratch);
+    fill_ghosts(grid, electric, turned);
+    smooth(grid, electric, smoothing, turned.all.data(), solver.scratch);
     out = E + turned.all + a * a * out;
     keep_unknowns(grid, out.data());
 }
@@ -249,8 +248,8 @@ inline FieldReport solve_field(FieldSolver& solver, const std::vector<Moments>& 
 
     predict_current(grid, moments, charge_over_mass, field.B.all.data(), field.B.all.data(), dt,
                     settings.theta, response);
-    smooth(grid, current, settings.smoothing, response.J_hat.all.data(), solver.scratch);
-    smooth(grid, common::on_nodes, {+1, +1}, settings.smoothing, response.rho.data(),
+    smooth(grid, electric, settings.smoothing, response.J_hat.all.data(), solver.scratch);
+    smooth(grid, common::on_nodes, {-1, -1}, settings.smoothing, response.rho.data(),
            solver.scratch);
     prepare_preconditioner(solver, a);
     maxwell_source(solver, field, a);
@@ -288,13 +287,16 @@ inline FieldReport solve_field(FieldSolver& solver, const std::vector<Moments>& 
             fill_ghosts(grid, magnetic, solver.B_theta);
             predict_current(grid, moments, charge_over_mass, field.B.all.data(),
                             solver.B_theta.all.data(), dt, settings.theta, response);
-            smooth(grid, current, settings.smoothing, response.J_hat.all.data(), solver.scratch);
+            smooth(grid, electric, settings.smoothing, response.J_hat.all.data(), solver.scratch);
             apply_field_operator(solver, a, v, F);
             F += by_J * response.J_hat.all - solver.source.all;
             keep_unknowns(grid, F.data());
         };
         const double scale = std::max(common::safe_norm(solver.source.all),
                                       by_J * common::safe_norm(response.J_hat.all));
+        if (!std::isfinite(scale)) {
+            throw common::NumericalError("the source of the field equations is not finite");
+        }
         if (scale > 0) {
             const auto result =
                 common::newton_krylov(residual, precondition, E, scale, settings.tolerance, 30,
@@ -332,8 +334,7 @@ inline void pack_push_field(FieldSolver& solver, const FieldState& field, PushFi
     const Grid& grid = solver.grid;
     const VectorField& B = solver.settings.solver == "gmres" ? field.B : solver.B_theta;
     solver.ghosted.all = field.E_theta.all;
-    fill_ghosts(grid, current, solver.ghosted);
-    smooth(grid, current, solver.settings.smoothing, solver.ghosted.all.data(), solver.scratch);
+    smooth(grid, electric, solver.settings.smoothing, solver.ghosted.all.data(), solver.scratch);
     const VectorField& E = solver.ghosted;
     push.resize(static_cast<std::size_t>(grid.size()));
     for (long n = 0; n < grid.size(); ++n) {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
+#include <initializer_list>
 #include <limits>
 #include <numeric>
 #include <random>
@@ -28,6 +28,13 @@ constexpr double eps = std::numeric_limits<double>::epsilon();
 constexpr Parity even{+1, +1}, odd{-1, -1};
 
 double real(long n) { return static_cast<double>(n); }
+
+// The largest of numbers that are not negative; not a number where one of them is not.
+double worst(std::initializer_list<double> values) {
+    double largest = 0;
+    for (const double v : values) largest = largest >= v || std::isnan(largest) ? largest : v;
+    return largest;
+}
 
 // Numbers between -1 and 1, and fields of them with ghosts filled.
 struct Random {
@@ -95,8 +102,7 @@ double dot(const Grid& grid, Place place, const double* a, const double* b) {
 double difference(const Grid& grid, Place place, const double* a, const double* b) {
     double largest = 0;
     for_each_distinct(grid, place, [&](long, long, long n) {
-        const double here = std::fabs(a[n] - b[n]);
-        largest = here <= largest ? largest : here;
+        largest = worst({largest, std::fabs(a[n] - b[n])});
     });
     return largest;
 }
@@ -106,9 +112,9 @@ double dot(const Grid& grid, const VectorKind& kind, const VectorField& a, const
 }
 double difference(const Grid& grid, const VectorKind& kind, const VectorField& a,
                   const VectorField& b) {
-    const double x = difference(grid, kind.place[0], a.x(), b.x());
-    return std::max({x, difference(grid, kind.place[1], a.y(), b.y()),
-                     difference(grid, kind.place[2], a.z(), b.z())});
+    return worst({difference(grid, kind.place[0], a.x(), b.x()),
+                  difference(grid, kind.place[1], a.y(), b.y()),
+                  difference(grid, kind.place[2], a.z(), b.z())});
 }
 double difference(const Grid& grid, Place place, const Field& a, const Field& b) {
     return difference(grid, place, a.data(), b.data());
@@ -117,13 +123,10 @@ double size_of(const Grid& grid, Place place, const Field& f) {
     return difference(grid, place, f, Field::Zero(f.size()));
 }
 
-bool same_bytes(const double* a, const double* b, long count) {
-    return std::memcmp(a, b, static_cast<std::size_t>(count) * sizeof *a) == 0;
-}
 bool filled(const Grid& grid, Place place, Parity parity, const Field& f) {
     Field again = f;
     common::fill_ghosts(grid, place, parity, again.data());
-    return same_bytes(again.data(), f.data(), f.size());
+    return again == f;
 }
 
 // A wall is a mirror: the periodic mesh that holds a walled one and its image side by side, and
@@ -262,11 +265,11 @@ TEST_CASE("a spline is the next lower one averaged over a cell and changes by it
 TEST_CASE("the spline average keeps straight lines and multiplies waves with a cubed sinc") {
     const double dx = 0.3, x = 1.7;
     const double line = common::spline_average([](double s) { return 2 - 7 * s; }, x, dx);
-    CHECK(std::fabs(line - (2 - 7 * x)) <= 5e-14);
+    CHECK(std::fabs(line - (2 - 7 * x)) <= 1e-14);
     for (const double angle : {0.1, 0.5, 1.0, 2.0, 3.0}) {
         const double factor = std::pow(2 / angle * std::sin(0.5 * angle), 3);
         const auto wave = [&](double s) { return std::cos(angle / dx * (s - x)); };
-        CHECK(std::fabs(common::spline_average(wave, x, dx) - factor) <= 2.2e-4 * (1 - factor));
+        CHECK(std::fabs(common::spline_average(wave, x, dx) - factor) <= 1e-6 * (1 - factor));
     }
 }
 
@@ -297,6 +300,7 @@ TEST_CASE("a few lanes are loaded and added and stored without their neighbors")
         for (double& value : from) value = random();
         const long few = static_cast<long>(count);
         const Lanes lanes = common::load_lanes(from.data(), few);
+        for (std::size_t l = 0; l < lane_count; ++l) CHECK(lanes[l] == from[l < count ? l : 0]);
         const double sum = common::sum_of_lanes(common::first_lanes(few) * lanes);
         CHECK(std::fabs(sum - std::accumulate(from.begin(), from.end(), 0.0)) <= 4 * eps);
         CHECK(common::largest_lane(lanes) == *std::max_element(from.begin(), from.end()));
@@ -305,13 +309,9 @@ TEST_CASE("a few lanes are loaded and added and stored without their neighbors")
     }
 }
 
-TEST_CASE("the largest of eight lanes is found in every lane and is NaN where one lane is") {
+TEST_CASE("the largest of eight lanes is NaN where one lane is") {
     for (int l = 0; l < lane_count; ++l) {
-        Lanes lanes = -common::first_lanes(lane_count);
-        lanes[l] = 3;
-        CHECK(common::largest_lane(lanes) == 3);
-        CHECK(common::largest_lane(common::magnitude(-lanes)) == 3);
-        CHECK(common::larger(lanes, Lanes{})[l] == 3);
+        Lanes lanes = common::first_lanes(lane_count);
         lanes[l] = std::numeric_limits<double>::quiet_NaN();
         CHECK(std::isnan(common::largest_lane(lanes)));
     }
@@ -443,15 +443,20 @@ TEST_CASE("the modes of both ends are orthonormal and the forward difference map
             const AxisModes modes = axis_modes(axis);
             const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(n, n),
                                   sigma = modes.sigma.asDiagonal();
-            CHECK((modes.V.transpose() * modes.V - one).cwiseAbs().maxCoeff() <= eps * real(n));
-            CHECK((modes.U.transpose() * modes.U - one).cwiseAbs().maxCoeff() <= eps * real(n));
+            CHECK(
+                (modes.V.transpose() * modes.V - one).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <=
+                eps * real(n));
+            CHECK(
+                (modes.U.transpose() * modes.U - one).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <=
+                eps * real(n));
 
             // Column 0 at walls is the node on the wall, where nothing is unknown.
             Eigen::MatrixXd D = -one;
             D.diagonal(1).setOnes();
             if (periodic) D(n - 1, 0) += 1;
             const Eigen::MatrixXd wrong = D * modes.V - axis.spacing() * modes.U * sigma;
-            CHECK(wrong.rightCols(n - !periodic).cwiseAbs().maxCoeff() <= eps * real(n));
+            CHECK(wrong.rightCols(n - !periodic).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <=
+                  eps * real(n));
 
             // No mode but the constant has a vanishing difference.
             CHECK(modes.sigma[0] == 0);
@@ -484,7 +489,7 @@ TEST_CASE("the Helmholtz and Poisson solutions satisfy the five-point equations 
             const Field one = Field::Ones(grid.size());
             const double cells = dot(grid, on_nodes, one.data(), one.data());
             f.array() -= dot(grid, on_nodes, one.data(), f.data()) / cells;
-            CHECK(std::fabs(dot(grid, on_nodes, one.data(), g.data())) <= 4 * eps * cells);
+            CHECK(std::fabs(dot(grid, on_nodes, one.data(), g.data())) <= eps * cells);
         }
         const double tolerance = 4 * eps * (1 + k2 * size_of(grid, on_nodes, g));
         CHECK(difference(grid, on_nodes, -laplacian(g), f) <= tolerance);
@@ -513,8 +518,7 @@ TEST_CASE("smoothing keeps constants and is its own transpose and sees walls as 
                   8 * eps);
             CHECK(size_of(grid, on_nodes, a - S_a) > 0.01);
         }
-        const Field still = smoothed(grid, place, parity, {0, true}, a);
-        CHECK(same_bytes(still.data(), a.data(), a.size()));
+        CHECK(smoothed(grid, place, parity, {0, true}, a) == a);
     });
 }
 
@@ -585,7 +589,7 @@ TEST_CASE("loops over blocks and rows cover everything once whatever the number 
         std::vector<double> values(static_cast<std::size_t>(count)), sums;
         for (double& value : values) value = random();
         std::vector<std::vector<double>> rows;
-        for (const int threads : {1, 2, 3}) {
+        for (const int threads : {0, 1, 2, 3}) {  // 0: row after row as it is meant
             common::set_thread_count(threads);
             sums.push_back(common::sum_over_blocks(count, [&](long begin, long end) {
                 return std::accumulate(values.begin() + begin, values.begin() + end, 0.0);
@@ -598,15 +602,22 @@ TEST_CASE("loops over blocks and rows cover everything once whatever the number 
             CHECK(std::count(seen.begin(), seen.end(), 2) == count);
 
             // A sum that depends on the order in which a row meets its neighbors.
-            rows.emplace_back(values.size() + 2, 1.0);
-            common::for_each_row_three_apart(count, [&](long row) {
-                for (long n = row; n < row + 3; ++n) {
+            rows.emplace_back(values.size() + 2, 1);
+            const auto give = [&](long row) {
+                for (const long n : {row, row + 1, row + 2}) {
                     double& value = rows.back()[static_cast<std::size_t>(n)];
                     value = 0.7 * value + real(row);
                 }
-            });
-            CHECK(same_bytes(&sums[0], &sums.back(), 1));
-            CHECK(same_bytes(rows[0].data(), rows.back().data(), count + 2));
+            };
+            if (threads == 0) {
+                for (long row = 0; row < 3 * count; ++row) {
+                    if (row % count * 3 + row / count < count) give(row % count * 3 + row / count);
+                }
+            } else {
+                common::for_each_row_three_apart(count, give);
+            }
+            CHECK(sums.back() == sums[0]);
+            CHECK(rows.back() == rows[0]);
         }
         const double total = std::accumulate(values.begin(), values.end(), 0.0);
         CHECK(std::fabs(sums[0] - total) <= eps * real(count));
@@ -617,9 +628,8 @@ TEST_CASE("the sort is stable and puts every particle at its nearest node for an
     const Grid grid{{7, -1.5, 3.5, true}, {5, 0.5, 1.5, false}};
     Random random;
     const auto place = [&](const common::Axis& axis, int kind) {  // some on the ends of the mesh
-        return kind == 0   ? axis.low
-               : kind == 1 ? axis.high()
-                           : axis.low + axis.length * (0.5 + 0.4999 * random());
+        if (kind < 2) return kind == 0 ? axis.low : axis.high();
+        return axis.low + axis.length * (0.5 + 0.4999 * random());
     };
     Particles start;
     for (int p = 0; p < 5000; ++p) {
