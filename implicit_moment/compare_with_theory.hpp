@@ -133,9 +133,9 @@ inline void compare_equilibrium(const Case& w, const Plasma& plasma,
         current_y += std::pow((row(moments[0].J_y) + row(moments[1].J_y) - J) / J_noise, 2);
     }
     const double rows = static_cast<double>(grid.z.cells - 1);
-    summary.result_within("density_over_noise", std::sqrt(density / (2 * rows)), "", 0, 2,
+    summary.result_within("density_over_noise", std::sqrt(density / (2 * rows)), "", 0, 1.2,
                           "n0 sech^2(z/lambda) + n_inf");
-    summary.result_within("current_over_noise", std::sqrt(current_y / rows), "", 0, 2,
+    summary.result_within("current_over_noise", std::sqrt(current_y / rows), "", 0, 1.2,
                           "Harris 1962");
     summary.result("energy_drift", history.column("energy_drift").back(), "", 0, 0.005,
                    "equilibrium");

@@ -85,6 +85,31 @@ inline double part_to_wall(const common::Axis& axis, double x, double displaceme
     return 1;
 }
 
+// The time after which a path stands on the wall that it is behind after `late`. The mean velocity
+// u_n depends on the time, so that a time in proportion would miss the wall, and putting the
+// particle there would change its canonical momentum: false position between a path that ends
+// inside and one that ends behind.
+// in: step(time) finds u_n anew. out: NaN when a step fails.
+template <class Step>
+inline double time_to_wall(const common::Axis& axis, double from, const double& u_n, double late,
+                           const Step& step) {
+    const double outward = u_n < 0 ? -1 : 1, wall = u_n < 0 ? axis.low : axis.high();
+    double early = 0, inside = outward * (wall - from);
+    double behind = outward * (from + late * u_n - wall), time = late;
+    for (int k = 0; k < 50; ++k) {
+        time = early + (late - early) * inside / (inside + behind);
+        if (!step(time)) return std::nan("");
+        const double gap = outward * (wall - from - time * u_n);
+        if (std::fabs(gap) <= 1e-13 * axis.spacing()) break;
+        if (gap > 0) {
+            early = time, inside = gap, behind *= 0.5;
+        } else {
+            late = time, behind = -gap, inside *= 0.5;
+        }
+    }
+    return time;
+}
+
 // After a displacement: the periodic image, or a reflection where the wall has been reached.
 inline void arrive(const common::Axis& axis, bool at_wall, double& x, double& v) {
     if (axis.periodic) {
@@ -125,8 +150,13 @@ inline bool move_one(const Grid& grid, const PushField& field, const MoverSettin
             const double to_z = detail::part_to_wall(grid.z, z, left * u.z);
             // A particle that is pressed against the wall bounces ever lower: let it slide.
             const bool slides = bounce == most_bounces;
-            const double time = slides ? left : left * std::min(to_x, to_z);
-            if (time < left && !step(time)) return false;
+            double time = slides ? left : left * std::min(to_x, to_z);
+            if (time < left) {
+                const bool along_x = to_x <= to_z;
+                time = along_x ? detail::time_to_wall(grid.x, x, u.x, left, step)
+                               : detail::time_to_wall(grid.z, z, u.z, left, step);
+                if (std::isnan(time)) return false;
+            }
             x += time * u.x;
             z += time * u.z;
             v = {2 * u.x - v.x, 2 * u.y - v.y, 2 * u.z - v.z};

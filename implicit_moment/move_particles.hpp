@@ -61,9 +61,9 @@ inline void wrap(const common::Axis& axis, Lanes& x) {
 ///        sorted by nearest node before, not after.
 /// exact: no work by B; the midpoint rule to settings.tolerance.   source: slide "Implicit Moment
 ///        Method", particle equations.
-/// note: a particle that would cross more than a cell in a step is moved in as many sub-steps as
-///        keep it within one, each with the field of the cell it is in; with the field of one
-///        point it would run away.
+/// note: a particle whose midpoint leaves the node's cell and that would cross more than a cell is
+///        moved in as many sub-steps as keep it within one, each with the field of the cell it is
+///        in; with the field of one point it would run away.
 inline MoverReport move_particles(const PushField& field, const Grid& grid, double dt,
                                   const MoverSettings& settings, Particles& particles) {
     const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing(), h = 0.5 * dt;

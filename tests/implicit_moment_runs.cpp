@@ -187,3 +187,29 @@ TEST_CASE("Newton and GMRES agree on the reconnected flux" * doctest::descriptio
     CHECK(std::fabs(value(newton, "flux_initial") - linear) <= 1e-12);
     CHECK(newton["conservation"]["largest_energy_drift"]["value"].get<double>() <= 0.01);
 }
+
+TEST_CASE("a warm magnetized plasma keeps its energy however fast it turns" *
+          doctest::description("physics")) {
+    // Electrons of the true mass at a Debye length of 0.03 and 0.06 cells. With the current turned
+    // on the mesh instead of particle by particle the second has three times its energy at the end.
+    const std::string warm =
+        "implicit_moment/cases/gem.toml plasma.setup=uniform grid.cells_x=32 grid.cells_z=32 "
+        "grid.length_x=12.8 grid.length_z=6.4 uniform.particles_per_cell=16 time.end=40 "
+        "output.fields_interval=0 field.smoothing_passes=1 species.ions.density=0.2 "
+        "species.ions.temperature_x=1.67e-4 "
+        "species.ions.temperature_y=1.67e-4 species.ions.temperature_z=1.67e-4 "
+        "species.electrons.density=0.2 species.electrons.charge=-1 "
+        "species.electrons.mass=5.446623e-4 species.electrons.temperature_x=3.33e-5 "
+        "species.electrons.temperature_y=3.33e-5 species.electrons.temperature_z=3.33e-5 ";
+    for (const char* boundary : {"periodic", "wall"}) {
+        for (const char* rest : {"time.dt=0.1 uniform.B_x=0.005", "time.dt=0.1 uniform.B_x=0.01",
+                                 "time.dt=0.1 uniform.B_x=0.02", "time.dt=0.4 uniform.B_x=0.02"}) {
+            const Json summary = run("magnetized", warm + rest + " grid.boundary_z=" + boundary);
+            const double drift =
+                summary["conservation"]["largest_energy_drift"]["value"].get<double>();
+            CAPTURE(boundary);
+            CAPTURE(rest);
+            CHECK(drift <= 0.06);
+        }
+    }
+}
