@@ -59,8 +59,8 @@ inline void wrap(const common::Axis& axis, Lanes& x) {
 /// Moves every particle of one species from t^n to t^{n+1}.
 /// in: field, the smoothed E^{n+theta} and B, ghosts filled; dt [1/omega_pi]. in/out: particles,
 ///        sorted by nearest node before, not after.
-/// exact: no work by B; the midpoint rule to settings.tolerance.   source: slide "Implicit Moment
-///        Method", particle equations.
+/// exact: no work by B; the midpoint rule to settings.tolerance.
+/// source: slide "Implicit Moment Method", particle equations; the rotation of [IMM-12].
 /// note: a particle whose midpoint leaves the node's cell and that would cross more than a cell is
 ///        moved in as many sub-steps as keep it within one, each with the field of the cell it is
 ///        in; with the field of one point it would run away.
