@@ -1,6 +1,5 @@
 #include "common/session.hpp"
 
-#include <omp.h>
 #include <sys/ioctl.h>
 #include <sys/resource.h>
 
@@ -10,7 +9,8 @@
 #include <filesystem>
 #include <new>
 
-#include "common/writers.hpp"
+#include "common/output_file.hpp"
+#include "common/parallel.hpp"
 
 namespace common {
 
@@ -206,7 +206,7 @@ int Session::finish(long step, double count) {
     summary.performance("steps", steps);
     summary.performance("particle_steps", steps * count);
     summary.performance("particle_steps_per_s", wall > 0 ? steps * count / wall : 0);
-    summary.performance("threads", omp_get_max_threads());
+    summary.performance("threads", thread_count());
     summary.performance("peak_memory_bytes", 1024.0 * static_cast<double>(usage.ru_maxrss));
 
     int status = 0;

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "common/writers.hpp"
+#include "common/output_file.hpp"
 
 namespace common {
 

@@ -190,9 +190,9 @@ inline void refuse_impossible(Case& w) {
 
 /// Warnings with the number and the limit, for choices that run but may mislead.   source:
 /// [IMM-13] and its lower bound.
-/// note: the slide asks for v_th dt/dx < 1, so that a particle stays within what the fluid
-///        equations can predict. Below about 1/20 the mesh does not damp what it cannot resolve
-///        and the finite-grid instability of all momentum-conserving methods may heat the plasma.
+/// note:   the slide asks for v_th dt/dx < 1, so that a particle stays within what the fluid
+///         equations can predict. Below about 1/20 the mesh does not damp what it cannot resolve
+///         and the finite-grid instability of all momentum-conserving methods may heat the plasma.
 inline std::vector<std::string> closure_warnings(const Case& w, const Scales& scales) {
     std::vector<std::string> warnings;
     const double dx = w.grid.x.spacing(), dz = w.grid.z.spacing();

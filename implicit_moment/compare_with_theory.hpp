@@ -7,8 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "common/fit_growth.hpp"
+#include "common/fit_oscillation.hpp"
 #include "common/kinetic_dispersion.hpp"
-#include "common/measure.hpp"
 #include "common/session.hpp"
 #include "common/theta_scheme.hpp"
 #include "implicit_moment/check_case.hpp"

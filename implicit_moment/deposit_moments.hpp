@@ -35,8 +35,8 @@ namespace implicit_moment {
 
 using common::Lanes;
 
-/// The moments of one species, per unit area of the mesh; P carries the charge like J: P = sum q
-/// v v S (divide by q/m for a pressure).
+/// The moments of one species, per unit area of the mesh. P carries the charge, as J does: it is the
+/// sum of q v v S (divide by q/m for a pressure).
 struct Moments {
     Field rho, J_x, J_y, J_z, P_xx, P_zz, P_xz, P_xy, P_yz;
     Field density;                     // charge density of the plasma itself, up to the walls
@@ -229,29 +229,31 @@ inline void deposit(const Particles& particles, const Grid& grid, const TurnOrNo
 /// Deposits the moments of one species as the slide has them.
 ///     rho_g = sum_p q_p S(x_g - x_p) / (dx dz),  J_g = sum_p q_p v_p S' / (dx dz),
 ///     P_g = sum_p q_p v_p v_p S'' / (dx dz)
-/// in: particles sorted by nearest node. out: moments with ghosts filled.
-/// exact: total charge and current; the mesh continuity equations in continuous time.
+/// in:     particles sorted by nearest node.
+/// out:    moments with ghosts filled.
+/// exact:  total charge and current; the mesh continuity equations in continuous time.
 /// source: [IMM-9]
-/// note: the slide weighs P with the mass; with the charge, J and P enter [IMM-12] alike. Walls
-///        mirror the plasma: a particle's image has the same charge and the opposite normal
-///        velocity, so J_n is odd and vanishes on the wall, and a node on the wall counts its
-///        half cell twice.
+/// note:   the slide weighs P with the mass; with the charge, J and P enter [IMM-12] alike. Walls
+///         mirror the plasma: a particle's image has the same charge and the opposite normal
+///         velocity, so J_n is odd and vanishes on the wall, and a node on the wall counts its half
+///         cell twice.
 inline void deposit_moments(const Particles& particles, const Grid& grid, Moments& moments) {
     detail::deposit(particles, grid, detail::NoTurn{}, detail::Images::plasma, moments);
 }
 
 /// Deposits the moments of one species with the mean velocities vbar = R v of the coming step in
 /// place of v; energy and momentum are those of v.
-/// in: B at t^n, ghosts filled; dt of the coming step.
-/// exact: without B the moments of the slide. In any B, rho^{n+1} - rho^n + dt div(J - dt/2 div P)
-///        vanishes for particles in no field E, but for terms of third order in vbar dt/dx and of
-///        the change of B along the way.   source: [IMM-9, IMM-12]
-/// note: behind a wall stand the image charges of the conductor: opposite charge, opposite normal
-///        velocity. rho and J then have the parities of E, the gather is the transpose of the
-///        deposit, and a charge that touches the wall makes no field.
-/// note: the slide turns the sums instead, R [J - dt/2 div P]. For a pressure that is not
-///        isotropic the two differ as soon as Omega dt is not small, and the sum turned on the
-///        mesh feeds an instability (see the notes, "Turn the particles").
+/// in:     B at t^n, ghosts filled; dt of the coming step.
+/// exact:  without B the moments of the slide. In any B, rho^{n+1} - rho^n + dt div(J - dt/2 div P)
+///         vanishes for particles in no field E, but for terms of third order in vbar dt/dx and of
+///         the change of B along the way.
+/// source: [IMM-9, IMM-12]
+/// note:   behind a wall stand the image charges of the conductor: opposite charge, opposite normal
+///         velocity. rho and J then have the parities of E, the gather is the transpose of the
+///         deposit, and a charge that touches the wall makes no field.
+/// note:   the slide turns the sums instead, R [J - dt/2 div P]. For a pressure that is not
+///         isotropic the two differ as soon as Omega dt is not small, and the sum turned on the
+///         mesh feeds an instability (see the notes, "Turn the particles").
 inline void deposit_moments(const Particles& particles, const Grid& grid, const VectorField& B,
                             double dt, Moments& moments) {
     const double k = 0.5 * dt * particles.q_p / (particles.m_p * c);

@@ -38,8 +38,8 @@ inline double gauss_error(const Grid& grid, const Field& gauss) {
 
 /// A_y on nodes from B, zero at node (0, 0):  B_z = dA_y/dx,  B_x = -dA_y/dz. Its contours are
 /// the field lines in the plane.
-/// exact: the same by every path, because div B = 0. note: in a periodic direction it is not
-///        periodic if B has a mean there.
+/// exact:  the same by every path, because div B = 0.
+/// note:   in a periodic direction it is not periodic if B has a mean there.
 inline Field flux_function(const Grid& grid, const VectorField& B) {
     Field A_y = Field::Zero(grid.size());
     for (long j = 0; j <= grid.z.cells; ++j) {
@@ -88,7 +88,7 @@ inline double quadrupole(const Grid& grid, const VectorField& B) {
 
 /// Complex amplitude of the wave exp(i k x) in one field component, (2/N) sum f exp(-i k x), at
 /// the component's own places.
-/// in: name E_x ... B_z.
+/// in:     name E_x ... B_z.
 inline std::complex<double> mode_amplitude(const Grid& grid, const FieldState& field,
                                            const std::string& name, long mode_x, long mode_z) {
     const bool is_B = name[0] == 'B';

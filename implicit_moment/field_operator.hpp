@@ -72,8 +72,8 @@ struct FieldSolver {
 
 /// out = (1 + chi) E + a^2 curl curl E on the unknowns of E, zero elsewhere, with chi between two
 /// smoothings: S chi S.
-/// note: particles feel the smoothed field and their current is smoothed; with chi between the
-///        same two smoothings the predicted current does the work that the particles receive.
+/// note:   particles feel the smoothed field and their current is smoothed; with chi between the
+///         same two smoothings the predicted current does the work that the particles receive.
 inline void apply_field_operator(FieldSolver& solver, double a, const Eigen::VectorXd& E,
                                  Eigen::VectorXd& out) {
     const Grid& grid = solver.grid;
@@ -94,8 +94,8 @@ inline void apply_field_operator(FieldSolver& solver, double a, const Eigen::Vec
 }
 
 /// Inverts the operator with a uniform diagonal chi_0, the mean of chi, mode by mode.
-/// note: the number of iterations then does not grow with omega_p dt in a uniform plasma, and is
-///        bounded by the contrasts of density and magnetization otherwise.
+/// note:   the number of iterations then does not grow with omega_p dt in a uniform plasma, and is
+///         bounded by the contrasts of density and magnetization otherwise.
 inline void prepare_preconditioner(FieldSolver& solver, double a) {
     const Grid& grid = solver.grid;
     std::array<double, 3> chi_0{};
@@ -125,8 +125,9 @@ inline void prepare_preconditioner(FieldSolver& solver, double a) {
 
 /// out = [ 1 + w^2 chi_0 + a^2 curl curl ]^{-1} r for a uniform diagonal chi_0, w the smoothing
 /// factor of each mode.
-/// exact: to single precision, which flexible GMRES takes without losing the double one of its
-///        solution. in: what prepare_preconditioner has prepared.
+/// exact:  to single precision, which flexible GMRES takes without losing the double one of its
+///         solution.
+/// in:     what prepare_preconditioner has prepared.
 inline void precondition_field(FieldSolver& solver, const Eigen::VectorXd& r,
                                Eigen::VectorXd& out) {
     const Grid& grid = solver.grid;

@@ -24,8 +24,8 @@ struct AxisModes {
     Eigen::VectorXd angle;  // k dx of each mode
 };
 
-/// exact: D V = U diag(sigma) to round-off. note: at a wall, mode 0 of V is the node on the wall
-///        itself, where nothing is unknown.
+/// exact:  D V = U diag(sigma) to round-off.
+/// note:   at a wall, mode 0 of V is the node on the wall itself, where nothing is unknown.
 inline AxisModes axis_modes(const common::Axis& axis) {
     const long n = axis.cells;
     const double count = static_cast<double>(n);
@@ -99,7 +99,7 @@ inline void scale_modes(const Grid& grid, const MeshModes& modes, const Factor& 
 }
 
 /// Solves (1 - a^2 lap) g = f on nodes, with g = 0 on walls. in/out: f becomes g, ghosts filled.
-/// exact: to round-off.
+/// exact:  to round-off.
 inline void solve_helmholtz(const Grid& grid, const MeshModes& modes, double a, Field& f) {
     scale_modes(
         grid, modes, [a](double k2) { return 1 / (1 + a * a * k2); }, f);

@@ -25,8 +25,9 @@ struct Velocity {
 /// Mean velocity of a step: vbar = v_t + (v_t x O) + ... solved for vbar = v_t + vbar x O.
 ///     vbar = [ v_t + v_t x O + (v_t . O) O ] / (1 + O^2),   v_t = v + q dt/2m E,   O = q dt B /
 ///     (2 m c)
-/// in: v^n; local fields; half_kick = q dt / 2m.   exact: vbar - vbar x O = v_t.   source:
-///        [IMM-12] for one particle.
+/// in:     v^n; local fields; half_kick = q dt / 2m.
+/// exact:  vbar - vbar x O = v_t.
+/// source: [IMM-12] for one particle.
 // [midpoint]
 template <class Real>
 inline Velocity<Real> mean_velocity(const Velocity<Real>& v, const LocalField<Real>& at,
@@ -128,10 +129,10 @@ inline void arrive(const common::Axis& axis, bool at_wall, double& x, double& v)
 
 /// Moves one particle by dt in `parts` equal sub-steps; a sub-step that ends behind a wall is cut
 /// where it meets the wall, the particle is reflected there, and goes on with the rest.
-/// out: false when a sub-step crosses more than a cell or does not converge; the particle is then
-///        not to be used.
-/// note: a reflection at the end of the step instead would turn the velocity in the wrong sense
-///        for the rest of the step, and drive a current along magnetized walls.
+/// out:    false when a sub-step crosses more than a cell or does not converge; the particle is
+///         then not to be used.
+/// note:   a reflection at the end of the step instead would turn the velocity in the wrong sense
+///         for the rest of the step, and drive a current along magnetized walls.
 inline bool move_one(const Grid& grid, const PushField& field, const MoverSettings& settings,
                      double charge_over_mass, double dt, int parts, double& x, double& z,
                      Velocity<double>& v) {

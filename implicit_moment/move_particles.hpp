@@ -26,8 +26,7 @@ using common::Lanes;
 struct MoverReport {
     long one_by_one = 0;   // particles moved one by one
     long sub_stepped = 0;  // particles that needed more than one sub-step
-    long lost =
-        0;  // particles whose iteration did not converge even with 1024 sub-steps: the run must end
+    long lost = 0;         // particles not followed even in 1024 sub-steps: the run must end
 };
 
 namespace detail {
@@ -57,13 +56,13 @@ inline void wrap(const common::Axis& axis, Lanes& x) {
 }  // namespace detail
 
 /// Moves every particle of one species from t^n to t^{n+1}.
-/// in: field, the smoothed E^{n+theta} and B, ghosts filled; dt [1/omega_pi]. in/out: particles,
-///        sorted by nearest node before, not after.
-/// exact: no work by B; the midpoint rule to settings.tolerance.
+/// in:     field, the smoothed E^{n+theta} and B, ghosts filled; dt [1/omega_pi].
+/// in/out: particles, sorted by nearest node before, not after.
+/// exact:  no work by B; the midpoint rule to settings.tolerance.
 /// source: slide "Implicit Moment Method", particle equations; the rotation of [IMM-12].
-/// note: a particle whose midpoint leaves the node's cell and that would cross more than a cell is
-///        moved in as many sub-steps as keep it within one, each with the field of the cell it is
-///        in; with the field of one point it would run away.
+/// note:   a particle whose midpoint leaves the node's cell and that would cross more than a cell
+///         is moved in as many sub-steps as keep it within one, each with the field of the cell it
+///         is in; with the field of one point it would run away.
 inline MoverReport move_particles(const PushField& field, const Grid& grid, double dt,
                                   const MoverSettings& settings, Particles& particles) {
     const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing(), h = 0.5 * dt;

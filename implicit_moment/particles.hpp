@@ -20,8 +20,7 @@ struct Particles {
     double m_p = 0;                        // its mass
     std::vector<double> x_p, z_p;          // position [d_i]
     std::vector<double> vx_p, vy_p, vz_p;  // velocity [c]
-    std::vector<int>
-        first_of_node;  // particles of node n are [first_of_node[n], first_of_node[n+1])
+    std::vector<int> first_of_node;        // node n has [first_of_node[n], first_of_node[n + 1])
 
     long count() const { return static_cast<long>(x_p.size()); }
 };

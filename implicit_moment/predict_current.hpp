@@ -1,8 +1,8 @@
 // on the grid: what the fluid equations say about the current of the coming step.
 // [IMM-11, IMM-12]
 //
-// Eliminating J^{n+1} from the slide's momentum equation leaves, for every species, with O = q dt
-// B / (2 m c),
+// Eliminating J^{n+1} from the slide's momentum equation leaves, for every species, with
+// O = q dt B / (2 m c),
 //
 //     J^{n+1/2} = R [ J^n - dt/2 div P^n + (q dt / 2m) rho^n E^{n+theta} ],
 //     R(v) = [ v + v x O + (v . O) O ] / (1 + O^2)
@@ -34,10 +34,10 @@ struct Tensor {
 /// out = T v: the diagonal acts where each component lives, with the mean of the nodes beside it;
 /// the rest goes through the nodes, to which components are averaged and from which results are
 /// averaged back.
-/// in: v, ghosts filled; scratch: room. out: values on rows and columns 0..N, added to what is
-///        there when `add` is set.
-/// exact: (T v) . v >= sum over nodes of (T v') . v' with v' the averaged v. A magnetic rotation
-///        thus stays one on the mesh: its skew part does no work, however fast it turns.
+/// in:     v, ghosts filled; scratch, room.
+/// out:    values on rows and columns 0..N, added to what is there when `add` is set.
+/// exact:  (T v) . v >= sum over nodes of (T v') . v' with v' the averaged v. A magnetic rotation
+///         thus stays one on the mesh: its skew part does no work, however fast it turns.
 inline void apply_tensor(const Grid& grid, const Tensor& T, const double* v, bool add,
                          VectorField& scratch, double* out) {
     const long s = grid.stride(), m = grid.size();
@@ -60,8 +60,10 @@ inline void apply_tensor(const Grid& grid, const Tensor& T, const double* v, boo
 }
 
 /// The rotation R of one species on nodes.
-/// in: B, ghosts filled; half_kick = q dt / 2m. out: rows and columns 0..N.
-/// exact: R v - (R v) x O = v, and v . R v >= 0.   source: [IMM-12]
+/// in:     B, ghosts filled; half_kick = q dt / 2m.
+/// out:    rows and columns 0..N.
+/// exact:  R v - (R v) x O = v, and v . R v >= 0.
+/// source: [IMM-12]
 inline void rotation_tensor(const Grid& grid, const double* B, double half_kick, Tensor& R) {
     const long s = grid.stride(), m = grid.size();
     const double *B_x = B, *B_y = B + m, *B_z = B + 2 * m;
@@ -86,7 +88,7 @@ inline void rotation_tensor(const Grid& grid, const double* B, double half_kick,
 }
 
 /// Takes the rotation in another B out of R: R becomes R (1 - . x O), the inverse of [IMM-12] first.
-/// exact: in the B of R itself this leaves the unit tensor.
+/// exact:  in the B of R itself this leaves the unit tensor.
 inline void undo_rotation(const Grid& grid, const double* B, double half_kick, Tensor& R) {
     const long s = grid.stride(), m = grid.size();
     const double *B_x = B, *B_y = B + m, *B_z = B + 2 * m;
@@ -107,7 +109,7 @@ inline void undo_rotation(const Grid& grid, const double* B, double half_kick, T
 
 /// J - dt/2 div P of one species on the places of E, ghosts filled: the current half a step later
 /// without E.
-/// exact: d rho/dt = -div of it to second order in dt for particles in free flight.
+/// exact:  d rho/dt = -div of it to second order in dt for particles in free flight.
 /// source: [IMM-11, IMM-12]
 inline void free_current(const Grid& grid, const Moments& moments, double dt, VectorField& J) {
     const long s = grid.stride();
@@ -143,11 +145,12 @@ struct PlasmaResponse {
 };
 
 /// The charge, J_hat and chi of all species, with the magnetic rotation in B_theta.
-/// in: moments and q/m of each species; B, in which the moments were turned, and B_theta, the same
-///        field or another one; ghosts filled. out: response, nothing of it smoothed.
-/// note: chi is the diagonal form of the exact response, in which a place also answers for the
-///        places whose splines overlap with its own. It is never smaller than the exact one, which
-///        is what keeps the method stable, at the price of a slow loss of energy.
+/// in:     moments and q/m of each species; B, in which the moments were turned, and B_theta, the
+///         same field or another one; ghosts filled.
+/// out:    response, nothing of it smoothed.
+/// note:   chi is the diagonal form of the exact response, in which a place also answers for the
+///         places whose splines overlap with its own. It is never smaller than the exact one, which
+///         is what keeps the method stable, at the price of a slow loss of energy.
 inline void predict_current(const Grid& grid, const std::vector<Moments>& moments,
                             const std::vector<double>& charge_over_mass, const double* B,
                             const double* B_theta, double dt, double theta,

@@ -25,12 +25,12 @@ struct LocalField {
 /// Fields at a particle that lies (d_x, d_z) cells from its nearest node, |d| <= 1/2.
 ///     E_x(x_p) = sum_g E_x,g S1(x) S2(z),  B_z alike;   E_z, B_x with S2 S1;   E_y with S2 S2;
 ///     B_y with S1 S1
-/// in: corner, the record down left of the nearest node; stride between rows. Real is double or
-///        eight Lanes that share one node.
-/// exact: E is gathered with the splines that deposit J, so that the work done on particles is
-///        the work taken from the mesh; a potential field E = -grad phi is gathered as the exact
-///        gradient of the gathered potential, and the gathered B is divergence-free at every
-///        point.
+/// in:     corner, the record down left of the nearest node; stride between rows. Real is double or
+///         eight Lanes that share one node.
+/// exact:  E is gathered with the splines that deposit J, so that the work done on particles is the
+///         work taken from the mesh; a potential field E = -grad phi is gathered as the exact
+///         gradient of the gathered potential, and the gathered B is divergence-free at every
+///         point.
 template <class Real>
 inline LocalField<Real> gather_field(const NodeField* corner, long stride, const Real& d_x,
                                      const Real& d_z) {

@@ -65,9 +65,9 @@ inline void smooth_all(const Grid& grid, long count, const Place* place, const P
 /// In Fourier space one direction is multiplied with
 ///     cos^2(k dx/2)^passes [1 + 4 a sin^2(k dx/2)] = 1 - O((k dx)^4):
 /// waves are kept, grid noise is removed.
-/// in/out: f, ghosts filled before and after. scratch: room, kept between calls.
-/// exact: a constant is unchanged; smoothing commutes with the differences of the mesh, so Gauss's
-///        law and continuity stay exact; it is its own transpose.
+/// in/out: f, ghosts filled before and after; scratch, room that is kept between calls.
+/// exact:  a constant is unchanged; smoothing commutes with the differences of the mesh, so Gauss's
+///         law and continuity stay exact; it is its own transpose.
 inline void smooth(const Grid& grid, Place place, Parity parity, const SmoothingSettings& settings,
                    double* f, Field& scratch) {
     detail::smooth_all(grid, 1, &place, &parity, settings, f, scratch);

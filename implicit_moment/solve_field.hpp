@@ -1,23 +1,21 @@
-// on the grid: E^{n+theta} from Maxwell's equations and the predicted current, then E and B at
-// n+1.                     [IMM-10]
+// on the grid: E^{n+theta} from Maxwell's equations and the predicted current, then E and B at n+1.
+// [IMM-10]
 //
 // Faraday and Ampere at n+theta, with J^{n+1/2} = J_hat + chi E/(4 pi theta dt) and a = c theta dt:
 //
-//     (1 + chi) E + a^2 curl curl E = E^n + a curl B^n - 4 pi theta dt J_hat + a^2 grad G
-//     (i)
+//     (1 + chi) E + a^2 curl curl E = E^n + a curl B^n - 4 pi theta dt J_hat + a^2 grad G      (i)
 //
-// where G = div E - 4 pi rho at n+theta, Gauss's law with the predicted charge. The paper
-// replaces curl curl E by grad div E - lap E and puts Gauss's law
-// in for div E; that is (i). Its divergence, with [IMM-11], says what becomes of an error in
-// Gauss's law:
+// where G = div E - 4 pi rho at n+theta, Gauss's law with the predicted charge. The paper replaces
+// curl curl E by grad div E - lap E and puts Gauss's law in for div E; that is (i). Its divergence,
+// with [IMM-11], says what becomes of an error in Gauss's law:
 //
-//     (1 - a^2 lap) G^{n+theta} = G^n,       G = 0 on walls
-//     (ii)
+//     (1 - a^2 lap) G^{n+theta} = G^n,       G = 0 on walls                                   (ii)
 //
 // so the error left by the finite number of particles decays and needs no projection step;
-// Poisson's equation is imposed on the boundary only, as G = 0. We solve (ii) first, directly,
-// and (i) by GMRES: together they are the second-order equation, with an operator that stays
-// near-symmetric.
+// Poisson's equation is imposed on the boundary only, as G = 0. We solve (ii) first, directly, and
+// (i) by GMRES: together they are the second-order equation, with an operator that stays near
+// symmetric.
+//
 // source: [IMM-10..12]; Ricci, Lapenta and Brackbill, J. Comput. Phys. 183, 117 (2002).
 #pragma once
 
@@ -68,14 +66,14 @@ inline void maxwell_source(FieldSolver& solver, const FieldState& field, double 
 }
 
 /// Solves for E^{n+theta}.
-/// in: moments of all species at t^n, E and B at t^n. out: field.E_theta, ghosts filled;
-///        solver.gauss, the Gauss residual at t^n.
-/// exact: |residual| <= tolerance |source|; on periodic meshes and inside walls the Gauss
-///        residual obeys (ii) to that tolerance.
+/// in:     moments of all species at t^n, E and B at t^n.
+/// out:    field.E_theta, ghosts filled; solver.gauss, the Gauss residual at t^n.
+/// exact:  |residual| <= tolerance |source|; on periodic meshes and inside walls the Gauss residual
+///         obeys (ii) to that tolerance.
 /// errors: NumericalError when the solver does not converge; the field is then not used.
-///        source: [IMM-10..12]
-/// note: "gmres" turns the current in B^n, as the slide does; "newton_krylov" turns it in
-///        B^{n+theta} = B^n - a curl E^{n+theta}, which makes the equations nonlinear.
+/// source: [IMM-10..12]
+/// note:   "gmres" turns the current in B^n, as the slide does; "newton_krylov" turns it in
+///         B^{n+theta} = B^n - a curl E^{n+theta}, which makes the equations nonlinear.
 inline FieldReport solve_field(FieldSolver& solver, const std::vector<Moments>& moments,
                                const std::vector<double>& charge_over_mass, double dt,
                                FieldState& field) {
@@ -155,7 +153,9 @@ inline FieldReport solve_field(FieldSolver& solver, const std::vector<Moments>& 
 }
 
 /// E^{n+1} = [E^{n+theta} - (1 - theta) E^n] / theta,   B^{n+1} = B^n - c dt curl E^{n+theta}.
-/// in/out: field, ghosts filled.   exact: div B is unchanged to round-off.   source: [IMM-10]
+/// in/out: field, ghosts filled.
+/// exact:  div B is unchanged to round-off.
+/// source: [IMM-10]
 inline void advance_field(FieldSolver& solver, double dt, FieldState& field) {
     const Grid& grid = solver.grid;
     const double theta = solver.settings.theta;

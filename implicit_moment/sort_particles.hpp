@@ -19,7 +19,7 @@ struct SortScratch {
 
 /// Stable counting sort of the particles by nearest node, row by row. Cost: particles + nodes.
 /// in/out: particles, every position inside the mesh; first_of_node is rebuilt.
-/// exact: the order depends on the positions alone, not on the number of threads.
+/// exact:  the order depends on the positions alone, not on the number of threads.
 inline void sort_particles(const Grid& grid, SortScratch& scratch, Particles& particles) {
     const long count = particles.count(), nodes = nodes_x(grid) * nodes_z(grid);
     scratch.target.resize(static_cast<std::size_t>(count));

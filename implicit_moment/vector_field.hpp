@@ -67,7 +67,8 @@ inline void for_each_point(const Grid& grid, const Work& work) {
 }
 
 /// curl E on the places of B:  x: -dE_y/dz   y: dE_x/dz - dE_z/dx   z: dE_y/dx
-/// in: E, ghosts filled. out: values on rows and columns 0..N.
+/// in:     E, ghosts filled.
+/// out:    values on rows and columns 0..N.
 inline void curl_of_electric(const Grid& grid, const double* E, double* curl) {
     const long s = grid.stride(), m = grid.size();
     const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing();
@@ -81,7 +82,8 @@ inline void curl_of_electric(const Grid& grid, const double* E, double* curl) {
 }
 
 /// curl B on the places of E:  x: -dB_y/dz   y: dB_x/dz - dB_z/dx   z: dB_y/dx
-/// in: B, ghosts filled. out: values on rows and columns 0..N.
+/// in:     B, ghosts filled.
+/// out:    values on rows and columns 0..N.
 inline void curl_of_magnetic(const Grid& grid, const double* B, double* curl) {
     const long s = grid.stride(), m = grid.size();
     const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing();
@@ -106,7 +108,7 @@ inline void divergence_of_electric(const Grid& grid, const double* E, Field& div
 }
 
 /// div B on faces... B_x lives on z-edges and B_z on x-edges, so their divergence lives on faces.
-/// in: ghosts filled.
+/// in:     ghosts filled.
 inline void divergence_of_magnetic(const Grid& grid, const double* B, Field& div) {
     const long s = grid.stride(), m = grid.size();
     const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing();

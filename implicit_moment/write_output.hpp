@@ -21,7 +21,7 @@ inline std::string numbered(const std::string& kind, long step, const std::strin
 
 /// One quantity brought to the nodes 0..N of both directions by averaging the places beside each
 /// node, x fastest.
-/// in: f, ghosts filled.
+/// in:     f, ghosts filled.
 inline std::vector<double> on_all_nodes(const Grid& grid, Place place, const double* f) {
     std::vector<double> values;
     const long s = grid.stride();

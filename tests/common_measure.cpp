@@ -7,7 +7,8 @@
 #include <limits>
 #include <vector>
 
-#include "common/measure.hpp"
+#include "common/fit_growth.hpp"
+#include "common/fit_oscillation.hpp"
 #include "common/random.hpp"
 
 namespace {
