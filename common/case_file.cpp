@@ -1,4 +1,5 @@
-// Case files: TOML, read by toml++ after the bytes have been looked at. The only source that includes toml++.
+// Case files: TOML, read by toml++ after the bytes have been looked at. The only source that
+// includes toml++.
 #include <algorithm>
 #include <utility>
 

@@ -1,6 +1,7 @@
 // The whole state of a run in one file, to continue from later with the same bits.
 //
-//   "PICSTATE" | length of the rest | program, version, case | named blocks ... | checksum of all before
+//   "PICSTATE" | length of the rest | program, version, case | named blocks ... | checksum of all
+//   before
 //
 // A block is a name, a letter for its type, a count and the numbers as they are in memory.
 #pragma once
@@ -66,8 +67,10 @@ class CheckpointWriter {
         block(name, 'd', values.data(), static_cast<std::size_t>(values.size()), sizeof(double));
     }
 
-    /// Writes beside `path`, flushes to the disk, then renames: `path` is the old file or the whole new one.
-    /// errors: InputError when the target is not a regular file, or the disk is full; the old file is intact.
+    /// Writes beside `path`, flushes to the disk, then renames: `path` is the old file or the whole
+    /// new one.
+    /// errors: InputError when the target is not a regular file, or the disk is full; the old file
+    ///         is intact.
     void write(const std::string& path) {
         struct stat target {};
         if (lstat(path.c_str(), &target) == 0 && !S_ISREG(target.st_mode)) {
@@ -131,7 +134,8 @@ class CheckpointWriter {
 };
 
 /// An archive that gives back what a CheckpointWriter wrote, in the same order.
-/// errors: InputError for a file that is damaged, cut off, foreign, or of another program or version.
+/// errors: InputError for a file that is damaged, cut off, foreign, or of another program or
+///         version.
 class CheckpointReader {
    public:
     CheckpointReader(const About& about, const std::string& path)

@@ -23,7 +23,8 @@ namespace fs = std::filesystem;
 constexpr std::array<const char*, 8> option_names{"--out",   "--restart", "--threads", "--dry-run",
                                                   "--quiet", "--force",   "--help",    "--version"};
 
-// The default case, found from the program's own place (build/ in the project) or the current folder.
+// The default case, found from the program's own place (build/ in the project) or the current
+// folder.
 std::string find_default_case(const About& about) {
     std::error_code error;
     const fs::path program = fs::read_symlink("/proc/self/exe", error);

@@ -4,9 +4,9 @@
 //   in the Krylov space of A M^-1, K_k = span{r, (A M^-1) r, ..., (A M^-1)^(k-1) r}, r = b - A x,
 //   find u with the smallest |r - A M^-1 u| and add M^-1 u to x
 //
-// Flexible: the vectors M^-1 v_k are kept, and x is made from them as they are. M^-1 may then differ
-// from one product to the next, or be worked out in single precision, and the solution still has
-// the full one.
+// Flexible: the vectors M^-1 v_k are kept, and x is made from them as they are. M^-1 may then
+// differ from one product to the next, or be worked out in single precision, and the solution still
+// has the full one.
 //
 // The basis of K_k is orthonormalized by classical Gram-Schmidt, done twice, which is as stable as
 // the modified form and runs at the speed of matrix-vector products. Nothing here is threaded, so

@@ -55,9 +55,8 @@ using Field = Eigen::VectorXd;
 
 namespace detail {
 
-// Visits the ghost points beyond both ends of one direction, each with its interior source.
-// `step` is the distance in storage between neighbors in that direction, `line` a function that
-// visits all lines across it.
+// Visits the ghost points beyond both ends of one direction, each with its interior source and the
+// sign of its image.
 template <class Visit>
 void ghosts_along(const Axis& axis, bool half, int parity, const Visit& visit) {
     const long n = axis.cells;

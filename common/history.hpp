@@ -26,10 +26,12 @@ class History {
         if (file_ != nullptr) std::fclose(file_);
     }
 
-    /// Names the columns, once, before the first row. The first line of the file is "# 1:name[unit] 2:...".
+    /// Names the columns, once, before the first row. The first line of the file is
+    /// "# 1:name[unit] 2:...".
     void columns(const std::vector<Column>& columns) { columns_ = columns; }
 
-    /// Adds a row. errors: NumericalError for a number that is not finite; InputError when the disk is full.
+    /// Adds a row.
+    /// errors: NumericalError for a number that is not finite; InputError when the disk is full.
     void row(std::span<const double> values) {
         if (values.size() != columns_.size())
             throw std::logic_error("history: a row of the wrong length");
@@ -57,7 +59,8 @@ class History {
         throw std::logic_error("history: no value in '" + name + "'");
     }
 
-    /// Everything recorded so far in one column. errors: logic_error for a name that is not a column.
+    /// Everything recorded so far in one column.
+    /// errors: logic_error for a name that is not a column.
     std::vector<double> column(const std::string& name) const {
         for (std::size_t k = 0; k < columns_.size(); ++k) {
             if (columns_[k].name != name) continue;

@@ -1,7 +1,8 @@
 // The table of a program's parameters, and the command line that fills it.
 //
-// One table drives the case file, the overrides on the command line, --help and the dump of the effective
-// case. It binds names to the fields of a plain struct, whose initial values are the defaults.
+// One table drives the case file, the overrides on the command line, --help and the dump of the
+// effective case. It binds names to the fields of a plain struct, whose initial values are the
+// defaults.
 #pragma once
 
 #include <functional>
@@ -13,12 +14,14 @@
 
 namespace common {
 
-/// Impossible input: one sentence that says where, what and what to do. The program ends with status 2.
+/// Impossible input: one sentence that says where, what and what to do. The program ends with
+/// status 2.
 struct InputError : std::runtime_error {
     using runtime_error::runtime_error;
 };
 
-/// A computation that failed: one sentence that says where and when. The program ends with status 3.
+/// A computation that failed: one sentence that says where and when. The program ends with
+/// status 3.
 struct NumericalError : std::runtime_error {
     using runtime_error::runtime_error;
 };
@@ -73,21 +76,24 @@ class ParameterTable {
         describe_pattern(name, [&] { describe(*this, name + ".<name>", pattern); });
     }
 
-    /// Names, or beginnings that end in '.', that may differ between a checkpoint's case and a restart.
+    /// Names, or beginnings that end in '.', that may differ between a checkpoint's case and a
+    /// restart.
     void may_change_on_restart(const std::vector<std::string>& names) { changeable_ = names; }
     bool is_changeable(const std::string& name) const;
 
     /// Whether a parameter takes text, so that it may stand without quotes on the command line.
     bool takes_text(const std::string& name);
 
-    /// Gives a parameter its value. errors: InputError for an unknown name, a wrong type or a value out of
-    /// range, with the place and the cure.
+    /// Gives a parameter its value.
+    /// errors: InputError for an unknown name, a wrong type or a value out of range, with the place
+    ///         and the cure.
     void set(const Setting& setting);
 
     /// All parameters with unit, range and default, under their headings.
     std::string help() const;
 
-    /// Complete TOML text of all values. exact: reading it gives the same values and the same text.
+    /// Complete TOML text of all values.
+    /// exact:  reading it gives the same values and the same text.
     std::string effective_case() const;
 
    private:
@@ -143,11 +149,13 @@ struct CommandLine {
 };
 
 /// Reads case file and overrides into the table. --help and --version print and end the program.
-/// With --restart the case is the one stored in the checkpoint, and only parameters that may change can be overridden.
+/// With --restart the case is the one stored in the checkpoint, and only parameters that may change
+/// can be overridden.
 /// errors: InputError with the place and the cure; nothing has been written then.
 CommandLine read_command_line(int argc, char** argv, const About& about, ParameterTable& table);
 
-/// The settings in the text of a case file, in order. errors: InputError with source:line:column.
+/// The settings in the text of a case file, in order.
+/// errors: InputError with source:line:column.
 std::vector<Setting> read_case(const std::string& text, const std::string& source);
 
 /// Shortest text that reads back as the same number.

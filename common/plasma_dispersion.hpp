@@ -88,9 +88,4 @@ inline std::complex<double> plasma_response(std::complex<double> zeta) {
     return plasma_dispersion_detail::values(zeta).one_plus_zeta_Z;
 }
 
-/// dZ/dzeta = -2 (1 + zeta Z)
-inline std::complex<double> plasma_dispersion_derivative(std::complex<double> zeta) {
-    return -2.0 * plasma_response(zeta);
-}
-
 }  // namespace common

@@ -57,7 +57,7 @@ inline double radical_inverse(std::uint64_t i, unsigned base) {
 ///   fraction of [radical_inverse(i, base) + shift(seed, base)]
 /// exact: in (0, 1); as evenly spread as the radical inverse
 /// source: Cranley and Patterson, SIAM J. Numer. Anal. 13, 904 (1976).
-inline double scrambled_radical_inverse(std::uint64_t i, unsigned base, std::uint64_t seed) {
+inline double shifted_radical_inverse(std::uint64_t i, unsigned base, std::uint64_t seed) {
     constexpr std::uint32_t quiet_start = 0x51e7u;
     const double sum = radical_inverse(i, base) + uniform(seed, quiet_start, base, 0);
     const double fraction = sum - std::floor(sum);

@@ -1,4 +1,5 @@
-// What every run owns besides its physics: the output folder, history, summary, checkpoints, progress and signals.
+// What every run owns besides its physics: the output folder, history, summary, checkpoints,
+// progress and signals.
 #pragma once
 
 #include <chrono>
@@ -16,7 +17,7 @@ namespace common {
 
 class Session {
    public:
-    /// Prepares the output folder, writes case.toml there and starts to listen to SIGINT and SIGTERM.
+    /// Prepares the output folder, writes case.toml there and listens to SIGINT and SIGTERM.
     /// errors: InputError when the folder holds something else, or an earlier run without --force.
     Session(const About& about, const CommandLine& command, const ParameterTable& table);
     Session(const Session&) = delete;
@@ -44,7 +45,8 @@ class Session {
     /// False at the end of the run, or when a signal has asked to stop.
     bool keep_going(long step, long steps) const;
 
-    /// Shows progress; writes a checkpoint when one is due, at the end, or when a signal has asked to stop.
+    /// Shows progress; writes a checkpoint when one is due, at the end, or when a signal has asked
+    /// to stop.
     template <class State>
     void end_of_step(long step, long steps, double time, State& state) {
         show_progress(step, steps, time);
@@ -58,8 +60,11 @@ class Session {
         write_checkpoint(writer, step);
     }
 
-    /// Writes summary.json and prints the results. out: the exit status: 0 done, 130 or 143 stopped by a signal, 3 for a result that is not finite.
-    /// in: step, how many steps the run has come to; count, particles (or what else is advanced) in each.
+    /// Writes summary.json and prints the results.
+    /// in:     step, how many steps the run has come to; count, particles (or what else is
+    ///         advanced) in each.
+    /// out:    the exit status: 0 done, 130 or 143 stopped by a signal, 3 for a result that is not
+    ///         finite.
     int finish(long step, double count);
 
     /// Writes summary.json for a run that has failed. out: the exit status.
@@ -88,7 +93,8 @@ class Session {
 /// the machine's memory. in: steps of the whole run; bytes it will take.
 void refuse_before_start(const CommandLine& command, long steps, double bytes);
 
-/// Runs a program and turns errors into one sentence on stderr and the exit status: 2 bad input, 3 numerical failure.
+/// Runs a program and turns errors into one sentence on stderr and the exit status: 2 bad input,
+/// 3 numerical failure.
 /// in: run(session) builds the session in place, so that a failed run still leaves its summary.
 int guarded(const About& about, const std::function<int(std::optional<Session>&)>& run);
 

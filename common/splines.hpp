@@ -1,12 +1,11 @@
 // B-splines S^(0) ... S^(3), the shape functions of the whole family.
 //
-// S^(l) is the l-fold convolution of the top-hat with itself, in units of the cell: symmetric,
-// unit integral, support (l+1) cells, l-1
-// continuous derivatives. Everything the methods rely on follows from two facts:
-//     sum_g S^(l)(x - g) = 1                                    partition of unity: totals on the
-//     mesh are totals of the particles
-//     d S^(l)/dx (x)     = S^(l-1)(x + 1/2) - S^(l-1)(x - 1/2)   a derivative is a difference of
-//     the next lower spline
+// S^(l) is the l-fold convolution of the top-hat with itself, in units of the cell: symmetric, unit
+// integral, support (l+1) cells, l-1 continuous derivatives. Everything the methods rely on follows
+// from two facts. Totals on the mesh are totals of the particles, and a derivative is a difference
+// of the next lower spline:
+//     sum_g S^(l)(x - g) = 1
+//     d S^(l)/dx (x)     = S^(l-1)(x + 1/2) - S^(l-1)(x - 1/2)
 #pragma once
 
 #include <cmath>
@@ -44,8 +43,8 @@ double spline_average(const Function& f, double x, double dx) {
 
 /// The quadratic and linear weights that a particle at distance d (in cells, |d| <= 1/2) from its
 /// nearest node gives to its neighbors:
-///     quadratic[0..2] = S^(2) to the nodes -1, 0, +1          linear[0..1] = S^(1) to the
-///     midpoints -1/2, +1/2
+///     quadratic[0..2] = S^(2) to the nodes -1, 0, +1
+///     linear[0..1]    = S^(1) to the midpoints -1/2, +1/2
 /// Real is double, or Lanes for eight particles at once. S^(0) to the nearest node is 1.
 template <class Real>
 struct QuadraticWeights {

@@ -80,6 +80,8 @@ contours_of(file, columns, levels, block) = \
 # summary.json by its path, e.g. entry('performance.wall_s').
 entry(path) = system(sprintf("awk -v key='%s' -f common/json_lines.awk '%s/summary.json'", path, run))
 result(name) = real(entry('results.' . name . '.value'))
+# parameter('dt'): a number of the run's complete input, case.toml.
+parameter(name) = real(system(sprintf("awk -v name='%s' '$1 == name && $2 == \"=\" { print $3; exit }' '%s/case.toml'", name, run)))
 
 # Labels of an axis in units of pi:  set xtics pi; eval pi_tics('x', 4)
 pi_tics(axis, n) = sprintf("set %stics ('0' 0, 'π' pi", axis) . \

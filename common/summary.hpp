@@ -1,4 +1,5 @@
-// summary.json: what a run measured, beside what theory or a paper says; and the same as a table for the terminal.
+// summary.json: what a run measured, beside what theory or a paper says; and the same as a table
+// for the terminal.
 #pragma once
 
 #include <string>
@@ -36,7 +37,8 @@ class Summary {
     /// Whether every number is finite; a run with one that is not has failed.
     bool is_finite() const;
 
-    /// Writes the file. Numbers that are not finite are null, with "finite": false and "pass": false.
+    /// Writes the file. Numbers that are not finite are null, with "finite": false and
+    /// "pass": false.
     /// in: status 0 done, 3 failed, 130 or 143 stopped by a signal; message, how the run ended.
     void write(const std::string& path, const About& about, const std::string& case_name,
                int status, const std::string& message) const;

@@ -12,8 +12,8 @@
 
 namespace implicit_moment {
 
-/// A Harris current sheet, from which every plasma parameter follows; lengths in d_i, B0 =
-/// 1/(c/v_A).
+/// A Harris current sheet, from which every plasma parameter follows; lengths in d_i, and
+/// B0 = 1/(c/v_A).
 struct HarrisCase {
     double mass_ratio = 25;         // m_i/m_e
     double light_over_alfven = 20;  // c/v_A at n0 and B0

@@ -16,8 +16,8 @@ namespace implicit_moment {
 struct SpeciesScales {
     std::string name;
     double thermal_speed = 0;  // sqrt(T/m), the largest direction [c]
-    double plasma_period = 0;  // omega_p dt
-    double gyration = 0;       // Omega_c dt at the largest B
+    double omega_p_dt = 0;     // omega_p dt
+    double Omega_c_dt = 0;     // Omega_c dt at the largest B
     double debye_length = 0;   // [d_i]
 };
 
@@ -43,8 +43,8 @@ inline Scales scales_of(const Case& w) {
         scale.name = name;
         const double omega_p = std::sqrt(4 * pi * n0 * density * charge * charge / mass);
         scale.thermal_speed = std::sqrt(T / mass);
-        scale.plasma_period = omega_p * w.dt;
-        scale.gyration = std::fabs(charge) * s.B / (mass * c) * w.dt;
+        scale.omega_p_dt = omega_p * w.dt;
+        scale.Omega_c_dt = std::fabs(charge) * s.B / (mass * c) * w.dt;
         scale.debye_length = omega_p > 0 ? scale.thermal_speed / omega_p : 0;
         s.species.push_back(scale);
     };
@@ -180,7 +180,7 @@ inline void refuse_impossible(Case& w) {
                        s.name + "' is warm or drifts: choose \"longitudinal\"");
         }
     }
-    if (w.wave == "longitudinal" || w.wave == "transverse") {
+    if (w.wave != "none" && w.wave != "light") {
         const bool across = u.mode_x != 0 ? u.B_y != 0 || u.B_z != 0 : u.B_x != 0 || u.B_y != 0;
         refuse(across,
                "the dispersion relation is solved for B along k or zero: take out the part of "
@@ -188,11 +188,12 @@ inline void refuse_impossible(Case& w) {
     }
 }
 
-/// Warnings with the number and the limit, for choices that run but may mislead.   source:
-/// [IMM-13] and its lower bound.
+/// Warnings with the number and the limit, for choices that run but may mislead.
+/// source: [IMM-13] and its lower bound.
 /// note:   the slide asks for v_th dt/dx < 1, so that a particle stays within what the fluid
-///         equations can predict. Below about 1/20 the mesh does not damp what it cannot resolve
-///         and the finite-grid instability of all momentum-conserving methods may heat the plasma.
+///         equations can predict. Below about 1/20, where omega_p dt > 1/2 and the Debye length is
+///         not resolved, the mesh does not damp what it cannot resolve, and the finite-grid
+///         instability of all momentum-conserving methods may heat the plasma.
 inline std::vector<std::string> closure_warnings(const Case& w, const Scales& scales) {
     std::vector<std::string> warnings;
     const double dx = w.grid.x.spacing(), dz = w.grid.z.spacing();
@@ -205,7 +206,7 @@ inline std::vector<std::string> closure_warnings(const Case& w, const Scales& sc
                 shown(w.dt / most));
         }
         const bool unresolved = s.debye_length > 0 && s.debye_length < 0.3 * std::min(dx, dz);
-        if (most < 0.05 && unresolved && s.thermal_speed > 0 && s.plasma_period > 0.5) {
+        if (most < 0.05 && unresolved && s.thermal_speed > 0 && s.omega_p_dt > 0.5) {
             warnings.push_back(s.name + ": v_th dt/dx = " + shown(most) +
                                " is below 0.05 and the Debye length is " +
                                shown(s.debye_length / std::min(dx, dz)) +
@@ -215,8 +216,8 @@ inline std::vector<std::string> closure_warnings(const Case& w, const Scales& sc
     const double largest = scales.species.empty() ? 0 : scales.B;
     if (largest > 0) {
         for (const SpeciesScales& s : scales.species) {
-            if (s.gyration > 2 * pi) {
-                warnings.push_back(s.name + ": Omega_c dt = " + shown(s.gyration) +
+            if (s.Omega_c_dt > 2 * pi) {
+                warnings.push_back(s.name + ": Omega_c dt = " + shown(s.Omega_c_dt) +
                                    " is above 2 pi, gyration is not followed");
             }
         }
@@ -245,8 +246,8 @@ inline std::string describe_scales(const Case& w, const Scales& scales) {
         line("magnetic field",
              shown(scales.B) + " m_i c omega_pi/e, Omega_ci dt = " + shown(scales.B * w.dt));
     for (const SpeciesScales& s : scales.species) {
-        line(s.name, "omega_p dt = " + shown(s.plasma_period) + ", Omega_c dt = " +
-                         shown(s.gyration) + ", v_th = " + shown(s.thermal_speed) +
+        line(s.name, "omega_p dt = " + shown(s.omega_p_dt) + ", Omega_c dt = " +
+                         shown(s.Omega_c_dt) + ", v_th = " + shown(s.thermal_speed) +
                          " c, v_th dt/dx = " + shown(s.thermal_speed * w.dt / dx) + " and " +
                          shown(s.thermal_speed * w.dt / dz) +
                          ", Debye length = " + shown(s.debye_length) + " d_i");

@@ -73,8 +73,8 @@ inline bool is_gem_challenge(const Case& w) {
            w.grid.z.length == 12.8;
 }
 
-/// GEM: reconnected flux against the published windows.   source: Birn et al. 2001, figure 1;
-/// Pritchett 2001.
+/// GEM: reconnected flux against the published windows.
+/// source: Birn et al. 2001, figure 1; Pritchett 2001.
 inline void compare_reconnection(const Case& w, const common::History& history,
                                  common::Summary& summary) {
     const std::string birn = "Birn et al. 2001, figure 1";
@@ -91,7 +91,12 @@ inline void compare_reconnection(const Case& w, const common::History& history,
     summary.result("flux_initial", flux.front(), "B0 d_i", 0.2, 0.005, "exact: 2 psi0");
     if (last < 18) return;
     const double unit = detail::time_at_level(times, flux, 1);
-    summary.result_within("time_at_unit_flux", unit, "1/Omega_ci", 13.5, 18, birn);
+    if (w.harris.mass_ratio == 25) {
+        summary.result_within("time_at_unit_flux", unit, "1/Omega_ci", 13.5, 18, birn);
+    } else {
+        // The published runs have 25, and when the sheet lets go depends on it.
+        summary.result_info("time_at_unit_flux", unit, "1/Omega_ci", "measured");
+    }
     summary.result_within("peak_reconnection_rate", detail::steepest_slope(times, flux, 2),
                           "B0 v_A", 0.2, 0.45, "Pritchett 2001: 0.24; " + birn + ": 0.3 to 0.4");
     summary.result_within("quadrupole_at_unit_flux",

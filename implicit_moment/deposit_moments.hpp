@@ -35,8 +35,9 @@ namespace implicit_moment {
 
 using common::Lanes;
 
-/// The moments of one species, per unit area of the mesh. P carries the charge, as J does: it is the
-/// sum of q v v S (divide by q/m for a pressure).
+/// The moments of one species, per unit area of the mesh. P carries the charge, as J does: it is
+/// the sum of q v v S. Times m/q that is the slide's P, a flux of momentum; less n m u u, a
+/// pressure.
 struct Moments {
     Field rho, J_x, J_y, J_z, P_xx, P_zz, P_xz, P_xy, P_yz;
     Field density;                     // charge density of the plasma itself, up to the walls

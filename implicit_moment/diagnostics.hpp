@@ -55,32 +55,42 @@ inline Field flux_function(const Grid& grid, const VectorField& B) {
     return A_y;
 }
 
-/// Reconnected flux psi_O - psi_X: largest minus smallest A_y along the middle row, which is
-/// (1/2) int |B_z(x, 0)| dx for one X and one O point.
+/// A_y along the middle row, from one end to the other: smallest at the X-line, largest at the
+/// O-line.
+struct MiddleRow {
+    double flux = 0;   // psi_O - psi_X, (1/2) int |B_z(x, 0)| dx for one X- and one O-line
+    long X_point = 0;  // its node
+};
+
+/// The reconnected flux, and where it passes.
 /// source: Birn et al., J. Geophys. Res. 106, 3715 (2001), figure 1.
-inline double reconnected_flux(const Grid& grid, const VectorField& B) {
+inline MiddleRow middle_row(const Grid& grid, const VectorField& B) {
     const long middle = grid.z.cells / 2;
     double A_y = 0, low = 0, high = 0;
+    MiddleRow row;
     for (long i = 0; i < grid.x.cells; ++i) {
-        A_y += grid.x.spacing() * B.z()[grid.index(i, middle)];
-        low = std::min(low, A_y);
+        if (A_y < low) low = A_y, row.X_point = i;
         high = std::max(high, A_y);
+        A_y += grid.x.spacing() * B.z()[grid.index(i, middle)];
     }
-    return high - low;
+    row.flux = high - low;
+    return row;
 }
 
-/// Mean of B_y sign(x z) in the quarter of the box around its center: positive for the quadrupole
+/// Mean of B_y sign(x z) in a quarter of the box around the X-line: positive for the quadrupole
 /// that the Hall current of reconnection makes (electrons stream away from the X-line, so J_x < 0
 /// at x > 0 and dB_y/dz > 0 there).
-inline double quadrupole(const Grid& grid, const VectorField& B) {
-    const long i_0 = grid.x.cells / 2, j_0 = grid.z.cells / 2;
-    const long reach_x = grid.x.cells / 4, reach_z = grid.z.cells / 4;
+/// in:     B with ghosts filled; x periodic.
+inline double quadrupole(const Grid& grid, const VectorField& B, long X_point) {
+    const long nx = grid.x.cells, j_0 = grid.z.cells / 2;
+    const long reach_x = nx / 4, reach_z = grid.z.cells / 4;
     double sum = 0;
     for (long j = 0; j < reach_z; ++j) {
+        const double *above = B.y() + grid.index(0, j_0 + j),
+                     *below = B.y() + grid.index(0, j_0 - 1 - j);
         for (long i = 0; i < reach_x; ++i) {
-            sum += B.y()[grid.index(i_0 + i, j_0 + j)] - B.y()[grid.index(i_0 - 1 - i, j_0 + j)] -
-                   B.y()[grid.index(i_0 + i, j_0 - 1 - j)] +
-                   B.y()[grid.index(i_0 - 1 - i, j_0 - 1 - j)];
+            const long right = (X_point + i) % nx, left = (X_point - 1 - i + nx) % nx;
+            sum += above[right] - above[left] - below[right] + below[left];
         }
     }
     return sum / (4.0 * static_cast<double>(reach_x * reach_z));

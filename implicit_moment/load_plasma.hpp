@@ -52,14 +52,14 @@ struct Plasma {
 
 namespace detail {
 
-// Numbers in (0, 1) for loading: a quiet start takes radical inverses, each quantity in a prime
-// base of its own.
+// Numbers in (0, 1) for loading: a quiet start takes radical inverses, each quantity of a species in
+// a prime base of its own. Species that share bases differ by a shift, and small bases are quietest.
 struct Loader {
     bool quiet;
     std::uint64_t seed;
     double uniform(std::uint32_t purpose, unsigned base, long particle) const {
         const auto p = static_cast<std::uint64_t>(particle);
-        return quiet ? common::scrambled_radical_inverse(p, base, seed + 1000 * purpose)
+        return quiet ? common::shifted_radical_inverse(p, base, seed + 1000 * purpose)
                      : common::uniform(seed, purpose, p, base);
     }
     double gaussian(std::uint32_t purpose, unsigned base, long particle) const {

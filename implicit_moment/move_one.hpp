@@ -23,8 +23,8 @@ struct Velocity {
 };
 
 /// Mean velocity of a step: vbar = v_t + (v_t x O) + ... solved for vbar = v_t + vbar x O.
-///     vbar = [ v_t + v_t x O + (v_t . O) O ] / (1 + O^2),   v_t = v + q dt/2m E,   O = q dt B /
-///     (2 m c)
+///     vbar = [ v_t + v_t x O + (v_t . O) O ] / (1 + O^2)
+///     v_t = v + q dt/2m E,   O = q dt B / (2 m c)
 /// in:     v^n; local fields; half_kick = q dt / 2m.
 /// exact:  vbar - vbar x O = v_t.
 /// source: [IMM-12] for one particle.

@@ -41,7 +41,7 @@ struct Cell {
     }
 };
 
-// How far a coordinate is behind a wall, in cells; not positive inside, and in a periodic direction.
+// How far a coordinate is behind a wall, in cells; not positive inside, 0 in a periodic direction.
 inline Lanes behind_wall(const common::Axis& axis, const Lanes& x, double per_dx) {
     if (axis.periodic) return Lanes{};
     return common::larger(axis.low - x, x - axis.high()) * per_dx;

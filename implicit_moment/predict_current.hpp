@@ -87,7 +87,8 @@ inline void rotation_tensor(const Grid& grid, const double* B, double half_kick,
     });
 }
 
-/// Takes the rotation in another B out of R: R becomes R (1 - . x O), the inverse of [IMM-12] first.
+/// Takes the turn in another B out of R: R becomes R A with A v = v - v x O, the inverse of
+/// [IMM-12] in that B.
 /// exact:  in the B of R itself this leaves the unit tensor.
 inline void undo_rotation(const Grid& grid, const double* B, double half_kick, Tensor& R) {
     const long s = grid.stride(), m = grid.size();

@@ -76,8 +76,9 @@ class Recorder {
                      largest_divergence(grid, field.B, gauss_scratch_), gauss_error(grid, gauss_)});
         if (harris_) {
             const double B0 = harris_sheet(wanted_.harris).B0;
+            const MiddleRow middle = middle_row(grid, field.B);
             row_.insert(row_.end(),
-                        {reconnected_flux(grid, field.B) / B0, quadrupole(grid, field.B) / B0});
+                        {middle.flux / B0, quadrupole(grid, field.B, middle.X_point) / B0});
         } else {
             const auto mode = mode_amplitude(grid, field, wanted_.component, wanted_.uniform.mode_x,
                                              wanted_.uniform.mode_z);

@@ -55,8 +55,8 @@ inline void fill_ghosts(const Grid& grid, const VectorKind& kind, VectorField& f
     fill_ghosts(grid, kind, f.all.data());
 }
 
-/// Calls at(n) for every storage index n of rows j_first .. j_last, columns -1+1 .. N: all points
-/// whose neighbors are stored.
+/// Calls work(n) for the storage index n of rows and columns 0..N, of all points whose neighbors
+/// are stored.
 template <class Work>
 inline void for_each_point(const Grid& grid, const Work& work) {
     for (long j = 0; j <= grid.z.cells; ++j) {
@@ -107,7 +107,7 @@ inline void divergence_of_electric(const Grid& grid, const double* E, Field& div
     });
 }
 
-/// div B on faces... B_x lives on z-edges and B_z on x-edges, so their divergence lives on faces.
+/// div B on faces: B_x lives on z-edges and B_z on x-edges.
 /// in:     ghosts filled.
 inline void divergence_of_magnetic(const Grid& grid, const double* B, Field& div) {
     const long s = grid.stride(), m = grid.size();

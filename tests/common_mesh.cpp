@@ -216,7 +216,7 @@ VectorField smoothed(const Grid& grid, const VectorKind& kind, const SmoothingSe
 
 }  // namespace
 
-// ---- splines and lanes ---------------------------------------------------------------------------
+// ---- splines and lanes --------------------------------------------------------------------------
 
 TEST_CASE("splines are symmetric and add up to one and keep the mean and the variance") {
     Random random;
@@ -317,7 +317,7 @@ TEST_CASE("the largest of eight lanes is NaN where one lane is") {
     }
 }
 
-// ---- ghosts and walls ----------------------------------------------------------------------------
+// ---- ghosts and walls ---------------------------------------------------------------------------
 
 TEST_CASE("ghosts are periodic or mirror images and an odd quantity vanishes on a wall") {
     Random random;
@@ -388,7 +388,7 @@ TEST_CASE("a walled mesh is half of a periodic mesh that holds the mirror image"
     }
 }
 
-// ---- differences and their modes -----------------------------------------------------------------
+// ---- differences and their modes ----------------------------------------------------------------
 
 TEST_CASE("the curl of a gradient and the divergence of a curl are zero to round-off") {
     Random random;
@@ -497,7 +497,7 @@ TEST_CASE("the Helmholtz and Poisson solutions satisfy the five-point equations 
     }
 }
 
-// ---- smoothing -----------------------------------------------------------------------------------
+// ---- smoothing ----------------------------------------------------------------------------------
 
 TEST_CASE("smoothing keeps constants and is its own transpose and sees walls as mirrors") {
     Random random;
@@ -581,7 +581,7 @@ TEST_CASE("smoothing commutes with curl and divergence also at walls") {
     }
 }
 
-// ---- threads and sorting -------------------------------------------------------------------------
+// ---- threads and sorting ------------------------------------------------------------------------
 
 TEST_CASE("loops over blocks and rows cover everything once whatever the number of threads") {
     Random random;

@@ -130,14 +130,14 @@ TEST_CASE("the radical inverse stays inside the open interval for the largest in
         }
 }
 
-TEST_CASE("a scrambled radical inverse is as even as the plain one and differs with the seed") {
+TEST_CASE("a shifted radical inverse is as even as the plain one and differs with the seed") {
     const int n = 4096;
     for (const unsigned base : {2u, 3u, 5u}) {
         std::vector<double> plain, one, two;
         for (int i = 0; i < n; ++i) {
             plain.push_back(common::radical_inverse(i, base));
-            one.push_back(common::scrambled_radical_inverse(i, base, 1));
-            two.push_back(common::scrambled_radical_inverse(i, base, 2));
+            one.push_back(common::shifted_radical_inverse(i, base, 1));
+            two.push_back(common::shifted_radical_inverse(i, base, 2));
         }
         CHECK(*std::min_element(one.begin(), one.end()) > 0.0);
         CHECK(*std::max_element(one.begin(), one.end()) < 1.0);

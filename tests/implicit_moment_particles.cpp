@@ -60,7 +60,7 @@ std::vector<Grid> meshes() {
     return all;
 }
 
-// ---- particles -----------------------------------------------------------------------------------
+// ---- particles ----------------------------------------------------------------------------------
 
 Particles no_particles() {
     Particles particles;
@@ -113,7 +113,7 @@ bool identical(const Particles& a, const Particles& b) {
            a.vz_p == b.vz_p;
 }
 
-// ---- moments -------------------------------------------------------------------------------------
+// ---- moments ------------------------------------------------------------------------------------
 
 // Visits the distinct points of a place; w is the part of a point's cell inside the mesh.
 template <class Visit>
@@ -184,7 +184,7 @@ Field by_definition(const Grid& grid, const Particles& particles, const Definiti
     return f;
 }
 
-// ---- fields at particles and reference movers ----------------------------------------------------
+// ---- fields at particles and reference movers ---------------------------------------------------
 
 PushField pack(const Grid& grid, const VectorField& E, const VectorField& B) {
     PushField push;
@@ -229,7 +229,7 @@ Particles one_by_one(const Grid& grid, const PushField& push, double dt, int at_
     return moved;
 }
 
-// ---- loading -------------------------------------------------------------------------------------
+// ---- loading ------------------------------------------------------------------------------------
 
 // Two warm species that drift, 64 of each in a cell of a small periodic mesh.
 Case uniform_case(const std::string& loading, long seed = 1) {
@@ -248,7 +248,7 @@ Case uniform_case(const std::string& loading, long seed = 1) {
 
 }  // namespace
 
-// ---- the facts: deposit --------------------------------------------------------------------------
+// ---- the facts: deposit -------------------------------------------------------------------------
 
 TEST_CASE("deposited moments are the sums over particles and images with their splines") {
     Random random;
@@ -341,15 +341,16 @@ TEST_CASE("continuity of charge and of momentum is exact in continuous time") {
                 add(start, near(grid.x, i), near(grid.z, j), random.vector());
             }
         }
-        const auto at = [&](double t) {
+        const auto flown = [&](double t) {
             Particles particles = start;
             for (std::size_t p = 0; p < particles.x_p.size(); ++p) {
                 particles.x_p[p] += t * particles.vx_p[p];
                 particles.z_p[p] += t * particles.vz_p[p];
             }
             sort(grid, particles);
-            return deposited(grid, particles);
+            return particles;
         };
+        const auto at = [&](double t) { return deposited(grid, flown(t)); };
         const double h = 0.02, dx = grid.x.spacing(), dz = grid.z.spacing();
         const Moments m = at(0), early = at(-2 * h), before = at(-h), after = at(h),
                       late = at(2 * h);
@@ -374,6 +375,21 @@ TEST_CASE("continuity of charge and of momentum is exact in continuous time") {
               tolerance);
         CHECK(largest(grid, on_z_edges, rate(&Moments::J_z) + div_P.all.tail(size)) <= tolerance);
 
+        // The same for charge and current with the conductor's images behind the walls.
+        const auto imaged = [&](double t) {
+            Moments moments(grid);
+            deposit_moments(flown(t), grid, VectorField(grid), h, moments);
+            return moments;
+        };
+        const Moments image = imaged(0);
+        const Field rate_of_image =
+            (imaged(-2 * h).rho - 8 * imaged(-h).rho + 8 * imaged(h).rho - imaged(2 * h).rho) /
+            (12 * h);
+        VectorField J_image(grid);
+        J_image.all << image.J_x, image.J_y, image.J_z;
+        divergence_of_electric(grid, J_image.all.data(), div);
+        CHECK(largest(grid, on_nodes, rate_of_image + div) <= tolerance);
+
         // Over a whole step, with the current that the pressure has made by half time.
         const auto missing = [&](double dt) {
             VectorField half = J;
@@ -385,26 +401,36 @@ TEST_CASE("continuity of charge and of momentum is exact in continuous time") {
     }
 }
 
-// ---- gather --------------------------------------------------------------------------------------
+// ---- gather -------------------------------------------------------------------------------------
 
 TEST_CASE("the work done on particles is the work of the deposited current also at walls") {
     Random random;
     for (const Grid& grid : meshes()) {
         const Particles particles = anywhere(grid, 1000, 1, random);
-        const VectorField E = random.field(grid, current, 1);
-        const PushField push = pack(grid, E, VectorField(grid));
-        const Moments moments = deposited(grid, particles);
-        double work = 0;
-        for (std::size_t p = 0; p < particles.x_p.size(); ++p) {
-            const Local at = gathered(grid, push, particles.x_p[p], particles.z_p[p]);
-            work += particles.q_p * velocity(particles, p).dot(Vector(at.E_x, at.E_y, at.E_z));
+        for (const bool conductor : {false, true}) {
+            // Behind a wall: the mirrored plasma of the slide's moments, or the conductor's images
+            // of the field equations.
+            const VectorKind& kind = conductor ? electric : current;
+            const VectorField E = random.field(grid, kind, 1);
+            const PushField push = pack(grid, E, VectorField(grid));
+            Moments moments(grid);
+            if (conductor) {
+                deposit_moments(particles, grid, VectorField(grid), 0.1, moments);
+            } else {
+                deposit_moments(particles, grid, moments);
+            }
+            double work = 0;
+            for (std::size_t p = 0; p < particles.x_p.size(); ++p) {
+                const Local at = gathered(grid, push, particles.x_p[p], particles.z_p[p]);
+                work += particles.q_p * velocity(particles, p).dot(Vector(at.E_x, at.E_y, at.E_z));
+            }
+            const std::array J{&moments.J_x, &moments.J_y, &moments.J_z};
+            for (std::size_t a = 0; a < 3; ++a) {
+                const Field part = E.all.segment(static_cast<long>(a) * grid.size(), grid.size());
+                work -= total(grid, kind.place[a], J[a]->cwiseProduct(part));
+            }
+            CHECK(std::fabs(work) <= 0.2 * eps * real(particles.count()));
         }
-        const std::array J{&moments.J_x, &moments.J_y, &moments.J_z};
-        for (std::size_t a = 0; a < 3; ++a) {
-            const Field part = E.all.segment(static_cast<long>(a) * grid.size(), grid.size());
-            work -= total(grid, current.place[a], J[a]->cwiseProduct(part));
-        }
-        CHECK(std::fabs(work) <= 0.2 * eps * real(particles.count()));
     }
 }
 
@@ -448,7 +474,7 @@ TEST_CASE("the gathered gradient is the gradient of the gathered potential and d
     }
 }
 
-// ---- the mover -----------------------------------------------------------------------------------
+// ---- the mover ----------------------------------------------------------------------------------
 
 TEST_CASE("moved particles satisfy the midpoint rule to the tolerance of the mover") {
     Random random;
@@ -612,7 +638,7 @@ TEST_CASE("a field that overwhelms everything is reported as lost particles") {
     }
 }
 
-// ---- walls and seams -----------------------------------------------------------------------------
+// ---- walls and seams ----------------------------------------------------------------------------
 
 TEST_CASE("without fields particles bounce between walls like light between mirrors") {
     Random random;
@@ -743,7 +769,7 @@ TEST_CASE("one and two and three threads give the same particles and moments to 
     }
 }
 
-// ---- loading -------------------------------------------------------------------------------------
+// ---- loading ------------------------------------------------------------------------------------
 
 TEST_CASE("the Harris sheet balances pressure and current and its field is free of divergence") {
     const Case wanted;

@@ -443,6 +443,8 @@ TEST_CASE("combinations that cannot run are refused with the numbers and the cur
         {"Langmuir wave without charge", langmuir + electrons + "wave_x = 1e-5\n",
          "species.electrons.charge=0 time.end=3 grid.cells_x=4 grid.cells_z=4 --quiet",
          "theory.wave"},
+        {"Langmuir wave across B", langmuir + electrons + "[uniform]\nB_z = 0.1\n", "",
+         "the dispersion relation is solved for B along k or zero"},
         {"longitudinal wave across B", longitudinal + electrons + "[uniform]\nB_z = 0.1\n", "",
          "the dispersion relation is solved for B along k or zero: take out the part of uniform.B "
          "across the mode, or theory.wave"},

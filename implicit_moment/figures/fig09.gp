@@ -1,4 +1,4 @@
-# Figure 9 of the talk: reconnected flux of the GEM challenge. The kinetic run leaves the slow tearing phase near t = 14 and reaches unit flux at the
+# Figure 9 of the talk: reconnected flux of the GEM challenge. The flux grows slowly until t = 9, fast from t = 11, and reaches unit flux at the
 # time of the published curves; the initial value 0.2 is exact, and the straight line has the slope of Pritchett's reconnection field, 0.24.
 load 'common/style.gp'
 history = run.'/history.dat'

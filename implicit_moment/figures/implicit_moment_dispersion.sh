@@ -1,6 +1,7 @@
 #!/bin/sh
 # implicit_moment_dispersion.sh PROGRAM FOLDER: light and cold Langmuir waves with theta = 1/2 and 1 at
-# several time steps; one table per wave and theta in FOLDER: angle, measured and exact frequency and damping.
+# several time steps; one table per wave and theta in FOLDER. The angle is c dt K for light and omega_p dt for the plasma; damping is over the exact
+# one where there is one, and the measured rate where there is none (theta = 1/2).
 set -eu
 program=$1
 folder=$2
@@ -14,7 +15,7 @@ for wave in light langmuir; do
     [ $wave = light ] && file=$cases/light_wave.toml
     for theta in 0.5 1; do
         table=$folder/${wave}_$theta.dat
-        echo '# 1:omega_dt 2:frequency_over_exact_scheme 3:damping_measured_over_exact_or_measured 4:theory_omega 5:theory_growth' > "$table.partial"
+        echo '# 1:angle 2:frequency_over_exact 3:damping 4:theory_omega 5:theory_growth 6:dt' > "$table.partial"
         for angle in 0.1 0.3 0.6 1 1.5 2 3 5; do
             run=$folder/runs/${wave}_${theta}_$angle
             # For light the angle is c dt K with K = 0.98135 of the mesh; for the plasma it is omega_p dt = dt.
