@@ -58,6 +58,11 @@ sources   := $(wildcard */*.hpp */*.cpp)
 folder_of  = $(patsubst %/,%,$(dir $(filter %/$(1).cpp,$(mains))))
 
 MAKEFLAGS += --no-builtin-rules
+# Compilers work side by side. Runs do not: each takes all cores for its threads.
+ifeq ($(filter clean,$(MAKECMDGOALS)),)
+MAKEFLAGS += -j$(JOBS)
+endif
+one_at_a_time = $(if $(shell command -v flock),flock out)
 .SUFFIXES:
 .DELETE_ON_ERROR:
 .SECONDEXPANSION:
@@ -122,14 +127,17 @@ $(objects)/%.o: %.cpp $(BUILD)/flags
 # The reader of case files must refuse bad input with a message, never with an assertion of its library.
 $(objects)/common/case_file.o: private defines += -DNDEBUG
 
-$(foreach m,$(mains),$(eval $(BUILD)/$(basename $(notdir $m)): $(objects)/$(m:.cpp=.o)))
-$(tests:%=$(BUILD)/tests/%): $(BUILD)/tests/%: $(objects)/tests/%.o
-
-$(bench_programs): $(BUILD)/bench/%: $(objects)/%/bench.o
-
-$(programs:%=$(BUILD)/%) $(tests:%=$(BUILD)/tests/%) $(bench_programs): $(shared) $(BUILD)/flags
-	@mkdir -p $(@D)
-	$(CXX) $(flags) -o $@ $(filter %.o,$^) $(libraries)
+define link
+@mkdir -p $(@D)
+$(CXX) $(flags) -o $@ $(filter %.o,$^) $(libraries)
+endef
+# The largest object first, so that the others are compiled beside it.
+$(programs:%=$(BUILD)/%): $(BUILD)/%: $$(objects)/$$(call folder_of,$$*)/$$*.o $(shared) $(BUILD)/flags
+	$(link)
+$(tests:%=$(BUILD)/tests/%): $(BUILD)/tests/%: $(objects)/tests/%.o $(shared) $(BUILD)/flags
+	$(link)
+$(bench_programs): $(BUILD)/bench/%: $(objects)/%/bench.o $(shared) $(BUILD)/flags
+	$(link)
 
 -include $(patsubst %.cpp,$(objects)/%.d,$(mains) $(benches) $(wildcard common/*.cpp tests/*.cpp))
 
@@ -140,7 +148,8 @@ $(programs:%=$(BUILD)/%) $(tests:%=$(BUILD)/tests/%) $(bench_programs): $(shared
 define runs_of_program
 out/$(1)/%/.complete: $(2)/cases/%.toml $(BUILD)/$(1) $$$$(wildcard out/$(1)/$$$$*/case.toml) | $(packages_first)
 	@rm -f $$@
-	$(BUILD)/$(1) $$< --out $$(@D) --force
+	@mkdir -p $$(@D)
+	$$(one_at_a_time) $(BUILD)/$(1) $$< --out $$(@D) --force
 	@touch $$@
 endef
 $(foreach p,$(programs),$(eval $(call runs_of_program,$p,$(call folder_of,$p))))
@@ -163,7 +172,7 @@ define series
 $(4)/.complete: $(1) $(BUILD)/$(2) $(3) | $(packages_first)
 	@rm -f $$@
 	@mkdir -p $$(@D)
-	sh $(1) $(BUILD)/$(2) $$(@D)
+	$$(one_at_a_time) sh $(1) $(BUILD)/$(2) $$(@D)
 	@touch $$@
 endef
 

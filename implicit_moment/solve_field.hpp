@@ -175,10 +175,12 @@ inline void pack_push_field(FieldSolver& solver, const FieldState& field, PushFi
     smooth(grid, electric, solver.settings.smoothing, solver.ghosted.all.data(), solver.scratch);
     const VectorField& E = solver.ghosted;
     push.resize(static_cast<std::size_t>(grid.size()));
-    for (long n = 0; n < grid.size(); ++n) {
-        push[static_cast<std::size_t>(n)] = {E.x()[n], E.y()[n], E.z()[n],
-                                             B.x()[n], B.y()[n], B.z()[n]};
-    }
+    common::for_each_row(grid.z.cells + 3, [&](long row) {
+        for (long n = row * grid.stride(); n < (row + 1) * grid.stride(); ++n) {
+            push[static_cast<std::size_t>(n)] = {E.x()[n], E.y()[n], E.z()[n],
+                                                 B.x()[n], B.y()[n], B.z()[n]};
+        }
+    });
 }
 
 }  // namespace implicit_moment
