@@ -419,9 +419,10 @@ TEST_CASE("the two curls are transposes of each other and divergence of minus th
 // A scheme that averages would not see these modes at all.
 TEST_CASE("an alternating field is seen by curl curl minus grad div with its full wave number") {
     const Grid grid{{8, 0, 4, true}, {6, 0, 1.8, true}};
-    for (const auto& [p, q] : {std::pair{1, 0}, {0, 1}, {1, 1}}) {
-        const double k2 =
-            p * std::pow(2 / grid.x.spacing(), 2) + q * std::pow(2 / grid.z.spacing(), 2);
+    for (const auto& mode : {std::pair{1, 0}, {0, 1}, {1, 1}}) {
+        const long p = mode.first, q = mode.second;
+        const double k2 = real(p) * std::pow(2 / grid.x.spacing(), 2) +
+                          real(q) * std::pow(2 / grid.z.spacing(), 2);
         for (long component = 0; component < 3; ++component) {
             VectorField E(grid);
             for_each_distinct(grid, on_nodes, [&](long i, long j, long n) {
