@@ -16,9 +16,9 @@ namespace implicit_moment {
 struct SpeciesScales {
     std::string name;
     double thermal_speed = 0;  // sqrt(T/m), the largest direction [c]
-    double omega_p_dt = 0;     // omega_p dt
-    double Omega_c_dt = 0;     // Omega_c dt at the largest B
-    double debye_length = 0;   // [d_i]
+    double omega_p_dt = 0;
+    double Omega_c_dt = 0;    // at the largest B
+    double debye_length = 0;  // [d_i]
 };
 
 struct Scales {
@@ -102,8 +102,8 @@ inline void refuse_impossible(Case& w) {
                    " c (drift or three thermal speeds), and the mover is not relativistic: raise "
                    "harris.light_over_alfven above " +
                    shown(h.light_over_alfven * fastest));
-        for (const SpeciesCase& s : w.uniform.species) {
-            refuse(true, "[species." + s.name +
+        if (!w.uniform.species.empty()) {
+            refuse(true, "[species." + w.uniform.species.front().name +
                              "] belongs to plasma.setup = \"uniform\"; the Harris sheet makes its "
                              "own ions and electrons");
         }

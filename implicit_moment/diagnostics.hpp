@@ -69,7 +69,10 @@ inline MiddleRow middle_row(const Grid& grid, const VectorField& B) {
     double A_y = 0, low = 0, high = 0;
     MiddleRow row;
     for (long i = 0; i < grid.x.cells; ++i) {
-        if (A_y < low) low = A_y, row.X_point = i;
+        if (A_y < low) {
+            low = A_y;
+            row.X_point = i;
+        }
         high = std::max(high, A_y);
         A_y += grid.x.spacing() * B.z()[grid.index(i, middle)];
     }

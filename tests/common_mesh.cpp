@@ -6,10 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <initializer_list>
 #include <limits>
 #include <numeric>
-#include <random>
 #include <utility>
 #include <vector>
 
@@ -18,43 +16,14 @@
 #include "implicit_moment/mesh_modes.hpp"
 #include "implicit_moment/smooth.hpp"
 #include "implicit_moment/sort_particles.hpp"
+#include "tests/any_fields.hpp"
 
 namespace {
 
-using namespace implicit_moment;
+using namespace facts;
 using common::Lanes, common::lane_count;
 using common::on_faces, common::on_nodes, common::on_x_edges, common::on_z_edges, common::spline;
-constexpr double eps = std::numeric_limits<double>::epsilon();
 constexpr Parity even{+1, +1}, odd{-1, -1};
-
-double real(long n) { return static_cast<double>(n); }
-
-// The largest of numbers that are not negative; not a number where one of them is not.
-double worst(std::initializer_list<double> values) {
-    double largest = 0;
-    for (const double v : values) largest = largest >= v || std::isnan(largest) ? largest : v;
-    return largest;
-}
-
-// Numbers between -1 and 1, and fields of them with ghosts filled.
-struct Random {
-    std::mt19937_64 engine{1};
-    double operator()() { return 0x1p-52 * static_cast<double>(engine() >> 11) - 1; }
-    Field field(const Grid& grid) {
-        return Field::NullaryExpr(grid.size(), [this] { return (*this)(); });
-    }
-    Field field(const Grid& grid, Place place, Parity parity) {
-        Field f = field(grid);
-        common::fill_ghosts(grid, place, parity, f.data());
-        return f;
-    }
-    VectorField field(const Grid& grid, const VectorKind& kind) {
-        VectorField f(grid);
-        for (double& value : f.all) value = (*this)();
-        fill_ghosts(grid, kind, f);
-        return f;
-    }
-};
 
 // Every pair of ends, with few cells and with more than a loop is cut into.
 std::vector<Grid> meshes() {
@@ -76,18 +45,6 @@ void for_every_place_and_parity(const Visit& visit) {
                 for (const int z : {+1, -1}) visit(grid, place, Parity{x, z});
             }
         }
-    }
-}
-
-// Distinct points along one direction; a node on a wall has half a cell inside the mesh.
-long points(const common::Axis& axis, bool half) { return axis.cells + !(axis.periodic || half); }
-double weight(const common::Axis& axis, bool half, long i) {
-    return !axis.periodic && !half && i % axis.cells == 0 ? 0.5 : 1;
-}
-template <class Visit>
-void for_each_distinct(const Grid& grid, Place place, const Visit& visit) {
-    for (long j = 0; j < points(grid.z, place.half_z); ++j) {
-        for (long i = 0; i < points(grid.x, place.half_x); ++i) visit(i, j, grid.index(i, j));
     }
 }
 

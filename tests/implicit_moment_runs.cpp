@@ -7,7 +7,10 @@
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace {
 
@@ -59,7 +62,7 @@ void check_gem(const std::string& seed) {
     CHECK(value(summary, "quadrupole_at_unit_flux") > 0.005);
     // div B in units of B0/dx, and a bounded Gauss residual.
     CHECK(summary["conservation"]["largest_div_B"]["value"].get<double>() <= 1e-12 * 0.05 / 0.4);
-    CHECK(summary["conservation"]["largest_gauss_residual"]["value"].get<double>() <= 0.05);
+    CHECK(summary["conservation"]["largest_gauss_residual"]["value"].get<double>() <= 1e-3);
 }
 
 // The rows of a run's history.
@@ -151,7 +154,7 @@ TEST_CASE("two cold streams of short wave length are stable" * doctest::descript
         last = size;
     }
     CHECK(first > 0);
-    CHECK(last <= 10 * first);
+    CHECK(last <= 2 * first);
 }
 
 TEST_CASE("Weibel filaments grow at the rate of linear theory" * doctest::description("physics")) {
@@ -214,7 +217,7 @@ TEST_CASE("Newton and GMRES agree on the reconnected flux" * doctest::descriptio
     CHECK(newton[flux] != linear[flux]);  // other equations, same physics
     CHECK(std::fabs(newton[flux] / linear[flux] - 1) <= 0.01);
     CHECK(std::fabs(newton[magnetic] / linear[magnetic] - 1) <= 1e-4);
-    CHECK(summary["conservation"]["largest_energy_drift"]["value"].get<double>() <= 0.01);
+    CHECK(summary["conservation"]["largest_energy_drift"]["value"].get<double>() <= 0.003);
 }
 
 TEST_CASE("a warm magnetized plasma keeps its energy however fast it turns" *
@@ -232,14 +235,16 @@ TEST_CASE("a warm magnetized plasma keeps its energy however fast it turns" *
         "species.electrons.mass=5.446623e-4 species.electrons.temperature_x=3.33e-5 "
         "species.electrons.temperature_y=3.33e-5 species.electrons.temperature_z=3.33e-5 ";
     for (const char* boundary : {"periodic", "wall"}) {
-        for (const char* rest : {"time.dt=0.1 uniform.B_x=0.005", "time.dt=0.1 uniform.B_x=0.01",
-                                 "time.dt=0.1 uniform.B_x=0.02", "time.dt=0.4 uniform.B_x=0.02"}) {
+        for (const auto& [rest, bound] : {std::pair{"time.dt=0.1 uniform.B_x=0.005", 0.05},
+                                          {"time.dt=0.1 uniform.B_x=0.01", 0.015},
+                                          {"time.dt=0.1 uniform.B_x=0.02", 0.004},
+                                          {"time.dt=0.4 uniform.B_x=0.02", 0.001}}) {
             const Json summary = run("magnetized", warm + rest + " grid.boundary_z=" + boundary);
             const double drift =
                 summary["conservation"]["largest_energy_drift"]["value"].get<double>();
             CAPTURE(boundary);
             CAPTURE(rest);
-            CHECK(drift <= 0.06);
+            CHECK(drift <= bound);
         }
     }
 }

@@ -1,0 +1,167 @@
+// Facts about the particles and fields with which runs of implicit_moment start.
+#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "implicit_moment/initial_state.hpp"
+#include "tests/any_particles.hpp"
+
+namespace {
+
+using namespace facts;
+
+// Two warm species that drift, 64 of each in a cell of a small periodic mesh.
+Case uniform_case(const std::string& loading, long seed = 1) {
+    Case wanted;
+    wanted.setup = "uniform", wanted.loading = loading, wanted.seed = seed;
+    wanted.grid = {{16, -2, 4, true}, {12, -3, 6, true}};
+    SpeciesCase ions, electrons;
+    ions.name = "ions", electrons.name = "electrons";
+    ions.drift_x = 0.01, ions.drift_y = -0.02, ions.drift_z = 0.03;
+    ions.temperature_x = 1e-4, ions.temperature_y = 4e-4, ions.temperature_z = 9e-4;
+    electrons.charge = -1, electrons.mass = 0.04;
+    electrons.temperature_x = electrons.temperature_y = electrons.temperature_z = 4e-4;
+    wanted.uniform.species = {ions, electrons};
+    return wanted;
+}
+
+}  // namespace
+
+TEST_CASE("the Harris sheet balances pressure and current and its field is free of divergence") {
+    const Case wanted;
+    const Grid& grid = wanted.grid;
+    const HarrisSheet sheet = harris_sheet(wanted.harris);
+    const double B0 = sheet.B0, lambda = wanted.harris.thickness, dz = grid.z.spacing();
+    CHECK(std::fabs(n0 * (sheet.T_i + sheet.T_e) * 8 * pi / (B0 * B0) - 1) <= 4 * eps);
+    CHECK(std::fabs(sheet.T_i / sheet.T_e - wanted.harris.temperature_ratio) <= 64 * eps);
+    CHECK(std::fabs(n0 * (sheet.u_i - sheet.u_e) * 4 * pi * lambda / (c * B0) - 1) <= 4 * eps);
+    CHECK(std::fabs(sheet.u_i / sheet.T_i + sheet.u_e / sheet.T_e) <= 64 * eps / B0);
+
+    FieldState field(grid);
+    harris_field(wanted, field);
+    Field div(grid.size());
+    divergence_of_magnetic(grid, field.B.all.data(), div);
+    CHECK(largest(grid, on_faces, div) <= 4 * eps * B0 / dz);
+    // From the X point in the middle to the O point at the end of the box: 2 psi0.
+    double flux = 0, wall = 0;
+    for (long i = 0; i < grid.x.cells; ++i) {
+        if (2 * i >= grid.x.cells) flux += field.B.z()[grid.index(i, grid.z.cells / 2)];
+        wall = worst({wall, std::fabs(field.B.z()[grid.index(i, 0)])});
+    }
+    const double psi0 = wanted.harris.perturbation * B0;
+    CHECK(std::fabs(flux * grid.x.spacing() - 2 * psi0) <= 16 * eps * B0);
+    CHECK(wall <= 0);
+    // The mean over x is the sheet without the perturbation.
+    for (long j = 0; j < grid.z.cells; ++j) {
+        const double mean =
+            Eigen::Map<const Field>(field.B.x() + grid.index(0, j), grid.x.cells).mean();
+        const auto log_cosh = [&](double node) {
+            return std::log(std::cosh(grid.z.at(node) / lambda));
+        };
+        const double exact = lambda / dz * (log_cosh(real(j + 1)) - log_cosh(real(j)));
+        CHECK(std::fabs(mean / B0 - exact) <= 128 * eps);
+    }
+}
+
+TEST_CASE("particles of a Harris sheet have equal weights and start with no charge") {
+    for (const char* loading : {"quiet", "random"}) {
+        Case wanted;
+        wanted.loading = loading;
+        const Grid& grid = wanted.grid;
+        const HarrisSheet sheet = harris_sheet(wanted.harris);
+        const State state = initial_state(wanted);
+        const Particles &ions = state.plasma.species[0], &electrons = state.plasma.species[1];
+        CHECK(2 * ions.count() == wanted.harris.particles);
+        CHECK(ions.q_p == -electrons.q_p);
+        CHECK(std::fabs(ions.q_p / ions.m_p - 1) <= eps);
+        CHECK(std::fabs(electrons.q_p / electrons.m_p / -wanted.harris.mass_ratio - 1) <= 4 * eps);
+        CHECK(ions.x_p == electrons.x_p);
+        CHECK(ions.z_p == electrons.z_p);
+
+        const Moments of_ions = deposited(grid, ions), of_electrons = deposited(grid, electrons);
+        CHECK(largest(grid, on_nodes, of_ions.rho + of_electrons.rho) <= 4 * eps * n0);
+        CHECK(state.field.E.all.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= 64 * eps * n0);
+        // Density and current of the sheet, averaged over x.
+        const Field J_y = of_ions.J_y + of_electrons.J_y;
+        for (long j = 0; j <= grid.z.cells; ++j) {
+            const auto mean = [&](const Field& f) {
+                return f.segment(grid.index(0, j), grid.x.cells).mean() / n0;
+            };
+            const double sech2 = common::spline_average(
+                [&](double z) { return std::pow(std::cosh(z / wanted.harris.thickness), -2); },
+                grid.z.at(real(j)), grid.z.spacing());
+            CHECK(std::fabs(mean(of_ions.rho) - sech2 - wanted.harris.background) <= 0.05);
+            CHECK(std::fabs(mean(J_y) - sech2 * (sheet.u_i - sheet.u_e)) <= 0.02);
+        }
+    }
+}
+
+TEST_CASE("a uniform plasma has the moments that were asked for") {
+    for (const char* loading : {"quiet", "random"}) {
+        const Case wanted = uniform_case(loading);
+        const Plasma plasma = initial_state(wanted).plasma;
+        const double n = 64 * 16 * 12, charge = n0 * wanted.grid.x.length * wanted.grid.z.length;
+        CHECK(plasma.count() == 2 * 64 * 16 * 12);
+        for (std::size_t k = 0; k < 2; ++k) {
+            const Particles& particles = plasma.species[k];
+            const SpeciesCase& s = wanted.uniform.species[k];
+            CHECK(std::fabs(particles.m_p * n / (s.mass * charge) - 1) <= 4 * eps);
+            CHECK(std::fabs(particles.q_p * n / (s.charge * charge) - 1) <= 4 * eps);
+            const Vector drift(s.drift_x, s.drift_y, s.drift_z),
+                T(s.temperature_x, s.temperature_y, s.temperature_z);
+            Eigen::Array3d mean = Eigen::Array3d::Zero(), square = mean;
+            for (std::size_t p = 0; p < particles.x_p.size(); ++p) {
+                const Eigen::Array3d v = velocity(particles, p) - drift;
+                mean += v / n, square += v.square() / n;
+            }
+            for (long a = 0; a < 3; ++a) {
+                CHECK(std::fabs(mean[a]) <= 4 * std::sqrt(T[a] / s.mass / n));
+                CHECK(std::fabs(square[a] * s.mass / T[a] - 1) <= 4 * std::sqrt(2 / n));
+            }
+        }
+    }
+}
+
+TEST_CASE("a quiet start is quieter than random numbers and another seed another realization") {
+    const Grid grid = uniform_case("quiet").grid;
+    const auto noise = [&](const char* loading) {
+        const State state = initial_state(uniform_case(loading));
+        const Field rho = deposited(grid, state.plasma.species[0]).rho / n0;
+        return std::sqrt(total(grid, on_nodes, (rho.array() - 1).square().matrix()) / 24);
+    };
+    // Of 64 particles per cell: the squared weights of S2 S2 add up to 0.55 squared.
+    CHECK(noise("random") <= 1.2 * 0.55 / 8);
+    CHECK(noise("random") >= 0.8 * 0.55 / 8);
+    CHECK(noise("quiet") <= 0.3 * noise("random"));
+    for (const char* loading : {"quiet", "random"}) {
+        const State one = initial_state(uniform_case(loading, 1)),
+                    same = initial_state(uniform_case(loading, 1)),
+                    other = initial_state(uniform_case(loading, 2));
+        CHECK(identical(one.plasma.species[0], same.plasma.species[0]));
+        CHECK(difference(grid, one.plasma.species[0], other.plasma.species[0]) > 0.1);
+    }
+}
+
+TEST_CASE("the field at the start obeys the law of Gauss with conducting walls") {
+    Random random;
+    for (const Grid& grid : meshes()) {
+        const VectorField any = random.field(grid, current, 1);
+        const Field rho = any.all.segment(grid.size(), grid.size());
+        FieldState field(grid);
+        add_electrostatic_field(grid, MeshModes(grid), rho, field);
+        Field div = Field::Zero(grid.size());
+        divergence_of_electric(grid, field.E.all.data(), div);
+        // In a doubly periodic box a uniform background takes the mean.
+        const bool free = grid.x.periodic && grid.z.periodic;
+        const double mean = free ? total(grid, on_nodes, rho) / grid.x.length / grid.z.length : 0;
+        double wrong = 0;
+        for_each_distinct(grid, on_nodes, [&](long i, long j, long n) {
+            const bool on_wall = weight(grid.x, false, i) * weight(grid.z, false, j) < 1;
+            if (!on_wall) wrong = worst({wrong, std::fabs(div[n] - 4 * pi * (rho[n] - mean))});
+        });
+        CHECK(wrong <= 64 * eps * 4 * pi);
+    }
+}
