@@ -5,13 +5,13 @@ VERSION := 0.1.0
 # ---- what there is (the figures are further down, one line each) --------------------------------
 
 # The source of each main; a program is called like its main.
-mains := implicit_moment/implicit_moment.cpp
+mains := cic/cic.cpp implicit_moment/implicit_moment.cpp
 
 # Methods of the talk without a program so far.
-not_built_yet := cic pic flip mpm_explicit mpm_implicit explicit_em
+not_built_yet := pic flip mpm_explicit mpm_implicit explicit_em
 
 # Programs that time the loop of a main, step by step; `make bench` runs them all.
-benches := implicit_moment/bench.cpp
+benches := cic/bench.cpp implicit_moment/bench.cpp
 
 # ---- how: everything here can be set on the command line, e.g. make CXX=clang++-14 test ---------
 
@@ -22,11 +22,13 @@ EIGEN    ?= /usr/include/eigen3
 ARCH     ?= -march=native
 OPTIMIZE ?= $(if $(SANITIZE),-O1 -g,-O3)
 SANITIZE ?=
+REAL     ?= double
 JOBS     ?= 2
 ARGS     ?=
 CLANG_FORMAT ?= clang-format
 
-BUILD   := build$(if $(SANITIZE),/sanitize)
+# Other kinds of build have a folder of their own.
+BUILD   := build$(if $(SANITIZE),/sanitize)$(if $(filter float,$(REAL)),/float)
 objects := $(BUILD)/objects
 
 warnings := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wno-psabi
@@ -40,7 +42,7 @@ machine = $(eval machine := $(shell $(CXX) $(ARCH) -dM -E -x c++ /dev/null 2>/de
     END { if (wide) print "-mprefer-vector-width=512"; if (wide && !clang) print "-Wno-maybe-uninitialized" }'))$(machine)
 
 flags   = -std=c++20 $(OPTIMIZE) $(ARCH) -fopenmp $(sanitize) $(warnings) $(machine) $(CXXFLAGS)
-defines = -DEIGEN_DONT_PARALLELIZE -DPROGRAM_VERSION=\"$(VERSION)\" -DBUILD_FOLDER=\"$(BUILD)\"
+defines = -DEIGEN_DONT_PARALLELIZE -DREAL=$(REAL) -DPROGRAM_VERSION=\"$(VERSION)\" -DBUILD_FOLDER=\"$(BUILD)\"
 include_paths = -I. -isystem $(EIGEN) $(CPPFLAGS)
 libraries = -lgsl -lgslcblas -lm $(LDLIBS)
 
@@ -88,6 +90,7 @@ The particle-in-cell family in running code
   make clean             remove build/ and out/, with all programs, runs and figures
 
   make SANITIZE=address,undefined test     the facts under the sanitizers, in build/sanitize/
+  make REAL=float bench                    particles of cic in single precision, in build/float/
   make CXX=clang++-14 all                  another compiler; also ARCH=, OPTIMIZE=, EIGEN=, CXXFLAGS=
 endef
 export menu_text

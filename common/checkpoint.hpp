@@ -60,6 +60,9 @@ class CheckpointWriter {
     void operator()(const std::string& name, const std::vector<double>& values) {
         block(name, 'd', values.data(), values.size(), sizeof(double));
     }
+    void operator()(const std::string& name, const std::vector<float>& values) {
+        block(name, 'f', values.data(), values.size(), sizeof(float));
+    }
     void operator()(const std::string& name, const std::vector<int>& values) {
         block(name, 'i', values.data(), values.size(), sizeof(int));
     }
@@ -175,6 +178,10 @@ class CheckpointReader {
     void operator()(const std::string& name, std::vector<double>& values) {
         values.resize(count(name, 'd', sizeof(double)));
         copy(values.data(), values.size() * sizeof(double));
+    }
+    void operator()(const std::string& name, std::vector<float>& values) {
+        values.resize(count(name, 'f', sizeof(float)));
+        copy(values.data(), values.size() * sizeof(float));
     }
     void operator()(const std::string& name, std::vector<int>& values) {
         values.resize(count(name, 'i', sizeof(int)));

@@ -161,6 +161,9 @@ std::vector<Setting> read_case(const std::string& text, const std::string& sourc
 /// Shortest text that reads back as the same number.
 std::string number_text(double value);
 
+/// Text of a number for messages, four digits.
+std::string shown(double value);
+
 /// Whole content of a regular file. errors: InputError that says why it cannot be read.
 std::string read_file(const std::string& path);
 

@@ -64,4 +64,20 @@ inline double shifted_radical_inverse(std::uint64_t i, unsigned base, std::uint6
     return fraction > 0.0 ? fraction : 0x1p-54;
 }
 
+/// Numbers in (0, 1) for loading particles. A quiet start takes radical inverses, each quantity of a
+/// species in a prime base of its own: small bases are quietest. Species that share bases differ by
+/// a shift. A random start takes uniform().
+struct LoadingNumbers {
+    bool quiet;
+    std::uint64_t seed;
+    double uniform(std::uint32_t purpose, unsigned base, long particle) const {
+        const auto p = static_cast<std::uint64_t>(particle);
+        return quiet ? shifted_radical_inverse(p, base, seed + 1000 * purpose)
+                     : common::uniform(seed, purpose, p, base);
+    }
+    double gaussian(std::uint32_t purpose, unsigned base, long particle) const {
+        return gsl_cdf_ugaussian_Pinv(uniform(purpose, base, particle));
+    }
+};
+
 }  // namespace common

@@ -8,6 +8,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <cstdio>
 #include <cstring>
 #include <span>
 #include <string>
@@ -149,6 +150,13 @@ inline void begin_vtk(OutputFile& file, const std::string& type) {
 }
 
 }  // namespace writers_detail
+
+/// Name of the n-th file of a kind: fields_000123.dat for step 123.
+inline std::string numbered(const std::string& kind, long step, const std::string& ending) {
+    char digits[32];
+    std::snprintf(digits, sizeof digits, "_%06ld.", step);
+    return kind + digits + ending;
+}
 
 /// Writes columns of equal length, one row per particle or time.
 /// in:    columns, each with name and unit for the first line "# 1:name[unit] 2:..."

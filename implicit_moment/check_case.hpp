@@ -28,12 +28,7 @@ struct Scales {
     double bytes = 0;  // memory that the run will take
 };
 
-/// Text of a number for messages, four digits.
-inline std::string shown(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.4g", value);
-    return text;
-}
+using common::shown;
 
 inline Scales scales_of(const Case& w) {
     Scales s;

@@ -1,8 +1,6 @@
 // Particles at t = 0: of a Harris sheet, or of a uniform plasma with one seeded mode.
 #pragma once
 
-#include <gsl/gsl_cdf.h>
-
 #include <cmath>
 #include <string>
 #include <vector>
@@ -52,21 +50,6 @@ struct Plasma {
 
 namespace detail {
 
-// Numbers in (0, 1) for loading: a quiet start takes radical inverses, each quantity of a species in
-// a prime base of its own. Species that share bases differ by a shift, and small bases are quietest.
-struct Loader {
-    bool quiet;
-    std::uint64_t seed;
-    double uniform(std::uint32_t purpose, unsigned base, long particle) const {
-        const auto p = static_cast<std::uint64_t>(particle);
-        return quiet ? common::shifted_radical_inverse(p, base, seed + 1000 * purpose)
-                     : common::uniform(seed, purpose, p, base);
-    }
-    double gaussian(std::uint32_t purpose, unsigned base, long particle) const {
-        return gsl_cdf_ugaussian_Pinv(uniform(purpose, base, particle));
-    }
-};
-
 inline void resize(Particles& particles, long count) {
     for (auto* f :
          {&particles.x_p, &particles.z_p, &particles.vx_p, &particles.vy_p, &particles.vz_p}) {
@@ -100,7 +83,8 @@ inline Plasma load_harris(const Case& wanted) {
     detail::resize(ions, pairs);
     detail::resize(electrons, pairs);
 
-    const detail::Loader load{wanted.loading == "quiet", static_cast<std::uint64_t>(wanted.seed)};
+    const common::LoadingNumbers load{wanted.loading == "quiet",
+                                      static_cast<std::uint64_t>(wanted.seed)};
     common::for_each_block(pairs, [&](int, long begin, long end) {
         for (long p = begin; p < end; ++p) {
             const auto k = static_cast<std::size_t>(p);
@@ -141,7 +125,8 @@ inline Plasma load_uniform(const Case& wanted) {
     const Grid& grid = wanted.grid;
     const long count = u.particles_per_cell * grid.x.cells * grid.z.cells;
     const double area = grid.x.length * grid.z.length;
-    const detail::Loader load{wanted.loading == "quiet", static_cast<std::uint64_t>(wanted.seed)};
+    const common::LoadingNumbers load{wanted.loading == "quiet",
+                                      static_cast<std::uint64_t>(wanted.seed)};
 
     Plasma plasma;
     for (const SpeciesCase& s : u.species) {

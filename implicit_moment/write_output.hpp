@@ -1,7 +1,6 @@
 // Snapshots for the figures: fields on nodes, and a thinned sample of the particles.
 #pragma once
 
-#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -12,12 +11,7 @@ namespace implicit_moment {
 
 inline constexpr long most_particles_written = 40000;
 
-/// Name of the n-th file of a kind: fields_000123.dat for step 123.
-inline std::string numbered(const std::string& kind, long step, const std::string& ending) {
-    char digits[32];
-    std::snprintf(digits, sizeof digits, "_%06ld.", step);
-    return kind + digits + ending;
-}
+using common::numbered;
 
 /// One quantity brought to the nodes 0..N of both directions by averaging the places beside each
 /// node, x fastest.

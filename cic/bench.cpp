@@ -1,0 +1,107 @@
+// How fast the loop of cic.cpp is, and where its time goes: the same calls with a clock between
+// them, on a warm plasma in two dimensions, by one thread and by two. `make bench` runs it, and
+// `make REAL=float bench` in single precision.
+#include <sys/resource.h>
+
+#include <chrono>
+#include <cstdio>
+#include <vector>
+
+#include "cic/initial_state.hpp"
+#include "cic/sort_particles.hpp"
+
+namespace {
+
+using namespace cic;
+
+struct Split {
+    double deposit = 0, field = 0, push = 0, sort = 0;  // seconds
+    double total() const { return deposit + field + push + sort; }
+};
+
+// 256 x 256 cells as wide as the Debye length, 100 electrons in each, ions at rest.
+Case warm_plasma() {
+    Case w;
+    w.dimensions = 2;
+    w.grid = {{256, 0, 256, true}, {256, 0, 256, true}};
+    SpeciesCase electrons, ions;
+    electrons.name = "electrons";
+    electrons.particles_per_cell = 100;
+    electrons.temperature_x = electrons.temperature_z = 1;
+    electrons.loading = "random";
+    ions.name = "ions";
+    ions.motion = "fixed";
+    ions.charge = 1;
+    w.species = {electrons, ions};
+    return w;
+}
+
+Split time_steps(const Case& w, long steps, int threads, long& particle_count) {
+    common::set_thread_count(threads);
+    FieldSolver solver(w.grid, w.scheme(), false, 1);
+    State state = initial_state(w, solver);
+    particle_count = state.count();
+    FieldState field;
+    Field rho_g;
+    DepositScratch deposit_scratch;
+    common::SortScratch<Real> sort_scratch;
+
+    Split split;
+    const auto timed = [](double& seconds, const auto& work) {
+        const auto start = std::chrono::steady_clock::now();
+        work();
+        seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    };
+    for (long step = 0; step <= steps; ++step) {
+        if (step == 1) split = {};  // the first step meets empty caches and unsorted particles
+        timed(split.deposit, [&] {
+            deposit_charge(state.species, w.grid, w.scheme(), 1, deposit_scratch, rho_g);
+        });
+        timed(split.field, [&] { solve_field(solver, rho_g, field); });
+        timed(split.push, [&] {
+            for_each_chunk(state.species, [&](Chunk& p) {
+                FieldAtParticles E_p;
+                gather_field(field.E_g, w.grid, w.scheme(), p, E_p);
+                accelerate(E_p, w.B, w.dt, p);
+                move_particles(w.grid, w.dt, p);
+            });
+        });
+        timed(split.sort, [&] {
+            if (step % w.sort_interval == 0) sort_particles(w.grid, sort_scratch, state.species);
+        });
+    }
+    return split;
+}
+
+}  // namespace
+
+int main() {
+    const Case w = warm_plasma();
+    const long steps = 2 * w.sort_interval;
+    long particles = 0;
+    double one_thread = 0;
+    std::printf(
+        "cic, 256 x 256 cells, 100 particles per cell, cic weighting, momentum scheme, "
+        "%s precision, %ld steps\n\n",
+        sizeof(Real) == 8 ? "double" : "single", steps);
+    std::printf("%8s %16s %9s %9s %9s %9s %9s\n", "threads", "particle-steps/s", "speed-up",
+                "deposit", "field", "push", "sort");
+    for (const int threads : {1, 2}) {
+        const Split split = time_steps(w, steps, threads, particles);
+        const double rate =
+            static_cast<double>(particles) * static_cast<double>(steps) / split.total();
+        if (threads == 1) one_thread = rate;
+        const auto percent = [&](double seconds) { return 100 * seconds / split.total(); };
+        std::printf("%8d %16.4g %9.2f %8.1f%% %8.1f%% %8.1f%% %8.1f%%\n", threads, rate,
+                    rate / one_thread, percent(split.deposit), percent(split.field),
+                    percent(split.push), percent(split.sort));
+    }
+    struct rusage usage {};
+    getrusage(RUSAGE_SELF, &usage);
+    const double carried = 4 * sizeof(Real), scratch = sizeof(Real) + sizeof(int);
+    std::printf(
+        "\n%ld particles, %.0f bytes each (%.0f carried, %.0f to sort); peak memory %.1f MiB\n",
+        particles, carried + scratch, carried, scratch,
+        static_cast<double>(usage.ru_maxrss) / 1024);
+    return 0;
+}

@@ -1,0 +1,295 @@
+// The results of a run: what was measured, beside the exact or the predicted value.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cic/cloud_force.hpp"
+#include "cic/diocotron_theory.hpp"
+#include "cic/initial_state.hpp"
+#include "cic/sheath_theory.hpp"
+#include "common/fit_growth.hpp"
+#include "common/fit_oscillation.hpp"
+#include "common/history.hpp"
+#include "common/summary.hpp"
+
+namespace cic {
+
+/// Units of frequencies in the results, with the convention.
+inline constexpr const char* omega_p_unit = "omega_p(n=q=m=1)";
+
+/// Amplitude of the field at which the species with the largest |q|/m bounces in the wave as fast as
+/// the wave grows, |q| k E/m = gamma^2: there the linear growth ends.
+inline double trapping_field(const Case& w, const Theory& theory) {
+    double most = 0;
+    for (const SpeciesCase& s : w.species)
+        if (s.mobile()) most = std::max(most, std::fabs(s.charge) / s.mass);
+    const double k = wave_vector(w, theory.mode_x, theory.mode_z).size();
+    return theory.omega.imag() * theory.omega.imag() / (most * k);
+}
+
+/// Time of the onset, before the run: half of the seeded field grows at the rate of theory until it
+/// traps particles.
+/// out:    0 for a mode that does not grow or is not seeded
+inline double predicted_onset(const Case& w, const Theory& theory) {
+    const double growth = theory.omega.imag();
+    double rho = 0;
+    for (const SpeciesCase& s : w.species)
+        if (s.mobile() && s.mode_x == theory.mode_x && s.mode_z == theory.mode_z)
+            rho += s.charge * s.density * s.amplitude;
+    const double seed = 0.5 * std::fabs(rho) / wave_vector(w, theory.mode_x, theory.mode_z).size();
+    const double trapping = trapping_field(w, theory);
+    return growth > 0 && seed > 0 && trapping > seed ? std::log(trapping / seed) / growth : 0;
+}
+inline std::string onset_meaning() { return "half of the seed has grown until it traps particles"; }
+
+namespace detail {
+
+// First time at which a column reaches a level; NaN when it never does.
+inline double time_at_level(const std::vector<double>& times, const std::vector<double>& values,
+                            double level) {
+    for (std::size_t n = 1; n < times.size(); ++n)
+        if (values[n] >= level && values[n - 1] < level)
+            return times[n - 1] + (level - values[n - 1]) / (values[n] - values[n - 1]) *
+                                      (times[n] - times[n - 1]);
+    return std::nan("");
+}
+
+inline double mean_of_last_half(const std::vector<double>& values) {
+    double sum = 0;
+    const std::size_t half = values.size() / 2;
+    for (std::size_t n = half; n < values.size(); ++n) sum += values[n];
+    return sum / static_cast<double>(values.size() - half);
+}
+
+// The rows in which a damped wave is measured.
+struct Window {
+    std::size_t begin = 0, end = 0;
+};
+
+// One period after the start, when what else was excited has died away, until the amplitude has
+// fallen by e^3, or to the end. A standing wave is zero twice a period: the amplitude at a time is
+// the largest within the next half period.
+inline Window ringing_window(const std::vector<double>& amplitude, double dt, double frequency) {
+    const std::size_t count = amplitude.size();
+    const auto half = std::max<std::size_t>(1, static_cast<std::size_t>(pi / (frequency * dt)));
+    const auto envelope = [&](std::size_t n) {
+        const auto from = amplitude.begin() + static_cast<std::ptrdiff_t>(n);
+        return *std::max_element(from,
+                                 from + static_cast<std::ptrdiff_t>(std::min(half, count - n)));
+    };
+    Window window{std::min(2 * half, count / 4), count};
+    const double start = envelope(window.begin);
+    for (std::size_t n = window.begin; n + half < count; n += half) {
+        if (envelope(n) >= std::exp(-3.0) * start) continue;
+        window.end = n;
+        break;
+    }
+    return window;
+}
+
+}  // namespace detail
+
+/// A wave or an instability against the dispersion relation.
+///   growing: rate by fit_growth, frequency by rotation within the same times, onset
+///   otherwise: frequency and damping within ringing_window
+inline void compare_wave(const Case& w, const common::History& history, common::Summary& summary) {
+    const Theory theory = theory_of_wave(w);
+    const auto times = history.column("time"), re = history.column("mode_re"),
+               im = history.column("mode_im");
+    std::vector<double> amplitude;
+    for (std::size_t n = 0; n < re.size(); ++n) amplitude.push_back(std::hypot(re[n], im[n]));
+    const double growth = theory.omega.imag(), frequency = std::fabs(theory.omega.real());
+    summary.result_info("theory_omega", theory.omega.real(), omega_p_unit, theory.source);
+    summary.result_info("theory_growth", growth, omega_p_unit, theory.source);
+    summary.result_info("mode_x", static_cast<double>(theory.mode_x), "", "followed");
+
+    const bool grows = growth > 1e-3 * std::abs(theory.omega);
+    std::vector<std::complex<double>> mode;
+    const auto take = [&](std::size_t begin, std::size_t end) {
+        mode.clear();
+        for (std::size_t n = begin; n < end; ++n) mode.emplace_back(re[n], im[n]);
+    };
+    if (grows) {
+        const common::GrowthFit fit = common::fit_growth(times, amplitude, {3.0, 0.1});
+        const std::string where = theory.source + "; fitted from t = " + common::shown(fit.begin) +
+                                  " to " + common::shown(fit.end) +
+                                  (fit.found ? "" : " (" + fit.reason + ")");
+        summary.result_info("growth", fit.rate, omega_p_unit, where);
+        summary.result("growth_over_theory", fit.rate / growth, "", 1, w.growth_tolerance, where);
+        if (fit.found && frequency > 0.1 * growth) {
+            const auto row = [&](double t) { return static_cast<std::size_t>(t / w.dt + 0.5); };
+            take(row(fit.begin), row(fit.end) + 1);
+            const common::RotationFit rotation = common::fit_rotation(mode, w.dt);
+            summary.result("omega_over_theory", -rotation.frequency / theory.omega.real(), "", 1,
+                           w.frequency_tolerance, where);
+        }
+        const double onset = predicted_onset(w, theory);
+        if (onset > 0)
+            summary.result("onset",
+                           detail::time_at_level(times, amplitude, trapping_field(w, theory)),
+                           "1/omega_p", onset, 2 / growth, onset_meaning());
+        return;
+    }
+
+    const detail::Window window = detail::ringing_window(amplitude, w.dt, frequency);
+    take(window.begin, window.end);
+    // A standing wave keeps its phase, a traveling one turns it.
+    const auto largest =
+        std::max_element(mode.begin(), mode.end(),
+                         [](const auto& a, const auto& b) { return std::norm(a) < std::norm(b); });
+    const std::complex<double> direction = std::polar(1.0, -std::arg(*largest));
+    std::vector<double> standing;
+    double turned = 0;
+    for (const auto& z : mode) {
+        standing.push_back((direction * z).real());
+        turned = std::max(turned, std::fabs((direction * z).imag()));
+    }
+    double omega = 0, gamma = 0;
+    if (turned < 0.1 * std::abs(*largest)) {
+        const common::OscillationFit fit = common::fit_oscillation(standing, w.dt);
+        omega = fit.frequency, gamma = fit.growth;
+    } else {
+        const common::RotationFit fit = common::fit_rotation(mode, w.dt);
+        omega = std::fabs(fit.frequency), gamma = fit.growth;
+    }
+    const std::string where = theory.source +
+                              "; fitted from t = " + common::shown(times[window.begin]) + " to " +
+                              common::shown(times[window.end - 1]);
+    summary.result_info("omega", omega, omega_p_unit, where);
+    summary.result("omega_over_theory", omega / frequency, "", 1, w.frequency_tolerance, where);
+    if (growth < -1e-3 * frequency)
+        summary.result("damping_over_theory", gamma / growth, "", 1, w.growth_tolerance, where);
+    else
+        summary.result_info("damping", -gamma, omega_p_unit, where);
+    // Where nothing should grow, nothing may.
+    const double start = *std::max_element(
+        amplitude.begin(),
+        amplitude.begin() + static_cast<std::ptrdiff_t>(1 + amplitude.size() / 10));
+    summary.result_within("largest_over_start",
+                          *std::max_element(amplitude.begin(), amplitude.end()) / start, "", 0, 2,
+                          "no growing root");
+}
+
+/// The rate at which the edges of a charged layer wind up.
+inline void compare_diocotron(const Case& w, const common::History& history,
+                              common::Summary& summary) {
+    const auto layer_case = std::find_if(w.species.begin(), w.species.end(),
+                                         [](const auto& s) { return s.profile == "layer"; });
+    const ChargedLayer layer{layer_case->charge * layer_case->density / w.B.y,
+                             layer_case->half_width, 0.5 * w.grid.z.length};
+    const double k = wave_vector(w, w.mode_x, 0).size();
+    const double growth = std::fabs(diocotron_frequency(layer, k).imag());
+    const auto times = history.column("time"), re = history.column("mode_re"),
+               im = history.column("mode_im");
+    std::vector<double> amplitude;
+    for (std::size_t n = 0; n < re.size(); ++n) amplitude.push_back(std::hypot(re[n], im[n]));
+    const common::GrowthFit fit = common::fit_growth(times, amplitude, {2.0, 0.2});
+    const std::string where =
+        "guiding centers, two edges between grounded walls; fitted from t = " +
+        common::shown(fit.begin) + " to " + common::shown(fit.end);
+    summary.result_info("theory_growth", growth, omega_p_unit, where);
+    summary.result_info("growth", fit.rate, omega_p_unit, where);
+    summary.result("growth_over_theory", fit.rate / growth, "", 1, w.growth_tolerance, where);
+}
+
+/// Potentials of a floating wall in front of a plasma from a source, mean of the last half.
+inline void compare_sheath(const Case& w, const common::History& history,
+                           common::Summary& summary) {
+    const bool first_is_electron = w.species[0].charge < 0;
+    const SpeciesCase &electrons = w.species[first_is_electron ? 0 : 1],
+                      &ions = w.species[first_is_electron ? 1 : 0];
+    const double T_e = electrons.emission_temperature;
+    const Sheath sheath =
+        collector_sheath(ions.mass / electrons.mass, ions.emission_temperature / T_e);
+    const std::string source = "Schwager and Birdsall 1990, solved here";
+    const double e = std::fabs(electrons.charge);
+    summary.result("collector_potential",
+                   e * detail::mean_of_last_half(history.column("potential_x_high")) / T_e, "T_e/e",
+                   sheath.collector_potential,
+                   w.growth_tolerance * std::fabs(sheath.collector_potential), source);
+    summary.result("plasma_potential",
+                   e * detail::mean_of_last_half(history.column("potential_middle")) / T_e, "T_e/e",
+                   sheath.plasma_potential, w.growth_tolerance * std::fabs(sheath.plasma_potential),
+                   source);
+}
+
+/// Two clouds of opposite charge swing through each other along x.
+inline void compare_clouds(const Case& w, const common::History& history,
+                           common::Summary& summary) {
+    const SpeciesCase &a = w.species[0], &b = w.species[1];
+    const auto separation = history.column("separation_x");
+    const CloudPair pair = make_cloud_pair(w.grid.x, w.grid.z, w.scheme().order);
+    const double expected = std::sqrt(
+        std::max(0.0, overlap_frequency_squared(pair, a.density * a.charge, a.density * a.mass,
+                                                b.density * b.charge, b.density * b.mass)[0]));
+    if (expected == 0) {
+        summary.result_info("largest_separation",
+                            *std::max_element(separation.begin(), separation.end()), "length",
+                            "measured");
+        return;
+    }
+    const common::OscillationFit fit = common::fit_oscillation(separation, w.dt);
+    summary.result("omega_over_theory", fit.frequency / expected, "", 1, w.frequency_tolerance,
+                   "linear force of overlapping clouds, mean over all places on the mesh");
+    summary.result_info("omega", fit.frequency, omega_p_unit, "measured");
+    summary.result_info("misfit", fit.misfit, "", "rms of what is not harmonic");
+}
+
+/// Energy of the field in a plasma in thermal equilibrium, per kinetic energy.
+///   (1/N_c N) sum_(k /= 0) A / (A + K^2 lambda_D^2),   A = sum_p S(k_p)^2
+/// in:     lambda_D/dx; N_c particles per cell; N cells; order of the weights
+/// exact:  for the energy-conserving scheme, in the limit of many particles in a Debye length: each
+///         of N modes has T/2, screened; [CIC-1] leaves A of the noise of points
+/// note:   A has a closed form: 1 for ngp, (2 + cos k dx)/3 for cic, with C = cos k dx
+///         (33 + 26 C + cos 2 k dx)/60 for tsc. For points and a continuous field the sum becomes
+///         arctan(pi l) / (pi l N_c).
+inline double thermal_noise(double debye_over_dx, double per_cell, long cells, int order) {
+    double sum = 0;
+    for (long m = 1; m < cells; ++m) {
+        const double theta = 2 * pi * static_cast<double>(m) / static_cast<double>(cells);
+        const double K2 = 2 - 2 * std::cos(theta);
+        const double A = order == 0   ? 1
+                         : order == 1 ? (2 + std::cos(theta)) / 3
+                                      : (33 + 26 * std::cos(theta) + std::cos(2 * theta)) / 60;
+        sum += A / (A + K2 * debye_over_dx * debye_over_dx);
+    }
+    return sum / (per_cell * static_cast<double>(cells));
+}
+
+/// How a warm plasma at rest does: the energy of its noise, and how fast the mesh heats it.
+inline void compare_heating(const Case& w, const common::History& history,
+                            common::Summary& summary) {
+    const auto kinetic = history.column("kinetic"), field = history.column("field");
+    const double ratio = kinetic.back() / kinetic.front();
+    summary.result_info("kinetic_over_initial", ratio, "", "measured");
+    double inverse_debye2 = 0, per_cell = 0;
+    for (const SpeciesCase& s : w.species) {
+        if (!s.mobile()) continue;
+        inverse_debye2 += s.density * s.charge * s.charge / s.temperature_x;
+        per_cell += static_cast<double>(s.particles_per_cell);
+    }
+    const double at_start = 1 / std::sqrt(inverse_debye2) / w.grid.x.spacing();
+    const double mean = detail::mean_of_last_half(kinetic);
+    const double then = at_start * std::sqrt(mean / kinetic.front());
+    summary.result_info("debye_length_over_dx", at_start * std::sqrt(ratio), "", "at the end");
+    const double expected = thermal_noise(then, per_cell, w.grid.x.cells, w.scheme().order);
+    summary.result("field_over_kinetic", detail::mean_of_last_half(field) / mean, "", expected,
+                   w.growth_tolerance * expected, "thermal noise on this mesh");
+}
+
+/// The results of a case.
+inline void compare_with_theory(const Case& w, const common::History& history,
+                                common::Summary& summary) {
+    if (w.compare == "wave") compare_wave(w, history, summary);
+    if (w.compare == "diocotron") compare_diocotron(w, history, summary);
+    if (w.compare == "sheath") compare_sheath(w, history, summary);
+    if (w.compare == "clouds") compare_clouds(w, history, summary);
+    if (w.compare == "heating") compare_heating(w, history, summary);
+}
+
+}  // namespace cic

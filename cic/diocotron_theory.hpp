@@ -1,0 +1,54 @@
+// The diocotron instability of a charged layer: its two edges, which drift in opposite directions
+// across a magnetic field, drive each other's ripples by their charge, as in a shear layer of an
+// ideal fluid.
+//
+// A layer |z| < d of uniform charge density rho_0 lies between grounded walls at z = +-b, with a
+// uniform B along y. Particles follow v = E x B / B^2, without inertia: omega_p^2 << Omega_c^2. All
+// rates scale with the shear rate S = rho_0 / B (eps_0 = 1). Ripples vary like
+// exp(i k x - i omega t): Im omega is a growth rate.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+
+namespace cic {
+
+struct ChargedLayer {
+    double shear_rate;     // S = rho_0 / B
+    double half_width;     // d
+    double wall_distance;  // b, from the middle of the layer; infinite without walls
+};
+
+/// The drift v_x along the undisturbed layer.
+///   v_x = -E_z / B,  E_z = rho_0 z in the layer and rho_0 d sign z outside
+inline double layer_drift(const ChargedLayer& layer, double z) {
+    return -layer.shear_rate * std::clamp(z, -layer.half_width, layer.half_width);
+}
+
+/// The frequency of the ripples of wave number k.
+/// The edges z = +-d are displaced by eta_+-, and charge +-rho_0 eta_+- on them disturbs phi:
+///   -i (omega - k v_x) eta_+- = v_z = -i k phi / B        at z = +-d
+///   (omega + k S d) eta_+ = k S (G_same eta_+ - G_other eta_-)
+///   (omega - k S d) eta_- = k S (G_other eta_+ - G_same eta_-)
+/// with Green's function of grounded walls,
+///   G(z, z') = sinh k(b - z) sinh k(b + z') / (k sinh 2kb),  z > z',
+/// G_same = G(d, d), G_other = G(d, -d), so that
+///   omega^2 = (k S)^2 [(d - G_same)^2 - G_other^2]
+///           = S^2 (kd - g_even) (kd - g_odd),
+///   g_even = sinh k(b - d) cosh kd / cosh kb,  g_odd = sinh k(b - d) sinh kd / sinh kb
+/// in:    k > 0, 0 < d < b
+/// out:   the root that grows, or the positive one of two real roots; the other is -omega
+/// exact: without walls (2 omega / S)^2 = (1 - 2kd)^2 - exp(-4kd). It grows for g_even > kd, thus
+///        never with walls at b < 2d.
+/// source: Rayleigh, Proc. London Math. Soc. 11, 57 (1880); Levy, Phys. Fluids 8, 1288 (1965).
+inline std::complex<double> diocotron_frequency(const ChargedLayer& layer, double k) {
+    const double kd = k * layer.half_width, kb = k * layer.wall_distance;
+    const double gap = -std::expm1(-2.0 * (kb - kd));
+    const double g_even = 0.5 * gap * (1.0 + std::exp(-2.0 * kd)) / (1.0 + std::exp(-2.0 * kb));
+    const double g_odd = 0.5 * gap * std::expm1(-2.0 * kd) / std::expm1(-2.0 * kb);
+    const double S = layer.shear_rate;
+    return std::sqrt(std::complex<double>(S * S * (kd - g_even) * (kd - g_odd)));
+}
+
+}  // namespace cic

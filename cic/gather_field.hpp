@@ -1,0 +1,89 @@
+// mesh -> particles: the field at a cloud is the field of the nodes, weighted as its charge
+// was.  [CIC-3]
+#pragma once
+
+#include <vector>
+
+#include "cic/weights.hpp"
+
+namespace cic {
+
+/// E of one index (i, j), both components side by side, since they are used together. In the
+/// momentum-conserving scheme both are on node (i, j); in the energy-conserving one E_x is at
+/// (i+1/2, j) and E_z at (i, j+1/2).
+struct NodeField {
+    Real x = 0, z = 0;
+};
+using MeshField = std::vector<NodeField>;
+
+/// The field at every particle of a chunk.
+///   E_p = sum_g E_g S(x_g - x_p)
+/// and in the energy-conserving scheme, per component a,
+///   E_a,p = sum_e E_a,e S'(x_e - x_p),  S' of one order less than S along a, and equal to S across
+/// in:     E_g, grid.size() values, ghosts filled; positions on the mesh
+/// out:    E_p, z only in two dimensions
+/// exact:  momentum-conserving: the transpose of deposit_charge, so that
+///           sum_p q_p E_p = sum_g rho_g V_g E_g
+///         energy-conserving: q_p E_p = -d/dx_p (1/2) sum_g rho_g V_g phi_g
+/// source: [CIC-3]; Lewis, J. Comput. Phys. 6, 136 (1970), for the energy-conserving pairing.
+/// note:   The slide writes S(x - x_p) without the index of the node.
+template <int order, int dimensions, bool energy_conserving>
+void gather_field(const MeshField& E_g, const Grid& grid, const Chunk& p, FieldAtParticles& E_p) {
+    constexpr int along = energy_conserving ? order - 1 : order;
+    constexpr Real to_edge = energy_conserving ? Real(-0.5) : Real(0);
+    const Real x_low = static_cast<Real>(grid.x.low), z_low = static_cast<Real>(grid.z.low);
+    const Real per_dx = static_cast<Real>(1 / grid.x.spacing()),
+               per_dz = static_cast<Real>(1 / grid.z.spacing());
+    const long stride = grid.stride();
+    const NodeField* const origin = E_g.data() + grid.index(0, 0);
+    // [gather]
+    for (long k = 0; k < p.count; ++k) {
+        const Real s_x = (p.x_p[k] - x_low) * per_dx;
+        Real E_x = 0, E_z = 0;
+        if constexpr (dimensions == 1) {
+            const Weights<along> S_x(s_x + to_edge);
+            for (int i = 0; i < S_x.count; ++i) E_x += S_x.S[i] * origin[S_x.first + i].x;
+        } else if constexpr (!energy_conserving) {
+            const Real s_z = (p.z_p[k] - z_low) * per_dz;
+            const Weights<order> S_x(s_x), S_z(s_z);
+            const NodeField* node = origin + S_z.first * stride + S_x.first;
+            for (int j = 0; j < S_z.count; ++j, node += stride) {
+                for (int i = 0; i < S_x.count; ++i) {
+                    const Real S = S_x.S[i] * S_z.S[j];
+                    E_x += S * node[i].x;
+                    E_z += S * node[i].z;
+                }
+            }
+        } else {
+            const Real s_z = (p.z_p[k] - z_low) * per_dz;
+            const Weights<order> S_x(s_x), S_z(s_z);
+            const Weights<along> edge_x(s_x + to_edge), edge_z(s_z + to_edge);
+            for (int j = 0; j < S_z.count; ++j)
+                for (int i = 0; i < edge_x.count; ++i)
+                    E_x += edge_x.S[i] * S_z.S[j] *
+                           origin[(S_z.first + j) * stride + edge_x.first + i].x;
+            for (int j = 0; j < edge_z.count; ++j)
+                for (int i = 0; i < S_x.count; ++i)
+                    E_z += S_x.S[i] * edge_z.S[j] *
+                           origin[(edge_z.first + j) * stride + S_x.first + i].z;
+        }
+        E_p.x[k] = E_x;
+        if constexpr (dimensions == 2) E_p.z[k] = E_z;
+    }
+    // [/gather]
+}
+
+/// The same with the scheme chosen at run time.
+inline void gather_field(const MeshField& E_g, const Grid& grid, const Scheme& scheme,
+                         const Chunk& p, FieldAtParticles& E_p) {
+    with_order_and_dimensions(scheme, [&](auto order, auto dimensions) {
+        if (!scheme.energy_conserving)
+            gather_field<order(), dimensions(), false>(E_g, grid, p, E_p);
+        if constexpr (order() > 0) {
+            if (scheme.energy_conserving)
+                gather_field<order(), dimensions(), true>(E_g, grid, p, E_p);
+        }
+    });
+}
+
+}  // namespace cic

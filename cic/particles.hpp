@@ -1,0 +1,81 @@
+// What a particle carries in clouds-in-cells: position and velocity, charge and mass. The mesh
+// keeps nothing from one step to the next.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "cic/units.hpp"
+#include "common/grid.hpp"
+#include "common/parallel.hpp"
+
+namespace cic {
+
+using common::Field;
+using common::Grid;
+
+/// Sums over particles that the mover makes in passing.
+struct ParticleSums {
+    double kinetic = 0;                // energy at the time of the positions
+    std::array<double, 3> momentum{};  // at the new velocities
+
+    void add(const ParticleSums& other) {
+        kinetic += other.kinetic;
+        for (std::size_t a = 0; a < 3; ++a) momentum[a] += other.momentum[a];
+    }
+};
+
+/// One species, structure of arrays. z_p is empty in one dimension; vy_p, and vz_p in one
+/// dimension, are empty without a magnetic field, which alone could change or show them.
+struct Particles {
+    std::string name;
+    double q_p = 0, m_p = 0;             // charge and mass of one simulation particle
+    std::vector<Real> x_p, z_p;          // at t^n
+    std::vector<Real> vx_p, vy_p, vz_p;  // at t^(n-1/2), after accelerate() at t^(n+1/2)
+    ParticleSums sums;                   // of the last step
+
+    long count() const { return static_cast<long>(x_p.size()); }
+    std::array<std::vector<Real>*, 5> all() { return {&x_p, &z_p, &vx_p, &vy_p, &vz_p}; }
+};
+
+/// Particles that are worked on together: few enough for all their numbers to stay in the nearest
+/// cache from one line of the slide to the next.
+inline constexpr long chunk_size = 512;
+struct Chunk {
+    Real *x_p, *z_p, *vx_p, *vy_p, *vz_p;
+    long count;
+    double q_p, m_p;
+    ParticleSums sums;
+};
+
+/// A vector field at the particles of a chunk, or at a node of the mesh.
+struct FieldAtParticles {
+    Real x[chunk_size], z[chunk_size];
+};
+
+/// Calls work(chunk) for all particles of all species, chunk by chunk.
+/// out:    sums of every species, added in an order that does not depend on the threads.
+template <class Work>
+void for_each_chunk(std::vector<Particles>& species, const Work& work) {
+    for (Particles& s : species) {
+        std::array<ParticleSums, common::block_count> sums{};
+        common::for_each_block(s.count(), [&](int block, long begin, long end) {
+            const auto from = [](std::vector<Real>& values, long p) {
+                return values.empty() ? nullptr : values.data() + p;
+            };
+            for (long p = begin; p < end; p += chunk_size) {
+                Chunk chunk{from(s.x_p, p),  from(s.z_p, p),  from(s.vx_p, p),
+                            from(s.vy_p, p), from(s.vz_p, p), std::min(chunk_size, end - p),
+                            s.q_p,           s.m_p,           {}};
+                work(chunk);
+                sums[static_cast<std::size_t>(block)].add(chunk.sums);
+            }
+        });
+        s.sums = {};
+        for (const ParticleSums& block : sums) s.sums.add(block);
+    }
+}
+
+}  // namespace cic

@@ -1,0 +1,168 @@
+// on the mesh: the electric field of the charge density, Gauss's law.  [CIC-2]
+#pragma once
+
+#include <algorithm>
+
+#include "cic/gather_field.hpp"
+#include "cic/poisson.hpp"
+
+namespace cic {
+
+/// Potential and field of one time level.
+struct FieldState {
+    Field phi;      // on nodes, ghosts filled
+    MeshField E_g;  // packed for gather_field
+    Walls walls;
+};
+
+class FieldSolver {
+   public:
+    /// in:     gauss_sign, +1, or -1 for the law as the slide prints it
+    FieldSolver(const Grid& grid, const Scheme& scheme, bool nine_point, double gauss_sign)
+        : grid_(grid), scheme_(scheme), gauss_sign_(gauss_sign), poisson_(grid, nine_point) {}
+
+    friend void solve_field(FieldSolver&, const Field&, FieldState&);
+
+   private:
+    Grid grid_;
+    Scheme scheme_;
+    double gauss_sign_;
+    PoissonSolver poisson_;
+    Field right_;
+};
+
+namespace detail {
+
+// E = -grad phi half-way between nodes.
+inline void field_on_edges(const Grid& grid, const Field& phi, MeshField& E_g) {
+    const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing();
+    const long stride = grid.stride();
+    common::for_each_row(grid.z.cells + 2, [&](long row) {
+        for (long i = -1; i <= grid.x.cells; ++i) {
+            const long n = grid.index(i, row - 1);
+            E_g[static_cast<std::size_t>(n)] = {
+                static_cast<Real>((phi[n] - phi[n + 1]) * per_dx),
+                static_cast<Real>((phi[n] - phi[n + stride]) * per_dz)};
+        }
+    });
+}
+
+// E on nodes: the mean of the two differences beside each node.
+inline void field_on_nodes(const Grid& grid, const Field& phi, MeshField& E_g) {
+    const double half_per_dx = 0.5 / grid.x.spacing(), half_per_dz = 0.5 / grid.z.spacing();
+    const long stride = grid.stride();
+    common::for_each_row(grid.z.cells + 1, [&](long row) {
+        for (long i = 0; i <= grid.x.cells; ++i) {
+            const long n = grid.index(i, row);
+            E_g[static_cast<std::size_t>(n)] = {
+                static_cast<Real>((phi[n - 1] - phi[n + 1]) * half_per_dx),
+                static_cast<Real>((phi[n - stride] - phi[n + stride]) * half_per_dz)};
+        }
+    });
+}
+
+// Charge per area on the inner face of a wall, from Gauss's law in the half cell before it.
+//   sigma = E_1/2 - rho_0 dx/2, E pointing away from the wall
+inline double surface_charge(double phi_wall, double phi_next, double rho_wall, double dx) {
+    return (phi_wall - phi_next) / dx - 0.5 * dx * rho_wall;
+}
+
+// Visits the nodes of both walls of a direction: visit(node, step to the next node inside, wall,
+// +1 or -1 for a normal along or against the axis, share of the wall's area).
+template <class Visit>
+void for_each_wall_node(const Grid& grid, bool along_x, const Visit& visit) {
+    const common::Axis& other = along_x ? grid.z : grid.x;
+    const long N = along_x ? grid.x.cells : grid.z.cells, step = along_x ? 1 : grid.stride();
+    for (long k = 0; k <= (other.periodic ? other.cells - 1 : other.cells); ++k) {
+        const bool corner = !other.periodic && (k == 0 || k == other.cells);
+        const double share = (corner ? 0.5 : 1.0) / static_cast<double>(other.cells);
+        visit(along_x ? grid.index(0, k) : grid.index(k, 0), step, along_x ? x_low : z_low, 1.0,
+              share);
+        visit(along_x ? grid.index(N, k) : grid.index(k, N), -step, along_x ? x_high : z_high, -1.0,
+              share);
+    }
+}
+
+// Fills the ghost places of the packed field: periodic images, or mirror images behind walls, such
+// that gather_field stays the transpose of deposit_charge.
+inline void fill_ghosts(const Grid& grid, bool on_edges, MeshField& E_g) {
+    const auto at = [&](long i, long j) -> NodeField& {
+        return E_g[static_cast<std::size_t>(grid.index(i, j))];
+    };
+    const long nx = grid.x.cells, nz = grid.z.cells;
+    const auto mirror = [&](const common::Axis& axis, bool half, const auto& copy) {
+        common::detail::ghosts_along(axis, half, half ? -1 : 1, copy);
+    };
+    for (long j = 0; j <= nz; ++j) {
+        mirror(grid.x, on_edges, [&](long to, long from, int sign) {
+            at(to, j).x = static_cast<Real>(sign) * at(from, j).x;
+        });
+        mirror(grid.x, false, [&](long to, long from, int) { at(to, j).z = at(from, j).z; });
+    }
+    for (long i = -1; i <= nx + 1; ++i) {
+        mirror(grid.z, false, [&](long to, long from, int) { at(i, to).x = at(i, from).x; });
+        mirror(grid.z, on_edges, [&](long to, long from, int sign) {
+            at(i, to).z = static_cast<Real>(sign) * at(i, from).z;
+        });
+    }
+}
+
+}  // namespace detail
+
+/// The field of the charge density.
+///   div E = rho,  E = -grad phi:   -lap phi = rho
+/// in:     rho_g on nodes, ghosts filled; field.walls with the potentials of grounded walls and the
+///         charges of floating ones
+/// out:    field.phi; field.E_g, on nodes (momentum-conserving) or on edges (energy-conserving);
+///         field.walls with the charges of grounded walls and the potentials of floating ones
+/// exact:  the difference equation to round-off. On a node of a wall E is the mean of the two sides
+///         of its charge, sigma and E_1/2, so that in one dimension the force on all particles is
+///         the difference of the field pressures on the walls,
+///           sum_g rho_g V_g E_g = [E^2/2]_low^high
+/// source: [CIC-2]
+/// note:   The slide prints div E = -rho, which makes like charges attract: gauss_sign = -1.
+inline void solve_field(FieldSolver& solver, const Field& rho_g, FieldState& field) {
+    const Grid& grid = solver.grid_;
+    solver.right_ = solver.gauss_sign_ * rho_g;
+    const Field& rho = solver.right_;
+    Field& phi = field.phi;
+    solver.poisson_.solve(rho, field.walls, phi);
+    common::fill_ghosts(grid, common::on_nodes, {1, 1}, phi.data());
+
+    // What the walls got: the mean charge of a grounded one, the potential of a floating one.
+    for (const bool along_x : {true, false}) {
+        const common::Axis& axis = along_x ? grid.x : grid.z;
+        if (axis.periodic) continue;
+        std::array<double, 4> charge{};
+        detail::for_each_wall_node(
+            grid, along_x, [&](long n, long in, WallName w, double, double share) {
+                charge[w] +=
+                    share * detail::surface_charge(phi[n], phi[n + in], rho[n], axis.spacing());
+                if (field.walls[w].floating) field.walls[w].potential = phi[n];
+            });
+        for (const WallName w : {along_x ? x_low : z_low, along_x ? x_high : z_high})
+            if (!field.walls[w].floating) field.walls[w].charge = charge[w];
+    }
+
+    field.E_g.resize(static_cast<std::size_t>(grid.size()));
+    if (solver.scheme_.energy_conserving) {
+        detail::field_on_edges(grid, phi, field.E_g);
+    } else {
+        detail::field_on_nodes(grid, phi, field.E_g);
+        for (const bool along_x : {true, false}) {
+            const common::Axis& axis = along_x ? grid.x : grid.z;
+            if (axis.periodic) continue;
+            detail::for_each_wall_node(
+                grid, along_x, [&](long n, long in, WallName, double sign, double) {
+                    const double sigma =
+                        detail::surface_charge(phi[n], phi[n + in], rho[n], axis.spacing());
+                    const double E_half = (phi[n] - phi[n + in]) / axis.spacing();
+                    auto& E = field.E_g[static_cast<std::size_t>(n)];
+                    (along_x ? E.x : E.z) = static_cast<Real>(sign * 0.5 * (sigma + E_half));
+                });
+        }
+    }
+    detail::fill_ghosts(grid, solver.scheme_.energy_conserving, field.E_g);
+}
+
+}  // namespace cic

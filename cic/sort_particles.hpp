@@ -1,0 +1,33 @@
+// particles: sort by row of cells now and then, so that the stretch of mesh which a block of
+// particles works on stays in the cache.
+#pragma once
+
+#include "cic/case.hpp"
+#include "common/counting_sort.hpp"
+
+namespace cic {
+
+/// Whether the interval of the case has passed.
+inline bool sort_is_due(const Case& w, long step) {
+    return w.sort_interval > 0 && step % w.sort_interval == 0;
+}
+
+/// Stable sort by row of cells; within a row the order stays mixed, and neighbors in memory do not
+/// wait for each other's charge to reach the same node.
+/// in/out: particles, every position on the mesh; nothing happens in one dimension
+inline void sort_particles(const Grid& grid, common::SortScratch<Real>& scratch,
+                           std::vector<Particles>& species) {
+    const double z_low = grid.z.low, per_dz = 1 / grid.z.spacing();
+    for (Particles& s : species) {
+        if (s.z_p.empty()) continue;
+        const auto row = [&](long p) {
+            return static_cast<int>(
+                (static_cast<double>(s.z_p[static_cast<std::size_t>(p)]) - z_low) * per_dz);
+        };
+        common::counting_sort(s.count(), grid.z.cells + 1, row, scratch);
+        for (std::vector<Real>* quantity : s.all())
+            if (!quantity->empty()) common::carry_to_place(*quantity, scratch);
+    }
+}
+
+}  // namespace cic

@@ -1,0 +1,70 @@
+// A stable counting sort for structures of arrays: first the new place of every element by its key,
+// then one column after the other is carried there.
+#pragma once
+
+#include <vector>
+
+#include "common/parallel.hpp"
+
+namespace common {
+
+/// Room for one permutation, kept between sorts.
+template <class Number>
+struct SortScratch {
+    std::vector<int> target;              // first the key of each element, then its new place
+    std::vector<Number> column;           // one sorted quantity
+    std::vector<std::vector<int>> place;  // [block][key] next free place
+};
+
+/// The new place of every element. Cost: elements + keys.
+/// in:     key_of(p) in [0, keys)
+/// out:    scratch.target; first_of_key, if wanted: key k has [first_of_key[k], first_of_key[k + 1])
+/// exact:  elements with the same key keep their order; it does not depend on the number of threads
+template <class Number, class Key>
+void counting_sort(long count, long keys, const Key& key_of, SortScratch<Number>& scratch,
+                   std::vector<int>* first_of_key = nullptr) {
+    scratch.target.resize(static_cast<std::size_t>(count));
+    scratch.place.resize(block_count);
+
+    // Count the elements of each key, block by block.
+    int* target = scratch.target.data();
+    for_each_block(count, [&](int block, long begin, long end) {
+        auto& place = scratch.place[static_cast<std::size_t>(block)];
+        place.assign(static_cast<std::size_t>(keys), 0);
+        for (long p = begin; p < end; ++p) target[p] = key_of(p);
+        for (long p = begin; p < end; ++p) ++place[static_cast<std::size_t>(target[p])];
+    });
+
+    // Give every key its range and every block its share of that range.
+    int next = 0;
+    if (first_of_key != nullptr) first_of_key->assign(static_cast<std::size_t>(keys) + 1, 0);
+    for (std::size_t key = 0; key < static_cast<std::size_t>(keys); ++key) {
+        if (first_of_key != nullptr) (*first_of_key)[key] = next;
+        for (auto& place : scratch.place) {
+            const int here = place[key];
+            place[key] = next;
+            next += here;
+        }
+    }
+    if (first_of_key != nullptr) first_of_key->back() = next;
+
+    for_each_block(count, [&](int block, long begin, long end) {
+        int* place = scratch.place[static_cast<std::size_t>(block)].data();
+        for (long p = begin; p < end; ++p) target[p] = place[target[p]]++;
+    });
+}
+
+/// Carries one quantity to the places that counting_sort found.
+template <class Number>
+void carry_to_place(std::vector<Number>& quantity, SortScratch<Number>& scratch) {
+    scratch.column.resize(quantity.size());
+    const Number* from = quantity.data();
+    Number* to = scratch.column.data();
+    const int* target = scratch.target.data();
+    for_each_block(static_cast<long>(quantity.size()), [&](int, long begin, long end) {
+        for (long p = begin; p < end; ++p) to[target[p]] = from[p];
+    });
+    quantity.swap(scratch.column);
+}
+
+}  // namespace common
