@@ -80,7 +80,10 @@ The particle-in-cell family in running code
   make deps              install the packages that are missing (apt-get); elsewhere: say which
   make implicit_moment   build one program: $(programs)
   make all               build every program
-  make fig09             run what is stale and draw into out/figures/: $(figures)
+  make fig09             run what is stale and draw into out/figures/: $(filter fig%,$(figures))
+                         $(filter-out fig% cic_%,$(figures)) $(wordlist 1,4,$(cic_figures))
+                         $(wordlist 5,9,$(cic_figures))
+                         $(wordlist 10,99,$(cic_figures))
   make figures           draw them all
   make test              the facts, at most ten minutes   (make test ARGS='-R gmres': some of them)
   make test-long         every figure at full length, its numbers checked
@@ -186,6 +189,25 @@ $(eval $(call figure,implicit_moment_dispersion,implicit_moment,out/implicit_mom
 $(eval $(call series,implicit_moment/figures/implicit_moment_dispersion.sh,implicit_moment,$(wildcard \
     implicit_moment/cases/light_wave.toml implicit_moment/cases/langmuir.toml),out/implicit_moment/dispersion))
 
+# $(call cic_series,figure,cases,folder): a figure of several runs of cic.
+define cic_series
+$(call figure,$(1),cic,$(3))
+$(call series,cic/figures/$(1).sh,cic,$(2:%=cic/cases/%.toml),$(3))
+endef
+$(foreach c,two_stream warm_two_stream two_stream_2d weak_beam buneman bump_on_tail sheath diocotron,\
+    $(eval $(call figure,cic_$c,cic,out/cic/$c)))
+$(eval $(call cic_series,cic_plasma_wave,plasma_wave landau,out/cic/waves_on_the_mesh))
+$(eval $(call cic_series,cic_landau,landau,out/cic/landau_damping))
+$(eval $(call cic_series,cic_upper_hybrid,upper_hybrid,out/cic/magnetic_fields))
+$(eval $(call cic_series,cic_misprint,misprint,out/cic/both_signs))
+$(eval $(call cic_series,cic_cloud_collision,cloud_collision,out/cic/clouds))
+$(eval $(call cic_series,cic_grid_instability,cold_beam_grid_instability,out/cic/cold_beams))
+$(eval $(call cic_series,cic_thermal_heating,thermal_heating,out/cic/heating))
+# Scripts that they share.
+$(patsubst %,out/figures/%.png,$(filter cic_%,$(figures))): $(filter-out cic/figures/cic_%,$(wildcard cic/figures/*))
+
+cic_figures = $(filter cic_%,$(figures))
+
 figures: $(figures)
 
 # Figures of the talk whose method has no program so far.
@@ -214,7 +236,8 @@ test: all tests $(BUILD)/CTestTestfile.cmake | $(packages_first)
 	$(ctest) -LE long
 
 # Runs that the notes quote and no figure needs.
-quoted := out/implicit_moment/gem_1836/.complete
+quoted := out/implicit_moment/gem_1836/.complete $(patsubst %,out/cic/%/.complete,\
+    plasma_wave landau upper_hybrid misprint cloud_collision cold_beam_grid_instability thermal_heating)
 
 test-long: all tests figures $(quoted) $(BUILD)/CTestTestfile.cmake | $(packages_first)
 	$(call need,ctest)

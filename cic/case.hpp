@@ -1,5 +1,5 @@
-// Everything a case file of cic can say: plain values with their defaults, which are the two-stream
-// instability.
+// Everything a case file of cic can say: plain values with their defaults. The plasma has none: its
+// species are in the case file.
 #pragma once
 
 #include <string>

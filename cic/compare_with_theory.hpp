@@ -12,6 +12,7 @@
 #include "cic/diocotron_theory.hpp"
 #include "cic/initial_state.hpp"
 #include "cic/sheath_theory.hpp"
+#include "cic/thermal_noise.hpp"
 #include "common/fit_growth.hpp"
 #include "common/fit_oscillation.hpp"
 #include "common/history.hpp"
@@ -22,30 +23,28 @@ namespace cic {
 /// Units of frequencies in the results, with the convention.
 inline constexpr const char* omega_p_unit = "omega_p(n=q=m=1)";
 
-/// Amplitude of the field at which the species with the largest |q|/m bounces in the wave as fast as
-/// the wave grows, |q| k E/m = gamma^2: there the linear growth ends.
-inline double trapping_field(const Case& w, const Theory& theory) {
+/// Amplitude of the field at which an instability is visible: a tenth of the one in which the
+/// species with the largest |q|/m bounces as fast as the wave grows, |q| k E/m = gamma^2, where
+/// linear growth ends.
+inline double onset_field(const Case& w, const Theory& theory) {
     double most = 0;
     for (const SpeciesCase& s : w.species)
         if (s.mobile()) most = std::max(most, std::fabs(s.charge) / s.mass);
     const double k = wave_vector(w, theory.mode_x, theory.mode_z).size();
-    return theory.omega.imag() * theory.omega.imag() / (most * k);
+    return 0.1 * theory.omega.imag() * theory.omega.imag() / (most * k);
 }
 
-/// Time of the onset, before the run: half of the seeded field grows at the rate of theory until it
-/// traps particles.
+/// Time of the onset, before the run: the seeded field grows at the rate of theory.
 /// out:    0 for a mode that does not grow or is not seeded
 inline double predicted_onset(const Case& w, const Theory& theory) {
-    const double growth = theory.omega.imag();
-    double rho = 0;
-    for (const SpeciesCase& s : w.species)
-        if (s.mobile() && s.mode_x == theory.mode_x && s.mode_z == theory.mode_z)
-            rho += s.charge * s.density * s.amplitude;
-    const double seed = 0.5 * std::fabs(rho) / wave_vector(w, theory.mode_x, theory.mode_z).size();
-    const double trapping = trapping_field(w, theory);
-    return growth > 0 && seed > 0 && trapping > seed ? std::log(trapping / seed) / growth : 0;
+    const double growth = theory.omega.imag(), onset = onset_field(w, theory);
+    return growth > 0 && theory.seed > 0 && onset > theory.seed
+               ? std::log(onset / theory.seed) / growth
+               : 0;
 }
-inline std::string onset_meaning() { return "half of the seed has grown until it traps particles"; }
+inline std::string onset_meaning() {
+    return "the seed has grown to a tenth of what traps particles";
+}
 
 namespace detail {
 
@@ -128,29 +127,46 @@ inline void compare_wave(const Case& w, const common::History& history, common::
             summary.result("omega_over_theory", -rotation.frequency / theory.omega.real(), "", 1,
                            w.frequency_tolerance, where);
         }
-        const double onset = predicted_onset(w, theory);
-        if (onset > 0)
-            summary.result("onset",
-                           detail::time_at_level(times, amplitude, trapping_field(w, theory)),
-                           "1/omega_p", onset, 2 / growth, onset_meaning());
+        const double onset = predicted_onset(w, theory), allowed = 0.5 / growth;
+        const double seen = detail::time_at_level(times, amplitude, onset_field(w, theory));
+        if (onset > 0 && times.back() > onset + allowed)
+            summary.result("onset", std::isnan(seen) ? times.back() : seen, "1/omega_p", onset,
+                           allowed, onset_meaning());
         return;
     }
 
+    // Where nothing should grow, nothing may.
+    const double start = *std::max_element(
+        amplitude.begin(),
+        amplitude.begin() + static_cast<std::ptrdiff_t>(1 + amplitude.size() / 10));
+    summary.result_within("largest_over_start",
+                          *std::max_element(amplitude.begin(), amplitude.end()) / start, "", 0, 2,
+                          "no growing root");
+    if (frequency < 0.01 * std::fabs(growth)) return;  // too damped to swing
+
     const detail::Window window = detail::ringing_window(amplitude, w.dt, frequency);
     take(window.begin, window.end);
-    // A standing wave keeps its phase, a traveling one turns it.
-    const auto largest =
-        std::max_element(mode.begin(), mode.end(),
-                         [](const auto& a, const auto& b) { return std::norm(a) < std::norm(b); });
-    const std::complex<double> direction = std::polar(1.0, -std::arg(*largest));
+    // In a magnetic field a part of the seed stays at rest: it drops out of differences over half a
+    // period, which change neither frequency nor damping.
+    if (w.magnetized()) {
+        const auto half = static_cast<std::size_t>(std::ceil(pi / (frequency * w.dt)));
+        for (std::size_t n = 0; n + half < mode.size(); ++n) mode[n] -= mode[n + half];
+        mode.resize(mode.size() > half ? mode.size() - half : 0);
+    }
+    // A standing wave keeps its phase, a traveling one turns it: its ellipse is round.
+    std::complex<double> squares = 0;
+    for (const auto& z : mode) squares += z * z;
+    const std::complex<double> direction = std::polar(1.0, -0.5 * std::arg(squares));
     std::vector<double> standing;
-    double turned = 0;
+    double along = 0, across = 0;
     for (const auto& z : mode) {
-        standing.push_back((direction * z).real());
-        turned = std::max(turned, std::fabs((direction * z).imag()));
+        const std::complex<double> turned = direction * z;
+        standing.push_back(turned.real());
+        along += turned.real() * turned.real();
+        across += turned.imag() * turned.imag();
     }
     double omega = 0, gamma = 0;
-    if (turned < 0.1 * std::abs(*largest)) {
+    if (across < 0.1 * along) {
         const common::OscillationFit fit = common::fit_oscillation(standing, w.dt);
         omega = fit.frequency, gamma = fit.growth;
     } else {
@@ -166,13 +182,6 @@ inline void compare_wave(const Case& w, const common::History& history, common::
         summary.result("damping_over_theory", gamma / growth, "", 1, w.growth_tolerance, where);
     else
         summary.result_info("damping", -gamma, omega_p_unit, where);
-    // Where nothing should grow, nothing may.
-    const double start = *std::max_element(
-        amplitude.begin(),
-        amplitude.begin() + static_cast<std::ptrdiff_t>(1 + amplitude.size() / 10));
-    summary.result_within("largest_over_start",
-                          *std::max_element(amplitude.begin(), amplitude.end()) / start, "", 0, 2,
-                          "no growing root");
 }
 
 /// The rate at which the edges of a charged layer wind up.
@@ -238,27 +247,6 @@ inline void compare_clouds(const Case& w, const common::History& history,
                    "linear force of overlapping clouds, mean over all places on the mesh");
     summary.result_info("omega", fit.frequency, omega_p_unit, "measured");
     summary.result_info("misfit", fit.misfit, "", "rms of what is not harmonic");
-}
-
-/// Energy of the field in a plasma in thermal equilibrium, per kinetic energy.
-///   (1/N_c N) sum_(k /= 0) A / (A + K^2 lambda_D^2),   A = sum_p S(k_p)^2
-/// in:     lambda_D/dx; N_c particles per cell; N cells; order of the weights
-/// exact:  for the energy-conserving scheme, in the limit of many particles in a Debye length: each
-///         of N modes has T/2, screened; [CIC-1] leaves A of the noise of points
-/// note:   A has a closed form: 1 for ngp, (2 + cos k dx)/3 for cic, with C = cos k dx
-///         (33 + 26 C + cos 2 k dx)/60 for tsc. For points and a continuous field the sum becomes
-///         arctan(pi l) / (pi l N_c).
-inline double thermal_noise(double debye_over_dx, double per_cell, long cells, int order) {
-    double sum = 0;
-    for (long m = 1; m < cells; ++m) {
-        const double theta = 2 * pi * static_cast<double>(m) / static_cast<double>(cells);
-        const double K2 = 2 - 2 * std::cos(theta);
-        const double A = order == 0   ? 1
-                         : order == 1 ? (2 + std::cos(theta)) / 3
-                                      : (33 + 26 * std::cos(theta) + std::cos(2 * theta)) / 60;
-        sum += A / (A + K2 * debye_over_dx * debye_over_dx);
-    }
-    return sum / (per_cell * static_cast<double>(cells));
 }
 
 /// How a warm plasma at rest does: the energy of its noise, and how fast the mesh heats it.

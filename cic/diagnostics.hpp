@@ -23,8 +23,8 @@ void for_each_node(const Grid& grid, const Visit& visit) {
 }
 
 /// Energy of the field, (1/2) sum_g rho_g V_g phi_g + (1/2) sum over walls of Q phi.
-/// exact:  this, and not (1/2) sum E_g^2 of the field on nodes, is what the energy-conserving scheme
-///         trades with the particles; it equals (1/2) sum E^2 of the differences of phi
+/// exact:  this, and not (1/2) sum E_g^2 of the field on nodes, is what the energy scheme trades
+///         with the particles; it equals (1/2) sum E^2 of the differences of phi
 inline double field_energy(const Grid& grid, const Scheme& scheme, const Field& rho_g,
                            const FieldState& field) {
     double sum = 0;

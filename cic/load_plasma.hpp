@@ -80,8 +80,8 @@ inline Position position_of(const Case& w, const SpeciesCase& s, std::uint32_t p
 ///     x_p = even or random + displacement,  displacement = -(A/k) sin(k x) along k
 ///     and, for the ripple of a layer, z_p + ripple cos(k_x x)
 ///     v_p = drift + Maxwellian, and for a traveling wave + (omega/k - u) A cos(k x) along k
-/// exact:  to first order in A the density is 1 + A cos(k x); a traveling wave is the wave of theory
-///         where that is not damped
+/// exact:  to first order in A the density is 1 + A cos(k x); a traveling wave is that of
+///         theory where it is not damped
 inline Particles load_species(const Case& w, const SpeciesCase& s, std::uint32_t purpose) {
     const Grid& grid = w.grid;
     const long count = particle_count(w, s);

@@ -50,6 +50,9 @@ struct EmissionNumbers {
     double gaussian(std::uint32_t draw) const { return common::gaussian(seed, purpose, n, draw); }
 };
 
+// No particle is emitted faster than this times its thermal speed.
+inline constexpr double fastest_emitted = 8.7;
+
 // Velocity from the wall at x_low: half-Maxwellian weighted with the speed at which it leaves. The
 // particle has been on its way for a random part of the step.
 inline void emit(const Case& w, const SpeciesCase& from, const EmissionNumbers& random,
@@ -72,6 +75,11 @@ inline bool meet_end(const WallCase& wall, double at, double& x, Real& v) {
 
 }  // namespace detail
 
+/// Simulation particles of one species, of this weight, that a source wall emits in a step.
+inline double emitted_per_step(const Case& w, const SpeciesCase& s, double weight) {
+    return s.emission * w.dt * (w.dimensions == 2 ? w.grid.z.length : 1) / weight;
+}
+
 /// Lets every particle behind a wall meet it, and a source wall emit.
 ///   absorb: the particle is gone, its charge is on the wall
 ///   reflect: x -> 2 x_wall - x, v -> -v
@@ -81,7 +89,7 @@ inline bool meet_end(const WallCase& wall, double at, double& x, Real& v) {
 /// exact:  the charge of particles and walls together changes by what a source emits, and that is
 ///         counted on the source wall
 /// note:   A reflected particle keeps the leapfrog centered: its mirror image would have moved so.
-/// errors: NumericalError when a particle leaps over the whole box
+/// errors: NumericalError when a particle leaps over the whole box, or when they are too many
 inline void meet_walls(const Case& w, long step, State& state) {
     if (!w.has_walls()) return;
     const Grid& grid = w.grid;
@@ -107,7 +115,7 @@ inline void meet_walls(const Case& w, long step, State& state) {
                         w, from,
                         {seed, purpose, static_cast<std::uint64_t>(state.emitted_again[index]++)},
                         s, n);
-                    break;
+                    continue;
                 }
                 WallName wall = x_low;
                 if (!grid.x.periodic && x < grid.x.low) {
@@ -138,15 +146,22 @@ inline void meet_walls(const Case& w, long step, State& state) {
         detail::remove(s, absorbed);
 
         // The source emits at an even rate.
-        const double per_step = from.emission * w.dt * area_x / (s.m_p / from.mass);
+        const double per_step = emitted_per_step(w, from, s.m_p / from.mass);
         const auto emitted_before = [&](long steps) {
             return static_cast<long>(std::floor(per_step * static_cast<double>(steps)));
         };
         const long first = emitted_before(step), last = emitted_before(step + 1);
         const auto old_count = static_cast<std::size_t>(s.count());
-        for (std::vector<Real>* quantity : s.all())
-            if (!quantity->empty() || (quantity == &s.x_p) || (quantity == &s.vx_p))
-                quantity->resize(old_count + static_cast<std::size_t>(last - first));
+        if (s.count() + last - first > 2000000000)
+            throw common::NumericalError(
+                s.name + ": the source has filled the box with more than 2e9 particles, at step " +
+                std::to_string(step) + ": lower its emission, or let a wall absorb them");
+        const std::size_t new_count = old_count + static_cast<std::size_t>(last - first);
+        s.x_p.resize(new_count);
+        s.vx_p.resize(new_count);
+        if (w.dimensions == 2) s.z_p.resize(new_count);
+        if (w.magnetized()) s.vy_p.resize(new_count);
+        if (w.magnetized() || w.dimensions == 2) s.vz_p.resize(new_count);
         for (long k = first; k < last; ++k) {
             const auto n = old_count + static_cast<std::size_t>(k - first);
             const detail::EmissionNumbers random{seed, purpose + 1, static_cast<std::uint64_t>(k)};

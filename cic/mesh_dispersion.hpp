@@ -2,9 +2,9 @@
 // relation of clouds-in-cells for one wave number along an axis of the mesh.
 //
 // A node cannot tell a wave k from its aliases k_p = k + 2 pi p / dx. Particles can, and answer to
-// each of them; what they answer is deposited on the nodes as one wave again. With theta = k dx / 2,
-// theta_p = theta + pi p, and the transform of the weights, S^(l)(k_p) = [sin(theta_p) /
-// theta_p]^(l+1), the mesh replaces the susceptibility chi(omega, k) of the plasma by a sum:
+// each of them; what they answer is deposited on the nodes as one wave again. So the mesh replaces
+// the susceptibility chi(omega, k) of the plasma by a sum. With theta = k dx / 2, theta_p = theta +
+// pi p, and the transform of the weights, S^(l)(k_p) = [sin(theta_p) / theta_p]^(l+1):
 //
 //   momentum conserving, E_k = -i kappa phi_k and S^(l) both ways:
 //     D = 1 + (kappa / K^2) sum_p k_p S^(l)(k_p)^2 chi(omega, k_p)
@@ -122,7 +122,7 @@ inline Complex mesh_susceptibility(const PlasmaSpecies& s, double k, const MeshS
         const long count = aliases(8.0 + 24.0 / power + 3.0 * resonant);
         return near_sum(f, count) + far_sum(f, count);
     }
-    // With the leapfrog the chi of a cold species is periodic in k_p: only the weights fall off.
+    // With the leapfrog, chi of a cold species is periodic in k_p: only the weights fall off.
     return near_sum(f, aliases(std::pow(1e10, 1.0 / power)));
 }
 
@@ -220,8 +220,9 @@ inline double cold_mesh_growth_as_printed(double k, const MeshScheme& scheme, do
 ///   complex ones.
 /// in:     order, 1 or 2
 /// exact:  12^-1/2 and 30^-1/2, to 1e-11
-/// note:   For dt -> 0. A finite dt adds narrow resonances omega - k_p u = 2 pi n / dt of high aliases,
-///         which can grow above the threshold, too, where particles are close enough to show them.
+/// note:   For dt -> 0. A finite dt adds narrow resonances of high aliases, where omega - k_p u is
+///         a multiple of 2 pi / dt. They can grow above the threshold, too, if particles are close
+///         enough to show them.
 inline double cold_beam_threshold(int order) {
     const common::PlasmaSpecies beam{
         .density = 0.25 * std::numbers::inv_pi, .charge = 1.0, .mass = 1.0, .drift = 1.0};

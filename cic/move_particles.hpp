@@ -25,7 +25,7 @@ struct MagneticField {
 ///   R = rotation by -2 atan(Omega dt/2) about B,  Omega = q B/m
 /// in:     part of a step: 1, or -1/2 for half a step backwards
 /// exact:  the drift E x B/B^2 in a uniform field, for any Omega dt; |v| without E
-/// note:   The price of the exact drift is the angle, 1 - (Omega dt)^2/12 of the true one. A rotation
+/// note:   The price of the exact drift is the angle, 1 - (Omega dt)^2/12 of the true one. Rotating
 ///         by Omega dt would have the drift wrong by (Omega dt/2) / tan(Omega dt/2).
 /// source: Boris, Proc. 4th Conf. Num. Sim. Plasmas (1970).
 inline Eigen::Matrix3d rotation_of_step(const MagneticField& B, double charge_over_mass, double dt,
@@ -132,14 +132,17 @@ namespace detail {
 
 // One direction of move().
 inline void move_along(const common::Axis& axis, Real dt, long count, const Real* v, Real* x) {
-    const Real low = static_cast<Real>(axis.low), length = static_cast<Real>(axis.length),
+    const Real low = static_cast<Real>(axis.low), high = static_cast<Real>(axis.high()),
+               length = static_cast<Real>(axis.length),
                per_length = static_cast<Real>(1 / axis.length);
     if (axis.periodic) {
+        // The last line keeps round-off, and what is not finite any more, on the mesh.
         // [move]
 #pragma omp simd
         for (long k = 0; k < count; ++k) {
             const Real to = x[k] + dt * v[k];
-            x[k] = to - length * std::floor((to - low) * per_length);
+            const Real on_mesh = to - length * std::floor((to - low) * per_length);
+            x[k] = on_mesh > low ? (on_mesh < high ? on_mesh : high) : low;
         }
         // [/move]
     } else {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,12 @@ class Recorder {
         meters_.push_back(meter(mode_x, wanted.mode_z));
         for (long m = 1; m <= wanted.modes; ++m) meters_.push_back(meter(m, 0));
         background_ = fixed_background(wanted) * wanted.grid.x.length * wanted.grid.z.length;
+        double charge = 0;
+        for (const SpeciesCase& s : wanted.species)
+            charge += std::fabs(s.charge) * s.density * filled_volume(wanted, s);
+        const double round_off = 100 * static_cast<double>(std::numeric_limits<Real>::epsilon());
+        least_energy_ =
+            std::pow(round_off * charge, 2) * wanted.grid.x.length / wanted.grid.z.length;
 
         const std::string energy = "n0*m*velocity^2*volume", momentum = "n0*m*velocity*volume";
         std::vector<common::Column> columns{{"time", "1/omega_p"}, {"energy", energy},
@@ -129,9 +136,8 @@ class Recorder {
 
     // Whether a snapshot of the given interval falls on this step.
     bool due(double interval, long step) const {
-        if (interval <= 0) return false;
-        const long every = std::max(1L, std::lround(interval / wanted_.dt));
-        return step % every == 0;
+        const double every = std::max(1.0, std::round(interval / wanted_.dt));
+        return interval > 0 && std::fmod(static_cast<double>(step), every) == 0;
     }
 
     // Charge on the mesh less that of background and particles, relative to their sizes.
@@ -145,12 +151,12 @@ class Recorder {
     }
 
     // A cold plasma at rest has almost no energy to compare with: there a change must also be as
-    // large as what particles and field have now.
+    // large as what particles and field have now, and larger than round-off makes it.
     void check_energy(long step, double time, double energy, double change, double before,
                       double now) const {
         const bool limited = wanted_.energy_limit > 0 && !wanted_.has_walls();
         const bool beyond = limited && std::fabs(change) > (wanted_.energy_limit - 1) * before &&
-                            std::fabs(change) > 0.5 * now && before > 0;
+                            std::fabs(change) > 0.5 * now && before > 0 && now > least_energy_;
         if (std::isfinite(energy) && !beyond) return;
         throw common::NumericalError(
             "the energy is " + shown(energy) + " and was " + shown(energy - change) +
@@ -172,6 +178,7 @@ class Recorder {
     const Case& wanted_;
     std::vector<WaveMeter> meters_;
     double background_ = 0;
+    double least_energy_ = 0;  // of the field that round-off of all charges makes
     std::vector<double> row_;
     std::array<double, 3> clouds_{};
     static constexpr const char* field_unit_ = "m*velocity*omega_p/e";

@@ -18,7 +18,8 @@ struct SortScratch {
 
 /// The new place of every element. Cost: elements + keys.
 /// in:     key_of(p) in [0, keys)
-/// out:    scratch.target; first_of_key, if wanted: key k has [first_of_key[k], first_of_key[k + 1])
+/// out:    scratch.target; first_of_key, if wanted: key k has [first_of_key[k],
+///         first_of_key[k + 1])
 /// exact:  elements with the same key keep their order; it does not depend on the number of threads
 template <class Number, class Key>
 void counting_sort(long count, long keys, const Key& key_of, SortScratch<Number>& scratch,

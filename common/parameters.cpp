@@ -147,8 +147,18 @@ ParameterTable::Entry* ParameterTable::find(const std::string& name) {
 }
 
 bool ParameterTable::takes_text(const std::string& name) {
-    const Entry* entry = find(name);
-    return entry != nullptr && std::holds_alternative<std::string*>(entry->target);
+    const auto is_text = [](const Entry& entry) {
+        return std::holds_alternative<std::string*>(entry.target);
+    };
+    if (const Entry* entry = find(name); entry != nullptr) return is_text(*entry);
+    // An item that is new.
+    const std::string key = name.substr(name.rfind('.') + 1);
+    for (const List& list : lists_)
+        for (const Entry& entry : list.pattern)
+            if (name.compare(0, list.name.size() + 1, list.name + ".") == 0 &&
+                entry.name == list.name + ".<name>." + key)
+                return is_text(entry);
+    return false;
 }
 
 std::string ParameterTable::nearest(const std::string& name) const {

@@ -64,8 +64,8 @@ inline double shifted_radical_inverse(std::uint64_t i, unsigned base, std::uint6
     return fraction > 0.0 ? fraction : 0x1p-54;
 }
 
-/// Numbers in (0, 1) for loading particles. A quiet start takes radical inverses, each quantity of a
-/// species in a prime base of its own: small bases are quietest. Species that share bases differ by
+/// Numbers in (0, 1) for loading particles. A quiet start takes radical inverses, each quantity of
+/// a species in a prime base of its own: small bases are quietest. Species that share bases differ by
 /// a shift. A random start takes uniform().
 struct LoadingNumbers {
     bool quiet;

@@ -381,7 +381,7 @@ TEST_CASE("the mean force is the average over all positions of the pair") {
                             field.force(order, s_x, s_z, s_x + r[0], s_z + r[1]);
                 }
             const Vector2d F = cic::mean_force(pair, r[0] * x.spacing(), r[1] * z.spacing());
-            CHECK((F - mean).norm() <= 5e-16);
+            CHECK((F - mean).norm() <= 1e-15);
         }
     }
 }
@@ -508,6 +508,24 @@ TEST_CASE("a pair of point charges sees a staircase and its mean a straight line
         const double here = field.force(1, at_x, at_z, at_x + r, at_z)[0],
                      next = field.force(1, at_x, at_z, at_x + r + 0.01, at_z)[0];
         CHECK(std::abs(next - here) <= 0.01);
+    }
+}
+
+TEST_CASE("a single pair of clouds is bound more tightly on a row of nodes than between rows") {
+    const Axis axis = periodic_axis(8, 8.0);
+    const DenseField field(axis, axis);
+    const cic::CloudPair points = cic::make_cloud_pair(axis, axis, 0);
+    const double E_10 = cic::mean_force(points, 1.0, 0.0)[0],
+                 E_11 = cic::mean_force(points, 1.0, 1.0)[0], h = 0.01;
+    const double mean = cic::mean_force_slope(cic::make_cloud_pair(axis, axis, 1))[0];
+    for (const double at_x : {0.0, 0.3, 0.8}) {
+        const auto slope = [&](double at_z) {
+            return field.force(1, at_x, at_z, at_x + h, at_z)[0] / h;
+        };
+        CHECK(std::abs(slope(0.0) - E_10) <= 1e-14);
+        CHECK(std::abs(slope(0.5) - 0.5 * (E_10 + E_11)) <= 1e-14);
+        CHECK(slope(0.0) > mean);
+        CHECK(slope(0.5) < mean);
     }
 }
 

@@ -2,135 +2,20 @@
 // written.
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <map>
 #include <optional>
-#include <regex>
-#include <set>
-#include <sstream>
 #include <string>
-#include <vector>
+
+#include "tests/any_program.hpp"
+
+const std::string facts::program_name = "implicit_moment";
 
 namespace {
 
-namespace fs = std::filesystem;
+using namespace facts;
 using namespace std::string_literals;
-
-struct Row {
-    std::string label;
-    std::optional<std::string> bytes;  // of case.toml, if there is one
-    std::string arguments;             // as a shell reads them
-    std::string message;
-};
-
-using Files = std::map<std::string, std::string>;  // bytes by name
-
-struct Outcome {
-    int status = -1;
-    std::string out, err;
-    std::vector<std::string> sentences;  // lines of err that are no warnings
-};
-
-const fs::path program = fs::absolute(BUILD_FOLDER) / "implicit_moment";
-const fs::path runs = fs::absolute(BUILD_FOLDER) / "tests/runs/robust_input";
-
-std::string read_all(const fs::path& path) {
-    std::ifstream in(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
-
-void write_all(const fs::path& path, const std::string& bytes) {
-    fs::create_directories(path.parent_path());
-    std::ofstream(path, std::ios::binary) << bytes;
-}
-
-// A folder of its own for each row, with what the rows refer to.
-fs::path fresh_folder(const std::string& name) {
-    fs::path folder = runs / std::regex_replace(name, std::regex("[^A-Za-z0-9]+"), "_");
-    fs::remove_all(folder);
-    write_all(folder / "a_file", "not a case\n");
-    write_all(folder / "foreign/notes.txt", "notes\n");
-    write_all(folder / "earlier/history.dat", "# an earlier run\n");
-    write_all(folder / "earlier/summary.json", "{}\n");
-    write_all(folder / "other.toml", "time.end = 3\n");
-    fs::create_symlink("nowhere", folder / "dangling");
-    return folder;
-}
-
-// Names and contents of all that is in a folder.
-Files content(const fs::path& folder) {
-    Files found;
-    const auto all = fs::directory_options::skip_permission_denied;
-    for (const auto& entry : fs::recursive_directory_iterator(folder, all))
-        found[entry.path()] = entry.is_regular_file() ? read_all(entry.path()) : "";
-    return found;
-}
-
-// Starts the program in a folder; what it prints is kept beside that folder. A hang is status 124.
-// in: before, a command that starts the program.
-Outcome start(const fs::path& folder, const std::string& arguments,
-              const std::string& before = "") {
-    const std::string out = folder.string() + ".stdout", err = folder.string() + ".stderr";
-    const std::string command = "cd '" + folder.string() + "' && exec timeout 20 " + before + " '" +
-                                program.string() + "' " + arguments + " </dev/null >'" + out +
-                                "' 2>'" + err + "'";
-    const int status = std::system(command.c_str());
-    Outcome outcome;
-    outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-    outcome.out = read_all(out);
-    outcome.err = read_all(err);
-    std::istringstream lines(outcome.err);
-    for (std::string line; std::getline(lines, line);) {
-        if (!line.starts_with("warning: ")) outcome.sentences.push_back(line);
-    }
-    return outcome;
-}
-
-bool holds(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
-
-// Status 2, one clean sentence that holds the message, and the folder as it was.
-void check_refusal(const fs::path& folder, const Row& row, const std::string& before = "") {
-    const Files there = content(folder);
-    const Outcome outcome = start(folder, (row.bytes ? "case.toml " : "") + row.arguments, before);
-    const auto is_control = [](unsigned char c) { return (c < 0x20 && c != '\n') || c == 0x7f; };
-    INFO(row.label << ": " << outcome.err);
-    CHECK(outcome.status == 2);
-    CHECK(holds(outcome.err, row.message));
-    CHECK(outcome.sentences.size() == 1);
-    CHECK(std::none_of(outcome.err.begin(), outcome.err.end(), is_control));
-    CHECK(content(folder) == there);
-}
-
-void check_refused(const std::vector<Row>& rows, const Files& files = {}) {
-    for (const Row& row : rows) {
-        const fs::path folder = fresh_folder(row.label);
-        for (const auto& [name, bytes] : files) write_all(folder / name, bytes);
-        if (row.bytes) write_all(folder / "case.toml", *row.bytes);
-        check_refusal(folder, row);
-    }
-}
-
-// Status 0, no sentence on stderr, and nothing written. out: what it prints.
-Outcome check_described(const std::string& label, const std::string& bytes,
-                        const std::string& arguments, const std::string& before = "") {
-    const fs::path folder = fresh_folder(label);
-    write_all(folder / "case.toml", bytes);
-    const Files there = content(folder);
-    const Outcome outcome = start(folder, "case.toml --dry-run " + arguments, before);
-    INFO(label << ": " << outcome.err);
-    CHECK(outcome.status == 0);
-    CHECK(outcome.sentences.empty());
-    CHECK(content(folder) == there);
-    return outcome;
-}
 
 // Cases to which a row adds its fault.
 const std::string uniform = "[plasma]\nsetup = \"uniform\"\n[grid]\nboundary_z = \"periodic\"\n";
@@ -139,38 +24,10 @@ const std::string beam = uniform + "[species.beam]\ncharge = -1\n";
 // Arguments that let a case end at once, for faults that a program might swallow.
 const std::string brief = "time.end=0 harris.particles=2 grid.cells_x=4 grid.cells_z=4 --quiet";
 
-std::string repeated(const std::string& text, int times) {
-    std::string result;
-    for (int k = 0; k < times; ++k) result += text;
-    return result;
-}
-
 std::string species(int count) {
     std::string text = uniform;
     for (int k = 0; k < count; ++k) text += "[species.s" + std::to_string(k) + "]\ncharge = 1\n";
     return text;
-}
-
-struct Parameter {
-    std::string name, unit, range, initial;
-};
-
-// The parameters that --help lists, each in two lines: name, meaning and unit; range and default.
-std::vector<Parameter> listed_in(const std::string& help) {
-    std::istringstream lines(help);
-    const std::regex first(R"(  ([a-z_]+(?:\.[A-Za-z_<>]+)+) +\S.*?(?: \[([^\]]+)\])?)"),
-        second(R"( {10,}(\S.*); default (.+))");
-    std::vector<Parameter> parameters;
-    std::string line, next;
-    std::smatch one, two;
-    while (std::getline(lines, line)) {
-        if (!std::regex_match(line, one, first)) continue;
-        std::getline(lines, next);
-        INFO(line << " / " << next);
-        REQUIRE(std::regex_match(next, two, second));
-        parameters.push_back({one[1], one[2], two[1], two[2]});
-    }
-    return parameters;
 }
 
 }  // namespace
@@ -302,26 +159,7 @@ TEST_CASE("values out of range are refused with the range" * doctest::descriptio
 }
 
 TEST_CASE("every range that is listed by --help is enforced" * doctest::description("robust")) {
-    const std::regex above(R"((>=?) (\S+))"), between(R"((\S+) \.\.\. (\S+))");
-    int enforced = 0;
-    const std::string help = start(fresh_folder("list of ranges"), "--help").out;
-    for (const Parameter& parameter : listed_in(help)) {
-        const std::string name = std::regex_replace(parameter.name, std::regex("<name>"), "beam");
-        std::vector<double> outside;
-        std::smatch ends;
-        if (std::regex_match(parameter.range, ends, above)) {
-            outside = {std::stod(ends[2]) - (ends[1] == ">" ? 0 : 1)};
-        } else if (std::regex_match(parameter.range, ends, between)) {
-            outside = {std::stod(ends[1]) - 1, 2 * std::stod(ends[2]) + 1};
-        }
-        for (const double value : outside) {
-            const std::string wrong = name + "=" + std::to_string(value);
-            check_refused({{"range of " + wrong, std::nullopt, wrong,
-                            " is out of range; allowed: " + parameter.range}});
-            ++enforced;
-        }
-    }
-    CHECK(enforced >= 40);
+    CHECK(check_ranges() >= 40);
 }
 
 TEST_CASE("unknown and repeated keys are refused with the nearest name" *
@@ -470,7 +308,7 @@ TEST_CASE("wrong command lines are refused with the cure" * doctest::description
         {"device as case", std::nullopt, "/dev/null", "/dev/null: is not a regular file"},
         {"file of unknown size as case", std::nullopt, "/proc/version " + brief, "/proc/version:"},
         {"other text as case", std::nullopt, "a_file", "a_file:1:5: "},
-        {"program as case", std::nullopt, "'"s + program.string() + "'",
+        {"program as case", std::nullopt, "'"s + program().string() + "'",
          "a control character; this is not a text file, or it is damaged"},
         {"long name of a case", std::nullopt, repeated("x", 300), ": there is no such file"},
         {"empty name of a case", std::nullopt, "'' " + brief, "file"},
@@ -702,62 +540,14 @@ TEST_CASE("a plasma without any energy runs or is refused" * doctest::descriptio
 }
 
 TEST_CASE("every shipped case passes a dry run" * doctest::description("robust")) {
-    int cases = 0;
-    for (const auto& entry : fs::directory_iterator("implicit_moment/cases")) {
-        const std::string name = entry.path().stem();
-        // Memory that nobody has set is no longer zero by chance.
-        check_described(name, read_all(entry.path()), "", "env MALLOC_PERTURB_=85");
-        check_described(name + " twice", read_all(entry.path()), "--quiet");
-        ++cases;
-    }
-    CHECK(cases >= 8);
+    CHECK(check_shipped_cases() >= 8);
 }
 
 TEST_CASE("help lists every parameter with unit and range and default" *
           doctest::description("robust")) {
-    const fs::path folder = fresh_folder("help");
-    const Outcome help = start(folder, "--help --out nowhere");
-    CHECK(help.status == 0);
-    CHECK(help.err.empty());
-    CHECK(!fs::exists(folder / "nowhere"));
-    for (const char* option : {"--out DIR", "--force", "--restart FILE", "--threads N", "--dry-run",
-                               "--quiet", "--help", "--version"})
-        CHECK(holds(help.out, option));
-    CHECK(start(folder, "-h").out == help.out);
-
-    // All parameters are in the case that a run writes, and nothing else is in the list.
-    const std::vector<Parameter> parameters = listed_in(help.out);
-    write_all(folder / "case.toml", "");
-    REQUIRE(start(folder, "case.toml time.end=0 --quiet --out defaults").status == 0);
-    REQUIRE(start(folder,
-                  "plasma.setup=uniform grid.boundary_z=periodic species.beam.drift_x=0.1 "
-                  "uniform.particles_per_cell=1 time.end=0 --quiet --out beam")
-                .status == 0);
-    std::set<std::string> listed, written;
-    for (const Parameter& p : parameters)
-        listed.insert(std::regex_replace(p.name, std::regex("<name>"), "beam"));
-    std::istringstream lines(read_all(folder / "beam/case.toml"));
-    const std::regex section(R"(\[(.+)\])"), key(R"((\w+) = .+)");
-    std::smatch match;
-    for (std::string line, prefix; std::getline(lines, line);) {
-        if (std::regex_match(line, match, section)) prefix = match.str(1) + ".";
-        if (std::regex_match(line, match, key)) written.insert(prefix + match.str(1));
-    }
-    CHECK(listed.size() == parameters.size());
-    CHECK(listed == written);
-
-    // The defaults, given as overrides, make the same case.
-    std::string overrides;
-    std::map<std::string, std::string> units;
-    for (const Parameter& p : parameters) {
-        INFO(p.name);
-        CHECK(!p.range.empty());
-        units[p.name] = p.unit;
-        if (!holds(p.name, "<name>") && p.name != "time.end")
-            overrides += "'" + p.name + "=" + p.initial + "' ";
-    }
-    REQUIRE(start(folder, "case.toml time.end=0 --quiet --out again " + overrides).status == 0);
-    CHECK(read_all(folder / "again/case.toml") == read_all(folder / "defaults/case.toml"));
+    auto units = check_help("time.end = 0\n",
+                            "plasma.setup=uniform grid.boundary_z=periodic "
+                            "species.beam.drift_x=0.1 uniform.particles_per_cell=1");
     CHECK(units["grid.length_x"] == "d_i");
     CHECK(units["time.dt"] == "1/omega_pi");
     CHECK(units["uniform.B_x"] == "m_i c omega_pi/e");
@@ -770,53 +560,37 @@ TEST_CASE("help lists every parameter with unit and range and default" *
 }
 
 TEST_CASE("the version is that of the Makefile" * doctest::description("robust")) {
-    const fs::path folder = fresh_folder("version");
-    const Outcome version = start(folder, "--version");
-    CHECK(version.status == 0);
-    CHECK(version.out == "implicit_moment " PROGRAM_VERSION "\n");
-    CHECK(version.err.empty());
+    check_version();
 }
 
 TEST_CASE("a dry run shows scales and memory and time and writes nothing" *
           doctest::description("robust")) {
     const std::string out = check_described("dry run", "", "--out run --threads 2").out;
-    for (const char* line :
-         {R"(  mesh +64 x 64 cells of 0\.4 x 0\.2 d_i, periodic in x, wall in z)",
-          R"(  steps +2667 of 0\.3 / omega_pi, c dt/dx = 0\.75, c dt/dz = 1\.5)",
-          R"(  particles +200000, 48\.83 per cell)",
-          R"(  magnetic field +0\.05 m_i c omega_pi/e, Omega_ci dt = 0\.015)",
-          R"(  ions +omega_p dt = 0\.3, Omega_c dt = 0\.015, v_th = 0\.03227 c, .*)",
-          R"(  electrons +omega_p dt = 1\.5, Omega_c dt = 0\.375, v_th = 0\.07217 c, .*)",
-          R"(  memory +about [0-9.e+]+ [KMG]iB.*)", R"(  time +about [0-9.e+-]+ .*)"}) {
-        INFO(line);
-        std::istringstream lines(out);
-        int found = 0;
-        for (std::string text; std::getline(lines, text);)
-            found += std::regex_match(text, std::regex(line)) ? 1 : 0;
-        CHECK(found == 1);
-    }
+    check_lines(out,
+                {R"(  mesh +64 x 64 cells of 0\.4 x 0\.2 d_i, periodic in x, wall in z)",
+                 R"(  steps +2667 of 0\.3 / omega_pi, c dt/dx = 0\.75, c dt/dz = 1\.5)",
+                 R"(  particles +200000, 48\.83 per cell)",
+                 R"(  magnetic field +0\.05 m_i c omega_pi/e, Omega_ci dt = 0\.015)",
+                 R"(  ions +omega_p dt = 0\.3, Omega_c dt = 0\.015, v_th = 0\.03227 c, .*)",
+                 R"(  electrons +omega_p dt = 1\.5, Omega_c dt = 0\.375, v_th = 0\.07217 c, .*)",
+                 R"(  memory +about [0-9.e+]+ [KMG]iB.*)", R"(  time +about [0-9.e+-]+ .*)"});
     CHECK(check_described("quiet dry run", "", "--quiet").out.empty());
 }
 
 TEST_CASE("what may mislead is a warning with the number and the limit" *
           doctest::description("robust")) {
-    const auto check = [](const std::string& label, const std::string& arguments,
-                          const std::vector<std::string>& warnings) {
-        const Outcome outcome = check_described(label, "", arguments);
-        INFO(label << ": " << outcome.err);
-        CHECK(std::count(outcome.err.begin(), outcome.err.end(), '\n') ==
-              static_cast<long>(warnings.size()));
-        for (const std::string& warning : warnings) CHECK(holds(outcome.err, warning));
-    };
-    check("no warning", "", {});
+    check_warnings("no warning", "", "", {});
     // v_e = (25/6 B0^2/2)^(1/2) = 0.0722, dz = 0.2.
-    check("closure", "time.dt=3",
-          {"warning: electrons: v_th dt/dx = 1.083 is above 1, where the moment closure fails "
-           "[IMM-13]: lower time.dt to 2.771\n"});
-    check("closure and gyration", "time.dt=30",
-          {"warning: ions: v_th dt/dx = 4.841 is above 1", "lower time.dt to 6.197\n",
-           "warning: electrons: Omega_c dt = 37.5 is above 2 pi, gyration is not followed\n"});
-    check("finite grid", "grid.cells_x=4 grid.cells_z=4",
-          {"warning: electrons: v_th dt/dx = 0.006766 is below 0.05 and the Debye length is "
-           "0.004511 cells: finite-grid heating is possible, watch the energy\n"});
+    check_warnings(
+        "closure", "", "time.dt=3",
+        {"warning: electrons: v_th dt/dx = 1.083 is above 1, where the moment closure fails "
+         "[IMM-13]: lower time.dt to 2.771\n"});
+    check_warnings(
+        "closure and gyration", "", "time.dt=30",
+        {"warning: ions: v_th dt/dx = 4.841 is above 1", "lower time.dt to 6.197\n",
+         "warning: electrons: Omega_c dt = 37.5 is above 2 pi, gyration is not followed\n"});
+    check_warnings(
+        "finite grid", "", "grid.cells_x=4 grid.cells_z=4",
+        {"warning: electrons: v_th dt/dx = 0.006766 is below 0.05 and the Debye length is "
+         "0.004511 cells: finite-grid heating is possible, watch the energy\n"});
 }

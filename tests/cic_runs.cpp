@@ -1,0 +1,402 @@
+// Whole runs of cic against exact and predicted values, by the numbers that the program itself puts
+// into summary.json and history.dat.
+#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <complex>
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace {
+
+using Json = nlohmann::json;
+
+struct Run {
+    Json summary;
+    std::map<std::string, std::vector<double>> columns;
+
+    double value(const std::string& result) const {
+        REQUIRE(summary["results"].contains(result));
+        return summary["results"][result]["value"].get<double>();
+    }
+    double conservation(const std::string& name) const {
+        REQUIRE(summary["conservation"].contains(name));
+        return summary["conservation"][name]["value"].get<double>();
+    }
+    const std::vector<double>& column(const std::string& name) const {
+        REQUIRE(columns.count(name) == 1);
+        return columns.at(name);
+    }
+};
+
+std::string text(double number) {
+    char words[32];
+    std::snprintf(words, sizeof words, "%.17g", number);
+    return words;
+}
+
+// Runs a case in a folder of the test's own, without files for figures.
+Run run(const std::string& name, const std::string& file, const std::string& overrides) {
+    const std::string folder = std::string(BUILD_FOLDER) + "/tests/runs/cic_" + name;
+    const std::string command =
+        std::string(BUILD_FOLDER) + "/cic cic/cases/" + file + ".toml " + overrides +
+        " output.phase_interval=0 output.particles_interval=0 output.fields_interval=0 --out " +
+        folder + " --force --quiet 2> /dev/null";
+    CAPTURE(command);
+    REQUIRE(std::system(command.c_str()) == 0);
+    Run result;
+    std::ifstream summary(folder + "/summary.json");
+    result.summary = Json::parse(summary);
+    std::ifstream history(folder + "/history.dat");
+    std::string line;
+    std::getline(history, line);
+    std::vector<std::string> names;
+    std::istringstream head(line.substr(1));
+    for (std::string word; head >> word;) {
+        const std::size_t colon = word.find(':') + 1;
+        names.push_back(word.substr(colon, word.find('[') - colon));
+    }
+    while (std::getline(history, line)) {
+        std::istringstream row(line);
+        for (const std::string& column : names) {
+            double number = 0;
+            row >> number;
+            result.columns[column].push_back(number);
+        }
+    }
+    return result;
+}
+
+// Every result that is compared with something must pass.
+void check_results(const Run& run, int at_least) {
+    int compared = 0;
+    for (const auto& [name, result] : run.summary["results"].items()) {
+        if (!result.contains("pass")) continue;
+        const std::string shown = name + " = " + result.dump();
+        INFO(shown);
+        CHECK(result["pass"].get<bool>());
+        ++compared;
+    }
+    CHECK(compared >= at_least);
+}
+
+double largest(const std::vector<double>& values) {
+    double most = 0;
+    for (const double v : values)
+        most = most >= std::fabs(v) || std::isnan(most) ? most : std::fabs(v);
+    return most;
+}
+
+const double pi = std::acos(-1.0);
+std::string length_of(double k) { return " grid.length_x=" + text(2 * pi / k); }
+
+// Frequency of a standing wave of the cold plasma at rest.
+double cold_frequency(const std::string& weighting, const std::string& scheme, int mode,
+                      double dt) {
+    const std::string m = std::to_string(mode);
+    // The lattice wave is linear as long as particles stay in their cells.
+    const Run r = run("cold", "plasma_wave",
+                      "method.weighting=" + weighting + " method.scheme=" + scheme +
+                          " theory.mode_x=" + m + " species.electrons.mode_x=" + m +
+                          " species.electrons.amplitude=1e-5 output.modes=0 time.dt=" + text(dt) +
+                          " time.end=" + text(std::min(200.0, 2000 * dt)));
+    check_results(r, 2);
+    return r.value("omega");
+}
+
+}  // namespace
+
+TEST_CASE("a cold plasma on the mesh oscillates with cos k dx half" *
+          doctest::description("physics")) {
+    for (const int mode : {1, 4, 8, 12}) {
+        CAPTURE(mode);
+        const double theta = pi * mode / 32, c = std::cos(theta), dt = 0.05;
+        const auto of_leapfrog = [&](double omega) { return 2 / dt * std::asin(0.5 * omega * dt); };
+        CHECK(std::fabs(cold_frequency("cic", "momentum", mode, dt) / of_leapfrog(c) - 1) <= 1e-4);
+        CHECK(std::fabs(cold_frequency("tsc", "momentum", mode, dt) /
+                            of_leapfrog(c * std::sqrt((2 + c * c) / 3)) -
+                        1) <= 1e-4);
+        CHECK(std::fabs(cold_frequency("cic", "energy", mode, dt) / of_leapfrog(1) - 1) <= 1e-4);
+    }
+}
+
+TEST_CASE("the leapfrog raises frequencies to the arc sine" * doctest::description("physics")) {
+    for (const double dt : {0.1, 0.2, 0.5, 1.0, 1.5, 1.9}) {
+        CAPTURE(dt);
+        CHECK(std::fabs(cold_frequency("cic", "energy", 3, dt) / (2 / dt * std::asin(0.5 * dt)) -
+                        1) <= 1e-4);
+    }
+}
+
+TEST_CASE("the energy scheme conserves the energy of small waves to round-off" *
+          doctest::description("physics")) {
+    // While no particle leaves its cell, the force is linear, and the leapfrog has an invariant.
+    for (const double dt : {0.1, 1.0, 1.9}) {
+        const Run r =
+            run("invariant", "plasma_wave",
+                "method.scheme=energy species.electrons.amplitude=1e-3 theory.compare=none "
+                "time.dt=" +
+                    text(dt) + " time.end=" + text(500 * dt));
+        CHECK(largest(r.column("energy_drift")) <= 1e-9);
+        CHECK(r.column("field").front() > 0);
+    }
+}
+
+TEST_CASE("a traveling wave runs one way at the phase speed of theory" *
+          doctest::description("physics")) {
+    const Run r = run("traveling", "plasma_wave",
+                      "species.electrons.wave=traveling output.spectrum=true time.end=100 "
+                      "time.dt=0.1");
+    check_results(r, 2);
+    const std::vector<double>&re = r.column("mode_re"), &im = r.column("mode_im");
+    const double start = std::hypot(re[0], im[0]);
+    double turned = 0;
+    for (std::size_t n = 1; n < re.size(); ++n) {
+        CHECK(std::fabs(std::hypot(re[n], im[n]) / start - 1) <= 0.01);
+        turned += std::arg(std::complex<double>(re[n], im[n]) /
+                           std::complex<double>(re[n - 1], im[n - 1]));
+    }
+    // exp(i k x - i omega t), on this mesh and with this time step
+    const double omega = 20 * std::asin(0.05 * std::cos(pi / 8));
+    CHECK(std::fabs(turned / (99.9 * -omega) - 1) <= 1e-3);
+
+    // The spectrum has its peak there, and nothing at the negative frequency.
+    std::ifstream spectrum(std::string(BUILD_FOLDER) + "/tests/runs/cic_traveling/spectrum.dat");
+    double peak = 0, peak_omega = 0, peak_k = 0, mirrored = 0;
+    for (std::string line; std::getline(spectrum, line);) {
+        std::istringstream words(line);
+        double w = 0, k = 0, power = 0;
+        if (!(words >> w >> k >> power)) continue;
+        if (power > peak) peak = power, peak_omega = w, peak_k = k;
+        if (w < -0.5) mirrored = std::max(mirrored, power);
+    }
+    CHECK(std::fabs(peak_omega - omega) <= 2 * pi / 100);
+    CHECK(std::fabs(peak_k - pi / 4) <= 1e-12);
+    CHECK(mirrored <= 1e-4 * peak);
+}
+
+TEST_CASE("phase space in bins holds every particle" * doctest::description("physics")) {
+    const std::string folder = std::string(BUILD_FOLDER) + "/tests/runs/cic_bins";
+    const std::string command = std::string(BUILD_FOLDER) +
+                                "/cic cic/cases/warm_two_stream.toml time.end=1 "
+                                "output.phase_interval=1 output.phase_v_max=20 --out " +
+                                folder + " --force --quiet 2> /dev/null";
+    REQUIRE(std::system(command.c_str()) == 0);
+    const auto sum = [&](const char* file, int columns) {
+        std::ifstream in(folder + file);
+        double total = 0;
+        for (std::string line; std::getline(in, line);) {
+            std::istringstream words(line);
+            double skipped = 0, right = 0, left = 0;
+            bool good = true;
+            for (int k = 0; k < columns; ++k) good = good && (words >> skipped);
+            if (good && words >> right >> left) total += right + left;
+        }
+        return total;
+    };
+    const double L = 31.41592653589793, dx = L / 128, dv = 40.0 / 128;
+    CHECK(std::fabs(sum("/phase_000000.dat", 2) * dx * dv / L - 1) <= 1e-9);
+    CHECK(std::fabs(sum("/velocities_000000.dat", 1) * dv - 1) <= 1e-9);
+}
+
+TEST_CASE("two cold streams grow at the root of their dispersion relation" *
+          doctest::description("physics")) {
+    for (const double K : {0.3, 0.5, 0.6123724356957945, 0.9}) {
+        CAPTURE(K);
+        const Run r = run("two_stream", "two_stream", "output.modes=0 time.end=60" + length_of(K));
+        check_results(r, 2);
+        // w^2 = K^2 + 1/2 - (1/2)^1/2 (4 K^2 + 1/2)^1/2 for total omega_p = 1
+        const double gamma = std::sqrt(std::sqrt(2 * K * K + 0.25) - K * K - 0.5);
+        CHECK(std::fabs(r.value("theory_growth") / gamma - 1) <= 1e-9);
+        CHECK(std::fabs(r.value("growth") / gamma - 1) <= 0.01);
+        CHECK(std::fabs(r.conservation("momentum_x_change")) <= 1e-12);
+        CHECK(r.conservation("largest_charge_error") <= 1e-14);
+    }
+}
+
+TEST_CASE("no stream grows above the cut-off" * doctest::description("physics")) {
+    for (const double K : {1.02, 1.1, 1.4}) {
+        CAPTURE(K);
+        const Run r = run("cut_off", "two_stream", "output.modes=0 time.end=60" + length_of(K));
+        check_results(r, 2);
+        std::vector<double> amplitude;
+        for (std::size_t n = 0; n < r.column("mode_re").size(); ++n)
+            amplitude.push_back(std::hypot(r.column("mode_re")[n], r.column("mode_im")[n]));
+        CHECK(largest(amplitude) <= 3 * amplitude.front());
+    }
+}
+
+TEST_CASE("Landau damping at three wave numbers" * doctest::description("physics")) {
+    // k, amplitude, particles per cell, omega and gamma of the root
+    struct Row {
+        double k, amplitude;
+        int particles_per_cell;
+        double omega, gamma;
+    };
+    for (const Row& row : {Row{0.3, 1e-3, 16384, 1.15984648, 0.0126203684},
+                           Row{0.4, 1e-3, 16384, 1.28505697, 0.0661279587},
+                           Row{0.5, 5e-3, 8192, 1.41566189, 0.153359467}}) {
+        CAPTURE(row.k);
+        const Run r = run("landau", "landau",
+                          "time.dt=0.1 species.electrons.amplitude=" + text(row.amplitude) +
+                              " species.electrons.particles_per_cell=" +
+                              std::to_string(row.particles_per_cell) + length_of(row.k));
+        check_results(r, 3);
+        CHECK(std::fabs(r.value("theory_omega") / row.omega - 1) <= 1e-7);
+        CHECK(std::fabs(r.value("theory_growth") / row.gamma + 1) <= 1e-7);
+        CHECK(std::fabs(r.value("omega_over_theory") - 1) <= 0.005);
+        CHECK(std::fabs(r.value("damping_over_theory") - 1) <= 0.03);
+    }
+}
+
+TEST_CASE("kinetic instabilities grow at the root of their dispersion relation" *
+          doctest::description("physics")) {
+    struct Row {
+        const char* name;
+        const char* overrides;
+        int results;
+    };
+    for (const Row& row :
+         {Row{"bump_on_tail", "time.end=60", 3}, Row{"weak_beam", "time.end=150", 3},
+          Row{"buneman", "time.end=90", 3}, Row{"warm_two_stream", "time.end=40", 2}}) {
+        CAPTURE(row.name);
+        const Run r = run(row.name, row.name, row.overrides);
+        check_results(r, row.results);
+        CHECK(std::fabs(r.value("growth_over_theory") - 1) <= 0.05);
+    }
+}
+
+TEST_CASE("warm streams need more than their thermal speed" * doctest::description("physics")) {
+    const auto growth = [](double v0, double k) {
+        return run("warm", "warm_two_stream",
+                   "time.end=2 species.right.particles_per_cell=10 "
+                   "species.left.particles_per_cell=10 species.right.drift_x=" +
+                       text(v0) + " species.left.drift_x=" + text(-v0) + length_of(k))
+            .value("theory_growth");
+    };
+    CHECK(std::fabs(growth(3, 0.2) - 0.2845097) <= 1e-6);
+    // cut-off wave numbers, and the threshold 1.306930
+    CHECK(growth(2, 0.529) > 0);
+    CHECK(growth(2, 0.5293) <= 0);
+    CHECK(growth(1.31, 0.04) > 0);
+    CHECK(growth(1.30, 0.04) <= 0);
+}
+
+TEST_CASE("the law as the slide prints it grows at omega_p" * doctest::description("physics")) {
+    const Run r = run("misprint", "misprint", "");
+    check_results(r, 2);
+    CHECK(std::fabs(r.value("theory_growth") - 1) <= 1e-9);
+    CHECK(std::fabs(r.value("growth") - 1) <= 0.01);
+    // As this mesh and this time step have it: (2/dt) asinh(cos(k dx/2) dt/2).
+    const Run coarse =
+        run("misprint", "misprint", "grid.cells_x=32 time.dt=0.1 theory.growth_tolerance=0.02");
+    const double expected = 20 * std::asinh(0.05 * std::cos(pi / 32));
+    CHECK(std::fabs(coarse.value("growth") / expected - 1) <= 1e-3);
+}
+
+TEST_CASE("the mesh heats most with ngp less with cic and least with tsc" *
+          doctest::description("physics")) {
+    const auto heating = [](const char* method, double debye_over_dx) {
+        const Run r = run("heating", "thermal_heating",
+                          std::string("method.weighting=") + method + " theory.growth_tolerance=1" +
+                              " grid.length_x=" + text(64 / debye_over_dx));
+        return r.value("kinetic_over_initial") - 1;
+    };
+    for (const double debye_over_dx : {0.1, 0.3183098861837907}) {
+        CAPTURE(debye_over_dx);
+        const double ngp = heating("ngp", debye_over_dx), cic = heating("cic", debye_over_dx),
+                     tsc = heating("tsc", debye_over_dx);
+        CHECK(ngp >= 5 * cic);
+        CHECK(cic >= 5 * tsc);
+        CHECK(tsc > 0);
+        CHECK(heating("cic method.scheme=energy", debye_over_dx) <= 0.3 * cic);
+    }
+    // An unresolved plasma heats until its Debye length is about a third of a cell.
+    CHECK(0.1 * std::sqrt(1 + heating("cic", 0.1)) >= 0.24);
+    CHECK(0.1 * std::sqrt(1 + heating("cic", 0.1)) <= 0.32);
+}
+
+TEST_CASE("thermal noise has the energy of its modes" * doctest::description("physics")) {
+    check_results(run("noise", "thermal_heating", ""), 1);
+}
+
+TEST_CASE("the mesh makes a cold beam unstable at the rate of its aliases" *
+          doctest::description("physics")) {
+    for (const std::string weighting : {"cic", "tsc"}) {
+        CAPTURE(weighting);
+        const Run r =
+            run("grid_instability", "cold_beam_grid_instability", "method.weighting=" + weighting);
+        check_results(r, 2);
+        // The momentum scheme heats the beam but does not stop it.
+        CHECK(std::fabs(r.conservation("momentum_x_change")) <= 1e-12);
+        CHECK(r.column("kinetic").back() >= 1.5 * r.column("kinetic").front());
+    }
+}
+
+TEST_CASE("the energy scheme is stable for fast beams and stops slow ones" *
+          doctest::description("physics")) {
+    const auto beam = [](const char* weighting, double u) {
+        return run("threshold", "cold_beam_grid_instability",
+                   std::string("method.scheme=energy species.beam.mode_x=31 theory.compare=none ") +
+                       "time.dt=0.05 method.weighting=" + weighting +
+                       " species.beam.drift_x=" + text(u));
+    };
+    const auto field_growth = [](const Run& r) {
+        return largest(r.column("field")) / r.column("field").front();
+    };
+    // 1/12^(1/2) = 0.28868 with cic, 1/30^(1/2) = 0.18257 with tsc
+    CHECK(field_growth(beam("cic", 0.28)) >= 1e6);
+    CHECK(field_growth(beam("cic", 0.29)) <= 1e3);
+    CHECK(field_growth(beam("tsc", 0.18)) >= 1e6);
+    CHECK(field_growth(beam("tsc", 0.19)) <= 1e3);
+    const Run slow = beam("cic", 0.1);
+    CHECK(slow.column("momentum_x").back() <= 0.1 * slow.column("momentum_x").front());
+    CHECK(largest(slow.column("energy_drift")) <= 0.01);
+}
+
+TEST_CASE("upper hybrid waves add the squares of two frequencies" *
+          doctest::description("physics")) {
+    for (const double B : {0.5, 1.0, 2.0}) {
+        const double expected = std::sqrt(1 + B * B);
+        const Run r = run(
+            "upper_hybrid", "upper_hybrid",
+            "time.dt=0.02 time.end=60 plasma.B_y=" + text(B) + " theory.near=" + text(expected));
+        check_results(r, 2);
+        CHECK(std::fabs(r.value("theory_omega") / expected - 1) <= 1e-9);
+        CHECK(std::fabs(r.value("omega") / expected - 1) <= 0.002);
+    }
+}
+
+TEST_CASE("a floating wall reaches the potential of theory" * doctest::description("physics")) {
+    check_results(run("sheath", "sheath", ""), 2);
+}
+
+TEST_CASE("a charged layer winds up at the diocotron rate" * doctest::description("physics")) {
+    check_results(run("diocotron", "diocotron",
+                      "time.end=600 grid.cells_x=64 grid.cells_z=96 "
+                      "species.electrons.particles_per_cell=36"),
+                  1);
+}
+
+TEST_CASE("overlapping clouds of opposite charge swing harmonically" *
+          doctest::description("physics")) {
+    check_results(run("clouds", "cloud_collision",
+                      "grid.cells_x=32 grid.cells_z=32 "
+                      "grid.length_x=32 grid.length_z=32 "
+                      "species.a.center_z=16.3 species.b.center_z=16.3"),
+                  1);
+}
+
+TEST_CASE("two streams in the plane grow obliquely" * doctest::description("physics")) {
+    for (const std::string stencil : {"five_point", "nine_point"}) {
+        const Run r = run("plane", "two_stream_2d",
+                          "time.end=30 grid.cells_x=64 grid.cells_z=32 method.stencil=" + stencil);
+        check_results(r, 2);
+    }
+}

@@ -1,0 +1,566 @@
+// The steps of clouds-in-cells one by one: what is exact in the deposit, the field, the gather and
+// the leapfrog, on periodic meshes and between walls.
+#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "cic/diagnostics.hpp"
+#include "cic/meet_walls.hpp"
+#include "cic/sort_particles.hpp"
+#include "common/splines.hpp"
+#include "tests/any_numbers.hpp"
+
+namespace {
+
+using namespace cic;
+using facts::eps;
+using facts::worst;
+
+// Numbers in [0, 1).
+struct Random {
+    std::mt19937_64 engine;
+    explicit Random(std::uint64_t seed) : engine(seed) {}
+    double operator()() { return 0x1p-53 * static_cast<double>(engine() >> 11); }
+};
+
+struct Mesh {
+    Grid grid;
+    Scheme scheme;
+    std::string name;
+};
+
+// Every weighting on lines and planes, periodic and between walls.
+std::vector<Mesh> meshes(bool energy_conserving) {
+    std::vector<Mesh> all;
+    for (int order = energy_conserving ? 1 : 0; order <= 2; ++order) {
+        for (const bool walls_x : {false, true}) {
+            for (const int kind : {0, 1, 2}) {
+                Mesh m;
+                m.grid = {{9, -0.4, 3.7, !walls_x}, {1, 0, 1, true}};
+                if (kind > 0) m.grid.z = {7, 0.3, 2.9, kind == 1};
+                m.scheme = {order, energy_conserving, kind > 0 ? 2 : 1};
+                m.name = "order " + std::to_string(order) + ", walls " + std::to_string(walls_x) +
+                         ", kind " + std::to_string(kind);
+                all.push_back(m);
+            }
+        }
+    }
+    return all;
+}
+
+// Particles anywhere on a mesh, some next to its ends.
+Particles scattered(const Mesh& m, long count, double charge, std::uint64_t seed) {
+    Random random(seed);
+    Particles s;
+    s.name = "scattered";
+    s.q_p = charge, s.m_p = 0.7;
+    for (long p = 0; p < count; ++p) {
+        const double u = p % 5 == 0 ? 0.02 * random() : random();
+        s.x_p.push_back(m.grid.x.low + m.grid.x.length * (p % 2 == 0 ? u : 1 - u));
+        s.vx_p.push_back(random() - 0.5);
+        if (m.scheme.dimensions == 2) {
+            const double v = p % 7 == 0 ? 0.02 * random() : random();
+            s.z_p.push_back(m.grid.z.low + m.grid.z.length * (p % 3 == 0 ? 1 - v : v));
+            s.vz_p.push_back(random() - 0.5);
+        }
+    }
+    return s;
+}
+
+struct Solved {
+    Field rho_g;
+    FieldState field;
+};
+
+Solved solve(const Mesh& m, const std::vector<Particles>& species, double background = 0,
+             bool nine_point = false, const Walls& walls = {}) {
+    Solved s;
+    DepositScratch scratch;
+    FieldSolver solver(m.grid, m.scheme, nine_point, 1);
+    deposit_charge(species, m.grid, m.scheme, background, scratch, s.rho_g);
+    s.field.walls = walls;
+    solve_field(solver, s.rho_g, s.field);
+    return s;
+}
+
+// The field at every particle.
+std::vector<std::array<double, 2>> gathered(const Mesh& m, const MeshField& E_g, Particles s) {
+    std::vector<std::array<double, 2>> E(s.x_p.size());
+    std::vector<Particles> one{s};
+    for_each_chunk(one, [&](Chunk& p) {
+        FieldAtParticles E_p;
+        gather_field(E_g, m.grid, m.scheme, p, E_p);
+        for (long k = 0; k < p.count; ++k)
+            E[static_cast<std::size_t>(p.x_p - one[0].x_p.data() + k)] = {
+                E_p.x[k], m.scheme.dimensions == 2 ? E_p.z[k] : 0};
+    });
+    return E;
+}
+
+double mean_charge(const Mesh& m, const Particles& s) {
+    return s.q_p * static_cast<double>(s.count()) / (m.grid.x.length * m.grid.z.length);
+}
+
+Chunk whole(Particles& s) {
+    const auto from = [](std::vector<Real>& v) { return v.empty() ? nullptr : v.data(); };
+    return {from(s.x_p), from(s.z_p), from(s.vx_p), from(s.vy_p), from(s.vz_p), s.count(), s.q_p,
+            s.m_p,       {}};
+}
+
+}  // namespace
+
+TEST_CASE("weights are the B-splines and sum to one") {
+    Random random(1);
+    for (int trial = 0; trial < 200; ++trial) {
+        const double s = -0.5 + 6 * random();
+        const auto check = [&](int order, const auto& weights) {
+            double sum = 0;
+            for (int i = 0; i < weights.count; ++i) {
+                CHECK(std::fabs(weights.S[i] - common::spline(order, s - weights.first - i)) <=
+                      4 * eps);
+                sum += weights.S[i];
+            }
+            CHECK(std::fabs(sum - 1) <= 2 * eps);
+        };
+        check(0, Weights<0>(s));
+        check(1, Weights<1>(s));
+        check(2, Weights<2>(s));
+    }
+}
+
+TEST_CASE("the charge on the mesh is the charge of particles and background") {
+    for (const bool energy : {false, true}) {
+        for (const Mesh& m : meshes(energy)) {
+            CAPTURE(m.name);
+            const std::vector<Particles> species{scattered(m, 101, -0.3, 2),
+                                                 scattered(m, 57, 0.2, 3)};
+            DepositScratch scratch;
+            Field rho_g;
+            deposit_charge(species, m.grid, m.scheme, 1.5, scratch, rho_g);
+            const double expected = -0.3 * 101 + 0.2 * 57 + 1.5 * m.grid.x.length * m.grid.z.length;
+            CHECK(std::fabs(charge_on_mesh(m.grid, rho_g) - expected) <= 1e-14 * 60);
+        }
+    }
+}
+
+TEST_CASE("the gather is the transpose of the deposit") {
+    for (const Mesh& m : meshes(false)) {
+        CAPTURE(m.name);
+        const std::vector<Particles> species{scattered(m, 200, -0.3, 4)};
+        // Any field, with its ghosts.
+        Solved any = solve(m, {scattered(m, 50, 1, 5)});
+        Random random(6);
+        for (NodeField& E : any.field.E_g) E = {random() - 0.5, random() - 0.5};
+        for (long j = 0; j <= m.grid.z.cells; ++j) {  // node N is node 0 in a periodic direction
+            for (long i = 0; i <= m.grid.x.cells; ++i) {
+                const long a = m.grid.x.periodic ? i % m.grid.x.cells : i,
+                           b = m.grid.z.periodic ? j % m.grid.z.cells : j;
+                any.field.E_g[static_cast<std::size_t>(m.grid.index(i, j))] =
+                    any.field.E_g[static_cast<std::size_t>(m.grid.index(a, b))];
+            }
+        }
+        cic::detail::fill_ghosts(m.grid, false, any.field.E_g);
+        DepositScratch scratch;
+        Field rho_g;
+        deposit_charge(species, m.grid, m.scheme, 0, scratch, rho_g);
+        double on_particles = 0, on_mesh = 0;
+        for (const auto& E : gathered(m, any.field.E_g, species[0]))
+            on_particles += -0.3 * (E[0] + 2 * E[1]);
+        const bool plane = m.scheme.dimensions == 2;
+        for_each_node(m.grid, [&](long n, double volume) {
+            const NodeField& E = any.field.E_g[static_cast<std::size_t>(n)];
+            on_mesh += rho_g[n] * volume * (E.x + (plane ? 2 * E.z : 0));
+        });
+        CHECK(std::fabs(on_particles - on_mesh) <= 1e-14 * 60);
+    }
+}
+
+TEST_CASE("a particle exerts no force on itself in the momentum scheme") {
+    for (const Mesh& m : meshes(false)) {
+        if (!m.grid.x.periodic || !m.grid.z.periodic) continue;
+        for (const bool nine_point : {false, true}) {
+            CAPTURE(m.name);
+            double most = 0;
+            for (std::uint64_t seed = 0; seed < 20; ++seed) {
+                const Particles one = scattered(m, 1, 1, seed);
+                const Solved s = solve(m, {one}, -mean_charge(m, one), nine_point);
+                for (const auto& E : gathered(m, s.field.E_g, one))
+                    most = worst({most, std::fabs(E[0]), std::fabs(E[1])});
+            }
+            CHECK(most <= 1e-15 * 10);
+        }
+    }
+}
+
+TEST_CASE("the energy scheme pulls a particle to the middle of its cell") {
+    // F = -q^2 (f - 1/2) for a charge q per area, f its place in the cell, in a long box.
+    Mesh m{{{4096, 0, 4096, true}, {1, 0, 1, true}}, {1, true, 1}, ""};
+    for (const double f : {0.0625, 0.25, 0.5, 0.875}) {
+        Particles one;
+        one.q_p = 1.3, one.m_p = 1;
+        one.x_p = {2000 + f}, one.vx_p = {0};
+        const Solved s = solve(m, {one}, -mean_charge(m, one));
+        CHECK(std::fabs(gathered(m, s.field.E_g, one)[0][0] + 1.3 * (f - 0.5)) <= 1.3 / 4096);
+    }
+}
+
+TEST_CASE("all forces together vanish in the momentum scheme and not in the energy scheme") {
+    for (const bool energy : {false, true}) {
+        for (const Mesh& m : meshes(energy)) {
+            if (!m.grid.x.periodic || !m.grid.z.periodic) continue;
+            CAPTURE(m.name);
+            const Particles cloud = scattered(m, 40, -0.4, 7);
+            const Solved s = solve(m, {cloud}, -mean_charge(m, cloud));
+            std::array<double, 2> total{};
+            double size = 0;
+            for (const auto& E : gathered(m, s.field.E_g, cloud)) {
+                for (std::size_t a = 0; a < 2; ++a) total[a] += E[a];
+                size += std::fabs(E[0]);
+            }
+            if (!energy) {
+                CHECK(std::fabs(total[0]) <= 1e-14 * size);
+                CHECK(std::fabs(total[1]) <= 1e-14 * size);
+            } else {
+                CHECK(std::fabs(total[0]) >= 1e-4 * size);
+            }
+        }
+    }
+}
+
+TEST_CASE("the force of the energy scheme is the gradient of the field energy") {
+    for (const Mesh& m : meshes(true)) {
+        CAPTURE(m.name);
+        Particles cloud = scattered(m, 20, -0.4, 8);
+        const bool closed = m.grid.x.periodic && m.grid.z.periodic;
+        const double background = closed ? -mean_charge(m, cloud) : 0;
+        const auto energy = [&](const Particles& c) {
+            const Solved s = solve(m, {c}, background);
+            return field_energy(m.grid, m.scheme, s.rho_g, s.field);
+        };
+        const auto E = gathered(m, solve(m, {cloud}, background).field.E_g, cloud);
+        for (const std::size_t p : {0UL, 3UL, 8UL, 17UL}) {
+            for (std::size_t a = 0; a < (m.scheme.dimensions == 2 ? 2 : 1); ++a) {
+                auto& x = a == 0 ? cloud.x_p : cloud.z_p;
+                const double here = x[p], h = 1e-5;
+                x[p] = here + h;
+                const double after = energy(cloud);
+                x[p] = here - h;
+                const double before = energy(cloud);
+                x[p] = here;
+                CHECK(std::fabs(cloud.q_p * E[p][a] + (after - before) / (2 * h)) <= 2e-9);
+            }
+        }
+    }
+}
+
+TEST_CASE("the difference equation holds on every node") {
+    for (const Mesh& m : meshes(false)) {
+        for (const bool nine_point : {false, true}) {
+            CAPTURE(m.name);
+            CAPTURE(nine_point);
+            const Particles cloud = scattered(m, 60, 0.8, 9);
+            const bool closed = m.grid.x.periodic && m.grid.z.periodic;
+            Walls walls;
+            walls[x_low].potential = 0.7, walls[x_high].potential = 0.7;
+            walls[z_low].potential = 0.7, walls[z_high].potential = 0.7;
+            const Solved s =
+                solve(m, {cloud}, closed ? -mean_charge(m, cloud) : 0, nine_point, walls);
+            const Field& phi = s.field.phi;
+            const double dx = m.grid.x.spacing(), dz = m.grid.z.spacing();
+            const long row = m.grid.stride();
+            const auto delta_xx = [&](long n) {
+                return (phi[n + 1] - 2 * phi[n] + phi[n - 1]) / (dx * dx);
+            };
+            const double coupling = nine_point ? (dx * dx + dz * dz) / 12 : 0;
+            double most = 0;
+            for (long j = m.grid.z.periodic ? 0 : 1; j < m.grid.z.cells; ++j) {
+                for (long i = m.grid.x.periodic ? 0 : 1; i < m.grid.x.cells; ++i) {
+                    const long n = m.grid.index(i, j);
+                    const double delta_zz = (phi[n + row] - 2 * phi[n] + phi[n - row]) / (dz * dz);
+                    const double both =
+                        (delta_xx(n + row) - 2 * delta_xx(n) + delta_xx(n - row)) / (dz * dz);
+                    most = worst(
+                        {most, std::fabs(delta_xx(n) + delta_zz + coupling * both + s.rho_g[n])});
+                }
+            }
+            CHECK(most <= 1e-12);
+            if (!m.grid.x.periodic) {
+                for (long j = 0; j < m.grid.z.cells; ++j) {
+                    CHECK(std::fabs(phi[m.grid.index(0, j)] - 0.7) <= 1e-14);
+                    CHECK(std::fabs(phi[m.grid.index(m.grid.x.cells, j)] - 0.7) <= 1e-14);
+                }
+            }
+        }
+    }
+}
+
+TEST_CASE("the force between walls is the difference of the field pressures") {
+    for (int order = 0; order <= 2; ++order) {
+        Mesh m{{{11, 0.5, 3.0, false}, {1, 0, 1, true}}, {order, false, 1}, ""};
+        for (const bool floating : {false, true}) {
+            CAPTURE(order);
+            const Particles cloud = scattered(m, 30, 0.3, 10);
+            Walls walls;
+            walls[x_low].potential = 1.0;
+            if (floating) {
+                walls[x_low] = {true, 0, 0.4};
+                walls[x_high] = {true, 0, -0.4 - 0.3 * 30};
+            }
+            const Solved s = solve(m, {cloud}, 0, false, walls);
+            double force = 0;
+            for (const auto& E : gathered(m, s.field.E_g, cloud)) force += 0.3 * E[0];
+            // E points along x away from the low wall and toward the high one.
+            const double low = s.field.walls[x_low].charge, high = s.field.walls[x_high].charge;
+            CHECK(std::fabs(force - 0.5 * (high * high - low * low)) <= 1e-12);
+            // Gauss's law from wall to wall.
+            CHECK(std::fabs(low + high + 0.3 * 30) <= 1e-12);
+        }
+    }
+}
+
+TEST_CASE("a floating wall carries its charge and a row of floating walls no net field") {
+    Mesh m{{{10, 0, 5.0, false}, {8, 0, 3.0, true}}, {1, false, 2}, ""};
+    const Particles cloud = scattered(m, 40, -0.2, 11);
+    Walls walls;
+    walls[x_low].potential = 0;
+    walls[x_high] = {true, 0, -0.35};
+    const Solved s = solve(m, {cloud}, 0, false, walls);
+    const long N = m.grid.x.cells;
+    double sigma = 0, spread = 0;
+    for (long j = 0; j < m.grid.z.cells; ++j) {
+        const long n = m.grid.index(N, j);
+        sigma += cic::detail::surface_charge(s.field.phi[n], s.field.phi[n - 1], s.rho_g[n],
+                                             m.grid.x.spacing()) /
+                 static_cast<double>(m.grid.z.cells);
+        spread = worst({spread, std::fabs(s.field.phi[n] - s.field.phi[m.grid.index(N, 0)])});
+    }
+    CHECK(std::fabs(sigma + 0.35) <= 1e-13);  // the charge that it was given
+    CHECK(spread <= 1e-13);                   // a conductor has one potential
+}
+
+TEST_CASE("the leapfrog can be run backwards") {
+    Mesh m{{{16, 0, 16, true}, {16, 0, 16, true}}, {2, false, 2}, ""};
+    std::vector<Particles> species{scattered(m, 400, -0.64, 12)};
+    Particles& s = species[0];
+    s.vy_p.assign(400, 0.1);
+    const auto start_x = s.x_p, start_vx = s.vx_p, start_vy = s.vy_p;
+    MagneticField B{0.2, 0.9, -0.3};
+    FieldSolver solver(m.grid, m.scheme, false, 1);
+    DepositScratch scratch;
+    Field rho_g;
+    FieldState field;
+    const auto steps = [&](double dt, bool move_first) {
+        for (int n = 0; n < 50; ++n) {
+            if (move_first)
+                for_each_chunk(species, [&](Chunk& p) { move_particles(m.grid, dt, p); });
+            deposit_charge(species, m.grid, m.scheme, 1, scratch, rho_g);
+            solve_field(solver, rho_g, field);
+            for_each_chunk(species, [&](Chunk& p) {
+                FieldAtParticles E_p;
+                gather_field(field.E_g, m.grid, m.scheme, p, E_p);
+                accelerate(E_p, B, dt, p);
+                if (!move_first) move_particles(m.grid, dt, p);
+            });
+        }
+    };
+    steps(0.2, false);
+    CHECK(std::fabs(s.x_p[0] - start_x[0]) > 0.1);
+    steps(-0.2, true);
+    double most = 0;
+    for (std::size_t p = 0; p < s.x_p.size(); ++p) {
+        const double d = std::fabs(s.x_p[p] - start_x[p]);
+        most = worst({most, std::min(d, 16 - d), std::fabs(s.vx_p[p] - start_vx[p]),
+                      std::fabs(s.vy_p[p] - start_vy[p])});
+    }
+    CHECK(most <= 1e-9);
+}
+
+TEST_CASE("the rotation keeps the speed and its angle is twice the arc tangent") {
+    Particles s;
+    s.q_p = -0.5, s.m_p = 0.25;
+    s.x_p = {0.1}, s.vx_p = {0.3}, s.vy_p = {-0.2}, s.vz_p = {0.7};
+    const MagneticField B{0.4, -0.3, 1.2};
+    const double dt = 0.6, Omega_dt = -2.0 * B.size() * dt;
+    const Eigen::Vector3d b = Eigen::Vector3d(B.x, B.y, B.z) / B.size(), v(0.3, -0.2, 0.7);
+    Chunk p = whole(s);
+    FieldAtParticles E_p{};
+    accelerate(E_p, B, dt, p);
+    const Eigen::Vector3d after(s.vx_p[0], s.vy_p[0], s.vz_p[0]);
+    CHECK(std::fabs(after.norm() - v.norm()) <= 4 * eps);
+    CHECK(std::fabs(after.dot(b) - v.dot(b)) <= 4 * eps);
+    const Eigen::Vector3d before_across = v - v.dot(b) * b, across = after - after.dot(b) * b;
+    // dv/dt = (q/m) v x B turns by -Omega about b.
+    const double angle = std::atan2(before_across.cross(across).dot(b), before_across.dot(across));
+    CHECK(std::fabs(angle + 2 * std::atan(0.5 * Omega_dt)) <= 8 * eps);
+    CHECK(std::fabs(p.sums.kinetic - 0.5 * 0.25 * v.squaredNorm()) <= 4 * eps);
+}
+
+TEST_CASE("the drift in E and B is exact for any time step") {
+    Particles s;
+    s.q_p = 1, s.m_p = 0.01;
+    s.x_p = {0.1}, s.z_p = {0.1};
+    const MagneticField B{0, 2, 0};
+    const double E_x = 0.3, E_z = -0.5;  // E x B / B^2 = (-E_z B_y, 0, E_x B_y) / B_y^2
+    s.vx_p = {-E_z / 2}, s.vy_p = {0}, s.vz_p = {E_x / 2};
+    FieldAtParticles E_p{};
+    E_p.x[0] = E_x, E_p.z[0] = E_z;
+    for (const double dt : {0.001, 0.01, 0.1}) {  // Omega dt = 0.2, 2, 20
+        Chunk p = whole(s);
+        for (int n = 0; n < 100; ++n) accelerate(E_p, B, dt, p);
+        CHECK(std::fabs(s.vx_p[0] + E_z / 2) <= 1e-13);
+        CHECK(std::fabs(s.vz_p[0] - E_x / 2) <= 1e-13);
+        CHECK(std::fabs(p.sums.kinetic - 0.5 * 0.01 * (0.25 * 0.25 + 0.15 * 0.15)) <= 1e-13);
+    }
+}
+
+TEST_CASE("the start is half a step before") {
+    Particles s;
+    s.q_p = -1, s.m_p = 1;
+    s.x_p = {0.1}, s.vx_p = {0.25};
+    FieldAtParticles E_p{};
+    E_p.x[0] = 0.8;
+    Chunk p = whole(s);
+    start_leapfrog(E_p, {}, 0.1, p);
+    CHECK(std::fabs(s.vx_p[0] - (0.25 + 0.05 * 0.8)) <= eps);
+    accelerate(E_p, {}, 0.1, p);
+    CHECK(std::fabs(s.vx_p[0] - (0.25 - 0.05 * 0.8)) <= eps);
+    // (1/2) m v_old v_new = (1/2) m (v^2 - h^2)
+    CHECK(std::fabs(p.sums.kinetic - 0.5 * (0.25 * 0.25 - 0.04 * 0.04)) <= eps);
+}
+
+TEST_CASE("walls take charge reflect speed and lose nothing") {
+    Case w;
+    w.dimensions = 2;
+    w.grid = {{8, 0, 8, false}, {8, 0, 4, false}};
+    w.boundary_x = w.boundary_z = "walls";
+    w.walls[x_low] = {"floating", "absorb", 0};
+    w.walls[x_high] = {"grounded", "reflect", 0};
+    w.walls[z_low] = {"grounded", "absorb", 0};
+    w.walls[z_high] = {"grounded", "reflect", 0};
+    SpeciesCase from;
+    from.name = "scattered";
+    w.species = {from};
+    State state;
+    state.walls = walls_of(w);
+    state.emitted_again = {0};
+    Particles s;
+    s.q_p = -0.5, s.m_p = 0.5;
+    //        in   absorbed  reflected absorbed  reflected  both reflected
+    s.x_p = {4.0, -0.25, 8.5, 3.0, 3.0, 8.125};
+    s.z_p = {1.0, 1.0, 1.0, -0.5, 4.25, 4.125};
+    s.vx_p = {1, -2, 3, 1, 1, 2};
+    s.vz_p = {1, 1, 1, -1, 2, 3};
+    state.species = {s};
+    meet_walls(w, 0, state);
+    const Particles& after = state.species[0];
+    REQUIRE(after.count() == 4);
+    CHECK(state.walls[x_low].charge == -0.5 / 4);  // per area, over the length of the wall
+    double energy = 0;
+    for (std::size_t p = 0; p < 4; ++p) {
+        CHECK(after.x_p[p] >= 0);
+        CHECK(after.x_p[p] <= 8);
+        CHECK(after.z_p[p] >= 0);
+        CHECK(after.z_p[p] <= 4);
+        energy += after.vx_p[p] * after.vx_p[p] + after.vz_p[p] * after.vz_p[p];
+    }
+    CHECK(energy == 2 + 10 + 5 + 13);
+    const auto at = [&](double x) {
+        return std::find(after.x_p.begin(), after.x_p.end(), x) - after.x_p.begin();
+    };
+    REQUIRE(at(7.5) < 4);
+    CHECK(after.vx_p[static_cast<std::size_t>(at(7.5))] == -3);
+    REQUIRE(at(7.875) < 4);
+    CHECK(after.vz_p[static_cast<std::size_t>(at(7.875))] == -3);
+}
+
+TEST_CASE("a source emits its rate with the flux of a half Maxwellian") {
+    Case w;
+    w.grid.x = {8, 0, 1e6, false};
+    w.boundary_x = "walls";
+    w.dt = 0.25;
+    w.walls[x_low] = {"floating", "source", 0};
+    SpeciesCase from;
+    from.name = "electrons", from.mass = 4, from.emission = 2.5, from.emission_temperature = 9;
+    w.species = {from};
+    State state;
+    state.walls = walls_of(w);
+    state.emitted_again = {0};
+    Particles s;
+    s.q_p = -0.001, s.m_p = 0.004;  // 0.001 electrons
+    state.species = {s};
+    const long steps = 200;
+    for (long step = 0; step < steps; ++step) meet_walls(w, step, state);
+    const Particles& after = state.species[0];
+    const double N = static_cast<double>(after.count());
+    CHECK(after.count() == 125000);  // 2.5 / 0.001 per unit of time for 50
+    CHECK(std::fabs(state.walls[x_low].charge - 0.001 * N) <= 1e-9);
+    // <v> = (pi T / 2 m)^1/2 and <v^2> = 2 T/m, within four standard errors of N numbers.
+    double v = 0, v2 = 0;
+    for (const double u : after.vx_p) v += u / N, v2 += u * u / N;
+    CHECK(std::fabs(v / std::sqrt(pi * 9 / 8) - 1) <= 4 * 0.523 / std::sqrt(N));
+    CHECK(std::fabs(v2 / 4.5 - 1) <= 4 / std::sqrt(N));
+}
+
+TEST_CASE("sorting by row moves whole particles") {
+    Mesh m{{{8, 0, 8, true}, {16, 0, 4, true}}, {1, false, 2}, ""};
+    std::vector<Particles> species{scattered(m, 1000, 1, 13)};
+    Particles& s = species[0];
+    for (std::size_t p = 0; p < 1000; ++p) s.vx_p[p] = s.x_p[p] + 10 * s.z_p[p];
+    double sum = 0, after = 0;
+    for (std::size_t p = 0; p < 1000; ++p) sum += s.vx_p[p];
+    common::SortScratch<Real> scratch;
+    sort_particles(m.grid, scratch, species);
+    for (std::size_t p = 0; p < 1000; ++p) {
+        after += s.vx_p[p];
+        CHECK(s.vx_p[p] == s.x_p[p] + 10 * s.z_p[p]);
+        if (p > 0)
+            CHECK(std::floor(4 * (s.z_p[p] - 0.3)) >= std::floor(4 * (s.z_p[p - 1] - 0.3)) - 4);
+    }
+    CHECK(std::fabs(after - sum) <= 1e-9);
+}
+
+TEST_CASE("a perturbed species has the density that the case asks for") {
+    for (const std::string loading : {"quiet", "lattice", "random"}) {
+        CAPTURE(loading);
+        Case w;
+        w.grid.x = {32, 0, 2.0, true};
+        SpeciesCase s;
+        s.name = "electrons", s.loading = loading, s.particles_per_cell = 4000;
+        s.amplitude = 0.02, s.mode_x = 3, s.density = 0.5;
+        w.species = {s};
+        const Particles particles = load_species(w, s, 1);
+        CHECK(particles.count() == 128000);
+        CHECK(std::fabs(particles.q_p * 128000 + 0.5 * 2.0) <= 1e-12);
+        std::complex<double> mode = 0;
+        const double k = wave_vector(w, 3, 0).x;
+        for (const double x : particles.x_p) mode += std::polar(2.0 / 128000, -k * x);
+        // The displacement is linear in the amplitude: 3/8 of its square remains.
+        const double noise = loading == "random" ? 4 * std::sqrt(2.0 / 128000) : 1e-5;
+        CHECK(std::abs(mode - 0.02) <= noise);
+    }
+}
+
+TEST_CASE("a quiet Maxwellian has its moments") {
+    Case w;
+    w.grid.x = {32, 0, 32, true};
+    SpeciesCase s;
+    s.name = "electrons", s.particles_per_cell = 1000;
+    s.temperature_x = 2, s.mass = 0.5, s.drift_x = 0.7;
+    w.species = {s};
+    const Particles particles = load_species(w, s, 1);
+    double v = 0, v2 = 0, v4 = 0;
+    for (const double u : particles.vx_p) {
+        const double c = (u - 0.7) / 2;
+        v += c / 32000, v2 += c * c / 32000, v4 += c * c * c * c / 32000;
+    }
+    CHECK(std::fabs(v) <= 1e-3);
+    CHECK(std::fabs(v2 - 1) <= 2e-3);
+    CHECK(std::fabs(v4 - 3) <= 0.03);
+}
