@@ -65,8 +65,8 @@ inline double shifted_radical_inverse(std::uint64_t i, unsigned base, std::uint6
 }
 
 /// Numbers in (0, 1) for loading particles. A quiet start takes radical inverses, each quantity of
-/// a species in a prime base of its own: small bases are quietest. Species that share bases differ by
-/// a shift. A random start takes uniform().
+/// a species in a prime base of its own: small bases are quietest. Species that share bases differ
+/// by a shift. A random start takes uniform().
 struct LoadingNumbers {
     bool quiet;
     std::uint64_t seed;
