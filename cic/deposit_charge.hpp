@@ -46,7 +46,7 @@ void add_weights(const Particles& particles, const Grid& grid, long begin, long 
 inline void add_charge(const Particles& particles, const Grid& grid, const Scheme& scheme,
                        DepositScratch& scratch, Field& rho_g) {
     const auto size = static_cast<std::size_t>(grid.size());
-    scratch.sum_of_block.resize(common::block_count);
+    scratch.sum_of_block.resize(common::block_count, std::vector<Real>(size));
     with_order_and_dimensions(scheme, [&](auto order, auto dimensions) {
         common::for_each_block(particles.count(), [&](int block, long begin, long end) {
             auto& sum = scratch.sum_of_block[static_cast<std::size_t>(block)];
