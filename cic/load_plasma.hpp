@@ -35,6 +35,17 @@ inline double fixed_background(const Case& w) {
     return rho;
 }
 
+/// Gives a species room for as many particles, with the components that the case needs.
+inline void resize(const Case& w, long count, Particles& particles) {
+    const auto size = static_cast<std::size_t>(count);
+    const bool plane = w.dimensions == 2;
+    particles.x_p.resize(size);
+    particles.vx_p.resize(size);
+    if (plane) particles.z_p.resize(size);
+    if (w.magnetized()) particles.vy_p.resize(size);
+    if (w.magnetized() || plane) particles.vz_p.resize(size);
+}
+
 namespace detail {
 
 // Rows and columns of a lattice in each cell, as square as the number allows.
@@ -91,12 +102,7 @@ inline Particles load_species(const Case& w, const SpeciesCase& s, std::uint32_t
     const double weight = s.density * filled_volume(w, s) / static_cast<double>(count);
     particles.q_p = weight * s.charge;
     particles.m_p = weight * s.mass;
-    const auto size = static_cast<std::size_t>(count);
-    particles.x_p.resize(size);
-    particles.vx_p.resize(size);
-    if (plane) particles.z_p.resize(size);
-    if (w.magnetized()) particles.vy_p.resize(size);
-    if (w.magnetized() || plane) particles.vz_p.resize(size);
+    resize(w, count, particles);
 
     const WaveVector k = wave_vector(w, s.mode_x, s.mode_z);
     double phase_speed = 0;

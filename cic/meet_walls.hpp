@@ -65,12 +65,38 @@ inline void emit(const Case& w, const SpeciesCase& from, const EmissionNumbers& 
     if (!s.vz_p.empty()) s.vz_p[n] = static_cast<Real>(v_th * random.gaussian(3));
 }
 
-// What one end of a direction does with a particle behind it: true when it is absorbed.
-inline bool meet_end(const WallCase& wall, double at, double& x, Real& v) {
-    if (wall.particles == "absorb") return true;
-    x = 2 * at - x;
-    v = -v;
-    return false;
+// One end of the box that is a wall, and the numbers of the particles that it can change.
+struct End {
+    WallName name;
+    double at;
+    int outward;  // +1 or -1
+    std::vector<Real>*x_p, *v_p;
+};
+
+inline std::vector<End> walls_around(const Grid& grid, Particles& s) {
+    std::vector<End> ends;
+    if (!grid.x.periodic) {
+        ends.push_back({x_low, grid.x.low, -1, &s.x_p, &s.vx_p});
+        ends.push_back({x_high, grid.x.high(), 1, &s.x_p, &s.vx_p});
+    }
+    if (!grid.z.periodic) {
+        ends.push_back({z_low, grid.z.low, -1, &s.z_p, &s.vz_p});
+        ends.push_back({z_high, grid.z.high(), 1, &s.z_p, &s.vz_p});
+    }
+    return ends;
+}
+
+// The wall that a particle is behind, or none.
+inline const End* wall_before(const std::vector<End>& ends, std::size_t n) {
+    for (const End& end : ends)
+        if (end.outward * (double((*end.x_p)[n]) - end.at) > 0) return &end;
+    return nullptr;
+}
+
+// Area of a wall: 1 in one dimension.
+inline double area_of(const Case& w, WallName wall) {
+    if (w.dimensions == 1) return 1;
+    return wall == x_low || wall == x_high ? w.grid.z.length : w.grid.x.length;
 }
 
 }  // namespace detail
@@ -79,6 +105,67 @@ inline bool meet_end(const WallCase& wall, double at, double& x, Real& v) {
 inline double emitted_per_step(const Case& w, const SpeciesCase& s, double weight) {
     return s.emission * w.dt * (w.dimensions == 2 ? w.grid.z.length : 1) / weight;
 }
+
+namespace detail {
+
+// Lets the particles of one species that are behind a wall meet it; what is absorbed is gone.
+inline void meet_ends(const Case& w, const SpeciesCase& from, std::uint32_t purpose, long step,
+                      Particles& s, Walls& walls, long& emitted_again) {
+    const std::vector<End> ends = walls_around(w.grid, s);
+    std::vector<long> absorbed;
+    for (const long p : particles_outside(w.grid, s)) {
+        const auto n = static_cast<std::size_t>(p);
+        for (int bounces = 0; const End* end = wall_before(ends, n); ++bounces) {
+            const std::string& does = w.walls[end->name].particles;
+            if (bounces > 2)
+                throw common::NumericalError(
+                    s.name + ": a particle moves farther than the box in one step, at step " +
+                    std::to_string(step) + ": reduce time.dt");
+            if (does == "absorb") {
+                absorbed.push_back(p);
+                if (walls[end->name].floating)
+                    walls[end->name].charge += s.q_p / area_of(w, end->name);
+                break;
+            }
+            if (does == "source") {
+                const auto count = static_cast<std::uint64_t>(emitted_again++);
+                emit(w, from, {static_cast<std::uint64_t>(w.seed), purpose, count}, s, n);
+            } else {
+                Real &x = (*end->x_p)[n], &v = (*end->v_p)[n];
+                x = static_cast<Real>(2 * end->at - double(x));
+                v = -v;
+            }
+        }
+    }
+    remove(s, absorbed);
+}
+
+// Lets the source wall emit what is due in this step, at an even rate.
+inline void emit_new(const Case& w, const SpeciesCase& from, std::uint32_t purpose, long step,
+                     Particles& s, Walls& walls) {
+    const double per_step = emitted_per_step(w, from, s.m_p / from.mass);
+    const auto emitted_before = [&](long steps) {
+        return static_cast<long>(std::floor(per_step * static_cast<double>(steps)));
+    };
+    const long first = emitted_before(step), last = emitted_before(step + 1);
+    const long old_count = s.count(), new_count = old_count + last - first;
+    if (new_count > 2000000000)
+        throw common::NumericalError(
+            s.name + ": the source has filled the box with more than 2e9 particles, at step " +
+            std::to_string(step) + ": lower its emission, or let a wall absorb them");
+    resize(w, new_count, s);
+    for (long k = first; k < last; ++k) {
+        const auto n = static_cast<std::size_t>(old_count + k - first);
+        const EmissionNumbers random{static_cast<std::uint64_t>(w.seed), purpose,
+                                     static_cast<std::uint64_t>(k)};
+        emit(w, from, random, s, n);
+        if (!s.z_p.empty())
+            s.z_p[n] = static_cast<Real>(w.grid.z.low + w.grid.z.length * random.uniform(4));
+        walls[x_low].charge -= s.q_p / area_of(w, x_low);
+    }
+}
+
+}  // namespace detail
 
 /// Lets every particle behind a wall meet it, and a source wall emit.
 ///   absorb: the particle is gone, its charge is on the wall
@@ -92,84 +179,13 @@ inline double emitted_per_step(const Case& w, const SpeciesCase& s, double weigh
 /// errors: NumericalError when a particle leaps over the whole box, or when they are too many
 inline void meet_walls(const Case& w, long step, State& state) {
     if (!w.has_walls()) return;
-    const Grid& grid = w.grid;
-    const double area_x = w.dimensions == 2 ? grid.z.length : 1, area_z = grid.x.length;
-    const auto seed = static_cast<std::uint64_t>(w.seed);
     std::size_t index = 0;
     for (const SpeciesCase& from : w.species) {
         if (!from.mobile()) continue;
         Particles& s = state.species[index];
         const auto purpose = static_cast<std::uint32_t>(1000 + 2 * index);
-        std::vector<long> absorbed;
-        for (const long p : detail::particles_outside(grid, s)) {
-            const auto n = static_cast<std::size_t>(p);
-            bool gone = false;
-            for (int bounces = 0;; ++bounces) {
-                double x = double(s.x_p[n]), z = s.z_p.empty() ? grid.z.low : double(s.z_p[n]);
-                if (bounces > 2)
-                    throw common::NumericalError(
-                        s.name + ": a particle moves farther than the box in one step, at step " +
-                        std::to_string(step) + ": reduce time.dt");
-                if (!grid.x.periodic && x < grid.x.low && w.walls[x_low].particles == "source") {
-                    detail::emit(
-                        w, from,
-                        {seed, purpose, static_cast<std::uint64_t>(state.emitted_again[index]++)},
-                        s, n);
-                    continue;
-                }
-                WallName wall = x_low;
-                if (!grid.x.periodic && x < grid.x.low) {
-                    gone = detail::meet_end(w.walls[x_low], grid.x.low, x, s.vx_p[n]);
-                } else if (!grid.x.periodic && x > grid.x.high()) {
-                    wall = x_high;
-                    gone = detail::meet_end(w.walls[x_high], grid.x.high(), x, s.vx_p[n]);
-                } else if (!s.z_p.empty() && !grid.z.periodic && z < grid.z.low) {
-                    wall = z_low;
-                    gone = detail::meet_end(w.walls[z_low], grid.z.low, z, s.vz_p[n]);
-                } else if (!s.z_p.empty() && !grid.z.periodic && z > grid.z.high()) {
-                    wall = z_high;
-                    gone = detail::meet_end(w.walls[z_high], grid.z.high(), z, s.vz_p[n]);
-                } else {
-                    break;
-                }
-                if (gone) {
-                    absorbed.push_back(p);
-                    if (state.walls[wall].floating)
-                        state.walls[wall].charge +=
-                            s.q_p / (wall == x_low || wall == x_high ? area_x : area_z);
-                    break;
-                }
-                s.x_p[n] = static_cast<Real>(x);
-                if (!s.z_p.empty()) s.z_p[n] = static_cast<Real>(z);
-            }
-        }
-        detail::remove(s, absorbed);
-
-        // The source emits at an even rate.
-        const double per_step = emitted_per_step(w, from, s.m_p / from.mass);
-        const auto emitted_before = [&](long steps) {
-            return static_cast<long>(std::floor(per_step * static_cast<double>(steps)));
-        };
-        const long first = emitted_before(step), last = emitted_before(step + 1);
-        const auto old_count = static_cast<std::size_t>(s.count());
-        if (s.count() + last - first > 2000000000)
-            throw common::NumericalError(
-                s.name + ": the source has filled the box with more than 2e9 particles, at step " +
-                std::to_string(step) + ": lower its emission, or let a wall absorb them");
-        const std::size_t new_count = old_count + static_cast<std::size_t>(last - first);
-        s.x_p.resize(new_count);
-        s.vx_p.resize(new_count);
-        if (w.dimensions == 2) s.z_p.resize(new_count);
-        if (w.magnetized()) s.vy_p.resize(new_count);
-        if (w.magnetized() || w.dimensions == 2) s.vz_p.resize(new_count);
-        for (long k = first; k < last; ++k) {
-            const auto n = old_count + static_cast<std::size_t>(k - first);
-            const detail::EmissionNumbers random{seed, purpose + 1, static_cast<std::uint64_t>(k)};
-            detail::emit(w, from, random, s, n);
-            if (!s.z_p.empty())
-                s.z_p[n] = static_cast<Real>(grid.z.low + grid.z.length * random.uniform(4));
-            state.walls[x_low].charge -= s.q_p / area_x;
-        }
+        detail::meet_ends(w, from, purpose, step, s, state.walls, state.emitted_again[index]);
+        if (from.emission > 0) detail::emit_new(w, from, purpose + 1, step, s, state.walls);
         ++index;
     }
 }
