@@ -12,7 +12,7 @@
 
 namespace cic {
 
-/// One species; the n-th component of a vector is _x, _y, _z.
+/// One species; the components of a vector are _x, _y, _z.
 struct SpeciesCase {
     std::string name;
     double density = 1, charge = -1, mass = 1;
@@ -114,7 +114,7 @@ inline void describe_species(common::ParameterTable& table, const std::string& p
     choice("start", s.start, {"drift", "ExB"},
            "ExB: replaces the drift by E x B/B^2 in the field at t = 0");
     table.whole(prefix + ".mode_x", s.mode_x, "", between(-2048, 2048),
-                "perturbed wave lengths in length_x");
+                "perturbed wavelengths in length_x");
     table.whole(prefix + ".mode_z", s.mode_z, "", between(-2048, 2048), "in length_z");
     real("amplitude", s.amplitude, "density", between(-0.9, 0.9),
          "of the density in the perturbed mode, relative");
@@ -165,7 +165,7 @@ inline common::ParameterTable describe(Case& w) {
     table.real("time.dt", w.dt, "1/omega_p", above(0), "time step");
     table.real("time.end", w.end, "1/omega_p", at_least(0), "length of the run");
     table.real("time.energy_limit", w.energy_limit, "", at_least(0),
-               "the run fails when the energy is this many times the initial; 0: never");
+               "periodic runs fail when the energy is this many times the initial; 0: never");
 
     table.group("method");
     table.choice("method.weighting", w.weighting, {"ngp", "cic", "tsc"},
@@ -194,12 +194,12 @@ inline common::ParameterTable describe(Case& w) {
     table.choice("theory.model", w.model, {"plasma", "mesh"},
                  "waves of the plasma, or of the plasma as mesh and time step see it");
     table.whole("theory.mode_x", w.mode_x, "", between(-2048, 2048),
-                "followed wave lengths in length_x; with mode_z = 0 also 0: the fastest growing");
+                "followed wavelengths in length_x; with mode_z = 0 also 0: the fastest growing");
     table.whole("theory.mode_z", w.mode_z, "", between(-2048, 2048), "in length_z");
     table.real("theory.near", w.near, "omega_p", anything(),
                "frequency near which the root is sought; 0: the fastest growing");
     table.real("theory.growth_tolerance", w.growth_tolerance, "", between(0, 1),
-               "of growth and damping rates, relative");
+               "of rates, sheath potentials and thermal noise, relative");
     table.real("theory.frequency_tolerance", w.frequency_tolerance, "", between(0, 1),
                "of frequencies, relative");
 

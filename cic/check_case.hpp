@@ -39,12 +39,6 @@ inline void refuse_wave(const Case& w, const std::string& what, long mode_x, lon
            what + " with a magnetic field is for gauss.sign = 1");
 }
 
-inline double diocotron_growth(const Case& w) {
-    const SpeciesCase& s = w.species[0];
-    const ChargedLayer layer{s.charge * s.density / w.B.y, s.half_width, 0.5 * w.grid.z.length};
-    return std::fabs(diocotron_frequency(layer, wave_vector(w, w.mode_x, 0).size()).imag());
-}
-
 inline void refuse_comparison(const Case& w) {
     const std::string compare = "theory.compare = \"" + w.compare + "\"";
     if (w.compare == "none") return;
@@ -220,7 +214,7 @@ inline void refuse_impossible(Case& w) {
     refuse(w.dimensions == 1 && w.mode_z != 0, "theory.mode_z needs grid.dimensions = 2");
     refuse(detail::is_above_cut_off(w, w.mode_x, w.mode_z),
            "the followed " + mode_text(w.mode_x, w.mode_z) +
-               " has more than one wave length per two cells, the cut-off of the mesh: refine it "
+               " has more than one wavelength per two cells, the cut-off of the mesh: refine it "
                "or lower theory.mode_x and mode_z");
     refuse(w.modes > 0 && 2 * w.modes > w.grid.x.cells,
            "output.modes = " + std::to_string(w.modes) + " is above the cut-off of the mesh, " +

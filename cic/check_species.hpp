@@ -134,7 +134,7 @@ inline void refuse_species(const Case& w, const SpeciesCase& s) {
            name + ".ripple = " + shown(s.ripple) + " has no wave number: set mode_x");
     refuse((s.amplitude != 0 || s.ripple != 0) && is_above_cut_off(w, s.mode_x, s.mode_z),
            name + ": " + mode_text(s.mode_x, s.mode_z) +
-               " has more than one wave length per two cells, the cut-off of the mesh: refine it "
+               " has more than one wavelength per two cells, the cut-off of the mesh: refine it "
                "or lower the mode");
     refuse(particle_count(w, s) < 1, name +
                                          " has no particle: raise particles_per_cell, or its "

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -47,16 +46,6 @@ inline std::string onset_meaning() {
 }
 
 namespace detail {
-
-// First time at which a column reaches a level; NaN when it never does.
-inline double time_at_level(const std::vector<double>& times, const std::vector<double>& values,
-                            double level) {
-    for (std::size_t n = 1; n < times.size(); ++n)
-        if (values[n] >= level && values[n - 1] < level)
-            return times[n - 1] + (level - values[n - 1]) / (values[n] - values[n - 1]) *
-                                      (times[n] - times[n - 1]);
-    return std::nan("");
-}
 
 inline double mean_of_last_half(const std::vector<double>& values) {
     double sum = 0;
@@ -128,7 +117,7 @@ inline void compare_wave(const Case& w, const common::History& history, common::
                            w.frequency_tolerance, where);
         }
         const double onset = predicted_onset(w, theory), allowed = 0.5 / growth;
-        const double seen = detail::time_at_level(times, amplitude, onset_field(w, theory));
+        const double seen = common::time_at_level(times, amplitude, onset_field(w, theory));
         if (onset > 0 && times.back() > onset + allowed)
             summary.result("onset", std::isnan(seen) ? times.back() : seen, "1/omega_p", onset,
                            allowed, onset_meaning());
@@ -184,15 +173,17 @@ inline void compare_wave(const Case& w, const common::History& history, common::
         summary.result_info("damping", -gamma, omega_p_unit, where);
 }
 
+/// Growth rate of the followed mode of a case whose only species is a layer.
+inline double diocotron_growth(const Case& w) {
+    const SpeciesCase& s = w.species[0];
+    const ChargedLayer layer{s.charge * s.density / w.B.y, s.half_width, 0.5 * w.grid.z.length};
+    return std::fabs(diocotron_frequency(layer, wave_vector(w, w.mode_x, 0).size()).imag());
+}
+
 /// The rate at which the edges of a charged layer wind up.
 inline void compare_diocotron(const Case& w, const common::History& history,
                               common::Summary& summary) {
-    const auto layer_case = std::find_if(w.species.begin(), w.species.end(),
-                                         [](const auto& s) { return s.profile == "layer"; });
-    const ChargedLayer layer{layer_case->charge * layer_case->density / w.B.y,
-                             layer_case->half_width, 0.5 * w.grid.z.length};
-    const double k = wave_vector(w, w.mode_x, 0).size();
-    const double growth = std::fabs(diocotron_frequency(layer, k).imag());
+    const double growth = diocotron_growth(w);
     const auto times = history.column("time"), re = history.column("mode_re"),
                im = history.column("mode_im");
     std::vector<double> amplitude;

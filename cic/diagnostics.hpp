@@ -45,16 +45,9 @@ inline double charge_on_mesh(const Grid& grid, const Field& rho_g) {
     return sum;
 }
 
-/// Charge of the particles themselves.
-inline double charge_of_particles(const State& state) {
-    double sum = 0;
-    for (const Particles& s : state.species) sum += s.q_p * static_cast<double>(s.count());
-    return sum;
-}
-
 /// Complex amplitudes of waves exp(i k x) in the field along k,
 ///   E_k = -i |k| (2/N) sum_g phi_g exp(-i k x_g)
-/// for wave lengths that fit into the box; in a direction with walls the mean is taken.
+/// for wavelengths that fit into the box; in a direction with walls the mean is taken.
 class WaveMeter {
    public:
     WaveMeter(const Grid& grid, long mode_x, long mode_z, double k) : k_(k) {

@@ -130,7 +130,7 @@ inline void start_leapfrog(const FieldAtParticles& E_p, const MagneticField& B, 
 
 namespace detail {
 
-// One direction of move().
+// One direction of move_particles().
 inline void move_along(const common::Axis& axis, Real dt, long count, const Real* v, Real* x) {
     const Real low = static_cast<Real>(axis.low), high = static_cast<Real>(axis.high()),
                length = static_cast<Real>(axis.length),

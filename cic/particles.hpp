@@ -50,7 +50,7 @@ struct Chunk {
     ParticleSums sums;
 };
 
-/// A vector field at the particles of a chunk, or at a node of the mesh.
+/// The field at the particles of a chunk; z only in two dimensions.
 struct FieldAtParticles {
     Real x[chunk_size], z[chunk_size];
 };

@@ -5,8 +5,8 @@
 // With delta_xx f = (f_{i+1} - 2 f_i + f_{i-1}) / dx^2,
 //     five-point  lap = delta_xx + delta_zz
 //     nine-point  lap = delta_xx + delta_zz + (1/12) (dx^2 + dz^2) delta_xx delta_zz
-// The second one also uses the four corners, as Birdsall and Fuss did; its error of second order
-// is the same in all directions.
+// The second one also uses the four corners, as Birdsall and Fuss did; with square cells its error
+// of second order is the same in all directions.
 #pragma once
 
 #include <Eigen/SparseCholesky>
@@ -33,7 +33,7 @@ using Walls = std::array<Wall, 4>;
 ///         low, high: the walls
 /// out:    phi[0..N] in place of rho
 /// exact:  to round-off. With two floating walls and K2 = 0 nothing fixes the mean: phi is zero on
-///         the low wall, and the high wall's charge is what makes all neutral.
+///         the low wall, whose charge is taken to be what makes all neutral.
 /// source: Thomas's algorithm.
 inline void solve_tridiagonal(double dx, double c, double K2, const Wall& low, const Wall& high,
                               double* rho, long N, std::vector<double>& scratch) {

@@ -49,8 +49,6 @@ class Recorder {
         }
         if (wanted.compare == "clouds") {
             columns.push_back({"separation_x", "length"});
-            columns.push_back({"separation_z", "length"});
-            columns.push_back({"center_x", "length"});
         }
         for (long m = 1; m <= wanted.modes; ++m) {
             columns.push_back({"E_" + std::to_string(m) + "_re", field_unit_});
@@ -105,7 +103,7 @@ class Recorder {
                 row_.insert(row_.end(), {wall.charge, wall.potential});
             row_.push_back(field.phi[grid.index(grid.x.cells / 2, grid.z.cells / 2)]);
         }
-        if (wanted_.compare == "clouds") row_.insert(row_.end(), clouds_.begin(), clouds_.end());
+        if (wanted_.compare == "clouds") row_.push_back(separation_);
         for (std::size_t m = 1; m < meters_.size(); ++m) add_mode(meters_[m]);
         session.history.row(row_);
     }
@@ -164,15 +162,11 @@ class Recorder {
             ": reduce time.dt, refine the mesh, or allow more with time.energy_limit");
     }
 
-    // Separation of the first two particles, the nearest images, and where they are.
+    // Distance of the first two particles along x, to the nearest image.
     void note_clouds(const State& state) {
-        const auto nearest = [](double d, double length) {
-            return d - length * std::floor(d / length + 0.5);
-        };
-        const Particles &a = state.species[0], &b = state.species[1];
-        clouds_ = {nearest(double(b.x_p[0]) - double(a.x_p[0]), wanted_.grid.x.length),
-                   nearest(double(b.z_p[0]) - double(a.z_p[0]), wanted_.grid.z.length),
-                   double(a.x_p[0])};
+        const double length = wanted_.grid.x.length,
+                     d = double(state.species[1].x_p[0]) - double(state.species[0].x_p[0]);
+        separation_ = d - length * std::floor(d / length + 0.5);
     }
 
     const Case& wanted_;
@@ -180,7 +174,7 @@ class Recorder {
     double background_ = 0;
     double least_energy_ = 0;  // of the field that round-off of all charges makes
     std::vector<double> row_;
-    std::array<double, 3> clouds_{};
+    double separation_ = 0;
     static constexpr const char* field_unit_ = "m*velocity*omega_p/e";
 };
 

@@ -96,12 +96,12 @@ inline std::vector<std::string> resolution_warnings(const Case& w, const Scales&
     if (w.conserving == "momentum" && scales.debye_length > 0 && scales.debye_length < least * dx)
         warnings.push_back("the Debye length is " + shown(scales.debye_length / dx) +
                            " cells, below " + shown(least) + " for " + w.weighting +
-                           ": the mesh will heat the plasma; refine it to " +
-                           shown(scales.debye_length / least) + " per cell");
+                           ": the mesh will heat the plasma; refine it to cells of " +
+                           shown(scales.debye_length / least));
     for (const SpeciesScales& s : scales.species) {
         if (s.thermal_speed == 0 && s.drift > 0 && scales.omega_p > 0 && w.compare != "clouds") {
             const double u = s.drift / (scales.omega_p * dx);
-            const double safe = w.weighting == "tsc" ? 1 / std::sqrt(30.0) : 1 / std::sqrt(12.0);
+            const double safe = cold_beam_threshold(w.weighting == "tsc" ? 2 : 1);
             if (w.conserving == "energy" && u < safe)
                 warnings.push_back(s.name + ": a cold beam at " + shown(u) +
                                    " omega_p dx is below " + shown(safe) +

@@ -48,7 +48,7 @@ inline double one_plus_erf(double height) {
     return 1.0 + std::erf(std::sqrt(std::max(height, 0.0)));
 }
 
-/// Where f changes from positive, towards low, to negative, towards high.
+/// Where f changes from positive, toward low, to negative, toward high.
 template <class Function>
 double sign_change(const Function& f, double low, double high) {
     for (;;) {

@@ -17,7 +17,7 @@ inline std::string mode_text(long mode_x, long mode_z) {
     return "mode (" + std::to_string(mode_x) + ", " + std::to_string(mode_z) + ")";
 }
 
-/// A wave vector, from the number of wave lengths in the box.
+/// A wave vector, from the number of wavelengths in the box.
 struct WaveVector {
     double x = 0, z = 0;
     double size() const { return std::hypot(x, z); }
@@ -73,7 +73,7 @@ struct Theory {
 /// problem.
 ///   E_k = |sum_s q_s n_s A_s G_s / (k D'(omega))|,  G_s = int f_s dv / (omega - k v)
 ///       = 1/(omega - k u_s) for a cold species, and -Z(zeta_s) / (2^1/2 k v_s) for a Maxwellian
-/// exact:  for standing perturbations, in linear theory
+/// exact:  for standing perturbations, in linear theory; 0 for traveling ones
 /// source: Landau, J. Phys. USSR 10, 25 (1946).
 template <class Dispersion>
 double seeded_field(const Case& w, const Theory& theory, const Dispersion& D) {
@@ -87,6 +87,7 @@ double seeded_field(const Case& w, const Theory& theory, const Dispersion& D) {
         if (!s.mobile()) continue;
         const common::PlasmaSpecies& p = *along_k++;
         if (s.mode_x != theory.mode_x || s.mode_z != theory.mode_z) continue;
+        if (s.amplitude != 0 && s.wave == "traveling") return 0;
         const std::complex<double> doppler = omega - k.size() * p.drift;
         const double kv = std::numbers::sqrt2 * k.size() * p.speed_along();
         charge += s.charge * s.density * s.amplitude *

@@ -12,9 +12,9 @@ namespace cic {
 /// in:     lambda_D/dx; N_c particles per cell; N cells; order of the weights
 /// exact:  for the energy-conserving scheme, in the limit of many particles in a Debye length: each
 ///         of N modes has T/2, screened; [CIC-1] leaves A of the noise of points
-/// note:   A has a closed form: 1 for ngp, (2 + cos k dx)/3 for cic, with C = cos k dx
-///         (33 + 26 C + cos 2 k dx)/60 for tsc. For points and a continuous field the sum becomes
-///         arctan(pi l) / (pi l N_c).
+/// note:   The momentum scheme comes close where the Debye length is resolved. A has a closed form:
+///         1 for ngp, (2 + C)/3 for cic, (33 + 26 C + cos 2 k dx)/60 for tsc, C = cos k dx. For
+///         points and a continuous field the sum is arctan(pi l) / (pi l N_c), l = lambda_D/dx.
 inline double thermal_noise(double debye_over_dx, double per_cell, long cells, int order) {
     double sum = 0;
     for (long m = 1; m < cells; ++m) {

@@ -60,7 +60,7 @@ inline void write_fields(const std::string& folder, long step, const Case& w, co
     }
 }
 
-/// Writes particles_NNNNNN.dat (and .vtp): every n-th particle of each species, at most
+/// Writes particles_NNNNNN.dat (and .vtp): a random sample of each species, about
 /// most_particles_written in all; positions at t^n, velocities half a step before.
 inline void write_particles(const std::string& folder, long step, const Case& w,
                             const State& state) {

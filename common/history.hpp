@@ -122,4 +122,17 @@ class History {
     std::chrono::steady_clock::time_point flushed_;
 };
 
+/// First time at which a column reaches a level from below, linear between rows; NaN when it never
+/// does.
+inline double time_at_level(const std::vector<double>& times, const std::vector<double>& values,
+                            double level) {
+    for (std::size_t n = 1; n < times.size(); ++n) {
+        if (values[n] >= level && values[n - 1] < level) {
+            return times[n - 1] + (level - values[n - 1]) / (values[n] - values[n - 1]) *
+                                      (times[n] - times[n - 1]);
+        }
+    }
+    return std::nan("");
+}
+
 }  // namespace common

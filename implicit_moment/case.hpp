@@ -149,9 +149,9 @@ inline common::ParameterTable describe(Case& w) {
     table.real("uniform.B_y", w.uniform.B_y, "m_i c omega_pi/e", anything(), "out of the plane");
     table.real("uniform.B_z", w.uniform.B_z, "m_i c omega_pi/e", anything(), "along z");
     table.whole("uniform.mode_x", w.uniform.mode_x, "", between(-2048, 2048),
-                "seeded wave lengths in length_x");
+                "seeded wavelengths in length_x");
     table.whole("uniform.mode_z", w.uniform.mode_z, "", between(-2048, 2048),
-                "seeded wave lengths in length_z");
+                "seeded wavelengths in length_z");
     const auto field = [&](const std::string& name, double& amplitude, double& phase) {
         table.real("uniform.wave_" + name, amplitude, "m_i c omega_pi/e", anything(),
                    "amplitude of " + name + " in the seeded mode");

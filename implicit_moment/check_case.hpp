@@ -134,7 +134,7 @@ inline void refuse_impossible(Case& w) {
            "uniform.mode_x and uniform.mode_z are both 0: a mode needs a wave number");
     refuse(2 * std::labs(u.mode_x) > w.grid.x.cells || 2 * std::labs(u.mode_z) > w.grid.z.cells,
            "the seeded mode (" + std::to_string(u.mode_x) + ", " + std::to_string(u.mode_z) +
-               ") has more than one wave length per two cells: refine the mesh or lower the mode");
+               ") has more than one wavelength per two cells: refine the mesh or lower the mode");
     const double size_B = std::hypot(u.wave_B_x, u.wave_B_z) * std::hypot(k_x, k_z);
     refuse(std::fabs(k_x * u.wave_B_x + k_z * u.wave_B_z) > 1e-9 * size_B,
            "the seeded B is not divergence-free: k . B must be 0, so keep uniform.wave_B across "

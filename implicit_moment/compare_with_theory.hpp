@@ -30,18 +30,6 @@ inline double at_time(const std::vector<double>& times, const std::vector<double
     return std::nan("");
 }
 
-// First time at which a column reaches a level; NaN when it never does.
-inline double time_at_level(const std::vector<double>& times, const std::vector<double>& values,
-                            double level) {
-    for (std::size_t n = 1; n < times.size(); ++n) {
-        if (values[n] >= level && values[n - 1] < level) {
-            return times[n - 1] + (level - values[n - 1]) / (values[n] - values[n - 1]) *
-                                      (times[n] - times[n - 1]);
-        }
-    }
-    return std::nan("");
-}
-
 // Steepest least-squares slope over windows of the given length.
 inline double steepest_slope(const std::vector<double>& times, const std::vector<double>& values,
                              double window) {
@@ -90,7 +78,7 @@ inline void compare_reconnection(const Case& w, const common::History& history,
     }
     summary.result("flux_initial", flux.front(), "B0 d_i", 0.2, 0.005, "exact: 2 psi0");
     if (last < 18) return;
-    const double unit = detail::time_at_level(times, flux, 1);
+    const double unit = common::time_at_level(times, flux, 1);
     if (w.harris.mass_ratio == 25) {
         summary.result_within("time_at_unit_flux", unit, "1/Omega_ci", 13.5, 18, birn);
     } else {

@@ -146,7 +146,7 @@ TEST_CASE("the closed forms are the fastest growing roots with and without a tim
 
 TEST_CASE("a cold plasma has the tabulated frequencies on the mesh") {
     const double table[][5] = {
-        // cells per wave length; cic, tsc, energy-conserving cic and tsc
+        // cells per wavelength; cic, tsc, energy-conserving cic and tsc
         {64, 0.998795, 0.998395, 1.0, std::nan("")}, {32, 0.995185, 0.993590, 1.0, 0.996792},
         {16, 0.980785, 0.974544, 1.0, std::nan("")}, {8, 0.923880, 0.901048, 1.0, 0.949931},
         {6, 0.866025, 0.829156, 1.0, std::nan("")},  {4, 0.707107, 0.645497, 1.0, 0.816497},

@@ -140,7 +140,7 @@ TEST_CASE("two cold streams grow at the rate of linear theory" * doctest::descri
     CHECK(std::fabs(value(longer, "theory_growth") / gamma - 1) <= 1e-6);
 }
 
-TEST_CASE("two cold streams of short wave length are stable" * doctest::description("physics")) {
+TEST_CASE("two cold streams of short wavelength are stable" * doctest::description("physics")) {
     // k v0 = 1.2 omega_p is beyond the cut-off: the mode must not outgrow its seed by more than
     // noise.
     const std::string arguments =

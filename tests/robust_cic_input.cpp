@@ -201,15 +201,15 @@ TEST_CASE("species that cannot be loaded are refused with the cure" *
          "species.electrons.amplitude=0.1 species.electrons.mode_z=1",
          "species.electrons.mode_z needs grid.dimensions = 2"},
         {"short wave", line, "species.electrons.amplitude=0.1 species.electrons.mode_x=9",
-         "species.electrons: mode (9, 0) has more than one wave length per two cells, the cut-off "
+         "species.electrons: mode (9, 0) has more than one wavelength per two cells, the cut-off "
          "of the mesh: refine it or lower the mode"},
         {"short wave along z", plane, "species.electrons.amplitude=0.1 species.electrons.mode_z=-5",
-         "species.electrons: mode (1, -5) has more than one wave length per two cells"},
+         "species.electrons: mode (1, -5) has more than one wavelength per two cells"},
         {"short ripple", plane,
          "species.electrons.half_width=0.5 species.electrons.ripple=0.1 "
          "species.electrons.mode_x=5" +
              center + "layer",
-         "species.electrons: mode (5, 0) has more than one wave length per two cells"},
+         "species.electrons: mode (5, 0) has more than one wavelength per two cells"},
         {"wave deeper than the plasma", line, "species.electrons.amplitude=1",
          "'species.electrons.amplitude' = 1 is out of range; allowed: -0.9 ... 0.9"},
         {"oblique wave between walls", plane,
@@ -278,10 +278,10 @@ TEST_CASE("theories are refused where they do not hold" * doctest::description("
         {"too few steps", line, wave + "time.end=0.5",
          "theory.compare = \"wave\" needs at least 10 steps: raise time.end above 1"},
         {"followed mode above the cut-off", line, "theory.mode_x=9",
-         "the followed mode (9, 0) has more than one wave length per two cells, the cut-off of the "
+         "the followed mode (9, 0) has more than one wavelength per two cells, the cut-off of the "
          "mesh: refine it or lower theory.mode_x and mode_z"},
         {"followed mode above the cut-off along z", plane, wave + "theory.mode_z=5",
-         "the followed mode (1, 5) has more than one wave length per two cells"},
+         "the followed mode (1, 5) has more than one wavelength per two cells"},
         {"followed mode along z on a line", line, "theory.mode_z=1",
          "theory.mode_z needs grid.dimensions = 2"},
         {"wave between walls", between_walls, wave,
@@ -469,7 +469,7 @@ TEST_CASE("what may mislead in cic is a warning with the number and the limit" *
     // lambda_D = 0.1, dx = 0.375.
     check_warnings("Debye length", line, warm,
                    {"warning: the Debye length is 0.2667 cells, below 0.3183 for cic: the mesh "
-                    "will heat the plasma; refine it to 0.3142 per cell\n"});
+                    "will heat the plasma; refine it to cells of 0.3142\n"});
     check_warnings("Debye length of points", line, "method.weighting=ngp" + warm,
                    {"warning: the Debye length is 0.2667 cells, below 0.6 for ngp"});
     check_warnings("Debye length of triangles", line, "method.weighting=tsc" + warm, {});
