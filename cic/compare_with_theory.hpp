@@ -129,7 +129,7 @@ inline void compare_wave(const Case& w, const common::History& history, common::
         amplitude.begin(),
         amplitude.begin() + static_cast<std::ptrdiff_t>(1 + amplitude.size() / 10));
     summary.result_within("largest_over_start",
-                          *std::max_element(amplitude.begin(), amplitude.end()) / start, "", 0, 2,
+                          *std::max_element(amplitude.begin(), amplitude.end()) / start, "", 0, 1.2,
                           "no growing root");
     if (frequency < 0.01 * std::fabs(growth)) return;  // too damped to swing
 

@@ -47,9 +47,7 @@ class Recorder {
             }
             columns.push_back({"potential_middle", "m*velocity^2/e"});
         }
-        if (wanted.compare == "clouds") {
-            columns.push_back({"separation_x", "length"});
-        }
+        if (wanted.compare == "clouds") columns.push_back({"separation_x", "length"});
         for (long m = 1; m <= wanted.modes; ++m) {
             columns.push_back({"E_" + std::to_string(m) + "_re", field_unit_});
             columns.push_back({"E_" + std::to_string(m) + "_im", field_unit_});
@@ -87,7 +85,6 @@ class Recorder {
         check_energy(step, time, energy, energy - initial, gross,
                      all.kinetic + std::fabs(in_field));
 
-        // What has gone to the walls is known only for floating ones.
         const double charge = charge_on_mesh(grid, rho_g);
         row_ = {time, energy, drift, all.kinetic, in_field, charge_error(charge, state)};
         for (const Particles& s : state.species) row_.push_back(s.sums.kinetic);

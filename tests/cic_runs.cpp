@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/any_summary.hpp"
+
 namespace {
 
 using Json = nlohmann::json;
@@ -21,10 +23,7 @@ struct Run {
     Json summary;
     std::map<std::string, std::vector<double>> columns;
 
-    double value(const std::string& result) const {
-        REQUIRE(summary["results"].contains(result));
-        return summary["results"][result]["value"].get<double>();
-    }
+    double value(const std::string& result) const { return facts::value(summary, result); }
     double conservation(const std::string& name) const {
         REQUIRE(summary["conservation"].contains(name));
         return summary["conservation"][name]["value"].get<double>();
@@ -73,18 +72,7 @@ Run run(const std::string& name, const std::string& file, const std::string& ove
     return result;
 }
 
-// Every result that is compared with something must pass.
-void check_results(const Run& run, int at_least) {
-    int compared = 0;
-    for (const auto& [name, result] : run.summary["results"].items()) {
-        if (!result.contains("pass")) continue;
-        const std::string shown = name + " = " + result.dump();
-        INFO(shown);
-        CHECK(result["pass"].get<bool>());
-        ++compared;
-    }
-    CHECK(compared >= at_least);
-}
+void check_results(const Run& run, int at_least) { facts::check_results(run.summary, at_least); }
 
 double largest(const std::vector<double>& values) {
     double most = 0;
@@ -146,7 +134,7 @@ TEST_CASE("the energy scheme conserves the energy of small waves to round-off" *
                 "method.scheme=energy species.electrons.amplitude=1e-3 theory.compare=none "
                 "time.dt=" +
                     text(dt) + " time.end=" + text(500 * dt));
-        CHECK(largest(r.column("energy_drift")) <= 1e-9);
+        CHECK(largest(r.column("energy_drift")) <= 1e-10);
         CHECK(r.column("field").front() > 0);
     }
 }
@@ -231,7 +219,7 @@ TEST_CASE("no stream grows above the cut-off" * doctest::description("physics"))
         std::vector<double> amplitude;
         for (std::size_t n = 0; n < r.column("mode_re").size(); ++n)
             amplitude.push_back(std::hypot(r.column("mode_re")[n], r.column("mode_im")[n]));
-        CHECK(largest(amplitude) <= 3 * amplitude.front());
+        CHECK(largest(amplitude) <= 1.2 * amplitude.front());
     }
 }
 
@@ -315,10 +303,10 @@ TEST_CASE("the mesh heats most with ngp less with cic and least with tsc" *
         CAPTURE(debye_over_dx);
         const double ngp = heating("ngp", debye_over_dx), cic = heating("cic", debye_over_dx),
                      tsc = heating("tsc", debye_over_dx);
-        CHECK(ngp >= 5 * cic);
-        CHECK(cic >= 5 * tsc);
+        CHECK(ngp >= 8 * cic);
+        CHECK(cic >= 8 * tsc);
         CHECK(tsc > 0);
-        CHECK(heating("cic method.scheme=energy", debye_over_dx) <= 0.3 * cic);
+        CHECK(heating("cic method.scheme=energy", debye_over_dx) <= 0.2 * cic);
     }
     // An unresolved plasma heats until its Debye length is about a third of a cell.
     CHECK(0.1 * std::sqrt(1 + heating("cic", 0.1)) >= 0.24);
@@ -354,10 +342,10 @@ TEST_CASE("the energy scheme is stable for fast beams and stops slow ones" *
         return largest(r.column("field")) / r.column("field").front();
     };
     // 1/12^(1/2) = 0.28868 with cic, 1/30^(1/2) = 0.18257 with tsc
-    CHECK(field_growth(beam("cic", 0.28)) >= 1e6);
-    CHECK(field_growth(beam("cic", 0.29)) <= 1e3);
-    CHECK(field_growth(beam("tsc", 0.18)) >= 1e6);
-    CHECK(field_growth(beam("tsc", 0.19)) <= 1e3);
+    CHECK(field_growth(beam("cic", 0.28)) >= 1e8);
+    CHECK(field_growth(beam("cic", 0.29)) <= 100);
+    CHECK(field_growth(beam("tsc", 0.18)) >= 1e8);
+    CHECK(field_growth(beam("tsc", 0.19)) <= 100);
     const Run slow = beam("cic", 0.1);
     CHECK(slow.column("momentum_x").back() <= 0.1 * slow.column("momentum_x").front());
     CHECK(largest(slow.column("energy_drift")) <= 0.01);

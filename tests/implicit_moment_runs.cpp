@@ -12,8 +12,11 @@
 #include <utility>
 #include <vector>
 
+#include "tests/any_summary.hpp"
+
 namespace {
 
+using facts::check_results, facts::value;
 using Json = nlohmann::json;
 
 // Runs the program in a folder of the test's own and returns its summary.
@@ -25,24 +28,6 @@ Json run(const std::string& name, const std::string& arguments) {
     std::ifstream file(folder + "/summary.json");
     REQUIRE(file.good());
     return Json::parse(file);
-}
-
-double value(const Json& summary, const std::string& result) {
-    REQUIRE(summary["results"].contains(result));
-    return summary["results"][result]["value"].get<double>();
-}
-
-// Every result that is compared with something must pass.
-void check_results(const Json& summary, int at_least) {
-    int compared = 0;
-    for (const auto& [name, result] : summary["results"].items()) {
-        if (!result.contains("pass")) continue;
-        const std::string shown = name + " = " + result.dump();
-        INFO(shown);
-        CHECK(result["pass"].get<bool>());
-        ++compared;
-    }
-    CHECK(compared >= at_least);
 }
 
 void check_gem(const std::string& seed) {
