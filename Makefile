@@ -56,7 +56,7 @@ programs  := $(basename $(notdir $(mains)))
 bench_programs := $(benches:%/bench.cpp=$(BUILD)/bench/%)
 tests     := $(basename $(notdir $(wildcard tests/*.cpp)))
 shared    := $(patsubst %.cpp,$(objects)/%.o,$(wildcard common/*.cpp))
-sources   := $(wildcard */*.hpp */*.cpp)
+sources   := $(wildcard */*.hpp */*/*.hpp */*.cpp)
 folder_of  = $(patsubst %/,%,$(dir $(filter %/$(1).cpp,$(mains))))
 
 MAKEFLAGS += --no-builtin-rules
