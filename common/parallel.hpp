@@ -55,6 +55,17 @@ void for_each_row_three_apart(long rows, const Work& work) {
     }
 }
 
+/// Calls work(row) for every row, first the even ones, then the odd ones: a row may write to what it
+/// shares with the next one, as long as it shares nothing with the next but one.
+template <class Work>
+void for_each_row_two_apart(long rows, const Work& work) {
+#pragma omp parallel
+    for (long color = 0; color < 2; ++color) {
+#pragma omp for schedule(dynamic, 1)
+        for (long row = color; row < rows; row += 2) work(row);
+    }
+}
+
 inline int thread_count() { return omp_get_max_threads(); }
 inline void set_thread_count(int threads) {
     if (threads > 0) omp_set_num_threads(threads);

@@ -1,0 +1,387 @@
+// Grains meet at the nodes they share: what one presses or rubs on the other there.       [MPM-4]
+//
+// Every grain has a velocity of its own at a node. Two grains a and b, with the normal n from a to b,
+// press when they approach, (v_a - v_b).n > 0, and are close enough: fields share nodes already when
+// more than a cell of nothing lies between the surfaces. An impulse lambda n, equal and opposite,
+// takes the approach away, and friction takes the slip away as far as Coulomb allows:
+//     lambda >= 0,   |lambda_t| <= mu lambda
+// With more than two at a node (grains, rigid ones, walls) the pairs are solved in turn until nothing
+// changes (projected Gauss-Seidel). Bonded grains do not part and do not slip.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/mpm/transfer.hpp"
+#include "common/parameters.hpp"
+
+namespace mpm {
+
+struct ContactRule {
+    double friction = 0, wall_friction = 0;
+    // Grains press when the centers of their parts around a node are nearer than this, in cells; 0:
+    // wherever they approach, which is too early.
+    double separation = 0.8;
+};
+
+/// What contact did in one step. Work is impulse times velocity, at the mean of old and new.
+struct ContactSums {
+    double normal = 0, friction = 0, bond = 0;  // work within the grains
+    double rigid = 0;                           // work of rigid grains on the others
+    double impulse = 0;                         // sum of all |lambda|
+    double nodes = 0;                           // pairs that press, counted at nodes
+
+    void operator+=(const ContactSums& other) {
+        normal += other.normal, friction += other.friction, bond += other.bond;
+        rigid += other.rigid, impulse += other.impulse, nodes += other.nodes;
+    }
+};
+
+namespace detail {
+
+/// Who is at a node, with mass.
+struct Party {
+    long slot;
+    int grain;  // of a wall: its side
+    bool wall, rigid;
+    double per_mx, per_my;  // 1/m_i; 0 where nothing changes the velocity
+    double m, V;
+    double vx_0, vy_0;  // before the step
+    double vx, vy;      // after it, being corrected
+    double x, y;        // center of the grain's part around the node, from the node
+    double gx, gy;      // out of the grain
+    bool is_fixed() const { return wall || rigid; }
+};
+
+struct Pair {
+    std::size_t a, b;
+    int bond;       // number of the bond that holds, or -1
+    double nx, ny;  // from a to b
+    double mu;
+    double mass_n, mass_t;  // reduced, along the normal and across
+    double lambda_n, lambda_t;
+};
+
+struct NodeProblem {
+    static constexpr std::size_t most_parties = 16;
+    std::array<Party, most_parties> party;
+    std::array<Pair, most_parties*(most_parties - 1) / 2> pair;
+    std::size_t parties = 0, pairs = 0;
+};
+
+/// Projected Gauss-Seidel, until a sweep changes no velocity by more than round-off.
+inline void solve(NodeProblem& node) {
+    double size = 0;
+    for (std::size_t k = 0; k < node.parties; ++k)
+        size = std::max({size, std::fabs(node.party[k].vx), std::fabs(node.party[k].vy)});
+    constexpr int most_sweeps = 500;
+    for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+        double change = 0;
+        for (std::size_t k = 0; k < node.pairs; ++k) {
+            Pair& pair = node.pair[k];
+            Party &a = node.party[pair.a], &b = node.party[pair.b];
+            const double tx = -pair.ny, ty = pair.nx, ux = a.vx - b.vx, uy = a.vy - b.vy;
+            double n = pair.lambda_n + pair.mass_n * (ux * pair.nx + uy * pair.ny),
+                   t = pair.lambda_t + pair.mass_t * (ux * tx + uy * ty);
+            if (pair.bond < 0) {
+                n = std::max(0.0, n);
+                t = std::clamp(t, -pair.mu * n, pair.mu * n);
+            }
+            const double dn = n - pair.lambda_n, dt = t - pair.lambda_t,
+                         jx = dn * pair.nx + dt * tx, jy = dn * pair.ny + dt * ty;
+            pair.lambda_n = n, pair.lambda_t = t;
+            a.vx -= jx * a.per_mx, a.vy -= jy * a.per_my;
+            b.vx += jx * b.per_mx, b.vy += jy * b.per_my;
+            change = std::max({change, std::fabs(jx) * std::max(a.per_mx, b.per_mx),
+                               std::fabs(jy) * std::max(a.per_my, b.per_my)});
+        }
+        if (!(change > 1e-15 * size)) return;
+    }
+}
+
+}  // namespace detail
+
+class Contact {
+   public:
+    /// in: least_mass, of a node that takes part [mass]
+    Contact(const ContactRule& rule, double least_mass, const std::vector<Grain>& grains,
+            const std::vector<Bond>& bonds)
+        : rule_(rule), least_mass_(least_mass), bonds_of_(grains.size()) {
+        for (std::size_t k = 0; k < bonds.size(); ++k) {
+            const auto [low, high] = std::minmax(bonds[k].a, bonds[k].b);
+            bonds_of_[static_cast<std::size_t>(low)].push_back({high, static_cast<int>(k)});
+        }
+        for (std::size_t g = 0; g < grains.size(); ++g) {
+            is_rigid_.push_back(grains[g].rigid);
+            if (grains[g].rigid) rigid_grains_.push_back(g);
+        }
+    }
+
+    /// Gives bonded grains one velocity v_i^0 at every node they share, so that strain does not see
+    /// the joint.
+    /// exact:  grains bonded at all their common nodes move as one grain
+    void join_bonds(const std::vector<Bond>& bonds, GrainNodes& nodes) const {
+        if (bonds.empty()) return;
+        common::for_each_block(nodes.shared_count(), [&](int, long begin, long end) {
+            detail::NodeProblem node;
+            for (long n = begin; n < end; ++n) {
+                if (!gather(n, nodes, node)) continue;
+                for (std::size_t k = 0; k < node.parties; ++k)
+                    node.party[k].vx = node.party[k].vx_0, node.party[k].vy = node.party[k].vy_0;
+                find_pairs(nodes.mesh().h, bonds, true, node);
+                if (node.pairs == 0) continue;
+                detail::solve(node);
+                for (std::size_t k = 0; k < node.parties; ++k) {
+                    if (node.party[k].is_fixed()) continue;
+                    NodeMotion& v = nodes.motion[static_cast<std::size_t>(node.party[k].slot)];
+                    v.vx_0 = node.party[k].vx, v.vy_0 = node.party[k].vy;
+                }
+            }
+        });
+        spread_velocity(nodes);
+    }
+
+    /// Corrects v_i^1 at the shared nodes, once per step.
+    /// in/out: nodes.motion; bonds, their stresses and whether they break; rigid, the force on each
+    ///         rigid grain
+    /// out:    what it did
+    /// exact:  momentum of the grains at a node, to round-off; afterwards none of them approach,
+    ///         and none slip where friction can hold
+    /// errors: NumericalError when too many grains are at a node
+    ContactSums apply(double dt, GrainNodes& nodes, std::vector<Bond>& bonds,
+                      std::vector<RigidMotion>& rigid) const {
+        struct Block {
+            ContactSums sums;
+            std::vector<std::array<double, 2>> push;  // impulses on rigid grains
+            std::vector<BondLoad> loads;
+            bool crowded = false;
+        };
+        std::array<Block, common::block_count> blocks;
+        common::for_each_block(nodes.shared_count(), [&](int number, long begin, long end) {
+            Block& block = blocks[static_cast<std::size_t>(number)];
+            block.push.assign(rigid_grains_.size(), {0, 0});
+            detail::NodeProblem node;
+            for (long n = begin; n < end; ++n) {
+                if (!gather(n, nodes, node)) continue;
+                if (node.parties == detail::NodeProblem::most_parties) block.crowded = true;
+                find_pairs(nodes.mesh().h, bonds, false, node);
+                if (node.pairs == 0) continue;
+                detail::solve(node);
+                for (std::size_t k = 0; k < node.pairs; ++k) {
+                    const detail::Pair& pair = node.pair[k];
+                    add_work(node, pair, block.sums);
+                    add_push(node, pair, block.push);
+                    if (pair.bond >= 0) block.loads.push_back(load_of(nodes.mesh().h, node, pair));
+                }
+                for (std::size_t k = 0; k < node.parties; ++k) {
+                    if (node.party[k].is_fixed()) continue;
+                    NodeMotion& v = nodes.motion[static_cast<std::size_t>(node.party[k].slot)];
+                    v.vx_1 = node.party[k].vx, v.vy_1 = node.party[k].vy;
+                }
+            }
+        });
+        if (std::any_of(blocks.begin(), blocks.end(), [](const Block& b) { return b.crowded; }))
+            throw common::NumericalError(
+                "more than " + std::to_string(detail::NodeProblem::most_parties - 1) +
+                " grains and walls meet at one node: refine the mesh, or use larger grains");
+        ContactSums sums;
+        for (const Block& block : blocks) sums += block.sums;
+        for (std::size_t k = 0; k < rigid_grains_.size(); ++k) {
+            RigidMotion& motion = rigid[rigid_grains_[k]];
+            motion.push_x = motion.push_y = 0;
+            for (const Block& block : blocks)
+                motion.push_x += block.push[k][0] / dt, motion.push_y += block.push[k][1] / dt;
+        }
+        std::vector<BondLoad> total(bonds.size());
+        for (const Block& block : blocks)
+            for (const BondLoad& load : block.loads)
+                total[static_cast<std::size_t>(load.bond)] += load;
+        for (std::size_t k = 0; k < bonds.size(); ++k) take_load(total[k], dt, bonds[k]);
+        spread_velocity(nodes);
+        return sums;
+    }
+
+   private:
+    struct BondLoad {
+        int bond = 0;
+        double jx = 0, jy = 0;  // impulse on b
+        double nx = 0, ny = 0;  // normal from a to b, times the area
+        double area = 0;
+        void operator+=(const BondLoad& other) {
+            jx += other.jx, jy += other.jy, nx += other.nx, ny += other.ny, area += other.area;
+        }
+    };
+
+    // Everybody with mass at shared node n. out: whether there is anything to do
+    bool gather(long n, const GrainNodes& nodes, detail::NodeProblem& node) const {
+        const auto k = static_cast<std::size_t>(n);
+        node.parties = node.pairs = 0;
+        double node_x = 0, node_y = 0;
+        for (long l = nodes.shared_begin()[k]; l < nodes.shared_begin()[k + 1]; ++l) {
+            const Member& member = nodes.members()[static_cast<std::size_t>(l)];
+            if (node.parties == detail::NodeProblem::most_parties) break;
+            detail::Party& party = node.party[node.parties];
+            if (member.is_wall()) {
+                if (node.parties == 0) return false;
+                party = {};
+                party.slot = -1, party.grain = member.grain, party.wall = true;
+                party.x = member.x - node_x, party.y = member.y - node_y;
+                ++node.parties;
+                continue;
+            }
+            const auto slot = static_cast<std::size_t>(member.slot);
+            const NodeSums& sum = nodes.sums[slot];
+            if (!(sum.m > least_mass_)) continue;
+            const NodeMotion& v = nodes.motion[slot];
+            const bool rigid = is_rigid_[static_cast<std::size_t>(member.grain)];
+            const double per_m = 1 / sum.m;
+            party.slot = member.slot, party.grain = member.grain;
+            party.wall = false, party.rigid = rigid;
+            party.per_mx = rigid || nodes.is_fixed_x(member.slot) ? 0 : per_m;
+            party.per_my = rigid || nodes.is_fixed_y(member.slot) ? 0 : per_m;
+            party.m = sum.m, party.V = sum.V;
+            party.vx_0 = v.vx_0, party.vy_0 = v.vy_0, party.vx = v.vx_1, party.vy = v.vy_1;
+            party.x = sum.mx * per_m - member.x, party.y = sum.my * per_m - member.y;
+            party.gx = sum.gx, party.gy = sum.gy;
+            node_x = member.x, node_y = member.y;
+            ++node.parties;
+        }
+        return node.parties > 1;
+    }
+
+    // The pairs that are in contact, or only those that are bonded.
+    void find_pairs(double h, const std::vector<Bond>& bonds, bool only_bonded,
+                    detail::NodeProblem& node) const {
+        node.pairs = 0;
+        for (std::size_t b = 1; b < node.parties; ++b) {
+            for (std::size_t a = 0; a < b; ++a) {
+                const detail::Party &one = node.party[a], &two = node.party[b];
+                if (one.is_fixed() && two.is_fixed()) continue;
+                const int bond = bonds.empty() || two.wall ? -1 : bond_of(bonds, one, two);
+                if (only_bonded && bond < 0) continue;
+                const bool free = !one.is_fixed() && !two.is_fixed();
+                if (free && std::min(one.m, two.m) < low_mass * (one.m + two.m)) continue;
+                detail::Pair& pair = node.pair[node.pairs];
+                if (!find_normal(one, two, pair.nx, pair.ny)) continue;
+                const double apart = (two.x - one.x) * pair.nx + (two.y - one.y) * pair.ny;
+                const double limit = rule_.separation * h * (two.wall ? 0.5 : 1);
+                if (bond < 0 && limit > 0 && apart > limit) continue;
+                pair.a = a, pair.b = b, pair.bond = bond;
+                pair.mu = two.wall ? rule_.wall_friction : rule_.friction;
+                const double per_x = one.per_mx + two.per_mx, per_y = one.per_my + two.per_my,
+                             nn = pair.nx * pair.nx, tt = pair.ny * pair.ny,
+                             per_n = per_x * nn + per_y * tt, per_t = per_x * tt + per_y * nn;
+                pair.mass_n = per_n > 0 ? 1 / per_n : 0, pair.mass_t = per_t > 0 ? 1 / per_t : 0;
+                pair.lambda_n = pair.lambda_t = 0;
+                ++node.pairs;
+            }
+        }
+    }
+
+    // From one to two: out of the fixed one where there is one, else between both gradients.
+    static bool find_normal(const detail::Party& one, const detail::Party& two, double& nx,
+                            double& ny) {
+        if (two.wall) {
+            nx = two.grain == x_low ? -1 : two.grain == x_high ? 1 : 0;
+            ny = two.grain == y_low ? -1 : two.grain == y_high ? 1 : 0;
+            return true;
+        }
+        nx = (two.rigid ? 0 : one.gx) - (one.rigid ? 0 : two.gx);
+        ny = (two.rigid ? 0 : one.gy) - (one.rigid ? 0 : two.gy);
+        const double size = std::hypot(nx, ny);
+        if (!(size > 0)) return false;
+        nx /= size, ny /= size;
+        return true;
+    }
+
+    int bond_of(const std::vector<Bond>& bonds, const detail::Party& one,
+                const detail::Party& two) const {
+        for (const auto& [other, number] : bonds_of_[static_cast<std::size_t>(one.grain)])
+            if (other == two.grain && !bonds[static_cast<std::size_t>(number)].broken)
+                return number;
+        return -1;
+    }
+
+    static void add_work(const detail::NodeProblem& node, const detail::Pair& pair,
+                         ContactSums& sums) {
+        const detail::Party &a = node.party[pair.a], &b = node.party[pair.b];
+        const double tx = -pair.ny, ty = pair.nx;
+        const auto mean = [](const detail::Party& p, double& x, double& y) {
+            x = p.is_fixed() ? p.vx : 0.5 * (p.vx_0 + p.vx);
+            y = p.is_fixed() ? p.vy : 0.5 * (p.vy_0 + p.vy);
+        };
+        double ax, ay, bx, by;
+        mean(a, ax, ay), mean(b, bx, by);
+        const double normal = pair.lambda_n * ((bx - ax) * pair.nx + (by - ay) * pair.ny),
+                     friction = pair.lambda_t * ((bx - ax) * tx + (by - ay) * ty);
+        if (pair.bond >= 0) {
+            sums.bond += normal + friction;
+        } else {
+            sums.normal += normal, sums.friction += friction;
+            if (pair.lambda_n > 0) sums.impulse += pair.lambda_n, sums.nodes += 1;
+        }
+        // A fixed one takes or gives the rest.
+        const double jx = pair.lambda_n * pair.nx + pair.lambda_t * tx,
+                     jy = pair.lambda_n * pair.ny + pair.lambda_t * ty;
+        if (a.is_fixed()) sums.rigid += jx * ax + jy * ay;
+        if (b.is_fixed()) sums.rigid -= jx * bx + jy * by;
+    }
+
+    void add_push(const detail::NodeProblem& node, const detail::Pair& pair,
+                  std::vector<std::array<double, 2>>& push) const {
+        for (const auto& [who, sign] : {std::pair(pair.a, -1.0), std::pair(pair.b, 1.0)}) {
+            const detail::Party& party = node.party[who];
+            if (!party.rigid) continue;
+            const auto grain = static_cast<std::size_t>(party.grain);
+            const auto at = std::lower_bound(rigid_grains_.begin(), rigid_grains_.end(), grain);
+            auto& sum = push[static_cast<std::size_t>(at - rigid_grains_.begin())];
+            sum[0] += sign * (pair.lambda_n * pair.nx - pair.lambda_t * pair.ny);
+            sum[1] += sign * (pair.lambda_n * pair.ny + pair.lambda_t * pair.nx);
+        }
+    }
+
+    // Area of the interface that belongs to a node, per unit thickness.
+    //   A = sqrt(2 min(V_a, V_b) (V_a + V_b)) / h
+    static BondLoad load_of(double h, const detail::NodeProblem& node, const detail::Pair& pair) {
+        const detail::Party &a = node.party[pair.a], &b = node.party[pair.b];
+        const double area = std::sqrt(2 * std::min(a.V, b.V) * (a.V + b.V)) / h;
+        return {pair.bond,
+                pair.lambda_n * pair.nx - pair.lambda_t * pair.ny,
+                pair.lambda_n * pair.ny + pair.lambda_t * pair.nx,
+                area * pair.nx,
+                area * pair.ny,
+                area};
+    }
+
+    // Mean stress on the interface, and whether the bond breaks.
+    static void take_load(const BondLoad& load, double dt, Bond& bond) {
+        const double size = std::hypot(load.nx, load.ny);
+        bond.area = load.area;
+        if (bond.broken || !(load.area > 0) || !(size > 0)) {
+            bond.normal_stress = bond.shear_stress = 0;
+            return;
+        }
+        const double nx = load.nx / size, ny = load.ny / size, per = 1 / (dt * load.area);
+        // b is pulled back towards a where the impulse on it is against the normal.
+        bond.normal_stress = -(load.jx * nx + load.jy * ny) * per;
+        bond.shear_stress = (load.jy * nx - load.jx * ny) * per;
+        const double pull = std::max(0.0, bond.normal_stress) / bond.tension,
+                     shear = bond.shear_stress / bond.shear;
+        bond.broken = pull * pull + shear * shear >= 1;
+    }
+
+    // Parts of a node's mass that are too small to turn a normal.
+    static constexpr double low_mass = 1e-5;
+
+    ContactRule rule_;
+    double least_mass_;
+    std::vector<std::vector<std::pair<int, int>>> bonds_of_;
+    std::vector<bool> is_rigid_;
+    std::vector<std::size_t> rigid_grains_;
+};
+
+}  // namespace mpm

@@ -1,0 +1,432 @@
+// One field per grain, on the nodes that the grain touches and nowhere else.
+//
+// A grain's nodes are stored row by row. A row is a stretch of columns, and the node in column i has
+// the slot origin[row] + i; so a particle finds its nodes with one look at a small table, and memory
+// is proportional to the area that the grains cover. Two grains that touch the same node have two
+// slots there: what they do to each other is the business of contact.hpp.
+//
+//      o   o---o---o---o   o        a grain's rows: every row as long as it needs to be, and one
+//    o---o---o---o---o---o---o      cell wider than the grain, so that the table stays good until
+//    o---o---o---o---o---o---o      a particle has moved by a cell
+//      o   o---o---o---o   o
+//
+// Columns are counted on without end: a grain that straddles the ends of a periodic mesh keeps its
+// particles together, at positions beyond the end. Only a grain that reaches all around (a ring) has
+// its particles put back into the box, and two copies of the columns where its ends meet.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "common/counting_sort.hpp"
+#include "common/lanes.hpp"
+#include "common/mpm/grains.hpp"
+#include "common/mpm/mesh.hpp"
+#include "common/mpm/particles.hpp"
+#include "common/parallel.hpp"
+
+namespace mpm {
+
+/// What particles put on a node of their grain, in one line of the cache.
+struct alignas(64) NodeSums {
+    double m;       // mass:                 sum_p m_p S_ip
+    double px, py;  // momentum:             sum_p m_p v_p S_ip
+    double mx, my;  // mass times position:  sum_p m_p x_p S_ip
+    double gx, gy;  // out of the grain:     sum_p V_p grad S_ip
+    double V;       // volume:               sum_p V_p S_ip
+};
+
+/// Velocities before and after the step.
+struct alignas(32) NodeMotion {
+    double vx_0, vy_0, vx_1, vy_1;
+};
+
+struct NodeForce {
+    double x, y;
+};
+
+/// The particles of one grain in one row of cells, when they were last sorted.
+struct Strip {
+    int grain;
+    long begin, end;
+};
+
+/// A node that stands for another one: behind a wall (mirrored), or at the other end of a ring.
+struct Image {
+    long slot, of;
+    double sign_x, sign_y;  // of velocity, momentum and force
+    bool mirror_x, mirror_y;
+    double about;  // mirror: twice the coordinate of the wall; ring: the length of the mesh
+};
+
+/// A grain's field at a node that others may touch, too; or a frictional wall that the node is on
+/// or behind.
+struct Member {
+    long slot;    // -1: a wall
+    int grain;    // or the side that the wall is on
+    double x, y;  // of the node, as this grain counts columns
+    bool is_wall() const { return slot < 0; }
+};
+
+/// What a sort fixes, and a checkpoint must keep: everything else follows from it.
+struct Frame {
+    std::vector<int> first_row, rows;           // per grain: its rows of nodes
+    std::vector<int> first_column, end_column;  // per row
+    std::vector<int> strip_begin;               // per strip: its first particle
+    std::vector<int> strips;                    // per grain: how many
+    std::vector<int> ring;                      // per grain
+    double moved = 0;  // how far a particle can have come since the sort [length]
+    double speed = 0;  // largest in the last step
+};
+
+class GrainNodes {
+   public:
+    GrainNodes(const Mesh& mesh, int shape_width)
+        : mesh_(mesh),
+          below_(shape_width == 2 ? 1 : 2),
+          above_(shape_width == 2 ? 2 : 3),
+          strips_apart_(shape_width == 2 ? 3 : 5) {}
+
+    const Mesh& mesh() const { return mesh_; }
+
+    std::vector<NodeSums> sums;
+    std::vector<NodeMotion> motion;
+    std::vector<NodeForce> force;
+
+    /// Slot of the node in column 0 of a grain's row j; column i is that plus i.
+    long origin(int grain, long j) const {
+        return origin_[static_cast<std::size_t>(first_of_grain_[static_cast<std::size_t>(grain)] +
+                                                j)];
+    }
+    /// The same for consecutive rows: origins(grain)[j].
+    const long* origins(int grain) const {
+        return origin_.data() + first_of_grain_[static_cast<std::size_t>(grain)];
+    }
+    long size() const { return static_cast<long>(sums.size()); }
+
+    const std::vector<Strip>& strips() const { return strips_; }
+    const std::vector<Image>& images() const { return images_; }
+    const std::vector<long>& fixed_x() const { return fixed_x_; }
+    const std::vector<long>& fixed_y() const { return fixed_y_; }
+    bool is_fixed_x(long slot) const { return (fixed_[static_cast<std::size_t>(slot)] & 1) != 0; }
+    bool is_fixed_y(long slot) const { return (fixed_[static_cast<std::size_t>(slot)] & 2) != 0; }
+    const std::vector<Member>& members() const { return members_; }
+    /// Shared node n has the members shared_begin()[n] ... shared_begin()[n + 1].
+    const std::vector<long>& shared_begin() const { return shared_begin_; }
+    long shared_count() const { return static_cast<long>(shared_begin_.size()) - 1; }
+    /// Slots of a grain are consecutive.
+    long slot_begin(int grain) const { return slot_begin_[static_cast<std::size_t>(grain)]; }
+    long slot_end(int grain) const { return slot_begin_[static_cast<std::size_t>(grain) + 1]; }
+
+    /// Whether particles may have left the nodes of their grain before the next step.
+    bool sort_is_due(const Frame& frame) const { return frame.moved > 0.99 * mesh_.h; }
+
+    /// Sorts the particles by grain and row of cells, and lays out the nodes around them.
+    /// in/out: particles, of each grain together; grains' ranges stay as they are
+    void sort(std::vector<Grain>& grains, Particles& particles, Frame& frame);
+
+    /// Lays out the nodes of a frame that a checkpoint has kept.
+    void lay_out(const std::vector<Grain>& grains, const Frame& frame);
+
+    /// Calls work(strip, number) for every strip; those at work at the same time share no node, and
+    /// sums on nodes are added in the same order whatever the number of threads.
+    template <class Work>
+    void for_each_strip(const Work& work) const {
+        common::for_each_row_two_apart(static_cast<long>(pieces_.size()) - 1, [&](long piece) {
+            const auto k = static_cast<std::size_t>(piece);
+            for (long s = pieces_[k]; s < pieces_[k + 1]; ++s)
+                work(strips_[static_cast<std::size_t>(s)], static_cast<std::size_t>(s));
+        });
+    }
+
+   private:
+    void add_walls_and_rings(const std::vector<Grain>& grains, const Frame& frame);
+    void find_shared_nodes(const std::vector<Grain>& grains, const Frame& frame);
+
+    // Visits all slots of a grain that are not images: visit(slot, column, row).
+    template <class Visit>
+    void for_each_slot(int grain, const Frame& frame, const Visit& visit) const {
+        const auto g = static_cast<std::size_t>(grain);
+        const long table = row_begin_[g];
+        for (long r = 0; r < frame.rows[g]; ++r) {
+            const auto row = static_cast<std::size_t>(table + r);
+            for (long i = frame.first_column[row]; i < frame.end_column[row]; ++i)
+                visit(origin_[row] + i, i, frame.first_row[g] + r);
+        }
+    }
+    bool has_slot(int grain, const Frame& frame, long i, long j) const {
+        const auto g = static_cast<std::size_t>(grain);
+        const long r = j - frame.first_row[g];
+        if (r < 0 || r >= frame.rows[g]) return false;
+        const auto row = static_cast<std::size_t>(row_begin_[g] + r);
+        return i >= frame.first_column[row] && i < frame.end_column[row];
+    }
+
+    Mesh mesh_;
+    long below_, above_;  // rows and columns that a cell's particles may reach, with one to spare
+    long strips_apart_;
+    std::vector<long> origin_, row_begin_, first_of_grain_, slot_begin_;
+    std::vector<Strip> strips_;
+    std::vector<long> pieces_{0};
+    std::vector<Image> images_;
+    std::vector<long> fixed_x_, fixed_y_;
+    std::vector<unsigned char> fixed_;  // per slot: 1 for x, 2 for y
+    std::vector<Member> members_;
+    std::vector<long> shared_begin_{0};
+    common::SortScratch<double> scratch_;
+};
+
+template <class Archive>
+void archive(Archive& a, Frame& frame) {
+    a("first_row", frame.first_row), a("rows", frame.rows);
+    a("first_column", frame.first_column), a("end_column", frame.end_column);
+    a("strip_begin", frame.strip_begin), a("strips", frame.strips), a("ring", frame.ring);
+    a("moved", frame.moved), a("speed", frame.speed);
+}
+
+namespace detail {
+
+inline long cell_of(double x, double low, double h) {
+    return static_cast<long>(std::floor((x - low) / h));
+}
+
+// A grain beyond the end of a periodic mesh comes back as a whole; one that reaches around it is
+// cut where the mesh ends.
+inline void put_back(const Mesh& mesh, Grain& grain, Particles& particles) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (long p = grain.begin; p < grain.end; ++p) {
+        const double x = particles.x_p[static_cast<std::size_t>(p)];
+        low = std::min(low, x), high = std::max(high, x);
+    }
+    const double length = mesh.length_x();
+    grain.ring = grain.ring || high - low > length - 4 * mesh.h;
+    const double center = 0.5 * (low + high) - mesh.x_low;
+    const double shift = grain.ring ? 0 : -length * std::floor(center / length);
+    for (long p = grain.begin; p < grain.end; ++p) {
+        double& x = particles.x_p[static_cast<std::size_t>(p)];
+        if (grain.ring) {
+            const double turns = std::floor((x - mesh.x_low) / length);
+            if (turns != 0) x -= turns * length;
+        } else if (shift != 0) {
+            x += shift;
+        }
+    }
+}
+
+}  // namespace detail
+
+inline void GrainNodes::sort(std::vector<Grain>& grains, Particles& particles, Frame& frame) {
+    if (mesh_.periodic_x)
+        for (Grain& grain : grains) detail::put_back(mesh_, grain, particles);
+
+    // Every grain has one strip per row of cells from its lowest to its highest.
+    const std::size_t count = grains.size();
+    std::vector<long> low(count), first_strip(count + 1, 0);
+    frame.strips.resize(count), frame.ring.resize(count);
+    for (std::size_t g = 0; g < count; ++g) {
+        double least = std::numeric_limits<double>::infinity(), most = -least;
+        for (long p = grains[g].begin; p < grains[g].end; ++p) {
+            const double y = particles.y_p[static_cast<std::size_t>(p)];
+            least = std::min(least, y), most = std::max(most, y);
+        }
+        low[g] = detail::cell_of(least, mesh_.y_low, mesh_.h);
+        const long rows = detail::cell_of(most, mesh_.y_low, mesh_.h) - low[g] + 1;
+        frame.strips[g] = static_cast<int>(rows), frame.ring[g] = grains[g].ring;
+        first_strip[g + 1] = first_strip[g] + rows;
+    }
+    std::vector<int> owner(static_cast<std::size_t>(particles.count()));
+    for (std::size_t g = 0; g < count; ++g)
+        std::fill(owner.begin() + grains[g].begin, owner.begin() + grains[g].end,
+                  static_cast<int>(g));
+    const auto strip_of = [&](long p) {
+        const auto n = static_cast<std::size_t>(p);
+        const auto g = static_cast<std::size_t>(owner[n]);
+        const long row = detail::cell_of(particles.y_p[n], mesh_.y_low, mesh_.h) - low[g];
+        return static_cast<int>(first_strip[g] + row);
+    };
+    common::counting_sort(particles.count(), first_strip[count], strip_of, scratch_,
+                          &frame.strip_begin);
+    for (std::vector<double>* quantity : particles.all())
+        common::carry_to_place(*quantity, scratch_);
+
+    // Rows of nodes around the strips, wide enough for a particle that moves by a cell.
+    frame.first_row.resize(count), frame.rows.resize(count);
+    frame.first_column.clear(), frame.end_column.clear();
+    for (std::size_t g = 0; g < count; ++g) {
+        const long strips = frame.strips[g], rows = strips + below_ + above_;
+        constexpr long none = std::numeric_limits<int>::max();
+        std::vector<long> left(static_cast<std::size_t>(rows), none),
+            right(static_cast<std::size_t>(rows), -none);
+        for (long s = 0; s < strips; ++s) {
+            const auto k = static_cast<std::size_t>(first_strip[g] + s);
+            double least = std::numeric_limits<double>::infinity(), most = -least;
+            for (int p = frame.strip_begin[k]; p < frame.strip_begin[k + 1]; ++p) {
+                const double x = particles.x_p[static_cast<std::size_t>(p)];
+                least = std::min(least, x), most = std::max(most, x);
+            }
+            if (least > most) continue;
+            const long first = detail::cell_of(least, mesh_.x_low, mesh_.h) - below_,
+                       end = detail::cell_of(most, mesh_.x_low, mesh_.h) + above_ + 1;
+            for (long r = s; r < s + below_ + above_ + 1 && r < rows; ++r) {
+                const auto row = static_cast<std::size_t>(r);
+                left[row] = std::min(left[row], first), right[row] = std::max(right[row], end);
+            }
+        }
+        frame.first_row[g] = static_cast<int>(low[g] - below_);
+        frame.rows[g] = static_cast<int>(rows);
+        for (std::size_t r = 0; r < left.size(); ++r) {
+            const bool empty = left[r] > right[r];
+            frame.first_column.push_back(empty ? 0 : static_cast<int>(left[r]));
+            frame.end_column.push_back(empty ? 0 : static_cast<int>(right[r]));
+        }
+    }
+    frame.moved = 0;
+    lay_out(grains, frame);
+}
+
+inline void GrainNodes::lay_out(const std::vector<Grain>& grains, const Frame& frame) {
+    const std::size_t count = grains.size();
+    origin_.clear(), strips_.clear();
+    row_begin_.assign(count + 1, 0), first_of_grain_.assign(count, 0);
+    slot_begin_.assign(count + 1, 0);
+    long slots = 0, row = 0, strip = 0;
+    for (std::size_t g = 0; g < count; ++g) {
+        row_begin_[g] = row, first_of_grain_[g] = row - frame.first_row[g], slot_begin_[g] = slots;
+        for (int r = 0; r < frame.rows[g]; ++r, ++row) {
+            const auto k = static_cast<std::size_t>(row);
+            origin_.push_back(slots - frame.first_column[k]);
+            slots += frame.end_column[k] - frame.first_column[k];
+        }
+        for (int s = 0; s < frame.strips[g]; ++s, ++strip) {
+            const auto k = static_cast<std::size_t>(strip);
+            strips_.push_back(
+                {static_cast<int>(g), frame.strip_begin[k], frame.strip_begin[k + 1]});
+        }
+    }
+    row_begin_[count] = row, slot_begin_[count] = slots;
+    const auto size = static_cast<std::size_t>(slots);
+    sums.resize(size), motion.resize(size), force.resize(size);
+
+    // Pieces of work: long enough that the next but one shares no row of nodes.
+    constexpr long particles_per_piece = 1024;
+    pieces_.assign(1, 0);
+    long particles_in_piece = 0;
+    for (long s = 0; s < strip; ++s) {
+        const Strip& here = strips_[static_cast<std::size_t>(s)];
+        particles_in_piece += here.end - here.begin;
+        if (s + 1 == strip || (particles_in_piece >= particles_per_piece &&
+                               s + 1 - pieces_.back() >= strips_apart_)) {
+            pieces_.push_back(s + 1);
+            particles_in_piece = 0;
+        }
+    }
+    add_walls_and_rings(grains, frame);
+    find_shared_nodes(grains, frame);
+}
+
+inline void GrainNodes::add_walls_and_rings(const std::vector<Grain>& grains, const Frame& frame) {
+    images_.clear(), fixed_x_.clear(), fixed_y_.clear();
+    const long nx = mesh_.cells_x, ny = mesh_.cells_y;
+    std::vector<Image> along_y;
+    for (std::size_t k = 0; k < grains.size(); ++k) {
+        const int g = static_cast<int>(k);
+        for_each_slot(g, frame, [&](long slot, long i, long j) {
+            if (grains[k].ring && has_slot(g, frame, i - nx, j))
+                images_.push_back({slot, slot - nx, 1, 1, false, false, mesh_.length_x()});
+            if (grains[k].rigid) return;
+            const auto meet = [&](Side side, long beyond, long mirror, bool is_x) {
+                const Boundary kind = mesh_.boundary[static_cast<std::size_t>(side)];
+                if (beyond < 0 || kind == Boundary::open || kind == Boundary::frictional) return;
+                if (beyond == 0) {
+                    if (is_x || kind == Boundary::stick) fixed_x_.push_back(slot);
+                    if (!is_x || kind == Boundary::stick) fixed_y_.push_back(slot);
+                    return;
+                }
+                const long i_of = is_x ? mirror : i, j_of = is_x ? j : mirror;
+                if (beyond > 1 || !has_slot(g, frame, i_of, j_of)) return;
+                const double tangential = kind == Boundary::stick ? -1 : 1;
+                const double wall = side == x_low    ? mesh_.x_low
+                                    : side == x_high ? mesh_.x_high()
+                                    : side == y_low  ? mesh_.y_low
+                                                     : mesh_.y_high();
+                (is_x ? images_ : along_y)
+                    .push_back({slot, origin(g, j_of) + i_of, is_x ? -1 : tangential,
+                                is_x ? tangential : -1, is_x, !is_x, 2 * wall});
+            };
+            if (!mesh_.periodic_x) {
+                meet(x_low, -i, -i, true);
+                meet(x_high, i - nx, 2 * nx - i, true);
+            }
+            meet(y_low, -j, -j, false);
+            meet(y_high, j - ny, 2 * ny - j, false);
+        });
+    }
+    images_.insert(images_.end(), along_y.begin(), along_y.end());
+    fixed_.assign(sums.size(), 0);
+    for (const long slot : fixed_x_) fixed_[static_cast<std::size_t>(slot)] |= 1;
+    for (const long slot : fixed_y_) fixed_[static_cast<std::size_t>(slot)] |= 2;
+}
+
+inline void GrainNodes::find_shared_nodes(const std::vector<Grain>& grains, const Frame& frame) {
+    members_.clear(), shared_begin_.assign(1, 0);
+    // How many have a slot at each node, and where their list begins.
+    const long nx = mesh_.cells_x, ny = mesh_.cells_y, margin = 4, width = nx + 2 * margin,
+               height = ny + 2 * margin;
+    const long first_i = mesh_.periodic_x ? 0 : -margin,
+               end_i = mesh_.periodic_x ? nx : nx + margin;
+    const auto wall = [&](Side side) {
+        return Member{-1, static_cast<int>(side), side == x_low ? mesh_.x_low : mesh_.x_high(),
+                      side == y_low ? mesh_.y_low : mesh_.y_high()};
+    };
+    const auto node_of = [&](long i, long j) -> long {
+        const long column = mesh_.periodic_x ? ((i % nx) + nx) % nx : i;
+        const long a = column + margin, b = j + margin;
+        return a < 0 || a >= width || b < 0 || b >= height ? -1 : b * width + a;
+    };
+    std::vector<int> place(static_cast<std::size_t>(width * height) + 1, 0);
+    const auto stands = [&](Side side) { return mesh_.has(side, Boundary::frictional); };
+    // Grains first, in their order, then walls; copies of ring columns and mirrored nodes not.
+    const auto for_each_member = [&](const auto& visit) {
+        for (std::size_t k = 0; k < grains.size(); ++k) {
+            const int g = static_cast<int>(k);
+            for_each_slot(g, frame, [&](long slot, long i, long j) {
+                const bool copy = grains[k].ring && has_slot(g, frame, i - nx, j);
+                const bool behind_x =
+                    !mesh_.periodic_x && ((i < 0 && !stands(x_low)) || (i > nx && !stands(x_high)));
+                const bool behind_y = (j < 0 && !stands(y_low)) || (j > ny && !stands(y_high));
+                const long node = node_of(i, j);
+                if (copy || behind_x || behind_y || node < 0) return;
+                visit(static_cast<std::size_t>(node),
+                      Member{slot, g, mesh_.x_of(static_cast<double>(i)),
+                             mesh_.y_of(static_cast<double>(j))});
+            });
+        }
+        for (long deep = 0; deep < margin; ++deep) {
+            for (long j = -margin; j < ny + margin && !mesh_.periodic_x; ++j) {
+                if (stands(x_low)) visit(static_cast<std::size_t>(node_of(-deep, j)), wall(x_low));
+                if (stands(x_high))
+                    visit(static_cast<std::size_t>(node_of(nx + deep, j)), wall(x_high));
+            }
+            for (long i = first_i; i < end_i; ++i) {
+                if (stands(y_low)) visit(static_cast<std::size_t>(node_of(i, -deep)), wall(y_low));
+                if (stands(y_high))
+                    visit(static_cast<std::size_t>(node_of(i, ny + deep)), wall(y_high));
+            }
+        }
+    };
+    for_each_member([&](std::size_t node, const Member&) { ++place[node]; });
+    long next = 0;
+    for (int& p : place) {
+        const int here = p;
+        p = here > 1 ? static_cast<int>(next) : -1;
+        if (here > 1) shared_begin_.push_back(next += here);
+    }
+    members_.resize(static_cast<std::size_t>(next));
+    for_each_member([&](std::size_t node, const Member& member) {
+        if (place[node] >= 0) members_[static_cast<std::size_t>(place[node]++)] = member;
+    });
+}
+
+}  // namespace mpm

@@ -1,0 +1,35 @@
+// Rigid grains: plates and pistons that move as the case says, or that a force drives.
+#pragma once
+
+#include <cmath>
+
+#include "common/mpm/grains.hpp"
+
+namespace mpm {
+
+/// The share of a load that is on at a time: 0 at t = 0, 1 after the rise, with two continuous
+/// derivatives, so that it wakes few waves.
+///   s^3 (10 - 15 s + 6 s^2),  s = t/rise
+inline double share_of_load(double t, double rise) {
+    if (t >= rise) return 1;
+    const double s = t / rise;
+    return s * s * s * (10 - 15 * s + 6 * s * s);
+}
+
+/// Velocities of rigid grains for the step from t to t + dt.
+///   driven:  v = share(t) wanted
+///   servo:   m dv/dt = share(t) F + push - c v, push the force of the other grains on it
+/// note:    A servo's dashpot c is taken at the new velocity: it never overshoots, however large.
+inline void drive_plates(double t, double dt, double rise, std::vector<RigidMotion>& rigid) {
+    const double share = share_of_load(t, rise);
+    const auto servo = [&](const RigidMotion& is, double v, double force, double push) {
+        return (v + dt * (share * force + push) / is.mass) / (1 + dt * is.damping / is.mass);
+    };
+    for (RigidMotion& is : rigid) {
+        is.vx = is.servo_x ? servo(is, is.vx, is.force, is.push_x) : share * is.wanted_vx;
+        is.vy = is.servo_y ? servo(is, is.vy, is.force, is.push_y) : share * is.wanted_vy;
+        is.travel_x += dt * is.vx, is.travel_y += dt * is.vy;
+    }
+}
+
+}  // namespace mpm

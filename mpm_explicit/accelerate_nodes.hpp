@@ -1,0 +1,71 @@
+// on the grid: forces make the new velocities of the nodes.
+//
+//     m_i (v_i^1 - v_i^0)/dt = - sum_p V_p^{1/2} sigma_p^{1/2} . grad S_ip + m_i f_i^0   [MPM-12]
+// The force of constraint f_i^0 is what contact adds afterwards (contact.hpp); the first term was
+// summed up in update_stress.hpp.
+#pragma once
+
+#include "common/mpm/transfer.hpp"
+#include "mpm_explicit/ledger.hpp"
+
+namespace mpm_explicit {
+
+using namespace mpm;
+
+/// Forces on all mass alike.
+struct BodyForce {
+    double gravity_x = 0, gravity_y = 0;  // acceleration now
+    double damping = 0;                   // of the velocity [1/time]
+};
+
+/// v_i^1 without contact.
+///   v_i^1 = v_i^0 + dt (f_i/m_i + g - c v_i^0)
+inline void accelerate_nodes(const BodyForce& body, const std::vector<Grain>& grains,
+                             const std::vector<RigidMotion>& rigid, double least_mass, double dt,
+                             GrainNodes& nodes) {
+    fold_force(nodes);
+    common::for_each_block(nodes.size(), [&](int, long begin, long end) {
+        for (long i = begin; i < end; ++i) {
+            const auto n = static_cast<std::size_t>(i);
+            NodeMotion& v = nodes.motion[n];
+            const bool empty = !(nodes.sums[n].m > least_mass);
+            const double dt_m = empty ? 0 : dt / nodes.sums[n].m, dt_body = empty ? 0 : dt;
+            v.vx_1 = v.vx_0 + dt_m * nodes.force[n].x +
+                     dt_body * (body.gravity_x - body.damping * v.vx_0);
+            v.vy_1 = v.vy_0 + dt_m * nodes.force[n].y +
+                     dt_body * (body.gravity_y - body.damping * v.vy_0);
+        }
+    });
+    drive_rigid(grains, rigid, nodes);
+    for (const long i : nodes.fixed_x()) nodes.motion[static_cast<std::size_t>(i)].vx_1 = 0;
+    for (const long i : nodes.fixed_y()) nodes.motion[static_cast<std::size_t>(i)].vy_1 = 0;
+    spread_velocity(nodes);
+}
+
+/// Work on the nodes in this step, and their largest speed; after contact.
+inline NodeWork work_on_nodes(const BodyForce& body, double dt, const GrainNodes& nodes) {
+    std::array<NodeWork, common::block_count> part;
+    common::for_each_block(nodes.size(), [&](int block, long begin, long end) {
+        double old_stress = 0, jump = 0, gravity = 0, damping = 0, speed = 0;
+#pragma omp simd reduction(+ : old_stress, jump, gravity, damping) reduction(max : speed)
+        for (long i = begin; i < end; ++i) {
+            const auto n = static_cast<std::size_t>(i);
+            const NodeMotion& v = nodes.motion[n];
+            const double m = nodes.sums[n].m, dx = v.vx_1 - v.vx_0, dy = v.vy_1 - v.vy_0,
+                         mean_x = 0.5 * (v.vx_0 + v.vx_1), mean_y = 0.5 * (v.vy_0 + v.vy_1);
+            old_stress += nodes.force[n].x * v.vx_1 + nodes.force[n].y * v.vy_1;
+            jump += m * (dx * dx + dy * dy);
+            gravity += m * (body.gravity_x * mean_x + body.gravity_y * mean_y);
+            damping -= m * (v.vx_0 * mean_x + v.vy_0 * mean_y);
+            const double squared = v.vx_1 * v.vx_1 + v.vy_1 * v.vy_1;
+            speed = squared > speed ? squared : speed;
+        }
+        part[static_cast<std::size_t>(block)] = {0.5 * dt * old_stress, 0.5 * jump, dt * gravity,
+                                                 dt * body.damping * damping, std::sqrt(speed)};
+    });
+    NodeWork total;
+    for (const NodeWork& one : part) total += one;
+    return total;
+}
+
+}  // namespace mpm_explicit

@@ -1,0 +1,114 @@
+// The explicit material point method: elastic and plastic grains in the plane that rebound, rub,
+// stick and yield, by leapfrog.
+//
+// The default case is the talk's rebounding grains: two elastic disks collide, and at a quarter of
+// the stability limit they part as they came.
+// Run:   build/mpm_explicit
+// Run:   build/mpm_explicit mpm_explicit/cases/rebound.toml time.alpha=1
+// Run:   build/mpm_explicit mpm_explicit/cases/rebound.toml contact.separation=0
+//
+// Reading order: common/mpm/particles.hpp, shapes.hpp, grain_nodes.hpp and transfer.hpp there, then
+// update_stress.hpp, accelerate_nodes.hpp, common/mpm/contact.hpp, move_particles.hpp, ledger.hpp.
+#include <cstdio>
+#include <optional>
+
+#include "common/mpm/plates.hpp"
+#include "mpm_explicit/check_case.hpp"
+#include "mpm_explicit/move_particles.hpp"
+#include "mpm_explicit/record.hpp"
+
+namespace {
+
+using namespace mpm_explicit;
+
+const common::About about{"mpm_explicit", PROGRAM_VERSION,
+                          "the explicit material point method for grains in contact; the default "
+                          "case is two elastic disks that rebound",
+                          "mpm_explicit/cases/rebound.toml"};
+
+template <class Shape>
+int run(const Shape& shape, const Case& wanted, const Scales& scales, common::Session& session) {
+    // 2. Particles at t = 0, stresses half a step before.
+    State state;
+    state.assembly = assemble(wanted.problem);
+    auto& [particles, grains, rigid, bonds] = state.assembly;
+    const std::vector<AnyLaw> laws = laws_of(wanted.problem);
+    const Contact contact(wanted.problem.contact, scales.least_mass, grains, bonds);
+    const double dt = scales.dt;
+    GrainNodes nodes(wanted.problem.mesh(), Shape::width);
+    Recorder recorder(wanted, scales, state, session.history);
+    StepSums sums;
+    long step = 0;
+    if (session.restarting()) {
+        session.restore(state, step);
+        nodes.lay_out(grains, state.frame);
+    } else {
+        nodes.sort(grains, particles, state.frame);
+        start_leapfrog(shape, laws, contact, scales.least_mass, wanted.frozen, dt, nodes, state);
+    }
+
+    // 3. The loop of the slide.
+    // [loop]
+    while (session.keep_going(step, scales.steps)) {
+        if (nodes.sort_is_due(state.frame)) nodes.sort(grains, particles, state.frame);
+        recorder.snapshot(step, state, session);
+        const BodyForce body = drive(wanted, step, dt, rigid);
+        put_on_nodes(shape, particles, nodes);                       // particles -> grid
+        velocity_of_nodes(grains, rigid, scales.least_mass, nodes);  // v_i^0
+        contact.join_bonds(bonds, nodes);
+        for_each_chunk(grains, nodes, sums.strips, [&](Chunk& chunk) {
+            velocity_gradient(shape, particles, nodes, dt, chunk);  // [MPM-11]
+            update_stress(laws, wanted.frozen, chunk, grains, particles,
+                          sums.strips);                          // [MPM-9, 10]
+            add_internal_force(shape, particles, chunk, nodes);  // [MPM-12]
+            turn_stress(chunk, particles);
+        });
+        accelerate_nodes(body, grains, rigid, scales.least_mass, dt, nodes);  // v_i^1  [MPM-12]
+        sums.contact = contact.apply(dt, nodes, bonds, rigid);                // f_gg'  [MPM-4]
+        sums.nodes = work_on_nodes(body, dt, nodes);
+        move_particles(shape, grains, rigid, nodes, wanted.flip, wanted.frozen, dt, particles,
+                       sums.strips);  // grid -> particles
+        state.frame.moved += wanted.frozen ? 0 : dt * sums.nodes.largest_speed;
+        recorder.record(step, sums, nodes, state, session);
+        ++step;
+        session.end_of_step(step, scales.steps, static_cast<double>(step) * dt, state);
+    }
+    // [/loop]
+
+    // 4. The results against theory, summary.json.
+    if (step == scales.steps) {
+        recorder.snapshot(step, state, session);
+        recorder.finish(step, state, session);
+    }
+    return session.finish(step, static_cast<double>(particles.count()));
+}
+
+int start(int argc, char** argv, std::optional<common::Session>& holder) {
+    // 1. The case: defaults, file, command line; refuse, warn, or only describe.
+    Case wanted;
+    common::ParameterTable table = describe(wanted);
+    const common::CommandLine command = common::read_command_line(argc, argv, about, table);
+    refuse_impossible(wanted);
+    const Scales scales = scales_of(wanted);
+    const std::vector<std::string> warnings = resolution_warnings(wanted, scales);
+    for (const std::string& warning : warnings)
+        std::fprintf(stderr, "warning: %s\n", warning.c_str());
+    if (!command.quiet) std::printf("%s", describe_scales(wanted, scales).c_str());
+    if (command.dry_run) return 0;
+    common::refuse_before_start(command, scales.steps, scales.bytes);
+
+    common::set_thread_count(command.threads);
+    common::Session& session = holder.emplace(about, command, table);
+    for (const std::string& warning : warnings) session.summary.warning(warning);
+    session.checkpoint_steps = wanted.checkpoint_steps;
+    int status = 0;
+    with_shape(wanted.scheme(),
+               [&](const auto& shape) { status = run(shape, wanted, scales, session); });
+    return status;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    return common::guarded(about, [&](auto& session) { return start(argc, argv, session); });
+}
