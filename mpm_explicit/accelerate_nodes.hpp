@@ -21,8 +21,8 @@ struct BodyForce {
 /// v_i^1 without contact.
 ///   v_i^1 = v_i^0 + dt (f_i/m_i + g - c v_i^0)
 inline void accelerate_nodes(const BodyForce& body, const std::vector<Grain>& grains,
-                             const std::vector<RigidMotion>& rigid, double least_mass, double dt,
-                             GrainNodes& nodes) {
+                             const std::vector<RigidMotion>& rigid, double dt, GrainNodes& nodes) {
+    const double least_mass = nodes.least_mass();
     fold_force(nodes);
     common::for_each_block(nodes.size(), [&](int, long begin, long end) {
         for (long i = begin; i < end; ++i) {

@@ -70,12 +70,17 @@ inline void refuse_comparison(const Case& w, const std::vector<PlannedGrain>& pl
     if (is("rebound")) {
         const bool disks = free == 2 && rigid == 0 && plans[0].outline.kind == OutlineKind::disk &&
                            plans[1].outline.kind == OutlineKind::disk;
+        const auto meet = [&] {
+            const double dx = plans[1].outline.x - plans[0].outline.x,
+                         dy = plans[1].outline.y - plans[0].outline.y,
+                         vx = plans[0].from.velocity_x - plans[1].from.velocity_x,
+                         vy = plans[0].from.velocity_y - plans[1].from.velocity_y;
+            return dx * vx + dy * vy > 0 &&
+                   std::fabs(dx * vy - dy * vx) < 1e-9 * std::fabs(dx * vx + dy * vy);
+        };
         refuse(!disks || plans[0].outline.radius != plans[1].outline.radius ||
-                   plans[0].outline.y != plans[1].outline.y ||
-                   plans[0].material != plans[1].material ||
-                   !(plans[0].outline.x < plans[1].outline.x) ||
-                   !(plans[0].from.velocity_x > plans[1].from.velocity_x),
-               compare + " needs two equal disks that meet along x, the left one first");
+                   plans[0].material != plans[1].material || !meet(),
+               compare + " needs two equal disks that meet head on");
     }
     if (is("bar") || is("bond"))
         refuse(!profile("bar") || wall(x_low, "open"),

@@ -52,33 +52,43 @@ inline double slope(const std::vector<double>& x, const std::vector<double>& y, 
     return c1;
 }
 
-/// Two equal disks that meet head on along x.
+/// Two equal disks that meet head on.
 inline void compare_rebound(const Run& run, common::Summary& summary) {
+    const PlannedGrain &a = run.plans[0], &b = run.plans[1];
+    const double dx = b.outline.x - a.outline.x, dy = b.outline.y - a.outline.y,
+                 apart = std::hypot(dx, dy), nx = dx / apart, ny = dy / apart;
     const auto times = run.history.column("time"), force = run.history.column("contact_force"),
-               energy = run.history.column("energy"), p_x = run.momentum_x();
-    double begin = std::nan(""), end = std::nan(""), most = 0;
+               energy = run.history.column("energy"),
+               p_x = run.history.column("momentum_x_" + a.name),
+               p_y = run.history.column("momentum_y_" + a.name);
+    double begin = std::nan(""), end = std::nan("");
     for (std::size_t n = 0; n < times.size(); ++n) {
-        most = std::max(most, energy[n] / energy.front());
         if (!(force[n] > 0)) continue;
         if (std::isnan(begin)) begin = times[n];
         end = times[n];
     }
-    const PlannedGrain &a = run.plans[0], &b = run.plans[1];
-    const double closing = a.from.velocity_x - b.from.velocity_x,
-                 gap = b.outline.x - a.outline.x - a.outline.radius - b.outline.radius,
-                 touch = gap / closing;
+    const double closing = (a.from.velocity_x - b.from.velocity_x) * nx +
+                           (a.from.velocity_y - b.from.velocity_y) * ny,
+                 touch = (apart - a.outline.radius - b.outline.radius) / closing;
     const Material material = run.material();
     const Impact impact = quasi_static_impact(
         {a.outline.radius, material.density, material.E, material.nu}, 0.5 * closing);
-    summary.result("contact_begins", begin, "time", touch, 0.02 * std::max(1.0, touch),
+    summary.result("contact_begins", begin, "time", touch, 0.04 * touch,
                    "the gap over the closing velocity");
     summary.result("contact_lasts", end - begin, "time", impact.duration, 0.15 * impact.duration,
                    "line contact always in equilibrium, an estimate");
-    summary.result_within("rebound", -last(p_x) / p_x.front(), "1", 0.92, 0.98,
-                          "momentum of a grain, after over before; 3 to 7 % of the energy stay as "
-                          "vibration on refined meshes");
+    const double before = p_x.front() * nx + p_y.front() * ny,
+                 after = p_x.back() * nx + p_y.back() * ny;
+    const std::string source = "momentum of a grain, after over before";
+    if (closing < 0.1 * run.scales.sound_speed)
+        summary.result("rebound", -after / before, "1", 0.95, 0.03,
+                       source + "; on refined meshes 3 to 7 % of the energy stay as vibration");
+    else
+        summary.result_info("rebound", -after / before, "1", source);
     summary.result("energy_change", last(energy) / energy.front() - 1, "1", 0, 0.03, "exact: none");
-    summary.result_info("largest_energy", most, "1", "over the initial");
+    summary.result_info("largest_energy",
+                        *std::max_element(energy.begin(), energy.end()) / energy.front(), "1",
+                        "over the initial");
     summary.result_within("parted", times.back() - end, "time", 0.1 * run.end, run.end,
                           "since the last contact");
 }
@@ -134,16 +144,17 @@ inline void compare_oscillator(const Run& run, common::Summary& summary) {
     summary.result_info("omega_dt", w * dt, "1", "one free node, exact");
     const auto e14 = run.history.column("energy_14"), e15 = run.history.column("energy_15"),
                kinetic = run.history.column("kinetic");
-    const auto spread = [](const std::vector<double>& e) {
-        const auto [low, high] = std::minmax_element(e.begin(), e.end());
-        return (*high - *low) / std::max(std::fabs(e.front()), 1e-300);
-    };
+    // Beyond the limit the invariants are small differences of terms that grow.
+    double most = 0, change_14 = 0, change_15 = 0;
+    for (std::size_t n = 0; n < e14.size(); ++n) {
+        const double size = std::max(std::fabs(e14.front()), kinetic[n]);
+        most = std::max(most, kinetic[n] / kinetic.front());
+        change_14 = std::max(change_14, std::fabs(e14[n] - e14.front()) / size);
+        change_15 = std::max(change_15, std::fabs(e15[n] - e15.front()) / size);
+    }
     const bool stable = w * dt < 2;
-    const double most = *std::max_element(kinetic.begin(), kinetic.end()) / kinetic.front();
-    // Beyond the limit the two invariants are small differences of large numbers.
-    const double round_off = 1e-12 * std::max(1.0, most);
-    summary.result("change_of_energy_14", spread(e14), "1", 0, round_off, "[MPM-14]: an invariant");
-    summary.result("change_of_energy_15", spread(e15), "1", 0, round_off, "[MPM-15]: an invariant");
+    summary.result("change_of_energy_14", change_14, "1", 0, 1e-12, "[MPM-14]: an invariant");
+    summary.result("change_of_energy_15", change_15, "1", 0, 1e-12, "[MPM-15]: an invariant");
     if (stable) {
         const common::OscillationFit fit = common::fit_oscillation(run.momentum_x(), dt);
         summary.result("frequency", fit.frequency, "1/time", leapfrog_frequency(w, dt), 1e-3 * w,

@@ -48,10 +48,10 @@ inline BodyForce drive(const Case& w, long step, double dt, std::vector<RigidMot
 /// errors: InputError for grains that do not fit
 template <class Shape>
 void start_leapfrog(const Shape& shape, const std::vector<AnyLaw>& laws, const Contact& contact,
-                    double least_mass, bool frozen, double dt, GrainNodes& nodes, State& state) {
+                    bool frozen, double dt, GrainNodes& nodes, State& state) {
     Assembly& all = state.assembly;
     put_on_nodes(shape, all.particles, nodes);
-    velocity_of_nodes(all.grains, all.rigid, least_mass, nodes);
+    velocity_of_nodes(all.grains, all.rigid, nodes);
     contact.join_bonds(all.bonds, nodes);
     std::vector<StripSums> sums;
     for_each_chunk(all.grains, nodes, sums, [&](Chunk& chunk) {

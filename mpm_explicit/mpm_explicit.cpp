@@ -33,9 +33,9 @@ int run(const Shape& shape, const Case& wanted, const Scales& scales, common::Se
     state.assembly = assemble(wanted.problem);
     auto& [particles, grains, rigid, bonds] = state.assembly;
     const std::vector<AnyLaw> laws = laws_of(wanted.problem);
-    const Contact contact(wanted.problem.contact, scales.least_mass, grains, bonds);
+    const Contact contact(wanted.problem.contact, grains, bonds);
     const double dt = scales.dt;
-    GrainNodes nodes(wanted.problem.mesh(), Shape::width);
+    GrainNodes nodes(wanted.problem.mesh(), Shape::width, scales.least_mass);
     Recorder recorder(wanted, scales, state, session.history);
     StepSums sums;
     long step = 0;
@@ -44,7 +44,7 @@ int run(const Shape& shape, const Case& wanted, const Scales& scales, common::Se
         nodes.lay_out(grains, state.frame);
     } else {
         nodes.sort(grains, particles, state.frame);
-        start_leapfrog(shape, laws, contact, scales.least_mass, wanted.frozen, dt, nodes, state);
+        start_leapfrog(shape, laws, contact, wanted.frozen, dt, nodes, state);
     }
 
     // 3. The loop of the slide.
@@ -53,8 +53,8 @@ int run(const Shape& shape, const Case& wanted, const Scales& scales, common::Se
         if (nodes.sort_is_due(state.frame)) nodes.sort(grains, particles, state.frame);
         recorder.snapshot(step, state, session);
         const BodyForce body = drive(wanted, step, dt, rigid);
-        put_on_nodes(shape, particles, nodes);                       // particles -> grid
-        velocity_of_nodes(grains, rigid, scales.least_mass, nodes);  // v_i^0
+        put_on_nodes(shape, particles, nodes);    // particles -> grid
+        velocity_of_nodes(grains, rigid, nodes);  // v_i^0
         contact.join_bonds(bonds, nodes);
         for_each_chunk(grains, nodes, sums.strips, [&](Chunk& chunk) {
             velocity_gradient(shape, particles, nodes, dt, chunk);  // [MPM-11]
@@ -63,8 +63,8 @@ int run(const Shape& shape, const Case& wanted, const Scales& scales, common::Se
             add_internal_force(shape, particles, chunk, nodes);  // [MPM-12]
             turn_stress(chunk, particles);
         });
-        accelerate_nodes(body, grains, rigid, scales.least_mass, dt, nodes);  // v_i^1  [MPM-12]
-        sums.contact = contact.apply(dt, nodes, bonds, rigid);                // f_gg'  [MPM-4]
+        accelerate_nodes(body, grains, rigid, dt, nodes);       // v_i^1  [MPM-12]
+        sums.contact = contact.apply(dt, nodes, bonds, rigid);  // f_gg'  [MPM-4]
         sums.nodes = work_on_nodes(body, dt, nodes);
         move_particles(shape, grains, rigid, nodes, wanted.flip, wanted.frozen, dt, particles,
                        sums.strips);  // grid -> particles

@@ -107,10 +107,9 @@ inline void solve(NodeProblem& node) {
 
 class Contact {
    public:
-    /// in: least_mass, of a node that takes part [mass]
-    Contact(const ContactRule& rule, double least_mass, const std::vector<Grain>& grains,
+    Contact(const ContactRule& rule, const std::vector<Grain>& grains,
             const std::vector<Bond>& bonds)
-        : rule_(rule), least_mass_(least_mass), bonds_of_(grains.size()) {
+        : rule_(rule), bonds_of_(grains.size()) {
         for (std::size_t k = 0; k < bonds.size(); ++k) {
             const auto [low, high] = std::minmax(bonds[k].a, bonds[k].b);
             bonds_of_[static_cast<std::size_t>(low)].push_back({high, static_cast<int>(k)});
@@ -175,7 +174,7 @@ class Contact {
                     const detail::Pair& pair = node.pair[k];
                     add_work(node, pair, block.sums);
                     add_push(node, pair, block.push);
-                    if (pair.bond >= 0) block.loads.push_back(load_of(nodes.mesh().h, node, pair));
+                    if (pair.bond >= 0) block.loads.push_back(load_of(node, pair));
                 }
                 for (std::size_t k = 0; k < node.parties; ++k) {
                     if (node.party[k].is_fixed()) continue;
@@ -209,10 +208,9 @@ class Contact {
     struct BondLoad {
         int bond = 0;
         double jx = 0, jy = 0;  // impulse on b
-        double nx = 0, ny = 0;  // normal from a to b, times the area
-        double area = 0;
+        double ax = 0, ay = 0;  // area of the interface, along its normal from a to b
         void operator+=(const BondLoad& other) {
-            jx += other.jx, jy += other.jy, nx += other.nx, ny += other.ny, area += other.area;
+            jx += other.jx, jy += other.jy, ax += other.ax, ay += other.ay;
         }
     };
 
@@ -235,7 +233,7 @@ class Contact {
             }
             const auto slot = static_cast<std::size_t>(member.slot);
             const NodeSums& sum = nodes.sums[slot];
-            if (!(sum.m > least_mass_)) continue;
+            if (!(sum.m > nodes.least_mass())) continue;
             const NodeMotion& v = nodes.motion[slot];
             const bool rigid = is_rigid_[static_cast<std::size_t>(member.grain)];
             const double per_m = 1 / sum.m;
@@ -344,28 +342,24 @@ class Contact {
         }
     }
 
-    // Area of the interface that belongs to a node, per unit thickness.
-    //   A = sqrt(2 min(V_a, V_b) (V_a + V_b)) / h
-    static BondLoad load_of(double h, const detail::NodeProblem& node, const detail::Pair& pair) {
+    // The share of a node in the interface: gradients of a volume sum up to its surface, wherever
+    // on the mesh that is.
+    //   A n = 1/2 sum_i (g_a - g_b)
+    static BondLoad load_of(const detail::NodeProblem& node, const detail::Pair& pair) {
         const detail::Party &a = node.party[pair.a], &b = node.party[pair.b];
-        const double area = std::sqrt(2 * std::min(a.V, b.V) * (a.V + b.V)) / h;
-        return {pair.bond,
-                pair.lambda_n * pair.nx - pair.lambda_t * pair.ny,
-                pair.lambda_n * pair.ny + pair.lambda_t * pair.nx,
-                area * pair.nx,
-                area * pair.ny,
-                area};
+        return {pair.bond, pair.lambda_n * pair.nx - pair.lambda_t * pair.ny,
+                pair.lambda_n * pair.ny + pair.lambda_t * pair.nx, 0.5 * (a.gx - b.gx),
+                0.5 * (a.gy - b.gy)};
     }
 
     // Mean stress on the interface, and whether the bond breaks.
     static void take_load(const BondLoad& load, double dt, Bond& bond) {
-        const double size = std::hypot(load.nx, load.ny);
-        bond.area = load.area;
-        if (bond.broken || !(load.area > 0) || !(size > 0)) {
+        bond.area = std::hypot(load.ax, load.ay);
+        if (bond.broken || !(bond.area > 0)) {
             bond.normal_stress = bond.shear_stress = 0;
             return;
         }
-        const double nx = load.nx / size, ny = load.ny / size, per = 1 / (dt * load.area);
+        const double nx = load.ax / bond.area, ny = load.ay / bond.area, per = 1 / (dt * bond.area);
         // b is pulled back towards a where the impulse on it is against the normal.
         bond.normal_stress = -(load.jx * nx + load.jy * ny) * per;
         bond.shear_stress = (load.jy * nx - load.jx * ny) * per;
@@ -378,7 +372,6 @@ class Contact {
     static constexpr double low_mass = 1e-5;
 
     ContactRule rule_;
-    double least_mass_;
     std::vector<std::vector<std::pair<int, int>>> bonds_of_;
     std::vector<bool> is_rigid_;
     std::vector<std::size_t> rigid_grains_;

@@ -76,20 +76,24 @@ struct Frame {
     std::vector<int> first_column, end_column;  // per row
     std::vector<int> strip_begin;               // per strip: its first particle
     std::vector<int> strips;                    // per grain: how many
-    std::vector<int> ring;                      // per grain
+    std::vector<int> ring;                      // per grain: it reaches around a periodic mesh
     double moved = 0;  // how far a particle can have come since the sort [length]
     double speed = 0;  // largest in the last step
 };
 
 class GrainNodes {
    public:
-    GrainNodes(const Mesh& mesh, int shape_width)
+    /// in: width of the shape function in nodes; least mass of a node that takes part
+    GrainNodes(const Mesh& mesh, int shape_width, double least_mass)
         : mesh_(mesh),
+          least_mass_(least_mass),
           below_(shape_width == 2 ? 1 : 2),
           above_(shape_width == 2 ? 2 : 3),
           strips_apart_(shape_width == 2 ? 3 : 5) {}
 
     const Mesh& mesh() const { return mesh_; }
+    /// A node with less mass stays at rest: what it would give to particles is round-off to them.
+    double least_mass() const { return least_mass_; }
 
     std::vector<NodeSums> sums;
     std::vector<NodeMotion> motion;
@@ -125,7 +129,7 @@ class GrainNodes {
 
     /// Sorts the particles by grain and row of cells, and lays out the nodes around them.
     /// in/out: particles, of each grain together; grains' ranges stay as they are
-    void sort(std::vector<Grain>& grains, Particles& particles, Frame& frame);
+    void sort(const std::vector<Grain>& grains, Particles& particles, Frame& frame);
 
     /// Lays out the nodes of a frame that a checkpoint has kept.
     void lay_out(const std::vector<Grain>& grains, const Frame& frame);
@@ -165,6 +169,7 @@ class GrainNodes {
     }
 
     Mesh mesh_;
+    double least_mass_;
     long below_, above_;  // rows and columns that a cell's particles may reach, with one to spare
     long strips_apart_;
     std::vector<long> origin_, row_begin_, first_of_grain_, slot_begin_;
@@ -194,19 +199,19 @@ inline long cell_of(double x, double low, double h) {
 
 // A grain beyond the end of a periodic mesh comes back as a whole; one that reaches around it is
 // cut where the mesh ends.
-inline void put_back(const Mesh& mesh, Grain& grain, Particles& particles) {
+inline void put_back(const Mesh& mesh, const Grain& grain, int& ring, Particles& particles) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (long p = grain.begin; p < grain.end; ++p) {
         const double x = particles.x_p[static_cast<std::size_t>(p)];
         low = std::min(low, x), high = std::max(high, x);
     }
     const double length = mesh.length_x();
-    grain.ring = grain.ring || high - low > length - 4 * mesh.h;
+    ring = ring != 0 || high - low > length - 4 * mesh.h;
     const double center = 0.5 * (low + high) - mesh.x_low;
-    const double shift = grain.ring ? 0 : -length * std::floor(center / length);
+    const double shift = ring != 0 ? 0 : -length * std::floor(center / length);
     for (long p = grain.begin; p < grain.end; ++p) {
         double& x = particles.x_p[static_cast<std::size_t>(p)];
-        if (grain.ring) {
+        if (ring != 0) {
             const double turns = std::floor((x - mesh.x_low) / length);
             if (turns != 0) x -= turns * length;
         } else if (shift != 0) {
@@ -217,14 +222,16 @@ inline void put_back(const Mesh& mesh, Grain& grain, Particles& particles) {
 
 }  // namespace detail
 
-inline void GrainNodes::sort(std::vector<Grain>& grains, Particles& particles, Frame& frame) {
+inline void GrainNodes::sort(const std::vector<Grain>& grains, Particles& particles, Frame& frame) {
+    frame.ring.resize(grains.size());
     if (mesh_.periodic_x)
-        for (Grain& grain : grains) detail::put_back(mesh_, grain, particles);
+        for (std::size_t g = 0; g < grains.size(); ++g)
+            detail::put_back(mesh_, grains[g], frame.ring[g], particles);
 
     // Every grain has one strip per row of cells from its lowest to its highest.
     const std::size_t count = grains.size();
     std::vector<long> low(count), first_strip(count + 1, 0);
-    frame.strips.resize(count), frame.ring.resize(count);
+    frame.strips.resize(count);
     for (std::size_t g = 0; g < count; ++g) {
         double least = std::numeric_limits<double>::infinity(), most = -least;
         for (long p = grains[g].begin; p < grains[g].end; ++p) {
@@ -233,7 +240,7 @@ inline void GrainNodes::sort(std::vector<Grain>& grains, Particles& particles, F
         }
         low[g] = detail::cell_of(least, mesh_.y_low, mesh_.h);
         const long rows = detail::cell_of(most, mesh_.y_low, mesh_.h) - low[g] + 1;
-        frame.strips[g] = static_cast<int>(rows), frame.ring[g] = grains[g].ring;
+        frame.strips[g] = static_cast<int>(rows);
         first_strip[g + 1] = first_strip[g] + rows;
     }
     std::vector<int> owner(static_cast<std::size_t>(particles.count()));
@@ -333,7 +340,7 @@ inline void GrainNodes::add_walls_and_rings(const std::vector<Grain>& grains, co
     for (std::size_t k = 0; k < grains.size(); ++k) {
         const int g = static_cast<int>(k);
         for_each_slot(g, frame, [&](long slot, long i, long j) {
-            if (grains[k].ring && has_slot(g, frame, i - nx, j))
+            if (frame.ring[k] != 0 && has_slot(g, frame, i - nx, j))
                 images_.push_back({slot, slot - nx, 1, 1, false, false, mesh_.length_x()});
             if (grains[k].rigid) return;
             const auto meet = [&](Side side, long beyond, long mirror, bool is_x) {
@@ -392,7 +399,7 @@ inline void GrainNodes::find_shared_nodes(const std::vector<Grain>& grains, cons
         for (std::size_t k = 0; k < grains.size(); ++k) {
             const int g = static_cast<int>(k);
             for_each_slot(g, frame, [&](long slot, long i, long j) {
-                const bool copy = grains[k].ring && has_slot(g, frame, i - nx, j);
+                const bool copy = frame.ring[k] != 0 && has_slot(g, frame, i - nx, j);
                 const bool behind_x =
                     !mesh_.periodic_x && ((i < 0 && !stands(x_low)) || (i > nx && !stands(x_high)));
                 const bool behind_y = (j < 0 && !stands(y_low)) || (j > ny && !stands(y_high));

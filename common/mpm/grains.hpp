@@ -14,7 +14,6 @@ struct Grain {
     int material = 0;         // index into the materials of the case
     bool rigid = false;       // moves as it is told
     long begin = 0, end = 0;  // its particles
-    bool ring = false;        // reaches around a periodic mesh: its ends are the same nodes
 };
 
 /// How a rigid grain moves: with a given velocity, or in one direction as a force drives it. Grains

@@ -140,11 +140,9 @@ inline void drive_rigid(const std::vector<Grain>& grains, const std::vector<Rigi
 }
 
 /// v_i^0 = P_i/m_i, on walls without what they forbid; rigid grains move as they are told.
-/// note:   A node with less than 1e-12 of a particle's mass stays at rest: what it would give to
-///         particles is smaller than their round-off.
 inline void velocity_of_nodes(const std::vector<Grain>& grains,
-                              const std::vector<RigidMotion>& rigid, double least_mass,
-                              GrainNodes& nodes) {
+                              const std::vector<RigidMotion>& rigid, GrainNodes& nodes) {
+    const double least_mass = nodes.least_mass();
     common::for_each_block(nodes.size(), [&](int, long begin, long end) {
         for (long i = begin; i < end; ++i) {
             const auto n = static_cast<std::size_t>(i);
