@@ -68,6 +68,11 @@ bool is_word(const std::string& text) {
                        [&](char c) { return letter(c) || (c >= '0' && c <= '9') || c == '_'; });
 }
 
+bool is_control(char letter) {
+    const auto byte = static_cast<unsigned char>(letter);
+    return byte < 0x20 || byte == 0x7F;
+}
+
 std::string padded(const std::string& text, std::size_t width) {
     return text + std::string(text.size() < width ? width - text.size() : 1, ' ');
 }
@@ -105,6 +110,10 @@ void ParameterTable::flag(const std::string& name, bool& value, const std::strin
 void ParameterTable::choice(const std::string& name, std::string& value,
                             const std::vector<std::string>& choices, const std::string& meaning) {
     add({name, "", meaning, &value, anything(), choices, {}});
+}
+
+void ParameterTable::text(const std::string& name, std::string& value, const std::string& meaning) {
+    add({name, "", meaning, &value, anything(), {}, {}});
 }
 
 void ParameterTable::add(Entry entry) {
@@ -273,7 +282,7 @@ void ParameterTable::set(const Setting& setting) {
         const double value = number != nullptr ? *number : static_cast<double>(*integer);
         refuse_outside(value);
         **target_real = value;
-    } else {
+    } else if (!entry->choices.empty()) {
         std::string list;
         for (const std::string& choice : entry->choices)
             list += (list.empty() ? "" : ", ") + quoted(choice);
@@ -282,6 +291,18 @@ void ParameterTable::set(const Setting& setting) {
         if (std::find(choices.begin(), choices.end(), *text) == choices.end()) {
             throw InputError(setting.place + ": '" + setting.name + "' = " + quoted(*text) +
                              " is not one of " + list);
+        }
+        **std::get_if<std::string*>(&entry->target) = *text;
+    } else {
+        if (text == nullptr) throw wrong_type("text");
+        if (std::any_of(text->begin(), text->end(), is_control)) {
+            throw InputError(setting.place + ": '" + setting.name +
+                             "' holds a control character; write plain text");
+        }
+        if (text->size() > longest_text) {
+            throw InputError(setting.place + ": '" + setting.name + "' has " +
+                             std::to_string(text->size()) + " letters; write at most " +
+                             std::to_string(longest_text));
         }
         **std::get_if<std::string*>(&entry->target) = *text;
     }
@@ -295,6 +316,8 @@ std::string ParameterTable::help() const {
                 range += (range.empty() ? "" : " | ") + choice;
         } else if (std::holds_alternative<bool*>(entry.target)) {
             range = "true | false";
+        } else if (std::holds_alternative<std::string*>(entry.target)) {
+            range = "text";
         } else {
             range = text_of(entry.allowed);
         }

@@ -59,6 +59,9 @@ class ParameterTable {
     void flag(const std::string& name, bool& value, const std::string& meaning);
     void choice(const std::string& name, std::string& value,
                 const std::vector<std::string>& choices, const std::string& meaning);
+    /// Free text, such as the path of a file.
+    /// note:   without control characters and at most 900 letters, so that a case can hold it.
+    void text(const std::string& name, std::string& value, const std::string& meaning);
 
     /// Named sub-tables: [name.item] appends an Item whose member `name` is "item", and describe()
     /// binds its fields to parameters that begin with the prefix "name.item".
@@ -97,7 +100,8 @@ class ParameterTable {
     std::string effective_case() const;
 
    private:
-    static constexpr std::size_t most_items = 64;
+    static constexpr std::size_t most_items = 256;
+    static constexpr std::size_t longest_text = 900;  // escaped, it still fits a line of a case
     struct Entry {
         std::string name, unit, meaning;
         std::variant<bool*, long*, double*, std::string*> target;

@@ -45,10 +45,12 @@ bool is_ours(std::string name) {
         name.compare(name.size() - partial.size(), partial.size(), partial) == 0) {
         name.resize(name.size() - partial.size());
     }
-    for (const char* plain : {"case.toml", "history.dat", "summary.json", "spectrum.dat"}) {
+    for (const char* plain :
+         {"case.toml", "history.dat", "summary.json", "spectrum.dat", "pack.txt"}) {
         if (name == plain) return true;
     }
-    for (const char* start : {"fields_", "particles_", "phase_", "velocities_", "checkpoint_"}) {
+    for (const char* start :
+         {"fields_", "particles_", "phase_", "velocities_", "fringes_", "grains_", "checkpoint_"}) {
         if (!begins(name, start)) continue;
         const std::size_t digits = std::string(start).size();
         const std::size_t ending =

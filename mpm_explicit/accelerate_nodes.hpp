@@ -47,12 +47,14 @@ inline NodeWork work_on_nodes(const BodyForce& body, double dt, const GrainNodes
     std::array<NodeWork, common::block_count> part;
     common::for_each_block(nodes.size(), [&](int block, long begin, long end) {
         double old_stress = 0, jump = 0, gravity = 0, damping = 0, speed = 0;
+        const unsigned char* is_free = nodes.is_free().data();
 #pragma omp simd reduction(+ : old_stress, jump, gravity, damping) reduction(max : speed)
         for (long i = begin; i < end; ++i) {
             const auto n = static_cast<std::size_t>(i);
             const NodeMotion& v = nodes.motion[n];
-            const double m = nodes.sums[n].m, dx = v.vx_1 - v.vx_0, dy = v.vy_1 - v.vy_0,
-                         mean_x = 0.5 * (v.vx_0 + v.vx_1), mean_y = 0.5 * (v.vy_0 + v.vy_1);
+            const double m = is_free[n] * nodes.sums[n].m, dx = v.vx_1 - v.vx_0,
+                         dy = v.vy_1 - v.vy_0, mean_x = 0.5 * (v.vx_0 + v.vx_1),
+                         mean_y = 0.5 * (v.vy_0 + v.vy_1);
             old_stress += nodes.force[n].x * v.vx_1 + nodes.force[n].y * v.vy_1;
             jump += m * (dx * dx + dy * dy);
             gravity += m * (body.gravity_x * mean_x + body.gravity_y * mean_y);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "mpm_explicit/scales.hpp"
@@ -12,11 +13,14 @@ namespace mpm_explicit {
 
 namespace detail {
 
+constexpr std::size_t longest_pack_name = 40;  // that write_pack() takes
+
 inline void refuse(bool condition, const std::string& sentence) {
     if (condition) throw common::InputError(sentence);
 }
 
-inline void refuse_grain(const PlannedGrain& plan, const Material& material, const Mesh& mesh) {
+inline void refuse_grain(const PlannedGrain& plan, const Material& material, const Mesh& mesh,
+                         long per_side) {
     const std::string grain = "grain '" + plan.name + "'";
     const double thin = thinnest(plan.outline);
     refuse(thin < 2 * mesh.h * (1 - 1e-9),
@@ -33,9 +37,19 @@ inline void refuse_grain(const PlannedGrain& plan, const Material& material, con
                "), beyond the mesh from (" + common::shown(mesh.x_low) + ", " +
                common::shown(mesh.y_low) + ") to (" + common::shown(mesh.x_high()) + ", " +
                common::shown(mesh.y_high()) + "): move the grain or widen the mesh");
-    refuse(mesh.periodic_x && box.x_high - box.x_low > mesh.length_x() + slack,
-           grain + " is longer than the periodic mesh: shorten it to " +
-               common::shown(mesh.length_x()));
+    const double length = mesh.length_x();
+    refuse(mesh.periodic_x && box.x_high - box.x_low > length + slack,
+           grain + " is longer than the periodic mesh: shorten it to " + common::shown(length));
+    refuse(
+        mesh.periodic_x && (box.x_low < mesh.x_low - length || box.x_high > mesh.x_high() + length),
+        grain + " reaches from x = " + common::shown(box.x_low) + " to " +
+            common::shown(box.x_high) + ", more than its length of " + common::shown(length) +
+            " beyond the periodic mesh: move it by whole lengths");
+    // What is two cells wide may still be a thin angle between the points of the lattice.
+    const double side = mesh.h / static_cast<double>(per_side);
+    refuse(plan.outline.kind == OutlineKind::polygon && area(plan.outline) < 1e4 * side * side &&
+               fill(plan.outline, mesh, per_side).empty(),
+           grain + " is so thin that no particle falls into it: refine the mesh, or make it wider");
     const bool rigid = material.law == Law::rigid;
     refuse(!rigid && plan.from.control != "velocity", grain + " has control = \"" +
                                                           plan.from.control +
@@ -81,12 +95,30 @@ inline void refuse_comparison(const Case& w, const std::vector<PlannedGrain>& pl
         refuse(!disks || plans[0].outline.radius != plans[1].outline.radius ||
                    plans[0].material != plans[1].material || !meet(),
                compare + " needs two equal disks that meet head on");
+        const auto &a = plans[0], &b = plans[1];
+        const double gap = std::hypot(b.outline.x - a.outline.x, b.outline.y - a.outline.y) -
+                           a.outline.radius - b.outline.radius,
+                     closing = std::hypot(a.from.velocity_x - b.from.velocity_x,
+                                          a.from.velocity_y - b.from.velocity_y);
+        refuse(w.end < 1.05 * gap / closing,
+               compare + ": the disks meet at t = " + common::shown(gap / closing) +
+                   ", and the run ends at " + common::shown(w.end) + ": raise time.end");
     }
-    if (is("bar") || is("bond"))
-        refuse(!profile("bar") || wall(x_low, "open"),
+    const Mesh mesh = problem.mesh();
+    const auto fills = [&](double low, double high, double from, double to) {
+        return std::fabs(low - from) < 1e-6 * mesh.h && std::fabs(high - to) < 1e-6 * mesh.h;
+    };
+    if (is("bar") || is("bond")) {
+        const bool held = wall(x_low, "slip") || wall(x_low, "stick");
+        refuse(!profile("bar") || !held,
                compare +
                    " needs boxes with profile = \"bar\", an amplitude, and walls.x_low = "
                    "\"slip\" or \"stick\"");
+        const double low = profile_bounds(plans).x_low;
+        refuse(!fills(low, low, mesh.x_low, mesh.x_low),
+               compare + " needs a bar that begins at the wall, at x = " +
+                   common::shown(mesh.x_low) + ", not at " + common::shown(low));
+    }
     if (is("bond"))
         refuse(problem.bonds.empty() || free != 2,
                compare + " needs two boxes and a [bond.<name>] between them");
@@ -96,6 +128,14 @@ inline void refuse_comparison(const Case& w, const std::vector<PlannedGrain>& pl
                compare +
                    " needs one box with profile = \"wave\", an amplitude, and all walls "
                    "\"slip\"");
+    if (is("standing_wave") || is("oscillator")) {
+        const Bounds box = bounds(plans[0].outline);
+        refuse(!fills(box.x_low, box.x_high, mesh.x_low, mesh.x_high()) ||
+                   !fills(box.y_low, box.y_high, mesh.y_low, mesh.y_high()),
+               compare + " needs a box that fills the mesh: make it " +
+                   common::shown(mesh.length_x()) + " by " +
+                   common::shown(mesh.y_high() - mesh.y_low));
+    }
     if (is("oscillator"))
         refuse(problem.cells_x != 2 || !w.frozen || w.shape != "linear" || w.flip != 1,
                compare + " needs mesh.cells_x = 2, method.frozen = true, and linear FLIP");
@@ -105,19 +145,83 @@ inline void refuse_comparison(const Case& w, const std::vector<PlannedGrain>& pl
                    " needs one grain, a rigid plate, and an inclined gravity: load.gravity_x "
                    "not 0, load.gravity_y below 0");
     if (is("disk"))
-        refuse(free != 1 || rigid < 1 || plans[0].outline.kind != OutlineKind::disk ||
+        refuse(free != 1 || rigid < 1 || rigid > 16 || plans[0].outline.kind != OutlineKind::disk ||
                    is_rigid(plans[0]),
-               compare + " needs a disk, first in the case, and rigid plates");
-    if (is("yield"))
-        refuse(std::none_of(plans.begin(), plans.end(),
-                            [&](const auto& plan) { return material_of(plan).law == Law::j2; }),
-               compare + " needs a grain of a material with law = \"j2\"");
-    for (const auto& [name, value] :
-         {std::pair("theory.grain", w.grain), std::pair("theory.plate", w.plate)}) {
-        const bool known = std::any_of(plans.begin(), plans.end(),
-                                       [&](const auto& plan) { return plan.name == value; });
-        refuse(!value.empty() && !known, std::string(name) + ": there is no grain '" + value + "'");
+               compare + " needs a disk, first in the case, and rigid plates, at most 16");
+    for (const auto& [name, value, wants_rigid] :
+         {std::tuple("theory.grain", w.grain, false), std::tuple("theory.plate", w.plate, true)}) {
+        const auto found = std::find_if(plans.begin(), plans.end(),
+                                        [&](const auto& plan) { return plan.name == value; });
+        if (value.empty()) continue;
+        refuse(found == plans.end(), std::string(name) + ": there is no grain '" + value + "'");
+        refuse(is_rigid(*found) != wants_rigid, std::string(name) + ": '" + value + "' is " +
+                                                    (wants_rigid ? "not " : "") +
+                                                    "rigid: name another grain");
     }
+    if (is("yield")) {
+        const auto seen = std::find_if(plans.begin(), plans.end(), [&](const auto& plan) {
+            return w.grain.empty() ? !is_rigid(plan) : plan.name == w.grain;
+        });
+        refuse(material_of(*seen).law != Law::j2,
+               compare + " needs a grain of a material with law = \"j2\", and '" + seen->name +
+                   "' is of another: set theory.grain");
+    }
+}
+
+// Beyond these sizes, products of several numbers leave double precision.
+inline void refuse_extreme(const std::string& section, const char* key, double value) {
+    const double size = std::fabs(value);
+    refuse(size != 0 && !(size > 1e-40 && size < 1e40),
+           section + "." + key + " = " + common::shown(value) +
+               " is not between 1e-40 and 1e40 in size: choose other units");
+}
+
+inline void refuse_extremes(const Case& w) {
+    const Problem& problem = w.problem;
+    const auto check = [](const std::string& section,
+                          const std::vector<std::pair<const char*, double>>& numbers) {
+        for (const auto& [key, value] : numbers) refuse_extreme(section, key, value);
+    };
+    check("mesh", {{"length_x", problem.length_x},
+                   {"origin_x", problem.origin_x},
+                   {"origin_y", problem.origin_y}});
+    check("walls", {{"friction", problem.contact.wall_friction}});
+    check("contact",
+          {{"friction", problem.contact.friction}, {"separation", problem.contact.separation}});
+    check("load", {{"gravity_x", problem.gravity_x},
+                   {"gravity_y", problem.gravity_y},
+                   {"damping", problem.damping},
+                   {"rise", problem.rise}});
+    check("time", {{"alpha", w.alpha}});
+    for (const MaterialCase& m : problem.materials)
+        check("material." + m.name, {{"E", m.material.E},
+                                     {"nu", m.material.nu},
+                                     {"density", m.material.density},
+                                     {"yield_stress", m.material.yield_stress},
+                                     {"hardening", m.material.hardening},
+                                     {"cohesion", m.material.cohesion},
+                                     {"friction_angle", m.material.friction_angle},
+                                     {"dilatancy_angle", m.material.dilatancy_angle},
+                                     {"tension", m.material.tension}});
+    for (const GrainCase& g : problem.grains)
+        check("grain." + g.name, {{"angle", g.angle},
+                                  {"velocity_x", g.velocity_x},
+                                  {"velocity_y", g.velocity_y},
+                                  {"spin", g.spin},
+                                  {"amplitude", g.amplitude},
+                                  {"force", g.force},
+                                  {"damping", g.damping}});
+    for (const PackCase& p : problem.packs)
+        check("pack." + p.name, {{"velocity_x", p.velocity_x},
+                                 {"velocity_y", p.velocity_y},
+                                 {"shear_rate", p.shear_rate}});
+    for (const BondCase& b : problem.bonds)
+        check("bond." + b.name, {{"tension", b.tension}, {"shear", b.shear}});
+    const Mesh mesh = problem.mesh();
+    const double far = std::max(std::fabs(mesh.x_low), std::fabs(mesh.y_low)) / mesh.h;
+    refuse(far > 1e9, "the mesh begins " + common::shown(far) +
+                          " cells from the origin, more than 1e9, where places are lost to "
+                          "round-off: move mesh.origin_x and origin_y nearer to 0");
 }
 
 }  // namespace detail
@@ -127,6 +231,7 @@ inline void refuse_comparison(const Case& w, const std::vector<PlannedGrain>& pl
 inline void refuse_impossible(const Case& w) {
     using detail::refuse;
     const Problem& problem = w.problem;
+    detail::refuse_extremes(w);
     const Mesh mesh = problem.mesh();
     for (const Side side : {x_low, x_high})
         refuse(problem.periodic_x && problem.walls[static_cast<std::size_t>(side)] != "open",
@@ -138,13 +243,22 @@ inline void refuse_impossible(const Case& w) {
     const std::vector<Material> materials = materials_of(problem);
     const std::vector<PlannedGrain> plans = plan_grains(problem, materials);
     refuse(plans.empty(), "there is no grain: add a [grain.<name>] or a [pack.<name>]");
+    for (const Material& m : materials)
+        refuse(m.law == Law::drucker_prager && m.dilatancy_angle > m.friction_angle,
+               "[material." + m.name + "]: dilatancy_angle = " + common::shown(m.dilatancy_angle) +
+                   " is above friction_angle = " + common::shown(m.friction_angle) +
+                   ": flow would make energy; take at most the friction angle");
     std::set<std::string> names;
     bool moves = false;
     for (const PlannedGrain& plan : plans) {
         const Material& material = materials[static_cast<std::size_t>(plan.material)];
         refuse(!names.insert(plan.name).second,
                "two grains are called '" + plan.name + "': rename one of them");
-        detail::refuse_grain(plan, material, mesh);
+        refuse(w.pack && plan.name.size() > detail::longest_pack_name,
+               "grain '" + plan.name + "' has a name of " + std::to_string(plan.name.size()) +
+                   " letters, and pack.txt takes " + std::to_string(detail::longest_pack_name) +
+                   ": shorten it, or set output.pack = false");
+        detail::refuse_grain(plan, material, mesh, problem.per_side);
         moves = moves || material.law != Law::rigid;
     }
     refuse(!moves, "all grains are rigid: give one a material that can be strained");
@@ -163,7 +277,7 @@ inline void refuse_impossible(const Case& w) {
                           static_cast<double>(problem.cells_y * w.pixels_per_cell);
     refuse(w.fringes_interval > 0 && pixels > 5e7,
            "output.pixels_per_cell = " + std::to_string(w.pixels_per_cell) + " makes rasters of " +
-               common::shown(pixels) + " pixels: take fewer");
+               common::shown(pixels) + " pixels, more than 5e7: take fewer");
 }
 
 /// Warnings with the number and the limit, for choices that run but may mislead.
@@ -202,10 +316,18 @@ inline std::vector<std::string> resolution_warnings(const Case& w, const Scales&
             warnings.push_back(std::string(name) + " = " + common::shown(interval) +
                                " is below the time step " + common::shown(scales.dt) +
                                ": files are written every step");
-    for (const PlannedGrain& plan : plan_grains(problem, materials_of(problem)))
+    for (const PlannedGrain& plan : plan_grains(problem, materials_of(problem))) {
         if (plan.from.control == "velocity" && plan.from.force != 0)
             warnings.push_back("grain '" + plan.name +
                                "' has a force and control = \"velocity\": the force does nothing");
+        const double unused = plan.from.control == "force_x"   ? plan.from.velocity_x
+                              : plan.from.control == "force_y" ? plan.from.velocity_y
+                                                               : 0;
+        if (unused != 0)
+            warnings.push_back("grain '" + plan.name + "' has control = \"" + plan.from.control +
+                               "\" and a velocity in that direction, " + common::shown(unused) +
+                               ": it does nothing, the grain starts at rest");
+    }
     return warnings;
 }
 

@@ -61,7 +61,7 @@ int run(const Shape& shape, const Case& wanted, const Scales& scales, common::Se
             update_stress(laws, wanted.frozen, chunk, grains, particles,
                           sums.strips);                          // [MPM-9, 10]
             add_internal_force(shape, particles, chunk, nodes);  // [MPM-12]
-            turn_stress(chunk, particles);
+            if (!wanted.frozen) turn_stress(chunk, particles);
         });
         accelerate_nodes(body, grains, rigid, dt, nodes);       // v_i^1  [MPM-12]
         sums.contact = contact.apply(dt, nodes, bonds, rigid);  // f_gg'  [MPM-4]

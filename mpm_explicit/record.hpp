@@ -72,11 +72,16 @@ class Recorder {
     ///         has left the mesh, with grain, place and time
     void record(long step, const StepSums& sums, const GrainNodes& nodes, State& state,
                 common::Session& session) {
-        const double time = static_cast<double>(step) * scales_.dt;
         Ledger& l = state.ledger;
         enter_energies(step, sums.strips, l);
-        if (step % wanted_.history_steps == 0) write_row(time, sums, state, session);
-        refuse_failure(step, time + scales_.dt, sums, nodes, state);
+        look_back(session.history);
+        const bool finite =
+            std::all_of(sums.strips.begin(), sums.strips.end(), [](const StripSums& s) {
+                return std::isfinite(s.kinetic) && std::isfinite(s.product);
+            });
+        if (finite && step % wanted_.history_steps == 0)
+            write_row(static_cast<double>(step) * scales_.dt, sums, state, session);
+        refuse_failure(step, sums, nodes, state);
         enter_work(nodes.strips(), sums.strips, sums.nodes, sums.contact, l);
     }
 
@@ -140,59 +145,86 @@ class Recorder {
         session.history.row(row_);
     }
 
-    void refuse_failure(long step, double time, const StepSums& sums, const GrainNodes& nodes,
-                        const State& state) const {
+    // After a restart: what was put in before it.
+    void look_back(const common::History& history) {
+        if (looked_back_) return;
+        looked_back_ = true;
+        if (history.all().empty()) return;
+        for (const double external : history.column("external"))
+            largest_load_ = std::max(largest_load_, std::fabs(external));
+    }
+
+    void refuse_failure(long step, const StepSums& sums, const GrainNodes& nodes,
+                        const State& state) {
         const Mesh& mesh = nodes.mesh();
+        const Particles& at = state.assembly.particles;
+        const auto when = [&](long n) {
+            return " at step " + std::to_string(n) +
+                   ", t = " + common::shown(static_cast<double>(n) * scales_.dt);
+        };
+        const auto place_of = [&](std::size_t n) {
+            return " at (" + common::shown(at.x_p[n]) + ", " + common::shown(at.y_p[n]) + ")";
+        };
+        // Grains may straddle the ends of a periodic mesh, but no particle is a whole length away.
+        const double beyond = mesh.periodic_x ? mesh.length_x() : 0, left = mesh.x_low - beyond,
+                     right = mesh.x_high() + beyond;
         for (std::size_t k = 0; k < sums.strips.size(); ++k) {
             const StripSums& s = sums.strips[k];
-            const bool inside =
-                (mesh.periodic_x || !(s.x_least < mesh.x_low || s.x_most > mesh.x_high())) &&
-                !(s.y_least < mesh.y_low || s.y_most > mesh.y_high());
-            if (inside && s.least_V > 0 && std::isfinite(s.kinetic)) continue;
             const Strip& strip = nodes.strips()[k];
-            const auto& grain = state.assembly.grains[static_cast<std::size_t>(strip.grain)];
-            const std::string when =
-                " at step " + std::to_string(step) + ", t = " + common::shown(time);
-            const Particles& at = state.assembly.particles;
+            const auto g = static_cast<std::size_t>(strip.grain);
+            const Grain& grain = state.assembly.grains[g];
+            const RigidMotion& is = state.assembly.rigid[g];
+            const bool inside = !(s.x_least < left || s.x_most > right || s.y_least < mesh.y_low ||
+                                  s.y_most > mesh.y_high());
+            const bool finite = std::isfinite(grain.rigid ? is.vx + is.vy : s.kinetic);
+            if (inside && finite && s.least_V > 0) continue;
             const auto place = [&](const auto& is_bad) {
-                for (long p = strip.begin; p < strip.end; ++p) {
-                    const auto n = static_cast<std::size_t>(p);
-                    if (is_bad(n))
-                        return " at (" + common::shown(at.x_p[n]) + ", " +
-                               common::shown(at.y_p[n]) + ")";
-                }
-                return std::string(" near (") + common::shown(s.x_least) + ", " +
-                       common::shown(s.y_least) + ")";
+                for (long p = strip.begin; p < strip.end; ++p)
+                    if (is_bad(static_cast<std::size_t>(p)))
+                        return place_of(static_cast<std::size_t>(p));
+                return " near" + place_of(static_cast<std::size_t>(strip.begin)).substr(3);
             };
-            if (s.least_V <= 0)
+            if (!(s.least_V > 0))
                 throw common::NumericalError(
                     "the volume of a particle of grain '" + grain.name + "'" +
-                    place([&](std::size_t n) { return !(at.V_p[n] > 0); }) + " is inverted" + when +
+                    place([&](std::size_t n) { return !(at.V_p[n] > 0); }) + " is inverted" +
+                    when(step) +
                     ": reduce time.alpha, refine the mesh, or load the grain more slowly");
-            if (!std::isfinite(s.kinetic))
+            if (!finite)
                 throw common::NumericalError(
                     "the velocity of a particle of grain '" + grain.name + "'" +
                     place([&](std::size_t n) { return !std::isfinite(at.vx_p[n] + at.vy_p[n]); }) +
-                    " is not finite" + when + ": reduce time.alpha");
+                    " is not finite" + when(step + 1) + ": reduce time.alpha");
             throw common::NumericalError(
                 "a particle of grain '" + grain.name + "' has left the mesh" +
                 place([&](std::size_t n) {
-                    return at.x_p[n] < mesh.x_low || at.x_p[n] > mesh.x_high() ||
-                           at.y_p[n] < mesh.y_low || at.y_p[n] > mesh.y_high();
+                    return at.x_p[n] < left || at.x_p[n] > right || at.y_p[n] < mesh.y_low ||
+                           at.y_p[n] > mesh.y_high();
                 }) +
-                when +
+                when(step + 1) +
                 ": widen the mesh, put a wall there, or reduce time.alpha if the grain has burst");
         }
         const Ledger& l = state.ledger;
-        const double put_in =
-            std::max({l.start + std::max(0.0, l.external), std::fabs(l.external), largest_load_});
-        const double now = l.kinetic + l.elastic;
+        largest_load_ = std::max({largest_load_, std::fabs(l.external)});
+        const double put_in = l.start + largest_load_, now = l.kinetic + l.elastic;
         if (std::isfinite(now) &&
             !(wanted_.energy_limit > 0 && now > wanted_.energy_limit * put_in && put_in > 0))
             return;
+        // Name the grain that moves fastest.
+        std::size_t fastest = 0, whose = 0;
+        double most = -1;
+        for (std::size_t g = 0; g < state.assembly.grains.size(); ++g) {
+            const Grain& grain = state.assembly.grains[g];
+            for (long p = grain.begin; p < grain.end && !grain.rigid; ++p) {
+                const auto n = static_cast<std::size_t>(p);
+                const double speed = std::hypot(at.vx_p[n], at.vy_p[n]);
+                if (speed > most) most = speed, fastest = n, whose = g;
+            }
+        }
         throw common::NumericalError(
             "the energy is " + common::shown(now) + ", and " + common::shown(put_in) +
-            " was put in, at step " + std::to_string(step) + ", t = " + common::shown(time) +
+            " was put in," + when(step) + "; fastest is grain '" +
+            state.assembly.grains[whose].name + "'" + place_of(fastest) +
             ": reduce time.alpha, refine the mesh, or allow more with time.energy_limit");
     }
 
@@ -202,7 +234,8 @@ class Recorder {
     Subject subject_;
     std::vector<std::size_t> free_, rigid_;
     std::vector<double> row_;
-    double largest_load_ = 0;
+    double largest_load_ = 0;  // work of the loads so far, where it was largest
+    bool looked_back_ = false;
 };
 
 }  // namespace mpm_explicit

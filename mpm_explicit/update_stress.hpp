@@ -92,7 +92,7 @@ void update_stress(const LawOf& law, const Compliance& compliance, bool frozen, 
     for (long k = 0; k < chunk.count; ++k) {
         const StrainStep de{chunk.xx[k], chunk.yy[k], 0.5 * (chunk.xy[k] + chunk.yx[k])};
         const Stress old{sxx[k], syy[k], sxy[k], szz[k]};
-        Stress s = old;
+        Stress s{sxx[k], syy[k], sxy[k], szz[k]};  // a copy of old would not vectorize
         PlasticStep dep{};
         law(de, s, dep, yield[k]);  // [MPM-10]
         const double V_old = V_p[k], ratio = 1 + grows * (de.xx + de.yy);

@@ -7,9 +7,6 @@
 #include <complex>
 #include <cstdlib>
 #include <fstream>
-#include <map>
-#include <nlohmann/json.hpp>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -17,22 +14,7 @@
 
 namespace {
 
-using Json = nlohmann::json;
-
-struct Run {
-    Json summary;
-    std::map<std::string, std::vector<double>> columns;
-
-    double value(const std::string& result) const { return facts::value(summary, result); }
-    double conservation(const std::string& name) const {
-        REQUIRE(summary["conservation"].contains(name));
-        return summary["conservation"][name]["value"].get<double>();
-    }
-    const std::vector<double>& column(const std::string& name) const {
-        REQUIRE(columns.count(name) == 1);
-        return columns.at(name);
-    }
-};
+using facts::Run;
 
 std::string text(double number) {
     char words[32];
@@ -49,27 +31,7 @@ Run run(const std::string& name, const std::string& file, const std::string& ove
         folder + " --force --quiet 2> /dev/null";
     CAPTURE(command);
     REQUIRE(std::system(command.c_str()) == 0);
-    Run result;
-    std::ifstream summary(folder + "/summary.json");
-    result.summary = Json::parse(summary);
-    std::ifstream history(folder + "/history.dat");
-    std::string line;
-    std::getline(history, line);
-    std::vector<std::string> names;
-    std::istringstream head(line.substr(1));
-    for (std::string word; head >> word;) {
-        const std::size_t colon = word.find(':') + 1;
-        names.push_back(word.substr(colon, word.find('[') - colon));
-    }
-    while (std::getline(history, line)) {
-        std::istringstream row(line);
-        for (const std::string& column : names) {
-            double number = 0;
-            row >> number;
-            result.columns[column].push_back(number);
-        }
-    }
-    return result;
+    return facts::finished_run(folder);
 }
 
 void check_results(const Run& run, int at_least) { facts::check_results(run.summary, at_least); }

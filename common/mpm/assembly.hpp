@@ -61,6 +61,9 @@ inline std::vector<Point> vertices_of(const std::string& name, const std::string
 
 inline Outline outline_of(const GrainCase& g) {
     try {
+        if (g.shape != "polygon" && !g.vertices.empty())
+            throw common::InputError(
+                "vertices belong to shape = \"polygon\": set it, or take them out");
         if (g.shape == "disk") return disk(g.x, g.y, g.radius);
         if (g.shape == "box") return box(g.x, g.y, g.width, g.height, g.angle);
         if (g.vertices.empty()) return regular_polygon(g.x, g.y, g.radius, g.sides, g.angle);
@@ -73,6 +76,8 @@ inline Outline outline_of(const GrainCase& g) {
 inline std::vector<PackedGrain> grains_of(const PackCase& p, const Problem& w) {
     try {
         std::vector<PackedGrain> pack;
+        if (p.kind != "file" && !p.file.empty())
+            throw common::InputError("file belongs to kind = \"file\": set it, or take file out");
         if (p.kind == "file") {
             if (p.file.empty())
                 throw common::InputError("kind = \"file\" needs the name of a file: set file");
@@ -137,8 +142,13 @@ struct Assembly {
     std::vector<Bond> bonds;
 };
 
+/// errors: InputError for a checkpoint whose grains or bonds are not those of the case
 template <class Archive>
 void archive(Archive& a, Assembly& assembly) {
+    std::vector<int> ends;
+    for (const Grain& grain : assembly.grains) ends.push_back(static_cast<int>(grain.end));
+    const std::vector<int> expected = ends;
+    a("grains", ends);
     archive(a, assembly.particles);
     std::vector<double> motion, bonds;
     for (RigidMotion& is : assembly.rigid)
@@ -148,6 +158,10 @@ void archive(Archive& a, Assembly& assembly) {
         bonds.insert(bonds.end(),
                      {bond.broken ? 1.0 : 0.0, bond.normal_stress, bond.shear_stress, bond.area});
     a("rigid_motion", motion), a("bonds", bonds);
+    if (ends != expected || bonds.size() != 4 * assembly.bonds.size())
+        throw common::InputError(
+            "the checkpoint holds other grains or bonds than its case makes: put the files of "
+            "packs back as they were when the run began");
     // What a reader has put there, back where it belongs; a writer finds its own again.
     for (std::size_t k = 0; k < assembly.rigid.size(); ++k) {
         RigidMotion& is = assembly.rigid[k];
@@ -189,7 +203,8 @@ inline void add_particles(const PlannedGrain& plan, const Stretch& stretch, cons
         if (mesh.periodic_x)
             at.x += mesh.length_x() * std::round((plan.outline.x - at.x) / mesh.length_x());
         const GrainCase& from = plan.from;
-        const double s = (at.x - stretch.x_low) / stretch.length(), n = static_cast<double>(from.mode);
+        const double s = (at.x - stretch.x_low) / stretch.length(),
+                     n = static_cast<double>(from.mode);
         const double turn = std::numbers::pi * s;
         const double profile = from.profile == "bar"    ? std::sin((n - 0.5) * turn)
                                : from.profile == "wave" ? std::sin(n * turn)
@@ -206,6 +221,8 @@ inline void add_particles(const PlannedGrain& plan, const Stretch& stretch, cons
 
 // Grains whose outlines are nearer than a quarter of a cell.
 inline bool touch(const PlannedGrain& a, const PlannedGrain& b, const Mesh& mesh) {
+    if (std::fabs(a.outline.y - b.outline.y) > a.outline.radius + b.outline.radius + mesh.h)
+        return false;
     Outline other = b.outline;
     if (mesh.periodic_x)
         other = moved(other,
@@ -222,7 +239,8 @@ inline bool touch(const PlannedGrain& a, const PlannedGrain& b, const Mesh& mesh
 }  // namespace detail
 
 /// The bonds of a case.
-/// errors: InputError for a grain that is not there, or two that do not touch
+/// errors: InputError for a grain that is not there, two that do not touch or are both rigid, or two
+///         that are bonded twice
 inline std::vector<Bond> bonds_of(const Problem& w, const std::vector<PlannedGrain>& plans,
                                   const std::vector<Material>& materials) {
     std::vector<Bond> bonds;
@@ -240,6 +258,7 @@ inline std::vector<Bond> bonds_of(const Problem& w, const std::vector<PlannedGra
                 throw common::InputError("[bond." + from.name + "]: there is no grain '" + name +
                                          "'; name one of the case, or \"*\" for all");
         const std::size_t before = bonds.size();
+        bool all_rigid = false;
         for (std::size_t a = 0; a < plans.size(); ++a) {
             for (std::size_t b = a + 1; b < plans.size(); ++b) {
                 const auto fits = [&](const std::string& one, const std::string& two) {
@@ -247,8 +266,19 @@ inline std::vector<Bond> bonds_of(const Problem& w, const std::vector<PlannedGra
                            (two == "*" || two == plans[b].name);
                 };
                 if (!fits(from.a, from.b) && !fits(from.b, from.a)) continue;
-                if (is_rigid(plans[a]) && is_rigid(plans[b])) continue;
                 if (!detail::touch(plans[a], plans[b], mesh)) continue;
+                if (is_rigid(plans[a]) && is_rigid(plans[b])) {
+                    all_rigid = true;
+                    continue;
+                }
+                if (std::any_of(bonds.begin(), bonds.begin() + static_cast<std::ptrdiff_t>(before),
+                                [&](const Bond& bond) {
+                                    return bond.a == static_cast<int>(a) &&
+                                           bond.b == static_cast<int>(b);
+                                }))
+                    throw common::InputError("[bond." + from.name + "]: '" + plans[a].name +
+                                             "' and '" + plans[b].name +
+                                             "' are bonded already: let one bond name both");
                 Bond bond;
                 bond.a = static_cast<int>(a), bond.b = static_cast<int>(b);
                 bond.tension = from.tension, bond.shear = from.shear;
@@ -257,7 +287,9 @@ inline std::vector<Bond> bonds_of(const Problem& w, const std::vector<PlannedGra
         }
         if (bonds.size() == before)
             throw common::InputError("[bond." + from.name + "]: '" + from.a + "' and '" + from.b +
-                                     "' do not touch: put them within a quarter of a cell");
+                                     (all_rigid
+                                          ? "' are rigid and need no bond: take it out"
+                                          : "' do not touch: put them within a quarter of a cell"));
     }
     return bonds;
 }

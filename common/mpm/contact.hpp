@@ -49,7 +49,7 @@ struct Party {
     int grain;  // of a wall: its side
     bool wall, rigid;
     double per_mx, per_my;  // 1/m_i; 0 where nothing changes the velocity
-    double m, V;
+    double m;
     double vx_0, vy_0;  // before the step
     double vx, vy;      // after it, being corrected
     double x, y;        // center of the grain's part around the node, from the node
@@ -71,6 +71,7 @@ struct NodeProblem {
     std::array<Party, most_parties> party;
     std::array<Pair, most_parties*(most_parties - 1) / 2> pair;
     std::size_t parties = 0, pairs = 0;
+    bool isotropic = true;  // no velocity is fixed in one direction only
 };
 
 /// Projected Gauss-Seidel, until a sweep changes no velocity by more than round-off.
@@ -99,7 +100,8 @@ inline void solve(NodeProblem& node) {
             change = std::max({change, std::fabs(jx) * std::max(a.per_mx, b.per_mx),
                                std::fabs(jy) * std::max(a.per_my, b.per_my)});
         }
-        if (!(change > 1e-15 * size)) return;
+        const bool exact = node.pairs == 1 && node.isotropic;
+        if (exact || !(change > 1e-15 * size)) return;
     }
 }
 
@@ -129,10 +131,11 @@ class Contact {
             detail::NodeProblem node;
             for (long n = begin; n < end; ++n) {
                 if (!gather(n, nodes, node)) continue;
-                for (std::size_t k = 0; k < node.parties; ++k)
-                    node.party[k].vx = node.party[k].vx_0, node.party[k].vy = node.party[k].vy_0;
                 find_pairs(nodes.mesh().h, bonds, true, node);
                 if (node.pairs == 0) continue;
+                load_velocities(nodes, node);
+                for (std::size_t k = 0; k < node.parties; ++k)
+                    node.party[k].vx = node.party[k].vx_0, node.party[k].vy = node.party[k].vy_0;
                 detail::solve(node);
                 for (std::size_t k = 0; k < node.parties; ++k) {
                     if (node.party[k].is_fixed()) continue;
@@ -169,6 +172,7 @@ class Contact {
                 if (node.parties == detail::NodeProblem::most_parties) block.crowded = true;
                 find_pairs(nodes.mesh().h, bonds, false, node);
                 if (node.pairs == 0) continue;
+                load_velocities(nodes, node);
                 detail::solve(node);
                 for (std::size_t k = 0; k < node.pairs; ++k) {
                     const detail::Pair& pair = node.pair[k];
@@ -218,9 +222,18 @@ class Contact {
     bool gather(long n, const GrainNodes& nodes, detail::NodeProblem& node) const {
         const auto k = static_cast<std::size_t>(n);
         node.parties = node.pairs = 0;
+        // Most shared nodes have mass of one grain only.
+        const Member* const members = nodes.members().data();
+        const long begin = nodes.shared_begin()[k], end = nodes.shared_begin()[k + 1];
+        int present = 0;
+        fetch_ahead(begin, end, nodes);
+        for (long l = begin; l < end; ++l)
+            present += members[l].is_wall() ||
+                       nodes.sums[static_cast<std::size_t>(members[l].slot)].m > nodes.least_mass();
+        if (present < 2) return false;
         double node_x = 0, node_y = 0;
-        for (long l = nodes.shared_begin()[k]; l < nodes.shared_begin()[k + 1]; ++l) {
-            const Member& member = nodes.members()[static_cast<std::size_t>(l)];
+        for (long l = begin; l < end; ++l) {
+            const Member& member = members[l];
             if (node.parties == detail::NodeProblem::most_parties) break;
             detail::Party& party = node.party[node.parties];
             if (member.is_wall()) {
@@ -234,21 +247,51 @@ class Contact {
             const auto slot = static_cast<std::size_t>(member.slot);
             const NodeSums& sum = nodes.sums[slot];
             if (!(sum.m > nodes.least_mass())) continue;
-            const NodeMotion& v = nodes.motion[slot];
-            const bool rigid = is_rigid_[static_cast<std::size_t>(member.grain)];
             const double per_m = 1 / sum.m;
-            party.slot = member.slot, party.grain = member.grain;
-            party.wall = false, party.rigid = rigid;
-            party.per_mx = rigid || nodes.is_fixed_x(member.slot) ? 0 : per_m;
-            party.per_my = rigid || nodes.is_fixed_y(member.slot) ? 0 : per_m;
-            party.m = sum.m, party.V = sum.V;
-            party.vx_0 = v.vx_0, party.vy_0 = v.vy_0, party.vx = v.vx_1, party.vy = v.vy_1;
+            party.slot = member.slot, party.grain = member.grain, party.wall = false;
+            party.rigid = is_rigid_[static_cast<std::size_t>(member.grain)];
+            party.m = sum.m, party.per_mx = party.per_my = party.rigid ? 0 : per_m;
             party.x = sum.mx * per_m - member.x, party.y = sum.my * per_m - member.y;
             party.gx = sum.gx, party.gy = sum.gy;
             node_x = member.x, node_y = member.y;
             ++node.parties;
         }
         return node.parties > 1;
+    }
+
+    // Shared nodes are far apart in memory: they are fetched so many members before their turn.
+    // Contact of a million particles in 2000 grains takes a third less time with it.
+    static void fetch_ahead(long begin, long end, const GrainNodes& nodes) {
+        constexpr long ahead = 32;
+        const long all = static_cast<long>(nodes.members().size());
+        for (long l = begin + ahead; l < std::min(end + ahead, all); ++l) {
+            const Member& member = nodes.members()[static_cast<std::size_t>(l)];
+            if (member.is_wall()) continue;
+            __builtin_prefetch(&nodes.sums[static_cast<std::size_t>(member.slot)]);
+            __builtin_prefetch(&nodes.motion[static_cast<std::size_t>(member.slot)], 1);
+        }
+    }
+
+    // Velocities, and what walls forbid.
+    static void load_velocities(const GrainNodes& nodes, detail::NodeProblem& node) {
+        node.isotropic = true;
+        for (std::size_t k = 0; k < node.parties; ++k) {
+            detail::Party& party = node.party[k];
+            if (party.wall) continue;
+            const NodeMotion& v = nodes.motion[static_cast<std::size_t>(party.slot)];
+            party.vx_0 = v.vx_0, party.vy_0 = v.vy_0, party.vx = v.vx_1, party.vy = v.vy_1;
+            if (party.rigid) continue;
+            if (nodes.is_fixed_x(party.slot)) party.per_mx = 0, node.isotropic = false;
+            if (nodes.is_fixed_y(party.slot)) party.per_my = 0, node.isotropic = false;
+        }
+        for (std::size_t k = 0; k < node.pairs; ++k) {
+            detail::Pair& pair = node.pair[k];
+            const detail::Party &one = node.party[pair.a], &two = node.party[pair.b];
+            const double per_x = one.per_mx + two.per_mx, per_y = one.per_my + two.per_my,
+                         nn = pair.nx * pair.nx, tt = pair.ny * pair.ny,
+                         per_n = per_x * nn + per_y * tt, per_t = per_x * tt + per_y * nn;
+            pair.mass_n = per_n > 0 ? 1 / per_n : 0, pair.mass_t = per_t > 0 ? 1 / per_t : 0;
+        }
     }
 
     // The pairs that are in contact, or only those that are bonded.
@@ -270,10 +313,6 @@ class Contact {
                 if (bond < 0 && limit > 0 && apart > limit) continue;
                 pair.a = a, pair.b = b, pair.bond = bond;
                 pair.mu = two.wall ? rule_.wall_friction : rule_.friction;
-                const double per_x = one.per_mx + two.per_mx, per_y = one.per_my + two.per_my,
-                             nn = pair.nx * pair.nx, tt = pair.ny * pair.ny,
-                             per_n = per_x * nn + per_y * tt, per_t = per_x * tt + per_y * nn;
-                pair.mass_n = per_n > 0 ? 1 / per_n : 0, pair.mass_t = per_t > 0 ? 1 / per_t : 0;
                 pair.lambda_n = pair.lambda_t = 0;
                 ++node.pairs;
             }
@@ -290,9 +329,10 @@ class Contact {
         }
         nx = (two.rigid ? 0 : one.gx) - (one.rigid ? 0 : two.gx);
         ny = (two.rigid ? 0 : one.gy) - (one.rigid ? 0 : two.gy);
-        const double size = std::hypot(nx, ny);
-        if (!(size > 0)) return false;
-        nx /= size, ny /= size;
+        const double squared = nx * nx + ny * ny;
+        if (!(squared > 0)) return false;
+        const double per_size = 1 / std::sqrt(squared);
+        nx *= per_size, ny *= per_size;
         return true;
     }
 

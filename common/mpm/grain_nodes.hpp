@@ -5,9 +5,9 @@
 // is proportional to the area that the grains cover. Two grains that touch the same node have two
 // slots there: what they do to each other is the business of contact.hpp.
 //
-//      o   o---o---o---o   o        a grain's rows: every row as long as it needs to be, and one
-//    o---o---o---o---o---o---o      cell wider than the grain, so that the table stays good until
-//    o---o---o---o---o---o---o      a particle has moved by a cell
+//      o   o---o---o---o   o        a grain's rows: every row as long as it needs to be, and half
+//    o---o---o---o---o---o---o      a cell wider than the grain, so that the table stays good until
+//    o---o---o---o---o---o---o      a particle has moved by that
 //      o   o---o---o---o   o
 //
 // Columns are counted on without end: a grain that straddles the ends of a periodic mesh keeps its
@@ -47,7 +47,7 @@ struct NodeForce {
     double x, y;
 };
 
-/// The particles of one grain in one row of cells, when they were last sorted.
+/// Particles of one grain that are worked on together: one or more rows of cells.
 struct Strip {
     int grain;
     long begin, end;
@@ -87,9 +87,9 @@ class GrainNodes {
     GrainNodes(const Mesh& mesh, int shape_width, double least_mass)
         : mesh_(mesh),
           least_mass_(least_mass),
-          below_(shape_width == 2 ? 1 : 2),
-          above_(shape_width == 2 ? 2 : 3),
-          strips_apart_(shape_width == 2 ? 3 : 5) {}
+          below_(shape_width == 2 ? 0 : 1),
+          above_(shape_width == 2 ? 1 : 2),
+          rows_apart_(shape_width == 2 ? 3 : 5) {}
 
     const Mesh& mesh() const { return mesh_; }
     /// A node with less mass stays at rest: what it would give to particles is round-off to them.
@@ -116,6 +116,8 @@ class GrainNodes {
     const std::vector<long>& fixed_y() const { return fixed_y_; }
     bool is_fixed_x(long slot) const { return (fixed_[static_cast<std::size_t>(slot)] & 1) != 0; }
     bool is_fixed_y(long slot) const { return (fixed_[static_cast<std::size_t>(slot)] & 2) != 0; }
+    /// 1 for a node that forces can move, 0 for one of a rigid grain.
+    const std::vector<unsigned char>& is_free() const { return free_; }
     const std::vector<Member>& members() const { return members_; }
     /// Shared node n has the members shared_begin()[n] ... shared_begin()[n + 1].
     const std::vector<long>& shared_begin() const { return shared_begin_; }
@@ -125,7 +127,7 @@ class GrainNodes {
     long slot_end(int grain) const { return slot_begin_[static_cast<std::size_t>(grain) + 1]; }
 
     /// Whether particles may have left the nodes of their grain before the next step.
-    bool sort_is_due(const Frame& frame) const { return frame.moved > 0.99 * mesh_.h; }
+    bool sort_is_due(const Frame& frame) const { return frame.moved > 0.99 * reach * mesh_.h; }
 
     /// Sorts the particles by grain and row of cells, and lays out the nodes around them.
     /// in/out: particles, of each grain together; grains' ranges stay as they are
@@ -146,6 +148,8 @@ class GrainNodes {
     }
 
    private:
+    static constexpr double reach = 0.5;  // how far particles may move between sorts, in cells
+
     void add_walls_and_rings(const std::vector<Grain>& grains, const Frame& frame);
     void find_shared_nodes(const std::vector<Grain>& grains, const Frame& frame);
 
@@ -170,14 +174,15 @@ class GrainNodes {
 
     Mesh mesh_;
     double least_mass_;
-    long below_, above_;  // rows and columns that a cell's particles may reach, with one to spare
-    long strips_apart_;
+    long below_, above_;  // rows and columns of nodes that the particles of a cell see around it
+    long rows_apart_;
     std::vector<long> origin_, row_begin_, first_of_grain_, slot_begin_;
     std::vector<Strip> strips_;
     std::vector<long> pieces_{0};
     std::vector<Image> images_;
     std::vector<long> fixed_x_, fixed_y_;
     std::vector<unsigned char> fixed_;  // per slot: 1 for x, 2 for y
+    std::vector<unsigned char> free_;
     std::vector<Member> members_;
     std::vector<long> shared_begin_{0};
     common::SortScratch<double> scratch_;
@@ -258,35 +263,48 @@ inline void GrainNodes::sort(const std::vector<Grain>& grains, Particles& partic
     for (std::vector<double>* quantity : particles.all())
         common::carry_to_place(*quantity, scratch_);
 
-    // Rows of nodes around the strips, wide enough for a particle that moves by a cell.
+    // Rows of nodes around the strips, wide enough for particles that move by the reach.
     frame.first_row.resize(count), frame.rows.resize(count);
     frame.first_column.clear(), frame.end_column.clear();
+    const double spare = reach * mesh_.h;
     for (std::size_t g = 0; g < count; ++g) {
-        const long strips = frame.strips[g], rows = strips + below_ + above_;
-        constexpr long none = std::numeric_limits<int>::max();
-        std::vector<long> left(static_cast<std::size_t>(rows), none),
-            right(static_cast<std::size_t>(rows), -none);
-        for (long s = 0; s < strips; ++s) {
+        struct Reach {
+            long first_row, end_row, first_column, end_column;
+        };
+        std::vector<Reach> reaches;
+        long first_row = std::numeric_limits<long>::max(),
+             end_row = std::numeric_limits<long>::min();
+        for (int s = 0; s < frame.strips[g]; ++s) {
             const auto k = static_cast<std::size_t>(first_strip[g] + s);
-            double least = std::numeric_limits<double>::infinity(), most = -least;
-            for (int p = frame.strip_begin[k]; p < frame.strip_begin[k + 1]; ++p) {
-                const double x = particles.x_p[static_cast<std::size_t>(p)];
-                least = std::min(least, x), most = std::max(most, x);
-            }
-            if (least > most) continue;
-            const long first = detail::cell_of(least, mesh_.x_low, mesh_.h) - below_,
-                       end = detail::cell_of(most, mesh_.x_low, mesh_.h) + above_ + 1;
-            for (long r = s; r < s + below_ + above_ + 1 && r < rows; ++r) {
-                const auto row = static_cast<std::size_t>(r);
-                left[row] = std::min(left[row], first), right[row] = std::max(right[row], end);
-            }
+            const int begin = frame.strip_begin[k], end = frame.strip_begin[k + 1];
+            if (begin == end) continue;
+            const auto [x_least, x_most] =
+                std::minmax_element(particles.x_p.begin() + begin, particles.x_p.begin() + end);
+            const auto [y_least, y_most] =
+                std::minmax_element(particles.y_p.begin() + begin, particles.y_p.begin() + end);
+            reaches.push_back(
+                {detail::cell_of(*y_least - spare, mesh_.y_low, mesh_.h) - below_,
+                 detail::cell_of(*y_most + spare, mesh_.y_low, mesh_.h) + above_ + 1,
+                 detail::cell_of(*x_least - spare, mesh_.x_low, mesh_.h) - below_,
+                 detail::cell_of(*x_most + spare, mesh_.x_low, mesh_.h) + above_ + 1});
+            first_row = std::min(first_row, reaches.back().first_row);
+            end_row = std::max(end_row, reaches.back().end_row);
         }
-        frame.first_row[g] = static_cast<int>(low[g] - below_);
-        frame.rows[g] = static_cast<int>(rows);
-        for (std::size_t r = 0; r < left.size(); ++r) {
-            const bool empty = left[r] > right[r];
-            frame.first_column.push_back(empty ? 0 : static_cast<int>(left[r]));
-            frame.end_column.push_back(empty ? 0 : static_cast<int>(right[r]));
+        const std::size_t table = frame.first_column.size();
+        frame.first_row[g] = static_cast<int>(first_row);
+        frame.rows[g] = static_cast<int>(end_row - first_row);
+        frame.first_column.resize(table + static_cast<std::size_t>(end_row - first_row), 0);
+        frame.end_column.resize(frame.first_column.size(), 0);
+        for (const Reach& r : reaches) {
+            for (long j = r.first_row; j < r.end_row; ++j) {
+                const auto row = table + static_cast<std::size_t>(j - first_row);
+                int &first = frame.first_column[row], &end = frame.end_column[row];
+                const bool empty = first == end;
+                first = empty ? static_cast<int>(r.first_column)
+                              : std::min(first, static_cast<int>(r.first_column));
+                end = empty ? static_cast<int>(r.end_column)
+                            : std::max(end, static_cast<int>(r.end_column));
+            }
         }
     }
     frame.moved = 0;
@@ -298,7 +316,7 @@ inline void GrainNodes::lay_out(const std::vector<Grain>& grains, const Frame& f
     origin_.clear(), strips_.clear();
     row_begin_.assign(count + 1, 0), first_of_grain_.assign(count, 0);
     slot_begin_.assign(count + 1, 0);
-    long slots = 0, row = 0, strip = 0;
+    long slots = 0, row = 0;
     for (std::size_t g = 0; g < count; ++g) {
         row_begin_[g] = row, first_of_grain_[g] = row - frame.first_row[g], slot_begin_[g] = slots;
         for (int r = 0; r < frame.rows[g]; ++r, ++row) {
@@ -306,29 +324,31 @@ inline void GrainNodes::lay_out(const std::vector<Grain>& grains, const Frame& f
             origin_.push_back(slots - frame.first_column[k]);
             slots += frame.end_column[k] - frame.first_column[k];
         }
-        for (int s = 0; s < frame.strips[g]; ++s, ++strip) {
-            const auto k = static_cast<std::size_t>(strip);
-            strips_.push_back(
-                {static_cast<int>(g), frame.strip_begin[k], frame.strip_begin[k + 1]});
-        }
     }
     row_begin_[count] = row, slot_begin_[count] = slots;
     const auto size = static_cast<std::size_t>(slots);
     sums.resize(size), motion.resize(size), force.resize(size);
 
-    // Pieces of work: long enough that the next but one shares no row of nodes.
+    // Pieces of work: so many rows that the next but one shares no node.
     constexpr long particles_per_piece = 1024;
     pieces_.assign(1, 0);
-    long particles_in_piece = 0;
-    for (long s = 0; s < strip; ++s) {
-        const Strip& here = strips_[static_cast<std::size_t>(s)];
-        particles_in_piece += here.end - here.begin;
-        if (s + 1 == strip || (particles_in_piece >= particles_per_piece &&
-                               s + 1 - pieces_.back() >= strips_apart_)) {
-            pieces_.push_back(s + 1);
-            particles_in_piece = 0;
+    long rows_in_piece = 0, particles_in_piece = 0;
+    std::size_t cells = 0;  // rows of cells so far
+    for (std::size_t g = 0; g < count; ++g) {
+        for (int r = 0; r < frame.strips[g]; ++r, ++cells) {
+            const long begin = frame.strip_begin[cells], end = frame.strip_begin[cells + 1];
+            const bool new_piece = pieces_.back() == static_cast<long>(strips_.size());
+            if (new_piece || strips_.back().grain != static_cast<int>(g))
+                strips_.push_back({static_cast<int>(g), begin, begin});
+            strips_.back().end = end;
+            particles_in_piece += end - begin, ++rows_in_piece;
+            if (particles_in_piece < particles_per_piece || rows_in_piece < rows_apart_) continue;
+            pieces_.push_back(static_cast<long>(strips_.size()));
+            particles_in_piece = rows_in_piece = 0;
         }
     }
+    if (pieces_.back() < static_cast<long>(strips_.size()))
+        pieces_.push_back(static_cast<long>(strips_.size()));
     add_walls_and_rings(grains, frame);
     find_shared_nodes(grains, frame);
 }
@@ -371,6 +391,11 @@ inline void GrainNodes::add_walls_and_rings(const std::vector<Grain>& grains, co
         });
     }
     images_.insert(images_.end(), along_y.begin(), along_y.end());
+    free_.assign(sums.size(), 1);
+    for (std::size_t g = 0; g < grains.size(); ++g)
+        if (grains[g].rigid)
+            std::fill(free_.begin() + slot_begin_[g], free_.begin() + slot_begin_[g + 1],
+                      static_cast<unsigned char>(0));
     fixed_.assign(sums.size(), 0);
     for (const long slot : fixed_x_) fixed_[static_cast<std::size_t>(slot)] |= 1;
     for (const long slot : fixed_y_) fixed_[static_cast<std::size_t>(slot)] |= 2;
@@ -424,15 +449,20 @@ inline void GrainNodes::find_shared_nodes(const std::vector<Grain>& grains, cons
         }
     };
     for_each_member([&](std::size_t node, const Member&) { ++place[node]; });
-    long next = 0;
-    for (int& p : place) {
-        const int here = p;
-        p = here > 1 ? static_cast<int>(next) : -1;
-        if (here > 1) shared_begin_.push_back(next += here);
-    }
-    members_.resize(static_cast<std::size_t>(next));
+    // Shared nodes in the order in which their first grain has them, for the sake of the cache; a
+    // node that has begun keeps -1 - (where its next member goes).
+    int next = 0;
     for_each_member([&](std::size_t node, const Member& member) {
-        if (place[node] >= 0) members_[static_cast<std::size_t>(place[node]++)] = member;
+        int& at = place[node];
+        if (at == 1) return;
+        if (at > 1) {
+            const int begin = next;
+            next += at, at = -1 - begin;
+            shared_begin_.push_back(next);
+            members_.resize(static_cast<std::size_t>(next));
+        }
+        members_[static_cast<std::size_t>(-1 - at)] = member;
+        --at;
     });
 }
 

@@ -67,18 +67,15 @@ inline Outline polygon(std::vector<Point> corners) {
     require(size > 1e-100 && detail::width(corners) > tolerance,
             "the " + std::to_string(n) + " corners of a polygon lie on a line: it has no area");
     for (std::size_t k = 0; k < n; ++k) {
-        const std::size_t next = (k + 1) % n, last = (k + 2) % n;
-        const std::string side = "the side from corner " + number(k) + " to " + number(next);
-        // A side that turns back onto the one before it.
-        const Point &a = corners[k], &b = corners[next], &c = corners[last];
-        require(detail::distance_to_side(b, c, a) > tolerance &&
-                    detail::distance_to_side(a, b, c) > tolerance,
-                side + " of a polygon lies on the next one: take corner " + number(next) + " out");
+        const std::size_t next = (k + 1) % n;
         for (std::size_t m = k + 2; m < n; ++m) {
             if ((m + 1) % n == k) continue;
-            require(!detail::sides_meet(a, b, corners[m], corners[(m + 1) % n], tolerance),
-                    side + " of a polygon meets the side from corner " + number(m) + " to " +
-                        number((m + 1) % n) + ": list the corners in order around the grain");
+            const std::size_t after = (m + 1) % n;
+            require(!detail::sides_meet(corners[k], corners[next], corners[m], corners[after],
+                                        tolerance),
+                    "the side from corner " + number(k) + " to " + number(next) +
+                        " of a polygon meets the side from corner " + number(m) + " to " +
+                        number(after) + ": list the corners in order around the grain");
         }
     }
     auto [area, centroid] = detail::area_and_centroid(corners);
@@ -223,9 +220,9 @@ struct LatticeOutline {
 ///     x = x_low + (k + 1/2) h / per_side,  y likewise
 /// in:     per_side, particles per cell and direction
 /// out:    positions, cell by cell, row of cells by row of cells; none when the grain is too thin
-/// exact:  each particle stands for the area (h / per_side)^2. A box along mesh lines gets its area.
-///         Outlines that are mirror images about a mesh line get mirror images. Outlines that do
-///         not overlap share no particle: points on the outline are left out.
+/// exact:  each particle stands for the area (h / per_side)^2; a box along mesh lines gets its
+///         area. Outlines that are mirror images about a mesh line get mirror images. Outlines that
+///         do not overlap share no particle: points on the outline are left out.
 /// errors: InputError for an outline that reaches beyond the mesh; in a periodic direction the
 ///         particles stand inside the mesh instead, and the outline must not be longer than it
 /// note:   the outline is rounded to a millionth of the spacing, so that places that are equal on
@@ -235,11 +232,11 @@ inline std::vector<Point> fill(const Outline& outline, const Mesh& mesh, long pe
     const Bounds box = bounds(outline);
     const auto require_room = [&](double low, double high, double room_low, double room_high,
                                   const std::string& axis) {
-        detail::require(low >= room_low - 1e-6 * spacing && high <= room_high + 1e-6 * spacing,
-                        "an outline from " + axis + " = " + common::shown(low) + " to " +
-                            common::shown(high) + " does not fit on the mesh, which has room from " +
-                            common::shown(room_low) + " to " + common::shown(room_high) +
-                            ": move the grain or widen the mesh");
+        detail::require(
+            low >= room_low - 1e-6 * spacing && high <= room_high + 1e-6 * spacing,
+            "an outline from " + axis + " = " + common::shown(low) + " to " + common::shown(high) +
+                " does not fit on the mesh, which has room from " + common::shown(room_low) +
+                " to " + common::shown(room_high) + ": move the grain or widen the mesh");
     };
     const double wrapped = mesh.periodic_x ? mesh.length_x() : 0;
     require_room(box.x_low, box.x_high, mesh.x_low - wrapped, mesh.x_high() + wrapped, "x");

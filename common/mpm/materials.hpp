@@ -10,7 +10,10 @@
 // the strain that this stands for is plastic:
 //     sigma^1 = sigma^0 + T : (de - de^p)
 // What can be got back is the elastic energy 1/2 V sigma : T^-1 : sigma. For T see Elastic, for
-// T^-1 see Compliance. A stress that is not a number stays one.
+// T^-1 see Compliance. A strain that is not a number gives a stress that is not one.
+//
+// Laws choose values, not ways, so a loop over them can be vectorized (roots: -fno-math-errno). In
+// it, let a Stress be made of its four numbers: the copy of a whole one stops the compiler.
 #pragma once
 
 #include <cmath>

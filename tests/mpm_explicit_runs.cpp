@@ -1,0 +1,241 @@
+// Whole runs of mpm_explicit against exact, published and predicted values, by the numbers that the
+// program itself puts into summary.json and history.dat.
+#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "tests/any_numbers.hpp"
+#include "tests/any_summary.hpp"
+
+namespace {
+
+using facts::Run;
+
+// Runs a case in a folder of the test's own, without files for figures.
+Run run(const std::string& name, const std::string& file, const std::string& overrides,
+        int status = 0) {
+    const std::string folder = std::string(BUILD_FOLDER) + "/tests/runs/mpm_explicit_" + name;
+    const std::string command =
+        std::string(BUILD_FOLDER) + "/mpm_explicit mpm_explicit/cases/" + file + ".toml " +
+        overrides +
+        " output.particles_interval=0 output.fringes_interval=0 output.grains_interval=0 --out " +
+        folder + " --force --quiet 2> /dev/null";
+    CAPTURE(command);
+    REQUIRE(std::system(command.c_str()) == 256 * status);
+    return facts::finished_run(folder);
+}
+
+void check_results(const Run& run, int at_least) { facts::check_results(run.summary, at_least); }
+
+double largest(const std::vector<double>& values) {
+    double most = 0;
+    for (const double v : values) most = facts::worst({most, std::fabs(v)});
+    return most;
+}
+
+// The ledger closes to round-off: every joule that comes or goes is counted where it happens.
+void check_budget(const Run& r) {
+    const double size =
+        largest(r.column("kinetic")) + largest(r.column("elastic")) + largest(r.column("external"));
+    CHECK(largest(r.column("budget")) <= 1e-12 * size);
+}
+
+}  // namespace
+
+TEST_CASE("at a quarter of the limit two disks rebound" * doctest::description("physics")) {
+    const Run r = run("rebound", "rebound", "");
+    check_results(r, 5);
+    CHECK(std::fabs(r.value("energy_change")) < 0.03);
+    CHECK(std::fabs(r.value("rebound") - 0.95) <= 0.03);
+    CHECK(std::fabs(r.value("contact_begins") - 0.5) <= 0.02);
+    CHECK(std::fabs(r.value("contact_lasts") - 0.37) <= 0.03);
+    check_budget(r);
+    const double p = r.column("momentum_x_left").front();
+    CHECK(largest(r.column("momentum_x")) <= 1e-12 * p);
+    CHECK(largest(r.column("momentum_y")) <= 1e-12 * p);
+    // Mirror symmetry.
+    const auto &left = r.column("momentum_x_left"), &right = r.column("momentum_x_right");
+    double odd = 0;
+    for (std::size_t n = 0; n < left.size(); ++n)
+        odd = facts::worst({odd, std::fabs(left[n] + right[n])});
+    CHECK(odd <= 1e-12 * p);
+}
+
+TEST_CASE("beyond the limit the energy passes twice the initial before t 2" *
+          doctest::description("physics")) {
+    const Run r = run("burst", "rebound", "time.alpha=1", 3);
+    const auto& energy = r.column("energy");
+    CHECK(*std::max_element(energy.begin(), energy.end()) >= 2 * energy.front());
+    CHECK(r.column("time").back() < 2);
+    // The ledger knows where it came from.
+    check_budget(r);
+    CHECK(r.column("remap").back() > energy.front());
+    // In between, energy grows with alpha.
+    double before = 0;
+    for (const char* alpha : {"0.25", "0.5", "0.7"}) {
+        const Run between = run("alpha", "rebound", std::string("time.alpha=") + alpha);
+        CHECK(between.value("energy_change") > before);
+        before = between.value("energy_change");
+    }
+}
+
+TEST_CASE("on approach alone grains meet before they touch" * doctest::description("physics")) {
+    const Run r = run("approach", "rebound", "contact.separation=0");
+    CHECK(std::fabs(r.value("contact_begins") - 0.31) <= 0.02);
+    check_budget(r);
+}
+
+TEST_CASE("finer meshes rebound alike" * doctest::description("physics")) {
+    for (const char* cells :
+         {"mesh.cells_x=24 mesh.cells_y=12", "mesh.cells_x=96 mesh.cells_y=48"}) {
+        const Run r = run("finer", "rebound", cells);
+        CHECK(std::fabs(r.value("contact_begins") - 0.5) <= 0.02);
+        CHECK(std::fabs(r.value("rebound") - 0.95) <= 0.04);
+        CHECK(std::fabs(r.value("energy_change")) < 0.03);
+    }
+}
+
+TEST_CASE("smoother shape functions rebound as well" * doctest::description("physics")) {
+    const Run gimp = run("gimp", "rebound", "method.shape=gimp");
+    check_results(gimp, 5);
+    check_budget(gimp);
+    // Wider fields press over more nodes, and contact on the new velocity alone makes energy there.
+    const Run quadratic = run("quadratic", "rebound", "method.shape=quadratic");
+    CHECK(std::fabs(quadratic.value("contact_begins") - 0.5) <= 0.02);
+    CHECK(std::fabs(quadratic.value("rebound") - 0.95) <= 0.03);
+    CHECK(std::fabs(quadratic.value("energy_change")) <= 0.12);
+    check_budget(quadratic);
+}
+
+TEST_CASE("the colliding disks of Sulsky meet when their surfaces do" *
+          doctest::description("physics")) {
+    const Run r = run("sulsky", "sulsky_disks", "");
+    check_results(r, 4);
+    CHECK(std::fabs(r.column("kinetic").front() / 2.5133 - 1) <= 0.05);
+}
+
+TEST_CASE("a bar swings within one per cent of its period" * doctest::description("physics")) {
+    check_results(run("bar", "vibrating_bar", ""), 2);
+    check_results(
+        run("bar", "vibrating_bar", "grain.bar.mode=2 time.end=20 mesh.cells_x=40 mesh.cells_y=8"),
+        2);
+}
+
+TEST_CASE("a standing wave converges to second order" * doctest::description("physics")) {
+    for (const char* shape : {"linear", "gimp", "quadratic"}) {
+        std::vector<double> error;
+        for (const int cells : {16, 32, 64})
+            error.push_back(run("wave", "standing_wave",
+                                std::string("method.shape=") + shape +
+                                    " mesh.cells_x=" + std::to_string(cells) +
+                                    " mesh.cells_y=" + std::to_string(cells / 4))
+                                .value("velocity_error"));
+        CHECK(std::fabs(std::log2(error[0] / error[1]) - 2) <= 0.1);
+        CHECK(std::fabs(std::log2(error[1] / error[2]) - 2) <= 0.1);
+    }
+}
+
+TEST_CASE("one free node is a leapfrog with both invariants" * doctest::description("physics")) {
+    for (const char* alpha : {"0.3", "0.9", "1.5", "1.78"}) {
+        const Run r =
+            run("oscillator", "oscillator", std::string("time.energy_limit=0 time.alpha=") + alpha);
+        check_results(r, 4);
+        CHECK(r.value("largest_kinetic") <= 1.0 + 1e-12);
+    }
+}
+
+TEST_CASE("beyond omega dt 2 both invariants stay and bound nothing" *
+          doctest::description("physics")) {
+    const Run r = run("unbounded", "oscillator", "time.alpha=1.8 time.energy_limit=0");
+    check_results(r, 2);
+    CHECK(r.value("omega_dt") > 2);
+    CHECK(r.value("largest_kinetic") > 1e6);
+}
+
+TEST_CASE("a block on an incline slides as theory says or sticks" *
+          doctest::description("physics")) {
+    const std::string steep = " load.gravity_x=8.660254037844386 load.gravity_y=-5";
+    for (const char* friction : {"0", "0.3", "0.6"}) {
+        for (const std::string& slope : {std::string(), steep}) {
+            const Run r =
+                run("block", "incline_block", "contact.friction=" + std::string(friction) + slope);
+            check_results(r, 1);
+            check_budget(r);
+        }
+    }
+}
+
+TEST_CASE("a cylinder rolls on a rough incline and slips on a smooth one" *
+          doctest::description("physics")) {
+    check_results(run("cylinder", "incline_cylinder", ""), 1);
+    const Run slips = run("cylinder", "incline_cylinder", "contact.friction=0.1");
+    check_results(slips, 1);
+    CHECK(std::fabs(slips.value("acceleration") / 4.13397 - 1) <= 0.01);
+}
+
+TEST_CASE("a disk between plates has the fringes of the closed form" *
+          doctest::description("physics")) {
+    const Run r = run("disk", "diametral_disk", "");
+    check_results(r, 3);
+    // The servo holds the load.
+    CHECK(std::fabs(r.value("load") / 237.5 - 1) <= 0.01);
+    check_budget(r);
+}
+
+TEST_CASE("two bonded halves swing as one bar" * doctest::description("physics")) {
+    const Run r = run("bonded", "bonded_bar", "bond.joint.tension=10 time.end=50");
+    check_results(r, 3);
+    CHECK(largest(r.column("broken_bonds")) == 0);
+    check_budget(r);
+}
+
+TEST_CASE("a bond breaks when the bar pulls with its strength" * doctest::description("physics")) {
+    for (const char* strength : {"0.3", "0.5", "0.65"}) {
+        const Run r = run("breaks", "bonded_bar", "bond.joint.tension=" + std::string(strength));
+        check_results(r, 1);
+        // Broken bonds stay broken.
+        const auto& broken = r.column("broken_bonds");
+        CHECK(std::is_sorted(broken.begin(), broken.end()));
+        CHECK(broken.back() == 1);
+    }
+}
+
+TEST_CASE("a disk that yields leaves slowly and its ledger closes" *
+          doctest::description("physics")) {
+    const Run r = run("yield", "yielding_disk", "");
+    check_results(r, 2);
+    check_budget(r);
+    CHECK(r.value("plastic_work") > 0.5);
+    CHECK(r.column("momentum_x_disk").back() <= -0.5 * r.column("momentum_x_disk").front());
+}
+
+TEST_CASE("the compressed pack takes the work of its plate" * doctest::description("physics")) {
+    const Run r = run("compressed", "compressed", "mesh.cells_x=60 mesh.cells_y=52");
+    check_budget(r);
+    const double energy = r.column("energy").back(), work = r.column("external").back();
+    CHECK(energy / work >= 0.9);
+    CHECK(energy / work <= 1.0);
+    // The work that contact counts at the nodes is force times way of the plate.
+    const auto &time = r.column("time"), &force = r.column("force_y_plate"),
+               &external = r.column("external");
+    const double dt = time[1] - time[0];
+    double sum = 0;
+    for (std::size_t n = 0; n + 1 < time.size(); ++n) {
+        sum += force[n] * 0.1 * dt;
+        CHECK(std::fabs(external[n + 1] - sum) <= 1e-12 * work);
+    }
+}
+
+TEST_CASE("sheared grains resist and do not drift" * doctest::description("physics")) {
+    const Run r = run("shear", "shear", "");
+    check_budget(r);
+    CHECK(r.column("friction").back() < 0);
+    CHECK(r.column("external").back() > 0);
+    // What the upper plates lose, the lower ones gain, and the grains keep.
+    CHECK(largest(r.column("contacts")) > 20);
+}

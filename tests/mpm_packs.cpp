@@ -1,0 +1,965 @@
+// Facts about outlines of grains, the particles that fill them, packs and their files, and about
+// text among the parameters of a case.
+#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <numbers>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/mpm/pack_file.hpp"
+#include "common/mpm/packs.hpp"
+#include "tests/any_numbers.hpp"
+
+namespace {
+
+using namespace facts;
+using namespace mpm;
+using common::InputError, common::ParameterTable;
+constexpr double pi = std::numbers::pi;
+
+double any_number(std::uint64_t k, std::uint32_t what, double low = 0, double high = 1) {
+    return low + (high - low) * common::uniform(7, what, k, 0);
+}
+
+bool holds(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
+
+// What an action says when it refuses its input; nothing when it does not.
+std::string refusal(const std::function<void()>& action) {
+    try {
+        action();
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+Outline letter_L(double x = 0, double y = 0) {
+    return polygon(
+        {{x, y}, {x + 3, y}, {x + 3, y + 1}, {x + 1, y + 1}, {x + 1, y + 2}, {x, y + 2}});
+}
+Outline star(double x, double y, double radius, long tips, double angle) {
+    std::vector<Point> corners;
+    for (long k = 0; k < 2 * tips; ++k) {
+        const double r = k % 2 == 0 ? radius : 0.4 * radius, a = angle + pi * real(k) / real(tips);
+        corners.push_back({x + r * std::cos(a), y + r * std::sin(a)});
+    }
+    return polygon(corners);
+}
+
+// Outlines of every kind, about as large as 1 and near the origin.
+Outline any_outline(std::uint64_t k) {
+    const double x = any_number(k, 1, -1, 1), y = any_number(k, 2, -1, 1),
+                 r = any_number(k, 3, 0.3, 0.8), angle = any_number(k, 4, 0, 360);
+    const long sides = 3 + static_cast<long>(k % 5);
+    switch (k % 4) {
+        case 0:
+            return disk(x, y, r);
+        case 1:
+            return regular_polygon(x, y, r, sides, angle);
+        case 2:
+            return box(x, y, r, any_number(k, 5, 0.2, 1.5), angle);
+        default:
+            return star(x, y, r, sides, angle);
+    }
+}
+bool is_convex(std::uint64_t k) { return k % 4 != 3; }
+
+Mesh mesh_of(long cells_x, long cells_y, double h, double x_low = 0, double y_low = 0) {
+    Mesh mesh;
+    mesh.cells_x = cells_x, mesh.cells_y = cells_y, mesh.h = h;
+    mesh.x_low = x_low, mesh.y_low = y_low;
+    return mesh;
+}
+
+// Particles as whole numbers of their lattice.
+using Lattice = std::set<std::pair<long, long>>;
+Lattice lattice_of(const std::vector<Point>& particles, const Mesh& mesh, long per_side) {
+    Lattice places;
+    for (const Point& p : particles)
+        places.insert({std::lround((p.x - mesh.x_low) / mesh.h * real(per_side) - 0.5),
+                       std::lround((p.y - mesh.y_low) / mesh.h * real(per_side) - 0.5)});
+    return places;
+}
+Lattice mirrored(const Lattice& places, long lines) {
+    Lattice images;
+    for (const auto& [k, m] : places) images.insert({lines - 1 - k, m});
+    return images;
+}
+
+double distance(const Outline& a, const Outline& b, double period) {
+    const double dx = period > 0 ? std::remainder(a.x - b.x, period) : a.x - b.x;
+    return std::hypot(dx, a.y - b.y);
+}
+
+std::filesystem::path folder() {
+    const std::filesystem::path path =
+        std::filesystem::absolute(BUILD_FOLDER) / "tests/runs/mpm_packs";
+    std::filesystem::create_directories(path);
+    return path;
+}
+std::string bytes_of(const std::string& path) {
+    std::ifstream in(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+struct Texts {
+    std::string name, path = "none", kind = "one", second = "none";
+};
+
+}  // namespace
+
+TEST_CASE("area and centroid and width of an outline are those of geometry") {
+    const Outline round = disk(0.3, -2, 0.5);
+    CHECK(area(round) == doctest::Approx(pi / 4).epsilon(1e-15));
+    CHECK(thinnest(round) == 1);
+    CHECK(bounds(round).x_low == doctest::Approx(-0.2));
+    CHECK(bounds(round).y_high == -1.5);
+    for (const double angle : {0.0, 17.0, 45.0, 90.0, 200.0}) {
+        const Outline bar = box(5, 6, 3, 0.5, angle);
+        CHECK(area(bar) == doctest::Approx(1.5).epsilon(1e-14));
+        CHECK(thinnest(bar) == doctest::Approx(0.5).epsilon(1e-14));
+        CHECK(centroid(bar).x == doctest::Approx(5).epsilon(1e-14));
+        CHECK(centroid(bar).y == doctest::Approx(6).epsilon(1e-14));
+        for (const long n : {3L, 4L, 5L, 12L}) {
+            const Outline regular = regular_polygon(-1, 2, 0.7, n, angle);
+            const double sector = pi / real(n), apothem = 0.7 * std::cos(sector);
+            CHECK(area(regular) ==
+                  doctest::Approx(0.49 * real(n) * std::sin(2 * sector) / 2).epsilon(1e-14));
+            CHECK(thinnest(regular) ==
+                  doctest::Approx(n % 2 == 0 ? 2 * apothem : 0.7 + apothem).epsilon(1e-14));
+            CHECK(centroid(regular).x == doctest::Approx(-1).epsilon(1e-14));
+            CHECK(regular.radius == doctest::Approx(0.7).epsilon(1e-14));
+        }
+    }
+    const Outline L = letter_L();
+    CHECK(area(L) == doctest::Approx(4).epsilon(1e-14));
+    CHECK(centroid(L).x == doctest::Approx((3 * 1.5 + 0.5) / 4).epsilon(1e-14));
+    CHECK(centroid(L).y == doctest::Approx((3 * 0.5 + 1.5) / 4).epsilon(1e-14));
+    // The hull of the L is closed by the line from (3, 1) to (1, 2).
+    CHECK(thinnest(L) == doctest::Approx(2).epsilon(1e-14));
+    const Outline far = moved(L, 1e3, -1e3);
+    CHECK(area(far) == doctest::Approx(4).epsilon(1e-12));
+    CHECK(centroid(far).y == doctest::Approx(0.75 - 1e3).epsilon(1e-14));
+}
+
+TEST_CASE("a polygon is the same whichever way around its corners are given") {
+    std::vector<Point> corners = letter_L().corners;
+    std::reverse(corners.begin() + 1, corners.end());
+    const Outline turned = polygon(corners);
+    CHECK(area(turned) > 0);
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+        CHECK(turned.corners[k].x == letter_L().corners[k].x);
+        CHECK(turned.corners[k].y == letter_L().corners[k].y);
+    }
+}
+
+TEST_CASE("what is no outline is refused with the corner and the cure") {
+    const auto says = [](std::vector<Point> corners) {
+        return refusal([&] { polygon(std::move(corners)); });
+    };
+    const double none = std::nan("");
+    CHECK(holds(says({}), "a polygon of 0 corners: give at least 3"));
+    CHECK(holds(says({{0, 0}, {1, 1}}), "a polygon of 2 corners: give at least 3"));
+    CHECK(holds(says(std::vector<Point>(1001)), "a polygon of 1001 corners"));
+    CHECK(holds(says({{0, 0}, {1, 0}, {1, none}}), "corner 3 is not at a finite place"));
+    CHECK(holds(says({{0, 0}, {1, 0}, {1, 1e200}}), "corner 3 is not at a finite place"));
+    CHECK(
+        holds(says({{0, 0}, {1, 0}, {1, 0}, {0, 1}}), "corners 2 and 3 of a polygon are the same"));
+    CHECK(
+        holds(says({{0, 0}, {1, 0}, {0, 1}, {0, 0}}), "corners 4 and 1 of a polygon are the same"));
+    CHECK(holds(says({{0, 0}, {1, 1}, {2, 2}}), "the 3 corners of a polygon lie on a line"));
+    CHECK(holds(says({{0, 0}, {1, 1}, {1, 0}, {0, 1}}),
+                "the side from corner 1 to 2 of a polygon meets the side from corner 3 to 4"));
+    // A corner on a side; a corner met twice; a side that turns back.
+    CHECK(holds(says({{0, 0}, {2, 0}, {2, 1}, {1, 0}, {0, 1}}), "meets the side"));
+    CHECK(holds(says({{0, 0}, {2, 0}, {1, 1}, {2, 2}, {0, 2}, {1, 1}}), "meets the side"));
+    CHECK(holds(says({{0, 0}, {2, 0}, {1, 0}, {0, 1}}), "meets the side"));
+    CHECK(
+        holds(refusal([] { disk(0, 0, 0); }), "the radius of a disk = 0 must be a length above 0"));
+    CHECK(holds(refusal([] { disk(0, 0, -1); }), "the radius of a disk = -1"));
+    CHECK(holds(refusal([&] { disk(none, 0, 1); }), "the center of a disk"));
+    CHECK(holds(refusal([] { box(0, 0, 1, 0); }), "the height of a box = 0"));
+    CHECK(holds(refusal([] { box(0, 0, -1, 1); }), "the width of a box = -1"));
+    CHECK(holds(refusal([] { regular_polygon(0, 0, 1, 2); }), "a regular polygon of 2 sides"));
+    CHECK(refusal([] { letter_L(), star(0, 0, 1, 5, 0.3); }).empty());
+    // Corners on a straight side are no fault.
+    CHECK(refusal([] { polygon({{0, 0}, {1, 0}, {2, 0}, {0, 1}}); }).empty());
+}
+
+TEST_CASE("a point is inside an outline that winds around it") {
+    int inside = 0;
+    for (std::uint64_t k = 0; k < 40; ++k) {
+        const Outline outline = any_outline(k);
+        for (std::uint64_t m = 0; m < 100; ++m) {
+            const double x = any_number(100 * k + m, 6, -2, 2),
+                         y = any_number(100 * k + m, 7, -2, 2);
+            double angle = 0;
+            for (std::size_t c = 0; c < outline.corners.size(); ++c) {
+                const Point &a = outline.corners[c],
+                            &b = outline.corners[(c + 1) % outline.corners.size()];
+                angle += std::remainder(std::atan2(b.y - y, b.x - x) - std::atan2(a.y - y, a.x - x),
+                                        2 * pi);
+            }
+            const bool winds = outline.kind == OutlineKind::disk
+                                   ? std::hypot(x - outline.x, y - outline.y) < outline.radius
+                                   : std::fabs(angle) > pi;
+            CHECK(contains(outline, x, y) == winds);
+            inside += winds;
+        }
+    }
+    CHECK(inside > 100);
+    // A point on the side of two neighbors belongs to one.
+    for (const double y : {0.0, 0.25, 0.5})
+        CHECK(contains(box(0, 0, 1, 2), 0.5, y) != contains(box(1, 0, 1, 2), 0.5, y));
+}
+
+TEST_CASE("how deep disks and boxes overlap is what geometry says") {
+    const double tight = 1e-13;
+    CHECK(overlap_depth(disk(0, 0, 1), disk(1.5, 0, 0.75)) == doctest::Approx(0.25).epsilon(tight));
+    CHECK(overlap_depth(disk(0, 0, 1), disk(3, 4, 4)) == 0);
+    CHECK(overlap_depth(disk(0, 0, 1), disk(0.25, 0, 0.1)) == doctest::Approx(0.85).epsilon(tight));
+    CHECK(overlap_depth(box(0, 0, 2, 2), box(1.75, 0.5, 2, 1)) == doctest::Approx(0.25));
+    CHECK(overlap_depth(box(0, 0, 2, 2), box(2, 0, 2, 2)) == 0);
+    CHECK(overlap_depth(box(0, 0, 2, 2), box(2, 2, 2, 2)) == 0);
+    // A corner in a side, a disk on a side and on a corner, and one inside.
+    CHECK(overlap_depth(box(0, 0, 2, 2), box(1 + std::sqrt(2.0) - 0.1, 0, 2, 2, 45)) ==
+          doctest::Approx(0.1).epsilon(tight));
+    CHECK(overlap_depth(box(0, 0, 2, 2), disk(1.4, 0.3, 0.5)) == doctest::Approx(0.1));
+    CHECK(overlap_depth(disk(4, 5, 5.5), box(0, 0, 2, 2)) == doctest::Approx(0.5));
+    CHECK(overlap_depth(disk(0.5, 0.2, 0.25), box(0, 0, 2, 2)) == doctest::Approx(0.75));
+    // In the notch of an L there is room.
+    CHECK(overlap_depth(letter_L(), box(2, 1.5, 2, 1)) == 0);
+    CHECK(overlap_depth(letter_L(), disk(1.5, 1.5, 0.5)) == 0);
+    CHECK(overlap_depth(letter_L(), disk(1.45, 1.5, 0.5)) == doctest::Approx(0.05));
+    CHECK(overlap_depth(letter_L(), box(1.95, 1.45, 2, 1)) > 0.04);
+    // Grains that only touch, to the round-off of their places.
+    CHECK(overlap_depth(disk(0.1, 0, 0.1), disk(0.3, 0, 0.1)) == 0);
+    CHECK(overlap_depth(disk(0, 0, 1), disk(2 - 0.5e-9, 0, 1)) == 0);
+    CHECK(overlap_depth(disk(0, 0, 1), disk(2 - 2e-9, 0, 1)) > 0);
+    for (int angle = 0; angle < 90; ++angle) {
+        const double c = std::cos(angle * pi / 180), s = std::sin(angle * pi / 180);
+        const Outline bar = box(0.1, 0.7, 1, 3, angle);
+        CHECK(overlap_depth(bar, moved(bar, c - 0.3 * s, s + 0.3 * c)) == 0);
+        CHECK(overlap_depth(bar, disk(0.1 + 1.5 * c - s, 0.7 + 1.5 * s + c, 1)) == 0);
+    }
+}
+
+TEST_CASE("the depth of an overlap is the shortest way out") {
+    int overlapping = 0, apart = 0;
+    for (std::uint64_t k = 0; k < 400; ++k) {
+        const std::uint64_t first = any_number(k, 8) < 0.5 ? k : 7 * k + 1, second = 3 * k + 2;
+        const Outline a = any_outline(first), b = any_outline(second);
+        const double depth = overlap_depth(a, b);
+        CHECK(overlap_depth(b, a) == doctest::Approx(depth).epsilon(1e-12));
+        // Move one outline away in every direction.
+        bool out = false, too_early = false;
+        for (int m = 0; m < 720; ++m) {
+            const double way = 2 * pi * m / 720, c = std::cos(way), s = std::sin(way);
+            const auto left = [&](double part) {
+                return overlap_depth(a, moved(b, part * depth * c, part * depth * s));
+            };
+            if (depth > 0 && left(1.001) == 0) out = true;
+            if (depth > 0 && left(0.99) == 0) too_early = true;
+        }
+        overlapping += depth > 0, apart += depth == 0;
+        CHECK_FALSE(too_early);
+        if (depth > 0 && is_convex(first) && is_convex(second)) CHECK(out);
+    }
+    CHECK(overlapping > 100);
+    CHECK(apart > 50);
+}
+
+TEST_CASE("outlines overlap exactly when they have points in common") {
+    for (std::uint64_t k = 0; k < 300; ++k) {
+        const Outline a = any_outline(4 * k + 3), b = any_outline(5 * k + 1);
+        const double depth = overlap_depth(a, b);
+        long common_points = 0;
+        for (double x = -1.8; x < 1.8; x += 0.02)
+            for (double y = -1.8; y < 1.8; y += 0.02)
+                common_points += contains(a, x, y) && contains(b, x, y);
+        if (common_points > 0) CHECK(depth > 0);
+        if (depth > 0.06) CHECK(common_points > 0);
+    }
+}
+
+TEST_CASE("a box along mesh lines is filled to its area") {
+    for (const double h : {0.025, 0.1, 1.0 / 80, 0.3}) {
+        for (const long per_side : {1L, 2L, 3L, 4L}) {
+            const Mesh mesh = mesh_of(40, 30, h, 0.7, -0.9);
+            for (const auto& [i, j, columns, rows] :
+                 {std::array{0L, 0L, 40L, 30L}, {3L, 5L, 7L, 2L}, {39L, 29L, 1L, 1L}}) {
+                const double width = real(columns) * h, height = real(rows) * h;
+                const auto particles = fill(box(mesh.x_of(real(i)) + width / 2,
+                                                mesh.y_of(real(j)) + height / 2, width, height),
+                                            mesh, per_side);
+                CHECK(static_cast<long>(particles.size()) == columns * rows * per_side * per_side);
+            }
+        }
+    }
+}
+
+TEST_CASE("particles stand on the lattice of the mesh inside the outline cell by cell") {
+    const Mesh mesh = mesh_of(40, 40, 0.1, -2, -2);
+    for (std::uint64_t k = 0; k < 40; ++k) {
+        const Outline outline = any_outline(k);
+        const auto particles = fill(outline, mesh, 3);
+        const Lattice places = lattice_of(particles, mesh, 3);
+        CHECK(places.size() == particles.size());
+        std::pair<long, long> before{-1, -1};
+        for (const Point& p : particles) {
+            const double u = (p.x + 2) * 30 - 0.5, v = (p.y + 2) * 30 - 0.5;
+            CHECK(std::fabs(u - std::round(u)) < 1e-12);
+            CHECK(std::fabs(v - std::round(v)) < 1e-12);
+            const std::pair cell{std::lround(v) / 3, std::lround(u) / 3};
+            CHECK(before <= cell);
+            before = cell;
+        }
+        for (long i = 0; i < 120; ++i)
+            for (long j = 0; j < 120; ++j)
+                CHECK(places.count({i, j}) ==
+                      contains(outline, -2 + (real(i) + 0.5) / 30, -2 + (real(j) + 0.5) / 30));
+    }
+}
+
+TEST_CASE("the particles of a disk approach its area") {
+    for (const long cells : {32L, 64L, 128L, 256L}) {
+        const Mesh mesh = mesh_of(cells, cells, 1.0 / real(cells));
+        const double part = mesh.h / 2,
+                     total = part * part *
+                             real(static_cast<long>(fill(disk(0.5, 0.5, 0.4), mesh, 2).size()));
+        CHECK(std::fabs(total / (pi * 0.16) - 1) < 0.1 * mesh.h);
+    }
+}
+
+TEST_CASE("mirror images about a mesh line are filled alike") {
+    // The rebounding grains: disks at 0.35 and 0.85 mirrored about 0.6, for round and odd meshes.
+    for (const double h : {0.025, 0.0125, 0.05, 0.6 / 7, 0.6 / 23}) {
+        for (const long per_side : {1L, 2L, 3L, 4L}) {
+            const long cells = std::lround(1.2 / h), lines = cells * per_side;
+            const Mesh mesh = mesh_of(cells, cells, h);
+            for (const double x : {0.25, 0.3, 0.35, 0.35 + h / 3, 0.35 + h / 6}) {
+                for (const double radius : {0.2, 8 * h, 0.2 + h / 7}) {
+                    if (radius > 0.24) continue;
+                    const auto left = fill(disk(x, 0.3, radius), mesh, per_side),
+                               right = fill(disk(0.6 + (0.6 - x), 0.3, radius), mesh, per_side);
+                    CHECK(lattice_of(right, mesh, per_side) ==
+                          mirrored(lattice_of(left, mesh, per_side), lines));
+                }
+            }
+            const auto whole = fill(regular_polygon(0.6, 0.6, 0.55, 6), mesh, per_side);
+            CHECK(lattice_of(whole, mesh, per_side) ==
+                  mirrored(lattice_of(whole, mesh, per_side), lines));
+        }
+    }
+}
+
+TEST_CASE("particles on the outline are left out on either side") {
+    // Right triangles with sides 3 4 5 and 5 12 13 put lattice points on these circles, and the
+    // sides of these boxes pass through them.
+    for (const double h : {0.025, 0.1, 1.0 / 3, 0.7}) {
+        const Mesh mesh = mesh_of(40, 40, h, 0.3, 0.1);
+        const auto place = [&](double k) { return mesh.h * k / 2; };
+        for (const double center : {20.5, 31.5, 40.5}) {
+            const double x = mesh.x_low + place(center), y = mesh.y_low + place(center);
+            for (const double radius : {5.0, 10.0, 13.0}) {
+                Lattice expected;
+                for (long k = -13; k <= 13; ++k)
+                    for (long m = -13; m <= 13; ++m)
+                        if (real(k * k + m * m) < radius * radius)
+                            expected.insert(
+                                {std::lround(center - 0.5) + k, std::lround(center - 0.5) + m});
+                CHECK(lattice_of(fill(disk(x, y, place(radius)), mesh, 2), mesh, 2) == expected);
+            }
+            CHECK(fill(box(x, y, place(8), place(4)), mesh, 2).size() == 21);
+            CHECK(fill(box(x, y, place(8) / std::sqrt(2.0), place(8) / std::sqrt(2.0), 45), mesh, 2)
+                      .size() == 25);
+        }
+    }
+}
+
+TEST_CASE("grains that touch share no particle") {
+    Rows rows;
+    rows.x = 0.1, rows.y = 0.1, rows.columns = 5, rows.rows = 4, rows.radius = 0.1;
+    rows.shift = 0.1, rows.one_less = true;
+    for (const double h : {0.0125, 0.02, 0.1, 0.2 / 3}) {
+        const Mesh mesh = mesh_of(std::lround(1 / h) + 1, std::lround(1 / h) + 1, h);
+        Lattice all;
+        std::size_t sum = 0;
+        for (const PackedGrain& grain : hexagonal_rows(rows)) {
+            const auto places = lattice_of(fill(grain.outline, mesh, 3), mesh, 3);
+            all.insert(places.begin(), places.end()), sum += places.size();
+        }
+        CHECK(sum > 0);
+        CHECK(all.size() == sum);
+    }
+}
+
+TEST_CASE("a grain across the ends of a periodic mesh is filled on both sides") {
+    Mesh mesh = mesh_of(50, 10, 0.02);
+    const auto whole = fill(disk(0.5, 0.1, 0.1), mesh, 2);
+    for (const auto& sentence : {refusal([&] { fill(disk(1, 0.1, 0.1), mesh, 2); }),
+                                 refusal([&] { fill(disk(0.5, 0.15, 0.1), mesh, 2); }),
+                                 refusal([&] { fill(disk(0.05, 0.1, 0.1), mesh, 2); })})
+        CHECK(holds(sentence, "does not fit on the mesh"));
+    mesh.periodic_x = true;
+    CHECK(holds(refusal([&] { fill(disk(0.5, 0.15, 0.1), mesh, 2); }), "does not fit"));
+    CHECK(holds(refusal([&] { fill(box(0.5, 0.1, 1.1, 0.1), mesh, 2); }), "does not fit"));
+    CHECK(holds(refusal([&] { fill(disk(1e80, 0.1, 0.1), mesh, 2); }), "does not fit"));
+    CHECK(fill(box(0.7, 0.1, 1, 0.2), mesh, 2).size() == 2000);
+    for (const double x : {0.0, 1.0}) {
+        const auto split = fill(disk(x, 0.1, 0.1), mesh, 2);
+        Lattice turned;
+        for (const auto& [k, m] : lattice_of(whole, mesh, 2)) turned.insert({(k + 50) % 100, m});
+        CHECK(lattice_of(split, mesh, 2) == turned);
+        CHECK(split.size() == whole.size());
+    }
+}
+
+TEST_CASE("rows of disks make the compressed pack and the sheared one") {
+    Rows rows;
+    rows.x = 0.1, rows.y = 0.1, rows.columns = 5, rows.rows = 4, rows.radius = 0.1;
+    rows.shift = 0.1, rows.one_less = true;
+    const auto compressed = hexagonal_rows(rows);
+    CHECK(compressed.size() == 18);
+    CHECK(compressed.front().name == "g0001");
+    CHECK(compressed.back().name == "g0018");
+    CHECK(compressed.back().outline.x == doctest::Approx(0.8));
+    CHECK(compressed.back().outline.y == doctest::Approx(0.1 + 0.3 * std::sqrt(3.0)));
+    double right = 0, top = 0;
+    for (const PackedGrain& grain : compressed) {
+        right = std::max(right, bounds(grain.outline).x_high);
+        top = std::max(top, bounds(grain.outline).y_high);
+    }
+    CHECK(right == doctest::Approx(1));
+    CHECK(top == doctest::Approx(0.7196).epsilon(1e-4));
+    CHECK(overlaps(compressed, 0, 0).depth == 0);
+    CHECK(overlaps(compressed, 1, 0).depth == 0);
+
+    rows.rows = 5, rows.one_less = false, rows.spacing_y = 0.18;
+    const auto sheared = hexagonal_rows(rows);
+    CHECK(sheared.size() == 25);
+    CHECK(sheared[9].outline.x == doctest::Approx(1));
+    CHECK(sheared[24].outline.y == doctest::Approx(0.1 + 4 * 0.18));
+    CHECK(overlaps(sheared, 1, 0).depth == 0);
+    rows.spacing_y = 0.17;
+    CHECK(overlaps(hexagonal_rows(rows), 1, 0).depth ==
+          doctest::Approx(0.2 - std::hypot(0.1, 0.17)).epsilon(1e-9));
+}
+
+TEST_CASE("rows without a spacing leave just the gap") {
+    for (const double gap : {0.0, 0.03}) {
+        for (const double spacing_x : {0.0, 0.3, 0.45}) {
+            for (const double shift : {0.0, 0.05, 0.1, 0.2, -0.3}) {
+                Rows rows;
+                rows.columns = 4, rows.rows = 5, rows.radius = 0.1, rows.gap = gap;
+                rows.spacing_x = spacing_x, rows.shift = shift;
+                const auto grains = hexagonal_rows(rows);
+                double least = 1e9;
+                for (const PackedGrain& a : grains)
+                    for (const PackedGrain& b : grains)
+                        if (a.name < b.name && a.outline.y != b.outline.y)
+                            least = std::min(least, distance(a.outline, b.outline, 0) - 0.2);
+                CHECK(least >= gap - 1e-12);
+                // Far at the ends two rows may miss each other.
+                if (std::fabs(shift) < 0.15) CHECK(least <= gap + 1e-12);
+            }
+        }
+    }
+    Rows rows;
+    CHECK(holds(refusal([&] { hexagonal_rows(rows); }), "the radius of the disks in rows = 0"));
+    rows.radius = 1, rows.columns = 0;
+    CHECK(holds(refusal([&] { hexagonal_rows(rows); }), "1 rows of 0 disks"));
+    rows.columns = 1, rows.rows = 2, rows.one_less = true;
+    CHECK(holds(refusal([&] { hexagonal_rows(rows); }), "2 rows of 1 disks"));
+    rows.one_less = false, rows.gap = -1;
+    CHECK(holds(refusal([&] { hexagonal_rows(rows); }), "a gap or spacing of rows is -1"));
+    rows.gap = 0, rows.spacing_x = 5, rows.shift = 2.5;
+    CHECK(holds(refusal([&] { hexagonal_rows(rows); }), "two rows shifted by 2.5 fall into one"));
+}
+
+namespace {
+
+RandomDisks pack_of(long count, bool periodic, bool loose, double gap) {
+    RandomDisks pack;
+    pack.box = {-0.3, 0.7, 2, loose ? 6.0 : 4.0};
+    pack.radius_min = 0.01, pack.radius_max = 0.025, pack.count = count;
+    pack.periodic_x = periodic, pack.loose = loose, pack.gap = gap;
+    return pack;
+}
+
+}  // namespace
+
+TEST_CASE("the disks of a random pack keep their gap and stay in the box") {
+    for (const bool periodic : {false, true}) {
+        for (const bool loose : {false, true}) {
+            for (const double gap : {0.0, 0.004}) {
+                const RandomDisks pack = pack_of(700, periodic, loose, gap);
+                const auto grains = random_disks(pack);
+                REQUIRE(grains.size() == 700);
+                double least = 1, low = 1, beside = 1;
+                for (std::size_t k = 0; k < grains.size(); ++k) {
+                    const Outline& a = grains[k].outline;
+                    CHECK(a.radius >= 0.01);
+                    CHECK(a.radius <= 0.025);
+                    for (std::size_t m = 0; m < k; ++m) {
+                        const Outline& b = grains[m].outline;
+                        least =
+                            std::min(least, distance(a, b, periodic ? 1 : 0) - a.radius - b.radius);
+                    }
+                    low = std::min({low, bounds(a).y_low - 2, pack.box.y_high - bounds(a).y_high});
+                    beside = std::min({beside, bounds(a).x_low + 0.3, 0.7 - bounds(a).x_high});
+                    CHECK(a.x >= -0.3);
+                    CHECK(a.x < 0.7);
+                }
+                CHECK(least >= gap - 1e-12);
+                CHECK(low >= gap / 2 - 1e-12);
+                if (!periodic) CHECK(beside >= gap / 2 - 1e-12);
+                if (!loose) CHECK(least <= gap + 1e-12);
+                CHECK(overlaps(grains, periodic ? 1 : 0, 0).depth == 0);
+            }
+        }
+    }
+}
+
+TEST_CASE("every deposited disk rests on what was there before") {
+    for (const double width : {1.0, 0.11, 0.26}) {
+        for (const bool periodic : {false, true}) {
+            RandomDisks pack = pack_of(400, periodic && width > 0.25, false, 0);
+            pack.box = {0, width, 0, 20};
+            const double period = pack.periodic_x ? width : 0, near = 1e-9;
+            const auto grains = random_disks(pack);
+            for (std::size_t k = 0; k < grains.size(); ++k) {
+                const Outline& a = grains[k].outline;
+                if (a.y - a.radius < near) continue;
+                // Something to the left and something to the right, and one of them below.
+                bool left = period == 0 && a.x - a.radius < near,
+                     right = period == 0 && a.x + a.radius > width - near, below = false;
+                for (std::size_t m = 0; m < k; ++m) {
+                    const Outline& b = grains[m].outline;
+                    if (distance(a, b, period) - a.radius - b.radius > near) continue;
+                    const double to = period > 0 ? std::remainder(b.x - a.x, period) : b.x - a.x;
+                    left = left || to <= near, right = right || to >= -near;
+                    below = below || b.y < a.y;
+                }
+                CHECK(left);
+                CHECK(right);
+                CHECK(below);
+            }
+        }
+    }
+}
+
+TEST_CASE("no place is lower than the one that a deposited disk takes") {
+    RandomDisks pack = pack_of(80, false, false, 0);
+    pack.box = {0, 0.3, 0, 2};
+    const auto grains = random_disks(pack);
+    const auto is_free = [&](std::size_t count, double x, double y, double r) {
+        const double near = 1e-10;
+        bool free = x > r - near && x < 0.3 - r + near && y > r - near;
+        for (std::size_t m = 0; m < count && free; ++m)
+            free = std::hypot(x - grains[m].outline.x, y - grains[m].outline.y) >
+                   r + grains[m].outline.radius - near;
+        return free;
+    };
+    for (std::size_t k = 0; k < grains.size(); ++k) {
+        const Outline& taken = grains[k].outline;
+        const double r = taken.radius;
+        double lowest = 1e9;
+        const auto consider = [&](double x, double y) {
+            if (y < lowest && is_free(k, x, y, r)) lowest = y;
+        };
+        consider(r, r), consider(0.3 - r, r);
+        for (std::size_t m = 0; m < k; ++m) {
+            // The circle of places on one disk meets the floor, the walls and those on the others.
+            const Outline& a = grains[m].outline;
+            const double reach = a.radius + r;
+            for (const double side : {-1.0, 1.0}) {
+                const double x = side < 0 ? r : 0.3 - r;
+                consider(a.x + side * std::sqrt(reach * reach - (a.y - r) * (a.y - r)), r);
+                if ((x - a.x) * side >= 0)
+                    consider(x, a.y + std::sqrt(reach * reach - (x - a.x) * (x - a.x)));
+                for (std::size_t n = 0; n < m; ++n) {
+                    const Outline& b = grains[n].outline;
+                    const double apart = std::hypot(b.x - a.x, b.y - a.y), other = b.radius + r,
+                                 along = (apart + (reach * reach - other * other) / apart) / 2,
+                                 up = side * std::sqrt(reach * reach - along * along),
+                                 c = (b.x - a.x) / apart, s = (b.y - a.y) / apart,
+                                 at_x = a.x + along * c - up * s, at_y = a.y + along * s + up * c;
+                    if (up * c > 0 && (at_x - a.x) * (b.x - at_x) >= 0) consider(at_x, at_y);
+                }
+            }
+        }
+        CHECK(taken.y == doctest::Approx(lowest).epsilon(1e-9));
+    }
+}
+
+TEST_CASE("a deposited pack is dense") {
+    for (const bool periodic : {false, true}) {
+        for (const std::uint64_t seed : {1U, 2U, 3U}) {
+            RandomDisks pack = pack_of(0, periodic, false, 0);
+            pack.box.y_high = 3, pack.seed = seed;
+            const auto grains = random_disks(pack);
+            double total = 0;
+            for (const PackedGrain& grain : grains) total += area(grain.outline);
+            CHECK(total > 0.78);
+            CHECK(total < 0.9069);
+        }
+    }
+    // Equal disks in a box of whole diameters stand in hexagonal order.
+    RandomDisks equal = pack_of(18, false, false, 0);
+    equal.box = {0, 1, 0, 0.72}, equal.radius_min = equal.radius_max = 0.1;
+    Rows rows;
+    rows.x = rows.y = rows.radius = rows.shift = 0.1;
+    rows.columns = 5, rows.rows = 4, rows.one_less = true;
+    const auto crystal = hexagonal_rows(rows);
+    for (const PackedGrain& grain : random_disks(equal))
+        CHECK(std::any_of(crystal.begin(), crystal.end(), [&](const PackedGrain& place) {
+            return distance(grain.outline, place.outline, 0) < 1e-9;
+        }));
+}
+
+TEST_CASE("a random pack depends on its seed and not on its place") {
+    for (const bool loose : {false, true}) {
+        RandomDisks pack = pack_of(300, true, loose, 0);
+        const auto first = random_disks(pack), second = random_disks(pack);
+        pack.box.x_low += 4, pack.box.x_high += 4, pack.box.y_low -= 2, pack.box.y_high -= 2;
+        const auto elsewhere = random_disks(pack);
+        pack.seed = 2;
+        const auto other = random_disks(pack);
+        int same = 0;
+        for (std::size_t k = 0; k < first.size(); ++k) {
+            CHECK(first[k].outline.x == second[k].outline.x);
+            CHECK(first[k].outline.y == second[k].outline.y);
+            CHECK(first[k].outline.radius == elsewhere[k].outline.radius);
+            CHECK(elsewhere[k].outline.x - 4 == doctest::Approx(first[k].outline.x).epsilon(1e-9));
+            same += elsewhere[k].outline.radius == other[k].outline.radius ||
+                    elsewhere[k].outline.x == other[k].outline.x;
+        }
+        CHECK(same == 0);
+        CHECK(first[0].name == "g0001");
+        CHECK(first[299].name == "g0300");
+    }
+}
+
+TEST_CASE("radii are drawn evenly between the least and the largest") {
+    RandomDisks pack = pack_of(4000, false, false, 0);
+    pack.box = {0, 4, 0, 4};
+    std::vector<double> part;
+    for (const PackedGrain& grain : random_disks(pack))
+        part.push_back((grain.outline.radius - 0.01) / 0.015);
+    std::sort(part.begin(), part.end());
+    CHECK(std::adjacent_find(part.begin(), part.end()) == part.end());
+    double largest = 0;
+    for (std::size_t k = 0; k < part.size(); ++k)
+        largest = std::max(largest, std::fabs(part[k] - real(static_cast<long>(k)) / 4000));
+    CHECK(largest < 1.63 / std::sqrt(4000.0));  // passed by 99 of 100 even samples
+}
+
+TEST_CASE("a pack has the solid fraction that is asked for") {
+    for (const bool loose : {false, true}) {
+        RandomDisks pack = pack_of(0, false, loose, 0);
+        pack.solid_fraction = loose ? 0.4 : 0.6;
+        double total = 0;
+        for (const PackedGrain& grain : random_disks(pack)) total += area(grain.outline);
+        const double box_area = pack.box.y_high - pack.box.y_low, one = pi * 0.025 * 0.025;
+        CHECK(total >= pack.solid_fraction * box_area);
+        CHECK(total <= pack.solid_fraction * box_area + one);
+    }
+}
+
+TEST_CASE("a random pack that cannot be is refused with its numbers") {
+    const RandomDisks good = pack_of(10, false, false, 0);
+    const auto says = [&](const std::function<void(RandomDisks&)>& spoil) {
+        RandomDisks pack = good;
+        spoil(pack);
+        return refusal([&] { random_disks(pack); });
+    };
+    CHECK(says([](RandomDisks&) {}).empty());
+    CHECK(holds(says([](RandomDisks& p) { p.box.x_high = -1; }), "the width of a pack = -0.7"));
+    CHECK(holds(says([](RandomDisks& p) { p.box.y_high = 2; }), "the height of a pack = 0"));
+    CHECK(holds(says([](RandomDisks& p) { p.radius_min = 0; }), "the least radius of a pack = 0"));
+    CHECK(holds(says([](RandomDisks& p) { p.radius_max = 0.005; }),
+                "the largest radius of a pack, 0.005, must be 1 to 100 times the least, 0.01"));
+    CHECK(holds(says([](RandomDisks& p) { p.radius_max = std::nan(""); }), "the largest radius"));
+    CHECK(holds(says([](RandomDisks& p) { p.gap = -0.1; }), "the gap of a pack is -0.1"));
+    CHECK(holds(says([](RandomDisks& p) { p.gap = 1; }),
+                "a box of 1 by 2 is too small for disks 1.05 wide"));
+    CHECK(
+        holds(says([](RandomDisks& p) { p.periodic_x = true, p.gap = 0.16; }), "5 times as wide"));
+    CHECK(holds(says([](RandomDisks& p) { p.solid_fraction = 0.5; }), "give one of the two"));
+    CHECK(holds(says([](RandomDisks& p) { p.count = 0, p.solid_fraction = 1; }),
+                "the solid fraction of a pack is 1"));
+    CHECK(holds(says([](RandomDisks& p) { p.count = -1; }), "a pack of -1 disks"));
+    CHECK(holds(says([](RandomDisks& p) { p.count = 0, p.loose = true; }), "give one of the two"));
+    CHECK(holds(says([](RandomDisks& p) { p.count = 2000000; }), "a pack of up to 2e+06 disks"));
+    CHECK(holds(says([](RandomDisks& p) { p.count = 0, p.radius_min = p.radius_max = 1e-4; }),
+                "for at most 1e6"));
+    CHECK(holds(says([](RandomDisks& p) { p.count = 5000; }), "the box is full with 1"));
+    CHECK(holds(says([](RandomDisks& p) { p.count = 0, p.solid_fraction = 0.95; }),
+                "and a solid fraction of 0.8"));
+    CHECK(holds(says([](RandomDisks& p) { p.count = 0, p.solid_fraction = 0.8, p.loose = true; }),
+                "the box is full with"));
+}
+
+TEST_CASE("polygons stand in the circles of their disks and are turned at random") {
+    const auto disks = random_disks(pack_of(300, false, false, 0));
+    for (const long sides : {3L, 5L, 8L}) {
+        const auto grains = regular_polygons(disks, sides, 5);
+        REQUIRE(grains.size() == disks.size());
+        std::set<double> angles;
+        for (std::size_t k = 0; k < grains.size(); ++k) {
+            const Outline &round = disks[k].outline, &outline = grains[k].outline;
+            CHECK(grains[k].name == disks[k].name);
+            CHECK(static_cast<long>(outline.corners.size()) == sides);
+            for (const Point& p : outline.corners)
+                CHECK(std::hypot(p.x - round.x, p.y - round.y) ==
+                      doctest::Approx(round.radius).epsilon(1e-12));
+            angles.insert(
+                std::atan2(outline.corners[0].y - round.y, outline.corners[0].x - round.x));
+        }
+        CHECK(angles.size() == disks.size());
+        CHECK(*angles.begin() < -3);
+        CHECK(*angles.rbegin() > 3);
+        CHECK(overlaps(grains, 0, 0).depth == 0);
+    }
+}
+
+TEST_CASE("the deepest overlap of a pack is that of all pairs") {
+    for (const double period : {0.0, 3.0}) {
+        for (std::uint64_t seed = 0; seed < 40; ++seed) {
+            std::vector<PackedGrain> grains;
+            for (std::uint64_t k = 0; k < 12; ++k) {
+                const std::uint64_t n = 100 * seed + k;
+                grains.push_back(
+                    {"n" + std::to_string(k),
+                     moved(any_outline(n), any_number(n, 9, -9, 9), any_number(n, 10, 0, 4))});
+            }
+            // A plate among them reaches over many cells.
+            grains.push_back({"plate", box(0, 6.6, 2.9, 0.2)});
+            Overlap all;
+            for (std::size_t a = 0; a < grains.size(); ++a)
+                for (std::size_t b = a + 1; b < grains.size(); ++b)
+                    for (int image = -8; image <= 8; ++image) {
+                        const double depth = overlap_depth(
+                            grains[a].outline, moved(grains[b].outline, image * period, 0));
+                        if (depth > all.depth * (1 + 1e-12) + 1e-12)
+                            all = {grains[a].name, grains[b].name, depth};
+                    }
+            const Overlap found = overlaps(grains, period, 0);
+            CHECK(found.depth == doctest::Approx(all.depth).epsilon(1e-10));
+            CHECK(found.first == all.first);
+            CHECK(found.second == all.second);
+            CHECK(overlaps(grains, period, all.depth * 1.0001).first.empty());
+        }
+    }
+    CHECK(overlaps({}, 1, 0).depth == 0);
+    // Of several that overlap alike the first, and a grain may be longer than the period.
+    std::vector<PackedGrain> alike;
+    for (const double x : {6.0, 2.0, 0.0, 4.0})
+        alike.push_back({"at" + std::to_string(static_cast<int>(x)), disk(x, 0, 1.25)});
+    CHECK(overlaps(alike, 0, 0).depth == 0.5);
+    CHECK(overlaps(alike, 0, 0).first == "at6");
+    CHECK(overlaps(alike, 0, 0).second == "at4");
+    CHECK(overlaps({{"long", box(0.3, 0, 1.25, 1)}}, 1, 0).first == "long");
+    CHECK(overlaps({{"long", box(0.3, 0, 1.25, 1)}}, 1, 0).depth == doctest::Approx(0.25));
+    CHECK(overlaps({{"fits", box(0.3, 0, 1, 1)}}, 1, 0).depth == 0);
+}
+
+TEST_CASE("a pack that is written and read and written again gives the same bytes") {
+    std::vector<PackedGrain> grains =
+        regular_polygons(random_disks(pack_of(100, true, false, 0)), 5, 3);
+    for (PackedGrain& grain : random_disks(pack_of(100, true, true, 0)))
+        grains.push_back({"loose_" + grain.name, grain.outline});
+    grains.push_back({"third", disk(1.0 / 3, -1e-30, 1e20 / 3)});
+    grains.push_back({"L", letter_L(0.1, -0.2)});
+    grains.push_back({"largest", regular_polygon(1 / 3.0, 1e-7, 1 / 7.0, 1000, 1)});
+    const std::string first = folder() / "first.txt", second = folder() / "second.txt";
+    write_pack(first, grains);
+    const auto again = read_pack(first);
+    write_pack(second, again);
+    CHECK(bytes_of(first) == bytes_of(second));
+    REQUIRE(again.size() == grains.size());
+    for (std::size_t k = 0; k < grains.size(); ++k) {
+        const Outline &a = grains[k].outline, &b = again[k].outline;
+        CHECK(grains[k].name == again[k].name);
+        CHECK(a.kind == b.kind);
+        if (a.kind == OutlineKind::disk) CHECK((a.x == b.x && a.y == b.y && a.radius == b.radius));
+        REQUIRE(a.corners.size() == b.corners.size());
+        for (std::size_t c = 0; c < a.corners.size(); ++c)
+            CHECK((a.corners[c].x == b.corners[c].x && a.corners[c].y == b.corners[c].y));
+    }
+}
+
+namespace {
+
+std::string written(const std::string& bytes) {
+    std::string path = folder() / "pack.txt";
+    std::ofstream(path, std::ios::binary) << bytes;
+    return path;
+}
+
+}  // namespace
+
+TEST_CASE("a pack written by a person is read as it is meant") {
+    const auto grains =
+        read_pack(written("\xEF\xBB\xBF# two grains, \xC3\xA9\xE2\x82\xAC\xF0\x9F\x98\x80\r\n\r\n"
+                          "  disk\tleft  .5 -3e-1   0.25 # the first\r\n"
+                          "\t \r\n"
+                          "polygon 2nd 0 0  0 1  1 0#clockwise"));
+    REQUIRE(grains.size() == 2);
+    CHECK(grains[0].name == "left");
+    CHECK(grains[0].outline.x == 0.5);
+    CHECK(grains[0].outline.y == -0.3);
+    CHECK(grains[0].outline.radius == 0.25);
+    CHECK(grains[1].name == "2nd");
+    CHECK(area(grains[1].outline) == doctest::Approx(0.5));
+    CHECK(grains[1].outline.corners[1].x == 1);
+}
+
+TEST_CASE("a file that is no pack is refused with its line and the cure") {
+    using namespace std::string_literals;
+    const std::string good = "disk a 0 0 1\n", long_word(200, 'x');
+    struct Row {
+        std::string bytes, message;
+    };
+    for (const Row& row : std::vector<Row>{
+             {"", "pack.txt: holds no grain; write lines like: disk left 0.35 0.3 0.2"},
+             {"# only a comment\n\n", "pack.txt: holds no grain"},
+             {good + "circle b 0 0 1\n", "pack.txt:2: unknown word 'circle'; a line begins with"},
+             {"\n\nDisk b 0 0 1\n", "pack.txt:3: unknown word 'Disk'"},
+             {long_word + " b\n", "unknown word '" + std::string(40, 'x') + "...'"},
+             {"disk\n", "pack.txt:1: a disk without a name"},
+             {"disk 0.1 0.2 0.3\n", "pack.txt:1: '0.1' cannot name a grain"},
+             {"disk a-b 0 0 1\n", "'a-b' cannot name a grain: use letters, digits and '_'"},
+             {"disk \xC3\xA9 0 0 1\n", "cannot name a grain"},
+             {"disk " + long_word + " 0 0 1\n", "cannot name a grain"},
+             {"disk a 0 0\n", "pack.txt:1: a disk takes 3 numbers, x y radius, not 2"},
+             {"disk a 0 0 1 2\n", "a disk takes 3 numbers, x y radius, not 4"},
+             {"disk a 0 0 1 m\n", "pack.txt:1: 'm' is not a number"},
+             {"disk a 0 0 1m\n", "'1m' is not a number: write one like 0.25"},
+             {"disk a 0,5 0 1\n", "'0,5' is not a number"},
+             {"disk a 0 0 0x1\n", "'0x1' is not a number"},
+             {"disk a 0 nan 1\n", "'nan' is no number to compute with: give a finite one"},
+             {"disk a 0 0 inf\n", "'inf' is no number to compute with"},
+             {"disk a 0 0 1e999\n", "'1e999' is no number to compute with"},
+             {"disk a 0 0 1e300\n", "'1e300' is no number to compute with"},
+             {"disk a 0 0 -1\n", "pack.txt:1: 'a': the radius of a disk = -1 must be a length"},
+             {"disk a 0 0 0\n", "the radius of a disk = 0 must be"},
+             {"polygon p 0 0 1 0 1\n", "pack.txt:1: a polygon takes two numbers, x y, for each"},
+             {"polygon p 0 0 1 0\n", "not 4 numbers"},
+             {"polygon p 0 0 1 1 1 0 0 1\n", "pack.txt:1: 'p': the side from corner 1 to 2"},
+             {good + "polygon p 0 0 1 1 2 2\n", "pack.txt:2: 'p': the 3 corners of a polygon lie"},
+             {good + "\n# more\ndisk a 3 3 1\n",
+              "pack.txt:4: the name 'a' is that of line 1 too: give each grain its own"},
+             {good + "# \xff\n", "pack.txt:2: not UTF-8 text; save the file as UTF-8"},
+             {"# \xC0\xAF\n", "not UTF-8 text"},
+             {"# \xBF\xBF\n", "not UTF-8 text"},
+             {"# \xE0\x80\xAF\n", "not UTF-8 text"},
+             {"# \xED\xA0\x80\n", "not UTF-8 text"},
+             {"# \xF4\x90\x80\x80\n", "not UTF-8 text"},
+             {"# \xE2\x82", "not UTF-8 text"},
+             {"disk a 0 0 1\0\n"s, "pack.txt:1: a control character"},
+             {"disk a 0 0 1 # \x1b[31m\n", "pack.txt:1: a control character"},
+             {"disk a 0\r0 1\n", "pack.txt:1: a control character"},
+             {"# \x7f\n", "pack.txt:1: a control character"},
+             {good + "#" + std::string(100000, ' ') + "\n",
+              "pack.txt:2: the line has more than 100000 letters"},
+         }) {
+        CAPTURE(row.bytes.substr(0, 60));
+        const std::string sentence = refusal([&] { read_pack(written(row.bytes)); });
+        CAPTURE(sentence);
+        CHECK(holds(sentence, row.message));
+        CHECK(sentence.find('\n') == std::string::npos);
+    }
+    CHECK(holds(refusal([] { read_pack(folder() / "nowhere.txt"); }), "there is no such file"));
+    CHECK(holds(refusal([] { read_pack(folder()); }), "is a folder"));
+}
+
+TEST_CASE("a pack that could not be read again is not written") {
+    const std::string path = folder() / "never.txt";
+    const Outline round = disk(0, 0, 1);
+    CHECK(holds(refusal([&] { write_pack(path, {}); }), "no grain to write"));
+    CHECK(holds(refusal([&] { write_pack(path, {{"a b", round}}); }), "cannot name a grain"));
+    CHECK(holds(refusal([&] { write_pack(path, {{"", round}}); }), "cannot name a grain"));
+    CHECK(holds(refusal([&] {
+                    write_pack(path, {{"a", round}, {"b", round}, {"a", round}});
+                }),
+                "two grains have the name 'a'"));
+    CHECK(holds(refusal([&] {
+                    write_pack(folder() / "no/such/folder.txt", {{"a", round}});
+                }),
+                "cannot be opened for writing"));
+    CHECK_FALSE(std::filesystem::exists(path));
+}
+
+TEST_CASE("a free text is read and shown as it stands") {
+    Texts values;
+    const auto table_of = [&] {
+        ParameterTable table;
+        table.text("pack.file", values.path, "a pack of grains");
+        table.choice("pack.kind", values.kind, {"one", "two"}, "which");
+        return table;
+    };
+    ParameterTable table = table_of();
+    CHECK(holds(table.help(), "text; default \"none\""));
+    CHECK(holds(table.help(), "one | two; default \"one\""));
+    CHECK(table.takes_text("pack.file"));
+    CHECK(table.takes_text("pack.kind"));
+    const std::string longest(900, '\\');
+    for (const std::string text :
+         {"", "a pack.txt", "say \"so\"", "C:\\packs\\new", "# no comment", "it's", "{x = [1,",
+          "caf\xC3\xA9 \xF0\x9F\x98\x80", longest.c_str()}) {
+        table.set({"pack.file", text, "here"});
+        CHECK(values.path == text);
+        const std::string effective = table.effective_case();
+        values.path = "other";
+        for (const common::Setting& setting : common::read_case(effective, "effective.toml"))
+            table.set(setting);
+        CHECK(values.path == text);
+        CHECK(table.effective_case() == effective);
+    }
+    const auto says = [&](const std::string& line) {
+        return refusal([&] {
+            for (const common::Setting& setting : common::read_case(line, "case.toml"))
+                table.set(setting);
+        });
+    };
+    CHECK(says("pack.file = 3") == "case.toml:1:13: 'pack.file' takes text, not a whole number");
+    CHECK(says("pack.file = true") == "case.toml:1:13: 'pack.file' takes text, not true or false");
+    CHECK(holds(says("pack.kind = 3"), "'pack.kind' takes text, one of \"one\", \"two\""));
+    CHECK(holds(says("pack.kind = \"three\""), "= \"three\" is not one of \"one\", \"two\""));
+    CHECK(holds(says("pack.file = \"\\u007F\""), "holds a control character; write plain text"));
+    CHECK(holds(says("pack.file = \"" + std::string(901, 'x') + "\""),
+                "'pack.file' has 901 letters; write at most 900"));
+}
+
+TEST_CASE("items of a list may have free texts and be as many as 256") {
+    std::vector<Texts> items;
+    ParameterTable table;
+    table.list<Texts>(
+        "grain", items,
+        [](ParameterTable& t, const std::string& prefix, Texts& item) {
+            t.text(prefix + ".path", item.path, "a file");
+        },
+        "grains");
+    CHECK(table.takes_text("grain.new.path"));
+    for (int k = 0; k < 256; ++k)
+        table.set({"grain.g" + std::to_string(k) + ".path", "file " + std::to_string(k), "here"});
+    REQUIRE(items.size() == 256);
+    CHECK(items[255].path == "file 255");
+    CHECK(holds(refusal([&] {
+                    table.set({"grain.more.path", "one more", "here"});
+                }),
+                "more than 256 items in [grain]"));
+}
