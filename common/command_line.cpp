@@ -23,6 +23,12 @@ namespace fs = std::filesystem;
 constexpr std::array<const char*, 8> option_names{"--out",   "--restart", "--threads", "--dry-run",
                                                   "--quiet", "--force",   "--help",    "--version"};
 
+// An argument longer than a path may be is no path.
+bool is_there(const std::string& argument) {
+    std::error_code unreadable;
+    return fs::exists(argument, unreadable);
+}
+
 // The default case, found from the program's own place (build/ in the project) or the current
 // folder.
 std::string find_default_case(const About& about) {
@@ -150,7 +156,7 @@ CommandLine read_command_line(int argc, char** argv, const About& about, Paramet
             throw InputError(
                 "unknown option '" + argument + "'" +
                 (guess.empty() ? "; --help lists all options" : "; did you mean '" + guess + "'?"));
-        } else if (argument.find('=') != std::string::npos && !fs::exists(argument)) {
+        } else if (argument.find('=') != std::string::npos && !is_there(argument)) {
             overrides.push_back(argument);
         } else if (argument.empty()) {
             throw InputError("an empty argument: give the path of a case file, or leave it out");

@@ -56,7 +56,10 @@ Split time_steps(const Case& w, long steps, int threads, long& particle_count, l
     const LinearShape shape;
     State state;
     state.assembly = assemble(w.problem);
-    auto& [particles, grains, rigid, bonds] = state.assembly;
+    Particles& particles = state.assembly.particles;
+    const std::vector<Grain>& grains = state.assembly.grains;
+    std::vector<RigidMotion>& rigid = state.assembly.rigid;
+    std::vector<Bond>& bonds = state.assembly.bonds;
     particle_count = particles.count(), grain_count = static_cast<long>(grains.size());
     const std::vector<AnyLaw> laws = laws_of(w.problem);
     const Contact contact(w.problem.contact, grains, bonds);

@@ -150,8 +150,9 @@ inline void refuse_comparison(const Case& w, const std::vector<PlannedGrain>& pl
                compare + " needs a disk, first in the case, and rigid plates, at most 16");
     for (const auto& [name, value, wants_rigid] :
          {std::tuple("theory.grain", w.grain, false), std::tuple("theory.plate", w.plate, true)}) {
-        const auto found = std::find_if(plans.begin(), plans.end(),
-                                        [&](const auto& plan) { return plan.name == value; });
+        const auto found =
+            std::find_if(plans.begin(), plans.end(),
+                         [&wanted = value](const auto& plan) { return plan.name == wanted; });
         if (value.empty()) continue;
         refuse(found == plans.end(), std::string(name) + ": there is no grain '" + value + "'");
         refuse(is_rigid(*found) != wants_rigid, std::string(name) + ": '" + value + "' is " +
@@ -165,6 +166,15 @@ inline void refuse_comparison(const Case& w, const std::vector<PlannedGrain>& pl
         refuse(material_of(*seen).law != Law::j2,
                compare + " needs a grain of a material with law = \"j2\", and '" + seen->name +
                    "' is of another: set theory.grain");
+        refuse(std::all_of(plans.begin(), plans.end(),
+                           [](const auto& plan) {
+                               const GrainCase& from = plan.from;
+                               return from.velocity_x == 0 && from.velocity_y == 0 &&
+                                      from.spin == 0 && from.amplitude == 0;
+                           }),
+               compare +
+                   " measures shares of the energy at the start, and nothing moves then: "
+                   "give a grain a velocity");
     }
 }
 

@@ -96,7 +96,7 @@ inline void open_ledger(const mpm::Assembly& all, Ledger& l) {
     }
 }
 
-/// The energies of t^n, when all of its step has been summed up.
+/// The energies of t^n, [MPM-14] and [MPM-15], when all of its step has been summed up.
 inline void enter_energies(long step, const std::vector<StripSums>& strips, Ledger& l) {
     StripSums s;
     for (const StripSums& one : strips) {

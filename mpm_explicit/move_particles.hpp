@@ -12,6 +12,22 @@ namespace mpm_explicit {
 
 using namespace mpm;
 
+/// Frictional walls, which stop a particle that the nodes would carry through: of a grain in contact
+/// they hold the nodes, and single particles may still be faster than those.
+struct Stop {
+    double x_least, x_most, y_least, y_most;
+
+    explicit Stop(const Mesh& mesh) {
+        constexpr double far = std::numeric_limits<double>::infinity();
+        x_least = mesh.has(x_low, Boundary::frictional) ? mesh.x_low : -far;
+        x_most = mesh.has(x_high, Boundary::frictional) ? mesh.x_high() : far;
+        y_least = mesh.has(y_low, Boundary::frictional) ? mesh.y_low : -far;
+        y_most = mesh.has(y_high, Boundary::frictional) ? mesh.y_high() : far;
+    }
+    double x(double at) const { return at < x_least ? x_least : at > x_most ? x_most : at; }
+    double y(double at) const { return at < y_least ? y_least : at > y_most ? y_most : at; }
+};
+
 /// in:     flip, the FLIP fraction; frozen particles keep their places
 /// in/out: particles; sums of their strips
 /// exact:  the momentum of the particles changes by that of the nodes, to round-off
@@ -25,6 +41,7 @@ void move_particles(const Shape& shape, const std::vector<Grain>& grains,
     const double* m_p = particles.m_p.data();
     const NodeMotion* motion = nodes.motion.data();
     const double dt_move = frozen ? 0 : dt, pic = 1 - flip;
+    const Stop stop(nodes.mesh());
     const auto move_strip = [&](long number) {
         const Strip& strip = nodes.strips()[static_cast<std::size_t>(number)];
         StripSums sum = sums[static_cast<std::size_t>(number)];
@@ -54,7 +71,8 @@ void move_particles(const Shape& shape, const std::vector<Grain>& grains,
                 const double new_x = flip_x + pic * (ux - flip_x),
                              new_y = flip_y + pic * (uy - flip_y);
                 vx_p[p] = new_x, vy_p[p] = new_y;
-                const double x = x_p[p] + dt_move * ux, y = y_p[p] + dt_move * uy;  // [FLIP-7]
+                const double x = stop.x(x_p[p] + dt_move * ux),
+                             y = stop.y(y_p[p] + dt_move * uy);  // [FLIP-7]
                 x_p[p] = x, y_p[p] = y;
 
                 const double now = new_x * new_x + new_y * new_y;

@@ -31,7 +31,10 @@ int run(const Shape& shape, const Case& wanted, const Scales& scales, common::Se
     // 2. Particles at t = 0, stresses half a step before.
     State state;
     state.assembly = assemble(wanted.problem);
-    auto& [particles, grains, rigid, bonds] = state.assembly;
+    Particles& particles = state.assembly.particles;
+    const std::vector<Grain>& grains = state.assembly.grains;
+    std::vector<RigidMotion>& rigid = state.assembly.rigid;
+    std::vector<Bond>& bonds = state.assembly.bonds;
     const std::vector<AnyLaw> laws = laws_of(wanted.problem);
     const Contact contact(wanted.problem.contact, grains, bonds);
     const double dt = scales.dt;

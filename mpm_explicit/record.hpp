@@ -110,9 +110,11 @@ class Recorder {
     }
 
    private:
+    // Whether a multiple of the interval falls on this step.
     bool due(double interval, long step) const {
-        const double every = std::max(1.0, std::round(interval / scales_.dt));
-        return interval > 0 && std::fmod(static_cast<double>(step), every) == 0;
+        if (!(interval > 0)) return false;
+        const double multiple = std::round(static_cast<double>(step) * scales_.dt / interval);
+        return std::lround(multiple * interval / scales_.dt) == step;
     }
 
     void write_row(double time, const StepSums& sums, const State& state,

@@ -17,7 +17,7 @@ struct Scales {
     long steps = 0, particles = 0, grains = 0;
     double thinnest = 0;  // grain [length]
     double bytes = 0;
-    double least_mass = 0;  // of a node that takes part: 1e-12 of the lightest particle's
+    double least_mass = 0;  // of a node that takes part: round-off of the lightest particle's
 };
 
 inline Scales scales_of(const Case& w) {
@@ -43,7 +43,8 @@ inline Scales scales_of(const Case& w) {
         nodes += ((box.x_high - box.x_low) / mesh.h + 5) * ((box.y_high - box.y_low) / mesh.h + 5);
     }
     s.grains = static_cast<long>(plans.size());
-    s.least_mass = 1e-12 * lightest;
+    // Where a smooth shape ends, its weight falls as the square of its gradient.
+    s.least_mass = (w.shape == "linear" ? 1e-12 : 1e-24) * lightest;
     s.dt = w.alpha * mesh.h / (s.sound_speed + s.speed);
     const double steps = w.end / s.dt;
     if (!(steps <= 1e9))

@@ -5,7 +5,8 @@
 //     sigma^{1/2} - sigma^{-1/2} = T : (e^{1/2} - e^{-1/2})                             [MPM-10]
 //     e^{1/2} - e^{-1/2} = 1/2 (grad v^0 + grad v^0T) dt                                [MPM-11]
 //     f_i = - sum_p V_p^{1/2} sigma_p^{1/2} . grad S_ip                  the force of   [MPM-12]
-// The slide prints [MPM-9] with a minus: that is the density's, [MPM-1].
+// The slide prints [MPM-9] with a minus: that is the density's, [MPM-1]. In all they are what
+// [MPM-1..3] are for a particle.
 #pragma once
 
 #include <variant>
@@ -89,6 +90,7 @@ void update_stress(const LawOf& law, const Compliance& compliance, bool frozen, 
            least = 1;
 #pragma omp simd reduction(+ : elastic, leapfrog, announced, plastic_old, plastic_new, volume) \
     reduction(min : least)
+    // [stress]
     for (long k = 0; k < chunk.count; ++k) {
         const StrainStep de{chunk.xx[k], chunk.yy[k], 0.5 * (chunk.xy[k] + chunk.yx[k])};
         const Stress old{sxx[k], syy[k], sxy[k], szz[k]};
@@ -99,6 +101,7 @@ void update_stress(const LawOf& law, const Compliance& compliance, bool frozen, 
         const double V = V_old * ratio;  // [MPM-9]
         V_p[k] = V;
         sxx[k] = s.xx, syy[k] = s.yy, sxy[k] = s.xy, szz[k] = s.zz;
+        // [/stress]
 
         const double cross = compliance(old, s);
         elastic += V * compliance(s, s), leapfrog += V * cross, volume += (V - V_old) * cross;
@@ -114,7 +117,7 @@ void update_stress(const LawOf& law, const Compliance& compliance, bool frozen, 
 
 }  // namespace detail
 
-/// Volumes and stresses of a chunk at the new half level, and their energies.       [MPM-9, 10]
+/// Volumes and stresses of a chunk at the new half level, and their energies.    [MPM-9, MPM-10]
 /// in:     frozen particles keep their volumes
 inline void update_stress(const std::vector<AnyLaw>& laws, bool frozen, const Chunk& chunk,
                           const std::vector<Grain>& grains, Particles& particles,

@@ -154,6 +154,7 @@ TEST_CASE("beyond omega dt 2 both invariants stay and bound nothing" *
     const Run r = run("unbounded", "oscillator", "time.alpha=1.8 time.energy_limit=0");
     check_results(r, 2);
     CHECK(r.value("omega_dt") > 2);
+    CHECK(r.value("energy_14") < 0);
     CHECK(r.value("largest_kinetic") > 1e6);
 }
 

@@ -16,6 +16,8 @@
 #include <utility>
 #include <vector>
 
+#include "common/mpm/bond_load.hpp"
+#include "common/mpm/node_problem.hpp"
 #include "common/mpm/transfer.hpp"
 #include "common/parameters.hpp"
 
@@ -40,72 +42,6 @@ struct ContactSums {
         rigid += other.rigid, impulse += other.impulse, nodes += other.nodes;
     }
 };
-
-namespace detail {
-
-/// Who is at a node, with mass.
-struct Party {
-    long slot;
-    int grain;  // of a wall: its side
-    bool wall, rigid;
-    double per_mx, per_my;  // 1/m_i; 0 where nothing changes the velocity
-    double m;
-    double vx_0, vy_0;  // before the step
-    double vx, vy;      // after it, being corrected
-    double x, y;        // center of the grain's part around the node, from the node
-    double gx, gy;      // out of the grain
-    bool is_fixed() const { return wall || rigid; }
-};
-
-struct Pair {
-    std::size_t a, b;
-    int bond;       // number of the bond that holds, or -1
-    double nx, ny;  // from a to b
-    double mu;
-    double mass_n, mass_t;  // reduced, along the normal and across
-    double lambda_n, lambda_t;
-};
-
-struct NodeProblem {
-    static constexpr std::size_t most_parties = 16;
-    std::array<Party, most_parties> party;
-    std::array<Pair, most_parties*(most_parties - 1) / 2> pair;
-    std::size_t parties = 0, pairs = 0;
-    bool isotropic = true;  // no velocity is fixed in one direction only
-};
-
-/// Projected Gauss-Seidel, until a sweep changes no velocity by more than round-off.
-inline void solve(NodeProblem& node) {
-    double size = 0;
-    for (std::size_t k = 0; k < node.parties; ++k)
-        size = std::max({size, std::fabs(node.party[k].vx), std::fabs(node.party[k].vy)});
-    constexpr int most_sweeps = 500;
-    for (int sweep = 0; sweep < most_sweeps; ++sweep) {
-        double change = 0;
-        for (std::size_t k = 0; k < node.pairs; ++k) {
-            Pair& pair = node.pair[k];
-            Party &a = node.party[pair.a], &b = node.party[pair.b];
-            const double tx = -pair.ny, ty = pair.nx, ux = a.vx - b.vx, uy = a.vy - b.vy;
-            double n = pair.lambda_n + pair.mass_n * (ux * pair.nx + uy * pair.ny),
-                   t = pair.lambda_t + pair.mass_t * (ux * tx + uy * ty);
-            if (pair.bond < 0) {
-                n = std::max(0.0, n);
-                t = std::clamp(t, -pair.mu * n, pair.mu * n);
-            }
-            const double dn = n - pair.lambda_n, dt = t - pair.lambda_t,
-                         jx = dn * pair.nx + dt * tx, jy = dn * pair.ny + dt * ty;
-            pair.lambda_n = n, pair.lambda_t = t;
-            a.vx -= jx * a.per_mx, a.vy -= jy * a.per_my;
-            b.vx += jx * b.per_mx, b.vy += jy * b.per_my;
-            change = std::max({change, std::fabs(jx) * std::max(a.per_mx, b.per_mx),
-                               std::fabs(jy) * std::max(a.per_my, b.per_my)});
-        }
-        const bool exact = node.pairs == 1 && node.isotropic;
-        if (exact || !(change > 1e-15 * size)) return;
-    }
-}
-
-}  // namespace detail
 
 class Contact {
    public:
@@ -159,7 +95,7 @@ class Contact {
         struct Block {
             ContactSums sums;
             std::vector<std::array<double, 2>> push;  // impulses on rigid grains
-            std::vector<BondLoad> loads;
+            std::vector<detail::BondLoad> loads;
             bool crowded = false;
         };
         std::array<Block, common::block_count> blocks;
@@ -178,7 +114,7 @@ class Contact {
                     const detail::Pair& pair = node.pair[k];
                     add_work(node, pair, block.sums);
                     add_push(node, pair, block.push);
-                    if (pair.bond >= 0) block.loads.push_back(load_of(node, pair));
+                    if (pair.bond >= 0) block.loads.push_back(detail::load_of(node, pair));
                 }
                 for (std::size_t k = 0; k < node.parties; ++k) {
                     if (node.party[k].is_fixed()) continue;
@@ -199,25 +135,16 @@ class Contact {
             for (const Block& block : blocks)
                 motion.push_x += block.push[k][0] / dt, motion.push_y += block.push[k][1] / dt;
         }
-        std::vector<BondLoad> total(bonds.size());
+        std::vector<detail::BondLoad> total(bonds.size());
         for (const Block& block : blocks)
-            for (const BondLoad& load : block.loads)
+            for (const detail::BondLoad& load : block.loads)
                 total[static_cast<std::size_t>(load.bond)] += load;
-        for (std::size_t k = 0; k < bonds.size(); ++k) take_load(total[k], dt, bonds[k]);
+        for (std::size_t k = 0; k < bonds.size(); ++k) detail::take_load(total[k], dt, bonds[k]);
         spread_velocity(nodes);
         return sums;
     }
 
    private:
-    struct BondLoad {
-        int bond = 0;
-        double jx = 0, jy = 0;  // impulse on b
-        double ax = 0, ay = 0;  // area of the interface, along its normal from a to b
-        void operator+=(const BondLoad& other) {
-            jx += other.jx, jy += other.jy, ax += other.ax, ay += other.ay;
-        }
-    };
-
     // Everybody with mass at shared node n. out: whether there is anything to do
     bool gather(long n, const GrainNodes& nodes, detail::NodeProblem& node) const {
         const auto k = static_cast<std::size_t>(n);
@@ -305,7 +232,9 @@ class Contact {
                 const int bond = bonds.empty() || two.wall ? -1 : bond_of(bonds, one, two);
                 if (only_bonded && bond < 0) continue;
                 const bool free = !one.is_fixed() && !two.is_fixed();
-                if (free && std::min(one.m, two.m) < low_mass * (one.m + two.m)) continue;
+                // A bond holds however little of a grain is here.
+                const bool light = std::min(one.m, two.m) < low_mass * (one.m + two.m);
+                if (free && bond < 0 && light) continue;
                 detail::Pair& pair = node.pair[node.pairs];
                 if (!find_normal(one, two, pair.nx, pair.ny)) continue;
                 const double apart = (two.x - one.x) * pair.nx + (two.y - one.y) * pair.ny;
@@ -380,32 +309,6 @@ class Contact {
             sum[0] += sign * (pair.lambda_n * pair.nx - pair.lambda_t * pair.ny);
             sum[1] += sign * (pair.lambda_n * pair.ny + pair.lambda_t * pair.nx);
         }
-    }
-
-    // The share of a node in the interface: gradients of a volume sum up to its surface, wherever
-    // on the mesh that is.
-    //   A n = 1/2 sum_i (g_a - g_b)
-    static BondLoad load_of(const detail::NodeProblem& node, const detail::Pair& pair) {
-        const detail::Party &a = node.party[pair.a], &b = node.party[pair.b];
-        return {pair.bond, pair.lambda_n * pair.nx - pair.lambda_t * pair.ny,
-                pair.lambda_n * pair.ny + pair.lambda_t * pair.nx, 0.5 * (a.gx - b.gx),
-                0.5 * (a.gy - b.gy)};
-    }
-
-    // Mean stress on the interface, and whether the bond breaks.
-    static void take_load(const BondLoad& load, double dt, Bond& bond) {
-        bond.area = std::hypot(load.ax, load.ay);
-        if (bond.broken || !(bond.area > 0)) {
-            bond.normal_stress = bond.shear_stress = 0;
-            return;
-        }
-        const double nx = load.ax / bond.area, ny = load.ay / bond.area, per = 1 / (dt * bond.area);
-        // b is pulled back towards a where the impulse on it is against the normal.
-        bond.normal_stress = -(load.jx * nx + load.jy * ny) * per;
-        bond.shear_stress = (load.jy * nx - load.jx * ny) * per;
-        const double pull = std::max(0.0, bond.normal_stress) / bond.tension,
-                     shear = bond.shear_stress / bond.shear;
-        bond.broken = pull * pull + shear * shear >= 1;
     }
 
     // Parts of a node's mass that are too small to turn a normal.

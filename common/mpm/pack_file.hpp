@@ -55,7 +55,8 @@ inline void refuse_bad_line(std::string_view line, const std::string& place) {
 
 // A word for a message, which is short whatever the word.
 inline std::string in_quotes(std::string_view word) {
-    return "'" + std::string(word.substr(0, 40)) + (word.size() > 40 ? "...'" : "'");
+    std::string quoted = "'";
+    return quoted.append(word.substr(0, 40)).append(word.size() > 40 ? "...'" : "'");
 }
 
 inline void require_name(std::string_view name, const std::string& place) {
@@ -164,7 +165,10 @@ inline void write_pack(const std::string& path, const std::vector<PackedGrain>& 
         const Outline& outline = grain.outline;
         const bool is_disk = outline.kind == OutlineKind::disk;
         file.text((is_disk ? "disk " : "polygon ") + grain.name);
-        const auto write = [&](double value) { file.text(" " + common::number_text(value)); };
+        const auto write = [&](double value) {
+            file.text(" ");
+            file.text(common::number_text(value));
+        };
         if (is_disk) write(outline.x), write(outline.y), write(outline.radius);
         for (const Point& p : outline.corners) write(p.x), write(p.y);
         file.text("\n");

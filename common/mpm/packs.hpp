@@ -43,7 +43,9 @@ inline std::vector<PackedGrain> named(const std::vector<Outline>& outlines) {
     std::vector<PackedGrain> grains;
     for (const Outline& outline : outlines) {
         const std::string number = std::to_string(grains.size() + 1);
-        grains.push_back({"g" + std::string(digits - number.size(), '0') + number, outline});
+        std::string name = "g";
+        name.append(digits - number.size(), '0').append(number);
+        grains.push_back({name, outline});
     }
     return grains;
 }

@@ -1,0 +1,79 @@
+// Everybody who meets at one node, and the impulses that end their approach and their slip.   [MPM-4]
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace mpm {
+
+namespace detail {
+
+/// Who is at a node, with mass.
+struct Party {
+    long slot;
+    int grain;  // of a wall: its side
+    bool wall, rigid;
+    double per_mx, per_my;  // 1/m_i; 0 where nothing changes the velocity
+    double m;
+    double vx_0, vy_0;  // before the step
+    double vx, vy;      // after it, being corrected
+    double x, y;        // center of the grain's part around the node, from the node
+    double gx, gy;      // out of the grain
+    bool is_fixed() const { return wall || rigid; }
+};
+
+struct Pair {
+    std::size_t a, b;
+    int bond;       // number of the bond that holds, or -1
+    double nx, ny;  // from a to b
+    double mu;
+    double mass_n, mass_t;  // reduced, along the normal and across
+    double lambda_n, lambda_t;
+};
+
+struct NodeProblem {
+    static constexpr std::size_t most_parties = 16;
+    std::array<Party, most_parties> party;
+    std::array<Pair, most_parties*(most_parties - 1) / 2> pair;
+    std::size_t parties = 0, pairs = 0;
+    bool isotropic = true;  // no velocity is fixed in one direction only
+};
+
+/// Projected Gauss-Seidel, until a sweep changes no velocity by more than round-off.
+inline void solve(NodeProblem& node) {
+    double size = 0;
+    for (std::size_t k = 0; k < node.parties; ++k)
+        size = std::max({size, std::fabs(node.party[k].vx), std::fabs(node.party[k].vy)});
+    constexpr int most_sweeps = 500;
+    for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+        double change = 0;
+        for (std::size_t k = 0; k < node.pairs; ++k) {
+            Pair& pair = node.pair[k];
+            Party &a = node.party[pair.a], &b = node.party[pair.b];
+            // [impulse]
+            const double tx = -pair.ny, ty = pair.nx, ux = a.vx - b.vx, uy = a.vy - b.vy;
+            double n = pair.lambda_n + pair.mass_n * (ux * pair.nx + uy * pair.ny),
+                   t = pair.lambda_t + pair.mass_t * (ux * tx + uy * ty);
+            if (pair.bond < 0) {
+                n = std::max(0.0, n);
+                t = std::clamp(t, -pair.mu * n, pair.mu * n);
+            }
+            const double dn = n - pair.lambda_n, dt = t - pair.lambda_t,
+                         jx = dn * pair.nx + dt * tx, jy = dn * pair.ny + dt * ty;
+            pair.lambda_n = n, pair.lambda_t = t;
+            a.vx -= jx * a.per_mx, a.vy -= jy * a.per_my;
+            b.vx += jx * b.per_mx, b.vy += jy * b.per_my;
+            // [/impulse]
+            change = std::max({change, std::fabs(jx) * std::max(a.per_mx, b.per_mx),
+                               std::fabs(jy) * std::max(a.per_my, b.per_my)});
+        }
+        const bool exact = node.pairs == 1 && node.isotropic;
+        if (exact || !(change > 1e-15 * size)) return;
+    }
+}
+
+}  // namespace detail
+
+}  // namespace mpm

@@ -1,0 +1,12 @@
+#!/bin/sh
+# fig05.sh PROGRAM FOLDER: the compressed grains with a CFL number of 0.25, with linear shape functions as in the talk and with gimp, which particles feel less when they cross from cell to cell;
+# for their energy also with larger CFL numbers.
+set -eu
+program=$1
+folder=$2
+press() { "$program" mpm_explicit/cases/compressed.toml --force --quiet --out "$@"; }
+press "$folder/linear"
+press "$folder/gimp" method.shape=gimp
+# Status 3: the energy, or a particle, has run away.
+press "$folder/alpha_0.5" time.alpha=0.5 output.fringes_interval=0
+press "$folder/alpha_0.7" time.alpha=0.7 output.fringes_interval=0 || test $? = 3

@@ -1,0 +1,47 @@
+# A bar held at its left end swings in its lowest mode. Above: velocity of its center of mass, and energies. Below: velocity and stress of the particles over half a period, and theory (lines). The scheme
+# swings a little too slowly, as its mesh is coarse, and keeps the energy.
+wide = 1500; high = 1080
+load 'common/style.gp'
+E = 100; rho = 1; L = 25; H = 3.125; v_0 = 0.1
+k = pi / (2 * L); omega = k * sqrt(E / rho); T = 2 * pi / omega; mass = rho * L * H
+file = run.'/history.dat'
+p_x = col(file, 'momentum_x'); kinetic = col(file, 'kinetic'); elastic = col(file, 'elastic'); energy = col(file, 'energy')
+unit = mass * v_0**2 / 4
+dt = real(system(sprintf("awk '!/#/ && n++ == 1 { print $1; exit }' %s", file)))
+set multiplot title 'A bar held at one end' font ',24'
+set xrange [0:5]; set xtics 1
+set xlabel 't / period'
+set lmargin at screen 0.085; set rmargin at screen 0.48
+set tmargin at screen 0.87; set bmargin at screen 0.605
+set yrange [-0.8:1.6]; set ytics 0.4
+set title 'velocity of the center of mass / v_0' offset 0, -0.5
+set key top right horizontal
+set samples 1000
+plot file using ($1 / T):(column(p_x) / mass / v_0) with lines lt 1 title sprintf('frequency %+.2f %%', 100 * (result('frequency') / omega - 1)), 2 / pi * cos(2 * pi * x) with lines lt 2 dt 2 title 'theory'
+set lmargin at screen 0.585; set rmargin at screen 0.98
+set title 'energy / initial'
+set yrange [0:1.5]; set ytics 0.5
+plot file using ($1 / T):(column(energy) / unit) with lines lt 8 lw 2 title 'total', file using ($1 / T):(column(kinetic) / unit) with lines lt 1 title 'kinetic', \
+     file using ($1 / T):(column(elastic) / unit) with lines lt 2 title 'elastic'
+files = system('ls '.run.'/particles_*.dat | head -n 5')
+# A one before the digits keeps zeros in front from making the number octal.
+step(n) = real('1'.system(sprintf("basename %s .dat | tr -dc 0-9", word(files, n)))) - 1e6
+tint = blue.' '.sky.' '.green.' '.amber.' '.orange
+set xrange [0:1.2]; set xtics 0.2
+set xlabel 'x / L'
+set lmargin at screen 0.085; set rmargin at screen 0.48
+set tmargin at screen 0.43; set bmargin at screen 0.12
+set title 'v_x / v_0'
+set yrange [-1.1:1.1]; set ytics 0.5
+unset key
+mark = 'with points pt 7 ps 0.7'
+do for [n = 1:5] { set label n word('t=0 T/8 T/4 3T/8 T/2', n) at 1.03, cos(omega * step(n) * dt) textcolor rgb word(tint, n) }
+plot for [n = 1:5] word(files, n) using ($1 / L):($3 / v_0) @mark lc rgb word(tint, n), for [n = 1:5] (x < 1 ? sin(k * L * x) * cos(omega * step(n) * dt) : NaN) with lines lw 1.5 lc rgb word(tint, n)
+do for [n = 1:5] { unset label n }
+set lmargin at screen 0.585; set rmargin at screen 0.98
+set title 'σ_{xx} / (v_0 (E ρ)^{1/2})'
+set yrange [-0.1:1.1]
+# Stresses are half a step older.
+plot for [n = 1:5] word(files, n) using ($1 / L):($6 / (v_0 * sqrt(E * rho))) @mark lc rgb word(tint, n), \
+     for [n = 1:5] (x < 1 ? cos(k * L * x) * sin(omega * (step(n) - 0.5) * dt) : NaN) with lines lw 1.5 lc rgb word(tint, n)
+unset multiplot
