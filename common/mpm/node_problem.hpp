@@ -53,21 +53,24 @@ inline void solve(NodeProblem& node) {
             Pair& pair = node.pair[k];
             Party &a = node.party[pair.a], &b = node.party[pair.b];
             // [impulse]
-            const double tx = -pair.ny, ty = pair.nx, ux = a.vx - b.vx, uy = a.vy - b.vy;
-            double n = pair.lambda_n + pair.mass_n * (ux * pair.nx + uy * pair.ny),
-                   t = pair.lambda_t + pair.mass_t * (ux * tx + uy * ty);
-            if (pair.bond < 0) {
-                n = std::max(0.0, n);
-                t = std::clamp(t, -pair.mu * n, pair.mu * n);
-            }
-            const double dn = n - pair.lambda_n, dt = t - pair.lambda_t,
-                         jx = dn * pair.nx + dt * tx, jy = dn * pair.ny + dt * ty;
-            pair.lambda_n = n, pair.lambda_t = t;
-            a.vx -= jx * a.per_mx, a.vy -= jy * a.per_my;
-            b.vx += jx * b.per_mx, b.vy += jy * b.per_my;
+            const auto exchange = [&](double jx, double jy) {
+                a.vx -= jx * a.per_mx, a.vy -= jy * a.per_my;
+                b.vx += jx * b.per_mx, b.vy += jy * b.per_my;
+                change = std::max({change, std::fabs(jx) * std::max(a.per_mx, b.per_mx),
+                                   std::fabs(jy) * std::max(a.per_my, b.per_my)});
+            };
+            const double approach = (a.vx - b.vx) * pair.nx + (a.vy - b.vy) * pair.ny;
+            double n = pair.lambda_n + pair.mass_n * approach;
+            if (pair.bond < 0) n = std::max(0.0, n);
+            exchange((n - pair.lambda_n) * pair.nx, (n - pair.lambda_n) * pair.ny);
+            pair.lambda_n = n;
+
+            const double slip = (b.vx - a.vx) * pair.ny - (b.vy - a.vy) * pair.nx;
+            double t = pair.lambda_t + pair.mass_t * slip;
+            if (pair.bond < 0) t = std::clamp(t, -pair.mu * n, pair.mu * n);
+            exchange((pair.lambda_t - t) * pair.ny, (t - pair.lambda_t) * pair.nx);
+            pair.lambda_t = t;
             // [/impulse]
-            change = std::max({change, std::fabs(jx) * std::max(a.per_mx, b.per_mx),
-                               std::fabs(jy) * std::max(a.per_my, b.per_my)});
         }
         const bool exact = node.pairs == 1 && node.isotropic;
         if (exact || !(change > 1e-15 * size)) return;
