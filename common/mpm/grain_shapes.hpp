@@ -49,9 +49,10 @@ inline Outline polygon(std::vector<Point> corners) {
     using detail::require;
     const std::size_t n = corners.size(), most = 1000;
     const auto number = [](std::size_t k) { return std::to_string(k + 1); };
-    require(n >= 3 && n <= most, "a polygon of " + std::to_string(n) +
-                                     " corners: give at least 3 and at most " +
-                                     std::to_string(most));
+    const std::string count = std::to_string(n);
+    require(
+        n >= 3 && n <= most,
+        "a polygon of " + count + " corners: give at least 3 and at most " + std::to_string(most));
     for (std::size_t k = 0; k < n; ++k)
         require(detail::usable(corners[k].x) && detail::usable(corners[k].y),
                 "corner " + number(k) + " is not at a finite place: give two numbers below 1e100");
@@ -65,7 +66,7 @@ inline Outline polygon(std::vector<Point> corners) {
                     " of a polygon are the same point: leave one out");
     }
     require(size > 1e-100 && detail::width(corners) > tolerance,
-            "the " + std::to_string(n) + " corners of a polygon lie on a line: it has no area");
+            "the " + count + " corners of a polygon lie on a line: it has no area");
     for (std::size_t k = 0; k < n; ++k) {
         const std::size_t next = (k + 1) % n;
         for (std::size_t m = k + 2; m < n; ++m) {
@@ -112,8 +113,9 @@ inline Outline box(double x, double y, double width, double height, double angle
 inline Outline regular_polygon(double x, double y, double circumradius, long sides,
                                double angle_degrees = 0) {
     detail::require_length(circumradius, "the radius of a regular polygon");
+    const std::string count = std::to_string(sides);
     detail::require(sides >= 3 && sides <= 1000,
-                    "a regular polygon of " + std::to_string(sides) + " sides: give 3 to 1000");
+                    "a regular polygon of " + count + " sides: give 3 to 1000");
     std::vector<Point> corners;
     for (long k = 0; k < sides; ++k) {
         const double turns = static_cast<double>(k) / static_cast<double>(sides),
