@@ -65,7 +65,8 @@ inline common::ParameterTable describe(Case& w) {
                  "what the run is compared with");
     table.text("theory.grain", w.grain,
                "the grain it looks at; empty: the first that is not rigid");
-    table.text("theory.plate", w.plate, "the rigid grain it looks at; empty: the last");
+    table.text("theory.plate", w.plate,
+               "the rigid grain whose load counts; empty: the mean of all");
     table.real("theory.tolerance", w.tolerance, "", between(0, 10), "of the result, relative");
 
     table.group("output");

@@ -113,7 +113,7 @@ inline void compare_bar(const Run& run, common::Summary& summary) {
     summary.result("frequency", fit.frequency, "1/time", bar.frequency(),
                    run.wanted.tolerance * bar.frequency(), "bar with a fixed and a free end");
     const auto energy = run.history.column("energy");
-    summary.result("energy_change", last(energy) / energy.front() - 1, "1", 0, 0.05, "exact: none");
+    summary.result("energy_change", last(energy) / energy.front() - 1, "1", 0, 0.01, "exact: none");
 }
 
 /// A compression wave that stands between rollers.
@@ -160,7 +160,7 @@ inline void compare_oscillator(const Run& run, common::Summary& summary) {
                         "over the kinetic energy at the start; negative beyond omega dt = 2");
     if (stable) {
         const common::OscillationFit fit = common::fit_oscillation(run.momentum_x(), dt);
-        summary.result("frequency", fit.frequency, "1/time", leapfrog_frequency(w, dt), 1e-3 * w,
+        summary.result("frequency", fit.frequency, "1/time", leapfrog_frequency(w, dt), 1e-4 * w,
                        "leapfrog, (2/dt) asin(omega dt/2)");
         summary.result_within("largest_kinetic", most, "1", 0, 1 / (1 - 0.25 * w * w * dt * dt),
                               "bounded by [MPM-14], over the initial");
@@ -205,17 +205,19 @@ inline void compare_disk(const Run& run, common::Summary& summary) {
     };
     double P = 0, plates = 0;
     for (const Grain& grain : grains)
-        if (grain.rigid) P += std::fabs(mean_late("force_y_" + grain.name)), plates += 1;
+        if (grain.rigid && (run.wanted.plate.empty() || grain.name == run.wanted.plate))
+            P += std::fabs(mean_late("force_y_" + grain.name)), plates += 1;
     P /= plates;
     const double R = run.plans[run.subject.grain].outline.radius;
     const double xx = mean_late("center_xx"), yy = mean_late("center_yy"),
                  xy = mean_late("center_xy"), exact = disk_center_difference(P, R);
     const Stress center = disk_stress(P, R, 0, 0);
     const std::string source = "Hertz's disk between two line loads";
-    summary.result_info("load", P, "force", "mean of both plates over the last tenth of the run");
+    summary.result_info("load", P, "force",
+                        "of the plates, the mean over the last tenth of the run");
     summary.result("center_difference", std::hypot(xx - yy, 2 * xy) / exact, "1", 1,
                    run.wanted.tolerance, source + ", over 8P/(pi D)");
-    summary.result("center_xx", xx / center.xx, "1", 1, 3 * run.wanted.tolerance,
+    summary.result("center_xx", xx / center.xx, "1", 1, run.wanted.tolerance,
                    source + ", over 2P/(pi D)");
     summary.result("center_yy", yy / center.yy, "1", 1, run.wanted.tolerance,
                    source + ", over -6P/(pi D)");

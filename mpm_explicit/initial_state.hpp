@@ -45,7 +45,7 @@ inline BodyForce drive(const Case& w, long step, double dt, std::vector<RigidMot
 
 /// Stresses are taken half a step back with the velocities of the start, as leapfrog needs them:
 ///   sigma^{-1/2} = sigma^0 - T : e(v^0) dt/2
-/// errors: InputError for grains that do not fit
+/// note:   positions stay where they are: they belong to t = 0 as the case gives them
 template <class Shape>
 void start_leapfrog(const Shape& shape, const std::vector<AnyLaw>& laws, const Contact& contact,
                     bool frozen, double dt, GrainNodes& nodes, State& state) {

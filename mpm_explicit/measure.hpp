@@ -10,9 +10,9 @@
 
 namespace mpm_explicit {
 
-/// The grain and the plate that a comparison looks at.
+/// The grain that a comparison looks at.
 struct Subject {
-    std::size_t grain = 0, plate = 0;
+    std::size_t grain = 0;
 };
 
 inline Subject subject_of(const Case& w, const std::vector<Grain>& grains) {
@@ -21,7 +21,6 @@ inline Subject subject_of(const Case& w, const std::vector<Grain>& grains) {
     for (std::size_t g = 0; g < grains.size(); ++g) {
         if (!grains[g].rigid && (w.grain.empty() ? !found : grains[g].name == w.grain))
             subject.grain = g, found = true;
-        if (grains[g].rigid && (w.plate.empty() || grains[g].name == w.plate)) subject.plate = g;
     }
     return subject;
 }

@@ -78,7 +78,6 @@ struct Frame {
     std::vector<int> strips;                    // per grain: how many
     std::vector<int> ring;                      // per grain: it reaches around a periodic mesh
     double moved = 0;  // how far a particle can have come since the sort [length]
-    double speed = 0;  // largest in the last step
 };
 
 class GrainNodes {
@@ -193,7 +192,7 @@ void archive(Archive& a, Frame& frame) {
     a("first_row", frame.first_row), a("rows", frame.rows);
     a("first_column", frame.first_column), a("end_column", frame.end_column);
     a("strip_begin", frame.strip_begin), a("strips", frame.strips), a("ring", frame.ring);
-    a("moved", frame.moved), a("speed", frame.speed);
+    a("moved", frame.moved);
 }
 
 }  // namespace mpm
