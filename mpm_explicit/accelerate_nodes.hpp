@@ -2,21 +2,16 @@
 //
 //     m_i (v_i^1 - v_i^0)/dt = - sum_p V_p^{1/2} sigma_p^{1/2} . grad S_ip + m_i f_i^0   [MPM-12]
 // The force of constraint f_i^0 is what contact adds afterwards (contact.hpp); the first term was
-// summed up in update_stress.hpp.
+// summed up in common/mpm/strain.hpp.
 #pragma once
 
+#include "common/mpm/plates.hpp"
 #include "common/mpm/transfer.hpp"
 #include "mpm_explicit/ledger.hpp"
 
 namespace mpm_explicit {
 
 using namespace mpm;
-
-/// Forces on all mass alike.
-struct BodyForce {
-    double gravity_x = 0, gravity_y = 0;  // acceleration now
-    double damping = 0;                   // of the velocity [1/time]
-};
 
 /// v_i^1 without contact.
 ///   v_i^1 = v_i^0 + dt (f_i/m_i + g - c v_i^0)

@@ -81,12 +81,12 @@ Split time_steps(const Case& w, long steps, int threads, long& particle_count, l
         timed(split.sort, [&] {
             if (step == steps) nodes.sort(grains, particles, state.frame);
         });
-        const BodyForce body = drive(w, step, dt, rigid);
+        const BodyForce body = drive(w.problem, step, dt, rigid);
         timed(split.put, [&] { put_on_nodes(shape, particles, nodes); });
         timed(split.nodes, [&] { velocity_of_nodes(grains, rigid, nodes); });
         timed(split.stress, [&] {
             for_each_chunk(grains, nodes, sums.strips, [&](Chunk& chunk) {
-                velocity_gradient(shape, particles, nodes, dt, chunk);
+                velocity_gradient(shape, particles, nodes, OldVelocity{}, dt, chunk);
                 update_stress(laws, w.frozen, chunk, grains, particles, sums.strips);
                 add_internal_force(shape, particles, chunk, nodes);
                 turn_stress(chunk, particles);

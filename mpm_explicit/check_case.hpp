@@ -7,11 +7,14 @@
 #include <tuple>
 #include <vector>
 
-#include "mpm_explicit/check_comparison.hpp"
+#include "common/mpm/check_comparison.hpp"
+#include "mpm_explicit/case.hpp"
 
 namespace mpm_explicit {
 
 namespace detail {
+
+using mpm::detail::refuse;
 
 constexpr std::size_t longest_pack_name = 40;  // that write_pack() takes
 
@@ -64,7 +67,7 @@ inline void refuse_grain(const PlannedGrain& plan, const Material& material, con
 inline void refuse_impossible(const Case& w) {
     using detail::refuse;
     const Problem& problem = w.problem;
-    detail::refuse_extremes(w);
+    mpm::detail::refuse_extremes(w);
     const Mesh mesh = problem.mesh();
     for (const Side side : {x_low, x_high})
         refuse(problem.periodic_x && problem.walls[static_cast<std::size_t>(side)] != "open",
@@ -105,7 +108,7 @@ inline void refuse_impossible(const Case& w) {
                                 common::shown(worst.depth / mesh.h) +
                                 " cells: move them apart or make them smaller");
     (void)bonds_of(problem, plans, materials);
-    detail::refuse_comparison(w, plans, materials);
+    mpm::detail::refuse_comparison(w, plans, materials);
     const double pixels = static_cast<double>(problem.cells_x * w.pixels_per_cell) *
                           static_cast<double>(problem.cells_y * w.pixels_per_cell);
     refuse(w.fringes_interval > 0 && pixels > 5e7,

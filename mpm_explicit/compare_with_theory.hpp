@@ -11,9 +11,10 @@
 
 #include "common/fit_oscillation.hpp"
 #include "common/mpm/exact_solutions.hpp"
+#include "common/mpm/measure.hpp"
 #include "common/mpm/scheme_theory.hpp"
 #include "common/summary.hpp"
-#include "mpm_explicit/measure.hpp"
+#include "mpm_explicit/initial_state.hpp"
 
 namespace mpm_explicit {
 

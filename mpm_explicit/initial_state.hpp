@@ -1,11 +1,10 @@
 // The state at t = 0: grains filled with particles, and stresses half a step before.
 #pragma once
 
-#include "common/mpm/plates.hpp"
+#include "common/mpm/scales.hpp"
 #include "mpm_explicit/accelerate_nodes.hpp"
 #include "mpm_explicit/case.hpp"
 #include "mpm_explicit/ledger.hpp"
-#include "mpm_explicit/scales.hpp"
 #include "mpm_explicit/update_stress.hpp"
 
 namespace mpm_explicit {
@@ -24,25 +23,6 @@ void archive(Archive& a, State& state) {
     archive(a, state.ledger);
 }
 
-/// The law of every material.
-inline std::vector<AnyLaw> laws_of(const Problem& problem) {
-    std::vector<AnyLaw> laws;
-    for (const Material& m : materials_of(problem)) {
-        laws.push_back({Elastic(m), Compliance(m)});
-        if (m.law == Law::j2) laws.back().law = J2(m);
-        if (m.law == Law::drucker_prager) laws.back().law = DruckerPrager(m);
-    }
-    return laws;
-}
-
-/// Loads in the step from t^n: the body force, and the velocities of rigid grains.
-inline BodyForce drive(const Case& w, long step, double dt, std::vector<RigidMotion>& rigid) {
-    const Problem& problem = w.problem;
-    const double t = (static_cast<double>(step) + 0.5) * dt, share = share_of_load(t, problem.rise);
-    drive_plates(t, dt, problem.rise, rigid);
-    return {share * problem.gravity_x, share * problem.gravity_y, problem.damping};
-}
-
 /// Stresses are taken half a step back with the velocities of the start, as leapfrog needs them:
 ///   sigma^{-1/2} = sigma^0 - T : e(v^0) dt/2
 /// note:   positions stay where they are: they belong to t = 0 as the case gives them
@@ -55,7 +35,7 @@ void start_leapfrog(const Shape& shape, const std::vector<AnyLaw>& laws, const C
     contact.join_bonds(all.bonds, nodes);
     std::vector<StripSums> sums;
     for_each_chunk(all.grains, nodes, sums, [&](Chunk& chunk) {
-        velocity_gradient(shape, all.particles, nodes, -0.5 * dt, chunk);
+        velocity_gradient(shape, all.particles, nodes, OldVelocity{}, -0.5 * dt, chunk);
         update_stress(laws, frozen, chunk, all.grains, all.particles, sums);
     });
     open_ledger(all, state.ledger);

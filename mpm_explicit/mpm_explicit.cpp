@@ -7,12 +7,12 @@
 // Run:   build/mpm_explicit mpm_explicit/cases/rebound.toml time.alpha=1
 // Run:   build/mpm_explicit mpm_explicit/cases/rebound.toml contact.separation=0
 //
-// Reading order: common/mpm/particles.hpp, shapes.hpp, grain_nodes.hpp and transfer.hpp there, then
-// update_stress.hpp, accelerate_nodes.hpp, common/mpm/contact.hpp, move_particles.hpp, ledger.hpp.
+// Reading order: common/mpm/particles.hpp, shapes.hpp, grain_nodes.hpp, transfer.hpp and strain.hpp
+// there, then update_stress.hpp, accelerate_nodes.hpp, common/mpm/contact.hpp, move_particles.hpp,
+// ledger.hpp.
 #include <cstdio>
 #include <optional>
 
-#include "common/mpm/plates.hpp"
 #include "mpm_explicit/check_case.hpp"
 #include "mpm_explicit/move_particles.hpp"
 #include "mpm_explicit/record.hpp"
@@ -55,12 +55,12 @@ int run(const Shape& shape, const Case& wanted, const Scales& scales, common::Se
     while (session.keep_going(step, scales.steps)) {
         if (nodes.sort_is_due(state.frame)) nodes.sort(grains, particles, state.frame);
         recorder.snapshot(step, state, session);
-        const BodyForce body = drive(wanted, step, dt, rigid);
+        const BodyForce body = drive(wanted.problem, step, dt, rigid);
         put_on_nodes(shape, particles, nodes);    // particles -> grid
         velocity_of_nodes(grains, rigid, nodes);  // v_i^0
         contact.join_bonds(bonds, nodes);
         for_each_chunk(grains, nodes, sums.strips, [&](Chunk& chunk) {
-            velocity_gradient(shape, particles, nodes, dt, chunk);  // [MPM-11]
+            velocity_gradient(shape, particles, nodes, OldVelocity{}, dt, chunk);  // [MPM-11]
             update_stress(laws, wanted.frozen, chunk, grains, particles,
                           sums.strips);                          // [MPM-9, 10]
             add_internal_force(shape, particles, chunk, nodes);  // [MPM-12]

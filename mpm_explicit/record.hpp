@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "common/mpm/write_output.hpp"
 #include "common/session.hpp"
 #include "mpm_explicit/compare_with_theory.hpp"
 #include "mpm_explicit/initial_state.hpp"
-#include "mpm_explicit/write_output.hpp"
 
 namespace mpm_explicit {
 
@@ -61,9 +61,11 @@ class Recorder {
     /// Writes the files that are due at this step, before it.
     void snapshot(long step, const State& state, common::Session& session) const {
         const std::string folder = session.path("");
-        if (due(wanted_.particles_interval, step)) write_particles(folder, step, wanted_, state);
-        if (due(wanted_.grains_interval, step)) write_grains(folder, step, state);
-        if (due(wanted_.fringes_interval, step)) write_fringe_raster(folder, step, wanted_, state);
+        if (due(wanted_.particles_interval, step))
+            write_particles(folder, step, wanted_, state.assembly);
+        if (due(wanted_.grains_interval, step)) write_grains(folder, step, state.assembly);
+        if (due(wanted_.fringes_interval, step))
+            write_fringe_raster(folder, step, wanted_, state.assembly);
         if (wanted_.pack && step == 0) write_pack_of(folder, wanted_);
     }
 

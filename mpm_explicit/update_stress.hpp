@@ -1,5 +1,5 @@
-// grid -> particles -> grid: how the motion of the nodes strains the particles, what stress answers,
-// and the force it puts on the nodes.
+// What stress answers to the strain of a step, between the motion of the nodes and the force on them
+// (common/mpm/strain.hpp).
 //
 //     V_p^{1/2} - V_p^{-1/2} = + V_p^{-1/2} sum_i grad S_ip . v_i^0 dt                 [MPM-9]
 //     sigma^{1/2} - sigma^{-1/2} = T : (e^{1/2} - e^{-1/2})                             [MPM-10]
@@ -10,71 +10,14 @@
 #pragma once
 
 #include <variant>
+#include <vector>
 
-#include "common/mpm/materials.hpp"
-#include "common/mpm/transfer.hpp"
+#include "common/mpm/strain.hpp"
 #include "mpm_explicit/ledger.hpp"
 
 namespace mpm_explicit {
 
 using namespace mpm;
-
-/// The law of a material and its inverse, worked out once.
-struct AnyLaw {
-    std::variant<Elastic, J2, DruckerPrager> law;
-    Compliance compliance;
-};
-
-/// Up to Chunk::size particles of one strip that are worked on together, with their velocity
-/// gradients times dt.
-struct Chunk {
-    static constexpr long size = 128;
-    int grain = 0;
-    std::size_t strip = 0;
-    long begin = 0, count = 0;
-    double xx[size], yy[size], xy[size], yx[size];  // dt dv_x/dx, dv_y/dy, dv_x/dy, dv_y/dx
-};
-
-/// Calls work(chunk) for all particles of grains that are not rigid, and clears the sums of their
-/// strips.
-template <class Work>
-void for_each_chunk(const std::vector<Grain>& grains, const GrainNodes& nodes,
-                    std::vector<StripSums>& sums, const Work& work) {
-    sums.assign(nodes.strips().size(), {});
-    nodes.for_each_strip([&](const Strip& strip, std::size_t number) {
-        sums[number].least_V = 1;
-        if (grains[static_cast<std::size_t>(strip.grain)].rigid) return;
-        Chunk chunk;
-        chunk.grain = strip.grain, chunk.strip = number;
-        for (chunk.begin = strip.begin; chunk.begin < strip.end; chunk.begin += Chunk::size) {
-            chunk.count = std::min(Chunk::size, strip.end - chunk.begin);
-            work(chunk);
-        }
-    });
-}
-
-/// Velocity gradients of a chunk's particles, times dt.                                  [MPM-11]
-///   grad v_p = sum_i grad S_ip v_i^0
-/// exact:  zero for a translation; no symmetric part for a rigid rotation of the nodes
-template <class Shape>
-void velocity_gradient(const Shape& shape, const Particles& particles, const GrainNodes& nodes,
-                       double dt, Chunk& chunk) {
-    const Locator at(nodes.mesh());
-    const long* origin = nodes.origins(chunk.grain);
-    const NodeMotion* motion = nodes.motion.data();
-    const double *x_p = particles.x_p.data() + chunk.begin,
-                 *y_p = particles.y_p.data() + chunk.begin;
-    for (long k = 0; k < chunk.count; ++k) {
-        double xx = 0, yy = 0, xy = 0, yx = 0;
-        for_each_node(shape, at, origin, x_p[k], y_p[k],
-                      [&](long slot, double, double Gx, double Gy) {
-                          const NodeMotion& v = motion[slot];
-                          xx += Gx * v.vx_0, xy += Gy * v.vx_0;
-                          yx += Gx * v.vy_0, yy += Gy * v.vy_0;
-                      });
-        chunk.xx[k] = dt * xx, chunk.xy[k] = dt * xy, chunk.yx[k] = dt * yx, chunk.yy[k] = dt * yy;
-    }
-}
 
 namespace detail {
 
@@ -129,41 +72,6 @@ inline void update_stress(const std::vector<AnyLaw>& laws, bool frozen, const Ch
             detail::update_stress(one, law.compliance, frozen, chunk, particles, sums[chunk.strip]);
         },
         law.law);
-}
-
-/// Force of a chunk's stress on the nodes.                                               [MPM-12]
-///   f_i -= V_p sigma_p . grad S_ip
-/// exact:  the sum over nodes is zero
-template <class Shape>
-void add_internal_force(const Shape& shape, const Particles& particles, const Chunk& chunk,
-                        GrainNodes& nodes) {
-    const Locator at(nodes.mesh());
-    const long* origin = nodes.origins(chunk.grain);
-    NodeForce* force = nodes.force.data();
-    const auto b = static_cast<std::size_t>(chunk.begin);
-    const double *x_p = &particles.x_p[b], *y_p = &particles.y_p[b], *V_p = &particles.V_p[b],
-                 *sxx = &particles.sxx_p[b], *syy = &particles.syy_p[b], *sxy = &particles.sxy_p[b];
-    for (long k = 0; k < chunk.count; ++k) {
-        const double xx = V_p[k] * sxx[k], yy = V_p[k] * syy[k], xy = V_p[k] * sxy[k];
-        for_each_node(shape, at, origin, x_p[k], y_p[k],
-                      [&](long slot, double, double Gx, double Gy) {
-                          force[slot].x -= xx * Gx + xy * Gy;
-                          force[slot].y -= xy * Gx + yy * Gy;
-                      });
-    }
-}
-
-/// At the end of the step, stress turns with the body, by the particle's spin.
-/// exact:  energies and invariants stay
-/// note:   The slide's [MPM-2] has no such term; grains that roll need it.
-inline void turn_stress(const Chunk& chunk, Particles& particles) {
-    const auto b = static_cast<std::size_t>(chunk.begin);
-    double *sxx = &particles.sxx_p[b], *syy = &particles.syy_p[b], *sxy = &particles.sxy_p[b];
-#pragma omp simd
-    for (long k = 0; k < chunk.count; ++k) {
-        const Stress s = rotated({sxx[k], syy[k], sxy[k], 0}, 0.5 * (chunk.yx[k] - chunk.xy[k]));
-        sxx[k] = s.xx, syy[k] = s.yy, sxy[k] = s.xy;
-    }
 }
 
 }  // namespace mpm_explicit

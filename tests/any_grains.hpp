@@ -195,12 +195,12 @@ struct Run {
         std::vector<RigidMotion>& rigid = state.assembly.rigid;
         std::vector<Bond>& bonds = state.assembly.bonds;
         if (nodes.sort_is_due(state.frame)) nodes.sort(grains, at, state.frame);
-        const BodyForce body = drive(wanted, step, dt, rigid);
+        const BodyForce body = drive(wanted.problem, step, dt, rigid);
         put_on_nodes(shape, at, nodes);
         velocity_of_nodes(grains, rigid, nodes);
         contact.join_bonds(bonds, nodes);
         for_each_chunk(grains, nodes, strips, [&](Chunk& chunk) {
-            velocity_gradient(shape, at, nodes, dt, chunk);
+            velocity_gradient(shape, at, nodes, OldVelocity{}, dt, chunk);
             update_stress(laws, wanted.frozen, chunk, grains, at, strips);
             add_internal_force(shape, at, chunk, nodes);
             if (!wanted.frozen) turn_stress(chunk, at);

@@ -42,7 +42,7 @@ void strain(const Shape& shape, double dt, Cloud& cloud, GrainNodes& nodes,
             std::vector<StripSums>& sums) {
     const std::vector<AnyLaw> laws{{Elastic(standard), Compliance(standard)}};
     for_each_chunk(cloud.grains, nodes, sums, [&](Chunk& chunk) {
-        velocity_gradient(shape, cloud.particles, nodes, dt, chunk);
+        velocity_gradient(shape, cloud.particles, nodes, OldVelocity{}, dt, chunk);
         update_stress(laws, false, chunk, cloud.grains, cloud.particles, sums);
         add_internal_force(shape, cloud.particles, chunk, nodes);
         turn_stress(chunk, cloud.particles);
@@ -144,7 +144,7 @@ TEST_CASE("a translation or a rotation of the nodes strains nothing") {
             const std::vector<double> V = cloud.particles.V_p;
             const double dt = 0.01;
             for_each_chunk(cloud.grains, nodes, sums, [&, omega = omega](Chunk& chunk) {
-                velocity_gradient(shape, cloud.particles, nodes, dt, chunk);
+                velocity_gradient(shape, cloud.particles, nodes, OldVelocity{}, dt, chunk);
                 for (long k = 0; k < chunk.count; ++k) {
                     CHECK(std::fabs(chunk.xx[k]) <= 1e-15 * size);
                     CHECK(std::fabs(chunk.yy[k]) <= 1e-15 * size);
@@ -328,7 +328,7 @@ TEST_CASE("internal forces are what the change of elastic energy calls for") {
         double work = 0, power = 0, size = 0;
         const Particles& p = cloud.particles;
         for_each_chunk(cloud.grains, nodes, sums, [&](Chunk& chunk) {
-            velocity_gradient(shape, p, nodes, 0.1, chunk);
+            velocity_gradient(shape, p, nodes, OldVelocity{}, 0.1, chunk);
             add_internal_force(shape, p, chunk, nodes);
             for (long k = 0; k < chunk.count; ++k) {
                 const auto n = static_cast<std::size_t>(chunk.begin + k);
@@ -1073,7 +1073,7 @@ TEST_CASE("loads are those of the middle of the step") {
     rigid[0].wanted_vx = 2;
     for (const long step : {0L, 3L, 40L, 200L}) {
         const double dt = 0.02, share = share_of_load((real(step) + 0.5) * dt, 1);
-        const BodyForce body = drive(c, step, dt, rigid);
+        const BodyForce body = drive(c.problem, step, dt, rigid);
         CHECK(body.gravity_x == doctest::Approx(3 * share).epsilon(1e-14));
         CHECK(body.gravity_y == doctest::Approx(-4 * share).epsilon(1e-14));
         CHECK(body.damping == 0.7);

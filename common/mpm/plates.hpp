@@ -1,11 +1,19 @@
-// Rigid grains: plates and pistons that move as the case says, or that a force drives.
+// Loads: gravity, and rigid grains, which are plates and pistons that move as the case says or that
+// a force drives.
 #pragma once
 
-#include <cmath>
+#include <vector>
 
 #include "common/mpm/grains.hpp"
+#include "common/mpm/problem.hpp"
 
 namespace mpm {
+
+/// Forces on all mass alike.
+struct BodyForce {
+    double gravity_x = 0, gravity_y = 0;  // acceleration now
+    double damping = 0;                   // of the velocity [1/time]
+};
 
 /// The share of a load that is on at a time: 0 at t = 0, 1 after the rise, with two continuous
 /// derivatives, so that it wakes few waves.
@@ -30,6 +38,14 @@ inline void drive_plates(double t, double dt, double rise, std::vector<RigidMoti
         is.vy = is.servo_y ? servo(is, is.vy, is.force, is.push_y) : share * is.wanted_vy;
         is.travel_x += dt * is.vx, is.travel_y += dt * is.vy;
     }
+}
+
+/// Loads in the step from t^n: the body force, and the velocities of rigid grains.
+inline BodyForce drive(const Problem& problem, long step, double dt,
+                       std::vector<RigidMotion>& rigid) {
+    const double t = (static_cast<double>(step) + 0.5) * dt, share = share_of_load(t, problem.rise);
+    drive_plates(t, dt, problem.rise, rigid);
+    return {share * problem.gravity_x, share * problem.gravity_y, problem.damping};
 }
 
 }  // namespace mpm

@@ -24,6 +24,16 @@ void with_shape(const Scheme& scheme, const Work& work) {
     if (scheme.shape == Scheme::quadratic) work(QuadraticShape{});
 }
 
+/// Which velocity of a node is meant: before the step, or after it.
+struct OldVelocity {
+    static double x(const NodeMotion& v) { return v.vx_0; }
+    static double y(const NodeMotion& v) { return v.vy_0; }
+};
+struct NewVelocity {
+    static double x(const NodeMotion& v) { return v.vx_1; }
+    static double y(const NodeMotion& v) { return v.vy_1; }
+};
+
 /// Where a particle is on the mesh, in cells from node (0, 0).
 struct Locator {
     double x_low, y_low, per_h;

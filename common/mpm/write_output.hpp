@@ -5,12 +5,13 @@
 #include <string>
 #include <vector>
 
+#include "common/mpm/assembly.hpp"
+#include "common/mpm/case.hpp"
 #include "common/mpm/fringes.hpp"
 #include "common/random.hpp"
 #include "common/writers.hpp"
-#include "mpm_explicit/initial_state.hpp"
 
-namespace mpm_explicit {
+namespace mpm {
 
 inline constexpr long most_particles_written = 40000;
 
@@ -27,13 +28,13 @@ inline double seen(const Mesh& mesh, double x) {
 /// Writes particles_NNNNNN.dat (and .vtp): all of them, or a random sample of about
 /// most_particles_written.
 inline void write_particles(const std::string& folder, long step, const Case& w,
-                            const State& state) {
-    const Particles& at = state.assembly.particles;
+                            const Assembly& all) {
+    const Particles& at = all.particles;
     const Mesh mesh = w.problem.mesh();
     const long every = (at.count() + most_particles_written - 1) / most_particles_written;
     std::array<std::vector<double>, 11> data;
-    for (std::size_t g = 0; g < state.assembly.grains.size(); ++g) {
-        const Grain& grain = state.assembly.grains[g];
+    for (std::size_t g = 0; g < all.grains.size(); ++g) {
+        const Grain& grain = all.grains[g];
         for (long p = grain.begin; p < grain.end; ++p) {
             const bool kept =
                 every <= 1 || common::uniform(7, 7, static_cast<std::uint64_t>(p), 0) *
@@ -74,11 +75,11 @@ inline void write_particles(const std::string& folder, long step, const Case& w,
 
 /// Writes grains_NNNNNN.dat, one line per grain: number, center of mass, mean velocity, mass, mean
 /// stress over the grain, whether rigid.
-inline void write_grains(const std::string& folder, long step, const State& state) {
-    const Particles& at = state.assembly.particles;
+inline void write_grains(const std::string& folder, long step, const Assembly& all) {
+    const Particles& at = all.particles;
     std::array<std::vector<double>, 10> data;
-    for (std::size_t g = 0; g < state.assembly.grains.size(); ++g) {
-        const Grain& grain = state.assembly.grains[g];
+    for (std::size_t g = 0; g < all.grains.size(); ++g) {
+        const Grain& grain = all.grains[g];
         double m = 0, V = 0, x = 0, y = 0, vx = 0, vy = 0, sxx = 0, syy = 0, sxy = 0;
         for (long k = grain.begin; k < grain.end; ++k) {
             const auto p = static_cast<std::size_t>(k);
@@ -107,10 +108,10 @@ inline void write_grains(const std::string& folder, long step, const State& stat
 
 /// Writes fringes_NNNNNN.dat: the principal stress difference of elastic grains on pixels.
 inline void write_fringe_raster(const std::string& folder, long step, const Case& w,
-                                const State& state) {
+                                const Assembly& all) {
     const Mesh mesh = w.problem.mesh();
     write_fringes(folder + common::numbered("fringes", step, "dat"),
-                  draw_fringes(state.assembly.particles, state.assembly.grains, mesh, whole(mesh),
+                  draw_fringes(all.particles, all.grains, mesh, whole(mesh),
                                static_cast<int>(w.pixels_per_cell)));
 }
 
@@ -122,4 +123,4 @@ inline void write_pack_of(const std::string& folder, const Case& w) {
     write_pack(folder + "pack.txt", grains);
 }
 
-}  // namespace mpm_explicit
+}  // namespace mpm

@@ -6,9 +6,10 @@
 #include <vector>
 
 #include "common/history.hpp"
-#include "mpm_explicit/initial_state.hpp"
+#include "common/mpm/assembly.hpp"
+#include "common/mpm/case.hpp"
 
-namespace mpm_explicit {
+namespace mpm {
 
 /// The grain that a comparison looks at.
 struct Subject {
@@ -74,4 +75,4 @@ inline void add_comparison(const Case& w, const Subject& subject, const Assembly
     if (w.compare == "collapse") row.push_back(front_of(all, share_beyond_front));
 }
 
-}  // namespace mpm_explicit
+}  // namespace mpm

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "common/mpm/assembly.hpp"
-#include "mpm_explicit/case.hpp"
+#include "common/mpm/case.hpp"
 
-namespace mpm_explicit {
+namespace mpm {
 
 struct Scales {
     double sound_speed = 0, speed = 0;  // largest c_p, largest |v| of a grain
@@ -72,4 +72,4 @@ inline Scales scales_of(const Case& w) {
     return s;
 }
 
-}  // namespace mpm_explicit
+}  // namespace mpm

@@ -6,9 +6,9 @@
 #include <tuple>
 #include <vector>
 
-#include "mpm_explicit/scales.hpp"
+#include "common/mpm/scales.hpp"
 
-namespace mpm_explicit::detail {
+namespace mpm::detail {
 
 inline void refuse(bool condition, const std::string& sentence) {
     if (condition) throw common::InputError(sentence);
@@ -187,4 +187,4 @@ inline void refuse_extremes(const Case& w) {
                           "round-off: move mesh.origin_x and origin_y nearer to 0");
 }
 
-}  // namespace mpm_explicit::detail
+}  // namespace mpm::detail
