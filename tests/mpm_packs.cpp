@@ -742,7 +742,7 @@ TEST_CASE("the deepest overlap of a pack is that of all pairs") {
             for (std::uint64_t k = 0; k < 12; ++k) {
                 const std::uint64_t n = 100 * seed + k;
                 grains.push_back(
-                    {"n" + std::to_string(k),
+                    {std::string("n").append(std::to_string(k)),
                      moved(any_outline(n), any_number(n, 9, -9, 9), any_number(n, 10, 0, 4))});
             }
             // A plate among them reaches over many cells.
