@@ -93,7 +93,7 @@ int start(int argc, char** argv, std::optional<common::Session>& holder) {
     const common::CommandLine command = common::read_command_line(argc, argv, about, table);
     refuse_impossible(wanted);
     const Scales scales = scales_of(wanted);
-    const std::vector<std::string> warnings = resolution_warnings(wanted, scales);
+    const std::vector<std::string> warnings = warnings_of(wanted, scales);
     for (const std::string& warning : warnings)
         std::fprintf(stderr, "warning: %s\n", warning.c_str());
     if (!command.quiet) std::printf("%s", describe_scales(wanted, scales).c_str());
