@@ -92,8 +92,12 @@ class Recorder {
         const common::History& history = session.history;
         common::Summary& summary = session.summary;
         if (history.all().empty()) return;
-        compare_with_theory(wanted_, scales_, subject_, static_cast<double>(step) * scales_.dt,
-                            state, history, summary);
+        const std::vector<Material> materials = materials_of(wanted_.problem);
+        const theory::Run run{wanted_,        scales_,
+                              state.assembly, history,
+                              subject_,       static_cast<double>(step) * scales_.dt,
+                              materials,      plan_grains(wanted_.problem, materials)};
+        compare_with_theory(run, summary);
         const auto largest = [&](const char* name) {
             double most = 0;
             for (const double value : history.column(name)) most = std::max(most, std::fabs(value));
