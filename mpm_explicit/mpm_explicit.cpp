@@ -39,7 +39,7 @@ int run(const Shape& shape, const Case& wanted, const Scales& scales, common::Se
     const Contact contact(wanted.problem.contact, grains, bonds);
     const double dt = scales.dt;
     GrainNodes nodes(wanted.problem.mesh(), Shape::width, scales.least_mass);
-    Recorder recorder(wanted, scales, state, session.history);
+    LeapfrogRecorder recorder(wanted, scales, state, session.history);
     StepSums sums;
     long step = 0;
     if (session.restarting()) {
