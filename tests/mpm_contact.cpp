@@ -41,9 +41,9 @@ struct Meeting {
         });
         before = nodes.motion;
     }
-    void meet(const ContactRule& rule, double dt = 0.01) {
+    void meet(const ContactRule& rule, double dt = 0.01, const ContactLevel& level = {}) {
         const Contact contact(rule, cloud.grains, bonds);
-        sums = contact.apply(dt, nodes, bonds, cloud.rigid);
+        sums = contact.apply(dt, nodes, bonds, cloud.rigid, level);
     }
     /// Members of shared node n that have mass, and walls.
     std::vector<Member> members(long n) const {
@@ -444,6 +444,44 @@ TEST_CASE("work of contact is the change of kinetic energy that it makes") {
             CHECK(s.friction != 0);
             CHECK(s.bond != 0);
         }
+    }
+}
+
+TEST_CASE("a scheme that counts contact at another level of time gets the same motion") {
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+        const auto met = [&](const ContactLevel& level) {
+            Meeting m(crowd(seed, 4, 2));
+            Random random(seed);
+            m.accelerate(
+                [&](int, NodeMotion& v) { v.vx_1 += random(-1, 1), v.vy_1 += random(-1, 1); });
+            Bond bond;
+            bond.a = 2, bond.b = 0, bond.tension = bond.shear = 1e30;
+            m.bonds = {bond};
+            m.meet(rule_of(0.3), 0.01, level);
+            return m;
+        };
+        const Meeting usual = met({}), old = met({1, 1}), twice = met({0.25, 2});
+        for (std::size_t i = 0; i < usual.nodes.motion.size(); ++i) {
+            CHECK(twice.nodes.motion[i].vx_1 == usual.nodes.motion[i].vx_1);
+            CHECK(twice.nodes.motion[i].vy_1 == usual.nodes.motion[i].vy_1);
+        }
+        CHECK(twice.sums.impulse == doctest::Approx(2 * usual.sums.impulse));
+        CHECK(twice.sums.nodes == usual.sums.nodes);
+        // Rigid grains have one velocity at all levels.
+        CHECK(twice.sums.rigid == doctest::Approx(2 * usual.sums.rigid));
+        for (std::size_t g = 4; g < 6; ++g)
+            CHECK(twice.cloud.rigid[g].push_x == doctest::Approx(2 * usual.cloud.rigid[g].push_x));
+        CHECK(twice.bonds[0].normal_stress == doctest::Approx(2 * usual.bonds[0].normal_stress));
+        // Work is linear in the share of the old velocity.
+        const auto quarter = [](double all_old, double half) {
+            return 2 * (all_old + 1.5 * (half - all_old));
+        };
+        CHECK(twice.sums.normal ==
+              doctest::Approx(quarter(old.sums.normal, usual.sums.normal)).epsilon(1e-10));
+        CHECK(twice.sums.friction ==
+              doctest::Approx(quarter(old.sums.friction, usual.sums.friction)).epsilon(1e-10));
+        CHECK(twice.sums.bond ==
+              doctest::Approx(quarter(old.sums.bond, usual.sums.bond)).epsilon(1e-10));
     }
 }
 

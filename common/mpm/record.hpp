@@ -24,9 +24,10 @@ class Recorder {
         : wanted_(wanted), scales_(scales), subject_(subject_of(wanted, all.grains)) {
         std::vector<common::Column> columns{{"time", "time"}};
         columns.insert(columns.end(), ledger_columns.begin(), ledger_columns.end());
-        columns.push_back({"momentum_x", "momentum"}),
-            columns.push_back({"momentum_y", "momentum"});
-        columns.push_back({"contacts", "1"}), columns.push_back({"contact_force", "force"});
+        columns.insert(columns.end(), {{"momentum_x", "momentum"},
+                                       {"momentum_y", "momentum"},
+                                       {"contacts", "1"},
+                                       {"contact_force", "force"}});
         const auto& grains = all.grains;
         for (std::size_t g = 0; g < grains.size(); ++g) {
             if (!grains[g].rigid && free_.size() < most_followed) {
