@@ -78,6 +78,17 @@ class Contact {
     /// errors: NumericalError when too many grains are at a node
     ContactSums apply(double dt, GrainNodes& nodes, std::vector<Bond>& bonds,
                       std::vector<RigidMotion>& rigid, const ContactLevel& level = {}) const {
+        return apply(dt, nodes, bonds, rigid, level,
+                     [](int, detail::NodeProblem& node) { detail::solve(node); });
+    }
+
+    /// The same with impulses that are found elsewhere.
+    /// in:     settle(block, node), which sets impulses and velocities of a node; block as in
+    ///         Meetings::for_each
+    template <class Settle>
+    ContactSums apply(double dt, GrainNodes& nodes, std::vector<Bond>& bonds,
+                      std::vector<RigidMotion>& rigid, const ContactLevel& level,
+                      const Settle& settle) const {
         struct Block {
             ContactSums sums;
             std::vector<std::array<double, 2>> push;  // impulses on rigid grains
@@ -87,7 +98,7 @@ class Contact {
         for (Block& block : blocks) block.push.assign(rigid_grains_.size(), {0, 0});
         meetings_.for_each(nodes, bonds, false, [&](int number, detail::NodeProblem& node) {
             Block& block = blocks[static_cast<std::size_t>(number)];
-            detail::solve(node);
+            settle(number, node);
             for (std::size_t k = 0; k < node.pairs; ++k) {
                 detail::Pair& pair = node.pair[k];
                 pair.lambda_n *= level.per_impulse, pair.lambda_t *= level.per_impulse;

@@ -111,6 +111,9 @@ class GrainNodes {
 
     const std::vector<Strip>& strips() const { return strips_; }
     const std::vector<Image>& images() const { return images_; }
+    /// Until particles are put on nodes again, a slot moves as another one of its grain does.
+    void tie(long slot, long of) { images_.push_back({slot, of, 1, 1, false, false, 0}); }
+    void untie() { images_.resize(own_images_); }
     const std::vector<long>& fixed_x() const { return fixed_x_; }
     const std::vector<long>& fixed_y() const { return fixed_y_; }
     bool is_fixed_x(long slot) const { return (fixed_[static_cast<std::size_t>(slot)] & 1) != 0; }
@@ -179,6 +182,7 @@ class GrainNodes {
     std::vector<Strip> strips_;
     std::vector<long> pieces_{0};
     std::vector<Image> images_;
+    std::size_t own_images_ = 0;  // those of walls and rings come first
     std::vector<long> fixed_x_, fixed_y_;
     std::vector<unsigned char> fixed_;  // per slot: 1 for x, 2 for y
     std::vector<unsigned char> free_;

@@ -201,6 +201,7 @@ inline void GrainNodes::add_walls_and_rings(const std::vector<Grain>& grains, co
         });
     }
     images_.insert(images_.end(), along_y.begin(), along_y.end());
+    own_images_ = images_.size();
     free_.assign(sums.size(), 1);
     for (std::size_t g = 0; g < grains.size(); ++g)
         if (grains[g].rigid)

@@ -66,6 +66,8 @@ class Meetings {
     }
 
    private:
+    static constexpr long mesh_margin = 4;  // nodes beyond the mesh that grains may touch
+
     // Everybody with mass at shared node n. out: whether there is anything to do
     bool gather(long n, const GrainNodes& nodes, detail::NodeProblem& node) const {
         const auto k = static_cast<std::size_t>(n);
@@ -104,6 +106,12 @@ class Meetings {
             node_x = member.x, node_y = member.y;
             ++node.parties;
         }
+        const Mesh& mesh = nodes.mesh();
+        const long i = std::lround((node_x - mesh.x_low) / mesh.h),
+                   j = std::lround((node_y - mesh.y_low) / mesh.h),
+                   nx = mesh.cells_x + (mesh.periodic_x ? 0 : 2 * mesh_margin);
+        node.key =
+            (j + mesh_margin) * nx + (mesh.periodic_x ? ((i % nx) + nx) % nx : i + mesh_margin);
         return node.parties > 1;
     }
 

@@ -38,6 +38,7 @@ struct NodeProblem {
     std::array<Party, most_parties> party;
     std::array<Pair, most_parties*(most_parties - 1) / 2> pair;
     std::size_t parties = 0, pairs = 0;
+    long key = 0;           // of the node on the mesh
     bool isotropic = true;  // no velocity is fixed in one direction only
 };
 

@@ -40,12 +40,21 @@ inline void drive_plates(double t, double dt, double rise, std::vector<RigidMoti
     }
 }
 
+/// The middle of a step, where loads are taken.
+inline double time_of_load(long step, double dt) { return (static_cast<double>(step) + 0.5) * dt; }
+
+/// The body force at a time.
+inline BodyForce body_force(const Problem& problem, double t) {
+    const double share = share_of_load(t, problem.rise);
+    return {share * problem.gravity_x, share * problem.gravity_y, problem.damping};
+}
+
 /// Loads in the step from t^n: the body force, and the velocities of rigid grains.
 inline BodyForce drive(const Problem& problem, long step, double dt,
                        std::vector<RigidMotion>& rigid) {
-    const double t = (static_cast<double>(step) + 0.5) * dt, share = share_of_load(t, problem.rise);
+    const double t = time_of_load(step, dt);
     drive_plates(t, dt, problem.rise, rigid);
-    return {share * problem.gravity_x, share * problem.gravity_y, problem.damping};
+    return body_force(problem, t);
 }
 
 }  // namespace mpm

@@ -18,10 +18,11 @@ namespace mpm {
 class Recorder {
    public:
     /// in: ledger_columns, what the rows of the ledger hold; among them "kinetic", "elastic",
-    ///     "energy", "external" and "budget"
+    ///     "energy", "external" and what is left when all is counted, called `rest`
     Recorder(const Case& wanted, const Scales& scales, const Assembly& all,
-             const std::vector<common::Column>& ledger_columns, common::History& history)
-        : wanted_(wanted), scales_(scales), subject_(subject_of(wanted, all.grains)) {
+             const std::vector<common::Column>& ledger_columns, const std::string& rest,
+             common::History& history)
+        : wanted_(wanted), scales_(scales), subject_(subject_of(wanted, all.grains)), rest_(rest) {
         std::vector<common::Column> columns{{"time", "time"}};
         columns.insert(columns.end(), ledger_columns.begin(), ledger_columns.end());
         columns.insert(columns.end(), {{"momentum_x", "momentum"},
@@ -135,9 +136,9 @@ class Recorder {
             return most;
         };
         const double size = largest("kinetic") + largest("elastic");
-        summary.conservation("largest_budget", largest("budget"), "energy");
-        summary.conservation("largest_budget_over_energy", size > 0 ? largest("budget") / size : 0,
-                             "1");
+        summary.conservation("largest_" + rest_, largest(rest_), "energy");
+        summary.conservation("largest_" + rest_ + "_over_energy",
+                             size > 0 ? largest(rest_) / size : 0, "1");
         for (const auto& [column, name] : residuals)
             summary.conservation(name, largest(column), "energy");
         const auto p_x = history.column("momentum_x"), p_y = history.column("momentum_y");
@@ -237,6 +238,7 @@ class Recorder {
     const Case& wanted_;
     const Scales& scales_;
     Subject subject_;
+    std::string rest_;
     std::vector<std::size_t> free_, rigid_;
     std::vector<double> row_;
     double largest_load_ = 0;  // work of the loads so far, where it was largest

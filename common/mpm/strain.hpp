@@ -44,14 +44,10 @@ struct Chunk {
     double xx[size], yy[size], xy[size], yx[size];  // dt dv_x/dx, dv_y/dy, dv_x/dy, dv_y/dx
 };
 
-/// Calls work(chunk) for all particles of grains that are not rigid, and clears the sums of their
-/// strips.
-template <class Sums, class Work>
-void for_each_chunk(const std::vector<Grain>& grains, const GrainNodes& nodes,
-                    std::vector<Sums>& sums, const Work& work) {
-    sums.assign(nodes.strips().size(), {});
+/// Calls work(chunk) for all particles of grains that are not rigid.
+template <class Work>
+void for_each_chunk(const std::vector<Grain>& grains, const GrainNodes& nodes, const Work& work) {
     nodes.for_each_strip([&](const Strip& strip, std::size_t number) {
-        sums[number].least_V = 1;
         if (grains[static_cast<std::size_t>(strip.grain)].rigid) return;
         Chunk chunk;
         chunk.grain = strip.grain, chunk.strip = number;
@@ -60,6 +56,15 @@ void for_each_chunk(const std::vector<Grain>& grains, const GrainNodes& nodes,
             work(chunk);
         }
     });
+}
+
+/// The same, after the sums of all strips are cleared.
+template <class Sums, class Work>
+void for_each_chunk(const std::vector<Grain>& grains, const GrainNodes& nodes,
+                    std::vector<Sums>& sums, const Work& work) {
+    sums.assign(nodes.strips().size(), {});
+    for (Sums& strip : sums) strip.least_V = 1;
+    for_each_chunk(grains, nodes, work);
 }
 
 /// Velocity gradients of a chunk's particles, times dt.                                  [MPM-11]

@@ -114,6 +114,7 @@ inline void spread_velocity(GrainNodes& nodes) {
 /// exact:  sum_i m_i = sum_p m_p and sum_i P_i = sum_p m_p v_p, to round-off
 template <class Shape>
 void put_on_nodes(const Shape& shape, const Particles& particles, GrainNodes& nodes) {
+    nodes.untie();
     common::for_each_block(nodes.size(), [&](int, long begin, long end) {
         std::fill(nodes.sums.begin() + begin, nodes.sums.begin() + end, NodeSums{});
         std::fill(nodes.force.begin() + begin, nodes.force.begin() + end, NodeForce{});

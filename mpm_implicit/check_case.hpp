@@ -1,0 +1,76 @@
+// What is said before a run of mpm_implicit besides what holds for every scheme
+// (common/mpm/check_case.hpp): which solver a case needs, and how far its time step can be trusted.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/mpm/check_case.hpp"
+#include "mpm_implicit/case.hpp"
+#include "mpm_implicit/grain_matrix.hpp"
+
+namespace mpm_implicit {
+
+/// Refuses combinations that cannot run.
+/// errors: InputError with the cure
+inline void refuse_impossible(const Case& w, const ThetaScheme& scheme) {
+    using mpm::detail::refuse;
+    mpm::refuse_impossible(w);
+    for (const Material& m : materials_of(w.problem))
+        refuse(!scheme.newton() && (m.law == Law::j2 || m.law == Law::drucker_prager),
+               "[material." + m.name +
+                   "] can yield, and solver.kind = \"projected_cg\" is for "
+                   "elastic grains: set solver.kind = \"newton_krylov\"");
+    refuse(!scheme.newton() && !scheme.keeps_volumes(),
+           "method.volumes = \"updated\" makes the step nonlinear: set solver.kind = "
+           "\"newton_krylov\"");
+    refuse(w.compare == "bar" && !scheme.consistent(),
+           "theory.compare = \"bar\" knows the damping of the consistent mass matrix only: set "
+           "method.mass = \"consistent\", or compare with \"oscillator\"");
+}
+
+/// Warnings with the number and the limit, for choices that run but may mislead.
+inline std::vector<std::string> warnings_of(const Case& w, const ThetaScheme& scheme,
+                                            const Scales& scales) {
+    std::vector<std::string> warnings = resolution_warnings(w, scales);
+    const double cells = scales.speed * scales.dt / w.problem.mesh().h;
+    if (cells > 0.5 && scales.grains > 1)
+        warnings.push_back("|v| dt/h = " + common::shown(cells) +
+                           " is above 0.5: grains can pass through each other's surfaces before "
+                           "they are seen to touch; reduce time.alpha");
+    if (w.flip < 1)
+        warnings.push_back("method.flip = " + common::shown(w.flip) +
+                           " is below 1: [MPM-13] is for FLIP, and the column pic takes the rest");
+    if (w.problem.per_side == 1 && scheme.consistent())
+        warnings.push_back(
+            "mesh.particles_per_side = 1 with the consistent mass matrix, which is then nearly "
+            "singular: take 2, or method.mass = \"lumped\"");
+    return warnings;
+}
+
+/// Memory of a run [bytes]: besides what every scheme needs, the matrices, their factors, vectors.
+inline double bytes_of(const Case& w, const ThetaScheme& scheme, const Scales& scales) {
+    const double per_cell = static_cast<double>(w.problem.per_side * w.problem.per_side),
+                 slots = 2 * static_cast<double>(scales.particles) / per_cell +
+                         64 * static_cast<double>(scales.grains);
+    const double diagonals = w.shape == "linear" ? 5 : 13,
+                 across = std::sqrt(slots / static_cast<double>(scales.grains)),
+                 factors = scheme.preconditioner == "grains" ? 4 * across : 0,
+                 newton = scheme.newton() ? 2 * (2 * 30 + 16) : 0;
+    return scales.bytes + 8 * slots * (5 * diagonals + 2 * 14 + factors + newton);
+}
+
+/// The resolved scales as text, for --dry-run and the head of a run.
+inline std::string describe_scales(const Case& w, const ThetaScheme& scheme, const Scales& scales) {
+    // A step takes about as long as so many of the explicit program.
+    const double explicit_steps = 6 + 6 * std::sqrt(w.alpha), particle_steps_per_second = 15e6;
+    const std::string flip = w.flip == 1 ? "FLIP" : "FLIP fraction " + common::shown(w.flip);
+    return mpm::describe_scales(
+        w, scales,
+        w.shape + " shape functions, " + flip + (w.frozen ? ", frozen particles" : "") +
+            ", theta = " + common::shown(scheme.theta) + ", " + scheme.mass + " mass",
+        explicit_steps * static_cast<double>(scales.steps) * static_cast<double>(scales.particles) /
+            particle_steps_per_second);
+}
+
+}  // namespace mpm_implicit

@@ -1,0 +1,236 @@
+// Velocities that the closed pairs allow: the space in which v^theta is sought, and projection to it.
+//
+// A closed pair asks for (v_b - v_a).n = 0, one that sticks for the same across. With D the diagonal
+// of the matrix and y = D^{1/2} v, the rows of all pairs of one node are made orthonormal, q_k, so
+// that projection takes a few products per node, whoever meets there:
+//     y <- y - sum_k q_k (q_k . y - g_k)
+// g_k comes from those whose velocity is given. A plate that a force drives has a velocity of its
+// own, V: then g_k = g_k^0 + g_k^V V, and the space is spanned by one more vector per plate, e_V.
+// Different nodes share no slot, so that projection is exact whatever the number of pairs.
+#pragma once
+
+#include "mpm_implicit/contact_set.hpp"
+#include "mpm_implicit/grain_matrix.hpp"
+
+namespace mpm_implicit {
+
+class Constraints {
+   public:
+    /// in:     scale, D^{-1/2} of every slot, 0 where the velocity cannot change; only_bonds: leave
+    ///         out those who merely press
+    void build(const ContactSet& set, const Vector& scale, long size, std::size_t servos,
+               bool only_bonds) {
+        set_ = &set, scale_ = &scale, size_ = size, rights_ = servos + 1;
+        rows_.clear(), basis_.clear(), right_.clear(), factor_.clear(), blocks_.clear();
+        for (std::size_t n = 0; n < set.nodes.size(); ++n) {
+            Block block{n, rows_.size(), 0, basis_.size(), right_.size(), factor_.size()};
+            const MeetingNode& node = set.nodes[n];
+            for (std::size_t k = node.pair_begin; k < node.pair_end; ++k) {
+                const MeetingPair& pair = set.pairs[k];
+                if (!pair.closed() || (only_bonds && pair.bond < 0)) continue;
+                add_row(node, k, false, block);
+                if (pair.hold == Hold::stick) add_row(node, k, true, block);
+            }
+            if (block.rank > 0) blocks_.push_back(block);
+        }
+    }
+
+    /// Takes out of y what the pairs forbid.
+    void project(Vector& y) const {
+        for_each(y, [&](const double* q, const double*, double* local, std::size_t width) {
+            const double size = dot(q, local, width);
+            for (std::size_t i = 0; i < width; ++i) local[i] -= q[i] * size;
+        });
+    }
+
+    /// Changes v as little as possible, in the measure of D, so that it obeys all closed pairs.
+    /// in:     V, velocities of the plates that forces drive
+    void obey(const std::vector<double>& V, Vector& v) const {
+        for_each_scaled(v, [&](const double* q, const double* g, double* local, std::size_t width) {
+            double size = dot(q, local, width) - g[0];
+            for (std::size_t s = 0; s < V.size(); ++s) size -= g[1 + s] * V[s];
+            for (std::size_t i = 0; i < width; ++i) local[i] -= q[i] * size;
+        });
+    }
+
+    /// v += V e_V: what the plates' velocities add.
+    void add_plates(const double* V, Vector& v) const {
+        if (rights_ == 1) return;
+        for_each_scaled(v, [&](const double* q, const double* g, double* local, std::size_t width) {
+            double size = 0;
+            for (std::size_t s = 0; s + 1 < rights_; ++s) size += g[1 + s] * V[s];
+            for (std::size_t i = 0; i < width; ++i) local[i] += q[i] * size;
+        });
+    }
+
+    /// e_V . r of every plate, and e_V . D e_V.
+    void plates_feel(const Vector& r, double* sums) const {
+        std::fill_n(sums, rights_ - 1, 0.0);
+        for (const Block& block : blocks_) {
+            load(block, r, 1);
+            for (std::size_t k = 0; k < block.rank; ++k) {
+                const double size = dot(q(block, k), local_.data(), width(block));
+                for (std::size_t s = 0; s + 1 < rights_; ++s) sums[s] += g(block, k)[1 + s] * size;
+            }
+        }
+    }
+    void plates_weigh(double* sums) const {
+        std::fill_n(sums, rights_ - 1, 0.0);
+        for (const Block& block : blocks_)
+            for (std::size_t k = 0; k < block.rank; ++k)
+                for (std::size_t s = 0; s + 1 < rights_; ++s)
+                    sums[s] += g(block, k)[1 + s] * g(block, k)[1 + s];
+    }
+
+    /// Impulses of the closed pairs, from what is left of the equation: H^T lambda = A v - b = -r.
+    void find_impulses(const Vector& r, ContactSet& set) const {
+        for (MeetingPair& pair : set.pairs) {
+            pair.lambda_n = 0;
+            if (pair.hold != Hold::slip) pair.lambda_t = 0;
+        }
+        for (const Block& block : blocks_) {
+            load(block, r, 1);
+            std::array<double, most_rows> lambda{};
+            for (std::size_t k = block.rank; k-- > 0;) {
+                double c = -dot(q(block, k), local_.data(), width(block));
+                for (std::size_t i = k + 1; i < block.rank; ++i)
+                    c -= factor_[block.factor + i * most_rows + k] * lambda[i];
+                lambda[k] = c / factor_[block.factor + k * most_rows + k];
+                const Row& row = rows_[block.row + k];
+                MeetingPair& pair = set.pairs[row.pair];
+                (row.across ? pair.lambda_t : pair.lambda_n) = lambda[k];
+            }
+        }
+    }
+
+   private:
+    static constexpr std::size_t most_rows = 2 * detail::NodeProblem::most_parties;
+    struct Row {
+        std::size_t pair;
+        bool across;
+    };
+    struct Block {
+        std::size_t node, row, rank, basis, right, factor;
+    };
+
+    const MeetingNode& node_of(const Block& block) const { return set_->nodes[block.node]; }
+    std::size_t width(const Block& block) const {
+        return 2 * (node_of(block).meeter_end - node_of(block).meeter_begin);
+    }
+    const double* q(const Block& block, std::size_t k) const {
+        return basis_.data() + block.basis + k * width(block);
+    }
+    const double* g(const Block& block, std::size_t k) const {
+        return right_.data() + block.right + k * rights_;
+    }
+    static double dot(const double* a, const double* b, std::size_t width) {
+        double sum = 0;
+        for (std::size_t i = 0; i < width; ++i) sum += a[i] * b[i];
+        return sum;
+    }
+
+    // Gram and Schmidt, twice for the sake of round-off; a row that others already ask for is left
+    // out.
+    void add_row(const MeetingNode& node, std::size_t k, bool across, Block& block) {
+        const MeetingPair& pair = set_->pairs[k];
+        const double x = across ? pair.tx() : pair.nx, y = across ? pair.ty() : pair.ny;
+        const std::size_t wide = 2 * (node.meeter_end - node.meeter_begin);
+        std::vector<double> row(wide, 0.0), right(rights_, 0.0);
+        for (const auto& [who, sign] : {std::pair(pair.a, -1.0), std::pair(pair.b, 1.0)}) {
+            const Meeter& is = set_->meeters[node.meeter_begin + who];
+            if (is.fixed) {
+                const bool drive_x = is.servo >= 0 && is.servo_along_x,
+                           drive_y = is.servo >= 0 && !is.servo_along_x;
+                right[0] -= sign * ((drive_x ? 0 : is.vx) * x + (drive_y ? 0 : is.vy) * y);
+                if (is.servo >= 0)
+                    right[static_cast<std::size_t>(1 + is.servo)] -= sign * (drive_x ? x : y);
+            } else {
+                row[2 * who] = sign * x * (*scale_)[is.slot];
+                row[2 * who + 1] = sign * y * (*scale_)[size_ + is.slot];
+            }
+        }
+        const double size = std::sqrt(dot(row.data(), row.data(), wide));
+        if (!(size > 0) || block.rank == most_rows) return;
+        std::array<double, most_rows> factor{};
+        for (int round = 0; round < 2; ++round) {
+            for (std::size_t i = 0; i < block.rank; ++i) {
+                const double along = dot(q(block, i), row.data(), wide);
+                factor[i] += along;
+                for (std::size_t j = 0; j < wide; ++j) row[j] -= along * q(block, i)[j];
+                for (std::size_t s = 0; s < rights_; ++s) right[s] -= along * g(block, i)[s];
+            }
+        }
+        const double left = std::sqrt(dot(row.data(), row.data(), wide));
+        if (!(left > 1e-10 * size)) return;
+        for (const double value : row) basis_.push_back(value / left);
+        for (const double value : right) right_.push_back(value / left);
+        factor[block.rank] = left;
+        factor_.insert(factor_.end(), factor.begin(), factor.end());
+        rows_.push_back({k, across});
+        ++block.rank;
+    }
+
+    // The node's part of v, each number times D^{-1/2} to a power.
+    void load(const Block& block, const Vector& v, int power) const {
+        const MeetingNode& node = node_of(block);
+        for (std::size_t m = node.meeter_begin; m < node.meeter_end; ++m) {
+            const Meeter& is = set_->meeters[m];
+            const std::size_t i = 2 * (m - node.meeter_begin);
+            local_[i] = local_[i + 1] = 0;
+            if (is.fixed) continue;
+            for (const auto& [at, slot] :
+                 {std::pair(i, is.slot), std::pair(i + 1, size_ + is.slot)}) {
+                const double s = (*scale_)[slot];
+                local_[at] = power == 0  ? v[slot]
+                             : power > 0 ? s * v[slot]
+                             : s > 0     ? v[slot] / s
+                                         : 0;
+            }
+        }
+    }
+    void store(const Block& block, int power, Vector& v) const {
+        const MeetingNode& node = node_of(block);
+        for (std::size_t m = node.meeter_begin; m < node.meeter_end; ++m) {
+            const Meeter& is = set_->meeters[m];
+            const std::size_t i = 2 * (m - node.meeter_begin);
+            if (is.fixed) continue;
+            for (const auto& [at, slot] :
+                 {std::pair(i, is.slot), std::pair(i + 1, size_ + is.slot)}) {
+                const double s = (*scale_)[slot];
+                if (power == 0)
+                    v[slot] = local_[at];
+                else if (s > 0)
+                    v[slot] = local_[at] * s;
+            }
+        }
+    }
+
+    template <class Work>
+    void for_each(Vector& y, const Work& work) const {
+        for (const Block& block : blocks_) {
+            load(block, y, 0);
+            for (std::size_t k = 0; k < block.rank; ++k)
+                work(q(block, k), g(block, k), local_.data(), width(block));
+            store(block, 0, y);
+        }
+    }
+    template <class Work>
+    void for_each_scaled(Vector& v, const Work& work) const {
+        for (const Block& block : blocks_) {
+            load(block, v, -1);
+            for (std::size_t k = 0; k < block.rank; ++k)
+                work(q(block, k), g(block, k), local_.data(), width(block));
+            store(block, 1, v);
+        }
+    }
+    const ContactSet* set_ = nullptr;
+    const Vector* scale_ = nullptr;
+    long size_ = 0;
+    std::size_t rights_ = 1;
+    std::vector<Row> rows_;
+    std::vector<double> basis_, right_, factor_;
+    std::vector<Block> blocks_;
+    mutable std::array<double, most_rows> local_{};
+};
+
+}  // namespace mpm_implicit

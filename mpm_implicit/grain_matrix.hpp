@@ -1,0 +1,283 @@
+// The matrices of the theta scheme on the nodes of each grain.
+//
+//     M_ij = sum_p m_p S_ip S_jp                                   consistent mass
+//     K_ij = sum_p V_p grad S_ip . T . grad S_jp                   stiffness, 2 x 2
+//     A    = (1 + theta dt c) M + theta^2 dt^2 K                   what v^theta is solved from
+// No entry couples two grains: that is the business of contact.
+#pragma once
+
+#include <Eigen/Dense>
+#include <limits>
+#include <variant>
+#include <vector>
+
+#include "common/mpm/strain.hpp"
+#include "mpm_implicit/stencil.hpp"
+
+namespace mpm_implicit {
+
+/// Velocities, momenta or impulses at all slots: x at slot i in [i], y in [size + i].
+using Vector = Eigen::VectorXd;
+
+/// Components of a block: how the force along the first answers to velocity along the second.
+enum Component { xx, xy, yx, yy };
+
+template <int reach>
+class GrainMatrix {
+   public:
+    /// Sums up M and K over the particles.
+    /// in:     factor_M and factor_K of A; consistent: M in A is the consistent mass, else the
+    ///         lumped mass m_i = sum_j M_ij
+    /// exact:  A is symmetric and positive where nodes have mass; K of a rigid motion is zero
+    template <class Shape>
+    void assemble(const Shape& shape, const std::vector<AnyLaw>& laws,
+                  const std::vector<Grain>& grains, const Particles& particles,
+                  const GrainNodes& nodes, const std::vector<NodeRow>& rows, double factor_M,
+                  double factor_K, bool consistent) {
+        static_assert(Shape::width == reach + 1);
+        consistent_ = consistent;
+        nodes_ = &nodes;
+        rows_ = rows;
+        A_.clear(nodes.size());
+        if (consistent) M_.clear(nodes.size());
+        const Locator at(nodes.mesh());
+        nodes.for_each_strip([&](const Strip& strip, std::size_t) {
+            const Grain& grain = grains[static_cast<std::size_t>(strip.grain)];
+            if (grain.rigid) return;
+            const Moduli T = std::visit([](const auto& law) { return moduli_of(law); },
+                                        laws[static_cast<std::size_t>(grain.material)].law);
+            const long* origin = nodes.origins(strip.grain);
+            for (long k = strip.begin; k < strip.end; ++k) {
+                const auto p = static_cast<std::size_t>(k);
+                add_particle(shape((particles.x_p[p] - at.x_low) * at.per_h, at.per_h),
+                             shape((particles.y_p[p] - at.y_low) * at.per_h, at.per_h), origin,
+                             T.lambda, T.G, factor_K * particles.V_p[p], particles.m_p[p],
+                             factor_M);
+            }
+        });
+        if (!consistent) add_lumped(factor_M);
+    }
+
+    bool consistent() const { return consistent_; }
+
+    /// y = A x, both with their images: what x has at slots that stand for others is set from them,
+    /// and what y would have there is theirs.
+    void multiply(Vector& x, Vector& y) const {
+        const long n = A_.size();
+        spread(x);
+        for_each_row([&](long number) {
+            const NodeRow& row = rows_[static_cast<std::size_t>(number)];
+            std::fill_n(y.data() + row.origin + row.first, row.end - row.first, 0.0);
+            std::fill_n(y.data() + n + row.origin + row.first, row.end - row.first, 0.0);
+            for_each_link<reach>(
+                rows_, number,
+                [&](int diagonal, long slot, long other, long count, bool transposed) {
+                    const long from = transposed ? other : slot;
+                    const double *Axx = A_.field(diagonal, xx) + from,
+                                 *Axy = A_.field(diagonal, transposed ? yx : xy) + from,
+                                 *Ayx = A_.field(diagonal, transposed ? xy : yx) + from,
+                                 *Ayy = A_.field(diagonal, yy) + from;
+                    const double *x_x = x.data() + other, *x_y = x_x + n;
+                    double *y_x = y.data() + slot, *y_y = y_x + n;
+#pragma omp simd
+                    for (long i = 0; i < count; ++i) {
+                        y_x[i] += Axx[i] * x_x[i] + Axy[i] * x_y[i];
+                        y_y[i] += Ayx[i] * x_x[i] + Ayy[i] * x_y[i];
+                    }
+                });
+        });
+        fold(y);
+    }
+
+    /// y = M x, as A uses it.
+    void multiply_mass(Vector& x, Vector& y) const {
+        const long n = A_.size();
+        if (!consistent_) {
+            common::for_each_block(n, [&](int, long begin, long end) {
+                for (long i = begin; i < end; ++i) {
+                    const double m = nodes_->sums[static_cast<std::size_t>(i)].m;
+                    y[i] = m * x[i], y[n + i] = m * x[n + i];
+                }
+            });
+            return;
+        }
+        spread(x);
+        for_each_row([&](long number) {
+            const NodeRow& row = rows_[static_cast<std::size_t>(number)];
+            std::fill_n(y.data() + row.origin + row.first, row.end - row.first, 0.0);
+            std::fill_n(y.data() + n + row.origin + row.first, row.end - row.first, 0.0);
+            for_each_link<reach>(
+                rows_, number,
+                [&](int diagonal, long slot, long other, long count, bool transposed) {
+                    const double* M = M_.field(diagonal, 0) + (transposed ? other : slot);
+                    const double *x_x = x.data() + other, *x_y = x_x + n;
+                    double *y_x = y.data() + slot, *y_y = y_x + n;
+#pragma omp simd
+                    for (long i = 0; i < count; ++i)
+                        y_x[i] += M[i] * x_x[i], y_y[i] += M[i] * x_y[i];
+                });
+        });
+        fold(y);
+    }
+
+    /// The diagonals of A and of M, images added to what they stand for.
+    void diagonal(Vector& d) const {
+        const long n = A_.size();
+        std::copy_n(A_.field(0, xx), n, d.data());
+        std::copy_n(A_.field(0, yy), n, d.data() + n);
+        add_images(d);
+    }
+    void diagonal_mass(Vector& d) const {
+        const long n = A_.size();
+        if (consistent_) {
+            std::copy_n(M_.field(0, 0), n, d.data());
+        } else {
+            for (long i = 0; i < n; ++i) d[i] = nodes_->sums[static_cast<std::size_t>(i)].m;
+        }
+        std::copy_n(d.data(), n, d.data() + n);
+        if (consistent_) add_images(d);
+    }
+
+    /// Calls work(slot) for the slots of a grain, row by row or column by column: along its shorter
+    /// side.
+    template <class Work>
+    void for_each_node_of(int grain, const GrainNodes& nodes, const Work& work) const {
+        const auto [low, above] = rows_of_grain(grain, nodes);
+        long first = std::numeric_limits<long>::max(), end = -first;
+        for (long r = low; r < above; ++r) {
+            const NodeRow& row = rows_[static_cast<std::size_t>(r)];
+            if (row.first < row.end)
+                first = std::min(first, row.first), end = std::max(end, row.end);
+        }
+        if (end - first <= above - low) {
+            for (long r = low; r < above; ++r) {
+                const NodeRow& row = rows_[static_cast<std::size_t>(r)];
+                for (long i = row.first; i < row.end; ++i) work(row.origin + i);
+            }
+        } else {
+            for (long i = first; i < end; ++i) {
+                for (long r = low; r < above; ++r) {
+                    const NodeRow& row = rows_[static_cast<std::size_t>(r)];
+                    if (i >= row.first && i < row.end) work(row.origin + i);
+                }
+            }
+        }
+    }
+
+    /// Calls work(slot, other, xx, xy, yx, yy) for the stored blocks of a grain.
+    template <class Work>
+    void for_each_block_of(int grain, const GrainNodes& nodes, const Work& work) const {
+        const auto [low, above] = rows_of_grain(grain, nodes);
+        for (long r = low; r < above; ++r) {
+            for_each_link<reach>(
+                rows_, r, [&](int diagonal, long slot, long other, long count, bool transposed) {
+                    if (transposed) return;
+                    for (long i = 0; i < count; ++i)
+                        work(slot + i, other + i, A_.field(diagonal, xx)[slot + i],
+                             A_.field(diagonal, xy)[slot + i], A_.field(diagonal, yx)[slot + i],
+                             A_.field(diagonal, yy)[slot + i]);
+                });
+        }
+    }
+
+    /// Images take their values from the slots they stand for; and the transpose.
+    void spread(Vector& x) const {
+        const long n = A_.size();
+        const auto& images = nodes_->images();
+        for (auto image = images.rbegin(); image != images.rend(); ++image) {
+            x[image->slot] = image->sign_x * x[image->of];
+            x[n + image->slot] = image->sign_y * x[n + image->of];
+        }
+    }
+    void fold(Vector& y) const {
+        const long n = A_.size();
+        for (const Image& image : nodes_->images()) {
+            y[image.of] += image.sign_x * y[image.slot];
+            y[n + image.of] += image.sign_y * y[n + image.slot];
+            y[image.slot] = y[n + image.slot] = 0;
+        }
+    }
+
+   private:
+    std::pair<long, long> rows_of_grain(int grain, const GrainNodes& nodes) const {
+        const long begin = nodes.slot_begin(grain), end = nodes.slot_end(grain);
+        const auto slot_of = [](const NodeRow& row) { return row.origin + row.first; };
+        const auto first = std::partition_point(
+            rows_.begin(), rows_.end(), [&](const NodeRow& row) { return slot_of(row) < begin; });
+        const auto last = std::partition_point(
+            first, rows_.end(), [&](const NodeRow& row) { return slot_of(row) < end; });
+        return {first - rows_.begin(), last - rows_.begin()};
+    }
+
+    static const Moduli& moduli_of(const Elastic& law) { return law.T; }
+    template <class Law>
+    static const Moduli& moduli_of(const Law& law) {
+        return law.elastic.T;
+    }
+
+    // One particle's share: the pairs of its nodes, each pair once.
+    template <class W>
+    [[gnu::always_inline]] void add_particle(const W& w_x, const W& w_y, const long* origin,
+                                             double lambda, double G, double V, double m,
+                                             double factor_M) {
+        constexpr int width = reach + 1;
+        double S[width * width], Gx[width * width], Gy[width * width];
+        long slot[width * width];
+        for (int b = 0; b < width; ++b) {
+            for (int a = 0; a < width; ++a) {
+                const int i = b * width + a;
+                S[i] = w_x.S[a] * w_y.S[b];
+                Gx[i] = w_x.G[a] * w_y.S[b], Gy[i] = w_x.S[a] * w_y.G[b];
+                slot[i] = origin[w_y.first + b] + w_x.first + a;
+            }
+        }
+        const double P = V * (lambda + 2 * G), L = V * lambda, G_V = V * G;
+        const double m_A = consistent_ ? factor_M * m : 0;
+        for (int i = 0; i < width * width; ++i) {
+            for (int j = i; j < width * width; ++j) {
+                const int diagonal =
+                    Stencil<reach>::diagonal(j % width - i % width, j / width - i / width);
+                const double M = S[i] * S[j], mass = m_A * M;
+                A_.field(diagonal, xx)[slot[i]] += P * Gx[i] * Gx[j] + G_V * Gy[i] * Gy[j] + mass;
+                A_.field(diagonal, xy)[slot[i]] += L * Gx[i] * Gy[j] + G_V * Gy[i] * Gx[j];
+                A_.field(diagonal, yx)[slot[i]] += L * Gy[i] * Gx[j] + G_V * Gx[i] * Gy[j];
+                A_.field(diagonal, yy)[slot[i]] += P * Gy[i] * Gy[j] + G_V * Gx[i] * Gx[j] + mass;
+                if (consistent_) M_.field(diagonal, 0)[slot[i]] += m * M;
+            }
+        }
+    }
+
+    void add_lumped(double factor_M) {
+        double *Axx = A_.field(0, xx), *Ayy = A_.field(0, yy);
+        common::for_each_block(A_.size(), [&](int, long begin, long end) {
+            for (long i = begin; i < end; ++i) {
+                const auto n = static_cast<std::size_t>(i);
+                const double mass = nodes_->is_free()[n] * factor_M * nodes_->sums[n].m;
+                Axx[i] += mass, Ayy[i] += mass;
+            }
+        });
+    }
+
+    void add_images(Vector& d) const {
+        const long n = A_.size();
+        for (const Image& image : nodes_->images()) {
+            d[image.of] += d[image.slot], d[n + image.of] += d[n + image.slot];
+            d[image.slot] = d[n + image.slot] = 0;
+        }
+    }
+
+    template <class Work>
+    void for_each_row(const Work& work) const {
+        common::for_each_block(static_cast<long>(rows_.size()), [&](int, long begin, long end) {
+            for (long row = begin; row < end; ++row) work(row);
+        });
+    }
+
+    bool consistent_ = true;
+    const GrainNodes* nodes_ = nullptr;
+    std::vector<NodeRow> rows_;
+    SymmetricStencil<reach, 4> A_;
+    SymmetricStencil<reach, 1> M_;
+};
+
+}  // namespace mpm_implicit

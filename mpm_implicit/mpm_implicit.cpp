@@ -1,0 +1,123 @@
+// The implicit material point method: grains in contact by the theta scheme, whose energy obeys a
+// theorem: it never grows, whatever the time step, and for theta = 1/2 it stays, to round-off.
+//
+// The default case is the talk's rebounding grains, at a time step where the explicit program bursts.
+// Run:   build/mpm_implicit
+// Run:   build/mpm_implicit mpm_implicit/cases/rebound.toml time.alpha=5
+// Run:   build/mpm_implicit mpm_implicit/cases/rebound.toml method.mass=lumped
+//
+// Reading order: grain_matrix.hpp, solve_nodes.hpp, contact_set.hpp, constraints.hpp,
+// projected_cg.hpp, update_stress.hpp, move_particles.hpp, ledger.hpp; then solve_with_newton.hpp.
+// What both programs share is in common/mpm/.
+#include <cstdio>
+#include <optional>
+
+#include "mpm_implicit/check_case.hpp"
+#include "mpm_implicit/move_particles.hpp"
+#include "mpm_implicit/record.hpp"
+#include "mpm_implicit/solve_with_newton.hpp"
+
+namespace {
+
+using namespace mpm_implicit;
+
+const common::About about{"mpm_implicit", PROGRAM_VERSION,
+                          "the implicit material point method for grains in contact; the default "
+                          "case is two elastic disks that rebound",
+                          "mpm_implicit/cases/rebound.toml"};
+
+template <class Shape>
+int run(const Shape& shape, const Case& wanted, const ThetaScheme& scheme, const Scales& scales,
+        common::Session& session) {
+    // 2. Particles at t = 0.
+    State state;
+    state.assembly = assemble(wanted.problem);
+    Particles& particles = state.assembly.particles;
+    const std::vector<Grain>& grains = state.assembly.grains;
+    std::vector<RigidMotion>& rigid = state.assembly.rigid;
+    std::vector<Bond>& bonds = state.assembly.bonds;
+    const std::vector<AnyLaw> laws = laws_of(wanted.problem);
+    const Contact contact(wanted.problem.contact, grains, bonds);
+    const double dt = scales.dt, theta = scheme.theta;
+    GrainNodes nodes(wanted.problem.mesh(), Shape::width, scales.least_mass);
+    NodeSolver<Shape::width - 1> solver;
+    NewtonSolver<Shape::width - 1> newton;
+    ThetaRecorder recorder(wanted, scheme, scales, state, session.history);
+    StepSums sums;
+    long step = 0;
+    if (session.restarting()) {
+        session.restore(state, step);
+        nodes.lay_out(grains, state.frame);
+    } else {
+        nodes.sort(grains, particles, state.frame);
+        open_ledger(state.assembly, laws, state.ledger);
+        recorder.start(state, session);
+    }
+
+    // 3. The loop of the slide.
+    // [loop]
+    while (session.keep_going(step, scales.steps)) {
+        if (nodes.sort_is_due(state.frame)) nodes.sort(grains, particles, state.frame);
+        recorder.snapshot(step, state, session);
+        const BodyForce body = drive(wanted.problem, step, dt, rigid, solver.servos);
+        put_on_nodes(shape, particles, nodes);                         // particles -> grid
+        solver.assemble(shape, laws, scheme, body, dt, state, nodes);  // M, K of  [MPM-5 ... 8]
+        solver.find_old_velocities(scheme, contact, state, nodes, sums.solver);  // v_i^0
+        sums.contact =
+            scheme.newton()  // v_i^theta, f_i^theta                                       [MPM-8]
+                ? newton.solve(shape, laws, scheme, contact, body, dt, state, solver, nodes,
+                               sums.solver)
+                : solver.solve(shape, scheme, contact, body, dt, state, nodes, sums.solver);
+        for_each_chunk(grains, nodes, sums.strips, [&](Chunk& chunk) {
+            velocity_gradient(shape, particles, nodes, NewVelocity{}, dt, chunk);  // [MPM-5]
+            update_stress(laws, scheme, chunk, grains, particles, sums.strips);    // [MPM-6, 7]
+            if (!wanted.frozen) turn_stress(chunk, particles);
+        });
+        sums.nodes = work_on_nodes(body, theta, dt, nodes);
+        move_particles(shape, grains, rigid, nodes, theta, wanted.flip, wanted.frozen, dt,
+                       particles, sums.strips);  // grid -> particles
+        state.frame.moved += wanted.frozen ? 0 : dt * sums.nodes.largest_speed;
+        recorder.record(step, sums, nodes, state, session);  // [MPM-13]
+        ++step;
+        session.end_of_step(step, scales.steps, static_cast<double>(step) * dt, state);
+    }
+    // [/loop]
+
+    // 4. The results against theory, summary.json.
+    if (step == scales.steps) {
+        recorder.snapshot(step, state, session);
+        recorder.finish(step, state, session);
+    }
+    return session.finish(step, static_cast<double>(particles.count()));
+}
+
+int start(int argc, char** argv, std::optional<common::Session>& holder) {
+    // 1. The case: defaults, file, command line; refuse, warn, or only describe.
+    Case wanted;
+    ThetaScheme scheme;
+    common::ParameterTable table = describe(wanted, scheme);
+    const common::CommandLine command = common::read_command_line(argc, argv, about, table);
+    refuse_impossible(wanted, scheme);
+    const Scales scales = scales_of(wanted);
+    const std::vector<std::string> warnings = warnings_of(wanted, scheme, scales);
+    for (const std::string& warning : warnings)
+        std::fprintf(stderr, "warning: %s\n", warning.c_str());
+    if (!command.quiet) std::printf("%s", describe_scales(wanted, scheme, scales).c_str());
+    if (command.dry_run) return 0;
+    common::refuse_before_start(command, scales.steps, bytes_of(wanted, scheme, scales));
+
+    common::set_thread_count(command.threads);
+    common::Session& session = holder.emplace(about, command, table);
+    for (const std::string& warning : warnings) session.summary.warning(warning);
+    session.checkpoint_steps = wanted.checkpoint_steps;
+    int status = 0;
+    with_shape(wanted.scheme(),
+               [&](const auto& shape) { status = run(shape, wanted, scheme, scales, session); });
+    return status;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    return common::guarded(about, [&](auto& session) { return start(argc, argv, session); });
+}

@@ -1,0 +1,79 @@
+// The nodes of the grains as rows, and the nodes that a grain hardly touches.
+#pragma once
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "common/mpm/grain_nodes.hpp"
+
+namespace mpm_implicit {
+
+using namespace mpm;
+
+/// A row of slots of one grain, and its rows below and above.
+struct NodeRow {
+    long origin;         // slot of column i: origin + i
+    long first, end;     // columns
+    long lowest, above;  // rows of the same grain: from the lowest to below `above`
+};
+
+/// The rows of all grains that are not rigid.
+inline std::vector<NodeRow> rows_of(const std::vector<Grain>& grains, const GrainNodes& nodes,
+                                    const Frame& frame) {
+    std::vector<NodeRow> rows;
+    std::size_t at = 0;
+    for (std::size_t g = 0; g < grains.size(); ++g) {
+        const long lowest = static_cast<long>(rows.size());
+        for (int r = 0; r < frame.rows[g]; ++r, ++at)
+            if (!grains[g].rigid)
+                rows.push_back({nodes.origin(static_cast<int>(g), frame.first_row[g] + r),
+                                frame.first_column[at], frame.end_column[at], lowest,
+                                lowest + frame.rows[g]});
+    }
+    return rows;
+}
+
+/// Ties nodes that a grain hardly touches to their heaviest neighbor, so that both have one velocity.
+/// A particle that has come a small way d into a cell sees the nodes behind it with weights of d and
+/// gradients that some of their motions feel with d only: stress would drive those with 1/d, and
+/// round-off with them. A grain's total mass and momentum stay, and the theorem holds with any ties.
+/// in/out: nodes.sums; nodes.images(), for this step
+inline void tie_light_nodes(const std::vector<NodeRow>& rows, GrainNodes& nodes) {
+    constexpr double light = 1e-2;  // of the mass of the neighbor
+    const auto mass = [&](long slot) { return nodes.sums[static_cast<std::size_t>(slot)].m; };
+    std::vector<std::pair<long, long>> ties;
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+        const NodeRow& row = rows[r];
+        for (long i = row.first; i < row.end; ++i) {
+            const long slot = row.origin + i;
+            if (!(mass(slot) > nodes.least_mass())) continue;
+            long heaviest = slot;
+            for (long q = std::max(row.lowest, static_cast<long>(r) - 1);
+                 q < std::min(row.above, static_cast<long>(r) + 2); ++q) {
+                const NodeRow& other = rows[static_cast<std::size_t>(q)];
+                for (long j = std::max(i - 1, other.first); j < std::min(i + 2, other.end); ++j) {
+                    const long neighbor = other.origin + j;
+                    if (mass(neighbor) > mass(heaviest) &&
+                        nodes.is_fixed_x(neighbor) == nodes.is_fixed_x(slot) &&
+                        nodes.is_fixed_y(neighbor) == nodes.is_fixed_y(slot))
+                        heaviest = neighbor;
+                }
+            }
+            if (mass(slot) < light * mass(heaviest)) ties.push_back({slot, heaviest});
+        }
+    }
+    // The lightest first: whom it is tied to may be tied as well.
+    std::stable_sort(ties.begin(), ties.end(),
+                     [&](const auto& a, const auto& b) { return mass(a.first) < mass(b.first); });
+    for (const auto& [slot, of] : ties) {
+        NodeSums &from = nodes.sums[static_cast<std::size_t>(slot)],
+                 &to = nodes.sums[static_cast<std::size_t>(of)];
+        to.m += from.m, to.V += from.V, to.px += from.px, to.py += from.py;
+        to.mx += from.mx, to.my += from.my, to.gx += from.gx, to.gy += from.gy;
+        from = {};
+        nodes.tie(slot, of);
+    }
+}
+
+}  // namespace mpm_implicit

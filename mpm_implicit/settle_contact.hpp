@@ -1,0 +1,102 @@
+// Whether the velocities of a guess of who presses are what contact asks for, and a better guess.
+#pragma once
+
+#include "mpm_implicit/contact_set.hpp"
+#include "mpm_implicit/grain_matrix.hpp"
+
+namespace mpm_implicit {
+
+/// What has changed between two guesses.
+struct Change {
+    bool settled = true;
+    std::size_t pair = 0;  // that changed last, or whose friction changed most
+    double friction = 0;   // its change, of the largest impulse
+    long held = 0;         // pairs that ought to change, and may not any more
+};
+
+/// Changes the set where a pair does not do what is asked of it.
+/// in:     v, all velocities; V, of the plates that forces drive
+/// in/out: set, with the impulses that belong to v
+inline Change correct(const Vector& v, const std::vector<double>& V, const GrainNodes& nodes,
+                      ContactSet& set) {
+    const long size = nodes.size();
+    constexpr double nearly = 1e-10, friction_error = 1e-9;
+    constexpr int most_releases = 2, most_switches = 3;
+    double largest = 0, fastest = 0;
+    for (const MeetingPair& pair : set.pairs)
+        largest = std::max({largest, std::fabs(pair.lambda_n), std::fabs(pair.lambda_t)});
+    const auto velocity = [&](const Meeter& is, double& x, double& y) {
+        x = is.fixed ? is.vx : v[is.slot], y = is.fixed ? is.vy : v[size + is.slot];
+        if (is.servo < 0) return;
+        (is.servo_along_x ? x : y) = V[static_cast<std::size_t>(is.servo)];
+    };
+    for (const Meeter& is : set.meeters) {
+        double x, y;
+        velocity(is, x, y);
+        fastest = std::max({fastest, std::fabs(x), std::fabs(y)});
+        // Impulses far below the momentum of a node are round-off.
+        if (!is.fixed)
+            largest = std::max(
+                largest, 1e-4 * nodes.sums[static_cast<std::size_t>(is.slot)].m * std::hypot(x, y));
+    }
+    Change change;
+    for (const MeetingNode& node : set.nodes) {
+        for (std::size_t k = node.pair_begin; k < node.pair_end; ++k) {
+            MeetingPair& pair = set.pairs[k];
+            if (pair.bond >= 0) continue;
+            double ax, ay, bx, by;
+            velocity(set.meeters[node.meeter_begin + pair.a], ax, ay);
+            velocity(set.meeters[node.meeter_begin + pair.b], bx, by);
+            const double parting = (bx - ax) * pair.nx + (by - ay) * pair.ny,
+                         slip = (bx - ax) * pair.tx() + (by - ay) * pair.ty();
+            const Hold before = pair.hold;
+            if (!pair.closed()) {
+                if (parting < -nearly * fastest) {
+                    pair.hold = Hold::slip;
+                    pair.friction = 0;
+                }
+            } else if (pair.lambda_n < -nearly * largest) {
+                if (pair.releases < most_releases)
+                    pair.hold = Hold::open, ++pair.releases;
+                else
+                    ++change.held;
+            } else if (pair.mu > 0) {
+                const double most = pair.mu * std::max(0.0, pair.lambda_n);
+                if (pair.hold == Hold::stick && std::fabs(pair.lambda_t) > most * (1 + nearly)) {
+                    if (pair.switches < most_switches) {
+                        pair.hold = Hold::slip, ++pair.switches;
+                        pair.friction = std::copysign(most, pair.lambda_t);
+                    } else {
+                        ++change.held;
+                    }
+                } else if (pair.hold == Hold::slip) {
+                    if (pair.lambda_t * slip > nearly * largest * fastest &&
+                        pair.switches < most_switches) {
+                        pair.hold = Hold::stick, ++pair.switches;
+                    } else {
+                        const double now =
+                            std::copysign(most, pair.lambda_t == 0 ? -slip : pair.lambda_t);
+                        const double by_now = std::fabs(now - pair.lambda_t);
+                        if (by_now > change.friction * largest && change.settled) change.pair = k;
+                        change.friction = std::max(change.friction, by_now / largest);
+                        pair.friction = now;
+                    }
+                }
+            }
+            if (pair.hold != before) change.settled = false, change.pair = k;
+        }
+    }
+    if (change.friction > friction_error) change.settled = false;
+    return change;
+}
+
+[[noreturn]] inline void fail_to_settle(const Change& change, const ContactSet& set,
+                                        const std::vector<Grain>& grains, long loops) {
+    throw common::NumericalError("contact did not settle in " + std::to_string(loops) +
+                                 " loops: " + set.names(change.pair, grains) +
+                                 " changed last, friction by " + common::shown(change.friction) +
+                                 " of the largest impulse; reduce time.alpha, or raise "
+                                 "solver.most_loops");
+}
+
+}  // namespace mpm_implicit

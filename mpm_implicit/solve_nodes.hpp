@@ -1,0 +1,243 @@
+// on the grid: the velocities v^theta of all nodes at once, with the forces and contacts of the same
+// level.
+//
+//     m_i (v_i^1 - v_i^0)/dt = - sum_p V_p sigma_p^theta . grad S_ip + m_i f_i^theta     [MPM-8]
+// sigma^theta = sigma^0 + theta T : de, de = dt sym grad v^theta [MPM-5, 7] and
+// v^theta = v^0 + theta (v^1 - v^0), put in, give a symmetric system for v^theta:
+//     A v^theta = M v^0 + theta dt (f^0 + m g) + H^T lambda,   A = (1 + theta dt c) M + theta^2 dt^2 K
+// with f^0 the force of the old stress, c the damping of a case, and impulses lambda of the pairs that
+// press, which are found together with v^theta: for a guess of who presses, conjugate gradients; then
+// the guess is corrected where an impulse pulls, a gap closes, or friction is more or less than
+// Coulomb's.
+#pragma once
+
+#include "mpm_implicit/case.hpp"
+#include "mpm_implicit/grain_factors.hpp"
+#include "mpm_implicit/projected_cg.hpp"
+#include "mpm_implicit/settle_contact.hpp"
+
+namespace mpm_implicit {
+
+template <int reach>
+class NodeSolver {
+   public:
+    GrainMatrix<reach> matrix;
+    ContactSet set;
+    Constraints constraints;
+    std::vector<Servo> servos;
+
+    /// M and A of the step, and the force of the old stress.
+    /// in:     nodes.sums
+    /// out:    matrix; nodes.force; nodes that are hardly touched are tied to others
+    template <class Shape>
+    void assemble(const Shape& shape, const std::vector<AnyLaw>& laws, const ThetaScheme& scheme,
+                  const BodyForce& body, double dt, const State& state, GrainNodes& nodes) {
+        const Assembly& all = state.assembly;
+        const std::vector<NodeRow> rows = rows_of(all.grains, nodes, state.frame);
+        tie_light_nodes(rows, nodes);
+        const double theta_dt = scheme.theta * dt;
+        matrix.assemble(shape, laws, all.grains, all.particles, nodes, rows,
+                        1 + theta_dt * body.damping, theta_dt * theta_dt, scheme.consistent());
+    }
+
+    /// M v^0 = P, and bonded grains have one velocity.
+    /// in:     nodes.sums
+    /// out:    nodes.motion, v_0; who meets, in `set`
+    /// errors: NumericalError when the mass matrix cannot be solved
+    void find_old_velocities(const ThetaScheme& scheme, const Contact& contact, const State& state,
+                             GrainNodes& nodes, SolveReport& report) {
+        const Assembly& all = state.assembly;
+        report = {};
+        size_ = nodes.size();
+        resize();
+        velocity_of_nodes(all.grains, all.rigid, nodes);
+        contact.join_bonds(all.bonds, nodes);
+        set.find(contact, nodes, all.bonds, all.rigid, servos, state.pressed);
+        matrix.diagonal_mass(scale_);
+        invert_diagonal(nodes);
+        for_each_slot([&](long i, std::size_t n) {
+            const NodeSums& sum = nodes.sums[n];
+            b_[i] = sum.px, b_[size_ + i] = sum.py;
+            v_0_[i] = scale_[i] > 0 ? nodes.motion[n].vx_0 : 0;
+            v_0_[size_ + i] = scale_[size_ + i] > 0 ? nodes.motion[n].vy_0 : 0;
+        });
+        constraints.build(set, scale_, size_, 0, true);
+        constraints.obey({}, v_0_);
+        PlateSystem none;
+        const auto multiply = [&](Vector& x, Vector& y) { matrix.multiply_mass(x, y); };
+        const auto as_is = [](const Vector& t, CgWorkspace&) -> const Vector& { return t; };
+        const CgResult cg = projected_cg(multiply, as_is, constraints, scale_, b_, scheme.tolerance,
+                                         scheme.most_iterations, v_0_, none, work_);
+        report.mass_iterations = cg.iterations;
+        if (!cg.converged) fail("the mass matrix", cg, scheme);
+        for_each_slot([&](long i, std::size_t n) {
+            if (nodes.is_free()[n] == 0) return;
+            nodes.motion[n].vx_0 = v_0_[i], nodes.motion[n].vy_0 = v_0_[size_ + i];
+        });
+        spread_velocity(nodes);
+    }
+
+    /// The right-hand side, the diagonal and the preconditioner of a step.
+    /// in:     nodes with v_0 and, for projected_cg, the force of the old stress; else none
+    void prepare(const ThetaScheme& scheme, const BodyForce& body, double dt, GrainNodes& nodes) {
+        const double theta_dt = scheme.theta * dt;
+        fold_force(nodes);
+        matrix.multiply_mass(v_0_, b_);
+        for_each_slot([&](long i, std::size_t n) {
+            const double m = nodes.sums[n].m;
+            b_[i] += theta_dt * (nodes.force[n].x + m * body.gravity_x);
+            b_[size_ + i] += theta_dt * (nodes.force[n].y + m * body.gravity_y);
+        });
+        matrix.diagonal(scale_);
+        invert_diagonal(nodes);
+    }
+
+    /// v^theta and the impulses of contact, by conjugate gradients with an active set.
+    /// in/out: state: velocities of plates that forces drive, forces on rigid grains, bonds, who
+    ///         pressed
+    /// out:    nodes.motion, v^theta in the place of v_1; what contact did
+    /// errors: NumericalError when the iteration or the active set does not settle, with the pair
+    template <class Shape>
+    ContactSums solve(const Shape& shape, const ThetaScheme& scheme, const Contact& contact,
+                      const BodyForce& body, double dt, State& state, GrainNodes& nodes,
+                      SolveReport& report) {
+        const std::vector<Grain>& grains = state.assembly.grains;
+        std::vector<RigidMotion>& rigid = state.assembly.rigid;
+        for_each_chunk(grains, nodes, [&](Chunk& chunk) {
+            add_internal_force(shape, state.assembly.particles, chunk, nodes);
+        });
+        prepare(scheme, body, dt, nodes);
+        PlateSystem plates;
+        for (const Servo& servo : servos) {
+            plates.diagonal.push_back(scheme.theta * (servo.mass + dt * servo.damping));
+            plates.V.push_back(servo.velocity);
+        }
+        v_ = v_0_;
+        use_preconditioner(scheme, grains, nodes);
+        const auto multiply = [&](Vector& x, Vector& y) { matrix.multiply(x, y); };
+        for (report.loops = 1;; ++report.loops) {
+            add_friction(scheme.theta, dt, plates);
+            constraints.build(set, scale_, size_, servos.size(), false);
+            constraints.obey(plates.V, v_);
+            const CgResult cg =
+                projected_cg(multiply, preconditioner(constraints), constraints, scale_, right_,
+                             scheme.tolerance, scheme.most_iterations, v_, plates, work_);
+            report.iterations += cg.iterations;
+            if (!cg.converged) fail("the nodes", cg, scheme);
+            constraints.find_impulses(work_.r, set);
+            const Change change = correct(v_, plates.V, nodes, set);
+            report.held = change.held;
+            if (change.settled) break;
+            if (report.loops == scheme.most_loops)
+                fail_to_settle(change, set, grains, scheme.most_loops);
+        }
+        for (std::size_t s = 0; s < servos.size(); ++s) {
+            RigidMotion& is = rigid[servos[s].grain];
+            (servos[s].along_x ? is.vx : is.vy) = plates.V[s];
+            (servos[s].along_x ? is.travel_x : is.travel_y) += dt * plates.V[s];
+        }
+        for_each_slot([&](long i, std::size_t n) {
+            nodes.motion[n].vx_1 = v_[i], nodes.motion[n].vy_1 = v_[size_ + i];
+        });
+        drive_rigid(grains, rigid, nodes);
+        spread_velocity(nodes);
+        state.pressed = set.memory();
+        return set.account(contact, scheme.theta, dt, nodes, state.assembly.bonds, rigid);
+    }
+
+    /// Factorizes the grains, if the scheme asks for it.
+    void use_preconditioner(const ThetaScheme& scheme, const std::vector<Grain>& grains,
+                            const GrainNodes& nodes) {
+        by_grains_ = scheme.preconditioner == "grains";
+        if (by_grains_) factors_.factorize(matrix, scale_, grains, nodes);
+    }
+
+    /// z from t, both in y = D^{1/2} v and within what the pairs allow: t itself for the diagonal,
+    /// P D^{1/2} A_g^-1 D^{1/2} P t for factorized grains.
+    auto preconditioner(const Constraints& allowed) const {
+        return [this, &allowed](const Vector& t, CgWorkspace& work) -> const Vector& {
+            if (!by_grains_) return t;
+            const double *s = scale_.data(), *from = t.data();
+            double *r = work.s.data(), *z = work.z.data();
+            for_each_dof([&](long i) { r[i] = s[i] > 0 ? from[i] / s[i] : 0; });
+            factors_.solve(work.s, work.z);
+            for_each_dof([&](long i) { z[i] = s[i] > 0 ? z[i] / s[i] : 0; });
+            allowed.project(work.z);
+            return work.z;
+        };
+    }
+
+    const Vector& right_hand_side() const { return b_; }
+    const Vector& old_velocities() const { return v_0_; }
+    const Vector& scale() const { return scale_; }
+
+   private:
+    void resize() {
+        work_.resize(size_);
+        for (Vector* v : {&v_0_, &v_, &b_, &right_, &scale_})
+            if (v->size() != 2 * size_) *v = Vector::Zero(2 * size_);
+    }
+
+    template <class Work>
+    void for_each_slot(const Work& work) const {
+        common::for_each_block(size_, [&](int, long begin, long end) {
+            for (long i = begin; i < end; ++i) work(i, static_cast<std::size_t>(i));
+        });
+    }
+
+    template <class Work>
+    void for_each_dof(const Work& work) const {
+        common::for_each_block(2 * size_, [&](int, long begin, long end) {
+            for (long i = begin; i < end; ++i) work(i);
+        });
+    }
+
+    // D^{-1/2} where a velocity can change: of free grains, with mass, and not held by a wall.
+    void invert_diagonal(const GrainNodes& nodes) {
+        for_each_slot([&](long i, std::size_t n) {
+            const bool moves = nodes.is_free()[n] != 0 && nodes.sums[n].m > nodes.least_mass();
+            for (const auto& [at, fixed] :
+                 {std::pair(i, nodes.is_fixed_x(i)), std::pair(size_ + i, nodes.is_fixed_y(i))})
+                scale_[at] = moves && !fixed && scale_[at] > 0 ? 1 / std::sqrt(scale_[at]) : 0;
+        });
+    }
+
+    // What slips rubs with a known impulse.
+    void add_friction(double theta, double dt, PlateSystem& plates) {
+        right_ = b_;
+        plates.b.clear();
+        for (const Servo& servo : servos)
+            plates.b.push_back(theta * (servo.mass * servo.velocity + dt * servo.force));
+        for (const MeetingNode& node : set.nodes) {
+            for (std::size_t k = node.pair_begin; k < node.pair_end; ++k) {
+                MeetingPair& pair = set.pairs[k];
+                if (pair.hold != Hold::slip) continue;
+                pair.lambda_t = pair.friction;
+                if (pair.lambda_t == 0) continue;
+                for (const auto& [who, sign] : {std::pair(pair.a, -1.0), std::pair(pair.b, 1.0)}) {
+                    const Meeter& is = set.meeters[node.meeter_begin + who];
+                    const double jx = sign * pair.lambda_t * pair.tx(),
+                                 jy = sign * pair.lambda_t * pair.ty();
+                    if (!is.fixed) right_[is.slot] += jx, right_[size_ + is.slot] += jy;
+                    if (is.servo >= 0)
+                        plates.b[static_cast<std::size_t>(is.servo)] += is.servo_along_x ? jx : jy;
+                }
+            }
+        }
+    }
+
+    [[noreturn]] void fail(const char* what, const CgResult& cg, const ThetaScheme& scheme) const {
+        throw common::NumericalError(std::string("the velocities of ") + what +
+                                     " are not found in " + std::to_string(cg.iterations) +
+                                     " iterations: residual " + common::shown(cg.residual) +
+                                     ", asked for " + common::shown(scheme.tolerance));
+    }
+
+    GrainFactors factors_;
+    bool by_grains_ = true;
+    long size_ = 0;
+    Vector v_0_, v_, b_, right_, scale_;
+    CgWorkspace work_;
+};
+
+}  // namespace mpm_implicit
