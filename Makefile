@@ -11,7 +11,7 @@ mains := cic/cic.cpp mpm_explicit/mpm_explicit.cpp mpm_implicit/mpm_implicit.cpp
 not_built_yet := pic flip explicit_em
 
 # Programs that time the loop of a main, step by step; `make bench` runs them all.
-benches := cic/bench.cpp mpm_explicit/bench.cpp implicit_moment/bench.cpp
+benches := cic/bench.cpp mpm_explicit/bench.cpp mpm_implicit/bench.cpp implicit_moment/bench.cpp
 
 # ---- how: everything here can be set on the command line, e.g. make CXX=clang++-14 test ---------
 

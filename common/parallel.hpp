@@ -15,10 +15,14 @@ namespace common {
 /// Number of pieces a loop over particles is cut into; any machine's threads share these.
 inline constexpr int block_count = 16;
 
+/// Loops over fewer numbers than this are over before another thread has woken up.
+inline constexpr long worth_sharing = 4096;
+
 /// Calls work(block, begin, end) once for each of block_count contiguous pieces of [0, count).
+/// in: numbers, how many a loop works on, where it is known to be short
 template <class Work>
-void for_each_block(long count, const Work& work) {
-#pragma omp parallel for schedule(dynamic, 1)
+void for_each_block(long count, const Work& work, long numbers = worth_sharing) {
+#pragma omp parallel for schedule(dynamic, 1) if (numbers >= worth_sharing)
     for (int block = 0; block < block_count; ++block) {
         work(block, count * block / block_count, count * (block + 1) / block_count);
     }
@@ -26,11 +30,14 @@ void for_each_block(long count, const Work& work) {
 
 /// Sum of partial(begin, end) over the blocks of [0, count), added in block order.
 template <class Partial>
-double sum_over_blocks(long count, const Partial& partial) {
+double sum_over_blocks(long count, const Partial& partial, long numbers = worth_sharing) {
     std::array<double, block_count> part{};
-    for_each_block(count, [&](int block, long begin, long end) {
-        part[static_cast<std::size_t>(block)] = partial(begin, end);
-    });
+    for_each_block(
+        count,
+        [&](int block, long begin, long end) {
+            part[static_cast<std::size_t>(block)] = partial(begin, end);
+        },
+        numbers);
     double total = 0;
     for (const double p : part) total += p;
     return total;

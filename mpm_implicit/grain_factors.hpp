@@ -2,7 +2,8 @@
 //     A_g = L L^T
 // so that what is left to conjugate gradients is how grains press on each other. Nodes are numbered
 // along the shorter side of the grain; then L fills no more than the envelope of A, from the first
-// entry of each row to the diagonal, and its rows are products of contiguous numbers.
+// entry of each row to the diagonal, and its rows are products of contiguous numbers. It is kept in
+// single precision, as it is read more often than anything else; L L^T stays positive.
 #pragma once
 
 #include "mpm_implicit/grain_matrix.hpp"
@@ -29,37 +30,55 @@ class GrainFactors {
         z.setZero();
         common::for_each_row(static_cast<long>(factors_.size()), [&](long g) {
             const Factor& f = factors_[static_cast<std::size_t>(g)];
-            const long n = static_cast<long>(f.dofs.size());
-            std::vector<double> x(static_cast<std::size_t>(n));
+            const long n = f.size();
+            std::vector<double> x(static_cast<std::size_t>(2 * n));
+            double* y = x.data();
             for (long i = 0; i < n; ++i) {
-                const auto k = static_cast<std::size_t>(i);
-                const double* L = f.row(i);
-                double sum = r[f.dofs[k]];
-                const double* from = x.data();
-#pragma omp simd reduction(- : sum)
-                for (long j = f.first[k]; j < i; ++j) sum -= L[j] * from[j];
-                x[k] = sum * f.per_pivot[k];
+                const float *L_0 = f.row(i, 0), *L_1 = f.row(i, 1);
+                double sum_0 = f.moves(i, 0) ? r[f.slot(i)] : 0,
+                       sum_1 = f.moves(i, 1) ? r[size_ + f.slot(i)] : 0;
+#pragma omp simd reduction(- : sum_0, sum_1)
+                for (long j = 2 * f.first_of(i); j < 2 * i; ++j)
+                    sum_0 -= L_0[j] * y[j], sum_1 -= L_1[j] * y[j];
+                y[2 * i] = sum_0 * f.per_pivot(i, 0);
+                y[2 * i + 1] = (sum_1 - L_1[2 * i] * y[2 * i]) * f.per_pivot(i, 1);
             }
             for (long i = n; i-- > 0;) {
-                const auto k = static_cast<std::size_t>(i);
-                const double* L = f.row(i);
-                const double value = x[k] * f.per_pivot[k];
-                double* to = x.data();
+                const float *L_0 = f.row(i, 0), *L_1 = f.row(i, 1);
+                const double value_1 = y[2 * i + 1] * f.per_pivot(i, 1),
+                             value_0 = (y[2 * i] - L_1[2 * i] * value_1) * f.per_pivot(i, 0);
 #pragma omp simd
-                for (long j = f.first[k]; j < i; ++j) to[j] -= value * L[j];
-                z[f.dofs[k]] = value;
+                for (long j = 2 * f.first_of(i); j < 2 * i; ++j)
+                    y[j] -= value_0 * L_0[j] + value_1 * L_1[j];
+                if (f.moves(i, 0)) z[f.slot(i)] = value_0;
+                if (f.moves(i, 1)) z[size_ + f.slot(i)] = value_1;
             }
         });
     }
 
    private:
+    // Rows 2 i and 2 i + 1 are the velocities of node i along x and y; what cannot move has a one on
+    // the diagonal and nothing else.
     struct Factor {
-        std::vector<long> dofs;   // in the vector of velocities
-        std::vector<long> first;  // of each row, the first column
-        std::vector<long> begin;  // of each row, where column 0 would be
-        std::vector<double> L, per_pivot;
-        const double* row(long i) const { return L.data() + begin[static_cast<std::size_t>(i)]; }
-        double* row(long i) { return L.data() + begin[static_cast<std::size_t>(i)]; }
+        std::vector<long> slots;              // of the nodes
+        std::vector<unsigned char> can_move;  // 1 for x, 2 for y
+        std::vector<long> first;              // of each node, the first one its rows reach back to
+        std::vector<long> begin;              // of each row, where column 0 would be
+        std::vector<float> L;
+        std::vector<double> pivots;  // pivots: their reciprocals
+
+        static std::size_t at(long i, int component) {
+            return static_cast<std::size_t>(2 * i + component);
+        }
+        long size() const { return static_cast<long>(slots.size()); }
+        long slot(long i) const { return slots[static_cast<std::size_t>(i)]; }
+        long first_of(long i) const { return first[static_cast<std::size_t>(i)]; }
+        bool moves(long i, int component) const {
+            return (can_move[static_cast<std::size_t>(i)] >> component & 1) != 0;
+        }
+        double per_pivot(long i, int component) const { return pivots[at(i, component)]; }
+        const float* row(long i, int component) const { return L.data() + begin[at(i, component)]; }
+        long begin_of(long i, int component) const { return begin[at(i, component)]; }
     };
 
     // For whom a slot stands, and with which signs.
@@ -75,80 +94,108 @@ class GrainFactors {
             sign_x_[slot] = image->sign_x * sign_x_[of],
             sign_y_[slot] = image->sign_y * sign_y_[of];
         }
-        number_.assign(static_cast<std::size_t>(2 * size_), -1);
+        number_.assign(static_cast<std::size_t>(size_), -1);
     }
 
     template <int reach>
     void factorize(const GrainMatrix<reach>& matrix, const Vector& scale, const GrainNodes& nodes,
                    int grain) {
         Factor& f = factors_[static_cast<std::size_t>(grain)];
-        f.dofs.clear();
+        f.slots.clear(), f.can_move.clear();
         matrix.for_each_node_of(grain, nodes, [&](long slot) {
-            if (scale[slot] > 0) f.dofs.push_back(slot);
-            if (scale[size_ + slot] > 0) f.dofs.push_back(size_ + slot);
+            const int moves = (scale[slot] > 0 ? 1 : 0) + (scale[size_ + slot] > 0 ? 2 : 0);
+            if (moves == 0) return;
+            number_[static_cast<std::size_t>(slot)] = f.size();
+            f.slots.push_back(slot), f.can_move.push_back(static_cast<unsigned char>(moves));
         });
-        const long n = static_cast<long>(f.dofs.size());
-        for (long i = 0; i < n; ++i)
-            number_[static_cast<std::size_t>(f.dofs[static_cast<std::size_t>(i)])] = i;
+        const long n = f.size();
         // The envelope, then its entries.
-        f.first.resize(f.dofs.size()), f.begin.resize(f.dofs.size());
+        f.first.resize(f.slots.size());
         for (long i = 0; i < n; ++i) f.first[static_cast<std::size_t>(i)] = i;
-        for_each_entry(matrix, grain, nodes, [&](long i, long j, double) {
-            const long low = std::min(i, j), high = std::max(i, j);
-            f.first[static_cast<std::size_t>(high)] =
-                std::min(f.first[static_cast<std::size_t>(high)], low);
+        for_each_entry(matrix, grain, nodes, f, [&](long i, int, long j, int, double) {
+            long& first = f.first[static_cast<std::size_t>(std::max(i, j))];
+            first = std::min({first, i, j});
         });
+        f.begin.resize(2 * f.slots.size());
         long length = 0;
         for (long i = 0; i < n; ++i) {
-            const auto k = static_cast<std::size_t>(i);
-            f.begin[k] = length - f.first[k];
-            length += i - f.first[k] + 1;
-        }
-        f.L.assign(static_cast<std::size_t>(length), 0.0);
-        f.per_pivot.resize(f.dofs.size());
-        for_each_entry(matrix, grain, nodes, [&](long i, long j, double value) {
-            f.row(std::max(i, j))[std::min(i, j)] += value;
-        });
-        // L_ij = (A_ij - sum_k L_ik L_jk) / L_jj
-        for (long i = 0; i < n; ++i) {
-            const auto k = static_cast<std::size_t>(i);
-            double* L_i = f.row(i);
-            double squares = 0;
-            const double before = L_i[i];
-            for (long j = f.first[k]; j < i; ++j) {
-                const double* L_j = f.row(j);
-                double sum = L_i[j];
-#pragma omp simd reduction(- : sum)
-                for (long l = std::max(f.first[k], f.first[static_cast<std::size_t>(j)]); l < j;
-                     ++l)
-                    sum -= L_i[l] * L_j[l];
-                L_i[j] = sum * f.per_pivot[static_cast<std::size_t>(j)];
-                squares += L_i[j] * L_i[j];
+            for (const int component : {0, 1}) {
+                f.begin[Factor::at(i, component)] = length - 2 * f.first_of(i);
+                length += 2 * (i - f.first_of(i)) + 2;
             }
-            // What round-off has made of a pivot near zero is replaced: a preconditioner may.
-            const double pivot = before - squares;
-            f.per_pivot[k] = 1 / std::sqrt(pivot > 1e-14 * before ? pivot : before);
+        }
+        std::vector<double> entries(static_cast<std::size_t>(length), 0.0);
+        const auto row = [&](long i, int component) {
+            return entries.data() + f.begin_of(i, component);
+        };
+        f.pivots.resize(2 * f.slots.size());
+        for_each_entry(matrix, grain, nodes, f, [&](long i, int a, long j, int b, double value) {
+            if (i > j || (i == j && a >= b))
+                row(i, a)[2 * j + b] += value;
+            else
+                row(j, b)[2 * i + a] += value;
+        });
+        for (long i = 0; i < n; ++i)
+            for (const int component : {0, 1})
+                if (!f.moves(i, component)) row(i, component)[2 * i + component] = 1;
+        for (long i = 0; i < n; ++i) factorize_node(i, row, f);
+        f.L.assign(entries.begin(), entries.end());
+    }
+
+    // L_ij = (A_ij - sum_k L_ik L_jk) L_jj^-T, two rows and two columns at a time.
+    template <class Row>
+    static void factorize_node(long i, const Row& row, Factor& f) {
+        double *L_0 = row(i, 0), *L_1 = row(i, 1);
+        const double before_0 = L_0[2 * i], before_1 = L_1[2 * i + 1];
+        for (long j = f.first_of(i); j <= i; ++j) {
+            const double *M_0 = row(j, 0), *M_1 = row(j, 1);
+            double s_00 = 0, s_01 = 0, s_10 = 0, s_11 = 0;
+#pragma omp simd reduction(+ : s_00, s_01, s_10, s_11)
+            for (long k = 2 * std::max(f.first_of(i), f.first_of(j)); k < 2 * j; ++k) {
+                s_00 += L_0[k] * M_0[k], s_01 += L_0[k] * M_1[k];
+                s_10 += L_1[k] * M_0[k], s_11 += L_1[k] * M_1[k];
+            }
+            const double a_10 = L_1[2 * j] - s_10;
+            if (j < i) {
+                const double per_0 = f.per_pivot(j, 0), per_1 = f.per_pivot(j, 1);
+                L_0[2 * j] = (L_0[2 * j] - s_00) * per_0;
+                L_1[2 * j] = a_10 * per_0;
+                L_0[2 * j + 1] = (L_0[2 * j + 1] - s_01 - L_0[2 * j] * M_1[2 * j]) * per_1;
+                L_1[2 * j + 1] = (L_1[2 * j + 1] - s_11 - L_1[2 * j] * M_1[2 * j]) * per_1;
+            } else {
+                f.pivots[Factor::at(i, 0)] = reciprocal(before_0 - s_00, before_0);
+                L_1[2 * i] = a_10 * f.per_pivot(i, 0);
+                f.pivots[Factor::at(i, 1)] =
+                    reciprocal(before_1 - s_11 - L_1[2 * i] * L_1[2 * i], before_1);
+            }
         }
     }
 
-    // Calls work(i, j, value) for the entries of a grain's matrix, of each pair one.
+    // What round-off has made of a pivot near zero is replaced: a preconditioner may.
+    static double reciprocal(double pivot, double before) {
+        return 1 / std::sqrt(pivot > 1e-14 * before ? pivot : before);
+    }
+
+    // Calls work(node, component, node, component, value) for the entries of a grain's matrix where
+    // both can move, of each pair of entries one.
     template <int reach, class Work>
     void for_each_entry(const GrainMatrix<reach>& matrix, int grain, const GrainNodes& nodes,
-                        const Work& work) const {
+                        const Factor& f, const Work& work) const {
         matrix.for_each_block_of(
             grain, nodes, [&](long one, long two, double xx, double xy, double yx, double yy) {
                 const auto a = static_cast<std::size_t>(one), b = static_cast<std::size_t>(two);
-                const long ax = number_[static_cast<std::size_t>(home_[a])],
-                           ay = number_[static_cast<std::size_t>(size_ + home_[a])],
-                           bx = number_[static_cast<std::size_t>(home_[b])],
-                           by = number_[static_cast<std::size_t>(size_ + home_[b])];
-                const bool same = one == two, met = home_[a] == home_[b] && !same;
+                const long i = number_[static_cast<std::size_t>(home_[a])],
+                           j = number_[static_cast<std::size_t>(home_[b])];
+                if (i < 0 || j < 0) return;
+                const bool same = one == two;
                 // Two slots that stand for one: the entry and its transpose meet on the diagonal.
-                const double twice = met ? 2 : 1;
-                if (ax >= 0 && bx >= 0) work(ax, bx, twice * sign_x_[a] * sign_x_[b] * xx);
-                if (ay >= 0 && by >= 0) work(ay, by, twice * sign_y_[a] * sign_y_[b] * yy);
-                if (ax >= 0 && by >= 0) work(ax, by, sign_x_[a] * sign_y_[b] * xy);
-                if (!same && ay >= 0 && bx >= 0) work(ay, bx, sign_y_[a] * sign_x_[b] * yx);
+                const double twice = i == j && !same ? 2 : 1;
+                const bool i_x = f.moves(i, 0), i_y = f.moves(i, 1), j_x = f.moves(j, 0),
+                           j_y = f.moves(j, 1);
+                if (i_x && j_x) work(i, 0, j, 0, twice * sign_x_[a] * sign_x_[b] * xx);
+                if (i_y && j_y) work(i, 1, j, 1, twice * sign_y_[a] * sign_y_[b] * yy);
+                if (i_x && j_y) work(i, 0, j, 1, sign_x_[a] * sign_y_[b] * xy);
+                if (!same && i_y && j_x) work(i, 1, j, 0, sign_y_[a] * sign_x_[b] * yx);
             });
     }
 

@@ -268,9 +268,12 @@ class GrainMatrix {
 
     template <class Work>
     void for_each_row(const Work& work) const {
-        common::for_each_block(static_cast<long>(rows_.size()), [&](int, long begin, long end) {
-            for (long row = begin; row < end; ++row) work(row);
-        });
+        common::for_each_block(
+            static_cast<long>(rows_.size()),
+            [&](int, long begin, long end) {
+                for (long row = begin; row < end; ++row) work(row);
+            },
+            A_.size());
     }
 
     bool consistent_ = true;

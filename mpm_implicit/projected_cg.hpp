@@ -32,12 +32,16 @@ struct PlateSystem {
 };
 
 inline double dot(const Vector& a, const Vector& b) {
-    return common::sum_over_blocks(a.size(), [&](long begin, long end) {
-        double sum = 0;
+    const double *x = a.data(), *y = b.data();
+    return common::sum_over_blocks(
+        a.size(),
+        [&](long begin, long end) {
+            double sum = 0;
 #pragma omp simd reduction(+ : sum)
-        for (long i = begin; i < end; ++i) sum += a[i] * b[i];
-        return sum;
-    });
+            for (long i = begin; i < end; ++i) sum += x[i] * y[i];
+            return sum;
+        },
+        a.size());
 }
 
 /// in:     multiply(x, y): y = A x, symmetric; constraints, built with scale = D^{-1/2}; b; tolerance
@@ -51,34 +55,42 @@ CgResult projected_cg(const Multiply& multiply, const Precondition& precondition
                       double tolerance, long most_iterations, Vector& v, PlateSystem& plates,
                       CgWorkspace& work) {
     const std::size_t count = plates.V.size();
-    std::vector<double> r_V(count), z_V(count), p_V(count), q_V(count), d_V(count);
+    const long n = v.size();
+    std::vector<double> r_V(count), p_V(count), q_V(count), d_V(count);
     constraints.plates_weigh(d_V.data());
     for (std::size_t s = 0; s < count; ++s) d_V[s] += plates.diagonal[s];
-    Vector &r = work.r, &t = work.t, &p = work.p, &q = work.q, &full = work.full;
+    Vector &p = work.p, &full = work.full;
+    double *r = work.r.data(), *t = work.t.data();
+    const double *q = work.q.data(), *s_D = scale.data();
 
     double size_r = 0;  // with the impulses of the pairs
     const auto find_residual = [&] {
-        multiply(v, q);
-        common::for_each_block(r.size(), [&](int, long begin, long end) {
-            for (long i = begin; i < end; ++i) r[i] = b[i] - q[i], t[i] = scale[i] * r[i];
-        });
-        size_r = dot(t, t);
-        constraints.project(t);
-        constraints.plates_feel(r, r_V.data());
+        multiply(v, work.q);
+        const double* from = b.data();
+        common::for_each_block(
+            n,
+            [&](int, long begin, long end) {
+#pragma omp simd
+                for (long i = begin; i < end; ++i) r[i] = from[i] - q[i], t[i] = s_D[i] * r[i];
+            },
+            n);
+        size_r = dot(work.t, work.t);
+        constraints.project(work.t);
+        constraints.plates_feel(work.r, r_V.data());
         for (std::size_t s = 0; s < count; ++s)
             r_V[s] += plates.b[s] - plates.diagonal[s] * plates.V[s];
     };
     const auto size_of = [&] {  // squared, in the measure of 1/D
-        double sum = dot(t, t);
+        double sum = dot(work.t, work.t);
         for (std::size_t s = 0; s < count; ++s) sum += r_V[s] * r_V[s] / d_V[s];
         return sum;
     };
 
     double size_b = 0, size_v = 0;
     for (std::size_t s = 0; s < count; ++s) size_b += plates.b[s] * plates.b[s] / d_V[s];
-    size_b += common::sum_over_blocks(b.size(), [&](long begin, long end) {
+    size_b += common::sum_over_blocks(n, [&](long begin, long end) {
         double sum = 0;
-        for (long i = begin; i < end; ++i) sum += scale[i] * b[i] * (scale[i] * b[i]);
+        for (long i = begin; i < end; ++i) sum += s_D[i] * b[i] * (s_D[i] * b[i]);
         return sum;
     });
     CgResult result;
@@ -87,10 +99,10 @@ CgResult projected_cg(const Multiply& multiply, const Precondition& precondition
     const double size = std::sqrt(std::max(size_b, size_r));
     constexpr int most_rounds = 4;
     for (int round = 0;; ++round) {
-        size_v = common::sum_over_blocks(v.size(), [&](long begin, long end) {
+        size_v = common::sum_over_blocks(n, [&](long begin, long end) {
             double sum = 0;
             for (long i = begin; i < end; ++i)
-                if (scale[i] > 0) sum += v[i] / scale[i] * (v[i] / scale[i]);
+                if (s_D[i] > 0) sum += v[i] / s_D[i] * (v[i] / s_D[i]);
             return sum;
         });
         constexpr double round_off = 8 * std::numeric_limits<double>::epsilon();
@@ -104,26 +116,29 @@ CgResult projected_cg(const Multiply& multiply, const Precondition& precondition
         double along = 0, along_before = 1;
         // A little more than asked for, as the residual that is followed drifts from the true one.
         while (!(std::sqrt(rho) <= 0.1 * goal) && result.iterations < most_iterations) {
-            // z in y = D^{1/2} v: as t, or better.
-            const Vector& z = precondition(t, work);
-            along = dot(t, z);
-            for (std::size_t s = 0; s < count; ++s) along += r_V[s] * r_V[s] / d_V[s];
+            // z in y = D^{1/2} v: t itself, or better.
+            const Vector& better = precondition(work.t, work);
+            along = &better == &work.t ? rho : dot(work.t, better);
+            for (std::size_t s = 0; s < count && &better != &work.t; ++s)
+                along += r_V[s] * r_V[s] / d_V[s];
             const double beta = first ? 0 : along / along_before;
             first = false;
             along_before = along;
             for (std::size_t s = 0; s < count; ++s) p_V[s] = r_V[s] / d_V[s] + beta * p_V[s];
-            common::for_each_block(p.size(), [&](int, long begin, long end) {
+            const double* z = better.data();
+            double* to = p.data();
+            common::for_each_block(
+                n,
+                [&](int, long begin, long end) {
 #pragma omp simd
-                for (long i = begin; i < end; ++i) p[i] = scale[i] * z[i] + beta * p[i];
-            });
-            Vector* direction = &p;
-            if (count > 0) {
-                full = p, direction = &full;
-                constraints.add_plates(p_V.data(), full);
-            }
-            multiply(*direction, q);
-            constraints.plates_feel(q, q_V.data());
-            double curvature = dot(p, q);
+                    for (long i = begin; i < end; ++i) to[i] = s_D[i] * z[i] + beta * to[i];
+                },
+                n);
+            if (count > 0) full = p, constraints.add_plates(p_V.data(), full);
+            Vector& direction = count > 0 ? full : p;
+            multiply(direction, work.q);
+            constraints.plates_feel(work.q, q_V.data());
+            double curvature = dot(p, work.q);
             for (std::size_t s = 0; s < count; ++s) {
                 q_V[s] += plates.diagonal[s] * p_V[s];
                 curvature += p_V[s] * q_V[s];
@@ -132,15 +147,19 @@ CgResult projected_cg(const Multiply& multiply, const Precondition& precondition
             const double alpha = along / curvature;
             for (std::size_t s = 0; s < count; ++s)
                 plates.V[s] += alpha * p_V[s], r_V[s] -= alpha * q_V[s];
-            common::for_each_block(v.size(), [&](int, long begin, long end) {
-                const Vector& d = *direction;
+            const double* d = direction.data();
+            double* v_now = v.data();
+            common::for_each_block(
+                n,
+                [&](int, long begin, long end) {
 #pragma omp simd
-                for (long i = begin; i < end; ++i) {
-                    v[i] += alpha * d[i], r[i] -= alpha * q[i];
-                    t[i] = scale[i] * r[i];
-                }
-            });
-            constraints.project(t);
+                    for (long i = begin; i < end; ++i) {
+                        v_now[i] += alpha * d[i], r[i] -= alpha * q[i];
+                        t[i] = s_D[i] * r[i];
+                    }
+                },
+                n);
+            constraints.project(work.t);
             rho = size_of();
             ++result.iterations;
         }

@@ -15,12 +15,12 @@ struct Change {
 };
 
 /// Changes the set where a pair does not do what is asked of it.
-/// in:     v, all velocities; V, of the plates that forces drive
+/// in:     v, all velocities; V, of the plates that forces drive; accuracy, that v has been solved to
 /// in/out: set, with the impulses that belong to v
 inline Change correct(const Vector& v, const std::vector<double>& V, const GrainNodes& nodes,
-                      ContactSet& set) {
+                      double accuracy, ContactSet& set) {
     const long size = nodes.size();
-    constexpr double nearly = 1e-10, friction_error = 1e-9;
+    const double nearly = 1e3 * accuracy, friction_error = 1e4 * accuracy;
     constexpr int most_releases = 2, most_switches = 3;
     double largest = 0, fastest = 0;
     for (const MeetingPair& pair : set.pairs)

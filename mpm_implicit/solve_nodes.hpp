@@ -115,19 +115,23 @@ class NodeSolver {
         v_ = v_0_;
         use_preconditioner(scheme, grains, nodes);
         const auto multiply = [&](Vector& x, Vector& y) { matrix.multiply(x, y); };
+        // Guesses are good enough long before velocities are.
+        constexpr double rough = 1e-7;
+        double tolerance = std::max(scheme.tolerance, rough);
         for (report.loops = 1;; ++report.loops) {
             add_friction(scheme.theta, dt, plates);
             constraints.build(set, scale_, size_, servos.size(), false);
             constraints.obey(plates.V, v_);
             const CgResult cg =
                 projected_cg(multiply, preconditioner(constraints), constraints, scale_, right_,
-                             scheme.tolerance, scheme.most_iterations, v_, plates, work_);
+                             tolerance, scheme.most_iterations, v_, plates, work_);
             report.iterations += cg.iterations;
             if (!cg.converged) fail("the nodes", cg, scheme);
             constraints.find_impulses(work_.r, set);
-            const Change change = correct(v_, plates.V, nodes, set);
+            const Change change = correct(v_, plates.V, nodes, tolerance, set);
             report.held = change.held;
-            if (change.settled) break;
+            if (change.settled && tolerance == scheme.tolerance) break;
+            if (change.settled) tolerance = scheme.tolerance;
             if (report.loops == scheme.most_loops)
                 fail_to_settle(change, set, grains, scheme.most_loops);
         }
