@@ -2,7 +2,7 @@
 //
 //     M_ij = sum_p m_p S_ip S_jp                                   consistent mass
 //     K_ij = sum_p V_p grad S_ip . T . grad S_jp                   stiffness, 2 x 2
-//     A    = (1 + theta dt c) M + theta^2 dt^2 K                   what v^theta is solved from
+//     A    = (1 + theta dt c) M + theta^2 dt^2 K           what v^theta is solved from  [MPM-8]
 // No entry couples two grains: that is the business of contact.
 #pragma once
 

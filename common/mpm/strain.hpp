@@ -67,7 +67,7 @@ void for_each_chunk(const std::vector<Grain>& grains, const GrainNodes& nodes,
     for_each_chunk(grains, nodes, work);
 }
 
-/// Velocity gradients of a chunk's particles, times dt.                                  [MPM-11]
+/// Velocity gradients of a chunk's particles, times dt.                           [MPM-5, MPM-11]
 ///   grad v_p = sum_i grad S_ip v_i
 /// in:     velocity, OldVelocity or NewVelocity: which one of the nodes
 /// exact:  zero for a translation; no symmetric part for a rigid rotation of the nodes
