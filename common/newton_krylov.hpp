@@ -34,6 +34,9 @@ struct NewtonOptions {
     double largest_forcing = 0.9;    // bounds of eta; below the lower one the error of the
     double smallest_forcing = 1e-5;  // differences would show
     int max_halvings = 12;           // attempts of the line search
+    // F is the gradient of something convex, or nearly so, and may have kinks: a step s is shortened
+    // where it overshoots, s.F(x + s) > 0, even if |F| falls, and taken where it does not.
+    bool convex = false;
 };
 
 /// What Newton keeps between calls, so that only the first call allocates.
@@ -136,6 +139,12 @@ NewtonResult newton_krylov(const Residual& residual, const Preconditioner& preco
             work.x_trial = x + fraction * work.step;
             residual(work.x_trial, work.F_trial);
             size_trial = safe_norm(work.F_trial);
+            if (options.convex && std::isfinite(size_trial)) {
+                const double slope = work.step.dot(work.F), now = work.step.dot(work.F_trial);
+                if (now <= -0.5 * slope || size_trial <= 0.1 * size) break;
+                fraction *= std::clamp(slope / (slope - now), 0.1, 0.7);
+                continue;
+            }
             if (size_trial <= (1.0 - 1e-4 * fraction * (1.0 - reached)) * size) break;
             fraction = newton_detail::shorter_fraction(fraction, size, size_trial, reached);
         }

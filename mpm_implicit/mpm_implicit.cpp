@@ -98,13 +98,14 @@ int start(int argc, char** argv, std::optional<common::Session>& holder) {
     common::ParameterTable table = describe(wanted, scheme);
     const common::CommandLine command = common::read_command_line(argc, argv, about, table);
     refuse_impossible(wanted, scheme);
-    const Scales scales = scales_of(wanted);
+    Scales scales = scales_of(wanted);
+    scales.bytes = bytes_of(wanted, scheme, scales);
     const std::vector<std::string> warnings = warnings_of(wanted, scheme, scales);
     for (const std::string& warning : warnings)
         std::fprintf(stderr, "warning: %s\n", warning.c_str());
     if (!command.quiet) std::printf("%s", describe_scales(wanted, scheme, scales).c_str());
     if (command.dry_run) return 0;
-    common::refuse_before_start(command, scales.steps, bytes_of(wanted, scheme, scales));
+    common::refuse_before_start(command, scales.steps, scales.bytes);
 
     common::set_thread_count(command.threads);
     common::Session& session = holder.emplace(about, command, table);

@@ -1,13 +1,14 @@
-// The same step by the talk's words, Newton and Krylov: nothing is linearized by hand, so plastic
-// grains and growing volumes are as good as elastic ones; and contact is the operator of the explicit
-// program, put on v^theta.
+// The same step by Newton and Krylov, as the talk's abstract has it for fields: nothing is linearized
+// by hand, so plastic grains and growing volumes are as good as elastic ones; and contact is the
+// operator of the explicit program, put on v^theta.
 //
 // With R the momentum that is missing, and C the operator that ends approach and slip at the nodes,
-//     F(v) = v - C(v + R(v)/m_i),
+//     F(v) = v - C(v + R(v)/D),
 //     R(v) = M (v^0 - v) + theta dt [f(sigma^theta(v)) + m g - c M v]
-// is zero exactly where R is made up by impulses that press and rub as they should. Newton's linear
-// systems are solved by GMRES with differences of F, preconditioned by conjugate gradients for the
-// elastic grains with the pairs that are closed now.
+// is zero exactly where R is made up by impulses that press and rub as they should, whatever the
+// masses D are that C works with: here the diagonal of A, with which v + R/D never goes far. Newton's
+// linear systems are solved by GMRES with differences of F, preconditioned by conjugate gradients for
+// the elastic grains with the pairs that are closed now.
 #pragma once
 
 #include "common/newton_krylov.hpp"
@@ -37,12 +38,11 @@ class NewtonSolver {
         resize(n, count);
         solver.prepare(scheme, body, dt, nodes);
         const Vector& b = solver.right_hand_side();
-        // y = m^{1/2} v, where velocities can change.
-        const Vector& scale_A = solver.scale();
-        for_each_slot(n, [&](long i, std::size_t k) {
-            const double root = std::sqrt(nodes.sums[k].m);
+        // x = D^{1/2} v, where velocities can change.
+        const Vector& scale = solver.scale();
+        for_each_slot(n, [&](long i, std::size_t) {
             for (const long at : {i, n + i}) {
-                root_[at] = scale_A[at] > 0 ? root : 0, scale_[at] = scale_A[at] > 0 ? 1 / root : 0;
+                root_[at] = scale[at] > 0 ? 1 / scale[at] : 0;
                 x_[at] = root_[at] * solver.old_velocities()[at];
             }
         });
@@ -51,7 +51,7 @@ class NewtonSolver {
                             solver.servos[static_cast<std::size_t>(s)].velocity;
 
         const double factor_M = 1 + theta * dt * body.damping;
-        // Puts u = v + R(v)/m on the nodes.
+        // Puts v on the nodes, and finds R(v).
         const auto load = [&](const Vector& x) {
             for (long s = 0; s < count; ++s) {
                 const Servo& servo = solver.servos[static_cast<std::size_t>(s)];
@@ -60,7 +60,7 @@ class NewtonSolver {
             }
             drive_rigid(grains, rigid, nodes);
             for_each_slot(n, [&](long i, std::size_t k) {
-                v_[i] = scale_[i] * x[i], v_[n + i] = scale_[n + i] * x[n + i];
+                v_[i] = scale[i] * x[i], v_[n + i] = scale[n + i] * x[n + i];
                 if (nodes.is_free()[k] != 0)
                     nodes.motion[k].vx_1 = v_[i], nodes.motion[k].vy_1 = v_[n + i];
             });
@@ -68,22 +68,38 @@ class NewtonSolver {
             force_at_theta(shape, laws, scheme, dt, grains, particles, nodes);
             solver.matrix.multiply_mass(v_, Mv_);
             for_each_slot(n, [&](long i, std::size_t k) {
+                R_[i] = b[i] + theta * dt * nodes.force[k].x - factor_M * Mv_[i];
+                R_[n + i] = b[n + i] + theta * dt * nodes.force[k].y - factor_M * Mv_[n + i];
+            });
+        };
+        // Puts v + R/D on the nodes, for contact to correct; or v + R/m_i, where it keeps the books.
+        const auto push = [&](bool by_mass) {
+            for_each_slot(n, [&](long i, std::size_t k) {
                 if (nodes.is_free()[k] == 0) return;
-                const auto moved = [&](long at, double force) {
-                    const double R = b[at] + theta * dt * force - factor_M * Mv_[at];
-                    return scale_[at] > 0 ? v_[at] + R * scale_[at] * scale_[at] : 0.0;
+                const double per_m = by_mass ? 1 / nodes.sums[k].m : 0;
+                const auto pushed = [&](long at) {
+                    if (!(scale[at] > 0)) return 0.0;
+                    return v_[at] + R_[at] * (by_mass ? per_m : scale[at] * scale[at]);
                 };
-                nodes.motion[k].vx_1 = moved(i, nodes.force[k].x);
-                nodes.motion[k].vy_1 = moved(n + i, nodes.force[k].y);
+                nodes.motion[k].vx_1 = pushed(i), nodes.motion[k].vy_1 = pushed(n + i);
             });
         };
         const auto residual = [&](const Vector& x, Vector& F) {
             load(x);
-            std::array<std::vector<double>, common::block_count> push;
-            for (auto& block : push) block.assign(static_cast<std::size_t>(count), 0.0);
+            push(false);
+            std::array<std::vector<double>, common::block_count> reaction;
+            for (auto& block : reaction) block.assign(static_cast<std::size_t>(count), 0.0);
             std::array<std::size_t, common::block_count> next = solver.set.first_pair;
             contact.meetings().for_each(nodes, bonds, false, [&](int number, auto& node) {
                 const auto block = static_cast<std::size_t>(number);
+                node.isotropic = false;
+                for (std::size_t k = 0; k < node.parties; ++k) {
+                    mpm::detail::Party& party = node.party[k];
+                    if (party.is_fixed()) continue;
+                    party.per_mx = std::pow(scale[party.slot], 2);
+                    party.per_my = std::pow(scale[n + party.slot], 2);
+                }
+                mpm::detail::weigh_pairs(node);
                 mpm::detail::solve(node);
                 for (std::size_t k = 0; k < node.pairs; ++k) {
                     const mpm::detail::Pair& pair = node.pair[k];
@@ -96,7 +112,7 @@ class NewtonSolver {
                             if (!party.rigid ||
                                 static_cast<std::size_t>(party.grain) != servo.grain)
                                 continue;
-                            push[block][static_cast<std::size_t>(s)] +=
+                            reaction[block][static_cast<std::size_t>(s)] +=
                                 sign * (servo.along_x
                                             ? pair.lambda_n * pair.nx - pair.lambda_t * pair.ny
                                             : pair.lambda_n * pair.ny + pair.lambda_t * pair.nx);
@@ -116,7 +132,7 @@ class NewtonSolver {
             for (long s = 0; s < count; ++s) {
                 const Servo& servo = solver.servos[static_cast<std::size_t>(s)];
                 double impulse = dt * servo.force;
-                for (const auto& block : push)
+                for (const auto& block : reaction)
                     impulse += block[static_cast<std::size_t>(s)] / theta;
                 const double V =
                     (servo.velocity + impulse / servo.mass) / (1 + dt * servo.damping / servo.mass);
@@ -128,11 +144,11 @@ class NewtonSolver {
         const auto multiply = [&](Vector& x, Vector& y) { solver.matrix.multiply(x, y); };
         const auto precondition = [&](const Vector& r, Vector& z) {
             part_ = r.head(2 * n);
-            by_mass_.project(part_);
+            by_A_.project(part_);
             for_each_slot(n, [&](long i, std::size_t) {
                 for (const long at : {i, n + i}) {
-                    rest_[at] = scale_[at] > 0 ? r[at] - part_[at] : 0;
-                    v_[at] = scale_[at] * rest_[at];
+                    rest_[at] = scale[at] > 0 ? r[at] - part_[at] : 0;
+                    v_[at] = scale[at] * rest_[at];
                 }
             });
             solver.matrix.multiply(v_, Mv_);
@@ -141,7 +157,7 @@ class NewtonSolver {
             });
             v_.setZero();
             PlateSystem none;
-            const CgResult cg = projected_cg(multiply, solver.preconditioner(by_A_), by_A_, scale_A,
+            const CgResult cg = projected_cg(multiply, solver.preconditioner(by_A_), by_A_, scale,
                                              part_, 1e-4, scheme.most_iterations, v_, none, cg_);
             report.iterations += cg.iterations;
             for_each_slot(n, [&](long i, std::size_t) {
@@ -152,37 +168,33 @@ class NewtonSolver {
 
         solver.use_preconditioner(scheme, grains, nodes);
         common::NewtonOptions options;
-        options.first_forcing = 1e-4, options.smallest_forcing = 1e-6;
-        double scale = 0;
+        options.first_forcing = 1e-4, options.smallest_forcing = 1e-6, options.convex = true;
+        double unit = 0;
         common::NewtonResult result;
         for (report.loops = 0; report.loops <= scheme.most_loops; ++report.loops) {
             watching_ = true;
             residual(x_, F_);
             watching_ = false;
             if (report.loops == 0)
-                scale = std::max({common::safe_norm(F_), common::safe_norm(x_),
-                                  std::numeric_limits<double>::min()});
+                unit = std::max({common::safe_norm(F_), common::safe_norm(x_),
+                                 std::numeric_limits<double>::min()});
             // What round-off of R leaves in F.
-            double size = 0;
-            for (long i = 0; i < 2 * n; ++i)
-                if (scale_[i] > 0)
-                    size += std::pow(scale_[i] * scale_[i] * x_[i] / (scale_A[i] * scale_A[i]), 2);
             const double tolerance =
                 std::max(scheme.tolerance,
-                         8 * std::numeric_limits<double>::epsilon() * std::sqrt(size) / scale);
-            result = {0, 0, common::safe_norm(F_) / scale, false, "Newton's limit"};
+                         8 * std::numeric_limits<double>::epsilon() * common::safe_norm(x_) / unit);
+            result = {0, 0, common::safe_norm(F_) / unit, false, "Newton's limit"};
             result.converged = result.residual <= tolerance;
             if (result.converged || report.loops == scheme.most_loops) break;
-            by_mass_.build(solver.set, scale_, n, 0, false);
-            by_A_.build(solver.set, scale_A, n, 0, false);
-            options.size_of_x = scale;
-            result = common::newton_krylov(residual, precondition, x_, scale, tolerance, 1, 200,
+            by_A_.build(solver.set, scale, n, 0, false);
+            options.size_of_x = unit;
+            result = common::newton_krylov(residual, precondition, x_, unit, tolerance, 1, 200,
                                            newton_, options);
             report.krylov += result.linear_iterations;
             if (result.newton_iterations == 0) break;
         }
         if (!result.converged) fail(result, scheme, grains, solver.set);
         load(x_);
+        push(true);
         const ContactSums did = contact.apply(dt, nodes, bonds, rigid, {0, 1 / theta});
         for (long s = 0; s < count; ++s) {
             RigidMotion& is = rigid[solver.servos[static_cast<std::size_t>(s)].grain];
@@ -202,7 +214,7 @@ class NewtonSolver {
     }
 
     void resize(long n, long servos) {
-        for (Vector* v : {&root_, &scale_, &v_, &Mv_, &part_, &rest_})
+        for (Vector* v : {&root_, &v_, &Mv_, &R_, &part_, &rest_})
             if (v->size() != 2 * n) *v = Vector::Zero(2 * n);
         for (Vector* v : {&x_, &F_}) *v = Vector::Zero(2 * n + servos);
         cg_.resize(n);
@@ -222,15 +234,17 @@ class NewtonSolver {
         std::size_t hardest = 0;
         for (std::size_t k = 0; k < set.pairs.size(); ++k)
             if (set.pairs[k].lambda_n > set.pairs[hardest].lambda_n) hardest = k;
+        const std::string who =
+            set.pairs.empty() ? "" : "; hardest pressed are " + set.names(hardest, grains);
         throw common::NumericalError("Newton's iteration did not converge: " + result.reason +
                                      "; residual " + common::shown(result.residual) +
-                                     ", asked for " + common::shown(scheme.tolerance) +
-                                     "; the hardest pressed are " + set.names(hardest, grains));
+                                     ", asked for " + common::shown(scheme.tolerance) + who +
+                                     ": reduce time.alpha, or raise solver.most_loops");
     }
 
     bool watching_ = false;
-    Vector root_, scale_, x_, F_, v_, Mv_, part_, rest_;
-    Constraints by_mass_, by_A_;
+    Vector root_, x_, F_, v_, Mv_, R_, part_, rest_;
+    Constraints by_A_;
     CgWorkspace cg_;
     common::NewtonWorkspace newton_;
 };

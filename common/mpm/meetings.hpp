@@ -140,14 +140,7 @@ class Meetings {
             if (nodes.is_fixed_x(party.slot)) party.per_mx = 0, node.isotropic = false;
             if (nodes.is_fixed_y(party.slot)) party.per_my = 0, node.isotropic = false;
         }
-        for (std::size_t k = 0; k < node.pairs; ++k) {
-            detail::Pair& pair = node.pair[k];
-            const detail::Party &one = node.party[pair.a], &two = node.party[pair.b];
-            const double per_x = one.per_mx + two.per_mx, per_y = one.per_my + two.per_my,
-                         nn = pair.nx * pair.nx, tt = pair.ny * pair.ny,
-                         per_n = per_x * nn + per_y * tt, per_t = per_x * tt + per_y * nn;
-            pair.mass_n = per_n > 0 ? 1 / per_n : 0, pair.mass_t = per_t > 0 ? 1 / per_t : 0;
-        }
+        detail::weigh_pairs(node);
     }
 
     // The pairs that are in contact, or only those that are bonded.

@@ -39,8 +39,20 @@ struct NodeProblem {
     std::array<Pair, most_parties*(most_parties - 1) / 2> pair;
     std::size_t parties = 0, pairs = 0;
     long key = 0;           // of the node on the mesh
-    bool isotropic = true;  // no velocity is fixed in one direction only
+    bool isotropic = true;  // 1/m_i is the same in both directions
 };
+
+/// Reduced masses of all pairs, from those of the parties.
+inline void weigh_pairs(NodeProblem& node) {
+    for (std::size_t k = 0; k < node.pairs; ++k) {
+        Pair& pair = node.pair[k];
+        const Party &one = node.party[pair.a], &two = node.party[pair.b];
+        const double per_x = one.per_mx + two.per_mx, per_y = one.per_my + two.per_my,
+                     nn = pair.nx * pair.nx, tt = pair.ny * pair.ny,
+                     per_n = per_x * nn + per_y * tt, per_t = per_x * tt + per_y * nn;
+        pair.mass_n = per_n > 0 ? 1 / per_n : 0, pair.mass_t = per_t > 0 ? 1 / per_t : 0;
+    }
+}
 
 /// Projected Gauss-Seidel, until a sweep changes no velocity by more than round-off.
 inline void solve(NodeProblem& node) {
