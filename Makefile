@@ -229,17 +229,41 @@ $(eval $(call mpm_series,mpm_explicit_incline,incline_block incline_cylinder,out
 $(eval $(call mpm_series,mpm_explicit_bonded_bar,bonded_bar,out/mpm_explicit/bonds))
 $(eval $(call mpm_series,mpm_explicit_oscillator,oscillator,out/mpm_explicit/oscillators))
 $(eval $(call mpm_series,mpm_explicit_sulsky_disks,sulsky_disks,out/mpm_explicit/collisions))
+
+# $(call implicit_series,figure,cases,folder): a figure of several runs of mpm_implicit.
+define implicit_series
+$(call figure,$(1),mpm_implicit,$(3))
+$(call series,mpm_implicit/figures/$(1).sh,mpm_implicit,$(2:%=mpm_implicit/cases/%.toml),$(3))
+endef
+$(eval $(call figure,fig01,mpm_implicit,out/mpm_implicit/rebound))
+$(eval $(call implicit_series,fig03,rebound,out/mpm_implicit/rebounds))
+$(eval $(call implicit_series,fig04,compressed,out/mpm_implicit/compressions))
+$(eval $(call figure,fig06,mpm_implicit,out/mpm_implicit/compressions))
+$(eval $(call figure,fig07,mpm_implicit,out/mpm_implicit/shear))
+$(eval $(call figure,mpm_implicit_shear_large,mpm_implicit,out/mpm_implicit/shear_large))
+$(eval $(call implicit_series,mpm_implicit_identity,rebound,out/mpm_implicit/oblique))
+$(eval $(call implicit_series,mpm_implicit_iterations,compressed,out/mpm_implicit/iterations))
+# Both programs side by side.
+$(eval $(call figure,mpm_implicit_energy_bound,mpm_implicit,out/mpm_implicit/bounces))
+out/mpm_implicit/bounces/.complete: mpm_implicit/figures/mpm_implicit_energy_bound.sh $(BUILD)/mpm_implicit \
+    $(BUILD)/mpm_explicit mpm_implicit/cases/energy_bound.toml | $(packages_first)
+	@rm -f $@
+	@mkdir -p $(@D)
+	$(one_at_a_time) sh $< $(BUILD)/mpm_implicit $(BUILD)/mpm_explicit $(@D)
+	@touch $@
+out/figures/fig03.png: out/mpm_explicit/rebounds/.complete
+out/figures/fig06.png: out/mpm_explicit/compressions/.complete
+
 # Pictures in polarized light.
-$(patsubst %,out/figures/%.png,fig05 mpm_explicit_shear mpm_explicit_diametral_disk): common/mpm/polariscope.gp
+$(patsubst %,out/figures/%.png,fig04 fig05 fig07 mpm_implicit_shear_large mpm_explicit_shear \
+    mpm_explicit_diametral_disk): common/mpm/polariscope.gp
 
 mpm_figures = $(filter mpm_%,$(figures))
 
 figures: $(figures)
 
 # Figures of the talk whose method has no program so far.
-fig01 fig04 fig07: method := mpm_implicit
-fig03 fig06:       method := the comparison of mpm_implicit with mpm_explicit
-fig10:             method := the comparison of implicit_moment with explicit_em
+fig10:                         method := the comparison of implicit_moment with explicit_em
 fig11 fig12 fig13 fig14 fig15: method := the thin current sheet of implicit_moment
 figures_to_come := $(filter-out $(figures),$(foreach n,01 02 03 04 05 06 07 08 09 10 11 12 13 14 15,fig$n))
 .PHONY: $(figures_to_come)
