@@ -88,7 +88,9 @@ The particle-in-cell family in running code
                          $(wordlist 1,3,$(mpm_figures))
                          $(wordlist 4,6,$(mpm_figures))
                          $(wordlist 7,9,$(mpm_figures))
-                         $(wordlist 10,99,$(mpm_figures))
+                         $(wordlist 10,12,$(mpm_figures))
+                         $(wordlist 13,15,$(mpm_figures))
+                         $(wordlist 16,99,$(mpm_figures))
   make figures           draw them all
   make test              the facts, at most ten minutes   (make test ARGS='-R gmres': some of them)
   make test-long         every figure at full length, its numbers checked
@@ -243,14 +245,17 @@ $(eval $(call figure,fig07,mpm_implicit,out/mpm_implicit/shear))
 $(eval $(call figure,mpm_implicit_shear_large,mpm_implicit,out/mpm_implicit/shear_large))
 $(eval $(call implicit_series,mpm_implicit_identity,rebound,out/mpm_implicit/oblique))
 $(eval $(call implicit_series,mpm_implicit_iterations,compressed,out/mpm_implicit/iterations))
-# Both programs side by side.
-$(eval $(call figure,mpm_implicit_energy_bound,mpm_implicit,out/mpm_implicit/bounces))
-out/mpm_implicit/bounces/.complete: mpm_implicit/figures/mpm_implicit_energy_bound.sh $(BUILD)/mpm_implicit \
-    $(BUILD)/mpm_explicit mpm_implicit/cases/energy_bound.toml | $(packages_first)
-	@rm -f $@
-	@mkdir -p $(@D)
-	$(one_at_a_time) sh $< $(BUILD)/mpm_implicit $(BUILD)/mpm_explicit $(@D)
-	@touch $@
+# $(call both_series,figure,case,folder): several runs of both, by  sh SCRIPT IMPLICIT EXPLICIT FOLDER .
+define both_series
+$(call figure,$(1),mpm_implicit,$(3))
+$(3)/.complete: mpm_implicit/figures/$(1).sh $(BUILD)/mpm_implicit $(BUILD)/mpm_explicit mpm_implicit/cases/$(2).toml | $(packages_first)
+	@rm -f $$@
+	@mkdir -p $$(@D)
+	$$(one_at_a_time) sh $$< $(BUILD)/mpm_implicit $(BUILD)/mpm_explicit $$(@D)
+	@touch $$@
+endef
+$(eval $(call both_series,mpm_implicit_energy_bound,energy_bound,out/mpm_implicit/bounces))
+# Figures that look into runs of the explicit program, too.
 out/figures/fig03.png: out/mpm_explicit/rebounds/.complete
 out/figures/fig06.png: out/mpm_explicit/compressions/.complete
 
@@ -287,7 +292,8 @@ test: all tests $(BUILD)/CTestTestfile.cmake | $(packages_first)
 # Runs that the notes quote and no figure needs.
 quoted := out/implicit_moment/gem_1836/.complete $(patsubst %,out/cic/%/.complete,\
     plasma_wave landau upper_hybrid misprint cloud_collision cold_beam_grid_instability thermal_heating)\
-    $(patsubst %,out/mpm_explicit/%/.complete,rebound incline_block incline_cylinder bonded_bar)
+    $(patsubst %,out/mpm_explicit/%/.complete,rebound incline_block incline_cylinder bonded_bar)\
+    $(patsubst %,out/mpm_implicit/%/.complete,rebound compressed)
 
 test-long: all tests figures $(quoted) $(BUILD)/CTestTestfile.cmake | $(packages_first)
 	$(call need,ctest)
