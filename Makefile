@@ -88,7 +88,9 @@ The particle-in-cell family in running code
                          $(wordlist 1,3,$(mpm_figures))
                          $(wordlist 4,6,$(mpm_figures))
                          $(wordlist 7,9,$(mpm_figures))
-                         $(wordlist 10,99,$(mpm_figures))
+                         $(wordlist 10,12,$(mpm_figures))
+                         $(wordlist 13,15,$(mpm_figures))
+                         $(wordlist 16,99,$(mpm_figures))
   make figures           draw them all
   make test              the facts, at most ten minutes   (make test ARGS='-R gmres': some of them)
   make test-long         every figure at full length, its numbers checked
@@ -229,17 +231,44 @@ $(eval $(call mpm_series,mpm_explicit_incline,incline_block incline_cylinder,out
 $(eval $(call mpm_series,mpm_explicit_bonded_bar,bonded_bar,out/mpm_explicit/bonds))
 $(eval $(call mpm_series,mpm_explicit_oscillator,oscillator,out/mpm_explicit/oscillators))
 $(eval $(call mpm_series,mpm_explicit_sulsky_disks,sulsky_disks,out/mpm_explicit/collisions))
+
+# $(call implicit_series,figure,cases,folder): a figure of several runs of mpm_implicit.
+define implicit_series
+$(call figure,$(1),mpm_implicit,$(3))
+$(call series,mpm_implicit/figures/$(1).sh,mpm_implicit,$(2:%=mpm_implicit/cases/%.toml),$(3))
+endef
+$(eval $(call figure,fig01,mpm_implicit,out/mpm_implicit/rebound))
+$(eval $(call implicit_series,fig03,rebound,out/mpm_implicit/rebounds))
+$(eval $(call implicit_series,fig04,compressed,out/mpm_implicit/compressions))
+$(eval $(call figure,fig06,mpm_implicit,out/mpm_implicit/compressions))
+$(eval $(call figure,fig07,mpm_implicit,out/mpm_implicit/shear))
+$(eval $(call figure,mpm_implicit_shear_large,mpm_implicit,out/mpm_implicit/shear_large))
+$(eval $(call implicit_series,mpm_implicit_identity,rebound,out/mpm_implicit/oblique))
+$(eval $(call implicit_series,mpm_implicit_iterations,compressed,out/mpm_implicit/iterations))
+# $(call both_series,figure,case,folder): several runs of both, by  sh SCRIPT IMPLICIT EXPLICIT FOLDER .
+define both_series
+$(call figure,$(1),mpm_implicit,$(3))
+$(3)/.complete: mpm_implicit/figures/$(1).sh $(BUILD)/mpm_implicit $(BUILD)/mpm_explicit mpm_implicit/cases/$(2).toml | $(packages_first)
+	@rm -f $$@
+	@mkdir -p $$(@D)
+	$$(one_at_a_time) sh $$< $(BUILD)/mpm_implicit $(BUILD)/mpm_explicit $$(@D)
+	@touch $$@
+endef
+$(eval $(call both_series,mpm_implicit_energy_bound,energy_bound,out/mpm_implicit/bounces))
+# Figures that look into runs of the explicit program, too.
+out/figures/fig03.png: out/mpm_explicit/rebounds/.complete
+out/figures/fig06.png: out/mpm_explicit/compressions/.complete
+
 # Pictures in polarized light.
-$(patsubst %,out/figures/%.png,fig05 mpm_explicit_shear mpm_explicit_diametral_disk): common/mpm/polariscope.gp
+$(patsubst %,out/figures/%.png,fig04 fig05 fig07 mpm_implicit_shear_large mpm_explicit_shear \
+    mpm_explicit_diametral_disk): common/mpm/polariscope.gp
 
 mpm_figures = $(filter mpm_%,$(figures))
 
 figures: $(figures)
 
 # Figures of the talk whose method has no program so far.
-fig01 fig04 fig07: method := mpm_implicit
-fig03 fig06:       method := the comparison of mpm_implicit with mpm_explicit
-fig10:             method := the comparison of implicit_moment with explicit_em
+fig10:                         method := the comparison of implicit_moment with explicit_em
 fig11 fig12 fig13 fig14 fig15: method := the thin current sheet of implicit_moment
 figures_to_come := $(filter-out $(figures),$(foreach n,01 02 03 04 05 06 07 08 09 10 11 12 13 14 15,fig$n))
 .PHONY: $(figures_to_come)
@@ -263,7 +292,8 @@ test: all tests $(BUILD)/CTestTestfile.cmake | $(packages_first)
 # Runs that the notes quote and no figure needs.
 quoted := out/implicit_moment/gem_1836/.complete $(patsubst %,out/cic/%/.complete,\
     plasma_wave landau upper_hybrid misprint cloud_collision cold_beam_grid_instability thermal_heating)\
-    $(patsubst %,out/mpm_explicit/%/.complete,rebound incline_block incline_cylinder bonded_bar)
+    $(patsubst %,out/mpm_explicit/%/.complete,rebound incline_block incline_cylinder bonded_bar)\
+    $(patsubst %,out/mpm_implicit/%/.complete,rebound compressed)
 
 test-long: all tests figures $(quoted) $(BUILD)/CTestTestfile.cmake | $(packages_first)
 	$(call need,ctest)
