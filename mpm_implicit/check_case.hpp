@@ -51,13 +51,13 @@ inline void refuse_billet(const Case& w) {
     for (const PlannedGrain& plan : plans) {
         if (&plan == block) continue;
         const Bounds plate = bounds(plan.outline);
-        const double gap = std::min(std::fabs(plate.y_low - box.y_high),
-                                    std::fabs(plate.y_high - box.y_low));
-        mpm::detail::refuse(plate.x_low > box.x_low || plate.x_high < box.x_high ||
-                                gap > 1e-6 * w.problem.mesh().h,
-                            "theory.compare = \"billet\": plate '" + plan.name +
-                                "' does not cover a whole side of '" + block->name +
-                                "': make it wider, and let them touch");
+        const double gap =
+            std::min(std::fabs(plate.y_low - box.y_high), std::fabs(plate.y_high - box.y_low));
+        mpm::detail::refuse(
+            plate.x_low > box.x_low || plate.x_high < box.x_high || gap > 1e-6 * w.problem.mesh().h,
+            "theory.compare = \"billet\": plate '" + plan.name +
+                "' does not cover a whole side of '" + block->name +
+                "': make it wider, and let them touch");
     }
 }
 

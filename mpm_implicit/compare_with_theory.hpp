@@ -83,8 +83,8 @@ inline void compare_oscillator(const theory::Run& run, const ThetaScheme& scheme
         return;
     }
     const double size = std::abs(std::log(g)) / dt, tolerance = run.wanted.tolerance * size;
-    const common::OscillationFit fit = common::fit_oscillation(
-        change, dt * static_cast<double>(run.wanted.history_steps));
+    const common::OscillationFit fit =
+        common::fit_oscillation(change, dt * static_cast<double>(run.wanted.history_steps));
     summary.result("frequency", fit.frequency, "1/time", std::arg(g) / dt, tolerance, source);
     summary.result("damping", -fit.growth, "1/time", -std::log(std::abs(g)) / dt, tolerance,
                    source);
