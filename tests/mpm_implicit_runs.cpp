@@ -28,7 +28,7 @@ const std::string compressed =
 // Two disks that meet at t = 0.1, off their line of centers, on cells of 0.05.
 const std::string oblique =
     "mpm_implicit/cases/rebound.toml mesh.cells_x=24 mesh.cells_y=12 grain.left.x=0.39 "
-    "grain.right.x=0.81 grain.left.y=0.35 theory.compare=none";
+    "grain.right.x=0.81 grain.left.y=0.35 grain.left.velocity_y=0.1 theory.compare=none";
 
 void check_results(const Run& run, int at_least) { facts::check_results(run.summary, at_least); }
 
@@ -139,7 +139,8 @@ TEST_CASE("conjugate gradients with an active set and Newton with Krylov agree" 
                 for (std::size_t n = 0; n < a.size(); ++n)
                     CHECK(std::fabs(a[n] - b[n]) <= 1e-6 * largest(a));
                 CHECK(largest(one.column("contact_force")) > 0);
-                CHECK((largest(one.column("friction")) > 0) == (friction != std::string("0")));
+                const double rubbed = -one.column("friction").back() / largest(a);
+                CHECK((rubbed > 1e-3) == (friction != std::string("0")));
                 CHECK(number(one, "krylov_vectors_per_step") == 0);
                 CHECK(number(two, "krylov_vectors_per_step") > 0);
             }
@@ -157,7 +158,8 @@ TEST_CASE("the energy of a compressed pack is the work of its plate" *
                    &way = r.column("travel_y_plate"), &work = r.column("external"),
                    &energy = r.column("energy"), &friction = r.column("friction");
         CHECK(work.back() > 10);
-        CHECK((largest(friction) > 0) == (overrides.find("friction") != std::string::npos));
+        CHECK((friction.back() < -1e-2 * work.back()) ==
+              (overrides.find("friction") != std::string::npos));
         double sum = 0;
         for (std::size_t n = 1; n < time.size(); ++n) {
             CHECK(std::fabs(energy[n] - work[n] - friction[n]) <= 1e-10 * work.back());
@@ -239,9 +241,9 @@ TEST_CASE("a bar swings and decays as the exact factor of a step says" *
 TEST_CASE("a standing wave converges to second order in cells and steps together" *
           doctest::description("physics")) {
     std::vector<double> error;
-    for (const int cells : {16, 32, 64})
+    for (const int cells : {32, 64, 128})
         error.push_back(run("wave", "standing_wave",
-                            "time.alpha=2 time.end=0.5451 mesh.cells_x=" + std::to_string(cells) +
+                            "time.alpha=2 time.end=0.2045 mesh.cells_x=" + std::to_string(cells) +
                                 " mesh.cells_y=" + std::to_string(cells / 4))
                             .value("velocity_error"));
     CHECK(std::fabs(std::log2(error[0] / error[1]) - 2) <= 0.15);
