@@ -47,7 +47,7 @@ inline common::ParameterTable describe(Case& w, ThetaScheme& scheme) {
                 "guesses of who presses, or Newton steps; beyond, the run fails");
     describe_comparison(table, w,
                         {"none", "rebound", "bar", "standing_wave", "oscillator", "block",
-                         "cylinder", "disk", "bond", "yield", "compression", "energy"});
+                         "cylinder", "disk", "bond", "yield", "compression", "billet", "energy"});
     describe_output(table, w);
     return table;
 }

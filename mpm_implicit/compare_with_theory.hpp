@@ -1,16 +1,19 @@
 // The results of a run of mpm_implicit: what any scheme is compared with
-// (common/mpm/compare_with_theory.hpp), the energy theorem in every run, and what the theta scheme
-// does to an oscillation, exactly.
+// (common/mpm/compare_with_theory.hpp), the energy theorem in every run, what the theta scheme does to
+// an oscillation, exactly, and what a block bears that is pressed slowly.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
+#include <string>
+#include <vector>
 
 #include "common/mpm/compare_with_theory.hpp"
 #include "common/mpm/scheme_theory.hpp"
 #include "common/theta_scheme.hpp"
-#include "mpm_implicit/case.hpp"
+#include "mpm_implicit/check_case.hpp"
 #include "mpm_implicit/ledger.hpp"
 
 namespace mpm_implicit {
@@ -60,6 +63,60 @@ inline void compare_oscillation(const theory::Run& run, double w, double theta,
                        "none, over the frequency");
 }
 
+/// The one free node between two fixed ends, with frozen particles.
+inline void compare_oscillator(const theory::Run& run, const ThetaScheme& scheme,
+                               common::Summary& summary) {
+    const Problem& problem = run.wanted.problem;
+    const int per_side = static_cast<int>(problem.per_side);
+    const double dt = run.scales.dt, c = sound_speed(run.material()), h = problem.mesh().h,
+                 filter = node_filter(per_side), f = scheme.consistent() ? 1 : filter,
+                 w = c / h * std::sqrt(2 * f / filter);
+    const std::complex<double> g = theta_node_oscillation(scheme.theta, w * dt, f);
+    summary.result_info("omega_dt", w * dt, "1", "one free node, exact in space");
+    // What of the momentum the node does not see stays; its changes are the node's alone.
+    auto change = run.momentum_x();
+    for (std::size_t n = 0; n + 1 < change.size(); ++n) change[n] = change[n + 1] - change[n];
+    change.pop_back();
+    const std::string source = "exact factor of a step, theta scheme with " + scheme.mass + " mass";
+    if (std::imag(g) == 0) {
+        summary.result_info("overdamped", std::real(g), "1", "nothing oscillates; " + source);
+        return;
+    }
+    const double size = std::abs(std::log(g)) / dt, tolerance = run.wanted.tolerance * size;
+    const common::OscillationFit fit =
+        common::fit_oscillation(change, dt * static_cast<double>(run.wanted.history_steps));
+    summary.result("frequency", fit.frequency, "1/time", std::arg(g) / dt, tolerance, source);
+    summary.result("damping", -fit.growth, "1/time", -std::log(std::abs(g)) / dt, tolerance,
+                   source);
+}
+
+/// A block that one plate presses against another, slowly: its modulus while it is elastic, and the
+/// most that it bears when it can yield but not harden.
+inline void compare_billet(const theory::Run& run, common::Summary& summary) {
+    const Outline& block = run.plans[run.subject.grain].outline;
+    const Bounds box = bounds(block);
+    const std::string plate = billet_plate(run.wanted, run.plans, run.materials);
+    const auto force = run.history.column("force_y_" + plate),
+               way = run.history.column("travel_y_" + plate);
+    const double width = box.x_high - box.x_low, height = box.y_high - box.y_low,
+                 press = std::fabs(force.back()) / width;
+    const Material m = run.material();
+    summary.result_info("strain", std::fabs(way.back()) / height, "1", "at the end");
+    if (m.law == Law::j2) {
+        const double limit = plane_strain_strength(m.yield_stress);
+        summary.result("limit", press / limit, "1", 1, run.wanted.tolerance,
+                       "stress on the plate at the end, over 2 Y/3^1/2, a plane block's limit");
+        return;
+    }
+    std::vector<double> strain, stress;
+    for (std::size_t n = 0; n < way.size(); ++n)
+        strain.push_back(std::fabs(way[n]) / height), stress.push_back(std::fabs(force[n]) / width);
+    const double exact = plane_strain_modulus(m.E, m.nu);
+    summary.result("modulus", theory::slope(strain, stress, 0.5 * strain.back()), "stress", exact,
+                   run.wanted.tolerance * exact,
+                   "E/(1 - nu^2): stress on the plate against strain, second half of the run");
+}
+
 /// Grains that a plate presses: the energy is the work of the plate.
 inline void compare_compression(const theory::Run& run, const ThetaScheme& scheme,
                                 common::Summary& summary) {
@@ -88,6 +145,8 @@ inline void compare_with_theory(const theory::Run& run, const ThetaScheme& schem
             compare_oscillation(run, theory::bar_of(run).frequency(), scheme.theta, summary);
         return;
     }
+    if (w.compare == "oscillator") compare_oscillator(run, scheme, summary);
+    if (w.compare == "billet") compare_billet(run, summary);
     if (w.compare == "compression") compare_compression(run, scheme, summary);
     if (w.compare == "rebound") {
         const auto total = run.history.column("momentum_x"), one = run.momentum_x();

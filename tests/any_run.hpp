@@ -6,7 +6,9 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -52,6 +54,32 @@ inline nlohmann::json summary(const std::string& out) {
     const std::string text = read_all(out + "/summary.json");
     REQUIRE(!text.empty());
     return nlohmann::json::parse(text);
+}
+
+/// The values of a column of a history.
+inline std::vector<double> column(const std::string& out, const std::string& name) {
+    std::ifstream file(out + "/history.dat");
+    std::string words;
+    std::getline(file, words);
+    const std::size_t end = words.find(":" + name + "[");
+    REQUIRE(end != std::string::npos);
+    const std::size_t begin = words.rfind(' ', end) + 1;
+    const int number = std::stoi(words.substr(begin, end - begin));
+    std::vector<double> values;
+    while (std::getline(file, words)) {
+        std::istringstream row(words);
+        double value = 0;
+        for (int k = 0; k < number; ++k) row >> value;
+        values.push_back(value);
+    }
+    REQUIRE(values.size() > 1);
+    return values;
+}
+
+/// The rows of a history without the names of its columns.
+inline std::string rows(const std::string& out) {
+    const std::string text = read_all(out + "/history.dat");
+    return text.substr(text.find('\n') + 1);
 }
 
 /// Starts a long run, waits until its history has grown, and sends a signal. The exit status.

@@ -5,38 +5,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <string>
 #include <vector>
 
-#include "tests/any_numbers.hpp"
-#include "tests/any_summary.hpp"
+#include "tests/any_mpm_run.hpp"
 
 namespace {
 
-using facts::Run;
+using facts::largest, facts::Run;
 
-// Runs a case in a folder of the test's own, without files for figures.
 Run run(const std::string& name, const std::string& file, const std::string& overrides,
         int status = 0) {
-    const std::string folder = std::string(BUILD_FOLDER) + "/tests/runs/mpm_explicit_" + name;
-    const std::string command =
-        std::string(BUILD_FOLDER) + "/mpm_explicit mpm_explicit/cases/" + file + ".toml " +
-        overrides +
-        " output.particles_interval=0 output.fringes_interval=0 output.grains_interval=0 --out " +
-        folder + " --force --quiet 2> /dev/null";
-    CAPTURE(command);
-    REQUIRE(std::system(command.c_str()) == 256 * status);
-    return facts::finished_run(folder);
+    return facts::run_mpm("mpm_explicit", name, "mpm_explicit/cases/" + file + ".toml " + overrides,
+                          status);
 }
 
 void check_results(const Run& run, int at_least) { facts::check_results(run.summary, at_least); }
-
-double largest(const std::vector<double>& values) {
-    double most = 0;
-    for (const double v : values) most = facts::worst({most, std::fabs(v)});
-    return most;
-}
 
 // The ledger closes to round-off: every joule that comes or goes is counted where it happens.
 void check_budget(const Run& r) {

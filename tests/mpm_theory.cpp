@@ -6,6 +6,7 @@
 #include <gsl/gsl_odeiv2.h>
 
 #include <cmath>
+#include <complex>
 #include <filesystem>
 #include <fstream>
 #include <numbers>
@@ -15,6 +16,7 @@
 #include "common/mpm/exact_solutions.hpp"
 #include "common/mpm/fringes.hpp"
 #include "common/mpm/scheme_theory.hpp"
+#include "common/theta_scheme.hpp"
 #include "tests/any_numbers.hpp"
 
 namespace {
@@ -425,6 +427,115 @@ TEST_CASE("the node between two cells oscillates as its theory says") {
     }
     CHECK(mpm::node_oscillator_frequency(1) == 1);
     CHECK(std::abs(mpm::node_oscillator_frequency(1000) - std::sqrt(4.0 / 3)) <= 1e-6);
+}
+
+TEST_CASE("the node between two cells follows the theta scheme as its theory says") {
+    // The line of particles of two cells, in full: their velocities and stresses, and one free node.
+    const double h = 0.7, rho = 3, P = 9;
+    int turns = 0, creeps = 0;
+    for (const bool consistent : {true, false})
+        for (const int per_side : {1, 2, 3, 4})
+            for (const double theta : {0.5, 0.6, 0.75, 1.0})
+                for (const double alpha : {0.1, 1.0, 3.0, 30.0}) {
+                    const double dt = alpha * h / std::sqrt(P / rho);
+                    struct Point {
+                        double S, G, v, s = 0;
+                    };
+                    std::vector<Point> points;
+                    const double V = h / per_side;
+                    double m = 0, M = 0;
+                    for (int a = 0; a < 2 * per_side; ++a) {
+                        const double x = (a + 0.5) / per_side, S = x < 1 ? x : 2 - x;
+                        points.push_back({S, (x < 1 ? 1 : -1) / h, 1 + x});
+                        m += rho * V * S, M += rho * V * S * S;
+                    }
+                    CHECK(std::abs(M / m - mpm::node_filter(per_side)) <= 1e-14);
+                    std::vector<double> changes;
+                    for (int n = 0; n < 30; ++n) {
+                        double p = 0, f = 0, K = 0;
+                        for (const Point& point : points) {
+                            p += rho * V * point.S * point.v, f -= V * point.G * point.s;
+                            K += V * point.G * point.G * P;
+                        }
+                        const double mass = consistent ? M : m, v_0 = p / mass;
+                        const double v_theta =
+                            (mass * v_0 + theta * dt * f) / (mass + theta * theta * dt * dt * K);
+                        for (Point& point : points) {
+                            point.v += point.S * (v_theta - v_0) / theta;
+                            point.s += dt * P * point.G * v_theta;
+                        }
+                        changes.push_back((v_theta - v_0) / theta);
+                    }
+                    const double f = consistent ? 1 : M / m,
+                                 w = std::sqrt(2 * P / h / (consistent ? M : m));
+                    const std::complex<double> g = mpm::theta_node_oscillation(theta, w * dt, f);
+                    CHECK(std::abs(g) <= 1 + 1e-15);
+                    if (std::imag(g) != 0) {
+                        // Both factors, g and its conjugate.
+                        ++turns;
+                        for (std::size_t n = 1; n + 1 < changes.size(); ++n) {
+                            const double size = std::abs(changes[n - 1]) + std::abs(changes[n]);
+                            CHECK(std::abs(changes[n + 1] - 2 * std::real(g) * changes[n] +
+                                           std::norm(g) * changes[n - 1]) <=
+                                  1e-12 * size + 1e-13 * std::abs(changes[0]));
+                        }
+                    } else {
+                        // The larger of two real ones, g and d/g: changes obey
+                        //     c_(n+1) = (g + d/g) c_n - d c_(n-1)
+                        ++creeps;
+                        const auto& c = changes;
+                        const double left = c[1] * c[1] - c[0] * c[2],
+                                     d = (c[2] * c[2] - c[1] * c[3]) / left,
+                                     sum = (c[1] * c[2] - c[0] * c[3]) / left;
+                        CHECK(std::abs(d / std::real(g)) <= std::abs(g));
+                        CHECK(std::abs(std::real(g) + d / std::real(g) - sum) <= 1e-9);
+                    }
+                }
+    CHECK(turns >= 90);
+    CHECK(creeps >= 10);
+}
+
+TEST_CASE("the theta scheme of one node has its own limits") {
+    for (const double z : {0.01, 0.5, 2.0, 10.0, 300.0}) {
+        for (const double theta : {0.5, 0.6, 1.0}) {
+            // A consistent mass filters nothing: the factor of a light wave.
+            const std::complex<double> g = mpm::theta_node_oscillation(theta, z, 1);
+            CHECK(std::abs(g - common::theta_light_wave(theta, z)) <= 1e-15);
+            // The closed form of its size, and nothing grows.
+            for (const double f : {0.5, 0.625, 0.9}) {
+                const double D = 1 + theta * theta * z * z;
+                const std::complex<double> lumped = mpm::theta_node_oscillation(theta, z, f);
+                CHECK(std::abs(lumped) < 1);
+                if (std::imag(lumped) > 0)
+                    CHECK(std::abs(std::norm(lumped) -
+                                   (1 - (theta - f * (1 - theta)) * z * z / D)) <= 1e-15);
+                CHECK((std::imag(lumped) > 0) == (theta * z < 2 * std::sqrt(f) / (1 - f)));
+            }
+        }
+        // theta = 1/2 turns and keeps its size: tan(omega dt / 2) = z / 2.
+        const std::complex<double> g = mpm::theta_node_oscillation(0.5, z, 1);
+        CHECK(std::abs(std::abs(g) - 1) <= 1e-15);
+        CHECK(std::abs(std::tan(0.5 * std::arg(g)) - 0.5 * z) <= 1e-11 * (1 + z * z));
+    }
+    // w^2 = (k / m) (M_11 / m) is that of leapfrog, where steps are short.
+    const double z = 1e-5, f = mpm::node_filter(2);
+    CHECK(std::abs(std::arg(mpm::theta_node_oscillation(0.5, z * std::sqrt(2.0), f)) / z /
+                       mpm::node_oscillator_frequency(2) -
+                   1) <= 1e-9);
+}
+
+TEST_CASE("a pressed block has the stress of plane strain") {
+    // Elastic, with the law of the programs: free along x, held along z.
+    mpm::Material m;
+    m.E = 7, m.nu = 0.3;
+    const mpm::Moduli T = mpm::moduli(m);
+    const double e_y = -0.01, e_x = -T.lambda / (T.lambda + 2 * T.G) * e_y,
+                 s_y = (T.lambda + 2 * T.G) * e_y + T.lambda * e_x;
+    CHECK(std::abs(s_y / e_y / mpm::plane_strain_modulus(7, 0.3) - 1) <= 1e-14);
+    // Plastic: at the limit s_zz is halfway, where the von Mises stress is Y.
+    const double s = mpm::plane_strain_strength(3);
+    CHECK(std::abs(mpm::von_mises({0, -s, 0, -0.5 * s}) / 3 - 1) <= 1e-15);
+    CHECK(mpm::von_mises({0, -s, 0, -0.4 * s}) > 3);
 }
 
 TEST_CASE("columns run out farther the taller they are and disks farther than sand") {

@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <fstream>
 #include <regex>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -78,32 +77,6 @@ std::vector<std::string> runs() {
             sand + " time.end=0.1",
             belt() + " time.end=0.15",
             wave + " time.end=0.3 method.frozen=true method.shape=gimp"};
-}
-
-// The values of a column of a history.
-std::vector<double> column(const std::string& out, const std::string& name) {
-    std::ifstream file(out + "/history.dat");
-    std::string words;
-    std::getline(file, words);
-    const std::size_t end = words.find(":" + name + "[");
-    REQUIRE(end != std::string::npos);
-    const std::size_t begin = words.rfind(' ', end) + 1;
-    const int number = std::stoi(words.substr(begin, end - begin));
-    std::vector<double> values;
-    while (std::getline(file, words)) {
-        std::istringstream row(words);
-        double value = 0;
-        for (int k = 0; k < number; ++k) row >> value;
-        values.push_back(value);
-    }
-    REQUIRE(values.size() > 1);
-    return values;
-}
-
-// The rows of a history without the names of its columns.
-std::string rows(const std::string& out) {
-    const std::string text = read_all(out + "/history.dat");
-    return text.substr(text.find('\n') + 1);
 }
 
 // Whether a process still listens to a signal.

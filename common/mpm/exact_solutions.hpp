@@ -1,6 +1,6 @@
 // What is known exactly, or published, about the problems that the material point method is tried
-// on: a disk between two loads, disks that collide, bars and waves, bodies on an incline, and the
-// leapfrog scheme itself.
+// on: a disk between two loads, disks that collide, bars and waves, bodies on an incline, and a block
+// that is pressed.
 //
 // Stress is positive in tension. Everything is plane strain and per unit thickness; units are those
 // of the caller: [length], [mass / length^3], [E].
@@ -215,5 +215,15 @@ inline double cylinder_acceleration(double g, double angle, double mu) {
     const bool rolls = std::sin(angle) <= 3 * mu * std::cos(angle);
     return rolls ? g * std::sin(angle) / 1.5 : block_acceleration(g, angle, mu);
 }
+
+// ---- a block between smooth plates --------------------------------------------------------------
+
+/// Stress over strain of a block that is pressed along y, free along x, held along z.
+///   s_yy = E/(1 - nu^2) e_yy,  s_xx = 0,  s_zz = nu s_yy
+inline double plane_strain_modulus(double E, double nu) { return E / (1 - nu * nu); }
+
+/// The most that such a block bears when it yields at the von Mises stress Y and does not harden.
+///   s_yy = 2 Y / 3^1/2, with s_zz = s_yy / 2: flow along z has come to rest
+inline double plane_strain_strength(double Y) { return 2 * Y / std::numbers::sqrt3; }
 
 }  // namespace mpm

@@ -1,8 +1,9 @@
-// What is known exactly about the leapfrog scheme, alone and on a mesh with particles at rest, and
-// what has been published about columns of grains that collapse.
+// What is known exactly about the leapfrog and the theta scheme, alone and on a mesh with particles
+// at rest, and what has been published about columns of grains that collapse.
 #pragma once
 
 #include <cmath>
+#include <complex>
 #include <limits>
 
 namespace mpm {
@@ -68,6 +69,30 @@ inline double leapfrog_energy_bound(double E, double w, double dt) {
 /// exact: stable up to c dt / h = 2 / (w h / c): 2 with one particle per cell, 3^1/2 with many
 inline double node_oscillator_frequency(int per_side) {
     return std::sqrt((4 - 1.0 / (per_side * per_side)) / 3);
+}
+
+/// What the particles leave of a change of the node's velocity when it comes back from them.
+/// out:   M_11 / m = 2/3 - 1 / (6 per_side^2)
+inline double node_filter(int per_side) { return 2.0 / 3 - 1.0 / (6.0 * per_side * per_side); }
+
+/// The same oscillator by the theta scheme: the factor g by which it is multiplied in one step.
+///   v^theta = v^0 - theta z x^theta,  x^theta = x^0 + theta z v^theta,  z = w dt
+///   x^1 = x^0 + z v^theta
+///   next v^0 = v^0 + f (v^1 - v^0),  v^1 - v^0 = -z x^theta
+/// with x times w for length: v and x are multiplied by a matrix of
+///   trace/2 = 1 - (1 + f) theta z^2 / (2 D),  D = 1 + theta^2 z^2
+///   determinant - (trace/2)^2 = (z / D)^2 [f - (1 - f)^2 theta^2 z^2 / 4]
+/// in:    theta; z = w dt; f: 1 for the consistent mass, then w^2 = k / M_11, and node_filter() for
+///        the lumped mass, then w^2 = k / m
+/// out:   g with positive frequency; from theta z = 2 f^1/2 / (1 - f) on nothing oscillates, and g is
+///        that of two real factors with the larger size
+/// exact: f = 1 makes it [1 + i (1 - theta) z] / (1 - i theta z), of size 1 for theta = 1/2;
+///        |g|^2 = 1 - [theta - f (1 - theta)] z^2 / D where it oscillates, never above 1
+inline std::complex<double> theta_node_oscillation(double theta, double z, double f) {
+    const double D = 1 + theta * theta * z * z, half_trace = 1 - 0.5 * (1 + f) * theta * z * z / D,
+                 apart = f - 0.25 * (1 - f) * (1 - f) * theta * theta * z * z;
+    if (apart < 0) return half_trace + std::copysign(z / D * std::sqrt(-apart), half_trace);
+    return {half_trace, z / D * std::sqrt(apart)};
 }
 
 // ---- the run-out of a collapsing column ---------------------------------------------------------

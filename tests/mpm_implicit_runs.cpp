@@ -1,0 +1,338 @@
+// Whole runs of mpm_implicit: the energy theorem in every one of them, and exact, published and
+// predicted values, by the numbers that the program itself puts into summary.json and history.dat.
+#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "tests/any_mpm_run.hpp"
+
+namespace {
+
+using facts::largest, facts::Run;
+
+Run run(const std::string& name, const std::string& arguments) {
+    return facts::run_mpm("mpm_implicit", name, arguments);
+}
+Run run(const std::string& name, const std::string& file, const std::string& overrides) {
+    return run(name, "mpm_implicit/cases/" + file + ".toml " + overrides);
+}
+
+// The pack of mpm_explicit, from the same file, on a mesh so coarse that it takes a second.
+const std::string compressed =
+    "mpm_explicit/cases/compressed.toml mesh.cells_x=40 mesh.cells_y=34 "
+    "theory.compare=compression";
+// Two disks that meet at t = 0.1, off their line of centers, on cells of 0.05.
+const std::string oblique =
+    "mpm_implicit/cases/rebound.toml mesh.cells_x=24 mesh.cells_y=12 grain.left.x=0.39 "
+    "grain.right.x=0.81 grain.left.y=0.35 theory.compare=none";
+
+void check_results(const Run& run, int at_least) { facts::check_results(run.summary, at_least); }
+
+// [MPM-13] with all other work, step by step.
+void check_theorem(const Run& r) {
+    const double size = std::max(largest(r.column("energy")), largest(r.column("external")));
+    CHECK(r.conservation("largest_residual_of_a_step") <= 1e-11 * size);
+    CHECK(largest(r.column("residual")) <= 1e-9 * size);
+}
+
+double number(const Run& r, const std::string& performance) {
+    REQUIRE(r.summary["performance"].contains(performance));
+    return r.summary["performance"][performance].get<double>();
+}
+
+const char* const both_masses[] = {"consistent", "lumped"};
+
+}  // namespace
+
+TEST_CASE("theta one half keeps the energy of a rebound whatever the step" *
+          doctest::description("physics")) {
+    for (const char* alpha : {"0.25", "1", "5"}) {
+        const Run r = run("rebound", "rebound", "time.alpha=" + std::string(alpha));
+        check_results(r, 8);
+        check_theorem(r);
+        const auto& energy = r.column("energy");
+        for (const double E : energy) CHECK(std::fabs(E / energy.front() - 1) <= 1e-8);
+        const double p = r.column("momentum_x_left").front();
+        CHECK(largest(r.column("momentum_x")) <= 1e-10 * p);
+        CHECK(largest(r.column("momentum_y")) <= 1e-10 * p);
+        // The disks have met and gone back.
+        CHECK(r.column("momentum_x_left").back() <= -0.9 * p);
+        CHECK(largest(r.column("elastic")) >= 0.3 * energy.front());
+    }
+}
+
+TEST_CASE("with lumped mass what the energy lacks is what the lumping takes" *
+          doctest::description("physics")) {
+    for (const char* alpha : {"1", "5"}) {
+        const Run r =
+            run("lumped", "rebound", "method.mass=lumped time.alpha=" + std::string(alpha));
+        check_theorem(r);
+        const auto &energy = r.column("energy"), &lumped = r.column("lumped");
+        for (std::size_t n = 0; n < energy.size(); ++n)
+            CHECK(std::fabs(energy.front() - energy[n] - lumped[n]) <= 1e-11 * energy.front());
+        CHECK(lumped.back() >= 0.05 * energy.front());
+        CHECK(std::is_sorted(lumped.begin(), lumped.end()));
+        CHECK(largest(r.column("momentum_x")) <= 1e-10 * r.column("momentum_x_left").front());
+    }
+}
+
+TEST_CASE("above theta one half what the energy lacks is what the theorem says" *
+          doctest::description("physics")) {
+    for (const char* mass : both_masses) {
+        double before = 0;
+        for (const char* theta : {"0.6", "0.75", "1"}) {
+            const Run r =
+                run("theta", "rebound",
+                    "time.alpha=2 method.theta=" + std::string(theta) + " method.mass=" + mass);
+            check_theorem(r);
+            const auto &energy = r.column("energy"), &velocity = r.column("theta_velocity"),
+                       &strain = r.column("theta_strain"), &lumped = r.column("lumped");
+            for (std::size_t n = 0; n < energy.size(); ++n)
+                CHECK(std::fabs(energy.front() - energy[n] - velocity[n] - strain[n] - lumped[n]) <=
+                      1e-10 * energy.front());
+            CHECK(velocity.back() > 0);
+            CHECK(strain.back() > 0);
+            CHECK(std::is_sorted(velocity.begin(), velocity.end()));
+            CHECK(std::is_sorted(strain.begin(), strain.end()));
+            // The more, the larger theta.
+            CHECK(energy.front() - energy.back() > before);
+            before = energy.front() - energy.back();
+        }
+    }
+}
+
+TEST_CASE("the energy never grows however long the step" * doctest::description("physics")) {
+    const std::string box =
+        " walls.x_low=slip walls.x_high=slip walls.y_low=slip walls.y_high=slip";
+    for (const char* mass : both_masses)
+        for (const char* theta : {"0.5", "0.6", "1"})
+            for (const auto& [alpha, end] :
+                 {std::pair{"1", "1"}, {"5", "4"}, {"25", "10"}, {"100", "40"}}) {
+                const Run r = run("growth", oblique + box + " method.mass=" + mass +
+                                                " method.theta=" + theta + " time.alpha=" + alpha +
+                                                " time.end=" + end);
+                check_theorem(r);
+                const auto& energy = r.column("energy");
+                CHECK(energy.size() > 20);
+                CHECK(largest(r.column("contact_force")) > 0);
+                for (std::size_t n = 1; n < energy.size(); ++n)
+                    CHECK(energy[n] <= energy[n - 1] + 1e-11 * energy.front());
+            }
+}
+
+TEST_CASE("conjugate gradients with an active set and Newton with Krylov agree" *
+          doctest::description("physics")) {
+    for (const std::string& arguments :
+         {oblique + " grain.left.velocity_y=0.1 time.alpha=1 time.end=0.4",
+          compressed + " time.alpha=4 time.end=0.15"})
+        for (const char* mass : both_masses)
+            for (const char* friction : {"0", "0.3"}) {
+                const std::string both =
+                    arguments + " method.mass=" + mass + " contact.friction=" + friction;
+                const Run one = run("solver_one", both),
+                          two = run("solver_two", both + " solver.kind=newton_krylov");
+                const auto &a = one.column("energy"), &b = two.column("energy");
+                REQUIRE(a.size() == b.size());
+                for (std::size_t n = 0; n < a.size(); ++n)
+                    CHECK(std::fabs(a[n] - b[n]) <= 1e-6 * largest(a));
+                CHECK(largest(one.column("contact_force")) > 0);
+                const double rubbed = -one.column("friction").back() / largest(a);
+                CHECK((rubbed > 1e-3) == (friction != std::string("0")));
+                CHECK(number(one, "krylov_vectors_per_step") == 0);
+                CHECK(number(two, "krylov_vectors_per_step") > 0);
+            }
+}
+
+TEST_CASE("the energy of a compressed pack is the work of its plate" *
+          doctest::description("physics")) {
+    for (const std::string overrides :
+         {" time.alpha=1", " time.alpha=4", " time.alpha=4 contact.friction=0.3",
+          " time.alpha=4 solver.kind=newton_krylov"}) {
+        const Run r = run("compressed", compressed + overrides);
+        check_results(r, 3);
+        check_theorem(r);
+        const auto &time = r.column("time"), &force = r.column("force_y_plate"),
+                   &way = r.column("travel_y_plate"), &work = r.column("external"),
+                   &energy = r.column("energy"), &friction = r.column("friction");
+        CHECK(work.back() > 10);
+        CHECK((friction.back() < -1e-2 * work.back()) ==
+              (overrides.find("friction") != std::string::npos));
+        double sum = 0;
+        for (std::size_t n = 1; n < time.size(); ++n) {
+            CHECK(std::fabs(energy[n] - work[n] - friction[n]) <= 1e-10 * work.back());
+            // And the work is force times way.
+            sum -= force[n] * (way[n] - way[n - 1]);
+            CHECK(std::fabs(work[n] - sum) <= 1e-10 * work.back());
+        }
+    }
+}
+
+TEST_CASE("a lumped pack lacks the work that lumping takes" * doctest::description("physics")) {
+    const Run r = run("compressed_lumped", compressed + " time.alpha=4 method.mass=lumped");
+    check_theorem(r);
+    const auto &work = r.column("external"), &energy = r.column("energy"),
+               &lumped = r.column("lumped");
+    for (std::size_t n = 1; n < work.size(); ++n)
+        CHECK(std::fabs(energy[n] - work[n] + lumped[n]) <= 1e-10 * work.back());
+    CHECK(lumped.back() >= 0.05 * work.back());
+}
+
+TEST_CASE("a block slides down an incline within a part in a thousand or sticks" *
+          doctest::description("physics")) {
+    const std::string steep = " load.gravity_x=8.660254037844386 load.gravity_y=-5";
+    for (const std::string& arguments : {std::string("0"), std::string("0.3"), std::string("0.45"),
+                                         std::string("0.5"), "0.3" + steep, "0.6" + steep}) {
+        const Run r = run("slides", "incline_block", "contact.friction=" + arguments);
+        check_results(r, 3);
+        check_theorem(r);
+        const auto& a = r.summary["results"]["acceleration"];
+        CHECK(std::fabs(r.value("acceleration") / a["expected"].get<double>() - 1) <= 1e-3);
+    }
+    const Run sticks = run("sticks", "incline_block", "contact.friction=0.6");
+    check_results(sticks, 3);
+    CHECK(std::fabs(sticks.value("acceleration")) < 0.01);
+    CHECK(std::fabs(sticks.value("speed_at_end")) < 1e-6);
+}
+
+TEST_CASE("a cylinder rolls on a rough incline and slips on a smoother one" *
+          doctest::description("physics")) {
+    check_results(run("rolls", "incline_cylinder", ""), 3);
+    const Run slips =
+        run("slips", "incline_cylinder", "contact.friction=0.1 method.theta=1 time.alpha=4");
+    check_results(slips, 3);
+    CHECK(std::fabs(slips.value("acceleration") / 4.13397 - 1) <= 1e-3);
+}
+
+TEST_CASE("a disk between plates has the stress of the closed form" *
+          doctest::description("physics")) {
+    const Run r = run("disk", "diametral_disk", "");
+    check_results(r, 5);
+    check_theorem(r);
+    // The servo holds the load.
+    CHECK(std::fabs(r.value("load") / 237.5 - 1) <= 0.01);
+    check_results(run("disk_gimp", "diametral_disk",
+                      "method.shape=gimp mesh.particles_per_side=3 time.alpha=8"),
+                  5);
+}
+
+TEST_CASE("a bar swings and decays as the exact factor of a step says" *
+          doctest::description("physics")) {
+    double slowest = 0;
+    for (const std::string alpha : {"1", "3", "6.5"})
+        for (const std::string theta : {"0.5", "0.6", "1"}) {
+            const Run r =
+                run("bar", "vibrating_bar", "time.alpha=" + alpha + " method.theta=" + theta);
+            check_results(r, 4);
+            check_theorem(r);
+            if (theta == "0.5")
+                CHECK(std::fabs(r.value("damping")) <= 1e-3);
+            else
+                slowest = std::max(slowest, r.value("damping"));
+        }
+    CHECK(slowest > 0.1);
+    // A step is long enough that the frequency of the body itself would be a miss.
+    const Run r = run("bar", "vibrating_bar", "");
+    CHECK(r.value("frequency") <= 0.985 * 0.6283185);
+}
+
+TEST_CASE("a standing wave converges to second order in cells and steps together" *
+          doctest::description("physics")) {
+    std::vector<double> error;
+    for (const int cells : {32, 64, 128})
+        error.push_back(run("wave", "standing_wave",
+                            "time.alpha=2 time.end=0.2045 mesh.cells_x=" + std::to_string(cells) +
+                                " mesh.cells_y=" + std::to_string(cells / 4))
+                            .value("velocity_error"));
+    CHECK(std::fabs(std::log2(error[0] / error[1]) - 2) <= 0.15);
+    CHECK(std::fabs(std::log2(error[1] / error[2]) - 2) <= 0.15);
+}
+
+TEST_CASE("one free node is the exact map of its scheme" * doctest::description("physics")) {
+    int oscillate = 0;
+    for (const std::string mass : both_masses)
+        for (const std::string theta : {"0.5", "0.6", "0.8", "1"})
+            for (const std::string alpha : {"0.1", "1", "2", "5", "30"})
+                for (const std::string per_side : {"1", "2", "3"}) {
+                    const Run r =
+                        run("node", "oscillator",
+                            "time.end=" + std::to_string(12 * std::stod(alpha)) +
+                                " method.mass=" + mass + " method.theta=" + theta +
+                                " time.alpha=" + alpha + " mesh.particles_per_side=" + per_side);
+                    check_theorem(r);
+                    if (r.summary["results"].contains("overdamped")) continue;
+                    check_results(r, 4);
+                    ++oscillate;
+                }
+    CHECK(oscillate >= 90);
+}
+
+TEST_CASE("a block between plates has the modulus of plane strain whatever the step" *
+          doctest::description("physics")) {
+    for (const std::string& overrides :
+         {std::string(), std::string("time.alpha=1e4 time.end=800 grain.top.velocity_y=-5e-6"),
+          std::string("material.default.nu=0"), std::string("material.default.nu=0.45"),
+          std::string("method.mass=lumped"), std::string("method.shape=gimp")}) {
+        const Run r = run("billet", "billet", overrides);
+        check_results(r, 3);
+        check_theorem(r);
+        CHECK(r.value("strain") >= 0.009);
+    }
+}
+
+TEST_CASE("a block that yields bears the limit of plane strain" * doctest::description("physics")) {
+    const Run r = run("billet_plastic", "billet_plastic", "");
+    check_results(r, 3);
+    check_theorem(r);
+    CHECK(std::fabs(r.value("limit") - 1) <= 1e-3);
+    CHECK(r.column("plastic").back() > 0);
+    // On its way there it is more than the yield stress and never more than the limit.
+    const auto& force = r.column("force_y_top");
+    CHECK(largest(force) <= 1.0001 * 0.6 * 2 / std::sqrt(3.0) * 200);
+}
+
+TEST_CASE("a bond breaks when the bar pulls with its strength by the theta scheme" *
+          doctest::description("physics")) {
+    for (const char* strength : {"0.3", "0.5", "0.65"}) {
+        const Run r = run("breaks", "bonded_bar", "bond.joint.tension=" + std::string(strength));
+        check_results(r, 3);
+        check_theorem(r);
+        const auto& broken = r.column("broken_bonds");
+        CHECK(std::is_sorted(broken.begin(), broken.end()));
+        CHECK(broken.back() == 1);
+    }
+    const Run holds = run("holds", "bonded_bar", "bond.joint.tension=10 time.end=50");
+    check_results(holds, 5);
+    check_theorem(holds);
+    CHECK(largest(holds.column("broken_bonds")) == 0);
+}
+
+TEST_CASE("a disk that yields keeps to its yield surface and its ledger closes" *
+          doctest::description("physics")) {
+    const Run r = run("yield", "yielding_disk", "");
+    check_results(r, 4);
+    check_theorem(r);
+    CHECK(r.value("plastic_work") > 0.5);
+    CHECK(r.column("momentum_x_disk").back() <= -0.4 * r.column("momentum_x_disk").front());
+}
+
+TEST_CASE("iterations grow no faster than the square root of the step" *
+          doctest::description("physics")) {
+    // The same short way of the plate in as many steps.
+    std::vector<double> iterations;
+    for (const double alpha : {1, 4, 16, 64}) {
+        const Run r =
+            run("iterations", compressed + " time.alpha=" + std::to_string(alpha) +
+                                  " time.end=" + std::to_string(0.06 * alpha) +
+                                  " grain.plate.velocity_y=" + std::to_string(-0.05 / alpha));
+        check_theorem(r);
+        iterations.push_back(number(r, "iterations_per_step") / number(r, "loops_per_step"));
+    }
+    for (std::size_t k = 1; k < iterations.size(); ++k) {
+        CAPTURE(iterations[k]);
+        CHECK(iterations[k] <= 2.2 * iterations[k - 1]);
+    }
+}
