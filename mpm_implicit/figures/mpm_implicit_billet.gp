@@ -21,7 +21,7 @@ plot leapfrog using @e_strain:@e_stress with lines lt 5 lw 5 title sprintf('expl
 set lmargin at screen 0.6; set rmargin at screen 0.97
 set title 'wall time / s'
 set logscale xy; set xlabel 'α'; set xrange [0.15:2000]; set xtics ('1/4' 0.25, '1' 1, '4' 4, '16' 16, '64' 64, '250' 250, '1000' 1000)
-set yrange [0.03:200]; set ytics (0.1, 1, 10, 100)
+set yrange [0.005:200]; set ytics (0.01, 0.1, 1, 10, 100)
 set key bottom left
 plot run.'/costs.dat' using 1:3 with linespoints lt 1 ps 1.6 title 'implicit', '+' using (0.25):(explicit_wall) every ::0::0 with points pt 5 ps 2 lc rgb amber title 'explicit', explicit_wall with lines lc rgb amber lw 1.5 dt 2 notitle
 unset multiplot
