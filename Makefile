@@ -242,7 +242,7 @@ $(eval $(call implicit_series,fig03,rebound,out/mpm_implicit/rebounds))
 $(eval $(call implicit_series,fig04,compressed,out/mpm_implicit/compressions))
 $(eval $(call figure,fig06,mpm_implicit,out/mpm_implicit/compressions))
 $(eval $(call figure,fig07,mpm_implicit,out/mpm_implicit/shear))
-$(eval $(call figure,mpm_implicit_shear_large,mpm_implicit,out/mpm_implicit/shear_large))
+$(foreach c,shear_large diametral_disk,$(eval $(call figure,mpm_implicit_$c,mpm_implicit,out/mpm_implicit/$c)))
 $(eval $(call implicit_series,mpm_implicit_identity,rebound,out/mpm_implicit/oblique))
 $(eval $(call implicit_series,mpm_implicit_iterations,compressed,out/mpm_implicit/iterations))
 # $(call both_series,figure,case,folder): several runs of both, by  sh SCRIPT IMPLICIT EXPLICIT FOLDER .
@@ -255,13 +255,14 @@ $(3)/.complete: mpm_implicit/figures/$(1).sh $(BUILD)/mpm_implicit $(BUILD)/mpm_
 	@touch $$@
 endef
 $(eval $(call both_series,mpm_implicit_energy_bound,energy_bound,out/mpm_implicit/bounces))
+$(eval $(call both_series,mpm_implicit_billet,billet,out/mpm_implicit/billets))
 # Figures that look into runs of the explicit program, too.
 out/figures/fig03.png: out/mpm_explicit/rebounds/.complete
 out/figures/fig06.png: out/mpm_explicit/compressions/.complete
 
 # Pictures in polarized light.
-$(patsubst %,out/figures/%.png,fig04 fig05 fig07 mpm_implicit_shear_large mpm_explicit_shear \
-    mpm_explicit_diametral_disk): common/mpm/polariscope.gp
+$(patsubst %,out/figures/%.png,fig04 fig05 fig07 mpm_explicit_shear mpm_explicit_diametral_disk \
+    mpm_implicit_shear_large mpm_implicit_diametral_disk): common/mpm/polariscope.gp
 
 mpm_figures = $(filter mpm_%,$(figures))
 
@@ -293,7 +294,7 @@ test: all tests $(BUILD)/CTestTestfile.cmake | $(packages_first)
 quoted := out/implicit_moment/gem_1836/.complete $(patsubst %,out/cic/%/.complete,\
     plasma_wave landau upper_hybrid misprint cloud_collision cold_beam_grid_instability thermal_heating)\
     $(patsubst %,out/mpm_explicit/%/.complete,rebound incline_block incline_cylinder bonded_bar)\
-    $(patsubst %,out/mpm_implicit/%/.complete,rebound compressed)
+    $(patsubst %,out/mpm_implicit/%/.complete,compressed incline_block vibrating_bar billet)
 
 test-long: all tests figures $(quoted) $(BUILD)/CTestTestfile.cmake | $(packages_first)
 	$(call need,ctest)

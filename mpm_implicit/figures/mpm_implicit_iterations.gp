@@ -1,5 +1,5 @@
 # What a larger time step costs: iterations of conjugate gradients for one solve of the compressed grains, against the CFL number. With the diagonal they grow about in proportion, until sound crosses a grain in a step; with every
-# grain factorized only what passes from grain to grain is left to find, and they grow as the square root. Below 1 it is the consistent mass matrix that takes them. Right: solves until it is found who presses.
+# grain factorized only what passes from grain to grain is left to find, and they grow as the square root. Below 1 it is the consistent mass matrix that takes them. Right: solves until it is found who presses, the first ones rough.
 wide = 1500; high = 720
 load 'common/style.gp'
 file = run.'/iterations.dat'
