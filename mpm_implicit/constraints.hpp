@@ -25,11 +25,13 @@ class Constraints {
         for (std::size_t n = 0; n < set.nodes.size(); ++n) {
             Block block{n, rows_.size(), 0, basis_.size(), right_.size(), factor_.size()};
             const MeetingNode& node = set.nodes[n];
-            for (std::size_t k = node.pair_begin; k < node.pair_end; ++k) {
-                const MeetingPair& pair = set.pairs[k];
-                if (!pair.closed() || (only_bonds && pair.bond < 0)) continue;
-                add_row(node, k, false, block);
-                if (pair.hold == Hold::stick) add_row(node, k, true, block);
+            // Normals first: where not all can hold, it is friction that gives way.
+            for (const bool across : {false, true}) {
+                for (std::size_t k = node.pair_begin; k < node.pair_end; ++k) {
+                    const MeetingPair& pair = set.pairs[k];
+                    if (!pair.closed() || (only_bonds && pair.bond < 0)) continue;
+                    if (!across || pair.hold == Hold::stick) add_row(node, k, across, block);
+                }
             }
             if (block.rank > 0) blocks_.push_back(block);
         }

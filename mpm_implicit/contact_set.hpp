@@ -43,6 +43,8 @@ struct MeetingPair {
     Hold hold = Hold::open;
     double lambda_n = 0, lambda_t = 0;  // on b; along (nx, ny) and (-ny, nx)
     double friction = 0;                // lambda_t that the next solution is to have, if it slips
+    double target = 0;                  // what friction ought to be by this solution
+    double x_before = 0, target_before = 0;  // lambda_t and target of the solution before
     int releases = 0, switches = 0;
     bool closed() const { return hold != Hold::open; }
     double tx() const { return -ny; }
@@ -59,6 +61,7 @@ class ContactSet {
     std::vector<MeetingNode> nodes;
     std::vector<Meeter> meeters;
     std::vector<MeetingPair> pairs;
+    bool same_before = false;  // the last two solutions had the same set
     std::array<std::size_t, common::block_count> first_pair;  // of each block of meetings
 
     /// Finds everybody who meets, and guesses who presses: those who did in the last step, and those
@@ -116,6 +119,7 @@ class ContactSet {
             here.meeter_end = block.meeters.size(), here.pair_end = block.pairs.size();
             block.nodes.push_back(here);
         });
+        same_before = false;
         nodes.clear(), meeters.clear(), pairs.clear();
         for (std::size_t k = 0; k < blocks.size(); ++k) {
             const Block& block = blocks[k];

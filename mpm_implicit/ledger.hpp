@@ -18,6 +18,7 @@
 #include "common/history.hpp"
 #include "common/mpm/assembly.hpp"
 #include "common/mpm/contact.hpp"
+#include "common/mpm/strain.hpp"
 
 namespace mpm_implicit {
 

@@ -14,6 +14,28 @@ struct Change {
     long held = 0;         // pairs that ought to change, and may not any more
 };
 
+/// Friction x makes pressure, and pressure the friction g(x) that ought to be. Where two solutions
+/// in turn have the same set, the next x is taken where a secant through both says g(x) = x.
+///   x_2 = g_1 - s (g_1 - g_0),  s = f_1 . (f_1 - f_0)/|f_1 - f_0|^2,  f = g - x
+/// in:     same, the set of the solution just made is that of the next
+/// source: Anderson, J. ACM 12, 547 (1965), with one step back.
+inline void extrapolate_friction(bool same, ContactSet& set) {
+    double along = 0, squared = 0;
+    for (MeetingPair& pair : set.pairs) {
+        if (pair.hold != Hold::slip) continue;
+        const double f_1 = pair.target - pair.lambda_t, f_0 = pair.target_before - pair.x_before;
+        along += f_1 * (f_1 - f_0), squared += (f_1 - f_0) * (f_1 - f_0);
+    }
+    const double s = same && set.same_before && squared > 0 ? along / squared : 0;
+    for (MeetingPair& pair : set.pairs) {
+        if (pair.hold != Hold::slip) continue;
+        const double next = pair.target - s * (pair.target - pair.target_before);
+        if (same && next * pair.target > 0) pair.friction = next;
+        pair.x_before = pair.lambda_t, pair.target_before = pair.target;
+    }
+    set.same_before = same;
+}
+
 /// Changes the set where a pair does not do what is asked of it.
 /// in:     v, all velocities; V, of the plates that forces drive; accuracy, that v has been solved to
 /// in/out: set, with the impulses that belong to v
@@ -62,10 +84,13 @@ inline Change correct(const Vector& v, const std::vector<double>& V, const Grain
                     ++change.held;
             } else if (pair.mu > 0) {
                 const double most = pair.mu * std::max(0.0, pair.lambda_n);
-                if (pair.hold == Hold::stick && std::fabs(pair.lambda_t) > most * (1 + nearly)) {
+                // Where a grain cannot stick to all who hold it, a pair slips all the same.
+                const bool slips = std::fabs(slip) > nearly * fastest;
+                if (pair.hold == Hold::stick &&
+                    (slips || std::fabs(pair.lambda_t) > most * (1 + nearly))) {
                     if (pair.switches < most_switches) {
                         pair.hold = Hold::slip, ++pair.switches;
-                        pair.friction = std::copysign(most, pair.lambda_t);
+                        pair.friction = std::copysign(most, slips ? -slip : pair.lambda_t);
                     } else {
                         ++change.held;
                     }
@@ -79,13 +104,14 @@ inline Change correct(const Vector& v, const std::vector<double>& V, const Grain
                         const double by_now = std::fabs(now - pair.lambda_t);
                         if (by_now > change.friction * largest && change.settled) change.pair = k;
                         change.friction = std::max(change.friction, by_now / largest);
-                        pair.friction = now;
+                        pair.friction = pair.target = now;
                     }
                 }
             }
             if (pair.hold != before) change.settled = false, change.pair = k;
         }
     }
+    extrapolate_friction(change.settled, set);
     if (change.friction > friction_error) change.settled = false;
     return change;
 }
