@@ -193,7 +193,7 @@ TEST_CASE("a solver of mpm_implicit that does not get there says with whom and h
                   "reduce time.alpha, or raise solver.most_loops");
     check_failure(rebound + newton + " solver.most_loops=1",
                   "Newton's iteration did not converge: ");
-    check_failure(rebound + newton + " solver.most_loops=1", "the hardest pressed are " + pair);
+    check_failure(rebound + newton + " solver.most_loops=1", "hardest pressed are " + pair);
     check_failure(rebound + newton + " solver.most_loops=1", "residual ");
 }
 
