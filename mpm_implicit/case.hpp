@@ -13,7 +13,7 @@ struct ThetaScheme {
     std::string mass = "consistent", volumes = "kept", solver = "projected_cg",
                 preconditioner = "grains";
     double tolerance = 1e-13;
-    long most_iterations = 5000, most_loops = 25;
+    long most_iterations = 5000, most_loops = 50;
 
     bool consistent() const { return mass == "consistent"; }
     bool keeps_volumes() const { return volumes == "kept"; }

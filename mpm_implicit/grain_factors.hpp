@@ -17,11 +17,12 @@ class GrainFactors {
     void factorize(const GrainMatrix<reach>& matrix, const Vector& scale,
                    const std::vector<Grain>& grains, const GrainNodes& nodes) {
         size_ = nodes.size();
-        find_homes(nodes);
+        const Homes homes(nodes);
+        number_.assign(static_cast<std::size_t>(size_), -1);
         factors_.resize(grains.size());
         common::for_each_row(static_cast<long>(grains.size()), [&](long g) {
             if (!grains[static_cast<std::size_t>(g)].rigid)
-                factorize(matrix, scale, nodes, static_cast<int>(g));
+                factorize(matrix, scale, nodes, homes, static_cast<int>(g));
         });
     }
 
@@ -81,25 +82,9 @@ class GrainFactors {
         long begin_of(long i, int component) const { return begin[at(i, component)]; }
     };
 
-    // For whom a slot stands, and with which signs.
-    void find_homes(const GrainNodes& nodes) {
-        home_.resize(static_cast<std::size_t>(size_));
-        sign_x_.assign(static_cast<std::size_t>(size_), 1), sign_y_ = sign_x_;
-        for (long i = 0; i < size_; ++i) home_[static_cast<std::size_t>(i)] = i;
-        const auto& images = nodes.images();
-        for (auto image = images.rbegin(); image != images.rend(); ++image) {
-            const auto slot = static_cast<std::size_t>(image->slot),
-                       of = static_cast<std::size_t>(image->of);
-            home_[slot] = home_[of];
-            sign_x_[slot] = image->sign_x * sign_x_[of],
-            sign_y_[slot] = image->sign_y * sign_y_[of];
-        }
-        number_.assign(static_cast<std::size_t>(size_), -1);
-    }
-
     template <int reach>
     void factorize(const GrainMatrix<reach>& matrix, const Vector& scale, const GrainNodes& nodes,
-                   int grain) {
+                   const Homes& homes, int grain) {
         Factor& f = factors_[static_cast<std::size_t>(grain)];
         f.slots.clear(), f.can_move.clear();
         matrix.for_each_node_of(grain, nodes, [&](long slot) {
@@ -112,7 +97,7 @@ class GrainFactors {
         // The envelope, then its entries.
         f.first.resize(f.slots.size());
         for (long i = 0; i < n; ++i) f.first[static_cast<std::size_t>(i)] = i;
-        for_each_entry(matrix, grain, nodes, f, [&](long i, int, long j, int, double) {
+        for_each_entry(matrix, grain, nodes, homes, f, [&](long i, int, long j, int, double) {
             long& first = f.first[static_cast<std::size_t>(std::max(i, j))];
             first = std::min({first, i, j});
         });
@@ -129,12 +114,13 @@ class GrainFactors {
             return entries.data() + f.begin_of(i, component);
         };
         f.pivots.resize(2 * f.slots.size());
-        for_each_entry(matrix, grain, nodes, f, [&](long i, int a, long j, int b, double value) {
-            if (i > j || (i == j && a >= b))
-                row(i, a)[2 * j + b] += value;
-            else
-                row(j, b)[2 * i + a] += value;
-        });
+        for_each_entry(matrix, grain, nodes, homes, f,
+                       [&](long i, int a, long j, int b, double value) {
+                           if (i > j || (i == j && a >= b))
+                               row(i, a)[2 * j + b] += value;
+                           else
+                               row(j, b)[2 * i + a] += value;
+                       });
         for (long i = 0; i < n; ++i)
             for (const int component : {0, 1})
                 if (!f.moves(i, component)) row(i, component)[2 * i + component] = 1;
@@ -180,29 +166,28 @@ class GrainFactors {
     // both can move, of each pair of entries one.
     template <int reach, class Work>
     void for_each_entry(const GrainMatrix<reach>& matrix, int grain, const GrainNodes& nodes,
-                        const Factor& f, const Work& work) const {
+                        const Homes& homes, const Factor& f, const Work& work) const {
         matrix.for_each_block_of(
             grain, nodes, [&](long one, long two, double xx, double xy, double yx, double yy) {
                 const auto a = static_cast<std::size_t>(one), b = static_cast<std::size_t>(two);
-                const long i = number_[static_cast<std::size_t>(home_[a])],
-                           j = number_[static_cast<std::size_t>(home_[b])];
+                const long i = number_[static_cast<std::size_t>(homes.slot[a])],
+                           j = number_[static_cast<std::size_t>(homes.slot[b])];
                 if (i < 0 || j < 0) return;
                 const bool same = one == two;
                 // Two slots that stand for one: the entry and its transpose meet on the diagonal.
                 const double twice = i == j && !same ? 2 : 1;
                 const bool i_x = f.moves(i, 0), i_y = f.moves(i, 1), j_x = f.moves(j, 0),
                            j_y = f.moves(j, 1);
-                if (i_x && j_x) work(i, 0, j, 0, twice * sign_x_[a] * sign_x_[b] * xx);
-                if (i_y && j_y) work(i, 1, j, 1, twice * sign_y_[a] * sign_y_[b] * yy);
-                if (i_x && j_y) work(i, 0, j, 1, sign_x_[a] * sign_y_[b] * xy);
-                if (!same && i_y && j_x) work(i, 1, j, 0, sign_y_[a] * sign_x_[b] * yx);
+                if (i_x && j_x) work(i, 0, j, 0, twice * homes.sign_x[a] * homes.sign_x[b] * xx);
+                if (i_y && j_y) work(i, 1, j, 1, twice * homes.sign_y[a] * homes.sign_y[b] * yy);
+                if (i_x && j_y) work(i, 0, j, 1, homes.sign_x[a] * homes.sign_y[b] * xy);
+                if (!same && i_y && j_x) work(i, 1, j, 0, homes.sign_y[a] * homes.sign_x[b] * yx);
             });
     }
 
     long size_ = 0;
     std::vector<Factor> factors_;
-    std::vector<long> home_, number_;
-    std::vector<double> sign_x_, sign_y_;
+    std::vector<long> number_;
 };
 
 }  // namespace mpm_implicit

@@ -180,6 +180,19 @@ class GrainMatrix {
         }
     }
 
+    /// Calls work(slot, other, m) for the stored entries of a grain's consistent mass matrix.
+    template <class Work>
+    void for_each_mass_of(int grain, const GrainNodes& nodes, const Work& work) const {
+        const auto [low, above] = rows_of_grain(grain, nodes);
+        for (long r = low; r < above; ++r) {
+            for_each_link<reach>(
+                rows_, r, [&](int diagonal, long slot, long other, long count, bool transposed) {
+                    const double* M = M_.field(diagonal, 0) + slot;
+                    for (long i = 0; i < count && !transposed; ++i) work(slot + i, other + i, M[i]);
+                });
+        }
+    }
+
     /// Images take their values from the slots they stand for; and the transpose.
     void spread(Vector& x) const {
         const long n = A_.size();

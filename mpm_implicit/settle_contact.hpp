@@ -42,7 +42,7 @@ inline void extrapolate_friction(bool same, ContactSet& set) {
 inline Change correct(const Vector& v, const std::vector<double>& V, const GrainNodes& nodes,
                       double accuracy, ContactSet& set) {
     const long size = nodes.size();
-    const double nearly = 1e3 * accuracy, friction_error = 1e4 * accuracy;
+    const double nearly = 1e3 * accuracy, friction_error = 1e5 * accuracy;
     constexpr int most_releases = 2, most_switches = 3;
     double largest = 0, fastest = 0;
     for (const MeetingPair& pair : set.pairs)

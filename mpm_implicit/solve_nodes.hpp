@@ -13,6 +13,7 @@
 
 #include "mpm_implicit/case.hpp"
 #include "mpm_implicit/grain_factors.hpp"
+#include "mpm_implicit/mass_factors.hpp"
 #include "mpm_implicit/projected_cg.hpp"
 #include "mpm_implicit/settle_contact.hpp"
 
@@ -38,6 +39,7 @@ class NodeSolver {
         const double theta_dt = scheme.theta * dt;
         matrix.assemble(shape, laws, all.grains, all.particles, nodes, rows,
                         1 + theta_dt * body.damping, theta_dt * theta_dt, scheme.consistent());
+        if (scheme.consistent()) tie_blind_nodes(rows, all.grains, nodes);
     }
 
     /// M v^0 = P, and bonded grains have one velocity.
@@ -65,9 +67,9 @@ class NodeSolver {
         constraints.obey({}, v_0_);
         PlateSystem none;
         const auto multiply = [&](Vector& x, Vector& y) { matrix.multiply_mass(x, y); };
-        const auto as_is = [](const Vector& t, CgWorkspace&) -> const Vector& { return t; };
-        const CgResult cg = projected_cg(multiply, as_is, constraints, scale_, b_, scheme.tolerance,
-                                         scheme.most_iterations, v_0_, none, work_);
+        const CgResult cg =
+            projected_cg(multiply, mass_preconditioner(scheme), constraints, scale_, b_,
+                         scheme.tolerance, scheme.most_iterations, v_0_, none, work_);
         report.mass_iterations = cg.iterations;
         if (!cg.converged) fail("the mass matrix", cg, scheme);
         for_each_slot([&](long i, std::size_t n) {
@@ -130,8 +132,13 @@ class NodeSolver {
             constraints.find_impulses(work_.r, set);
             const Change change = correct(v_, plates.V, nodes, tolerance, set);
             report.held = change.held;
-            if (change.settled && tolerance == scheme.tolerance) break;
-            if (change.settled) tolerance = scheme.tolerance;
+            if (change.settled) {
+                if (tolerance == scheme.tolerance) break;
+                // The same guess, to the end.
+                tolerance = scheme.tolerance;
+                --report.loops;
+                continue;
+            }
             if (report.loops == scheme.most_loops)
                 fail_to_settle(change, set, grains, scheme.most_loops);
         }
@@ -161,13 +168,7 @@ class NodeSolver {
     auto preconditioner(const Constraints& allowed) const {
         return [this, &allowed](const Vector& t, CgWorkspace& work) -> const Vector& {
             if (!by_grains_) return t;
-            const double *s = scale_.data(), *from = t.data();
-            double *r = work.s.data(), *z = work.z.data();
-            for_each_dof([&](long i) { r[i] = s[i] > 0 ? from[i] / s[i] : 0; });
-            factors_.solve(work.s, work.z);
-            for_each_dof([&](long i) { z[i] = s[i] > 0 ? z[i] / s[i] : 0; });
-            allowed.project(work.z);
-            return work.z;
+            return precondition(factors_, allowed, t, work);
         };
     }
 
@@ -176,6 +177,41 @@ class NodeSolver {
     const Vector& scale() const { return scale_; }
 
    private:
+    // Nodes that the particles cannot tell from others move as their heaviest neighbor does.
+    void tie_blind_nodes(const std::vector<NodeRow>& rows, const std::vector<Grain>& grains,
+                         GrainNodes& nodes) {
+        std::vector<Tie> ties;
+        for (const long slot : mass_factors_.factorize(matrix, grains, nodes)) {
+            const auto row = std::partition_point(rows.begin(), rows.end(), [&](const NodeRow& r) {
+                return r.origin + r.end <= slot;
+            });
+            const long heaviest =
+                heaviest_neighbor(rows, row - rows.begin(), slot - row->origin, nodes);
+            if (heaviest != slot) ties.push_back({slot, heaviest});
+        }
+        tie_nodes(ties, nodes);
+    }
+
+    // z = P D^{1/2} F^-1 D^{1/2} P t with factors F.
+    template <class Factors>
+    const Vector& precondition(const Factors& factors, const Constraints& allowed, const Vector& t,
+                               CgWorkspace& work) const {
+        const double *s = scale_.data(), *from = t.data();
+        double *r = work.s.data(), *z = work.z.data();
+        for_each_dof([&](long i) { r[i] = s[i] > 0 ? from[i] / s[i] : 0; });
+        factors.solve(work.s, work.z);
+        for_each_dof([&](long i) { z[i] = s[i] > 0 ? z[i] / s[i] : 0; });
+        allowed.project(work.z);
+        return work.z;
+    }
+
+    auto mass_preconditioner(const ThetaScheme& scheme) const {
+        return [this, factorized = scheme.consistent()](const Vector& t,
+                                                        CgWorkspace& work) -> const Vector& {
+            return factorized ? precondition(mass_factors_, constraints, t, work) : t;
+        };
+    }
+
     void resize() {
         work_.resize(size_);
         for (Vector* v : {&v_0_, &v_, &b_, &right_, &scale_})
@@ -238,6 +274,7 @@ class NodeSolver {
     }
 
     GrainFactors factors_;
+    MassFactors mass_factors_;
     bool by_grains_ = true;
     long size_ = 0;
     Vector v_0_, v_, b_, right_, scale_;

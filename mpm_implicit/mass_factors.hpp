@@ -1,0 +1,138 @@
+// The consistent mass matrix of every grain, factorized by itself,  M_g = L L^T.
+//
+// It makes v^0 cheap, and it tells which nodes the particles cannot tell apart: where the motion of a
+// node is, at all particles, nearly that of nodes before it, its pivot is nearly zero, and v^0 there
+// would be anything. Such nodes are tied to a neighbor.
+#pragma once
+
+#include "mpm_implicit/grain_matrix.hpp"
+
+namespace mpm_implicit {
+
+class MassFactors {
+   public:
+    /// in:     matrix, with the consistent mass
+    /// out:    nodes whose pivot is below `blind` of their diagonal, which are left out
+    template <int reach>
+    std::vector<long> factorize(const GrainMatrix<reach>& matrix, const std::vector<Grain>& grains,
+                                const GrainNodes& nodes) {
+        const Homes homes(nodes);
+        size_ = nodes.size();
+        number_.assign(static_cast<std::size_t>(size_), -1);
+        factors_.resize(grains.size());
+        common::for_each_row(static_cast<long>(grains.size()), [&](long g) {
+            if (!grains[static_cast<std::size_t>(g)].rigid)
+                factorize(matrix, nodes, homes, static_cast<int>(g));
+        });
+        std::vector<long> all;
+        for (const Factor& f : factors_) all.insert(all.end(), f.blind.begin(), f.blind.end());
+        return all;
+    }
+
+    /// z = M^-1 r along x and along y
+    void solve(const Vector& r, Vector& z) const {
+        z.setZero();
+        common::for_each_row(static_cast<long>(factors_.size()), [&](long g) {
+            const Factor& f = factors_[static_cast<std::size_t>(g)];
+            const long n = static_cast<long>(f.slots.size());
+            std::vector<double> both(static_cast<std::size_t>(2 * n));
+            double *x = both.data(), *y = x + n;
+            for (long i = 0; i < n; ++i) {
+                const float* L = f.row(i);
+                double sum_x = r[f.slot(i)], sum_y = r[size_ + f.slot(i)];
+#pragma omp simd reduction(- : sum_x, sum_y)
+                for (long j = f.first_of(i); j < i; ++j) sum_x -= L[j] * x[j], sum_y -= L[j] * y[j];
+                x[i] = sum_x * f.per_pivot(i), y[i] = sum_y * f.per_pivot(i);
+            }
+            for (long i = n; i-- > 0;) {
+                const float* L = f.row(i);
+                const double v_x = x[i] * f.per_pivot(i), v_y = y[i] * f.per_pivot(i);
+#pragma omp simd
+                for (long j = f.first_of(i); j < i; ++j) x[j] -= v_x * L[j], y[j] -= v_y * L[j];
+                z[f.slot(i)] = v_x, z[size_ + f.slot(i)] = v_y;
+            }
+        });
+    }
+
+   private:
+    static constexpr double blind = 1e-3;
+
+    struct Factor {
+        std::vector<long> slots, blind;
+        std::vector<long> first, begin;  // of each row: first column; where column 0 would be
+        std::vector<float> L;
+        std::vector<double> pivots;  // their reciprocals; 0 for a node that is left out
+
+        long slot(long i) const { return slots[static_cast<std::size_t>(i)]; }
+        long first_of(long i) const { return first[static_cast<std::size_t>(i)]; }
+        double per_pivot(long i) const { return pivots[static_cast<std::size_t>(i)]; }
+        const float* row(long i) const { return L.data() + begin[static_cast<std::size_t>(i)]; }
+    };
+
+    template <int reach>
+    void factorize(const GrainMatrix<reach>& matrix, const GrainNodes& nodes, const Homes& homes,
+                   int grain) {
+        Factor& f = factors_[static_cast<std::size_t>(grain)];
+        f.slots.clear(), f.blind.clear();
+        matrix.for_each_node_of(grain, nodes, [&](long slot) {
+            if (!(nodes.sums[static_cast<std::size_t>(slot)].m > nodes.least_mass())) return;
+            number_[static_cast<std::size_t>(slot)] = static_cast<long>(f.slots.size());
+            f.slots.push_back(slot);
+        });
+        const auto for_each_entry = [&](const auto& work) {
+            matrix.for_each_mass_of(grain, nodes, [&](long one, long two, double m) {
+                const long i = number_[static_cast<std::size_t>(
+                               homes.slot[static_cast<std::size_t>(one)])],
+                           j = number_[static_cast<std::size_t>(
+                               homes.slot[static_cast<std::size_t>(two)])];
+                if (i >= 0 && j >= 0)
+                    work(std::max(i, j), std::min(i, j), i == j && one != two ? 2 * m : m);
+            });
+        };
+        const long n = static_cast<long>(f.slots.size());
+        f.first.resize(f.slots.size()), f.begin.resize(f.slots.size());
+        f.pivots.resize(f.slots.size());
+        for (long i = 0; i < n; ++i) f.first[static_cast<std::size_t>(i)] = i;
+        for_each_entry([&](long high, long low, double) {
+            long& first = f.first[static_cast<std::size_t>(high)];
+            first = std::min(first, low);
+        });
+        long length = 0;
+        for (long i = 0; i < n; ++i) {
+            f.begin[static_cast<std::size_t>(i)] = length - f.first_of(i);
+            length += i - f.first_of(i) + 1;
+        }
+        std::vector<double> entries(static_cast<std::size_t>(length), 0.0);
+        const auto row = [&](long i) {
+            return entries.data() + f.begin[static_cast<std::size_t>(i)];
+        };
+        for_each_entry([&](long high, long low, double m) { row(high)[low] += m; });
+        // L_ij = (M_ij - sum_k L_ik L_jk) / L_jj
+        for (long i = 0; i < n; ++i) {
+            double* L_i = row(i);
+            double squares = 0;
+            for (long j = f.first_of(i); j < i; ++j) {
+                const double* L_j = row(j);
+                double sum = 0;
+#pragma omp simd reduction(+ : sum)
+                for (long k = std::max(f.first_of(i), f.first_of(j)); k < j; ++k)
+                    sum += L_i[k] * L_j[k];
+                L_i[j] = (L_i[j] - sum) * f.per_pivot(j);
+                squares += L_i[j] * L_i[j];
+            }
+            const double pivot = L_i[i] - squares;
+            const bool seen = pivot > blind * L_i[i];
+            f.pivots[static_cast<std::size_t>(i)] = seen ? 1 / std::sqrt(pivot) : 0;
+            if (seen) continue;
+            f.blind.push_back(f.slot(i));
+            std::fill(L_i + f.first_of(i), L_i + i, 0.0);
+        }
+        f.L.assign(entries.begin(), entries.end());
+    }
+
+    long size_ = 0;
+    std::vector<Factor> factors_;
+    std::vector<long> number_;
+};
+
+}  // namespace mpm_implicit
