@@ -72,35 +72,37 @@ class NewtonSolver {
                 R_[n + i] = b[n + i] + theta * dt * nodes.force[k].y - factor_M * Mv_[n + i];
             });
         };
-        // Puts v + R/D on the nodes, for contact to correct; or v + R/m_i, where it keeps the books.
-        const auto push = [&](bool by_mass) {
+        // Puts v + R/D on the nodes, for contact to correct.
+        const auto push = [&] {
             for_each_slot(n, [&](long i, std::size_t k) {
                 if (nodes.is_free()[k] == 0) return;
-                const double per_m = by_mass ? 1 / nodes.sums[k].m : 0;
                 const auto pushed = [&](long at) {
-                    if (!(scale[at] > 0)) return 0.0;
-                    return v_[at] + R_[at] * (by_mass ? per_m : scale[at] * scale[at]);
+                    return scale[at] > 0 ? v_[at] + R_[at] * scale[at] * scale[at] : 0.0;
                 };
                 nodes.motion[k].vx_1 = pushed(i), nodes.motion[k].vy_1 = pushed(n + i);
             });
         };
+        // The operator of the explicit program, with the masses D.
+        const auto correct_node = [&](int, mpm::detail::NodeProblem& node) {
+            node.isotropic = false;
+            for (std::size_t k = 0; k < node.parties; ++k) {
+                mpm::detail::Party& party = node.party[k];
+                if (party.is_fixed()) continue;
+                party.per_mx = scale[party.slot] * scale[party.slot];
+                party.per_my = scale[n + party.slot] * scale[n + party.slot];
+            }
+            mpm::detail::weigh_pairs(node);
+            mpm::detail::solve(node);
+        };
         const auto residual = [&](const Vector& x, Vector& F) {
             load(x);
-            push(false);
+            push();
             std::array<std::vector<double>, common::block_count> reaction;
             for (auto& block : reaction) block.assign(static_cast<std::size_t>(count), 0.0);
             std::array<std::size_t, common::block_count> next = solver.set.first_pair;
             contact.meetings().for_each(nodes, bonds, false, [&](int number, auto& node) {
                 const auto block = static_cast<std::size_t>(number);
-                node.isotropic = false;
-                for (std::size_t k = 0; k < node.parties; ++k) {
-                    mpm::detail::Party& party = node.party[k];
-                    if (party.is_fixed()) continue;
-                    party.per_mx = std::pow(scale[party.slot], 2);
-                    party.per_my = std::pow(scale[n + party.slot], 2);
-                }
-                mpm::detail::weigh_pairs(node);
-                mpm::detail::solve(node);
+                correct_node(number, node);
                 for (std::size_t k = 0; k < node.pairs; ++k) {
                     const mpm::detail::Pair& pair = node.pair[k];
                     if (watching_) see(pair, solver.set.pairs[next[block]++]);
@@ -194,8 +196,9 @@ class NewtonSolver {
         }
         if (!result.converged) fail(result, scheme, grains, solver.set);
         load(x_);
-        push(true);
-        const ContactSums did = contact.apply(dt, nodes, bonds, rigid, {0, 1 / theta});
+        push();
+        const ContactSums did =
+            contact.apply(dt, nodes, bonds, rigid, {0, 1 / theta}, correct_node);
         for (long s = 0; s < count; ++s) {
             RigidMotion& is = rigid[solver.servos[static_cast<std::size_t>(s)].grain];
             const bool along_x = solver.servos[static_cast<std::size_t>(s)].along_x;

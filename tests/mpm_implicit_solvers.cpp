@@ -673,8 +673,9 @@ TEST_CASE("the factors of a grain undo its matrix") {
             left = worst({left, (back - r).norm() / r.norm()});
         }
     });
-    CHECK(off <= 1e-12);
-    CHECK(left <= 1e-13);
+    // They are kept in single precision.
+    CHECK(off <= 5e-6);
+    CHECK(left <= 1e-6);
 }
 
 // ---- what closed pairs allow ---------------------------------------------------------------------
