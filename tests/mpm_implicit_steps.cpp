@@ -282,7 +282,7 @@ TEST_CASE("nothing gives energy to random grains whatever the time step" *
                 CAPTURE(c.shape);
                 CAPTURE(c.problem.contact.friction);
                 ThetaRun run(c, s, [&](Assembly& all) {
-                    disturb(0.002, 20 * slower, number, all);
+                    disturb(0.008, 20 * slower, number, all);
                     shake(0.2 * slower, number, all);
                 });
                 run.advance(8);
@@ -341,7 +341,7 @@ TEST_CASE("the momentum of all grains stays with contact and friction and bonds"
                 c.shape = shape;
                 c.problem.bonds.push_back({"glue", "a", "b"});
                 ThetaRun run(c, theta_scheme(0.6, mass, solver), [&](Assembly& all) {
-                    disturb(0, 5, ++number, all);
+                    disturb(0.004, 5, ++number, all);
                     shake(0.05, number, all);
                 });
                 const auto before = total_momentum(run.state.assembly);
