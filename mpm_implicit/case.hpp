@@ -38,7 +38,7 @@ inline common::ParameterTable describe(Case& w, ThetaScheme& scheme) {
     table.choice("solver.kind", scheme.solver, {"projected_cg", "newton_krylov"},
                  "of a step; plastic grains and updated volumes need newton_krylov");
     table.choice("solver.preconditioner", scheme.preconditioner, {"grains", "diagonal"},
-                 "of conjugate gradients: each grain factorized, or the diagonal");
+                 "for v^theta: each grain factorized, or the diagonal");
     table.real("solver.tolerance", scheme.tolerance, "", between(1e-15, 1e-3),
                "on the residual, relative");
     table.whole("solver.most_iterations", scheme.most_iterations, "", between(1, 1e6),

@@ -9,7 +9,6 @@
 
 #include "common/mpm/check_case.hpp"
 #include "mpm_implicit/case.hpp"
-#include "mpm_implicit/grain_matrix.hpp"
 
 namespace mpm_implicit {
 
@@ -106,7 +105,9 @@ inline double bytes_of(const Case& w, const ThetaScheme& scheme, const Scales& s
                          64 * static_cast<double>(scales.grains);
     const double diagonals = w.shape == "linear" ? 5 : 13,
                  across = std::sqrt(slots / static_cast<double>(scales.grains)),
-                 factors = scheme.preconditioner == "grains" ? 4 * across : 0,
+                 reach = w.shape == "linear" ? 1 : 2,
+                 factors = (scheme.preconditioner == "grains" ? 4 * across * reach : 0) +
+                           (scheme.consistent() ? across * reach : 0),
                  newton = scheme.newton() ? 2 * (2 * 30 + 16) : 0;
     return scales.bytes + 8 * slots * (5 * diagonals + 2 * 14 + factors + newton);
 }

@@ -122,7 +122,8 @@ inline void compare_compression(const theory::Run& run, const ThetaScheme& schem
                                 common::Summary& summary) {
     const auto energy = run.history.column("energy"), work = run.history.column("plate"),
                friction = run.history.column("friction");
-    const double most = *std::max_element(work.begin(), work.end());
+    const double most =
+        std::max(*std::max_element(work.begin(), work.end()), std::numeric_limits<double>::min());
     double apart = 0;
     for (std::size_t n = 0; n < energy.size(); ++n)
         apart = std::max(apart, std::fabs(energy[n] - energy[0] - work[n] - friction[n]));

@@ -16,6 +16,7 @@ namespace mpm_implicit {
 
 class Constraints {
    public:
+    /// Takes the rows of all closed pairs.
     /// in:     scale, D^{-1/2} of every slot, 0 where the velocity cannot change; only_bonds: leave
     ///         out those who merely press
     void build(const ContactSet& set, const Vector& scale, long size, std::size_t servos,
@@ -30,6 +31,8 @@ class Constraints {
                 for (std::size_t k = node.pair_begin; k < node.pair_end; ++k) {
                     const MeetingPair& pair = set.pairs[k];
                     if (!pair.closed() || (only_bonds && pair.bond < 0)) continue;
+                    // Before the step, a plate that a force drives holds nobody.
+                    if (only_bonds && (driven(node, pair.a) || driven(node, pair.b))) continue;
                     if (!across || pair.hold == Hold::stick) add_row(node, k, across, block);
                 }
             }
@@ -39,7 +42,7 @@ class Constraints {
 
     /// Takes out of y what the pairs forbid.
     void project(Vector& y) const {
-        for_each(y, [&](const double* q, const double*, double* local, std::size_t width) {
+        for_each(false, y, [&](const double* q, const double*, double* local, std::size_t width) {
             const double size = dot(q, local, width);
             for (std::size_t i = 0; i < width; ++i) local[i] -= q[i] * size;
         });
@@ -48,7 +51,7 @@ class Constraints {
     /// Changes v as little as possible, in the measure of D, so that it obeys all closed pairs.
     /// in:     V, velocities of the plates that forces drive
     void obey(const std::vector<double>& V, Vector& v) const {
-        for_each_scaled(v, [&](const double* q, const double* g, double* local, std::size_t width) {
+        for_each(true, v, [&](const double* q, const double* g, double* local, std::size_t width) {
             double size = dot(q, local, width) - g[0];
             for (std::size_t s = 0; s < V.size(); ++s) size -= g[1 + s] * V[s];
             for (std::size_t i = 0; i < width; ++i) local[i] -= q[i] * size;
@@ -58,7 +61,7 @@ class Constraints {
     /// v += V e_V: what the plates' velocities add.
     void add_plates(const double* V, Vector& v) const {
         if (rights_ == 1) return;
-        for_each_scaled(v, [&](const double* q, const double* g, double* local, std::size_t width) {
+        for_each(true, v, [&](const double* q, const double* g, double* local, std::size_t width) {
             double size = 0;
             for (std::size_t s = 0; s + 1 < rights_; ++s) size += g[1 + s] * V[s];
             for (std::size_t i = 0; i < width; ++i) local[i] += q[i] * size;
@@ -68,10 +71,12 @@ class Constraints {
     /// e_V . r of every plate, and e_V . D e_V.
     void plates_feel(const Vector& r, double* sums) const {
         std::fill_n(sums, rights_ - 1, 0.0);
+        if (rights_ == 1) return;
+        Local local{};
         for (const Block& block : blocks_) {
-            load(block, r, 1);
+            load(block, r, 1, local);
             for (std::size_t k = 0; k < block.rank; ++k) {
-                const double size = dot(q(block, k), local_.data(), width(block));
+                const double size = dot(q(block, k), local.data(), width(block));
                 for (std::size_t s = 0; s + 1 < rights_; ++s) sums[s] += g(block, k)[1 + s] * size;
             }
         }
@@ -90,11 +95,12 @@ class Constraints {
             pair.lambda_n = 0;
             if (pair.hold != Hold::slip) pair.lambda_t = 0;
         }
+        Local local{};
         for (const Block& block : blocks_) {
-            load(block, r, 1);
-            std::array<double, most_rows> lambda{};
+            load(block, r, 1, local);
+            Local lambda{};
             for (std::size_t k = block.rank; k-- > 0;) {
-                double c = -dot(q(block, k), local_.data(), width(block));
+                double c = -dot(q(block, k), local.data(), width(block));
                 for (std::size_t i = k + 1; i < block.rank; ++i)
                     c -= factor_[block.factor + i * most_rows + k] * lambda[i];
                 lambda[k] = c / factor_[block.factor + k * most_rows + k];
@@ -115,6 +121,9 @@ class Constraints {
         std::size_t node, row, rank, basis, right, factor;
     };
 
+    bool driven(const MeetingNode& node, std::size_t who) const {
+        return set_->meeters[node.meeter_begin + who].servo >= 0;
+    }
     const MeetingNode& node_of(const Block& block) const { return set_->nodes[block.node]; }
     std::size_t width(const Block& block) const {
         return 2 * (node_of(block).meeter_end - node_of(block).meeter_begin);
@@ -144,7 +153,7 @@ class Constraints {
                 const bool drive_x = is.servo >= 0 && is.servo_along_x,
                            drive_y = is.servo >= 0 && !is.servo_along_x;
                 right[0] -= sign * ((drive_x ? 0 : is.vx) * x + (drive_y ? 0 : is.vy) * y);
-                if (is.servo >= 0)
+                if (is.servo >= 0 && static_cast<std::size_t>(1 + is.servo) < rights_)
                     right[static_cast<std::size_t>(1 + is.servo)] -= sign * (drive_x ? x : y);
             } else {
                 row[2 * who] = sign * x * (*scale_)[is.slot];
@@ -172,25 +181,27 @@ class Constraints {
         ++block.rank;
     }
 
+    using Local = std::array<double, most_rows>;
+
     // The node's part of v, each number times D^{-1/2} to a power.
-    void load(const Block& block, const Vector& v, int power) const {
+    void load(const Block& block, const Vector& v, int power, Local& local) const {
         const MeetingNode& node = node_of(block);
         for (std::size_t m = node.meeter_begin; m < node.meeter_end; ++m) {
             const Meeter& is = set_->meeters[m];
             const std::size_t i = 2 * (m - node.meeter_begin);
-            local_[i] = local_[i + 1] = 0;
+            local[i] = local[i + 1] = 0;
             if (is.fixed) continue;
             for (const auto& [at, slot] :
                  {std::pair(i, is.slot), std::pair(i + 1, size_ + is.slot)}) {
                 const double s = (*scale_)[slot];
-                local_[at] = power == 0  ? v[slot]
-                             : power > 0 ? s * v[slot]
-                             : s > 0     ? v[slot] / s
-                                         : 0;
+                local[at] = power == 0  ? v[slot]
+                            : power > 0 ? s * v[slot]
+                            : s > 0     ? v[slot] / s
+                                        : 0;
             }
         }
     }
-    void store(const Block& block, int power, Vector& v) const {
+    void store(const Block& block, int power, const Local& local, Vector& v) const {
         const MeetingNode& node = node_of(block);
         for (std::size_t m = node.meeter_begin; m < node.meeter_end; ++m) {
             const Meeter& is = set_->meeters[m];
@@ -200,31 +211,32 @@ class Constraints {
                  {std::pair(i, is.slot), std::pair(i + 1, size_ + is.slot)}) {
                 const double s = (*scale_)[slot];
                 if (power == 0)
-                    v[slot] = local_[at];
+                    v[slot] = local[at];
                 else if (s > 0)
-                    v[slot] = local_[at] * s;
+                    v[slot] = local[at] * s;
             }
         }
     }
 
+    // Lets work(q, g, local, width) change the part of every node, in y = D^{1/2} v; scaled: of v.
     template <class Work>
-    void for_each(Vector& y, const Work& work) const {
-        for (const Block& block : blocks_) {
-            load(block, y, 0);
-            for (std::size_t k = 0; k < block.rank; ++k)
-                work(q(block, k), g(block, k), local_.data(), width(block));
-            store(block, 0, y);
-        }
+    void for_each(bool scaled, Vector& v, const Work& work) const {
+        const long count = static_cast<long>(blocks_.size());
+        common::for_each_block(
+            count,
+            [&](int, long begin, long end) {
+                Local local{};
+                for (long n = begin; n < end; ++n) {
+                    const Block& block = blocks_[static_cast<std::size_t>(n)];
+                    load(block, v, scaled ? -1 : 0, local);
+                    for (std::size_t k = 0; k < block.rank; ++k)
+                        work(q(block, k), g(block, k), local.data(), width(block));
+                    store(block, scaled ? 1 : 0, local, v);
+                }
+            },
+            64 * count);
     }
-    template <class Work>
-    void for_each_scaled(Vector& v, const Work& work) const {
-        for (const Block& block : blocks_) {
-            load(block, v, -1);
-            for (std::size_t k = 0; k < block.rank; ++k)
-                work(q(block, k), g(block, k), local_.data(), width(block));
-            store(block, 1, v);
-        }
-    }
+
     const ContactSet* set_ = nullptr;
     const Vector* scale_ = nullptr;
     long size_ = 0;
@@ -232,7 +244,6 @@ class Constraints {
     std::vector<Row> rows_;
     std::vector<double> basis_, right_, factor_;
     std::vector<Block> blocks_;
-    mutable std::array<double, most_rows> local_{};
 };
 
 }  // namespace mpm_implicit

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -28,12 +29,17 @@ enum class Hold : int { open, slip, stick };
 /// One grain, rigid grain or wall at a node where grains meet.
 struct Meeter {
     long slot;                   // -1: a wall
-    int grain;                   // a wall: its side
+    int grain;                   // a wall: -1 - its side
     bool fixed;                  // its velocity is given
     double vx, vy;               // then: the velocity
     int servo = -1;              // a rigid grain that a force drives: its number ...
     bool servo_along_x = false;  // ... and direction; the velocity in that direction is not given
 };
+
+/// Grains have numbers from 0, walls from -1 down.
+inline int number_of(const detail::Party& party) {
+    return party.wall ? -1 - party.grain : party.grain;
+}
 
 /// Two of them. Impulses are those on v^theta: theta times what particles feel.
 struct MeetingPair {
@@ -66,7 +72,7 @@ class ContactSet {
 
     /// Finds everybody who meets, and guesses who presses: those who did in the last step, and those
     /// who approach.
-    /// in:     memory, sorted; v, velocities to judge approach by
+    /// in:     where, with v_0 to judge approach by; memory, sorted
     void find(const Contact& contact, const GrainNodes& where, const std::vector<Bond>& bonds,
               const std::vector<RigidMotion>& rigid, const std::vector<Servo>& servos,
               const std::vector<PairMemory>& memory) {
@@ -81,7 +87,7 @@ class ContactSet {
             MeetingNode here{block.meeters.size(), 0, block.pairs.size(), 0, node.key};
             for (std::size_t k = 0; k < node.parties; ++k) {
                 const detail::Party& party = node.party[k];
-                Meeter meeter{party.slot, party.grain, party.is_fixed(), 0, 0};
+                Meeter meeter{party.slot, number_of(party), party.is_fixed(), 0, 0};
                 if (party.rigid) {
                     const auto g = static_cast<std::size_t>(party.grain);
                     meeter.vx = rigid[g].vx, meeter.vy = rigid[g].vy;
@@ -104,7 +110,7 @@ class ContactSet {
                 double ax, ay, bx, by;
                 before(a, block.meeters[here.meeter_begin + pair.a], ax, ay);
                 before(b, block.meeters[here.meeter_begin + pair.b], bx, by);
-                const PairMemory like{here.key, a.grain, b.grain, 0, 0};
+                const PairMemory like{here.key, number_of(a), number_of(b), 0, 0};
                 const auto last = std::lower_bound(memory.begin(), memory.end(), like);
                 if (pair.bond >= 0) {
                     meet.hold = Hold::stick;

@@ -12,6 +12,7 @@ namespace mpm_implicit {
 
 class GrainFactors {
    public:
+    /// Factorizes all grains.
     /// in:     matrix; scale, 0 where a velocity cannot change
     template <int reach>
     void factorize(const GrainMatrix<reach>& matrix, const Vector& scale,
@@ -66,7 +67,7 @@ class GrainFactors {
         std::vector<long> first;              // of each node, the first one its rows reach back to
         std::vector<long> begin;              // of each row, where column 0 would be
         std::vector<float> L;
-        std::vector<double> pivots;  // pivots: their reciprocals
+        std::vector<double> pivots;  // reciprocals of the diagonal of L
 
         static std::size_t at(long i, int component) {
             return static_cast<std::size_t>(2 * i + component);

@@ -2,7 +2,8 @@
 //
 // It makes v^0 cheap, and it tells which nodes the particles cannot tell apart: where the motion of a
 // node is, at all particles, nearly that of nodes before it, its pivot is nearly zero, and v^0 there
-// would be anything. Such nodes are tied to a neighbor.
+// would be anything. Such nodes are tied to a neighbor. Ties that are made afterwards, the signs of walls,
+// and single precision make it a preconditioner.
 #pragma once
 
 #include "mpm_implicit/grain_matrix.hpp"
@@ -11,8 +12,9 @@ namespace mpm_implicit {
 
 class MassFactors {
    public:
+    /// Factorizes the mass of all grains.
     /// in:     matrix, with the consistent mass
-    /// out:    nodes whose pivot is below `blind` of their diagonal, which are left out
+    /// out:    nodes whose pivot is nearly zero, which are left out
     template <int reach>
     std::vector<long> factorize(const GrainMatrix<reach>& matrix, const std::vector<Grain>& grains,
                                 const GrainNodes& nodes) {
@@ -29,7 +31,7 @@ class MassFactors {
         return all;
     }
 
-    /// z = M^-1 r along x and along y
+    /// z = L^-T L^-1 r along x and along y: nearly M^-1 r
     void solve(const Vector& r, Vector& z) const {
         z.setZero();
         common::for_each_row(static_cast<long>(factors_.size()), [&](long g) {
@@ -49,19 +51,23 @@ class MassFactors {
                 const double v_x = x[i] * f.per_pivot(i), v_y = y[i] * f.per_pivot(i);
 #pragma omp simd
                 for (long j = f.first_of(i); j < i; ++j) x[j] -= v_x * L[j], y[j] -= v_y * L[j];
-                z[f.slot(i)] = v_x, z[size_ + f.slot(i)] = v_y;
+                const double alone = f.alone[static_cast<std::size_t>(i)];
+                z[f.slot(i)] = v_x + alone * r[f.slot(i)];
+                z[size_ + f.slot(i)] = v_y + alone * r[size_ + f.slot(i)];
             }
         });
     }
 
    private:
-    static constexpr double blind = 1e-3;
+    static constexpr double least_pivot = 1e-3;  // of the diagonal
 
     struct Factor {
         std::vector<long> slots, blind;
         std::vector<long> first, begin;  // of each row: first column; where column 0 would be
         std::vector<float> L;
-        std::vector<double> pivots;  // their reciprocals; 0 for a node that is left out
+        std::vector<double> pivots;  // reciprocals of the diagonal of L; 0 for a node left out
+        std::vector<double>
+            alone;  // 1/M_ii of a node left out, which may have no one to be tied to
 
         long slot(long i) const { return slots[static_cast<std::size_t>(i)]; }
         long first_of(long i) const { return first[static_cast<std::size_t>(i)]; }
@@ -91,7 +97,7 @@ class MassFactors {
         };
         const long n = static_cast<long>(f.slots.size());
         f.first.resize(f.slots.size()), f.begin.resize(f.slots.size());
-        f.pivots.resize(f.slots.size());
+        f.pivots.resize(f.slots.size()), f.alone.assign(f.slots.size(), 0);
         for (long i = 0; i < n; ++i) f.first[static_cast<std::size_t>(i)] = i;
         for_each_entry([&](long high, long low, double) {
             long& first = f.first[static_cast<std::size_t>(high)];
@@ -121,10 +127,11 @@ class MassFactors {
                 squares += L_i[j] * L_i[j];
             }
             const double pivot = L_i[i] - squares;
-            const bool seen = pivot > blind * L_i[i];
+            const bool seen = pivot > least_pivot * L_i[i];
             f.pivots[static_cast<std::size_t>(i)] = seen ? 1 / std::sqrt(pivot) : 0;
             if (seen) continue;
             f.blind.push_back(f.slot(i));
+            f.alone[static_cast<std::size_t>(i)] = 1 / L_i[i];
             std::fill(L_i + f.first_of(i), L_i + i, 0.0);
         }
         f.L.assign(entries.begin(), entries.end());

@@ -2,7 +2,8 @@
 //
 //     v_p^1 = v_p^0 + sum_i S_ip (v_i^1 - v_i^0),  v_i^1 - v_i^0 = (v_i^theta - v_i^0)/theta
 //     x_p^1 = x_p^0 + dt sum_i S_ip v_i^theta
-// Positions and strains go with the same velocity: then the work of gravity is exact, too.
+// Positions and strains go with the same velocity: then the work of gravity is exact, too (but for gimp
+// and quadratic in the cell next to slip and stick walls, where weight is that of m_i).
 #pragma once
 
 #include "common/mpm/plates.hpp"

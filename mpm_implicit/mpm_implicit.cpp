@@ -6,8 +6,9 @@
 // Run:   build/mpm_implicit mpm_implicit/cases/rebound.toml time.alpha=5
 // Run:   build/mpm_implicit mpm_implicit/cases/rebound.toml method.mass=lumped
 //
-// Reading order: grain_matrix.hpp, solve_nodes.hpp, contact_set.hpp, constraints.hpp,
-// projected_cg.hpp, update_stress.hpp, move_particles.hpp, ledger.hpp; then solve_with_newton.hpp.
+// Reading order: node_rows.hpp, stencil.hpp, grain_matrix.hpp, contact_set.hpp, constraints.hpp,
+// projected_cg.hpp, grain_factors.hpp, mass_factors.hpp, settle_contact.hpp, solve_nodes.hpp,
+// update_stress.hpp, move_particles.hpp, ledger.hpp; then solve_with_newton.hpp.
 // What both programs share is in common/mpm/.
 #include <cstdio>
 #include <optional>

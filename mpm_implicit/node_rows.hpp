@@ -95,7 +95,8 @@ inline void tie_nodes(std::vector<Tie>& ties, GrainNodes& nodes) {
     }
 }
 
-/// Ties nodes that a grain hardly touches to their heaviest neighbor, so that both have one velocity.
+/// Ties nodes that a grain hardly touches to their heaviest neighbor that walls hold alike, so that
+/// both have one velocity.
 /// A particle that has come a small way d into a cell sees the nodes behind it with weights of d and
 /// gradients that some of their motions feel with d only: stress would drive those with 1/d, and
 /// round-off with them. The theorem holds with any ties: they make a smaller space of velocities.

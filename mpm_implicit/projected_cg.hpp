@@ -2,7 +2,7 @@
 //
 // It solves  A v = b + H^T lambda,  H v = h  for v, and for the velocities V of plates that forces
 // drive; H are the rows of constraints.hpp. Residual and direction are projected, so that every
-// iterate obeys the pairs; lambda never appears. In y = D^{1/2} v the preconditioner is the diagonal.
+// iterate obeys the pairs; lambda never appears. In y = D^{1/2} v, no preconditioner is the diagonal of A.
 #pragma once
 
 #include <limits>
@@ -13,7 +13,7 @@ namespace mpm_implicit {
 
 struct CgResult {
     long iterations = 0;
-    double residual = 0;  // of what was asked for
+    double residual = 0;  // relative, as the tolerance
     bool converged = false;
 };
 
@@ -44,8 +44,11 @@ inline double dot(const Vector& a, const Vector& b) {
         a.size());
 }
 
-/// in:     multiply(x, y): y = A x, symmetric; constraints, built with scale = D^{-1/2}; b; tolerance
-///         on |D^{-1/2} (b - A v)| without what the pairs forbid, over |D^{-1/2} b|
+/// Solves for v.
+/// in:     multiply(x, y): y = A x, symmetric; precondition(t, work): z from t, both in y; constraints,
+///         built with scale = D^{-1/2}; b; tolerance on |D^{-1/2} (b - A v)| without what the pairs
+///         forbid, over |D^{-1/2} b| or, if that is more, what it was with v as given and with the
+///         impulses of the pairs
 /// in/out: v and plates.V, which obey the constraints
 /// out:    work.r = b - A v, which is -H^T lambda when converged
 /// exact:  converged means the residual is that small, or as small as round-off of A v

@@ -8,7 +8,6 @@
 #include "common/mpm/record.hpp"
 #include "mpm_implicit/compare_with_theory.hpp"
 #include "mpm_implicit/initial_state.hpp"
-#include "mpm_implicit/solve_nodes.hpp"
 
 namespace mpm_implicit {
 

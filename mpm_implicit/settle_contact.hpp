@@ -95,10 +95,11 @@ inline Change correct(const Vector& v, const std::vector<double>& V, const Grain
                         ++change.held;
                     }
                 } else if (pair.hold == Hold::slip) {
-                    if (pair.lambda_t * slip > nearly * largest * fastest &&
-                        pair.switches < most_switches) {
+                    const bool drives = pair.lambda_t * slip > nearly * largest * fastest;
+                    if (drives && pair.switches < most_switches) {
                         pair.hold = Hold::stick, ++pair.switches;
                     } else {
+                        change.held += drives ? 1 : 0;
                         const double now =
                             std::copysign(most, pair.lambda_t == 0 ? -slip : pair.lambda_t);
                         const double by_now = std::fabs(now - pair.lambda_t);
@@ -116,6 +117,7 @@ inline Change correct(const Vector& v, const std::vector<double>& V, const Grain
     return change;
 }
 
+/// errors: NumericalError, with who changed last
 [[noreturn]] inline void fail_to_settle(const Change& change, const ContactSet& set,
                                         const std::vector<Grain>& grains, long loops) {
     throw common::NumericalError("contact did not settle in " + std::to_string(loops) +

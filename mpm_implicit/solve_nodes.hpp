@@ -27,9 +27,10 @@ class NodeSolver {
     Constraints constraints;
     std::vector<Servo> servos;
 
-    /// M and A of the step, and the force of the old stress.
+    /// M and A of the step.
     /// in:     nodes.sums
-    /// out:    matrix; nodes.force; nodes that are hardly touched are tied to others
+    /// out:    matrix; nodes that are hardly touched, or that particles cannot tell apart, are tied to
+    ///         others
     template <class Shape>
     void assemble(const Shape& shape, const std::vector<AnyLaw>& laws, const ThetaScheme& scheme,
                   const BodyForce& body, double dt, const State& state, GrainNodes& nodes) {
@@ -71,7 +72,7 @@ class NodeSolver {
             projected_cg(multiply, mass_preconditioner(scheme), constraints, scale_, b_,
                          scheme.tolerance, scheme.most_iterations, v_0_, none, work_);
         report.mass_iterations = cg.iterations;
-        if (!cg.converged) fail("the mass matrix", cg, scheme);
+        if (!cg.converged) fail("the nodes before the step", cg, scheme);
         for_each_slot([&](long i, std::size_t n) {
             if (nodes.is_free()[n] == 0) return;
             nodes.motion[n].vx_0 = v_0_[i], nodes.motion[n].vy_0 = v_0_[size_ + i];
@@ -79,7 +80,7 @@ class NodeSolver {
         spread_velocity(nodes);
     }
 
-    /// The right-hand side, the diagonal and the preconditioner of a step.
+    /// The right-hand side and the diagonal of a step.
     /// in:     nodes with v_0 and, for projected_cg, the force of the old stress; else none
     void prepare(const ThetaScheme& scheme, const BodyForce& body, double dt, GrainNodes& nodes) {
         const double theta_dt = scheme.theta * dt;
@@ -267,10 +268,11 @@ class NodeSolver {
     }
 
     [[noreturn]] void fail(const char* what, const CgResult& cg, const ThetaScheme& scheme) const {
-        throw common::NumericalError(std::string("the velocities of ") + what +
-                                     " are not found in " + std::to_string(cg.iterations) +
-                                     " iterations: residual " + common::shown(cg.residual) +
-                                     ", asked for " + common::shown(scheme.tolerance));
+        throw common::NumericalError(
+            std::string("the velocities of ") + what + " are not found in " +
+            std::to_string(cg.iterations) + " iterations: residual " + common::shown(cg.residual) +
+            ", asked for " + common::shown(scheme.tolerance) +
+            "; raise solver.most_iterations, or take method.mass = \"lumped\"");
     }
 
     GrainFactors factors_;

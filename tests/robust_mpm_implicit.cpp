@@ -185,7 +185,7 @@ TEST_CASE("a solver of mpm_implicit that does not get there says with whom and h
     check_failure(rebound + " solver.most_iterations=1",
                   "the velocities of the nodes are not found in 1 iterations: residual ");
     check_failure(rebound + newton + " solver.most_iterations=1",
-                  "the velocities of the mass matrix are not found in 1 iterations: residual ");
+                  "the velocities of the nodes before the step are not found in 1 iterations: residual ");
     check_failure(rebound + lumped + " solver.most_iterations=1 solver.preconditioner=diagonal",
                   "the velocities of the nodes are not found in 1 iterations: residual ");
     check_failure(rebound + " solver.most_loops=1", "contact did not settle in 1 loops: " + pair);
