@@ -1,4 +1,4 @@
-# Poured disks of nearly one size (the smallest of radius R), sheared under pressure between two rows of rigid ones (gray), the upper of which moves to the right with U and slowly down; implicit with a CFL number of 4. Left, particles colored by velocity;
+# Poured disks whose radii differ by up to a fifth (the smallest of radius R), sheared under pressure between two rows of rigid ones (gray), the upper of which moves to the right with U and slowly down; implicit with a CFL number of 4. Left, particles colored by velocity;
 # right, fringes of the principal stress difference, which grows by 0.025 E from one dark fringe to the next: chains of force lean against the motion, branch, and leave grains between them in the dark.
 wide = 1700; high = 990
 load 'common/style.gp'
