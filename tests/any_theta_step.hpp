@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "common/mpm/scales.hpp"
@@ -74,8 +75,9 @@ struct ThetaRun {
     /// Calls work(shape, solver), the solver as wide as the shape.
     template <class Work>
     void with(const Work& work) {
-        with_shape(wanted.scheme(),
-                   [&](const auto& shape) { work(shape, solver<shape.width - 1>()); });
+        with_shape(wanted.scheme(), [&](const auto& shape) {
+            work(shape, solver<std::decay_t<decltype(shape)>::width - 1>());
+        });
     }
 
     void advance(long steps = 1) {

@@ -508,6 +508,7 @@ TEST_CASE("impulses press and gaps stay open and friction is Coulomb's at the so
     CHECK(both <= 1e-10);
     CHECK(rub <= 1e-8);
     CHECK(with <= 1e-10);
+    CHECK(50 * held <= pressed);
     CHECK(pressed >= 500);
     CHECK(open >= 200);
     CHECK(stuck >= 100);
