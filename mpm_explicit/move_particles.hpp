@@ -5,6 +5,7 @@
 // A FLIP fraction below one mixes in Harlow's PIC, v_p^1 = sum_i S_ip v_i^1, which takes energy.
 #pragma once
 
+#include "common/mpm/move_strips.hpp"
 #include "common/mpm/stop.hpp"
 #include "common/mpm/transfer.hpp"
 #include "mpm_explicit/ledger.hpp"
@@ -27,57 +28,38 @@ void move_particles(const Shape& shape, const std::vector<Grain>& grains,
     const NodeMotion* motion = nodes.motion.data();
     const double dt_move = frozen ? 0 : dt, pic = 1 - flip;
     const Stop stop(nodes.mesh());
-    const auto move_strip = [&](long number) {
-        const Strip& strip = nodes.strips()[static_cast<std::size_t>(number)];
-        StripSums sum = sums[static_cast<std::size_t>(number)];
-        constexpr double far = std::numeric_limits<double>::infinity();
-        double x_least = far, x_most = -far, y_least = far, y_most = -far;
-        if (grains[static_cast<std::size_t>(strip.grain)].rigid) {
-            const RigidMotion& is = rigid[static_cast<std::size_t>(strip.grain)];
-            for (long p = strip.begin; p < strip.end; ++p) {
-                x_p[p] += dt_move * is.vx, y_p[p] += dt_move * is.vy;
-                vx_p[p] = is.vx, vy_p[p] = is.vy;
-                x_least = std::min(x_least, x_p[p]), x_most = std::max(x_most, x_p[p]);
-                y_least = std::min(y_least, y_p[p]), y_most = std::max(y_most, y_p[p]);
-            }
-        } else {
-            const long* origin = nodes.origins(strip.grain);
-            double kinetic = 0, product = 0, jump = 0, lost = 0, momentum_x = 0, momentum_y = 0;
-            for (long p = strip.begin; p < strip.end; ++p) {
-                double ax = 0, ay = 0, ux = 0, uy = 0;
-                for_each_node(shape, at, origin, x_p[p], y_p[p],
-                              [&](long slot, double S, double, double) {
-                                  const NodeMotion& v = motion[slot];
-                                  ax += S * (v.vx_1 - v.vx_0), ay += S * (v.vy_1 - v.vy_0);
-                                  ux += S * v.vx_1, uy += S * v.vy_1;
-                              });
-                const double m = m_p[p], vx = vx_p[p], vy = vy_p[p];
-                const double flip_x = vx + ax, flip_y = vy + ay;  // [FLIP-6]
-                const double new_x = flip_x + pic * (ux - flip_x),
-                             new_y = flip_y + pic * (uy - flip_y);
-                vx_p[p] = new_x, vy_p[p] = new_y;
-                const double x = stop.x(x_p[p] + dt_move * ux),
-                             y = stop.y(y_p[p] + dt_move * uy);  // [FLIP-7]
-                x_p[p] = x, y_p[p] = y;
+    const auto move = [&](const Strip& strip, StripSums& sum, Extremes& reach) {
+        const long* origin = nodes.origins(strip.grain);
+        double kinetic = 0, product = 0, jump = 0, lost = 0, momentum_x = 0, momentum_y = 0;
+        Extremes seen;
+        for (long p = strip.begin; p < strip.end; ++p) {
+            double ax = 0, ay = 0, ux = 0, uy = 0;
+            for_each_node(shape, at, origin, x_p[p], y_p[p],
+                          [&](long slot, double S, double, double) {
+                              const NodeMotion& v = motion[slot];
+                              ax += S * (v.vx_1 - v.vx_0), ay += S * (v.vy_1 - v.vy_0);
+                              ux += S * v.vx_1, uy += S * v.vy_1;
+                          });
+            const double m = m_p[p], vx = vx_p[p], vy = vy_p[p];
+            const double flip_x = vx + ax, flip_y = vy + ay;  // [FLIP-6]
+            const double new_x = flip_x + pic * (ux - flip_x), new_y = flip_y + pic * (uy - flip_y);
+            vx_p[p] = new_x, vy_p[p] = new_y;
+            const double x = stop.x(x_p[p] + dt_move * ux),
+                         y = stop.y(y_p[p] + dt_move * uy);  // [FLIP-7]
+            x_p[p] = x, y_p[p] = y;
 
-                const double now = new_x * new_x + new_y * new_y;
-                kinetic += m * now, product += m * (vx * new_x + vy * new_y);
-                jump += m * (ax * ax + ay * ay);
-                lost += m * (now - flip_x * flip_x - flip_y * flip_y);
-                momentum_x += m * new_x, momentum_y += m * new_y;
-                x_least = x < x_least ? x : x_least, x_most = x > x_most ? x : x_most;
-                y_least = y < y_least ? y : y_least, y_most = y > y_most ? y : y_most;
-            }
-            sum.kinetic = 0.5 * kinetic, sum.product = 0.5 * product, sum.jump = 0.5 * jump;
-            sum.pic = 0.5 * lost, sum.momentum_x = momentum_x, sum.momentum_y = momentum_y;
+            const double now = new_x * new_x + new_y * new_y;
+            kinetic += m * now, product += m * (vx * new_x + vy * new_y);
+            jump += m * (ax * ax + ay * ay);
+            lost += m * (now - flip_x * flip_x - flip_y * flip_y);
+            momentum_x += m * new_x, momentum_y += m * new_y;
+            seen.see(x, y);
         }
-        sum.x_least = x_least, sum.x_most = x_most, sum.y_least = y_least, sum.y_most = y_most;
-        sums[static_cast<std::size_t>(number)] = sum;
+        sum.kinetic = 0.5 * kinetic, sum.product = 0.5 * product, sum.jump = 0.5 * jump;
+        sum.pic = 0.5 * lost, sum.momentum_x = momentum_x, sum.momentum_y = momentum_y;
+        reach = seen;
     };
-    const long strips = static_cast<long>(nodes.strips().size());
-    common::for_each_row((strips + 15) / 16, [&](long sixteen) {
-        for (long s = 16 * sixteen; s < std::min(strips, 16 * (sixteen + 1)); ++s) move_strip(s);
-    });
+    move_strips(grains, rigid, nodes, dt_move, particles, sums, move);
 }
 
 }  // namespace mpm_explicit

@@ -40,7 +40,8 @@ class LeapfrogRecorder {
    public:
     LeapfrogRecorder(const Case& wanted, const Scales& scales, const State& state,
                      common::History& history)
-        : dt_(scales.dt), recorder_(wanted, scales, state.assembly, ledger_columns(), "budget", history) {}
+        : dt_(scales.dt),
+          recorder_(wanted, scales, state.assembly, ledger_columns(), "budget", history) {}
 
     /// Writes the files that are due at this step, before it.
     void snapshot(long step, const State& state, const common::Session& session) const {

@@ -184,8 +184,9 @@ TEST_CASE("a solver of mpm_implicit that does not get there says with whom and h
     const std::string pair = "grain 'left' and grain 'right'", lumped = " method.mass=lumped";
     check_failure(rebound + " solver.most_iterations=1",
                   "the velocities of the nodes are not found in 1 iterations: residual ");
-    check_failure(rebound + newton + " solver.most_iterations=1",
-                  "the velocities of the nodes before the step are not found in 1 iterations: residual ");
+    check_failure(
+        rebound + newton + " solver.most_iterations=1",
+        "the velocities of the nodes before the step are not found in 1 iterations: residual ");
     check_failure(rebound + lumped + " solver.most_iterations=1 solver.preconditioner=diagonal",
                   "the velocities of the nodes are not found in 1 iterations: residual ");
     check_failure(rebound + " solver.most_loops=1", "contact did not settle in 1 loops: " + pair);
