@@ -150,7 +150,15 @@ void Session::prepare_folder() {
     }
 }
 
-bool Session::keep_going(long step, long steps) const { return step < steps && stop_signal == 0; }
+bool Session::keep_going(long step, long steps) {
+    step_ = step;
+    return step < steps && stop_signal == 0;
+}
+
+std::string Session::when(const std::string& message) const {
+    if (step_ < 0 || message.find("step ") != std::string::npos) return message;
+    return message + " (in step " + std::to_string(step_) + ")";
+}
 
 void Session::show_progress(long step, long steps, double time) {
     if (command_.quiet || steps <= 0) return;
@@ -273,7 +281,7 @@ int guarded(const About& about, const std::function<int(std::optional<Session>&)
     } catch (const InputError& error) {
         return end(2, error.what());
     } catch (const NumericalError& error) {
-        return end(3, error.what());
+        return end(3, session ? session->when(error.what()) : error.what());
     } catch (const std::bad_alloc&) {
         return end(2,
                    "not enough memory for this case; use fewer particles or cells (--dry-run shows "

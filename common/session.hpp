@@ -43,7 +43,7 @@ class Session {
     }
 
     /// False at the end of the run, or when a signal has asked to stop.
-    bool keep_going(long step, long steps) const;
+    bool keep_going(long step, long steps);
 
     /// Shows progress; writes a checkpoint when one is due, at the end, or when a signal has asked
     /// to stop.
@@ -67,6 +67,9 @@ class Session {
     ///         finite.
     int finish(long step, double count);
 
+    /// A message about a failure, with the step if it does not say which.
+    std::string when(const std::string& message) const;
+
     /// Writes summary.json for a run that has failed. out: the exit status.
     int fail(int status, const std::string& message);
 
@@ -85,6 +88,7 @@ class Session {
     std::string effective_case_, last_note_;
     long first_step_ = 0;
     std::chrono::steady_clock::time_point start_, shown_;
+    long step_ = -1;  // that is being taken
     long tenths_shown_ = 0;
     bool terminal_ = false, line_open_ = false;
 };

@@ -268,11 +268,11 @@ class NodeSolver {
     }
 
     [[noreturn]] void fail(const char* what, const CgResult& cg, const ThetaScheme& scheme) const {
-        throw common::NumericalError(
-            std::string("the velocities of ") + what + " are not found in " +
-            std::to_string(cg.iterations) + " iterations: residual " + common::shown(cg.residual) +
-            ", asked for " + common::shown(scheme.tolerance) +
-            "; raise solver.most_iterations, or take method.mass = \"lumped\"");
+        throw common::NumericalError(std::string("the velocities of ") + what +
+                                     " are not found in " + std::to_string(cg.iterations) +
+                                     " iterations: residual " + common::shown(cg.residual) +
+                                     ", asked for " + common::shown(scheme.tolerance) +
+                                     "; raise solver.most_iterations, or reduce time.alpha");
     }
 
     GrainFactors factors_;
