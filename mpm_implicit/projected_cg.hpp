@@ -2,7 +2,8 @@
 //
 // It solves  A v = b + H^T lambda,  H v = h  for v, and for the velocities V of plates that forces
 // drive; H are the rows of constraints.hpp. Residual and direction are projected, so that every
-// iterate obeys the pairs; lambda never appears. In y = D^{1/2} v, no preconditioner is the diagonal of A.
+// iterate obeys the pairs; lambda never appears. In y = D^{1/2} v, no preconditioner at all is that of
+// the diagonal D of A.
 #pragma once
 
 #include <limits>
