@@ -55,17 +55,22 @@ void counting_sort(long count, long keys, const Key& key_of, SortScratch<Number>
     });
 }
 
-/// Carries one quantity to the places that counting_sort found.
+/// Carries one quantity to the places that counting_sort found, through a column of its own type.
+template <class Number>
+void carry_to_place(std::vector<Number>& quantity, const std::vector<int>& target,
+                    std::vector<Number>& column) {
+    column.resize(quantity.size());
+    const Number* from = quantity.data();
+    Number* to = column.data();
+    const int* place = target.data();
+    for_each_block(static_cast<long>(quantity.size()), [&](int, long begin, long end) {
+        for (long p = begin; p < end; ++p) to[place[p]] = from[p];
+    });
+    quantity.swap(column);
+}
 template <class Number>
 void carry_to_place(std::vector<Number>& quantity, SortScratch<Number>& scratch) {
-    scratch.column.resize(quantity.size());
-    const Number* from = quantity.data();
-    Number* to = scratch.column.data();
-    const int* target = scratch.target.data();
-    for_each_block(static_cast<long>(quantity.size()), [&](int, long begin, long end) {
-        for (long p = begin; p < end; ++p) to[target[p]] = from[p];
-    });
-    quantity.swap(scratch.column);
+    carry_to_place(quantity, scratch.target, scratch.column);
 }
 
 }  // namespace common

@@ -152,7 +152,14 @@ void Session::prepare_folder() {
 
 bool Session::keep_going(long step, long steps) {
     step_ = step;
+    if (first_done_ < 0 && steps > 0) first_done_ = double(step) / double(steps);
     return step < steps && stop_signal == 0;
+}
+
+bool Session::keep_going(long step, double time, double end) {
+    step_ = step;
+    if (first_done_ < 0 && end > 0) first_done_ = time / end;
+    return time < end && stop_signal == 0;
 }
 
 std::string Session::when(const std::string& message) const {
@@ -160,26 +167,26 @@ std::string Session::when(const std::string& message) const {
     return message + " (in step " + std::to_string(step_) + ")";
 }
 
-void Session::show_progress(long step, long steps, double time) {
-    if (command_.quiet || steps <= 0) return;
+void Session::show_progress(long step, long steps, double time, double done) {
+    if (command_.quiet) return;
     const auto now = std::chrono::steady_clock::now();
     const double elapsed = std::chrono::duration<double>(now - start_).count();
-    const double left = elapsed * static_cast<double>(steps - step) /
-                        static_cast<double>(std::max(1L, step - first_step_));
-    const long percent = 100 * step / steps;
+    const double left = elapsed * (1 - done) / std::max(1e-9, done - first_done_);
+    const long percent = static_cast<long>(100 * done);
+    const std::string of_all = steps > 0 ? " of " + std::to_string(steps) : "";
     char note[160];
-    std::snprintf(note, sizeof note, "%s %3ld %%  step %ld of %ld  t = %.4g  %s elapsed  %s left",
-                  about_.program.c_str(), percent, step, steps, time, clock_text(elapsed).c_str(),
-                  clock_text(left).c_str());
+    std::snprintf(note, sizeof note, "%s %3ld %%  step %ld%s  t = %.4g  %s elapsed  %s left",
+                  about_.program.c_str(), percent, step, of_all.c_str(), time,
+                  clock_text(elapsed).c_str(), clock_text(left).c_str());
     if (terminal_) {
-        if (now - shown_ < std::chrono::milliseconds(100) && step < steps) return;
+        if (now - shown_ < std::chrono::milliseconds(100) && done < 1) return;
         struct winsize window {};
         const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_col > 1;
         const int width = known ? window.ws_col - 1 : 79;
         std::fprintf(stderr, "\r%-*.*s", width, width, note);
         line_open_ = true;
     } else {
-        if (percent / 10 <= tenths_shown_ && step < steps) return;
+        if (percent / 10 <= tenths_shown_ && done < 1) return;
         tenths_shown_ = percent / 10;
         std::fprintf(stderr, "%s\n", note);
     }

@@ -2,6 +2,7 @@
 // progress and signals.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <functional>
@@ -42,22 +43,22 @@ class Session {
         first_step_ = step;
     }
 
-    /// False at the end of the run, or when a signal has asked to stop.
+    /// False at the end of the run, or when a signal has asked to stop. Steps may all be equal and
+    /// known in number, or as long as the flow allows until a time is reached.
     bool keep_going(long step, long steps);
+    bool keep_going(long step, double time, double end);
 
     /// Shows progress; writes a checkpoint when one is due, at the end, or when a signal has asked
     /// to stop.
     template <class State>
     void end_of_step(long step, long steps, double time, State& state) {
-        show_progress(step, steps, time);
-        const bool due = checkpoint_steps > 0 && (step % checkpoint_steps == 0 || step == steps);
-        if (!due && stopped_by() == 0) return;
-        history.flush();
-        CheckpointWriter writer(about_, effective_case_);
-        writer("step", step);
-        writer("history", history.all());
-        archive(writer, state);
-        write_checkpoint(writer, step);
+        show_progress(step, steps, time, steps > 0 ? double(step) / double(steps) : 1.0);
+        checkpoint_if_due(step, step == steps, state);
+    }
+    template <class State>
+    void end_of_step(long step, double time, double end, State& state) {
+        show_progress(step, 0, time, end > 0 ? std::min(1.0, time / end) : 1.0);
+        checkpoint_if_due(step, time >= end, state);
     }
 
     /// Writes summary.json and prints the results.
@@ -79,14 +80,26 @@ class Session {
     static int stopped_by();
 
    private:
+    template <class State>
+    void checkpoint_if_due(long step, bool last, State& state) {
+        const bool due = checkpoint_steps > 0 && (step % checkpoint_steps == 0 || last);
+        if (!due && stopped_by() == 0) return;
+        history.flush();
+        CheckpointWriter writer(about_, effective_case_);
+        writer("step", step);
+        writer("history", history.all());
+        archive(writer, state);
+        write_checkpoint(writer, step);
+    }
     void prepare_folder();
-    void show_progress(long step, long steps, double time);
+    void show_progress(long step, long steps, double time, double done);
     void write_checkpoint(CheckpointWriter& writer, long step);
 
     About about_;
     CommandLine command_;
     std::string effective_case_, last_note_;
     long first_step_ = 0;
+    double first_done_ = -1;  // part of the run that was done before the first step
     std::chrono::steady_clock::time_point start_, shown_;
     long step_ = -1;  // that is being taken
     long tenths_shown_ = 0;

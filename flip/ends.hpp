@@ -1,0 +1,124 @@
+// What happens to particles at the ends of the mesh: around a periodic direction, out through an
+// open end, in through an inflow; and never through a wall.
+#pragma once
+
+#include <cmath>
+#include <string>
+
+#include "flip/state.hpp"
+
+namespace flip {
+
+/// The end beyond which a position lies, or -1 on the mesh. Positions on an end count as on the
+/// mesh; so does nothing that is not a number.
+inline int beyond(const Grid& grid, double x, double z) {
+    if (!(x >= grid.x.low)) return x_low;
+    if (!(x <= grid.x.high())) return x_high;
+    if (!(z >= grid.z.low)) return z_low;
+    if (!(z <= grid.z.high())) return z_high;
+    return -1;
+}
+
+/// A position brought back around a periodic direction.
+inline double around(const common::Axis& axis, double position) {
+    if (position < axis.low) {
+        position += axis.length;
+        return position < axis.high() ? position : axis.low;
+    }
+    return position < axis.high() ? position : position - axis.length;
+}
+
+/// Says that a particle is where none can be.
+/// errors: NumericalError, always
+[[noreturn]] inline void lost_particle(double x, double z, double time) {
+    throw common::NumericalError("a particle has gone through the wall to x = " + common::shown(x) +
+                                 ", z = " + common::shown(z) + " at t = " + common::shown(time) +
+                                 ": reduce time.cfl");
+}
+
+/// Removes every particle that has left through an open end or back through an inflow.
+/// in:     time, for the message
+/// in/out: particles, their positions around periodic directions already; first_of_row is void
+///         afterwards
+/// out:    left(p) has been called for every particle that leaves, before anything has moved
+/// errors: NumericalError for a particle beyond a wall, or a position that is not finite
+template <class Left>
+void remove_leaving(const Case& w, double time, Particles& particles, const Left& left) {
+    bool closed = true;
+    for (const EndCase& end : w.ends) closed = closed && end.kind != "open" && end.kind != "inflow";
+    std::size_t kept = 0;
+    const std::size_t count = particles.x_p.size();
+    const auto columns = particles.all();
+    for (std::size_t p = 0; p < count; ++p) {
+        const double x = particles.x_p[p], z = particles.z_p[p];
+        const int end = beyond(w.grid, x, z);
+        if (end >= 0) {
+            const std::string& kind = w.ends[static_cast<std::size_t>(end)].kind;
+            if ((kind != "open" && kind != "inflow") || !std::isfinite(x + z))
+                lost_particle(x, z, time);
+            left(p);
+            continue;
+        }
+        if (!closed && kept != p) {
+            for (std::vector<double>* column : columns)
+                if (has(*column)) (*column)[kept] = (*column)[p];
+            particles.material[kept] = particles.material[p];
+        }
+        ++kept;
+    }
+    if (kept == count) return;
+    for (std::vector<double>* column : columns)
+        if (has(*column)) column->resize(kept);
+    particles.material.resize(kept);
+}
+
+/// Adds the particles that enter through inflow ends between t and t + dt: columns as far apart as
+/// on the lattice of the start, each where it has got to by t + dt.
+/// out:    the number added, at the end of the columns; all columns that are in use are filled
+inline long add_inflow(const Case& w, double t, double dt, Particles& particles) {
+    long added = 0;
+    const int index = material_index(w, w.inflow.material);
+    const Material& a = w.materials[static_cast<std::size_t>(index)];
+    for (const End end : {x_low, x_high, z_low, z_high}) {
+        if (!w.is(end, "inflow")) continue;
+        const bool along_x = end == x_low || end == x_high, low = end == x_low || end == z_low;
+        const common::Axis &across = along_x ? w.grid.x : w.grid.z,
+                           &aside = along_x ? w.grid.z : w.grid.x;
+        const double speed = (low ? 1 : -1) * (along_x ? w.inflow.velocity_x : w.inflow.velocity_z);
+        if (speed <= 0) continue;
+        const double step =
+            across.spacing() / static_cast<double>(along_x ? w.per_cell_x : w.per_cell_z);
+        const long per_cell = along_x ? w.per_cell_z : w.per_cell_x, count = per_cell * aside.cells;
+        const double width = aside.spacing() / static_cast<double>(per_cell);
+        // Column n crosses the end at t_n = (n + 1/2) step/speed.
+        const auto crossed = [&](double time) {
+            return static_cast<long>(std::floor(time * speed / step + 0.5));
+        };
+        for (long n = crossed(t); n < crossed(t + dt); ++n) {
+            const double depth = (t + dt) * speed - (static_cast<double>(n) + 0.5) * step;
+            const double at = low ? across.low + depth : across.high() - depth;
+            for (long k = 0; k < count; ++k) {
+                const double beside = aside.low + (static_cast<double>(k) + 0.5) * width;
+                const auto add = [](std::vector<double>& column, bool used, double value) {
+                    if (used) column.push_back(value);
+                };
+                const bool moving = has(particles.vx_p) || particles.x_p.empty();
+                add(particles.vx_p, moving, w.inflow.velocity_x);
+                add(particles.vz_p, moving, w.inflow.velocity_z);
+                add(particles.e_p, moving, internal_energy(a, w.inflow.density, w.inflow.pressure));
+                add(particles.V_p, w.density == "particles" && moving, step * width);
+                for (auto* C :
+                     {&particles.Cxx_p, &particles.Cxz_p, &particles.Czx_p, &particles.Czz_p})
+                    add(*C, w.transfer == "apic" && moving, 0.0);
+                particles.x_p.push_back(along_x ? at : beside);
+                particles.z_p.push_back(along_x ? beside : at);
+                particles.m_p.push_back(w.inflow.density * step * width);
+                particles.material.push_back(index);
+                ++added;
+            }
+        }
+    }
+    return added;
+}
+
+}  // namespace flip

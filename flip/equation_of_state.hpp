@@ -1,0 +1,102 @@
+// Stiffened gases, and what several of them have in common in one cell: the pressure.
+//
+//     p = (gamma - 1) rho e - gamma p_infinity        c^2 = gamma (p + p_infinity)/rho
+//
+// With p_infinity = 0 this is the gamma law of a gas. With a large one it is the simplest liquid or
+// metal: stiff, and able to have a surface, because its pressure falls to zero at a density that
+// is not zero. Nothing here holds tension: below that density a cell is partly void, and p = 0.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <string>
+
+namespace flip {
+
+/// One material; gamma = 1 is dust, without pressure.
+struct Material {
+    std::string name;
+    double gamma = 1.4;
+    double p_infinity = 0;
+};
+
+/// Pressure of density rho and specific internal energy e; zero where it would be a tension.
+inline double pressure(const Material& a, double rho, double e) {
+    return std::max(0.0, (a.gamma - 1) * rho * e - a.gamma * a.p_infinity);
+}
+
+/// rho c^2, the modulus of an adiabatic change of volume.
+inline double stiffness(const Material& a, double p) { return a.gamma * (p + a.p_infinity); }
+
+/// Specific internal energy at density rho and pressure p.
+/// note:   dust has no pressure; there p stands for rho e
+inline double internal_energy(const Material& a, double rho, double p) {
+    return a.gamma == 1 ? p / rho : (p + a.gamma * a.p_infinity) / ((a.gamma - 1) * rho);
+}
+
+/// How the materials of one cell share it.
+struct CellState {
+    double p = 0;                // their common pressure
+    double compressibility = 0;  // -(dV/dp)/V at constant entropy of each; 0 in an empty cell
+    bool surface = false;        // the materials do not fill the cell: p = 0
+};
+
+inline constexpr std::size_t most_materials = 8;
+
+/// The pressure at which all materials together fill a cell.
+///   sum_k V_k = V,   V_k = (gamma_k - 1) U_k / (p + gamma_k p_infinity_k)
+/// in:     U[k], internal energy of material k in the cell; M[k], its mass
+/// out:    share[k] of a change of the volume of the cell that material k takes at common pressure,
+///         V_k/(gamma_k (p + p_infinity_k)) relative to their sum
+/// exact:  for gases the sum of partial pressures; shares sum to 1 in a cell that is not empty
+/// source: Newton's method from the largest pressure that one material alone would have: the sum is
+///         convex and falls, so no step goes beyond the root
+inline CellState share_cell(std::span<const Material> materials, const double* M, const double* U,
+                            double V, double* share) {
+    const std::size_t count = materials.size();
+    CellState cell;
+    double p = 0, mass = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+        const Material& a = materials[k];
+        mass += M[k];
+        p = std::max(p, (a.gamma - 1) * U[k] / V - a.gamma * a.p_infinity);
+    }
+    const auto volume_of = [&](std::size_t k, double at) {
+        const Material& a = materials[k];
+        const double stiff = at + a.gamma * a.p_infinity;
+        return stiff > 0 ? (a.gamma - 1) * U[k] / stiff : 0.0;
+    };
+    if (mass <= 0) {
+        std::fill(share, share + count, 0.0);
+        return cell;
+    }
+    if (count > 1) {
+        for (int n = 0; n < 50; ++n) {
+            double sum = -V, slope = 0;
+            for (std::size_t k = 0; k < count; ++k) {
+                const double V_k = volume_of(k, p);
+                sum += V_k;
+                if (V_k > 0) slope += V_k / (p + materials[k].gamma * materials[k].p_infinity);
+            }
+            if (!(sum > 1e-15 * V) || slope == 0) break;
+            p += sum / slope;
+        }
+    }
+    cell.p = p;
+
+    // A material that nothing can compress, and dust, have no say; their share goes by mass.
+    double filled = 0, sum = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+        const double V_k = volume_of(k, p), stiff = stiffness(materials[k], p);
+        filled += V_k;
+        share[k] = stiff > 0 ? V_k / stiff : 0.0;
+        sum += share[k];
+    }
+    cell.surface = p == 0 && filled < V;
+    cell.compressibility = sum / V;
+    for (std::size_t k = 0; k < count; ++k) share[k] = sum > 0 ? share[k] / sum : M[k] / mass;
+    return cell;
+}
+
+}  // namespace flip

@@ -1,0 +1,68 @@
+// All that a run is, at one time, and what either program says about it: totals for the history,
+// fields on the cells for pictures and comparisons.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "flip/initial_state.hpp"
+
+namespace flip {
+
+/// What has come in since the start from outside the fluid: through open ends and inflow, from
+/// walls, gravity and the trap. What the particles have now, less this, does not change.
+struct Books {
+    double mass = 0, momentum_x = 0, momentum_z = 0, energy = 0;
+};
+
+/// What the cells of `pic` keep from step to step, on_faces, ghosts not filled.
+struct CellFluid {
+    Field vx, vz;          // velocity
+    std::vector<Field> e;  // specific internal energy of each material
+};
+
+/// What a checkpoint holds. `cells` is empty in flip.
+struct State {
+    Particles particles;
+    CellFluid cells;
+    Books books;
+    double time = 0;
+    double dt = 0;  // of the last step; 0 before the first
+};
+
+/// Names every number of the state, for writing and for reading alike.
+template <class Archive>
+void archive(Archive& a, State& s) {
+    archive(a, s.particles);
+    a("vx_c", s.cells.vx);
+    a("vz_c", s.cells.vz);
+    for (std::size_t k = 0; k < s.cells.e.size(); ++k) a("e_c" + std::to_string(k), s.cells.e[k]);
+    a("mass_in", s.books.mass);
+    a("momentum_x_in", s.books.momentum_x);
+    a("momentum_z_in", s.books.momentum_z);
+    a("energy_in", s.books.energy);
+    a("time", s.time);
+    a("dt", s.dt);
+}
+
+/// Sums over the fluid; in flip over particles, in pic over cells.
+struct Totals {
+    double mass = 0, momentum_x = 0, momentum_z = 0;
+    double angular_momentum = 0;  // about the middle of the mesh, counterclockwise from x to z
+    double kinetic = 0, internal = 0;
+};
+
+/// The fluid on the cells, on_faces of the grid; zero where there is none.
+struct CellFields {
+    Field rho, vx, vz, p, e;
+    std::vector<Field> rho_of;  // of each material
+};
+
+/// Whether a time of `interval` has passed within the last step; always at the start.
+inline bool is_due(double interval, const State& s) {
+    if (interval <= 0) return false;
+    const auto count = [&](double t) { return std::floor(t / interval * (1 + 1e-12)); };
+    return s.dt == 0 || count(s.time) > count(s.time - s.dt);
+}
+
+}  // namespace flip
