@@ -44,9 +44,10 @@ double sum_over_blocks(long count, const Partial& partial, long numbers = worth_
 }
 
 /// Calls work(row) for every row in [0, rows); rows must not write to each other's data.
+/// in: numbers, as above
 template <class Work>
-void for_each_row(long rows, const Work& work) {
-#pragma omp parallel for schedule(dynamic, 1)
+void for_each_row(long rows, const Work& work, long numbers = worth_sharing) {
+#pragma omp parallel for schedule(dynamic, 1) if (numbers >= worth_sharing)
     for (long row = 0; row < rows; ++row) work(row);
 }
 
@@ -54,8 +55,8 @@ void for_each_row(long rows, const Work& work) {
 /// and its two neighbors then meets nobody else's writes, and every sum on the mesh is added in
 /// the same order whatever the number of threads.
 template <class Work>
-void for_each_row_three_apart(long rows, const Work& work) {
-#pragma omp parallel
+void for_each_row_three_apart(long rows, const Work& work, long numbers = worth_sharing) {
+#pragma omp parallel if (numbers >= worth_sharing)
     for (long color = 0; color < 3; ++color) {
 #pragma omp for schedule(dynamic, 1)
         for (long row = color; row < rows; row += 3) work(row);
@@ -65,8 +66,8 @@ void for_each_row_three_apart(long rows, const Work& work) {
 /// Calls work(row) for every row, first the even ones, then the odd ones: a row may write to what it
 /// shares with the next one, as long as it shares nothing with the next but one.
 template <class Work>
-void for_each_row_two_apart(long rows, const Work& work) {
-#pragma omp parallel
+void for_each_row_two_apart(long rows, const Work& work, long numbers = worth_sharing) {
+#pragma omp parallel if (numbers >= worth_sharing)
     for (long color = 0; color < 2; ++color) {
 #pragma omp for schedule(dynamic, 1)
         for (long row = color; row < rows; row += 2) work(row);

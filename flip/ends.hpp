@@ -19,8 +19,9 @@ inline int beyond(const Grid& grid, double x, double z) {
     return -1;
 }
 
-/// A position brought back around a periodic direction.
+/// A position brought back around a periodic direction; unchanged in any other.
 inline double around(const common::Axis& axis, double position) {
+    if (!axis.periodic) return position;
     if (position < axis.low) {
         position += axis.length;
         return position < axis.high() ? position : axis.low;

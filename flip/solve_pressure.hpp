@@ -1,0 +1,166 @@
+// on the mesh: the pressure at the level theta, for all flow speeds. The time step then knows the
+// flow and not the sound.
+//
+//     v^L = v* - (dt/m) G p^theta              v*: with every force but the pressure
+//     p^theta = p^n - theta dt K div v^theta   K = rho c^2,  v^theta = (1 - theta) v^0 + theta v^L
+//
+// Eliminating v^L leaves a symmetric positive definite system for the change of pressure,
+//     [V/K + theta^2 dt^2 D M^-1 D^T] (p^theta - p^n) = -theta dt D v^theta(p^n),
+// with D v = V div v on the cells. For slow flow V/K is nothing beside the rest, and what remains is
+// the projection of an incompressible fluid.
+#pragma once
+
+#include <Eigen/IterativeLinearSolvers>
+#include <Eigen/SparseCore>
+#include <vector>
+
+#include "flip/accelerate_nodes.hpp"
+
+namespace flip {
+
+/// What a solve has to say.
+struct PressureReport {
+    long iterations = 0;
+    double largest_divergence = 0;  // |div v^theta + (p^theta - p^n)/(theta dt K)| dx / |v|, largest
+};
+
+namespace detail {
+
+// A node as the pressures around it see it: the cells that push it, and how.
+struct NodePush {
+    std::array<long, 4> cell;      // index, or -1: none, or one without pressure
+    std::array<double, 4> x, z;    // force per pressure; 0 where the node is held
+};
+
+inline NodePush push_on(const Case& w, const Cells& c, long i, long j) {
+    const Grid& grid = w.grid;
+    NodePush push;
+    const Held held = held_at(w, i, j);
+    std::size_t k = 0;
+    for (const long b : {j - 1, j}) {
+        for (const long a : {i - 1, i}) {
+            const auto inside = [](const common::Axis& axis, long cell) {
+                return axis.periodic ? (cell + axis.cells) % axis.cells
+                                     : (cell < 0 || cell >= axis.cells ? -1 : cell);
+            };
+            const long ia = inside(grid.x, a), jb = inside(grid.z, b);
+            const long n = ia < 0 || jb < 0 ? -1 : grid.index(ia, jb);
+            const bool pushes = n >= 0 && c.M[n] > 0 && c.surface[static_cast<std::size_t>(n)] == 0;
+            push.cell[k] = pushes ? n : -1;
+            push.x[k] = held.x ? 0 : (a < i ? 0.5 : -0.5) * grid.z.spacing();
+            push.z[k] = held.z ? 0 : (b < j ? 0.5 : -0.5) * grid.x.spacing();
+            ++k;
+        }
+    }
+    return push;
+}
+
+}  // namespace detail
+
+/// Solves for the pressure at the level theta.
+/// in:     cells.p, compressibility, surface; known forces; nodes.vx0, vz0
+/// out:    cells.p_step = p^theta, 0 where there is no fluid or no pressure
+/// errors: NumericalError when conjugate gradients do not reach the tolerance
+/// exact:  none of the time levels sees the sound; acoustic waves are damped by
+///         sqrt((1 + (1-theta)^2 a^2)/(1 + theta^2 a^2)) per step, a = c k dt
+/// source: the idea is ICE's: Harlow and Amsden, J. Comput. Phys. 8, 197 (1971).
+inline PressureReport solve_pressure(const Case& w, double dt, Mesh& mesh) {
+    const Grid& grid = w.grid;
+    Nodes& g = mesh.nodes;
+    Cells& c = mesh.cells;
+    const double V_c = grid.cell_area(), theta = w.theta;
+
+    // Number the cells that have a pressure.
+    std::vector<int> row(static_cast<std::size_t>(grid.size()), -1);
+    std::vector<long> cell_of;
+    for (long j = 0; j < grid.z.cells; ++j) {
+        for (long i = 0; i < grid.x.cells; ++i) {
+            const long n = grid.index(i, j);
+            if (c.M[n] <= 0 || c.surface[static_cast<std::size_t>(n)] != 0 ||
+                c.compressibility[n] <= 0)
+                continue;
+            row[static_cast<std::size_t>(n)] = static_cast<int>(cell_of.size());
+            cell_of.push_back(n);
+        }
+    }
+    const auto count = static_cast<long>(cell_of.size());
+    c.p_step = c.p;
+    if (count == 0) return {};
+
+    // The velocity at the level theta if the pressure did not change; its divergence is the load.
+    accelerate_nodes(w, dt, mesh);
+    const auto level_theta = [&](Field& vx, Field& vz) {
+        vx = (1 - theta) * g.vx0 + theta * g.vxL;
+        vz = (1 - theta) * g.vz0 + theta * g.vzL;
+    };
+    Field vx, vz;
+    level_theta(vx, vz);
+    Eigen::VectorXd load(count), inertia(count);
+    for (long r = 0; r < count; ++r) {
+        const long n = cell_of[static_cast<std::size_t>(r)];
+        inertia[r] = V_c * c.compressibility[n];
+        load[r] = -theta * dt * dilation(grid, vx, vz, n);
+    }
+
+    // V/K on the diagonal, and every node couples the cells around it.
+    std::vector<Eigen::Triplet<double>> entries;
+    entries.reserve(static_cast<std::size_t>(17 * count));
+    for (long r = 0; r < count; ++r)
+        entries.emplace_back(static_cast<int>(r), static_cast<int>(r), inertia[r]);
+    const long nx = grid.x.cells - (grid.x.periodic ? 1 : 0),
+               nz = grid.z.cells - (grid.z.periodic ? 1 : 0);
+    for (long j = 0; j <= nz; ++j) {
+        for (long i = 0; i <= nx; ++i) {
+            const long n = grid.index(i, j);
+            if (g.m[n] <= 0) continue;
+            const detail::NodePush push = detail::push_on(w, c, i, j);
+            const double factor = theta * theta * dt * dt / g.m[n];
+            for (std::size_t a = 0; a < 4; ++a) {
+                for (std::size_t b = 0; b < 4; ++b) {
+                    if (push.cell[a] < 0 || push.cell[b] < 0) continue;
+                    const int ra = row[static_cast<std::size_t>(push.cell[a])],
+                              rb = row[static_cast<std::size_t>(push.cell[b])];
+                    if (ra >= rb && rb >= 0)
+                        entries.emplace_back(ra, rb, factor * (push.x[a] * push.x[b] +
+                                                               push.z[a] * push.z[b]));
+                }
+            }
+        }
+    }
+    Eigen::SparseMatrix<double> A(count, count);
+    A.setFromTriplets(entries.begin(), entries.end());
+
+    // Conjugate gradients for the change of pressure.
+    Eigen::ConjugateGradient<Eigen::SparseMatrix<double>, Eigen::Lower,
+                             Eigen::IncompleteCholesky<double>>
+        solver;
+    solver.setTolerance(w.tolerance);
+    solver.setMaxIterations(w.most_iterations);
+    solver.compute(A);
+    const Eigen::VectorXd change = solver.solve(load);
+    PressureReport report;
+    report.iterations = solver.iterations();
+    if (load.squaredNorm() > 0 && !(solver.error() <= w.tolerance))
+        throw common::NumericalError(
+            "the implicit pressure has not converged: after " + std::to_string(report.iterations) +
+            " iterations the residual is " + common::shown(solver.error()) + " and not " +
+            common::shown(w.tolerance) + "; raise flip.most_iterations or reduce time.cfl");
+    for (long r = 0; r < count; ++r) c.p_step[cell_of[static_cast<std::size_t>(r)]] += change[r];
+
+    // What the equation for the pressure leaves of the divergence.
+    find_known_forces(w, mesh);
+    accelerate_nodes(w, dt, mesh);
+    level_theta(vx, vz);
+    double worst = 0, speed = 0;
+    for (long r = 0; r < count; ++r) {
+        const long n = cell_of[static_cast<std::size_t>(r)];
+        worst = std::max(worst, std::fabs(dilation(grid, vx, vz, n) +
+                                          inertia[r] * change[r] / (theta * dt)));
+    }
+    for_own_nodes(grid, [&](long n) { speed = std::max(speed, std::hypot(vx[n], vz[n])); });
+    const double h = w.plane() ? std::sqrt(V_c) : grid.x.spacing();
+    report.largest_divergence = speed > 0 ? worst / V_c * h / speed : 0;
+    return report;
+}
+
+}  // namespace flip
