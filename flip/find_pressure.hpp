@@ -11,7 +11,8 @@
 
 namespace flip {
 
-/// Cells that particles which carry volumes fill less than this are surface: p = 0.
+/// Cells of liquid that particles which carry volumes fill less than this are surface: p = 0. A gas
+/// fills what there is.
 inline constexpr double least_filled = 0.7;
 
 /// A cell has no pressure if the lightest of its nodes has less than this part of the mass of the
@@ -47,11 +48,12 @@ inline void find_pressure(const Case& w, double time, Mesh& mesh) {
                               g.vx[corner] * g.vx[corner] + g.vz[corner] * g.vz[corner]);
         }
         double M[most_materials], U[most_materials];
-        bool sound = true;
+        bool sound = true, gas = false;
         for (std::size_t k = 0; k < kinds; ++k) {
             const CellSum& sum = c.sum[static_cast<std::size_t>(n) * kinds + k];
             M[k] = sum.M;
             U[k] = std::max(sum.U, 0.0);
+            gas = gas || (sum.M > 0 && w.materials[k].p_infinity == 0);
             const bool dust = w.materials[k].gamma == 1;  // whose energy does nothing
             sound = sound && sum.M >= 0 &&
                     (dust ? std::isfinite(sum.U) : sum.U >= -cold_enough * sum.M * speed2);
@@ -63,7 +65,7 @@ inline void find_pressure(const Case& w, double time, Mesh& mesh) {
         c.compressibility[n] = cell.compressibility;
         bool surface = cell.surface;
         if (volumes) {
-            const bool filled = c.volume[n] >= least_filled * V_c && c.give[n] > 0;
+            const bool filled = (gas || c.volume[n] >= least_filled * V_c) && c.give[n] > 0;
             c.p[n] = filled ? c.give_p[n] / c.give[n] : 0;
             c.compressibility[n] = c.volume[n] > 0 ? c.give[n] / c.volume[n] : 0;
             surface = !filled;

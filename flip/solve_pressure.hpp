@@ -21,7 +21,8 @@ namespace flip {
 /// What a solve has to say.
 struct PressureReport {
     long iterations = 0;
-    double largest_divergence = 0;  // |div v^theta + (p^theta - p^n)/(theta dt K)| dx / |v|, largest
+    double divergence = 0;  // root mean square of div v^theta + (p^theta - p^n)/(theta dt K), times
+                            // dx over the largest speed
 };
 
 namespace detail {
@@ -130,36 +131,40 @@ inline PressureReport solve_pressure(const Case& w, double dt, Mesh& mesh) {
     Eigen::SparseMatrix<double> A(count, count);
     A.setFromTriplets(entries.begin(), entries.end());
 
-    // Conjugate gradients for the change of pressure.
+    // Conjugate gradients for the change of pressure, until what is left of the divergence is small
+    // beside speed/dx.
+    double speed = 0;
+    for_own_nodes(grid, [&](long n) { speed = std::max(speed, std::hypot(vx[n], vz[n])); });
+    const double h = w.plane() ? std::sqrt(V_c) : grid.x.spacing();
+    const double scale = theta * dt * V_c * speed / h * std::sqrt(static_cast<double>(count));
+    if (!(load.norm() > w.tolerance * scale)) return {0, load.norm() / std::max(scale, 1e-300)};
     Eigen::ConjugateGradient<Eigen::SparseMatrix<double>, Eigen::Lower,
                              Eigen::IncompleteCholesky<double>>
         solver;
-    solver.setTolerance(w.tolerance);
+    solver.setTolerance(std::min(1.0, w.tolerance * scale / load.norm()));
     solver.setMaxIterations(w.most_iterations);
     solver.compute(A);
     const Eigen::VectorXd change = solver.solve(load);
     PressureReport report;
     report.iterations = solver.iterations();
-    if (load.squaredNorm() > 0 && !(solver.error() <= w.tolerance))
+    if (!(solver.error() <= solver.tolerance()))
         throw common::NumericalError(
             "the implicit pressure has not converged: after " + std::to_string(report.iterations) +
             " iterations the residual is " + common::shown(solver.error()) + " and not " +
-            common::shown(w.tolerance) + "; raise flip.most_iterations or reduce time.cfl");
+            common::shown(solver.tolerance()) + "; raise flip.most_iterations or reduce time.cfl");
     for (long r = 0; r < count; ++r) c.p_step[cell_of[static_cast<std::size_t>(r)]] += change[r];
 
     // What the equation for the pressure leaves of the divergence.
     find_known_forces(w, mesh);
     accelerate_nodes(w, dt, mesh);
     level_theta(vx, vz);
-    double worst = 0, speed = 0;
+    double sum = 0;
     for (long r = 0; r < count; ++r) {
-        const long n = cell_of[static_cast<std::size_t>(r)];
-        worst = std::max(worst, std::fabs(dilation(grid, vx, vz, n) +
-                                          inertia[r] * change[r] / (theta * dt)));
+        const double left = dilation(grid, vx, vz, cell_of[static_cast<std::size_t>(r)]) +
+                            inertia[r] * change[r] / (theta * dt);
+        sum += left * left;
     }
-    for_own_nodes(grid, [&](long n) { speed = std::max(speed, std::hypot(vx[n], vz[n])); });
-    const double h = w.plane() ? std::sqrt(V_c) : grid.x.spacing();
-    report.largest_divergence = speed > 0 ? worst / V_c * h / speed : 0;
+    report.divergence = theta * dt * std::sqrt(sum) / scale;
     return report;
 }
 
