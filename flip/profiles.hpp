@@ -1,0 +1,89 @@
+// The fluid on the cells along one line: along x, or away from a point.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "flip/state.hpp"
+
+namespace flip {
+
+/// Mean over z of a field, at the middles of the cells along x.
+inline std::vector<double> mean_over_z(const Grid& grid, const Field& f) {
+    std::vector<double> mean(static_cast<std::size_t>(grid.x.cells), 0.0);
+    for (long j = 0; j < grid.z.cells; ++j)
+        for (long i = 0; i < grid.x.cells; ++i)
+            mean[static_cast<std::size_t>(i)] +=
+                f[grid.index(i, j)] / static_cast<double>(grid.z.cells);
+    return mean;
+}
+
+/// Distance from a to b along an axis, to the nearest image where it is periodic.
+inline double apart(const common::Axis& axis, double a, double b) {
+    const double d = b - a;
+    return axis.periodic ? d - axis.length * std::floor(d / axis.length + 0.5) : d;
+}
+
+/// Means over rings, one cell wide, around a point; in a row of cells, over both sides of it.
+struct RadialProfile {
+    std::vector<double> r, rho, v_r, v_phi, p, e;  // v_phi counterclockwise from x to z
+};
+
+/// out:    density and pressure are means over the area, velocity and energy over the mass
+inline RadialProfile radial_profile(const Case& w, const CellFields& cells, double x0, double z0,
+                                    double vx0 = 0, double vz0 = 0) {
+    const Grid& grid = w.grid;
+    const double step = std::max(grid.x.spacing(), w.plane() ? grid.z.spacing() : 0.0);
+    RadialProfile sums;
+    std::vector<double> count, mass;
+    for (long j = 0; j < grid.z.cells; ++j) {
+        for (long i = 0; i < grid.x.cells; ++i) {
+            const double dx = apart(grid.x, x0, grid.x.at(static_cast<double>(i) + 0.5)),
+                         dz = w.plane() ? apart(grid.z, z0, grid.z.at(static_cast<double>(j) + 0.5))
+                                        : 0.0,
+                         r = std::hypot(dx, dz);
+            const auto n = static_cast<std::size_t>(r / step);
+            if (n >= count.size())
+                for (auto* column :
+                     {&count, &mass, &sums.r, &sums.rho, &sums.v_r, &sums.v_phi, &sums.p, &sums.e})
+                    column->resize(n + 1, 0.0);
+            const long c = grid.index(i, j);
+            const double m = cells.rho[c], vx = cells.vx[c] - vx0, vz = cells.vz[c] - vz0;
+            count[n] += 1;
+            mass[n] += m;
+            sums.r[n] += r;
+            sums.rho[n] += m;
+            sums.p[n] += cells.p[c];
+            sums.e[n] += m * cells.e[c];
+            if (r == 0) continue;
+            sums.v_r[n] += m * (vx * dx + vz * dz) / r;
+            sums.v_phi[n] += m * (vz * dx - vx * dz) / r;
+        }
+    }
+    RadialProfile profile;
+    for (std::size_t n = 0; n < count.size(); ++n) {
+        if (count[n] == 0) continue;
+        const double per_mass = mass[n] > 0 ? 1 / mass[n] : 0;
+        profile.r.push_back(sums.r[n] / count[n]);
+        profile.rho.push_back(sums.rho[n] / count[n]);
+        profile.p.push_back(sums.p[n] / count[n]);
+        profile.e.push_back(sums.e[n] * per_mass);
+        profile.v_r.push_back(sums.v_r[n] * per_mass);
+        profile.v_phi.push_back(sums.v_phi[n] * per_mass);
+    }
+    return profile;
+}
+
+/// The outermost place at which values rise inward through a level, linear between samples; 0 where
+/// there is none.
+/// in:     r, increasing
+inline double outermost(const std::vector<double>& r, const std::vector<double>& values,
+                        double level) {
+    for (std::size_t n = r.size(); n-- > 1;)
+        if (values[n] < level && values[n - 1] >= level)
+            return r[n] + (level - values[n]) / (values[n - 1] - values[n]) * (r[n - 1] - r[n]);
+    return 0;
+}
+
+}  // namespace flip
