@@ -1,27 +1,113 @@
-// What is refused before a run starts: combinations that cannot run, and comparisons that theory
-// cannot answer.
+// What is refused before a run starts: combinations that cannot run, and what the program or the
+// case would silently ignore.
 #pragma once
 
 #include <string>
+#include <vector>
 
-#include "flip/initial_state.hpp"
+#include "flip/check_fluid.hpp"
 
 namespace flip {
 
 namespace detail {
 
-// One sentence for bad input.
-inline void refuse(bool bad, const std::string& sentence) {
-    if (bad) throw common::InputError(sentence);
+// Keys that do nothing unless another has a certain value.
+struct IdleKey {
+    std::string name, value;
+    bool changed;
+    bool used;
+    std::string needs;
+};
+
+inline std::vector<IdleKey> keys_of_flip(const Case& w) {
+    const Case d;
+    const auto on_off = [](bool value) { return std::string(value ? "true" : "false"); };
+    const auto whole = [](long value) { return std::to_string(value); };
+    const auto quoted = [](const std::string& text) { return "\"" + text + "\""; };
+    const bool implicit = w.implicit(), rezones = w.rezone_steps > 0;
+    const std::string solver = "flip.pressure = \"implicit\"", rezone = "rezone.steps above 0";
+    return {
+        {"flip.transfer", quoted(w.transfer), w.transfer != d.transfer, true, ""},
+        {"flip.blend", shown(w.blend), w.blend != d.blend, w.transfer == "blend",
+         "flip.transfer = \"blend\""},
+        {"flip.xpic_order", whole(w.xpic_order), w.xpic_order != d.xpic_order, w.transfer == "xpic",
+         "flip.transfer = \"xpic\""},
+        {"flip.mass", quoted(w.mass), w.mass != d.mass, true, ""},
+        {"flip.deficit_to_heat", on_off(w.deficit_to_heat), w.deficit_to_heat != d.deficit_to_heat,
+         true, ""},
+        {"flip.density", quoted(w.density), w.density != d.density, true, ""},
+        {"flip.viscosity", shown(w.viscosity), w.viscosity != d.viscosity, true, ""},
+        {"flip.pressure", quoted(w.pressure), w.pressure != d.pressure, true, ""},
+        {"flip.theta", shown(w.theta), w.theta != d.theta, implicit, solver},
+        {"flip.tolerance", shown(w.tolerance), w.tolerance != d.tolerance, implicit, solver},
+        {"flip.most_iterations", whole(w.most_iterations), w.most_iterations != d.most_iterations,
+         implicit, solver},
+        {"rezone.steps", whole(w.rezone_steps), w.rezone_steps != d.rezone_steps, true, ""},
+        {"rezone.fewest", whole(w.fewest), w.fewest != d.fewest, rezones, rezone},
+        {"rezone.most", whole(w.most), w.most != d.most, rezones, rezone},
+    };
+}
+
+inline void refuse_methods(const Case& w, const std::string& program) {
+    for (const IdleKey& key : keys_of_flip(w)) {
+        refuse(program == "pic" && key.changed,
+               key.name + " = " + key.value +
+                   " is for particles that carry velocity and energy: run the case with flip, or "
+                   "take it out");
+        refuse(key.changed && !key.used, key.name + " = " + key.value + " needs " + key.needs);
+    }
+    for (std::size_t k = 0; k < 4; ++k)
+        refuse(program == "pic" && w.ends[k].kind == "no_slip",
+               "boundary." + std::string(end_names[k]) +
+                   " = \"no_slip\" needs viscosity: run the case with flip, or take \"slip\"");
+    refuse(w.mass == "consistent" && w.implicit(),
+           "flip.mass = \"consistent\" and flip.pressure = \"implicit\" do not go together: the "
+           "implicit pressure divides by lumped masses; take \"lumped\" or \"explicit\"");
+    refuse(w.rezone_steps > 0 && w.most < 2 * w.fewest,
+           "rezone.most = " + std::to_string(w.most) +
+               " is below twice rezone.fewest = " + std::to_string(w.fewest) +
+               ": cells would split and merge the same particles in turn; raise it");
 }
 
 }  // namespace detail
 
-/// Refuses what cannot run. errors: InputError, one sentence with the numbers and the cure.
+/// Refuses what a case says in vain.
+/// in:     the case as it was read, before completed()
+/// errors: InputError, one sentence
+inline void refuse_idle(const Case& w) {
+    const auto differs = [](const SideCase& a, const SideCase& b) {
+        return a.density != b.density || a.pressure != b.pressure || a.velocity != b.velocity ||
+               a.gamma != b.gamma || a.p_infinity != b.p_infinity;
+    };
+    const Case d;
+    const bool riemann = w.setup == "riemann", sides = differs(w.left, d.left) ||
+                                                       differs(w.right, d.right) ||
+                                                       w.interface != d.interface;
+    detail::refuse(riemann && !(w.regions.empty() && w.materials.empty()),
+                   "setup.kind = \"riemann\" makes its regions and materials from [left] and "
+                   "[right]: take out [region.*] and [material.*]");
+    detail::refuse(!riemann && sides,
+                   "[left], [right] and setup.interface need setup.kind = \"riemann\"");
+}
+
+/// Refuses what cannot run.
 /// in:     a completed case; program, pic or flip
-inline void refuse_impossible(const Case& w, const std::string&) {
+/// errors: InputError, one sentence with the numbers and the cure
+inline void refuse_impossible(const Case& w, const std::string& program) {
     detail::refuse(w.regions.empty(),
-                   "there is no fluid: add a [region.<name>], or setup.kind = \"riemann\"");
+                   "there is no fluid: add a [region.<name>], or set setup.kind = \"riemann\"");
+    detail::refuse_sizes(w);
+    detail::refuse_ends(w);
+    detail::refuse_materials(w);
+    for (const RegionCase& r : w.regions) detail::refuse_region(w, r);
+    const bool between = w.interface > w.grid.x.low && w.interface < w.grid.x.low + w.grid.x.length;
+    detail::refuse(w.setup == "riemann" && !between,
+                   "setup.interface = " + shown(w.interface) + " is not on the mesh, from " +
+                       shown(w.grid.x.low) + " to " + shown(w.grid.x.high()));
+    detail::refuse_methods(w, program);
+    detail::refuse_tension(w);
+    detail::refuse_steps(w, scales_of(w, program));
+    refuse_comparison(w, program);
 }
 
 }  // namespace flip
