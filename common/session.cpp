@@ -46,7 +46,7 @@ bool is_ours(std::string name) {
         name.resize(name.size() - partial.size());
     }
     for (const char* plain :
-         {"case.toml", "history.dat", "summary.json", "spectrum.dat", "pack.txt"}) {
+         {"case.toml", "history.dat", "summary.json", "spectrum.dat", "profile.dat", "pack.txt"}) {
         if (name == plain) return true;
     }
     for (const char* start :

@@ -96,14 +96,14 @@ inline void refuse_idle(const Case& w) {
 inline void refuse_impossible(const Case& w, const std::string& program) {
     detail::refuse(w.regions.empty(),
                    "there is no fluid: add a [region.<name>], or set setup.kind = \"riemann\"");
-    detail::refuse_sizes(w);
-    detail::refuse_ends(w);
-    detail::refuse_materials(w);
-    for (const RegionCase& r : w.regions) detail::refuse_region(w, r);
     const bool between = w.interface > w.grid.x.low && w.interface < w.grid.x.low + w.grid.x.length;
     detail::refuse(w.setup == "riemann" && !between,
                    "setup.interface = " + shown(w.interface) + " is not on the mesh, from " +
                        shown(w.grid.x.low) + " to " + shown(w.grid.x.high()));
+    detail::refuse_sizes(w);
+    detail::refuse_ends(w);
+    detail::refuse_materials(w);
+    for (const RegionCase& r : w.regions) detail::refuse_region(w, r);
     detail::refuse_methods(w, program);
     detail::refuse_tension(w);
     detail::refuse_steps(w, scales_of(w, program));

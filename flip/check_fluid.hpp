@@ -202,8 +202,9 @@ inline void refuse_steps(const Case& w, const Scales& s) {
                               shown(s.dt) + ", more than 1e9: lower time.end or " +
                               (w.dt > 0 ? "raise time.dt" : "take larger cells"));
     refuse(w.dt > 0 && w.dt * s.rate > 1,
-           "time.dt = " + shown(w.dt) + ": " + (w.implicit() ? "the flow" : "sound and flow") +
-               " cross " + shown(w.dt * s.rate) + " cells in a step, more than 1: lower it below " +
+           "time.dt = " + shown(w.dt) + ": " +
+               (w.implicit() ? "the flow crosses " : "sound and flow cross ") +
+               shown(w.dt * s.rate) + " cells in a step, more than 1: lower it below " +
                shown(1 / s.rate));
     if (w.dt == 0 || w.viscosity == 0) return;
     const double h =
