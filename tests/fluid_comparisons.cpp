@@ -1,0 +1,363 @@
+// What the recorder of pic and flip makes of fluid that does exactly what theory says, and of fluid
+// that does not: each comparison must find the number that was put in.
+#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#include <doctest/doctest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "flip/check_case.hpp"
+#include "flip/record.hpp"
+#include "flip/theory/vortex.hpp"
+#include "tests/any_summary.hpp"
+
+namespace {
+
+using namespace flip;
+
+struct Fluid {
+    State state;
+    Totals totals;
+    CellFields cells;
+};
+
+// The rows and results of a run whose fluid at each time is made by `at`.
+facts::Run recorded(const std::string& text, const std::string& program, int steps,
+                    const std::function<void(const Case&, double, Fluid&)>& at) {
+    Case wanted;
+    common::ParameterTable table = describe(wanted);
+    for (const common::Setting& setting : common::read_case(text, "case.toml")) table.set(setting);
+    const Case w = completed(wanted);
+    refuse_impossible(w, program);
+    common::CommandLine command;
+    command.case_name = "ideal";
+    // Tests of other facts run at the same time.
+    command.out_dir =
+        std::string(BUILD_FOLDER) + "/tests/runs/fluid_comparisons_" + std::to_string(getpid());
+    std::filesystem::remove_all(command.out_dir);
+    const common::About about{program, "0", "", ""};
+    {
+        common::Session session(about, command, table);
+        Recorder recorder(w, program, session.history);
+        Fluid fluid;
+        for (int n = 0; n <= steps; ++n) {
+            const double t = w.end * n / steps;
+            fluid = {};
+            fluid.state.time = t;
+            fluid.state.dt = n > 0 ? w.end / steps : 0;
+            for (Field* f : {&fluid.cells.rho, &fluid.cells.vx, &fluid.cells.vz, &fluid.cells.p,
+                             &fluid.cells.e})
+                *f = Field::Zero(w.grid.size());
+            fluid.cells.rho_of.assign(w.materials.size(), Field::Zero(w.grid.size()));
+            fluid.totals = {1, 0, 0, 1, 1, 1};
+            at(w, t, fluid);
+            recorder.snapshot(n, fluid.state, fluid.cells, session);
+            recorder.record(n, fluid.state, fluid.totals, fluid.cells, {}, session);
+        }
+        recorder.finish(fluid.state, fluid.totals, fluid.cells, session);
+        session.history.flush();
+        session.summary.write(command.out_dir + "/summary.json", about, "ideal", 0, "");
+    }
+    facts::Run run = facts::finished_run(command.out_dir);
+    std::filesystem::remove_all(command.out_dir);
+    return run;
+}
+
+// Calls visit(index, x, z) for every cell.
+void for_each_cell(const Case& w, const std::function<void(long, double, double)>& visit) {
+    for (long j = 0; j < w.grid.z.cells; ++j)
+        for (long i = 0; i < w.grid.x.cells; ++i)
+            visit(w.grid.index(i, j), w.grid.x.at(static_cast<double>(i) + 0.5),
+                  w.grid.z.at(static_cast<double>(j) + 0.5));
+}
+
+std::string compare(const std::string& name) { return "theory.compare = \"" + name + "\"\n"; }
+
+const std::string walls =
+    "boundary.x_low = \"slip\"\nboundary.x_high = \"slip\"\n"
+    "boundary.z_low = \"slip\"\nboundary.z_high = \"slip\"\n";
+const std::string channel = "boundary.z_low = \"slip\"\nboundary.z_high = \"slip\"\n";
+
+}  // namespace
+
+TEST_CASE("an exact shock tube has no error in either frame") {
+    for (const std::string frame : {"0", "0.5"}) {
+        const std::string text = compare("riemann") + "theory.frame_x = " + frame +
+                                 "\nsetup.kind = \"riemann\"\nleft.velocity = " + frame +
+                                 "\nright.velocity = " + frame +
+                                 "\nboundary.x_low = \"open\"\nboundary.x_high = \"open\"\n"
+                                 "time.end = 0.2\ngrid.cells_x = 200\ntheory.tolerance = 0.01\n";
+        const auto run = recorded(text, "pic", 10, [](const Case& w, double t, Fluid& f) {
+            const theory::RiemannSolution s = riemann_of(w);
+            for_each_cell(w, [&](long n, double x, double) {
+                const double xi = (x - w.frame_x * t - w.interface) / std::max(t, 1e-12);
+                const double half = 0.5 * w.grid.x.spacing() / std::max(t, 1e-12);
+                const theory::Conserved q = theory::mean_between(s, xi - half, xi + half);
+                f.cells.rho[n] = q.mass;
+                f.cells.vx[n] = q.momentum / q.mass + w.frame_x;
+                f.cells.p[n] = theory::sample(s, xi).pressure;
+            });
+            const double contact = w.interface + (s.left_contact + w.frame_x) * t;
+            f.state.particles.x_p = {contact - 0.001, contact + 0.001};
+            f.state.particles.material = {0, 1};
+        });
+        facts::check_results(run.summary, 3);
+        CHECK(run.value("L1_density") <= 1e-12);
+        CHECK(run.value("L1_velocity") <= 1e-12);
+        CHECK(run.value("star_pressure") == doctest::Approx(0.30313).epsilon(1e-4));
+    }
+}
+
+TEST_CASE("the shock at a wall is found on both sides of the mesh") {
+    for (const double side : {-1.0, 1.0}) {
+        const std::string text = compare("wall_shock") + walls +
+                                 "[region.gas]\nvelocity_x = " + (side < 0 ? "-1" : "1") +
+                                 "\npressure = 1e-6\n";
+        const auto run = recorded(text, "pic", 50, [&](const Case& w, double t, Fluid& f) {
+            const StruckWall wall = struck_wall(w);
+            const double R = wall.shock.speed_from_wall * t, dx = w.grid.x.spacing();
+            for_each_cell(w, [&](long n, double x, double) {
+                const double distance = side < 0 ? x : 1 - x;
+                const double part = std::min(1.0, std::max(0.0, (R - distance) / dx + 0.5));
+                f.cells.rho[n] = wall.density + part * (wall.shock.density - wall.density);
+            });
+        });
+        facts::check_results(run.summary, 3);
+        CHECK(run.value("density_behind_shock") == doctest::Approx(6).epsilon(1e-4));
+        CHECK(run.value("shock_speed") == doctest::Approx(0.2).epsilon(0.01));
+        CHECK(run.value("density_scatter") <= 1e-6);
+    }
+}
+
+TEST_CASE("the radius of a blast in the middle and of one in a corner is found") {
+    for (const std::string at : {"0.5", "0"}) {
+        const std::string text =
+            compare("sedov") + walls +
+            "grid.cells_x = 100\ngrid.cells_z = 100\ntheory.tolerance = 0.02\ntime.end = 0.1\n"
+            "[region.cold]\npressure = 1e-6\n[region.hot]\nshape = \"disk\"\nradius = 0.05\n"
+            "energy = " +
+            (at == "0" ? "0.25" : "1") + "\npressure = 1e-6\ncenter_x = " + at +
+            "\ncenter_z = " + at + "\n";
+        const auto run = recorded(text, "flip", 4, [](const Case& w, double t, Fluid& f) {
+            const Blast blast = blast_of(w);
+            CHECK(blast.energy == doctest::Approx(1));
+            const double R = blast.radius(t);
+            for_each_cell(w, [&](long n, double x, double z) {
+                const double r = std::hypot(x - blast.x, z - blast.z);
+                f.cells.rho[n] = t > 0 ? theory::blast_point(blast.wave, r / R).density : 1;
+            });
+        });
+        facts::check_results(run.summary, 1);
+        CHECK(run.value("shock_radius") == doctest::Approx(0.31749).epsilon(0.02));
+    }
+}
+
+TEST_CASE("the plateau of gas that has fallen into a line is found") {
+    const std::string text = compare("noh") + walls +
+                             "grid.cells_x = 100\ngrid.cells_z = 100\ntime.end = 0.6\n"
+                             "[material.gas]\ngamma = 1.6666666666666667\n"
+                             "[region.gas]\nflow = \"radial\"\nspeed = 1\npressure = 0\n"
+                             "center_x = 0.5\ncenter_z = 0.5\n";
+    const auto run = recorded(text, "pic", 6, [](const Case& w, double t, Fluid& f) {
+        for_each_cell(w, [&](long n, double x, double z) {
+            const double r = std::hypot(x - 0.5, z - 0.5);
+            f.cells.rho[n] = t > 0 ? theory::noh_state(noh_of(w), r, t).density : 1;
+        });
+    });
+    CHECK(run.value("plateau_density_over_theory") == doctest::Approx(1).epsilon(1e-6));
+    CHECK(run.value("shock_radius_over_theory") == doctest::Approx(1).epsilon(0.03));
+}
+
+TEST_CASE("the diffusivity of a blob is read from its width across a periodic end") {
+    const std::string text = compare("diffusion") +
+                             "time.dt = 0.002\ntime.end = 1\n[material.dust]\ngamma = 1\n"
+                             "[region.gas]\nflow = \"gaussian\"\nwidth = 0.05\namplitude = 2\n"
+                             "center_x = 0.5\nvelocity_x = 1\n";
+    const auto blob = [](double diffusivity) {
+        return [=](const Case& w, double t, Fluid& f) {
+            const double variance = 0.05 * 0.05 + 2 * diffusivity * t;
+            for_each_cell(w, [&](long n, double x, double) {
+                const double d = apart(w.grid.x, 0.5 + t, x);
+                f.cells.rho[n] = 1;
+                f.cells.e[n] = 1 + 0.1 / std::sqrt(variance) * std::exp(-0.5 * d * d / variance);
+            });
+        };
+    };
+    // C = 0.2, 4 particles in a row.
+    const double expected = theory::harlow_lattice_diffusivity(1, 0.01, 0.002, 4);
+    const auto pic = recorded(text, "pic", 50, blob(expected));
+    facts::check_results(pic.summary, 1);
+    CHECK(pic.value("diffusivity") == doctest::Approx(expected / 0.01).epsilon(1e-3));
+    CHECK(pic.value("many_particles") == doctest::Approx(0.4));
+    facts::check_results(recorded(text, "flip", 50, blob(0)).summary, 1);
+}
+
+TEST_CASE("a wave that each step turns and grows as theory says has those rates") {
+    for (const std::string pressure : {"explicit", "implicit"}) {
+        const std::string text = compare("wave") + "grid.cells_x = 64\ntime.dt = 0.002\n" +
+                                 "theory.tolerance = 0.001\ntime.end = 2\nflip.pressure = \"" +
+                                 pressure + "\"\n[region.gas]\nflow = \"wave\"\n" +
+                                 "amplitude = 0.01\n";
+        const auto run = recorded(text, "flip", 1000, [](const Case& w, double t, Fluid& f) {
+            const SoundWave s = sound_wave_of(w, "flip", w.dt);
+            const double steps = t / w.dt, size = 0.01 * std::pow(s.amplification, steps);
+            for_each_cell(w, [&](long n, double x, double) {
+                f.cells.rho[n] = 1;
+                f.cells.vx[n] = size * std::cos(2 * pi * x - s.phase * steps);
+                f.cells.p[n] = 1 + 1.4 * f.cells.vx[n];
+            });
+        });
+        facts::check_results(run.summary, 2);
+        CHECK((run.value("amplitude_per_period") > 1) == (pressure == "explicit"));
+        CHECK(run.value("frequency_over_ck") == doctest::Approx(1).epsilon(0.002));
+    }
+}
+
+TEST_CASE("the growth of an interface is found from a start in motion and from one in shape") {
+    const std::string text = compare("rayleigh_taylor") + channel +
+                             "grid.cells_x = 32\ngrid.cells_z = 64\ngrid.length_z = 2\n"
+                             "gravity.z = -0.1\ntime.end = 12\ntheory.tolerance = 0.01\n"
+                             "[region.light]\n[region.heavy]\nshape = \"above\"\ndensity = 2\n"
+                             "center_z = 1\nflow = \"overturn\"\namplitude = 1e-3\n";
+    for (const bool in_motion : {true, false}) {
+        const auto run = recorded(text, "flip", 400, [&](const Case& w, double t, Fluid& f) {
+            const double g = theory_growth(w);
+            const double linear = 1e-3 * (in_motion ? std::cosh(g * t) : std::sinh(g * t));
+            // What is large stops growing.
+            const double v = linear / (1 + std::pow(linear / 0.3, 2));
+            for_each_cell(w, [&](long n, double x, double z) {
+                f.cells.rho[n] = z > 1 ? 2 : 1;
+                f.cells.vz[n] = v * std::cos(2 * pi * x);
+            });
+        });
+        facts::check_results(run.summary, 1);
+        CHECK(run.value("theory_growth") == doctest::Approx(std::sqrt(0.2 * pi / 3)).epsilon(1e-4));
+    }
+}
+
+TEST_CASE("the growth of a layer of shear is found") {
+    const std::string text = compare("kelvin_helmholtz") + channel +
+                             "grid.cells_x = 32\ngrid.cells_z = 32\ntime.end = 20\n"
+                             "[region.gas]\nflow = \"shear\"\nspeed = 0.1\nwidth = 0.05\n"
+                             "center_z = 0.5\namplitude = 1e-3\n";
+    const auto run = recorded(text, "flip", 400, [](const Case& w, double t, Fluid& f) {
+        const double g = theory_growth(w);
+        for_each_cell(w, [&](long n, double x, double) {
+            f.cells.rho[n] = 1;
+            f.cells.vz[n] = 1e-3 * (std::cosh(g * t) * std::cos(2 * pi * x) +
+                                    std::sinh(g * t) * std::sin(2 * pi * x));
+        });
+    });
+    facts::check_results(run.summary, 1);
+    CHECK(run.value("growth_over_theory") == doctest::Approx(1).epsilon(1e-5));
+}
+
+TEST_CASE("a vortex that loses a tenth in two turns has kept its root in one") {
+    for (const std::string frame : {"0", "1"}) {
+        const std::string text =
+            compare("gresho") + "grid.cells_x = 80\ngrid.cells_z = 80\ntime.end = " +
+            std::to_string(2 * theory::gresho_turnover_time) + "\ntheory.frame_x = " + frame +
+            "\n[region.gas]\nflow = \"gresho\"\nspeed = 1\nwidth = 0.4\npressure = 70\n"
+            "center_x = 0.5\ncenter_z = 0.5\nvelocity_x = " +
+            frame + "\n";
+        const auto run = recorded(text, "flip", 40, [](const Case& w, double t, Fluid& f) {
+            const double left = 1 - 0.1 * t / w.end, V = w.frame_x;
+            f.totals.kinetic = left + 0.5 * V * V;
+            f.totals.momentum_x = V;
+            for_each_cell(w, [&](long n, double x, double z) {
+                const double dx = apart(w.grid.x, 0.5 + V * t, x), dz = z - 0.5,
+                             r = std::hypot(dx, dz), u = left * theory::gresho_velocity(r);
+                f.cells.rho[n] = 1;
+                f.cells.vx[n] = V - (r > 0 ? u * dz / r : 0);
+                f.cells.vz[n] = r > 0 ? u * dx / r : 0;
+            });
+        });
+        CHECK(run.value("kinetic_energy_kept") == doctest::Approx(std::sqrt(0.9)).epsilon(1e-6));
+        CHECK(run.value("angular_momentum_kept") == doctest::Approx(std::sqrt(0.9)).epsilon(1e-3));
+        CHECK(run.column("swirl").front() ==
+              doctest::Approx(theory::gresho_angular_momentum).epsilon(0.01));
+    }
+}
+
+TEST_CASE("the front of a dam that breaks as in the laboratory has its speed") {
+    const std::string text = compare("dam_break") + walls +
+                             "grid.cells_x = 100\ngrid.cells_z = 25\ngrid.length_x = 4\n"
+                             "gravity.z = -1\ntime.end = 3.3\ntheory.tolerance = 0.02\n"
+                             "[region.water]\nshape = \"box\"\ncenter_x = 0.25\ncenter_z = 0.5\n"
+                             "half_x = 0.25\nhalf_z = 0.5\n";
+    const auto table = theory::read_table(dam_table);
+    const auto run = recorded(text, "flip", 330, [&](const Case& w, double t, Fluid& f) {
+        const double T = theory::column_time(t, 0.5, 1, 1);
+        const auto &T_lab = table.at("T"), &Z_lab = table.at("Z");
+        double Z = 1;
+        for (std::size_t n = 1; n < T_lab.size(); ++n)
+            if (T >= T_lab[n - 1])
+                Z = Z_lab[n - 1] +
+                    (T - T_lab[n - 1]) / (T_lab[n] - T_lab[n - 1]) * (Z_lab[n] - Z_lab[n - 1]);
+        for_each_cell(w, [&](long n, double x, double z) {
+            const double part = (0.5 * Z - x) / w.grid.x.spacing() + 0.5;
+            f.cells.rho_of[0][n] = z < 0.6 ? std::min(1.0, std::max(0.0, part)) : 0;
+            f.cells.rho[n] = f.cells.rho_of[0][n];
+        });
+    });
+    facts::check_results(run.summary, 1);
+    CHECK(std::fabs(run.value("front_ahead")) <= 0.02);
+    CHECK(run.value("wall_height") == doctest::Approx(0.6));
+}
+
+TEST_CASE("the center of a vortex in a cavity is found between the nodes") {
+    const std::string text =
+        compare("cavity") +
+        "boundary.x_low = \"no_slip\"\nboundary.x_high = \"no_slip\"\n"
+        "boundary.z_low = \"no_slip\"\nboundary.z_high = \"no_slip\"\n"
+        "boundary.slide_z_high = 2\nflip.viscosity = 0.02\ntime.end = 1\n"
+        "grid.cells_x = 40\ngrid.cells_z = 40\n[region.gas]\npressure = 1000\n";
+    const auto run = recorded(text, "flip", 4, [](const Case& w, double, Fluid& f) {
+        for_each_cell(w, [&](long n, double x, double z) {
+            // psi = -0.2 exp(-20 r^2) around (0.6172, 0.7344), in units of the lid.
+            const double dx = x - 0.6172, dz = z - 0.7344;
+            const double psi = -0.2 * std::exp(-20 * (dx * dx + dz * dz));
+            f.cells.rho[n] = 1;
+            f.cells.vx[n] = 2 * -40 * dz * psi;
+            f.cells.vz[n] = 2 * 40 * dx * psi;
+        });
+    });
+    CHECK(run.value("vortex_x") == doctest::Approx(0.6172).epsilon(0.002));
+    CHECK(run.value("vortex_z") == doctest::Approx(0.7344).epsilon(0.002));
+    CHECK(run.value("change_of_kinetic_energy") == 0);
+    CHECK(run.value("largest_u_difference") > 0.05);
+}
+
+TEST_CASE("conservation errors are what has changed less what came in") {
+    const std::string text = "time.end = 1\n[region.gas]\n";
+    const auto run = recorded(text, "flip", 10, [](const Case&, double t, Fluid& f) {
+        f.totals = {2 + t, 3 * t, 0, 1, 1 + 4 * t, 1};
+        f.state.books = {t, 3 * t, -t, 4 * t + 0.5 * t * t};
+    });
+    CHECK(run.conservation("largest_mass_error") <= 1e-15);
+    CHECK(run.conservation("largest_momentum_x_error") <= 1e-15);
+    CHECK(run.conservation("largest_momentum_z_error") ==
+          doctest::Approx(1 / (2 + 2 * std::sqrt(1.4))));
+    CHECK(run.conservation("largest_energy_error") == doctest::Approx(0.25));
+}
+
+TEST_CASE("an energy that nothing accounts for ends the run with step and time") {
+    const std::string text = "time.end = 1\n[region.gas]\n";
+    const auto with_energy = [&](double energy, double work) {
+        recorded(text, "flip", 10, [=](const Case&, double t, Fluid& f) {
+            f.totals.kinetic = t > 0.45 ? energy : 1;
+            f.state.books.energy = t > 0.45 ? work : 0;
+        });
+    };
+    CHECK_NOTHROW(with_energy(18, 0));
+    CHECK_NOTHROW(with_energy(100, 99));
+    CHECK_THROWS_WITH_AS(with_energy(20, 0),
+                         "the energy is 21 where the start and the work done are 2, at step 5, t = "
+                         "0.5: reduce time.cfl, refine the mesh, or allow more with "
+                         "time.energy_limit",
+                         common::NumericalError);
+    CHECK_THROWS_AS(with_energy(std::nan(""), 0), common::NumericalError);
+}
