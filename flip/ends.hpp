@@ -2,6 +2,7 @@
 // open end, in through an inflow; and never through a wall.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -26,7 +27,7 @@ inline double around(const common::Axis& axis, double position) {
         position += axis.length;
         return position < axis.high() ? position : axis.low;
     }
-    return position < axis.high() ? position : position - axis.length;
+    return position < axis.high() ? position : std::max(position - axis.length, axis.low);
 }
 
 /// Says that a particle is where none can be.

@@ -1,0 +1,224 @@
+// The Eulerian mesh of the classical method: a scratch pad, rebuilt in every step from the particles
+// and the little that cells remember (velocity and internal energy, see state.hpp).
+//
+//     M_c, I_c, u_c --Lagrangian phase--> u~_c, I~_c --particles move, Eulerian phase--> M_c, I_c, u_c
+//
+// All quantities live at centers of cells; cell (i, j) sits at grid.index(i, j). Behind the ends of
+// the mesh stands one ring of ghost cells.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "common/parallel.hpp"
+#include "flip/state.hpp"
+
+namespace flip {
+
+/// Both components of the velocity of a cell side by side: a particle wants both.
+struct CellVelocity {
+    double x = 0, z = 0;
+};
+
+/// What particles that enter through an inflow bring with them.
+struct Incoming {
+    double rho = 0, p = 0, c = 0, e = 0;
+    CellVelocity v;
+};
+
+/// The scratch pad. Of several materials, those of one cell lie together: [cell * materials + k].
+struct PicCells {
+    std::size_t materials = 1;
+    std::vector<double> M;        // mass of each material
+    Field mass, per_mass;         // of all; 1/mass, 0 in an empty cell
+    Field filled;                 // 1, or 0 in an empty cell
+    Field p, c;                   // pressure, speed of sound
+    std::vector<double> share;    // of the work of the pressure, that each material takes
+    Field q_x, q_z;               // viscous pressure on the face between cell (i, j) and the one
+                                  // before it along x, along z
+    std::vector<CellVelocity> v;  // u
+    std::vector<CellVelocity> v_tilde;  // u~
+    std::vector<double> e_tilde;        // I~ of each material
+
+    std::vector<int> home;     // of each particle, the cell that it comes from
+    std::vector<double> sums;  // what particles bring to a cell
+    std::vector<double> row;   // one number per row of cells
+    SortScratch sort;
+    Incoming incoming;
+
+    explicit PicCells(const Case& w) : materials(w.materials.size()) {
+        const auto size = static_cast<std::size_t>(w.grid.size());
+        for (Field* f : {&mass, &per_mass, &filled, &p, &c, &q_x, &q_z})
+            *f = Field::Zero(w.grid.size());
+        for (auto* f : {&M, &share, &e_tilde}) f->assign(size * materials, 0.0);
+        v.assign(size, {});
+        v_tilde.assign(size, {});
+        row.assign(static_cast<std::size_t>(w.grid.z.cells), 0.0);
+        sums.assign(static_cast<std::size_t>(w.grid.x.cells * w.grid.z.cells) * (3 + 2 * materials),
+                    0.0);
+        const int k = material_index(w, w.inflow.material);
+        if (k < 0) return;
+        const Material& a = w.materials[static_cast<std::size_t>(k)];
+        incoming.rho = w.inflow.density;
+        incoming.e = internal_energy(a, incoming.rho, w.inflow.pressure);
+        incoming.p = pressure(a, incoming.rho, incoming.e);
+        incoming.c = std::sqrt(stiffness(a, incoming.p) / incoming.rho);
+        incoming.v = {w.inflow.velocity_x, w.inflow.velocity_z};
+    }
+};
+
+/// The home of particles that have just entered: a corner that is no cell and no ghost.
+inline int outside(const Grid& grid) { return static_cast<int>(grid.size()) - 1; }
+
+/// Calls work(j) for every row of cells.
+template <class Work>
+void for_each_row_of_cells(const Grid& grid, const Work& work) {
+    if (grid.x.cells * grid.z.cells < common::worth_sharing) {
+        for (long j = 0; j < grid.z.cells; ++j) work(j);
+    } else {
+        common::for_each_row(grid.z.cells, work);
+    }
+}
+
+/// Sum over rows of cells, added in the order of the rows.
+template <class SumOfRow>
+double sum_over_rows(const Grid& grid, PicCells& cells, const SumOfRow& sum_of_row) {
+    for_each_row_of_cells(grid,
+                          [&](long j) { cells.row[static_cast<std::size_t>(j)] = sum_of_row(j); });
+    double sum = 0;
+    for (const double part : cells.row) sum += part;
+    return sum;
+}
+
+/// Calls visit(ghost, inside) for every ghost cell behind one end, with the cell whose image it is.
+/// note:   first the ends along x, then those along z, which take the corners with them
+template <class Visit>
+void for_each_ghost(const Grid& grid, End end, const Visit& visit) {
+    const long nx = grid.x.cells, nz = grid.z.cells;
+    const bool low = end == x_low || end == z_low;
+    if (end == x_low || end == x_high) {
+        const long ghost = low ? -1 : nx, inside = low == grid.x.periodic ? nx - 1 : 0;
+        for (long j = 0; j < nz; ++j) visit(grid.index(ghost, j), grid.index(inside, j));
+    } else {
+        const long ghost = low ? -1 : nz, inside = low == grid.z.periodic ? nz - 1 : 0;
+        for (long i = -1; i <= nx; ++i) visit(grid.index(i, ghost), grid.index(i, inside));
+    }
+}
+
+/// Fills the ghosts of a velocity: images around a periodic direction; the mirror image behind a
+/// wall, whose normal component is odd; the same velocity behind an open end; what comes in.
+inline void fill_ghosts(const Case& w, const Incoming& incoming, std::vector<CellVelocity>& v) {
+    for (const End end : {x_low, x_high, z_low, z_high}) {
+        const bool wall = w.is(end, "slip"), along_x = end == x_low || end == x_high;
+        const double odd_x = wall && along_x ? -1 : 1, odd_z = wall && !along_x ? -1 : 1;
+        const bool comes_in = w.is(end, "inflow");
+        for_each_ghost(w.grid, end, [&](long ghost, long inside) {
+            const CellVelocity a = v[static_cast<std::size_t>(inside)];
+            v[static_cast<std::size_t>(ghost)] =
+                comes_in ? incoming.v : CellVelocity{odd_x * a.x, odd_z * a.z};
+        });
+    }
+}
+
+/// Fills the ghosts of what share_pressure() makes.
+/// note:   behind an open end p is such that its mean with the cell inside is the pressure outside
+inline void fill_ghosts(const Case& w, PicCells& cells) {
+    const double V = w.grid.cell_area();
+    for (const End end : {x_low, x_high, z_low, z_high}) {
+        const bool open = w.is(end, "open"), comes_in = w.is(end, "inflow");
+        const double outside_pressure = w.ends[end].pressure;
+        for_each_ghost(w.grid, end, [&](long ghost, long inside) {
+            for (Field* f : {&cells.mass, &cells.per_mass, &cells.filled, &cells.p, &cells.c})
+                (*f)[ghost] = (*f)[inside];
+            if (open) cells.p[ghost] = 2 * outside_pressure - cells.p[inside];
+            if (comes_in) {
+                cells.mass[ghost] = cells.incoming.rho * V;
+                cells.per_mass[ghost] = 1 / cells.mass[ghost];
+                cells.filled[ghost] = 1;
+                cells.p[ghost] = cells.incoming.p;
+                cells.c[ghost] = cells.incoming.c;
+            }
+        });
+    }
+    fill_ghosts(w, cells.incoming, cells.v);
+}
+
+/// Column of cells of a position along x, and of its row along z; the same everywhere, so that a
+/// particle is never counted in one cell and looked for in another.
+struct Columns {
+    double low, per_dx;
+    int last;
+    explicit Columns(const common::Axis& axis)
+        : low(axis.low), per_dx(1 / axis.spacing()), last(static_cast<int>(axis.cells) - 1) {}
+    int operator()(double x) const {
+        const int i = static_cast<int>((x - low) * per_dx);
+        return i < last ? i : last;
+    }
+};
+
+/// Sums over the cells.
+/// in: cells whose mass belongs to the state: after repartition() or weigh_cells()
+inline Totals totals_of(const Case& w, const State& state, PicCells& cells) {
+    const Grid& grid = w.grid;
+    const long nx = grid.x.cells;
+    const std::size_t K = cells.materials;
+    const double x_middle = grid.x.low + 0.5 * grid.x.length,
+                 z_middle = grid.z.low + 0.5 * grid.z.length;
+    const Field &vx = state.cells.vx, &vz = state.cells.vz;
+    const auto sum = [&](const auto& of_cell) {
+        return sum_over_rows(grid, cells, [&](long j) {
+            double part = 0;
+            for (long i = 0; i < nx; ++i) part += of_cell(grid.index(i, j), i, j);
+            return part;
+        });
+    };
+    const Field& M = cells.mass;
+    Totals t;
+    t.mass = sum([&](long n, long, long) { return M[n]; });
+    t.momentum_x = sum([&](long n, long, long) { return M[n] * vx[n]; });
+    t.momentum_z = sum([&](long n, long, long) { return M[n] * vz[n]; });
+    t.angular_momentum = sum([&](long n, long i, long j) {
+        const double x = grid.x.at(static_cast<double>(i) + 0.5) - x_middle,
+                     z = grid.z.at(static_cast<double>(j) + 0.5) - z_middle;
+        return M[n] * (x * vz[n] - z * vx[n]);
+    });
+    t.kinetic =
+        sum([&](long n, long, long) { return 0.5 * M[n] * (vx[n] * vx[n] + vz[n] * vz[n]); });
+    t.internal = sum([&](long n, long, long) {
+        double U = 0;
+        for (std::size_t k = 0; k < K; ++k)
+            U += cells.M[static_cast<std::size_t>(n) * K + k] * state.cells.e[k][n];
+        return U;
+    });
+    return t;
+}
+
+/// The fluid on the cells.
+/// in: cells after share_pressure()
+inline CellFields fields_of(const Case& w, const State& state, const PicCells& cells) {
+    const Grid& grid = w.grid;
+    const std::size_t K = cells.materials;
+    const double per_V = 1 / grid.cell_area();
+    CellFields f;
+    for (Field* g : {&f.rho, &f.vx, &f.vz, &f.p, &f.e}) *g = Field::Zero(grid.size());
+    f.rho_of.assign(K, f.rho);
+    for (long j = 0; j < grid.z.cells; ++j) {
+        for (long i = 0; i < grid.x.cells; ++i) {
+            const long n = grid.index(i, j);
+            f.rho[n] = cells.mass[n] * per_V;
+            f.vx[n] = state.cells.vx[n];
+            f.vz[n] = state.cells.vz[n];
+            f.p[n] = cells.p[n];
+            for (std::size_t k = 0; k < K; ++k) {
+                const double M = cells.M[static_cast<std::size_t>(n) * K + k];
+                f.rho_of[k][n] = M * per_V;
+                f.e[n] += M * cells.per_mass[n] * state.cells.e[k][n];
+            }
+        }
+    }
+    return f;
+}
+
+}  // namespace flip
