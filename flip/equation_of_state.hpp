@@ -85,12 +85,14 @@ inline CellState share_cell(std::span<const Material> materials, const double* M
     }
     cell.p = p;
 
-    // A material that nothing can compress, and dust, have no say; their share goes by mass.
+    // A material that nothing can compress, and dust, have no say; their share goes by mass. So
+    // does that of a gas so cold that its compressibility is beyond all numbers.
+    constexpr double least_stiffness = 1e-200;
     double filled = 0, sum = 0;
     for (std::size_t k = 0; k < count; ++k) {
         const double V_k = volume_of(k, p), stiff = stiffness(materials[k], p);
         filled += V_k;
-        share[k] = stiff > 0 ? V_k / stiff : 0.0;
+        share[k] = stiff > least_stiffness ? V_k / stiff : 0.0;
         sum += share[k];
     }
     cell.surface = p == 0 && filled < V;

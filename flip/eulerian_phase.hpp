@@ -165,7 +165,7 @@ void collect(const Case& w, const What& brought, State& state, PicCells& cells) 
             for (std::size_t k = 0; k < K; ++k) {
                 const double e = M[k] > 0 ? cell[4 + 2 * k] / M[k] + heat : 0.0;
                 state.cells.e[k][n] = e;
-                sound = sound && e >= -1e-10 * kinetic && std::isfinite(e);
+                sound = sound && e >= -1e-10 * kinetic - 1e-200 && std::isfinite(e);
             }
             state.cells.vx[n] = vx;
             state.cells.vz[n] = vz;
