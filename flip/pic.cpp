@@ -2,8 +2,8 @@
 // surfaces and with slip at the walls. Cells hold velocity and energy; particles are mass and a
 // label, and carry it from cell to cell.
 //
-// The default case is Sod's shock tube with a free end for each teaching switch: particles per cell,
-// viscosity, and the frame of reference, which the method's own diffusion can tell from another.
+// The default case is Sod's shock tube. What one particle more or less in a cell does to the pressure
+// can be seen in it, and how the method's own viscosity, which goes with |u|, makes shocks possible.
 // Run:   build/pic
 //
 // Reading order: particles.hpp, state.hpp, equation_of_state.hpp, pic_cells.hpp,

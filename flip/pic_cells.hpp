@@ -166,7 +166,6 @@ inline Totals totals_of(const Case& w, const State& state, PicCells& cells) {
     const std::size_t K = cells.materials;
     const double x_middle = grid.x.low + 0.5 * grid.x.length,
                  z_middle = grid.z.low + 0.5 * grid.z.length;
-    const Field &vx = state.cells.vx, &vz = state.cells.vz;
     const auto sum = [&](const auto& of_cell) {
         return sum_over_rows(grid, cells, [&](long j) {
             double part = 0;
@@ -174,14 +173,16 @@ inline Totals totals_of(const Case& w, const State& state, PicCells& cells) {
             return part;
         });
     };
-    const Field& M = cells.mass;
+    const Field &M = cells.mass, &vx = state.cells.vx, &vz = state.cells.vz;
+    const double x_first = grid.x.at(0.5) - x_middle, z_first = grid.z.at(0.5) - z_middle,
+                 dx = grid.x.spacing(), dz = grid.z.spacing();
     Totals t;
     t.mass = sum([&](long n, long, long) { return M[n]; });
     t.momentum_x = sum([&](long n, long, long) { return M[n] * vx[n]; });
     t.momentum_z = sum([&](long n, long, long) { return M[n] * vz[n]; });
     t.angular_momentum = sum([&](long n, long i, long j) {
-        const double x = grid.x.at(static_cast<double>(i) + 0.5) - x_middle,
-                     z = grid.z.at(static_cast<double>(j) + 0.5) - z_middle;
+        const double x = x_first + dx * static_cast<double>(i),
+                     z = z_first + dz * static_cast<double>(j);
         return M[n] * (x * vz[n] - z * vx[n]);
     });
     t.kinetic =
@@ -196,29 +197,33 @@ inline Totals totals_of(const Case& w, const State& state, PicCells& cells) {
 }
 
 /// The fluid on the cells.
-/// in: cells after share_pressure()
-inline CellFields fields_of(const Case& w, const State& state, const PicCells& cells) {
+/// in:  cells after share_pressure()
+/// out: fields, zero in empty cells; reused from step to step
+inline void fields_of(const Case& w, const State& state, const PicCells& cells,
+                      CellFields& fields) {
     const Grid& grid = w.grid;
     const std::size_t K = cells.materials;
     const double per_V = 1 / grid.cell_area();
-    CellFields f;
-    for (Field* g : {&f.rho, &f.vx, &f.vz, &f.p, &f.e}) *g = Field::Zero(grid.size());
-    f.rho_of.assign(K, f.rho);
-    for (long j = 0; j < grid.z.cells; ++j) {
-        for (long i = 0; i < grid.x.cells; ++i) {
-            const long n = grid.index(i, j);
-            f.rho[n] = cells.mass[n] * per_V;
-            f.vx[n] = state.cells.vx[n];
-            f.vz[n] = state.cells.vz[n];
-            f.p[n] = cells.p[n];
+    if (fields.rho.size() != grid.size()) {
+        for (Field* f : {&fields.rho, &fields.vx, &fields.vz, &fields.p, &fields.e})
+            *f = Field::Zero(grid.size());
+        fields.rho_of.assign(K, fields.rho);
+    }
+    for_each_row_of_cells(grid, [&](long j) {
+        for (long n = grid.index(0, j); n < grid.index(grid.x.cells, j); ++n) {
+            fields.rho[n] = cells.mass[n] * per_V;
+            fields.vx[n] = state.cells.vx[n];
+            fields.vz[n] = state.cells.vz[n];
+            fields.p[n] = cells.p[n];
+            double U = 0;
             for (std::size_t k = 0; k < K; ++k) {
                 const double M = cells.M[static_cast<std::size_t>(n) * K + k];
-                f.rho_of[k][n] = M * per_V;
-                f.e[n] += M * cells.per_mass[n] * state.cells.e[k][n];
+                fields.rho_of[k][n] = M * per_V;
+                U += M * state.cells.e[k][n];
             }
+            fields.e[n] = U * cells.per_mass[n];
         }
-    }
-    return f;
+    });
 }
 
 }  // namespace flip

@@ -753,6 +753,41 @@ TEST_CASE("fluid enters a mesh that was empty") {
     CHECK(std::fabs(r.totals().kinetic + r.totals().internal - r.state.books.energy) <= 1e-13);
 }
 
+TEST_CASE("totals and fields are those of the fluid") {
+    Case w = impact(20);
+    Run r(w);
+    stir(r, 9);
+    share_pressure(r.w, r.state, r.cells);
+    CellFields fields;
+    fields_of(r.w, r.state, r.cells, fields);
+    const Totals t = r.totals();
+    Totals s;
+    const double V = w.grid.cell_area();
+    double by_material = 0, pressed = 0;
+    for (long j = 0; j < 20; ++j) {
+        for (long i = 0; i < 20; ++i) {
+            const long n = w.grid.index(i, j);
+            const double m = fields.rho[n] * V, x = (real(i) + 0.5) / 20 - 0.5,
+                         z = (real(j) + 0.5) / 20 - 0.5, vx = fields.vx[n], vz = fields.vz[n];
+            s.mass += m, s.momentum_x += m * vx, s.momentum_z += m * vz;
+            s.angular_momentum += m * (x * vz - z * vx);
+            s.kinetic += 0.5 * m * (vx * vx + vz * vz), s.internal += m * fields.e[n];
+            for (const Field& rho : fields.rho_of) by_material += rho[n] * V;
+            pressed += fields.p[n];
+            if (m == 0) CHECK(std::fabs(vx) + std::fabs(fields.p[n]) + fields.e[n] == 0);
+        }
+    }
+    double mass = 0;
+    for (const double m : r.state.particles.m_p) mass += m;
+    CHECK(std::fabs(t.mass - mass) <= 1e-13);
+    CHECK(std::fabs(by_material - mass) <= 1e-13);
+    CHECK(pressed > 0);
+    for (const double difference :
+         {t.mass - s.mass, t.momentum_x - s.momentum_x, t.momentum_z - s.momentum_z,
+          t.angular_momentum - s.angular_momentum, t.kinetic - s.kinetic, t.internal - s.internal})
+        CHECK(std::fabs(difference) <= 1e-14);
+}
+
 TEST_CASE("the time step follows flow and sound and does not leap beyond the end") {
     Case w = mesh(10, 5, "periodic", "periodic");
     w.regions = {fluid("", 1, 1, 0.3, -0.2)};
