@@ -43,12 +43,12 @@ inline void find_viscosity(const Case& w, Mesh& mesh) {
     for_each_cell(grid, [&](long, long, long n) {
         const double d = dilation(grid, g.vx0, g.vz0, n) / V_c;
         const bool squeezed = d < 0 && c.M[n] > 0 && c.surface[static_cast<std::size_t>(n)] == 0;
-        const double rho =
-            c.M[n] / (c.volume.size() > 0 ? std::max(c.volume[n], 1e-300) : V_c);
-        c.q[n] = squeezed ? rho * -d * h *
-                                (w.q_linear * sound_speed(rho, c.compressibility[n]) -
-                                 w.q_quadratic * h * d)
-                          : 0;
+        const double rho = c.M[n] / (c.volume.size() > 0 ? std::max(c.volume[n], 1e-300) : V_c);
+        c.q[n] =
+            squeezed
+                ? rho * -d * h *
+                      (w.q_linear * sound_speed(rho, c.compressibility[n]) - w.q_quadratic * h * d)
+                : 0;
     });
 }
 
@@ -119,8 +119,7 @@ inline void add_viscous_force(const Case& w, Mesh& mesh) {
             if (mesh.cells.M[n] <= 0) continue;
             const auto corners = detail::corners_of(grid, n);
             for (const detail::CornerGradients& d : gradients) {
-                const auto tau =
-                    detail::viscous_stress(w.viscosity, d, corners, g.vx0, g.vz0);
+                const auto tau = detail::viscous_stress(w.viscosity, d, corners, g.vx0, g.vz0);
                 for (std::size_t a = 0; a < 4; ++a) {
                     g.fx[corners[a]] -= part * (tau.xx * d.x[a] + tau.xz * d.z[a]);
                     g.fz[corners[a]] -= part * (tau.xz * d.x[a] + tau.zz * d.z[a]);

@@ -74,30 +74,41 @@ inline void deposit_particles(const Case& w, const Particles& particles, Mesh& m
     Nodes& g = mesh.nodes;
     Cells& c = mesh.cells;
     const long rows = grid.z.cells + 3, stride = grid.stride();
-    common::for_each_row(rows, [&](long row) {
-        const auto n = static_cast<std::size_t>(row * stride),
-                   count = static_cast<std::size_t>(stride);
-        std::fill_n(g.sum.begin() + static_cast<long>(n), count, Four::Zero());
-        std::fill_n(c.sum.begin() + static_cast<long>(n * mesh.materials), count * mesh.materials,
-                    CellSum{});
-        if (volumes)
-            for (Field* f : {&c.volume, &c.give, &c.give_p})
-                std::fill_n(f->data() + n, count, 0.0);
-    }, grid.size());
+    common::for_each_row(
+        rows,
+        [&](long row) {
+            const auto n = static_cast<std::size_t>(row * stride),
+                       count = static_cast<std::size_t>(stride);
+            std::fill_n(g.sum.begin() + static_cast<long>(n), count, Four::Zero());
+            std::fill_n(c.sum.begin() + static_cast<long>(n * mesh.materials),
+                        count * mesh.materials, CellSum{});
+            if (volumes)
+                for (Field* f : {&c.volume, &c.give, &c.give_p})
+                    std::fill_n(f->data() + n, count, 0.0);
+        },
+        grid.size());
     const WeightScale scale(grid);
-    common::for_each_row_three_apart(grid.z.cells, [&](long j) {
-        const auto begin = static_cast<std::size_t>(particles.first_of_row[static_cast<std::size_t>(j)]),
-                   end = static_cast<std::size_t>(particles.first_of_row[static_cast<std::size_t>(j) + 1]);
-        if (affine && volumes)
-            detail::deposit_row<true, true>(scale, w.materials, particles, begin, end, grid, mesh);
-        else if (affine)
-            detail::deposit_row<true, false>(scale, w.materials, particles, begin, end, grid, mesh);
-        else if (volumes)
-            detail::deposit_row<false, true>(scale, w.materials, particles, begin, end, grid, mesh);
-        else
-            detail::deposit_row<false, false>(scale, w.materials, particles, begin, end, grid,
-                                              mesh);
-    }, particles.count());
+    common::for_each_row_three_apart(
+        grid.z.cells,
+        [&](long j) {
+            const auto begin = static_cast<std::size_t>(
+                           particles.first_of_row[static_cast<std::size_t>(j)]),
+                       end = static_cast<std::size_t>(
+                           particles.first_of_row[static_cast<std::size_t>(j) + 1]);
+            if (affine && volumes)
+                detail::deposit_row<true, true>(scale, w.materials, particles, begin, end, grid,
+                                                mesh);
+            else if (affine)
+                detail::deposit_row<true, false>(scale, w.materials, particles, begin, end, grid,
+                                                 mesh);
+            else if (volumes)
+                detail::deposit_row<false, true>(scale, w.materials, particles, begin, end, grid,
+                                                 mesh);
+            else
+                detail::deposit_row<false, false>(scale, w.materials, particles, begin, end, grid,
+                                                  mesh);
+        },
+        particles.count());
     fold_nodes(grid, g.sum.data());
     fold_cells(grid, &c.sum[0].M, 2 * static_cast<long>(mesh.materials));
     if (volumes)

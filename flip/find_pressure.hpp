@@ -44,8 +44,7 @@ inline void find_pressure(const Case& w, double time, Mesh& mesh) {
         for (const long corner : corners) {
             lightest = std::min(lightest, g.m[corner]);
             heaviest = std::max(heaviest, g.m[corner]);
-            speed2 = std::max(speed2,
-                              g.vx[corner] * g.vx[corner] + g.vz[corner] * g.vz[corner]);
+            speed2 = std::max(speed2, g.vx[corner] * g.vx[corner] + g.vz[corner] * g.vz[corner]);
         }
         double M[most_materials], U[most_materials];
         bool sound = true, gas = false;
@@ -103,32 +102,39 @@ inline double step_allowed(const Case& w, const Mesh& mesh, double last) {
     const double per_dx = 1 / grid.x.spacing(), per_dz = plane ? 1 / grid.z.spacing() : 0;
     const double per_dx2 = per_dx * per_dx + per_dz * per_dz, V_c = grid.cell_area();
     std::vector<double> of_row(static_cast<std::size_t>(grid.z.cells), 0.0);
-    common::for_each_row(grid.z.cells, [&](long j) {
-        double most = 0;
-        for (long i = 0; i < grid.x.cells; ++i) {
-            const long n = grid.index(i, j);
-            if (c.M[n] <= 0) continue;
-            double vx = 0, vz = 0;
-            for (const long corner : {n, n + 1, n + grid.stride(), n + grid.stride() + 1}) {
-                vx = std::max(vx, std::fabs(g.vx[corner]));
-                vz = std::max(vz, std::fabs(g.vz[corner]));
+    common::for_each_row(
+        grid.z.cells,
+        [&](long j) {
+            double most = 0;
+            for (long i = 0; i < grid.x.cells; ++i) {
+                const long n = grid.index(i, j);
+                if (c.M[n] <= 0) continue;
+                double vx = 0, vz = 0;
+                for (const long corner : {n, n + 1, n + grid.stride(), n + grid.stride() + 1}) {
+                    vx = std::max(vx, std::fabs(g.vx[corner]));
+                    vz = std::max(vz, std::fabs(g.vz[corner]));
+                }
+                const double filled = c.volume.size() > 0 ? std::max(c.volume[n], 1e-300) : V_c;
+                const double rho = c.M[n] / filled;
+                const double sound =
+                    w.implicit() ? 0 : sound_speed(rho, c.compressibility[n]) * std::sqrt(per_dx2);
+                double rate = (vx * per_dx + vz * per_dz + sound) / w.cfl;
+                if (w.viscosity > 0) rate = std::max(rate, 4 * w.viscosity / rho * per_dx2);
+                most = std::max(most, rate);
             }
-            const double filled = c.volume.size() > 0 ? std::max(c.volume[n], 1e-300) : V_c;
-            const double rho = c.M[n] / filled;
-            const double sound =
-                w.implicit() ? 0 : sound_speed(rho, c.compressibility[n]) * std::sqrt(per_dx2);
-            double rate = (vx * per_dx + vz * per_dz + sound) / w.cfl;
-            if (w.viscosity > 0) rate = std::max(rate, 4 * w.viscosity / rho * per_dx2);
-            most = std::max(most, rate);
-        }
-        of_row[static_cast<std::size_t>(j)] = most;
-    }, grid.size());
+            of_row[static_cast<std::size_t>(j)] = most;
+        },
+        grid.size());
     const double most = *std::max_element(of_row.begin(), of_row.end());
 
     // A fluid at rest is limited by how fast it can begin to move.
     const double pull = std::hypot(w.gravity_x, w.gravity_z);
     double dt = most > 0 ? 1 / most : w.end;
-    if (pull > 0) dt = std::min(dt, std::sqrt(w.cfl * std::min(grid.x.spacing(), plane ? grid.z.spacing() : grid.x.spacing()) / pull));
+    if (pull > 0)
+        dt = std::min(
+            dt, std::sqrt(w.cfl *
+                          std::min(grid.x.spacing(), plane ? grid.z.spacing() : grid.x.spacing()) /
+                          pull));
     if (w.trap > 0) dt = std::min(dt, w.cfl / std::sqrt(w.trap));
     dt = std::min(dt, w.end / 100);
     return last > 0 ? std::min(dt, 1.2 * last) : dt;

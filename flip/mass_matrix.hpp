@@ -18,7 +18,8 @@ namespace flip {
 /// itself, and the neighbors to the right, above, above right, above left.
 struct MassMatrix {
     std::array<Field, 5> entry;
-    static constexpr std::array<std::array<long, 2>, 5> to{{{0, 0}, {1, 0}, {0, 1}, {1, 1}, {-1, 1}}};
+    static constexpr std::array<std::array<long, 2>, 5> to{
+        {{0, 0}, {1, 0}, {0, 1}, {1, 1}, {-1, 1}}};
 };
 
 /// out:    M, all entries, ghosts filled
@@ -26,27 +27,30 @@ struct MassMatrix {
 inline void assemble_mass_matrix(const Grid& grid, const Particles& p, MassMatrix& M) {
     for (Field& f : M.entry) f.setZero(grid.size());
     const WeightScale scale(grid);
-    common::for_each_row_three_apart(grid.z.cells, [&](long j) {
-        const auto row = static_cast<std::size_t>(j);
-        for (auto k = static_cast<std::size_t>(p.first_of_row[row]);
-             k < static_cast<std::size_t>(p.first_of_row[row + 1]); ++k) {
-            const Weights w = weights_at(scale, p.x_p[k], p.z_p[k]);
-            const double m = p.m_p[k];
-            const double S[4] = {w.S_x[0] * w.S_z[0], w.S_x[1] * w.S_z[0], w.S_x[0] * w.S_z[1],
-                                 w.S_x[1] * w.S_z[1]};
-            const long n = w.node, up = n + scale.stride;
-            M.entry[0][n] += m * S[0] * S[0];
-            M.entry[0][n + 1] += m * S[1] * S[1];
-            M.entry[0][up] += m * S[2] * S[2];
-            M.entry[0][up + 1] += m * S[3] * S[3];
-            M.entry[1][n] += m * S[0] * S[1];
-            M.entry[1][up] += m * S[2] * S[3];
-            M.entry[2][n] += m * S[0] * S[2];
-            M.entry[2][n + 1] += m * S[1] * S[3];
-            M.entry[3][n] += m * S[0] * S[3];
-            M.entry[4][n + 1] += m * S[1] * S[2];
-        }
-    }, p.count());
+    common::for_each_row_three_apart(
+        grid.z.cells,
+        [&](long j) {
+            const auto row = static_cast<std::size_t>(j);
+            for (auto k = static_cast<std::size_t>(p.first_of_row[row]);
+                 k < static_cast<std::size_t>(p.first_of_row[row + 1]); ++k) {
+                const Weights w = weights_at(scale, p.x_p[k], p.z_p[k]);
+                const double m = p.m_p[k];
+                const double S[4] = {w.S_x[0] * w.S_z[0], w.S_x[1] * w.S_z[0], w.S_x[0] * w.S_z[1],
+                                     w.S_x[1] * w.S_z[1]};
+                const long n = w.node, up = n + scale.stride;
+                M.entry[0][n] += m * S[0] * S[0];
+                M.entry[0][n + 1] += m * S[1] * S[1];
+                M.entry[0][up] += m * S[2] * S[2];
+                M.entry[0][up + 1] += m * S[3] * S[3];
+                M.entry[1][n] += m * S[0] * S[1];
+                M.entry[1][up] += m * S[2] * S[3];
+                M.entry[2][n] += m * S[0] * S[2];
+                M.entry[2][n + 1] += m * S[1] * S[3];
+                M.entry[3][n] += m * S[0] * S[3];
+                M.entry[4][n + 1] += m * S[1] * S[2];
+            }
+        },
+        p.count());
     // Around a periodic direction the last row or column of nodes is the first.
     const long nx = grid.x.cells, nz = grid.z.cells;
     for (Field& f : M.entry) {
@@ -110,8 +114,7 @@ inline void filter_heat(const Case& w, const MassMatrix& M, Field& vx, Field& vz
         const Field &raw = along_x ? g.vx : g.vz, &after = along_x ? g.vxL : g.vzL;
         multiply(w.grid, M, v, trip);
         for_each_node(w.grid, [&](long, long, long n) {
-            if (g.m[n] > 0)
-                g.heat[n] -= (v[n] + after[n] - raw[n]) * (trip[n] / g.m[n] - raw[n]);
+            if (g.m[n] > 0) g.heat[n] -= (v[n] + after[n] - raw[n]) * (trip[n] / g.m[n] - raw[n]);
         });
     }
 }

@@ -27,30 +27,31 @@ struct CellSum {
 
 /// The nodes; all columns grid.size() long.
 struct Nodes {
-    std::vector<Four> sum;    // m_g, momentum x and z, nothing
-    Field m;                  // m_g
-    Field vx, vz;             // Favre average of the particles' velocities  [FLIP-8]
-    Field vx0, vz0;           // the same, with the walls' part set
-    Field fx, fz;             // force of pressure, q and viscosity
-    Field vxL, vzL;           // after the Lagrangian phase
-    Field vx_bar, vz_bar;     // mean of v^0 and v^L
-    Field vx_work, vz_work;   // at which pressure works: v_bar, or v^theta of an implicit one
-    std::vector<Four> kick;   // change of velocity x and z, velocity that particles move with x and z
+    std::vector<Four> sum;   // m_g, momentum x and z, nothing
+    Field m;                 // m_g
+    Field vx, vz;            // Favre average of the particles' velocities  [FLIP-8]
+    Field vx0, vz0;          // the same, with the walls' part set
+    Field fx, fz;            // force of pressure, q and viscosity
+    Field vxL, vzL;          // after the Lagrangian phase
+    Field vx_bar, vz_bar;    // mean of v^0 and v^L
+    Field vx_work, vz_work;  // at which pressure works: v_bar, or v^theta of an implicit one
+    std::vector<Four>
+        kick;  // change of velocity x and z, velocity that particles move with x and z
     std::vector<Four> carry;  // what particles keep instead of their own velocity, not in flip
     Field heat;               // specific energy that leaves the motion of the nodes
 };
 
 /// The cells; columns of grid.size(), those per material with the materials of a cell together.
 struct Cells {
-    std::vector<CellSum> sum;           // [cell][material]
-    std::vector<double> share, de;      // of a change of volume; change of e in this step
-    Field M;                            // mass
-    Field p, q;                         // pressure, artificial viscosity
-    Field compressibility;              // -(dV/dp)/V; 0 in an empty cell
-    Field p_step;                       // the pressure that acts in this step
-    std::vector<char> surface;          // 1: partly void, p = 0 whatever happens
-    Field volume, give, give_p;         // sums over particles that carry volumes: V, V/K, p V/K
-    Field strain, work, q_work;         // V_c div v dt per sum of V/K, for such particles
+    std::vector<CellSum> sum;       // [cell][material]
+    std::vector<double> share, de;  // of a change of volume; change of e in this step
+    Field M;                        // mass
+    Field p, q;                     // pressure, artificial viscosity
+    Field compressibility;          // -(dV/dp)/V; 0 in an empty cell
+    Field p_step;                   // the pressure that acts in this step
+    std::vector<char> surface;      // 1: partly void, p = 0 whatever happens
+    Field volume, give, give_p;     // sums over particles that carry volumes: V, V/K, p V/K
+    Field strain, work, q_work;     // V_c div v dt per sum of V/K, for such particles
 };
 
 struct Mesh {
@@ -65,8 +66,8 @@ inline Mesh mesh_of(const Case& w) {
     const long size = w.grid.size();
     const auto count = static_cast<std::size_t>(size);
     Nodes& g = mesh.nodes;
-    for (Field* f : {&g.m, &g.vx, &g.vz, &g.vx0, &g.vz0, &g.fx, &g.fz, &g.vxL, &g.vzL,
-                     &g.vx_bar, &g.vz_bar, &g.vx_work, &g.vz_work, &g.heat})
+    for (Field* f : {&g.m, &g.vx, &g.vz, &g.vx0, &g.vz0, &g.fx, &g.fz, &g.vxL, &g.vzL, &g.vx_bar,
+                     &g.vz_bar, &g.vx_work, &g.vz_work, &g.heat})
         f->setZero(size);
     g.sum.assign(count, Four::Zero());
     g.kick.assign(count, Four::Zero());
@@ -86,9 +87,9 @@ inline Mesh mesh_of(const Case& w) {
 
 /// Where a position is, in both directions: the cell with its four nodes, and the four cells around.
 struct Weights {
-    long node, cell;         // index of the lower left one of each four
-    double S_x[2], S_z[2];   // of the nodes
-    double R_x[2], R_z[2];   // of the cells
+    long node, cell;        // index of the lower left one of each four
+    double S_x[2], S_z[2];  // of the nodes
+    double R_x[2], R_z[2];  // of the cells
 };
 
 /// The constants of weights_at().
@@ -159,9 +160,8 @@ void fill_nodes(const Grid& grid, Number* f) {
     const long nx = grid.x.cells, nz = grid.z.cells, stride = grid.stride();
     if (grid.x.periodic)
         for (long j = 0; j <= nz; ++j)
-            detail::node_images(nx, [&](long to, long from) {
-                f[grid.index(to, j)] = f[grid.index(from, j)];
-            });
+            detail::node_images(
+                nx, [&](long to, long from) { f[grid.index(to, j)] = f[grid.index(from, j)]; });
     if (grid.z.periodic)
         detail::node_images(nz, [&](long to, long from) {
             std::copy_n(f + grid.index(-1, from), stride, f + grid.index(-1, to));
@@ -212,15 +212,21 @@ inline void fold_cells(const Grid& grid, double* f, long width = 1) {
 /// Calls work(i, j, index) for every cell, or every node, rows in parallel.
 template <class Work>
 void for_each_cell(const Grid& grid, const Work& work) {
-    common::for_each_row(grid.z.cells, [&](long j) {
-        for (long i = 0; i < grid.x.cells; ++i) work(i, j, grid.index(i, j));
-    }, grid.size());
+    common::for_each_row(
+        grid.z.cells,
+        [&](long j) {
+            for (long i = 0; i < grid.x.cells; ++i) work(i, j, grid.index(i, j));
+        },
+        grid.size());
 }
 template <class Work>
 void for_each_node(const Grid& grid, const Work& work) {
-    common::for_each_row(grid.z.cells + 1, [&](long j) {
-        for (long i = 0; i <= grid.x.cells; ++i) work(i, j, grid.index(i, j));
-    }, grid.size());
+    common::for_each_row(
+        grid.z.cells + 1,
+        [&](long j) {
+            for (long i = 0; i <= grid.x.cells; ++i) work(i, j, grid.index(i, j));
+        },
+        grid.size());
 }
 
 /// Calls visit(index) once for every node that is not the image of another, row by row.

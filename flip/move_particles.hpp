@@ -2,8 +2,8 @@
 // their cells.  [FLIP-6, FLIP-7]
 #pragma once
 
-#include "flip/mesh.hpp"
 #include "flip/ends.hpp"
+#include "flip/mesh.hpp"
 
 namespace flip {
 
@@ -50,7 +50,8 @@ inline double lost_on_mesh(const Grid& grid, const WeightScale& scale, const Wei
         const double dx = (static_cast<double>(corner & 1) - w.S_x[1]) * grid.x.spacing(),
                      dz = (static_cast<double>(corner >> 1) - w.S_z[1]) * grid.z.spacing();
         const Four& g = carry[n];
-        const double ax = v.x + C[0] * dx + C[1] * dz - g[0], az = v.z + C[2] * dx + C[3] * dz - g[1],
+        const double ax = v.x + C[0] * dx + C[1] * dz - g[0],
+                     az = v.z + C[2] * dx + C[3] * dz - g[1],
                      bx = g[2] - v_new.x - C_new[0] * dx - C_new[1] * dz,
                      bz = g[3] - v_new.z - C_new[2] * dx - C_new[3] * dz;
         sum += 0.5 * S * (ax * ax + az * az + bx * bx + bz * bz);
@@ -60,8 +61,8 @@ inline double lost_on_mesh(const Grid& grid, const WeightScale& scale, const Wei
 }
 
 // What flip loses by the kick: its variance among the nodes.
-inline double lost_by_kick(const WeightScale& scale, const Weights& w, const Four* kick,
-                           double dvx, double dvz) {
+inline double lost_by_kick(const WeightScale& scale, const Weights& w, const Four* kick, double dvx,
+                           double dvz) {
     double sum = -0.5 * (dvx * dvx + dvz * dvz);
     for_nodes(scale, w, [&](long n, double S) {
         sum += 0.5 * S * (kick[n][0] * kick[n][0] + kick[n][1] * kick[n][1]);
@@ -103,7 +104,7 @@ void move_row(const Case& w, const WeightScale& scale, const Mesh& mesh, const T
             p.V_p[k] += give * strain;
             gained -= give * work / p.m_p[k];
         }
-        double vx = p.vx_p[k] + dvx, vz = p.vz_p[k] + dvz;  // [FLIP-6]
+        double vx = p.vx_p[k] + dvx, vz = p.vz_p[k] + dvz;                    // [FLIP-6]
         const double x = p.x_p[k] + dt * sum[2], z = p.z_p[k] + dt * sum[3];  // [FLIP-7]
         if constexpr (!pure_flip) {
             // From what the particle has kept to what the mesh makes of it.
@@ -119,9 +120,9 @@ void move_row(const Case& w, const WeightScale& scale, const Mesh& mesh, const T
                 bilinear_gradient(grid, scale, at, carry, 2, C_new);
                 if (transfer.heat) {
                     const Weights later = weights_at(scale, around(grid.x, x), around(grid.z, z));
-                    gained += lost_on_mesh(grid, scale, at, carry, {old_x, old_z}, C, {vx, vz},
-                                           C_new) +
-                              affine_energy(grid, at, C_new) - affine_energy(grid, later, C_new);
+                    gained +=
+                        lost_on_mesh(grid, scale, at, carry, {old_x, old_z}, C, {vx, vz}, C_new) +
+                        affine_energy(grid, at, C_new) - affine_energy(grid, later, C_new);
                 }
                 p.Cxx_p[k] = C_new[0], p.Cxz_p[k] = C_new[1];
                 p.Czx_p[k] = C_new[2], p.Czz_p[k] = C_new[3];
@@ -169,19 +170,22 @@ inline void move_particles(const Case& w, double dt, const Mesh& mesh, Particles
     transfer.towards_mesh = w.transfer == "flip" ? 0 : (w.transfer == "blend" ? 1 - w.blend : 1);
     const bool pure = w.transfer == "flip", volumes = has(particles.V_p);
     const WeightScale scale(w.grid);
-    common::for_each_row(w.grid.z.cells, [&](long j) {
-        const auto row = static_cast<std::size_t>(j);
-        const auto begin = static_cast<std::size_t>(particles.first_of_row[row]),
-                   end = static_cast<std::size_t>(particles.first_of_row[row + 1]);
-        if (pure && !volumes)
-            detail::move_row<true, false>(w, scale, mesh, transfer, dt, begin, end, particles);
-        else if (pure)
-            detail::move_row<true, true>(w, scale, mesh, transfer, dt, begin, end, particles);
-        else if (!volumes)
-            detail::move_row<false, false>(w, scale, mesh, transfer, dt, begin, end, particles);
-        else
-            detail::move_row<false, true>(w, scale, mesh, transfer, dt, begin, end, particles);
-    }, particles.count());
+    common::for_each_row(
+        w.grid.z.cells,
+        [&](long j) {
+            const auto row = static_cast<std::size_t>(j);
+            const auto begin = static_cast<std::size_t>(particles.first_of_row[row]),
+                       end = static_cast<std::size_t>(particles.first_of_row[row + 1]);
+            if (pure && !volumes)
+                detail::move_row<true, false>(w, scale, mesh, transfer, dt, begin, end, particles);
+            else if (pure)
+                detail::move_row<true, true>(w, scale, mesh, transfer, dt, begin, end, particles);
+            else if (!volumes)
+                detail::move_row<false, false>(w, scale, mesh, transfer, dt, begin, end, particles);
+            else
+                detail::move_row<false, true>(w, scale, mesh, transfer, dt, begin, end, particles);
+        },
+        particles.count());
 }
 
 /// What particles take from the mesh in place of their own velocity, where the transfer wants it.

@@ -11,12 +11,6 @@
 
 namespace flip {
 
-/// What a step has to say besides the state it leaves.
-struct StepReport {
-    long iterations = 0;            // of the implicit pressure
-    double largest_divergence = 0;  // of the velocity after it
-};
-
 /// What the loop hands its results to. A row belongs to t^n: particles, cells and totals of that
 /// time, and the step that led to it.
 ///   mass_error:     (mass - books.mass - first) / first
@@ -44,7 +38,7 @@ class Recorder {
                                             {"largest_speed", "velocity"},
                                             {"largest_mach", "1"},
                                             {"iterations", "1"},
-                                            {"largest_divergence", "1/time"}};
+                                            {"divergence", "speed/dx"}};
         for (const common::Column& column : followed_columns(wanted)) columns.push_back(column);
         history.columns(columns);
     }
@@ -61,7 +55,7 @@ class Recorder {
     /// One row for t^n.
     /// errors: NumericalError when the energy is not finite or has left the limit of the case
     void record(long step, const State& state, const Totals& now, const CellFields& cells,
-                const StepReport& report, common::Session& session) {
+                common::Session& session) {
         const common::History& history = session.history;
         const bool is_first = history.all().empty();
         const auto first = [&](const char* name, double value) {
@@ -95,8 +89,8 @@ class Recorder {
                 relative(energy - books.energy - gross, gross, books.energy),
                 most.speed,
                 most.mach,
-                static_cast<double>(report.iterations),
-                report.largest_divergence};
+                static_cast<double>(state.report.iterations),
+                state.report.divergence};
         add_followed(wanted_, state, now, cells, row_);
         session.history.row(row_);
     }

@@ -18,19 +18,12 @@
 
 namespace flip {
 
-/// What a solve has to say.
-struct PressureReport {
-    long iterations = 0;
-    double divergence = 0;  // root mean square of div v^theta + (p^theta - p^n)/(theta dt K), times
-                            // dx over the largest speed
-};
-
 namespace detail {
 
 // A node as the pressures around it see it: the cells that push it, and how.
 struct NodePush {
-    std::array<long, 4> cell;      // index, or -1: none, or one without pressure
-    std::array<double, 4> x, z;    // force per pressure; 0 where the node is held
+    std::array<long, 4> cell;    // index, or -1: none, or one without pressure
+    std::array<double, 4> x, z;  // force per pressure; 0 where the node is held
 };
 
 inline NodePush push_on(const Case& w, const Cells& c, long i, long j) {
@@ -65,7 +58,7 @@ inline NodePush push_on(const Case& w, const Cells& c, long i, long j) {
 /// exact:  none of the time levels sees the sound; acoustic waves are damped by
 ///         sqrt((1 + (1-theta)^2 a^2)/(1 + theta^2 a^2)) per step, a = c k dt
 /// source: the idea is ICE's: Harlow and Amsden, J. Comput. Phys. 8, 197 (1971).
-inline PressureReport solve_pressure(const Case& w, double dt, Mesh& mesh) {
+inline StepReport solve_pressure(const Case& w, double dt, Mesh& mesh) {
     const Grid& grid = w.grid;
     Nodes& g = mesh.nodes;
     Cells& c = mesh.cells;
@@ -122,8 +115,8 @@ inline PressureReport solve_pressure(const Case& w, double dt, Mesh& mesh) {
                     const int ra = row[static_cast<std::size_t>(push.cell[a])],
                               rb = row[static_cast<std::size_t>(push.cell[b])];
                     if (ra >= rb && rb >= 0)
-                        entries.emplace_back(ra, rb, factor * (push.x[a] * push.x[b] +
-                                                               push.z[a] * push.z[b]));
+                        entries.emplace_back(
+                            ra, rb, factor * (push.x[a] * push.x[b] + push.z[a] * push.z[b]));
                 }
             }
         }
@@ -145,7 +138,7 @@ inline PressureReport solve_pressure(const Case& w, double dt, Mesh& mesh) {
     solver.setMaxIterations(w.most_iterations);
     solver.compute(A);
     const Eigen::VectorXd change = solver.solve(load);
-    PressureReport report;
+    StepReport report;
     report.iterations = solver.iterations();
     if (!(solver.error() <= solver.tolerance()))
         throw common::NumericalError(

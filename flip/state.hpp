@@ -21,6 +21,12 @@ struct CellFluid {
     std::vector<Field> e;  // specific internal energy of each material
 };
 
+/// What the last step has to say besides the state it leaves.
+struct StepReport {
+    long iterations = 0;    // of the implicit pressure
+    double divergence = 0;  // what its tolerance leaves, root mean square, in units of speed/dx
+};
+
 /// What a checkpoint holds. `cells` is empty in flip.
 struct State {
     Particles particles;
@@ -28,6 +34,7 @@ struct State {
     Books books;
     double time = 0;
     double dt = 0;  // of the last step; 0 before the first
+    StepReport report;
 };
 
 /// Names every number of the state, for writing and for reading alike.
@@ -43,6 +50,8 @@ void archive(Archive& a, State& s) {
     a("energy_in", s.books.energy);
     a("time", s.time);
     a("dt", s.dt);
+    a("iterations", s.report.iterations);
+    a("divergence", s.report.divergence);
 }
 
 /// Sums over the fluid; in flip over particles, in pic over cells.

@@ -99,9 +99,8 @@ inline void work_on_cells(const Case& w, double dt, Mesh& mesh, Books& books) {
     for_each_cell(grid, [&](long, long, long n) {
         const double work = dilation(grid, g.vx_work, g.vz_work, n),
                      bar = dilation(grid, g.vx_bar, g.vz_bar, n);
-        double dE = w.viscosity > 0 && c.M[n] > 0
-                        ? dt * viscous_heat(w, g, g.vx_bar, g.vz_bar, n)
-                        : 0;
+        double dE =
+            w.viscosity > 0 && c.M[n] > 0 ? dt * viscous_heat(w, g, g.vx_bar, g.vz_bar, n) : 0;
         if (volumes) {
             // Particles know their own pressure; the viscous heat goes by mass.
             const bool gives = c.surface[static_cast<std::size_t>(n)] == 0 && c.give[n] > 0;

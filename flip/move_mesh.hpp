@@ -1,0 +1,89 @@
+// on the mesh: the whole Lagrangian phase of flip, in which the mesh moves with the fluid.
+#pragma once
+
+#include "flip/mass_matrix.hpp"
+#include "flip/move_particles.hpp"
+#include "flip/solve_pressure.hpp"
+#include "flip/work_on_cells.hpp"
+
+namespace flip {
+
+/// The mass matrix, where the case asks for more than its lumped sums; kept between steps.
+using LagrangianScratch = MassMatrix;
+
+namespace detail {
+
+// The consistent mass matrix in place of the lumped one: v from M v = momentum, and
+// M (v^L - v) = dt (F + m g) on the nodes that are free. Nothing is lost to the particles, so the
+// nodes owe them no heat; what walls stop is shared by mass.
+inline void accelerate_consistently(const Case& w, double dt, const MassMatrix& M, Mesh& mesh) {
+    const Grid& grid = w.grid;
+    Nodes& g = mesh.nodes;
+    std::vector<char> held(static_cast<std::size_t>(grid.size()), 0);
+    for (const bool along_x : {true, false}) {
+        Field &before = along_x ? g.vx : g.vz, &after = along_x ? g.vxL : g.vzL,
+              &start = along_x ? g.vx0 : g.vz0;
+        const Field& force = along_x ? g.fx : g.fz;
+        Field load = Field::Zero(grid.size()), kick = Field::Zero(grid.size());
+        for_each_node(grid, [&](long i, long j, long n) {
+            const Held h = held_at(w, i, j);
+            const bool is_held = along_x ? h.x : h.z;
+            held[static_cast<std::size_t>(n)] = is_held;
+            if (is_held && g.m[n] > 0) kick[n] = (along_x ? h.vx : h.vz) - before[n];
+            load[n] = dt * (force[n] + g.m[n] * pull_on_node(w, n)[along_x ? 0 : 1]);
+        });
+        solve_mass(grid, M, g.m, held, load, kick);
+        after = before + kick;
+        start = before;
+    }
+}
+
+// Velocities M^-1 of the momentum that the particles brought.
+inline void solve_velocity(const Case& w, const MassMatrix& M, Mesh& mesh) {
+    const std::vector<char> none(static_cast<std::size_t>(w.grid.size()), 0);
+    for (const int component : {1, 2}) {
+        Field momentum = Field::Zero(w.grid.size());
+        for_each_node(w.grid, [&](long, long, long n) {
+            momentum[n] = mesh.nodes.sum[static_cast<std::size_t>(n)][component];
+        });
+        solve_mass(w.grid, M, mesh.nodes.m, none, momentum,
+                   component == 1 ? mesh.nodes.vx : mesh.nodes.vz);
+    }
+}
+
+}  // namespace detail
+
+/// One Lagrangian step of the mesh.
+/// in:     deposit_particles() and find_pressure() have been called
+/// out:    what move_particles() needs: nodes.kick, heat, carry; cells.de; books
+inline StepReport move_mesh(const Case& w, double dt, const Particles& particles,
+                            LagrangianScratch& M, Mesh& mesh, Books& books) {
+    Nodes& g = mesh.nodes;
+    StepReport report;
+    const bool consistent = w.mass == "consistent", filtered = w.transfer == "xpic";
+    if (consistent || filtered) assemble_mass_matrix(w.grid, particles, M);
+    if (consistent) detail::solve_velocity(w, M, mesh);
+
+    find_viscosity(w, mesh);
+    find_known_forces(w, mesh);
+    if (w.implicit()) {
+        report = solve_pressure(w, dt, mesh);
+    } else {
+        mesh.cells.p_step = mesh.cells.p;
+        accelerate_nodes(w, dt, mesh);
+    }
+    if (consistent) detail::accelerate_consistently(w, dt, M, mesh);
+    work_on_cells(w, dt, mesh, books);
+
+    if (filtered) {
+        Field vx = g.vx, vz = g.vz;
+        filter_velocity(w.grid, M, g.m, w.xpic_order, vx, vz);
+        filter_heat(w, M, vx, vz, mesh);
+        prepare_transfer(w, vx, vz, mesh);
+    } else {
+        prepare_transfer(w, g.vx, g.vz, mesh);
+    }
+    return report;
+}
+
+}  // namespace flip
