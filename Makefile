@@ -82,9 +82,13 @@ The particle-in-cell family in running code
   make implicit_moment   build one program: $(programs)
   make all               build every program
   make fig09             run what is stale and draw into out/figures/: $(sort $(filter fig%,$(figures)))
-                         $(filter-out fig% cic_% mpm_%,$(figures)) $(wordlist 1,4,$(cic_figures))
+                         $(filter-out fig% cic_% mpm_% pic_% flip_%,$(figures)) $(wordlist 1,4,$(cic_figures))
                          $(wordlist 5,9,$(cic_figures))
                          $(wordlist 10,99,$(cic_figures))
+                         $(wordlist 1,4,$(fluid_figures))
+                         $(wordlist 5,8,$(fluid_figures))
+                         $(wordlist 9,12,$(fluid_figures))
+                         $(wordlist 13,99,$(fluid_figures))
                          $(wordlist 1,3,$(mpm_figures))
                          $(wordlist 4,6,$(mpm_figures))
                          $(wordlist 7,9,$(mpm_figures))
@@ -214,6 +218,19 @@ $(eval $(call cic_series,cic_thermal_heating,thermal_heating,out/cic/heating))
 $(patsubst %,out/figures/%.png,$(filter cic_%,$(figures))): $(filter-out cic/figures/cic_%,$(wildcard cic/figures/*))
 
 cic_figures = $(filter cic_%,$(figures))
+
+# $(call fluid_series,figure,cases,folder): a figure of several runs, by  sh SCRIPT PIC FLIP FOLDER .
+define fluid_series
+$(call figure,$(1),flip,$(3))
+$(3)/.complete: flip/figures/$(1).sh $(BUILD)/pic $(BUILD)/flip $(2:%=flip/cases/%.toml) | $(packages_first)
+	@rm -f $$@
+	@mkdir -p $$(@D)
+	$$(one_at_a_time) sh $$< $(BUILD)/pic $(BUILD)/flip $$(@D)
+	@touch $$@
+endef
+$(eval $(call fluid_series,flip_sod,sod,out/flip/shock_tubes))
+
+fluid_figures = $(filter pic_% flip_%,$(figures))
 
 # $(call mpm_series,figure,cases,folder): a figure of several runs of mpm_explicit.
 define mpm_series
