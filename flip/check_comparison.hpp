@@ -63,6 +63,13 @@ inline void refuse_struck_wall(const Case& w, const std::string& what) {
     refuse(w.frame_x != 0, what + " is stated in the frame of the wall: take out theory.frame_x");
     refuse(w.compare == "piston" && r.gas.pressure + material_of(w, r).p_infinity == 0,
            what + " needs gas with a pressure: give region." + r.name + ".pressure");
+    // What comes from the other end, at best with the flow and its sound.
+    const bool fed = w.is(end == x_low ? x_high : x_low, "inflow");
+    const double meeting = w.grid.x.length / (struck_wall(w).shock.speed_from_wall +
+                                              std::fabs(r.gas.velocity_x) + sound_speed_of(w, r));
+    refuse(!fed && w.end > meeting,
+           what + ": the other end of the mesh is felt behind the shock from t = " +
+               shown(meeting) + " on: lower time.end below that");
 }
 
 inline void refuse_blast(const Case& w, const std::string& what) {

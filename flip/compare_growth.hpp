@@ -107,6 +107,8 @@ inline void compare_instability(const FinishedRun& run) {
         source + "; fitted up to t = " + shown(times[count - 1]) + ", misfit " + shown(fit.misfit);
     run.summary.result_info("growth", fit.rate, "1/time", where);
     run.summary.result("growth_over_theory", fit.rate / expected, "", 1, w.theory_tolerance, where);
+    run.summary.result("fit_misfit", fit.misfit, "", 0, 0.2,
+                       "what is no sum of a growing and a decaying wave, rms");
     run.summary.result_info("e_foldings", expected * times[count - 1], "", "within the fit");
 }
 

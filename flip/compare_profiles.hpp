@@ -125,8 +125,9 @@ inline void compare_sedov(const FinishedRun& run) {
     const Blast blast = blast_of(w);
     const double t = run.state.time, R = blast.radius(t);
     const std::string source = "Sedov's similarity solution";
-    const auto radius = run.history.column("shock_radius");
-    run.result("shock_radius", radius.back(), "length", R,
+    const double radius = run.history.column("shock_radius").back(),
+                 R_then = blast.radius(run.history.column("time").back());
+    run.result("shock_radius", radius, "length", R_then,
                source + "; outer half height of the density");
     const RadialProfile profile = radial_profile(w, run.cells, blast.x, blast.z);
     std::vector<double> rho_exact, v_exact, p_exact;
@@ -169,15 +170,16 @@ inline void compare_noh(const FinishedRun& run) {
         sum += ring * profile.rho[n], area += ring;
     }
     const double plateau = area > 0 ? sum / area : 0;
-    const double radius = run.history.column("shock_radius").back();
+    const double radius = run.history.column("shock_radius").back(),
+                 R_then = theory::noh_shock_radius(noh, run.history.column("time").back());
     if (noh.dimension == 1) {
         run.result("plateau_density", plateau, "mass/length^3", behind.density, source);
-        run.result("shock_radius", radius, "length", R, source);
+        run.result("shock_radius", radius, "length", R_then, source);
     } else {
         run.summary.result_info("plateau_density_over_theory", plateau / behind.density, "",
                                 source + ": " + shown(behind.density));
-        run.summary.result_info("shock_radius_over_theory", R > 0 ? radius / R : 0, "",
-                                source + ": " + shown(R));
+        run.summary.result_info("shock_radius_over_theory", R_then > 0 ? radius / R_then : 0, "",
+                                source + ": " + shown(R_then));
     }
     run.summary.result_info("middle_density_over_theory", profile.rho[0] / behind.density, "",
                             "wall heating: the ring in the middle");
@@ -196,10 +198,12 @@ inline void compare_gresho(const FinishedRun& run) {
     const double t = run.state.time, turn = pi * region.width / region.speed;
     if (!(t > 0)) return;
     const std::string source = "exact: it turns for ever; of one turn";
+    const auto times = run.history.column("time");
+    if (!(times.back() > 0)) return;
     const auto kept = [&](const char* name) {
         const auto values = run.history.column(name);
         const double ratio = values.back() / values.front();
-        return ratio > 0 ? std::pow(ratio, std::fabs(turn) / t) : 0.0;
+        return ratio > 0 ? std::pow(ratio, std::fabs(turn) / times.back()) : 0.0;
     };
     run.summary.result("kinetic_energy_kept", kept("kinetic_in_frame"), "", 1, w.theory_tolerance,
                        source);

@@ -18,6 +18,7 @@ namespace flip {
 struct RegionScales {
     std::string name;
     double particles = 0;
+    double mass = 0;
     double sound_speed = 0;  // the smallest
     double speed = 0;        // the largest
     double mach = 0;         // the largest; 0 where there is no sound
@@ -81,9 +82,10 @@ inline double bytes_of(const Case& w, const std::string& program, double particl
 /// in:     program, pic or flip, which takes more memory
 inline Scales scales_of(const Case& w, const std::string& program = "flip") {
     Scales s;
-    for (const RegionCase& r : w.regions) s.regions.push_back({r.name, 0, 0, 0, 0});
+    for (const RegionCase& r : w.regions) s.regions.push_back({r.name, 0, 0, 0, 0, 0});
     const double per_dx = 1 / w.grid.x.spacing(), per_dz = w.plane() ? 1 / w.grid.z.spacing() : 0;
     const double both = std::hypot(per_dx, per_dz);
+    const double place = w.grid.cell_area() / static_cast<double>(w.per_cell_x * w.per_cell_z);
     for_each_place(w, [&](std::size_t n, const FluidState& fluid, double, double, double weight) {
         RegionScales& r = s.regions[n];
         const Material& a = w.materials[static_cast<std::size_t>(fluid.material)];
@@ -94,10 +96,21 @@ inline Scales scales_of(const Case& w, const std::string& program = "flip") {
         r.speed = std::max(r.speed, speed);
         if (c > 0) r.mach = std::max(r.mach, speed / c);
         r.particles += weight;
+        r.mass += weight * fluid.density * place;
         s.sound_speed = std::max(s.sound_speed, c);
         s.rate = std::max(s.rate, std::fabs(fluid.vx) * per_dx + std::fabs(fluid.vz) * per_dz +
                                       (w.implicit() ? 0 : c * both));
     });
+    for (std::size_t n = 0; n < w.regions.size(); ++n) {
+        // A region that an energy has been set free in: c^2 = gamma (gamma - 1) e.
+        RegionScales& r = s.regions[n];
+        if (w.regions[n].energy == 0 || r.mass == 0) continue;
+        const double gamma = material_of(w, w.regions[n]).gamma;
+        r.sound_speed = std::sqrt(r.sound_speed * r.sound_speed +
+                                  gamma * (gamma - 1) * w.regions[n].energy / r.mass);
+        s.sound_speed = std::max(s.sound_speed, r.sound_speed);
+        s.rate = std::max(s.rate, w.implicit() ? 0 : r.sound_speed * both);
+    }
     for (const RegionScales& r : s.regions) {
         s.particles += r.particles;
         s.speed = std::max(s.speed, r.speed);

@@ -87,6 +87,16 @@ inline void warn_of_speeds(const Case& w, const Scales& scales, const std::strin
 }
 
 inline void warn_of_theory(const Case& w, const Scales& scales, std::vector<std::string>& out) {
+    if (w.compare == "riemann") {
+        const theory::RiemannSolution exact = riemann_of(w);
+        const double left = w.interface + (exact.left_head + w.frame_x) * w.end,
+                     right = w.interface + (exact.right_head + w.frame_x) * w.end;
+        if (left < w.grid.x.low || right > w.grid.x.high())
+            out.push_back("at time.end the waves are at x = " + shown(left) + " and " +
+                          shown(right) +
+                          ", beyond the ends of the mesh, which the exact solution "
+                          "does not know");
+    }
     if (w.compare == "wave") {
         const double period =
             2 * pi / (sound_speed_of(w, region_with_flow(w, "wave")) * followed_wave_number(w));

@@ -291,6 +291,8 @@ TEST_CASE("comparisons of shocks and blasts that theory cannot answer are refuse
          "theory.compare = \"piston\" needs gas with a pressure: give region.gas.pressure"},
         {"wall that flies", tube, piston + "theory.frame_x = 1",
          "is stated in the frame of the wall: take out theory.frame_x"},
+        {"shock that meets the other end", tube, piston + "time.end = 0.4",
+         "the other end of the mesh is felt behind the shock from t = 0.3216 on: lower time.end"},
         {"no blast", box, compare("sedov"),
          "theory.compare = \"sedov\" needs a cold region first, and one with an energy inside it; "
          "0 have one"},
@@ -457,6 +459,8 @@ TEST_CASE("what may mislead in a fluid is a warning with the number and the limi
                    "output.fields_interval = 1e-6\noutput.particles_interval = 1",
                    {"output.fields_interval = 1e-06 is below the first time step, 0.002535: files "
                     "are written every step"});
+    check_warnings("waves beyond the ends", sod, "theory.compare = \"riemann\"\ntime.end = 0.4",
+                   {"at time.end the waves are at x = 0.02671 and 1.201, beyond the ends"});
     check_warnings("slow wave", around,
                    "theory.compare = \"wave\"\nregion.gas.flow = \"wave\"\n"
                    "region.gas.amplitude = 0.01",
@@ -491,6 +495,14 @@ TEST_CASE("a dry run of a fluid shows scales and theory and memory and time" *
     CHECK(wall.find("velocity and energy on the cells\n") != std::string::npos);
     CHECK(wall.find("steps               100 of 0.001\n") != std::string::npos);
     CHECK(wall.find("density 2.") != std::string::npos);
+    // c^2 = gamma (gamma - 1) E/m = 0.56/(524/16384) in the hot disk.
+    const std::string blast =
+        description(box,
+                    "[region.hot]\nshape = \"disk\"\nradius = 0.1\ncenter_x = 0.5\n"
+                    "center_z = 0.5\nenergy = 1\npressure = 0",
+                    "flip");
+    INFO(blast);
+    CHECK(blast.find("particles, sound speed 4.18") != std::string::npos);
 }
 
 TEST_CASE("a fluid case at the edge of what is taken passes" * doctest::description("robust")) {
