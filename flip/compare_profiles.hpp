@@ -1,4 +1,5 @@
-// Runs whose result is a profile: Riemann's problem, shocks at walls, blasts, falling gas, vortices.
+// Runs whose result is a profile: Riemann's problem, shocks at walls, blasts, falling gas; and
+// vortices.
 #pragma once
 
 #include <algorithm>

@@ -141,11 +141,12 @@ inline SoundWave sound_wave_of(const Case& w, const std::string& program, double
     // Differences over two cells, or from cells to the nodes between them.
     const double kappa = on_cells ? std::sin(k * dx) / dx : 2 * std::sin(0.5 * k * dx) / dx;
     const double a = c * kappa * dt;
-    // A stiffened gas of this gamma follows its volume as a gas of pressure p + p_infinity would,
-    // but it has gamma p_infinity as a reference of its energy, which changes nothing here.
-    const std::complex<double> factor = w.implicit()
-                                            ? theory::theta_factor(w.theta, a)
-                                            : theory::explicit_factor(material_of(w, r).gamma, a);
+    // In a gas 1/gamma of a change of pressure is that of density at constant energy; in a
+    // stiffened gas it is (p + gamma p_infinity)/(gamma (p + p_infinity)).
+    const Material& gas = material_of(w, r);
+    const double p = r.gas.pressure, gamma = stiffness(gas, p) / (p + gas.gamma * gas.p_infinity);
+    const std::complex<double> factor =
+        w.implicit() ? theory::theta_factor(w.theta, a) : theory::explicit_factor(gamma, a);
     double kept = 1;
     if (!on_cells) {
         const double once = theory::pic_smoothing(k, dx), lost = 1 - once;
