@@ -486,6 +486,25 @@ TEST_CASE("gas in a periodic box falls as one body") {
     CHECK(std::fabs(t.momentum_z - t.mass * (0.2 - 0.5 * 0.25)) <= 1e-14);
 }
 
+TEST_CASE("the trap pulls every cell towards the middle of the mesh") {
+    Case w = mesh(6, 5, "slip", "slip");
+    w.grid.x.low = -2, w.grid.z.low = 1;
+    w.materials = {{"dust", 1, 0}};
+    w.regions = {fluid("dust", 1, 0)};
+    w.trap = 3, w.gravity_x = 0.2, w.gravity_z = 0.1;
+    Run r(w);
+    share_pressure(r.w, r.state, r.cells);
+    accelerate_cells(r.w, 0.01, r.state, r.cells);
+    for (long j = 0; j < 5; ++j) {
+        for (long i = 0; i < 6; ++i) {
+            const CellVelocity& v = r.cells.v_tilde[static_cast<std::size_t>(w.grid.index(i, j))];
+            const double x = w.grid.x.at(real(i) + 0.5) + 1.5, z = w.grid.z.at(real(j) + 0.5) - 1.5;
+            CHECK(std::fabs(v.x - 0.01 * (0.2 - 3 * x)) <= 1e-16);
+            CHECK(std::fabs(v.z - 0.01 * (0.1 - 3 * z)) <= 1e-16);
+        }
+    }
+}
+
 TEST_CASE("a wall is a mirror") {
     // Half of a box that is symmetric about x = 1/2, with a wall there, moves like that half.
     Run whole(turbulence(24, 10, "slip", "slip"));
