@@ -89,66 +89,88 @@ inline void share_pressure(const Case& w, const State& state, PicCells& cells) {
     fill_ghosts(w, cells);
 }
 
+namespace detail {
+
+// The largest of what of_cell(n) says.
+template <class OfCell>
+double largest_over_cells(const Grid& grid, PicCells& cells, const OfCell& of_cell) {
+    for_each_row_of_cells(grid, [&](long j) {
+        double most = 0;
+        for (long i = 0; i < grid.x.cells; ++i) most = std::max(most, of_cell(grid.index(i, j)));
+        cells.row[static_cast<std::size_t>(j)] = most;
+    });
+    return *std::max_element(cells.row.begin(), cells.row.end());
+}
+
+// Rate at which the fastest signal crosses a cell. The speed of sound counts as no less than
+// sqrt(P/rho), what the pressure P on a face can give to a light cell.
+inline double rate_of_signals(const Case& w, PicCells& cells) {
+    const Grid& grid = w.grid;
+    const bool plane = w.plane();
+    const double per_dx = 1 / grid.x.spacing(), per_dz = plane ? 1 / grid.z.spacing() : 0.0,
+                 both = std::sqrt(per_dx * per_dx + per_dz * per_dz), V = grid.cell_area();
+    const long stride = grid.stride();
+    const Field &p = cells.p, &c = cells.c, &filled = cells.filled;
+    return largest_over_cells(grid, cells, [&](long n) {
+        const CellVelocity& v = cells.v[static_cast<std::size_t>(n)];
+        double P = 0;
+        const auto face = [&](long m) { P = std::max(P, filled[m] * 0.5 * (p[n] + p[m])); };
+        face(n - 1), face(n + 1);
+        if (plane) face(n - stride), face(n + stride);
+        const double c2 = std::max(c[n] * c[n], P * V * cells.per_mass[n]);
+        return filled[n] *
+               (std::fabs(v.x) * per_dx + std::fabs(v.z) * per_dz + std::sqrt(c2) * both);
+    });
+}
+
+// Rate at which viscosity takes away the difference of two velocities, all faces of a cell together.
+inline double rate_of_viscosity(const Case& w, PicCells& cells) {
+    const Grid& grid = w.grid;
+    const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing(), V = grid.cell_area();
+    const long stride = grid.stride();
+    const Viscosity viscosity{w.q_linear, w.q_quadratic};
+    const Field &mass = cells.mass, &per_mass = cells.per_mass, &c = cells.c;
+    const auto v = [&](long m) { return cells.v[static_cast<std::size_t>(m)]; };
+    return largest_over_cells(grid, cells, [&](long n) {
+        double rate = 0;
+        const auto face = [&](long m, double du, double per_distance) {
+            if (!(du < 0)) return;
+            const double slope =
+                viscosity.slope(0.5 * (mass[n] + mass[m]) / V, 0.5 * (c[n] + c[m]), du);
+            rate += cells.filled[m] * slope * V * (per_mass[n] + per_mass[m]) * per_distance;
+        };
+        face(n + 1, v(n + 1).x - v(n).x, per_dx);
+        face(n - 1, v(n).x - v(n - 1).x, per_dx);
+        if (w.plane()) {
+            face(n + stride, v(n + stride).z - v(n).z, per_dz);
+            face(n - stride, v(n).z - v(n - stride).z, per_dz);
+        }
+        return cells.filled[n] * rate;
+    });
+}
+
+}  // namespace detail
+
 /// The next time step.
 ///   dt = cfl / max over cells of [|vx|/dx + |vz|/dz + c sqrt(1/dx^2 + 1/dz^2)]
-/// where c is at least the speed sqrt(P/rho) that the pressure on a face can give to a light cell;
-/// no longer than viscosity needs to halve a difference of velocities, 1.2 times the last step, or
-/// the time that is left. A fixed time.dt overrules all but the last.
+/// no longer than it takes viscosity to bring two cells together or gravity to move a body at rest
+/// by cfl^2 dx, than 1.2 times the last step, or than the time that is left. A fixed time.dt
+/// overrules all but the last.
 /// in:     cells after share_pressure(); the step and time of the state
 /// errors: NumericalError when the step gets so short that the run would never end
 inline double largest_step(const Case& w, const State& state, PicCells& cells) {
-    const Grid& grid = w.grid;
     const double left = w.end - state.time;
     const auto not_beyond_the_end = [&](double dt) { return dt * (1 + 1e-9) < left ? dt : left; };
     if (w.dt > 0) return not_beyond_the_end(w.dt);
 
-    const bool plane = w.plane();
-    const double per_dx = 1 / grid.x.spacing(), per_dz = plane ? 1 / grid.z.spacing() : 0.0,
-                 both = std::sqrt(per_dx * per_dx + per_dz * per_dz), V = grid.cell_area(),
-                 per_V = 1 / V;
-    const long nx = grid.x.cells, stride = grid.stride();
-    const Viscosity viscosity{w.q_linear, w.q_quadratic};
-    const Field &mass = cells.mass, &p = cells.p, &c = cells.c, &filled = cells.filled;
-    double fastest = 0, stiffest = 0;
-    const auto over_rows = [&](const auto& of_cell) {
-        for_each_row_of_cells(grid, [&](long j) {
-            double most = 0;
-            for (long i = 0; i < nx; ++i) most = std::max(most, of_cell(grid.index(i, j)));
-            cells.row[static_cast<std::size_t>(j)] = most;
-        });
-        return *std::max_element(cells.row.begin(), cells.row.end());
-    };
-    fastest = over_rows([&](long n) {
-        const CellVelocity& v = cells.v[static_cast<std::size_t>(n)];
-        double push = 0;
-        const auto face = [&](long m) { push = std::max(push, filled[m] * 0.5 * (p[n] + p[m])); };
-        face(n - 1), face(n + 1);
-        if (plane) face(n - stride), face(n + stride);
-        const double c2 = std::max(c[n] * c[n], push * V * cells.per_mass[n]);
-        return filled[n] *
-               (std::fabs(v.x) * per_dx + std::fabs(v.z) * per_dz + std::sqrt(c2) * both);
-    });
-    // Rate at which q brings the velocities of two cells together.
-    stiffest = over_rows([&](long n) {
-        double rate = 0;
-        const auto face = [&](long m, double du, double per_distance) {
-            if (filled[n] * filled[m] == 0 || !(du < 0)) return;
-            const double slope =
-                viscosity.slope(0.5 * per_V * (mass[n] + mass[m]), 0.5 * (c[n] + c[m]), du);
-            rate += slope * V * (cells.per_mass[n] + cells.per_mass[m]) * per_distance;
-        };
-        const auto v = [&](long m) { return cells.v[static_cast<std::size_t>(m)]; };
-        face(n + 1, v(n + 1).x - v(n).x, per_dx);
-        face(n - 1, v(n).x - v(n - 1).x, per_dx);
-        if (plane) {
-            face(n + stride, v(n + stride).z - v(n).z, per_dz);
-            face(n - stride, v(n).z - v(n - stride).z, per_dz);
-        }
-        return rate;
-    });
-    fastest = std::max(fastest, std::sqrt(BodyForce(w).largest(grid) * std::max(per_dx, per_dz)));
+    const Grid& grid = w.grid;
+    const double least_spacing =
+        w.plane() ? std::min(grid.x.spacing(), grid.z.spacing()) : grid.x.spacing();
+    const double falling = std::sqrt(BodyForce(w).largest(grid) / least_spacing),
+                 fastest = std::max(falling, detail::rate_of_signals(w, cells)),
+                 viscous = detail::rate_of_viscosity(w, cells);
     double dt = fastest > 0 ? w.cfl / fastest : w.end / 100;
-    if (stiffest > 0) dt = std::min(dt, 1 / stiffest);
+    if (viscous > 0) dt = std::min(dt, 1 / viscous);
     if (state.dt > 0) dt = std::min(dt, 1.2 * state.dt);
     if (!(dt > 1e-10 * w.end)) {
         throw common::NumericalError("the time step has fallen to " + common::shown(dt) +

@@ -837,6 +837,31 @@ TEST_CASE("the time step follows flow and sound and does not leap beyond the end
     CHECK(std::fabs(largest_step(s.w, s.state, s.cells) - 0.3 / std::sqrt(2 * 10.0)) <= 1e-15);
 }
 
+TEST_CASE("viscosity does not throw back cold streams that meet") {
+    Case w = mesh(20, 1, "slip", "periodic");
+    w.materials = {{"dust", 1, 0}};
+    w.regions = {fluid("dust", 1, 0, 1), fluid("dust", 0.05, 0, -1)};
+    w.regions[1].shape = "box";
+    w.regions[1].center_x = 0.75, w.regions[1].half_x = 0.25, w.regions[1].half_z = 1;
+    w.cfl = 1;
+    for (const double quadratic : {1.0, 4.0}) {
+        w.q_quadratic = quadratic;
+        Run r(w);
+        const Totals before = r.totals();
+        share_pressure(r.w, r.state, r.cells);
+        const double dt = largest_step(r.w, r.state, r.cells);
+        accelerate_cells(r.w, dt, r.state, r.cells);
+        do_work(r.w, dt, r.state, r.cells);
+        const auto n = static_cast<std::size_t>(w.grid.index(9, 0));
+        CHECK(r.cells.v_tilde[n].x < 1);
+        CHECK(r.cells.v_tilde[n].x >= r.cells.v_tilde[n + 1].x);
+        CHECK(r.cells.v_tilde[n].x - r.cells.v_tilde[n + 1].x <= 1);  // and not for nothing
+        CHECK(r.cells.e_tilde[n] > 0);
+        CHECK(r.cells.e_tilde[n + 1] > 0);
+        CHECK(before.internal == 0);
+    }
+}
+
 TEST_CASE("a step that is much too long ends the run with a word on where and why") {
     const auto message = [](Case w, int steps) {
         try {
