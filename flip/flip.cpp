@@ -36,6 +36,7 @@ int run(int argc, char** argv, std::optional<common::Session>& holder) {
     Case wanted;
     common::ParameterTable table = describe(wanted);
     const common::CommandLine command = common::read_command_line(argc, argv, about, table);
+    refuse_idle(wanted);
     const Case w = completed(wanted);
     refuse_impossible(w, about.program);
     const Scales scales = scales_of(w, about.program);

@@ -12,9 +12,11 @@
 #include <cstdio>
 #include <optional>
 
-#include "common/session.hpp"
+#include "flip/check_case.hpp"
 #include "flip/eulerian_phase.hpp"
 #include "flip/lagrangian_phase.hpp"
+#include "flip/record.hpp"
+#include "flip/warn_of_case.hpp"
 
 namespace {
 
@@ -31,16 +33,26 @@ int run(int argc, char** argv, std::optional<common::Session>& holder) {
     Case wanted;
     common::ParameterTable table = describe(wanted);
     const common::CommandLine command = common::read_command_line(argc, argv, about, table);
+    refuse_idle(wanted);
     const Case w = completed(wanted);
+    refuse_impossible(w, about.program);
+    const Scales scales = scales_of(w, about.program);
+    const std::vector<std::string> warnings = resolution_warnings(w, scales, about.program);
+    for (const std::string& warning : warnings)
+        std::fprintf(stderr, "warning: %s\n", warning.c_str());
+    if (!command.quiet) std::printf("%s", describe_scales(w, scales, about.program).c_str());
     if (command.dry_run) return 0;
-    common::refuse_before_start(command, LONG_MAX, 0);
+    common::refuse_before_start(command, LONG_MAX, scales.bytes);
 
     // 2. Particles and cells at t = 0.
     common::set_thread_count(command.threads);
     common::Session& session = holder.emplace(about, command, table);
+    for (const std::string& warning : warnings) session.summary.warning(warning);
     session.checkpoint_steps = w.checkpoint_steps;
     PicCells cells(w);
+    Recorder recorder(w, about.program, session.history);
     State state = initial_state(w, cells);
+    CellFields fields;
     long step = 0;
     if (session.restarting()) {
         session.restore(state, step);
@@ -50,22 +62,31 @@ int run(int argc, char** argv, std::optional<common::Session>& holder) {
     // 3. The loop of the slide.
     // [loop]
     while (session.keep_going(step, state.time, w.end)) {
-        share_pressure(w, state, cells);  // mesh: p of every cell
+        share_pressure(w, state, cells);  // cells: p
+        const Totals totals = totals_of(w, state, cells);
+        fields_of(w, state, cells, fields);
+        recorder.snapshot(step, state, fields, session);
+        recorder.record(step, state, totals, fields, session);
         const double dt = largest_step(w, state, cells);
-        accelerate_cells(w, dt, state, cells);  // Lagrangian phase: u~   [PIC]
-        do_work(w, dt, state, cells);           // Lagrangian phase: I~   [PIC]
-        move_particles(w, dt, state, cells);    // particles move to final position [PIC]
-        repartition(w, state, cells);           // Eulerian phase   [PIC]
+        accelerate_cells(w, dt, state, cells);  // Lagrangian phase: u~                 [PIC]
+        do_work(w, dt, state, cells);           // Lagrangian phase: I~                 [PIC]
+        move_particles(w, dt, state, cells);    // particles move to final position     [PIC]
+        repartition(w, state, cells);           // Eulerian phase: M, momentum, energy  [PIC]
         end_step(w, dt, state);
         ++step;
         session.end_of_step(step, state.time, w.end, state);
     }
     // [/loop]
 
-    const Totals totals = totals_of(w, state, cells);
-    std::printf("mass %.12g momentum %.6g energy %.15g\n", totals.mass - state.books.mass,
-                totals.momentum_x - state.books.momentum_x,
-                totals.kinetic + totals.internal - state.books.energy);
+    // 4. The end of the run, the results against theory, summary.json.
+    if (state.time >= w.end) {
+        share_pressure(w, state, cells);
+        const Totals totals = totals_of(w, state, cells);
+        fields_of(w, state, cells, fields);
+        recorder.snapshot(step, state, fields, session);
+        recorder.record(step, state, totals, fields, session);
+        recorder.finish(state, totals, fields, session);
+    }
     return session.finish(step, static_cast<double>(state.particles.count()));
 }
 
