@@ -11,7 +11,7 @@ mains := cic/cic.cpp flip/pic.cpp flip/flip.cpp mpm_explicit/mpm_explicit.cpp mp
 not_built_yet := explicit_em
 
 # Programs that time the loop of a main, step by step; `make bench` runs them all.
-benches := cic/bench.cpp mpm_explicit/bench.cpp mpm_implicit/bench.cpp implicit_moment/bench.cpp
+benches := cic/bench.cpp flip/bench.cpp mpm_explicit/bench.cpp mpm_implicit/bench.cpp implicit_moment/bench.cpp
 
 # ---- how: everything here can be set on the command line, e.g. make CXX=clang++-14 test ---------
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "common/parallel.hpp"
 #include "flip/state.hpp"
 
 namespace flip {
@@ -13,11 +14,12 @@ namespace flip {
 /// The end beyond which a position lies, or -1 on the mesh. Positions on an end count as on the
 /// mesh; so does nothing that is not a number.
 inline int beyond(const Grid& grid, double x, double z) {
+    const bool inside =
+        (x >= grid.x.low) & (x <= grid.x.high()) & (z >= grid.z.low) & (z <= grid.z.high());
+    if (inside) return -1;
     if (!(x >= grid.x.low)) return x_low;
     if (!(x <= grid.x.high())) return x_high;
-    if (!(z >= grid.z.low)) return z_low;
-    if (!(z <= grid.z.high())) return z_high;
-    return -1;
+    return !(z >= grid.z.low) ? z_low : z_high;
 }
 
 /// A position brought back around a periodic direction; unchanged in any other.
@@ -61,14 +63,13 @@ void remove_leaving(const Case& w, double time, Particles& particles, const Left
             left(p);
             continue;
         }
-        if (!closed && kept != p) {
+        if (kept != p) {
             for (std::vector<double>* column : columns)
                 if (has(*column)) (*column)[kept] = (*column)[p];
             particles.material[kept] = particles.material[p];
         }
         ++kept;
     }
-    if (kept == count) return;
     for (std::vector<double>* column : columns)
         if (has(*column)) column->resize(kept);
     particles.material.resize(kept);

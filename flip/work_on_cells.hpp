@@ -24,12 +24,14 @@ inline void enter_outside(const Case& w, double dt, const Nodes& g, Books& books
     const long nx = grid.x.cells - (grid.x.periodic ? 1 : 0),
                nz = grid.z.cells - (grid.z.periodic ? 1 : 0);
     const bool pulled = w.gravity_x != 0 || w.gravity_z != 0 || w.trap != 0;
-    const auto enter = [&](double impulse_x, double impulse_z, double vx, double vz) {
-        books.momentum_x += impulse_x;
-        books.momentum_z += impulse_z;
-        books.energy += impulse_x * vx + impulse_z * vz;
-    };
-    for (long j = 0; j <= nz; ++j) {
+    std::vector<Books> of_row(static_cast<std::size_t>(nz) + 1);
+    const auto enter_row = [&](long j) {
+        Books& sum = of_row[static_cast<std::size_t>(j)];
+        const auto enter = [&](double impulse_x, double impulse_z, double vx, double vz) {
+            sum.momentum_x += impulse_x;
+            sum.momentum_z += impulse_z;
+            sum.energy += impulse_x * vx + impulse_z * vz;
+        };
         for (long i = 0; i <= nx; ++i) {
             const bool edge = i == 0 || j == 0 || i == grid.x.cells || j == grid.z.cells;
             if (!pulled && !edge) continue;
@@ -54,6 +56,12 @@ inline void enter_outside(const Case& w, double dt, const Nodes& g, Books& books
             press(z_low, j == 0, 0, -1);
             press(z_high, j == grid.z.cells, 0, 1);
         }
+    };
+    common::for_each_row(nz + 1, enter_row, grid.size());
+    for (const Books& sum : of_row) {
+        books.momentum_x += sum.momentum_x;
+        books.momentum_z += sum.momentum_z;
+        books.energy += sum.energy;
     }
 }
 

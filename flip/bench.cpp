@@ -1,0 +1,152 @@
+// How fast the loops of pic.cpp and flip.cpp are, and where their time goes: the same calls with a
+// clock between them, on the Rayleigh-Taylor instability with nine particles per cell, by one thread
+// and by two; then the time per particle on small and large meshes. `make bench` runs it.
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "flip/cross_ends.hpp"
+#include "flip/deposit_particles.hpp"
+#include "flip/eulerian_phase.hpp"
+#include "flip/lagrangian_phase.hpp"
+#include "flip/move_mesh.hpp"
+
+namespace {
+
+using namespace flip;
+
+// Where the time of a step goes; the names of the parts differ between the two.
+struct Split {
+    double deposit = 0, mesh = 0, move = 0, sort = 0;  // seconds
+    double total() const { return deposit + mesh + move + sort; }
+};
+
+// Heavy gas on light gas, in a box twice as high as wide.
+Case heavy_on_light(long cells_x) {
+    Case w;
+    w.grid = {{cells_x, 0, 1, true}, {2 * cells_x, -1, 2, false}};
+    w.ends[z_low].kind = w.ends[z_high].kind = "slip";
+    w.materials = {{"light", 1.4, 0}, {"heavy", 1.4, 0}};
+    w.per_cell_x = w.per_cell_z = 3;
+    w.gravity_z = -1;
+    RegionCase light, heavy;
+    light.gas = {"light", 1, 20, 0, 0};
+    light.flow = "overturn";
+    light.amplitude = 0.1;
+    light.hydrostatic = true;
+    heavy = light;
+    heavy.shape = "above";
+    heavy.gas.material = "heavy";
+    heavy.gas.density = 2;
+    w.regions = {light, heavy};
+    return completed(w);
+}
+
+template <class Work>
+void timed(double& seconds, const Work& work) {
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+Split time_flip(const Case& w, long steps, long& count) {
+    Mesh mesh = mesh_of(w);
+    LagrangianScratch mass_matrix;
+    SortScratch scratch;
+    State state;
+    state.particles = load_particles(w);
+    count = state.particles.count();
+    sort_particles(w.grid, scratch, state.particles);
+    Split split;
+    for (long step = 0; step <= steps; ++step) {
+        if (step == 1) split = {};  // the first step meets empty caches
+        timed(split.deposit, [&] { deposit_particles(w, state.particles, mesh); });
+        double dt = 0;
+        timed(split.mesh, [&] {
+            find_pressure(w, state.time, mesh);
+            dt = step_allowed(w, mesh, state.dt);
+            move_mesh(w, dt, state.particles, mass_matrix, mesh, state.books);
+        });
+        timed(split.move, [&] { move_particles(w, dt, mesh, state.particles); });
+        timed(split.sort,
+              [&] { cross_ends(w, state.time, dt, scratch, state.particles, state.books); });
+        state.time += dt;
+        state.dt = dt;
+    }
+    return split;
+}
+
+Split time_pic(const Case& w, long steps, long& count) {
+    PicCells cells(w);
+    State state = initial_state(w, cells);
+    count = state.particles.count();
+    Split split;
+    for (long step = 0; step <= steps; ++step) {
+        if (step == 1) split = {};
+        double dt = 0;
+        timed(split.mesh, [&] {
+            share_pressure(w, state, cells);
+            dt = largest_step(w, state, cells);
+            accelerate_cells(w, dt, state, cells);
+            do_work(w, dt, state, cells);
+        });
+        timed(split.move, [&] { move_particles(w, dt, state, cells); });
+        timed(split.deposit, [&] { repartition(w, state, cells); });
+        end_step(w, dt, state);
+    }
+    return split;
+}
+
+Split time_steps(bool pic, const Case& w, long steps, long& count) {
+    return pic ? time_pic(w, steps, count) : time_flip(w, steps, count);
+}
+
+}  // namespace
+
+int main() {
+    for (const bool pic : {true, false}) {
+        std::printf("%s, Rayleigh-Taylor, 256 x 512 cells, 9 particles per cell, explicit\n\n",
+                    pic ? "pic" : "flip");
+        std::printf("%8s %16s %9s %9s %9s %9s %9s\n", "threads", "particle-steps/s", "speed-up",
+                    pic ? "repart." : "deposit", pic ? "Lagrange" : "mesh", "move",
+                    pic ? "" : "sort");
+        const Case w = heavy_on_light(256);
+        double one_thread = 0;
+        for (const int threads : {1, 2}) {
+            common::set_thread_count(threads);
+            long count = 0;
+            const long steps = 20;
+            const Split split = time_steps(pic, w, steps, count);
+            const double rate =
+                static_cast<double>(count) * static_cast<double>(steps) / split.total();
+            if (threads == 1) one_thread = rate;
+            const auto percent = [&](double seconds) { return 100 * seconds / split.total(); };
+            std::printf("%8d %16.4g %9.2f %8.1f%% %8.1f%% %8.1f%%", threads, rate,
+                        rate / one_thread, percent(split.deposit), percent(split.mesh),
+                        percent(split.move));
+            if (!pic) std::printf(" %8.1f%%", percent(split.sort));
+            std::printf("\n");
+        }
+        std::printf("\n%14s %16s %22s\n", "cells", "particles", "ns per particle-step");
+        common::set_thread_count(1);
+        for (const long cells_x : {64L, 128L, 256L, 512L}) {
+            long count = 0;
+            const long steps = std::max(4L, 20 * 256 * 256 / (cells_x * cells_x) / 4);
+            const Split split = time_steps(pic, heavy_on_light(cells_x), steps, count);
+            std::printf("%7ld x %4ld %16ld %22.1f\n", cells_x, 2 * cells_x, count,
+                        1e9 * split.total() / static_cast<double>(count * steps));
+        }
+        std::printf("\n");
+    }
+    struct rusage usage {};
+    getrusage(RUSAGE_SELF, &usage);
+    const double label = 2 * sizeof(int), sorted = sizeof(double) + sizeof(int);
+    std::printf("bytes per particle: pic %.0f, flip %.0f; peak memory %.1f MiB\n",
+                3 * sizeof(double) + label + sorted, 6 * sizeof(double) + label + sorted,
+                static_cast<double>(usage.ru_maxrss) / 1024);
+    return 0;
+}
