@@ -18,9 +18,9 @@ namespace detail {
 
 inline constexpr long chunk = 512;
 
-// New positions and homes of the particles [begin, end) of row j. A particle is a box as large as a
-// cell, and moves with the velocities of the four cells that it overlaps, in proportion to the areas;
-// where `holes` are near, empty cells have no say.
+// New positions and homes of the particles [begin, end) of row j. A particle is a box as large as
+// a cell, and moves with the velocities of the four cells that it overlaps, in proportion to the
+// areas; where `holes` are near, empty cells have no say.
 // out: how many are beyond an end of the mesh
 template <bool plane, bool holes>
 long move_chunk(const Case& w, double dt, long j, long begin, long end, Particles& particles,
@@ -236,8 +236,8 @@ inline void exchange_with_outside(const Case& w, double dt, State& state, PicCel
 /// Particles move with the fluid to their final position; those that leave and enter do so.
 ///   x_p += dt u~(x_p)
 /// in:     cells after accelerate_cells(); particles in rows
-/// out:    positions, all on the mesh; home, the cell that each particle comes from; first_of_row is
-///         void until repartition()
+/// out:    positions, all on the mesh; home, the cell that each particle comes from; first_of_row
+///         is void until repartition()
 /// exact:  one velocity everywhere moves every particle by it, also beside empty cells
 /// errors: NumericalError for a particle beyond a wall, or a position that is not finite
 /// note:   in a single row of cells nothing moves along z

@@ -2,7 +2,7 @@
 // fluid. [PIC, Lagrangian phase]
 //
 //     u~_c = u_c - (dt A/M_c) (P_right - P_left) + dt g          P_face = (p_left + p_right)/2 + q
-//     M_c (I~_c - I_c) = -dt sum over faces of A (p_c + q) (ubar_beyond - ubar_c)/2, along the normal
+//     M_c (I~_c - I_c) = -dt sum over faces of A (p_c + q) (ubar_beyond - ubar_c)/2, outward
 //
 // with ubar = (u + u~)/2. The centered velocity is what makes total energy exact: on every face
 // inside the fluid the kinetic energy that it gives to the two cells is what their internal
@@ -123,7 +123,7 @@ inline double rate_of_signals(const Case& w, PicCells& cells) {
     });
 }
 
-// Rate at which viscosity takes away the difference of two velocities, all faces of a cell together.
+// Rate at which viscosity takes away differences of velocity, all faces of a cell together.
 inline double rate_of_viscosity(const Case& w, PicCells& cells) {
     const Grid& grid = w.grid;
     const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing(), V = grid.cell_area();

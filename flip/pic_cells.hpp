@@ -1,7 +1,7 @@
-// The Eulerian mesh of the classical method: a scratch pad, rebuilt in every step from the particles
-// and the little that cells remember (velocity and internal energy, see state.hpp).
+// The Eulerian mesh of the classical method: a scratch pad, rebuilt in every step from the
+// particles and the little that cells remember (velocity and internal energy, see state.hpp).
 //
-//     M_c, I_c, u_c --Lagrangian phase--> u~_c, I~_c --particles move, Eulerian phase--> M_c, I_c, u_c
+//     M, I, u --Lagrangian phase--> u~, I~ --particles move, Eulerian phase--> M, I, u
 //
 // All quantities live at centers of cells; cell (i, j) sits at grid.index(i, j). Behind the ends of
 // the mesh stands one ring of ghost cells.
