@@ -159,7 +159,7 @@ bool Session::keep_going(long step, long steps) {
 bool Session::keep_going(long step, double time, double end) {
     step_ = step;
     if (first_done_ < 0 && end > 0) first_done_ = time / end;
-    return time < end && stop_signal == 0;
+    return !reached(time, end) && stop_signal == 0;
 }
 
 std::string Session::when(const std::string& message) const {

@@ -44,9 +44,11 @@ class Session {
     }
 
     /// False at the end of the run, or when a signal has asked to stop. Steps may all be equal and
-    /// known in number, or as long as the flow allows until a time is reached.
+    /// known in number, or as long as the flow allows until a time is reached; the last of those may
+    /// end later, so that a run does not depend on where it was meant to end.
     bool keep_going(long step, long steps);
     bool keep_going(long step, double time, double end);
+    static bool reached(double time, double end) { return time >= end * (1 - 1e-9); }
 
     /// Shows progress; writes a checkpoint when one is due, at the end, or when a signal has asked
     /// to stop.
@@ -58,7 +60,7 @@ class Session {
     template <class State>
     void end_of_step(long step, double time, double end, State& state) {
         show_progress(step, 0, time, end > 0 ? std::min(1.0, time / end) : 1.0);
-        checkpoint_if_due(step, time >= end, state);
+        checkpoint_if_due(step, reached(time, end), state);
     }
 
     /// Writes summary.json and prints the results.

@@ -22,9 +22,15 @@ inline int beyond(const Grid& grid, double x, double z) {
     return !(z >= grid.z.low) ? z_low : z_high;
 }
 
-/// A position brought back around a periodic direction; unchanged in any other.
+/// A position brought back around a periodic direction. Elsewhere it stays; only what approaches a
+/// wall for ever, and touches it by round-off, is put on it.
 inline double around(const common::Axis& axis, double position) {
-    if (!axis.periodic) return position;
+    if (!axis.periodic) {
+        const double low = axis.low, high = axis.high(), tiny = 1e-12 * axis.length;
+        return position < low && position > low - tiny     ? low
+               : position > high && position < high + tiny ? high
+                                                           : position;
+    }
     if (position < axis.low) {
         position += axis.length;
         return position < axis.high() ? position : axis.low;

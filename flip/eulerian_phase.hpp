@@ -70,17 +70,9 @@ long move_chunk(const Case& w, double dt, long j, long begin, long end, Particle
         }
     }
 
-    // Around the periodic directions. What approaches a wall for ever may touch it by round-off.
     const auto bring_back = [&](const common::Axis& axis, double* x) {
-        const double low = axis.low, high = axis.high(), tiny = 1e-12 * axis.length;
-        if (axis.periodic) {
-            for (long p = begin; p < end; ++p) x[p] = around(axis, x[p]);
-        } else {
-            for (long p = begin; p < end; ++p) {
-                const double y = x[p];
-                x[p] = y < low && y > low - tiny ? low : y > high && y < high + tiny ? high : y;
-            }
-        }
+        const double low = axis.low, high = axis.high();
+        for (long p = begin; p < end; ++p) x[p] = around(axis, x[p]);
         long lost = 0;
         for (long p = begin; p < end; ++p) lost += x[p] >= low && x[p] <= high ? 0 : 1;
         return lost;

@@ -89,7 +89,7 @@ inline double sound_speed(double rho, double compressibility) {
 
 /// The longest step that the flow allows.
 ///   dt = cfl min 1/(|v_x|/dx + |v_z|/dz + c sqrt(1/dx^2 + 1/dz^2)),
-/// without the sound of the gas when the pressure is implicit; with viscosity nu also
+/// after the first step without the sound of the gas when the pressure is implicit; with viscosity nu also
 /// dt <= 1/(4 nu (1/dx^2 + 1/dz^2)); at most 1.2 times the last step
 /// in:     find_pressure() has been called; last, the last step, 0 before the first
 /// out:    time.dt where the case gives it
@@ -117,7 +117,9 @@ inline double step_allowed(const Case& w, const Mesh& mesh, double last) {
                 const double filled = c.volume.size() > 0 ? std::max(c.volume[n], 1e-300) : V_c;
                 const double rho = c.M[n] / filled;
                 const double sound =
-                    w.implicit() ? 0 : sound_speed(rho, c.compressibility[n]) * std::sqrt(per_dx2);
+                    w.implicit() && last > 0
+                        ? 0
+                        : sound_speed(rho, c.compressibility[n]) * std::sqrt(per_dx2);
                 double rate = (vx * per_dx + vz * per_dz + sound) / w.cfl;
                 if (w.viscosity > 0) rate = std::max(rate, 4 * w.viscosity / rho * per_dx2);
                 most = std::max(most, rate);
@@ -129,14 +131,13 @@ inline double step_allowed(const Case& w, const Mesh& mesh, double last) {
 
     // A fluid at rest is limited by how fast it can begin to move.
     const double pull = std::hypot(w.gravity_x, w.gravity_z);
-    double dt = most > 0 ? 1 / most : w.end;
+    double dt = most > 0 ? 1 / most : w.end / 100;
     if (pull > 0)
         dt = std::min(
             dt, std::sqrt(w.cfl *
                           std::min(grid.x.spacing(), plane ? grid.z.spacing() : grid.x.spacing()) /
                           pull));
     if (w.trap > 0) dt = std::min(dt, w.cfl / std::sqrt(w.trap));
-    dt = std::min(dt, w.end / 100);
     return last > 0 ? std::min(dt, 1.2 * last) : dt;
 }
 

@@ -86,7 +86,7 @@ int run(int argc, char** argv, std::optional<common::Session>& holder) {
     // [/loop]
 
     // 4. The end of the run, the results against theory, summary.json.
-    if (state.time >= w.end) {
+    if (common::Session::reached(state.time, w.end)) {
         deposit_particles(w, particles, mesh);
         find_pressure(w, state.time, mesh);
         look([&](const Totals& totals, const CellFields& cells) {

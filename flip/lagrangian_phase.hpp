@@ -154,14 +154,11 @@ inline double rate_of_viscosity(const Case& w, PicCells& cells) {
 /// The next time step.
 ///   dt = cfl / max over cells of [|vx|/dx + |vz|/dz + c sqrt(1/dx^2 + 1/dz^2)]
 /// no longer than it takes viscosity to bring two cells together or gravity to move a body at rest
-/// by cfl^2 dx, than 1.2 times the last step, or than the time that is left. A fixed time.dt
-/// overrules all but the last.
+/// by cfl^2 dx, or than 1.2 times the last step. A fixed time.dt overrules all of them.
 /// in:     cells after share_pressure(); the step and time of the state
 /// errors: NumericalError when the step gets so short that the run would never end
 inline double largest_step(const Case& w, const State& state, PicCells& cells) {
-    const double left = w.end - state.time;
-    const auto not_beyond_the_end = [&](double dt) { return dt * (1 + 1e-9) < left ? dt : left; };
-    if (w.dt > 0) return not_beyond_the_end(w.dt);
+    if (w.dt > 0) return w.dt;
 
     const Grid& grid = w.grid;
     const double least_spacing =
@@ -178,13 +175,7 @@ inline double largest_step(const Case& w, const State& state, PicCells& cells) {
                                      ": some cell has become very fast, hot or light; use more "
                                      "particles per cell or more viscosity");
     }
-    return not_beyond_the_end(dt);
-}
-
-/// The time after a step, exactly the end after the last one.
-inline void end_step(const Case& w, double dt, State& state) {
-    state.time = dt < w.end - state.time ? state.time + dt : w.end;
-    state.dt = dt;
+    return dt;
 }
 
 namespace detail {

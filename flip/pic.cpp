@@ -72,14 +72,15 @@ int run(int argc, char** argv, std::optional<common::Session>& holder) {
         do_work(w, dt, state, cells);           // Lagrangian phase: I~                 [PIC]
         move_particles(w, dt, state, cells);    // particles move to final position     [PIC]
         repartition(w, state, cells);           // Eulerian phase: M, momentum, energy  [PIC]
-        end_step(w, dt, state);
+        state.time += dt;
+        state.dt = dt;
         ++step;
         session.end_of_step(step, state.time, w.end, state);
     }
     // [/loop]
 
     // 4. The end of the run, the results against theory, summary.json.
-    if (state.time >= w.end) {
+    if (common::Session::reached(state.time, w.end)) {
         share_pressure(w, state, cells);
         const Totals totals = totals_of(w, state, cells);
         fields_of(w, state, cells, fields);
