@@ -5,13 +5,11 @@
 
 namespace flip {
 
-/// Particles that have left are taken away and those that have entered are added; then all are
-/// sorted.
+/// Particles that have left are taken away, and those that have entered are added, out of order.
 /// in:     t, dt of the step that has moved them
 /// out:    books: mass, momentum and energy of what crossed
 /// errors: NumericalError for a particle beyond a wall
-inline void cross_ends(const Case& w, double t, double dt, SortScratch& scratch, Particles& p,
-                       Books& books) {
+inline void cross_ends(const Case& w, double t, double dt, Particles& p, Books& books) {
     const auto enter = [&](std::size_t k, double sign) {
         const double m = sign * p.m_p[k], vx = p.vx_p[k], vz = p.vz_p[k];
         books.mass += m;
@@ -23,7 +21,6 @@ inline void cross_ends(const Case& w, double t, double dt, SortScratch& scratch,
     const long added = add_inflow(w, t, dt, p);
     for (std::size_t k = p.x_p.size() - static_cast<std::size_t>(added); k < p.x_p.size(); ++k)
         enter(k, 1);
-    sort_particles(w.grid, scratch, p);
 }
 
 }  // namespace flip

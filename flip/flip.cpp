@@ -20,6 +20,7 @@
 #include "flip/flip_fields.hpp"
 #include "flip/move_mesh.hpp"
 #include "flip/record.hpp"
+#include "flip/rezone.hpp"
 #include "flip/warn_of_case.hpp"
 
 namespace {
@@ -77,10 +78,12 @@ int run(int argc, char** argv, std::optional<common::Session>& holder) {
         const double dt = step_allowed(w, mesh, state.dt);
         state.report = move_mesh(w, dt, particles, mass_matrix, mesh, state.books);  // F_g, v_g^L
         move_particles(w, dt, mesh, particles);  // mesh -> particles   [FLIP-6, FLIP-7]
-        cross_ends(w, state.time, dt, sort_scratch, particles, state.books);
+        cross_ends(w, state.time, dt, particles, state.books);
+        ++step;
+        if (w.rezone_steps > 0 && step % w.rezone_steps == 0) rezone(w, particles);
+        sort_particles(w.grid, sort_scratch, particles);
         state.time += dt;
         state.dt = dt;
-        ++step;
         session.end_of_step(step, state.time, w.end, state);
     }
     // [/loop]
