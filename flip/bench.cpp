@@ -72,8 +72,10 @@ Split time_flip(const Case& w, long steps, long& count) {
             move_mesh(w, dt, state.particles, mass_matrix, mesh, state.books);
         });
         timed(split.move, [&] { move_particles(w, dt, mesh, state.particles); });
-        timed(split.sort,
-              [&] { cross_ends(w, state.time, dt, scratch, state.particles, state.books); });
+        timed(split.sort, [&] {
+            cross_ends(w, state.time, dt, state.particles, state.books);
+            sort_particles(w.grid, scratch, state.particles);
+        });
         state.time += dt;
         state.dt = dt;
     }

@@ -93,6 +93,8 @@ struct Case {
     bool vtk = false;
     long checkpoint_steps = 0;
 
+    /// Whether what the lumped masses owe the particles goes to heat; consistent ones owe nothing.
+    bool heats() const { return deficit_to_heat && mass == "lumped"; }
     bool implicit() const { return pressure == "implicit"; }
     bool plane() const { return grid.z.cells > 1; }
     bool is(End e, const char* kind) const { return ends[e].kind == kind; }

@@ -106,7 +106,7 @@ inline void filter_velocity(const Grid& grid, const MassMatrix& M, const Field& 
 /// order leaves beside the square of the difference |v_p' - v_p - dv_p|^2/2.
 ///   heat_g -= (v + dv)_g . [(M v)_g/m_g - v_g],  v the filtered velocity
 inline void filter_heat(const Case& w, const MassMatrix& M, Field& vx, Field& vz, Mesh& mesh) {
-    if (!w.deficit_to_heat) return;
+    if (!w.heats()) return;
     Nodes& g = mesh.nodes;
     Field trip;
     for (const bool along_x : {true, false}) {

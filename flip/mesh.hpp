@@ -37,8 +37,9 @@ struct Nodes {
     Field vx_work, vz_work;  // at which pressure works: v_bar, or v^theta of an implicit one
     std::vector<Four>
         kick;  // change of velocity x and z, velocity that particles move with x and z
-    std::vector<Four> carry;  // what particles keep instead of their own velocity, not in flip
-    Field heat;               // specific energy that leaves the motion of the nodes
+    std::vector<Four> carry;       // what particles keep instead of their own velocity, not in flip
+    Field heat;                    // specific energy that leaves the motion of the nodes
+    Field reaction_x, reaction_z;  // impulse of the walls, with the consistent mass matrix
 };
 
 /// The cells; columns of grid.size(), those per material with the materials of a cell together.
@@ -71,6 +72,8 @@ inline Mesh mesh_of(const Case& w) {
         f->setZero(size);
     g.sum.assign(count, Four::Zero());
     g.kick.assign(count, Four::Zero());
+    if (w.mass == "consistent")
+        for (Field* f : {&g.reaction_x, &g.reaction_z}) f->setZero(size);
     if (w.transfer != "flip") g.carry.assign(count, Four::Zero());
     Cells& c = mesh.cells;
     mesh.materials = w.materials.size();

@@ -33,6 +33,11 @@ inline void accelerate_consistently(const Case& w, double dt, const MassMatrix& 
             load[n] = dt * (force[n] + g.m[n] * pull_on_node(w, n)[along_x ? 0 : 1]);
         });
         solve_mass(grid, M, g.m, held, load, kick);
+        Field& reaction = along_x ? g.reaction_x : g.reaction_z;
+        multiply(grid, M, kick, reaction);
+        for_each_node(grid, [&](long, long, long n) {
+            reaction[n] = held[static_cast<std::size_t>(n)] != 0 ? reaction[n] - load[n] : 0;
+        });
         after = before + kick;
         start = before;
     }

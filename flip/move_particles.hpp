@@ -78,7 +78,7 @@ void move_row(const Case& w, const WeightScale& scale, const Mesh& mesh, const T
     const double *const heat = mesh.nodes.heat.data(), *const de = mesh.cells.de.data();
     const Cells& cells = mesh.cells;
     const long kinds = static_cast<long>(mesh.materials);
-    const double deficit = w.deficit_to_heat ? 0.5 : 0;
+    const double deficit = w.heats() ? 0.5 : 0;
     // [move]
     for (std::size_t k = begin; k < end; ++k) {
         const Weights at = weights_at(scale, p.x_p[k], p.z_p[k]);
@@ -166,7 +166,7 @@ inline void move_particles(const Case& w, double dt, const Mesh& mesh, Particles
     detail::Transfer transfer;
     transfer.affine = w.transfer == "apic";
     transfer.filtered = w.transfer == "xpic";
-    transfer.heat = w.deficit_to_heat;
+    transfer.heat = w.heats();
     transfer.towards_mesh = w.transfer == "flip" ? 0 : (w.transfer == "blend" ? 1 - w.blend : 1);
     const bool pure = w.transfer == "flip", volumes = has(particles.V_p);
     const WeightScale scale(w.grid);

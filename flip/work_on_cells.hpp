@@ -40,10 +40,16 @@ inline void enter_outside(const Case& w, double dt, const Nodes& g, Books& books
             enter(pull[0], pull[1], g.vx_bar[n], g.vz_bar[n]);
             if (!edge || g.m[n] <= 0) continue;
             const Held held = held_at(w, i, j);
+            const bool lumped = g.reaction_x.size() == 0;
             if (held.x)
-                enter(g.m[n] * (g.vxL[n] - g.vx[n]) - dt * g.fx[n] - pull[0], 0, held.vx, 0);
+                enter(lumped ? g.m[n] * (g.vxL[n] - g.vx[n]) - dt * g.fx[n] - pull[0]
+                             : g.reaction_x[n],
+                      0, held.vx, 0);
             if (held.z)
-                enter(0, g.m[n] * (g.vzL[n] - g.vz[n]) - dt * g.fz[n] - pull[1], 0, held.vz);
+                enter(0,
+                      lumped ? g.m[n] * (g.vzL[n] - g.vz[n]) - dt * g.fz[n] - pull[1]
+                             : g.reaction_z[n],
+                      0, held.vz);
             const auto press = [&](End e, bool on, double normal_x, double normal_z) {
                 if (!on || !w.is(e, "open")) return;
                 const double area =
@@ -68,7 +74,8 @@ inline void enter_outside(const Case& w, double dt, const Nodes& g, Books& books
 /// The work of pressure and viscosity on the cells, and what the particles need of the nodes.
 ///   dE_c = -dt (p V div v_work + q V div v_bar) + viscous heat,   v_bar = (v^0 + v^L)/2
 ///   de_ck = share_ck dE_c / M_ck                      for the particles of material k, by mass
-///   heat_g = |v^0 - v|^2/2                            of what walls stop
+///   heat_g = |v^0 - v|^2/2                            of what walls stop; with the consistent
+///                                                     mass R . (v^L - v)/(2 m_g)
 ///          + (theta - 1/2) dt F_g . (v^L - v^0)/m_g   of an implicit pressure, v_work = v^theta
 ///          + |v^L - v|^2/2                            that the lumped mass owes the particles
 /// in:     v, v^0, v^L; p_step, q; forces
@@ -92,7 +99,9 @@ inline void work_on_cells(const Case& w, double dt, Mesh& mesh, Books& books) {
         g.vx_work[n] = (1 - level) * g.vx0[n] + level * g.vxL[n];
         g.vz_work[n] = (1 - level) * g.vz0[n] + level * g.vzL[n];
         g.heat[n] = 0.5 * (stop_x * stop_x + stop_z * stop_z);
-        if (w.deficit_to_heat) g.heat[n] += 0.5 * (dvx * dvx + dvz * dvz);
+        if (w.heats()) g.heat[n] += 0.5 * (dvx * dvx + dvz * dvz);
+        if (g.reaction_x.size() > 0 && g.m[n] > 0)
+            g.heat[n] += 0.5 * (g.reaction_x[n] * dvx + g.reaction_z[n] * dvz) / g.m[n];
         if (w.implicit() && g.m[n] > 0) {
             const Eigen::Vector2d F = pressure_force(grid, c.p_step, n);
             g.heat[n] += (w.theta - 0.5) * dt / g.m[n] *
