@@ -57,10 +57,15 @@ inline Eigen::Vector2d pull_at(const Case& w, double x, double z) {
     return {w.gravity_x + w.trap * (w.grid.x.low + 0.5 * w.grid.x.length - x),
             w.gravity_z + w.trap * (w.grid.z.low + 0.5 * w.grid.z.length - z)};
 }
+/// The same on a node. The two images of a node at the seam of a periodic direction are as far from
+/// the middle on either side: there the trap does not pull.
 inline Eigen::Vector2d pull_on_node(const Case& w, long n) {
     const long stride = w.grid.stride();
-    return pull_at(w, w.grid.x.at(static_cast<double>(n % stride - 1)),
-                   w.grid.z.at(static_cast<double>(n / stride - 1)));
+    const auto place = [](const common::Axis& axis, long k) {
+        const bool seam = axis.periodic && (k == 0 || k == axis.cells);
+        return axis.at(seam ? 0.5 * static_cast<double>(axis.cells) : static_cast<double>(k));
+    };
+    return pull_at(w, place(w.grid.x, n % stride - 1), place(w.grid.z, n / stride - 1));
 }
 
 namespace detail {
