@@ -159,9 +159,9 @@ inline void find_known_forces(const Case& w, Mesh& mesh) {
     g.fx.setZero();
     g.fz.setZero();
     add_viscous_force(w, mesh);
-    fill_pressure(w, true, mesh.cells.q);
-    for_each_node(grid, [&](long, long, long n) {
-        const Eigen::Vector2d F = pressure_force(grid, mesh.cells.q, n);
+    fill_pressure(grid, mesh.cells.q);
+    for_each_node(grid, [&](long i, long j, long n) {
+        const Eigen::Vector2d F = pressure_force(grid, mesh.cells.q, n) + outside_force(w, i, j);
         g.fx[n] += F[0];
         g.fz[n] += F[1];
     });
@@ -177,7 +177,7 @@ inline void find_known_forces(const Case& w, Mesh& mesh) {
 inline void accelerate_nodes(const Case& w, double dt, Mesh& mesh) {
     const Grid& grid = w.grid;
     Nodes& g = mesh.nodes;
-    fill_pressure(w, false, mesh.cells.p_step);
+    fill_pressure(grid, mesh.cells.p_step);
     for_each_node(grid, [&](long, long, long n) {
         const Eigen::Vector2d F = pressure_force(grid, mesh.cells.p_step, n);
         g.fx[n] += F[0];

@@ -62,29 +62,31 @@ inline void set_walls(const Case& w, Field& vx, Field& vz) {
     for (long j = 0; j <= grid.z.cells; ++j) set(0, j), set(grid.x.cells, j);
 }
 
-/// Fills the ring of ghost cells with what presses from there: around a periodic direction the
-/// other side, outside an open end the given pressure if `outside` is wanted, else nothing; a wall
-/// holds its nodes itself.
-inline void fill_pressure(const Case& w, bool outside, Field& p) {
-    const Grid& grid = w.grid;
-    const long nx = grid.x.cells, nz = grid.z.cells;
-    const auto beyond = [&](End e) {
-        return outside && w.is(e, "open") ? w.ends[e].pressure : 0.0;
+/// Force of the pressure outside of open ends on a node, half as much on a corner.
+/// in:     i from 0 to cells_x, j from 0 to cells_z
+inline Eigen::Vector2d outside_force(const Case& w, long i, long j) {
+    const auto reach = [](const common::Axis& axis, long k) {
+        const bool corner = !axis.periodic && (k == 0 || k == axis.cells);
+        return corner ? 0.5 * axis.spacing() : axis.spacing();
     };
+    const auto press = [&](End e, bool on) {
+        return on && w.is(e, "open") ? w.ends[e].pressure : 0;
+    };
+    return {reach(w.grid.z, j) * (press(x_low, i == 0) - press(x_high, i == w.grid.x.cells)),
+            reach(w.grid.x, i) * (press(z_low, j == 0) - press(z_high, j == w.grid.z.cells))};
+}
+
+/// Fills the ring of ghost cells: around a periodic direction the other side, else nothing. A wall
+/// holds its nodes itself, and outside_force() is what presses on an open end.
+inline void fill_pressure(const Grid& grid, Field& p) {
+    const long nx = grid.x.cells, nz = grid.z.cells;
     for (long j = 0; j < nz; ++j) {
-        p[grid.index(-1, j)] = grid.x.periodic ? p[grid.index(nx - 1, j)] : beyond(x_low);
-        p[grid.index(nx, j)] = grid.x.periodic ? p[grid.index(0, j)] : beyond(x_high);
+        p[grid.index(-1, j)] = grid.x.periodic ? p[grid.index(nx - 1, j)] : 0;
+        p[grid.index(nx, j)] = grid.x.periodic ? p[grid.index(0, j)] : 0;
     }
     for (long i = -1; i <= nx; ++i) {
-        const bool corner = !grid.x.periodic && (i < 0 || i == nx);
-        const bool open_corner = corner && w.is(i < 0 ? x_low : x_high, "open");
-        const auto at = [&](End e, long row, long other) {
-            p[grid.index(i, row)] = grid.z.periodic          ? p[grid.index(i, other)]
-                                    : corner && !open_corner ? 0.0
-                                                             : beyond(e);
-        };
-        at(z_low, -1, nz - 1);
-        at(z_high, nz, 0);
+        p[grid.index(i, -1)] = grid.z.periodic ? p[grid.index(i, nz - 1)] : 0;
+        p[grid.index(i, nz)] = grid.z.periodic ? p[grid.index(i, 0)] : 0;
     }
 }
 

@@ -6,16 +6,6 @@
 
 namespace flip {
 
-namespace detail {
-
-// Length of the end along which a node answers for what happens, half at the corners.
-inline double reach(const common::Axis& axis, long k) {
-    const bool corner = !axis.periodic && (k == 0 || k == axis.cells);
-    return corner ? 0.5 * axis.spacing() : axis.spacing();
-}
-
-}  // namespace detail
-
 /// Enters what comes from outside within the step: gravity, the pressure outside of open ends, and
 /// what walls give to the nodes that they hold, R = m (v^L - v) - dt (F + m g).
 ///   momentum: the impulses;  energy: impulse . vbar, of walls impulse . velocity of the wall
@@ -50,17 +40,8 @@ inline void enter_outside(const Case& w, double dt, const Nodes& g, Books& books
                       lumped ? g.m[n] * (g.vzL[n] - g.vz[n]) - dt * g.fz[n] - pull[1]
                              : g.reaction_z[n],
                       0, held.vz);
-            const auto press = [&](End e, bool on, double normal_x, double normal_z) {
-                if (!on || !w.is(e, "open")) return;
-                const double area =
-                    normal_x != 0 ? detail::reach(grid.z, j) : detail::reach(grid.x, i);
-                const double impulse = -dt * w.ends[e].pressure * area;
-                enter(impulse * normal_x, impulse * normal_z, g.vx_bar[n], g.vz_bar[n]);
-            };
-            press(x_low, i == 0, -1, 0);
-            press(x_high, i == grid.x.cells, 1, 0);
-            press(z_low, j == 0, 0, -1);
-            press(z_high, j == grid.z.cells, 0, 1);
+            const Eigen::Vector2d press = dt * outside_force(w, i, j);
+            enter(press[0], press[1], g.vx_bar[n], g.vz_bar[n]);
         }
     };
     common::for_each_row(nz + 1, enter_row, grid.size());
