@@ -63,6 +63,13 @@ inline void refuse_methods(const Case& w, const std::string& program) {
     refuse(w.mass == "consistent" && w.implicit(),
            "flip.mass = \"consistent\" and flip.pressure = \"implicit\" do not go together: the "
            "implicit pressure divides by lumped masses; take \"lumped\" or \"explicit\"");
+    refuse(w.mass == "consistent" && w.transfer != "flip",
+           "flip.mass = \"consistent\" and flip.transfer = \"" + w.transfer +
+               "\" do not go together: the other transfers make up for what lumped masses lose; "
+               "take \"lumped\", or \"flip\"");
+    refuse(w.rezone_steps > 0 && w.transfer == "apic",
+           "rezone.steps and flip.transfer = \"apic\" do not go together: a merged particle cannot "
+           "keep the gradients of several; take \"flip\", or rezone.steps = 0");
     refuse(w.rezone_steps > 0 && w.most < 2 * w.fewest,
            "rezone.most = " + std::to_string(w.most) +
                " is below twice rezone.fewest = " + std::to_string(w.fewest) +
