@@ -121,7 +121,7 @@ inline void add_viscous_force(const Case& w, Mesh& mesh) {
     common::for_each_row_two_apart(grid.z.cells, [&](long j) {
         for (long i = 0; i < grid.x.cells; ++i) {
             const long n = grid.index(i, j);
-            if (mesh.cells.M[n] <= 0) continue;
+            if (is_frayed(grid, g.m, n)) continue;
             const auto corners = detail::corners_of(grid, n);
             for (const detail::CornerGradients& d : gradients) {
                 const auto tau = detail::viscous_stress(w.viscosity, d, corners, g.vx0, g.vz0);
@@ -139,6 +139,7 @@ inline void add_viscous_force(const Case& w, Mesh& mesh) {
 /// Heat that viscosity makes in one cell per time, from stresses of v0 and the motion vbar.
 inline double viscous_heat(const Case& w, const Nodes& g, const Field& vx, const Field& vz,
                            long n) {
+    if (is_frayed(w.grid, g.m, n)) return 0;
     const auto corners = detail::corners_of(w.grid, n);
     double sum = 0;
     for (const detail::CornerGradients& d : detail::corner_gradients(w.grid)) {

@@ -15,12 +15,19 @@ namespace flip {
 /// fills what there is.
 inline constexpr double least_filled = 0.7;
 
-/// A cell has no pressure if the lightest of its nodes has less than this part of the mass of the
+/// A cell has neither pressure nor viscosity if the lightest of its nodes has less than this part of the mass of the
 /// heaviest: what pushes on nothing would leave the books.
 inline constexpr double lightest_node = 0.01;
 
 /// Internal energy below zero by less than this part of the kinetic energy is round-off.
 inline constexpr double cold_enough = 1e-9;
+
+/// Whether a cell reaches to nodes with next to no mass.
+inline bool is_frayed(const Grid& grid, const Field& m, long n) {
+    const long up = n + grid.stride();
+    const auto [lightest, heaviest] = std::minmax({m[n], m[n + 1], m[up], m[up + 1]});
+    return lightest <= lightest_node * heaviest;
+}
 
 /// Pressure and compressibility of every cell, and how its materials share a change of volume.
 ///   density = "cells":      share_cell() of masses and energies in the cell
@@ -40,12 +47,9 @@ inline void find_pressure(const Case& w, double time, Mesh& mesh) {
     std::atomic<long> bad{-1};
     for_each_cell(grid, [&](long, long, long n) {
         const std::array<long, 4> corners{n, n + 1, n + stride, n + stride + 1};
-        double lightest = g.m[n], heaviest = g.m[n], speed2 = 0;
-        for (const long corner : corners) {
-            lightest = std::min(lightest, g.m[corner]);
-            heaviest = std::max(heaviest, g.m[corner]);
+        double speed2 = 0;
+        for (const long corner : corners)
             speed2 = std::max(speed2, g.vx[corner] * g.vx[corner] + g.vz[corner] * g.vz[corner]);
-        }
         double M[most_materials], U[most_materials];
         bool sound = true, gas = false;
         for (std::size_t k = 0; k < kinds; ++k) {
@@ -69,7 +73,7 @@ inline void find_pressure(const Case& w, double time, Mesh& mesh) {
             c.compressibility[n] = c.volume[n] > 0 ? c.give[n] / c.volume[n] : 0;
             surface = !filled;
         }
-        surface = surface || lightest <= lightest_node * heaviest;
+        surface = surface || is_frayed(grid, g.m, n);
         c.surface[static_cast<std::size_t>(n)] = surface ? 1 : 0;
         if (surface) c.p[n] = 0;
     });
