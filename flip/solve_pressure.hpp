@@ -78,11 +78,11 @@ inline StepReport solve_pressure(const Case& w, double dt, Mesh& mesh) {
         }
     }
     const auto count = static_cast<long>(cell_of.size());
-    c.p_step = c.p;
-    if (count == 0) return {};
 
     // The velocity at the level theta if the pressure did not change; its divergence is the load.
+    c.p_step = c.p;
     accelerate_nodes(w, dt, mesh);
+    if (count == 0) return {};
     const auto level_theta = [&](Field& vx, Field& vz) {
         vx = (1 - theta) * g.vx0 + theta * g.vxL;
         vz = (1 - theta) * g.vz0 + theta * g.vzL;
