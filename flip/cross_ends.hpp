@@ -2,7 +2,7 @@
 #pragma once
 
 #include "flip/ends.hpp"
-#include "flip/move_particles.hpp"
+#include "flip/transfer.hpp"
 
 namespace flip {
 
@@ -21,7 +21,7 @@ inline void cross_ends(const Case& w, double t, double dt, Particles& p, Books& 
         books.energy += m * (0.5 * (vx * vx + vz * vz) + p.e_p[k]);
         if (!has(p.Cxx_p)) return;
         const double C[4] = {p.Cxx_p[k], p.Cxz_p[k], p.Czx_p[k], p.Czz_p[k]};
-        books.energy += m * detail::affine_energy(w.grid, weights_at(scale, p.x_p[k], p.z_p[k]), C);
+        books.energy += m * affine_energy(w.grid, weights_at(scale, p.x_p[k], p.z_p[k]), C);
     };
     remove_leaving(w, t + dt, p, [&](std::size_t k) { enter(k, -1); });
     const long added = add_inflow(w, t, dt, p);

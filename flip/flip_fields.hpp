@@ -4,7 +4,7 @@
 #include <array>
 
 #include "flip/mesh.hpp"
-#include "flip/move_particles.hpp"
+#include "flip/transfer.hpp"
 
 namespace flip {
 
@@ -32,7 +32,7 @@ inline Totals particle_totals(const Case& w, const Particles& p) {
                 const Weights at = weights_at(scale, p.x_p[k], p.z_p[k]);
                 const double C[4] = {p.Cxx_p[k], p.Cxz_p[k], p.Czx_p[k], p.Czz_p[k]};
                 const double dx = w.grid.x.spacing(), dz = w.grid.z.spacing();
-                sum.kinetic += m * detail::affine_energy(w.grid, at, C);
+                sum.kinetic += m * affine_energy(w.grid, at, C);
                 sum.angular_momentum += m * (C[2] * at.S_x[0] * at.S_x[1] * dx * dx -
                                              C[1] * at.S_z[0] * at.S_z[1] * dz * dz);
             }
