@@ -84,7 +84,8 @@ inline void compare_ringing(const FinishedRun& run) {
 }
 
 /// The growth of an interface or of a layer of shear.
-/// note:   it is measured from the start, while the crests are lower than 0.3/k
+/// note:   it is measured from the start, while the crests are lower than 0.3/k; the mode is the
+///         height of the interface, or the velocity across the layer of shear
 inline void compare_instability(const FinishedRun& run) {
     const Case& w = run.w;
     const double expected = theory_growth(w), k = followed_wave_number(w);
@@ -95,8 +96,9 @@ inline void compare_instability(const FinishedRun& run) {
                im = run.history.column("mode_im");
     std::vector<std::complex<double>> mode;
     for (std::size_t n = 0; n < re.size(); ++n) mode.emplace_back(re[n], im[n]);
+    const double most = 0.3 / k * (interface ? 1 : expected);
     std::size_t count = 0;
-    while (count < mode.size() && k * std::abs(mode[count]) < 0.3 * expected) ++count;
+    while (count < mode.size() && std::abs(mode[count]) < most) ++count;
     const HyperbolicFit fit = fit_hyperbolic(times, mode, count, expected);
     run.summary.result_info("theory_growth", expected, "1/time", source);
     if (fit.samples == 0) {

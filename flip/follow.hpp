@@ -85,6 +85,15 @@ inline std::complex<double> mode_of(const Case& w, const Field& f, long j_low, l
     return 2.0 / static_cast<double>(w.grid.x.cells * (j_high - j_low)) * sum;
 }
 
+// Height of the interface between two layers, from the mass of the columns,
+//   (rho_lower - rho_upper) eta(x) = integral of rho over z - its mean
+// note: it is linear in eta, where velocities at a fixed height lose (8/3 pi) k eta of themselves
+inline std::complex<double> interface_height(const Case& w, const CellFields& cells) {
+    const theory::TwoLayers layers = layers_of(w);
+    return w.grid.z.length / (layers.lower_density - layers.upper_density) *
+           mode_of(w, cells.rho, 0, w.grid.z.cells, upper_region(w).center_x);
+}
+
 // The rows on both sides of a height on the mesh; one row where it goes through its middle.
 struct Rows {
     long low, high;
@@ -180,8 +189,8 @@ inline std::vector<common::Column> followed_columns(const Case& w) {
                 {"pressure_re", "pressure"},
                 {"pressure_im", "pressure"}};
     if (w.compare == "ringing") return {{"noise", "velocity"}};
-    if (w.compare == "rayleigh_taylor" || w.compare == "kelvin_helmholtz")
-        return {{"mode_re", "velocity"}, {"mode_im", "velocity"}};
+    if (w.compare == "rayleigh_taylor") return {{"mode_re", "length"}, {"mode_im", "length"}};
+    if (w.compare == "kelvin_helmholtz") return {{"mode_re", "velocity"}, {"mode_im", "velocity"}};
     if (w.compare == "dam_break") return {{"front_x", "length"}, {"wall_height", "length"}};
     if (w.compare == "impact")
         return {{"target_momentum_x", "momentum/length"},
@@ -246,9 +255,10 @@ inline void add_followed(const Case& w, const State& state, const Totals& now,
         for (const double v : vx) mean += v / static_cast<double>(vx.size());
         for (const double v : vx) squares += (v - mean) * (v - mean);
         row.push_back(std::sqrt(squares / static_cast<double>(vx.size())));
-    } else if (w.compare == "rayleigh_taylor" || w.compare == "kelvin_helmholtz") {
-        const RegionCase& r =
-            w.compare == "rayleigh_taylor" ? upper_region(w) : region_with_flow(w, "shear");
+    } else if (w.compare == "rayleigh_taylor") {
+        add_mode(detail::interface_height(w, cells));
+    } else if (w.compare == "kelvin_helmholtz") {
+        const RegionCase& r = region_with_flow(w, "shear");
         const detail::Rows rows = detail::rows_at(w.grid.z, r.center_z);
         add_mode(detail::mode_of(w, cells.vz, rows.low, rows.high, r.center_x));
     } else if (w.compare == "dam_break") {

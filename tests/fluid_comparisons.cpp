@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -225,12 +226,13 @@ TEST_CASE("the growth of an interface is found from a start in motion and from o
     for (const bool in_motion : {true, false}) {
         const auto run = recorded(text, "flip", 400, [&](const Case& w, double t, Fluid& f) {
             const double g = theory_growth(w);
-            const double linear = 1e-3 * (in_motion ? std::cosh(g * t) : std::sinh(g * t));
+            const double linear = 1e-3 / g * (in_motion ? std::sinh(g * t) : std::cosh(g * t));
             // What is large stops growing.
-            const double v = linear / (1 + std::pow(linear / 0.3, 2));
+            const double eta = linear / (1 + std::pow(linear * g / 0.3, 2)),
+                         dz = w.grid.z.spacing();
             for_each_cell(w, [&](long n, double x, double z) {
-                f.cells.rho[n] = z > 1 ? 2 : 1;
-                f.cells.vz[n] = v * std::cos(2 * pi * x);
+                const double above = (z - 1 - eta * std::cos(2 * pi * x)) / dz;
+                f.cells.rho[n] = 1.5 + std::clamp(above, -0.5, 0.5);
             });
         });
         facts::check_results(run.summary, 1);
