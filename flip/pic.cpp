@@ -26,7 +26,7 @@ const common::About about{
     "pic", PROGRAM_VERSION,
     "Harlow's particle-in-cell method for compressible flow; the default case "
     "is Sod's shock tube",
-    "flip/cases/sod_pic.toml"};
+    "flip/cases/sod.toml"};
 
 int run(int argc, char** argv, std::optional<common::Session>& holder) {
     // 1. The case: defaults, file, command line; refuse, warn, or only describe.
