@@ -229,6 +229,10 @@ $(3)/.complete: flip/figures/$(1).sh $(BUILD)/pic $(BUILD)/flip $(2:%=flip/cases
 	@touch $$@
 endef
 $(eval $(call fluid_series,flip_sod,sod,out/flip/shock_tubes))
+$(eval $(call figure,flip_sod_convergence,flip,out/flip/shock_tubes))
+$(eval $(call fluid_series,flip_wall_shock,wall_shock piston,out/flip/struck_walls))
+$(eval $(call fluid_series,flip_advected_blob,advected_blob,out/flip/blobs))
+$(eval $(call fluid_series,flip_rotating_disk,rotating_disk,out/flip/disks))
 
 fluid_figures = $(filter pic_% flip_%,$(figures))
 

@@ -132,7 +132,8 @@ inline FluidState fluid_of(const Case& w, const RegionCase& r, double x, double 
 /// Particles of the start, cell by cell on a lattice of equal volumes.
 /// in:     a completed case that check_case has not refused
 /// out:    all columns that FLIP needs; unsorted
-/// exact:  m_p is density times volume, so uniform fluid has equal masses
+/// exact:  m_p is density times volume, so uniform fluid has equal masses; a particle of apic begins
+///         with the gradient of the flow of its region
 inline Particles load_particles(const Case& w) {
     constexpr std::uint32_t where = 1, how_fast = 2;
     Particles particles;
@@ -173,9 +174,21 @@ inline Particles load_particles(const Case& w) {
         if (w.regions[n].energy > 0) particles.e_p[p] += w.regions[n].energy / region_mass[n];
     }
     if (w.density == "particles") particles.V_p.assign(particles.x_p.size(), dx * dz);
-    if (w.transfer == "apic")
-        for (auto* C : {&particles.Cxx_p, &particles.Cxz_p, &particles.Czx_p, &particles.Czz_p})
-            C->assign(particles.x_p.size(), 0.0);
+    if (w.transfer == "apic") {
+        const double step_x = 1e-3 * grid.x.spacing(), step_z = 1e-3 * grid.z.spacing();
+        for (std::size_t p = 0; p < region_of.size(); ++p) {
+            const double x = particles.x_p[p], z = particles.z_p[p];
+            const RegionCase& region = w.regions[region_of[p]];
+            const FluidState left = fluid_of(w, region, x - step_x, z),
+                             right = fluid_of(w, region, x + step_x, z),
+                             below = fluid_of(w, region, x, z - step_z),
+                             above = fluid_of(w, region, x, z + step_z);
+            particles.Cxx_p.push_back((right.vx - left.vx) / (2 * step_x));
+            particles.Cxz_p.push_back((above.vx - below.vx) / (2 * step_z));
+            particles.Czx_p.push_back((right.vz - left.vz) / (2 * step_x));
+            particles.Czz_p.push_back((above.vz - below.vz) / (2 * step_z));
+        }
+    }
     return particles;
 }
 
