@@ -233,6 +233,7 @@ $(eval $(call figure,flip_sod_convergence,flip,out/flip/shock_tubes))
 $(eval $(call fluid_series,flip_wall_shock,wall_shock piston,out/flip/struck_walls))
 $(eval $(call fluid_series,flip_advected_blob,advected_blob,out/flip/blobs))
 $(eval $(call fluid_series,flip_rotating_disk,rotating_disk,out/flip/disks))
+$(eval $(call fluid_series,flip_rayleigh_taylor,rayleigh_taylor,out/flip/layers))
 
 fluid_figures = $(filter pic_% flip_%,$(figures))
 
