@@ -1,5 +1,5 @@
 // Everything a case file of pic and flip can say: plain values with their defaults. One file serves
-// both programs; what only FLIP has stands in sections of its own, which pic refuses to ignore.
+// both programs; how FLIP goes about it stands in sections of its own, which mean nothing to pic.
 #pragma once
 
 #include <array>

@@ -6,54 +6,18 @@
 #include <vector>
 
 #include "flip/check_fluid.hpp"
+#include "flip/keys_of_flip.hpp"
 
 namespace flip {
 
 namespace detail {
 
-// Keys that do nothing unless another has a certain value.
-struct IdleKey {
-    std::string name, value;
-    bool changed;
-    bool used;
-    std::string needs;
-};
-
-inline std::vector<IdleKey> keys_of_flip(const Case& w) {
-    const Case d;
-    const auto on_off = [](bool value) { return std::string(value ? "true" : "false"); };
-    const auto whole = [](long value) { return std::to_string(value); };
-    const auto quoted = [](const std::string& text) { return "\"" + text + "\""; };
-    const bool implicit = w.implicit(), rezones = w.rezone_steps > 0;
-    const std::string solver = "flip.pressure = \"implicit\"", rezone = "rezone.steps above 0";
-    return {
-        {"flip.transfer", quoted(w.transfer), w.transfer != d.transfer, true, ""},
-        {"flip.blend", shown(w.blend), w.blend != d.blend, w.transfer == "blend",
-         "flip.transfer = \"blend\""},
-        {"flip.xpic_order", whole(w.xpic_order), w.xpic_order != d.xpic_order, w.transfer == "xpic",
-         "flip.transfer = \"xpic\""},
-        {"flip.mass", quoted(w.mass), w.mass != d.mass, true, ""},
-        {"flip.deficit_to_heat", on_off(w.deficit_to_heat), w.deficit_to_heat != d.deficit_to_heat,
-         true, ""},
-        {"flip.density", quoted(w.density), w.density != d.density, true, ""},
-        {"flip.viscosity", shown(w.viscosity), w.viscosity != d.viscosity, true, ""},
-        {"flip.pressure", quoted(w.pressure), w.pressure != d.pressure, true, ""},
-        {"flip.theta", shown(w.theta), w.theta != d.theta, implicit, solver},
-        {"flip.tolerance", shown(w.tolerance), w.tolerance != d.tolerance, implicit, solver},
-        {"flip.most_iterations", whole(w.most_iterations), w.most_iterations != d.most_iterations,
-         implicit, solver},
-        {"rezone.steps", whole(w.rezone_steps), w.rezone_steps != d.rezone_steps, true, ""},
-        {"rezone.fewest", whole(w.fewest), w.fewest != d.fewest, rezones, rezone},
-        {"rezone.most", whole(w.most), w.most != d.most, rezones, rezone},
-    };
-}
-
 inline void refuse_methods(const Case& w, const std::string& program) {
     for (const IdleKey& key : keys_of_flip(w)) {
-        refuse(program == "pic" && key.changed,
+        const bool physics = key.name == "flip.viscosity" || key.name == "flip.pressure";
+        refuse(program == "pic" && key.changed && physics,
                key.name + " = " + key.value +
-                   " is for particles that carry velocity and energy: run the case with flip, or "
-                   "take it out");
+                   " is beyond pic: run the case with flip, or take it out");
         refuse(key.changed && !key.used, key.name + " = " + key.value + " needs " + key.needs);
     }
     for (std::size_t k = 0; k < 4; ++k)

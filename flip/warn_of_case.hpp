@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "flip/keys_of_flip.hpp"
 #include "flip/scales.hpp"
 
 namespace flip {
@@ -54,7 +55,7 @@ inline bool is_gentle(const Case& w) {
 
 inline void warn_of_speeds(const Case& w, const Scales& scales, const std::string& program,
                            std::vector<std::string>& out) {
-    const bool slow = scales.sound_speed > 0 && scales.speed < 0.05 * scales.sound_speed;
+    const bool slow = scales.sound_speed > 0 && scales.mach < 0.05;
     if (program == "pic" && slow && is_gentle(w))
         out.push_back("the flow has Mach " + shown(scales.mach) +
                       ", below 0.05: cells feel a particle only when it enters them, and what "
@@ -127,6 +128,10 @@ inline void warn_of_theory(const Case& w, const Scales& scales, std::vector<std:
 inline std::vector<std::string> resolution_warnings(const Case& w, const Scales& scales,
                                                     const std::string& program) {
     std::vector<std::string> warnings;
+    for (const detail::IdleKey& key : detail::keys_of_flip(w))
+        if (program == "pic" && key.changed)
+            warnings.push_back(key.name + " = " + key.value +
+                               " means nothing to pic, whose particles are mass alone");
     detail::warn_of_regions(w, scales, warnings);
     detail::warn_of_speeds(w, scales, program, warnings);
     detail::warn_of_theory(w, scales, warnings);

@@ -56,7 +56,7 @@ facts::Run recorded(const std::string& text, const std::string& program, int ste
             fluid.totals = {1, 0, 0, 1, 1, 1};
             at(w, t, fluid);
             recorder.snapshot(n, fluid.state, fluid.cells, session);
-            recorder.record(n, fluid.state, fluid.totals, fluid.cells, {}, session);
+            recorder.record(n, fluid.state, fluid.totals, fluid.cells, session);
         }
         recorder.finish(fluid.state, fluid.totals, fluid.cells, session);
         session.history.flush();

@@ -11,9 +11,9 @@ bottoms = '0 -0.05 0 1.6'
 steps = '0.2 0.2 0.2 0.5'
 set xrange [0:1]; set xtics 0.2
 do for [k = 1:4] {
-    left = k % 2 == 1 ? 0.07 : 0.56
+    left = k % 2 == 1 ? 0.085 : 0.575
     bottom = k < 3 ? 0.53 : 0.085
-    set lmargin at screen left; set rmargin at screen left + 0.42
+    set lmargin at screen left; set rmargin at screen left + 0.405
     set bmargin at screen bottom; set tmargin at screen bottom + 0.385
     set yrange [word(bottoms, k):word(tops, k)]; set ytics real(word(steps, k))
     set ylabel word(labels, k) offset 0.8, 0
