@@ -235,6 +235,7 @@ $(eval $(call fluid_series,flip_advected_blob,advected_blob,out/flip/blobs))
 $(eval $(call fluid_series,flip_rotating_disk,rotating_disk,out/flip/disks))
 $(eval $(call fluid_series,flip_rayleigh_taylor,rayleigh_taylor,out/flip/layers))
 $(eval $(call fluid_series,flip_gresho,gresho,out/flip/vortices))
+$(eval $(call fluid_series,flip_kelvin_helmholtz,kelvin_helmholtz,out/flip/streams))
 
 fluid_figures = $(filter pic_% flip_%,$(figures))
 
