@@ -44,15 +44,16 @@ struct Nodes {
 
 /// The cells; columns of grid.size(), those per material with the materials of a cell together.
 struct Cells {
-    std::vector<CellSum> sum;       // [cell][material]
-    std::vector<double> share, de;  // of a change of volume; change of e in this step
-    Field M;                        // mass
-    Field p, q;                     // pressure, artificial viscosity
-    Field compressibility;          // -(dV/dp)/V; 0 in an empty cell
-    Field p_step;                   // the pressure that acts in this step
-    std::vector<char> surface;      // 1: partly void, p = 0 whatever happens
-    Field volume, give, give_p;     // sums over particles that carry volumes: V, V/K, p V/K
-    Field strain, work, q_work;     // V_c div v dt per sum of V/K, for such particles
+    std::vector<CellSum> sum;         // [cell][material]
+    std::vector<double> share, de;    // of a change of volume; change of e in this step
+    std::vector<double> relative_de;  // change of e by pressure, per e
+    Field M;                          // mass
+    Field p, q;                       // pressure, artificial viscosity
+    Field compressibility;            // -(dV/dp)/V; 0 in an empty cell
+    Field p_step;                     // the pressure that acts in this step
+    std::vector<char> surface;        // 1: partly void, p = 0 whatever happens
+    Field volume, give, give_p;       // sums over particles that carry volumes: V, V/K, p V/K
+    Field strain, work, q_work;       // V_c div v dt per sum of V/K, for such particles
 };
 
 struct Mesh {
@@ -80,6 +81,7 @@ inline Mesh mesh_of(const Case& w) {
     c.sum.assign(count * mesh.materials, {});
     c.share.assign(count * mesh.materials, 0);
     c.de.assign(count * mesh.materials, 0);
+    c.relative_de.assign(count * mesh.materials, 0);
     c.surface.assign(count, 0);
     for (Field* f : {&c.M, &c.p, &c.q, &c.compressibility, &c.p_step}) f->setZero(size);
     if (w.density == "particles")

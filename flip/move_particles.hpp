@@ -29,7 +29,8 @@ void move_row(const Case& w, const WeightScale& scale, const Mesh& mesh, const T
               double dt, std::size_t begin, std::size_t end, Particles& p) {
     const Grid& grid = w.grid;
     const Four* const kick = mesh.nodes.kick.data();
-    const double *const heat = mesh.nodes.heat.data(), *const de = mesh.cells.de.data();
+    const double *const heat = mesh.nodes.heat.data(), *const de = mesh.cells.de.data(),
+                        *const relative_de = mesh.cells.relative_de.data();
     const long kinds = static_cast<long>(mesh.materials);
     const double deficit = w.heats() ? 0.5 : 0;
     // [move]
@@ -43,7 +44,9 @@ void move_row(const Case& w, const WeightScale& scale, const Mesh& mesh, const T
         });
         const Velocity dv{sum[0], sum[1]};
         const long kind = p.material[k];
-        for_cells(scale, at, [&](long c, double R) { gained += R * de[c * kinds + kind]; });
+        for_cells(scale, at, [&](long c, double R) {
+            gained += R * (de[c * kinds + kind] + p.e_p[k] * relative_de[c * kinds + kind]);
+        });
         gained -= deficit * dv.square();
         if constexpr (volumes) gained += work_on_volume(w, scale, at, mesh.cells, k, p);
         Velocity v{p.vx_p[k] + dv.x, p.vz_p[k] + dv.z};           // [FLIP-6]
@@ -66,9 +69,9 @@ void move_row(const Case& w, const WeightScale& scale, const Mesh& mesh, const T
 /// Particles after the step.
 ///   v_p += sum_g S (v_g^L - v_g)                                                  [FLIP-6]
 ///   x_p += dt sum_g S v_g^L; with an implicit pressure v_g^theta                  [FLIP-7]
-///   e_p += sum_c R de_c + sum_g S heat_g - |sum_g S dv_g|^2/2
+///   e_p += sum_c R (de_c + e_p relative_de_c) + sum_g S heat_g - |sum_g S dv_g|^2/2
 ///   and what another transfer than flip makes of v_p: follow_mesh()
-/// in:     nodes.kick, heat, carry; cells.de
+/// in:     nodes.kick, heat, carry; cells.de, relative_de
 /// in/out: particles, sorted by row; afterwards out of order, and beyond an end if they left
 /// exact:  mass and momentum; total energy when the deficit goes to heat: what the lumped mass
 ///         matrix owes is sum_p m_p [sum_g S |dv_g|^2 - |sum_g S dv_g|^2]/2, never negative

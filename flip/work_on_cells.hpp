@@ -54,13 +54,15 @@ inline void enter_outside(const Case& w, double dt, const Nodes& g, Books& books
 
 /// The work of pressure and viscosity on the cells, and what the particles need of the nodes.
 ///   dE_c = -dt (p V div v_work + q V div v_bar) + viscous heat,   v_bar = (v^0 + v^L)/2
-///   de_ck = share_ck dE_c / M_ck                      for the particles of material k, by mass
+/// For the particles of material k pressure changes e in proportion to e, as it does at one pressure
+/// when nothing else happens, so that each keeps its entropy; viscosity by mass:
+///   relative_de_ck = -dt share_ck p V div v_work / U_ck,   de_ck = share_ck (rest of dE_c) / M_ck
 ///   heat_g = |v^0 - v|^2/2                            of what walls stop; with the consistent
 ///                                                     mass R . (v^L - v)/(2 m_g)
 ///          + (theta - 1/2) dt F_g . (v^L - v^0)/m_g   of an implicit pressure, v_work = v^theta
 ///          + |v^L - v|^2/2                            that the lumped mass owes the particles
 /// in:     v, v^0, v^L; p_step, q; forces
-/// out:    cells.de, and with volumes strain, work, q_work; nodes.kick, heat; books
+/// out:    cells.de, relative_de, and with volumes strain, work, q_work; nodes.kick, heat; books
 /// exact:  sum_c dE_c + change of (1/2) sum_g m_g v_g^2 + heat of walls and of theta = what the books
 ///         have entered
 inline void work_on_cells(const Case& w, double dt, Mesh& mesh, Books& books) {
@@ -97,6 +99,7 @@ inline void work_on_cells(const Case& w, double dt, Mesh& mesh, Books& books) {
     for_each_cell(grid, [&](long, long, long n) {
         const double work = dilation(grid, g.vx_work, g.vz_work, n),
                      bar = dilation(grid, g.vx_bar, g.vz_bar, n);
+        double adiabatic = 0;
         double dE =
             w.viscosity > 0 && c.M[n] > 0 ? dt * viscous_heat(w, g, g.vx_bar, g.vz_bar, n) : 0;
         if (volumes) {
@@ -107,15 +110,19 @@ inline void work_on_cells(const Case& w, double dt, Mesh& mesh, Books& books) {
             c.work[n] = per_give * work;
             c.q_work[n] = per_give * (c.q[n] * bar + (c.p_step[n] - c.p[n]) * work);
         } else {
-            dE -= dt * (c.p_step[n] * work + c.q[n] * bar);
+            adiabatic = -dt * c.p_step[n] * work;
+            dE -= dt * c.q[n] * bar;
         }
         for (std::size_t k = 0; k < kinds; ++k) {
             const std::size_t ck = static_cast<std::size_t>(n) * kinds + k;
             const double share = volumes ? (c.M[n] > 0 ? c.sum[ck].M / c.M[n] : 0) : c.share[ck];
-            c.de[ck] = c.sum[ck].M > 0 ? share * dE / c.sum[ck].M : 0;
+            const bool warm = c.sum[ck].U > 0;
+            c.de[ck] = c.sum[ck].M > 0 ? share * (warm ? dE : dE + adiabatic) / c.sum[ck].M : 0;
+            c.relative_de[ck] = warm ? share * adiabatic / c.sum[ck].U : 0;
         }
     });
     fill_cells(grid, c.de.data(), static_cast<long>(kinds));
+    fill_cells(grid, c.relative_de.data(), static_cast<long>(kinds));
     if (volumes)
         for (Field* f : {&c.strain, &c.work, &c.q_work}) fill_cells(grid, f->data());
 }
