@@ -83,39 +83,22 @@ inline void multiply(const Grid& grid, const MassMatrix& M, Field& x, Field& y) 
     fill_nodes(grid, y.data());
 }
 
-/// The velocity that xpic gives to particles in place of their own: what the mesh can represent,
-/// without the smoothing of pic.
+/// One component of the velocity that xpic gives to particles in place of their own: what the mesh
+/// can represent, without the smoothing of pic.
 ///   v = sum_{k < order} (I - M_L^-1 M)^k v_g;  order 1 is pic, many orders M^-1 M_L v_g
+/// out:    v; last, the last term of the sum, which says what the filter leaves: the momentum of the
+///         particles less M v is (M_L - M) last
 /// source: Hammerquist and Nairn, Comput. Methods Appl. Mech. Eng. 318, 724 (2017).
 /// note:   theirs also corrects the displacement; here positions follow the slide, FLIP-7
 inline void filter_velocity(const Grid& grid, const MassMatrix& M, const Field& m, long order,
-                            Field& vx, Field& vz) {
-    for (Field* v : {&vx, &vz}) {
-        Field rest = *v, trip;
-        for (long k = 1; k < order; ++k) {
-            multiply(grid, M, rest, trip);
-            for_each_node(grid, [&](long, long, long n) {
-                rest[n] = m[n] > 0 ? rest[n] - trip[n] / m[n] : 0;
-            });
-            *v += rest;
-        }
-    }
-}
-
-/// The share of the nodes in the energy that xpic takes from the motion: what a filter of finite
-/// order leaves beside the square of the difference |v_p' - v_p - dv_p|^2/2.
-///   heat_g -= (v + dv)_g . [(M v)_g/m_g - v_g],  v the filtered velocity
-inline void filter_heat(const Case& w, const MassMatrix& M, Field& vx, Field& vz, Mesh& mesh) {
-    if (!w.heats()) return;
-    Nodes& g = mesh.nodes;
+                            const Field& v_g, Field& v, Field& last) {
     Field trip;
-    for (const bool along_x : {true, false}) {
-        Field& v = along_x ? vx : vz;
-        const Field &raw = along_x ? g.vx : g.vz, &after = along_x ? g.vxL : g.vzL;
-        multiply(w.grid, M, v, trip);
-        for_each_node(w.grid, [&](long, long, long n) {
-            if (g.m[n] > 0) g.heat[n] -= (v[n] + after[n] - raw[n]) * (trip[n] / g.m[n] - raw[n]);
-        });
+    v = last = v_g;
+    for (long k = 1; k < order; ++k) {
+        multiply(grid, M, last, trip);
+        for_each_node(
+            grid, [&](long, long, long n) { last[n] = m[n] > 0 ? last[n] - trip[n] / m[n] : 0; });
+        v += last;
     }
 }
 

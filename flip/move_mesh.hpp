@@ -81,12 +81,12 @@ inline StepReport move_mesh(const Case& w, double dt, const Particles& particles
     work_on_cells(w, dt, mesh, books);
 
     if (filtered) {
-        Field vx = g.vx, vz = g.vz;
-        filter_velocity(w.grid, M, g.m, w.xpic_order, vx, vz);
-        filter_heat(w, M, vx, vz, mesh);
-        prepare_transfer(w, vx, vz, mesh);
+        Field vx, vz, last_x, last_z;
+        filter_velocity(w.grid, M, g.m, w.xpic_order, g.vx, vx, last_x);
+        filter_velocity(w.grid, M, g.m, w.xpic_order, g.vz, vz, last_z);
+        prepare_transfer(w, vx, vz, last_x, last_z, mesh);
     } else {
-        prepare_transfer(w, g.vx, g.vz, mesh);
+        prepare_transfer(w, g.vx, g.vz, g.vxL, g.vzL, mesh);
     }
     return report;
 }

@@ -83,6 +83,18 @@ inline double lost_by_kick(const WeightScale& scale, const Weights& w, const Fou
     return sum;
 }
 
+// What a filter of finite order takes beside the square of a difference: how its last term and the
+// new velocity vary together among the nodes. Summed over particles, v_new (M_L - M) last.
+inline double lost_in_filter(const WeightScale& scale, const Weights& w, const Four* carry,
+                             const Four* kick, const Velocity& v_new) {
+    double sum = 0;
+    for_nodes(scale, w, [&](long n, double S) {
+        sum += S * ((carry[n][0] + kick[n][0] - v_new.x) * carry[n][2] +
+                    (carry[n][1] + kick[n][1] - v_new.z) * carry[n][3]);
+    });
+    return sum;
+}
+
 }  // namespace detail
 
 /// Turns one particle's velocity, which has taken the kick already, from its own towards that of the
@@ -103,7 +115,10 @@ inline double follow_mesh(const Transfer& rule, const Grid& grid, const WeightSc
     const Velocity apart{old.x - mesh[0], old.z - mesh[1]};
     v.x -= rule.part * apart.x;
     v.z -= rule.part * apart.z;
-    if (rule.filtered) return rule.heat ? 0.5 * apart.square() : 0;
+    if (rule.filtered && rule.heat)
+        return 0.5 * apart.square() +
+               detail::lost_in_filter(scale, at, carry, nodes.kick.data(), v);
+    if (rule.filtered) return 0;
 
     double C[4] = {0, 0, 0, 0}, C_new[4] = {0, 0, 0, 0}, heat = 0;
     if (rule.affine) {
@@ -121,13 +136,15 @@ inline double follow_mesh(const Transfer& rule, const Grid& grid, const WeightSc
 }
 
 /// What particles take from the mesh in place of their own velocity, where the transfer wants it.
-/// in:     velocities on the nodes, or filtered by filter_velocity(); v^L
+/// in:     velocities on the nodes with v^L; or for xpic what filter_velocity() makes of them, with
+///         its last term
 /// out:    nodes.carry
-inline void prepare_transfer(const Case& w, const Field& vx, const Field& vz, Mesh& mesh) {
+inline void prepare_transfer(const Case& w, const Field& vx, const Field& vz, const Field& other_x,
+                             const Field& other_z, Mesh& mesh) {
     if (w.transfer == "flip") return;
     Nodes& g = mesh.nodes;
     for_each_node(w.grid, [&](long, long, long n) {
-        g.carry[static_cast<std::size_t>(n)] = Four(vx[n], vz[n], g.vxL[n], g.vzL[n]);
+        g.carry[static_cast<std::size_t>(n)] = Four(vx[n], vz[n], other_x[n], other_z[n]);
     });
 }
 
