@@ -6,6 +6,9 @@
 
 namespace flip {
 
+/// Nodes with less mass have none: at the smallest of numbers, quotients lose their meaning.
+inline constexpr double least_mass = 1e-280;
+
 namespace detail {
 
 // What the particles of one row of cells leave on the mesh: two rows of nodes, three of cells.
@@ -116,8 +119,8 @@ inline void deposit_particles(const Case& w, const Particles& particles, Mesh& m
 
     for_each_node(grid, [&](long, long, long n) {
         const Four& sum = g.sum[static_cast<std::size_t>(n)];
-        const double per_mass = sum[0] > 0 ? 1 / sum[0] : 0;
-        g.m[n] = sum[0];
+        const double per_mass = sum[0] > least_mass ? 1 / sum[0] : 0;
+        g.m[n] = per_mass > 0 ? sum[0] : 0;
         g.vx[n] = sum[1] * per_mass;
         g.vz[n] = sum[2] * per_mass;
     });
