@@ -40,6 +40,7 @@ struct Nodes {
     std::vector<Four> carry;       // what particles keep instead of their own velocity, not in flip
     Field heat;                    // specific energy that leaves the motion of the nodes
     Field reaction_x, reaction_z;  // impulse of the walls, with the consistent mass matrix
+    Field stopped;                 // specific energy that they take then
 };
 
 /// The cells; columns of grid.size(), those per material with the materials of a cell together.
@@ -74,7 +75,7 @@ inline Mesh mesh_of(const Case& w) {
     g.sum.assign(count, Four::Zero());
     g.kick.assign(count, Four::Zero());
     if (w.mass == "consistent")
-        for (Field* f : {&g.reaction_x, &g.reaction_z}) f->setZero(size);
+        for (Field* f : {&g.reaction_x, &g.reaction_z, &g.stopped}) f->setZero(size);
     if (w.transfer != "flip") g.carry.assign(count, Four::Zero());
     Cells& c = mesh.cells;
     mesh.materials = w.materials.size();

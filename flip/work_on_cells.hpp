@@ -57,8 +57,8 @@ inline void enter_outside(const Case& w, double dt, const Nodes& g, Books& books
 /// For the particles of material k pressure changes e in proportion to e, as it does at one pressure
 /// when nothing else happens, so that each keeps its entropy; viscosity by mass:
 ///   relative_de_ck = -dt share_ck p V div v_work / U_ck,   de_ck = share_ck (rest of dE_c) / M_ck
-///   heat_g = |v^0 - v|^2/2                            of what walls stop; with the consistent
-///                                                     mass R . (v^L - v)/(2 m_g)
+///   heat_g = |v^0 - v|^2/2                            of what walls stop, or with the consistent
+///                                                     mass (v^0 - v) M (v^0 - v)/(2 m_g)
 ///          + (theta - 1/2) dt F_g . (v^L - v^0)/m_g   of an implicit pressure, v_work = v^theta
 ///          + |v^L - v|^2/2                            that the lumped mass owes the particles
 /// in:     v, v^0, v^L; p_step, q; forces
@@ -81,10 +81,8 @@ inline void work_on_cells(const Case& w, double dt, Mesh& mesh, Books& books) {
         g.vz_bar[n] = 0.5 * (g.vz0[n] + g.vzL[n]);
         g.vx_work[n] = (1 - level) * g.vx0[n] + level * g.vxL[n];
         g.vz_work[n] = (1 - level) * g.vz0[n] + level * g.vzL[n];
-        g.heat[n] = 0.5 * (stop_x * stop_x + stop_z * stop_z);
+        g.heat[n] = g.stopped.size() > 0 ? g.stopped[n] : 0.5 * (stop_x * stop_x + stop_z * stop_z);
         if (w.heats()) g.heat[n] += 0.5 * (dvx * dvx + dvz * dvz);
-        if (g.reaction_x.size() > 0 && g.m[n] > 0)
-            g.heat[n] += 0.5 * (g.reaction_x[n] * dvx + g.reaction_z[n] * dvz) / g.m[n];
         if (w.implicit() && g.m[n] > 0) {
             const Eigen::Vector2d F = pressure_force(grid, c.p_step, n);
             g.heat[n] += (w.theta - 0.5) * dt / g.m[n] *
