@@ -234,8 +234,10 @@ $(eval $(call fluid_series,flip_wall_shock,wall_shock piston,out/flip/struck_wal
 $(eval $(call fluid_series,flip_advected_blob,advected_blob,out/flip/blobs))
 $(eval $(call fluid_series,flip_rotating_disk,rotating_disk,out/flip/disks))
 $(eval $(call fluid_series,flip_rayleigh_taylor,rayleigh_taylor,out/flip/layers))
+$(eval $(call figure,pic_sphere_hits_plate,flip,out/pic/sphere_hits_plate))
 $(eval $(call fluid_series,flip_gresho,gresho,out/flip/vortices))
 $(eval $(call fluid_series,flip_kelvin_helmholtz,kelvin_helmholtz,out/flip/streams))
+$(eval $(call fluid_series,flip_acoustic,acoustic,out/flip/sound_waves))
 
 fluid_figures = $(filter pic_% flip_%,$(figures))
 

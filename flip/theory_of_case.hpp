@@ -145,16 +145,21 @@ inline SoundWave sound_wave_of(const Case& w, const std::string& program, double
     // stiffened gas it is (p + gamma p_infinity)/(gamma (p + p_infinity)).
     const Material& gas = material_of(w, r);
     const double p = r.gas.pressure, gamma = stiffness(gas, p) / (p + gas.gamma * gas.p_infinity);
-    const std::complex<double> factor =
-        w.implicit() ? theory::theta_factor(w.theta, a) : theory::explicit_factor(gamma, a);
-    double kept = 1;
+    theory::WaveTransfer part;
     if (!on_cells) {
         const double once = theory::pic_smoothing(k, dx), lost = 1 - once;
-        if (w.transfer == "pic") kept = once;
-        if (w.transfer == "blend") kept = w.blend + (1 - w.blend) * once;
-        if (w.transfer == "xpic") kept = 1 - std::pow(lost, static_cast<double>(w.xpic_order));
+        part.kick = part.energy = once;
+        if (w.transfer == "pic") part.kept = once;
+        if (w.transfer == "blend") part.kept = w.blend + (1 - w.blend) * once;
+        if (w.transfer == "xpic") part.kept = 1 - std::pow(lost, static_cast<double>(w.xpic_order));
+        // A particle of apic hands both nodes of its row what it has from them.
+        if (w.transfer == "apic") part.kick = 1;
+        // Motion changes the mass in a cell by what crosses its ends, with the velocity around them.
+        part.density = w.density == "cells" ? 1 - 0.75 * lost : once;
     }
-    return {c * k, std::arg(factor), kept * std::abs(factor)};
+    const std::complex<double> factor =
+        theory::carried_factor(w.implicit() ? w.theta : -1, gamma, a, part);
+    return {c * k, std::arg(factor), std::abs(factor)};
 }
 
 /// The column of water of a broken dam: the last region, from x_low and z_low on.

@@ -875,6 +875,28 @@ TEST_CASE("an explicit sound wave grows by the published factors in one period")
         }
 }
 
+TEST_CASE("particles that see all of a sound wave carry it as the mesh does") {
+    const double gamma = 1.4;
+    for (const double a : {0.03, 0.4, 1.1, 1.4}) {
+        CHECK(std::abs(carried_factor(-1, gamma, a, {}) - explicit_factor(gamma, a)) <= 1e-14);
+        for (const double theta : {0.5, 0.55, 1.0})
+            CHECK(std::abs(carried_factor(theta, gamma, a, {}) - theta_factor(theta, a)) <= 1e-14);
+    }
+}
+
+TEST_CASE("what the mesh does not see of a sound wave stays on the particles") {
+    const double s = 0.9, gamma = 1.4;
+    const WaveTransfer part{1, s, s, s};
+    for (const double theta : {0.5, 0.7, 1.0})
+        for (const double a : {0.2, 3.0, 100.0})
+            CHECK(std::abs(carried_factor(theta, gamma, a, part) -
+                           (1 - s + s * theta_factor(theta, a))) <= 1e-12);
+    // Velocity alone is smoothed by pic, so that the wave loses half of it: it lives on pressure, too.
+    const double a = 1e-5, once = 1 - 1e-9;
+    const Complex pic = carried_factor(0.5, gamma, a, {once, once, 1, 1});
+    CHECK(std::abs((1 - std::abs(pic)) / (1 - once) - 0.5) <= 1e-3);
+}
+
 TEST_CASE("many particles smooth a wave by the factor of linear weights") {
     for (const double kh : {0.1, 1.0, 2.0, pi}) {
         // Velocity cos(k x) on nodes goes to particles, and back to the node at zero.
