@@ -120,8 +120,10 @@ inline double step_allowed(const Case& w, const Mesh& mesh, double last) {
                 }
                 const double filled = c.volume.size() > 0 ? std::max(c.volume[n], 1e-300) : V_c;
                 const double rho = c.M[n] / filled;
+                // Through a cell that is partly void no sound runs.
+                const bool silent = c.surface[static_cast<std::size_t>(n)] != 0;
                 const double sound =
-                    w.implicit() && last > 0
+                    silent || (w.implicit() && last > 0)
                         ? 0
                         : sound_speed(rho, c.compressibility[n]) * std::sqrt(per_dx2);
                 double rate = (vx * per_dx + vz * per_dz + sound) / w.cfl;

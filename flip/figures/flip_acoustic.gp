@@ -18,7 +18,7 @@ plot for [n = 1:4] sqrt((1 + (1 - word(thetas, n))**2 * x**2) / (1 + word(thetas
      for [n = 1:4] '+' using (real(word(long_steps, int($0) + 1))):(exp(growth(word(thetas, n), word(long_steps, int($0) + 1)))) every ::0::6 with points lt n pt 7 ps 1.4 notitle, \
      for [n = 1:4] NaN with linespoints lt n pt 7 ps 1.4 title 'θ = '.word(thetas, n)
 set lmargin at screen 0.58; set rmargin at screen 0.97
-set xrange [0.004:0.12]; set yrange [5e-7:0.1]; set logscale y; set format y '10^{%T}'; set ytics 10
+set xrange [0.004:0.12]; set yrange [5e-7:0.3]; set logscale y; set format y '10^{%T}'; set ytics 10
 set title 'explicit' offset 0, -0.5; set ylabel '|growth| of the amplitude' offset 0.5, 0
 set key top left
 tint = blue.' '.green.' '.orange

@@ -1,15 +1,15 @@
 # The showpiece of 1955, in the plane: a ball of iron hits a plate of aluminum at 6 km/s. Particles of classical PIC, iron orange and aluminum blue. The ball spreads and lines
 # the crater, whose lip flies back, and the plate bulges. Such distortions, and two materials with free surfaces, are what a mesh that moves with the fluid cannot follow.
-wide = 1500; high = 580
+wide = 1500; high = 590
 load 'common/style.gp'
 files = system(sprintf("ls %s/particles_*.dat", run))
-step_of(file) = int(real(file[strlen(file) - 9 : strlen(file) - 4]))
-time_of(file) = real(system(sprintf("awk -v n=%d '!/#/ && k++ == n { print $1 }' %s/history.dat", step_of(file), run)))
+step_of(file) = file[strlen(file) - 9 : strlen(file) - 4]
+time_of(file) = real(system(sprintf("awk -v n=%s '!/#/ && k++ == n + 0 { print $1 }' %s/history.dat", step_of(file), run)))
 set multiplot title 'Iron hits aluminum at 6 km/s: Harlow''s particle-in-cell method' font ',24'
 set border 15; unset grid; unset key; set size ratio -1
 set xrange [-5.6:5.6]; set yrange [-6.2:5]; set xtics 2; set ytics 2
 set xlabel 'x [cm]' offset 0, 0.3
-width = 0.215; panel_bottom = 0.15; panel_top = panel_bottom + width * wide / high
+width = 0.215; panel_bottom = 0.17; panel_top = panel_bottom + width * wide / high
 set bmargin at screen panel_bottom; set tmargin at screen panel_top
 shown_files = word(files, 1).' '.word(files, 2).' '.word(files, 3).' '.word(files, 4)
 do for [n = 1:4] {
