@@ -238,6 +238,7 @@ $(eval $(call figure,pic_sphere_hits_plate,flip,out/pic/sphere_hits_plate))
 $(eval $(call fluid_series,flip_gresho,gresho,out/flip/vortices))
 $(eval $(call fluid_series,flip_kelvin_helmholtz,kelvin_helmholtz,out/flip/streams))
 $(eval $(call fluid_series,flip_acoustic,acoustic,out/flip/sound_waves))
+$(eval $(call fluid_series,flip_ringing,ringing,out/flip/uniform_flows))
 $(eval $(call figure,flip_dam_break,flip,out/flip/dam_break))
 
 fluid_figures = $(filter pic_% flip_%,$(figures))

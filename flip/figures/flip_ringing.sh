@@ -1,0 +1,20 @@
+#!/bin/sh
+# flip_ringing.sh PIC FLIP FOLDER: uniform flow over a row of cells at Mach 0 to 0.4, with flip and with what may cure its ringing. Folders are called by cure and Mach number.
+set -eu
+flip=$2
+folder=$3
+
+scan() {
+    name=$1
+    shift
+    for mach in 0 0.03 0.06 0.08 0.1 0.12 0.14 0.16 0.18 0.2 0.25 0.3 0.4; do
+        "$flip" flip/cases/ringing.toml region.gas.velocity_x=$mach --threads 1 --force --quiet --out "$folder/$name-$mach" "$@"
+    done
+}
+scan flip
+scan viscosity viscosity.linear=0.5
+scan blend flip.transfer=blend
+# It rings so hard that particles would pile up.
+scan apic flip.transfer=apic time.end=400
+scan xpic flip.transfer=xpic
+scan particles flip.density=particles
