@@ -599,6 +599,7 @@ TEST_CASE(
             const double dt = r.move_nodes();
             Random random(9);
             for (double& de : r.cells().de) de = 0;
+            for (double& part : r.cells().relative_de) part = 0;
             for_each_node(r.grid(), [&](long, long, long n) {
                 Four& kick = r.nodes().kick[static_cast<std::size_t>(n)];
                 r.nodes().heat[n] = 0.5 * (kick[0] * kick[0] + kick[1] * kick[1]);
