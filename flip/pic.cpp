@@ -2,9 +2,10 @@
 // surfaces and with slip at the walls. Cells hold velocity and energy; particles are mass and a
 // label, and carry it from cell to cell.
 //
-// The default case is Sod's shock tube. What one particle more or less in a cell does to the pressure
-// can be seen in it, and how the method's own viscosity, which goes with |u|, makes shocks possible.
+// The default case is the showpiece of 1955: an iron ball, here a rod, hits an aluminum plate.
 // Run:   build/pic
+// Run:   build/pic flip/cases/sod.toml particles.per_cell_x=64
+// Run:   build/pic flip/cases/advected_blob.toml time.dt=0.001
 //
 // Reading order: particles.hpp, state.hpp, equation_of_state.hpp, pic_cells.hpp,
 // lagrangian_phase.hpp, eulerian_phase.hpp, ends.hpp.
@@ -25,8 +26,8 @@ using namespace flip;
 const common::About about{
     "pic", PROGRAM_VERSION,
     "Harlow's particle-in-cell method for compressible flow; the default case "
-    "is Sod's shock tube",
-    "flip/cases/sod.toml"};
+    "is a ball that hits a plate",
+    "flip/cases/sphere_hits_plate.toml"};
 
 int run(int argc, char** argv, std::optional<common::Session>& holder) {
     // 1. The case: defaults, file, command line; refuse, warn, or only describe.
