@@ -240,6 +240,7 @@ $(eval $(call fluid_series,flip_kelvin_helmholtz,kelvin_helmholtz,out/flip/strea
 $(eval $(call fluid_series,flip_acoustic,acoustic,out/flip/sound_waves))
 $(eval $(call fluid_series,flip_ringing,ringing,out/flip/uniform_flows))
 $(eval $(call figure,flip_dam_break,flip,out/flip/dam_break))
+$(eval $(call figure,flip_cavity,flip,out/flip/cavity))
 
 fluid_figures = $(filter pic_% flip_%,$(figures))
 
