@@ -241,6 +241,11 @@ $(eval $(call fluid_series,flip_acoustic,acoustic,out/flip/sound_waves))
 $(eval $(call fluid_series,flip_ringing,ringing,out/flip/uniform_flows))
 $(eval $(call figure,flip_dam_break,flip,out/flip/dam_break))
 $(eval $(call figure,flip_cavity,flip,out/flip/cavity))
+$(eval $(call fluid_series,flip_translating_frame,translating_frame,out/flip/frames))
+$(eval $(call fluid_series,flip_sedov,sedov,out/flip/blasts))
+$(eval $(call fluid_series,flip_noh,noh,out/flip/falling))
+# A script that both share.
+out/figures/flip_sedov.png out/figures/flip_noh.png: flip/figures/radial.gp
 
 fluid_figures = $(filter pic_% flip_%,$(figures))
 

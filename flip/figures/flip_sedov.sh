@@ -1,0 +1,7 @@
+#!/bin/sh
+# flip_sedov.sh PIC FLIP FOLDER: a blast with both programs.
+set -eu
+folder=$3
+for program in "$1" "$2"; do
+    "$program" flip/cases/sedov.toml --force --quiet --threads 1 --out "$folder/$(basename "$program")"
+done
