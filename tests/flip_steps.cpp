@@ -403,6 +403,30 @@ TEST_CASE("a viscous shear flow decays by the law of Newton" * doctest::descript
     });
 }
 
+TEST_CASE("viscosities are those of their formulas in a uniform compression or expansion") {
+    for (const double a : {-0.7, 0.4}) {
+        for (const long rows : {1L, 6L}) {
+            Case w = flip_case(8, rows, "open", rows == 1 ? "periodic" : "open");
+            w.viscosity = 0.3, w.q_linear = 0.5, w.q_quadratic = 1.5;
+            w.regions = {fluid("", 2, 1)};
+            FlipRun r(w);
+            r.deposit();
+            for_each_node(r.grid(), [&](long i, long, long n) {
+                r.nodes().vx[n] = a * r.grid().x.at(real(i)), r.nodes().vz[n] = 0.2;
+            });
+            find_viscosity(r.w, r.mesh);
+            const double h = rows == 1 ? 1.0 / 8 : std::sqrt(1.0 / 48), c = std::sqrt(1.4 / 2);
+            const double q = a < 0 ? 2 * -a * h * (0.5 * c + 1.5 * h * -a) : 0;
+            for_each_cell(r.grid(), [&](long, long, long n) {
+                CHECK(std::fabs(r.cells().q[n] - q) <= 1e-13);
+                // mu (2 a - 2 a/3) a
+                const double heat = viscous_heat(r.w, r.nodes(), r.nodes().vx, r.nodes().vz, n);
+                CHECK(std::fabs(heat / r.grid().cell_area() - 0.3 * 4 / 3 * a * a) <= 1e-13);
+            });
+        }
+    }
+}
+
 // ---- whole steps ---------------------------------------------------------------------------------
 
 TEST_CASE("every step keeps mass and momentum and energy whatever it holds" *
