@@ -15,7 +15,7 @@ namespace flip {
 /// mesh; so does nothing that is not a number.
 inline int beyond(const Grid& grid, double x, double z) {
     const bool inside =
-        (x >= grid.x.low) & (x <= grid.x.high()) & (z >= grid.z.low) & (z <= grid.z.high());
+        x >= grid.x.low && x <= grid.x.high() && z >= grid.z.low && z <= grid.z.high();
     if (inside) return -1;
     if (!(x >= grid.x.low)) return x_low;
     if (!(x <= grid.x.high())) return x_high;
