@@ -14,6 +14,7 @@
 
 namespace flip {
 
+// [transpose]
 /// V_c div v of a cell, from its four nodes.
 inline double dilation(const Grid& grid, const Field& vx, const Field& vz, long n) {
     const long up = n + grid.stride();
@@ -27,6 +28,7 @@ inline Eigen::Vector2d pressure_force(const Grid& grid, const Field& p, long n) 
     return {0.5 * grid.z.spacing() * (p[down - 1] + p[n - 1] - p[down] - p[n]),
             0.5 * grid.x.spacing() * (p[down - 1] + p[down] - p[n - 1] - p[n])};
 }
+// [/transpose]
 
 /// Artificial viscosity of every cell, from the velocity that the walls let stand.
 ///   q = rho (-d) h (linear c + quadratic h (-d)),  d = div v < 0,  h = dx, or sqrt(dx dz)

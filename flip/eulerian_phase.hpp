@@ -149,10 +149,12 @@ void collect(const Case& w, const What& brought, State& state, PicCells& cells) 
                 M[k] = cell[3 + 2 * k];
                 mass += M[k];
             }
+            // [mix]
             const double per_mass = mass > 0 ? 1 / mass : 0.0;
             const double vx = cell[0] * per_mass, vz = cell[1] * per_mass,
                          kinetic = cell[2] * per_mass;
             const double heat = kinetic - 0.5 * (vx * vx + vz * vz);
+            // [/mix]
             bool sound = mass >= 0 && std::isfinite(mass + kinetic);
             for (std::size_t k = 0; k < K; ++k) {
                 const double e = M[k] > 0 ? cell[4 + 2 * k] / M[k] + heat : 0.0;

@@ -323,6 +323,7 @@ inline void do_work(const Case& w, double dt, State& state, PicCells& cells) {
     for_each_row_of_cells(grid, [&](long j) {
         for (long i = 0; i < nx; ++i) {
             const long n = grid.index(i, j);
+            // [work]
             double growth = A_x * (filled[n + 1] * (p[n] + q_x[n + 1]) * step_x(n, n + 1) -
                                    filled[n - 1] * (p[n] + q_x[n]) * step_x(n, n - 1));
             if (plane) {
@@ -331,6 +332,7 @@ inline void do_work(const Case& w, double dt, State& state, PicCells& cells) {
                                  filled[down] * (p[n] + q_z[n]) * step_z(n, down));
             }
             const double work = -dt * growth;
+            // [/work]
             const std::size_t first = static_cast<std::size_t>(n) * K;
             for (std::size_t k = 0; k < K; ++k) {
                 const double M = cells.M[first + k];
