@@ -85,17 +85,8 @@ std::map<std::string, std::vector<double>> profile(const std::string& name) {
     return columns;
 }
 
-// A disk of one metal that hits a plate of another, in a void.
-const std::string impact =
-    "grid.cells_x=40 grid.cells_z=40 time.dt=0.004 time.end=0.3 theory.compare=impact "
-    "gravity.trap=0 "
-    "region.disk.radius=0.1 region.disk.center_x=0.013 region.disk.center_z=0.22 "
-    "region.disk.material=iron region.disk.flow=uniform region.disk.speed=0 region.disk.width=0 "
-    "region.disk.density=8 region.disk.velocity_z=-1 "
-    "region.plate.material=aluminum region.plate.shape=box region.plate.half_x=0.4 "
-    "region.plate.half_z=0.1 region.plate.density=3 region.plate.pressure=0 "
-    "material.iron.gamma=4 material.iron.p_infinity=1 material.aluminum.gamma=3.5 "
-    "material.aluminum.p_infinity=0.6";
+// The ball of iron and its plate, on a coarser mesh.
+const std::string impact = "grid.cells_x=48 grid.cells_z=48";
 
 std::string gresho_pressure(double mach) {
     return " region.gas.pressure=" + text(1 / (1.4 * mach * mach) - 0.5);
@@ -109,7 +100,7 @@ TEST_CASE("pic keeps mass and momentum and energy to round-off in a shock tube a
           doctest::description("physics")) {
     for (const std::string q : {"", "viscosity.linear=0 viscosity.quadratic=0"})
         check_conserved(run("pic", "pic_sod", "sod", q));
-    const Run r = run("pic", "pic_impact", "rotating_disk", impact);
+    const Run r = run("pic", "pic_impact", "sphere_hits_plate", impact);
     check_conserved(r);
     check_results(r, 4);
     CHECK(r.value("momentum_given") >= 0.1);
@@ -122,7 +113,7 @@ TEST_CASE(
         CAPTURE(transfer);
         const std::string with = " flip.transfer=" + transfer;
         check_conserved(run("flip", "deficit", "sod", with));
-        check_conserved(run("flip", "flip_impact", "rotating_disk", impact + with));
+        check_conserved(run("flip", "flip_impact", "sphere_hits_plate", impact + with));
         // Without it nothing else changes: mass and momentum are exact, energy is lost.
         const Run without = run("flip", "deficit", "sod", "flip.deficit_to_heat=false" + with);
         CHECK(without.conservation("largest_mass_error") <= 1e-12);
@@ -278,10 +269,10 @@ TEST_CASE("cold gas at a wall is six times as dense behind the shock" *
         // Wall heating: the scar of the first instant.
         CHECK(r.value("wall_density_over_theory") < 0.8);
     }
-    // Without viscosity pic scatters, and flip does not live to see the end.
+    // Without viscosity particles of pic scatter, and those of flip pile up.
     const std::string bare = "viscosity.linear=0 viscosity.quadratic=0 ";
     CHECK(run("pic", "wall_shock", "wall_shock", bare).value("density_scatter") >= 0.3);
-    run("flip", "wall_shock", "wall_shock", bare, 3);
+    CHECK(run("flip", "wall_shock", "wall_shock", bare).value("density_scatter") >= 3);
 }
 
 TEST_CASE("a piston at the speed of sound drives the shock of theory" *
@@ -297,6 +288,53 @@ TEST_CASE("a piston at the speed of sound drives the shock of theory" *
           10 * run("flip", "piston", "piston").value("density_scatter"));
 }
 
+TEST_CASE("tubes of two gases and of water and air follow the exact solution in flip" *
+          doctest::description("physics")) {
+    for (const char* file : {"two_gases", "water_air", "translating_frame"}) {
+        CAPTURE(file);
+        const Run r = run("flip", "tubes", file);
+        check_results(r, 3);
+        check_conserved(r);
+        // Particles of one fluid are never among those of the other.
+        CHECK(r.value("contact_overlap") < 0);
+    }
+}
+
+TEST_CASE("a blast follows Sedov and falling gas is dense but not as dense as Noh's" *
+          doctest::description("physics")) {
+    const Run blast = run("flip", "blast", "sedov", "grid.cells_x=48 grid.cells_z=48");
+    check_results(blast, 1);
+    check_conserved(blast);
+    CHECK(blast.value("peak_density_ratio") >= 4);
+    CHECK(blast.value("peak_density_ratio") <= 6);
+    // In the plane all such methods pile up heat in the middle; what comes of it is on record.
+    const Run falling = run("flip", "falling", "noh", "grid.cells_x=48 grid.cells_z=48");
+    check_conserved(falling);
+    CHECK(std::fabs(falling.value("plateau_density_over_theory") - 0.7) <= 0.1);
+    CHECK(std::fabs(falling.value("shock_radius_over_theory") - 1.18) <= 0.05);
+    CHECK(falling.value("middle_density_over_theory") < 0.5);
+}
+
+TEST_CASE("implicit sound is turned and damped as the theta scheme says" *
+          doctest::description("physics")) {
+    // One step has the angle a = c k dt = 1; a period has 2 pi of them.
+    for (const double theta : {0.5, 0.6, 1.0}) {
+        CAPTURE(theta);
+        const Run r = run("flip", "acoustic", "acoustic", "flip.theta=" + text(theta));
+        check_results(r, 2);
+        const double kept =
+            std::pow((1 + (1 - theta) * (1 - theta)) / (1 + theta * theta), std::acos(-1.0));
+        CHECK(std::fabs(r.value("amplitude_per_period") / kept - 1) <= 0.01);
+        CHECK(std::fabs(r.value("frequency_over_ck") / (std::atan(1 - theta) + std::atan(theta)) -
+                        1) <= 0.01);
+    }
+    // The explicit step makes sound grow instead.
+    const Run r = run("flip", "acoustic", "acoustic",
+                      "flip.pressure=explicit flip.theta=1 flip.tolerance=1e-8 time.dt=0");
+    check_results(r, 2);
+    CHECK(r.value("amplitude_per_period") > 1.005);
+}
+
 // ---- waves that grow and vortices that stay -------------------------------------------------------
 
 TEST_CASE("heavy fluid falls at the rate of Rayleigh and Taylor and better on finer meshes" *
@@ -310,6 +348,13 @@ TEST_CASE("heavy fluid falls at the rate of Rayleigh and Taylor and better on fi
                  coarse_error = 1 - coarse.value("growth_over_theory");
     CHECK(error > 0);
     CHECK(std::fabs(coarse_error / error - 2) <= 0.4);
+}
+
+TEST_CASE("a layer of shear winds up at the rate of Rayleigh" * doctest::description("physics")) {
+    const Run r =
+        run("flip", "shear", "kelvin_helmholtz", "time.end=0.8 grid.cells_x=32 grid.cells_z=32");
+    check_results(r, 2);
+    check_conserved(r);
 }
 
 TEST_CASE("the vortex of Gresho does not feel how slow it is" * doctest::description("physics")) {
@@ -332,12 +377,16 @@ TEST_CASE("the vortex of Gresho does not feel how slow it is" * doctest::descrip
         CHECK(kept.back() >= 0.965);
         CHECK(kept.back() <= 1);
     }
-    for (const auto* numbers : {&steps, &iterations, &kept}) {
+    for (const auto* numbers : {&steps, &kept}) {
         const double most = *std::max_element(numbers->begin(), numbers->end()),
                      least = *std::min_element(numbers->begin(), numbers->end());
         CAPTURE(least);
         CHECK(most <= 1.2 * least);
     }
+    // At Mach 0.1 compressibility helps the solver; below that nothing changes any more.
+    CHECK(iterations[0] <= iterations[1]);
+    CHECK(std::fabs(iterations[2] / iterations[1] - 1) <= 0.2);
+    CHECK(iterations[2] <= 40);
 }
 
 TEST_CASE("the vortex of Gresho keeps 97 per cent in a turn on the shipped mesh" *
@@ -352,4 +401,15 @@ TEST_CASE("the vortex of Gresho keeps 97 per cent in a turn on the shipped mesh"
     // The transfer of pic does not keep it.
     CHECK(run("flip", "vortex_64", "gresho", "flip.transfer=pic").value("kinetic_energy_kept") <
           0.7);
+}
+
+TEST_CASE("blasts and dams and cavities and layers are right on their shipped meshes" *
+          doctest::description("long")) {
+    for (const char* file :
+         {"sedov", "dam_break", "cavity", "rayleigh_taylor", "kelvin_helmholtz", "gresho"}) {
+        CAPTURE(file);
+        const Run r = run("flip", std::string("long_") + file, file);
+        check_results(r, 1);
+        check_conserved(r);
+    }
 }
