@@ -1,6 +1,6 @@
 # Rayleigh-Taylor: a fluid (orange) lies on one of half its density (blue). Left: the height of the interface in flip, against sinh(γt) of theory. Right: its particles, above in flip, below in pic, which
 # begins ten times as fast because it does not feel what is slower, and makes noise of sound instead. Neither mixes materials: the interface is as sharp at the end as it was at the start.
-wide = 1500; high = 1120
+wide = 1440; high = 1075
 load 'common/style.gp'
 folder = run; run = folder.'/flip'
 set multiplot title 'Heavy fluid falls through light fluid' font ',24'

@@ -15,6 +15,6 @@ scan flip
 scan viscosity viscosity.linear=0.5
 scan blend flip.transfer=blend
 # It rings so hard that particles would pile up.
-scan apic flip.transfer=apic time.end=400
+scan apic flip.transfer=apic time.end=250
 scan xpic flip.transfer=xpic
 scan particles flip.density=particles

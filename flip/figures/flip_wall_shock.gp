@@ -1,5 +1,5 @@
 # Density behind shocks that run off a wall, against the distance from the wall over time. Above: a cold stream is stopped, exactly sixfold. Below: a piston moves into warm gas with its speed of sound.
-# Artificial viscosity gives both methods a clean plateau, with hot thin gas at the wall. Without it nothing slows particles where the wall stops the fluid: they pile up (mind the scale above), and flip fails.
+# Artificial viscosity gives both methods a clean plateau, with hot thin gas at the wall. Without it nothing slows particles where the wall stops the fluid: they pile up (mind the scale above), and the shock is late.
 wide = 1500; high = 1060
 load 'common/style.gp'
 folder(k, n) = run.'/'.word('wall_shock piston', k).'_'.word('pic flip', n)
@@ -17,7 +17,6 @@ do for [k = 1:2] {
         if (k == 1) { set logscale y; set yrange [0.3:300]; set ytics 10; set format y '%g'; set xrange [0:0.4]; set xtics 0.1; unset xlabel; set key top right } \
         else { unset logscale y; set yrange [0.8:3.5]; set ytics 0.5; set xrange [0:1.2]; set xtics 0.2; set xlabel 'distance from the wall / time' offset 0, 0.4; unset key }
         if (n == 1) { set ylabel 'density' offset 0.8, 0 } else { unset ylabel }
-        if (k == 1 && n == 2) { set label 1 sprintf('without viscosity: at t = %.2f, before it fails', duration(folder(1, 2).'_without_q')) at graph 0.03, 0.06 textcolor rgb orange font ',17' } else { unset label 1 }
         t = duration(folder(k, n)); t_without = duration(folder(k, n).'_without_q')
         plot file(k, n, 0) using ($1 / t_without):2 with points pt 7 ps 0.8 lc rgb orange title 'without viscosity', \
              file(k, n, 1) using ($1 / t):2 with points pt 7 ps 0.8 lc rgb blue title 'with viscosity', \
