@@ -55,7 +55,7 @@ double largest(const std::vector<double>& values) {
 void check_conserved(const Run& r, double tolerance = 1e-12) {
     for (const char* name :
          {"mass_error", "momentum_x_error", "momentum_z_error", "energy_error"}) {
-        CAPTURE(name);
+        CAPTURE(std::string(name));
         CHECK(r.conservation(std::string("largest_") + name) <= tolerance);
         CHECK(largest(r.column(name)) <= tolerance);
     }
@@ -291,7 +291,7 @@ TEST_CASE("a piston at the speed of sound drives the shock of theory" *
 TEST_CASE("tubes of two gases and of water and air follow the exact solution in flip" *
           doctest::description("physics")) {
     for (const char* file : {"two_gases", "water_air", "translating_frame"}) {
-        CAPTURE(file);
+        CAPTURE(std::string(file));
         const Run r = run("flip", "tubes", file);
         check_results(r, 3);
         check_conserved(r);
@@ -407,9 +407,9 @@ TEST_CASE("blasts and dams and cavities and layers are right on their shipped me
           doctest::description("long")) {
     for (const char* file :
          {"sedov", "dam_break", "cavity", "rayleigh_taylor", "kelvin_helmholtz", "gresho"}) {
-        CAPTURE(file);
+        CAPTURE(std::string(file));
         const Run r = run("flip", std::string("long_") + file, file);
         check_results(r, 1);
-        check_conserved(r);
+        check_conserved(r, 1e-11);  // up to 1e5 steps
     }
 }
