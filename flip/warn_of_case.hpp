@@ -44,13 +44,15 @@ inline void warn_of_regions(const Case& w, const Scales& scales, std::vector<std
 // Whether nothing but the flow itself moves the fluid: no jump of pressure, no energy set free.
 inline bool is_gentle(const Case& w) {
     double low = 0, high = 0;
+    bool filled = false;  // a void beside the fluid sets it in motion
     for (const RegionCase& r : w.regions) {
+        filled = filled || r.shape == "everywhere";
         if (r.energy > 0 || (r.flow == "gaussian" && material_of(w, r).gamma > 1)) return false;
         const double p = r.gas.pressure;
         low = &r == &w.regions.front() ? p : std::min(low, p);
         high = std::max(high, p);
     }
-    return high <= 1.5 * low;
+    return filled && high <= 1.5 * low;
 }
 
 inline void warn_of_speeds(const Case& w, const Scales& scales, const std::string& program,
