@@ -37,8 +37,10 @@ inline void find_viscosity(const Case& w, Mesh& mesh) {
     const Grid& grid = w.grid;
     Nodes& g = mesh.nodes;
     Cells& c = mesh.cells;
-    g.vx0 = g.vx;
-    g.vz0 = g.vz;
+    for_each_node(grid, [&](long, long, long n) {
+        g.vx0[n] = g.vx[n];
+        g.vz0[n] = g.vz[n];
+    });
     set_walls(w, g.vx0, g.vz0);
     const double V_c = grid.cell_area();
     const double h = w.plane() ? std::sqrt(V_c) : grid.x.spacing();
@@ -159,8 +161,7 @@ inline double viscous_heat(const Case& w, const Nodes& g, const Field& vx, const
 inline void find_known_forces(const Case& w, Mesh& mesh) {
     const Grid& grid = w.grid;
     Nodes& g = mesh.nodes;
-    g.fx.setZero();
-    g.fz.setZero();
+    for_each_node(grid, [&](long, long, long n) { g.fx[n] = g.fz[n] = 0; });
     add_viscous_force(w, mesh);
     fill_pressure(grid, mesh.cells.q);
     for_each_node(grid, [&](long i, long j, long n) {

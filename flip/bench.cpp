@@ -71,9 +71,10 @@ Split time_flip(const Case& w, long steps, long& count) {
             dt = step_allowed(w, mesh, state.dt);
             move_mesh(w, dt, state.particles, mass_matrix, mesh, state.books);
         });
-        timed(split.move, [&] { move_particles(w, dt, mesh, state.particles); });
+        long left = 0;
+        timed(split.move, [&] { left = move_particles(w, dt, mesh, state.particles); });
         timed(split.sort, [&] {
-            cross_ends(w, state.time, dt, state.particles, state.books);
+            cross_ends(w, state.time, dt, state.particles, state.books, left);
             sort_particles(w.grid, scratch, state.particles);
         });
         state.time += dt;

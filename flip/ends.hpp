@@ -13,7 +13,7 @@ namespace flip {
 
 /// The end beyond which a position lies, or -1 on the mesh. Positions on an end count as on the
 /// mesh; so does nothing that is not a number.
-inline int beyond(const Grid& grid, double x, double z) {
+[[gnu::always_inline]] inline int beyond(const Grid& grid, double x, double z) {
     const bool inside =
         x >= grid.x.low && x <= grid.x.high() && z >= grid.z.low && z <= grid.z.high();
     if (inside) return -1;
@@ -24,7 +24,7 @@ inline int beyond(const Grid& grid, double x, double z) {
 
 /// A position brought back around a periodic direction. Elsewhere it stays; only what approaches a
 /// wall for ever, and touches it by round-off, is put on it.
-inline double around(const common::Axis& axis, double position) {
+[[gnu::always_inline]] inline double around(const common::Axis& axis, double position) {
     if (!axis.periodic) {
         const double low = axis.low, high = axis.high(), tiny = 1e-12 * axis.length;
         return position < low && position > low - tiny     ? low

@@ -116,7 +116,7 @@ struct WeightScale {
 
 /// S and R of one particle; both are linear, sum to 1, and differ by half a cell.
 /// in:     a position on the mesh
-inline Weights weights_at(const WeightScale& a, double x, double z) {
+[[gnu::always_inline]] inline Weights weights_at(const WeightScale& a, double x, double z) {
     Weights w;
     const double s = (x - a.x_low) * a.per_dx, t = (z - a.z_low) * a.per_dz;
     const long i = std::min(static_cast<long>(s), a.last_x),
@@ -215,22 +215,24 @@ inline void fold_cells(const Grid& grid, double* f, long width = 1) {
     }
 }
 
-/// Calls work(i, j, index) for every cell, or every node, rows in parallel.
+/// Calls work(i, j, index) for every cell, or every node, blocks of rows in parallel.
 template <class Work>
 void for_each_cell(const Grid& grid, const Work& work) {
-    common::for_each_row(
+    common::for_each_block(
         grid.z.cells,
-        [&](long j) {
-            for (long i = 0; i < grid.x.cells; ++i) work(i, j, grid.index(i, j));
+        [&](int, long begin, long end) {
+            for (long j = begin; j < end; ++j)
+                for (long i = 0; i < grid.x.cells; ++i) work(i, j, grid.index(i, j));
         },
         grid.size());
 }
 template <class Work>
 void for_each_node(const Grid& grid, const Work& work) {
-    common::for_each_row(
+    common::for_each_block(
         grid.z.cells + 1,
-        [&](long j) {
-            for (long i = 0; i <= grid.x.cells; ++i) work(i, j, grid.index(i, j));
+        [&](int, long begin, long end) {
+            for (long j = begin; j < end; ++j)
+                for (long i = 0; i <= grid.x.cells; ++i) work(i, j, grid.index(i, j));
         },
         grid.size());
 }

@@ -99,7 +99,7 @@ inline StepReport move_mesh(const Case& w, double dt, const Particles& particles
     if (w.implicit()) {
         report = solve_pressure(w, dt, mesh);
     } else {
-        mesh.cells.p_step = mesh.cells.p;
+        for_each_cell(w.grid, [&](long, long, long n) { mesh.cells.p_step[n] = mesh.cells.p[n]; });
         accelerate_nodes(w, dt, mesh);
     }
     if (consistent) detail::accelerate_consistently(w, dt, M, g);

@@ -2,6 +2,8 @@
 // their cells.  [FLIP-6, FLIP-7]
 #pragma once
 
+#include <atomic>
+
 #include "flip/transfer.hpp"
 
 namespace flip {
@@ -25,7 +27,7 @@ inline double work_on_volume(const Case& w, const WeightScale& scale, const Weig
 }
 
 template <bool pure_flip, bool volumes>
-void move_row(const Case& w, const WeightScale& scale, const Mesh& mesh, const Transfer& transfer,
+long move_row(const Case& w, const WeightScale& scale, const Mesh& mesh, const Transfer& transfer,
               double dt, std::size_t begin, std::size_t end, Particles& p) {
     const Grid& grid = w.grid;
     const Four* const kick = mesh.nodes.kick.data();
@@ -33,6 +35,7 @@ void move_row(const Case& w, const WeightScale& scale, const Mesh& mesh, const T
                         *const relative_de = mesh.cells.relative_de.data();
     const long kinds = static_cast<long>(mesh.materials);
     const double deficit = w.heats() ? 0.5 : 0;
+    long left = 0;
     // [move]
     for (std::size_t k = begin; k < end; ++k) {
         const Weights at = weights_at(scale, p.x_p[k], p.z_p[k]);
@@ -60,8 +63,10 @@ void move_row(const Case& w, const WeightScale& scale, const Mesh& mesh, const T
         p.e_p[k] += gained;
         p.x_p[k] = x;
         p.z_p[k] = z;
+        left += beyond(grid, x, z) >= 0;
     }
     // [/move]
+    return left;
 }
 
 }  // namespace detail
@@ -72,16 +77,18 @@ void move_row(const Case& w, const WeightScale& scale, const Mesh& mesh, const T
 ///   e_p += sum_c R (de_c + e_p relative_de_c) + sum_g S heat_g - |sum_g S dv_g|^2/2
 ///   and what another transfer than flip makes of v_p: follow_mesh()
 /// in:     nodes.kick, heat, carry; cells.de, relative_de
-/// in/out: particles, sorted by row; afterwards out of order, and beyond an end if they left
+/// in/out: particles, sorted by row; afterwards out of order
+/// out:    how many are beyond an end now
 /// exact:  mass and momentum; total energy when the deficit goes to heat: what the lumped mass
 ///         matrix owes is sum_p m_p [sum_g S |dv_g|^2 - |sum_g S dv_g|^2]/2, never negative
 /// source: [FLIP-6, FLIP-7]
 /// note:   The slide's F_g is a force per mass of the node: dv_p/dt = sum_g (F_g/m_g) S. Particles
 ///         move with the velocity of the mesh and not with their own: they never pass each other.
-inline void move_particles(const Case& w, double dt, const Mesh& mesh, Particles& particles) {
+inline long move_particles(const Case& w, double dt, const Mesh& mesh, Particles& particles) {
     const Transfer transfer = transfer_of(w);
     const bool pure = w.transfer == "flip", volumes = has(particles.V_p);
     const WeightScale scale(w.grid);
+    std::atomic<long> left{0};
     common::for_each_row(
         w.grid.z.cells,
         [&](long j) {
@@ -89,15 +96,20 @@ inline void move_particles(const Case& w, double dt, const Mesh& mesh, Particles
             const auto begin = static_cast<std::size_t>(particles.first_of_row[row]),
                        end = static_cast<std::size_t>(particles.first_of_row[row + 1]);
             if (pure && !volumes)
-                detail::move_row<true, false>(w, scale, mesh, transfer, dt, begin, end, particles);
+                left += detail::move_row<true, false>(w, scale, mesh, transfer, dt, begin, end,
+                                                      particles);
             else if (pure)
-                detail::move_row<true, true>(w, scale, mesh, transfer, dt, begin, end, particles);
+                left += detail::move_row<true, true>(w, scale, mesh, transfer, dt, begin, end,
+                                                     particles);
             else if (!volumes)
-                detail::move_row<false, false>(w, scale, mesh, transfer, dt, begin, end, particles);
+                left += detail::move_row<false, false>(w, scale, mesh, transfer, dt, begin, end,
+                                                       particles);
             else
-                detail::move_row<false, true>(w, scale, mesh, transfer, dt, begin, end, particles);
+                left += detail::move_row<false, true>(w, scale, mesh, transfer, dt, begin, end,
+                                                      particles);
         },
         particles.count());
+    return left;
 }
 
 }  // namespace flip
