@@ -77,8 +77,7 @@ int run(int argc, char** argv, std::optional<common::Session>& holder) {
         });
         const double dt = step_allowed(w, mesh, state.dt);
         state.report = move_mesh(w, dt, particles, mass_matrix, mesh, state.books);  // F_g, v_g^L
-        const long left =
-            move_particles(w, dt, mesh, particles);  // mesh -> particles [FLIP-6, FLIP-7]
+        const long left = move_particles(w, dt, mesh, particles);  // v_p, x_p   [FLIP-6, FLIP-7]
         cross_ends(w, state.time, dt, particles, state.books, left);
         ++step;
         if (w.rezone_steps > 0 && step % w.rezone_steps == 0) rezone(w, particles);

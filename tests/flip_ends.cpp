@@ -156,8 +156,8 @@ TEST_CASE("what is beyond a wall ends the run with where and when") {
             (end == x_low || end == x_high ? x : z) = end == x_low || end == z_low ? -0.125 : 1.125;
             FlipRun r = alone(w, 0.4, 0.6);
             r.particles().x_p[0] = x, r.particles().z_p[0] = z;
-            const std::string said = message_of(
-                [&] { cross_ends(r.w, 1.5, 0.25, r.particles(), r.state.books); });
+            const std::string said =
+                message_of([&] { cross_ends(r.w, 1.5, 0.25, r.particles(), r.state.books); });
             CAPTURE(said);
             CHECK(said.find("through the wall") != std::string::npos);
             CHECK(said.find("x = " + common::shown(x)) != std::string::npos);
@@ -172,9 +172,8 @@ TEST_CASE("what is beyond a wall ends the run with where and when") {
         for (const double bad :
              {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
             r.particles().x_p[0] = bad;
-            CHECK(message_of([&] {
-                      cross_ends(r.w, 0, 1, r.particles(), r.state.books);
-                  }) != "nothing");
+            CHECK(message_of([&] { cross_ends(r.w, 0, 1, r.particles(), r.state.books); }) !=
+                  "nothing");
         }
     }
 }

@@ -239,7 +239,7 @@ TEST_CASE("what a method ignores is refused with what it needs" * doctest::descr
     for (const std::string setting :
          {"flip.transfer = \"apic\"", "flip.mass = \"consistent\"", "flip.deficit_to_heat = false",
           "flip.density = \"particles\"", "rezone.steps = 5"})
-        check_warnings("pic with " + setting, tube, setting,
+        check_warnings("pic with " + setting, tube, setting + "\nregion.gas.velocity_x = 0.5",
                        {setting + " means nothing to pic, whose particles are mass alone"}, "pic");
     check_refused({
         {"pic at a no-slip wall", tube, "boundary.x_low = \"no_slip\"",
