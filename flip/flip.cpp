@@ -62,19 +62,13 @@ int run(int argc, char** argv, std::optional<common::Session>& holder) {
     long step = 0;
     if (session.restarting()) session.restore(state, step);
     sort_particles(w.grid, sort_scratch, particles);
-    const auto look = [&](const auto& note) {
-        note(particle_totals(w, particles), cell_fields(w, mesh));
-    };
 
     // 3. The loop of the slide.
     // [loop]
     while (session.keep_going(step, state.time, w.end)) {
         deposit_particles(w, particles, mesh);  // particles -> mesh: v_g        [FLIP-8]
         find_pressure(w, state.time, mesh);     // on the mesh: p_c
-        look([&](const Totals& totals, const CellFields& cells) {
-            recorder.snapshot(step, state, cells, session);
-            recorder.record(step, state, totals, cells, session);
-        });
+        recorder.look(step, state, particle_totals(w, particles), cell_fields(w, mesh), session);
         const double dt = step_allowed(w, mesh, state.dt);
         state.report = move_mesh(w, dt, particles, mass_matrix, mesh, state.books);  // F_g, v_g^L
         const long left = move_particles(w, dt, mesh, particles);  // v_p, x_p   [FLIP-6, FLIP-7]
@@ -92,11 +86,10 @@ int run(int argc, char** argv, std::optional<common::Session>& holder) {
     if (common::Session::reached(state.time, w.end)) {
         deposit_particles(w, particles, mesh);
         find_pressure(w, state.time, mesh);
-        look([&](const Totals& totals, const CellFields& cells) {
-            recorder.snapshot(step, state, cells, session);
-            recorder.record(step, state, totals, cells, session);
-            recorder.finish(state, totals, cells, session);
-        });
+        const Totals totals = particle_totals(w, particles);
+        const CellFields cells = cell_fields(w, mesh);
+        recorder.look(step, state, totals, cells, session);
+        recorder.finish(state, totals, cells, session);
     }
     return session.finish(step, static_cast<double>(particles.count()));
 }

@@ -64,10 +64,8 @@ int run(int argc, char** argv, std::optional<common::Session>& holder) {
     // [loop]
     while (session.keep_going(step, state.time, w.end)) {
         share_pressure(w, state, cells);  // cells: p
-        const Totals totals = totals_of(w, state, cells);
         fields_of(w, state, cells, fields);
-        recorder.snapshot(step, state, fields, session);
-        recorder.record(step, state, totals, fields, session);
+        recorder.look(step, state, totals_of(w, state, cells), fields, session);
         const double dt = largest_step(w, state, cells);
         accelerate_cells(w, dt, state, cells);  // Lagrangian phase: u~                 [PIC]
         do_work(w, dt, state, cells);           // Lagrangian phase: I~                 [PIC]
@@ -85,8 +83,7 @@ int run(int argc, char** argv, std::optional<common::Session>& holder) {
         share_pressure(w, state, cells);
         const Totals totals = totals_of(w, state, cells);
         fields_of(w, state, cells, fields);
-        recorder.snapshot(step, state, fields, session);
-        recorder.record(step, state, totals, fields, session);
+        recorder.look(step, state, totals, fields, session);
         recorder.finish(state, totals, fields, session);
     }
     return session.finish(step, static_cast<double>(state.particles.count()));

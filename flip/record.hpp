@@ -43,6 +43,13 @@ class Recorder {
         history.columns(columns);
     }
 
+    /// The files of t^n that are due, and its row.
+    void look(long step, const State& state, const Totals& now, const CellFields& cells,
+              common::Session& session) {
+        snapshot(step, state, cells, session);
+        record(step, state, now, cells, session);
+    }
+
     /// Files of t^n.
     void snapshot(long step, const State& state, const CellFields& cells,
                   common::Session& session) const {
