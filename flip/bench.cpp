@@ -14,6 +14,7 @@
 #include "flip/eulerian_phase.hpp"
 #include "flip/lagrangian_phase.hpp"
 #include "flip/move_mesh.hpp"
+#include "flip/pic_start.hpp"
 
 namespace {
 

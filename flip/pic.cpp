@@ -7,15 +7,15 @@
 // Run:   build/pic flip/cases/sod.toml particles.per_cell_x=64
 // Run:   build/pic flip/cases/advected_blob.toml time.dt=0.001
 //
-// Reading order: particles.hpp, state.hpp, equation_of_state.hpp, pic_cells.hpp,
+// Reading order: particles.hpp, state.hpp, equation_of_state.hpp, pic_cells.hpp, largest_step.hpp,
 // lagrangian_phase.hpp, eulerian_phase.hpp, ends.hpp.
 #include <climits>
 #include <cstdio>
 #include <optional>
 
 #include "flip/check_case.hpp"
-#include "flip/eulerian_phase.hpp"
 #include "flip/lagrangian_phase.hpp"
+#include "flip/pic_start.hpp"
 #include "flip/record.hpp"
 #include "flip/warn_of_case.hpp"
 

@@ -11,6 +11,7 @@
 
 #include "flip/eulerian_phase.hpp"
 #include "flip/lagrangian_phase.hpp"
+#include "flip/pic_start.hpp"
 #include "tests/any_numbers.hpp"
 
 namespace {
