@@ -184,7 +184,8 @@ TEST_CASE("the version of flip is that of the Makefile" * doctest::description("
 TEST_CASE("every shipped case of flip passes a dry run" * doctest::description("robust")) {
     const auto outcomes = dry_runs_of_shipped_cases();
     CHECK(outcomes.size() >= 18);
-    for (const auto& [name, outcome] : outcomes) {
+    for (const auto& named : outcomes) {
+        const auto& outcome = named.second;
         INFO(outcome.err);
         CAPTURE(outcome.out);
         CHECK(outcome.status == 0);

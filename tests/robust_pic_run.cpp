@@ -108,7 +108,8 @@ TEST_CASE("every shipped case passes a dry run of pic or is for flip" *
     int described = 0;
     const std::regex beyond(
         "pic: flip\\.[a-z_]+ = \\S+ is beyond pic: run the case with flip, or take it out");
-    for (const auto& [name, outcome] : dry_runs_of_shipped_cases()) {
+    for (const auto& named : dry_runs_of_shipped_cases()) {
+        const auto& outcome = named.second;
         INFO(outcome.err);
         if (outcome.status == 0) {
             CHECK(outcome.sentences.empty());
