@@ -5,7 +5,6 @@
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <limits>
 
 #include "flip/mesh.hpp"
 
@@ -15,8 +14,8 @@ namespace flip {
 /// fills what there is.
 inline constexpr double least_filled = 0.7;
 
-/// A cell has neither pressure nor viscosity if the lightest of its nodes has less than this part of the mass of the
-/// heaviest: what pushes on nothing would leave the books.
+/// A cell has neither pressure nor viscosity if the lightest of its nodes has less than this part of
+/// the mass of the heaviest: what pushes on nothing would leave the books.
 inline constexpr double lightest_node = 0.01;
 
 /// Internal energy below zero by less than this part of the kinetic energy is round-off.
@@ -93,8 +92,8 @@ inline double sound_speed(double rho, double compressibility) {
 
 /// The longest step that the flow allows.
 ///   dt = cfl min 1/(|v_x|/dx + |v_z|/dz + c sqrt(1/dx^2 + 1/dz^2)),
-/// after the first step without the sound of the gas when the pressure is implicit; with viscosity nu also
-/// dt <= 1/(4 nu (1/dx^2 + 1/dz^2)); at most 1.2 times the last step
+/// after the first step without the sound of the gas when the pressure is implicit; with viscosity
+/// nu also dt <= 1/(4 nu (1/dx^2 + 1/dz^2)); at most 1.2 times the last step
 /// in:     find_pressure() has been called; last, the last step, 0 before the first
 /// out:    time.dt where the case gives it
 inline double step_allowed(const Case& w, const Mesh& mesh, double last) {

@@ -49,14 +49,72 @@ inline NodePush push_on(const Case& w, const Cells& c, long i, long j) {
     return push;
 }
 
+// The cells that have a pressure, numbered.
+struct PressureCells {
+    std::vector<long> index;  // of each one on the mesh
+    std::vector<int> number;  // of each cell of the mesh, -1: none
+    long count() const { return static_cast<long>(index.size()); }
+};
+
+inline PressureCells number_cells(const Grid& grid, const Cells& c) {
+    PressureCells cells;
+    cells.number.assign(static_cast<std::size_t>(grid.size()), -1);
+    for (long j = 0; j < grid.z.cells; ++j) {
+        for (long i = 0; i < grid.x.cells; ++i) {
+            const long n = grid.index(i, j);
+            if (c.M[n] <= 0 || c.surface[static_cast<std::size_t>(n)] != 0 ||
+                c.compressibility[n] <= 0)
+                continue;
+            cells.number[static_cast<std::size_t>(n)] = static_cast<int>(cells.count());
+            cells.index.push_back(n);
+        }
+    }
+    return cells;
+}
+
+// The matrix V/K + theta^2 dt^2 D M^-1 D^T, its lower half: V/K on the diagonal, and every node
+// couples the cells around it.
+inline Eigen::SparseMatrix<double> pressure_matrix(const Case& w, double dt, const Mesh& mesh,
+                                                   const PressureCells& cells,
+                                                   const Eigen::VectorXd& inertia) {
+    const Grid& grid = w.grid;
+    std::vector<Eigen::Triplet<double>> entries;
+    entries.reserve(static_cast<std::size_t>(17 * cells.count()));
+    for (long r = 0; r < cells.count(); ++r)
+        entries.emplace_back(static_cast<int>(r), static_cast<int>(r), inertia[r]);
+    const long nx = grid.x.cells - (grid.x.periodic ? 1 : 0),
+               nz = grid.z.cells - (grid.z.periodic ? 1 : 0);
+    for (long j = 0; j <= nz; ++j) {
+        for (long i = 0; i <= nx; ++i) {
+            const double m = mesh.nodes.m[grid.index(i, j)];
+            if (m <= 0) continue;
+            const NodePush push = push_on(w, mesh.cells, i, j);
+            const double factor = w.theta * w.theta * dt * dt / m;
+            for (std::size_t a = 0; a < 4; ++a) {
+                for (std::size_t b = 0; b < 4; ++b) {
+                    if (push.cell[a] < 0 || push.cell[b] < 0) continue;
+                    const int row = cells.number[static_cast<std::size_t>(push.cell[a])],
+                              column = cells.number[static_cast<std::size_t>(push.cell[b])];
+                    if (row >= column && column >= 0)
+                        entries.emplace_back(
+                            row, column, factor * (push.x[a] * push.x[b] + push.z[a] * push.z[b]));
+                }
+            }
+        }
+    }
+    Eigen::SparseMatrix<double> A(cells.count(), cells.count());
+    A.setFromTriplets(entries.begin(), entries.end());
+    return A;
+}
+
 }  // namespace detail
 
 /// Solves for the pressure at the level theta.
 /// in:     cells.p, compressibility, surface; known forces; nodes.vx0, vz0
 /// out:    cells.p_step = p^theta, 0 where there is no fluid or no pressure
 /// errors: NumericalError when conjugate gradients do not reach the tolerance
-/// exact:  none of the time levels sees the sound; acoustic waves are damped by
-///         sqrt((1 + (1-theta)^2 a^2)/(1 + theta^2 a^2)) per step, a = c k dt
+/// exact:  sound is multiplied by sqrt((1 + (1-theta)^2 a^2)/(1 + theta^2 a^2)) per step, a = c k dt,
+///         never more than 1
 /// source: the idea is ICE's: Harlow and Amsden, J. Comput. Phys. 8, 197 (1971).
 inline StepReport solve_pressure(const Case& w, double dt, Mesh& mesh) {
     const Grid& grid = w.grid;
@@ -64,20 +122,8 @@ inline StepReport solve_pressure(const Case& w, double dt, Mesh& mesh) {
     Cells& c = mesh.cells;
     const double V_c = grid.cell_area(), theta = w.theta;
 
-    // Number the cells that have a pressure.
-    std::vector<int> row(static_cast<std::size_t>(grid.size()), -1);
-    std::vector<long> cell_of;
-    for (long j = 0; j < grid.z.cells; ++j) {
-        for (long i = 0; i < grid.x.cells; ++i) {
-            const long n = grid.index(i, j);
-            if (c.M[n] <= 0 || c.surface[static_cast<std::size_t>(n)] != 0 ||
-                c.compressibility[n] <= 0)
-                continue;
-            row[static_cast<std::size_t>(n)] = static_cast<int>(cell_of.size());
-            cell_of.push_back(n);
-        }
-    }
-    const auto count = static_cast<long>(cell_of.size());
+    const detail::PressureCells cells = detail::number_cells(grid, c);
+    const long count = cells.count();
 
     // The velocity at the level theta if the pressure did not change; its divergence is the load.
     c.p_step = c.p;
@@ -91,38 +137,10 @@ inline StepReport solve_pressure(const Case& w, double dt, Mesh& mesh) {
     level_theta(vx, vz);
     Eigen::VectorXd load(count), inertia(count);
     for (long r = 0; r < count; ++r) {
-        const long n = cell_of[static_cast<std::size_t>(r)];
+        const long n = cells.index[static_cast<std::size_t>(r)];
         inertia[r] = V_c * c.compressibility[n];
         load[r] = -theta * dt * dilation(grid, vx, vz, n);
     }
-
-    // V/K on the diagonal, and every node couples the cells around it.
-    std::vector<Eigen::Triplet<double>> entries;
-    entries.reserve(static_cast<std::size_t>(17 * count));
-    for (long r = 0; r < count; ++r)
-        entries.emplace_back(static_cast<int>(r), static_cast<int>(r), inertia[r]);
-    const long nx = grid.x.cells - (grid.x.periodic ? 1 : 0),
-               nz = grid.z.cells - (grid.z.periodic ? 1 : 0);
-    for (long j = 0; j <= nz; ++j) {
-        for (long i = 0; i <= nx; ++i) {
-            const long n = grid.index(i, j);
-            if (g.m[n] <= 0) continue;
-            const detail::NodePush push = detail::push_on(w, c, i, j);
-            const double factor = theta * theta * dt * dt / g.m[n];
-            for (std::size_t a = 0; a < 4; ++a) {
-                for (std::size_t b = 0; b < 4; ++b) {
-                    if (push.cell[a] < 0 || push.cell[b] < 0) continue;
-                    const int ra = row[static_cast<std::size_t>(push.cell[a])],
-                              rb = row[static_cast<std::size_t>(push.cell[b])];
-                    if (ra >= rb && rb >= 0)
-                        entries.emplace_back(
-                            ra, rb, factor * (push.x[a] * push.x[b] + push.z[a] * push.z[b]));
-                }
-            }
-        }
-    }
-    Eigen::SparseMatrix<double> A(count, count);
-    A.setFromTriplets(entries.begin(), entries.end());
 
     // Conjugate gradients for the change of pressure, until what is left of the divergence is small
     // beside speed/dx.
@@ -136,6 +154,7 @@ inline StepReport solve_pressure(const Case& w, double dt, Mesh& mesh) {
         solver;
     solver.setTolerance(std::min(1.0, w.tolerance * scale / load.norm()));
     solver.setMaxIterations(w.most_iterations);
+    const auto A = detail::pressure_matrix(w, dt, mesh, cells, inertia);
     solver.compute(A);
     const Eigen::VectorXd change = solver.solve(load);
     StepReport report;
@@ -145,7 +164,8 @@ inline StepReport solve_pressure(const Case& w, double dt, Mesh& mesh) {
             "the implicit pressure has not converged: after " + std::to_string(report.iterations) +
             " iterations the residual is " + common::shown(solver.error()) + " and not " +
             common::shown(solver.tolerance()) + "; raise flip.most_iterations or reduce time.cfl");
-    for (long r = 0; r < count; ++r) c.p_step[cell_of[static_cast<std::size_t>(r)]] += change[r];
+    for (long r = 0; r < count; ++r)
+        c.p_step[cells.index[static_cast<std::size_t>(r)]] += change[r];
 
     // What the equation for the pressure leaves of the divergence.
     find_known_forces(w, mesh);
@@ -153,7 +173,7 @@ inline StepReport solve_pressure(const Case& w, double dt, Mesh& mesh) {
     level_theta(vx, vz);
     double sum = 0;
     for (long r = 0; r < count; ++r) {
-        const double left = dilation(grid, vx, vz, cell_of[static_cast<std::size_t>(r)]) +
+        const double left = dilation(grid, vx, vz, cells.index[static_cast<std::size_t>(r)]) +
                             inertia[r] * change[r] / (theta * dt);
         sum += left * left;
     }

@@ -1,6 +1,6 @@
 # Kelvin-Helmholtz: a stream to the right (orange) above a stream to the left (blue), at Mach 0.2 with a layer of shear between them. Top left: the velocity across the layer in flip grows at the rate of
 # Rayleigh's theory. Then the layer winds up into a billow, and the sharp interface with it. Below left: in pic, which begins with five times the wave, sound that particles make as they cross cells stirs the layer.
-wide = 1200; high = 832
+wide = 1500; high = 1040
 load 'common/style.gp'
 folder = run; run = folder.'/flip'
 set multiplot title 'A layer of shear winds up' font ',24'
@@ -12,9 +12,9 @@ height = real(system(sprintf("awk '!/#/ && $1 > 0.6 { print sqrt($%d^2 + $%d^2) 
 set bmargin at screen 0.575; set tmargin at screen 0.865
 set lmargin at screen 0.095; set rmargin at screen 0.335
 set logscale y; set format y '10^{%T}'
-set xrange [0:2]; set yrange [0.01:10]; set xtics 0.5
+set xrange [0:2]; set yrange [0.001:10]; set xtics 0.5
 set xlabel 'time' offset 0, 0.3; set ylabel 'v_z of the wave' offset 0.8, 0
-set key top left
+set key bottom right samplen 1.5 width -4 font ',18'
 plot history using t:(sqrt(column(re)**2 + column(im)**2)) @measured title sprintf('flip: γ = %.3f', result('growth')), \
      height * exp(rate * x) @theory title sprintf('theory: γ = %.3f', rate)
 unset logscale; set format y '%g'
@@ -29,6 +29,6 @@ do for [n = 1:5] {
     set bmargin at screen bottom; set tmargin at screen bottom + 0.4
     set title sprintf('%s, t = %s', p, word(times, n)) offset 0, -0.7
     set ytics format ''
-    plot sprintf('%s/%s/particles_%06d.dat', folder, p, int(file(p, real(word(times, n))))) using 1:2:($3 == 0 ? 0x56b4e9 : 0xd55e00) with points pt 7 ps 0.35 lc rgb variable
+    plot sprintf('%s/%s/particles_%06d.dat', folder, p, int(file(p, real(word(times, n))))) using 1:2:($3 == 0 ? 0x56b4e9 : 0xd55e00) with points pt 7 ps 0.5 lc rgb variable
 }
 unset multiplot

@@ -11,7 +11,7 @@ set logscale xy
 set xrange [40:1000]; set xtics (50, 100, 200, 400, 800); set xlabel 'cells'
 set format y '10^{%T}'
 do for [k = 1:2] {
-    set lmargin at screen (k == 1 ? 0.08 : 0.575); set rmargin at screen (k == 1 ? 0.475 : 0.97)
+    set lmargin at screen (k == 1 ? 0.11 : 0.6); set rmargin at screen (k == 1 ? 0.48 : 0.97)
     if (k == 1) { set yrange [6e-4:0.3]; set ylabel 'L_1(density) / larger density'; set key at graph 0.02, 0.985 top left } else { set yrange [1.5e-3:0.1]; set ylabel 'L_1(velocity)'; unset key }
     first = k == 1 ? 0.013 : 0.033
     plot for [n = 1:4] run.'/errors_'.word(names, n).'.dat' using 1:(column(k + 1)) with linespoints pt 7 ps 1.2 lc rgb word(tint, n) title word(titles, n), \
