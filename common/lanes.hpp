@@ -50,12 +50,18 @@ inline double sum_of_lanes(const Lanes& lanes) {
     return quarter[0] + quarter[1];
 }
 
-/// Larger of a and b, lane by lane, and the magnitude; overloads let one formula serve a single
+/// Larger of a and b, lane by lane, the magnitude and the square root; overloads let one formula serve a single
 /// number and lanes.
 inline Lanes larger(const Lanes& a, const Lanes& b) { return a > b ? a : b; }
 inline Lanes magnitude(const Lanes& a) { return a < 0.0 ? -a : a; }
+inline Lanes square_root(const Lanes& a) {
+    Lanes root;
+    for (int l = 0; l < lane_count; ++l) root[l] = std::sqrt(a[l]);
+    return root;
+}
 inline double larger(double a, double b) { return a > b ? a : b; }
 inline double magnitude(double a) { return std::fabs(a); }
+inline double square_root(double a) { return std::sqrt(a); }
 
 /// Largest of the eight lanes; NaN in any lane gives NaN.
 inline double largest_lane(const Lanes& lanes) {

@@ -1,5 +1,6 @@
-// How fast the loop of implicit_moment.cpp is, and where its time goes: the same calls with a
-// clock between them, on the GEM default case, by one thread and by two. `make bench` runs it.
+// How fast the loops of implicit_moment.cpp and explicit_em.cpp are, and where their time goes: the
+// same calls with a clock between them, on the two runs of the talk's cost slide, by one thread and
+// by two. `make bench` runs it.
 #include <sys/resource.h>
 
 #include <chrono>
@@ -8,11 +9,20 @@
 #include <vector>
 
 #include "implicit_moment/initial_state.hpp"
+#include "implicit_moment/leapfrog.hpp"
+#include "implicit_moment/leapfrog_state.hpp"
 #include "implicit_moment/solve_field.hpp"
 
 namespace {
 
 using namespace implicit_moment;
+
+template <class Work>
+void add_time(double& seconds, const Work& work) {
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
 
 struct Split {
     double moments = 0, field = 0, mover = 0, sort = 0;  // seconds
@@ -33,25 +43,59 @@ Split time_steps(const Case& wanted, long steps, int threads, long& particle_cou
     particle_count = state.plasma.count();
 
     Split split;
-    const auto timed = [](double& seconds, const auto& work) {
-        const auto start = std::chrono::steady_clock::now();
-        work();
-        seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    };
     for (long step = 0; step < steps; ++step) {
-        timed(split.moments,
-              [&] { deposit_moments(particles, grid, state.field.B, wanted.dt, moments); });
-        timed(split.field, [&] {
+        add_time(split.moments,
+                 [&] { deposit_moments(particles, grid, state.field.B, wanted.dt, moments); });
+        add_time(split.field, [&] {
             split.iterations +=
                 solve_field(solver, moments, charge_over_mass, wanted.dt, state.field).iterations;
             pack_push_field(solver, state.field, push);
         });
-        timed(split.mover, [&] { move_particles(push, grid, wanted.dt, wanted.mover, particles); });
-        timed(split.field, [&] { advance_field(solver, wanted.dt, state.field); });
-        timed(split.sort, [&] { sort_particles(grid, scratch, particles); });
+        add_time(split.mover,
+                 [&] { move_particles(push, grid, wanted.dt, wanted.mover, particles); });
+        add_time(split.field, [&] { advance_field(solver, wanted.dt, state.field); });
+        add_time(split.sort, [&] { sort_particles(grid, scratch, particles); });
     }
     split.iterations /= static_cast<double>(steps);
     return split;
+}
+
+double peak_memory() {
+    struct rusage usage {};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<double>(usage.ru_maxrss) * 1024;
+}
+
+// explicit_em on its default case: the loop without what happens once in twenty steps.
+void time_explicit(long steps) {
+    Case wanted;
+    describe_explicit(wanted);
+    const Grid& grid = wanted.grid;
+    std::printf("\nexplicit_em, GEM default case (%ld x %ld cells), %ld steps\n\n", grid.x.cells,
+                grid.z.cells, steps);
+    std::printf("%8s %16s %9s %9s %9s %9s\n", "threads", "particle-steps/s", "speed-up", "push",
+                "field", "sort");
+    double one_thread = 0, count = 0;
+    for (const int threads : {1, 2}) {
+        common::set_thread_count(threads);
+        State state = leapfrog_state(wanted);
+        Leapfrog run(wanted);
+        std::vector<Particles>& particles = state.plasma.species;
+        count = static_cast<double>(state.plasma.count());
+        double push = 0, field = 0, sort = 0;
+        for (long step = 0; step < steps; ++step) {
+            add_time(field, [&] { pack_push_field(run, state.field); });
+            add_time(push, [&] { move_particles(run, particles); });
+            add_time(field, [&] { advance_field(grid, wanted.dt, run.J, state.field); });
+            add_time(sort, [&] { sort_by_home(grid, wanted.leapfrog.order, run.sort, particles); });
+        }
+        const double total = push + field + sort, rate = count * static_cast<double>(steps) / total;
+        if (threads == 1) one_thread = rate;
+        std::printf("%8d %16.4g %9.2f %8.1f%% %8.1f%% %8.1f%%\n", threads, rate, rate / one_thread,
+                    100 * push / total, 100 * field / total, 100 * sort / total);
+    }
+    std::printf("\n%.0f particles, %.1f bytes of peak memory for each, mesh included\n", count,
+                peak_memory() / count);
 }
 
 }  // namespace
@@ -74,12 +118,10 @@ int main() {
                     rate / one_thread, percent(split.moments), percent(split.field),
                     percent(split.mover), percent(split.sort), split.iterations);
     }
-    struct rusage usage {};
-    getrusage(RUSAGE_SELF, &usage);
     const double carried = 5 * sizeof(double), scratch = sizeof(double) + sizeof(int);
     std::printf(
         "\n%ld particles, %.0f bytes each (%.0f carried, %.0f to sort); peak memory %.1f MiB\n",
-        particles, carried + scratch, carried, scratch,
-        static_cast<double>(usage.ru_maxrss) / 1024);
+        particles, carried + scratch, carried, scratch, peak_memory() / 1048576);
+    time_explicit(20);
     return 0;
 }

@@ -48,7 +48,15 @@ struct UniformCase {
     std::vector<SpeciesCase> species;
 };
 
-/// A complete input. Lengths in d_i, times in 1/omega_pi, velocities in c; see units.hpp.
+/// How explicit_em goes about it; means nothing to implicit_moment.
+struct LeapfrogSettings {
+    bool chosen = false;  // the run is explicit_em's
+    long order = 1;       // of the spline of the charge: 1 linear, 2 quadratic
+    bool relativistic = true;
+};
+
+/// A complete input of implicit_moment or of explicit_em. Lengths in d_i, times in 1/omega_pi,
+/// velocities in c; see units.hpp.
 struct Case {
     common::Grid grid{{64, -12.8, 25.6, true}, {64, -6.4, 12.8, false}};
     std::string boundary_x = "periodic", boundary_z = "wall";
@@ -59,6 +67,7 @@ struct Case {
     UniformCase uniform;
     FieldSettings field;
     MoverSettings mover;
+    LeapfrogSettings leapfrog;
 
     // What a uniform run is compared with.
     std::string wave = "none";      // which theory: none, light, langmuir, longitudinal, transverse
@@ -69,6 +78,7 @@ struct Case {
     double fields_interval = 0, particles_interval = 0;
     bool vtk = false;
     long checkpoint_steps = 0;
+    long history_steps = 1;  // steps from one row of history.dat to the next
 };
 
 namespace detail {
@@ -97,14 +107,9 @@ inline void describe_species(common::ParameterTable& table, const std::string& p
     real("phase_z", s.phase_z, "degree", anything(), "phase of v_z in the seeded mode");
 }
 
-}  // namespace detail
-
-/// The table of all parameters: names, units, ranges and meanings of the fields of a Case, which
-/// hold the defaults.
-inline common::ParameterTable describe(Case& w) {
+// Mesh, time and plasma: what both programs are told.
+inline void describe_plasma(common::ParameterTable& table, Case& w) {
     using common::anything, common::above, common::at_least, common::between;
-    common::ParameterTable table;
-
     table.group("mesh: the plane (x, z), nothing depends on y");
     table.whole("grid.cells_x", w.grid.x.cells, "", between(4, 4096), "cells along x");
     table.whole("grid.cells_z", w.grid.z.cells, "", between(4, 4096), "cells along z");
@@ -166,27 +171,18 @@ inline common::ParameterTable describe(Case& w) {
     field("E_z", w.uniform.wave_E_z, w.uniform.phase_E_z);
     table.list("species", w.uniform.species, detail::describe_species,
                "a species of the uniform plasma, [species.<name>]");
+}
 
-    table.group("field equations");
-    table.real("field.theta", w.field.theta, "", between(0.5, 1),
-               "time level of E: 0.5 conserves energy, 1 damps fast waves");
-    table.choice("field.solver", w.field.solver, {"gmres", "newton_krylov"},
-                 "newton_krylov rotates the current in B at the theta level");
-    table.real("field.tolerance", w.field.tolerance, "", between(1e-13, 1e-2),
-               "residual over right-hand side");
-    table.whole("field.max_iterations", w.field.max_iterations, "", between(1, 1e5),
-                "before the run ends with status 3");
-    table.whole("field.smoothing_passes", w.field.smoothing.passes, "", between(0, 100),
-                "binomial passes on sources and on the pushing field");
+inline void describe_smoothing(common::ParameterTable& table, Case& w, const char* meaning) {
+    using common::between;
+    table.whole("field.smoothing_passes", w.field.smoothing.passes, "", between(0, 100), meaning);
     table.flag("field.smoothing_compensation", w.field.smoothing.compensate,
                "last pass restores long waves to fourth order");
+}
 
-    table.group("particle mover");
-    table.real("mover.tolerance", w.mover.tolerance, "cell", between(1e-14, 0.1),
-               "the midpoint is found when it moves by less");
-    table.whole("mover.max_iterations", w.mover.max_iterations, "", between(2, 1000),
-                "before a particle's step is halved");
-
+// Comparison and output.
+inline void describe_results(common::ParameterTable& table, Case& w) {
+    using common::anything, common::at_least, common::between;
     table.group("comparison with theory (uniform plasma)");
     table.choice("theory.wave", w.wave, {"none", "light", "langmuir", "longitudinal", "transverse"},
                  "exact theta scheme in vacuum or cold plasma; kinetic dispersion relation");
@@ -203,8 +199,61 @@ inline common::ParameterTable describe(Case& w) {
     table.flag("output.vtk", w.vtk, "also write .vti and .vtp for ParaView");
     table.whole("output.checkpoint_steps", w.checkpoint_steps, "", between(0, 1e9),
                 "steps between checkpoints; 0: only when stopped");
-
     table.may_change_on_restart({"time.end", "output."});
+}
+
+}  // namespace detail
+
+/// The table of all parameters of implicit_moment: names, units, ranges and meanings of the fields
+/// of a Case, which hold the defaults.
+inline common::ParameterTable describe(Case& w) {
+    using common::between;
+    common::ParameterTable table;
+    detail::describe_plasma(table, w);
+
+    table.group("field equations");
+    table.real("field.theta", w.field.theta, "", between(0.5, 1),
+               "time level of E: 0.5 conserves energy, 1 damps fast waves");
+    table.choice("field.solver", w.field.solver, {"gmres", "newton_krylov"},
+                 "newton_krylov rotates the current in B at the theta level");
+    table.real("field.tolerance", w.field.tolerance, "", between(1e-13, 1e-2),
+               "residual over right-hand side");
+    table.whole("field.max_iterations", w.field.max_iterations, "", between(1, 1e5),
+                "before the run ends with status 3");
+    detail::describe_smoothing(table, w, "binomial passes on sources and on the pushing field");
+
+    table.group("particle mover");
+    table.real("mover.tolerance", w.mover.tolerance, "cell", between(1e-14, 0.1),
+               "the midpoint is found when it moves by less");
+    table.whole("mover.max_iterations", w.mover.max_iterations, "", between(2, 1000),
+                "before a particle's step is halved");
+
+    detail::describe_results(table, w);
+    return table;
+}
+
+/// The table of explicit_em, whose defaults are the explicit run of the talk's cost slide.
+inline common::ParameterTable describe_explicit(Case& w) {
+    using common::between;
+    w.leapfrog.chosen = true;
+    w.grid.x.cells = 512, w.grid.z.cells = 256;
+    w.dt = 0.03;
+    w.harris.particles = 9120000;
+    w.field.smoothing.passes = 0;
+    w.history_steps = 20;
+    common::ParameterTable table;
+    detail::describe_plasma(table, w);
+
+    table.group("particles and field");
+    table.whole("particles.order", w.leapfrog.order, "", between(1, 2),
+                "of the spline of the charge: 1 linear, 2 quadratic");
+    table.flag("particles.relativistic", w.leapfrog.relativistic,
+               "momentum m gamma v; false: m v at any speed");
+    detail::describe_smoothing(table, w, "binomial passes on J and on the pushing field");
+
+    detail::describe_results(table, w);
+    table.whole("output.history_steps", w.history_steps, "", between(1, 1e6),
+                "steps from one row of history.dat to the next");
     return table;
 }
 

@@ -54,7 +54,8 @@ int run(int argc, char** argv, std::optional<common::Session>& holder) {
     FieldSolver solver(grid, wanted.field);
     PushField push;
     SortScratch scratch;
-    Recorder recorder(wanted, state, session.history);
+    Recorder recorder(
+        wanted, state, [&](const State& now) { return slide_moments(grid, now); }, session.history);
 
     // 3. The loop of the slide.
     const double dt = wanted.dt;

@@ -118,14 +118,19 @@ void archive(Archive& a, State& state) {
     a("E_theta", state.field.E_theta.all);
 }
 
+/// Particles and fields of the set-up, before E has its part that follows from the charge.
+inline State loaded_state(const Case& wanted) {
+    State state{wanted.setup == "harris" ? load_harris(wanted) : load_uniform(wanted),
+                FieldState(wanted.grid)};
+    wanted.setup == "harris" ? harris_field(wanted, state.field)
+                             : uniform_field(wanted, state.field);
+    return state;
+}
+
 /// Particles and fields at t = 0, sorted, with E from Gauss's law.
 inline State initial_state(const Case& wanted) {
     const Grid& grid = wanted.grid;
-    State state{wanted.setup == "harris" ? load_harris(wanted) : load_uniform(wanted),
-                FieldState(grid)};
-    wanted.setup == "harris" ? harris_field(wanted, state.field)
-                             : uniform_field(wanted, state.field);
-
+    State state = loaded_state(wanted);
     SortScratch scratch;
     sort_particles(grid, scratch, state.plasma.species);
     Field rho = Field::Zero(grid.size());

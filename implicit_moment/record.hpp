@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cmath>
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/session.hpp"
@@ -11,11 +13,21 @@
 
 namespace implicit_moment {
 
+/// The moments of the slide at t^n, for what is shown.
+inline std::vector<Moments> slide_moments(const Grid& grid, const State& state) {
+    std::vector<Moments> moments(state.plasma.species.size(), Moments(grid));
+    for (std::size_t k = 0; k < moments.size(); ++k)
+        deposit_moments(state.plasma.species[k], grid, moments[k]);
+    return moments;
+}
+
 /// What the loop hands its results to. Rows belong to t^n: moments, E and B of the same time level.
 class Recorder {
    public:
-    Recorder(const Case& wanted, const State& state, common::History& history)
-        : wanted_(wanted), harris_(wanted.setup == "harris") {
+    /// in: shown, the moments of t^n itself with the plasma's own images behind walls.
+    Recorder(const Case& wanted, const State& state,
+             std::function<std::vector<Moments>(const State&)> shown, common::History& history)
+        : wanted_(wanted), harris_(wanted.setup == "harris"), shown_(std::move(shown)) {
         std::vector<common::Column> columns{{"time", "1/omega_pi"}};
         if (harris_) columns.push_back({"time_Omega_ci", "1/Omega_ci"});
         columns.insert(
@@ -86,8 +98,8 @@ class Recorder {
         }
         session.history.row(row_);
         if (due(wanted_.fields_interval, step)) {
-            write_fields(session.path("."), step, grid, field, state.plasma,
-                         slide_moments(grid, state.plasma.species), wanted_.vtk);
+            write_fields(session.path("."), step, grid, field, state.plasma, shown_(state),
+                         wanted_.vtk);
         }
         if (due(wanted_.particles_interval, step))
             write_particles(session.path("."), step, state.plasma, wanted_.vtk);
@@ -100,9 +112,7 @@ class Recorder {
         if (harris_ && wanted_.harris.perturbation != 0)
             compare_reconnection(wanted_, history, summary);
         if (harris_ && wanted_.harris.perturbation == 0)
-            compare_equilibrium(wanted_, state.plasma,
-                                slide_moments(wanted_.grid, state.plasma.species), history,
-                                summary);
+            compare_equilibrium(wanted_, state.plasma, shown_(state), history, summary);
         if (!harris_) compare_mode(wanted_, history, summary);
         const auto largest = [&](const char* name) {
             double most = 0;
@@ -116,25 +126,16 @@ class Recorder {
     }
 
    private:
-    // The moments at t^n itself, for what is shown.
-    static std::vector<Moments> slide_moments(const Grid& grid,
-                                              const std::vector<Particles>& species) {
-        std::vector<Moments> moments(species.size(), Moments(grid));
-        for (std::size_t k = 0; k < species.size(); ++k) {
-            deposit_moments(species[k], grid, moments[k]);
-        }
-        return moments;
-    }
-
     // Whether a snapshot of the given interval falls on this step.
     bool due(double interval, long step) const {
         if (interval <= 0) return false;
-        const long every = std::max(1L, std::lround(interval / wanted_.dt));
-        return step % every == 0;
+        const long rows = std::lround(interval / wanted_.dt / double(wanted_.history_steps));
+        return step % (std::max(1L, rows) * wanted_.history_steps) == 0;
     }
 
     const Case& wanted_;
     bool harris_;
+    std::function<std::vector<Moments>(const State&)> shown_;
     Field rho_, gauss_, scratch_, gauss_scratch_;
     std::vector<double> row_;
     static constexpr const char* unit_ = "n0*m_i*c^2*d_i^2";
