@@ -65,19 +65,23 @@ inline bool is_gem_challenge(const Case& w) {
 /// GEM: reconnected flux against the published windows.
 /// source: Birn et al. 2001, figure 1; Pritchett 2001.
 inline void compare_reconnection(const Case& w, const common::History& history,
-                                 common::Summary& summary) {
+                                 const UnitFluxProfile& profile, common::Summary& summary) {
     const std::string birn = "Birn et al. 2001, figure 1";
     const auto times = history.column("time_Omega_ci"), flux = history.column("flux");
     const auto drift = history.column("energy_drift"), quadrupole = history.column("quadrupole");
     const double last = times.back();
     if (!is_gem_challenge(w)) {
         summary.result_info("flux_final", flux.back(), "B0 d_i", "measured");
+        const double unit = common::time_at_level(times, flux, 1);
+        if (std::isfinite(unit))
+            summary.result_info("time_at_unit_flux", unit, "1/Omega_ci", "measured");
         if (last < 4) return;
         summary.result_info("peak_reconnection_rate", detail::steepest_slope(times, flux, 2),
                             "B0 v_A", "measured");
         return;
     }
     summary.result("flux_initial", flux.front(), "B0 d_i", 0.2, 0.005, "exact: 2 psi0");
+    compare_profile(profile, w.grid, w.harris, summary);
     if (last < 18) return;
     const double unit = common::time_at_level(times, flux, 1);
     if (w.harris.mass_ratio == 25) {

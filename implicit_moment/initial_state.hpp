@@ -6,6 +6,7 @@
 
 #include "implicit_moment/load_plasma.hpp"
 #include "implicit_moment/sort_particles.hpp"
+#include "implicit_moment/unit_flux_profile.hpp"
 
 namespace implicit_moment {
 
@@ -100,6 +101,7 @@ inline void add_electrostatic_field(const Grid& grid, const MeshModes& modes, co
 struct State {
     Plasma plasma;
     FieldState field;
+    UnitFluxProfile profile;  // of a Harris sheet
 };
 
 /// Names every number of the state, for writing and for reading alike.
@@ -116,12 +118,14 @@ void archive(Archive& a, State& state) {
     a("E", state.field.E.all);
     a("B", state.field.B.all);
     a("E_theta", state.field.E_theta.all);
+    archive(a, state.profile);
 }
 
 /// Particles and fields of the set-up, before E has its part that follows from the charge.
 inline State loaded_state(const Case& wanted) {
     State state{wanted.setup == "harris" ? load_harris(wanted) : load_uniform(wanted),
-                FieldState(wanted.grid)};
+                FieldState(wanted.grid),
+                {}};
     wanted.setup == "harris" ? harris_field(wanted, state.field)
                              : uniform_field(wanted, state.field);
     return state;

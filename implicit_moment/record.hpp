@@ -47,9 +47,9 @@ class Recorder {
         history.columns(columns);
     }
 
-    /// One row for t^n. errors: NumericalError when the energy is not finite or beyond ten times
+    /// One row for t^n, and the profile's share of it. errors: NumericalError when the energy is not finite or beyond ten times
     /// the initial.
-    void record(long step, const State& state, const std::vector<Moments>& moments,
+    void record(long step, State& state, const std::vector<Moments>& moments,
                 common::Session& session) {
         const Grid& grid = wanted_.grid;
         const FieldState& field = state.field;
@@ -91,6 +91,8 @@ class Recorder {
             const MiddleRow middle = middle_row(grid, field.B);
             row_.insert(row_.end(),
                         {middle.flux / B0, quadrupole(grid, field.B, middle.X_point) / B0});
+            watch(state.profile, time * B0 / c, middle.flux / B0, grid, field.B,
+                  [&] { return slide_moments(grid, state.plasma.species); });
         } else {
             const auto mode = mode_amplitude(grid, field, wanted_.component, wanted_.uniform.mode_x,
                                              wanted_.uniform.mode_z);
@@ -110,9 +112,12 @@ class Recorder {
         const common::History& history = session.history;
         common::Summary& summary = session.summary;
         if (harris_ && wanted_.harris.perturbation != 0)
-            compare_reconnection(wanted_, history, summary);
+            compare_reconnection(wanted_, history, state.profile, summary);
         if (harris_ && wanted_.harris.perturbation == 0)
             compare_equilibrium(wanted_, state.plasma, shown_(state), history, summary);
+        if (harris_)
+            write_profile(session.path("profile.dat"), state.profile, wanted_.grid,
+                          harris_sheet(wanted_.harris).B0);
         if (!harris_) compare_mode(wanted_, history, summary);
         const auto largest = [&](const char* name) {
             double most = 0;
