@@ -21,6 +21,7 @@ struct HarrisCase {
     double thickness = 0.5;         // lambda
     double background = 0.2;        // n_inf/n0
     double perturbation = 0.1;      // psi0/(B0 d_i)
+    double guide_field = 0;         // B_y/B0, uniform
     long particles = 200000;        // of both species together
 };
 
@@ -142,6 +143,8 @@ inline void describe_plasma(common::ParameterTable& table, Case& w) {
                "density of the plasma at rest");
     table.real("harris.perturbation", w.harris.perturbation, "B0 d_i", anything(),
                "flux psi0 of the seeded island");
+    table.real("harris.guide_field", w.harris.guide_field, "B0", anything(),
+               "uniform B_y out of the plane, along the current");
     table.whole("harris.particles", w.harris.particles, "", between(2, 4e8),
                 "simulation particles of both species");
 

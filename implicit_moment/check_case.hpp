@@ -45,7 +45,7 @@ inline Scales scales_of(const Case& w) {
     };
     if (w.setup == "harris") {
         const HarrisSheet sheet = harris_sheet(w.harris);
-        s.B = sheet.B0;
+        s.B = std::hypot(sheet.B0, w.harris.guide_field * sheet.B0);
         add("ions", 1, 1, 1, sheet.T_i);
         add("electrons", 1, -1, 1 / w.harris.mass_ratio, sheet.T_e);
         s.particles = 2 * (w.harris.particles / 2);

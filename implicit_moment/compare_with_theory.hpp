@@ -58,8 +58,8 @@ inline double steepest_slope(const std::vector<double>& times, const std::vector
 inline bool is_gem_challenge(const Case& w) {
     const HarrisCase& h = w.harris;
     return w.setup == "harris" && h.temperature_ratio == 5 && h.thickness == 0.5 &&
-           h.background == 0.2 && h.perturbation == 0.1 && w.grid.x.length == 25.6 &&
-           w.grid.z.length == 12.8;
+           h.background == 0.2 && h.perturbation == 0.1 && h.guide_field == 0 &&
+           w.grid.x.length == 25.6 && w.grid.z.length == 12.8;
 }
 
 /// GEM: reconnected flux against the published windows.

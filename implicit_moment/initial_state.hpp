@@ -11,7 +11,7 @@
 namespace implicit_moment {
 
 /// B of a Harris sheet with the GEM perturbation, as the curl of A_y on nodes, so that div B = 0
-/// to round-off and B_n = 0 on walls.
+/// to round-off and B_n = 0 on walls; and a uniform B_y, which pushes nothing that drifts along y.
 ///     A_y = -B0 lambda ln cosh(z/lambda) - psi0 cos(2 pi x/L_x) cos(pi z/L_z)
 inline void harris_field(const Case& wanted, FieldState& field) {
     const Grid& grid = wanted.grid;
@@ -36,6 +36,7 @@ inline void harris_field(const Case& wanted, FieldState& field) {
     VectorField A(grid);
     std::copy_n(A_y.data(), grid.size(), A.y());
     curl_of_electric(grid, A.all.data(), field.B.all.data());
+    std::fill_n(field.B.y(), grid.size(), h.guide_field * B0);
     fill_ghosts(grid, magnetic, field.B);
 }
 
