@@ -49,8 +49,8 @@ bool is_ours(std::string name) {
          {"case.toml", "history.dat", "summary.json", "spectrum.dat", "profile.dat", "pack.txt"}) {
         if (name == plain) return true;
     }
-    for (const char* start :
-         {"fields_", "particles_", "phase_", "velocities_", "fringes_", "grains_", "checkpoint_"}) {
+    for (const char* start : {"fields_", "particles_", "profile_", "phase_", "velocities_",
+                              "fringes_", "grains_", "checkpoint_"}) {
         if (!begins(name, start)) continue;
         const std::size_t digits = std::string(start).size();
         const std::size_t ending =

@@ -25,6 +25,20 @@ struct HarrisCase {
     long particles = 200000;        // of both species together
 };
 
+/// A thin Harris sheet in the plane of the current, where the lower-hybrid drift instability and
+/// the kink live: x along the current, z across the sheet, the field along -+y; lengths in units of
+/// the half-thickness L of B_y = -B0 tanh(z/L).
+struct CurrentSheetCase {
+    double mass_ratio = 180;        // m_i/m_e
+    double light_over_alfven = 40;  // c/v_A at n0 and B0
+    double temperature_ratio = 4;   // T_i/T_e
+    double drift = 1;               // u_i/v_i, v_i = (2 T_i/m_i)^(1/2): L = rho_i/drift
+    double background = 0.01;       // density at rest [n0]
+    double length_x = 4;            // of the box [L]; these two set the lengths of the grid
+    double length_z = 9;            // [L]
+    long particles = 800000;        // of both species together
+};
+
 /// One species of a uniform plasma; the n-th component of a vector is _x, _y, _z.
 struct SpeciesCase {
     std::string name;
@@ -65,6 +79,7 @@ struct Case {
     std::string setup = "harris", loading = "quiet";
     long seed = 1;
     HarrisCase harris;
+    CurrentSheetCase current_sheet;
     UniformCase uniform;
     FieldSettings field;
     MoverSettings mover;
@@ -76,7 +91,7 @@ struct Case {
     double near = 0;  // frequency near which the root is looked for; 0: the fastest growing root
 
     // How often, in 1/omega_pi; 0: never.
-    double fields_interval = 0, particles_interval = 0;
+    double fields_interval = 0, particles_interval = 0, profile_interval = 0;
     bool vtk = false;
     long checkpoint_steps = 0;
     long history_steps = 1;  // steps from one row of history.dat to the next
@@ -108,6 +123,26 @@ inline void describe_species(common::ParameterTable& table, const std::string& p
     real("phase_z", s.phase_z, "degree", anything(), "phase of v_z in the seeded mode");
 }
 
+inline void describe_current_sheet(common::ParameterTable& table, CurrentSheetCase& s) {
+    using common::at_least, common::above, common::between;
+    table.group("thin current sheet, current along x (plasma.setup = current_sheet)");
+    table.real("current_sheet.mass_ratio", s.mass_ratio, "", between(1, 1e6), "m_i/m_e");
+    table.real("current_sheet.light_over_alfven", s.light_over_alfven, "", between(1, 1e6),
+               "c/v_A; B0 is its inverse");
+    table.real("current_sheet.temperature_ratio", s.temperature_ratio, "", between(1e-6, 1e6),
+               "T_i/T_e");
+    table.real("current_sheet.drift", s.drift, "(2 T_i/m_i)^(1/2)", above(0),
+               "drift of the ions; L = rho_i/drift");
+    table.real("current_sheet.background", s.background, "n0", at_least(0),
+               "density of the plasma at rest");
+    table.real("current_sheet.length_x", s.length_x, "L", above(0),
+               "box along the current; sets grid.length_x");
+    table.real("current_sheet.length_z", s.length_z, "L", between(5, 1000),
+               "box across the sheet; sets grid.length_z");
+    table.whole("current_sheet.particles", s.particles, "", between(2, 4e8),
+                "simulation particles of both species");
+}
+
 // Mesh, time and plasma: what both programs are told.
 inline void describe_plasma(common::ParameterTable& table, Case& w) {
     using common::anything, common::above, common::at_least, common::between;
@@ -125,8 +160,8 @@ inline void describe_plasma(common::ParameterTable& table, Case& w) {
     table.real("time.end", w.end, "1/omega_pi", at_least(0), "length of the run");
 
     table.group("plasma");
-    table.choice("plasma.setup", w.setup, {"harris", "uniform"},
-                 "a Harris current sheet or a uniform plasma");
+    table.choice("plasma.setup", w.setup, {"harris", "uniform", "current_sheet"},
+                 "a Harris sheet across its current, a uniform plasma, or a sheet along it");
     table.choice("plasma.loading", w.loading, {"quiet", "random"},
                  "radical inverses or random numbers");
     table.whole("plasma.seed", w.seed, "", between(0, 1e9), "another number, another realization");
@@ -147,6 +182,8 @@ inline void describe_plasma(common::ParameterTable& table, Case& w) {
                "uniform B_y out of the plane, along the current");
     table.whole("harris.particles", w.harris.particles, "", between(2, 4e8),
                 "simulation particles of both species");
+
+    detail::describe_current_sheet(table, w.current_sheet);
 
     table.group(
         "uniform plasma (plasma.setup = uniform); the seeded mode is amplitude * cos(k x + phase)");
@@ -199,6 +236,8 @@ inline void describe_results(common::ParameterTable& table, Case& w) {
                "time between fields files; 0: none");
     table.real("output.particles_interval", w.particles_interval, "1/omega_pi", at_least(0),
                "time between particles files; 0: none");
+    table.real("output.profile_interval", w.profile_interval, "1/omega_pi", at_least(0),
+               "time between profile files of a current sheet; 0: none");
     table.flag("output.vtk", w.vtk, "also write .vti and .vtp for ParaView");
     table.whole("output.checkpoint_steps", w.checkpoint_steps, "", between(0, 1e9),
                 "steps between checkpoints; 0: only when stopped");

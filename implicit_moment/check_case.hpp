@@ -43,12 +43,13 @@ inline Scales scales_of(const Case& w) {
         scale.debye_length = omega_p > 0 ? scale.thermal_speed / omega_p : 0;
         s.species.push_back(scale);
     };
-    if (w.setup == "harris") {
-        const HarrisSheet sheet = harris_sheet(w.harris);
-        s.B = std::hypot(sheet.B0, w.harris.guide_field * sheet.B0);
+    if (w.setup != "uniform") {
+        const HarrisCase h = harris_of(w);
+        const HarrisSheet sheet = harris_sheet(h);
+        s.B = std::hypot(sheet.B0, h.guide_field * sheet.B0);
         add("ions", 1, 1, 1, sheet.T_i);
-        add("electrons", 1, -1, 1 / w.harris.mass_ratio, sheet.T_e);
-        s.particles = 2 * (w.harris.particles / 2);
+        add("electrons", 1, -1, 1 / h.mass_ratio, sheet.T_e);
+        s.particles = 2 * (h.particles / 2);
     } else {
         const UniformCase& u = w.uniform;
         s.B = std::hypot(u.B_x, u.B_y, u.B_z);
@@ -73,17 +74,23 @@ inline void refuse_impossible(Case& w) {
     };
     w.grid.x.periodic = w.boundary_x == "periodic";
     w.grid.z.periodic = w.boundary_z == "periodic";
+    if (w.setup == "current_sheet") fit_mesh_to_sheet(w);
     w.grid.x.low = -0.5 * w.grid.x.length;
     w.grid.z.low = -0.5 * w.grid.z.length;
     refuse(w.end / w.dt > 1e9, "time.end / time.dt is " + shown(w.end / w.dt) +
                                    " steps, more than 1e9: raise time.dt or lower time.end");
 
-    if (w.setup == "harris") {
-        const HarrisCase& h = w.harris;
+    if (w.setup != "uniform") {
+        const HarrisCase h = harris_of(w);
+        const bool along = w.setup == "current_sheet";
         refuse(
             w.boundary_x != "periodic" || w.boundary_z != "wall",
             "the Harris sheet needs grid.boundary_x = \"periodic\" and grid.boundary_z = \"wall\"");
-        refuse(w.grid.z.cells % 2 != 0,
+        refuse(along && w.grid.x.cells <= 2 * sheet_modes,
+               "grid.cells_x = " + std::to_string(w.grid.x.cells) + ": the first " +
+                   std::to_string(sheet_modes) + " modes along the current are followed, so take " +
+                   std::to_string(2 * sheet_modes + 1) + " or more");
+        refuse(!along && w.grid.z.cells % 2 != 0,
                "grid.cells_z = " + std::to_string(w.grid.z.cells) +
                    " is odd: the flux is measured on the row z = 0, so make it even");
         refuse(h.thickness > 0.25 * w.grid.z.length,
@@ -94,9 +101,8 @@ inline void refuse_impossible(Case& w) {
             std::max({sheet.u_i, std::fabs(sheet.u_e), 3 * sheet.v_e, 3 * sheet.v_i});
         refuse(fastest > 1,
                "the sheet has speeds of " + shown(fastest) +
-                   " c (drift or three thermal speeds), and the mover is not relativistic: raise "
-                   "harris.light_over_alfven above " +
-                   shown(h.light_over_alfven * fastest));
+                   " c (drift or three thermal speeds), and the mover is not relativistic: raise " +
+                   w.setup + ".light_over_alfven above " + shown(h.light_over_alfven * fastest));
         if (!w.uniform.species.empty()) {
             refuse(true, "[species." + w.uniform.species.front().name +
                              "] belongs to plasma.setup = \"uniform\"; the Harris sheet makes its "

@@ -1,5 +1,5 @@
-// The set-ups a case file can name: a Harris current sheet, and a uniform plasma with one seeded
-// mode. The particles come from load_plasma.hpp, the fields from here.
+// The set-ups a case file can name: a Harris current sheet across its current or along it, and a
+// uniform plasma with one seeded mode. The particles come from load_plasma.hpp, the fields from here.
 #pragma once
 
 #include <cmath>
@@ -37,6 +37,21 @@ inline void harris_field(const Case& wanted, FieldState& field) {
     std::copy_n(A_y.data(), grid.size(), A.y());
     curl_of_electric(grid, A.all.data(), field.B.all.data());
     std::fill_n(field.B.y(), grid.size(), h.guide_field * B0);
+    fill_ghosts(grid, magnetic, field.B);
+}
+
+/// B of a current sheet along x: B_y = -B0 tanh(z/L), averaged over each row of faces.
+inline void current_sheet_field(const Case& wanted, FieldState& field) {
+    const Grid& grid = wanted.grid;
+    const HarrisCase h = harris_of(wanted);
+    const auto potential = [&](long j) {
+        const double z = grid.z.at(static_cast<double>(j)) - (grid.z.low + 0.5 * grid.z.length);
+        return -harris_sheet(h).B0 * h.thickness * std::log(std::cosh(z / h.thickness));
+    };
+    for (long j = 0; j < grid.z.cells; ++j) {
+        const double B_y = (potential(j + 1) - potential(j)) / grid.z.spacing();
+        std::fill_n(field.B.y() + grid.index(0, j), grid.x.cells, B_y);
+    }
     fill_ghosts(grid, magnetic, field.B);
 }
 
@@ -124,11 +139,12 @@ void archive(Archive& a, State& state) {
 
 /// Particles and fields of the set-up, before E has its part that follows from the charge.
 inline State loaded_state(const Case& wanted) {
-    State state{wanted.setup == "harris" ? load_harris(wanted) : load_uniform(wanted),
+    State state{wanted.setup == "uniform" ? load_uniform(wanted) : load_harris(wanted),
                 FieldState(wanted.grid),
                 {}};
-    wanted.setup == "harris" ? harris_field(wanted, state.field)
-                             : uniform_field(wanted, state.field);
+    if (wanted.setup == "harris") harris_field(wanted, state.field);
+    if (wanted.setup == "current_sheet") current_sheet_field(wanted, state.field);
+    if (wanted.setup == "uniform") uniform_field(wanted, state.field);
     return state;
 }
 

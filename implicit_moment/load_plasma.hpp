@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/random.hpp"
-#include "implicit_moment/case.hpp"
+#include "implicit_moment/current_sheet.hpp"
 
 namespace implicit_moment {
 
@@ -61,11 +61,12 @@ inline void resize(Particles& particles, long count) {
 
 /// Loads ions and electrons of a Harris sheet with equal weights; every electron starts on an
 /// ion, so that rho = 0 and E = 0.
-///     n = n0 sech^2(z/lambda), drifting along y;   n_inf, at rest
+///     n = n0 sech^2(z/lambda), drifting along y (a current sheet: along x);   n_inf, at rest
 inline Plasma load_harris(const Case& wanted) {
-    const HarrisCase& h = wanted.harris;
+    const HarrisCase h = harris_of(wanted);
     const Grid& grid = wanted.grid;
     const HarrisSheet sheet = harris_sheet(h);
+    const bool along_x = wanted.setup == "current_sheet";
     const double reach = std::tanh(0.5 * grid.z.length / h.thickness);
     const double in_sheet = n0 * grid.x.length * 2 * h.thickness * reach;
     const double in_background = n0 * h.background * grid.x.length * grid.z.length;
@@ -89,6 +90,7 @@ inline Plasma load_harris(const Case& wanted) {
         for (long p = begin; p < end; ++p) {
             const auto k = static_cast<std::size_t>(p);
             const bool drifting = p < sheet_pairs;
+            const double u_i = drifting ? sheet.u_i : 0, u_e = drifting ? sheet.u_e : 0;
             const std::uint32_t part = drifting ? 1 : 2;
             const long index = drifting ? p : p - sheet_pairs;
             const double u = 2 * load.uniform(part, 3, index) - 1;
@@ -97,12 +99,11 @@ inline Plasma load_harris(const Case& wanted) {
             ions.x_p[k] = electrons.x_p[k] =
                 grid.x.at(0) + grid.x.length * load.uniform(part, 2, index);
             ions.z_p[k] = electrons.z_p[k] = z_middle + z;
-            ions.vx_p[k] = sheet.v_i * load.gaussian(part, 5, index);
-            ions.vy_p[k] = sheet.v_i * load.gaussian(part, 7, index) + (drifting ? sheet.u_i : 0);
+            ions.vx_p[k] = sheet.v_i * load.gaussian(part, 5, index) + (along_x ? u_i : 0);
+            ions.vy_p[k] = sheet.v_i * load.gaussian(part, 7, index) + (along_x ? 0 : u_i);
             ions.vz_p[k] = sheet.v_i * load.gaussian(part, 11, index);
-            electrons.vx_p[k] = sheet.v_e * load.gaussian(part, 13, index);
-            electrons.vy_p[k] =
-                sheet.v_e * load.gaussian(part, 17, index) + (drifting ? sheet.u_e : 0);
+            electrons.vx_p[k] = sheet.v_e * load.gaussian(part, 13, index) + (along_x ? u_e : 0);
+            electrons.vy_p[k] = sheet.v_e * load.gaussian(part, 17, index) + (along_x ? 0 : u_e);
             electrons.vz_p[k] = sheet.v_e * load.gaussian(part, 19, index);
         }
     });

@@ -3,12 +3,14 @@
 
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "common/session.hpp"
 #include "implicit_moment/compare_with_theory.hpp"
+#include "implicit_moment/sheet_diagnostics.hpp"
 #include "implicit_moment/write_output.hpp"
 
 namespace implicit_moment {
@@ -28,8 +30,9 @@ class Recorder {
     Recorder(const Case& wanted, const State& state,
              std::function<std::vector<Moments>(const State&)> shown, common::History& history)
         : wanted_(wanted), harris_(wanted.setup == "harris"), shown_(std::move(shown)) {
+        if (wanted.setup == "current_sheet") sheet_.emplace(wanted);
         std::vector<common::Column> columns{{"time", "1/omega_pi"}};
-        if (harris_) columns.push_back({"time_Omega_ci", "1/Omega_ci"});
+        if (harris_ || sheet_) columns.push_back({"time_Omega_ci", "1/Omega_ci"});
         columns.insert(
             columns.end(),
             {{"energy", unit_}, {"energy_drift", "1"}, {"electric", unit_}, {"magnetic", unit_}});
@@ -41,14 +44,18 @@ class Recorder {
                                        {"div_B", "B*omega_pi/c"},
                                        {"gauss_residual", "4pi*e*n0"}});
         if (harris_) columns.insert(columns.end(), {{"flux", "B0*d_i"}, {"quadrupole", "B0"}});
-        if (!harris_)
+        if (sheet_) {
+            for (const common::Column& column : SheetDiagnostics::columns())
+                columns.push_back(column);
+        }
+        if (!harris_ && !sheet_)
             columns.insert(columns.end(),
                            {{"mode_re", wanted.component}, {"mode_im", wanted.component}});
         history.columns(columns);
     }
 
-    /// One row for t^n, and the profile's share of it. errors: NumericalError when the energy is not finite or beyond ten times
-    /// the initial.
+    /// One row for t^n, and the profile's share of it.
+    /// errors: NumericalError when the energy is not finite or beyond ten times the initial.
     void record(long step, State& state, const std::vector<Moments>& moments,
                 common::Session& session) {
         const Grid& grid = wanted_.grid;
@@ -80,7 +87,7 @@ class Recorder {
         gauss_residual(grid, field.E, rho_, gauss_);
 
         row_ = {time};
-        if (harris_) row_.push_back(time * harris_sheet(wanted_.harris).Omega_ci);
+        if (harris_ || sheet_) row_.push_back(time * harris_sheet(harris_of(wanted_)).Omega_ci);
         row_.insert(row_.end(), {energy, drift, electric_energy / n0, magnetic_energy / n0});
         for (const Moments& m : moments) row_.push_back(m.kinetic_energy / n0);
         row_.insert(row_.end(),
@@ -92,7 +99,9 @@ class Recorder {
             row_.insert(row_.end(),
                         {middle.flux / B0, quadrupole(grid, field.B, middle.X_point) / B0});
             watch(state.profile, time * B0 / c, middle.flux / B0, grid, field.B,
-                  [&] { return slide_moments(grid, state.plasma.species); });
+                  [&] { return shown_(state); });
+        } else if (sheet_) {
+            sheet_->measure(field, row_);
         } else {
             const auto mode = mode_amplitude(grid, field, wanted_.component, wanted_.uniform.mode_x,
                                              wanted_.uniform.mode_z);
@@ -105,6 +114,8 @@ class Recorder {
         }
         if (due(wanted_.particles_interval, step))
             write_particles(session.path("."), step, state.plasma, wanted_.vtk);
+        if (sheet_ && due(wanted_.profile_interval, step))
+            write_profile(session.path("."), step, wanted_, field, shown_(state));
     }
 
     /// The results of the whole run, after its last row.
@@ -118,7 +129,7 @@ class Recorder {
         if (harris_)
             write_profile(session.path("profile.dat"), state.profile, wanted_.grid,
                           harris_sheet(wanted_.harris).B0);
-        if (!harris_) compare_mode(wanted_, history, summary);
+        if (!harris_ && !sheet_) compare_mode(wanted_, history, summary);
         const auto largest = [&](const char* name) {
             double most = 0;
             for (const double value : history.column(name)) most = std::max(most, std::fabs(value));
@@ -141,6 +152,7 @@ class Recorder {
     const Case& wanted_;
     bool harris_;
     std::function<std::vector<Moments>(const State&)> shown_;
+    std::optional<SheetDiagnostics> sheet_;
     Field rho_, gauss_, scratch_, gauss_scratch_;
     std::vector<double> row_;
     static constexpr const char* unit_ = "n0*m_i*c^2*d_i^2";

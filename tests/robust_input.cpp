@@ -91,7 +91,7 @@ TEST_CASE("values of a wrong type are refused with the type that is wanted" *
         {"text for truth", "[output]\nvtk = \"true\"\n", "",
          "case.toml:2:7: 'output.vtk' takes true or false, not text"},
         {"number for text", "[plasma]\nsetup = 1\n", "",
-         "case.toml:2:9: 'plasma.setup' takes text, one of \"harris\", \"uniform\", not a whole"},
+         "case.toml:2:9: 'plasma.setup' takes text, one of \"harris\", \"uniform\", "},
         {"truth for text", "[plasma]\nloading = false\n", "",
          "case.toml:2:11: 'plasma.loading' takes text, one of \"quiet\", \"random\", not true"},
         {"list for a number", "[time]\ndt = [0.3, 0.4]\n", "",
