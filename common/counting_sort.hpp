@@ -2,6 +2,7 @@
 // then one column after the other is carried there.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "common/parallel.hpp"
@@ -36,18 +37,37 @@ void counting_sort(long count, long keys, const Key& key_of, SortScratch<Number>
         for (long p = begin; p < end; ++p) ++place[static_cast<std::size_t>(target[p])];
     });
 
-    // Give every key its range and every block its share of that range.
-    int next = 0;
-    if (first_of_key != nullptr) first_of_key->assign(static_cast<std::size_t>(keys) + 1, 0);
-    for (std::size_t key = 0; key < static_cast<std::size_t>(keys); ++key) {
-        if (first_of_key != nullptr) (*first_of_key)[key] = next;
-        for (auto& place : scratch.place) {
-            const int here = place[key];
-            place[key] = next;
-            next += here;
-        }
+    // Give every key its range and every block its share of that range: first the sums over
+    // stretches of keys, then the stretches themselves, side by side.
+    std::array<int, block_count + 1> first_of_stretch{};
+    for_each_block(
+        keys,
+        [&](int stretch, long begin, long end) {
+            int sum = 0;
+            for (const auto& place : scratch.place)
+                for (long key = begin; key < end; ++key) sum += place[std::size_t(key)];
+            first_of_stretch[std::size_t(stretch) + 1] = sum;
+        },
+        block_count * keys);
+    for (std::size_t k = 0; k < block_count; ++k) first_of_stretch[k + 1] += first_of_stretch[k];
+    if (first_of_key != nullptr) {
+        first_of_key->resize(static_cast<std::size_t>(keys) + 1);
+        first_of_key->back() = first_of_stretch.back();
     }
-    if (first_of_key != nullptr) first_of_key->back() = next;
+    for_each_block(
+        keys,
+        [&](int stretch, long begin, long end) {
+            int next = first_of_stretch[std::size_t(stretch)];
+            for (auto key = std::size_t(begin); key < std::size_t(end); ++key) {
+                if (first_of_key != nullptr) (*first_of_key)[key] = next;
+                for (auto& place : scratch.place) {
+                    const int here = place[key];
+                    place[key] = next;
+                    next += here;
+                }
+            }
+        },
+        block_count * keys);
 
     for_each_block(count, [&](int block, long begin, long end) {
         int* place = scratch.place[static_cast<std::size_t>(block)].data();

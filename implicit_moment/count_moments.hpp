@@ -16,14 +16,14 @@ template <class Real>
 inline void half_step(Velocity<Real>& u, const LocalField<Real>& at, double half_kick,
                       double per_c_squared) {
     u.x += half_kick * at.E_x, u.y += half_kick * at.E_y, u.z += half_kick * at.E_z;
-    rotate<Real>(u, at, (0.5 * half_kick / c) * inverse_gamma(u, per_c_squared));
+    rotate(u, at, 0.5 * half_kick / c, per_c_squared);
 }
 
 /// u^{n-1/2} from u^n.
 template <class Real>
 inline void back_half_step(Velocity<Real>& u, const LocalField<Real>& at, double half_kick,
                            double per_c_squared) {
-    rotate<Real>(u, at, (-0.5 * half_kick / c) * inverse_gamma(u, per_c_squared));
+    rotate(u, at, -0.5 * half_kick / c, per_c_squared);
     u.x -= half_kick * at.E_x, u.y -= half_kick * at.E_y, u.z -= half_kick * at.E_z;
 }
 

@@ -50,25 +50,33 @@ inline LocalField<Real> gather_at_home(const NodeField* corner, long stride, con
     return at;
 }
 
-/// 1/gamma = (1 + u^2/c^2)^(-1/2); per_c_squared = 0 makes it 1.
+/// gamma^2 = 1 + u^2/c^2; per_c_squared = 0 makes it 1.
+template <class Real>
+inline Real gamma_squared(const Velocity<Real>& u, double per_c_squared) {
+    return 1.0 + per_c_squared * (u.x * u.x + u.y * u.y + u.z * u.z);
+}
 template <class Real>
 inline Real inverse_gamma(const Velocity<Real>& u, double per_c_squared) {
-    return 1.0 / common::square_root(1.0 + per_c_squared * (u.x * u.x + u.y * u.y + u.z * u.z));
+    return 1.0 / common::square_root(gamma_squared(u, per_c_squared));
 }
 
 /// Rotation of u about B by the angle 2 atan |t|, t = k B / gamma:  u' = u + (u + u x t) x s,
-/// s = 2 t / (1 + t^2).
+/// s = 2 t / (1 + t^2); with K = k B that is
+///     u' = u + 2 / (gamma^2 + K^2) [ gamma u x K + (u x K) x K ],
+/// which divides once.
 /// exact:  |u| is unchanged; k -> -k turns back.
 /// source: Boris, Proc. 4th Conf. Numerical Simulation of Plasmas (1970).
 template <class Real>
-inline void rotate(Velocity<Real>& u, const LocalField<Real>& at, const Real& k) {
-    const Real t_x = k * at.B_x, t_y = k * at.B_y, t_z = k * at.B_z;
-    const Real twice = 2.0 / (1.0 + t_x * t_x + t_y * t_y + t_z * t_z);
-    const Real w_x = u.x + u.y * t_z - u.z * t_y, w_y = u.y + u.z * t_x - u.x * t_z,
-               w_z = u.z + u.x * t_y - u.y * t_x;
-    u.x += twice * (w_y * t_z - w_z * t_y);
-    u.y += twice * (w_z * t_x - w_x * t_z);
-    u.z += twice * (w_x * t_y - w_y * t_x);
+inline void rotate(Velocity<Real>& u, const LocalField<Real>& at, double k, double per_c_squared) {
+    const Real K_x = k * at.B_x, K_y = k * at.B_y, K_z = k * at.B_z;
+    const Real gamma_2 = gamma_squared(u, per_c_squared);
+    const Real gamma = common::square_root(gamma_2);
+    const Real part = 2.0 / (gamma_2 + K_x * K_x + K_y * K_y + K_z * K_z);
+    const Real w_x = u.y * K_z - u.z * K_y, w_y = u.z * K_x - u.x * K_z,
+               w_z = u.x * K_y - u.y * K_x;
+    u.x += part * (gamma * w_x + w_y * K_z - w_z * K_y);
+    u.y += part * (gamma * w_y + w_z * K_x - w_x * K_z);
+    u.z += part * (gamma * w_z + w_x * K_y - w_y * K_x);
 }
 
 /// Boris's step from u^{n-1/2} to u^{n+1/2}: half the kick of E, the rotation about B, the other
@@ -79,7 +87,7 @@ template <class Real>
 inline void push(Velocity<Real>& u, const LocalField<Real>& at, double half_kick,
                  double per_c_squared) {
     u.x += half_kick * at.E_x, u.y += half_kick * at.E_y, u.z += half_kick * at.E_z;
-    rotate<Real>(u, at, (half_kick / c) * inverse_gamma(u, per_c_squared));
+    rotate(u, at, half_kick / c, per_c_squared);
     u.x += half_kick * at.E_x, u.y += half_kick * at.E_y, u.z += half_kick * at.E_z;
 }
 // [/boris]
