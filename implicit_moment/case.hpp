@@ -279,7 +279,7 @@ inline common::ParameterTable describe_explicit(Case& w) {
     using common::between;
     w.leapfrog.chosen = true;
     w.grid.x.cells = 512, w.grid.z.cells = 256;
-    w.dt = 0.03;
+    w.dt = 0.03, w.end = 380;
     w.harris.particles = 9120000;
     w.field.smoothing.passes = 0;
     w.history_steps = 20;
