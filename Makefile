@@ -7,9 +7,6 @@ VERSION := 0.1.0
 # The source of each main; a program is called like its main.
 mains := cic/cic.cpp flip/pic.cpp flip/flip.cpp mpm_explicit/mpm_explicit.cpp mpm_implicit/mpm_implicit.cpp implicit_moment/implicit_moment.cpp implicit_moment/explicit_em.cpp
 
-# Methods of the talk without a program so far.
-not_built_yet :=
-
 # Programs that time the loop of a main, step by step; `make bench` runs them all.
 benches := cic/bench.cpp flip/bench.cpp mpm_explicit/bench.cpp mpm_implicit/bench.cpp implicit_moment/bench.cpp
 
@@ -70,8 +67,8 @@ one_at_a_time = $(if $(shell command -v flock),flock out)
 .DELETE_ON_ERROR:
 .SECONDEXPANSION:
 .PRECIOUS: $(objects)/%.o out/%/.complete
-.PHONY: menu deps deps-dev all figures test tests test-long bench notes format clean FORCE \
-        $(programs) $(not_built_yet)
+.PHONY: menu deps deps-dev all figures cost explicit_gem test tests test-long bench notes format \
+        clean FORCE $(programs)
 
 # ---- the menu ------------------------------------------------------------------------------------
 
@@ -96,6 +93,8 @@ The particle-in-cell family in running code
                          $(wordlist 13,15,$(mpm_figures))
                          $(wordlist 16,99,$(mpm_figures))
   make figures           draw them all
+  make cost              the cost slide, measured: explicit over implicit, against the mass ratio
+  make explicit_gem      the full explicit run of that slide, an hour; resumable
   make test              the facts, at most ten minutes   (make test ARGS='-R gmres': some of them)
   make test-long         every figure at full length, its numbers checked
   make bench             particle-steps per second on 1 and 2 threads, and where the time goes
@@ -125,9 +124,6 @@ deps-dev: | $(filter deps,$(MAKECMDGOALS))
 all: $(programs)
 tests: $(tests:%=$(BUILD)/tests/%)
 $(programs): %: $(BUILD)/%
-
-$(not_built_yet):
-	@echo "'$@' is not built yet; there is: $(programs)" >&2; exit 2
 
 # The flags and a fingerprint of compiler and machine: when they change, everything is built again.
 $(BUILD)/flags: FORCE | $(packages_first)
@@ -199,6 +195,25 @@ $(eval $(call figure,fig09,implicit_moment,out/implicit_moment/gem))
 $(eval $(call figure,implicit_moment_dispersion,implicit_moment,out/implicit_moment/dispersion))
 $(eval $(call series,implicit_moment/figures/implicit_moment_dispersion.sh,implicit_moment,$(wildcard \
     implicit_moment/cases/light_wave.toml implicit_moment/cases/langmuir.toml),out/implicit_moment/dispersion))
+
+# The cost slide: both programs, by  sh SCRIPT IMPLICIT EXPLICIT FOLDER .
+$(eval $(call figure,fig_cost,implicit_moment,out/implicit_moment/cost))
+out/implicit_moment/cost/.complete: implicit_moment/figures/fig_cost.sh $(BUILD)/implicit_moment $(BUILD)/explicit_em \
+    implicit_moment/cases/gem.toml implicit_moment/cases/gem_explicit.toml implicit_moment/data/explicit_gem_flux.csv | $(packages_first)
+	@rm -f $@
+	@mkdir -p $(@D)
+	$(one_at_a_time) sh $< $(BUILD)/implicit_moment $(BUILD)/explicit_em $(@D)
+	@touch $@
+cost: fig_cost
+	@sh implicit_moment/figures/show_cost.sh out/implicit_moment/cost/cost.dat
+
+# The full explicit run of the cost slide, an hour on two cores, and what is kept of it for figures 9 and 10. It goes on where it was stopped.
+explicit_gem: $(BUILD)/explicit_em
+	@mkdir -p out/explicit_em/gem_explicit
+	last=$$(ls out/explicit_em/gem_explicit/checkpoint_*.bin 2>/dev/null | tail -n 1); \
+	    $(one_at_a_time) $(BUILD)/explicit_em implicit_moment/cases/gem_explicit.toml $${last:+--restart $$last} \
+	    --out out/explicit_em/gem_explicit --force
+	sh implicit_moment/data/keep_explicit_gem.sh out/explicit_em/gem_explicit implicit_moment/data
 
 # $(call cic_series,figure,cases,folder): a figure of several runs of cic.
 define cic_series
