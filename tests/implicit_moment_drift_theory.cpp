@@ -1,0 +1,245 @@
+// Facts about the local theory of the lower-hybrid drift instability of a Harris sheet.
+#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "implicit_moment/drift_dispersion.hpp"
+
+namespace {
+
+using common::Complex;
+using implicit_moment::CurrentSheet;
+using implicit_moment::drift_dispersion;
+using implicit_moment::fastest_local_wave;
+using implicit_moment::fastest_over_k;
+using implicit_moment::fastest_over_z;
+using implicit_moment::local_root;
+using implicit_moment::LocalPlasma;
+using implicit_moment::LocalWave;
+using implicit_moment::lower_hybrid_frequency;
+using implicit_moment::plasma_at;
+
+const double pi = std::numbers::pi;
+const Complex i(0.0, 1.0);
+
+// The sheet of the talk, with T_i / T_e.
+CurrentSheet thin_sheet(double temperature_ratio, double background = 0) {
+    return {180, temperature_ratio, 1, 5, background};
+}
+
+// Sheets of all kinds: hot and cold electrons, weak and strong drift and field, with background.
+std::vector<CurrentSheet> sheets() {
+    return {thin_sheet(1),      thin_sheet(4, 0.01), thin_sheet(10, 0.1), {36, 10, 1, 5.025, 1e-3},
+            {1836, 1, 0.1, 10}, {25, 5, 2, 1, 0.2},  {1836, 0.2, 3, 20},  {180, 1, 0.3, 0.3, 0.02}};
+}
+
+// Heights and wave numbers, the latter in units of omega_lh / v_i.
+const std::vector<std::pair<double, double>> places = {{0.3, 0.2}, {0.3, 1.5}, {1, 0.5},
+                                                       {1, 1.4},   {1, 3},     {1.5, 0.1},
+                                                       {1.5, 1.2}, {2.5, 0.4}, {2.5, 2}};
+
+double wave_number(const LocalPlasma& plasma, double scaled) {
+    return scaled * lower_hybrid_frequency(plasma) / plasma.v_i;
+}
+
+// How often D, along the straight line from a to b, goes around the origin.
+template <class Dispersion>
+double turns(const Dispersion& D, Complex a, Complex b, int depth = 0) {
+    const Complex middle = 0.5 * (a + b);
+    const double first = std::arg(D(middle) / D(a)), second = std::arg(D(b) / D(middle));
+    const bool smooth = depth > 5 && std::abs(first) < 0.3 && std::abs(second) < 0.3;
+    if (smooth || depth > 40) return (first + second) / (2 * pi);
+    return turns(D, a, middle, depth + 1) + turns(D, middle, b, depth + 1);
+}
+
+// The number of zeros of D, less that of its poles, in the box |Re| < width, low < Im < high.
+template <class Dispersion>
+double zeros_in_box(const Dispersion& D, double width, double low, double high) {
+    const Complex a(-width, low), b(width, low), c(width, high), d(-width, high);
+    return turns(D, a, b) + turns(D, b, c) + turns(D, c, d) + turns(D, d, a);
+}
+
+// Z from its definition as an integral, for Im zeta > 0, by the trapezoidal rule.
+Complex Z_by_quadrature(Complex zeta) {
+    const double h = std::min(0.25, zeta.imag() / 6);
+    Complex sum = 0;
+    for (long n = -std::lround(7 / h); n <= std::lround(7 / h); ++n) {
+        const double t = static_cast<double>(n) * h;
+        sum += h * std::exp(-t * t) / (t - zeta);
+    }
+    return sum / std::sqrt(pi);
+}
+
+// exp(-b) I_0(b), the mean of exp(-b (1 - cos theta)).
+double Gamma_0_by_quadrature(double b) {
+    const int points = 400;
+    double sum = 0;
+    for (int n = 0; n < points; ++n) sum += std::exp(-b * (1 - std::cos(2 * pi * n / points)));
+    return sum / points;
+}
+
+// 1 + the sum of the susceptibilities, from first principles in units with e = m_e = T_e = n0 = 1 and
+// B0 / c = 1, so that Omega_ce = 1 and 4 pi = omega_pe^2. L follows from the balance of pressure,
+// which makes it 2 (T_i + T_e) / (u_i - u_e).
+Complex dispersion_from_scratch(const CurrentSheet& sheet, double z, double kL, Complex omega) {
+    const double four_pi = sheet.frequency_ratio * sheet.frequency_ratio;
+    const double T_e = 1, T_i = sheet.temperature_ratio, m_i = sheet.mass_ratio;
+    const double u_i = sheet.drift * std::sqrt(2 * T_i / m_i), u_e = -u_i * T_e / T_i;
+    const double L = 2 * (T_i + T_e) / (u_i - u_e), k = kL / L;
+    const double B = std::tanh(z), b = k * k * T_e / (B * B);
+    const double Gamma_0 = Gamma_0_by_quadrature(b);
+    omega /= m_i;  // from units of Omega_ci
+    Complex D = 1;
+    const auto add = [&](double n, double ion_drift, double electron_drift) {
+        const Complex zeta = (omega - k * ion_drift) / (k * std::sqrt(2 * T_i / m_i));
+        D += four_pi * n / (k * k * T_i) * (1.0 + zeta * Z_by_quadrature(zeta));
+        D += four_pi * n / (k * k * T_e) * (1.0 - Gamma_0 * (omega - k * electron_drift) / omega);
+    };
+    add(1 / std::pow(std::cosh(z), 2), u_i, u_e);
+    add(sheet.background, 0, 0);
+    return D;
+}
+
+// gamma / [(u_i / v_i)^2 omega_lh] of the fastest wave at z = 1 of a sheet with cold electrons.
+double scaled_growth(double drift) {
+    const CurrentSheet sheet{1836, 1e6, drift, 5, 0};
+    return fastest_over_k(sheet, 1).gamma /
+           (drift * drift * lower_hybrid_frequency(plasma_at(sheet, 1)));
+}
+
+}  // namespace
+
+TEST_CASE("the roots of the drift dispersion relation are zeros of an independent evaluation") {
+    int growing = 0;
+    for (const CurrentSheet& sheet : sheets())
+        for (const auto& [z, scaled] : places) {
+            const double k = wave_number(plasma_at(sheet, z), scaled);
+            const LocalWave w = local_root(sheet, z, k);
+            CHECK(w.found);
+            if (!(w.gamma > 0.02 * k * sheet.drift)) continue;
+            ++growing;
+            const Complex root(w.omega, w.gamma), aside = root * (1.0 + 1e-3 * i);
+            const double here = std::abs(dispersion_from_scratch(sheet, z, k, root));
+            CHECK(here <= 1e-8 * std::abs(dispersion_from_scratch(sheet, z, k, aside)));
+        }
+    CHECK(growing >= 20);
+}
+
+TEST_CASE("the principle of the argument finds no growing wave that was missed") {
+    for (const CurrentSheet& sheet : sheets())
+        for (const auto& [z, scaled] : places) {
+            const LocalPlasma plasma = plasma_at(sheet, z);
+            const double k = wave_number(plasma, scaled);
+            const auto D = [&](Complex omega) { return drift_dispersion(plasma, k, omega); };
+            const double unit = k * plasma.streams[0].u_i, low = 1e-4 * unit;
+            const double size = 20 * (unit + k * plasma.v_i + lower_hybrid_frequency(plasma));
+            const LocalWave w = local_root(sheet, z, k);
+            CHECK(std::abs(zeros_in_box(D, size, low, size) - (w.gamma > low ? 1 : 0)) <= 1e-6);
+        }
+}
+
+TEST_CASE("a sheet without background is unstable to every wave at every height") {
+    for (CurrentSheet sheet : sheets()) {
+        sheet.background = 0;
+        for (const auto& [z, scaled] : places) {
+            const LocalWave w = local_root(sheet, z, wave_number(plasma_at(sheet, z), scaled));
+            CHECK(w.gamma > 0);
+            CHECK(w.omega > 0);
+            CHECK(w.omega < w.k * sheet.drift * sheet.drift);
+        }
+    }
+}
+
+TEST_CASE("a plasma without drift is stable") {
+    for (const CurrentSheet& sheet : sheets())
+        for (const auto& [z, scaled] : places) {
+            LocalPlasma plasma = plasma_at(sheet, z);
+            const double k = wave_number(plasma, scaled);
+            plasma.streams[0].u_i = plasma.streams[0].u_e = 0;
+            const auto D = [&](Complex omega) { return drift_dispersion(plasma, k, omega); };
+            const double unit = lower_hybrid_frequency(plasma) + k * plasma.v_i;
+            CHECK(std::abs(zeros_in_box(D, 20 * unit, 1e-6 * unit, 20 * unit)) <= 1e-6);
+        }
+}
+
+TEST_CASE("weakly drifting sheets grow at the rate of Davidson and Gladd and Wu and Huba") {
+    // From D with zeta << 1 and b << 1, where it is a quadratic equation for omega: the wave of
+    // k (T_i / m_i)^1/2 = omega_lh grows fastest, with omega = k u_i / 2 and
+    //   gamma = (2 pi)^1/2 / 8 (u_i / v_i)^2 omega_lh,  v_i = (2 T_i / m_i)^1/2
+    const double exact = std::sqrt(2 * pi) / 8;
+    const double wide = scaled_growth(0.1) / exact - 1, narrow = scaled_growth(0.05) / exact - 1;
+    CHECK(std::abs(narrow) <= 0.01);
+    // What the limit leaves out is of second order in the drift.
+    CHECK(std::abs(wide / narrow - 4) <= 0.1);
+
+    const CurrentSheet sheet{1836, 1e6, 0.01, 5, 0};
+    const LocalWave w = fastest_over_k(sheet, 1);
+    const double k = std::numbers::sqrt2 * lower_hybrid_frequency(plasma_at(sheet, 1)) / 0.01;
+    CHECK(std::abs(w.k / k - 1) <= 0.01);
+    CHECK(std::abs(w.omega / (w.k * 0.01 * 0.01) - 0.5) <= 0.005);
+}
+
+TEST_CASE("the thin sheet of the talk grows as in an independent program") {
+    // T_i / T_e, and gamma at three heights.
+    const double table[][4] = {{1, 3.00, 3.185, 2.78},
+                               {2, 2.76, 3.00, 2.68},
+                               {4, 2.58, 2.85, 2.59},
+                               {10, 2.45, 2.73, 2.52}};
+    const double heights[] = {1, 1.5, 2};
+    // k and omega at the second of them.
+    const double waves[][2] = {{15.5, 6.5}, {16.0, 7.6}, {16.5, 8.4}, {17.0, 8.9}};
+    for (int n = 0; n < 4; ++n) {
+        for (int j = 0; j < 3; ++j) {
+            const LocalWave w = fastest_over_k(thin_sheet(table[n][0]), heights[j]);
+            CHECK(std::abs(w.gamma - table[n][j + 1]) <= 0.006);
+        }
+        const LocalWave w = fastest_over_k(thin_sheet(table[n][0]), 1.5);
+        CHECK(std::abs(w.k - waves[n][0]) <= 0.3);
+        CHECK(std::abs(w.omega - waves[n][1]) <= 0.1);
+    }
+    // gamma of mode m in a sheet of length 4 L, T_i / T_e = 4, at z = 1.5.
+    const double modes[][2] = {{4, 0.50},  {6, 1.47},  {8, 2.44}, {9, 2.71},
+                               {10, 2.83}, {12, 2.76}, {14, 2.46}};
+    for (const auto& [m, gamma] : modes)
+        CHECK(std::abs(local_root(thin_sheet(4), 1.5, m * pi / 2).gamma - gamma) <= 0.006);
+}
+
+TEST_CASE("the sheet of a published moment model grows as in an independent program" *
+          doctest::description("physics")) {
+    // m_i / m_e = 36, T_i / T_e = 10, beta_e = 1/11 and v_e = 0.06 c.
+    const CurrentSheet sheet{36, 10, 1, std::sqrt(1 / 11.0) / 0.06, 0};
+    const LocalWave w = fastest_local_wave(sheet);
+    CHECK(std::abs(w.gamma - 1.22) <= 0.005);
+    CHECK(std::abs(w.k - 7.5) <= 0.05);
+    CHECK(std::abs(fastest_over_z(sheet, w.k).gamma - w.gamma) <= 1e-4);
+    CHECK(std::abs(fastest_over_z(sheet, w.k).z - w.z) <= 0.02);
+}
+
+TEST_CASE("a resting background of a tenth stops the wave at the edge but not inside") {
+    const auto growth = [](double background, double z) {
+        return fastest_over_k(thin_sheet(4, background), z).gamma;
+    };
+    CHECK(growth(0.1, 2) <= 0.1 * growth(0, 2));
+    CHECK(growth(0.1, 1) >= 0.5 * growth(0, 1));
+    CHECK(growth(0.01, 2) >= 0.75 * growth(0, 2));
+}
+
+TEST_CASE("the searches find the largest growth rate of a dense table") {
+    const CurrentSheet sheet = thin_sheet(2, 0.01);
+    double over_z = 0, over_k = 0;
+    for (int n = 0; n < 400; ++n) {
+        over_z = std::max(over_z, local_root(sheet, 0.2 + 0.01 * n, 9).gamma);
+        over_k = std::max(over_k, local_root(sheet, 2, 2 + 0.1 * n).gamma);
+    }
+    const double by_z = fastest_over_z(sheet, 9).gamma, by_k = fastest_over_k(sheet, 2).gamma;
+    CHECK(by_z >= over_z);
+    CHECK(by_z <= over_z * (1 + 1e-3));
+    CHECK(by_k >= over_k);
+    CHECK(by_k <= over_k * (1 + 1e-3));
+}
