@@ -1,7 +1,9 @@
-// Facts about the local theory of the lower-hybrid drift instability of a Harris sheet.
+// Facts about the local theory of the lower-hybrid drift instability of a Harris sheet, and about the
+// instability of the shear layer that it leaves behind.
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -10,6 +12,7 @@
 #include <vector>
 
 #include "implicit_moment/drift_dispersion.hpp"
+#include "implicit_moment/shear_layer.hpp"
 
 namespace {
 
@@ -24,6 +27,7 @@ using implicit_moment::LocalPlasma;
 using implicit_moment::LocalWave;
 using implicit_moment::lower_hybrid_frequency;
 using implicit_moment::plasma_at;
+using implicit_moment::shear_layer_growth;
 
 const double pi = std::numbers::pi;
 const Complex i(0.0, 1.0);
@@ -144,6 +148,25 @@ double scaled_growth(double drift) {
     const CurrentSheet sheet{1836, 1e6, drift, 5, 0};
     return fastest_over_k(sheet, 1).gamma /
            (drift * drift * lower_hybrid_frequency(plasma_at(sheet, 1)));
+}
+
+// Growth rate of the shear layer U = tanh y between walls at +-9, from finite differences of order h^2:
+// the eigenvalues c of (d^2/dy^2 - k^2)^-1 [U (d^2/dy^2 - k^2) - U''].
+double shear_layer_by_eigenvalues(double k, int intervals) {
+    const double h = 18.0 / intervals;
+    const int n = intervals - 1;
+    Eigen::MatrixXd laplacian = Eigen::MatrixXd::Zero(n, n);
+    Eigen::VectorXd U(n), curvature(n);
+    for (int j = 0; j < n; ++j) {
+        U[j] = std::tanh(-9 + h * (j + 1));
+        curvature[j] = -2 * U[j] * (1 - U[j] * U[j]);
+        laplacian(j, j) = -2 / (h * h) - k * k;
+        if (j > 0) laplacian(j, j - 1) = laplacian(j - 1, j) = 1 / (h * h);
+    }
+    Eigen::MatrixXd right = U.asDiagonal() * laplacian;
+    right.diagonal() -= curvature;
+    const Eigen::MatrixXd advance = laplacian.partialPivLu().solve(right);
+    return k * advance.eigenvalues().imag().maxCoeff();
 }
 
 }  // namespace
@@ -293,4 +316,32 @@ TEST_CASE("the searches find the largest growth rate of a dense table") {
     CHECK(by_z <= over_z * (1 + 1e-3));
     CHECK(by_k >= over_k);
     CHECK(by_k <= over_k * (1 + 1e-3));
+}
+
+TEST_CASE("shooting and eigenvalues give the same growth of a shear layer") {
+    // Longer waves would feel the walls, shorter ones have a critical layer finer than the mesh.
+    for (const double ka : {0.45, 0.55, 0.65}) {
+        const double coarse = shear_layer_by_eigenvalues(ka, 120);
+        const double fine = shear_layer_by_eigenvalues(ka, 240);
+        CHECK(std::abs(shear_layer_growth(ka) - (4 * fine - coarse) / 3) <= 5e-4);
+    }
+}
+
+TEST_CASE("a shear layer grows fastest at its known wave number and rate") {
+    const double fastest = shear_layer_growth(0.4446);
+    CHECK(std::abs(fastest - 0.1897) <= 5e-5);
+    for (const double ka : {0.2, 0.4, 0.43, 0.46, 0.5, 0.7})
+        CHECK(shear_layer_growth(ka) < fastest);
+}
+
+TEST_CASE("a shear layer is a vortex sheet to long waves and neutral to short ones") {
+    for (const double ka : {0.001, 0.01, 0.1}) {
+        CHECK(shear_layer_growth(ka) < ka);
+        CHECK(shear_layer_growth(ka) > ka * (1 - 2 * ka));
+    }
+    // gamma = (2 / pi) (1 - ka) to first order around the neutral wave ka = 1, phi = sech y.
+    for (const double ka : {0.9, 0.95, 0.98})
+        CHECK(std::abs(shear_layer_growth(ka) / (1 - ka) - 2 / pi) <= 0.6 * (1 - ka));
+    CHECK(shear_layer_growth(1) == 0);
+    CHECK(shear_layer_growth(1.5) == 0);
 }
