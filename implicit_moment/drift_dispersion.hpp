@@ -8,11 +8,12 @@
 //       { [1 + zeta Z(zeta)] + (T_i / T_e) [1 - Gamma_0(b) (omega - k u_e) / omega] } / (k l_i)^2,
 //   zeta = (omega - k u_i) / (k v_i),  b = k^2 rho_e^2 / 2,  Gamma_0 = exp(-b) I_0(b),
 //   with n, B, rho_e and the Debye length l_i of the ions at z, and with the drift in grad B
-//   Gamma_0 / omega -> integral ds exp(-s) J_0(k rho_e s^1/2)^2 / (omega - k v_B s), 0 < s < infinity
+//   Gamma_0 / omega -> integral ds exp(-s) J_0(k rho_e s^1/2)^2 / (omega - k v_B s),  s > 0
 // Units: half-width L of the sheet, 1 / Omega_ci of the ions in B0, density n0 in the middle.
 //
-// note: Neglected are the variation of the wave with z, its magnetic field, and the harmonics of the
+// note: Neglected are the variation of the wave with z, its magnetic field, and harmonics of the
 //       electron gyrofrequency: small where k L >> 1, k c / omega_pe >> 1 and omega << Omega_ce.
+//       With guiding centers at rest long waves grow at z < 1; the drift in grad B stops them.
 // source: Krall and Liewer, Phys. Rev. A 4, 2094 (1971); Davidson, Gladd, Wu and Huba, Phys. Fluids
 //         20, 301 (1977); Yoon, Lui and Sitnov, Phys. Plasmas 9, 1526 (2002), for the Harris sheet.
 #pragma once

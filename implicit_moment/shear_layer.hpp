@@ -36,8 +36,8 @@ inline std::complex<double> slope_in_the_middle(double k, std::complex<double> c
 ///   (U - c) (phi'' - k^2 phi) = U'' phi,  gamma = k Im c
 /// in:    ka > 0
 /// exact: 0 where ka >= 1; ka for ka << 1; at most 0.1897, at ka = 0.4446; error below 1e-4
-/// note:  U is odd, so that Re c = 0 and phi(-z) is the conjugate of phi(z): phi' / phi is imaginary
-///        in the middle. Neither compression nor B is in the theory.
+/// note:  U is odd, so that Re c = 0 and phi(-z) is the conjugate of phi(z): phi' / phi is
+///        imaginary in the middle. Neither compression nor B is in the theory.
 /// source: Michalke, J. Fluid Mech. 19, 543 (1964).
 inline double shear_layer_growth(double ka) {
     if (ka >= 1) return 0;

@@ -1,5 +1,5 @@
-// Facts about the local theory of the lower-hybrid drift instability of a Harris sheet, and about the
-// instability of the shear layer that it leaves behind.
+// Facts about the local theory of the lower-hybrid drift instability of a Harris sheet, and about
+// the instability of the shear layer that it leaves behind.
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
@@ -116,9 +116,9 @@ double Gamma_0_by_quadrature(double b) {
     return sum / points;
 }
 
-// 1 + the sum of the susceptibilities, from first principles in units with e = m_e = T_e = n0 = 1 and
-// B0 / c = 1, so that Omega_ce = 1 and 4 pi = omega_pe^2. L follows from the balance of pressure,
-// which makes it 2 (T_i + T_e) / (u_i - u_e).
+// 1 + the sum of the susceptibilities, from first principles in units with e = m_e = T_e = n0 = 1
+// and B0 / c = 1, so that Omega_ce = 1 and 4 pi = omega_pe^2. L follows from the balance of
+// pressure, which makes it 2 (T_i + T_e) / (u_i - u_e).
 Complex dispersion_from_scratch(const CurrentSheet& sheet, double z, double kL, Complex omega) {
     const double four_pi = sheet.frequency_ratio * sheet.frequency_ratio;
     const double T_e = 1, T_i = sheet.temperature_ratio, m_i = sheet.mass_ratio;
@@ -150,8 +150,8 @@ double scaled_growth(double drift) {
            (drift * drift * lower_hybrid_frequency(plasma_at(sheet, 1)));
 }
 
-// Growth rate of the shear layer U = tanh y between walls at +-9, from finite differences of order h^2:
-// the eigenvalues c of (d^2/dy^2 - k^2)^-1 [U (d^2/dy^2 - k^2) - U''].
+// Growth rate of the shear layer U = tanh y between walls at +-9, from finite differences of order
+// h^2: the eigenvalues c of (d^2/dy^2 - k^2)^-1 [U (d^2/dy^2 - k^2) - U''].
 double shear_layer_by_eigenvalues(double k, int intervals) {
     const double h = 18.0 / intervals;
     const int n = intervals - 1;
