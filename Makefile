@@ -79,7 +79,8 @@ The particle-in-cell family in running code
   make implicit_moment   build one program: $(programs)
   make all               build every program
   make fig09             run what is stale and draw into out/figures/: $(sort $(filter fig%,$(figures)))
-                         $(filter-out fig% cic_% mpm_% pic_% flip_%,$(figures)) $(wordlist 1,4,$(cic_figures))
+                         $(filter-out fig% cic_% mpm_% pic_% flip_%,$(figures))
+                         $(wordlist 1,4,$(cic_figures))
                          $(wordlist 5,9,$(cic_figures))
                          $(wordlist 10,99,$(cic_figures))
                          $(wordlist 1,4,$(fluid_figures))
@@ -214,6 +215,14 @@ explicit_gem: $(BUILD)/explicit_em
 	    $(one_at_a_time) $(BUILD)/explicit_em implicit_moment/cases/gem_explicit.toml $${last:+--restart $$last} \
 	    --out out/explicit_em/gem_explicit --force
 	sh implicit_moment/data/keep_explicit_gem.sh out/explicit_em/gem_explicit implicit_moment/data
+
+$(eval $(call figure,implicit_moment_mass_ratio,implicit_moment,out/implicit_moment/mass_ratios))
+$(eval $(call series,implicit_moment/figures/implicit_moment_mass_ratio.sh,implicit_moment,$(wildcard \
+    implicit_moment/cases/gem.toml implicit_moment/cases/gem_1836.toml),out/implicit_moment/mass_ratios))
+
+$(eval $(call figure,implicit_moment_magnetotail,implicit_moment,out/implicit_moment/guide_fields))
+$(eval $(call series,implicit_moment/figures/implicit_moment_magnetotail.sh,implicit_moment,$(wildcard \
+    implicit_moment/cases/magnetotail.toml),out/implicit_moment/guide_fields))
 
 # $(call cic_series,figure,cases,folder): a figure of several runs of cic.
 define cic_series
