@@ -7,7 +7,7 @@ t = col(history('25'), 'time_Omega_ci'); psi = col(history('25'), 'flux')
 rates = run.'/rates.dat'
 set multiplot title 'GEM challenge: the mass ratio' font ',22'
 set tmargin at screen 0.89
-set lmargin at screen 0.07; set rmargin at screen 0.50; set bmargin at screen 0.14
+set lmargin at screen 0.07; set rmargin at screen 0.50; set bmargin at screen 0.17
 set xlabel 'time  t Ω_{ci}'; set ylabel 'ΔΨ / (B_0 d_i)' offset 0.5, 0
 set xrange [0:22]; set yrange [0:*]
 set key top left
