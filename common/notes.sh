@@ -271,7 +271,7 @@ ledger)
         return cell
     }
 
-    /^\| *(PIC|[A-Z]+-[0-9]+) *\|/ {
+    /^\| *(PIC|COST|[A-Z]+-[0-9]+) *\|/ {
         row = $0
         gsub(/\\\|/, "", row)
         n = split(row, cell, "|")
@@ -294,8 +294,11 @@ ledger)
                 if (!(label in seen)) fail(label " has no row")
                 delete seen[label]
             }
-        if (!("PIC" in seen)) fail("PIC has no row")  # a slide without numbers
-        delete seen["PIC"]
+        n = split("PIC COST", unnumbered, " ")  # slides without numbers
+        for (i = 1; i <= n; i++) {
+            if (!(unnumbered[i] in seen)) fail(unnumbered[i] " has no row")
+            delete seen[unnumbered[i]]
+        }
         for (label in seen) fail(label " is not a label of the talk")
         printf "%d equations built, %d not built yet\n", built, waiting
         exit failed

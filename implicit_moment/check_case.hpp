@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "implicit_moment/case.hpp"
+#include "implicit_moment/cost.hpp"
 #include "implicit_moment/initial_state.hpp"
 
 namespace implicit_moment {
@@ -252,6 +253,10 @@ inline std::string describe_scales(const Case& w, const Scales& scales) {
                          " c, v_th dt/dx = " + shown(s.thermal_speed * w.dt / dx) + " and " +
                          shown(s.thermal_speed * w.dt / dz) +
                          ", Debye length = " + shown(s.debye_length) + " d_i");
+    }
+    if (w.setup != "uniform" && !w.leapfrog.chosen) {
+        line("explicit instead", "about " + shown(cost_ratio(harris_of(w).mass_ratio, 2)) +
+                                     " times the time, by the slide's formula [COST]");
     }
     line("memory", "about " + shown(scales.bytes / 1048576) + " MiB");
     const double work =
