@@ -237,8 +237,8 @@ TEST_CASE("a sheet with a guide field is in equilibrium" * doctest::description(
         // The energy of the guide field must not hide a drift: in units of the magnetic energy of
         // the sheet, B0^2/8 pi times L_x (L_z - 2 lambda).
         const std::vector<double>& energy = finished.column("energy");
-        const double magnetic = 0.5 * 0.05 * 0.05 * 25.6 * 11.8;
-        CHECK(std::fabs(energy.back() - energy.front()) <= 0.005 * magnetic);
+        const double of_sheet = 0.5 * 0.05 * 0.05 * 25.6 * 11.8;
+        CHECK(std::fabs(energy.back() - energy.front()) <= 0.005 * of_sheet);
     }
 }
 
