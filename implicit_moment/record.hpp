@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/session.hpp"
+#include "implicit_moment/compare_current_sheet.hpp"
 #include "implicit_moment/compare_with_theory.hpp"
 #include "implicit_moment/sheet_diagnostics.hpp"
 #include "implicit_moment/write_output.hpp"
@@ -129,6 +130,7 @@ class Recorder {
         if (harris_)
             write_profile(session.path("profile.dat"), state.profile, wanted_.grid,
                           harris_sheet(wanted_.harris).B0);
+        if (sheet_) compare_current_sheet(wanted_, history, summary);
         if (!harris_ && !sheet_) compare_mode(wanted_, history, summary);
         const auto largest = [&](const char* name) {
             double most = 0;

@@ -72,8 +72,9 @@ inline Eigen::VectorXd displacement(const Grid& grid, const double* B_y) {
 ///     E_m    rms over z of mode m of E_x   [B0 v_A/c]      m = 1 .. 16
 ///     B_m    the same of B_y               [B0]
 ///     displacement_m   amplitude of mode m of the displacement of the sheet   [L]   m = 1 .. 4
-///     upper_m_re, upper_m_im, lower_m_re, lower_m_im   complex amplitude of E_x in the rows nearest
-///            to z = +-1.5 L, where the lower-hybrid drift instability grows fastest   [B0 v_A/c]
+///     upper_m_re, upper_m_im, lower_m_re, lower_m_im   complex amplitude of E_x, its mean over the
+///            upper edge of the sheet, 0.75 L < z < 1.75 L, and over the lower one: there the
+///            lower-hybrid drift instability grows fastest   [B0 v_A/c]
 class SheetDiagnostics {
    public:
     explicit SheetDiagnostics(const Case& wanted)
@@ -81,7 +82,11 @@ class SheetDiagnostics {
           modes_(wanted.grid),
           L_(harris_of(wanted).thickness),
           B0_(harris_sheet(harris_of(wanted)).B0) {
-        edge_ = std::lround((0.5 * grid_.z.length - 1.5 * L_) / grid_.z.spacing());
+        const auto row = [&](double z) {
+            return std::lround((0.5 * grid_.z.length - z * L_) / grid_.z.spacing());
+        };
+        edge_ = row(1.75);
+        rows_ = row(0.75) - edge_ + 1;
     }
 
     static std::vector<common::Column> columns() {
@@ -109,8 +114,9 @@ class SheetDiagnostics {
         for (const double rms : rms_over_rows(B)) row.push_back(rms);
         const Eigen::VectorXcd moved = modes_(displacement(grid_, field.B.y())) / L_;
         for (long m = 0; m < displacement_modes; ++m) row.push_back(std::abs(moved[m]));
-        for (const long j : {grid_.z.cells - edge_, edge_}) {
-            for (const std::complex<double>& a : E.col(j)) {
+        for (const long j : {grid_.z.cells - edge_ - rows_ + 1, edge_}) {
+            const Eigen::VectorXcd mean = E.middleCols(j, rows_).rowwise().mean();
+            for (const std::complex<double>& a : mean) {
                 row.push_back(a.real());
                 row.push_back(a.imag());
             }
@@ -122,7 +128,7 @@ class SheetDiagnostics {
     const Grid& grid_;
     RowModes modes_;
     double L_, B0_;
-    long edge_;  // row of nodes near z = -1.5 L
+    long edge_, rows_;  // first row and number of rows of the lower edge
 };
 
 /// Writes profile_NNNNNN.dat: means over x, row by row of the nodes.
