@@ -224,6 +224,19 @@ $(eval $(call figure,implicit_moment_magnetotail,implicit_moment,out/implicit_mo
 $(eval $(call series,implicit_moment/figures/implicit_moment_magnetotail.sh,implicit_moment,$(wildcard \
     implicit_moment/cases/magnetotail.toml),out/implicit_moment/guide_fields))
 
+# $(call thin_sheets,ending): the thin current sheet; _quick is the same in minutes, with fewer particles and the same scripts.
+define thin_sheets
+$(call figure,fig11$(1),implicit_moment,out/implicit_moment/thin_sheets$(1))
+$(call figure,fig12$(1),implicit_moment,out/implicit_moment/lhdi$(1))
+$(call figure,fig15$(1),implicit_moment,out/implicit_moment/thin_sheets$(1))
+$(call series,implicit_moment/figures/thin_sheets$(1).sh,implicit_moment,implicit_moment/cases/lhdi$(1).toml,out/implicit_moment/thin_sheets$(1))
+$(patsubst %,out/figures/%$(1).png,fig11 fig12 fig15): implicit_moment/figures/thin_sheet.gp
+endef
+$(eval $(call thin_sheets,))
+$(eval $(call thin_sheets,_quick))
+$(patsubst %,out/figures/%_quick.png,fig11 fig12 fig15): out/figures/%_quick.png: implicit_moment/figures/%.gp
+out/implicit_moment/thin_sheets_quick/.complete: implicit_moment/figures/thin_sheets.sh
+
 # $(call cic_series,figure,cases,folder): a figure of several runs of cic.
 define cic_series
 $(call figure,$(1),cic,$(3))

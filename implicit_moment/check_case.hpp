@@ -215,6 +215,9 @@ inline std::vector<std::string> closure_warnings(const Case& w, const Scales& sc
                                " cells: finite-grid heating is possible, watch the energy");
         }
     }
+    if (w.setup == "current_sheet") {
+        for (const std::string& warning : sheet_warnings(w)) warnings.push_back(warning);
+    }
     const double largest = scales.species.empty() ? 0 : scales.B;
     if (largest > 0) {
         for (const SpeciesScales& s : scales.species) {

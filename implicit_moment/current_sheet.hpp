@@ -8,13 +8,18 @@
 
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "implicit_moment/case.hpp"
+#include "implicit_moment/units.hpp"
 
 namespace implicit_moment {
 
 /// Modes along the current that the history follows: wavelengths length_x/m, m = 1 .. sheet_modes.
 inline constexpr long sheet_modes = 16;
+
+/// What the waves need to be seen: cells in one of them, particles of a species in a cell.
+inline constexpr double least_cells_in_wave = 6, least_particles_in_cell = 50;
 
 /// The Harris sheet that a thin current sheet is.
 ///     u_i = 2 c T_i/(e B0 L) = v_i rho_i/L,  so  L = rho_i/drift = (T_i/T)^(1/2)/drift  [d_i]
@@ -54,6 +59,32 @@ inline void fit_mesh_to_sheet(Case& wanted) {
     };
     fit("x", s.length_x, initial.grid.x.length, wanted.grid.x.length);
     fit("z", s.length_z, initial.grid.z.length, wanted.grid.z.length);
+}
+
+/// Warnings with the number and the limit, for sheets whose instability would not be seen.
+/// note:   the talk's mode has k L = 12.5; with random numbers its noise is that of the particles.
+inline std::vector<std::string> sheet_warnings(const Case& wanted) {
+    const CurrentSheetCase& s = wanted.current_sheet;
+    std::vector<std::string> warnings;
+    const double wavelength = 2 * pi / 12.5;  // [L]
+    const double cells = wavelength * static_cast<double>(wanted.grid.x.cells) / s.length_x;
+    if (cells < least_cells_in_wave) {
+        warnings.push_back("the waves of the talk, k L = 12.5, are " + common::shown(cells) +
+                           " cells long, and want " + common::shown(least_cells_in_wave) +
+                           ": raise grid.cells_x to " +
+                           common::shown(std::ceil(least_cells_in_wave / wavelength * s.length_x)));
+    }
+    const double area = s.length_x * (2 + s.background * s.length_z);  // at density n0 [L^2]
+    const double in_cell = 0.5 * static_cast<double>(s.particles) / area * s.length_x * s.length_z /
+                           static_cast<double>(wanted.grid.x.cells * wanted.grid.z.cells);
+    if (in_cell < least_particles_in_cell) {
+        warnings.push_back("there are " + common::shown(in_cell) +
+                           " particles of a species in a cell in the middle of the sheet, and "
+                           "their noise hides the waves below " +
+                           common::shown(least_particles_in_cell) +
+                           ": raise current_sheet.particles");
+    }
+    return warnings;
 }
 
 }  // namespace implicit_moment
