@@ -282,7 +282,7 @@ TEST_CASE("waves of few cells and few particles are warned of") {
 TEST_CASE("noise at the edges of a thin sheet grows in the modes that theory names" *
           doctest::description("physics")) {
     const Run sheet = run("sheet_short",
-                          "implicit_moment/cases/lhdi_quick.toml current_sheet.particles=2e5 "
+                          "implicit_moment/cases/lhdi_quick.toml current_sheet.particles=4e5 "
                           "time.end=100 output.fields_interval=0 output.profile_interval=0");
     const auto level = [&](long low, long high, double begin, double end) {
         const auto& time = sheet.column("time_Omega_ci");
