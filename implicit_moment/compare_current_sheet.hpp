@@ -42,7 +42,7 @@ struct EdgeWave {
     }
 };
 
-/// Frequency of a wave exp(i k x - i omega t) between two rows, from how far it turns in `lag` rows.
+/// Frequency of a wave exp(i k x - i omega t) between two rows, from its turn in `lag` rows.
 ///     omega = -arg sum conj(z_n) z_{n+lag} / (lag dt), both edges in one sum
 /// exact:  without noise, for |omega| lag dt < pi
 inline double edge_frequency(const EdgeWave& wave, std::size_t begin, std::size_t end,
@@ -55,16 +55,16 @@ inline double edge_frequency(const EdgeWave& wave, std::size_t begin, std::size_
     return -std::arg(sum) / (static_cast<double>(lag) * dt);
 }
 
-/// Mode, growth rate and frequency of the fastest waves beside the fastest growing local wave of the
-/// same wave number.
-///     dominant_mode   that which is largest at an edge before t Omega_ci = 7, the time of figure 12
+/// Mode, growth rate and frequency of the largest wave beside the fastest growing local wave of
+/// the same wave number.
+///     dominant_mode   the largest at the edges before t Omega_ci = 7, the time of figure 12
 ///     growth, omega   of that mode, from its way up there
 /// note:   local theory is an upper bound: a wave must be one over all the heights that it covers,
 ///         and at most of them it would grow more slowly. A run starts from noise, three e-foldings
-///         below saturation, and realizations differ: three seeds of lhdi_quick.toml give modes 8, 7
-///         and 9 with 0.68, 0.57 and 0.76 of the growth and 1.07, 1.13 and 1.08 of the frequency of
-///         local theory, lhdi.toml gives 9 with 0.87 and 1.06. Of the quick case's growth, 12 % are
-///         lost to the wider gyrations of its long step and 5 % to theta = 1.
+///         below saturation, and realizations differ: three seeds of lhdi_quick.toml give modes 8,
+///         7 and 9 with 0.68, 0.57 and 0.76 of the growth and 1.07, 1.13 and 1.08 of the frequency
+///         of local theory, lhdi.toml gives 9 with 0.87 and 1.06. Of the quick case's growth, 12 %
+///         are lost to the wider gyrations of its long step and 5 % to theta = 1.
 inline void compare_current_sheet(const Case& w, const common::History& history,
                                   common::Summary& summary) {
     const std::string talk = "talk, figure 12: m_y = 8", local = "local kinetic theory";

@@ -1,5 +1,5 @@
 // The set-ups a case file can name: a Harris current sheet across its current or along it, and a
-// uniform plasma with one seeded mode. The particles come from load_plasma.hpp, the fields from here.
+// uniform plasma with one seeded mode. The particles come from load_plasma.hpp, fields from here.
 #pragma once
 
 #include <cmath>

@@ -13,8 +13,8 @@
 
 namespace implicit_moment {
 
-/// Amplitudes of the waves exp(i k_m x), m = 1 .. sheet_modes, in every row of a quantity that lives
-/// half-way between the nodes of x.
+/// Amplitudes of the waves exp(i k_m x), m = 1 .. sheet_modes, in every row of a quantity that
+/// lives half-way between the nodes of x.
 ///     a_m(z) = (2/N) sum_x f(x, z) exp(-i k_m x),  k_m = 2 pi m/length_x
 class RowModes {
    public:
@@ -46,11 +46,11 @@ inline Eigen::VectorXd rms_over_rows(const Eigen::MatrixXcd& amplitude) {
     return (amplitude.rowwise().squaredNorm() / static_cast<double>(amplitude.cols())).cwiseSqrt();
 }
 
-/// How far the sheet has moved along z, column by column: the height of the part where B_y > 0, less
-/// half of the box, with B_y linear between the rows of faces.
+/// How far the sheet has moved along z, column by column: the height of the part where B_y > 0,
+/// less half of the box, with B_y linear between the rows of faces.
 /// in:     B_y, which goes from B0 at low z to -B0 at high z
-/// exact:  where B_y changes sign once, the place of that zero between two rows; where noise makes it
-///         change sign more often, the mean of those places with alternating signs.
+/// exact:  where B_y changes sign once, the place of that zero between two rows; where noise makes
+///         it change sign more often, the mean of those places with alternating signs.
 inline Eigen::VectorXd displacement(const Grid& grid, const double* B_y) {
     Eigen::VectorXd moved = Eigen::VectorXd::Constant(grid.x.cells, -0.5 * grid.z.length);
     const double dz = grid.z.spacing();

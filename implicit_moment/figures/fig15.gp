@@ -5,13 +5,13 @@ wide = 1500; high = 720
 load 'common/style.gp'
 load 'implicit_moment/figures/thin_sheet.gp'
 ratios = '10 4 2 1'; dashes = '1 3 2 4'   # solid, dotted, dashed, dash-dotted, as in the talk
-set multiplot layout 1, 2 title 'Thin current sheet: mean velocity along the current at t Ω_{ci} = 12' font ',22' margins 0.07, 0.985, 0.13, 0.85 spacing 0.09, 0
+set multiplot layout 1, 2 title 'Thin current sheet: mean velocity along the current at t Ω_{ci} = 12' font ',22' margins 0.09, 0.985, 0.15, 0.85 spacing 0.09, 0
 set xrange [-3:3]; set xtics 1
 set xlabel 'z / L'
 do for [c = 7:8] {
-    set title c == 7 ? 'ions' : 'electrons' offset 0, -0.6
-    set ylabel c == 7 ? 'v_{y,i} / v_i' : 'v_{y,e} / v_i' offset 1, 0
-    if (c == 7) { set key top left samplen 3 title 'T_i / T_e' } else { unset key }
+    set title (c == 7 ? 'ions' : 'electrons') offset 0, -0.6
+    set ylabel (c == 7 ? 'v_{y,i} / v_i' : 'v_{y,e} / v_i') offset 1, 0
+    if (c == 7) { set key bottom center samplen 3 title 'T_i / T_e' } else { unset key }
     plot for [n = 1:4] profile(run.'/ratio_'.word(ratios, n), c, 11.5, 12) using 1:2 with lines lt n dt int(word(dashes, n)) title word(ratios, n)
 }
 unset multiplot
