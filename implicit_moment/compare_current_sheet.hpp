@@ -15,11 +15,13 @@
 
 namespace implicit_moment {
 
-/// The sheet as local theory wants it: lengths in L, times in 1/Omega_ci.
+/// The sheet as local theory wants it: lengths in L, times in 1/Omega_ci; guiding centers drift in
+/// grad B.
 ///     omega_pe/Omega_ce = (c/v_A) (m_e/m_i)^(1/2)
 inline CurrentSheet theory_sheet(const CurrentSheetCase& s) {
-    return {s.mass_ratio, s.temperature_ratio, s.drift,
-            s.light_over_alfven / std::sqrt(s.mass_ratio), s.background};
+    return {s.mass_ratio, s.temperature_ratio,
+            s.drift,      s.light_over_alfven / std::sqrt(s.mass_ratio),
+            s.background, true};
 }
 
 /// One mode along the current, at both edges of the sheet, row by row of the history.
@@ -62,9 +64,9 @@ inline double edge_frequency(const EdgeWave& wave, std::size_t begin, std::size_
 /// note:   local theory is an upper bound: a wave must be one over all the heights that it covers,
 ///         and at most of them it would grow more slowly. A run starts from noise, three e-foldings
 ///         below saturation, and realizations differ: three seeds of lhdi_quick.toml give modes 8,
-///         7 and 9 with 0.68, 0.57 and 0.76 of the growth and 1.07, 1.13 and 1.08 of the frequency
-///         of local theory, lhdi.toml gives 9 with 0.87 and 1.06. Of the quick case's growth, 12 %
-///         are lost to the wider gyrations of its long step and 5 % to theta = 1.
+///         7 and 9 with 0.80, 0.71 and 0.85 of the growth and 0.97, 1.04 and 0.93 of the frequency
+///         of local theory, lhdi.toml gives 9 with 0.97 and 0.92. Theory with the wider gyrations
+///         of the quick case's long step has 12 % less growth.
 inline void compare_current_sheet(const Case& w, const common::History& history,
                                   common::Summary& summary) {
     const std::string talk = "talk, figure 12: m_y = 8", local = "local kinetic theory";
@@ -102,11 +104,11 @@ inline void compare_current_sheet(const Case& w, const common::History& history,
     if (!fit.found) return;
     const std::string window =
         local + "; fitted from t Omega_ci = " + shown(fit.begin) + " to " + shown(fit.end);
-    summary.result_within("growth_over_theory", fit.rate / theory.gamma, "", 0.45, 1.1, window);
+    summary.result_within("growth_over_theory", fit.rate / theory.gamma, "", 0.6, 1.1, window);
     const auto row = [&](double t) { return static_cast<std::size_t>(std::lround(t / dt)); };
     const std::size_t lag = std::max<std::size_t>(1, row(0.1));
     const double omega = edge_frequency(wave, row(fit.begin), row(fit.end), lag, dt);
-    summary.result_within("omega_over_theory", omega / theory.omega, "", 0.75, 1.25, window);
+    summary.result_within("omega_over_theory", omega / theory.omega, "", 0.8, 1.2, window);
 }
 
 }  // namespace implicit_moment
