@@ -192,6 +192,7 @@ endef
 
 $(eval $(call figure,fig08,implicit_moment,out/implicit_moment/gem))
 $(eval $(call figure,fig09,implicit_moment,out/implicit_moment/gem))
+$(eval $(call figure,fig10,implicit_moment,out/implicit_moment/gem))
 
 $(eval $(call figure,implicit_moment_dispersion,implicit_moment,out/implicit_moment/dispersion))
 $(eval $(call series,implicit_moment/figures/implicit_moment_dispersion.sh,implicit_moment,$(wildcard \
@@ -340,7 +341,6 @@ mpm_figures = $(filter mpm_%,$(figures))
 figures: $(figures)
 
 # Figures of the talk whose method has no program so far.
-fig10:                         method := the comparison of implicit_moment with explicit_em
 fig11 fig12 fig13 fig14 fig15: method := the thin current sheet of implicit_moment
 figures_to_come := $(filter-out $(figures),$(foreach n,01 02 03 04 05 06 07 08 09 10 11 12 13 14 15,fig$n))
 .PHONY: $(figures_to_come)

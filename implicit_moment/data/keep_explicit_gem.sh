@@ -15,7 +15,7 @@ column() { awk -v name="$1" 'NR == 1 { for (k = 2; k <= NF; k++) { split($k, par
 } > "$folder/explicit_gem_flux.csv"
 {
     echo "# $where"
-    printf '# along z = 0: averages from t Omega_ci = %s to %s, the first steps of unit flux, and B_z at the first; v_A, n0, B0\n' \
+    printf '# along z = 0: averages from t Omega_ci = %.2f to %.2f, the first steps of unit flux, and B_z at the first; v_A, n0, B0\n' \
         "$(entry results.profile_begin.value)" "$(entry results.profile_end.value)"
     echo '# x,v_x_electrons,rho_ions,v_x_ions,B_z'
     awk '!/^#/ { printf "%.3f,%.4f,%.4f,%.4f,%.5f\n", $1, $2, $3, $4, $5 }' "$run/profile.dat"
