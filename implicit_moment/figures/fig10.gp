@@ -15,7 +15,7 @@ profiles = "plot explicit using 1:column @theory title 'explicit', implicit usin
 unset xlabel; set format x ''
 unset key
 column = 2; eval panel('a', 'electron v_x / v_A'); eval profiles
-column = 3; eval panel('b', 'ion density / n_0'); set yrange [0:*]; set key bottom left; eval profiles
+column = 3; eval panel('b', 'ion density / n_0'); set yrange [0:1.8]; set key bottom left; eval profiles
 unset key
 set xlabel 'x / d_i'; set format x '%g'; set yrange [*:*]
 column = 4; eval panel('c', 'ion v_x / v_A'); eval profiles

@@ -20,7 +20,7 @@ seconds() {
     entry performance.wall_s "$folder/explicit_$6"
 }
 
-unit_25=$(awk -F, '!/^#/ && $2 >= 1 { print $1; exit }' implicit_moment/data/explicit_gem_flux.csv)
+unit_25=$(awk -F, '/^#/ { next } $2 >= 1 { print t + ($1 - t) * (1 - f) / ($2 - f); exit } { t = $1; f = $2 }' implicit_moment/data/explicit_gem_flux.csv)
 {
     echo '# 1:mass_ratio 2:light_over_alfven 3:unit_flux_at[1/Omega_ci] 4:implicit_particles 5:implicit_steps 6:implicit_s' \
         '7:explicit_unit_flux_at[1/Omega_ci] 8:explicit_particles 9:explicit_steps 10:particle_steps_per_s 11:explicit_s 12:timed' \
