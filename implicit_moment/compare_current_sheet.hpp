@@ -101,7 +101,8 @@ inline void compare_current_sheet(const Case& w, const common::History& history,
     const EdgeWave wave(history, dominant);
     const common::GrowthFit fit = common::fit_growth(
         {times.data(), top + 1}, {wave.amplitude.data(), top + 1}, {2.0, 0.7, 0.1, 0.6});
-    if (!fit.found) return;
+    // What grows for less than a growth time of theory is a whim of the noise.
+    if (!fit.found || (fit.end - fit.begin) * theory.gamma < 1) return;
     const std::string window =
         local + "; fitted from t Omega_ci = " + shown(fit.begin) + " to " + shown(fit.end);
     summary.result_within("growth_over_theory", fit.rate / theory.gamma, "", 0.6, 1.1, window);
