@@ -7,8 +7,9 @@ set xlabel 'm_i / m_e'; set ylabel 'explicit / implicit'
 set logscale xy; set format y '10^{%T}'
 set xrange [15:3000]; set yrange [30:2e6]
 set key top left
-set label 'slide: 456 (particle-steps)' at 27, 456 left offset 0.6, -0.5 textcolor rgb ink font ',15'
+set xtics (25, 100, 400, 1836)
 plot x**1.5 @theory title 'formula of the slide, (m_i/m_e)^{3/2}', \
+     table using ($1 == 25 ? $1 : NaN):(456) with points pt 2 ps 2 lw 2.4 lc rgb ink title 'runs of the slide: 456 in particle-steps', \
      table using 1:13 with linespoints lt 3 pt 8 ps 1.6 title 'particle-steps', \
      table using 1:14 with lines lt 1 title 'time', \
      table using ($12 == 1 ? $1 : NaN):14 with points pt 7 ps 1.8 lc rgb blue title 'time, steps timed', \
