@@ -1,0 +1,152 @@
+// Whole runs of explicit_em against exact and published values, and what every run of it keeps.
+#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "tests/any_run.hpp"
+#include "tests/any_summary.hpp"
+
+const std::string facts::program_name = "explicit_em";
+
+namespace {
+
+using namespace facts;
+
+const std::string cases = " implicit_moment/cases/explicit_";
+// A small reconnecting sheet.
+std::string sheet(long particles, long history_steps = 2) {
+    return " implicit_moment/cases/gem_explicit.toml grid.cells_x=32 grid.cells_z=16 time.dt=0.2 "
+           "output.history_steps=" +
+           std::to_string(history_steps) + " harris.particles=" + std::to_string(particles) + " ";
+}
+
+// Runs and compares every result that has an expected value.
+nlohmann::json passing(const std::string& arguments, int results) {
+    const std::string out = folder("passing");
+    CAPTURE(arguments);
+    REQUIRE(run(arguments, out) == 0);
+    const nlohmann::json json = summary(out);
+    check_results(json, results);
+    return json;
+}
+double conserved(const nlohmann::json& json, const char* name) {
+    return json["conservation"][name]["value"].get<double>();
+}
+
+}  // namespace
+
+TEST_CASE("light waves have the frequency of Yee's mesh and keep their amplitude" *
+          doctest::description("physics")) {
+    for (const char* rest : {"", " time.dt=0.07 grid.cells_z=64 grid.length_z=6.4",
+                             " uniform.wave_E_y=0 uniform.wave_E_z=1e-3 theory.component=E_z",
+                             " uniform.mode_x=0 uniform.mode_z=1"}) {
+        const auto json = passing(cases + "light_wave.toml" + rest, 2);
+        CHECK(std::fabs(value(json, "omega_over_theory") - 1) <= 1e-6);
+        CHECK(std::fabs(value(json, "damping")) <= 1e-6);
+        CHECK(std::fabs(conserved(json, "largest_gauss_residual")) <= 1e-14);
+    }
+}
+
+TEST_CASE("cold Langmuir waves have the frequency of the leapfrog" *
+          doctest::description("physics")) {
+    for (const char* rest : {"", " particles.order=2", " time.dt=0.1 time.end=40",
+                             " particles.relativistic=false field.smoothing_passes=2"}) {
+        const auto json = passing(cases + "langmuir.toml" + rest, 2);
+        CHECK(std::fabs(value(json, "omega_over_theory") - 1) <= 0.003);
+        CHECK(conserved(json, "largest_gauss_residual") <= 1e-11);
+    }
+}
+
+TEST_CASE("two cold streams grow at the rate of linear theory" * doctest::description("physics")) {
+    passing(cases + "two_stream.toml time.end=30", 1);
+    passing(cases + "two_stream.toml time.end=30 particles.order=2", 1);
+}
+
+TEST_CASE("Weibel filaments grow at the rate of linear theory" * doctest::description("physics")) {
+    passing(cases + "weibel.toml time.end=36", 1);
+    passing(cases + "weibel.toml time.end=36 particles.order=2", 1);
+}
+
+TEST_CASE("a small GEM challenge keeps its energy and its constraints" *
+          doctest::description("physics")) {
+    for (const char* rest :
+         {"", " particles.order=2", " field.smoothing_passes=2", " harris.guide_field=0.5"}) {
+        const std::string out = folder("sheet");
+        REQUIRE(run(sheet(20000) + "output.fields_interval=0 time.end=60" + rest, out) == 0);
+        const auto json = summary(out);
+        CAPTURE(rest);
+        CHECK(conserved(json, "largest_energy_drift") <= 0.01);
+        CHECK(conserved(json, "largest_gauss_residual") <= 1e-12);
+        CHECK(conserved(json, "largest_div_B") <= 1e-14);
+        CHECK(std::fabs(column(out, "flux").front() - 0.2) <= 0.01);
+    }
+}
+
+TEST_CASE("a sheet with a larger island reaches unit flux and keeps its profile" *
+          doctest::description("physics")) {
+    const std::string out = folder("island");
+    REQUIRE(run(sheet(20000) + "output.fields_interval=0 harris.perturbation=0.4 time.end=160",
+                out) == 0);
+    const auto json = summary(out);
+    const auto flux = column(out, "flux"), time = column(out, "time_Omega_ci");
+    CHECK(std::fabs(flux.front() - 0.8) <= 0.03);
+    CHECK(flux.back() > 1);
+    const double unit = value(json, "time_at_unit_flux");
+    CHECK(unit > 0);
+    CHECK(unit < time.back());
+    CHECK(fs::file_size(out + "/profile.dat") > 1000);
+}
+
+TEST_CASE("one and two and three threads write the same history" * doctest::description("robust")) {
+    for (const std::string& arguments :
+         {sheet(6000) + "time.end=6",
+          sheet(6000) + "time.end=6 particles.order=2 field.smoothing_passes=2",
+          cases + "two_stream.toml uniform.particles_per_cell=16 time.end=2"}) {
+        check_threads(arguments);
+    }
+}
+
+TEST_CASE("the effective case runs again to the same bytes" * doctest::description("robust")) {
+    for (const std::string& arguments :
+         {sheet(6000) + "time.end=3 output.fields_interval=2 output.particles_interval=2",
+          cases + "two_stream.toml uniform.particles_per_cell=4 time.end=1"}) {
+        CHECK(check_runs_again(arguments) >= 2);
+    }
+}
+
+// Checkpoints also fall between two rows of the history.
+TEST_CASE("a restart goes on with the same bits" * doctest::description("robust")) {
+    for (const std::string& arguments :
+         {sheet(6000) + "time.end=4",
+          sheet(6000) + "time.end=4 particles.order=2 plasma.loading=random",
+          cases + "two_stream.toml uniform.particles_per_cell=16 time.end=0.4 "
+                  "output.history_steps=3",
+          cases + "weibel.toml uniform.particles_per_cell=16 time.end=0.8 particles.order=2 "
+                  "grid.boundary_z=wall uniform.wave_B_z=0 uniform.B_x=0.1 theory.wave=none"}) {
+        check_restart(arguments, 5);
+    }
+}
+
+TEST_CASE("rows and snapshots of a sparse history are those of a dense one" *
+          doctest::description("robust")) {
+    const std::string dense = folder("dense"), sparse = folder("sparse");
+    const std::string rest = "time.end=4 output.fields_interval=1.2";
+    REQUIRE(run(sheet(6000, 1) + rest, dense) == 0);
+    REQUIRE(run(sheet(6000, 6) + rest, sparse) == 0);
+    const auto all = column(dense, "energy"), some = column(sparse, "energy");
+    REQUIRE(all.size() == 21);
+    REQUIRE(some.size() == 5);  // steps 0, 6, 12, 18 and the last
+    for (std::size_t n = 0; n < 4; ++n) CHECK(some[n] == all[6 * n]);
+    CHECK(some.back() == all.back());
+    int snapshots = 0;
+    for (const auto& entry : fs::directory_iterator(sparse)) {
+        const std::string name = entry.path().filename().string();
+        if (!name.starts_with("fields_")) continue;
+        CHECK(read_all(entry.path()) == read_all(dense + "/" + name));
+        ++snapshots;
+    }
+    CHECK(snapshots == 4);
+}
