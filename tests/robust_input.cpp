@@ -540,7 +540,8 @@ TEST_CASE("a plasma without any energy runs or is refused" * doctest::descriptio
 }
 
 TEST_CASE("every shipped case passes a dry run" * doctest::description("robust")) {
-    CHECK(check_shipped_cases() >= 8);
+    const auto mine = [](const std::string& name) { return !holds(name, "explicit"); };
+    CHECK(check_shipped_cases("implicit_moment", mine) >= 11);
 }
 
 TEST_CASE("help lists every parameter with unit and range and default" *
