@@ -198,6 +198,15 @@ $(eval $(call figure,implicit_moment_dispersion,implicit_moment,out/implicit_mom
 $(eval $(call series,implicit_moment/figures/implicit_moment_dispersion.sh,implicit_moment,$(wildcard \
     implicit_moment/cases/light_wave.toml implicit_moment/cases/langmuir.toml),out/implicit_moment/dispersion))
 
+# The kink of the thin current sheet, three runs; the same in minutes.
+$(foreach f,fig13 fig14,$(eval $(call figure,$f,implicit_moment,out/implicit_moment/kinks)))
+$(foreach f,fig13_quick fig14_quick,$(eval $(call figure,$f,implicit_moment,out/implicit_moment/kinks_quick)))
+$(eval $(call series,implicit_moment/figures/kinks.sh,implicit_moment,implicit_moment/cases/kink.toml,out/implicit_moment/kinks))
+$(eval $(call series,implicit_moment/figures/kinks_quick.sh,implicit_moment,implicit_moment/cases/kink_quick.toml,out/implicit_moment/kinks_quick))
+# Scripts that they share.
+$(patsubst %,out/figures/%.png,fig13 fig14 fig13_quick fig14_quick): $(wildcard implicit_moment/figures/kink.gp implicit_moment/figures/fig1[34].gp)
+out/implicit_moment/kinks_quick/.complete: implicit_moment/figures/kinks.sh
+
 # The cost slide: both programs, by  sh SCRIPT IMPLICIT EXPLICIT FOLDER .
 $(eval $(call figure,fig_cost,implicit_moment,out/implicit_moment/cost))
 out/implicit_moment/cost/.complete: implicit_moment/figures/fig_cost.sh $(BUILD)/implicit_moment $(BUILD)/explicit_em \

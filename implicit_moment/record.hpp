@@ -10,6 +10,7 @@
 
 #include "common/session.hpp"
 #include "implicit_moment/compare_current_sheet.hpp"
+#include "implicit_moment/compare_kink.hpp"
 #include "implicit_moment/compare_with_theory.hpp"
 #include "implicit_moment/sheet_diagnostics.hpp"
 #include "implicit_moment/write_output.hpp"
@@ -131,6 +132,7 @@ class Recorder {
             write_profile(session.path("profile.dat"), state.profile, wanted_.grid,
                           harris_sheet(wanted_.harris).B0);
         if (sheet_) compare_current_sheet(wanted_, history, summary);
+        if (sheet_) compare_kink(wanted_, history, summary);
         if (!harris_ && !sheet_) compare_mode(wanted_, history, summary);
         const auto largest = [&](const char* name) {
             double most = 0;
