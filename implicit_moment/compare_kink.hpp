@@ -37,13 +37,13 @@ inline double level_after(std::span<const double> times, std::span<const double>
     return length > 0 ? std::sqrt(sum / length) : std::nan("");
 }
 
-/// Growth in the second phase: the straightest stretch of the logarithm between 1.5 times the level
+/// Growth in the second phase: nearly all of the way, in logarithm, between 1.5 times the level
 /// with which that phase begins and 0.7 times the maximum.
 /// exact:  for an exponential in the second phase, whatever was before
 inline common::GrowthFit second_growth(std::span<const double> times, std::span<const double> a) {
     const auto first = static_cast<std::size_t>(
         std::lower_bound(times.begin(), times.end(), second_phase * (1 - 1e-9)) - times.begin());
-    return common::fit_growth(times.subspan(first), a.subspan(first), {1.5, 0.7, 0.05, 0.6});
+    return common::fit_growth(times.subspan(first), a.subspan(first), {1.5, 0.7, 0.05, 0.9});
 }
 
 /// What the talk says about one of its sheets, m_i/m_e = 180 and u_i/v_i = 1.
