@@ -1,5 +1,5 @@
-# Figure 13 of the talk: B_x(y, z) at the end of the run, in the talk t Ω_{ci} = 110, for T_i/T_e = 2; only |z| < 2 L of the 9 L is shown. The line where B_x changes sign, the middle
-# of the sheet, is bent into one wave: the kink, m_y = 1. It began as a straight line, with contours of B_0 tanh(z/L).
+# Figure 13 of the talk: B_x(y, z) at the end of the run (in the talk t Ω_{ci} = 110) for T_i/T_e = 2; only |z| < 2 L of 9 L is shown. The line where B_x
+# changes sign, the middle of the sheet, is bent into one wave: the kink, m_y = 1. It began as a straight line, with contours of B_0 tanh(z/L).
 wide = 1300; high = 820
 load 'common/style.gp'
 load 'implicit_moment/figures/kink.gp'

@@ -11,6 +11,8 @@ array rate[3]; array begin[3]; array end[3]; array height[3]
 do for [k = 1:3] {
     ratio = word(ratios, k)
     rate[k] = found(ratio, 'kink_growth'); begin[k] = found(ratio, 'kink_growth_begin'); end[k] = found(ratio, 'kink_growth_end')
+    height[k] = NaN
+    if (rate[k] != rate[k]) { begin[k] = 0; end[k] = 1; continue }   # no growth was found
     stats history(ratio) using ((column(t) >= begin[k] && column(t) <= end[k]) ? log(column(B1)) - rate[k] * column(t) : NaN) nooutput name 'line'
     height[k] = exp(line_mean)
 }
