@@ -52,11 +52,16 @@ TEST_CASE("light waves have the frequency of Yee's mesh and keep their amplitude
 
 TEST_CASE("cold Langmuir waves have the frequency of the leapfrog" *
           doctest::description("physics")) {
-    for (const char* rest : {"", " particles.order=2", " time.dt=0.1 time.end=40",
-                             " particles.relativistic=false field.smoothing_passes=2"}) {
+    for (const auto& [dt, rest] :
+         {std::pair{0.5, ""},
+          {0.5, " particles.order=2"},
+          {0.1, " time.dt=0.1 time.end=40"},
+          {0.5, " particles.relativistic=false field.smoothing_passes=2"}}) {
         const auto json = passing(cases + "langmuir.toml" + rest, 2);
-        CHECK(std::fabs(value(json, "omega_over_theory") - 1) <= 0.003);
-        CHECK(conserved(json, "largest_gauss_residual") <= 1e-11);
+        CHECK(std::fabs(value(json, "omega_over_theory") - 1) <= 0.001);
+        // Velocities at t^n, the means of those around it, are too small by (omega dt)^2/8.
+        CHECK(conserved(json, "largest_energy_drift") <= 0.3 * dt * dt);
+        CHECK(conserved(json, "largest_gauss_residual") <= 4e-14);
     }
 }
 
@@ -78,8 +83,8 @@ TEST_CASE("a small GEM challenge keeps its energy and its constraints" *
         REQUIRE(run(sheet(20000) + "output.fields_interval=0 time.end=60" + rest, out) == 0);
         const auto json = summary(out);
         CAPTURE(rest);
-        CHECK(conserved(json, "largest_energy_drift") <= 0.01);
-        CHECK(conserved(json, "largest_gauss_residual") <= 1e-12);
+        CHECK(conserved(json, "largest_energy_drift") <= 0.002);
+        CHECK(conserved(json, "largest_gauss_residual") <= 2e-14);
         CHECK(conserved(json, "largest_div_B") <= 1e-14);
         CHECK(std::fabs(column(out, "flux").front() - 0.2) <= 0.01);
     }
@@ -94,6 +99,7 @@ TEST_CASE("a sheet with a larger island reaches unit flux and keeps its profile"
     const auto flux = column(out, "flux"), time = column(out, "time_Omega_ci");
     CHECK(std::fabs(flux.front() - 0.8) <= 0.03);
     CHECK(flux.back() > 1);
+    CHECK(conserved(json, "largest_energy_drift") <= 0.008);
     const double unit = value(json, "time_at_unit_flux");
     CHECK(unit > 0);
     CHECK(unit < time.back());

@@ -370,6 +370,28 @@ TEST_CASE("a field that is not a number or overwhelms everything is reported as 
     }
 }
 
+TEST_CASE("a particle may cross a whole cell in one step and no more in either direction") {
+    const auto moves = [](const Grid& grid, long order, double cells_x, double cells_z) {
+        std::vector<Particles> species{no_particles()};
+        add(species[0], grid.x.at(3.4), grid.z.at(3.3),
+            Vector(cells_x * grid.x.spacing(), 0, cells_z * grid.z.spacing()) / dt);
+        sort(grid, order, species[0]);
+        CurrentScratch scratch;
+        VectorField J(grid);
+        move_particles(nothing(grid), grid, dt, {true, order, false}, SmoothingSettings{0, true},
+                       species, scratch, J);
+    };
+    for (const Grid& grid : meshes()) {
+        for (const long order : {1, 2}) {
+            for (const double way : {-1.0, 1.0}) {
+                CHECK_NOTHROW(moves(grid, order, 0.999 * way, 0.999 * way));
+                CHECK_THROWS_AS(moves(grid, order, 1.001 * way, 0), common::NumericalError);
+                CHECK_THROWS_AS(moves(grid, order, 0, 1.001 * way), common::NumericalError);
+            }
+        }
+    }
+}
+
 TEST_CASE("one and two and three threads give the same particles and currents to the last bit") {
     for (const Grid& grid : meshes()) {
         for (const long order : {1, 2}) {

@@ -15,7 +15,7 @@ A = col(file, 'A_y'); J = col(file, 'J_y'); B = col(file, 'B_y')
 J0 = B0 / parameter('thickness')   # in the middle of the initial sheet
 set multiplot title 'Reconnection with a guide field' font ',22'
 set lmargin at screen 0.085; set rmargin at screen 0.42; set bmargin at screen 0.13; set tmargin at screen 0.88
-set xlabel 'time  t Ω_{ci}'; set ylabel 'ΔΨ / (B_0 d_i)' offset 2, 0
+set xlabel 'time  t Ω_{ci}'; set ylabel 'ΔΨ / (B_0 d_i)' offset 0.8, 0
 set xrange [0:26]; set yrange [0:*]
 set key top left
 plot for [k = 1:3] history(word('0 0.5 1', k)) using t:psi with lines linetype k title 'B_g / B_0 = '.word('0 0.5 1', k)
@@ -28,7 +28,7 @@ set lmargin at screen 0.51; set rmargin at screen 0.88
 set bmargin at screen 0.515; set tmargin at screen 0.86
 eval colors(inferno); set cbrange [0:1.4]
 set colorbox user origin 0.895, 0.54 size 0.012, 0.29; set cblabel 'J_y / J_0' offset -0.5, 0
-unset xlabel; set format x ''; set ylabel 'z / d_i'
+unset xlabel; set format x ''; set ylabel 'z / d_i' offset 0.5, 0
 set title sprintf('B_g = %g B_0, t Ω_{ci} = %d', guide, time) offset 0, -0.6 font ',20'
 plot file using 1:2:(column(J) / J0) with image notitle, $lines using 1:2 @contours notitle
 unset title

@@ -8,7 +8,7 @@ rates = run.'/rates.dat'
 set multiplot title 'GEM challenge: the mass ratio' font ',22'
 set tmargin at screen 0.89
 set lmargin at screen 0.085; set rmargin at screen 0.50; set bmargin at screen 0.17
-set xlabel 'time  t Ω_{ci}'; set ylabel 'ΔΨ / (B_0 d_i)' offset 2, 0
+set xlabel 'time  t Ω_{ci}'; set ylabel 'ΔΨ / (B_0 d_i)' offset 0.8, 0
 set xrange [0:22]; set yrange [0:*]
 set key top left
 plot for [k = 1:3] history(word('1836 180 25', k)) using t:psi with lines linetype k title 'm_i/m_e = '.word('1836 180 25', k)
