@@ -23,9 +23,9 @@ std::string sheet(long particles, long history_steps = 2) {
            std::to_string(history_steps) + " harris.particles=" + std::to_string(particles) + " ";
 }
 
-// Runs and compares every result that has an expected value.
-nlohmann::json passing(const std::string& arguments, int results) {
-    const std::string out = folder("passing");
+// Runs in a folder of the fact's own and compares every result that has an expected value.
+nlohmann::json passing(const std::string& name, const std::string& arguments, int results) {
+    const std::string out = folder(name);
     CAPTURE(arguments);
     REQUIRE(run(arguments, out) == 0);
     const nlohmann::json json = summary(out);
@@ -43,7 +43,7 @@ TEST_CASE("light waves have the frequency of Yee's mesh and keep their amplitude
     for (const char* rest : {"", " time.dt=0.07 grid.cells_z=64 grid.length_z=6.4",
                              " uniform.wave_E_y=0 uniform.wave_E_z=1e-3 theory.component=E_z",
                              " uniform.mode_x=0 uniform.mode_z=1"}) {
-        const auto json = passing(cases + "light_wave.toml" + rest, 2);
+        const auto json = passing("light", cases + "light_wave.toml" + rest, 2);
         CHECK(std::fabs(value(json, "omega_over_theory") - 1) <= 1e-6);
         CHECK(std::fabs(value(json, "damping")) <= 1e-6);
         CHECK(std::fabs(conserved(json, "largest_gauss_residual")) <= 1e-14);
@@ -57,7 +57,7 @@ TEST_CASE("cold Langmuir waves have the frequency of the leapfrog" *
           {0.5, " particles.order=2"},
           {0.1, " time.dt=0.1 time.end=40"},
           {0.5, " particles.relativistic=false field.smoothing_passes=2"}}) {
-        const auto json = passing(cases + "langmuir.toml" + rest, 2);
+        const auto json = passing("langmuir", cases + "langmuir.toml" + rest, 2);
         CHECK(std::fabs(value(json, "omega_over_theory") - 1) <= 0.001);
         // Velocities at t^n, the means of those around it, are too small by (omega dt)^2/8.
         CHECK(conserved(json, "largest_energy_drift") <= 0.3 * dt * dt);
@@ -66,13 +66,13 @@ TEST_CASE("cold Langmuir waves have the frequency of the leapfrog" *
 }
 
 TEST_CASE("two cold streams grow at the rate of linear theory" * doctest::description("physics")) {
-    passing(cases + "two_stream.toml time.end=30", 1);
-    passing(cases + "two_stream.toml time.end=30 particles.order=2", 1);
+    passing("streams", cases + "two_stream.toml time.end=30", 1);
+    passing("streams", cases + "two_stream.toml time.end=30 particles.order=2", 1);
 }
 
 TEST_CASE("Weibel filaments grow at the rate of linear theory" * doctest::description("physics")) {
-    passing(cases + "weibel.toml time.end=36", 1);
-    passing(cases + "weibel.toml time.end=36 particles.order=2", 1);
+    passing("weibel", cases + "weibel.toml time.end=36", 1);
+    passing("weibel", cases + "weibel.toml time.end=36 particles.order=2", 1);
 }
 
 TEST_CASE("a small GEM challenge keeps its energy and its constraints" *
