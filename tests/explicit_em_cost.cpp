@@ -71,7 +71,7 @@ TEST_CASE("explicit steps of the slide are as near to their limits at every mass
         const Case w = explicit_case_of(mass_ratio);
         CHECK(std::fabs(w.dt / courant_limit(w.grid) - here.dt / courant_limit(here.grid)) <=
               1e-12);
-        const auto electrons = [](const Case& c) { return scales_of(c).species[1]; };
+        const auto electrons = [](const Case& any) { return scales_of(any).species[1]; };
         CHECK(std::fabs(electrons(w).omega_p_dt / electrons(here).omega_p_dt - 1) <= 1e-12);
         CHECK(std::fabs(electrons(w).debye_length / w.grid.x.spacing() /
                             (electrons(here).debye_length / here.grid.x.spacing()) -
