@@ -222,7 +222,8 @@ cost: fig_cost
 explicit_gem: $(BUILD)/explicit_em
 	@mkdir -p out/explicit_em/gem_explicit
 	last=$$(ls out/explicit_em/gem_explicit/checkpoint_*.bin 2>/dev/null | tail -n 1); \
-	    $(one_at_a_time) $(BUILD)/explicit_em implicit_moment/cases/gem_explicit.toml $${last:+--restart $$last} \
+	    case=implicit_moment/cases/gem_explicit.toml; [ -z "$$last" ] || case="--restart $$last"; \
+	    $(one_at_a_time) $(BUILD)/explicit_em $$case \
 	    --out out/explicit_em/gem_explicit --force
 	sh implicit_moment/data/keep_explicit_gem.sh out/explicit_em/gem_explicit implicit_moment/data
 

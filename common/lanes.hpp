@@ -50,8 +50,8 @@ inline double sum_of_lanes(const Lanes& lanes) {
     return quarter[0] + quarter[1];
 }
 
-/// Larger of a and b, lane by lane, the magnitude and the square root; overloads let one formula serve a single
-/// number and lanes.
+/// Larger of a and b, lane by lane, the magnitude and the square root; overloads let one formula
+/// serve a single number and lanes.
 inline Lanes larger(const Lanes& a, const Lanes& b) { return a > b ? a : b; }
 inline Lanes magnitude(const Lanes& a) { return a < 0.0 ? -a : a; }
 inline Lanes square_root(const Lanes& a) {

@@ -11,10 +11,10 @@ namespace implicit_moment {
 
 namespace detail {
 
-// Runs work(u, local field, half kick) over all particles and stores u.
-template <int l, class Work>
-inline void for_each_velocity(const PushField& field, const Grid& grid, double dt,
-                              Particles& particles, const Work& work) {
+// Velocities from t^0 to t^{-1/2}.
+template <int l>
+inline void start_back(const PushField& field, const Grid& grid, double dt, double per_c_squared,
+                       Particles& particles) {
     const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing();
     const double half_kick = 0.5 * dt * particles.q_p / particles.m_p;
     common::for_each_block(particles.count(), [&](int, long begin, long end) {
@@ -28,19 +28,10 @@ inline void for_each_velocity(const PushField& field, const Grid& grid, double d
                     grid.index(i + Homes<l>::first, j + Homes<l>::first))],
                 grid.stride(), s - static_cast<double>(i), t - static_cast<double>(j));
             Velocity<double> u{particles.vx_p[p], particles.vy_p[p], particles.vz_p[p]};
-            work(u, at, half_kick);
+            back_half_step(u, at, half_kick, per_c_squared);
             particles.vx_p[p] = u.x, particles.vy_p[p] = u.y, particles.vz_p[p] = u.z;
         }
     });
-}
-
-template <int l>
-inline void start_back(const PushField& field, const Grid& grid, double dt, double per_c_squared,
-                       Particles& particles) {
-    for_each_velocity<l>(field, grid, dt, particles,
-                         [&](Velocity<double>& u, const LocalField<double>& at, double half_kick) {
-                             back_half_step(u, at, half_kick, per_c_squared);
-                         });
 }
 
 }  // namespace detail
