@@ -19,13 +19,14 @@ EIGEN    ?= /usr/include/eigen3
 ARCH     ?= -march=native
 OPTIMIZE ?= $(if $(SANITIZE),-O1 -g,-O3)
 SANITIZE ?=
+TRAP     ?=
 REAL     ?= double
 JOBS     ?= 2
 ARGS     ?=
 CLANG_FORMAT ?= clang-format
 
 # Other kinds of build have a folder of their own.
-BUILD   := build$(if $(SANITIZE),/sanitize)$(if $(filter float,$(REAL)),/float)
+BUILD   := build$(if $(SANITIZE),/sanitize)$(if $(TRAP),/trap)$(if $(filter float,$(REAL)),/float)
 objects := $(BUILD)/objects
 
 warnings := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wno-psabi
@@ -53,7 +54,7 @@ need = @command -v $(1) >/dev/null || { echo "'$(1)' is not installed: run 'make
 programs  := $(basename $(notdir $(mains)))
 bench_programs := $(benches:%/bench.cpp=$(BUILD)/bench/%)
 tests     := $(basename $(notdir $(wildcard tests/*.cpp)))
-shared    := $(patsubst %.cpp,$(objects)/%.o,$(wildcard common/*.cpp))
+shared    := $(patsubst %.cpp,$(objects)/%.o,$(wildcard common/*.cpp) $(if $(TRAP),tests/support/trap_invalid.cpp))
 sources   := $(wildcard */*.hpp */*/*.hpp */*.cpp)
 folder_of  = $(patsubst %/,%,$(dir $(filter %/$(1).cpp,$(mains))))
 
@@ -104,6 +105,7 @@ The particle-in-cell family in running code
   make clean             remove build/ and out/, with all programs, runs and figures
 
   make SANITIZE=address,undefined test     the facts under the sanitizers, in build/sanitize/
+  make TRAP=1 test                         the facts, ended where 0/0 or inf - inf arises, in build/trap/
   make REAL=float bench                    particles of cic in single precision, in build/float/
   make CXX=clang++-14 all                  another compiler; also ARCH=, OPTIMIZE=, EIGEN=, CXXFLAGS=
 endef
@@ -362,10 +364,13 @@ $(figures_to_come):
 ctest = cd $(BUILD) && env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL \
         ctest --output-on-failure --no-tests=error -j$(JOBS) $(ARGS)
 
+# From the folder of the build, however deep it is.
+empty   :=
+to_root := $(subst $(empty) ,,$(patsubst %,../,$(subst /, ,$(BUILD))))
 $(BUILD)/CTestTestfile.cmake: Makefile | $(packages_first)
 	@mkdir -p $(@D)
 	@printf '%s\n' 'set(build_folder "$(BUILD)")' 'set(patience $(if $(SANITIZE),10,1))' \
-	    'subdirs($(if $(SANITIZE),../)../tests)' > $@
+	    'subdirs($(to_root)tests)' > $@
 
 test: all tests $(BUILD)/CTestTestfile.cmake | $(packages_first)
 	$(call need,ctest)

@@ -98,8 +98,9 @@ inline CloudPair make_cloud_pair(const common::Axis& x, const common::Axis& z, i
     for (long n = 0; n < z.cells; ++n)
         for (long m = 0; m < x.cells; ++m)
             phi_k(m, n) =
-                1.0 / ((along_x.K_squared[m] + along_z.K_squared[n]) * x.length * z.length);
-    phi_k(0, 0) = 0.0;
+                m == 0 && n == 0
+                    ? 0.0
+                    : 1.0 / ((along_x.K_squared[m] + along_z.K_squared[n]) * x.length * z.length);
     return {x, z, order, along_x.cosine * phi_k * along_z.cosine.transpose()};
 }
 

@@ -23,6 +23,7 @@
 #include <array>
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <numbers>
 #include <span>
 #include <vector>
@@ -66,6 +67,7 @@ inline Complex susceptibility(const PlasmaSpecies& s, double k, double dt, Compl
         return s.frequency_squared() / (kv * kv) * common::plasma_response(zeta);
     }
     const Complex leapfrog = dt > 0.0 ? 2.0 / dt * std::sin(0.5 * dt * doppler) : doppler;
+    if (leapfrog * leapfrog == 0.0) return common::no_value;
     return -s.frequency_squared() / (leapfrog * leapfrog);
 }
 
@@ -200,6 +202,7 @@ inline common::DispersionRoot fastest_growing_on_mesh(std::span<const common::Pl
 inline double cold_mesh_frequency(double k, const MeshScheme& scheme, double omega_p) {
     const double omega_g = omega_p * std::sqrt(mesh_dispersion_detail::sum_of_alias_weights(
                                          scheme, 0.5 * k * scheme.dx));
+    if (scheme.dt * omega_g > 2.0) return std::numeric_limits<double>::quiet_NaN();
     return scheme.dt > 0.0 ? 2.0 / scheme.dt * std::asin(0.5 * scheme.dt * omega_g) : omega_g;
 }
 

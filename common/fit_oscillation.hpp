@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cfenv>
 #include <cmath>
 #include <complex>
 #include <limits>
@@ -45,7 +46,8 @@ inline bool all_finite(std::span<const double> values) {
     return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
 }
 
-/// Amplitude, phase and misfit that go best with a frequency and a growth rate.
+/// Amplitude, phase and misfit that go best with a frequency and a growth rate; where nothing does,
+/// the misfit stays infinite.
 ///   y = exp(growth t) (C cos(frequency t) + S sin(frequency t))
 inline void complete(OscillationFit& fit, std::span<const double> y, double dt) {
     double cc = 0, cs = 0, ss = 0, yc = 0, ys = 0, yy = 0;
@@ -61,6 +63,7 @@ inline void complete(OscillationFit& fit, std::span<const double> y, double dt) 
         yy += y[n] * y[n];
     }
     const double determinant = cc * ss - cs * cs;
+    if (!(determinant > 0.0) || !(yy > 0.0)) return;
     const double C = (yc * ss - ys * cs) / determinant, S = (ys * cc - yc * cs) / determinant;
     fit.amplitude = std::hypot(C, S);
     fit.phase = std::atan2(-S, C);
@@ -144,11 +147,15 @@ inline OscillationFit improve(const OscillationFit& start, std::span<const doubl
     const auto initial = gsl_vector_view_array(p.data(), parameters);
     int info = 0;
     gsl_multifit_nlinear_init(&initial.vector, &problem, work.get());
+    // The library tries growth rates whose exponentials overflow; that is not for traps to see.
+    std::fenv_t traps;
+    std::feholdexcept(&traps);
     gsl_multifit_nlinear_driver(200, 1e-12, 1e-12, 0.0, nullptr, nullptr, &info, work.get());
     std::array<double, parameters * parameters> covariance{};
     auto matrix = gsl_matrix_view_array(covariance.data(), parameters, parameters);
     gsl_multifit_nlinear_covar(gsl_multifit_nlinear_jac(work.get()), 0.0, &matrix.matrix);
     gsl_set_error_handler(handler);
+    std::fesetenv(&traps);
 
     const gsl_vector* best = gsl_multifit_nlinear_position(work.get());
     OscillationFit fit;
@@ -189,9 +196,10 @@ inline OscillationFit predict_oscillation(std::span<const double> y, double dt, 
         wv += w * v;
     }
     const double determinant = uu * vv - uv * uv;
+    fit.reason = "the signal does not oscillate";
+    if (!(determinant > 0.0)) return fit;
     const double p = (wu * vv - wv * uv) / determinant, q = (wv * uu - wu * uv) / determinant;
     const double middle = 0.5 * (p + q), discriminant = middle * middle + p;
-    fit.reason = "the signal does not oscillate";
     if (!(discriminant < 0.0)) return fit;
     const std::complex<double> z(1.0 + middle, std::sqrt(-discriminant));
     const double step = static_cast<double>(m) * dt;
@@ -253,6 +261,7 @@ inline RotationFit fit_rotation(std::span<const std::complex<double>> z, double 
         product += std::conj(z[n]) * z[n + 1];
         squares += std::norm(z[n]);
     }
+    if (!(squares > 0.0) || !std::isfinite(squares)) return {};
     const std::complex<double> g = product / squares;
     if (!(std::abs(g) > 0.0) || !std::isfinite(std::abs(g))) return {};
     return {g, std::arg(g) / dt, std::log(std::abs(g)) / dt, true};

@@ -19,6 +19,10 @@ namespace common {
 
 using Complex = std::complex<double>;
 
+/// What a dispersion relation is at a pole, or where its terms overflow.
+inline constexpr Complex no_value{std::numeric_limits<double>::quiet_NaN(),
+                                  std::numeric_limits<double>::quiet_NaN()};
+
 /// A uniform species; "along" means along the wave vector k.
 struct PlasmaSpecies {
     double density = 0.0, charge = 0.0, mass = 1.0;
@@ -46,6 +50,7 @@ inline Complex longitudinal_dispersion(std::span<const PlasmaSpecies> plasma, do
         const Complex doppler = omega - k * s.drift;
         const double kv = std::abs(k) * s.speed_along();
         if (kv == 0.0) {
+            if (doppler * doppler == 0.0) return no_value;
             D -= s.frequency_squared() / (doppler * doppler);
         } else {
             const Complex zeta = doppler / (std::numbers::sqrt2 * kv);
@@ -75,6 +80,7 @@ inline Complex transverse_dispersion(std::span<const PlasmaSpecies> plasma, doub
         Complex response;
         if (kv == 0.0) {
             const double kv_across_squared = k * k * s.temperature_across / s.mass;
+            if (shifted * shifted == 0.0) return no_value;
             response = s.gyrofrequency == 0.0 ? Complex(-1.0) : -doppler / shifted;
             if (kv_across_squared > 0.0) response -= kv_across_squared / (shifted * shifted);
         } else {
@@ -94,11 +100,17 @@ struct DispersionRoot {
 };
 
 /// Newton's step from omega to the root of D, with the derivative across 1e-5 |omega|.
+/// out:   not a number where D is not finite, or does not change
 template <class Dispersion>
 Complex newton_step(const Dispersion& D, Complex omega) {
     const Complex aside = 1e-5 * omega, D_here = D(omega);
     if (D_here == 0.0) return 0.0;
-    return -D_here * aside / (D(omega + aside) - D_here);
+    const Complex change = D(omega + aside) - D_here;
+    const auto finite = [](Complex z) {
+        return std::isfinite(z.real()) && std::isfinite(z.imag());
+    };
+    if (!finite(D_here) || !finite(change) || change == 0.0) return no_value;
+    return -D_here * aside / change;
 }
 
 /// The root of D that Newton's method reaches from a guess, with steps no longer than |guess|.

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <numbers>
 
 namespace common {
@@ -66,6 +67,8 @@ inline Values not_below_real_axis(Complex zeta) {
 /// Below the real axis by continuation: Z(zeta) = 2 i pi^1/2 exp(-zeta^2) - Z(-zeta).
 inline Values values(Complex zeta) {
     if (zeta.imag() >= 0.0) return not_below_real_axis(zeta);
+    constexpr double overflow = 700.0, none = std::numeric_limits<double>::quiet_NaN();
+    if (!((zeta * zeta).real() > -overflow)) return {{none, none}, {none, none}};
     const Values mirrored = not_below_real_axis(-zeta);
     const Complex wave = Complex(0.0, 2.0 / std::numbers::inv_sqrtpi) * std::exp(-zeta * zeta);
     return {wave - mirrored.Z, mirrored.one_plus_zeta_Z + zeta * wave};
@@ -76,7 +79,7 @@ inline Values values(Complex zeta) {
 /// The plasma dispersion function Z, in the whole plane.
 /// exact:  relative error below 1e-12, where below the real axis it is relative to the larger of
 ///         the two terms of the continuation; Z' = -2 (1 + zeta Z); Z(-conj zeta) = -conj Z(zeta).
-///         Where exp(-zeta^2) overflows, deep below the real axis, the result is not finite.
+///         Where exp(-zeta^2) overflows, deep below the real axis, the result is not a number.
 /// source: Fried and Conte, The Plasma Dispersion Function (1961).
 inline std::complex<double> plasma_dispersion(std::complex<double> zeta) {
     return plasma_dispersion_detail::values(zeta).Z;

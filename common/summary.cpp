@@ -25,7 +25,10 @@ void put(Json& object, const std::string& key, double value) {
 
 }  // namespace
 
-bool Summary::Entry::pass() const { return std::fabs(value - expected) <= tolerance; }
+bool Summary::Entry::pass() const {
+    return std::isfinite(value) && std::isfinite(expected) &&
+           std::fabs(value - expected) <= tolerance;
+}
 
 bool Summary::is_finite() const {
     const auto finite = [](const Entry& entry) { return std::isfinite(entry.value); };

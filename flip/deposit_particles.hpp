@@ -49,7 +49,7 @@ void deposit_row(const WeightScale& scale, const std::vector<Material>& material
         if constexpr (volumes) {
             const Material& a = materials[static_cast<std::size_t>(kind)];
             const double V = p.V_p[k], p_p = pressure(a, m / V, p.e_p[k]);
-            const double give = V / std::max(stiffness(a, p_p), 1e-300);
+            const double give = compliance(a, V, p_p);
             for_cells(scale, w, [&](long c, double R) {
                 mesh.cells.volume[c] += R * V;
                 mesh.cells.give[c] += R * give;

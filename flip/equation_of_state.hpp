@@ -29,6 +29,19 @@ inline double pressure(const Material& a, double rho, double e) {
 /// rho c^2, the modulus of an adiabatic change of volume.
 inline double stiffness(const Material& a, double p) { return a.gamma * (p + a.p_infinity); }
 
+/// A modulus below which compressibility is beyond all numbers: that of dust, and of a gas without
+/// energy.
+inline constexpr double least_stiffness = 1e-200;
+
+/// -dV/dp of a volume V at constant entropy.
+///   V / (rho c^2)
+/// out:    0 below least_stiffness: what cannot press has no say in the pressure of a cell, and its
+///         volume stays
+inline double compliance(const Material& a, double V, double p) {
+    const double K = stiffness(a, p);
+    return K > least_stiffness ? V / K : 0;
+}
+
 /// Specific internal energy at density rho and pressure p.
 /// note:   dust has no pressure; there p stands for rho e
 inline double internal_energy(const Material& a, double rho, double p) {
@@ -87,7 +100,6 @@ inline CellState share_cell(std::span<const Material> materials, const double* M
 
     // A material that nothing can compress, and dust, have no say; their share goes by mass. So
     // does that of a gas so cold that its compressibility is beyond all numbers.
-    constexpr double least_stiffness = 1e-200;
     double filled = 0, sum = 0;
     for (std::size_t k = 0; k < count; ++k) {
         const double V_k = volume_of(k, p), stiff = stiffness(materials[k], p);

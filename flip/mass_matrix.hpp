@@ -10,6 +10,7 @@
 #include <array>
 #include <string>
 
+#include "common/conjugate_gradients.hpp"
 #include "flip/set_walls.hpp"
 
 namespace flip {
@@ -105,49 +106,44 @@ inline void filter_velocity(const Grid& grid, const MassMatrix& M, const Field& 
 /// Solves M x = b for one component on the nodes where it is free; where it is held, x is given.
 /// in/out: x, start and held values
 /// errors: NumericalError when conjugate gradients do not converge to 1e-13
+/// note:   for y = D^1/2 x and the matrix D^-1/2 M D^-1/2, D the diagonal of M; a node whose square
+///         of S is too small for a number has no entry there, and keeps the start
 inline void solve_mass(const Grid& grid, const MassMatrix& M, const Field& m,
                        const std::vector<char>& held, const Field& b, Field& x) {
-    Field r, z, d, Md;
-    const auto free = [&](long n) { return m[n] > 0 && held[static_cast<std::size_t>(n)] == 0; };
-    const auto dot = [&](const Field& a, const Field& c) {
-        double sum = 0;
-        for_own_nodes(grid, [&](long n) { sum += a[n] * c[n]; });
-        return sum;
-    };
-    const auto precondition = [&] {
-        z.setZero(grid.size());
-        for_each_node(grid, [&](long, long, long n) {
-            if (free(n)) z[n] = r[n] / M.entry[0][n];
-        });
-    };
-    multiply(grid, M, x, Md);
-    r.setZero(grid.size());
-    double size = 0;
-    for_each_node(grid, [&](long, long, long n) {
-        if (free(n)) r[n] = b[n] - Md[n];
-    });
+    std::vector<long> free;
     for_own_nodes(grid, [&](long n) {
-        if (free(n)) size += (b[n] * b[n] + Md[n] * Md[n]) / M.entry[0][n];
+        if (m[n] > 0 && held[static_cast<std::size_t>(n)] == 0 && M.entry[0][n] > 0)
+            free.push_back(n);
     });
-    precondition();
-    d = z;
-    double rz = dot(r, z);
-    for (int k = 0; k < 2000 && rz > 1e-26 * size; ++k) {
-        multiply(grid, M, d, Md);
-        const double step = rz / dot(d, Md);
-        x += step * d;
-        for_each_node(grid, [&](long, long, long n) {
-            if (free(n)) r[n] -= step * Md[n];
-        });
-        precondition();
-        const double next = dot(r, z);
-        d = z + (next / rz) * d;
-        rz = next;
+    const auto count = static_cast<Eigen::Index>(free.size());
+    Eigen::VectorXd scale(count), load(count), y = Eigen::VectorXd::Zero(count);
+    Field d = Field::Zero(grid.size()), Md;
+    multiply(grid, M, x, Md);
+    double size = 0;  // of the terms of b - M x
+    for (Eigen::Index k = 0; k < count; ++k) {
+        const long n = free[static_cast<std::size_t>(k)];
+        scale[k] = 1 / std::sqrt(M.entry[0][n]);
+        load[k] = scale[k] * (b[n] - Md[n]);
+        size += scale[k] * scale[k] * (b[n] * b[n] + Md[n] * Md[n]);
     }
-    if (!(rz <= 1e-26 * size))
+    const auto multiply_free = [&](const Eigen::VectorXd& v, Eigen::VectorXd& Mv) {
+        for (Eigen::Index k = 0; k < count; ++k)
+            d[free[static_cast<std::size_t>(k)]] = scale[k] * v[k];
+        multiply(grid, M, d, Md);
+        for (Eigen::Index k = 0; k < count; ++k)
+            Mv[k] = scale[k] * Md[free[static_cast<std::size_t>(k)]];
+    };
+    const double size_load = common::safe_norm(load),
+                 tolerance = size_load > 0 ? std::min(1.0, 1e-13 * std::sqrt(size) / size_load) : 0;
+    const common::KrylovResult solved =
+        common::conjugate_gradients(multiply_free, load, y, tolerance, 2000);
+    if (!solved.converged)
         throw common::NumericalError(
-            "the consistent mass matrix cannot be solved with: the nodes have too few particles; "
-            "take more per cell, or flip.mass = \"lumped\"");
+            "the consistent mass matrix cannot be solved with: " + solved.reason +
+            "; the nodes have too few particles: take more per cell, or "
+            "flip.mass = \"lumped\"");
+    for (Eigen::Index k = 0; k < count; ++k)
+        x[free[static_cast<std::size_t>(k)]] += scale[k] * y[k];
     fill_nodes(grid, x.data());
 }
 

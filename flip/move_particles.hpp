@@ -16,7 +16,7 @@ inline double work_on_volume(const Case& w, const WeightScale& scale, const Weig
                              const Cells& cells, std::size_t k, Particles& p) {
     const Material& a = w.materials[static_cast<std::size_t>(p.material[k])];
     const double V = p.V_p[k], p_p = pressure(a, p.m_p[k] / V, p.e_p[k]);
-    const double give = V / std::max(stiffness(a, p_p), 1e-300);
+    const double give = compliance(a, V, p_p);
     double strain = 0, work = 0;
     for_cells(scale, at, [&](long c, double R) {
         strain += R * cells.strain[c];
@@ -26,16 +26,22 @@ inline double work_on_volume(const Case& w, const WeightScale& scale, const Weig
     return -give * work / p.m_p[k];
 }
 
+// What came of a row: how many particles left the mesh, and one without volume, -1: none.
+struct RowMoved {
+    long left = 0, inside_out = -1;
+};
+
 template <bool pure_flip, bool volumes>
-long move_row(const Case& w, const WeightScale& scale, const Mesh& mesh, const Transfer& transfer,
-              double dt, std::size_t begin, std::size_t end, Particles& p) {
+RowMoved move_row(const Case& w, const WeightScale& scale, const Mesh& mesh,
+                  const Transfer& transfer, double dt, std::size_t begin, std::size_t end,
+                  Particles& p) {
     const Grid& grid = w.grid;
     const Four* const kick = mesh.nodes.kick.data();
     const double *const heat = mesh.nodes.heat.data(), *const de = mesh.cells.de.data(),
                         *const relative_de = mesh.cells.relative_de.data();
     const long kinds = static_cast<long>(mesh.materials);
     const double deficit = w.heats() ? 0.5 : 0;
-    long left = 0;
+    RowMoved moved;
     // [move]
     for (std::size_t k = begin; k < end; ++k) {
         const Weights at = weights_at(scale, p.x_p[k], p.z_p[k]);
@@ -51,7 +57,10 @@ long move_row(const Case& w, const WeightScale& scale, const Mesh& mesh, const T
             gained += R * (de[c * kinds + kind] + p.e_p[k] * relative_de[c * kinds + kind]);
         });
         gained -= deficit * dv.square();
-        if constexpr (volumes) gained += work_on_volume(w, scale, at, mesh.cells, k, p);
+        if constexpr (volumes) {
+            gained += work_on_volume(w, scale, at, mesh.cells, k, p);
+            if (!(p.V_p[k] > 0)) moved.inside_out = static_cast<long>(k);
+        }
         Velocity v{p.vx_p[k] + dv.x, p.vz_p[k] + dv.z};           // [FLIP-6]
         const double x = around(grid.x, p.x_p[k] + dt * sum[2]),  // [FLIP-7]
             z = around(grid.z, p.z_p[k] + dt * sum[3]);
@@ -63,10 +72,10 @@ long move_row(const Case& w, const WeightScale& scale, const Mesh& mesh, const T
         p.e_p[k] += gained;
         p.x_p[k] = x;
         p.z_p[k] = z;
-        left += beyond(grid, x, z) >= 0;
+        moved.left += beyond(grid, x, z) >= 0;
     }
     // [/move]
-    return left;
+    return moved;
 }
 
 }  // namespace detail
@@ -79,6 +88,7 @@ long move_row(const Case& w, const WeightScale& scale, const Mesh& mesh, const T
 /// in:     nodes.kick, heat, carry; cells.de, relative_de
 /// in/out: particles, sorted by row; afterwards out of order
 /// out:    how many are beyond an end now
+/// errors: NumericalError when the volume of a particle is not positive any more
 /// exact:  mass and momentum; total energy when the deficit goes to heat: what the lumped mass
 ///         matrix owes is sum_p m_p [sum_g S |dv_g|^2 - |sum_g S dv_g|^2]/2, never negative
 /// source: [FLIP-6, FLIP-7]
@@ -88,27 +98,29 @@ inline long move_particles(const Case& w, double dt, const Mesh& mesh, Particles
     const Transfer transfer = transfer_of(w);
     const bool pure = w.transfer == "flip", volumes = has(particles.V_p);
     const WeightScale scale(w.grid);
-    std::atomic<long> left{0};
+    std::atomic<long> left{0}, inside_out{-1};
     common::for_each_row(
         w.grid.z.cells,
         [&](long j) {
             const auto row = static_cast<std::size_t>(j);
             const auto begin = static_cast<std::size_t>(particles.first_of_row[row]),
                        end = static_cast<std::size_t>(particles.first_of_row[row + 1]);
-            if (pure && !volumes)
-                left += detail::move_row<true, false>(w, scale, mesh, transfer, dt, begin, end,
-                                                      particles);
-            else if (pure)
-                left += detail::move_row<true, true>(w, scale, mesh, transfer, dt, begin, end,
-                                                     particles);
-            else if (!volumes)
-                left += detail::move_row<false, false>(w, scale, mesh, transfer, dt, begin, end,
-                                                       particles);
-            else
-                left += detail::move_row<false, true>(w, scale, mesh, transfer, dt, begin, end,
-                                                      particles);
+            const auto move =
+                pure ? (volumes ? detail::move_row<true, true> : detail::move_row<true, false>)
+                     : (volumes ? detail::move_row<false, true> : detail::move_row<false, false>);
+            const detail::RowMoved moved =
+                move(w, scale, mesh, transfer, dt, begin, end, particles);
+            left += moved.left;
+            if (moved.inside_out >= 0) inside_out = moved.inside_out;
         },
         particles.count());
+    if (inside_out >= 0) {
+        const auto k = static_cast<std::size_t>(inside_out);
+        throw common::NumericalError(
+            "the step turns the particle at x = " + common::shown(particles.x_p[k]) +
+            ", z = " + common::shown(particles.z_p[k]) + " inside out: its volume would be " +
+            common::shown(particles.V_p[k]) + "; reduce time.cfl");
+    }
     return left;
 }
 

@@ -12,8 +12,10 @@
 
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCore>
+#include <limits>
 #include <vector>
 
+#include "common/conjugate_gradients.hpp"
 #include "flip/accelerate_nodes.hpp"
 
 namespace flip {
@@ -56,14 +58,35 @@ struct PressureCells {
     long count() const { return static_cast<long>(index.size()); }
 };
 
-inline PressureCells number_cells(const Grid& grid, const Cells& c) {
+// Leaves out cells without pressure, and those so compressible that all which the change of their
+// pressure does to the velocity is round-off: (theta^2 dt^2 D M^-1 D^T)_cc below V/K by that much.
+// There p = p^n, and their weight in the sums of conjugate gradients would be none.
+inline PressureCells number_cells(const Case& w, double dt, const Mesh& mesh) {
+    const Grid& grid = w.grid;
+    const Cells& c = mesh.cells;
+    Field response = Field::Zero(grid.size());
+    const long nx = grid.x.cells - (grid.x.periodic ? 1 : 0),
+               nz = grid.z.cells - (grid.z.periodic ? 1 : 0);
+    for (long j = 0; j <= nz; ++j) {
+        for (long i = 0; i <= nx; ++i) {
+            const double m = mesh.nodes.m[grid.index(i, j)];
+            if (m <= 0) continue;
+            const NodePush push = push_on(w, c, i, j);
+            for (std::size_t k = 0; k < 4; ++k)
+                if (push.cell[k] >= 0)
+                    response[push.cell[k]] += w.theta * w.theta * dt * dt / m *
+                                              (push.x[k] * push.x[k] + push.z[k] * push.z[k]);
+        }
+    }
+    constexpr double round_off = std::numeric_limits<double>::epsilon();
     PressureCells cells;
     cells.number.assign(static_cast<std::size_t>(grid.size()), -1);
     for (long j = 0; j < grid.z.cells; ++j) {
         for (long i = 0; i < grid.x.cells; ++i) {
             const long n = grid.index(i, j);
-            if (c.M[n] <= 0 || c.surface[static_cast<std::size_t>(n)] != 0 ||
-                c.compressibility[n] <= 0)
+            const double inertia = grid.cell_area() * c.compressibility[n];
+            if (c.M[n] <= 0 || c.surface[static_cast<std::size_t>(n)] != 0 || inertia <= 0 ||
+                response[n] <= round_off * inertia)
                 continue;
             cells.number[static_cast<std::size_t>(n)] = static_cast<int>(cells.count());
             cells.index.push_back(n);
@@ -107,6 +130,29 @@ inline Eigen::SparseMatrix<double> pressure_matrix(const Case& w, double dt, con
     return A;
 }
 
+// z = S F^-1 S r with incomplete Cholesky factors F of S A S and S = 1/sqrt(diagonal of A). A cell
+// that is nearly empty, or nearly without pressure, gives A entries hundreds of orders of magnitude
+// beyond the others, whose squares no number holds; S A S has ones on its diagonal.
+class PressurePreconditioner {
+   public:
+    // in: the lower half of A; its diagonal is positive, as inertia is
+    explicit PressurePreconditioner(const Eigen::SparseMatrix<double>& A)
+        : scale_(A.diagonal().cwiseSqrt().cwiseInverse()) {
+        const Eigen::SparseMatrix<double> scaled = scale_.asDiagonal() * A * scale_.asDiagonal();
+        factors_.compute(scaled);
+    }
+    void operator()(const Eigen::VectorXd& r, Eigen::VectorXd& z) const {
+        z = scale_.cwiseProduct(r);
+        // Without factors it is the diagonal.
+        if (factors_.info() == Eigen::Success) z = factors_.solve(z).eval();
+        z = scale_.cwiseProduct(z);
+    }
+
+   private:
+    Eigen::VectorXd scale_;
+    Eigen::IncompleteCholesky<double> factors_;
+};
+
 }  // namespace detail
 
 /// Solves for the pressure at the level theta.
@@ -122,7 +168,7 @@ inline StepReport solve_pressure(const Case& w, double dt, Mesh& mesh) {
     Cells& c = mesh.cells;
     const double V_c = grid.cell_area(), theta = w.theta;
 
-    const detail::PressureCells cells = detail::number_cells(grid, c);
+    const detail::PressureCells cells = detail::number_cells(w, dt, mesh);
     const long count = cells.count();
 
     // The velocity at the level theta if the pressure did not change; its divergence is the load.
@@ -149,21 +195,23 @@ inline StepReport solve_pressure(const Case& w, double dt, Mesh& mesh) {
     const double h = w.plane() ? std::sqrt(V_c) : grid.x.spacing();
     const double scale = theta * dt * V_c * speed / h * std::sqrt(static_cast<double>(count));
     if (!(load.norm() > w.tolerance * scale)) return {0, load.norm() / std::max(scale, 1e-300)};
-    Eigen::ConjugateGradient<Eigen::SparseMatrix<double>, Eigen::Lower,
-                             Eigen::IncompleteCholesky<double>>
-        solver;
-    solver.setTolerance(std::min(1.0, w.tolerance * scale / load.norm()));
-    solver.setMaxIterations(w.most_iterations);
     const auto A = detail::pressure_matrix(w, dt, mesh, cells, inertia);
-    solver.compute(A);
-    const Eigen::VectorXd change = solver.solve(load);
+    const detail::PressurePreconditioner precondition(A);
+    const auto multiply = [&A](const Eigen::VectorXd& v, Eigen::VectorXd& Av) {
+        Av.noalias() = A.selfadjointView<Eigen::Lower>() * v;
+    };
+    const double tolerance = std::min(1.0, w.tolerance * scale / load.norm());
+    Eigen::VectorXd change = Eigen::VectorXd::Zero(count);
+    const common::KrylovResult solved = common::conjugate_gradients(
+        multiply, precondition, load, change, tolerance, w.most_iterations);
     StepReport report;
-    report.iterations = solver.iterations();
-    if (!(solver.error() <= solver.tolerance()))
+    report.iterations = solved.iterations;
+    if (!solved.converged)
         throw common::NumericalError(
-            "the implicit pressure has not converged: after " + std::to_string(report.iterations) +
-            " iterations the residual is " + common::shown(solver.error()) + " and not " +
-            common::shown(solver.tolerance()) + "; raise flip.most_iterations or reduce time.cfl");
+            "the implicit pressure has not converged: " + solved.reason + "; after " +
+            std::to_string(report.iterations) + " iterations the residual is " +
+            common::shown(solved.residual) + " and not " + common::shown(tolerance) +
+            "; raise flip.most_iterations or reduce time.cfl");
     for (long r = 0; r < count; ++r)
         c.p_step[cells.index[static_cast<std::size_t>(r)]] += change[r];
 

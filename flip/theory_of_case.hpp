@@ -23,7 +23,7 @@ inline const Material& material_of(const Case& w, const RegionCase& r) {
 }
 
 /// The first region with a flow, or the first of all.
-inline const RegionCase& region_with_flow(const Case& w, const std::string& flow) {
+inline const RegionCase& region_with_flow(const Case& w, std::string_view flow) {
     for (const RegionCase& r : w.regions)
         if (r.flow == flow) return r;
     return w.regions.front();

@@ -1,7 +1,9 @@
 // What all tests with numbers need.
 #pragma once
 
+#include <cfenv>
 #include <cmath>
+#include <cstdlib>
 #include <initializer_list>
 #include <limits>
 
@@ -17,5 +19,24 @@ inline double worst(std::initializer_list<double> values) {
     for (const double v : values) largest = largest >= v || std::isnan(largest) ? largest : v;
     return largest;
 }
+
+/// Where numbers that are not finite are part of a fact: no traps of `make TRAP=1` in this scope, in
+/// threads and programs that start in it.
+class Untrapped {
+   public:
+    Untrapped() {
+        std::feholdexcept(&before_);
+        setenv("UNTRAPPED", "1", 1);
+    }
+    ~Untrapped() {
+        unsetenv("UNTRAPPED");
+        std::fesetenv(&before_);
+    }
+    Untrapped(const Untrapped&) = delete;
+    Untrapped& operator=(const Untrapped&) = delete;
+
+   private:
+    std::fenv_t before_{};
+};
 
 }  // namespace facts

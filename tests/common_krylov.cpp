@@ -1,5 +1,5 @@
-// Facts about the solvers of linear and nonlinear systems: every ending of GMRES and of
-// Newton-Krylov is the documented one, and their answers agree with other methods.
+// Facts about the solvers of linear and nonlinear systems: every ending of GMRES, of conjugate
+// gradients and of Newton-Krylov is the documented one, and their answers agree with other methods.
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
@@ -8,13 +8,16 @@
 #include <limits>
 #include <unsupported/Eigen/IterativeSolvers>
 
+#include "common/conjugate_gradients.hpp"
 #include "common/gmres.hpp"
 #include "common/newton_krylov.hpp"
+#include "tests/any_numbers.hpp"
 
 namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+using facts::Untrapped;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
@@ -176,6 +179,7 @@ TEST_CASE("GMRES solves a singular system whose right-hand side can be reached")
 }
 
 TEST_CASE("GMRES stops at once when the right-hand side or the guess is not finite") {
+    const facts::Untrapped calm;
     const MatrixXd A = random_matrix(10, 4);
     for (const double bad : {not_a_number, infinity, -infinity}) {
         VectorXd b = VectorXd::Ones(10), x = VectorXd::Ones(10);
@@ -194,6 +198,7 @@ TEST_CASE("GMRES stops at once when the right-hand side or the guess is not fini
 }
 
 TEST_CASE("GMRES stops at once when the operator or the preconditioner is not finite") {
+    const facts::Untrapped calm;
     const MatrixXd A = random_matrix(40, 6);
     const VectorXd b = VectorXd::Ones(40);
     for (const int last : {0, 1, 3}) {
@@ -219,6 +224,7 @@ TEST_CASE("GMRES stops at once when the operator or the preconditioner is not fi
 }
 
 TEST_CASE("GMRES survives numbers whose squares overflow or underflow") {
+    const facts::Untrapped calm;
     const MatrixXd A = random_matrix(30, 8);
     const VectorXd b = VectorXd::Random(30);
     VectorXd plain = VectorXd::Zero(30);
@@ -332,6 +338,7 @@ TEST_CASE("Newton leaves a good enough guess untouched") {
 }
 
 TEST_CASE("Newton stops at once when the residual of the guess is not finite") {
+    const facts::Untrapped calm;
     const auto residual = [](const VectorXd& x, VectorXd& F) { F = x.array().log(); };
     VectorXd x = VectorXd::Constant(3, -1.0);
     const auto result = common::newton_krylov(residual, x, 1.0, 1e-12, 30, 10);
@@ -341,6 +348,7 @@ TEST_CASE("Newton stops at once when the residual of the guess is not finite") {
 }
 
 TEST_CASE("Newton steps back from where the residual is not finite") {
+    const facts::Untrapped calm;
     // From x = 4 the full step for log x = 0 leads to a negative x.
     const auto residual = [](const VectorXd& x, VectorXd& F) { F = x.array().log(); };
     VectorXd x = VectorXd::Constant(3, 4.0);
@@ -367,4 +375,195 @@ TEST_CASE("Newton reports the limit of its steps with the true residual") {
     CHECK(result.newton_iterations == 2);
     residual(x, F);
     CHECK(std::abs(result.residual - F.norm() / 2.0) <= 1e-12 * result.residual);
+}
+
+// ---- conjugate gradients -----------------------------------------------------------------------
+
+namespace {
+
+// Symmetric positive definite with a condition number of about `condition`.
+MatrixXd definite_matrix(int n, unsigned seed, double condition) {
+    std::srand(seed);
+    const MatrixXd Q = MatrixXd::Random(n, n).householderQr().householderQ();
+    VectorXd d(n);
+    for (int i = 0; i < n; ++i) d[i] = std::pow(condition, double(i) / (n - 1));
+    const MatrixXd A = Q * d.asDiagonal() * Q.transpose();
+    return 0.5 * (A + A.transpose());
+}
+
+}  // namespace
+
+TEST_CASE("conjugate gradients agree with Cholesky and with those of Eigen") {
+    for (unsigned seed = 1; seed <= 5; ++seed) {
+        const MatrixXd A = definite_matrix(60, seed, 100);
+        const VectorXd b = VectorXd::Random(60), exact = A.llt().solve(b);
+        VectorXd x = VectorXd::Zero(60);
+        const auto result = common::conjugate_gradients(times(A), b, x, 1e-12, 400);
+        CHECK(result.converged);
+        CHECK((x - exact).norm() <= 1e-10 * exact.norm());
+        CHECK(std::abs(result.residual - true_residual(A, x, b)) <= 1e-14);
+        const Eigen::SparseMatrix<double> sparse = A.sparseView();
+        Eigen::ConjugateGradient<Eigen::SparseMatrix<double>, Eigen::Lower | Eigen::Upper,
+                                 Eigen::IdentityPreconditioner>
+            theirs(sparse);
+        theirs.setTolerance(1e-12);
+        CHECK((x - theirs.solve(b)).norm() <= 1e-10 * exact.norm());
+        CHECK(std::abs(result.iterations - int(theirs.iterations())) <= 2);
+    }
+}
+
+TEST_CASE("conjugate gradients end within as many iterations as there are distinct eigenvalues") {
+    VectorXd d(60);
+    for (int i = 0; i < 60; ++i) d[i] = 1.0 + i % 4;
+    const MatrixXd A = d.asDiagonal();
+    VectorXd x = VectorXd::Zero(60);
+    const auto result = common::conjugate_gradients(times(A), VectorXd::Ones(60), x, 1e-13, 100);
+    CHECK(result.converged);
+    CHECK(result.iterations == 4);
+
+    const auto exact = [&](const VectorXd& v, VectorXd& w) { w = v.cwiseQuotient(d); };
+    VectorXd y = VectorXd::Zero(60);
+    const auto once =
+        common::conjugate_gradients(times(A), exact, VectorXd::Random(60), y, 1e-13, 100);
+    CHECK(once.converged);
+    CHECK(once.iterations == 1);
+}
+
+TEST_CASE("conjugate gradients return zero for a zero right-hand side whatever the guess") {
+    const MatrixXd A = definite_matrix(20, 1, 10);
+    VectorXd x = VectorXd::Random(20);
+    const auto result = common::conjugate_gradients(times(A), VectorXd::Zero(20), x, 1e-10, 100);
+    CHECK(result.converged);
+    CHECK(result.iterations == 0);
+    CHECK(result.residual == 0.0);
+    CHECK(x.cwiseAbs().maxCoeff() == 0.0);
+    VectorXd none;
+    CHECK(common::conjugate_gradients(times(A), VectorXd(), none, 1e-10, 100).converged);
+}
+
+TEST_CASE("conjugate gradients leave a good enough guess untouched") {
+    const MatrixXd A = definite_matrix(40, 2, 10);
+    const VectorXd b = VectorXd::Random(40);
+    VectorXd x = A.llt().solve(b);
+    const VectorXd guess = x;
+    const auto result = common::conjugate_gradients(times(A), b, x, 1e-10, 100);
+    CHECK(result.converged);
+    CHECK(result.iterations == 0);
+    CHECK((x.array() == guess.array()).all());
+    // The exact one: every residual is zero, and no tolerance is too small.
+    const MatrixXd one = MatrixXd::Identity(40, 40);
+    VectorXd same = b;
+    CHECK(common::conjugate_gradients(times(one), b, same, 0, 100).iterations == 0);
+    CHECK((same.array() == b.array()).all());
+}
+
+TEST_CASE("conjugate gradients report what round-off does not let them reach") {
+    const MatrixXd A = definite_matrix(50, 4, 1e12);
+    VectorXd x = VectorXd::Zero(50);
+    const auto result =
+        common::conjugate_gradients(times(A), VectorXd::Random(50), x, 1e-16, 100000);
+    CHECK_FALSE(result.converged);
+    CHECK(x.allFinite());
+    CHECK(result.iterations < 100000);
+    CHECK(result.reason == "round-off keeps the residual from falling further");
+}
+
+TEST_CASE("conjugate gradients report an operator or preconditioner that is not positive") {
+    const VectorXd b = VectorXd::Ones(12);
+    struct Row {
+        double last;  // eigenvalue
+        std::string reason;
+    };
+    for (const Row& row :
+         {Row{0, "the operator is singular"}, Row{-1, "the operator is not positive definite"}}) {
+        VectorXd d = VectorXd::LinSpaced(12, 1, 2);
+        d[11] = row.last;
+        const MatrixXd A = d.asDiagonal();
+        VectorXd x = VectorXd::Zero(12);
+        const auto result = common::conjugate_gradients(times(A), b, x, 1e-10, 100);
+        CHECK_FALSE(result.converged);
+        CHECK(result.reason == row.reason);
+        CHECK(x.allFinite());
+        CHECK(std::abs(result.residual - true_residual(A, x, b)) <= 1e-14);
+        CHECK(result.residual <= 1);
+    }
+    const MatrixXd zero = MatrixXd::Zero(12, 12), one = MatrixXd::Identity(12, 12);
+    VectorXd x = VectorXd::Zero(12);
+    auto result = common::conjugate_gradients(times(zero), b, x, 1e-10, 100);
+    CHECK(result.reason == "the operator is not positive definite");
+    CHECK(x.cwiseAbs().maxCoeff() == 0.0);
+    for (const double factor : {0.0, -1.0}) {
+        const auto wrong = [&](const VectorXd& v, VectorXd& w) { w = factor * v; };
+        result = common::conjugate_gradients(times(one), wrong, b, x, 1e-10, 100);
+        CHECK(result.reason == "the preconditioner is not positive definite");
+        CHECK(x.cwiseAbs().maxCoeff() == 0.0);
+    }
+}
+
+TEST_CASE("conjugate gradients solve a singular system whose right-hand side can be reached") {
+    VectorXd d = VectorXd::LinSpaced(12, 1, 2), b = VectorXd::Ones(12);
+    d[4] = b[4] = 0;
+    const MatrixXd A = d.asDiagonal();
+    VectorXd x = VectorXd::Zero(12);
+    CHECK(common::conjugate_gradients(times(A), b, x, 1e-13, 100).converged);
+    CHECK((A * x - b).norm() <= 1e-13 * b.norm());
+}
+
+TEST_CASE("conjugate gradients stop where a number is not finite") {
+    const Untrapped calm;
+    const MatrixXd A = definite_matrix(15, 3, 10);
+    for (const double bad : {not_a_number, infinity}) {
+        VectorXd b = VectorXd::Ones(15), x = VectorXd::Zero(15);
+        b[7] = bad;
+        auto result = common::conjugate_gradients(times(A), b, x, 1e-10, 100);
+        CHECK_FALSE(result.converged);
+        CHECK(result.reason == "the right-hand side is not finite");
+        b[7] = 1, x[3] = bad;
+        result = common::conjugate_gradients(times(A), b, x, 1e-10, 100);
+        CHECK(result.reason == "the initial guess is not finite");
+        CHECK(x.cwiseAbs().maxCoeff() == 0.0);
+        for (const int sound_calls : {0, 1, 4}) {
+            int calls = 0;
+            const auto breaks = [&](const VectorXd& v, VectorXd& w) {
+                w = A * v;
+                if (calls++ >= sound_calls) w[2] = bad;
+            };
+            x = VectorXd::Zero(15);
+            result = common::conjugate_gradients(breaks, b, x, 1e-10, 100);
+            CHECK_FALSE(result.converged);
+            CHECK(result.reason == "the operator is not finite");
+            CHECK(result.iterations <= sound_calls + 1);
+            CHECK(x.allFinite());
+            calls = 0, x = VectorXd::Zero(15);
+            result = common::conjugate_gradients(times(A), breaks, b, x, 1e-10, 100);
+            CHECK_FALSE(result.converged);
+            CHECK(result.reason == "the preconditioner is not finite");
+            CHECK(x.allFinite());
+        }
+    }
+}
+
+TEST_CASE("conjugate gradients do not notice the size of the right-hand side") {
+    const MatrixXd A = definite_matrix(25, 5, 50);
+    const VectorXd b = VectorXd::Random(25);
+    VectorXd x = VectorXd::Zero(25);
+    common::conjugate_gradients(times(A), b, x, 1e-12, 200);
+    for (const int power : {-900, -500, 500, 900}) {
+        const double factor = std::ldexp(1.0, power);
+        VectorXd y = VectorXd::Zero(25);
+        const auto result = common::conjugate_gradients(times(A), factor * b, y, 1e-12, 200);
+        CHECK(result.converged);
+        CHECK((y.array() / factor == x.array()).all());
+    }
+}
+
+TEST_CASE("conjugate gradients without convergence return the true residual") {
+    const MatrixXd A = definite_matrix(80, 6, 1e4);
+    const VectorXd b = VectorXd::Random(80);
+    VectorXd x = VectorXd::Zero(80);
+    const auto result = common::conjugate_gradients(times(A), b, x, 1e-12, 40);
+    CHECK_FALSE(result.converged);
+    CHECK(result.iterations == 40);
+    CHECK(result.reason == "the limit of iterations is reached");
+    CHECK(std::abs(result.residual - true_residual(A, x, b)) <= 1e-13);
 }

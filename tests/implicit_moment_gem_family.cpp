@@ -64,6 +64,7 @@ Case with_guide_field(double guide_field) {
 }  // namespace
 
 TEST_CASE("a profile averages from the first step of unit flux over its time and nothing else") {
+    const facts::Untrapped calm;
     Random random;
     UnitFluxProfile profile;
     int taken = 0;

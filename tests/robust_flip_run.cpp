@@ -129,8 +129,9 @@ TEST_CASE("a run of flip that fails says what and where and when" *
         "a particle has gone through the wall to x = NUMBER, z = NUMBER at t = NUMBER: "
         "reduce time.cfl \\(in step NUMBER\\)");
     check_sentence(vortex + " flip.most_iterations=1",
-                   "the implicit pressure has not converged: after 1 iterations the residual is "
-                   "NUMBER and not NUMBER; raise flip.most_iterations or reduce time.cfl \\(in "
+                   "the implicit pressure has not converged: the limit of iterations is reached; "
+                   "after 1 iterations the residual is NUMBER and not NUMBER; raise "
+                   "flip.most_iterations or reduce time.cfl \\(in "
                    "step 0\\)");
     check_sentence(tube + " time.energy_limit=0.99",
                    "the energy is NUMBER where the start and the work done are NUMBER, at step 0, "

@@ -63,8 +63,9 @@ inline std::optional<Round> rest(const DiskCells& disks, const Bounds& box, cons
                    to_left = beside == Beside::floor_left || beside == Beside::wall_low;
         const double x = to_left ? box.x_low + r : box.x_high - r, y = box.y_low + r,
                      away = on_floor ? y - a.y : x - a.x,
-                     rest_of_it = std::sqrt(std::fma(-away, away, reach * reach));
-        if (!(rest_of_it >= 0) || (!on_floor && (to_left ? away > 0 : away < 0))) return {};
+                     squared_rest = std::fma(-away, away, reach * reach);
+        if (!(squared_rest >= 0) || (!on_floor && (to_left ? away > 0 : away < 0))) return {};
+        const double rest_of_it = std::sqrt(squared_rest);
         if (!on_floor) return Round{x, a.y + rest_of_it, r};
         return disks.wrapped({to_left ? a.x - rest_of_it : a.x + rest_of_it, y, r});
     }
@@ -74,10 +75,11 @@ inline std::optional<Round> rest(const DiskCells& disks, const Bounds& box, cons
     const double dx = b.x - a.x, dy = b.y - a.y, square = squared(dx, dy),
                  along =
                      0.5 + 0.5 * ((a.radius - b.radius) * (a.radius + b.radius + 2 * r)) / square,
-                 up = std::sqrt(std::fma(-along, along, (a.radius + r) * (a.radius + r) / square)),
-                 x = std::fma(-up, dy, std::fma(along, dx, a.x)),
+                 up_squared = std::fma(-along, along, (a.radius + r) * (a.radius + r) / square);
+    if (!(up_squared >= 0)) return {};
+    const double up = std::sqrt(up_squared), x = std::fma(-up, dy, std::fma(along, dx, a.x)),
                  y = std::fma(up, dx, std::fma(along, dy, a.y));
-    if (!(up >= 0) || !(a.x <= x && x <= b.x)) return {};
+    if (!(a.x <= x && x <= b.x)) return {};
     return disks.wrapped({x, y, r});
 }
 

@@ -14,7 +14,10 @@ namespace mpm {
 /// The angular frequency w' that the scheme gives an oscillator of frequency w.
 ///   sin(w' dt / 2) = w dt / 2
 /// out:   not a number beyond w dt = 2
-inline double leapfrog_frequency(double w, double dt) { return 2 / dt * std::asin(0.5 * w * dt); }
+inline double leapfrog_frequency(double w, double dt) {
+    return w * dt <= 2 ? 2 / dt * std::asin(0.5 * w * dt)
+                       : std::numeric_limits<double>::quiet_NaN();
+}
 
 /// The rate at which the oscillator grows, sign changing from step to step, beyond w dt = 2.
 ///   cosh(rate dt / 2) = w dt / 2
