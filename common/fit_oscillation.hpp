@@ -50,6 +50,8 @@ inline bool all_finite(std::span<const double> values) {
 /// the misfit stays infinite.
 ///   y = exp(growth t) (C cos(frequency t) + S sin(frequency t))
 inline void complete(OscillationFit& fit, std::span<const double> y, double dt) {
+    // Beyond this, squares of the exponential overflow.
+    if (!(fit.growth * static_cast<double>(y.size()) * dt < 300)) return;
     double cc = 0, cs = 0, ss = 0, yc = 0, ys = 0, yy = 0;
     for (std::size_t n = 0; n < y.size(); ++n) {
         const double t = static_cast<double>(n) * dt, size = std::exp(fit.growth * t);

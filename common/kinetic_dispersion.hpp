@@ -100,9 +100,10 @@ struct DispersionRoot {
 };
 
 /// Newton's step from omega to the root of D, with the derivative across 1e-5 |omega|.
-/// out:   not a number where D is not finite, or does not change
+/// out:   not a number where D is not finite, or does not change, or squares overflow
 template <class Dispersion>
 Complex newton_step(const Dispersion& D, Complex omega) {
+    if (!(std::abs(omega) < 1e150)) return no_value;
     const Complex aside = 1e-5 * omega, D_here = D(omega);
     if (D_here == 0.0) return 0.0;
     const Complex change = D(omega + aside) - D_here;

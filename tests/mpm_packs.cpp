@@ -594,7 +594,7 @@ TEST_CASE("no place is lower than the one that a deposited disk takes") {
                     const Outline& b = grains[n].outline;
                     const double apart = std::hypot(b.x - a.x, b.y - a.y), other = b.radius + r,
                                  along = (apart + (reach * reach - other * other) / apart) / 2,
-                                 up = side * std::sqrt(reach * reach - along * along),
+                                 up = side * std::sqrt(std::max(0.0, reach * reach - along * along)),
                                  c = (b.x - a.x) / apart, s = (b.y - a.y) / apart,
                                  at_x = a.x + along * c - up * s, at_y = a.y + along * s + up * c;
                     if (up * c > 0 && (at_x - a.x) * (b.x - at_x) >= 0) consider(at_x, at_y);
