@@ -5,7 +5,7 @@ VERSION := 0.1.0
 # ---- what there is (the figures are further down, one line each) --------------------------------
 
 # The source of each main; a program is called like its main.
-mains := cic/cic.cpp flip/pic.cpp flip/flip.cpp mpm_explicit/mpm_explicit.cpp mpm_implicit/mpm_implicit.cpp implicit_moment/implicit_moment.cpp implicit_moment/explicit_em.cpp
+mains := cic/cic.cpp flip/pic/pic.cpp flip/flip/flip.cpp mpm_explicit/mpm_explicit.cpp mpm_implicit/mpm_implicit.cpp implicit_moment/implicit_moment.cpp implicit_moment/explicit_em/explicit_em.cpp
 
 # Programs that time the loop of a main, step by step; `make bench` runs them all.
 benches := cic/bench.cpp flip/bench.cpp mpm_explicit/bench.cpp mpm_implicit/bench.cpp implicit_moment/bench.cpp
@@ -54,9 +54,10 @@ need = @command -v $(1) >/dev/null || { echo "'$(1)' is not installed: run 'make
 programs  := $(basename $(notdir $(mains)))
 bench_programs := $(benches:%/bench.cpp=$(BUILD)/bench/%)
 tests     := $(basename $(notdir $(wildcard tests/*.cpp)))
-shared    := $(patsubst %.cpp,$(objects)/%.o,$(wildcard common/*.cpp) $(if $(TRAP),tests/support/trap_invalid.cpp))
-sources   := $(wildcard */*.hpp */*/*.hpp */*.cpp)
+shared    := $(patsubst %.cpp,$(objects)/%.o,$(wildcard common/*/*.cpp) $(if $(TRAP),tests/support/trap_invalid.cpp))
+sources   := $(wildcard */*.hpp */*/*.hpp */*/*/*.hpp */*.cpp */*/*.cpp)
 folder_of  = $(patsubst %/,%,$(dir $(filter %/$(1).cpp,$(mains))))
+method_of  = $(firstword $(subst /, ,$(call folder_of,$(1))))
 
 MAKEFLAGS += --no-builtin-rules
 # Compilers work side by side. Runs do not: each takes all cores for its threads.
@@ -141,7 +142,7 @@ $(objects)/%.o: %.cpp $(BUILD)/flags
 	$(CXX) $(flags) $(defines) $(include_paths) -MMD -MP -c -o $@ $<
 
 # The reader of case files must refuse bad input with a message, never with an assertion of its library.
-$(objects)/common/case_file.o: private defines += -DNDEBUG
+$(objects)/common/run/case_file.o: private defines += -DNDEBUG
 
 define link
 @mkdir -p $(@D)
@@ -155,7 +156,7 @@ $(tests:%=$(BUILD)/tests/%): $(BUILD)/tests/%: $(objects)/tests/%.o $(shared) $(
 $(bench_programs): $(BUILD)/bench/%: $(objects)/%/bench.o $(shared) $(BUILD)/flags
 	$(link)
 
--include $(patsubst %.cpp,$(objects)/%.d,$(mains) $(benches) $(wildcard common/*.cpp tests/*.cpp))
+-include $(patsubst %.cpp,$(objects)/%.d,$(mains) $(benches) $(wildcard common/*/*.cpp tests/*.cpp))
 
 # ---- runs and figures ----------------------------------------------------------------------------
 
@@ -168,7 +169,7 @@ out/$(1)/%/.complete: $(2)/cases/%.toml $(BUILD)/$(1) $$$$(wildcard out/$(1)/$$$
 	$$(one_at_a_time) $(BUILD)/$(1) $$< --out $$(@D) --force
 	@touch $$@
 endef
-$(foreach p,$(programs),$(eval $(call runs_of_program,$p,$(call folder_of,$p))))
+$(foreach p,$(programs),$(eval $(call runs_of_program,$p,$(call method_of,$p))))
 
 # $(call figure,name,method folder,folder of the run): after the run, the picture.
 define figure
@@ -346,7 +347,7 @@ out/figures/fig06.png: out/mpm_explicit/compressions/.complete
 
 # Pictures in polarized light.
 $(patsubst %,out/figures/%.png,fig04 fig05 fig07 mpm_explicit_shear mpm_explicit_diametral_disk \
-    mpm_implicit_shear_large mpm_implicit_diametral_disk): common/mpm/polariscope.gp
+    mpm_implicit_shear_large mpm_implicit_diametral_disk): mpm_explicit/figures/polariscope.gp
 
 mpm_figures = $(filter mpm_%,$(figures))
 

@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "cic/initial_state.hpp"
+#include "cic/setup/initial_state.hpp"
 #include "cic/sort_particles.hpp"
 
 namespace {

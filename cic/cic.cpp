@@ -13,7 +13,7 @@
 #include <optional>
 
 #include "cic/meet_walls.hpp"
-#include "cic/record.hpp"
+#include "cic/output/record.hpp"
 #include "cic/sort_particles.hpp"
 
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "cic/initial_state.hpp"
+#include "cic/setup/initial_state.hpp"
 
 namespace cic {
 

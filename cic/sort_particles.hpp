@@ -2,7 +2,7 @@
 // particles works on stays in the cache.
 #pragma once
 
-#include "cic/case.hpp"
+#include "cic/setup/case.hpp"
 #include "common/counting_sort.hpp"
 
 namespace cic {

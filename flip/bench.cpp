@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "flip/cross_ends.hpp"
-#include "flip/deposit_particles.hpp"
-#include "flip/eulerian_phase.hpp"
-#include "flip/lagrangian_phase.hpp"
-#include "flip/move_mesh.hpp"
-#include "flip/pic_start.hpp"
+#include "flip/flip/cross_ends.hpp"
+#include "flip/flip/deposit_particles.hpp"
+#include "flip/flip/move_mesh.hpp"
+#include "flip/pic/eulerian_phase.hpp"
+#include "flip/pic/lagrangian_phase.hpp"
+#include "flip/pic/pic_start.hpp"
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "flip/initial_state.hpp"
+#include "flip/setup/initial_state.hpp"
 
 namespace flip {
 

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "implicit_moment/initial_state.hpp"
-#include "implicit_moment/leapfrog.hpp"
-#include "implicit_moment/leapfrog_state.hpp"
+#include "implicit_moment/explicit_em/leapfrog.hpp"
+#include "implicit_moment/explicit_em/leapfrog_state.hpp"
+#include "implicit_moment/setup/initial_state.hpp"
 #include "implicit_moment/solve_field.hpp"
 
 namespace {

@@ -12,10 +12,10 @@
 #include <cstdio>
 #include <optional>
 
-#include "common/session.hpp"
-#include "implicit_moment/compare_with_theory.hpp"
-#include "implicit_moment/record.hpp"
-#include "implicit_moment/write_output.hpp"
+#include "common/run/session.hpp"
+#include "implicit_moment/output/record.hpp"
+#include "implicit_moment/output/write_output.hpp"
+#include "implicit_moment/theory/compare_with_theory.hpp"
 
 namespace {
 

@@ -16,7 +16,7 @@
 
 #include "common/lanes.hpp"
 #include "common/parallel.hpp"
-#include "common/parameters.hpp"
+#include "common/run/parameters.hpp"
 #include "implicit_moment/move_one.hpp"
 
 namespace implicit_moment {

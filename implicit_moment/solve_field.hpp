@@ -22,7 +22,7 @@
 #include <cmath>
 #include <string>
 
-#include "common/parameters.hpp"
+#include "common/run/parameters.hpp"
 #include "implicit_moment/field_operator.hpp"
 #include "implicit_moment/push_field.hpp"
 

@@ -2,12 +2,12 @@
 //
 //     m_i (v_i^1 - v_i^0)/dt = - sum_p V_p^{1/2} sigma_p^{1/2} . grad S_ip + m_i f_i^0   [MPM-12]
 // The force of constraint f_i^0 is what contact adds afterwards (contact.hpp); the first term was
-// summed up in common/mpm/strain.hpp.
+// summed up in mpm_explicit/strain.hpp.
 #pragma once
 
-#include "common/mpm/plates.hpp"
-#include "common/mpm/transfer.hpp"
 #include "mpm_explicit/ledger.hpp"
+#include "mpm_explicit/plates.hpp"
+#include "mpm_explicit/transfer.hpp"
 
 namespace mpm_explicit {
 

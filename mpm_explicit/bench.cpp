@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "mpm_explicit/move_particles.hpp"
-#include "mpm_explicit/record.hpp"
+#include "mpm_explicit/output/record.hpp"
 
 namespace {
 

@@ -11,8 +11,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "common/mpm/assembly.hpp"
-#include "common/mpm/contact.hpp"
+#include "mpm_explicit/assembly.hpp"
+#include "mpm_explicit/contact.hpp"
 
 namespace mpm_explicit {
 

@@ -5,10 +5,10 @@
 // A FLIP fraction below one mixes in Harlow's PIC, v_p^1 = sum_i S_ip v_i^1, which takes energy.
 #pragma once
 
-#include "common/mpm/move_strips.hpp"
-#include "common/mpm/stop.hpp"
-#include "common/mpm/transfer.hpp"
 #include "mpm_explicit/ledger.hpp"
+#include "mpm_explicit/move_strips.hpp"
+#include "mpm_explicit/stop.hpp"
+#include "mpm_explicit/transfer.hpp"
 
 namespace mpm_explicit {
 

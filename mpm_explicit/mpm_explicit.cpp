@@ -7,15 +7,15 @@
 // Run:   build/mpm_explicit mpm_explicit/cases/rebound.toml time.alpha=1
 // Run:   build/mpm_explicit mpm_explicit/cases/rebound.toml contact.separation=0
 //
-// Reading order: common/mpm/particles.hpp, shapes.hpp, grain_nodes.hpp, transfer.hpp and strain.hpp
-// there, then update_stress.hpp, accelerate_nodes.hpp, common/mpm/contact.hpp, move_particles.hpp,
+// Reading order: mpm_explicit/particles.hpp, shapes.hpp, grain_nodes.hpp, transfer.hpp and strain.hpp
+// there, then update_stress.hpp, accelerate_nodes.hpp, mpm_explicit/contact.hpp, move_particles.hpp,
 // ledger.hpp.
 #include <cstdio>
 #include <optional>
 
-#include "mpm_explicit/check_case.hpp"
 #include "mpm_explicit/move_particles.hpp"
-#include "mpm_explicit/record.hpp"
+#include "mpm_explicit/output/record.hpp"
+#include "mpm_explicit/setup/check_case.hpp"
 
 namespace {
 

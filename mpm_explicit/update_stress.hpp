@@ -1,5 +1,5 @@
 // What stress answers to the strain of a step, between the motion of the nodes and the force on them
-// (common/mpm/strain.hpp).
+// (mpm_explicit/strain.hpp).
 //
 //     V_p^{1/2} - V_p^{-1/2} = + V_p^{-1/2} sum_i grad S_ip . v_i^0 dt                 [MPM-9]
 //     sigma^{1/2} - sigma^{-1/2} = T : (e^{1/2} - e^{-1/2})                             [MPM-10]
@@ -12,8 +12,8 @@
 #include <variant>
 #include <vector>
 
-#include "common/mpm/strain.hpp"
 #include "mpm_explicit/ledger.hpp"
+#include "mpm_explicit/strain.hpp"
 
 namespace mpm_explicit {
 

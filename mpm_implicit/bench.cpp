@@ -8,8 +8,8 @@
 #include <numbers>
 #include <vector>
 
-#include "mpm_explicit/initial_state.hpp"
 #include "mpm_explicit/move_particles.hpp"
+#include "mpm_explicit/setup/initial_state.hpp"
 #include "mpm_implicit/move_particles.hpp"
 #include "mpm_implicit/solve_with_newton.hpp"
 

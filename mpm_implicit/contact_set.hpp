@@ -17,8 +17,8 @@
 #include <string>
 #include <vector>
 
-#include "common/mpm/contact.hpp"
-#include "mpm_implicit/initial_state.hpp"
+#include "mpm_explicit/contact.hpp"
+#include "mpm_implicit/setup/initial_state.hpp"
 
 namespace mpm_implicit {
 

@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-#include "common/mpm/strain.hpp"
+#include "mpm_explicit/strain.hpp"
 #include "mpm_implicit/stencil.hpp"
 
 namespace mpm_implicit {

@@ -15,10 +15,10 @@
 #include <algorithm>
 #include <vector>
 
-#include "common/history.hpp"
-#include "common/mpm/assembly.hpp"
-#include "common/mpm/contact.hpp"
-#include "common/mpm/strain.hpp"
+#include "common/run/history.hpp"
+#include "mpm_explicit/assembly.hpp"
+#include "mpm_explicit/contact.hpp"
+#include "mpm_explicit/strain.hpp"
 
 namespace mpm_implicit {
 

@@ -6,10 +6,10 @@
 // and quadratic in the cell next to slip and stick walls, where weight is that of m_i).
 #pragma once
 
-#include "common/mpm/move_strips.hpp"
-#include "common/mpm/plates.hpp"
-#include "common/mpm/stop.hpp"
-#include "common/mpm/transfer.hpp"
+#include "mpm_explicit/move_strips.hpp"
+#include "mpm_explicit/plates.hpp"
+#include "mpm_explicit/stop.hpp"
+#include "mpm_explicit/transfer.hpp"
 #include "mpm_implicit/ledger.hpp"
 
 namespace mpm_implicit {

@@ -9,13 +9,13 @@
 // Reading order: node_rows.hpp, stencil.hpp, grain_matrix.hpp, contact_set.hpp, constraints.hpp,
 // projected_cg.hpp, grain_factors.hpp, mass_factors.hpp, settle_contact.hpp, solve_nodes.hpp,
 // update_stress.hpp, move_particles.hpp, ledger.hpp; then solve_with_newton.hpp.
-// What both programs share is in common/mpm/.
+// What both programs share is in mpm_explicit/.
 #include <cstdio>
 #include <optional>
 
-#include "mpm_implicit/check_case.hpp"
 #include "mpm_implicit/move_particles.hpp"
-#include "mpm_implicit/record.hpp"
+#include "mpm_implicit/output/record.hpp"
+#include "mpm_implicit/setup/check_case.hpp"
 #include "mpm_implicit/solve_with_newton.hpp"
 
 namespace {

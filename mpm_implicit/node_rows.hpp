@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/mpm/grain_nodes.hpp"
+#include "mpm_explicit/grain_nodes.hpp"
 
 namespace mpm_implicit {
 

@@ -11,11 +11,11 @@
 // Coulomb's.
 #pragma once
 
-#include "mpm_implicit/case.hpp"
 #include "mpm_implicit/grain_factors.hpp"
 #include "mpm_implicit/mass_factors.hpp"
 #include "mpm_implicit/projected_cg.hpp"
 #include "mpm_implicit/settle_contact.hpp"
+#include "mpm_implicit/setup/case.hpp"
 
 namespace mpm_implicit {
 

@@ -8,9 +8,9 @@
 // volumes that stay, so force and energy use those of the start unless a case asks for [MPM-6].
 #pragma once
 
-#include "common/mpm/strain.hpp"
-#include "mpm_implicit/case.hpp"
+#include "mpm_explicit/strain.hpp"
 #include "mpm_implicit/ledger.hpp"
+#include "mpm_implicit/setup/case.hpp"
 
 namespace mpm_implicit {
 

@@ -74,7 +74,8 @@ describe_test(notes.numbers_agree_with_the_runs long)
 # ---- what the documentation says must run --------------------------------------------------------
 # The commands `build/...` and `make ...` of README files, and the lines  // Run:   build/...  of
 # program headers, each with --dry-run (which make understands as well).
-file(GLOB documents "${root}/README.md" "${root}/*/README.md" "${root}/*/*.cpp")
+file(GLOB documents "${root}/README.md" "${root}/*/README.md" "${root}/*/*.cpp"
+    "${root}/*/*/*.cpp")
 foreach(document IN LISTS documents)
     file(RELATIVE_PATH where "${root}" "${document}")
     if(document MATCHES "[.]md$")

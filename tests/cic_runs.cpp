@@ -10,7 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "tests/any_summary.hpp"
+#include "tests/support/any_summary.hpp"
+#include "tests/support/folder_of_test.hpp"
 
 namespace {
 
@@ -24,7 +25,7 @@ std::string text(double number) {
 
 // Runs a case in a folder of the test's own, without files for figures.
 Run run(const std::string& name, const std::string& file, const std::string& overrides) {
-    const std::string folder = std::string(BUILD_FOLDER) + "/tests/runs/cic_" + name;
+    const std::string folder = facts::folder_of_test() + "/cic_" + name;
     const std::string command =
         std::string(BUILD_FOLDER) + "/cic cic/cases/" + file + ".toml " + overrides +
         " output.phase_interval=0 output.particles_interval=0 output.fields_interval=0 --out " +
@@ -120,7 +121,7 @@ TEST_CASE("a traveling wave runs one way at the phase speed of theory" *
     CHECK(std::fabs(turned / (99.9 * -omega) - 1) <= 1e-3);
 
     // The spectrum has its peak there, and nothing at the negative frequency.
-    std::ifstream spectrum(std::string(BUILD_FOLDER) + "/tests/runs/cic_traveling/spectrum.dat");
+    std::ifstream spectrum(facts::folder_of_test() + "/cic_traveling/spectrum.dat");
     double peak = 0, peak_omega = 0, peak_k = 0, mirrored = 0;
     for (std::string line; std::getline(spectrum, line);) {
         std::istringstream words(line);
@@ -135,7 +136,7 @@ TEST_CASE("a traveling wave runs one way at the phase speed of theory" *
 }
 
 TEST_CASE("phase space in bins holds every particle" * doctest::description("physics")) {
-    const std::string folder = std::string(BUILD_FOLDER) + "/tests/runs/cic_bins";
+    const std::string folder = facts::folder_of_test() + "/cic_bins";
     const std::string command = std::string(BUILD_FOLDER) +
                                 "/cic cic/cases/warm_two_stream.toml time.end=1 "
                                 "output.phase_interval=1 output.phase_v_max=20 --out " +

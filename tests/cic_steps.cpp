@@ -11,11 +11,11 @@
 #include <string>
 #include <vector>
 
-#include "cic/diagnostics.hpp"
 #include "cic/meet_walls.hpp"
+#include "cic/output/diagnostics.hpp"
 #include "cic/sort_particles.hpp"
 #include "common/splines.hpp"
-#include "tests/any_numbers.hpp"
+#include "tests/support/any_numbers.hpp"
 
 namespace {
 

@@ -13,10 +13,10 @@
 #include <numbers>
 #include <vector>
 
-#include "cic/cloud_force.hpp"
-#include "cic/mesh_dispersion.hpp"
-#include "common/kinetic_dispersion.hpp"
+#include "cic/theory/cloud_force.hpp"
+#include "cic/theory/mesh_dispersion.hpp"
 #include "common/splines.hpp"
+#include "common/theory/kinetic_dispersion.hpp"
 
 namespace {
 

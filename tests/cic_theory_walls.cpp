@@ -11,9 +11,9 @@
 #include <numbers>
 #include <vector>
 
-#include "cic/diocotron_theory.hpp"
-#include "cic/sheath_theory.hpp"
-#include "tests/any_numbers.hpp"
+#include "cic/theory/diocotron.hpp"
+#include "cic/theory/sheath.hpp"
+#include "tests/support/any_numbers.hpp"
 
 namespace {
 

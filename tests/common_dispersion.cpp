@@ -8,9 +8,9 @@
 #include <numbers>
 #include <vector>
 
-#include "common/kinetic_dispersion.hpp"
-#include "common/plasma_dispersion.hpp"
-#include "common/theta_scheme.hpp"
+#include "common/theory/kinetic_dispersion.hpp"
+#include "common/theory/plasma_dispersion.hpp"
+#include "common/theory/theta_scheme.hpp"
 
 namespace {
 

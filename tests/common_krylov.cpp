@@ -11,7 +11,7 @@
 #include "common/conjugate_gradients.hpp"
 #include "common/gmres.hpp"
 #include "common/newton_krylov.hpp"
-#include "tests/any_numbers.hpp"
+#include "tests/support/any_numbers.hpp"
 
 namespace {
 

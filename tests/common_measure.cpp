@@ -7,9 +7,9 @@
 #include <limits>
 #include <vector>
 
-#include "common/fit_growth.hpp"
-#include "common/fit_oscillation.hpp"
 #include "common/random.hpp"
+#include "common/theory/fit_growth.hpp"
+#include "common/theory/fit_oscillation.hpp"
 
 namespace {
 

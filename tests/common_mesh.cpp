@@ -16,7 +16,7 @@
 #include "implicit_moment/mesh_modes.hpp"
 #include "implicit_moment/smooth.hpp"
 #include "implicit_moment/sort_particles.hpp"
-#include "tests/any_fields.hpp"
+#include "tests/support/any_fields.hpp"
 
 namespace {
 

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "common/random.hpp"
-#include "common/writers.hpp"
+#include "common/run/writers.hpp"
 
 namespace {
 

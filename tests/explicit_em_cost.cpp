@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "implicit_moment/check_case.hpp"
-#include "implicit_moment/cost.hpp"
-#include "implicit_moment/yee_field.hpp"
+#include "implicit_moment/explicit_em/yee_field.hpp"
+#include "implicit_moment/setup/check_case.hpp"
+#include "implicit_moment/setup/cost.hpp"
 
 namespace {
 

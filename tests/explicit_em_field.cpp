@@ -6,11 +6,11 @@
 #include <utility>
 #include <vector>
 
-#include "implicit_moment/check_leapfrog.hpp"
-#include "implicit_moment/compare_with_theory.hpp"
-#include "implicit_moment/leapfrog.hpp"
-#include "implicit_moment/leapfrog_state.hpp"
-#include "tests/any_leapfrog.hpp"
+#include "implicit_moment/explicit_em/leapfrog.hpp"
+#include "implicit_moment/explicit_em/leapfrog_state.hpp"
+#include "implicit_moment/explicit_em/setup/check_leapfrog.hpp"
+#include "implicit_moment/theory/compare_with_theory.hpp"
+#include "tests/support/any_leapfrog.hpp"
 
 namespace {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
-#include "tests/any_run.hpp"
-#include "tests/any_summary.hpp"
+#include "tests/support/any_run.hpp"
+#include "tests/support/any_summary.hpp"
 
 const std::string facts::program_name = "explicit_em";
 

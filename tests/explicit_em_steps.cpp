@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "tests/any_leapfrog.hpp"
+#include "tests/support/any_leapfrog.hpp"
 
 namespace {
 

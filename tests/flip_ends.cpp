@@ -5,7 +5,7 @@
 
 #include <map>
 
-#include "tests/any_fluid.hpp"
+#include "tests/support/any_fluid.hpp"
 
 namespace {
 

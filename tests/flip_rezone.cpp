@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "flip/deposit_particles.hpp"
-#include "flip/flip_fields.hpp"
-#include "flip/rezone.hpp"
-#include "tests/any_numbers.hpp"
+#include "flip/flip/deposit_particles.hpp"
+#include "flip/flip/flip_fields.hpp"
+#include "flip/flip/rezone.hpp"
+#include "tests/support/any_numbers.hpp"
 
 namespace {
 

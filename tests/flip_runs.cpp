@@ -12,8 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "tests/any_numbers.hpp"
-#include "tests/any_summary.hpp"
+#include "tests/support/any_numbers.hpp"
+#include "tests/support/any_summary.hpp"
+#include "tests/support/folder_of_test.hpp"
 
 namespace {
 
@@ -28,7 +29,7 @@ std::string text(double number) {
 }
 
 std::string folder_of(const std::string& name) {
-    return std::string(BUILD_FOLDER) + "/tests/runs/fluid_" + name;
+    return facts::folder_of_test() + "/fluid_" + name;
 }
 
 // Runs a case in a folder of the test's own, without files for figures.

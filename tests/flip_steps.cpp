@@ -9,7 +9,7 @@
 
 #include "common/splines.hpp"
 #include "flip/theory/acoustics.hpp"
-#include "tests/any_fluid.hpp"
+#include "tests/support/any_fluid.hpp"
 
 namespace {
 

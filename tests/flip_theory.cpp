@@ -21,7 +21,7 @@
 #include "flip/theory/shocks.hpp"
 #include "flip/theory/table.hpp"
 #include "flip/theory/vortex.hpp"
-#include "tests/any_numbers.hpp"
+#include "tests/support/any_numbers.hpp"
 
 namespace {
 

@@ -10,11 +10,12 @@
 #include <functional>
 #include <string>
 
-#include "flip/check_case.hpp"
-#include "flip/record.hpp"
+#include "flip/output/record.hpp"
+#include "flip/setup/check_case.hpp"
 #include "flip/theory/vortex.hpp"
-#include "tests/any_numbers.hpp"
-#include "tests/any_summary.hpp"
+#include "tests/support/any_numbers.hpp"
+#include "tests/support/any_summary.hpp"
+#include "tests/support/folder_of_test.hpp"
 
 namespace {
 
@@ -37,8 +38,7 @@ facts::Run recorded(const std::string& text, const std::string& program, int ste
     common::CommandLine command;
     command.case_name = "ideal";
     // Tests of other facts run at the same time.
-    command.out_dir =
-        std::string(BUILD_FOLDER) + "/tests/runs/fluid_comparisons_" + std::to_string(getpid());
+    command.out_dir = facts::folder_of_test() + "/fluid_comparisons_" + std::to_string(getpid());
     std::filesystem::remove_all(command.out_dir);
     const common::About about{program, "0", "", ""};
     {

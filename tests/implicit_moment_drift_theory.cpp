@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "implicit_moment/drift_dispersion.hpp"
-#include "implicit_moment/shear_layer.hpp"
+#include "implicit_moment/setup/shear_layer.hpp"
+#include "implicit_moment/theory/drift_dispersion.hpp"
 
 namespace {
 

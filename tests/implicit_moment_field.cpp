@@ -7,9 +7,9 @@
 #include <limits>
 #include <vector>
 
-#include "implicit_moment/diagnostics.hpp"
 #include "implicit_moment/move_particles.hpp"
-#include "tests/any_fields.hpp"
+#include "implicit_moment/output/diagnostics.hpp"
+#include "tests/support/any_fields.hpp"
 
 namespace {
 

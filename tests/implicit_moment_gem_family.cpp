@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "implicit_moment/diagnostics.hpp"
-#include "tests/any_fields.hpp"
-#include "tests/any_run.hpp"
-#include "tests/any_summary.hpp"
+#include "implicit_moment/output/diagnostics.hpp"
+#include "tests/support/any_fields.hpp"
+#include "tests/support/any_run.hpp"
+#include "tests/support/any_summary.hpp"
 
 const std::string facts::program_name = "implicit_moment";
 

@@ -9,9 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "implicit_moment/compare_kink.hpp"
-#include "tests/any_numbers.hpp"
-#include "tests/any_summary.hpp"
+#include "implicit_moment/theory/compare_kink.hpp"
+#include "tests/support/any_numbers.hpp"
+#include "tests/support/any_summary.hpp"
+#include "tests/support/folder_of_test.hpp"
 
 namespace {
 
@@ -19,7 +20,7 @@ using namespace facts;
 using namespace implicit_moment;
 
 std::string room(const std::string& name) {
-    const std::string folder = std::string(BUILD_FOLDER) + "/tests/runs/kink_" + name;
+    const std::string folder = facts::folder_of_test() + "/kink_" + name;
     std::filesystem::create_directories(folder);
     return folder;
 }

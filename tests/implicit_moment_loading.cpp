@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "implicit_moment/initial_state.hpp"
-#include "tests/any_particles.hpp"
+#include "implicit_moment/setup/initial_state.hpp"
+#include "tests/support/any_particles.hpp"
 
 namespace {
 

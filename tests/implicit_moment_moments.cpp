@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "tests/any_particles.hpp"
+#include "tests/support/any_particles.hpp"
 
 namespace {
 

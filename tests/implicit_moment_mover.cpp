@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "common/random.hpp"
-#include "tests/any_particles.hpp"
+#include "tests/support/any_particles.hpp"
 
 namespace {
 

@@ -12,7 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "tests/any_summary.hpp"
+#include "tests/support/any_summary.hpp"
+#include "tests/support/folder_of_test.hpp"
 
 namespace {
 
@@ -21,7 +22,7 @@ using Json = nlohmann::json;
 
 // Runs the program in a folder of the test's own and returns its summary.
 Json run(const std::string& name, const std::string& arguments) {
-    const std::string folder = std::string(BUILD_FOLDER) + "/tests/runs/" + name;
+    const std::string folder = facts::folder_of_test() + "/" + name;
     const std::string command = std::string(BUILD_FOLDER) + "/implicit_moment " + arguments +
                                 " --out " + folder + " --force --quiet";
     REQUIRE(std::system(command.c_str()) == 0);
@@ -52,7 +53,7 @@ void check_gem(const std::string& seed) {
 
 // The rows of a run's history.
 std::vector<std::vector<double>> rows(const std::string& name) {
-    std::ifstream history(std::string(BUILD_FOLDER) + "/tests/runs/" + name + "/history.dat");
+    std::ifstream history(facts::folder_of_test() + "/" + name + "/history.dat");
     std::vector<std::vector<double>> all;
     for (std::string line; std::getline(history, line);) {
         if (line[0] == '#') continue;

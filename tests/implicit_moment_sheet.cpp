@@ -9,10 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "implicit_moment/check_case.hpp"
-#include "implicit_moment/compare_current_sheet.hpp"
-#include "tests/any_particles.hpp"
-#include "tests/any_summary.hpp"
+#include "implicit_moment/setup/check_case.hpp"
+#include "implicit_moment/theory/compare_current_sheet.hpp"
+#include "tests/support/any_particles.hpp"
+#include "tests/support/any_summary.hpp"
+#include "tests/support/folder_of_test.hpp"
 
 namespace {
 
@@ -49,7 +50,7 @@ double row_mean(const Grid& grid, const double* f, long j) {
 }
 
 std::string room(const std::string& name) {
-    const std::string folder = std::string(BUILD_FOLDER) + "/tests/runs/" + name;
+    const std::string folder = facts::folder_of_test() + "/" + name;
     std::filesystem::create_directories(folder);
     return folder;
 }

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "tests/any_grains.hpp"
+#include "tests/support/any_grains.hpp"
 
 namespace {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/any_mpm_run.hpp"
+#include "tests/support/any_mpm_run.hpp"
 
 namespace {
 

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "tests/any_theta_step.hpp"
+#include "tests/support/any_theta_step.hpp"
 
 namespace {
 

@@ -10,8 +10,8 @@
 #include <random>
 #include <vector>
 
-#include "common/mpm/materials.hpp"
-#include "tests/any_numbers.hpp"
+#include "mpm_explicit/materials.hpp"
+#include "tests/support/any_numbers.hpp"
 
 namespace {
 

@@ -13,7 +13,7 @@
 #include <tuple>
 #include <vector>
 
-#include "tests/any_grains.hpp"
+#include "tests/support/any_grains.hpp"
 
 namespace {
 

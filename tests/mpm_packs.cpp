@@ -15,9 +15,10 @@
 #include <utility>
 #include <vector>
 
-#include "common/mpm/pack_file.hpp"
-#include "common/mpm/packs.hpp"
-#include "tests/any_numbers.hpp"
+#include "mpm_explicit/setup/pack_file.hpp"
+#include "mpm_explicit/setup/packs.hpp"
+#include "tests/support/any_numbers.hpp"
+#include "tests/support/folder_of_test.hpp"
 
 namespace {
 
@@ -103,8 +104,7 @@ double distance(const Outline& a, const Outline& b, double period) {
 }
 
 std::filesystem::path folder() {
-    const std::filesystem::path path =
-        std::filesystem::absolute(BUILD_FOLDER) / "tests/runs/mpm_packs";
+    const std::filesystem::path path = std::filesystem::absolute(facts::folder_of_test());
     std::filesystem::create_directories(path);
     return path;
 }
@@ -594,7 +594,8 @@ TEST_CASE("no place is lower than the one that a deposited disk takes") {
                     const Outline& b = grains[n].outline;
                     const double apart = std::hypot(b.x - a.x, b.y - a.y), other = b.radius + r,
                                  along = (apart + (reach * reach - other * other) / apart) / 2,
-                                 up = side * std::sqrt(std::max(0.0, reach * reach - along * along)),
+                                 up =
+                                     side * std::sqrt(std::max(0.0, reach * reach - along * along)),
                                  c = (b.x - a.x) / apart, s = (b.y - a.y) / apart,
                                  at_x = a.x + along * c - up * s, at_y = a.y + along * s + up * c;
                     if (up * c > 0 && (at_x - a.x) * (b.x - at_x) >= 0) consider(at_x, at_y);

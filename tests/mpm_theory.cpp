@@ -13,11 +13,11 @@
 #include <string>
 #include <vector>
 
-#include "common/mpm/exact_solutions.hpp"
-#include "common/mpm/fringes.hpp"
-#include "common/mpm/scheme_theory.hpp"
-#include "common/theta_scheme.hpp"
-#include "tests/any_numbers.hpp"
+#include "common/theory/theta_scheme.hpp"
+#include "mpm_explicit/output/fringes.hpp"
+#include "mpm_explicit/theory/exact_solutions.hpp"
+#include "mpm_explicit/theory/scheme_theory.hpp"
+#include "tests/support/any_numbers.hpp"
 
 namespace {
 

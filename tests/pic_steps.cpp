@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "flip/eulerian_phase.hpp"
-#include "flip/lagrangian_phase.hpp"
-#include "flip/pic_start.hpp"
-#include "tests/any_numbers.hpp"
+#include "flip/pic/eulerian_phase.hpp"
+#include "flip/pic/lagrangian_phase.hpp"
+#include "flip/pic/pic_start.hpp"
+#include "tests/support/any_numbers.hpp"
 
 namespace {
 

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "common/checkpoint.hpp"
-#include "tests/any_run.hpp"
+#include "common/run/checkpoint.hpp"
+#include "tests/support/any_run.hpp"
 
 const std::string facts::program_name = "cic";
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <utility>
 
-#include "common/checkpoint.hpp"
-#include "tests/any_run.hpp"
+#include "common/run/checkpoint.hpp"
+#include "tests/support/any_run.hpp"
 
 const std::string facts::program_name = "explicit_em";
 

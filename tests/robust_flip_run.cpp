@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/any_fluid_run.hpp"
+#include "tests/support/any_fluid_run.hpp"
 
 const std::string facts::program_name = "flip";
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "flip/check_case.hpp"
+#include "flip/setup/check_case.hpp"
 
 namespace {
 

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "tests/any_program.hpp"
+#include "tests/support/any_program.hpp"
 
 const std::string facts::program_name = "implicit_moment";
 

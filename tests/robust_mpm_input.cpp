@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/any_program.hpp"
+#include "tests/support/any_program.hpp"
 
 const std::string facts::program_name = "mpm_explicit";
 

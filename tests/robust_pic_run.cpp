@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "tests/any_fluid_run.hpp"
+#include "tests/support/any_fluid_run.hpp"
 
 const std::string facts::program_name = "pic";
 

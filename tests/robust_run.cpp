@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "common/checkpoint.hpp"
-#include "common/history.hpp"
-#include "common/summary.hpp"
-#include "tests/any_numbers.hpp"
-#include "tests/any_run.hpp"
+#include "common/run/checkpoint.hpp"
+#include "common/run/history.hpp"
+#include "common/run/summary.hpp"
+#include "tests/support/any_numbers.hpp"
+#include "tests/support/any_run.hpp"
 
 const std::string facts::program_name = "implicit_moment";
 

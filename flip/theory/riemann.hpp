@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/parameters.hpp"
+#include "common/run/parameters.hpp"
 #include "flip/theory/gas_waves.hpp"
 
 namespace flip::theory {

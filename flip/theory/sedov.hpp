@@ -12,7 +12,7 @@
 #include <numbers>
 #include <vector>
 
-#include "common/parameters.hpp"
+#include "common/run/parameters.hpp"
 
 namespace flip::theory {
 

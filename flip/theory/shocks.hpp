@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "common/parameters.hpp"
+#include "common/run/parameters.hpp"
 
 namespace flip::theory {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "common/parameters.hpp"
+#include "common/run/parameters.hpp"
 
 namespace flip::theory {
 

@@ -3,7 +3,7 @@
 wide = 1500; high = 1220
 load 'common/style.gp'
 f_sigma = 2000.0
-load 'common/mpm/polariscope.gp'
+load 'mpm_explicit/figures/polariscope.gp'
 folder = run
 plate = 0.7196   # its lower side at the start
 shapes = 'linear gimp'

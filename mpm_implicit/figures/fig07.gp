@@ -3,7 +3,7 @@
 wide = 1500; high = 1060
 load 'common/style.gp'
 f_sigma = 2500.0
-load 'common/mpm/polariscope.gp'
+load 'mpm_explicit/figures/polariscope.gp'
 U = 0.2; L = 1.0; height = 0.92; rigid_low = 0.1; rigid_high = 0.82
 particles = system('ls '.run.'/particles_*.dat | tail -n 3'); fringes = system('ls '.run.'/fringes_*.dat | tail -n 3')
 with_rigid = "using 1:2:($5 < 0 ? 0 : $5 < 5 || $5 > 19 ? 0.3 : dark_field($3 / f_sigma)) with image"

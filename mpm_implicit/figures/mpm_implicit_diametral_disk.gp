@@ -3,7 +3,7 @@
 wide = 1500; high = 1330
 load 'common/style.gp'
 f_sigma = 300.0; wider = 2.5   # in white light, whose higher orders are pale
-load 'common/mpm/polariscope.gp'
+load 'mpm_explicit/figures/polariscope.gp'
 R = 0.2; P = result('load'); unit = 2 * P / (pi * 2 * R)
 last(what) = system('ls '.run.'/'.what.'_*.dat | tail -n 1')
 fringes = last('fringes'); particles = last('particles')

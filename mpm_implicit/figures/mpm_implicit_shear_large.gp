@@ -3,7 +3,7 @@
 wide = 1700; high = 990
 load 'common/style.gp'
 f_sigma = 2500.0
-load 'common/mpm/polariscope.gp'
+load 'mpm_explicit/figures/polariscope.gp'
 U = 0.3; L = 2.6; height = 2.92; R = 0.1
 particles = system('ls '.run.'/particles_*.dat | tail -n 1'); fringes = system('ls '.run.'/fringes_*.dat | tail -n 1')
 rigid(g) = g < 13 || g > 156

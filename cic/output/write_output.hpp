@@ -1,0 +1,198 @@
+// Files for the figures: fields on nodes, a thinned sample of the particles, f(x, v) and f(v) in
+// bins, and the spectrum of the field.
+#pragma once
+
+#include <gsl/gsl_fft_complex.h>
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "cic/output/diagnostics.hpp"
+#include "common/run/history.hpp"
+#include "common/run/writers.hpp"
+
+namespace cic {
+
+inline constexpr long most_particles_written = 40000;
+
+/// Writes fields_NNNNNN.dat (and .vti): rho, phi, E_x, E_z on nodes, density of every species; E of
+/// the energy-conserving scheme is that of the edge behind the node.
+inline void write_fields(const std::string& folder, long step, const Case& w, const State& state,
+                         const Field& rho_g, const FieldState& field) {
+    const Grid& grid = w.grid;
+    const bool plane = w.dimensions == 2;
+    std::vector<std::vector<double>> data;
+    std::vector<std::string> names, units;
+    const auto add = [&](const std::string& name, const std::string& unit, const auto& at) {
+        std::vector<double> values;
+        for (long j = 0; j <= (plane ? grid.z.cells : 0); ++j)
+            for (long i = 0; i <= grid.x.cells; ++i) values.push_back(at(grid.index(i, j)));
+        names.push_back(name), units.push_back(unit), data.push_back(std::move(values));
+    };
+    add("rho", "n0*e", [&](long n) { return rho_g[n]; });
+    add("phi", "m*velocity^2/e", [&](long n) { return field.phi[n]; });
+    add("E_x", "m*velocity*omega_p/e",
+        [&](long n) { return double(field.E_g[static_cast<std::size_t>(n)].x); });
+    if (plane)
+        add("E_z", "m*velocity*omega_p/e",
+            [&](long n) { return double(field.E_g[static_cast<std::size_t>(n)].z); });
+    DepositScratch scratch;
+    for (const Particles& s : state.species) {
+        Field charge = Field::Zero(grid.size());
+        add_charge(s, grid, w.scheme(), scratch, charge);
+        common::fold_ghosts(grid, common::on_nodes, {1, 1}, charge.data());
+        const double weight = s.q_p != 0 ? 1 / s.q_p : 0;
+        add("particles_" + s.name, "1/volume", [&](long n) { return charge[n] * weight; });
+    }
+
+    const common::SampledAxis x{"x", "length", grid.x.low, grid.x.spacing(), grid.x.cells + 1};
+    const common::SampledAxis z{"z", "length", grid.z.low, grid.z.spacing(),
+                                plane ? grid.z.cells + 1 : 1};
+    std::vector<common::ScalarColumn> columns;
+    for (std::size_t k = 0; k < data.size(); ++k) columns.push_back({names[k], units[k], data[k]});
+    common::write_fields(folder + "/" + common::numbered("fields", step, "dat"), x, z, columns);
+    if (w.vtk) {
+        const common::SampledAxis y{"y", "length", 0, 1, 1};
+        common::write_vti(folder + "/" + common::numbered("fields", step, "vti"), {x, y, z},
+                          columns, {});
+    }
+}
+
+/// Writes particles_NNNNNN.dat (and .vtp): a random sample of each species, about
+/// most_particles_written in all; positions at t^n, velocities half a step before.
+inline void write_particles(const std::string& folder, long step, const Case& w,
+                            const State& state) {
+    const long every =
+        std::max(1L, (state.count() + most_particles_written - 1) / most_particles_written);
+    std::array<std::vector<double>, 6> data;
+    for (std::size_t k = 0; k < state.species.size(); ++k) {
+        const Particles& s = state.species[k];
+        const auto at = [](const std::vector<Real>& values, std::size_t n) {
+            return values.empty() ? 0.0 : static_cast<double>(values[n]);
+        };
+        // Radical inverses repeat themselves: a stride of many particles would draw a pattern.
+        for (long p = 0; p < s.count(); ++p) {
+            if (every > 1 && common::uniform(7, 7, static_cast<std::uint64_t>(p), 0) *
+                                     static_cast<double>(every) >=
+                                 1)
+                continue;
+            const auto n = static_cast<std::size_t>(p);
+            const std::array<double, 6> row{static_cast<double>(k), at(s.x_p, n),  at(s.z_p, n),
+                                            at(s.vx_p, n),          at(s.vy_p, n), at(s.vz_p, n)};
+            for (std::size_t a = 0; a < 6; ++a) data[a].push_back(row[a]);
+        }
+    }
+    common::write_table(folder + "/" + common::numbered("particles", step, "dat"),
+                        {{"species", "", data[0]},
+                         {"x", "length", data[1]},
+                         {"z", "length", data[2]},
+                         {"v_x", "velocity", data[3]},
+                         {"v_y", "velocity", data[4]},
+                         {"v_z", "velocity", data[5]}});
+    if (w.vtk) {
+        const std::vector<double> zero(data[0].size(), 0.0);
+        common::write_vtp(folder + "/" + common::numbered("particles", step, "vtp"),
+                          {"position", "length", data[1], zero, data[2]},
+                          {{"species", "", data[0]}},
+                          {{"velocity", "velocity", data[3], data[4], data[5]}});
+    }
+}
+
+/// Largest speed that the bins of f(x, v) must hold, from the start of the run.
+inline double phase_v_max(const Case& w) {
+    if (w.phase_v_max > 0) return w.phase_v_max;
+    double most = 0;
+    for (const SpeciesCase& s : w.species)
+        if (s.mobile())
+            most = std::max(most,
+                            1.8 * std::fabs(s.drift_x) + 5 * std::sqrt(s.temperature_x / s.mass));
+    return most > 0 ? most : 1;
+}
+
+/// Writes phase_NNNNNN.dat, the phase-space density f_s(x, v_x) of every species, and
+/// velocities_NNNNNN.dat, f_s(v_x). What is faster than the bins reach is left out.
+/// exact:  sum f dx dv (times L_z in two dimensions) is the number of particles in the bins
+inline void write_phase_space(const std::string& folder, long step, const Case& w,
+                              const State& state) {
+    const long nx = w.phase_bins_x, nv = w.phase_bins_v;
+    const double v_max = phase_v_max(w), dv = 2 * v_max / static_cast<double>(nv),
+                 dx = w.grid.x.length / static_cast<double>(nx),
+                 L_z = w.dimensions == 2 ? w.grid.z.length : 1;
+    const common::SampledAxis x{"x", "length", w.grid.x.low + 0.5 * dx, dx, nx},
+        v{"v_x", "velocity", -v_max + 0.5 * dv, dv, nv};
+    std::vector<std::vector<double>> f, f_v;
+    for (const Particles& s : state.species) {
+        f.emplace_back(static_cast<std::size_t>(nx * nv), 0.0);
+        f_v.emplace_back(static_cast<std::size_t>(nv), 0.0);
+        const SpeciesCase* from = nullptr;
+        for (const SpeciesCase& c : w.species)
+            if (c.name == s.name) from = &c;
+        const double weight = s.m_p / from->mass / (dx * dv * L_z);
+        for (std::size_t n = 0; n < s.x_p.size(); ++n) {
+            const long i = std::min(
+                nx - 1, static_cast<long>((static_cast<double>(s.x_p[n]) - w.grid.x.low) / dx));
+            const long l =
+                static_cast<long>(std::floor((static_cast<double>(s.vx_p[n]) + v_max) / dv));
+            if (l < 0 || l >= nv) continue;
+            f.back()[static_cast<std::size_t>(l * nx + i)] += weight;
+            f_v.back()[static_cast<std::size_t>(l)] += weight / static_cast<double>(nx);
+        }
+    }
+    std::vector<double> speeds;
+    for (long l = 0; l < nv; ++l) speeds.push_back(v.at(l));
+    std::vector<common::ScalarColumn> planes, lines{{"v_x", "velocity", speeds}};
+    for (std::size_t k = 0; k < f.size(); ++k) {
+        planes.push_back({"f_" + state.species[k].name, "n0/velocity", f[k]});
+        lines.push_back({"f_" + state.species[k].name, "n0/velocity", f_v[k]});
+    }
+    common::write_fields(folder + "/" + common::numbered("phase", step, "dat"), x, v, planes);
+    common::write_table(folder + "/" + common::numbered("velocities", step, "dat"), lines);
+}
+
+/// Writes spectrum.dat: |E|^2 of the recorded modes against frequency, in units of 1/omega_p times
+/// the square of the field; negative frequencies travel against x.
+///   E(omega, k) = sum_n h_n E_k(t_n) exp(i omega t_n) dt,  h_n Hann's window
+inline void write_spectrum(const std::string& path, const Case& w, const common::History& history) {
+    const auto times = history.column("time");
+    const std::size_t count = times.size();
+    if (count < 8) return;
+    const auto wavetable = gsl_fft_complex_wavetable_alloc(count);
+    const auto workspace = gsl_fft_complex_workspace_alloc(count);
+    std::vector<std::vector<double>> power;
+    for (long m = 1; m <= w.modes; ++m) {
+        const auto re = history.column("E_" + std::to_string(m) + "_re"),
+                   im = history.column("E_" + std::to_string(m) + "_im");
+        std::vector<double> z;
+        for (std::size_t n = 0; n < count; ++n) {
+            const double h =
+                1 - std::cos(2 * pi * static_cast<double>(n) / static_cast<double>(count));
+            z.push_back(h * re[n] * w.dt);
+            z.push_back(h * im[n] * w.dt);
+        }
+        gsl_fft_complex_inverse(z.data(), 1, count, wavetable, workspace);
+        std::vector<double> row;
+        // From the lowest frequency up; the transform divides by count.
+        for (std::size_t n = 0; n < count; ++n) {
+            const std::size_t from = (n + count - count / 2) % count;
+            const double factor = static_cast<double>(count);
+            row.push_back(factor * factor *
+                          (z[2 * from] * z[2 * from] + z[2 * from + 1] * z[2 * from + 1]));
+        }
+        power.push_back(row);
+    }
+    gsl_fft_complex_wavetable_free(wavetable);
+    gsl_fft_complex_workspace_free(workspace);
+
+    const double d_omega = 2 * pi / (static_cast<double>(count) * w.dt);
+    const double k_1 = 2 * pi / w.grid.x.length;
+    std::vector<double> all;
+    for (const auto& row : power) all.insert(all.end(), row.begin(), row.end());
+    common::write_fields(path,
+                         {"omega", "omega_p", -d_omega * static_cast<double>(count / 2), d_omega,
+                          static_cast<long>(count)},
+                         {"k", "1/length", k_1, k_1, w.modes}, {{"power", "E^2", all}});
+}
+
+}  // namespace cic

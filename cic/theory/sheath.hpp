@@ -1,0 +1,193 @@
+// The sheaths of a floating wall: a plane that emits ions and electrons, the plasma that forms in
+// front of it, and a collector that absorbs everything and carries no current.
+//
+// The source at x = 0 emits half-Maxwellians, an electron with every ion. It emits electrons that
+// come back once more, with a new thermal velocity, so that the electrons are a Maxwellian of T_e
+// without those that the collector has taken. The potential falls all the way: over
+// the source sheath from 0 to phi_P in the plasma, over the collector sheath to phi_C. Ions are
+// only accelerated, and without collisions f is constant along an orbit:
+//
+//   f_e ~ exp(phi - v^2 / 2)             for v > -[2 (phi - phi_C)]^1/2,
+//   f_i ~ exp(-(phi + M v^2 / 2) / tau)  for v > (-2 phi / M)^1/2
+//
+// with M = m_i / m_e and tau = T_i / T_e. Units are those of the plasma: potentials in T_e / e,
+// densities in n_P, velocities in (T_e / m_e)^1/2, lengths in lambda_D = [T_e / (n_P e^2)]^1/2
+// (eps_0 = 1).
+// source: Schwager and Birdsall, Phys. Fluids B 2, 1057 (1990).
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <vector>
+
+#include "common/run/parameters.hpp"
+#include "common/theory/plasma_dispersion.hpp"
+
+namespace cic {
+
+struct Sheath {
+    double mass_ratio, temperature_ratio;          // M, tau
+    double plasma_potential, collector_potential;  // phi_P and phi_C, both negative
+    double flux;      // to the collector, of ions and of electrons, and of new pairs at the source
+    double emission;  // of electrons at the source, new ones and returned ones
+};
+
+namespace sheath_detail {
+
+/// exp(y) erfc(y^1/2), also where the exponential overflows.
+inline double scaled_erfc(double y) {
+    const std::complex<double> Z = common::plasma_dispersion({0.0, std::sqrt(std::max(y, 0.0))});
+    return Z.imag() * std::numbers::inv_sqrtpi;
+}
+
+/// Twice the part of a Maxwellian that is left when a wall takes all that climb to it; the height
+/// is in temperatures.
+inline double one_plus_erf(double height) {
+    return 1.0 + std::erf(std::sqrt(std::max(height, 0.0)));
+}
+
+/// Where f changes from positive, toward low, to negative, toward high.
+template <class Function>
+double sign_change(const Function& f, double low, double high) {
+    for (;;) {
+        const double middle = 0.5 * (low + high);
+        if (!(low < middle && middle < high)) return middle;
+        (f(middle) > 0.0 ? low : high) = middle;
+    }
+}
+
+}  // namespace sheath_detail
+
+/// The density of electrons where the potential is phi.
+///   n_e = exp(phi - phi_P) (1 + erf (phi - phi_C)^1/2) / (1 + erf (phi_P - phi_C)^1/2)
+/// in:    phi, from phi_C to 0
+/// exact: 1 at phi_P
+inline double electron_density(const Sheath& s, double phi) {
+    const double drop = s.plasma_potential - s.collector_potential;
+    return std::exp(phi - s.plasma_potential) *
+           sheath_detail::one_plus_erf(phi - s.collector_potential) /
+           sheath_detail::one_plus_erf(drop);
+}
+
+/// The density of ions where the potential is phi.
+///   n_i = g(-phi / tau) / g(-phi_P / tau),  g(y) = exp(y) erfc(y^1/2)
+/// in:    phi, from phi_C to 0
+/// exact: 1 at phi_P
+inline double ion_density(const Sheath& s, double phi) {
+    return sheath_detail::scaled_erfc(-phi / s.temperature_ratio) /
+           sheath_detail::scaled_erfc(-s.plasma_potential / s.temperature_ratio);
+}
+
+/// The momentum that both species carry through a plane per area and time, in n_P T_e.
+///   P = n_e - (2 / pi^1/2) exp(phi_C - phi_P) (phi - phi_C)^1/2 / (1 + erf (phi_P - phi_C)^1/2)
+///     + tau [g(y) + 2 (y / pi)^1/2] / g(-phi_P / tau),  y = -phi / tau
+/// in:    phi, from phi_C to 0
+/// exact: dP / dphi = n_e - n_i
+inline double momentum_flux(const Sheath& s, double phi) {
+    const double two_over_root_pi = 2.0 * std::numbers::inv_sqrtpi;
+    const double drop = s.plasma_potential - s.collector_potential;
+    const double height = std::max(phi - s.collector_potential, 0.0);
+    const double absorbed =
+        two_over_root_pi * std::exp(-drop) * std::sqrt(height) / sheath_detail::one_plus_erf(drop);
+    const double y = std::max(-phi / s.temperature_ratio, 0.0);
+    const double ions = s.temperature_ratio *
+                        (sheath_detail::scaled_erfc(y) + two_over_root_pi * std::sqrt(y)) /
+                        sheath_detail::scaled_erfc(-s.plasma_potential / s.temperature_ratio);
+    return electron_density(s, phi) - absorbed + ions;
+}
+
+/// The field where the potential is phi, in T_e / (e lambda_D): what Maxwell's stress adds to the
+/// momentum of the particles.
+///   E^2 / 2 = P(phi) - P(phi_P),  the first integral of phi'' = n_e - n_i
+/// in:    phi, from phi_C to 0
+/// exact: zero at phi_P, and at the source, whose plane carries no charge
+inline double electric_field(const Sheath& s, double phi) {
+    const double stress = momentum_flux(s, phi) - momentum_flux(s, s.plasma_potential);
+    return std::sqrt(2.0 * std::max(stress, 0.0));
+}
+
+namespace sheath_detail {
+
+/// The sheath with the given phi_P whose plasma is neutral and whose collector floats. A Maxwellian
+/// of n_e and of n_i emitted at the source would obey
+///   n_e exp(phi_C) = n_i (tau / M)^1/2,                        the fluxes to the collector,
+///   n_e exp(phi_P) (1 + erf d^1/2) = n_i g(-phi_P / tau),      the densities in the plasma,
+/// so that d = phi_P - phi_C solves (M / tau)^1/2 exp(-d) g(-phi_P / tau) = 1 + erf d^1/2.
+inline Sheath floating_sheath(double mass_ratio, double temperature_ratio, double phi_P) {
+    const double root = std::sqrt(mass_ratio / temperature_ratio);
+    const double g = scaled_erfc(-phi_P / temperature_ratio);
+    const auto excess = [&](double d) { return root * std::exp(-d) * g - one_plus_erf(d); };
+    const double d = sign_change(excess, 0.0, std::log(root));
+    const double flux = std::exp(-d) / (std::sqrt(2.0 * std::numbers::pi) * 0.5 * one_plus_erf(d));
+    return {mass_ratio, temperature_ratio, phi_P, phi_P - d, flux, flux * std::exp(d - phi_P)};
+}
+
+}  // namespace sheath_detail
+
+/// The floating collector of a plane source of pairs.
+/// in:    M and tau; M / tau > 1, and for M < 2 also tau above about 0.03
+/// out:   phi_P and phi_C, fluxes in n_P (T_e / m_e)^1/2
+/// exact: n_e = n_i = 1 at phi_P; E = 0 at phi_P and at the source; emission exp(phi_C) = flux
+/// errors: InputError where no potential falls all the way from the source to the collector.
+inline Sheath collector_sheath(double mass_ratio, double temperature_ratio) {
+    using sheath_detail::floating_sheath;
+    const bool ions_are_slower =
+        temperature_ratio > 0.0 && mass_ratio > temperature_ratio && std::isfinite(mass_ratio);
+    if (!ions_are_slower)
+        throw common::InputError(
+            "no sheath forms at a floating collector unless ions are slower than electrons: take "
+            "m_i / m_e above T_i / T_e, and T_i / T_e above 0");
+
+    // The collector sheath vanishes where phi_P is so low that the ions are as fast as electrons.
+    const double root = std::sqrt(mass_ratio / temperature_ratio);
+    const double lowest = -sheath_detail::sign_change(
+        [&](double depth) {
+            return root * sheath_detail::scaled_erfc(depth / temperature_ratio) - 1.0;
+        },
+        0.0, mass_ratio / std::numbers::pi);
+
+    // A shallow source sheath has too little momentum in the plasma, a deep one too much.
+    const auto missing = [&](double depth) {
+        const Sheath trial = floating_sheath(mass_ratio, temperature_ratio, -depth);
+        return momentum_flux(trial, trial.plasma_potential) - momentum_flux(trial, 0.0);
+    };
+    if (!(missing(-lowest) < 0.0))
+        throw common::InputError(
+            "no potential falls from the source to a floating collector for such light and cold "
+            "ions: raise m_i / m_e or T_i / T_e");
+    return floating_sheath(mass_ratio, temperature_ratio,
+                           -sheath_detail::sign_change(missing, 0.0, -lowest));
+}
+
+struct SheathPoint {
+    double distance, potential;  // in lambda_D from the edge, and in T_e / e
+};
+
+/// The potential from one edge into the plasma, where it approaches phi_P exponentially.
+///   distance = integral dphi / E  with  phi - phi_P = (phi_edge - phi_P) / cosh^2 u,
+/// and a smooth integrand dx / du, although E vanishes at the source and in the plasma.
+/// in:    edge, the potential 0 of the source or phi_C of the collector
+/// out:   samples + 1 points with equal steps of u, the last one at phi_P + 1e-4 (phi_edge - phi_P)
+inline std::vector<SheathPoint> sheath_profile(const Sheath& s, double edge, int samples = 200) {
+    const double du = std::acosh(100.0) / samples, height = edge - s.plasma_potential;
+    const auto potential = [&](double u) {
+        return s.plasma_potential + height / (std::cosh(u) * std::cosh(u));
+    };
+    const auto slope = [&](double u) {
+        const double dphi = 2.0 * std::abs(height) * std::tanh(u) / (std::cosh(u) * std::cosh(u));
+        return dphi / electric_field(s, potential(u));
+    };
+    std::vector<SheathPoint> points{{0.0, edge}};
+    double x = 0.0;
+    for (int n = 0; n < samples; ++n) {
+        // Integrate by the two points of Gauss, which avoid u = 0.
+        const double middle = (n + 0.5) * du, aside = 0.5 * du / std::numbers::sqrt3;
+        x += 0.5 * du * (slope(middle - aside) + slope(middle + aside));
+        points.push_back({x, potential((n + 1.0) * du)});
+    }
+    return points;
+}
+
+}  // namespace cic

@@ -1,0 +1,147 @@
+// Case files: TOML, read by toml++ after the bytes have been looked at. The only source that
+// includes toml++.
+#include <algorithm>
+#include <utility>
+
+#include "common/run/parameters.hpp"
+
+#ifndef NDEBUG
+#define NDEBUG 1  // the library's assertions are no way to refuse an input
+#endif
+#include <toml++/toml.h>
+
+namespace common {
+
+namespace {
+
+std::string at(const std::string& source, std::size_t line, std::size_t column) {
+    return source + ":" + std::to_string(line) + ":" + std::to_string(column);
+}
+
+// Length of the valid UTF-8 sequence that begins at text[k]; 0 when there is none.
+std::size_t sequence_length(const std::string& text, std::size_t k) {
+    const auto byte = [&](std::size_t n) {
+        return n < text.size() ? static_cast<unsigned char>(text[n]) : 0U;
+    };
+    const auto follows = [&](std::size_t n) { return (byte(n) & 0xC0U) == 0x80U; };
+    const unsigned first = byte(k);
+    if (first < 0x80) return 1;
+    if (first >= 0xC2 && first <= 0xDF) return follows(k + 1) ? 2 : 0;
+    if (first >= 0xE0 && first <= 0xEF) {
+        const unsigned second = byte(k + 1);
+        const bool short_form = first == 0xE0 && second < 0xA0,
+                   surrogate = first == 0xED && second > 0x9F;
+        return follows(k + 1) && follows(k + 2) && !short_form && !surrogate ? 3 : 0;
+    }
+    if (first >= 0xF0 && first <= 0xF4) {
+        const unsigned second = byte(k + 1);
+        const bool short_form = first == 0xF0 && second < 0x90,
+                   beyond = first == 0xF4 && second > 0x8F;
+        return follows(k + 1) && follows(k + 2) && follows(k + 3) && !short_form && !beyond ? 4 : 0;
+    }
+    return 0;
+}
+
+// Also bounds how deeply names can be nested: one level takes two letters.
+constexpr std::size_t longest_line = 2000;
+
+// Refuses what is not UTF-8 text; the library is not safe on other bytes.
+void refuse_bad_bytes(const std::string& text, const std::string& source) {
+    std::size_t line = 1, column = 1;
+    for (std::size_t k = 0; k < text.size();) {
+        const std::size_t length = sequence_length(text, k);
+        const auto byte = static_cast<unsigned char>(text[k]);
+        if (length == 0)
+            throw InputError(at(source, line, column) + ": not UTF-8 text; save the file as UTF-8");
+        const bool allowed = byte == '\t' || byte == '\n' ||
+                             (byte == '\r' && k + 1 < text.size() && text[k + 1] == '\n');
+        if ((byte < 0x20 && !allowed) || byte == 0x7F) {
+            throw InputError(at(source, line, column) +
+                             ": a control character; this is not a text file, or it is damaged");
+        }
+        if (column > longest_line) {
+            throw InputError(at(source, line, column) + ": the line has more than " +
+                             std::to_string(longest_line) + " letters; this is not a case file");
+        }
+        column = byte == '\n' ? 1 : column + 1;
+        if (byte == '\n') ++line;
+        k += length;
+    }
+}
+
+// A setting and where it stands, so that settings can be put in the order of the file again: the
+// library keeps tables sorted by key.
+struct Placed {
+    Setting setting;
+    std::pair<std::size_t, std::size_t> position;
+};
+
+bool is_name_letter(char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-';
+}
+
+bool is_override(const std::string& source) { return source.compare(0, 13, "command line:") == 0; }
+
+void flatten(const toml::table& table, const std::string& prefix, const std::string& source,
+             std::vector<Placed>& settings) {
+    for (const auto& [key, node] : table) {
+        const std::string word(key.str());
+        const std::string name = prefix + word;
+        const auto begin = node.source().begin;
+        const std::string place =
+            is_override(source) ? source : at(source, begin.line, begin.column);
+        const auto add = [&](const auto& value) {
+            settings.push_back({{name, value, place}, {begin.line, begin.column}});
+        };
+        if (!std::all_of(word.begin(), word.end(), is_name_letter)) {
+            throw InputError(place + ": '" + word +
+                             "' is not a name: use letters, digits and '_', and dots only between "
+                             "section and key");
+        }
+        const auto* inner = node.as_table();
+        if (inner != nullptr && inner->empty()) {
+            add(EmptySection{});
+        } else if (inner != nullptr) {
+            flatten(*inner, name + ".", source, settings);
+        } else if (const auto* truth = node.as_boolean()) {
+            add(truth->get());
+        } else if (const auto* whole = node.as_integer()) {
+            add(static_cast<long>(whole->get()));
+        } else if (const auto* real = node.as_floating_point()) {
+            add(real->get());
+        } else if (const auto* text = node.as_string()) {
+            const std::string& letters = text->get();
+            if (std::any_of(letters.begin(), letters.end(),
+                            [](unsigned char c) { return c < 0x20; }))
+                throw InputError(place + ": '" + name +
+                                 "' holds a control character; write plain text");
+            add(letters);
+        } else {
+            throw InputError(place + ": '" + name +
+                             "' is a list or a date; parameters are numbers, text, true or false");
+        }
+    }
+}
+
+}  // namespace
+
+std::vector<Setting> read_case(const std::string& text, const std::string& source) {
+    refuse_bad_bytes(text, source);
+    std::vector<Placed> placed;
+    try {
+        flatten(toml::parse(std::string_view(text), source), "", source, placed);
+    } catch (const toml::parse_error& error) {
+        const auto begin = error.source().begin;
+        const std::string place =
+            is_override(source) ? source : at(source, begin.line, begin.column);
+        throw InputError(place + ": " + std::string(error.description()));
+    }
+    std::stable_sort(placed.begin(), placed.end(),
+                     [](const Placed& a, const Placed& b) { return a.position < b.position; });
+    std::vector<Setting> settings;
+    for (Placed& one : placed) settings.push_back(std::move(one.setting));
+    return settings;
+}
+
+}  // namespace common

@@ -1,0 +1,138 @@
+// One row per step, in columns for gnuplot: history.dat, and the same numbers in memory.
+#pragma once
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/run/parameters.hpp"
+
+namespace common {
+
+/// A column of the history: its name and the unit it is given in ("1" for a pure number).
+struct Column {
+    std::string name, unit;
+};
+
+class History {
+   public:
+    explicit History(const std::string& path) : path_(path) {}
+    History(const History&) = delete;
+    History& operator=(const History&) = delete;
+    ~History() {
+        if (file_ != nullptr) std::fclose(file_);
+    }
+
+    /// Names the columns, once, before the first row. The first line of the file is
+    /// "# 1:name[unit] 2:...".
+    void columns(const std::vector<Column>& columns) { columns_ = columns; }
+
+    /// Adds a row.
+    /// errors: NumericalError for a number that is not finite; InputError when the disk is full.
+    void row(std::span<const double> values) {
+        if (values.size() != columns_.size())
+            throw std::logic_error("history: a row of the wrong length");
+        for (std::size_t k = 0; k < values.size(); ++k) {
+            if (!std::isfinite(values[k])) {
+                throw NumericalError(
+                    "'" + columns_[k].name + "' is not finite in the row after " +
+                    columns_[0].name + " = " +
+                    (values_.empty() ? "(no row yet)"
+                                     : number_text(values_[values_.size() - columns_.size()])));
+            }
+        }
+        if (file_ == nullptr) open();
+        values_.insert(values_.end(), values.begin(), values.end());
+        write(values);
+        const auto now = std::chrono::steady_clock::now();
+        if (now - flushed_ > std::chrono::seconds(1)) flush();
+    }
+
+    /// The first value of a column. errors: logic_error for a name that is not a column, or no row.
+    double first(const std::string& name) const {
+        for (std::size_t k = 0; k < columns_.size() && k < values_.size(); ++k) {
+            if (columns_[k].name == name) return values_[k];
+        }
+        throw std::logic_error("history: no value in '" + name + "'");
+    }
+
+    /// Everything recorded so far in one column.
+    /// errors: logic_error for a name that is not a column.
+    std::vector<double> column(const std::string& name) const {
+        for (std::size_t k = 0; k < columns_.size(); ++k) {
+            if (columns_[k].name != name) continue;
+            std::vector<double> result;
+            for (std::size_t n = k; n < values_.size(); n += columns_.size())
+                result.push_back(values_[n]);
+            return result;
+        }
+        throw std::logic_error("history: no column '" + name + "'");
+    }
+
+    /// Sends what is buffered to the file. errors: InputError when the disk is full.
+    void flush() {
+        if (file_ != nullptr && (std::fflush(file_) != 0 || std::ferror(file_) != 0)) {
+            throw InputError(path_ + ": cannot be written; is the disk full?");
+        }
+        flushed_ = std::chrono::steady_clock::now();
+    }
+
+    /// All rows, for a checkpoint; and back again, which writes the file anew with the same bytes.
+    const std::vector<double>& all() const { return values_; }
+    void restore(const std::vector<double>& values) {
+        if (columns_.empty() || values.size() % columns_.size() != 0) {
+            throw InputError("the history in the checkpoint belongs to another case");
+        }
+        open();
+        values_ = values;
+        for (std::size_t n = 0; n < values_.size(); n += columns_.size())
+            write(std::span(values_).subspan(n, columns_.size()));
+        flush();
+    }
+
+   private:
+    void open() {
+        file_ = std::fopen(path_.c_str(), "w");
+        if (file_ == nullptr) throw InputError(path_ + ": cannot be created");
+        std::string line = "#";
+        for (std::size_t k = 0; k < columns_.size(); ++k) {
+            line.append(" ").append(std::to_string(k + 1)).append(":");
+            line.append(columns_[k].name).append("[").append(columns_[k].unit).append("]");
+        }
+        std::fputs((line + "\n").c_str(), file_);
+        flush();
+    }
+
+    void write(std::span<const double> values) {
+        std::string line;
+        for (const double value : values)
+            line.append(line.empty() ? "" : " ").append(number_text(value));
+        line += "\n";
+        if (std::fputs(line.c_str(), file_) < 0)
+            throw InputError(path_ + ": cannot be written; is the disk full?");
+    }
+
+    std::string path_;
+    std::FILE* file_ = nullptr;
+    std::vector<Column> columns_;
+    std::vector<double> values_;  // row by row
+    std::chrono::steady_clock::time_point flushed_;
+};
+
+/// First time at which a column reaches a level from below, linear between rows; NaN when it never
+/// does.
+inline double time_at_level(const std::vector<double>& times, const std::vector<double>& values,
+                            double level) {
+    for (std::size_t n = 1; n < times.size(); ++n) {
+        if (values[n] >= level && values[n - 1] < level) {
+            return times[n - 1] + (level - values[n - 1]) / (values[n] - values[n - 1]) *
+                                      (times[n] - times[n - 1]);
+        }
+    }
+    return std::nan("");
+}
+
+}  // namespace common

@@ -1,0 +1,74 @@
+// A text or binary file that is there whole or not at all.
+#pragma once
+
+#include <cerrno>
+#include <charconv>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "common/run/parameters.hpp"
+
+namespace common {
+
+/// A file that appears under its name only when finish() has been called and everything is written.
+class OutputFile {
+   public:
+    explicit OutputFile(const std::string& path) : path_(path), partial_(path + ".partial") {
+        refuse_special_file(path_);
+        refuse_special_file(partial_);
+        file_ = std::fopen(partial_.c_str(), "wb");
+        if (file_ == nullptr) fail("cannot be opened for writing");
+    }
+    OutputFile(const OutputFile&) = delete;
+    OutputFile& operator=(const OutputFile&) = delete;
+    ~OutputFile() {
+        if (file_ == nullptr) return;
+        std::fclose(file_);
+        std::remove(partial_.c_str());
+    }
+
+    void text(std::string_view words) {
+        buffer_ += words;
+        if (buffer_.size() > 1 << 16) flush();
+    }
+    void number(double value) { print(value); }
+    void number(long value) { print(value); }
+
+    void finish() {
+        flush();
+        std::FILE* file = file_;
+        file_ = nullptr;
+        if (std::fclose(file) != 0) fail("cannot be written");
+        if (std::rename(partial_.c_str(), path_.c_str()) != 0) fail("cannot be renamed into place");
+    }
+
+   private:
+    template <class Number>
+    void print(Number value) {
+        char digits[32];
+        const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
+        text({digits, static_cast<std::size_t>(end - digits)});
+    }
+    void flush() {
+        if (std::fwrite(buffer_.data(), 1, buffer_.size(), file_) != buffer_.size())
+            fail("cannot be written");
+        buffer_.clear();
+    }
+    void refuse_special_file(const std::string& path) const {
+        std::error_code ignored;
+        const auto status = std::filesystem::symlink_status(path, ignored);
+        if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+            throw InputError(path + ": is not a regular file; remove it or write elsewhere");
+    }
+    [[noreturn]] void fail(const std::string& what) const {
+        throw InputError(path_ + ": " + what + " (" + std::strerror(errno) + ")");
+    }
+
+    std::string path_, partial_, buffer_;
+    std::FILE* file_ = nullptr;
+};
+
+}  // namespace common

@@ -1,0 +1,357 @@
+#include "common/run/parameters.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+namespace common {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// Number of single-letter edits between two words.
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        std::size_t diagonal = row[0];
+        row[0] = i;
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+            diagonal = row[j];
+            row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
+        }
+    }
+    return row.back();
+}
+
+std::string text_of(const Range& range) {
+    if (range.low == -infinity && range.high == infinity) return "any";
+    if (range.high == infinity) return (range.open_low ? "> " : ">= ") + number_text(range.low);
+    return number_text(range.low) + (range.open_low ? " < ... " : " ... ") +
+           number_text(range.high);
+}
+
+bool contains(const Range& range, double value) {
+    return (range.open_low ? value > range.low : value >= range.low) && value <= range.high;
+}
+
+std::string quoted(const std::string& text) {
+    std::string result = "\"";
+    for (const char letter : text) {
+        if (letter == '"' || letter == '\\') result += '\\';
+        result += letter;
+    }
+    return result + "\"";
+}
+
+struct Shown {
+    std::string operator()(const bool* value) const { return *value ? "true" : "false"; }
+    std::string operator()(const long* value) const { return std::to_string(*value); }
+    std::string operator()(const double* value) const { return number_text(*value); }
+    std::string operator()(const std::string* value) const { return quoted(*value); }
+};
+
+std::string kind_of(const Setting& setting) {
+    constexpr const char* names[] = {"true or false", "a whole number", "a number", "text",
+                                     "a section"};
+    return names[setting.value.index()];
+}
+
+bool is_word(const std::string& text) {
+    const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+    if (text.empty() || !letter(text[0])) return false;
+    return std::all_of(text.begin(), text.end(),
+                       [&](char c) { return letter(c) || (c >= '0' && c <= '9') || c == '_'; });
+}
+
+bool is_control(char letter) {
+    const auto byte = static_cast<unsigned char>(letter);
+    return byte < 0x20 || byte == 0x7F;
+}
+
+std::string padded(const std::string& text, std::size_t width) {
+    return text + std::string(text.size() < width ? width - text.size() : 1, ' ');
+}
+
+}  // namespace
+
+Range anything() { return {-infinity, infinity}; }
+Range at_least(double low) { return {low, infinity}; }
+Range above(double low) { return {low, infinity, true}; }
+Range between(double low, double high) { return {low, high}; }
+
+std::string number_text(double value) {
+    char text[32];
+    const auto end = std::to_chars(text, text + sizeof text, value).ptr;
+    return {text, end};
+}
+
+std::string shown(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.4g", value);
+    return text;
+}
+
+void ParameterTable::real(const std::string& name, double& value, const std::string& unit,
+                          Range allowed, const std::string& meaning) {
+    add({name, unit, meaning, &value, allowed, {}, {}});
+}
+void ParameterTable::whole(const std::string& name, long& value, const std::string& unit,
+                           Range allowed, const std::string& meaning) {
+    add({name, unit, meaning, &value, allowed, {}, {}});
+}
+void ParameterTable::flag(const std::string& name, bool& value, const std::string& meaning) {
+    add({name, "", meaning, &value, anything(), {}, {}});
+}
+void ParameterTable::choice(const std::string& name, std::string& value,
+                            const std::vector<std::string>& choices, const std::string& meaning) {
+    add({name, "", meaning, &value, anything(), choices, {}});
+}
+
+void ParameterTable::text(const std::string& name, std::string& value, const std::string& meaning) {
+    add({name, "", meaning, &value, anything(), {}, {}});
+}
+
+void ParameterTable::add(Entry entry) {
+    entry.initial = std::visit(Shown{}, entry.target);
+    if (pattern_ != nullptr) {
+        pattern_->push_back(std::move(entry));
+        return;
+    }
+    if (groups_.empty()) group("parameters");
+    groups_.back().entries.push_back(entries_.size());
+    entries_.push_back(std::move(entry));
+}
+
+void ParameterTable::add_list(const std::string& name, const std::string& meaning,
+                              const std::function<void(const std::string&)>& append) {
+    lists_.push_back({name, meaning, append, {}, {}});
+}
+
+void ParameterTable::describe_pattern(const std::string& name,
+                                      const std::function<void()>& describe) {
+    for (List& list : lists_) {
+        if (list.name == name) pattern_ = &list.pattern;
+    }
+    describe();
+    pattern_ = nullptr;
+}
+
+bool ParameterTable::is_changeable(const std::string& name) const {
+    return std::any_of(changeable_.begin(), changeable_.end(), [&](const std::string& allowed) {
+        return allowed.back() == '.' ? name.compare(0, allowed.size(), allowed) == 0
+                                     : name == allowed;
+    });
+}
+
+ParameterTable::Entry* ParameterTable::find(const std::string& name) {
+    for (Entry& entry : entries_) {
+        if (entry.name == name) return &entry;
+    }
+    return nullptr;
+}
+
+bool ParameterTable::takes_text(const std::string& name) {
+    const auto is_text = [](const Entry& entry) {
+        return std::holds_alternative<std::string*>(entry.target);
+    };
+    if (const Entry* entry = find(name); entry != nullptr) return is_text(*entry);
+    // An item that is new.
+    const std::string key = name.substr(name.rfind('.') + 1);
+    for (const List& list : lists_)
+        for (const Entry& entry : list.pattern)
+            if (name.compare(0, list.name.size() + 1, list.name + ".") == 0 &&
+                entry.name == list.name + ".<name>." + key)
+                return is_text(entry);
+    return false;
+}
+
+std::string ParameterTable::nearest(const std::string& name) const {
+    std::string best;
+    std::size_t least = std::max<std::size_t>(3, name.size() / 3) + 1;
+    const auto consider = [&](const std::string& candidate) {
+        const std::size_t distance = edit_distance(name, candidate);
+        if (distance < least) best = candidate, least = distance;
+    };
+    for (const Entry& entry : entries_) consider(entry.name);
+    // The right key in the wrong section is the other common slip.
+    const std::string key = name.substr(name.rfind('.') + 1);
+    for (const Entry& entry : entries_) {
+        if (least > 2 && entry.name.substr(entry.name.rfind('.') + 1) == key) return entry.name;
+    }
+    return best;
+}
+
+// Makes the item that a name like species.beam.density belongs to, if it is new.
+void ParameterTable::make_item(const Setting& setting) {
+    for (List& list : lists_) {
+        const std::string start = list.name + ".";
+        if (setting.name.compare(0, start.size(), start) != 0 || setting.name == start) continue;
+        const std::size_t dot = setting.name.find('.', start.size());
+        if (dot == std::string::npos) {
+            throw InputError(setting.place + ": '" + setting.name +
+                             "' needs the name of an item: write [" + list.name +
+                             ".<name>] above its parameters");
+        }
+        const std::string item = setting.name.substr(start.size(), dot - start.size());
+        if (std::find(list.items.begin(), list.items.end(), item) != list.items.end()) return;
+        if (!is_word(item)) {
+            throw InputError(setting.place + ": '" + item +
+                             "' cannot name an item: use letters, digits and '_', a letter first");
+        }
+        if (list.items.size() == most_items) {
+            throw InputError(setting.place + ": more than " + std::to_string(most_items) +
+                             " items in [" + list.name + "]: take some out");
+        }
+        list.items.push_back(item);
+        groups_.push_back({list.name + " '" + item + "'", {}});
+        list.append(item);
+        return;
+    }
+}
+
+// A section may be empty, and [species.beam] makes a beam of defaults; but it must be a section.
+void ParameterTable::accept_empty_section(const Setting& setting) {
+    const std::string start = setting.name + ".";
+    make_item({start, {}, setting.place});
+    const auto is_inside = [&](const std::string& name) {
+        return name.compare(0, start.size(), start) == 0;
+    };
+    const bool known = std::any_of(entries_.begin(), entries_.end(),
+                                   [&](const Entry& entry) { return is_inside(entry.name); }) ||
+                       std::any_of(lists_.begin(), lists_.end(),
+                                   [&](const List& list) { return list.name == setting.name; });
+    if (known) return;
+    const std::string guess = nearest(setting.name);
+    throw InputError(setting.place + ": unknown section [" + setting.name + "]" +
+                     (guess.empty()
+                          ? "; --help lists all"
+                          : "; did you mean [" + guess.substr(0, guess.rfind('.')) + "]?"));
+}
+
+void ParameterTable::set(const Setting& setting) {
+    if (std::holds_alternative<EmptySection>(setting.value) && find(setting.name) == nullptr) {
+        accept_empty_section(setting);
+        return;
+    }
+    make_item(setting);
+    Entry* entry = find(setting.name);
+    if (entry == nullptr) {
+        const std::string guess = nearest(setting.name);
+        throw InputError(
+            setting.place + ": unknown parameter '" + setting.name + "'" +
+            (guess.empty() ? "; --help lists all" : "; did you mean '" + guess + "'?"));
+    }
+    const auto wrong_type = [&](const std::string& wanted) {
+        return InputError(setting.place + ": '" + setting.name + "' takes " + wanted + ", not " +
+                          kind_of(setting));
+    };
+    const auto refuse_outside = [&](double value) {
+        if (!std::isfinite(value)) {
+            throw InputError(setting.place + ": '" + setting.name + "' must be finite, not " +
+                             number_text(value));
+        }
+        if (!contains(entry->allowed, value)) {
+            throw InputError(setting.place + ": '" + setting.name + "' = " + number_text(value) +
+                             " is out of range; allowed: " + text_of(entry->allowed) +
+                             (entry->unit.empty() ? "" : " " + entry->unit));
+        }
+    };
+    const bool* truth = std::get_if<bool>(&setting.value);
+    const long* integer = std::get_if<long>(&setting.value);
+    const double* number = std::get_if<double>(&setting.value);
+    const std::string* text = std::get_if<std::string>(&setting.value);
+    if (auto target = std::get_if<bool*>(&entry->target)) {
+        if (truth == nullptr) throw wrong_type("true or false");
+        **target = *truth;
+    } else if (auto target_long = std::get_if<long*>(&entry->target)) {
+        if (integer == nullptr && number == nullptr) throw wrong_type("a whole number");
+        const double value = number != nullptr ? *number : static_cast<double>(*integer);
+        refuse_outside(value);
+        if (value != std::floor(value) || std::fabs(value) > 9007199254740992.0) {
+            throw InputError(setting.place + ": '" + setting.name + "' takes a whole number, not " +
+                             number_text(value));
+        }
+        **target_long = static_cast<long>(value);
+    } else if (auto target_real = std::get_if<double*>(&entry->target)) {
+        if (integer == nullptr && number == nullptr) throw wrong_type("a number");
+        const double value = number != nullptr ? *number : static_cast<double>(*integer);
+        refuse_outside(value);
+        **target_real = value;
+    } else if (!entry->choices.empty()) {
+        std::string list;
+        for (const std::string& choice : entry->choices)
+            list += (list.empty() ? "" : ", ") + quoted(choice);
+        if (text == nullptr) throw wrong_type("text, one of " + list);
+        const auto& choices = entry->choices;
+        if (std::find(choices.begin(), choices.end(), *text) == choices.end()) {
+            throw InputError(setting.place + ": '" + setting.name + "' = " + quoted(*text) +
+                             " is not one of " + list);
+        }
+        **std::get_if<std::string*>(&entry->target) = *text;
+    } else {
+        if (text == nullptr) throw wrong_type("text");
+        if (std::any_of(text->begin(), text->end(), is_control)) {
+            throw InputError(setting.place + ": '" + setting.name +
+                             "' holds a control character; write plain text");
+        }
+        if (text->size() > longest_text) {
+            throw InputError(setting.place + ": '" + setting.name + "' has " +
+                             std::to_string(text->size()) + " letters; write at most " +
+                             std::to_string(longest_text));
+        }
+        **std::get_if<std::string*>(&entry->target) = *text;
+    }
+}
+
+std::string ParameterTable::help() const {
+    const auto line = [](const Entry& entry) {
+        std::string range;
+        if (!entry.choices.empty()) {
+            for (const std::string& choice : entry.choices)
+                range += (range.empty() ? "" : " | ") + choice;
+        } else if (std::holds_alternative<bool*>(entry.target)) {
+            range = "true | false";
+        } else if (std::holds_alternative<std::string*>(entry.target)) {
+            range = "text";
+        } else {
+            range = text_of(entry.allowed);
+        }
+        const std::string unit = entry.unit.empty() ? "" : " [" + entry.unit + "]";
+        return "  " + padded(entry.name, 31) + " " + entry.meaning + unit + "\n" +
+               std::string(34, ' ') + range + "; default " + entry.initial + "\n";
+    };
+    std::string text;
+    for (const Group& group : groups_) {
+        text += "\n" + group.title + "\n";
+        for (const std::size_t index : group.entries) text += line(entries_[index]);
+    }
+    for (const List& list : lists_) {
+        text += "\n[" + list.name + ".<name>]: " + list.meaning + "\n";
+        for (const Entry& entry : list.pattern) text += line(entry);
+    }
+    return text;
+}
+
+std::string ParameterTable::effective_case() const {
+    std::vector<std::string> sections;
+    std::map<std::string, std::string> body;
+    for (const Entry& entry : entries_) {
+        const std::size_t dot = entry.name.rfind('.');
+        const std::string section = entry.name.substr(0, dot);
+        if (body.find(section) == body.end()) sections.push_back(section);
+        body[section] +=
+            entry.name.substr(dot + 1) + " = " + std::visit(Shown{}, entry.target) + "\n";
+    }
+    std::string text;
+    for (const std::string& section : sections) {
+        text += (text.empty() ? "[" : "\n[") + section + "]\n" + body[section];
+    }
+    return text;
+}
+
+}  // namespace common

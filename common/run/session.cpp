@@ -1,0 +1,301 @@
+#include "common/run/session.hpp"
+
+#include <sys/ioctl.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <new>
+
+#include "common/parallel.hpp"
+#include "common/run/output_file.hpp"
+
+namespace common {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// Set by the signal handler, read by the loop.
+volatile std::sig_atomic_t stop_signal = 0;
+
+extern "C" void ask_to_stop(int signal) { stop_signal = signal; }
+
+// A first signal asks to stop, a second one kills. A signal that is ignored (nohup) stays ignored.
+void listen_to(int signal) {
+    struct sigaction old {};
+    sigaction(signal, nullptr, &old);
+    if (old.sa_handler == SIG_IGN) return;
+    struct sigaction action {};
+    action.sa_handler = ask_to_stop;
+    action.sa_flags = static_cast<int>(SA_RESETHAND);
+    sigaction(signal, &action, nullptr);
+}
+
+bool begins(const std::string& text, const std::string& start) {
+    return text.compare(0, start.size(), start) == 0;
+}
+
+// Whether a file of this name is one that a run writes.
+bool is_ours(std::string name) {
+    const std::string partial = ".partial";
+    if (name.size() > partial.size() &&
+        name.compare(name.size() - partial.size(), partial.size(), partial) == 0) {
+        name.resize(name.size() - partial.size());
+    }
+    for (const char* plain :
+         {"case.toml", "history.dat", "summary.json", "spectrum.dat", "profile.dat", "pack.txt"}) {
+        if (name == plain) return true;
+    }
+    for (const char* start : {"fields_", "particles_", "profile_", "phase_", "velocities_",
+                              "fringes_", "grains_", "checkpoint_"}) {
+        if (!begins(name, start)) continue;
+        const std::size_t digits = std::string(start).size();
+        const std::size_t ending =
+            std::min(name.find_first_not_of("0123456789", digits), name.size());
+        if (ending < digits + 6) return false;
+        for (const char* known : {".dat", ".vti", ".vtp", ".bin"}) {
+            if (name.compare(ending, std::string::npos, known) == 0) return true;
+        }
+    }
+    return false;
+}
+
+// A message as one line that a terminal can show.
+std::string printable(const std::string& text) {
+    std::string result;
+    for (const char letter : text) {
+        const auto byte = static_cast<unsigned char>(letter);
+        char code[8];
+        std::snprintf(code, sizeof code, "\\x%02x", byte);
+        result += byte < 0x20 || byte == 0x7F ? std::string(code) : std::string(1, letter);
+    }
+    return result;
+}
+
+std::string clock_text(double seconds) {
+    char text[32];
+    const long s = std::lround(seconds);
+    if (s < 3600) std::snprintf(text, sizeof text, "%ld:%02ld", s / 60, s % 60);
+    if (s >= 3600)
+        std::snprintf(text, sizeof text, "%ld:%02ld:%02ld", s / 3600, s / 60 % 60, s % 60);
+    return text;
+}
+
+}  // namespace
+
+int Session::stopped_by() { return stop_signal; }
+
+Session::Session(const About& about, const CommandLine& command, const ParameterTable& table)
+    : history(command.out_dir + "/history.dat"),
+      about_(about),
+      command_(command),
+      effective_case_(table.effective_case()),
+      start_(std::chrono::steady_clock::now()),
+      shown_(start_) {
+    prepare_folder();
+    OutputFile file(path("case.toml"));
+    file.text("# " + about_.program + " " + about_.version + ": the complete input of this run\n" +
+              effective_case_);
+    file.finish();
+    listen_to(SIGINT);
+    listen_to(SIGTERM);
+    terminal_ = isatty(STDERR_FILENO) != 0 && std::getenv("NO_PROGRESS") == nullptr;
+}
+
+Session::~Session() {
+    if (line_open_) std::fputs("\n", stderr);
+}
+
+void Session::prepare_folder() {
+    std::error_code error;
+    const fs::path folder = command_.out_dir;
+    if (fs::exists(folder, error) && !fs::is_directory(folder, error)) {
+        throw InputError(command_.out_dir +
+                         ": is a file, and the results need a folder; choose another --out");
+    }
+    fs::create_directories(folder, error);
+    if (error)
+        throw InputError(command_.out_dir + ": cannot be created: " + error.message() +
+                         "; choose another --out");
+
+    std::vector<fs::path> ours;
+    bool foreign = false;
+    const fs::directory_iterator entries(folder, error);
+    if (error)
+        throw InputError(command_.out_dir + ": cannot be looked into: " + error.message() +
+                         "; choose another --out");
+    for (const auto& entry : entries) {
+        const std::string name = entry.path().filename().string();
+        if (is_ours(name)) ours.push_back(entry.path());
+        if (!is_ours(name) && name[0] != '.') foreign = true;
+    }
+    const bool own_restart =
+        restarting() &&
+        fs::equivalent(folder, fs::absolute(command_.restart_path).parent_path(), error);
+    if (own_restart || (ours.empty() && !foreign)) return;
+    if (!command_.force) {
+        throw InputError(
+            command_.out_dir + (ours.empty() ? ": is not empty" : ": holds an earlier run") +
+            "; --force replaces it, --out DIR puts the results elsewhere" +
+            (ours.empty() ? ""
+                          : ", --restart " + command_.out_dir + "/checkpoint_... continues it"));
+    }
+    // A checkpoint that we are about to read stays.
+    for (const fs::path& file : ours) {
+        if (!restarting() || !fs::equivalent(file, command_.restart_path, error))
+            fs::remove(file, error);
+    }
+}
+
+bool Session::keep_going(long step, long steps) {
+    step_ = step;
+    if (first_done_ < 0 && steps > 0) first_done_ = double(step) / double(steps);
+    return step < steps && stop_signal == 0;
+}
+
+bool Session::keep_going(long step, double time, double end) {
+    step_ = step;
+    if (first_done_ < 0 && end > 0) first_done_ = time / end;
+    return !reached(time, end) && stop_signal == 0;
+}
+
+std::string Session::when(const std::string& message) const {
+    if (step_ < 0 || message.find("step ") != std::string::npos) return message;
+    return message + " (in step " + std::to_string(step_) + ")";
+}
+
+void Session::show_progress(long step, long steps, double time, double done) {
+    if (command_.quiet) return;
+    const auto now = std::chrono::steady_clock::now();
+    const double elapsed = std::chrono::duration<double>(now - start_).count();
+    const double left = elapsed * (1 - done) / std::max(1e-9, done - first_done_);
+    const long percent = static_cast<long>(100 * done);
+    const std::string of_all = steps > 0 ? " of " + std::to_string(steps) : "";
+    char note[160];
+    std::snprintf(note, sizeof note, "%s %3ld %%  step %ld%s  t = %.4g  %s elapsed  %s left",
+                  about_.program.c_str(), percent, step, of_all.c_str(), time,
+                  clock_text(elapsed).c_str(), clock_text(left).c_str());
+    if (terminal_) {
+        if (now - shown_ < std::chrono::milliseconds(100) && done < 1) return;
+        struct winsize window {};
+        const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_col > 1;
+        const int width = known ? window.ws_col - 1 : 79;
+        std::fprintf(stderr, "\r%-*.*s", width, width, note);
+        line_open_ = true;
+    } else {
+        if (percent / 10 <= tenths_shown_ && done < 1) return;
+        tenths_shown_ = percent / 10;
+        std::fprintf(stderr, "%s\n", note);
+    }
+    std::fflush(stderr);
+    shown_ = now;
+}
+
+void Session::write_checkpoint(CheckpointWriter& writer, long step) {
+    char name[64];
+    std::snprintf(name, sizeof name, "checkpoint_%010ld.bin", step);
+    writer.write(path(name));
+    // Keep the last two.
+    std::error_code error;
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(command_.out_dir, error)) {
+        const std::string found = entry.path().filename().string();
+        if (begins(found, "checkpoint_") && entry.path().extension() == ".bin" && found <= name)
+            names.push_back(entry.path().string());
+    }
+    std::sort(names.begin(), names.end());
+    for (std::size_t k = 0; k + 2 < names.size(); ++k) fs::remove(names[k], error);
+}
+
+int Session::finish(long step, double count) {
+    if (line_open_) std::fputs("\n", stderr);
+    line_open_ = false;
+    history.flush();
+    const double wall =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    const double steps = static_cast<double>(step - first_step_);
+    struct rusage usage {};
+    getrusage(RUSAGE_SELF, &usage);
+    summary.performance("wall_s", wall);
+    summary.performance("steps", steps);
+    summary.performance("particle_steps", steps * count);
+    summary.performance("particle_steps_per_s", wall > 0 ? steps * count / wall : 0);
+    summary.performance("threads", thread_count());
+    summary.performance("peak_memory_bytes", 1024.0 * static_cast<double>(usage.ru_maxrss));
+
+    int status = 0;
+    std::string message = "done";
+    if (stop_signal != 0) {
+        status = 128 + stop_signal;
+        message =
+            "stopped by a signal at step " + std::to_string(step) + "; continue with --restart";
+    } else if (!summary.is_finite()) {
+        status = 3;
+        message = "a result is not finite";
+    }
+    summary.write(path("summary.json"), about_, command_.case_name, status, message);
+    if (!command_.quiet) {
+        std::printf("%s%s: %s after %ld steps in %s; results in %s\n", summary.table().c_str(),
+                    about_.program.c_str(), message.c_str(), step, clock_text(wall).c_str(),
+                    command_.out_dir.c_str());
+    }
+    if (status == 3)
+        std::fprintf(stderr, "%s: %s; see %s\n", about_.program.c_str(), message.c_str(),
+                     path("summary.json").c_str());
+    return status;
+}
+
+int Session::fail(int status, const std::string& message) {
+    try {
+        history.flush();
+        summary.write(path("summary.json"), about_, command_.case_name, status, message);
+    } catch (const std::exception&) {
+        // The disk may be full; what has failed is on the terminal anyway.
+    }
+    return status;
+}
+
+void refuse_before_start(const CommandLine& command, long steps, double bytes) {
+    if (command.restart_step > steps) {
+        throw InputError(command.restart_path + ": is at step " +
+                         std::to_string(command.restart_step) + ", and the run ends at step " +
+                         std::to_string(steps) + ": raise time.end");
+    }
+    const double there =
+        static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+    if (bytes > there) {
+        char sizes[80];
+        std::snprintf(sizes, sizeof sizes, "the case needs %.3g GiB of memory, and there is %.3g",
+                      bytes / 1073741824, there / 1073741824);
+        throw InputError(std::string(sizes) + ": use fewer particles or cells");
+    }
+}
+
+int guarded(const About& about, const std::function<int(std::optional<Session>&)>& run) {
+    std::signal(SIGPIPE, SIG_IGN);
+    std::optional<Session> session;
+    const auto end = [&](int status, const std::string& message) {
+        if (session) session->fail(status, message);
+        session.reset();
+        std::fprintf(stderr, "%s: %s\n", about.program.c_str(), printable(message).c_str());
+        return status;
+    };
+    try {
+        return run(session);
+    } catch (const InputError& error) {
+        return end(2, error.what());
+    } catch (const NumericalError& error) {
+        return end(3, session ? session->when(error.what()) : error.what());
+    } catch (const std::bad_alloc&) {
+        return end(2,
+                   "not enough memory for this case; use fewer particles or cells (--dry-run shows "
+                   "the need)");
+    } catch (const std::exception& error) {
+        return end(3, std::string("unexpected: ") + error.what());
+    }
+}
+
+}  // namespace common

@@ -1,0 +1,96 @@
+#include "common/run/summary.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "common/run/output_file.hpp"
+
+namespace common {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// The library writes a number that is not finite as null without a word; say so.
+void put(Json& object, const std::string& key, double value) {
+    if (std::isfinite(value)) {
+        object[key] = value;
+    } else {
+        object[key] = nullptr;
+        object["finite"] = false;
+    }
+}
+
+}  // namespace
+
+bool Summary::Entry::pass() const {
+    return std::isfinite(value) && std::isfinite(expected) &&
+           std::fabs(value - expected) <= tolerance;
+}
+
+bool Summary::is_finite() const {
+    const auto finite = [](const Entry& entry) { return std::isfinite(entry.value); };
+    return std::all_of(results_.begin(), results_.end(), finite) &&
+           std::all_of(conservation_.begin(), conservation_.end(), finite);
+}
+
+void Summary::write(const std::string& path, const About& about, const std::string& case_name,
+                    int status, const std::string& message) const {
+    Json json;
+    json["program"] = about.program;
+    json["version"] = about.version;
+    json["case"] = case_name;
+    json["status"] = status;
+    json["message"] = message;
+    json["results"] = Json::object();
+    for (const Entry& entry : results_) {
+        Json& result = json["results"][entry.name];
+        put(result, "value", entry.value);
+        result["unit"] = entry.unit;
+        if (entry.compared) {
+            put(result, "expected", entry.expected);
+            put(result, "tolerance", entry.tolerance);
+        }
+        result["source"] = entry.source;
+        if (entry.compared) result["pass"] = entry.pass();
+        if (!std::isfinite(entry.value)) result["pass"] = false;
+    }
+    json["conservation"] = Json::object();
+    for (const Entry& entry : conservation_) {
+        put(json["conservation"][entry.name], "value", entry.value);
+        json["conservation"][entry.name]["unit"] = entry.unit;
+    }
+    json["performance"] = Json::object();
+    for (const Entry& entry : performance_) put(json["performance"], entry.name, entry.value);
+    json["warnings"] = warnings_;
+
+    OutputFile file(path);
+    file.text(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+    file.finish();
+}
+
+std::string Summary::table() const {
+    if (results_.empty()) return "";
+    std::string text;
+    char line[512];
+    std::snprintf(line, sizeof line, "%-26s %14s   %-22s %-6s %s\n", "result", "measured",
+                  "expected", "", "source");
+    text += line;
+    for (const Entry& entry : results_) {
+        char expected[64] = "";
+        if (entry.compared)
+            std::snprintf(expected, sizeof expected, "%.6g +- %.3g", entry.expected,
+                          entry.tolerance);
+        const char* verdict = !entry.compared ? "" : entry.pass() ? "PASS" : "FAIL";
+        const std::string unit =
+            entry.unit.empty() || entry.unit == "1" ? "" : " [" + entry.unit + "]";
+        std::snprintf(line, sizeof line, "%-26s %14.6g   %-22s %-6s %s%s\n", entry.name.c_str(),
+                      entry.value, expected, verdict, entry.source.c_str(), unit.c_str());
+        text += line;
+    }
+    return text;
+}
+
+}  // namespace common

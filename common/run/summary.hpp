@@ -1,0 +1,60 @@
+// summary.json: what a run measured, beside what theory or a paper says; and the same as a table
+// for the terminal.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/run/parameters.hpp"
+
+namespace common {
+
+class Summary {
+   public:
+    /// A measured value that passes when |value - expected| <= tolerance.
+    void result(const std::string& name, double value, const std::string& unit, double expected,
+                double tolerance, const std::string& source) {
+        results_.push_back({name, unit, source, value, expected, tolerance, true});
+    }
+    /// A measured value that passes when low <= value <= high.
+    void result_within(const std::string& name, double value, const std::string& unit, double low,
+                       double high, const std::string& source) {
+        result(name, value, unit, 0.5 * (low + high), 0.5 * (high - low), source);
+    }
+    /// A measured value that is compared with nothing.
+    void result_info(const std::string& name, double value, const std::string& unit,
+                     const std::string& source) {
+        results_.push_back({name, unit, source, value, 0, 0, false});
+    }
+    void conservation(const std::string& name, double value, const std::string& unit) {
+        conservation_.push_back({name, unit, "", value, 0, 0, false});
+    }
+    void performance(const std::string& name, double value) {
+        performance_.push_back({name, "", "", value, 0, 0, false});
+    }
+    void warning(const std::string& text) { warnings_.push_back(text); }
+
+    /// Whether every number is finite; a run with one that is not has failed.
+    bool is_finite() const;
+
+    /// Writes the file. Numbers that are not finite are null, with "finite": false and
+    /// "pass": false.
+    /// in: status 0 done, 3 failed, 130 or 143 stopped by a signal; message, how the run ended.
+    void write(const std::string& path, const About& about, const std::string& case_name,
+               int status, const std::string& message) const;
+
+    /// The results against theory, one line each, with PASS or FAIL.
+    std::string table() const;
+
+   private:
+    struct Entry {
+        std::string name, unit, source;
+        double value, expected, tolerance;
+        bool compared;
+        bool pass() const;
+    };
+    std::vector<Entry> results_, conservation_, performance_;
+    std::vector<std::string> warnings_;
+};
+
+}  // namespace common

@@ -1,0 +1,267 @@
+// Files for gnuplot (text columns) and for ParaView (.vti meshes, .vtp particles).
+//
+// Every file is written under a temporary name and then renamed, so a file that is there is whole.
+// Numbers are written with as many digits as it takes to read the same bits back.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "common/run/output_file.hpp"
+
+namespace common {
+
+/// The evenly spaced coordinates of one direction of a mesh.
+struct SampledAxis {
+    std::string name, unit;
+    double first = 0.0, step = 1.0;
+    long count = 1;
+
+    double at(long i) const { return first + static_cast<double>(i) * step; }
+};
+
+/// One number per point.
+struct ScalarColumn {
+    std::string name, unit;
+    std::span<const double> values;
+};
+
+/// Three numbers per point.
+struct VectorColumn {
+    std::string name, unit;
+    std::span<const double> x, y, z;
+};
+
+namespace writers_detail {
+
+inline void require(bool condition, const std::string& path, const std::string& sentence) {
+    if (!condition) throw InputError(path + ": " + sentence);
+}
+
+inline void require_length(std::span<const double> values, long count, const std::string& path,
+                           const std::string& name) {
+    require(static_cast<long>(values.size()) == count, path,
+            "column '" + name + "' has " + std::to_string(values.size()) + " values for " +
+                std::to_string(count) + " points");
+}
+
+/// "# 1:x[d_i] 2:z[d_i] 3:rho[n_0 e]"
+inline void write_column_names(OutputFile& file, const std::vector<ScalarColumn>& columns) {
+    file.text("#");
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+        file.text(" ");
+        file.number(static_cast<long>(k + 1));
+        file.text(":" + columns[k].name + "[" + columns[k].unit + "]");
+    }
+    file.text("\n");
+}
+
+inline std::string xml_text(const std::string& plain) {
+    std::string escaped;
+    for (const char c : plain) {
+        if (c == '&')
+            escaped += "&amp;";
+        else if (c == '<')
+            escaped += "&lt;";
+        else if (c == '>')
+            escaped += "&gt;";
+        else if (c == '"')
+            escaped += "&quot;";
+        else
+            escaped += c;
+    }
+    return escaped;
+}
+
+/// The bytes three by three as four letters each.
+inline void write_base64(OutputFile& file, std::span<const std::byte> bytes) {
+    constexpr char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        const std::size_t have = std::min<std::size_t>(3, bytes.size() - i);
+        unsigned group = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+            group = (group << 8) | (k < have ? std::to_integer<unsigned>(bytes[i + k]) : 0u);
+        char four[4];
+        for (unsigned k = 0; k < 4; ++k)
+            four[k] = k <= have ? letters[(group >> (18 - 6 * k)) & 63u] : '=';
+        file.text({four, 4});
+    }
+}
+
+/// One <DataArray>: a count of bytes and the bytes, in base64.
+template <class Number>
+void write_data_array(OutputFile& file, const std::string& name, int components,
+                      const std::vector<Number>& numbers) {
+    constexpr const char* type = std::is_same_v<Number, double> ? "Float64" : "Int64";
+    const std::uint64_t size = numbers.size() * sizeof(Number);
+    std::vector<std::byte> bytes(sizeof size + size);
+    std::memcpy(bytes.data(), &size, sizeof size);
+    if (size > 0) std::memcpy(bytes.data() + sizeof size, numbers.data(), size);
+    file.text("<DataArray type=\"" + std::string(type) + "\" Name=\"" + xml_text(name) +
+              "\" NumberOfComponents=\"" + std::to_string(components) + "\" format=\"binary\">\n");
+    write_base64(file, bytes);
+    file.text("\n</DataArray>\n");
+}
+
+inline std::string label(const std::string& name, const std::string& unit) {
+    return unit.empty() ? name : name + " [" + unit + "]";
+}
+
+inline std::vector<double> interleave(std::span<const double> x, std::span<const double> y,
+                                      std::span<const double> z) {
+    std::vector<double> mixed(3 * x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        mixed[3 * i] = x[i];
+        mixed[3 * i + 1] = y[i];
+        mixed[3 * i + 2] = z[i];
+    }
+    return mixed;
+}
+
+inline void write_point_data(OutputFile& file, const std::string& path, long count,
+                             const std::vector<ScalarColumn>& scalars,
+                             const std::vector<VectorColumn>& vectors) {
+    file.text("<PointData>\n");
+    for (const auto& s : scalars) {
+        require_length(s.values, count, path, s.name);
+        write_data_array(file, label(s.name, s.unit), 1,
+                         std::vector<double>(s.values.begin(), s.values.end()));
+    }
+    for (const auto& v : vectors) {
+        for (const auto& part : {v.x, v.y, v.z}) require_length(part, count, path, v.name);
+        write_data_array(file, label(v.name, v.unit), 3, interleave(v.x, v.y, v.z));
+    }
+    file.text("</PointData>\n");
+}
+
+inline void begin_vtk(OutputFile& file, const std::string& type) {
+    const bool little = std::endian::native == std::endian::little;
+    file.text("<?xml version=\"1.0\"?>\n<VTKFile type=\"" + type +
+              "\" version=\"1.0\" byte_order=\"" + (little ? "LittleEndian" : "BigEndian") +
+              "\" header_type=\"UInt64\">\n");
+}
+
+}  // namespace writers_detail
+
+/// Name of the n-th file of a kind: fields_000123.dat for step 123.
+inline std::string numbered(const std::string& kind, long step, const std::string& ending) {
+    char digits[32];
+    std::snprintf(digits, sizeof digits, "_%06ld.", step);
+    return kind + digits + ending;
+}
+
+/// Writes columns of equal length, one row per particle or time.
+/// in:    columns, each with name and unit for the first line "# 1:name[unit] 2:..."
+/// exact: numbers read back have the same bits; on failure nothing appears under `path`
+inline void write_table(const std::string& path, const std::vector<ScalarColumn>& columns) {
+    const long rows = columns.empty() ? 0 : static_cast<long>(columns.front().values.size());
+    for (const auto& c : columns) writers_detail::require_length(c.values, rows, path, c.name);
+    OutputFile file(path);
+    writers_detail::write_column_names(file, columns);
+    for (std::size_t row = 0; row < static_cast<std::size_t>(rows); ++row) {
+        for (std::size_t k = 0; k < columns.size(); ++k) {
+            if (k > 0) file.text(" ");
+            file.number(columns[k].values[row]);
+        }
+        file.text("\n");
+    }
+    file.finish();
+}
+
+/// Writes fields on a plane mesh for gnuplot: columns x, z, fields; an empty line after each row of
+/// the mesh.
+/// in:    axes x and z; fields of x.count * z.count values, x fastest
+/// exact: as write_table
+inline void write_fields(const std::string& path, const SampledAxis& x, const SampledAxis& z,
+                         const std::vector<ScalarColumn>& fields) {
+    for (const auto& f : fields)
+        writers_detail::require_length(f.values, x.count * z.count, path, f.name);
+    std::vector<ScalarColumn> columns{{x.name, x.unit, {}}, {z.name, z.unit, {}}};
+    columns.insert(columns.end(), fields.begin(), fields.end());
+    OutputFile file(path);
+    writers_detail::write_column_names(file, columns);
+    for (long j = 0; j < z.count; ++j) {
+        for (long i = 0; i < x.count; ++i) {
+            file.number(x.at(i));
+            file.text(" ");
+            file.number(z.at(j));
+            for (const auto& f : fields) {
+                file.text(" ");
+                file.number(f.values[static_cast<std::size_t>(j * x.count + i)]);
+            }
+            file.text("\n");
+        }
+        file.text("\n");
+    }
+    file.finish();
+}
+
+/// Writes fields on a mesh for ParaView (VTK image data, point data in base64).
+/// in:    axes x, y, z, one point in a direction that the mesh does not have; scalars and vectors
+///        of one value per point, x fastest and z slowest
+/// exact: well-formed XML; the values are the bits given
+/// source: The VTK User's Guide, "VTK File Formats".
+inline void write_vti(const std::string& path, const std::array<SampledAxis, 3>& axes,
+                      const std::vector<ScalarColumn>& scalars,
+                      const std::vector<VectorColumn>& vectors) {
+    OutputFile file(path);
+    writers_detail::begin_vtk(file, "ImageData");
+    std::string extent;
+    for (const auto& axis : axes)
+        extent += (extent.empty() ? "0 " : " 0 ") + std::to_string(axis.count - 1);
+    file.text("<ImageData WholeExtent=\"" + extent + "\" Origin=\"");
+    for (std::size_t d = 0; d < 3; ++d) {
+        if (d > 0) file.text(" ");
+        file.number(axes[d].first);
+    }
+    file.text("\" Spacing=\"");
+    for (std::size_t d = 0; d < 3; ++d) {
+        if (d > 0) file.text(" ");
+        file.number(axes[d].step);
+    }
+    file.text("\">\n<Piece Extent=\"" + extent + "\">\n");
+    const long points = axes[0].count * axes[1].count * axes[2].count;
+    writers_detail::write_point_data(file, path, points, scalars, vectors);
+    file.text("<CellData></CellData>\n</Piece>\n</ImageData>\n</VTKFile>\n");
+    file.finish();
+}
+
+/// Writes particles for ParaView (VTK poly data, one vertex per particle).
+/// in:    positions of n particles; scalars and vectors of n values
+/// exact: as write_vti
+inline void write_vtp(const std::string& path, const VectorColumn& position,
+                      const std::vector<ScalarColumn>& scalars,
+                      const std::vector<VectorColumn>& vectors) {
+    const long points = static_cast<long>(position.x.size());
+    for (const auto& part : {position.x, position.y, position.z})
+        writers_detail::require_length(part, points, path, position.name);
+    OutputFile file(path);
+    writers_detail::begin_vtk(file, "PolyData");
+    const std::string count = std::to_string(points);
+    file.text("<PolyData>\n<Piece NumberOfPoints=\"" + count + "\" NumberOfVerts=\"" + count +
+              "\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n");
+    writers_detail::write_point_data(file, path, points, scalars, vectors);
+    file.text("<Points>\n");
+    writers_detail::write_data_array(
+        file, "Points", 3, writers_detail::interleave(position.x, position.y, position.z));
+    file.text("</Points>\n<Verts>\n");
+    std::vector<std::int64_t> connectivity(position.x.size()), offsets(position.x.size());
+    for (std::size_t i = 0; i < connectivity.size(); ++i) {
+        connectivity[i] = static_cast<std::int64_t>(i);
+        offsets[i] = static_cast<std::int64_t>(i + 1);
+    }
+    writers_detail::write_data_array(file, "connectivity", 1, connectivity);
+    writers_detail::write_data_array(file, "offsets", 1, offsets);
+    file.text("</Verts>\n</Piece>\n</PolyData>\n</VTKFile>\n");
+    file.finish();
+}
+
+}  // namespace common

@@ -1,0 +1,197 @@
+// on the mesh: the Lagrangian phase. The mesh moves with the fluid for one step: pressure,
+// viscosity and gravity accelerate its nodes, and the motion of the nodes works on the cells.
+//
+// Force and work are one operator and its transpose, so what the nodes gain the cells lose, to
+// round-off:  sum_g F_g . v_g = sum_c p_c V_c (div v)_c  for any v on the nodes.
+#pragma once
+
+#include <array>
+#include <cmath>
+
+#include "flip/flip/find_pressure.hpp"
+#include "flip/flip/set_walls.hpp"
+#include "flip/state.hpp"
+
+namespace flip {
+
+// [transpose]
+/// V_c div v of a cell, from its four nodes.
+inline double dilation(const Grid& grid, const Field& vx, const Field& vz, long n) {
+    const long up = n + grid.stride();
+    return 0.5 * grid.z.spacing() * (vx[n + 1] + vx[up + 1] - vx[n] - vx[up]) +
+           0.5 * grid.x.spacing() * (vz[up] + vz[up + 1] - vz[n] - vz[n + 1]);
+}
+
+/// Force of the pressures of the four cells around a node; the transpose of dilation().
+inline Eigen::Vector2d pressure_force(const Grid& grid, const Field& p, long n) {
+    const long down = n - grid.stride();
+    return {0.5 * grid.z.spacing() * (p[down - 1] + p[n - 1] - p[down] - p[n]),
+            0.5 * grid.x.spacing() * (p[down - 1] + p[down] - p[n - 1] - p[n])};
+}
+// [/transpose]
+
+/// Artificial viscosity of every cell, from the velocity that the walls let stand.
+///   q = rho (-d) h (linear c + quadratic h (-d)),  d = div v < 0,  h = dx, or sqrt(dx dz)
+/// out:    nodes.vx0, vz0; cells.q
+inline void find_viscosity(const Case& w, Mesh& mesh) {
+    const Grid& grid = w.grid;
+    Nodes& g = mesh.nodes;
+    Cells& c = mesh.cells;
+    for_each_node(grid, [&](long, long, long n) {
+        g.vx0[n] = g.vx[n];
+        g.vz0[n] = g.vz[n];
+    });
+    set_walls(w, g.vx0, g.vz0);
+    const double V_c = grid.cell_area();
+    const double h = w.plane() ? std::sqrt(V_c) : grid.x.spacing();
+    for_each_cell(grid, [&](long, long, long n) {
+        const double d = dilation(grid, g.vx0, g.vz0, n) / V_c;
+        const bool squeezed = d < 0 && c.M[n] > 0 && c.surface[static_cast<std::size_t>(n)] == 0;
+        const double rho = c.M[n] / (c.volume.size() > 0 ? std::max(c.volume[n], 1e-300) : V_c);
+        c.q[n] =
+            squeezed
+                ? rho * -d * h *
+                      (w.q_linear * sound_speed(rho, c.compressibility[n]) - w.q_quadratic * h * d)
+                : 0;
+    });
+}
+
+/// Acceleration by gravity and trap at a place.
+inline Eigen::Vector2d pull_at(const Case& w, double x, double z) {
+    return {w.gravity_x + w.trap * (w.grid.x.low + 0.5 * w.grid.x.length - x),
+            w.gravity_z + w.trap * (w.grid.z.low + 0.5 * w.grid.z.length - z)};
+}
+/// The same on a node. The two images of a node at the seam of a periodic direction are as far from
+/// the middle on either side: there the trap does not pull.
+inline Eigen::Vector2d pull_on_node(const Case& w, long n) {
+    const long stride = w.grid.stride();
+    const auto place = [](const common::Axis& axis, long k) {
+        const bool seam = axis.periodic && (k == 0 || k == axis.cells);
+        return axis.at(seam ? 0.5 * static_cast<double>(axis.cells) : static_cast<double>(k));
+    };
+    return pull_at(w, place(w.grid.x, n % stride - 1), place(w.grid.z, n / stride - 1));
+}
+
+namespace detail {
+
+// The gradients of the four corner functions at one of the four points of Gauss's rule, for a
+// velocity that is bilinear in the cell; x derivatives and z derivatives.
+struct CornerGradients {
+    double x[4], z[4];
+};
+inline std::array<CornerGradients, 4> corner_gradients(const Grid& grid) {
+    const double near = 0.5 - 0.5 / std::sqrt(3.0), dx = grid.x.spacing(), dz = grid.z.spacing();
+    std::array<CornerGradients, 4> all;
+    for (std::size_t k = 0; k < 4; ++k) {
+        const double fx = k & 1 ? 1 - near : near, fz = k & 2 ? 1 - near : near;
+        all[k] = {{-(1 - fz) / dx, (1 - fz) / dx, -fz / dx, fz / dx},
+                  {-(1 - fx) / dz, -fx / dz, (1 - fx) / dz, fx / dz}};
+    }
+    return all;
+}
+
+// Stress of a Newtonian fluid, mu (grad v + grad v^T - (2/3) div v), at one point.
+struct ViscousStress {
+    double xx, zz, xz;
+};
+inline ViscousStress viscous_stress(double mu, const CornerGradients& d,
+                                    const std::array<long, 4>& n, const Field& vx,
+                                    const Field& vz) {
+    double xx = 0, zz = 0, xz = 0;
+    for (std::size_t a = 0; a < 4; ++a) {
+        xx += d.x[a] * vx[n[a]];
+        zz += d.z[a] * vz[n[a]];
+        xz += d.z[a] * vx[n[a]] + d.x[a] * vz[n[a]];
+    }
+    const double mean = (xx + zz) * 2 / 3;
+    return {mu * (2 * xx - mean), mu * (2 * zz - mean), mu * xz};
+}
+
+inline std::array<long, 4> corners_of(const Grid& grid, long n) {
+    return {n, n + 1, n + grid.stride(), n + grid.stride() + 1};
+}
+
+}  // namespace detail
+
+/// Adds the viscous force of the fluid, from the velocities before the step.
+///   F_g -= sum over cells of the integral of tau . grad S_g, by Gauss's rule of four points
+/// exact:  forces sum to zero but for walls; a rigid motion feels none
+inline void add_viscous_force(const Case& w, Mesh& mesh) {
+    if (w.viscosity == 0) return;
+    const Grid& grid = w.grid;
+    Nodes& g = mesh.nodes;
+    const auto gradients = detail::corner_gradients(grid);
+    const double part = 0.25 * grid.cell_area();
+    common::for_each_row_two_apart(grid.z.cells, [&](long j) {
+        for (long i = 0; i < grid.x.cells; ++i) {
+            const long n = grid.index(i, j);
+            if (is_frayed(grid, g.m, n)) continue;
+            const auto corners = detail::corners_of(grid, n);
+            for (const detail::CornerGradients& d : gradients) {
+                const auto tau = detail::viscous_stress(w.viscosity, d, corners, g.vx0, g.vz0);
+                for (std::size_t a = 0; a < 4; ++a) {
+                    g.fx[corners[a]] -= part * (tau.xx * d.x[a] + tau.xz * d.z[a]);
+                    g.fz[corners[a]] -= part * (tau.xz * d.x[a] + tau.zz * d.z[a]);
+                }
+            }
+        }
+    });
+    fold_nodes(grid, g.fx.data());
+    fold_nodes(grid, g.fz.data());
+}
+
+/// Heat that viscosity makes in one cell per time, from stresses of v0 and the motion vbar.
+inline double viscous_heat(const Case& w, const Nodes& g, const Field& vx, const Field& vz,
+                           long n) {
+    if (is_frayed(w.grid, g.m, n)) return 0;
+    const auto corners = detail::corners_of(w.grid, n);
+    double sum = 0;
+    for (const detail::CornerGradients& d : detail::corner_gradients(w.grid)) {
+        const auto tau = detail::viscous_stress(w.viscosity, d, corners, g.vx0, g.vz0);
+        for (std::size_t a = 0; a < 4; ++a)
+            sum += vx[corners[a]] * (tau.xx * d.x[a] + tau.xz * d.z[a]) +
+                   vz[corners[a]] * (tau.xz * d.x[a] + tau.zz * d.z[a]);
+    }
+    return 0.25 * w.grid.cell_area() * sum;
+}
+
+/// The forces that are known before the step: q, the viscosity of the fluid, and the pressure
+/// outside of open ends.
+/// out:    nodes.fx, fz
+inline void find_known_forces(const Case& w, Mesh& mesh) {
+    const Grid& grid = w.grid;
+    Nodes& g = mesh.nodes;
+    for_each_node(grid, [&](long, long, long n) { g.fx[n] = g.fz[n] = 0; });
+    add_viscous_force(w, mesh);
+    fill_pressure(grid, mesh.cells.q);
+    for_each_node(grid, [&](long i, long j, long n) {
+        const Eigen::Vector2d F = pressure_force(grid, mesh.cells.q, n) + outside_force(w, i, j);
+        g.fx[n] += F[0];
+        g.fz[n] += F[1];
+    });
+}
+
+/// Velocities after the Lagrangian phase.
+///   v_g^L = v_g + dt (F_g/m_g + g),  held by the walls
+/// in:     cells.p_step inside, the pressure that acts in this step; known forces
+/// in/out: nodes.fx, fz: with the force of pressure
+/// out:    nodes.vxL, vzL, 0 on nodes without mass
+/// exact:  internal forces sum to zero
+/// source: [FLIP-6]
+inline void accelerate_nodes(const Case& w, double dt, Mesh& mesh) {
+    const Grid& grid = w.grid;
+    Nodes& g = mesh.nodes;
+    fill_pressure(grid, mesh.cells.p_step);
+    for_each_node(grid, [&](long, long, long n) {
+        const Eigen::Vector2d F = pressure_force(grid, mesh.cells.p_step, n);
+        g.fx[n] += F[0];
+        g.fz[n] += F[1];
+        const double per_mass = g.m[n] > 0 ? 1 / g.m[n] : 0;
+        const Eigen::Vector2d pull = pull_on_node(w, n);
+        g.vxL[n] = per_mass > 0 ? g.vx0[n] + dt * (per_mass * g.fx[n] + pull[0]) : 0;
+        g.vzL[n] = per_mass > 0 ? g.vz0[n] + dt * (per_mass * g.fz[n] + pull[1]) : 0;
+    });
+    set_walls(w, g.vxL, g.vzL);
+}
+
+}  // namespace flip

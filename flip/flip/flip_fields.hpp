@@ -1,0 +1,83 @@
+// What the recorder wants to know of flip: sums over the particles, and the fluid on the cells.
+#pragma once
+
+#include <array>
+
+#include "flip/flip/mesh.hpp"
+#include "flip/flip/transfer.hpp"
+
+namespace flip {
+
+/// Sums over the particles; with apic the motion within a particle counts.
+/// exact:  added in an order that does not depend on the number of threads
+inline Totals particle_totals(const Case& w, const Particles& p) {
+    const WeightScale scale(w.grid);
+    const double x_mid = w.grid.x.low + 0.5 * w.grid.x.length,
+                 z_mid = w.grid.z.low + 0.5 * w.grid.z.length;
+    const bool affine = has(p.Cxx_p);
+    std::array<Totals, common::block_count> parts{};
+    common::for_each_block(
+        p.count(),
+        [&](int block, long begin, long end) {
+            Totals sum;
+            for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
+                const double m = p.m_p[k], vx = p.vx_p[k], vz = p.vz_p[k];
+                sum.mass += m;
+                sum.momentum_x += m * vx;
+                sum.momentum_z += m * vz;
+                sum.angular_momentum += m * ((p.x_p[k] - x_mid) * vz - (p.z_p[k] - z_mid) * vx);
+                sum.kinetic += 0.5 * m * (vx * vx + vz * vz);
+                sum.internal += m * p.e_p[k];
+                if (!affine) continue;
+                const Weights at = weights_at(scale, p.x_p[k], p.z_p[k]);
+                const double C[4] = {p.Cxx_p[k], p.Cxz_p[k], p.Czx_p[k], p.Czz_p[k]};
+                const double dx = w.grid.x.spacing(), dz = w.grid.z.spacing();
+                sum.kinetic += m * affine_energy(w.grid, at, C);
+                sum.angular_momentum += m * (C[2] * at.S_x[0] * at.S_x[1] * dx * dx -
+                                             C[1] * at.S_z[0] * at.S_z[1] * dz * dz);
+            }
+            parts[static_cast<std::size_t>(block)] = sum;
+        },
+        p.count());
+    Totals all;
+    for (const Totals& part : parts) {
+        all.mass += part.mass;
+        all.momentum_x += part.momentum_x;
+        all.momentum_z += part.momentum_z;
+        all.angular_momentum += part.angular_momentum;
+        all.kinetic += part.kinetic;
+        all.internal += part.internal;
+    }
+    return all;
+}
+
+/// The fluid on the cells.
+/// in:     deposit_particles() and find_pressure() have been called
+inline CellFields cell_fields(const Case& w, const Mesh& mesh) {
+    const Grid& grid = w.grid;
+    const Nodes& g = mesh.nodes;
+    const std::size_t kinds = mesh.materials;
+    const double per_V = 1 / grid.cell_area();
+    CellFields f;
+    for (Field* field : {&f.rho, &f.vx, &f.vz, &f.p, &f.e}) field->setZero(grid.size());
+    f.rho_of.assign(kinds, Field::Zero(grid.size()));
+    for_each_cell(grid, [&](long, long, long n) {
+        const double M = mesh.cells.M[n];
+        if (M <= 0) return;
+        const long up = n + grid.stride();
+        double U = 0;
+        for (std::size_t k = 0; k < kinds; ++k) {
+            const CellSum& sum = mesh.cells.sum[static_cast<std::size_t>(n) * kinds + k];
+            f.rho_of[k][n] = sum.M * per_V;
+            U += sum.U;
+        }
+        f.rho[n] = M * per_V;
+        f.vx[n] = 0.25 * (g.vx[n] + g.vx[n + 1] + g.vx[up] + g.vx[up + 1]);
+        f.vz[n] = 0.25 * (g.vz[n] + g.vz[n + 1] + g.vz[up] + g.vz[up + 1]);
+        f.p[n] = mesh.cells.p[n];
+        f.e[n] = U / M;
+    });
+    return f;
+}
+
+}  // namespace flip

@@ -1,0 +1,249 @@
+// The scratch pad of flip: what the mesh knows within one step. Velocities live on nodes, pressure
+// on cells; a particle reaches the four nodes of its cell and the four cells whose centers are
+// around it, both by area weighting.
+//
+//     o-----------o          o  node (i, j): mass m_g, velocity v_g
+//     |     |     |          f  cell (i, j): materials, pressure p_c, at index(i, j) too
+//     |  ---f---  |
+//     |     |     |          a cell changes its volume by what its four nodes do,
+//     o-----------o          and its pressure pushes the same four nodes
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "common/parallel.hpp"
+#include "flip/particles.hpp"
+#include "flip/setup/case.hpp"
+
+namespace flip {
+
+using Four = Eigen::Array4d;
+
+/// What the particles of one material bring to a cell.
+struct CellSum {
+    double M = 0, U = 0;  // mass, internal energy
+};
+
+/// The nodes; all columns grid.size() long.
+struct Nodes {
+    std::vector<Four> sum;   // m_g, momentum x and z, nothing
+    Field m;                 // m_g
+    Field vx, vz;            // Favre average of the particles' velocities  [FLIP-8]
+    Field vx0, vz0;          // the same, with the walls' part set
+    Field fx, fz;            // force of pressure, q and viscosity
+    Field vxL, vzL;          // after the Lagrangian phase
+    Field vx_bar, vz_bar;    // mean of v^0 and v^L
+    Field vx_work, vz_work;  // at which pressure works: v_bar, or v^theta of an implicit one
+    std::vector<Four>
+        kick;  // change of velocity x and z, velocity that particles move with x and z
+    std::vector<Four> carry;       // what particles keep instead of their own velocity, not in flip
+    Field heat;                    // specific energy that leaves the motion of the nodes
+    Field reaction_x, reaction_z;  // impulse of the walls, with the consistent mass matrix
+    Field stopped;                 // specific energy that they take then
+};
+
+/// The cells; columns of grid.size(), those per material with the materials of a cell together.
+struct Cells {
+    std::vector<CellSum> sum;         // [cell][material]
+    std::vector<double> share, de;    // of a change of volume; change of e in this step
+    std::vector<double> relative_de;  // change of e by pressure, per e
+    Field M;                          // mass
+    Field p, q;                       // pressure, artificial viscosity
+    Field compressibility;            // -(dV/dp)/V; 0 in an empty cell
+    Field p_step;                     // the pressure that acts in this step
+    std::vector<char> surface;        // 1: partly void, p = 0 whatever happens
+    Field volume, give, give_p;       // sums over particles that carry volumes: V, V/K, p V/K
+    Field strain, work, q_work;       // V_c div v dt per sum of V/K, for such particles
+};
+
+struct Mesh {
+    Nodes nodes;
+    Cells cells;
+    std::size_t materials = 1;
+};
+
+/// Makes room, once.
+inline Mesh mesh_of(const Case& w) {
+    Mesh mesh;
+    const long size = w.grid.size();
+    const auto count = static_cast<std::size_t>(size);
+    Nodes& g = mesh.nodes;
+    for (Field* f : {&g.m, &g.vx, &g.vz, &g.vx0, &g.vz0, &g.fx, &g.fz, &g.vxL, &g.vzL, &g.vx_bar,
+                     &g.vz_bar, &g.vx_work, &g.vz_work, &g.heat})
+        f->setZero(size);
+    g.sum.assign(count, Four::Zero());
+    g.kick.assign(count, Four::Zero());
+    if (w.mass == "consistent")
+        for (Field* f : {&g.reaction_x, &g.reaction_z, &g.stopped}) f->setZero(size);
+    if (w.transfer != "flip") g.carry.assign(count, Four::Zero());
+    Cells& c = mesh.cells;
+    mesh.materials = w.materials.size();
+    c.sum.assign(count * mesh.materials, {});
+    c.share.assign(count * mesh.materials, 0);
+    c.de.assign(count * mesh.materials, 0);
+    c.relative_de.assign(count * mesh.materials, 0);
+    c.surface.assign(count, 0);
+    for (Field* f : {&c.M, &c.p, &c.q, &c.compressibility, &c.p_step}) f->setZero(size);
+    if (w.density == "particles")
+        for (Field* f : {&c.volume, &c.give, &c.give_p, &c.strain, &c.work, &c.q_work})
+            f->setZero(size);
+    return mesh;
+}
+
+/// Where a position is, in both directions: the cell with its four nodes, and the four cells around.
+struct Weights {
+    long node, cell;        // index of the lower left one of each four
+    double S_x[2], S_z[2];  // of the nodes
+    double R_x[2], R_z[2];  // of the cells
+};
+
+/// The constants of weights_at().
+struct WeightScale {
+    double x_low, z_low, per_dx, per_dz;
+    long stride, origin, last_x, last_z;
+
+    explicit WeightScale(const Grid& grid)
+        : x_low(grid.x.low),
+          z_low(grid.z.low),
+          per_dx(1 / grid.x.spacing()),
+          per_dz(1 / grid.z.spacing()),
+          stride(grid.stride()),
+          origin(grid.index(0, 0)),
+          last_x(grid.x.cells - 1),
+          last_z(grid.z.cells - 1) {}
+};
+
+/// S and R of one particle; both are linear, sum to 1, and differ by half a cell.
+/// in:     a position on the mesh
+[[gnu::always_inline]] inline Weights weights_at(const WeightScale& a, double x, double z) {
+    Weights w;
+    const double s = (x - a.x_low) * a.per_dx, t = (z - a.z_low) * a.per_dz;
+    const long i = std::min(static_cast<long>(s), a.last_x),
+               j = std::min(static_cast<long>(t), a.last_z);
+    const double fx = s - static_cast<double>(i), fz = t - static_cast<double>(j);
+    w.S_x[0] = 1 - fx, w.S_x[1] = fx;
+    w.S_z[0] = 1 - fz, w.S_z[1] = fz;
+    const long right = fx >= 0.5, above = fz >= 0.5;
+    w.R_x[1] = fx + 0.5 - static_cast<double>(right), w.R_x[0] = 1 - w.R_x[1];
+    w.R_z[1] = fz + 0.5 - static_cast<double>(above), w.R_z[0] = 1 - w.R_z[1];
+    w.node = a.origin + j * a.stride + i;
+    w.cell = w.node + (above - 1) * a.stride + right - 1;
+    return w;
+}
+
+/// Calls visit(index, weight) for the four nodes, or the four cells, of a particle.
+template <class Visit>
+void for_nodes(const WeightScale& a, const Weights& w, const Visit& visit) {
+    visit(w.node, w.S_x[0] * w.S_z[0]);
+    visit(w.node + 1, w.S_x[1] * w.S_z[0]);
+    visit(w.node + a.stride, w.S_x[0] * w.S_z[1]);
+    visit(w.node + a.stride + 1, w.S_x[1] * w.S_z[1]);
+}
+template <class Visit>
+void for_cells(const WeightScale& a, const Weights& w, const Visit& visit) {
+    visit(w.cell, w.R_x[0] * w.R_z[0]);
+    visit(w.cell + 1, w.R_x[1] * w.R_z[0]);
+    visit(w.cell + a.stride, w.R_x[0] * w.R_z[1]);
+    visit(w.cell + a.stride + 1, w.R_x[1] * w.R_z[1]);
+}
+
+namespace detail {
+
+// Calls visit(to, from) for the two images beyond the ends of a periodic direction of nodes.
+template <class Visit>
+void node_images(long cells, const Visit& visit) {
+    visit(cells, 0L);
+    visit(-1L, cells - 1);
+    visit(cells + 1, cells > 1 ? 1L : 0L);
+}
+
+}  // namespace detail
+
+/// Copies nodes to their periodic images; what is beyond a wall stays as it is.
+template <class Number>
+void fill_nodes(const Grid& grid, Number* f) {
+    const long nx = grid.x.cells, nz = grid.z.cells, stride = grid.stride();
+    if (grid.x.periodic)
+        for (long j = 0; j <= nz; ++j)
+            detail::node_images(
+                nx, [&](long to, long from) { f[grid.index(to, j)] = f[grid.index(from, j)]; });
+    if (grid.z.periodic)
+        detail::node_images(nz, [&](long to, long from) {
+            std::copy_n(f + grid.index(-1, from), stride, f + grid.index(-1, to));
+        });
+}
+
+/// Adds what was deposited on the last node of a periodic direction to the first, which it is; then
+/// fills.
+template <class Number>
+void fold_nodes(const Grid& grid, Number* f) {
+    const long nx = grid.x.cells, nz = grid.z.cells;
+    if (grid.x.periodic)
+        for (long j = 0; j <= nz; ++j) f[grid.index(0, j)] += f[grid.index(nx, j)];
+    if (grid.z.periodic)
+        for (long i = -1; i <= nx + 1; ++i) f[grid.index(i, 0)] += f[grid.index(i, nz)];
+    fill_nodes(grid, f);
+}
+
+/// Copies cells to the ring of ghosts around the mesh: periodic images, or beyond any other end the
+/// nearest cell; `width` numbers per cell.
+inline void fill_cells(const Grid& grid, double* f, long width = 1) {
+    const long nx = grid.x.cells, nz = grid.z.cells, row = width * grid.stride();
+    const auto at = [&](long i, long j) { return f + width * grid.index(i, j); };
+    for (long j = 0; j < nz; ++j) {
+        std::copy_n(at(grid.x.periodic ? nx - 1 : 0, j), width, at(-1, j));
+        std::copy_n(at(grid.x.periodic ? 0 : nx - 1, j), width, at(nx, j));
+    }
+    std::copy_n(at(-1, grid.z.periodic ? nz - 1 : 0), row, at(-1, -1));
+    std::copy_n(at(-1, grid.z.periodic ? 0 : nz - 1), row, at(-1, nz));
+}
+
+/// Adds what was deposited on ghosts to the cells that they are images of; the transpose of
+/// fill_cells, without filling.
+inline void fold_cells(const Grid& grid, double* f, long width = 1) {
+    const long nx = grid.x.cells, nz = grid.z.cells, row = width * grid.stride();
+    const auto at = [&](long i, long j) { return f + width * grid.index(i, j); };
+    const auto add = [](const double* from, double* to, long count) {
+        for (long k = 0; k < count; ++k) to[k] += from[k];
+    };
+    add(at(-1, -1), at(-1, grid.z.periodic ? nz - 1 : 0), row);
+    add(at(-1, nz), at(-1, grid.z.periodic ? 0 : nz - 1), row);
+    for (long j = 0; j < nz; ++j) {
+        add(at(-1, j), at(grid.x.periodic ? nx - 1 : 0, j), width);
+        add(at(nx, j), at(grid.x.periodic ? 0 : nx - 1, j), width);
+    }
+}
+
+/// Calls work(i, j, index) for every cell, or every node, blocks of rows in parallel.
+template <class Work>
+void for_each_cell(const Grid& grid, const Work& work) {
+    common::for_each_block(
+        grid.z.cells,
+        [&](int, long begin, long end) {
+            for (long j = begin; j < end; ++j)
+                for (long i = 0; i < grid.x.cells; ++i) work(i, j, grid.index(i, j));
+        },
+        grid.size());
+}
+template <class Work>
+void for_each_node(const Grid& grid, const Work& work) {
+    common::for_each_block(
+        grid.z.cells + 1,
+        [&](int, long begin, long end) {
+            for (long j = begin; j < end; ++j)
+                for (long i = 0; i <= grid.x.cells; ++i) work(i, j, grid.index(i, j));
+        },
+        grid.size());
+}
+
+/// Calls visit(index) once for every node that is not the image of another, row by row.
+template <class Visit>
+void for_own_nodes(const Grid& grid, const Visit& visit) {
+    const long nx = grid.x.cells - (grid.x.periodic ? 1 : 0),
+               nz = grid.z.cells - (grid.z.periodic ? 1 : 0);
+    for (long j = 0; j <= nz; ++j)
+        for (long i = 0; i <= nx; ++i) visit(grid.index(i, j));
+}
+
+}  // namespace flip

@@ -1,0 +1,262 @@
+// particles: more of them where they have become few, fewer where they crowd, and the mesh does not
+// notice. "Computers are bigger than they were in 1960", but a flow that stretches still pulls the
+// particles of a cell apart.
+//
+// All that the mesh sees of a particle are its weights, and within a quarter of a cell they are
+// combinations of four functions, phi = (1, x, z, x z). So
+//   - four children at (+-a, +-b) around their parent, each a quarter of it, are the parent;
+//   - a particle i is four others j if phi_i = sum_j lambda_j phi_j: each of them takes lambda_j of
+//     its mass, momentum and energy.
+#pragma once
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <vector>
+
+#include "flip/flip/mesh.hpp"
+
+namespace flip {
+
+/// What a rezoning has done.
+struct RezoneReport {
+    long split = 0, merged = 0;  // particles that are now four (in a row of cells two), and gone
+};
+
+namespace detail {
+
+// Where a particle is: its cell with its material, and the quarter of the cell.
+struct Quarter {
+    long cell = 0;        // [row][column][material]
+    int part = 0;         // 0 to 3: left or right, below or above
+    double x = 0, z = 0;  // in cells, from the center of the cell
+};
+inline Quarter quarter_of(const Case& w, const Particles& p, std::size_t k) {
+    const Grid& grid = w.grid;
+    const long i = cell_along(grid.x, p.x_p[k]), j = cell_along(grid.z, p.z_p[k]);
+    Quarter q;
+    q.cell = (j * grid.x.cells + i) * static_cast<long>(w.materials.size()) + p.material[k];
+    q.x = (p.x_p[k] - grid.x.low) / grid.x.spacing() - static_cast<double>(i) - 0.5;
+    q.z = (p.z_p[k] - grid.z.low) / grid.z.spacing() - static_cast<double>(j) - 0.5;
+    q.part = (q.x >= 0 ? 1 : 0) + (q.z >= 0 ? 2 : 0);
+    return q;
+}
+
+// Half the distance to the nearest border of its quarter, in cells.
+inline double room(double from_center) {
+    const double r = std::fabs(from_center);
+    return 0.5 * std::min(r, 0.5 - r);
+}
+
+// Splits one particle; its children stay in its quarter. out: whether there was room.
+inline bool split(const Case& w, const Quarter& q, std::size_t k, Particles& p) {
+    const bool plane = w.plane();
+    const double a = std::min(0.25 / static_cast<double>(w.per_cell_x), room(q.x)),
+                 b = plane ? std::min(0.25 / static_cast<double>(w.per_cell_z), room(q.z)) : 0;
+    if (a < 0.01 || (plane && b < 0.01)) return false;
+    const double x = p.x_p[k], z = p.z_p[k], dx = a * w.grid.x.spacing(),
+                 dz = b * w.grid.z.spacing(), part = plane ? 0.25 : 0.5;
+    p.m_p[k] *= part;
+    if (has(p.V_p)) p.V_p[k] *= part;
+    for (int child = 1; child < (plane ? 4 : 2); ++child) {
+        for (std::vector<double>* column : p.all())
+            if (has(*column)) column->push_back((*column)[k]);
+        p.material.push_back(p.material[k]);
+        p.x_p.back() = x + (child & 1 ? dx : -dx);
+        p.z_p.back() = z + (child & 2 ? dz : -dz);
+    }
+    p.x_p[k] = x - dx;
+    p.z_p[k] = z - dz;
+    return true;
+}
+
+// The parts lambda of particle i that the others take, phi_i = sum lambda_j phi_j; empty when the
+// others lie on a line, or when one of them would be left with too little.
+inline std::vector<double> parts_of(const std::vector<Quarter>& q, const Particles& p,
+                                    std::size_t i, const std::vector<std::size_t>& others,
+                                    bool plane, double& worst) {
+    const auto count = static_cast<long>(others.size());
+    Eigen::MatrixXd phi(count, count);
+    Eigen::VectorXd phi_i(count);
+    const auto fill = [&](std::size_t k, auto&& column) {
+        column[0] = 1;
+        column[1] = q[k].x - q[i].x;
+        if (!plane) return;
+        column[2] = q[k].z - q[i].z;
+        column[3] = (q[k].x - q[i].x) * (q[k].z - q[i].z);
+    };
+    for (long n = 0; n < count; ++n) fill(others[static_cast<std::size_t>(n)], phi.col(n));
+    fill(i, phi_i);
+    const Eigen::FullPivLU<Eigen::MatrixXd> solver(phi);
+    if (!solver.isInvertible()) return {};
+    const Eigen::VectorXd lambda = solver.solve(phi_i);
+    worst = 1;
+    for (long n = 0; n < count; ++n) {
+        const std::size_t j = others[static_cast<std::size_t>(n)];
+        worst = std::min(worst, (p.m_p[j] + lambda[n] * p.m_p[i]) / p.m_p[j]);
+        if (has(p.V_p)) worst = std::min(worst, (p.V_p[j] + lambda[n] * p.V_p[i]) / p.V_p[j]);
+    }
+    if ((phi * lambda - phi_i).norm() > 1e-12 || worst < 0.3) return {};
+    return {lambda.data(), lambda.data() + count};
+}
+
+// Hands particle i to the others. The kinetic energy that mixing takes becomes heat.
+// out: false, and nothing done, if a particle would be left with less than no heat
+inline bool hand_over(std::size_t i, const std::vector<std::size_t>& others,
+                      const std::vector<double>& lambda, Particles& p) {
+    std::vector<std::array<double, 4>> after;  // mass, velocity, internal energy
+    for (std::size_t n = 0; n < others.size(); ++n) {
+        const std::size_t j = others[n];
+        const double given = lambda[n] * p.m_p[i], m = p.m_p[j] + given;
+        const auto mixed = [&](const std::vector<double>& f) {
+            return (p.m_p[j] * f[j] + given * f[i]) / m;
+        };
+        const double vx = mixed(p.vx_p), vz = mixed(p.vz_p);
+        const double dx = p.vx_p[j] - p.vx_p[i], dz = p.vz_p[j] - p.vz_p[i];
+        const double e = mixed(p.e_p) + 0.5 * p.m_p[j] * given / (m * m) * (dx * dx + dz * dz);
+        if (e < 0) return false;
+        after.push_back({m, vx, vz, e});
+    }
+    for (std::size_t n = 0; n < others.size(); ++n) {
+        const std::size_t j = others[n];
+        p.m_p[j] = after[n][0], p.vx_p[j] = after[n][1], p.vz_p[j] = after[n][2];
+        p.e_p[j] = after[n][3];
+        if (has(p.V_p)) p.V_p[j] += lambda[n] * p.V_p[i];
+    }
+    p.m_p[i] = 0;
+    return true;
+}
+
+// Merges the lightest particle of one quarter that can be into others of it: of the nearest few,
+// those who are left with most. out: whether there was one.
+inline bool merge_one(const std::vector<Quarter>& q, bool plane, std::vector<std::size_t>& here,
+                      Particles& p) {
+    const std::size_t needed = plane ? 4 : 2, looked_at = plane ? 7 : 4;
+    if (here.size() < needed + 1) return false;
+    std::stable_sort(here.begin(), here.end(),
+                     [&](std::size_t a, std::size_t b) { return p.m_p[a] < p.m_p[b]; });
+    for (std::size_t n = 0; n < here.size(); ++n) {
+        const std::size_t i = here[n];
+        std::vector<std::size_t> near = here;
+        near.erase(near.begin() + static_cast<long>(n));
+        std::stable_sort(near.begin(), near.end(), [&](std::size_t a, std::size_t b) {
+            return std::hypot(q[a].x - q[i].x, q[a].z - q[i].z) <
+                   std::hypot(q[b].x - q[i].x, q[b].z - q[i].z);
+        });
+        near.resize(std::min(near.size(), looked_at));
+        std::vector<bool> chosen(near.size(), false);
+        std::fill_n(chosen.begin(), needed, true);
+        std::vector<std::size_t> best;
+        std::vector<double> best_parts;
+        double most = 0;
+        do {
+            std::vector<std::size_t> others;
+            for (std::size_t k = 0; k < near.size(); ++k)
+                if (chosen[k]) others.push_back(near[k]);
+            double worst = 0;
+            const std::vector<double> lambda = parts_of(q, p, i, others, plane, worst);
+            if (lambda.empty() || worst <= most) continue;
+            most = worst, best = others, best_parts = lambda;
+        } while (std::prev_permutation(chosen.begin(), chosen.end()));
+        if (best.empty() || !hand_over(i, best, best_parts, p)) continue;
+        here.erase(here.begin() + static_cast<long>(n));
+        return true;
+    }
+    return false;
+}
+
+}  // namespace detail
+
+/// Splits particles in cells that have become poor in them, inside the fluid, and merges them in
+/// cells that are crowded.
+/// in:     rezone.fewest and most, particles of one material in a cell
+/// in/out: particles; new ones at the end, so they are not sorted any more
+/// exact:  mass, momentum, total energy, and what deposit_particles() makes of mass and momentum on
+///         every node and cell, to round-off; internal energy of the cells but for the heat of
+///         mixing; with volumes their sum
+/// source: the aim is that of Lapenta and Brackbill, Comput. Phys. Commun. 87, 139 (1995); the
+///         exact merging by weights is ours.
+inline RezoneReport rezone(const Case& w, Particles& p) {
+    RezoneReport report;
+    const Grid& grid = w.grid;
+    const auto kinds = static_cast<long>(w.materials.size());
+    const std::size_t count = p.x_p.size();
+    std::vector<detail::Quarter> q(count);
+    std::vector<long> in_cell(static_cast<std::size_t>(grid.x.cells * grid.z.cells * kinds), 0);
+    std::vector<char> filled(static_cast<std::size_t>(grid.x.cells * grid.z.cells), 0);
+    for (std::size_t k = 0; k < count; ++k) {
+        q[k] = detail::quarter_of(w, p, k);
+        ++in_cell[static_cast<std::size_t>(q[k].cell)];
+        filled[static_cast<std::size_t>(q[k].cell / kinds)] = 1;
+    }
+    std::vector<std::size_t> order(count);
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        return std::pair(q[a].cell, q[a].part) < std::pair(q[b].cell, q[b].part);
+    });
+    const auto inside = [&](long cell) {
+        const long i = cell % grid.x.cells, j = cell / grid.x.cells;
+        const auto is_filled = [&](long a, long b) {
+            if (grid.x.periodic) a = (a + grid.x.cells) % grid.x.cells;
+            if (grid.z.periodic) b = (b + grid.z.cells) % grid.z.cells;
+            if (a < 0 || b < 0 || a >= grid.x.cells || b >= grid.z.cells) return true;
+            return filled[static_cast<std::size_t>(b * grid.x.cells + a)] != 0;
+        };
+        return is_filled(i - 1, j) && is_filled(i + 1, j) && is_filled(i, j - 1) &&
+               is_filled(i, j + 1);
+    };
+
+    const bool plane = w.plane();
+    for (std::size_t begin = 0, end = 0; begin < count; begin = end) {
+        const long cell = q[order[begin]].cell;
+        while (end < count && q[order[end]].cell == cell) ++end;
+        long number = in_cell[static_cast<std::size_t>(cell)];
+        if (number < w.fewest && inside(cell / kinds)) {
+            std::vector<std::size_t> heaviest(order.begin() + static_cast<long>(begin),
+                                              order.begin() + static_cast<long>(end));
+            std::stable_sort(heaviest.begin(), heaviest.end(),
+                             [&](std::size_t a, std::size_t b) { return p.m_p[a] > p.m_p[b]; });
+            for (const std::size_t k : heaviest) {
+                if (number >= w.fewest) break;
+                if (!detail::split(w, q[k], k, p)) continue;
+                number += plane ? 3 : 1;
+                ++report.split;
+            }
+        }
+        if (number <= w.most) continue;
+        // One after the other from the fullest quarter.
+        std::array<std::vector<std::size_t>, 4> quarters;
+        for (std::size_t n = begin; n < end; ++n)
+            quarters[static_cast<std::size_t>(q[order[n]].part)].push_back(order[n]);
+        while (number > w.most) {
+            auto& fullest = *std::max_element(
+                quarters.begin(), quarters.end(),
+                [](const auto& one, const auto& other) { return one.size() < other.size(); });
+            if (fullest.empty()) break;
+            if (detail::merge_one(q, plane, fullest, p)) {
+                --number;
+                ++report.merged;
+            } else {
+                fullest.clear();
+            }
+        }
+    }
+
+    // Close the gaps.
+    if (report.merged == 0) return report;
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < p.x_p.size(); ++k) {
+        if (p.m_p[k] == 0) continue;
+        for (std::vector<double>* column : p.all())
+            if (has(*column)) (*column)[kept] = (*column)[k];
+        p.material[kept] = p.material[k];
+        ++kept;
+    }
+    for (std::vector<double>* column : p.all())
+        if (has(*column)) column->resize(kept);
+    p.material.resize(kept);
+    return report;
+}
+
+}  // namespace flip

@@ -1,0 +1,92 @@
+// Files for the figures: the fluid on the cells, and a thinned sample of the particles.
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "common/run/writers.hpp"
+#include "flip/state.hpp"
+
+namespace flip {
+
+inline constexpr long most_particles_written = 40000;
+
+/// Writes fields_NNNNNN.dat (and .vti): rho, v_x, v_z, p, e at the middles of the cells, and the
+/// density of each material.
+/// in:     cells, zero where there is no fluid
+inline void write_fields(const std::string& folder, long step, const Case& w,
+                         const CellFields& cells) {
+    const Grid& grid = w.grid;
+    std::vector<std::vector<double>> data;
+    std::vector<std::string> names, units;
+    const auto add = [&](const std::string& name, const std::string& unit, const Field& f) {
+        std::vector<double> values;
+        values.reserve(static_cast<std::size_t>(grid.x.cells * grid.z.cells));
+        for (long j = 0; j < grid.z.cells; ++j)
+            for (long i = 0; i < grid.x.cells; ++i) values.push_back(f[grid.index(i, j)]);
+        names.push_back(name), units.push_back(unit), data.push_back(std::move(values));
+    };
+    add("rho", "mass/length^3", cells.rho);
+    add("v_x", "velocity", cells.vx);
+    add("v_z", "velocity", cells.vz);
+    add("p", "pressure", cells.p);
+    add("e", "velocity^2", cells.e);
+    for (std::size_t k = 0; k < cells.rho_of.size() && k < w.materials.size(); ++k)
+        add("rho_" + w.materials[k].name, "mass/length^3", cells.rho_of[k]);
+
+    const common::SampledAxis x{"x", "length", grid.x.at(0.5), grid.x.spacing(), grid.x.cells};
+    const common::SampledAxis z{"z", "length", grid.z.at(0.5), grid.z.spacing(), grid.z.cells};
+    std::vector<common::ScalarColumn> columns;
+    for (std::size_t k = 0; k < data.size(); ++k) columns.push_back({names[k], units[k], data[k]});
+    common::write_fields(folder + "/" + common::numbered("fields", step, "dat"), x, z, columns);
+    if (!w.vtk) return;
+    const common::SampledAxis y{"y", "length", 0, 1, 1};
+    const std::vector<double> zero(data[0].size(), 0.0);
+    columns.erase(columns.begin() + 1, columns.begin() + 3);
+    common::write_vti(folder + "/" + common::numbered("fields", step, "vti"), {x, y, z}, columns,
+                      {{"velocity", "velocity", data[1], zero, data[2]}});
+}
+
+/// Writes particles_NNNNNN.dat (and .vtp): position, material and, where particles carry them,
+/// velocity and internal energy. One particle, drawn at random, stands for each group of neighbors
+/// in memory, so that there are at most most_particles_written.
+inline void write_particles(const std::string& folder, long step, const Case& w,
+                            const Particles& particles) {
+    const long count = particles.count();
+    const long every = std::max(1L, (count + most_particles_written - 1) / most_particles_written);
+    const bool moving = has(particles.vx_p);
+    std::vector<double> x, z, material, vx, vz, e;
+    for (long from = 0; from < count; from += every) {
+        const auto group = static_cast<double>(std::min(every, count - from));
+        const double draw = common::uniform(7, 7, static_cast<std::uint64_t>(from), 0);
+        const auto p = static_cast<std::size_t>(from + static_cast<long>(draw * group));
+        x.push_back(particles.x_p[p]);
+        z.push_back(particles.z_p[p]);
+        material.push_back(particles.material[p]);
+        if (!moving) continue;
+        vx.push_back(particles.vx_p[p]);
+        vz.push_back(particles.vz_p[p]);
+        e.push_back(particles.e_p[p]);
+    }
+    std::vector<common::ScalarColumn> columns{
+        {"x", "length", x}, {"z", "length", z}, {"material", "", material}};
+    if (moving) {
+        columns.push_back({"v_x", "velocity", vx});
+        columns.push_back({"v_z", "velocity", vz});
+        columns.push_back({"e", "velocity^2", e});
+    }
+    common::write_table(folder + "/" + common::numbered("particles", step, "dat"), columns);
+    if (!w.vtk) return;
+    const std::vector<double> zero(x.size(), 0.0);
+    std::vector<common::ScalarColumn> scalars{{"material", "", material}};
+    std::vector<common::VectorColumn> vectors;
+    if (moving) {
+        scalars.push_back({"e", "velocity^2", e});
+        vectors.push_back({"velocity", "velocity", vx, zero, vz});
+    }
+    common::write_vtp(folder + "/" + common::numbered("particles", step, "vtp"),
+                      {"position", "length", x, zero, z}, scalars, vectors);
+}
+
+}  // namespace flip

@@ -1,0 +1,195 @@
+// How a run begins: particles on a lattice, each with the state of the fluid where it stands.
+#pragma once
+
+#include <cmath>
+#include <string>
+
+#include "common/random.hpp"
+#include "flip/particles.hpp"
+#include "flip/setup/case.hpp"
+
+namespace flip {
+
+/// The case as the programs use it: periodic directions marked, at least one material, and a
+/// Riemann problem written as two materials in two regions.
+inline Case completed(Case w) {
+    w.grid.x.periodic = w.is(x_low, "periodic");
+    w.grid.z.periodic = w.is(z_low, "periodic");
+    if (w.setup == "riemann") {
+        const double x_end = w.grid.x.low + w.grid.x.length;
+        w.materials = {{"left", w.left.gamma, w.left.p_infinity},
+                       {"right", w.right.gamma, w.right.p_infinity}};
+        const auto side = [&](const char* name, const SideCase& s, double from, double to) {
+            RegionCase r;
+            r.name = name;
+            r.gas = {name, s.density, s.pressure, s.velocity, 0};
+            r.shape = "box";
+            r.center_x = 0.5 * (from + to);
+            r.half_x = 0.5 * (to - from);
+            r.center_z = w.grid.z.at(0.5 * static_cast<double>(w.grid.z.cells));
+            r.half_z = w.grid.z.length;
+            return r;
+        };
+        w.regions = {side("left", w.left, w.grid.x.low, w.interface),
+                     side("right", w.right, w.interface, x_end)};
+    }
+    if (w.materials.empty()) w.materials = {{"gas", 1.4, 0}};
+    return w;
+}
+
+/// Index of a material by name; the first for an empty name, -1 for an unknown one.
+inline int material_index(const Case& w, const std::string& name) {
+    if (name.empty()) return 0;
+    for (std::size_t k = 0; k < w.materials.size(); ++k)
+        if (w.materials[k].name == name) return static_cast<int>(k);
+    return -1;
+}
+
+/// The fluid at one place.
+struct FluidState {
+    int material = 0;
+    double density = 0, vx = 0, vz = 0, e = 0;
+};
+
+namespace detail {
+
+inline bool contains(const Case& w, const RegionCase& r, double x, double z) {
+    const double dx = x - r.center_x, dz = z - r.center_z;
+    if (r.shape == "box") return std::fabs(dx) <= r.half_x && std::fabs(dz) <= r.half_z;
+    if (r.shape == "disk") return dx * dx + dz * dz <= r.radius * r.radius;
+    if (r.shape == "above") {
+        const double k = 2 * pi * static_cast<double>(r.mode) / w.grid.x.length;
+        return dz > r.ripple * std::cos(k * dx);
+    }
+    return true;
+}
+
+// Pressure of the Gresho vortex above that of its center, and its velocity, at s = r/(width/2), in
+// units of density speed^2 and speed: the centrifugal balance dp/dr = rho v^2/r.
+struct Swirl {
+    double p, v;
+};
+inline Swirl gresho(double s) {
+    if (s < 1) return {0.5 * s * s, s};
+    if (s < 2) return {0.5 * s * s + 4 * (1 - s + std::log(s)), 2 - s};
+    return {4 * std::log(2.0) - 2, 0};
+}
+
+// The irrotational flow on both sides of an interface at z = 0 between walls: its normal velocity
+// is 1 on the crest, and zero at the walls a distance `depth` away.
+inline void overturn(double k, double x, double z, double depth, double amplitude, double& vx,
+                     double& vz) {
+    const double distance = depth - std::fabs(z), wall = std::sinh(k * depth);
+    vz += amplitude * std::cos(k * x) * std::sinh(k * distance) / wall;
+    vx += (z > 0 ? 1 : -1) * amplitude * std::sin(k * x) * std::cosh(k * distance) / wall;
+}
+
+}  // namespace detail
+
+/// The fluid of one region at (x, z).
+inline FluidState fluid_of(const Case& w, const RegionCase& r, double x, double z) {
+    const int index = material_index(w, r.gas.material);
+    const Material& a = w.materials[static_cast<std::size_t>(index)];
+    const double dx = x - r.center_x, dz = z - r.center_z, distance = std::hypot(dx, dz);
+    const double k = 2 * pi * static_cast<double>(r.mode) / w.grid.x.length;
+    double rho = r.gas.density, p = r.gas.pressure, heat = 1;
+    double vx = r.gas.velocity_x, vz = r.gas.velocity_z;
+    if (r.hydrostatic) p += rho * w.gravity_z * dz;
+    if (r.flow == "rotation") {
+        vx -= r.speed * dz / r.width;
+        vz += r.speed * dx / r.width;
+    } else if (r.flow == "radial" && distance > 0) {
+        const bool row = !w.plane();
+        vx -= r.speed * (row ? (dx > 0 ? 1 : -1) : dx / distance);
+        vz -= row ? 0 : r.speed * dz / distance;
+    } else if (r.flow == "gresho") {
+        const detail::Swirl swirl = detail::gresho(2 * distance / r.width);
+        p += rho * r.speed * r.speed * swirl.p;
+        if (distance > 0) {
+            vx -= r.speed * swirl.v * dz / distance;
+            vz += r.speed * swirl.v * dx / distance;
+        }
+    } else if (r.flow == "wave") {
+        const double c = std::sqrt(stiffness(a, p) / rho), crest = r.amplitude * std::cos(k * dx);
+        p += stiffness(a, p) * crest;
+        vx += c * crest;
+        rho *= 1 + crest;
+    } else if (r.flow == "gaussian") {
+        heat += r.amplitude *
+                std::exp(-0.5 * (w.plane() ? distance * distance : dx * dx) / (r.width * r.width));
+    } else if (r.flow == "shear") {
+        const double side = dz > 0 ? 1 : -1, decay = r.amplitude * std::exp(-k * std::fabs(dz));
+        vx += r.speed * std::min(1.0, std::max(-1.0, dz / r.width));
+        vx += side * decay * std::sin(k * dx);
+        vz += decay * std::cos(k * dx);
+    } else if (r.flow == "overturn") {
+        const double depth = dz > 0 ? w.grid.z.high() - r.center_z : r.center_z - w.grid.z.low;
+        detail::overturn(k, dx, dz, depth, r.amplitude, vx, vz);
+    }
+    return {index, rho, vx, vz, heat * internal_energy(a, rho, p)};
+}
+
+/// Particles of the start, cell by cell on a lattice of equal volumes.
+/// in:     a completed case that check_case has not refused
+/// out:    all columns that FLIP needs; unsorted
+/// exact:  m_p is density times volume, so uniform fluid has equal masses; a particle of apic begins
+///         with the gradient of the flow of its region
+inline Particles load_particles(const Case& w) {
+    constexpr std::uint32_t where = 1, how_fast = 2;
+    Particles particles;
+    const Grid& grid = w.grid;
+    const double dx = grid.x.spacing() / static_cast<double>(w.per_cell_x),
+                 dz = grid.z.spacing() / static_cast<double>(w.per_cell_z);
+    const long columns = grid.x.cells * w.per_cell_x, rows = grid.z.cells * w.per_cell_z;
+    const auto seed = static_cast<std::uint64_t>(w.seed);
+    std::vector<double> region_mass(w.regions.size(), 0.0);
+    std::vector<std::size_t> region_of;
+    for (long j = 0; j < rows; ++j) {
+        for (long i = 0; i < columns; ++i) {
+            const auto place = static_cast<std::uint64_t>(j * columns + i);
+            const bool random = w.loading == "random";
+            const double u = random ? common::uniform(seed, where, place, 0) : 0.5,
+                         v = random ? common::uniform(seed, where, place, 1) : 0.5;
+            const double x = grid.x.low + dx * (static_cast<double>(i) + u),
+                         z = grid.z.low + dz * (static_cast<double>(j) + v);
+            std::size_t n = w.regions.size();
+            while (n > 0 && !detail::contains(w, w.regions[n - 1], x, z)) --n;
+            if (n == 0) continue;
+            const RegionCase& region = w.regions[n - 1];
+            const FluidState fluid = fluid_of(w, region, x, z);
+            const double noise = region.noise * (2 * common::uniform(seed, how_fast, place, 0) - 1);
+            particles.x_p.push_back(x);
+            particles.z_p.push_back(z);
+            particles.m_p.push_back(fluid.density * dx * dz);
+            particles.vx_p.push_back(fluid.vx + (region.noise > 0 ? noise : 0.0));
+            particles.vz_p.push_back(fluid.vz);
+            particles.e_p.push_back(fluid.e);
+            particles.material.push_back(fluid.material);
+            region_mass[n - 1] += fluid.density * dx * dz;
+            region_of.push_back(n - 1);
+        }
+    }
+    for (std::size_t p = 0; p < region_of.size(); ++p) {
+        const std::size_t n = region_of[p];
+        if (w.regions[n].energy > 0) particles.e_p[p] += w.regions[n].energy / region_mass[n];
+    }
+    if (w.density == "particles") particles.V_p.assign(particles.x_p.size(), dx * dz);
+    if (w.transfer == "apic") {
+        const double step_x = 1e-3 * grid.x.spacing(), step_z = 1e-3 * grid.z.spacing();
+        for (std::size_t p = 0; p < region_of.size(); ++p) {
+            const double x = particles.x_p[p], z = particles.z_p[p];
+            const RegionCase& region = w.regions[region_of[p]];
+            const FluidState left = fluid_of(w, region, x - step_x, z),
+                             right = fluid_of(w, region, x + step_x, z),
+                             below = fluid_of(w, region, x, z - step_z),
+                             above = fluid_of(w, region, x, z + step_z);
+            particles.Cxx_p.push_back((right.vx - left.vx) / (2 * step_x));
+            particles.Cxz_p.push_back((above.vx - below.vx) / (2 * step_z));
+            particles.Czx_p.push_back((right.vz - left.vz) / (2 * step_x));
+            particles.Czz_p.push_back((above.vz - below.vz) / (2 * step_z));
+        }
+    }
+    return particles;
+}
+
+}  // namespace flip

@@ -1,0 +1,77 @@
+// What explicit_em looks at before a run starts: the limits of stability, and what it must resolve.
+#pragma once
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "implicit_moment/explicit_em/yee_field.hpp"
+#include "implicit_moment/setup/check_case.hpp"
+
+namespace implicit_moment {
+
+namespace detail {
+
+// omega_p dt of all species together, at the largest density of the case.
+inline double omega_p_dt(const Case& w, const Scales& scales) {
+    double squared = 0;
+    for (const SpeciesScales& s : scales.species) squared += s.omega_p_dt * s.omega_p_dt;
+    return std::sqrt(squared * (w.setup == "uniform" ? 1 : 1 + harris_of(w).background));
+}
+
+}  // namespace detail
+
+/// Refuses what is unstable: c dt >= (1/dx^2 + 1/dz^2)^(-1/2) and omega_p dt >= 2.
+/// errors: InputError, one sentence with the numbers and the cure.
+/// source: Courant, Friedrichs and Lewy (1928) for Yee's mesh; Birdsall and Langdon (1985),
+///         section 4-2.
+inline void refuse_unstable(const Case& w) {
+    const double limit = courant_limit(w.grid);
+    if (!(w.dt < limit)) {
+        throw common::InputError(
+            "time.dt = " + shown(w.dt) + " is not below the limit of light on this mesh, " +
+            shown(limit) + " / omega_pi (c dt < (1/dx^2 + 1/dz^2)^(-1/2)): lower time.dt to " +
+            shown(0.85 * limit) + " or use larger cells");
+    }
+    const double omega_p_dt = detail::omega_p_dt(w, scales_of(w));
+    if (!(omega_p_dt < 2)) {
+        throw common::InputError("omega_p dt = " + shown(omega_p_dt) +
+                                 " is not below 2, the limit of leapfrogged plasma oscillations: "
+                                 "lower time.dt to " +
+                                 shown(w.dt * 1.5 / omega_p_dt) + " or use implicit_moment");
+    }
+}
+
+/// Warnings with the number and the limit, for choices that run but may mislead.
+/// source: Birdsall and Langdon (1985), chapters 8, 9 and 15.
+inline std::vector<std::string> leapfrog_warnings(const Case& w, const Scales& scales) {
+    std::vector<std::string> warnings;
+    const double cell = std::min(w.grid.x.spacing(), w.grid.z.spacing());
+    const double omega_p_dt = detail::omega_p_dt(w, scales);
+    if (omega_p_dt > 1.62) {
+        warnings.push_back("omega_p dt = " + shown(omega_p_dt) +
+                           " is above 1.62, where oscillations of a warm plasma may grow: lower "
+                           "time.dt to " +
+                           shown(w.dt * 1.5 / omega_p_dt));
+    }
+    for (const SpeciesScales& s : scales.species) {
+        if (s.debye_length > 0 && s.debye_length < 0.2 * cell) {
+            warnings.push_back(s.name + ": the Debye length is " + shown(s.debye_length / cell) +
+                               " cells, below 0.2: where the plasma drifts the mesh may heat it, "
+                               "watch the energy");
+        }
+        if (s.Omega_c_dt > 0.5) {
+            warnings.push_back(s.name + ": Omega_c dt = " + shown(s.Omega_c_dt) +
+                               " is above 0.5, gyration is too slow by more than 2 %: lower "
+                               "time.dt to " +
+                               shown(w.dt * 0.5 / s.Omega_c_dt));
+        }
+        if (!w.leapfrog.relativistic && 4 * s.thermal_speed > c) {
+            warnings.push_back(s.name + ": four thermal speeds are " + shown(4 * s.thermal_speed) +
+                               " c, and the push is not relativistic");
+        }
+    }
+    return warnings;
+}
+
+}  // namespace implicit_moment

@@ -1,0 +1,118 @@
+// Snapshots for the figures: fields on nodes, and a thinned sample of the particles.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/run/writers.hpp"
+#include "implicit_moment/output/diagnostics.hpp"
+
+namespace implicit_moment {
+
+inline constexpr long most_particles_written = 40000;
+
+using common::numbered;
+
+/// One quantity brought to the nodes 0..N of both directions by averaging the places beside each
+/// node, x fastest.
+/// in:     f, ghosts filled.
+inline std::vector<double> on_all_nodes(const Grid& grid, Place place, const double* f) {
+    std::vector<double> values;
+    const long s = grid.stride();
+    for (long j = 0; j <= grid.z.cells; ++j) {
+        for (long i = 0; i <= grid.x.cells; ++i) {
+            const long n = grid.index(i, j);
+            const long left = place.half_x ? 1 : 0, down = place.half_z ? s : 0;
+            values.push_back(0.25 * (f[n] + f[n - left] + f[n - down] + f[n - left - down]));
+        }
+    }
+    return values;
+}
+
+/// Writes fields_NNNNNN.dat (and .vti): E, B, A_y; mean velocity and charge density of every
+/// species; total J. Units of units.hpp.
+inline void write_fields(const std::string& folder, long step, const Grid& grid,
+                         const FieldState& field, const Plasma& plasma,
+                         const std::vector<Moments>& moments, bool vtk) {
+    std::vector<std::vector<double>> data;
+    std::vector<std::string> names, units;
+    const auto add = [&](const std::string& name, const std::string& unit,
+                         std::vector<double> values) {
+        names.push_back(name);
+        units.push_back(unit);
+        data.push_back(std::move(values));
+    };
+    const Field A_y = flux_function(grid, field.B);
+    add("A_y", "B*d_i", on_all_nodes(grid, on_nodes, A_y.data()));
+    for (std::size_t a = 0; a < 3; ++a) {
+        const std::string letter(1, "xyz"[a]);
+        const long offset = static_cast<long>(a) * grid.size();
+        add("E_" + letter, "m_i*c*omega_pi/e",
+            on_all_nodes(grid, electric.place[a], field.E.all.data() + offset));
+        add("B_" + letter, "m_i*c*omega_pi/e",
+            on_all_nodes(grid, magnetic.place[a], field.B.all.data() + offset));
+    }
+    std::array<std::vector<double>, 3> total;
+    for (std::size_t k = 0; k < moments.size(); ++k) {
+        const Particles& particles = plasma.species[k];
+        auto rho = on_all_nodes(grid, on_nodes, moments[k].rho.data());
+        const std::array<const Field*, 3> J{&moments[k].J_x, &moments[k].J_y, &moments[k].J_z};
+        for (std::size_t a = 0; a < 3; ++a) {
+            auto J_a = on_all_nodes(grid, electric.place[a], J[a]->data());
+            if (total[a].empty()) total[a].assign(J_a.size(), 0.0);
+            std::vector<double> velocity(J_a.size());
+            for (std::size_t n = 0; n < J_a.size(); ++n) {
+                total[a][n] += J_a[n];
+                velocity[n] = std::fabs(rho[n]) > 1e-12 ? J_a[n] / rho[n] : 0.0;
+            }
+            add(std::string("v_") + "xyz"[a] + "_" + particles.name, "c", std::move(velocity));
+        }
+        for (double& r : rho) r /= n0;
+        add("rho_" + particles.name, "e*n0", std::move(rho));
+    }
+    for (std::size_t a = 0; a < 3 && !moments.empty(); ++a) {
+        for (double& j : total[a]) j /= n0;
+        add(std::string("J_") + "xyz"[a], "e*n0*c", std::move(total[a]));
+    }
+
+    const common::SampledAxis x{"x", "d_i", grid.x.low, grid.x.spacing(), nodes_x(grid)};
+    const common::SampledAxis z{"z", "d_i", grid.z.low, grid.z.spacing(), nodes_z(grid)};
+    std::vector<common::ScalarColumn> columns;
+    for (std::size_t k = 0; k < data.size(); ++k) columns.push_back({names[k], units[k], data[k]});
+    common::write_fields(folder + "/" + numbered("fields", step, "dat"), x, z, columns);
+    if (vtk) {
+        const common::SampledAxis y{"y", "d_i", 0, 1, 1};
+        common::write_vti(folder + "/" + numbered("fields", step, "vti"), {x, y, z}, columns, {});
+    }
+}
+
+/// Writes particles_NNNNNN.dat (and .vtp): every n-th particle of each species, at most
+/// most_particles_written in all.
+inline void write_particles(const std::string& folder, long step, const Plasma& plasma, bool vtk) {
+    const long every = (plasma.count() + most_particles_written - 1) / most_particles_written;
+    std::array<std::vector<double>, 6> data;
+    for (std::size_t k = 0; k < plasma.species.size(); ++k) {
+        const Particles& p = plasma.species[k];
+        for (long n = 0; n < p.count(); n += every) {
+            const auto i = static_cast<std::size_t>(n);
+            const std::array<double, 6> row{
+                static_cast<double>(k), p.x_p[i], p.z_p[i], p.vx_p[i], p.vy_p[i], p.vz_p[i]};
+            for (std::size_t a = 0; a < 6; ++a) data[a].push_back(row[a]);
+        }
+    }
+    common::write_table(folder + "/" + numbered("particles", step, "dat"),
+                        {{"species", "", data[0]},
+                         {"x", "d_i", data[1]},
+                         {"z", "d_i", data[2]},
+                         {"v_x", "c", data[3]},
+                         {"v_y", "c", data[4]},
+                         {"v_z", "c", data[5]}});
+    if (vtk) {
+        const std::vector<double> zero(data[0].size(), 0.0);
+        common::write_vtp(folder + "/" + numbered("particles", step, "vtp"),
+                          {"position", "d_i", data[1], zero, data[2]}, {{"species", "", data[0]}},
+                          {{"velocity", "c", data[3], data[4], data[5]}});
+    }
+}
+
+}  // namespace implicit_moment

@@ -1,0 +1,273 @@
+// What is looked at before a run starts: combinations that cannot run, scales that are not
+// resolved, and the closure of the method.  [IMM-13]
+#pragma once
+
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "implicit_moment/setup/case.hpp"
+#include "implicit_moment/setup/cost.hpp"
+#include "implicit_moment/setup/initial_state.hpp"
+
+namespace implicit_moment {
+
+/// The kinetic scales of one species in a case.
+struct SpeciesScales {
+    std::string name;
+    double thermal_speed = 0;  // sqrt(T/m), the largest direction [c]
+    double omega_p_dt = 0;
+    double Omega_c_dt = 0;    // at the largest B
+    double debye_length = 0;  // [d_i]
+};
+
+struct Scales {
+    std::vector<SpeciesScales> species;
+    double B = 0;  // largest B at the start
+    long steps = 0, particles = 0;
+    double bytes = 0;  // memory that the run will take
+};
+
+using common::shown;
+
+inline Scales scales_of(const Case& w) {
+    Scales s;
+    const auto add = [&](const std::string& name, double density, double charge, double mass,
+                         double T) {
+        SpeciesScales scale;
+        scale.name = name;
+        const double omega_p = std::sqrt(4 * pi * n0 * density * charge * charge / mass);
+        scale.thermal_speed = std::sqrt(T / mass);
+        scale.omega_p_dt = omega_p * w.dt;
+        scale.Omega_c_dt = std::fabs(charge) * s.B / (mass * c) * w.dt;
+        scale.debye_length = omega_p > 0 ? scale.thermal_speed / omega_p : 0;
+        s.species.push_back(scale);
+    };
+    if (w.setup != "uniform") {
+        const HarrisCase h = harris_of(w);
+        const HarrisSheet sheet = harris_sheet(h);
+        s.B = std::hypot(sheet.B0, h.guide_field * sheet.B0);
+        add("ions", 1, 1, 1, sheet.T_i);
+        add("electrons", 1, -1, 1 / h.mass_ratio, sheet.T_e);
+        s.particles = 2 * (h.particles / 2);
+    } else {
+        const UniformCase& u = w.uniform;
+        s.B = std::hypot(u.B_x, u.B_y, u.B_z);
+        for (const SpeciesCase& k : u.species) {
+            add(k.name, k.density, k.charge, k.mass,
+                std::max({k.temperature_x, k.temperature_y, k.temperature_z}));
+        }
+        s.particles = static_cast<long>(u.species.size()) * u.particles_per_cell * w.grid.x.cells *
+                      w.grid.z.cells;
+    }
+    s.steps = std::lround(w.end / w.dt);
+    const double krylov = 45 * 3 * 8, tensors = 40 * 8, moments = 40 * 8;
+    s.bytes = 60.0 * static_cast<double>(s.particles) +
+              static_cast<double>(w.grid.size()) * (w.leapfrog.chosen ? moments : krylov + tensors);
+    return s;
+}
+
+/// Refuses what cannot run. errors: InputError, one sentence with the numbers and the cure.
+inline void refuse_impossible(Case& w) {
+    const auto refuse = [](bool bad, const std::string& sentence) {
+        if (bad) throw common::InputError(sentence);
+    };
+    w.grid.x.periodic = w.boundary_x == "periodic";
+    w.grid.z.periodic = w.boundary_z == "periodic";
+    if (w.setup == "current_sheet") fit_mesh_to_sheet(w);
+    w.grid.x.low = -0.5 * w.grid.x.length;
+    w.grid.z.low = -0.5 * w.grid.z.length;
+    refuse(w.end / w.dt > 1e9, "time.end / time.dt is " + shown(w.end / w.dt) +
+                                   " steps, more than 1e9: raise time.dt or lower time.end");
+
+    if (w.setup != "uniform") {
+        const HarrisCase h = harris_of(w);
+        const bool along = w.setup == "current_sheet";
+        refuse(
+            w.boundary_x != "periodic" || w.boundary_z != "wall",
+            "the Harris sheet needs grid.boundary_x = \"periodic\" and grid.boundary_z = \"wall\"");
+        refuse(along && w.grid.x.cells <= 2 * sheet_modes,
+               "grid.cells_x = " + std::to_string(w.grid.x.cells) + ": the first " +
+                   std::to_string(sheet_modes) + " modes along the current are followed, so take " +
+                   std::to_string(2 * sheet_modes + 1) + " or more");
+        refuse(!along && w.grid.z.cells % 2 != 0,
+               "grid.cells_z = " + std::to_string(w.grid.z.cells) +
+                   " is odd: the flux is measured on the row z = 0, so make it even");
+        refuse(h.thickness > 0.25 * w.grid.z.length,
+               "harris.thickness = " + shown(h.thickness) + " d_i does not fit between walls " +
+                   shown(w.grid.z.length) + " d_i apart: at most a quarter of grid.length_z");
+        const HarrisSheet sheet = harris_sheet(h);
+        const double fastest =
+            std::max({sheet.u_i, std::fabs(sheet.u_e), 3 * sheet.v_e, 3 * sheet.v_i});
+        refuse(fastest > 1,
+               "the sheet has speeds of " + shown(fastest) +
+                   " c (drift or three thermal speeds), and the mover is not relativistic: raise " +
+                   w.setup + ".light_over_alfven above " + shown(h.light_over_alfven * fastest));
+        if (!w.uniform.species.empty()) {
+            refuse(true, "[species." + w.uniform.species.front().name +
+                             "] belongs to plasma.setup = \"uniform\"; the Harris sheet makes its "
+                             "own ions and electrons");
+        }
+        refuse(w.wave != "none",
+               "theory.wave = \"" + w.wave + "\" needs plasma.setup = \"uniform\"");
+        // Pressure and current balance hold by construction; a wrong edit of harris_sheet ends
+        // here.
+        const double pressure = n0 * (sheet.T_i + sheet.T_e) / (sheet.B0 * sheet.B0 / (8 * pi));
+        const double current_balance =
+            n0 * (sheet.u_i - sheet.u_e) / (c * sheet.B0 / (4 * pi * h.thickness));
+        refuse(!(std::fabs(pressure - 1) < 1e-12 && std::fabs(current_balance - 1) < 1e-12),
+               "the Harris sheet is out of balance: pressure " + shown(pressure) + ", current " +
+                   shown(current_balance));
+        return;
+    }
+
+    const UniformCase& u = w.uniform;
+    const bool seeded = u.wave_B_x != 0 || u.wave_B_y != 0 || u.wave_B_z != 0 || u.wave_E_x != 0 ||
+                        u.wave_E_y != 0 || u.wave_E_z != 0;
+    const bool walls = w.boundary_x == "wall" || w.boundary_z == "wall";
+    refuse(seeded && walls,
+           "seeded fields need periodic boundaries: take out uniform.wave_E_*, uniform.wave_B_* or "
+           "the walls");
+    refuse(w.boundary_x == "wall" && u.B_x != 0,
+           "uniform.B_x = " + shown(u.B_x) +
+               " would cross the conducting walls normal to x: make it 0");
+    refuse(w.boundary_z == "wall" && u.B_z != 0,
+           "uniform.B_z = " + shown(u.B_z) +
+               " would cross the conducting walls normal to z: make it 0");
+    const double k_x = static_cast<double>(u.mode_x) / w.grid.x.length,
+                 k_z = static_cast<double>(u.mode_z) / w.grid.z.length;
+    refuse(u.mode_x == 0 && u.mode_z == 0,
+           "uniform.mode_x and uniform.mode_z are both 0: a mode needs a wave number");
+    refuse(2 * std::labs(u.mode_x) > w.grid.x.cells || 2 * std::labs(u.mode_z) > w.grid.z.cells,
+           "the seeded mode (" + std::to_string(u.mode_x) + ", " + std::to_string(u.mode_z) +
+               ") has more than one wavelength per two cells: refine the mesh or lower the mode");
+    const double size_B = std::hypot(u.wave_B_x, u.wave_B_z) * std::hypot(k_x, k_z);
+    refuse(std::fabs(k_x * u.wave_B_x + k_z * u.wave_B_z) > 1e-9 * size_B,
+           "the seeded B is not divergence-free: k . B must be 0, so keep uniform.wave_B across "
+           "the mode");
+    const double size_E = std::hypot(u.wave_E_x, u.wave_E_z) * std::hypot(k_x, k_z);
+    refuse(std::fabs(k_x * u.wave_E_x + k_z * u.wave_E_z) > 1e-9 * size_E,
+           "the seeded E has a part along k: that part follows from the charge, so seed it with "
+           "the species' wave_x and wave_z");
+    for (const SpeciesCase& s : u.species) {
+        const double T = std::max({s.temperature_x, s.temperature_y, s.temperature_z});
+        const double drift = std::hypot(s.drift_x, s.drift_y, s.drift_z);
+        const double fastest = std::max(drift, 3 * std::sqrt(T / s.mass));
+        refuse(fastest > 1, "species '" + s.name + "' has speeds of " + shown(fastest) +
+                                " c (drift or three thermal speeds), and the mover is not "
+                                "relativistic: lower them");
+    }
+    refuse(u.species.empty() && !seeded,
+           "an empty uniform plasma: add a [species.<name>] or seed a field with uniform.wave_E_y");
+    refuse(
+        w.wave != "none" && w.end < 10 * w.dt,
+        "theory.wave needs at least 10 steps to measure: raise time.end above " + shown(10 * w.dt));
+    refuse(
+        w.wave != "none" && (u.mode_x != 0) == (u.mode_z != 0),
+        "theory.wave needs a mode along x or along z: set uniform.mode_x or uniform.mode_z to 0");
+    refuse(w.wave == "light" && !u.species.empty(),
+           "theory.wave = \"light\" is a wave in vacuum: take out the species or choose "
+           "\"transverse\"");
+    refuse(w.wave != "light" && w.wave != "none" && u.species.empty(),
+           "theory.wave = \"" + w.wave + "\" needs a [species.<name>]");
+    if (w.wave == "langmuir") {
+        refuse(std::all_of(u.species.begin(), u.species.end(),
+                           [](const SpeciesCase& s) { return s.charge == 0; }),
+               "theory.wave = \"langmuir\" needs charges: give a species a charge");
+        for (const SpeciesCase& s : u.species) {
+            refuse(s.temperature_x > 0 || s.temperature_y > 0 || s.temperature_z > 0 ||
+                       s.drift_x != 0 || s.drift_z != 0,
+                   "theory.wave = \"langmuir\" is exact for a cold plasma at rest, and species '" +
+                       s.name + "' is warm or drifts: choose \"longitudinal\"");
+        }
+    }
+    if (w.wave != "none" && w.wave != "light") {
+        const bool across = u.mode_x != 0 ? u.B_y != 0 || u.B_z != 0 : u.B_x != 0 || u.B_y != 0;
+        refuse(across,
+               "the dispersion relation is solved for B along k or zero: take out the part of "
+               "uniform.B across the mode, or theory.wave");
+    }
+}
+
+/// Warnings with the number and the limit, for choices that run but may mislead.
+/// source: [IMM-13] and its lower bound.
+/// note:   the slide asks for v_th dt/dx < 1, so that a particle stays within what the fluid
+///         equations can predict. Below about 1/20, where omega_p dt > 1/2 and the Debye length is
+///         not resolved, the mesh does not damp what it cannot resolve, and the finite-grid
+///         instability of all momentum-conserving methods may heat the plasma.
+inline std::vector<std::string> closure_warnings(const Case& w, const Scales& scales) {
+    std::vector<std::string> warnings;
+    const double dx = w.grid.x.spacing(), dz = w.grid.z.spacing();
+    for (const SpeciesScales& s : scales.species) {
+        const double most = s.thermal_speed * w.dt / std::min(dx, dz);
+        if (most > 1) {
+            warnings.push_back(
+                s.name + ": v_th dt/dx = " + shown(most) +
+                " is above 1, where the moment closure fails [IMM-13]: lower time.dt to " +
+                shown(w.dt / most));
+        }
+        const bool unresolved = s.debye_length > 0 && s.debye_length < 0.3 * std::min(dx, dz);
+        if (most < 0.05 && unresolved && s.thermal_speed > 0 && s.omega_p_dt > 0.5) {
+            warnings.push_back(s.name + ": v_th dt/dx = " + shown(most) +
+                               " is below 0.05 and the Debye length is " +
+                               shown(s.debye_length / std::min(dx, dz)) +
+                               " cells: finite-grid heating is possible, watch the energy");
+        }
+    }
+    if (w.setup == "current_sheet") {
+        for (const std::string& warning : sheet_warnings(w)) warnings.push_back(warning);
+    }
+    const double largest = scales.species.empty() ? 0 : scales.B;
+    if (largest > 0) {
+        for (const SpeciesScales& s : scales.species) {
+            if (s.Omega_c_dt > 2 * pi) {
+                warnings.push_back(s.name + ": Omega_c dt = " + shown(s.Omega_c_dt) +
+                                   " is above 2 pi, gyration is not followed");
+            }
+        }
+    }
+    return warnings;
+}
+
+/// The resolved scales as text, for --dry-run and the head of a run.
+inline std::string describe_scales(const Case& w, const Scales& scales) {
+    const double dx = w.grid.x.spacing(), dz = w.grid.z.spacing();
+    std::string text;
+    const auto line = [&](const std::string& name, const std::string& value) {
+        text +=
+            "  " + name + std::string(name.size() < 34 ? 34 - name.size() : 1, ' ') + value + "\n";
+    };
+    line("mesh", std::to_string(w.grid.x.cells) + " x " + std::to_string(w.grid.z.cells) +
+                     " cells of " + shown(dx) + " x " + shown(dz) + " d_i, " + w.boundary_x +
+                     " in x, " + w.boundary_z + " in z");
+    line("steps", std::to_string(scales.steps) + " of " + shown(w.dt) + " / omega_pi, c dt/dx = " +
+                      shown(c * w.dt / dx) + ", c dt/dz = " + shown(c * w.dt / dz));
+    line("particles", std::to_string(scales.particles) + ", " +
+                          shown(static_cast<double>(scales.particles) /
+                                static_cast<double>(w.grid.x.cells * w.grid.z.cells)) +
+                          " per cell");
+    if (scales.B > 0)
+        line("magnetic field",
+             shown(scales.B) + " m_i c omega_pi/e, Omega_ci dt = " + shown(scales.B * w.dt));
+    for (const SpeciesScales& s : scales.species) {
+        line(s.name, "omega_p dt = " + shown(s.omega_p_dt) + ", Omega_c dt = " +
+                         shown(s.Omega_c_dt) + ", v_th = " + shown(s.thermal_speed) +
+                         " c, v_th dt/dx = " + shown(s.thermal_speed * w.dt / dx) + " and " +
+                         shown(s.thermal_speed * w.dt / dz) +
+                         ", Debye length = " + shown(s.debye_length) + " d_i");
+    }
+    if (w.setup != "uniform" && !w.leapfrog.chosen) {
+        line("explicit instead", "about " + shown(cost_ratio(harris_of(w).mass_ratio, 2)) +
+                                     " times the time, by the slide's formula [COST]");
+    }
+    line("memory", "about " + shown(scales.bytes / 1048576) + " MiB");
+    const double work =
+        static_cast<double>(scales.steps) *
+        (static_cast<double>(scales.particles) + 10.0 * static_cast<double>(w.grid.size()));
+    const double per_second = w.leapfrog.chosen ? 40e6 : 15e6;
+    line("time", "about " + shown(work / per_second) + " s on one core");
+    return text;
+}
+
+}  // namespace implicit_moment

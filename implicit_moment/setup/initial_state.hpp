@@ -1,0 +1,169 @@
+// The set-ups a case file can name: a Harris current sheet across its current or along it, and a
+// uniform plasma with one seeded mode. The particles come from load_plasma.hpp, fields from here.
+#pragma once
+
+#include <cmath>
+
+#include "implicit_moment/output/unit_flux_profile.hpp"
+#include "implicit_moment/setup/load_plasma.hpp"
+#include "implicit_moment/sort_particles.hpp"
+
+namespace implicit_moment {
+
+/// B of a Harris sheet with the GEM perturbation, as the curl of A_y on nodes, so that div B = 0
+/// to round-off and B_n = 0 on walls; and a uniform B_y, which pushes nothing that drifts along y.
+///     A_y = -B0 lambda ln cosh(z/lambda) - psi0 cos(2 pi x/L_x) cos(pi z/L_z)
+inline void harris_field(const Case& wanted, FieldState& field) {
+    const Grid& grid = wanted.grid;
+    const HarrisCase& h = wanted.harris;
+    const double B0 = harris_sheet(h).B0;
+    const double z_middle = grid.z.low + 0.5 * grid.z.length;
+    const double x_middle = grid.x.low + 0.5 * grid.x.length;
+    Field A_y = Field::Zero(grid.size());
+    for (long j = -1; j <= grid.z.cells + 1; ++j) {
+        const double z = grid.z.at(static_cast<double>(j)) - z_middle;
+        const bool wall = j == 0 || j == grid.z.cells;
+        for (long i = -1; i <= grid.x.cells + 1; ++i) {
+            const double x = grid.x.at(static_cast<double>(i)) - x_middle;
+            const double island = wall
+                                      ? 0
+                                      : h.perturbation * B0 * std::cos(2 * pi * x / grid.x.length) *
+                                            std::cos(pi * z / grid.z.length);
+            A_y[grid.index(i, j)] =
+                -B0 * h.thickness * std::log(std::cosh(z / h.thickness)) - island;
+        }
+    }
+    VectorField A(grid);
+    std::copy_n(A_y.data(), grid.size(), A.y());
+    curl_of_electric(grid, A.all.data(), field.B.all.data());
+    std::fill_n(field.B.y(), grid.size(), h.guide_field * B0);
+    fill_ghosts(grid, magnetic, field.B);
+}
+
+/// B of a current sheet along x: B_y = -B0 tanh(z/L), averaged over each row of faces.
+inline void current_sheet_field(const Case& wanted, FieldState& field) {
+    const Grid& grid = wanted.grid;
+    const HarrisCase h = harris_of(wanted);
+    const auto potential = [&](long j) {
+        const double z = grid.z.at(static_cast<double>(j)) - (grid.z.low + 0.5 * grid.z.length);
+        return -harris_sheet(h).B0 * h.thickness * std::log(std::cosh(z / h.thickness));
+    };
+    for (long j = 0; j < grid.z.cells; ++j) {
+        const double B_y = (potential(j + 1) - potential(j)) / grid.z.spacing();
+        std::fill_n(field.B.y() + grid.index(0, j), grid.x.cells, B_y);
+    }
+    fill_ghosts(grid, magnetic, field.B);
+}
+
+/// The uniform magnetic field and the seeded mode; its part of B in the plane is made from A_y,
+/// so that div B = 0 to round-off.
+inline void uniform_field(const Case& wanted, FieldState& field) {
+    const UniformCase& u = wanted.uniform;
+    const Grid& grid = wanted.grid;
+    const double degree = pi / 180;
+    const double k_x = 2 * pi * static_cast<double>(u.mode_x) / grid.x.length;
+    const double k_z = 2 * pi * static_cast<double>(u.mode_z) / grid.z.length;
+    const bool from_z = u.mode_x != 0;
+    const double A = from_z ? u.wave_B_z / k_x : (u.mode_z != 0 ? -u.wave_B_x / k_z : 0.0);
+    const double A_phase = (from_z ? u.phase_B_z : u.phase_B_x) * degree;
+
+    VectorField potential(grid);
+    const auto mode = [&](double i, double j, double amplitude, double phase) {
+        return amplitude *
+               std::cos(mode_phase(wanted, grid.x.at(i), grid.z.at(j)) + phase * degree);
+    };
+    for (long m = -1; m <= grid.z.cells + 1; ++m) {
+        for (long l = -1; l <= grid.x.cells + 1; ++l) {
+            const long n = grid.index(l, m);
+            const double i = static_cast<double>(l), j = static_cast<double>(m);
+            potential.y()[n] =
+                A * std::sin(mode_phase(wanted, grid.x.at(i), grid.z.at(j)) + A_phase);
+            field.E.x()[n] = mode(i + 0.5, j, u.wave_E_x, u.phase_E_x);
+            field.E.y()[n] = mode(i, j, u.wave_E_y, u.phase_E_y);
+            field.E.z()[n] = mode(i, j + 0.5, u.wave_E_z, u.phase_E_z);
+        }
+    }
+    curl_of_electric(grid, potential.all.data(), field.B.all.data());
+    for (long m = -1; m <= grid.z.cells + 1; ++m) {
+        for (long l = -1; l <= grid.x.cells + 1; ++l) {
+            const long n = grid.index(l, m);
+            field.B.x()[n] += u.B_x;
+            field.B.y()[n] += u.B_y + mode(static_cast<double>(l) + 0.5,
+                                           static_cast<double>(m) + 0.5, u.wave_B_y, u.phase_B_y);
+            field.B.z()[n] += u.B_z;
+        }
+    }
+    fill_ghosts(grid, electric, field.E);
+    fill_ghosts(grid, magnetic, field.B);
+}
+
+/// Adds -grad phi with -lap phi = 4 pi rho, phi = 0 on walls, so that Gauss's law holds at t = 0.
+/// in:     rho, smoothed as the field equations smooth it.
+/// note:   in a doubly periodic box a uniform background neutralizes the mean of rho.
+inline void add_electrostatic_field(const Grid& grid, const MeshModes& modes, const Field& rho,
+                                    FieldState& field) {
+    Field phi = 4 * pi * rho;
+    common::fill_ghosts(grid, common::on_nodes, {-1, -1}, phi.data());
+    solve_poisson(grid, modes, phi);
+    const long s = grid.stride();
+    for_each_point(grid, [&](long n) {
+        field.E.x()[n] -= (phi[n + 1] - phi[n]) / grid.x.spacing();
+        field.E.z()[n] -= (phi[n + s] - phi[n]) / grid.z.spacing();
+    });
+    fill_ghosts(grid, electric, field.E);
+}
+
+/// All that a run is, at one time: what a checkpoint holds.
+struct State {
+    Plasma plasma;
+    FieldState field;
+    UnitFluxProfile profile;  // of a Harris sheet
+};
+
+/// Names every number of the state, for writing and for reading alike.
+template <class Archive>
+void archive(Archive& a, State& state) {
+    for (Particles& s : state.plasma.species) {
+        a(s.name + ".x_p", s.x_p);
+        a(s.name + ".z_p", s.z_p);
+        a(s.name + ".vx_p", s.vx_p);
+        a(s.name + ".vy_p", s.vy_p);
+        a(s.name + ".vz_p", s.vz_p);
+        a(s.name + ".first_of_node", s.first_of_node);
+    }
+    a("E", state.field.E.all);
+    a("B", state.field.B.all);
+    a("E_theta", state.field.E_theta.all);
+    archive(a, state.profile);
+}
+
+/// Particles and fields of the set-up, before E has its part that follows from the charge.
+inline State loaded_state(const Case& wanted) {
+    State state{wanted.setup == "uniform" ? load_uniform(wanted) : load_harris(wanted),
+                FieldState(wanted.grid),
+                {}};
+    if (wanted.setup == "harris") harris_field(wanted, state.field);
+    if (wanted.setup == "current_sheet") current_sheet_field(wanted, state.field);
+    if (wanted.setup == "uniform") uniform_field(wanted, state.field);
+    return state;
+}
+
+/// Particles and fields at t = 0, sorted, with E from Gauss's law.
+inline State initial_state(const Case& wanted) {
+    const Grid& grid = wanted.grid;
+    State state = loaded_state(wanted);
+    SortScratch scratch;
+    sort_particles(grid, scratch, state.plasma.species);
+    Field rho = Field::Zero(grid.size());
+    Moments moments(grid);
+    for (const Particles& species : state.plasma.species) {
+        deposit_moments(species, grid, state.field.B, 0, moments);
+        rho += moments.rho;
+    }
+    smooth(grid, on_nodes, {-1, -1}, wanted.field.smoothing, rho.data(), moments.rho);
+    add_electrostatic_field(grid, MeshModes(grid), rho, state.field);
+    state.field.E_theta = state.field.E;
+    return state;
+}
+
+}  // namespace implicit_moment

@@ -1,0 +1,105 @@
+// The kink that follows the lower-hybrid drift instability of a thin current sheet, and the level at
+// which that instability stays, beside figure 14 of the talk.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/run/session.hpp"
+#include "common/theory/fit_growth.hpp"
+#include "implicit_moment/setup/current_sheet.hpp"
+
+namespace implicit_moment {
+
+/// When the lower-hybrid drift instability has saturated: the talk takes its level from here on, and
+/// the second phase of the evolution begins, the kink's   [1/Omega_ci]
+inline constexpr double second_phase = 10;
+/// A record that ends before has no second phase to speak of.   [1/Omega_ci]
+inline constexpr double least_record = 40;
+
+/// Root of the mean of a^2 from a time to the end, by the rule of the trapezoid.
+///     level^2 = integral a^2 dt / (t_end - t_begin)
+/// in:     times, increasing; a of the same length
+/// exact:  for a constant, and for rows of any spacing where a^2 is linear between them
+/// note:   begins at the first row that is not before `begin`; NaN without two rows from there on
+inline double level_after(std::span<const double> times, std::span<const double> a, double begin) {
+    double sum = 0, length = 0;
+    for (std::size_t n = 1; n < times.size(); ++n) {
+        if (times[n - 1] < begin * (1 - 1e-9)) continue;
+        const double dt = times[n] - times[n - 1];
+        sum += 0.5 * (a[n - 1] * a[n - 1] + a[n] * a[n]) * dt;
+        length += dt;
+    }
+    return length > 0 ? std::sqrt(sum / length) : std::nan("");
+}
+
+/// Growth in the second phase: nearly all of the way, in logarithm, between 1.5 times the level
+/// with which that phase begins and 0.7 times the maximum.
+/// exact:  for an exponential in the second phase, whatever was before
+inline common::GrowthFit second_growth(std::span<const double> times, std::span<const double> a) {
+    const auto first = static_cast<std::size_t>(
+        std::lower_bound(times.begin(), times.end(), second_phase * (1 - 1e-9)) - times.begin());
+    return common::fit_growth(times.subspan(first), a.subspan(first), {1.5, 0.7, 0.05, 0.9});
+}
+
+/// What the talk says about one of its sheets, m_i/m_e = 180 and u_i/v_i = 1.
+struct TalkKink {
+    double temperature_ratio;  // T_i/T_e
+    double growth;             // of the kink   [Omega_ci]
+    double level;              // of B_x(m_y = 4) after the first phase   [B0, as we read it]
+};
+inline constexpr std::array<TalkKink, 3> talk_kinks{
+    {{4, 0.1, 6.5e-3}, {2, 0.07, 3.5e-3}, {1, 0.04, 1.5e-3}}};
+
+/// Growth of the kink, mode 1 along the current, and level of mode 4, beside the talk.
+///     kink_growth    of B_1, the root mean square over z of the amplitude of the mode of B_y
+///     kink_growth_of_displacement   of the same mode of where B_y changes sign
+///     lhdi_level     root mean square in time of B_4, from t Omega_ci = 10 to the end
+/// note:   The talk does not say how its Fourier components are normalized, nor the length of its
+///         box; with another length than 4 L the modes are other waves, and nothing is expected.
+inline void compare_kink(const Case& w, const common::History& history, common::Summary& summary) {
+    const auto times = history.column("time_Omega_ci");
+    if (times.back() < least_record * (1 - 1e-9)) return;
+    const auto B_1 = history.column("B_1"), B_4 = history.column("B_4"),
+               displacement = history.column("displacement_1");
+    const CurrentSheetCase& s = w.current_sheet;
+    const bool of_the_talk = s.mass_ratio == 180 && s.drift == 1 && s.length_x == 4;
+    const auto sheet = std::find_if(talk_kinks.begin(), talk_kinks.end(), [&](const TalkKink& k) {
+        return of_the_talk && k.temperature_ratio == s.temperature_ratio;
+    });
+    const auto report = [&](const std::string& name, double value, const std::string& unit,
+                            double TalkKink::*talk, const std::string& source) {
+        if (sheet == talk_kinks.end())
+            summary.result_info(name, value, unit, source);
+        else
+            summary.result_within(name, value, unit, 0.5 * (*sheet).*talk, 2 * (*sheet).*talk,
+                                  "talk, figure 14: " + common::shown((*sheet).*talk) +
+                                      ", within a factor 2; " + source);
+    };
+    const auto growth = [&](const std::string& name, const std::vector<double>& a, bool compared) {
+        const common::GrowthFit fit = second_growth(times, a);
+        if (!fit.found) return;
+        const std::string window = "fitted from t Omega_ci = " + common::shown(fit.begin) + " to " +
+                                   common::shown(fit.end);
+        if (compared)
+            report(name, fit.rate, "Omega_ci", &TalkKink::growth, window);
+        else
+            summary.result_info(name, fit.rate, "Omega_ci", window);
+        summary.result_info(name + "_begin", fit.begin, "1/Omega_ci", "of the fit");
+        summary.result_info(name + "_end", fit.end, "1/Omega_ci", "of the fit");
+    };
+    growth("kink_growth", B_1, true);
+    growth("kink_growth_of_displacement", displacement, false);
+    summary.result_info("kink_largest", *std::max_element(displacement.begin(), displacement.end()),
+                        "L", "amplitude of the displacement");
+    report("lhdi_level", level_after(times, B_4, second_phase), "B0", &TalkKink::level,
+           "root mean square over z and time, from t Omega_ci = 10");
+    summary.result_info("energy_drift_at_end", history.column("energy_drift").back(), "",
+                        "conservation");
+}
+
+}  // namespace implicit_moment

@@ -1,0 +1,50 @@
+// What a bond between two grains bears, over all the nodes that they share.
+#pragma once
+
+#include <cmath>
+
+#include "mpm_explicit/grains.hpp"
+#include "mpm_explicit/node_problem.hpp"
+
+namespace mpm::detail {
+
+/// The load of one bond, at one node or summed over its nodes.
+struct BondLoad {
+    int bond = 0;
+    double jx = 0, jy = 0;  // impulse on b
+    double ax = 0, ay = 0;  // area of the interface, along its normal from a to b
+    void operator+=(const BondLoad& other) {
+        jx += other.jx, jy += other.jy, ax += other.ax, ay += other.ay;
+    }
+};
+
+/// A node's share: gradients of a volume sum up to its surface, wherever on the mesh that is.
+///   A n = 1/2 sum_i (g_a - g_b)
+/// exact:  for particles on a lattice and an interface along it
+/// note:   The usual sum over nodes of sqrt(2 min(V_a, V_b) (V_a + V_b)) / h is up to 30 % short
+///         where the interface is not on a line of nodes.
+inline BondLoad load_of(const NodeProblem& node, const Pair& pair) {
+    const Party &a = node.party[pair.a], &b = node.party[pair.b];
+    return {pair.bond, pair.lambda_n * pair.nx - pair.lambda_t * pair.ny,
+            pair.lambda_n * pair.ny + pair.lambda_t * pair.nx, 0.5 * (a.gx - b.gx),
+            0.5 * (a.gy - b.gy)};
+}
+
+/// Mean stress on the interface in this step, and whether the bond breaks.
+///   (shear/S)^2 + (max(0, tension)/N)^2 >= 1
+inline void take_load(const BondLoad& load, double dt, Bond& bond) {
+    bond.area = std::hypot(load.ax, load.ay);
+    if (bond.broken || !(bond.area > 0)) {
+        bond.normal_stress = bond.shear_stress = 0;
+        return;
+    }
+    const double nx = load.ax / bond.area, ny = load.ay / bond.area, per = 1 / (dt * bond.area);
+    // b is pulled back towards a where the impulse on it is against the normal.
+    bond.normal_stress = -(load.jx * nx + load.jy * ny) * per;
+    bond.shear_stress = (load.jy * nx - load.jx * ny) * per;
+    const double pull = std::max(0.0, bond.normal_stress) / bond.tension,
+                 shear = bond.shear_stress / bond.shear;
+    bond.broken = pull * pull + shear * shear >= 1;
+}
+
+}  // namespace mpm::detail

@@ -1,0 +1,204 @@
+// One field per grain, on the nodes that the grain touches and nowhere else.
+//
+// A grain's nodes are stored row by row. A row is a stretch of columns, and the node in column i has
+// the slot origin[row] + i; so a particle finds its nodes with one look at a small table, and memory
+// is proportional to the area that the grains cover. Two grains that touch the same node have two
+// slots there: what they do to each other is the business of contact.hpp.
+//
+//      o   o---o---o---o   o        a grain's rows: every row as long as it needs to be, and half
+//    o---o---o---o---o---o---o      a cell wider than the grain, so that the table stays good until
+//    o---o---o---o---o---o---o      a particle has moved by that
+//      o   o---o---o---o   o
+//
+// Columns are counted on without end: a grain that straddles the ends of a periodic mesh keeps its
+// particles together, at positions beyond the end. Only a grain that reaches all around (a ring) has
+// its particles put back into the box, and two copies of the columns where its ends meet.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "common/counting_sort.hpp"
+#include "common/lanes.hpp"
+#include "common/parallel.hpp"
+#include "mpm_explicit/grains.hpp"
+#include "mpm_explicit/mesh.hpp"
+#include "mpm_explicit/particles.hpp"
+
+namespace mpm {
+
+/// What particles put on a node of their grain, in one line of the cache.
+struct alignas(64) NodeSums {
+    double m;       // mass:                 sum_p m_p S_ip
+    double px, py;  // momentum:             sum_p m_p v_p S_ip
+    double mx, my;  // mass times position:  sum_p m_p x_p S_ip
+    double gx, gy;  // out of the grain:     sum_p V_p grad S_ip
+    double V;       // volume:               sum_p V_p S_ip
+};
+
+/// Velocities before and after the step.
+struct alignas(32) NodeMotion {
+    double vx_0, vy_0, vx_1, vy_1;
+};
+
+struct NodeForce {
+    double x, y;
+};
+
+/// Particles of one grain that are worked on together: one or more rows of cells.
+struct Strip {
+    int grain;
+    long begin, end;
+};
+
+/// A node that stands for another one: behind a wall (mirrored), or at the other end of a ring.
+struct Image {
+    long slot, of;
+    double sign_x, sign_y;  // of velocity, momentum and force
+    bool mirror_x, mirror_y;
+    double about;  // mirror: twice the coordinate of the wall; ring: the length of the mesh
+};
+
+/// A grain's field at a node that others may touch, too; or a frictional wall that the node is on
+/// or behind.
+struct Member {
+    long slot;    // -1: a wall
+    int grain;    // or the side that the wall is on
+    double x, y;  // of the node, as this grain counts columns
+    bool is_wall() const { return slot < 0; }
+};
+
+/// What a sort fixes, and a checkpoint must keep: everything else follows from it.
+struct Frame {
+    std::vector<int> first_row, rows;           // per grain: its rows of nodes
+    std::vector<int> first_column, end_column;  // per row
+    std::vector<int> strip_begin;               // per strip: its first particle
+    std::vector<int> strips;                    // per grain: how many
+    std::vector<int> ring;                      // per grain: it reaches around a periodic mesh
+    double moved = 0;  // how far a particle can have come since the sort [length]
+};
+
+class GrainNodes {
+   public:
+    /// in: width of the shape function in nodes; least mass of a node that takes part
+    GrainNodes(const Mesh& mesh, int shape_width, double least_mass)
+        : mesh_(mesh),
+          least_mass_(least_mass),
+          below_(shape_width == 2 ? 0 : 1),
+          above_(shape_width == 2 ? 1 : 2),
+          rows_apart_(shape_width == 2 ? 3 : 5) {}
+
+    const Mesh& mesh() const { return mesh_; }
+    /// A node with less mass stays at rest: what it would give to particles is round-off to them.
+    double least_mass() const { return least_mass_; }
+
+    std::vector<NodeSums> sums;
+    std::vector<NodeMotion> motion;
+    std::vector<NodeForce> force;
+
+    /// Slot of the node in column 0 of a grain's row j; column i is that plus i.
+    long origin(int grain, long j) const {
+        return origin_[static_cast<std::size_t>(first_of_grain_[static_cast<std::size_t>(grain)] +
+                                                j)];
+    }
+    /// The same for consecutive rows: origins(grain)[j].
+    const long* origins(int grain) const {
+        return origin_.data() + first_of_grain_[static_cast<std::size_t>(grain)];
+    }
+    long size() const { return static_cast<long>(sums.size()); }
+
+    const std::vector<Strip>& strips() const { return strips_; }
+    const std::vector<Image>& images() const { return images_; }
+    /// Until particles are put on nodes again, a slot moves as another one of its grain does.
+    void tie(long slot, long of) { images_.push_back({slot, of, 1, 1, false, false, 0}); }
+    void untie() { images_.resize(own_images_); }
+    const std::vector<long>& fixed_x() const { return fixed_x_; }
+    const std::vector<long>& fixed_y() const { return fixed_y_; }
+    bool is_fixed_x(long slot) const { return (fixed_[static_cast<std::size_t>(slot)] & 1) != 0; }
+    bool is_fixed_y(long slot) const { return (fixed_[static_cast<std::size_t>(slot)] & 2) != 0; }
+    /// 1 for a node that forces can move, 0 for one of a rigid grain.
+    const std::vector<unsigned char>& is_free() const { return free_; }
+    const std::vector<Member>& members() const { return members_; }
+    /// Shared node n has the members shared_begin()[n] ... shared_begin()[n + 1].
+    const std::vector<long>& shared_begin() const { return shared_begin_; }
+    long shared_count() const { return static_cast<long>(shared_begin_.size()) - 1; }
+    /// Slots of a grain are consecutive.
+    long slot_begin(int grain) const { return slot_begin_[static_cast<std::size_t>(grain)]; }
+    long slot_end(int grain) const { return slot_begin_[static_cast<std::size_t>(grain) + 1]; }
+
+    /// Whether particles may have left the nodes of their grain before the next step.
+    bool sort_is_due(const Frame& frame) const { return frame.moved > 0.99 * reach * mesh_.h; }
+
+    /// Sorts the particles by grain and row of cells, and lays out the nodes around them.
+    /// in/out: particles, of each grain together; grains' ranges stay as they are
+    void sort(const std::vector<Grain>& grains, Particles& particles, Frame& frame);
+
+    /// Lays out the nodes of a frame that a checkpoint has kept.
+    void lay_out(const std::vector<Grain>& grains, const Frame& frame);
+
+    /// Calls work(strip, number) for every strip; those at work at the same time share no node, and
+    /// sums on nodes are added in the same order whatever the number of threads.
+    template <class Work>
+    void for_each_strip(const Work& work) const {
+        common::for_each_row_two_apart(static_cast<long>(pieces_.size()) - 1, [&](long piece) {
+            const auto k = static_cast<std::size_t>(piece);
+            for (long s = pieces_[k]; s < pieces_[k + 1]; ++s)
+                work(strips_[static_cast<std::size_t>(s)], static_cast<std::size_t>(s));
+        });
+    }
+
+   private:
+    static constexpr double reach = 0.5;  // how far particles may move between sorts, in cells
+
+    void add_walls_and_rings(const std::vector<Grain>& grains, const Frame& frame);
+    void find_shared_nodes(const std::vector<Grain>& grains, const Frame& frame);
+
+    // Visits all slots of a grain that are not images: visit(slot, column, row).
+    template <class Visit>
+    void for_each_slot(int grain, const Frame& frame, const Visit& visit) const {
+        const auto g = static_cast<std::size_t>(grain);
+        const long table = row_begin_[g];
+        for (long r = 0; r < frame.rows[g]; ++r) {
+            const auto row = static_cast<std::size_t>(table + r);
+            for (long i = frame.first_column[row]; i < frame.end_column[row]; ++i)
+                visit(origin_[row] + i, i, frame.first_row[g] + r);
+        }
+    }
+    bool has_slot(int grain, const Frame& frame, long i, long j) const {
+        const auto g = static_cast<std::size_t>(grain);
+        const long r = j - frame.first_row[g];
+        if (r < 0 || r >= frame.rows[g]) return false;
+        const auto row = static_cast<std::size_t>(row_begin_[g] + r);
+        return i >= frame.first_column[row] && i < frame.end_column[row];
+    }
+
+    Mesh mesh_;
+    double least_mass_;
+    long below_, above_;  // rows and columns of nodes that the particles of a cell see around it
+    long rows_apart_;
+    std::vector<long> origin_, row_begin_, first_of_grain_, slot_begin_;
+    std::vector<Strip> strips_;
+    std::vector<long> pieces_{0};
+    std::vector<Image> images_;
+    std::size_t own_images_ = 0;  // those of walls and rings come first
+    std::vector<long> fixed_x_, fixed_y_;
+    std::vector<unsigned char> fixed_;  // per slot: 1 for x, 2 for y
+    std::vector<unsigned char> free_;
+    std::vector<Member> members_;
+    std::vector<long> shared_begin_{0};
+    common::SortScratch<double> scratch_;
+};
+
+template <class Archive>
+void archive(Archive& a, Frame& frame) {
+    a("first_row", frame.first_row), a("rows", frame.rows);
+    a("first_column", frame.first_column), a("end_column", frame.end_column);
+    a("strip_begin", frame.strip_begin), a("strips", frame.strips), a("ring", frame.ring);
+    a("moved", frame.moved);
+}
+
+}  // namespace mpm
+
+#include "mpm_explicit/lay_out_nodes.hpp"  // how sort() and lay_out() work

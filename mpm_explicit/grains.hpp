@@ -1,0 +1,40 @@
+// Grains: which particles belong together, what they are made of, how rigid ones move, and which
+// ones are bonded.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mpm_explicit/particles.hpp"
+
+namespace mpm {
+
+struct Grain {
+    std::string name;
+    int material = 0;         // index into the materials of the case
+    bool rigid = false;       // moves as it is told
+    long begin = 0, end = 0;  // its particles
+};
+
+/// How a rigid grain moves: with a given velocity, or in one direction as a force drives it. Grains
+/// that are not rigid have one, too, and do not use it.
+struct RigidMotion {
+    double vx = 0, vy = 0;                // velocity in this step
+    double push_x = 0, push_y = 0;        // force of the other grains on it, in the last step
+    double travel_x = 0, travel_y = 0;    // since the start
+    double wanted_vx = 0, wanted_vy = 0;  // when the load has risen
+    bool servo_x = false, servo_y = false;
+    double force = 0, mass = 1, damping = 0;  // servo
+};
+
+/// Two grains that hold together at the nodes they share, until the stress on their interface
+/// leaves the ellipse (shear/S)^2 + (tension/N)^2 = 1; then never again.
+struct Bond {
+    int a = 0, b = 0;               // grains
+    double tension = 0, shear = 0;  // strengths N, S [stress]
+    bool broken = false;
+    double normal_stress = 0, shear_stress = 0;  // of the last step, tension positive
+    double area = 0;
+};
+
+}  // namespace mpm

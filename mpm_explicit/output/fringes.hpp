@@ -1,0 +1,303 @@
+// What a polariscope sees of loaded grains: the difference of the principal stresses on a raster of
+// pixels, which a figure turns into fringes.
+//
+// Stress is averaged grain by grain on a patch of nodes of its own: nothing of one grain shows in
+// the next. Its components are interpolated to the pixels, and s1 - s2 is taken there: taken
+// earlier, the difference is wrong where the directions of stress turn, and fringes (not stresses)
+// that are interpolated turn into moire.
+#pragma once
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "common/run/writers.hpp"
+#include "mpm_explicit/mesh.hpp"
+#include "mpm_explicit/particles.hpp"
+#include "mpm_explicit/shapes.hpp"
+
+namespace mpm {
+
+/// The part of the plane to draw.
+struct Window {
+    double x_low = 0, x_high = 0, y_low = 0, y_high = 0;
+};
+
+inline Window whole(const Mesh& mesh) {
+    return {mesh.x_low, mesh.x_high(), mesh.y_low, mesh.y_high()};
+}
+
+/// Square pixels, row after row from the bottom; axes hold the centers of the pixels. Between the
+/// grains the number of the grain is -1 and the stresses are not numbers.
+struct FringeRaster {
+    common::SampledAxis x{"x", "length"}, y{"y", "length"};
+    std::vector<double> stress_difference, pressure;  // s1 - s2, -(xx + yy + zz) / 3 [E]
+    std::vector<double> coverage;                     // by the grain that is drawn there
+    std::vector<int> grain;
+
+    std::size_t pixel(long i, long j) const { return static_cast<std::size_t>(j * x.count + i); }
+};
+
+namespace fringes_detail {
+
+/// One grain on nodes i_first ... i_first + nodes_x - 1 and the like in y: memory in proportion to
+/// the grain. Nodes may lie outside of a periodic mesh; they belong to no other grain.
+struct Patch {
+    long i_first = 0, j_first = 0, nodes_x = 0, nodes_y = 0;
+    double volume = 0;                        // of the grain
+    std::vector<double> coverage;             // covered part of the cell around a node
+    std::vector<double> weight;               // sum V S, then 1 where the node has a stress, else 0
+    std::vector<double> sxx, syy, sxy, mean;  // stress at the nodes
+
+    std::size_t node(long i, long j) const {
+        return static_cast<std::size_t>((j - j_first) * nodes_x + i - i_first);
+    }
+};
+
+///   sigma_i = sum_p V_p S_ip sigma_p / sum_p V_p S_ip,  S linear
+///   coverage_i = sum_p V_p S_ip / h^2,                  S quadratic
+inline Patch average_on_nodes(const Particles& particles, long begin, long end, const Mesh& mesh) {
+    const double per_h = 1 / mesh.h;
+    const auto cells_x = [&](std::size_t p) { return (particles.x_p[p] - mesh.x_low) * per_h; };
+    const auto cells_y = [&](std::size_t p) { return (particles.y_p[p] - mesh.y_low) * per_h; };
+    const auto first = static_cast<std::size_t>(begin), last = static_cast<std::size_t>(end);
+
+    // Leave two nodes free on all sides.
+    double x_low = cells_x(first), x_high = x_low, y_low = cells_y(first), y_high = y_low;
+    for (std::size_t p = first; p < last; ++p) {
+        x_low = std::min(x_low, cells_x(p)), x_high = std::max(x_high, cells_x(p));
+        y_low = std::min(y_low, cells_y(p)), y_high = std::max(y_high, cells_y(p));
+    }
+    Patch patch;
+    patch.i_first = static_cast<long>(std::floor(x_low)) - 2;
+    patch.j_first = static_cast<long>(std::floor(y_low)) - 2;
+    patch.nodes_x = static_cast<long>(std::floor(x_high)) + 4 - patch.i_first;
+    patch.nodes_y = static_cast<long>(std::floor(y_high)) + 4 - patch.j_first;
+    const auto nodes = static_cast<std::size_t>(patch.nodes_x * patch.nodes_y);
+    for (auto* field :
+         {&patch.coverage, &patch.weight, &patch.sxx, &patch.syy, &patch.sxy, &patch.mean})
+        field->assign(nodes, 0.0);
+
+    for (std::size_t p = first; p < last; ++p) {
+        const double V = particles.V_p[p];
+        const Stress s = particles.stress(p);
+        patch.volume += V;
+        const auto wide_x = QuadraticShape{}(cells_x(p), per_h),
+                   wide_y = QuadraticShape{}(cells_y(p), per_h);
+        for (int b = 0; b < 3; ++b)
+            for (int a = 0; a < 3; ++a)
+                patch.coverage[patch.node(wide_x.first + a, wide_y.first + b)] +=
+                    V * wide_x.S[a] * wide_y.S[b] * per_h * per_h;
+        const auto in_x = LinearShape{}(cells_x(p), per_h), in_y = LinearShape{}(cells_y(p), per_h);
+        for (int b = 0; b < 2; ++b)
+            for (int a = 0; a < 2; ++a) {
+                const std::size_t i = patch.node(in_x.first + a, in_y.first + b);
+                const double VS = V * in_x.S[a] * in_y.S[b];
+                patch.weight[i] += VS;
+                patch.sxx[i] += VS * s.xx;
+                patch.syy[i] += VS * s.yy;
+                patch.sxy[i] += VS * s.xy;
+                patch.mean[i] += VS * (s.xx + s.yy + s.zz) / 3;
+            }
+    }
+    for (std::size_t i = 0; i < nodes; ++i) {
+        if (!(patch.weight[i] > 0)) continue;
+        for (auto* field : {&patch.sxx, &patch.syy, &patch.sxy, &patch.mean})
+            (*field)[i] /= patch.weight[i];
+        patch.weight[i] = 1;
+    }
+    return patch;
+}
+
+/// The pixels of one direction that a patch can reach, first ... first + count - 1 from the edge of
+/// the window, and their weights at the nodes.
+struct Reach {
+    long first = 0, count = 0;
+    std::vector<Weights<2>> linear;
+    std::vector<Weights<3>> quadratic;
+};
+
+/// in:    nodes of the patch; edge of the window, in cells from node 0 of the mesh
+inline Reach reach_pixels(long node_first, long nodes, double edge, int per_cell) {
+    // Take the pixels whose nearest node has both neighbors in the patch.
+    const double low = static_cast<double>(node_first + 1),
+                 high = static_cast<double>(node_first + nodes - 2);
+    Reach reach;
+    reach.first = static_cast<long>(std::ceil((low - edge) * per_cell - 0.5));
+    reach.count = static_cast<long>(std::floor((high - edge) * per_cell - 0.5)) - reach.first + 1;
+    for (long q = reach.first; q < reach.first + reach.count; ++q) {
+        const double at = edge + (static_cast<double>(q) + 0.5) / per_cell;
+        reach.linear.push_back(LinearShape{}(at, 1.0));
+        reach.quadratic.push_back(QuadraticShape{}(at, 1.0));
+    }
+    return reach;
+}
+
+/// The covered part of all pixels in reach, row after row.
+inline std::vector<double> cover_pixels(const Patch& patch, const Reach& in_x, const Reach& in_y) {
+    std::vector<double> covered, row(static_cast<std::size_t>(patch.nodes_x));
+    covered.reserve(static_cast<std::size_t>(in_x.count * in_y.count));
+    for (const Weights<3>& y : in_y.quadratic) {
+        const std::size_t below = patch.node(patch.i_first, y.first);
+        for (std::size_t i = 0; i < row.size(); ++i)
+            row[i] = y.S[0] * patch.coverage[below + i] +
+                     y.S[1] * patch.coverage[below + row.size() + i] +
+                     y.S[2] * patch.coverage[below + 2 * row.size() + i];
+        for (const Weights<3>& x : in_x.quadratic) {
+            const double* at = &row[static_cast<std::size_t>(x.first - patch.i_first)];
+            covered.push_back(x.S[0] * at[0] + x.S[1] * at[1] + x.S[2] * at[2]);
+        }
+    }
+    return covered;
+}
+
+/// The coverage above which a pixel belongs to the grain: near one half, and such that its pixels
+/// have the area of its particles.
+/// note:  Coverage is smooth over a cell, so that its line of one half lies inside of a small disk.
+inline double outline_level(std::vector<double> covered, double pixels) {
+    const auto wanted = static_cast<std::size_t>(std::max(pixels, 0.0) + 0.5);
+    if (wanted >= covered.size()) return 0;
+    const auto place = covered.begin() + static_cast<std::ptrdiff_t>(wanted);
+    std::nth_element(covered.begin(), place, covered.end(), std::greater<>());
+    // Round it, but to no simple fraction, so that pixels of equal coverage are on the same side.
+    return (std::floor(*place * 1024) + std::numbers::inv_pi) / 1024;
+}
+
+struct PixelStress {
+    double difference, pressure;
+};
+
+/// in:    weights of the pixel at the four nodes around it
+/// out:   not numbers where no particle is near
+inline PixelStress stress_at(const Patch& patch, const Weights<2>& x, const Weights<2>& y) {
+    double weight = 0, mean = 0;
+    Stress s;
+    for (int b = 0; b < 2; ++b)
+        for (int a = 0; a < 2; ++a) {
+            const std::size_t i = patch.node(x.first + a, y.first + b);
+            const double S = x.S[a] * y.S[b] * patch.weight[i];
+            weight += S;
+            s.xx += S * patch.sxx[i];
+            s.yy += S * patch.syy[i];
+            s.xy += S * patch.sxy[i];
+            mean += S * patch.mean[i];
+        }
+    return {std::hypot(s.xx - s.yy, 2 * s.xy) / weight, -mean / weight};
+}
+
+/// Draws one grain. Pixel i of a periodic mesh shows also what is whole periods of pixels away.
+inline void draw_grain(const Patch& patch, int number, const Reach& in_x, const Reach& in_y,
+                       long period, FringeRaster& raster) {
+    const std::vector<double> covered = cover_pixels(patch, in_x, in_y);
+    const double level = outline_level(covered, patch.volume / (raster.x.step * raster.y.step));
+    for (long m = 0; m < in_y.count; ++m) {
+        const long j = in_y.first + m;
+        if (j < 0 || j >= raster.y.count) continue;
+        for (long n = 0; n < in_x.count; ++n) {
+            const double part = covered[static_cast<std::size_t>(m * in_x.count + n)];
+            if (!(part > level)) continue;
+            const auto [difference, pressure] =
+                stress_at(patch, in_x.linear[static_cast<std::size_t>(n)],
+                          in_y.linear[static_cast<std::size_t>(m)]);
+            if (!std::isfinite(difference)) continue;
+            long i = in_x.first + n;
+            if (period > 0) i %= period;
+            for (; i < raster.x.count; i += period) {
+                const std::size_t pixel = raster.pixel(std::max(i, 0l), j);
+                if (i >= 0 && part > raster.coverage[pixel]) {
+                    raster.coverage[pixel] = part;
+                    raster.grain[pixel] = number;
+                    raster.stress_difference[pixel] = difference;
+                    raster.pressure[pixel] = pressure;
+                }
+                if (period == 0) break;
+            }
+        }
+    }
+}
+
+}  // namespace fringes_detail
+
+/// Draws the difference of the principal stresses in grains.
+///   s1 - s2 = [(s_xx - s_yy)^2 + 4 s_xy^2]^1/2
+/// of components that come from the particles to nodes and from nodes to pixels by linear weights,
+/// grain by grain. Where grains meet, a pixel shows the one that covers most of it.
+/// in:    grains, each with its particles begin ... end - 1 (a Grain, or any struct with these);
+///        x_p may lie outside of a periodic mesh; a window whose sides are whole numbers of pixels;
+///        at 7 or more pixels per cell what the mesh resolves is smooth
+/// out:   the raster
+/// exact: uniform stress has the same s1 - s2 in all pixels of its grain
+template <class Range>
+FringeRaster draw_fringes(const Particles& particles, const std::vector<Range>& grains,
+                          const Mesh& mesh, const Window& window, int pixels_per_cell = 8) {
+    const double step = mesh.h / pixels_per_cell;
+    FringeRaster raster;
+    raster.x.first = window.x_low + 0.5 * step;
+    raster.y.first = window.y_low + 0.5 * step;
+    raster.x.step = raster.y.step = step;
+    raster.x.count = std::max(1l, std::lround((window.x_high - window.x_low) / step));
+    raster.y.count = std::max(1l, std::lround((window.y_high - window.y_low) / step));
+    const auto pixels = static_cast<std::size_t>(raster.x.count * raster.y.count);
+    raster.stress_difference.assign(pixels, std::numeric_limits<double>::quiet_NaN());
+    raster.pressure = raster.stress_difference;
+    raster.coverage.assign(pixels, 0.0);
+    raster.grain.assign(pixels, -1);
+
+    const long period = mesh.periodic_x ? mesh.cells_x * pixels_per_cell : 0;
+    const double edge_x = (window.x_low - mesh.x_low) / mesh.h,
+                 edge_y = (window.y_low - mesh.y_low) / mesh.h;
+    for (std::size_t g = 0; g < grains.size(); ++g) {
+        using namespace fringes_detail;
+        if (grains[g].end <= grains[g].begin) continue;
+        const Patch patch = average_on_nodes(particles, grains[g].begin, grains[g].end, mesh);
+        draw_grain(patch, static_cast<int>(g),
+                   reach_pixels(patch.i_first, patch.nodes_x, edge_x, pixels_per_cell),
+                   reach_pixels(patch.j_first, patch.nodes_y, edge_y, pixels_per_cell), period,
+                   raster);
+    }
+    return raster;
+}
+
+/// Writes a raster for gnuplot: columns x y stress_difference pressure grain, an empty line after
+/// each row of pixels. Between the grains stand NaN NaN -1: pictures need every pixel, and a script
+/// asks column 5, for an expression of NaN is undefined whatever it says.
+/// exact: places have ten digits and stresses six, enough for a picture; on failure nothing appears
+///        under `path`
+inline void write_fringes(const std::string& path, const FringeRaster& raster) {
+    const auto digits = [](double value, int precision) {
+        char text[32];
+        const auto end =
+            std::to_chars(text, text + sizeof text, value, std::chars_format::general, precision);
+        return std::string(text, end.ptr);
+    };
+    std::vector<std::string> columns;
+    for (long i = 0; i < raster.x.count; ++i) columns.push_back(digits(raster.x.at(i), 10) + " ");
+
+    common::OutputFile file(path);
+    file.text("# 1:x[length] 2:y[length] 3:stress_difference[E] 4:pressure[E] 5:grain[]\n");
+    for (long j = 0; j < raster.y.count; ++j) {
+        const std::string y = digits(raster.y.at(j), 10) + " ";
+        for (long i = 0; i < raster.x.count; ++i) {
+            const std::size_t pixel = raster.pixel(i, j);
+            file.text(columns[static_cast<std::size_t>(i)]);
+            file.text(y);
+            if (raster.grain[pixel] < 0) {
+                file.text("NaN NaN -1\n");
+                continue;
+            }
+            file.text(digits(raster.stress_difference[pixel], 6) + " ");
+            file.text(digits(raster.pressure[pixel], 6) + " ");
+            file.number(static_cast<long>(raster.grain[pixel]));
+            file.text("\n");
+        }
+        file.text("\n");
+    }
+    file.finish();
+}
+
+}  // namespace mpm

@@ -1,0 +1,82 @@
+// What a run of mpm_explicit keeps besides what every scheme does (mpm_explicit/output/record_grains.hpp): the ledger
+// of the leapfrog.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "mpm_explicit/output/record_grains.hpp"
+#include "mpm_explicit/setup/initial_state.hpp"
+#include "mpm_explicit/theory/compare_with_theory.hpp"
+
+namespace mpm_explicit {
+
+/// What one step has summed up.
+struct StepSums {
+    std::vector<StripSums> strips;
+    NodeWork nodes;
+    ContactSums contact;
+};
+
+inline std::vector<common::Column> ledger_columns() {
+    std::vector<common::Column> columns;
+    for (const char* name :
+         {"kinetic", "elastic", "energy", "energy_14", "energy_15", "external", "contact",
+          "friction", "bond", "damping", "plastic", "volume", "pic", "remap", "budget"})
+        columns.push_back({name, "energy"});
+    return columns;
+}
+
+inline std::vector<double> ledger_row(const Ledger& l) {
+    return {l.kinetic,   l.elastic,   l.kinetic + l.elastic,
+            l.energy_14, l.energy_15, l.external,
+            l.contact,   l.friction,  l.bond,
+            l.damping,   l.plastic,   l.volume,
+            l.pic,       l.remap,     l.budget()};
+}
+
+class LeapfrogRecorder {
+   public:
+    LeapfrogRecorder(const Case& wanted, const Scales& scales, const State& state,
+                     common::History& history)
+        : dt_(scales.dt),
+          recorder_(wanted, scales, state.assembly, ledger_columns(), "budget", history) {}
+
+    /// Writes the files that are due at this step, before it.
+    void snapshot(long step, const State& state, const common::Session& session) const {
+        recorder_.snapshot(step, state.assembly, session);
+    }
+
+    /// Enters a step into the ledger and writes its row of the history.
+    /// errors: NumericalError as Recorder::refuse_failure
+    void record(long step, const StepSums& sums, const GrainNodes& nodes, State& state,
+                common::Session& session) {
+        Ledger& l = state.ledger;
+        enter_energies(step, sums.strips, l);
+        const bool finite =
+            std::all_of(sums.strips.begin(), sums.strips.end(), [](const StripSums& s) {
+                return std::isfinite(s.kinetic) && std::isfinite(s.product);
+            });
+        if (finite && recorder_.row_is_due(step))
+            recorder_.write_row(static_cast<double>(step) * dt_, dt_, ledger_row(l), l.momentum_x,
+                                l.momentum_y, sums.contact, state.assembly, session);
+        recorder_.refuse_failure(step, sums.strips, nodes, state.assembly, l.start, l.external,
+                                 l.kinetic + l.elastic, session.history);
+        enter_work(nodes.strips(), sums.strips, sums.nodes, sums.contact, l);
+    }
+
+    /// The results of the whole run, after its last step.
+    void finish(long step, const State& state, common::Session& session) const {
+        if (session.history.all().empty()) return;
+        compare_with_theory(recorder_.ended(step, state.assembly, session.history),
+                            session.summary);
+        recorder_.finish_conservation({{"remap", "largest_remap_error"}}, state.assembly, session);
+    }
+
+   private:
+    double dt_;
+    Recorder recorder_;
+};
+
+}  // namespace mpm_explicit

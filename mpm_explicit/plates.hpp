@@ -1,0 +1,60 @@
+// Loads: gravity, and rigid grains, which are plates and pistons that move as the case says or that
+// a force drives.
+#pragma once
+
+#include <vector>
+
+#include "mpm_explicit/grains.hpp"
+#include "mpm_explicit/setup/problem.hpp"
+
+namespace mpm {
+
+/// Forces on all mass alike.
+struct BodyForce {
+    double gravity_x = 0, gravity_y = 0;  // acceleration now
+    double damping = 0;                   // of the velocity [1/time]
+};
+
+/// The share of a load that is on at a time: 0 at t = 0, 1 after the rise, with two continuous
+/// derivatives, so that it wakes few waves.
+///   s^3 (10 - 15 s + 6 s^2),  s = t/rise
+inline double share_of_load(double t, double rise) {
+    if (t >= rise) return 1;
+    const double s = t / rise;
+    return s * s * s * (10 - 15 * s + 6 * s * s);
+}
+
+/// Velocities of rigid grains for the step from t to t + dt.
+///   driven:  v = share(t) wanted
+///   servo:   m dv/dt = share(t) F + push - c v, push the force of the other grains on it
+/// note:    A servo's dashpot c is taken at the new velocity: it never overshoots, however large.
+inline void drive_plates(double t, double dt, double rise, std::vector<RigidMotion>& rigid) {
+    const double share = share_of_load(t, rise);
+    const auto servo = [&](const RigidMotion& is, double v, double force, double push) {
+        return (v + dt * (share * force + push) / is.mass) / (1 + dt * is.damping / is.mass);
+    };
+    for (RigidMotion& is : rigid) {
+        is.vx = is.servo_x ? servo(is, is.vx, is.force, is.push_x) : share * is.wanted_vx;
+        is.vy = is.servo_y ? servo(is, is.vy, is.force, is.push_y) : share * is.wanted_vy;
+        is.travel_x += dt * is.vx, is.travel_y += dt * is.vy;
+    }
+}
+
+/// The middle of a step, where loads are taken.
+inline double time_of_load(long step, double dt) { return (static_cast<double>(step) + 0.5) * dt; }
+
+/// The body force at a time.
+inline BodyForce body_force(const Problem& problem, double t) {
+    const double share = share_of_load(t, problem.rise);
+    return {share * problem.gravity_x, share * problem.gravity_y, problem.damping};
+}
+
+/// Loads in the step from t^n: the body force, and the velocities of rigid grains.
+inline BodyForce drive(const Problem& problem, long step, double dt,
+                       std::vector<RigidMotion>& rigid) {
+    const double t = time_of_load(step, dt);
+    drive_plates(t, dt, problem.rise, rigid);
+    return body_force(problem, t);
+}
+
+}  // namespace mpm

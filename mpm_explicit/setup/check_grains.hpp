@@ -1,0 +1,193 @@
+// What is refused before a run starts, what is warned of, and the scales of a case in words.
+#pragma once
+
+#include <algorithm>
+#include <set>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "mpm_explicit/setup/check_comparison.hpp"
+
+namespace mpm {
+
+namespace detail {
+
+constexpr std::size_t longest_pack_name = 40;  // that write_pack() takes
+
+inline void refuse_grain(const PlannedGrain& plan, const Material& material, const Mesh& mesh,
+                         long per_side) {
+    const std::string grain = "grain '" + plan.name + "'";
+    const double thin = thinnest(plan.outline);
+    refuse(thin < 2 * mesh.h * (1 - 1e-9),
+           grain + " is " + common::shown(thin / mesh.h) +
+               " cells thin, below 2: refine the mesh to cells of at most " +
+               common::shown(0.5 * thin) + ", or take a larger grain");
+    const Bounds box = bounds(plan.outline);
+    const double slack = 1e-9 * mesh.h;
+    refuse(box.y_low < mesh.y_low - slack || box.y_high > mesh.y_high() + slack ||
+               (!mesh.periodic_x &&
+                (box.x_low < mesh.x_low - slack || box.x_high > mesh.x_high() + slack)),
+           grain + " reaches from (" + common::shown(box.x_low) + ", " + common::shown(box.y_low) +
+               ") to (" + common::shown(box.x_high) + ", " + common::shown(box.y_high) +
+               "), beyond the mesh from (" + common::shown(mesh.x_low) + ", " +
+               common::shown(mesh.y_low) + ") to (" + common::shown(mesh.x_high()) + ", " +
+               common::shown(mesh.y_high()) + "): move the grain or widen the mesh");
+    const double length = mesh.length_x();
+    refuse(mesh.periodic_x && box.x_high - box.x_low > length + slack,
+           grain + " is longer than the periodic mesh: shorten it to " + common::shown(length));
+    refuse(
+        mesh.periodic_x && (box.x_low < mesh.x_low - length || box.x_high > mesh.x_high() + length),
+        grain + " reaches from x = " + common::shown(box.x_low) + " to " +
+            common::shown(box.x_high) + ", more than its length of " + common::shown(length) +
+            " beyond the periodic mesh: move it by whole lengths");
+    // What is two cells wide may still be a thin angle between the points of the lattice.
+    const double side = mesh.h / static_cast<double>(per_side);
+    refuse(plan.outline.kind == OutlineKind::polygon && area(plan.outline) < 1e4 * side * side &&
+               fill(plan.outline, mesh, per_side).empty(),
+           grain + " is so thin that no particle falls into it: refine the mesh, or make it wider");
+    const bool rigid = material.law == Law::rigid;
+    refuse(!rigid && plan.from.control != "velocity", grain + " has control = \"" +
+                                                          plan.from.control +
+                                                          "\" and is not rigid: give it a "
+                                                          "material with law = \"rigid\"");
+    refuse(rigid && (plan.from.spin != 0 || plan.from.profile != "none"),
+           grain + " is rigid and moves without turning: take out spin and profile");
+    refuse(plan.from.profile != "none" && plan.from.shape != "box",
+           grain + " has a profile of its velocity, which is for boxes: set shape = \"box\"");
+}
+
+}  // namespace detail
+
+/// Refuses combinations that cannot run.
+/// errors: InputError with the numbers and the cure
+inline void refuse_impossible(const Case& w) {
+    using detail::refuse;
+    const Problem& problem = w.problem;
+    detail::refuse_extremes(w);
+    const Mesh mesh = problem.mesh();
+    for (const Side side : {x_low, x_high})
+        refuse(problem.periodic_x && problem.walls[static_cast<std::size_t>(side)] != "open",
+               "mesh.periodic_x = true leaves no walls at the ends of x: set walls.x_low and "
+               "walls.x_high to \"open\"");
+    refuse(problem.periodic_x && problem.cells_x < 8,
+           "mesh.cells_x = " + std::to_string(problem.cells_x) +
+               " is too few for a periodic mesh: take at least 8");
+    const std::vector<Material> materials = materials_of(problem);
+    const std::vector<PlannedGrain> plans = plan_grains(problem, materials);
+    refuse(plans.empty(), "there is no grain: add a [grain.<name>] or a [pack.<name>]");
+    for (const Material& m : materials)
+        refuse(m.law == Law::drucker_prager && m.dilatancy_angle > m.friction_angle,
+               "[material." + m.name + "]: dilatancy_angle = " + common::shown(m.dilatancy_angle) +
+                   " is above friction_angle = " + common::shown(m.friction_angle) +
+                   ": flow would make energy; take at most the friction angle");
+    std::set<std::string> names;
+    bool moves = false;
+    for (const PlannedGrain& plan : plans) {
+        const Material& material = materials[static_cast<std::size_t>(plan.material)];
+        refuse(!names.insert(plan.name).second,
+               "two grains are called '" + plan.name + "': rename one of them");
+        refuse(w.pack && plan.name.size() > detail::longest_pack_name,
+               "grain '" + plan.name + "' has a name of " + std::to_string(plan.name.size()) +
+                   " letters, and pack.txt takes " + std::to_string(detail::longest_pack_name) +
+                   ": shorten it, or set output.pack = false");
+        detail::refuse_grain(plan, material, mesh, problem.per_side);
+        moves = moves || material.law != Law::rigid;
+    }
+    refuse(!moves, "all grains are rigid: give one a material that can be strained");
+
+    std::vector<PackedGrain> outlines;
+    for (const PlannedGrain& plan : plans) outlines.push_back({plan.name, plan.outline});
+    const Overlap worst =
+        overlaps(outlines, problem.periodic_x ? mesh.length_x() : 0, 1e-6 * mesh.h);
+    refuse(worst.depth > 0, "grains '" + worst.first + "' and '" + worst.second + "' overlap by " +
+                                common::shown(worst.depth) + ", " +
+                                common::shown(worst.depth / mesh.h) +
+                                " cells: move them apart or make them smaller");
+    (void)bonds_of(problem, plans, materials);
+    detail::refuse_comparison(w, plans, materials);
+    const double pixels = static_cast<double>(problem.cells_x * w.pixels_per_cell) *
+                          static_cast<double>(problem.cells_y * w.pixels_per_cell);
+    refuse(w.fringes_interval > 0 && pixels > 5e7,
+           "output.pixels_per_cell = " + std::to_string(w.pixels_per_cell) + " makes rasters of " +
+               common::shown(pixels) + " pixels, more than 5e7: take fewer");
+}
+
+/// Warnings with the number and the limit, for choices that run but may mislead.
+inline std::vector<std::string> resolution_warnings(const Case& w, const Scales& scales) {
+    std::vector<std::string> warnings;
+    const Problem& problem = w.problem;
+    const Mesh mesh = problem.mesh();
+    if (scales.speed > 0.05 * scales.sound_speed && scales.grains > 1)
+        warnings.push_back("|v|/c_p = " + common::shown(scales.speed / scales.sound_speed) +
+                           " is above 0.05: an impact strains the grains by more than the small "
+                           "strains of the material laws");
+    const double g = std::hypot(problem.gravity_x, problem.gravity_y);
+    const double height = mesh.y_high() - mesh.y_low,
+                 strain = g * height / (scales.sound_speed * scales.sound_speed);
+    if (strain > 0.05)
+        warnings.push_back("g H/c_p^2 = " + common::shown(strain) +
+                           " is above 0.05: grains at the bottom are crushed by the weight of a "
+                           "full mesh; stiffen the material");
+    if (problem.per_side == 1 && problem.contact.separation > 0 && problem.contact.separation < 1)
+        warnings.push_back("contact.separation = " + common::shown(problem.contact.separation) +
+                           " with one particle per side: grains will meet too late; take 1.07");
+    if (problem.contact.separation == 0)
+        warnings.push_back("contact.separation = 0: grains meet where they share nodes, up to " +
+                           common::shown(2 - 1 / static_cast<double>(problem.per_side)) +
+                           " cells too early");
+    const std::vector<std::pair<const char*, double>> intervals{
+        {"output.particles_interval", w.particles_interval},
+        {"output.fringes_interval", w.fringes_interval},
+        {"output.grains_interval", w.grains_interval}};
+    for (const auto& [name, interval] : intervals)
+        if (interval > 0 && interval < scales.dt)
+            warnings.push_back(std::string(name) + " = " + common::shown(interval) +
+                               " is below the time step " + common::shown(scales.dt) +
+                               ": files are written every step");
+    for (const PlannedGrain& plan : plan_grains(problem, materials_of(problem))) {
+        if (plan.from.control == "velocity" && plan.from.force != 0)
+            warnings.push_back("grain '" + plan.name +
+                               "' has a force and control = \"velocity\": the force does nothing");
+        const double unused = plan.from.control == "force_x"   ? plan.from.velocity_x
+                              : plan.from.control == "force_y" ? plan.from.velocity_y
+                                                               : 0;
+        if (unused != 0)
+            warnings.push_back("grain '" + plan.name + "' has control = \"" + plan.from.control +
+                               "\" and a velocity in that direction, " + common::shown(unused) +
+                               ": it does nothing, the grain starts at rest");
+    }
+    return warnings;
+}
+
+/// The resolved scales as text, for --dry-run and the head of a run.
+/// in:     method_line, what is said of the method; seconds, about how long a run takes on one core
+inline std::string describe_scales(const Case& w, const Scales& scales,
+                                   const std::string& method_line, double seconds) {
+    const Problem& problem = w.problem;
+    const Mesh mesh = problem.mesh();
+    std::string text;
+    const auto line = [&](const std::string& name, const std::string& value) {
+        text +=
+            "  " + name + std::string(name.size() < 22 ? 22 - name.size() : 1, ' ') + value + "\n";
+    };
+    line("mesh", std::to_string(mesh.cells_x) + " x " + std::to_string(mesh.cells_y) +
+                     " cells of " + common::shown(mesh.h) +
+                     (mesh.periodic_x ? ", periodic in x" : ""));
+    line("walls", "x: " + problem.walls[0] + ", " + problem.walls[1] + "; y: " + problem.walls[2] +
+                      ", " + problem.walls[3]);
+    line("method", method_line);
+    line("grains", std::to_string(scales.grains) + ", the thinnest " +
+                       common::shown(scales.thinnest / mesh.h) + " cells");
+    line("particles", std::to_string(scales.particles) + ", " + std::to_string(problem.per_side) +
+                          " x " + std::to_string(problem.per_side) + " per cell");
+    line("sound", "c_p = " + common::shown(scales.sound_speed) +
+                      ", largest |v| = " + common::shown(scales.speed));
+    line("steps", std::to_string(scales.steps) + " of dt = " + common::shown(scales.dt) +
+                      ", alpha = " + common::shown(w.alpha));
+    line("memory", "about " + common::shown(scales.bytes / 1048576) + " MiB");
+    line("time", "about " + common::shown(seconds) + " s on one core");
+    return text;
+}
+
+}  // namespace mpm

@@ -1,0 +1,135 @@
+// The grains of a case before they are filled with particles: outlines, materials, how they start.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "mpm_explicit/setup/pack_file.hpp"
+#include "mpm_explicit/setup/packs.hpp"
+#include "mpm_explicit/setup/problem.hpp"
+
+namespace mpm {
+
+/// A grain before it is filled with particles.
+struct PlannedGrain {
+    std::string name;
+    Outline outline;
+    int material = 0;
+    GrainCase from;  // velocities, profile, control
+};
+
+/// Materials in the order of the case; with 'default' at the end when grains use it unnamed.
+inline std::vector<Material> materials_of(const Problem& w) {
+    std::vector<Material> materials;
+    for (const MaterialCase& m : w.materials) {
+        materials.push_back(m.material);
+        materials.back().name = m.name;
+        materials.back().law = m.law == "j2"               ? Law::j2
+                               : m.law == "drucker_prager" ? Law::drucker_prager
+                               : m.law == "rigid"          ? Law::rigid
+                                                           : Law::elastic;
+    }
+    const auto is_default = [](const Material& m) { return m.name == "default"; };
+    if (std::none_of(materials.begin(), materials.end(), is_default)) {
+        materials.emplace_back();
+        materials.back().name = "default";
+    }
+    return materials;
+}
+
+namespace detail {
+
+inline std::vector<Point> vertices_of(const std::string& name, const std::string& text) {
+    std::vector<Point> points;
+    std::istringstream corners(text);
+    for (std::string corner; std::getline(corners, corner, ',');) {
+        std::istringstream numbers(corner);
+        Point p{};
+        std::string rest;
+        if (!(numbers >> p.x >> p.y) || (numbers >> rest))
+            throw common::InputError("grain." + name + ".vertices: '" + corner +
+                                     "' is not a corner: write \"x y, x y, x y\"");
+        points.push_back(p);
+    }
+    return points;
+}
+
+inline Outline outline_of(const GrainCase& g) {
+    try {
+        if (g.shape != "polygon" && !g.vertices.empty())
+            throw common::InputError(
+                "vertices belong to shape = \"polygon\": set it, or take them out");
+        if (g.shape == "disk") return disk(g.x, g.y, g.radius);
+        if (g.shape == "box") return box(g.x, g.y, g.width, g.height, g.angle);
+        if (g.vertices.empty()) return regular_polygon(g.x, g.y, g.radius, g.sides, g.angle);
+        return polygon(vertices_of(g.name, g.vertices));
+    } catch (const common::InputError& error) {
+        throw common::InputError("[grain." + g.name + "]: " + error.what());
+    }
+}
+
+inline std::vector<PackedGrain> grains_of(const PackCase& p, const Problem& w) {
+    try {
+        std::vector<PackedGrain> pack;
+        if (p.kind != "file" && !p.file.empty())
+            throw common::InputError("file belongs to kind = \"file\": set it, or take file out");
+        if (p.kind == "file") {
+            if (p.file.empty())
+                throw common::InputError("kind = \"file\" needs the name of a file: set file");
+            pack = read_pack(p.file);
+        } else if (p.kind == "hexagonal") {
+            Rows rows;
+            rows.x = p.x, rows.y = p.y, rows.columns = p.columns, rows.rows = p.rows;
+            rows.radius = p.radius, rows.gap = p.gap;
+            rows.spacing_x = p.spacing_x, rows.spacing_y = p.spacing_y;
+            rows.shift = p.spacing_x > 0 ? 0.5 * p.spacing_x : p.radius + 0.5 * p.gap;
+            rows.one_less = p.shorter_rows;
+            pack = hexagonal_rows(rows);
+        } else {
+            RandomDisks disks;
+            disks.box = {p.x, p.x + p.width, p.y, p.y + p.height};
+            disks.periodic_x = w.periodic_x;
+            disks.radius_min = p.radius_min, disks.radius_max = p.radius_max;
+            disks.count = p.count, disks.gap = p.gap, disks.loose = p.kind == "loose";
+            disks.seed = static_cast<std::uint64_t>(p.seed);
+            pack = random_disks(disks);
+        }
+        return p.sides > 0 ? regular_polygons(pack, p.sides, static_cast<std::uint64_t>(p.seed))
+                           : pack;
+    } catch (const common::InputError& error) {
+        throw common::InputError("[pack." + p.name + "]: " + error.what());
+    }
+}
+
+}  // namespace detail
+
+/// All grains of a case: the named ones, then those of packs, called <pack>_<name>.
+/// errors: InputError for an unknown material, or an outline or a pack that cannot be
+inline std::vector<PlannedGrain> plan_grains(const Problem& w,
+                                             const std::vector<Material>& materials) {
+    const auto material_of = [&](const std::string& name, const std::string& whose) {
+        for (std::size_t k = 0; k < materials.size(); ++k)
+            if (materials[k].name == name) return static_cast<int>(k);
+        throw common::InputError("[" + whose + "]: there is no [material." + name +
+                                 "]; add it, or name another material");
+    };
+    std::vector<PlannedGrain> grains;
+    for (const GrainCase& g : w.grains)
+        grains.push_back(
+            {g.name, detail::outline_of(g), material_of(g.material, "grain." + g.name), g});
+    for (const PackCase& p : w.packs) {
+        const int material = material_of(p.material, "pack." + p.name);
+        for (const PackedGrain& packed : detail::grains_of(p, w)) {
+            GrainCase from;
+            from.velocity_x = p.velocity_x + p.shear_rate * (packed.outline.y - p.y);
+            from.velocity_y = p.velocity_y;
+            grains.push_back({p.name + "_" + packed.name, packed.outline, material, from});
+        }
+    }
+    return grains;
+}
+
+}  // namespace mpm

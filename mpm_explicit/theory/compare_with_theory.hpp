@@ -1,0 +1,53 @@
+// The results of a run of mpm_explicit: what any scheme is compared with
+// (mpm_explicit/theory/compare_grains.hpp), and the invariants that only leapfrog has.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "mpm_explicit/theory/compare_grains.hpp"
+#include "mpm_explicit/theory/scheme_theory.hpp"
+
+namespace mpm_explicit {
+
+using namespace mpm;
+
+/// The one free node between two fixed ends, with frozen particles.
+inline void compare_oscillator(const theory::Run& run, common::Summary& summary) {
+    const Problem& problem = run.wanted.problem;
+    const double h = problem.mesh().h, c = sound_speed(run.material()), dt = run.scales.dt,
+                 w = node_oscillator_frequency(static_cast<int>(problem.per_side)) * c / h;
+    summary.result_info("omega_dt", w * dt, "1", "one free node, exact");
+    const auto e14 = run.history.column("energy_14"), e15 = run.history.column("energy_15"),
+               kinetic = run.history.column("kinetic");
+    // Beyond the limit the invariants are small differences of terms that grow.
+    double most = 0, change_14 = 0, change_15 = 0;
+    for (std::size_t n = 0; n < e14.size(); ++n) {
+        const double size = std::max(std::fabs(e14.front()), kinetic[n]);
+        most = std::max(most, kinetic[n] / kinetic.front());
+        change_14 = std::max(change_14, std::fabs(e14[n] - e14.front()) / size);
+        change_15 = std::max(change_15, std::fabs(e15[n] - e15.front()) / size);
+    }
+    const bool stable = w * dt < 2;
+    summary.result("change_of_energy_14", change_14, "1", 0, 1e-12, "[MPM-14]: an invariant");
+    summary.result("change_of_energy_15", change_15, "1", 0, 1e-12, "[MPM-15]: an invariant");
+    summary.result_info("energy_14", e14.front() / kinetic.front(), "1",
+                        "over the kinetic energy at the start; negative beyond omega dt = 2");
+    if (stable) {
+        const common::OscillationFit fit = common::fit_oscillation(run.momentum_x(), dt);
+        summary.result("frequency", fit.frequency, "1/time", leapfrog_frequency(w, dt), 1e-4 * w,
+                       "leapfrog, (2/dt) asin(omega dt/2)");
+        summary.result_within("largest_kinetic", most, "1", 0, 1 / (1 - 0.25 * w * w * dt * dt),
+                              "bounded by [MPM-14], over the initial");
+    } else {
+        summary.result_info("largest_kinetic", most, "1",
+                            "over the initial: beyond omega dt = 2 the invariants bound nothing");
+    }
+}
+
+inline void compare_with_theory(const theory::Run& run, common::Summary& summary) {
+    if (run.wanted.compare == "oscillator") compare_oscillator(run, summary);
+    mpm::compare_with_theory(run, {.rebound = 0.03, .bar = 0.01}, summary);
+}
+
+}  // namespace mpm_explicit

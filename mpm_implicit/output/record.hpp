@@ -1,0 +1,96 @@
+// What a run of mpm_implicit keeps besides what every scheme does (mpm_explicit/output/record_grains.hpp): the energy
+// theorem term by term, and what it took to solve the steps.
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include "mpm_explicit/output/record_grains.hpp"
+#include "mpm_implicit/setup/initial_state.hpp"
+#include "mpm_implicit/theory/compare_with_theory.hpp"
+
+namespace mpm_implicit {
+
+/// What one step has summed up.
+struct StepSums {
+    std::vector<StripSums> strips;
+    NodeWork nodes;
+    ContactSums contact;
+    SolveReport solver;
+};
+
+inline std::vector<common::Column> ledger_columns() {
+    std::vector<common::Column> columns = Ledger::columns();
+    for (const char* name : {"iterations", "loops", "held"}) columns.push_back({name, "1"});
+    return columns;
+}
+
+class ThetaRecorder {
+   public:
+    ThetaRecorder(const Case& wanted, const ThetaScheme& scheme, const Scales& scales,
+                  const State& state, common::History& history)
+        : wanted_(wanted),
+          scheme_(scheme),
+          scales_(scales),
+          recorder_(wanted, scales, state.assembly, ledger_columns(), "residual", history) {}
+
+    /// The row of t = 0.
+    void start(const State& state, common::Session& session) {
+        write_row(0, StepSums{}, state, session);
+    }
+
+    /// Writes the files that are due at this step, before it.
+    void snapshot(long step, const State& state, const common::Session& session) const {
+        recorder_.snapshot(step, state.assembly, session);
+    }
+
+    /// Enters a step into the ledger and writes the row of its end.                     [MPM-13]
+    /// errors: NumericalError as Recorder::refuse_failure
+    void record(long step, const StepSums& sums, const GrainNodes& nodes, State& state,
+                common::Session& session) {
+        Ledger& l = state.ledger;
+        enter_step(scheme_.theta, scheme_.consistent(), wanted_.problem.damping, scales_.dt,
+                   nodes.strips(), sums.strips, sums.nodes, sums.contact, l);
+        state.effort.add(sums.solver);
+        if (std::isfinite(l.energy()) && recorder_.row_is_due(step + 1))
+            write_row(static_cast<double>(step + 1) * scales_.dt, sums, state, session);
+        recorder_.refuse_failure(step, sums.strips, nodes, state.assembly, l.start,
+                                 l.plate + l.gravity, l.energy(), session.history);
+    }
+
+    /// The results of the whole run, after its last step.
+    void finish(long step, const State& state, common::Session& session) const {
+        if (session.history.all().empty()) return;
+        const Ledger& l = state.ledger;
+        compare_with_theory(recorder_.ended(step, state.assembly, session.history), scheme_, l,
+                            session.summary);
+        recorder_.finish_conservation({}, state.assembly, session);
+        session.summary.conservation("largest_residual_of_a_step", l.largest_residual, "energy");
+        const double steps = static_cast<double>(std::max(1L, step));
+        const Effort& effort = state.effort;
+        session.summary.performance("iterations_per_step", effort.iterations / steps);
+        session.summary.performance("mass_iterations_per_step", effort.mass_iterations / steps);
+        session.summary.performance("krylov_vectors_per_step", effort.krylov / steps);
+        session.summary.performance("loops_per_step", effort.loops / steps);
+        session.summary.performance("held_pairs_per_step", effort.held / steps);
+    }
+
+   private:
+    void write_row(double time, const StepSums& sums, const State& state,
+                   common::Session& session) {
+        const Ledger& l = state.ledger;
+        std::vector<double> row = l.row();
+        row.insert(row.end(),
+                   {static_cast<double>(sums.solver.iterations),
+                    static_cast<double>(sums.solver.loops), static_cast<double>(sums.solver.held)});
+        recorder_.write_row(time, scales_.dt, row, l.momentum_x, l.momentum_y, sums.contact,
+                            state.assembly, session);
+    }
+
+    const Case& wanted_;
+    const ThetaScheme& scheme_;
+    const Scales& scales_;
+    Recorder recorder_;
+};
+
+}  // namespace mpm_implicit

@@ -1,0 +1,55 @@
+// Everything a case file of mpm_implicit can say: what both programs of the material point method
+// have in common (mpm_explicit/setup/case_of_grains.hpp), and the theta scheme with its solvers.
+#pragma once
+
+#include "mpm_explicit/setup/case_of_grains.hpp"
+
+namespace mpm_implicit {
+
+using namespace mpm;
+
+struct ThetaScheme {
+    double theta = 0.5;
+    std::string mass = "consistent", volumes = "kept", solver = "projected_cg",
+                preconditioner = "grains";
+    double tolerance = 1e-13;
+    long most_iterations = 5000, most_loops = 50;
+
+    bool consistent() const { return mass == "consistent"; }
+    bool keeps_volumes() const { return volumes == "kept"; }
+    bool newton() const { return solver == "newton_krylov"; }
+};
+
+/// The table of all parameters.
+inline common::ParameterTable describe(Case& w, ThetaScheme& scheme) {
+    using common::between;
+    common::ParameterTable table;
+    describe_problem(table, w.problem);
+    w.alpha = 1;
+    describe_time(table, w);
+    describe_method(table, w);
+    table.real("method.theta", scheme.theta, "", between(0.5, 1),
+               "level of velocities, stresses and contact: 1/2 keeps energy, 1 damps most");
+    table.choice("method.mass", scheme.mass, {"consistent", "lumped"},
+                 "mass matrix; lumped loses energy at every theta");
+    table.choice("method.volumes", scheme.volumes, {"kept", "updated"},
+                 "volumes in force and energy: those of the start, or [MPM-6]");
+    table.group("solver");
+    table.choice("solver.kind", scheme.solver, {"projected_cg", "newton_krylov"},
+                 "of a step; plastic grains and updated volumes need newton_krylov");
+    table.choice("solver.preconditioner", scheme.preconditioner, {"grains", "diagonal"},
+                 "for v^theta: each grain factorized, or the diagonal");
+    table.real("solver.tolerance", scheme.tolerance, "", between(1e-15, 1e-3),
+               "on the residual, relative");
+    table.whole("solver.most_iterations", scheme.most_iterations, "", between(1, 1e6),
+                "of a linear system; beyond, the run fails");
+    table.whole("solver.most_loops", scheme.most_loops, "", between(1, 1000),
+                "guesses of who presses, or Newton steps; beyond, the run fails");
+    describe_comparison(table, w,
+                        {"none", "rebound", "bar", "standing_wave", "oscillator", "block",
+                         "cylinder", "disk", "bond", "yield", "compression", "billet", "energy"});
+    describe_output(table, w);
+    return table;
+}
+
+}  // namespace mpm_implicit

@@ -1,0 +1,160 @@
+// What the tests of flip share: the loop of its main without files, clouds of particles anywhere on
+// the mesh, and sums that know nothing of the code under test.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "flip/flip/cross_ends.hpp"
+#include "flip/flip/deposit_particles.hpp"
+#include "flip/flip/flip_fields.hpp"
+#include "flip/flip/move_mesh.hpp"
+#include "tests/support/any_numbers.hpp"
+
+namespace facts {
+
+using namespace flip;
+
+/// Numbers in [0, 1), and between two ends.
+struct Random {
+    std::mt19937_64 engine;
+    explicit Random(std::uint64_t seed = 1) : engine(seed) {}
+    double operator()() { return 0x1p-53 * static_cast<double>(engine() >> 11); }
+    double operator()(double low, double high) { return low + (high - low) * (*this)(); }
+};
+
+/// The loop of flip.cpp, in its order and in parts.
+struct FlipRun {
+    Case w;
+    Mesh mesh;
+    LagrangianScratch mass_matrix;
+    SortScratch scratch;
+    State state;
+
+    FlipRun(const Case& wanted, const Particles& particles) : w(completed(wanted)) {
+        mesh = mesh_of(w);
+        state.particles = particles;
+        sort();
+    }
+    explicit FlipRun(const Case& wanted) : FlipRun(wanted, load_particles(completed(wanted))) {}
+
+    Particles& particles() { return state.particles; }
+    Nodes& nodes() { return mesh.nodes; }
+    Cells& cells() { return mesh.cells; }
+    const Grid& grid() const { return w.grid; }
+
+    void sort() { sort_particles(w.grid, scratch, state.particles); }
+    /// particles -> mesh, and the pressure.
+    void deposit() {
+        deposit_particles(w, state.particles, mesh);
+        find_pressure(w, state.time, mesh);
+    }
+    double move_nodes() {
+        const double dt = step_allowed(w, mesh, state.dt);
+        state.report = move_mesh(w, dt, state.particles, mass_matrix, mesh, state.books);
+        return dt;
+    }
+    void step() {
+        deposit();
+        const double dt = move_nodes();
+        move_particles(w, dt, mesh, state.particles);
+        cross_ends(w, state.time, dt, state.particles, state.books);
+        sort();
+        state.time += dt;
+        state.dt = dt;
+    }
+    void steps(int count) {
+        for (int n = 0; n < count; ++n) step();
+    }
+    Totals totals() const { return particle_totals(w, state.particles); }
+};
+
+/// A mesh on (0, 1) in x; a plane of unit height or a row of cells.
+inline Case flip_case(long nx, long nz, const char* ends_x, const char* ends_z) {
+    Case w;
+    w.grid = {{nx, 0, 1, true}, {nz, 0, nz > 1 ? 1.0 : 1.0 / real(nx), true}};
+    w.ends[x_low].kind = w.ends[x_high].kind = ends_x;
+    w.ends[z_low].kind = w.ends[z_high].kind = ends_z;
+    w.per_cell_z = nz > 1 ? 4 : 1;
+    w.end = 1e3;
+    return w;
+}
+
+inline RegionCase fluid(const std::string& material, double density, double p, double vx = 0,
+                        double vz = 0) {
+    RegionCase r;
+    r.gas = {material, density, p, vx, vz};
+    return r;
+}
+
+/// Particles anywhere in a box: masses about 1/2 to 3/2 of an even share, energies about those of
+/// pressure 1, random velocities.
+/// in:     a completed case; density, speed: of the cloud
+struct CloudBox {
+    double x_low = 0, x_high = 1, z_low = 0, z_high = 1;
+};
+inline void add_cloud(const Case& w, long count, const CloudBox& box, double density, double speed,
+                      Random& random, Particles& p, int material = -1) {
+    const double area = (box.x_high - box.x_low) * (box.z_high - box.z_low);
+    for (long k = 0; k < count; ++k) {
+        const int kind = material >= 0 ? material : static_cast<int>(k % w.materials.size());
+        const Material& a = w.materials[static_cast<std::size_t>(kind)];
+        const double V = area / real(count), rho = density * random(0.5, 1.5);
+        p.x_p.push_back(random(box.x_low, box.x_high));
+        p.z_p.push_back(random(box.z_low, box.z_high));
+        p.m_p.push_back(rho * V);
+        p.material.push_back(kind);
+        p.vx_p.push_back(speed * random(-1, 1));
+        p.vz_p.push_back(speed * random(-1, 1));
+        p.e_p.push_back(internal_energy(a, rho, random(0.7, 1.3)));
+        if (w.density == "particles") p.V_p.push_back(V);
+        if (w.transfer != "apic") continue;
+        for (auto* C : {&p.Cxx_p, &p.Cxz_p, &p.Czx_p, &p.Czz_p})
+            C->push_back(2 * speed * random(-1, 1));
+    }
+}
+/// Twelve particles per cell anywhere on the mesh.
+inline Particles any_cloud(const Case& wanted, double speed, std::uint64_t seed,
+                           long per_cell = 12) {
+    const Case w = completed(wanted);
+    Random random(seed);
+    Particles p;
+    add_cloud(w, per_cell * w.grid.x.cells * w.grid.z.cells,
+              {w.grid.x.low, w.grid.x.high(), w.grid.z.low, w.grid.z.high()}, 1, speed, random, p);
+    return p;
+}
+
+/// Random numbers on the nodes that are not images, images filled.
+inline void stir_nodes(const Grid& grid, Random& random, Field& f) {
+    f.setZero(grid.size());
+    for_own_nodes(grid, [&](long n) { f[n] = random(-1, 1); });
+    fill_nodes(grid, f.data());
+}
+
+/// How much a step leaves of mass, momentum and energy beside the books, relative.
+struct Leak {
+    double mass = 0, momentum = 0, energy = 0;
+    double most() const { return worst({mass, momentum, energy}); }
+};
+inline Leak leak(const Totals& a, const Totals& b, const Books& before, const Books& after) {
+    const double energy = worst({a.kinetic + a.internal, b.kinetic + b.internal}),
+                 mass = worst({a.mass, b.mass}), momentum = std::sqrt(2 * energy * mass);
+    Leak l;
+    l.mass = std::fabs(b.mass - a.mass - (after.mass - before.mass)) / mass;
+    l.momentum =
+        worst({std::fabs(b.momentum_x - a.momentum_x - (after.momentum_x - before.momentum_x)),
+               std::fabs(b.momentum_z - a.momentum_z - (after.momentum_z - before.momentum_z))}) /
+        momentum;
+    l.energy = std::fabs(b.kinetic + b.internal - a.kinetic - a.internal -
+                         (after.energy - before.energy)) /
+               energy;
+    return l;
+}
+
+}  // namespace facts

@@ -1,0 +1,201 @@
+// What the tests of the implicit material point method share: the loop of its main on cases made
+// without files, as a whole and up to the solution of a step.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "mpm_explicit/setup/scales.hpp"
+#include "mpm_explicit/strain.hpp"
+#include "mpm_implicit/move_particles.hpp"
+#include "mpm_implicit/setup/initial_state.hpp"
+#include "mpm_implicit/solve_with_newton.hpp"
+#include "tests/support/any_cloud.hpp"
+
+namespace facts {
+
+using namespace mpm_implicit;
+
+/// The steps of mpm_implicit in the order of its main, with the ledger and without files.
+struct ThetaRun {
+    Case wanted;
+    ThetaScheme scheme;
+    Scales scales;
+    double dt;
+    State state;
+    std::vector<AnyLaw> laws;
+    Contact contact;
+    GrainNodes nodes;
+    long step = 0;
+    BodyForce body;
+
+    std::vector<StripSums> strips;
+    NodeWork at_nodes;
+    ContactSums in_contact;
+    SolveReport report;
+    double size = 0;         // largest energy or work of loads, so far
+    double growth = -1e300;  // largest of a step, beyond the work of loads and what laws undo
+    double least_V = 1;      // smallest V^1/V^0 of a step
+    long held = 0, loops = 0;
+
+    /// in: prepare(assembly), what is changed before the start
+    template <class Prepare>
+    ThetaRun(const Case& c, const ThetaScheme& s, const Prepare& prepare)
+        : wanted(c),
+          scheme(s),
+          scales(scales_of(c)),
+          dt(scales.dt),
+          state{assemble(c.problem), {}, {}, {}, {}},
+          laws(laws_of(c.problem)),
+          contact(c.problem.contact, state.assembly.grains, state.assembly.bonds),
+          nodes(c.problem.mesh(), c.scheme().width(), scales.least_mass) {
+        // Elastic bodies do not use yield_p: it numbers the particles, so that tests find them.
+        Particles& p = particles();
+        const bool yields =
+            std::any_of(laws.begin(), laws.end(), [](const auto& l) { return l.law.index() > 0; });
+        for (std::size_t k = 0; k < p.yield_p.size(); ++k)
+            p.yield_p[k] = yields ? 0 : static_cast<double>(k);
+        prepare(state.assembly);
+        nodes.sort(state.assembly.grains, p, state.frame);
+        open_ledger(state.assembly, laws, state.ledger);
+        size = ledger().energy();
+    }
+    ThetaRun(const Case& c, const ThetaScheme& s) : ThetaRun(c, s, [](Assembly&) {}) {}
+
+    Particles& particles() { return state.assembly.particles; }
+    const Ledger& ledger() const { return state.ledger; }
+    std::vector<Grain>& grains() { return state.assembly.grains; }
+    /// Largest residual of a step, over the energy.
+    double identity() const { return ledger().largest_residual / size; }
+
+    /// Calls work(shape, solver), the solver as wide as the shape.
+    template <class Work>
+    void with(const Work& work) {
+        with_shape(wanted.scheme(), [&](const auto& shape) {
+            work(shape, solver<std::decay_t<decltype(shape)>::width - 1>());
+        });
+    }
+
+    void advance(long steps = 1) {
+        with([&](const auto& shape, auto& solver) {
+            for (long k = 0; k < steps; ++k) {
+                begin(shape, solver);
+                solve(shape, solver);
+                end(shape);
+            }
+        });
+    }
+    /// A step up to v_i^0: who meets is known, and the matrices.
+    void begin() {
+        with([&](const auto& shape, auto& solver) { begin(shape, solver); });
+    }
+    /// And v_i^theta, with the particles still where they were.
+    void solve() {
+        with([&](const auto& shape, auto& solver) { solve(shape, solver); });
+    }
+    void end() {
+        with([&](const auto& shape, auto&) { end(shape); });
+    }
+    /// The pairs of the last step.
+    const ContactSet& set() const { return wanted.shape == "linear" ? narrow_.set : wide_.set; }
+
+   private:
+    template <int reach>
+    auto& solver() {
+        if constexpr (reach == 1)
+            return narrow_;
+        else
+            return wide_;
+    }
+    template <class Shape, class Solver>
+    void begin(const Shape& shape, Solver& solver) {
+        if (nodes.sort_is_due(state.frame)) nodes.sort(grains(), particles(), state.frame);
+        body = drive(wanted.problem, step, dt, state.assembly.rigid, solver.servos);
+        put_on_nodes(shape, particles(), nodes);
+        solver.assemble(shape, laws, scheme, body, dt, state, nodes);
+        solver.find_old_velocities(scheme, contact, state, nodes, report);
+    }
+    template <class Shape, class Solver>
+    void solve(const Shape& shape, Solver& solver) {
+        const auto newton = [&](auto& newton_solver) {
+            return newton_solver.solve(shape, laws, scheme, contact, body, dt, state, solver, nodes,
+                                       report);
+        };
+        if (!scheme.newton())
+            in_contact = solver.solve(shape, scheme, contact, body, dt, state, nodes, report);
+        else if constexpr (Shape::width == 2)
+            in_contact = newton(narrow_newton_);
+        else
+            in_contact = newton(wide_newton_);
+    }
+    template <class Shape>
+    void end(const Shape& shape) {
+        for_each_chunk(grains(), nodes, strips, [&](Chunk& chunk) {
+            velocity_gradient(shape, particles(), nodes, NewVelocity{}, dt, chunk);
+            update_stress(laws, scheme, chunk, grains(), particles(), strips);
+            if (!wanted.frozen) turn_stress(chunk, particles());
+        });
+        at_nodes = work_on_nodes(body, scheme.theta, dt, nodes);
+        move_particles(shape, grains(), state.assembly.rigid, nodes, scheme.theta, wanted.flip,
+                       wanted.frozen, dt, particles(), strips);
+        state.frame.moved += wanted.frozen ? 0 : dt * at_nodes.largest_speed;
+
+        Ledger& l = state.ledger;
+        const auto given = [&] {
+            return l.energy() - l.plate - l.gravity - l.volume + std::min(l.plastic, 0.0);
+        };
+        const double before = given();
+        enter_step(scheme.theta, scheme.consistent(), wanted.problem.damping, dt, nodes.strips(),
+                   strips, at_nodes, in_contact, l);
+        growth = std::max(growth, given() - before);
+        size = worst({size, l.energy(), std::fabs(l.plate + l.gravity)});
+        for (const StripSums& s : strips) least_V = std::min(least_V, s.least_V);
+        held += report.held, loops += report.loops;
+        ++step;
+    }
+
+    NodeSolver<1> narrow_;
+    NodeSolver<2> wide_;
+    NewtonSolver<1> narrow_newton_;
+    NewtonSolver<2> wide_newton_;
+};
+
+// ---- cases ---------------------------------------------------------------------------------------
+
+inline const std::array<std::string, 3> shape_names{"linear", "gimp", "quadratic"};
+
+inline ThetaScheme theta_scheme(double theta, const std::string& mass = "consistent",
+                                const std::string& solver = "projected_cg") {
+    ThetaScheme s;
+    s.theta = theta, s.mass = mass, s.solver = solver;
+    s.most_loops = 300;  // that friction settles is not for every test
+    return s;
+}
+
+/// Adds random velocities to all particles that are not rigid's.
+inline void shake(double size, std::uint64_t seed, Assembly& all) {
+    Random random(seed);
+    for (const Grain& grain : all.grains)
+        for (long k = grain.begin; k < grain.end && !grain.rigid; ++k) {
+            const auto p = static_cast<std::size_t>(k);
+            all.particles.vx_p[p] += size * random(-1, 1);
+            all.particles.vy_p[p] += size * random(-1, 1);
+        }
+}
+
+/// Moves every particle by a part of its lattice, and gives it some stress.
+inline void disturb(double way, double stress, std::uint64_t seed, Assembly& all) {
+    Random random(seed);
+    Particles& p = all.particles;
+    for (std::size_t k = 0; k < p.x_p.size(); ++k) {
+        p.x_p[k] += way * random(-1, 1), p.y_p[k] += way * random(-1, 1);
+        const double xx = stress * random(-1, 1), yy = stress * random(-1, 1);
+        p.set_stress(k, {xx, yy, stress * random(-1, 1), 0.3 * (xx + yy)});
+    }
+}
+
+}  // namespace facts
