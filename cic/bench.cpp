@@ -3,21 +3,16 @@
 // `make REAL=float bench` in single precision.
 #include <sys/resource.h>
 
-#include <chrono>
 #include <cstdio>
 #include <vector>
 
 #include "cic/setup/initial_state.hpp"
 #include "cic/sort_particles.hpp"
+#include "cic/step.hpp"
 
 namespace {
 
 using namespace cic;
-
-struct Split {
-    double deposit = 0, field = 0, push = 0, sort = 0;  // seconds
-    double total() const { return deposit + field + push + sort; }
-};
 
 // 256 x 256 cells as wide as the Debye length, 100 electrons in each, ions at rest.
 Case warm_plasma() {
@@ -36,7 +31,7 @@ Case warm_plasma() {
     return w;
 }
 
-Split time_steps(const Case& w, long steps, int threads, long& particle_count) {
+common::StepClock time_steps(const Case& w, long steps, int threads, long& particle_count) {
     common::set_thread_count(threads);
     FieldSolver solver(w.grid, w.scheme(), false, 1);
     State state = initial_state(w, solver);
@@ -46,31 +41,16 @@ Split time_steps(const Case& w, long steps, int threads, long& particle_count) {
     DepositScratch deposit_scratch;
     common::SortScratch<Real> sort_scratch;
 
-    Split split;
-    const auto timed = [](double& seconds, const auto& work) {
-        const auto start = std::chrono::steady_clock::now();
-        work();
-        seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    };
+    common::StepClock clock;
     for (long step = 0; step <= steps; ++step) {
-        if (step == 1) split = {};  // the first step meets empty caches and unsorted particles
-        timed(split.deposit, [&] {
-            deposit_charge(state.species, w.grid, w.scheme(), 1, deposit_scratch, rho_g);
-        });
-        timed(split.field, [&] { solve_field(solver, rho_g, field); });
-        timed(split.push, [&] {
-            for_each_chunk(state.species, [&](Chunk& p) {
-                FieldAtParticles E_p;
-                gather_field(field.E_g, w.grid, w.scheme(), p, E_p);
-                accelerate(E_p, w.B, w.dt, p);
-                move_particles(w.grid, w.dt, p);
-            });
-        });
-        timed(split.sort, [&] {
-            if (step % w.sort_interval == 0) sort_particles(w.grid, sort_scratch, state.species);
-        });
+        if (step == 1) clock.restart();  // the first step meets empty caches and unsorted particles
+        find_field(state.species, w.grid, w.scheme(), 1, deposit_scratch, solver, rho_g, field,
+                   clock);
+        push_particles(field.E_g, w.grid, w.scheme(), w.B, w.dt, state.species, clock);
+        if (step % w.sort_interval == 0) sort_particles(w.grid, sort_scratch, state.species);
+        clock.lap("sort");
     }
-    return split;
+    return clock;
 }
 
 }  // namespace
@@ -87,14 +67,16 @@ int main() {
     std::printf("%8s %16s %9s %9s %9s %9s %9s\n", "threads", "particle-steps/s", "speed-up",
                 "deposit", "field", "push", "sort");
     for (const int threads : {1, 2}) {
-        const Split split = time_steps(w, steps, threads, particles);
+        const common::StepClock clock = time_steps(w, steps, threads, particles);
         const double rate =
-            static_cast<double>(particles) * static_cast<double>(steps) / split.total();
+            static_cast<double>(particles) * static_cast<double>(steps) / clock.total();
         if (threads == 1) one_thread = rate;
-        const auto percent = [&](double seconds) { return 100 * seconds / split.total(); };
+        const auto percent = [&](const char* part) {
+            return 100 * clock.seconds(part) / clock.total();
+        };
         std::printf("%8d %16.4g %9.2f %8.1f%% %8.1f%% %8.1f%% %8.1f%%\n", threads, rate,
-                    rate / one_thread, percent(split.deposit), percent(split.field),
-                    percent(split.push), percent(split.sort));
+                    rate / one_thread, percent("deposit"), percent("field"), percent("push"),
+                    percent("sort"));
     }
     struct rusage usage {};
     getrusage(RUSAGE_SELF, &usage);

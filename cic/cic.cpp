@@ -7,14 +7,16 @@
 // Run:   build/cic cic/cases/landau.toml species.electrons.amplitude=0.3
 // Run:   build/cic cic/cases/two_stream.toml gauss.sign=-1 theory.compare=none
 //
-// Reading order: units.hpp, particles.hpp, weights.hpp, deposit_charge.hpp, solve_field.hpp,
-// gather_field.hpp, move_particles.hpp.
-#include <cstdio>
+// Reading order: step.hpp; then units.hpp, particles.hpp, weights.hpp, and the four headers of the
+// slide, deposit_charge.hpp, solve_field.hpp, gather_field.hpp, move_particles.hpp.
 #include <optional>
 
 #include "cic/meet_walls.hpp"
 #include "cic/output/record.hpp"
+#include "cic/setup/initial_state.hpp"
 #include "cic/sort_particles.hpp"
+#include "cic/step.hpp"
+#include "common/run/start.hpp"
 
 namespace {
 
@@ -32,19 +34,14 @@ int run(int argc, char** argv, std::optional<common::Session>& holder) {
     const common::CommandLine command = common::read_command_line(argc, argv, about, table);
     refuse_impossible(wanted);
     const Scales scales = scales_of(wanted);
-    const std::string description = describe_scales(wanted, scales);
-    const std::vector<std::string> warnings = resolution_warnings(wanted, scales);
-    for (const std::string& warning : warnings)
-        std::fprintf(stderr, "warning: %s\n", warning.c_str());
-    if (!command.quiet) std::printf("%s", description.c_str());
-    if (command.dry_run) return 0;
-    common::refuse_before_start(command, scales.steps, scales.bytes);
+    if (!common::start_run(about, command, table,
+                           {describe_scales(wanted, scales), resolution_warnings(wanted, scales),
+                            scales.steps, scales.bytes, wanted.checkpoint_steps},
+                           holder))
+        return 0;
+    common::Session& session = *holder;
 
     // 2. Particles at t = 0, velocities half a step before.
-    common::set_thread_count(command.threads);
-    common::Session& session = holder.emplace(about, command, table);
-    for (const std::string& warning : warnings) session.summary.warning(warning);
-    session.checkpoint_steps = wanted.checkpoint_steps;
     const Grid& grid = wanted.grid;
     const Scheme scheme = wanted.scheme();
     const double dt = wanted.dt, background = fixed_background(wanted);
@@ -61,25 +58,18 @@ int run(int argc, char** argv, std::optional<common::Session>& holder) {
     const long steps = scales.steps;
     long step = 0;
     if (session.restarting()) session.restore(state, step);
-    // [loop]
     while (session.keep_going(step, steps)) {
-        deposit_charge(particles, grid, scheme, background, deposit_scratch, rho_g);  // [CIC-1]
         field.walls = state.walls;
-        solve_field(solver, rho_g, field);                      // [CIC-2]
-        recorder.snapshot(step, state, rho_g, field, session);  // files of t^n
-        for_each_chunk(particles, [&](Chunk& p) {
-            FieldAtParticles E_p;
-            gather_field(field.E_g, grid, scheme, p, E_p);  // [CIC-3]
-            accelerate(E_p, wanted.B, dt, p);               // [CIC-4]
-            move_particles(grid, dt, p);                    // [CIC-5]
-        });
-        recorder.record(step, state, rho_g, field, session);  // the row of t^n
+        find_field(particles, grid, scheme, background, deposit_scratch, solver, rho_g,
+                   field);                                                 // [CIC-1, 2]
+        recorder.snapshot(step, state, rho_g, field, session);             // files of t^n
+        push_particles(field.E_g, grid, scheme, wanted.B, dt, particles);  // [CIC-3, 4, 5]
+        recorder.record(step, state, rho_g, field, session);               // the row of t^n
         meet_walls(wanted, step, state);
         ++step;
-        if (sort_is_due(wanted, step)) sort_particles(grid, sort_scratch, particles);
+        if (sort_is_due(wanted.sort_interval, step)) sort_particles(grid, sort_scratch, particles);
         session.end_of_step(step, steps, static_cast<double>(step) * dt, state);
     }
-    // [/loop]
 
     // 4. The results against theory, summary.json.
     if (step == steps) recorder.finish(state, session);

@@ -2,15 +2,15 @@
 // particles works on stays in the cache.
 #pragma once
 
-#include "cic/setup/case.hpp"
+#include <vector>
+
+#include "cic/particles.hpp"
 #include "common/counting_sort.hpp"
 
 namespace cic {
 
-/// Whether the interval of the case has passed.
-inline bool sort_is_due(const Case& w, long step) {
-    return w.sort_interval > 0 && step % w.sort_interval == 0;
-}
+/// Whether the interval has passed. in: interval in steps, 0: never
+inline bool sort_is_due(long interval, long step) { return interval > 0 && step % interval == 0; }
 
 /// Stable sort by row of cells; within a row the order stays mixed, and neighbors in memory do not
 /// wait for each other's charge to reach the same node.

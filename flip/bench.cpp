@@ -4,28 +4,19 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <string>
 #include <vector>
 
-#include "flip/flip/cross_ends.hpp"
-#include "flip/flip/deposit_particles.hpp"
-#include "flip/flip/move_mesh.hpp"
-#include "flip/pic/eulerian_phase.hpp"
-#include "flip/pic/lagrangian_phase.hpp"
+#include "flip/flip/step.hpp"
 #include "flip/pic/pic_start.hpp"
+#include "flip/pic/step.hpp"
 
 namespace {
 
 using namespace flip;
 
 // Where the time of a step goes; the names of the parts differ between the two.
-struct Split {
-    double deposit = 0, mesh = 0, move = 0, sort = 0;  // seconds
-    double total() const { return deposit + mesh + move + sort; }
-};
-
 // Heavy gas on light gas, in a box twice as high as wide.
 Case heavy_on_light(long cells_x) {
     Case w;
@@ -47,66 +38,36 @@ Case heavy_on_light(long cells_x) {
     return completed(w);
 }
 
-template <class Work>
-void timed(double& seconds, const Work& work) {
-    const auto start = std::chrono::steady_clock::now();
-    work();
-    seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-Split time_flip(const Case& w, long steps, long& count) {
-    Mesh mesh = mesh_of(w);
-    LagrangianScratch mass_matrix;
-    SortScratch scratch;
+common::StepClock time_flip(const Case& w, long steps, long& count) {
+    FlipScratch run(w);
     State state;
     state.particles = load_particles(w);
     count = state.particles.count();
-    sort_particles(w.grid, scratch, state.particles);
-    Split split;
+    sort_particles(w.grid, run.sort, state.particles);
+    common::StepClock clock;
     for (long step = 0; step <= steps; ++step) {
-        if (step == 1) split = {};  // the first step meets empty caches
-        timed(split.deposit, [&] { deposit_particles(w, state.particles, mesh); });
-        double dt = 0;
-        timed(split.mesh, [&] {
-            find_pressure(w, state.time, mesh);
-            dt = step_allowed(w, mesh, state.dt);
-            move_mesh(w, dt, state.particles, mass_matrix, mesh, state.books);
-        });
-        long left = 0;
-        timed(split.move, [&] { left = move_particles(w, dt, mesh, state.particles); });
-        timed(split.sort, [&] {
-            cross_ends(w, state.time, dt, state.particles, state.books, left);
-            sort_particles(w.grid, scratch, state.particles);
-        });
-        state.time += dt;
-        state.dt = dt;
+        if (step == 1) clock.restart();  // the first step meets empty caches
+        find_fluid(w, state, run.mesh, clock);
+        take_flip_step(w, step, run, state, clock);
     }
-    return split;
+    return clock;
 }
 
-Split time_pic(const Case& w, long steps, long& count) {
+common::StepClock time_pic(const Case& w, long steps, long& count) {
     PicCells cells(w);
     State state = initial_state(w, cells);
     count = state.particles.count();
-    Split split;
+    common::StepClock clock;
     for (long step = 0; step <= steps; ++step) {
-        if (step == 1) split = {};
-        double dt = 0;
-        timed(split.mesh, [&] {
-            share_pressure(w, state, cells);
-            dt = largest_step(w, state, cells);
-            accelerate_cells(w, dt, state, cells);
-            do_work(w, dt, state, cells);
-        });
-        timed(split.move, [&] { move_particles(w, dt, state, cells); });
-        timed(split.deposit, [&] { repartition(w, state, cells); });
-        state.time += dt;
-        state.dt = dt;
+        if (step == 1) clock.restart();
+        share_pressure(w, state, cells);
+        clock.lap("mesh");
+        take_pic_step(w, state, cells, clock);
     }
-    return split;
+    return clock;
 }
 
-Split time_steps(bool pic, const Case& w, long steps, long& count) {
+common::StepClock time_steps(bool pic, const Case& w, long steps, long& count) {
     return pic ? time_pic(w, steps, count) : time_flip(w, steps, count);
 }
 
@@ -125,15 +86,17 @@ int main() {
             common::set_thread_count(threads);
             long count = 0;
             const long steps = 20;
-            const Split split = time_steps(pic, w, steps, count);
+            const common::StepClock clock = time_steps(pic, w, steps, count);
             const double rate =
-                static_cast<double>(count) * static_cast<double>(steps) / split.total();
+                static_cast<double>(count) * static_cast<double>(steps) / clock.total();
             if (threads == 1) one_thread = rate;
-            const auto percent = [&](double seconds) { return 100 * seconds / split.total(); };
+            const auto percent = [&](const char* part) {
+                return 100 * clock.seconds(part) / clock.total();
+            };
             std::printf("%8d %16.4g %9.2f %8.1f%% %8.1f%% %8.1f%%", threads, rate,
-                        rate / one_thread, percent(split.deposit), percent(split.mesh),
-                        percent(split.move));
-            if (!pic) std::printf(" %8.1f%%", percent(split.sort));
+                        rate / one_thread, percent(pic ? "repartition" : "deposit"),
+                        percent("mesh"), percent("move"));
+            if (!pic) std::printf(" %8.1f%%", percent("sort"));
             std::printf("\n");
         }
         std::printf("\n%14s %16s %22s\n", "cells", "particles", "ns per particle-step");
@@ -141,9 +104,9 @@ int main() {
         for (const long cells_x : {64L, 128L, 256L, 512L}) {
             long count = 0;
             const long steps = std::max(4L, 20 * 256 * 256 / (cells_x * cells_x) / 4);
-            const Split split = time_steps(pic, heavy_on_light(cells_x), steps, count);
+            const common::StepClock clock = time_steps(pic, heavy_on_light(cells_x), steps, count);
             std::printf("%7ld x %4ld %16ld %22.1f\n", cells_x, 2 * cells_x, count,
-                        1e9 * split.total() / static_cast<double>(count * steps));
+                        1e9 * clock.total() / static_cast<double>(count * steps));
         }
         std::printf("\n");
     }

@@ -8,26 +8,18 @@
 #include <string>
 #include <vector>
 
-#include "implicit_moment/explicit_em/leapfrog.hpp"
 #include "implicit_moment/explicit_em/leapfrog_state.hpp"
+#include "implicit_moment/explicit_em/step.hpp"
 #include "implicit_moment/setup/initial_state.hpp"
-#include "implicit_moment/solve_field.hpp"
+#include "implicit_moment/step.hpp"
 
 namespace {
 
 using namespace implicit_moment;
 
-template <class Work>
-void add_time(double& seconds, const Work& work) {
-    const auto start = std::chrono::steady_clock::now();
-    work();
-    seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
 struct Split {
-    double moments = 0, field = 0, mover = 0, sort = 0;  // seconds
+    common::StepClock clock;
     double iterations = 0;
-    double total() const { return moments + field + mover + sort; }
 };
 
 Split time_steps(const Case& wanted, long steps, int threads, long& particle_count) {
@@ -36,25 +28,15 @@ Split time_steps(const Case& wanted, long steps, int threads, long& particle_cou
     State state = initial_state(wanted);
     std::vector<Particles>& particles = state.plasma.species;
     const std::vector<double> charge_over_mass = state.plasma.charge_over_mass();
-    std::vector<Moments> moments(particles.size(), Moments(grid));
-    FieldSolver solver(grid, wanted.field);
-    PushField push;
-    SortScratch scratch;
+    StepScratch run(grid, wanted.field, particles.size());
     particle_count = state.plasma.count();
 
     Split split;
     for (long step = 0; step < steps; ++step) {
-        add_time(split.moments,
-                 [&] { deposit_moments(particles, grid, state.field.B, wanted.dt, moments); });
-        add_time(split.field, [&] {
-            split.iterations +=
-                solve_field(solver, moments, charge_over_mass, wanted.dt, state.field).iterations;
-            pack_push_field(solver, state.field, push);
-        });
-        add_time(split.mover,
-                 [&] { move_particles(push, grid, wanted.dt, wanted.mover, particles); });
-        add_time(split.field, [&] { advance_field(solver, wanted.dt, state.field); });
-        add_time(split.sort, [&] { sort_particles(grid, scratch, particles); });
+        find_moments(grid, wanted.dt, particles, state.field, run, split.clock);
+        const FieldReport report = take_step(grid, wanted.dt, wanted.mover, charge_over_mass, run,
+                                             particles, state.field, split.clock);
+        split.iterations += report.iterations;
     }
     split.iterations /= static_cast<double>(steps);
     return split;
@@ -82,17 +64,16 @@ void time_explicit(long steps) {
         Leapfrog run(wanted);
         std::vector<Particles>& particles = state.plasma.species;
         count = static_cast<double>(state.plasma.count());
-        double push = 0, field = 0, sort = 0;
+        common::StepClock clock;
         for (long step = 0; step < steps; ++step) {
-            add_time(field, [&] { pack_push_field(run, state.field); });
-            add_time(push, [&] { move_particles(run, particles); });
-            add_time(field, [&] { advance_field(grid, wanted.dt, run.J, state.field); });
-            add_time(sort, [&] { sort_by_home(grid, wanted.leapfrog.order, run.sort, particles); });
+            pack_push_field(run, state.field, clock);
+            take_step(run, state.field, particles, clock);
         }
-        const double total = push + field + sort, rate = count * static_cast<double>(steps) / total;
+        const double total = clock.total(), rate = count * static_cast<double>(steps) / total;
         if (threads == 1) one_thread = rate;
         std::printf("%8d %16.4g %9.2f %8.1f%% %8.1f%% %8.1f%%\n", threads, rate, rate / one_thread,
-                    100 * push / total, 100 * field / total, 100 * sort / total);
+                    100 * clock.seconds("push") / total, 100 * clock.seconds("field") / total,
+                    100 * clock.seconds("sort") / total);
     }
     std::printf("\n%.0f particles, %.1f bytes of peak memory for each, mesh included\n", count,
                 peak_memory() / count);
@@ -111,12 +92,14 @@ int main() {
     for (const int threads : {1, 2}) {
         const Split split = time_steps(wanted, steps, threads, particles);
         const double rate =
-            static_cast<double>(particles) * static_cast<double>(steps) / split.total();
+            static_cast<double>(particles) * static_cast<double>(steps) / split.clock.total();
         if (threads == 1) one_thread = rate;
-        const auto percent = [&](double seconds) { return 100 * seconds / split.total(); };
+        const auto percent = [&](const char* part) {
+            return 100 * split.clock.seconds(part) / split.clock.total();
+        };
         std::printf("%8d %16.4g %9.2f %8.1f%% %8.1f%% %8.1f%% %8.1f%% %11.1f\n", threads, rate,
-                    rate / one_thread, percent(split.moments), percent(split.field),
-                    percent(split.mover), percent(split.sort), split.iterations);
+                    rate / one_thread, percent("moments"), percent("field"), percent("mover"),
+                    percent("sort"), split.iterations);
     }
     const double carried = 5 * sizeof(double), scratch = sizeof(double) + sizeof(int);
     std::printf(

@@ -3,22 +3,16 @@
 // by one thread and by two. `make bench` runs it.
 #include <sys/resource.h>
 
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <vector>
 
-#include "mpm_explicit/move_particles.hpp"
-#include "mpm_explicit/output/record.hpp"
+#include "mpm_explicit/setup/initial_state.hpp"
+#include "mpm_explicit/step.hpp"
 
 namespace {
 
 using namespace mpm_explicit;
-
-struct Split {
-    double put = 0, stress = 0, nodes = 0, contact = 0, move = 0, sort = 0;  // seconds
-    double total() const { return put + stress + nodes + contact + move + sort; }
-};
 
 // The compressed grains: rows of `columns` and one less disks in a box of width 1, below a plate.
 Case compressed(long columns, long rows, double particles) {
@@ -49,7 +43,8 @@ Case compressed(long columns, long rows, double particles) {
     return w;
 }
 
-Split time_steps(const Case& w, long steps, int threads, long& particle_count, long& grain_count) {
+common::StepClock time_steps(const Case& w, long steps, int threads, long& particle_count,
+                             long& grain_count) {
     common::set_thread_count(threads);
     const Scales scales = scales_of(w);
     const double dt = scales.dt;
@@ -59,50 +54,28 @@ Split time_steps(const Case& w, long steps, int threads, long& particle_count, l
     Particles& particles = state.assembly.particles;
     const std::vector<Grain>& grains = state.assembly.grains;
     std::vector<RigidMotion>& rigid = state.assembly.rigid;
-    std::vector<Bond>& bonds = state.assembly.bonds;
     particle_count = particles.count(), grain_count = static_cast<long>(grains.size());
     const std::vector<AnyLaw> laws = laws_of(w.problem);
-    const Contact contact(w.problem.contact, grains, bonds);
+    const Contact contact(w.problem.contact, grains, state.assembly.bonds);
     GrainNodes nodes(w.problem.mesh(), LinearShape::width, scales.least_mass);
     nodes.sort(grains, particles, state.frame);
     start_leapfrog(shape, laws, contact, false, dt, nodes, state);
     StepSums sums;
 
-    Split split;
-    const auto timed = [](double& seconds, const auto& work) {
-        const auto start = std::chrono::steady_clock::now();
-        work();
-        seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    };
+    common::StepClock clock;
     for (long step = 0; step <= steps; ++step) {
-        if (step == 1) split = {};  // the first step meets empty caches
+        if (step == 1) clock.restart();  // the first step meets empty caches
         // A sort as often as a grain that moves with the plate needs it is rare; here it is counted
         // once.
-        timed(split.sort, [&] {
-            if (step == steps) nodes.sort(grains, particles, state.frame);
-        });
+        if (step == steps) nodes.sort(grains, particles, state.frame);
+        clock.lap("sort");
         const BodyForce body = drive(w.problem, step, dt, rigid);
-        timed(split.put, [&] { put_on_nodes(shape, particles, nodes); });
-        timed(split.nodes, [&] { velocity_of_nodes(grains, rigid, nodes); });
-        timed(split.stress, [&] {
-            for_each_chunk(grains, nodes, sums.strips, [&](Chunk& chunk) {
-                velocity_gradient(shape, particles, nodes, OldVelocity{}, dt, chunk);
-                update_stress(laws, w.frozen, chunk, grains, particles, sums.strips);
-                add_internal_force(shape, particles, chunk, nodes);
-                turn_stress(chunk, particles);
-            });
-        });
-        timed(split.nodes, [&] { accelerate_nodes(body, grains, rigid, dt, nodes); });
-        timed(split.contact, [&] { sums.contact = contact.apply(dt, nodes, bonds, rigid); });
-        timed(split.nodes, [&] { sums.nodes = work_on_nodes(body, dt, nodes); });
-        timed(split.move, [&] {
-            move_particles(shape, grains, rigid, nodes, w.flip, w.frozen, dt, particles,
-                           sums.strips);
-            enter_energies(step, sums.strips, state.ledger);
-            enter_work(nodes.strips(), sums.strips, sums.nodes, sums.contact, state.ledger);
-        });
+        take_step(shape, laws, contact, body, w.flip, w.frozen, dt, nodes, state, sums, clock);
+        enter_energies(step, sums.strips, state.ledger);
+        enter_work(nodes.strips(), sums.strips, sums.nodes, sums.contact, state.ledger);
+        clock.lap("move");
     }
-    return split;
+    return clock;
 }
 
 }  // namespace
@@ -121,16 +94,18 @@ int main() {
     for (const auto& [columns, rows] : {std::pair(5L, 4L), std::pair(45L, 45L)}) {
         const Case w = compressed(columns, rows, 1e6);
         for (const int threads : {1, 2}) {
-            const Split split = time_steps(w, steps, threads, particles, grains);
+            const common::StepClock clock = time_steps(w, steps, threads, particles, grains);
             const double rate =
-                static_cast<double>(particles) * static_cast<double>(steps) / split.total();
+                static_cast<double>(particles) * static_cast<double>(steps) / clock.total();
             if (threads == 1) one_thread.push_back(rate);
-            const auto percent = [&](double seconds) { return 100 * seconds / split.total(); };
+            const auto percent = [&](const char* part) {
+                return 100 * clock.seconds(part) / clock.total();
+            };
             std::printf(
                 "%8ld %10ld %8d %16.4g %9.2f %6.1f%% %6.1f%% %6.1f%% %7.1f%% %6.1f%% %6.1f%%\n",
-                grains, particles, threads, rate, rate / one_thread.back(), percent(split.put),
-                percent(split.stress), percent(split.nodes), percent(split.contact),
-                percent(split.move), percent(split.sort));
+                grains, particles, threads, rate, rate / one_thread.back(), percent("put"),
+                percent("stress"), percent("nodes"), percent("contact"), percent("move"),
+                percent("sort"));
         }
     }
     struct rusage usage {};

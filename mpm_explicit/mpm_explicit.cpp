@@ -7,15 +7,15 @@
 // Run:   build/mpm_explicit mpm_explicit/cases/rebound.toml time.alpha=1
 // Run:   build/mpm_explicit mpm_explicit/cases/rebound.toml contact.separation=0
 //
-// Reading order: mpm_explicit/particles.hpp, shapes.hpp, grain_nodes.hpp, transfer.hpp and strain.hpp
-// there, then update_stress.hpp, accelerate_nodes.hpp, mpm_explicit/contact.hpp, move_particles.hpp,
-// ledger.hpp.
-#include <cstdio>
+// Reading order: step.hpp; then particles.hpp, shapes.hpp, grain_nodes.hpp, transfer.hpp, strain.hpp,
+// update_stress.hpp, accelerate_nodes.hpp, contact.hpp, move_particles.hpp, ledger.hpp.
 #include <optional>
 
-#include "mpm_explicit/move_particles.hpp"
+#include "common/run/start.hpp"
 #include "mpm_explicit/output/record.hpp"
 #include "mpm_explicit/setup/check_case.hpp"
+#include "mpm_explicit/setup/initial_state.hpp"
+#include "mpm_explicit/step.hpp"
 
 namespace {
 
@@ -34,9 +34,8 @@ int run(const Shape& shape, const Case& wanted, const Scales& scales, common::Se
     Particles& particles = state.assembly.particles;
     const std::vector<Grain>& grains = state.assembly.grains;
     std::vector<RigidMotion>& rigid = state.assembly.rigid;
-    std::vector<Bond>& bonds = state.assembly.bonds;
     const std::vector<AnyLaw> laws = laws_of(wanted.problem);
-    const Contact contact(wanted.problem.contact, grains, bonds);
+    const Contact contact(wanted.problem.contact, grains, state.assembly.bonds);
     const double dt = scales.dt;
     GrainNodes nodes(wanted.problem.mesh(), Shape::width, scales.least_mass);
     LeapfrogRecorder recorder(wanted, scales, state, session.history);
@@ -51,32 +50,16 @@ int run(const Shape& shape, const Case& wanted, const Scales& scales, common::Se
     }
 
     // 3. The loop of the slide.
-    // [loop]
     while (session.keep_going(step, scales.steps)) {
         if (nodes.sort_is_due(state.frame)) nodes.sort(grains, particles, state.frame);
         recorder.snapshot(step, state, session);
         const BodyForce body = drive(wanted.problem, step, dt, rigid);
-        put_on_nodes(shape, particles, nodes);    // particles -> grid
-        velocity_of_nodes(grains, rigid, nodes);  // v_i^0
-        contact.join_bonds(bonds, nodes);
-        for_each_chunk(grains, nodes, sums.strips, [&](Chunk& chunk) {
-            velocity_gradient(shape, particles, nodes, OldVelocity{}, dt, chunk);  // [MPM-11]
-            update_stress(laws, wanted.frozen, chunk, grains, particles,
-                          sums.strips);                          // [MPM-9, 10]
-            add_internal_force(shape, particles, chunk, nodes);  // [MPM-12]
-            if (!wanted.frozen) turn_stress(chunk, particles);
-        });
-        accelerate_nodes(body, grains, rigid, dt, nodes);       // v_i^1  [MPM-12]
-        sums.contact = contact.apply(dt, nodes, bonds, rigid);  // f_gg'  [MPM-4]
-        sums.nodes = work_on_nodes(body, dt, nodes);
-        move_particles(shape, grains, rigid, nodes, wanted.flip, wanted.frozen, dt, particles,
-                       sums.strips);  // grid -> particles
-        state.frame.moved += wanted.frozen ? 0 : dt * sums.nodes.largest_speed;
+        take_step(shape, laws, contact, body, wanted.flip, wanted.frozen, dt, nodes, state,
+                  sums);  // [MPM-4, 9 ... 12]
         recorder.record(step, sums, nodes, state, session);
         ++step;
         session.end_of_step(step, scales.steps, static_cast<double>(step) * dt, state);
     }
-    // [/loop]
 
     // 4. The results against theory, summary.json.
     if (step == scales.steps) {
@@ -93,17 +76,13 @@ int start(int argc, char** argv, std::optional<common::Session>& holder) {
     const common::CommandLine command = common::read_command_line(argc, argv, about, table);
     refuse_impossible(wanted);
     const Scales scales = scales_of(wanted);
-    const std::vector<std::string> warnings = warnings_of(wanted, scales);
-    for (const std::string& warning : warnings)
-        std::fprintf(stderr, "warning: %s\n", warning.c_str());
-    if (!command.quiet) std::printf("%s", describe_scales(wanted, scales).c_str());
-    if (command.dry_run) return 0;
-    common::refuse_before_start(command, scales.steps, scales.bytes);
+    if (!common::start_run(about, command, table,
+                           {describe_scales(wanted, scales), warnings_of(wanted, scales),
+                            scales.steps, scales.bytes, wanted.checkpoint_steps},
+                           holder))
+        return 0;
+    common::Session& session = *holder;
 
-    common::set_thread_count(command.threads);
-    common::Session& session = holder.emplace(about, command, table);
-    for (const std::string& warning : warnings) session.summary.warning(warning);
-    session.checkpoint_steps = wanted.checkpoint_steps;
     int status = 0;
     with_shape(wanted.scheme(),
                [&](const auto& shape) { status = run(shape, wanted, scales, session); });

@@ -2,27 +2,18 @@
 // beside mpm_explicit on the same pack. `make bench` runs it.
 #include <sys/resource.h>
 
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
 #include <vector>
 
-#include "mpm_explicit/move_particles.hpp"
 #include "mpm_explicit/setup/initial_state.hpp"
-#include "mpm_implicit/move_particles.hpp"
-#include "mpm_implicit/solve_with_newton.hpp"
+#include "mpm_explicit/step.hpp"
+#include "mpm_implicit/step.hpp"
 
 namespace {
 
 using namespace mpm;
-
-template <class Work>
-void timed(double& seconds, const Work& work) {
-    const auto start = std::chrono::steady_clock::now();
-    work();
-    seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 // Two disks that meet, as in cases/rebound.toml.
 Case rebound() {
@@ -78,36 +69,20 @@ double explicit_step(Case w, long first, long steps) {
     GrainNodes nodes(w.problem.mesh(), LinearShape::width, scales.least_mass);
     nodes.sort(grains, particles, state.frame);
     start_leapfrog(shape, laws, contact, false, dt, nodes, state);
-    std::vector<mpm_explicit::StripSums> sums;
-    double seconds = 0;
+    StepSums sums;
+    common::StepClock clock;
     for (long step = 0; step < first + steps; ++step) {
-        if (step == first) seconds = 0;
-        timed(seconds, [&] {
-            if (nodes.sort_is_due(state.frame)) nodes.sort(grains, particles, state.frame);
-            const BodyForce body = mpm::drive(w.problem, step, dt, state.assembly.rigid);
-            put_on_nodes(shape, particles, nodes);
-            velocity_of_nodes(grains, state.assembly.rigid, nodes);
-            for_each_chunk(grains, nodes, sums, [&](Chunk& chunk) {
-                velocity_gradient(shape, particles, nodes, OldVelocity{}, dt, chunk);
-                mpm_explicit::update_stress(laws, w.frozen, chunk, grains, particles, sums);
-                add_internal_force(shape, particles, chunk, nodes);
-                turn_stress(chunk, particles);
-            });
-            accelerate_nodes(body, grains, state.assembly.rigid, dt, nodes);
-            contact.apply(dt, nodes, state.assembly.bonds, state.assembly.rigid);
-            const auto work = mpm_explicit::work_on_nodes(body, dt, nodes);
-            mpm_explicit::move_particles(shape, grains, state.assembly.rigid, nodes, 1, false, dt,
-                                         particles, sums);
-            state.frame.moved += dt * work.largest_speed;
-        });
+        if (step == first) clock.restart();
+        if (nodes.sort_is_due(state.frame)) nodes.sort(grains, particles, state.frame);
+        const BodyForce body = mpm::drive(w.problem, step, dt, state.assembly.rigid);
+        take_step(shape, laws, contact, body, w.flip, w.frozen, dt, nodes, state, sums, clock);
     }
-    return seconds / static_cast<double>(steps);
+    return clock.total() / static_cast<double>(steps);
 }
 
 struct Split {
-    double put = 0, matrix = 0, v_0 = 0, v_theta = 0, particles = 0;  // seconds
+    common::StepClock clock;
     long steps = 0, count = 0, iterations = 0, mass_iterations = 0, loops = 0;
-    double total() const { return put + matrix + v_0 + v_theta + particles; }
 };
 
 // in: steps to be run, or 0: to the end; of them, the first are not counted
@@ -115,7 +90,7 @@ Split implicit_steps(const Case& w, const mpm_implicit::ThetaScheme& scheme, lon
                      long steps) {
     using namespace mpm_implicit;
     const Scales scales = scales_of(w);
-    const double dt = scales.dt, theta = scheme.theta;
+    const double dt = scales.dt;
     const LinearShape shape;
     mpm_implicit::State state;
     state.assembly = assemble(w.problem);
@@ -126,42 +101,20 @@ Split implicit_steps(const Case& w, const mpm_implicit::ThetaScheme& scheme, lon
     GrainNodes nodes(w.problem.mesh(), LinearShape::width, scales.least_mass);
     nodes.sort(grains, particles, state.frame);
     mpm_implicit::open_ledger(state.assembly, laws, state.ledger);
-    NodeSolver<1> solver;
-    NewtonSolver<1> newton;
-    std::vector<mpm_implicit::StripSums> sums;
-    SolveReport report;
+    StepScratch<1> run{laws, scheme, contact, w.flip, w.frozen, {}, {}};
+    mpm_implicit::StepSums sums;
     Split split;
     for (long step = 0; step < (steps > 0 ? first + steps : scales.steps); ++step) {
         if (step == first) split = {};
-        BodyForce body;
-        timed(split.put, [&] {
-            if (nodes.sort_is_due(state.frame)) nodes.sort(grains, particles, state.frame);
-            body = mpm_implicit::drive(w.problem, step, dt, state.assembly.rigid, solver.servos);
-            put_on_nodes(shape, particles, nodes);
-        });
-        timed(split.matrix, [&] { solver.assemble(shape, laws, scheme, body, dt, state, nodes); });
-        timed(split.v_0,
-              [&] { solver.find_old_velocities(scheme, contact, state, nodes, report); });
-        ContactSums did;
-        timed(split.v_theta, [&] {
-            did = scheme.newton()
-                      ? newton.solve(shape, laws, scheme, contact, body, dt, state, solver, nodes,
-                                     report)
-                      : solver.solve(shape, scheme, contact, body, dt, state, nodes, report);
-        });
-        timed(split.particles, [&] {
-            for_each_chunk(grains, nodes, sums, [&](Chunk& chunk) {
-                velocity_gradient(shape, particles, nodes, NewVelocity{}, dt, chunk);
-                mpm_implicit::update_stress(laws, scheme, chunk, grains, particles, sums);
-                turn_stress(chunk, particles);
-            });
-            const auto work = mpm_implicit::work_on_nodes(body, theta, dt, nodes);
-            mpm_implicit::move_particles(shape, grains, state.assembly.rigid, nodes, theta, 1,
-                                         false, dt, particles, sums);
-            state.frame.moved += dt * work.largest_speed;
-            enter_step(theta, scheme.consistent(), 0, dt, nodes.strips(), sums, work, did,
-                       state.ledger);
-        });
+        split.clock.resume();
+        if (nodes.sort_is_due(state.frame)) nodes.sort(grains, particles, state.frame);
+        const BodyForce body =
+            mpm_implicit::drive(w.problem, step, dt, state.assembly.rigid, run.solver.servos);
+        take_step(shape, body, dt, run, nodes, state, sums, split.clock);
+        enter_step(scheme.theta, scheme.consistent(), 0, dt, nodes.strips(), sums.strips,
+                   sums.nodes, sums.contact, state.ledger);
+        split.clock.lap("particles");
+        const SolveReport& report = sums.solver;
         ++split.steps, split.iterations += report.iterations, split.loops += report.loops;
         split.mass_iterations += report.mass_iterations;
     }
@@ -180,10 +133,10 @@ int main() {
         common::set_thread_count(threads);
         const Split one = implicit_steps(rebound(), scheme, 0, 0);
         std::printf("%-34s %8d %10ld %8ld %10.2f\n", "rebound, alpha = 1", threads, one.count,
-                    one.steps, one.total());
+                    one.steps, one.clock.total());
         const Split two = implicit_steps(compressed(80), scheme, 0, 0);
         std::printf("%-34s %8d %10ld %8ld %10.2f\n", "compressed, alpha = 4", threads, two.count,
-                    two.steps, two.total());
+                    two.steps, two.clock.total());
     }
 
     // A quarter of the way into the compression, every grain bears load.
@@ -200,15 +153,17 @@ int main() {
             w.alpha = alpha;
             const long first = std::lround(150 / alpha) + 1, steps = alpha > 20 ? 4 : 8;
             const Split split = implicit_steps(w, scheme, first, steps);
-            const double n = static_cast<double>(split.steps), each = split.total() / n;
-            const auto percent = [&](double seconds) { return 100 * seconds / split.total(); };
+            const double n = static_cast<double>(split.steps), each = split.clock.total() / n;
+            const auto percent = [&](const char* part) {
+                return 100 * split.clock.seconds(part) / split.clock.total();
+            };
             std::printf(
                 "%7d %6.0f %10.1f %10.2f %9.1f %9.2f %6.1f %6.1f %6.1f%% %6.1f%% %6.1f%% %6.1f%% "
                 "%6.1f%%\n",
                 threads, alpha, 1e3 * each, 1e3 * step, each / step, each / (4 * alpha * step),
                 static_cast<double>(split.iterations) / n, static_cast<double>(split.loops) / n,
-                percent(split.put), percent(split.matrix), percent(split.v_0),
-                percent(split.v_theta), percent(split.particles));
+                percent("put"), percent("matrix"), percent("v_0"), percent("v_theta"),
+                percent("particles"));
         }
     }
     struct rusage usage {};

@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "mpm_explicit/contact.hpp"
-#include "mpm_implicit/setup/initial_state.hpp"
+#include "mpm_implicit/state.hpp"
 
 namespace mpm_implicit {
 

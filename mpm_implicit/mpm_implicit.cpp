@@ -6,17 +6,16 @@
 // Run:   build/mpm_implicit mpm_implicit/cases/rebound.toml time.alpha=5
 // Run:   build/mpm_implicit mpm_implicit/cases/rebound.toml method.mass=lumped
 //
-// Reading order: node_rows.hpp, stencil.hpp, grain_matrix.hpp, contact_set.hpp, constraints.hpp,
+// Reading order: step.hpp; then node_rows.hpp, stencil.hpp, grain_matrix.hpp, contact_set.hpp, constraints.hpp,
 // projected_cg.hpp, grain_factors.hpp, mass_factors.hpp, settle_contact.hpp, solve_nodes.hpp,
 // update_stress.hpp, move_particles.hpp, ledger.hpp; then solve_with_newton.hpp.
 // What both programs share is in mpm_explicit/.
-#include <cstdio>
 #include <optional>
 
-#include "mpm_implicit/move_particles.hpp"
+#include "common/run/start.hpp"
 #include "mpm_implicit/output/record.hpp"
 #include "mpm_implicit/setup/check_case.hpp"
-#include "mpm_implicit/solve_with_newton.hpp"
+#include "mpm_implicit/step.hpp"
 
 namespace {
 
@@ -39,10 +38,9 @@ int run(const Shape& shape, const Case& wanted, const ThetaScheme& scheme, const
     std::vector<Bond>& bonds = state.assembly.bonds;
     const std::vector<AnyLaw> laws = laws_of(wanted.problem);
     const Contact contact(wanted.problem.contact, grains, bonds);
-    const double dt = scales.dt, theta = scheme.theta;
+    const double dt = scales.dt;
     GrainNodes nodes(wanted.problem.mesh(), Shape::width, scales.least_mass);
-    NodeSolver<Shape::width - 1> solver;
-    NewtonSolver<Shape::width - 1> newton;
+    StepScratch<Shape::width - 1> run{laws, scheme, contact, wanted.flip, wanted.frozen, {}, {}};
     ThetaRecorder recorder(wanted, scheme, scales, state, session.history);
     StepSums sums;
     long step = 0;
@@ -56,33 +54,15 @@ int run(const Shape& shape, const Case& wanted, const ThetaScheme& scheme, const
     }
 
     // 3. The loop of the slide.
-    // [loop]
     while (session.keep_going(step, scales.steps)) {
         if (nodes.sort_is_due(state.frame)) nodes.sort(grains, particles, state.frame);
         recorder.snapshot(step, state, session);
-        const BodyForce body = drive(wanted.problem, step, dt, rigid, solver.servos);
-        put_on_nodes(shape, particles, nodes);                         // particles -> grid
-        solver.assemble(shape, laws, scheme, body, dt, state, nodes);  // M, K of  [MPM-5 ... 8]
-        solver.find_old_velocities(scheme, contact, state, nodes, sums.solver);  // v_i^0
-        sums.contact =
-            scheme.newton()  // v_i^theta, f_i^theta                                       [MPM-8]
-                ? newton.solve(shape, laws, scheme, contact, body, dt, state, solver, nodes,
-                               sums.solver)
-                : solver.solve(shape, scheme, contact, body, dt, state, nodes, sums.solver);
-        for_each_chunk(grains, nodes, sums.strips, [&](Chunk& chunk) {
-            velocity_gradient(shape, particles, nodes, NewVelocity{}, dt, chunk);  // [MPM-5]
-            update_stress(laws, scheme, chunk, grains, particles, sums.strips);    // [MPM-6, 7]
-            if (!wanted.frozen) turn_stress(chunk, particles);
-        });
-        sums.nodes = work_on_nodes(body, theta, dt, nodes);
-        move_particles(shape, grains, rigid, nodes, theta, wanted.flip, wanted.frozen, dt,
-                       particles, sums.strips);  // grid -> particles
-        state.frame.moved += wanted.frozen ? 0 : dt * sums.nodes.largest_speed;
-        recorder.record(step, sums, nodes, state, session);  // [MPM-13]
+        const BodyForce body = drive(wanted.problem, step, dt, rigid, run.solver.servos);
+        take_step(shape, body, dt, run, nodes, state, sums);  // [MPM-5 ... 8]
+        recorder.record(step, sums, nodes, state, session);   // [MPM-13]
         ++step;
         session.end_of_step(step, scales.steps, static_cast<double>(step) * dt, state);
     }
-    // [/loop]
 
     // 4. The results against theory, summary.json.
     if (step == scales.steps) {
@@ -101,17 +81,14 @@ int start(int argc, char** argv, std::optional<common::Session>& holder) {
     refuse_impossible(wanted, scheme);
     Scales scales = scales_of(wanted);
     scales.bytes = bytes_of(wanted, scheme, scales);
-    const std::vector<std::string> warnings = warnings_of(wanted, scheme, scales);
-    for (const std::string& warning : warnings)
-        std::fprintf(stderr, "warning: %s\n", warning.c_str());
-    if (!command.quiet) std::printf("%s", describe_scales(wanted, scheme, scales).c_str());
-    if (command.dry_run) return 0;
-    common::refuse_before_start(command, scales.steps, scales.bytes);
+    if (!common::start_run(
+            about, command, table,
+            {describe_scales(wanted, scheme, scales), warnings_of(wanted, scheme, scales),
+             scales.steps, scales.bytes, wanted.checkpoint_steps},
+            holder))
+        return 0;
+    common::Session& session = *holder;
 
-    common::set_thread_count(command.threads);
-    common::Session& session = holder.emplace(about, command, table);
-    for (const std::string& warning : warnings) session.summary.warning(warning);
-    session.checkpoint_steps = wanted.checkpoint_steps;
     int status = 0;
     with_shape(wanted.scheme(),
                [&](const auto& shape) { status = run(shape, wanted, scheme, scales, session); });

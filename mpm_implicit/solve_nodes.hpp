@@ -15,7 +15,7 @@
 #include "mpm_implicit/mass_factors.hpp"
 #include "mpm_implicit/projected_cg.hpp"
 #include "mpm_implicit/settle_contact.hpp"
-#include "mpm_implicit/setup/case.hpp"
+#include "mpm_implicit/theta_scheme.hpp"
 
 namespace mpm_implicit {
 

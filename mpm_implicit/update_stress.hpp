@@ -10,7 +10,7 @@
 
 #include "mpm_explicit/strain.hpp"
 #include "mpm_implicit/ledger.hpp"
-#include "mpm_implicit/setup/case.hpp"
+#include "mpm_implicit/theta_scheme.hpp"
 
 namespace mpm_implicit {
 

@@ -64,6 +64,8 @@ foreach(source IN LISTS programs)
 endforeach()
 
 # ---- the notes -----------------------------------------------------------------------------------
+add_test(house.every_header_is_in_its_room sh tests/support/house.sh)
+describe_test(house.every_header_is_in_its_room notes)
 add_test(notes.code_and_numbers_are_fresh sh common/notes.sh check)
 describe_test(notes.code_and_numbers_are_fresh notes)
 add_test(notes.every_label_of_the_ledger_exists sh common/notes.sh ledger)

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "implicit_moment/explicit_em/leapfrog.hpp"
 #include "implicit_moment/explicit_em/leapfrog_state.hpp"
 #include "implicit_moment/explicit_em/setup/check_leapfrog.hpp"
+#include "implicit_moment/explicit_em/step.hpp"
 #include "implicit_moment/theory/compare_with_theory.hpp"
 #include "tests/support/any_leapfrog.hpp"
 
@@ -40,9 +40,7 @@ struct Loop {
     explicit Loop(const Case& w) : wanted(w), state(leapfrog_state(wanted)), run(wanted) {}
     void step() {
         pack_push_field(run, state.field);
-        move_particles(run, state.plasma.species);
-        advance_field(wanted.grid, wanted.dt, run.J, state.field);
-        sort_by_home(wanted.grid, wanted.leapfrog.order, run.sort, state.plasma.species);
+        take_step(run, state.field, state.plasma.species);
     }
     // div E - 4 pi rho, rho by definition; its mean in a periodic box has no field.
     Field gauss() const {
@@ -320,8 +318,7 @@ TEST_CASE("cold plasma oscillates with the frequency of the leapfrog and above i
                     std::vector<double> E;
                     for (int step = 0; step < 8; ++step) {
                         pack_push_field(run, field);
-                        move_particles(run, species);
-                        advance_field(w.grid, w.dt, run.J, field);
+                        take_step(run, field, species);
                         E.push_back(mode_amplitude(w.grid, field, "E_x", k, 0).real());
                     }
                     // Quadratic splines see a field that varies within a cell.

@@ -221,10 +221,12 @@ TEST_CASE("a warm magnetized plasma keeps its energy however fast it turns" *
         "species.electrons.mass=5.446623e-4 species.electrons.temperature_x=3.33e-5 "
         "species.electrons.temperature_y=3.33e-5 species.electrons.temperature_z=3.33e-5 ";
     for (const char* boundary : {"periodic", "wall"}) {
-        for (const auto& [rest, bound] : {std::pair{"time.dt=0.1 uniform.B_x=0.005", 0.05},
-                                          {"time.dt=0.1 uniform.B_x=0.01", 0.015},
-                                          {"time.dt=0.1 uniform.B_x=0.02", 0.004},
-                                          {"time.dt=0.4 uniform.B_x=0.02", 0.001}}) {
+        for (const auto& row : {std::pair{"time.dt=0.1 uniform.B_x=0.005", 0.05},
+                                {"time.dt=0.1 uniform.B_x=0.01", 0.015},
+                                {"time.dt=0.1 uniform.B_x=0.02", 0.004},
+                                {"time.dt=0.4 uniform.B_x=0.02", 0.001}}) {
+            const std::string rest = row.first;
+            const double bound = row.second;
             const Json summary = run("magnetized", warm + rest + " grid.boundary_z=" + boundary);
             const double drift =
                 summary["conservation"]["largest_energy_drift"]["value"].get<double>();

@@ -475,7 +475,7 @@ TEST_CASE("with frozen particles the energies of MPM-14 and MPM-15 stay to round
                               std::fabs(l.energy_15 / first_15 - 1)});
                 elastic = std::max(elastic, l.elastic);
             }
-            CHECK(run.in_contact.nodes == 0);
+            CHECK(run.sums.contact.nodes == 0);
             CHECK(elastic >= 0.05 * first_14);
             CHECK(most <= 1e-12);
             CHECK(run.largest_remap <= 1e-12 * first_14);
@@ -963,7 +963,7 @@ TEST_CASE("the order of the grains changes only round-off") {
                         begin[is[g]] + static_cast<double>(k - all.grains[g].begin);
         });
         one.advance(200), two.advance(200);
-        CHECK(one.in_contact.nodes > 0);
+        CHECK(one.sums.contact.nodes > 0);
         CHECK(difference(one, two, 0.4) <= 1e-9);
     }
 }

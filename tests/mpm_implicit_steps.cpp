@@ -185,7 +185,7 @@ TEST_CASE("the energy theorem holds in every step whatever it holds" *
                 CHECK((l.plastic == 0 && l.volume == 0));
                 friction -= l.friction, plate += std::fabs(l.plate), gravity += l.gravity;
                 damping -= l.damping, bond += std::fabs(l.bond) / run.size, pic -= l.pic / run.size;
-                pressed += run.in_contact.nodes;
+                pressed += run.sums.contact.nodes;
                 for (const Bond& one : run.state.assembly.bonds) broken += one.broken;
             }
         }
@@ -249,7 +249,7 @@ TEST_CASE("theta one half with the consistent mass keeps the energy of grains th
                 double pressed = 0;
                 for (int k = 0; k < 20; ++k) {
                     run.advance();
-                    pressed += run.in_contact.nodes;
+                    pressed += run.sums.contact.nodes;
                 }
                 CHECK(pressed > 10);
                 CHECK(run.ledger().elastic > 1e-3 * before);
@@ -346,7 +346,7 @@ TEST_CASE("the momentum of all grains stays with contact and friction and bonds"
                 });
                 const auto before = total_momentum(run.state.assembly);
                 run.advance(12);
-                CHECK(run.in_contact.nodes > 0);
+                CHECK(run.sums.contact.nodes > 0);
                 CHECK(!run.state.assembly.bonds[0].broken);
                 const auto after = total_momentum(run.state.assembly);
                 off = worst({off, std::fabs(after[0] - before[0]) / before[2],
@@ -460,8 +460,8 @@ TEST_CASE("impulses press and gaps stay open and friction is Coulomb's at the so
                     [&](Assembly& all) { shake(0.1, ++number, all); });
                 for (int step = 0; step < 8; ++step) {
                     run.begin(), run.solve();
-                    held += run.report.held;
-                    if (run.report.held == 0) {
+                    held += run.sums.solver.held;
+                    if (run.sums.solver.held == 0) {
                         const ContactSet& set = run.set();
                         double press = 0, speed = 0;
                         for (const MeetingPair& pair : set.pairs)
@@ -534,7 +534,7 @@ TEST_CASE("both solvers find the same velocities") {
                     ThetaRun one(c, theta_scheme(0.6, mass, solvers[0]), prepare),
                         two(c, theta_scheme(0.6, mass, solvers[1]), prepare);
                     for (ThetaRun* run : {&one, &two}) run->begin(), run->solve();
-                    pressed += static_cast<long>(one.in_contact.nodes);
+                    pressed += static_cast<long>(one.sums.contact.nodes);
                     const double off = difference_of_nodes(one, two);
                     CAPTURE(shape);
                     CAPTURE(mu);
@@ -699,7 +699,7 @@ TEST_CASE("any number of threads takes the same bits through contact") {
                     shake(0.1, 2, all);
                 });
                 run.advance(5);
-                CHECK(run.in_contact.nodes > 0);
+                CHECK(run.sums.contact.nodes > 0);
                 results.push_back(run.particles()), ledgers.push_back(run.ledger());
             }
             for (const std::size_t k : {std::size_t{1}, std::size_t{2}}) {

@@ -531,7 +531,7 @@ TEST_CASE("sums and steps have the same bits for one thread and two and three") 
             for (const std::vector<double>* quantity : run.particles().all())
                 all.push_back(*quantity);
             if (threads == 1) reference = all, energy = run.ledger().energy_14;
-            CHECK(run.in_contact.nodes > 0);
+            CHECK(run.sums.contact.nodes > 0);
             CHECK(all == reference);
             CHECK(run.ledger().energy_14 == energy);
         }

@@ -9,9 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "flip/pic/eulerian_phase.hpp"
-#include "flip/pic/lagrangian_phase.hpp"
 #include "flip/pic/pic_start.hpp"
+#include "flip/pic/step.hpp"
 #include "tests/support/any_numbers.hpp"
 
 namespace {
@@ -42,14 +41,8 @@ struct Run {
         : w(completed(wanted)), cells(w), state(initial_state(w, cells)) {}
     double step() {
         share_pressure(w, state, cells);
-        const double dt = largest_step(w, state, cells);
-        accelerate_cells(w, dt, state, cells);
-        do_work(w, dt, state, cells);
-        move_particles(w, dt, state, cells);
-        repartition(w, state, cells);
-        state.time += dt;
-        state.dt = dt;
-        return dt;
+        take_pic_step(w, state, cells);
+        return state.dt;
     }
     void steps(int count) {
         for (int n = 0; n < count; ++n) step();

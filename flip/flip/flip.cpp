@@ -7,18 +7,15 @@
 // Run:   build/flip flip/cases/sod.toml flip.transfer=pic
 // Run:   build/flip flip/cases/gresho.toml
 //
-// Reading order: particles.hpp, equation_of_state.hpp, mesh.hpp, deposit_particles.hpp,
+// Reading order: step.hpp; then ../particles.hpp, ../equation_of_state.hpp, mesh.hpp, deposit_particles.hpp,
 // find_pressure.hpp, accelerate_nodes.hpp, solve_pressure.hpp, work_on_cells.hpp, move_mesh.hpp,
 // move_particles.hpp.
 #include <climits>
-#include <cstdio>
 #include <optional>
 
-#include "flip/flip/cross_ends.hpp"
-#include "flip/flip/deposit_particles.hpp"
+#include "common/run/start.hpp"
 #include "flip/flip/flip_fields.hpp"
-#include "flip/flip/move_mesh.hpp"
-#include "flip/flip/rezone.hpp"
+#include "flip/flip/step.hpp"
 #include "flip/output/record.hpp"
 #include "flip/setup/check_case.hpp"
 #include "flip/setup/warn_of_case.hpp"
@@ -41,51 +38,36 @@ int run(int argc, char** argv, std::optional<common::Session>& holder) {
     const Case w = completed(wanted);
     refuse_impossible(w, about.program);
     const Scales scales = scales_of(w, about.program);
-    const std::vector<std::string> warnings = resolution_warnings(w, scales, about.program);
-    for (const std::string& warning : warnings)
-        std::fprintf(stderr, "warning: %s\n", warning.c_str());
-    if (!command.quiet) std::printf("%s", describe_scales(w, scales, about.program).c_str());
-    if (command.dry_run) return 0;
-    common::refuse_before_start(command, LONG_MAX, scales.bytes);
+    if (!common::start_run(about, command, table,
+                           {describe_scales(w, scales, about.program),
+                            resolution_warnings(w, scales, about.program), LONG_MAX, scales.bytes,
+                            w.checkpoint_steps},
+                           holder))
+        return 0;
+    common::Session& session = *holder;
 
     // 2. Particles at t = 0, sorted; an empty mesh.
-    common::set_thread_count(command.threads);
-    common::Session& session = holder.emplace(about, command, table);
-    for (const std::string& warning : warnings) session.summary.warning(warning);
-    session.checkpoint_steps = w.checkpoint_steps;
-    Mesh mesh = mesh_of(w);
-    LagrangianScratch mass_matrix;
-    SortScratch sort_scratch;
+    FlipScratch run(w);
+    const Mesh& mesh = run.mesh;
     Recorder recorder(w, about.program, session.history);
     State state;
     Particles& particles = state.particles = load_particles(w);
     long step = 0;
     if (session.restarting()) session.restore(state, step);
-    sort_particles(w.grid, sort_scratch, particles);
+    sort_particles(w.grid, run.sort, particles);
 
     // 3. The loop of the slide.
-    // [loop]
     while (session.keep_going(step, state.time, w.end)) {
-        deposit_particles(w, particles, mesh);  // particles -> mesh: v_g        [FLIP-8]
-        find_pressure(w, state.time, mesh);     // on the mesh: p_c
+        find_fluid(w, state, run.mesh);  // particles -> mesh: v_g, p_c          [FLIP-8]
         recorder.look(step, state, particle_totals(w, particles), cell_fields(w, mesh), session);
-        const double dt = step_allowed(w, mesh, state.dt);
-        state.report = move_mesh(w, dt, particles, mass_matrix, mesh, state.books);  // F_g, v_g^L
-        const long left = move_particles(w, dt, mesh, particles);  // v_p, x_p   [FLIP-6, FLIP-7]
-        cross_ends(w, state.time, dt, particles, state.books, left);
+        take_flip_step(w, step, run, state);  // mesh -> particles: v_p, x_p     [FLIP-6, 7]
         ++step;
-        if (w.rezone_steps > 0 && step % w.rezone_steps == 0) rezone(w, particles);
-        sort_particles(w.grid, sort_scratch, particles);
-        state.time += dt;
-        state.dt = dt;
         session.end_of_step(step, state.time, w.end, state);
     }
-    // [/loop]
 
     // 4. The end of the run, the results against theory, summary.json.
     if (common::Session::reached(state.time, w.end)) {
-        deposit_particles(w, particles, mesh);
-        find_pressure(w, state.time, mesh);
+        find_fluid(w, state, run.mesh);
         const Totals totals = particle_totals(w, particles);
         const CellFields cells = cell_fields(w, mesh);
         recorder.look(step, state, totals, cells, session);

@@ -7,15 +7,15 @@
 // Run:   build/pic flip/cases/sod.toml particles.per_cell_x=64
 // Run:   build/pic flip/cases/advected_blob.toml time.dt=0.001
 //
-// Reading order: particles.hpp, state.hpp, equation_of_state.hpp, pic_cells.hpp, largest_step.hpp,
+// Reading order: step.hpp; then ../particles.hpp, ../equation_of_state.hpp, pic_cells.hpp, largest_step.hpp,
 // lagrangian_phase.hpp, eulerian_phase.hpp, ends.hpp.
 #include <climits>
-#include <cstdio>
 #include <optional>
 
+#include "common/run/start.hpp"
 #include "flip/output/record.hpp"
-#include "flip/pic/lagrangian_phase.hpp"
 #include "flip/pic/pic_start.hpp"
+#include "flip/pic/step.hpp"
 #include "flip/setup/check_case.hpp"
 #include "flip/setup/warn_of_case.hpp"
 
@@ -38,18 +38,15 @@ int run(int argc, char** argv, std::optional<common::Session>& holder) {
     const Case w = completed(wanted);
     refuse_impossible(w, about.program);
     const Scales scales = scales_of(w, about.program);
-    const std::vector<std::string> warnings = resolution_warnings(w, scales, about.program);
-    for (const std::string& warning : warnings)
-        std::fprintf(stderr, "warning: %s\n", warning.c_str());
-    if (!command.quiet) std::printf("%s", describe_scales(w, scales, about.program).c_str());
-    if (command.dry_run) return 0;
-    common::refuse_before_start(command, LONG_MAX, scales.bytes);
+    if (!common::start_run(about, command, table,
+                           {describe_scales(w, scales, about.program),
+                            resolution_warnings(w, scales, about.program), LONG_MAX, scales.bytes,
+                            w.checkpoint_steps},
+                           holder))
+        return 0;
+    common::Session& session = *holder;
 
     // 2. Particles and cells at t = 0.
-    common::set_thread_count(command.threads);
-    common::Session& session = holder.emplace(about, command, table);
-    for (const std::string& warning : warnings) session.summary.warning(warning);
-    session.checkpoint_steps = w.checkpoint_steps;
     PicCells cells(w);
     Recorder recorder(w, about.program, session.history);
     State state = initial_state(w, cells);
@@ -61,22 +58,14 @@ int run(int argc, char** argv, std::optional<common::Session>& holder) {
     }
 
     // 3. The loop of the slide.
-    // [loop]
     while (session.keep_going(step, state.time, w.end)) {
         share_pressure(w, state, cells);  // cells: p
         fields_of(w, state, cells, fields);
         recorder.look(step, state, totals_of(w, state, cells), fields, session);
-        const double dt = largest_step(w, state, cells);
-        accelerate_cells(w, dt, state, cells);  // Lagrangian phase: u~                 [PIC]
-        do_work(w, dt, state, cells);           // Lagrangian phase: I~                 [PIC]
-        move_particles(w, dt, state, cells);    // particles move to final position     [PIC]
-        repartition(w, state, cells);           // Eulerian phase: M, momentum, energy  [PIC]
-        state.time += dt;
-        state.dt = dt;
+        take_pic_step(w, state, cells);  // Lagrangian phase, particles, Eulerian phase  [PIC]
         ++step;
         session.end_of_step(step, state.time, w.end, state);
     }
-    // [/loop]
 
     // 4. The end of the run, the results against theory, summary.json.
     if (common::Session::reached(state.time, w.end)) {

@@ -6,15 +6,14 @@
 // Run:   build/explicit_em
 // Run:   build/explicit_em implicit_moment/cases/explicit_two_stream.toml particles.order=2
 //
-// Reading order: home_weights.hpp, push_particles.hpp, follow_path.hpp, yee_field.hpp. What it
+// Reading order: step.hpp; then home_weights.hpp, push_particles.hpp, follow_path.hpp, yee_field.hpp. What it
 // shares with implicit_moment.cpp: plasma, set-ups, walls, records; `diff` shows the rest.
-#include <cstdio>
 #include <optional>
 
-#include "common/run/session.hpp"
-#include "implicit_moment/explicit_em/leapfrog.hpp"
+#include "common/run/start.hpp"
 #include "implicit_moment/explicit_em/leapfrog_state.hpp"
 #include "implicit_moment/explicit_em/setup/check_leapfrog.hpp"
+#include "implicit_moment/explicit_em/step.hpp"
 #include "implicit_moment/output/record.hpp"
 #include "implicit_moment/output/write_output.hpp"
 #include "implicit_moment/theory/compare_with_theory.hpp"
@@ -38,19 +37,14 @@ int run(int argc, char** argv, std::optional<common::Session>& holder) {
     refuse_unstable(wanted);
     if (wanted.wave != "none") theory_of_mode(wanted);
     const Scales scales = scales_of(wanted);
-    const std::vector<std::string> warnings = leapfrog_warnings(wanted, scales);
-    for (const std::string& warning : warnings)
-        std::fprintf(stderr, "warning: %s\n", warning.c_str());
-    if (!command.quiet) std::printf("%s", describe_scales(wanted, scales).c_str());
-    if (command.dry_run) return 0;
-    common::refuse_before_start(command, scales.steps, scales.bytes);
+    if (!common::start_run(about, command, table,
+                           {describe_scales(wanted, scales), leapfrog_warnings(wanted, scales),
+                            scales.steps, scales.bytes, wanted.checkpoint_steps},
+                           holder))
+        return 0;
+    common::Session& session = *holder;
 
     // 2. Particles and fields at t = 0.
-    common::set_thread_count(command.threads);
-    common::Session& session = holder.emplace(about, command, table);
-    for (const std::string& warning : warnings) session.summary.warning(warning);
-    session.checkpoint_steps = wanted.checkpoint_steps;
-    const Grid& grid = wanted.grid;
     State state = leapfrog_state(wanted);
     Leapfrog leapfrog(wanted);
     const auto shown = [&](const State& now) {
@@ -64,18 +58,14 @@ int run(int argc, char** argv, std::optional<common::Session>& holder) {
     long step = 0;
     if (session.restarting()) session.restore(state, step);
     std::vector<Particles>& particles = state.plasma.species;
-    // [loop]
     while (session.keep_going(step, steps)) {
         pack_push_field(leapfrog, state.field);  // E^n, B^n
         if (step % wanted.history_steps == 0)    // the row of t^n
             recorder.record(step, state, moments_now(leapfrog, state), session);
-        move_particles(leapfrog, particles);               // u^{n+1/2}, x^{n+1}, J^{n+1/2}
-        advance_field(grid, dt, leapfrog.J, state.field);  // E^{n+1}, B^{n+1}
-        sort_by_home(grid, wanted.leapfrog.order, leapfrog.sort, particles);
+        take_step(leapfrog, state.field, particles);  // u, J^{n+1/2}; x, E, B^{n+1}
         ++step;
         session.end_of_step(step, steps, static_cast<double>(step) * dt, state);
     }
-    // [/loop]
 
     // 4. The last row, the results against theory, summary.json.
     if (step == steps) {

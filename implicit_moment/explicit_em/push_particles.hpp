@@ -17,9 +17,10 @@
 #include "common/parallel.hpp"
 #include "common/run/parameters.hpp"
 #include "implicit_moment/explicit_em/follow_path.hpp"
+#include "implicit_moment/explicit_em/leapfrog_settings.hpp"
 #include "implicit_moment/move_particles.hpp"
 #include "implicit_moment/push_field.hpp"
-#include "implicit_moment/setup/case.hpp"
+#include "implicit_moment/smooth.hpp"
 #include "implicit_moment/units.hpp"
 
 namespace implicit_moment {

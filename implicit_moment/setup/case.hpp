@@ -7,6 +7,7 @@
 
 #include "common/grid.hpp"
 #include "common/run/parameters.hpp"
+#include "implicit_moment/explicit_em/leapfrog_settings.hpp"
 #include "implicit_moment/move_particles.hpp"
 #include "implicit_moment/solve_field.hpp"
 
@@ -61,13 +62,6 @@ struct UniformCase {
     double phase_B_x = 0, phase_B_y = 0, phase_B_z = 0;  // [degrees]
     double phase_E_x = 0, phase_E_y = 0, phase_E_z = 0;
     std::vector<SpeciesCase> species;
-};
-
-/// How explicit_em goes about it; means nothing to implicit_moment.
-struct LeapfrogSettings {
-    bool chosen = false;  // the run is explicit_em's
-    long order = 1;       // of the spline of the charge: 1 linear, 2 quadratic
-    bool relativistic = true;
 };
 
 /// A complete input of implicit_moment or of explicit_em. Lengths in d_i, times in 1/omega_pi,

@@ -12,13 +12,6 @@
 
 namespace mpm_explicit {
 
-/// What one step has summed up.
-struct StepSums {
-    std::vector<StripSums> strips;
-    NodeWork nodes;
-    ContactSums contact;
-};
-
 inline std::vector<common::Column> ledger_columns() {
     std::vector<common::Column> columns;
     for (const char* name :

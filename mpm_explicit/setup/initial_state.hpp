@@ -2,26 +2,12 @@
 #pragma once
 
 #include "mpm_explicit/accelerate_nodes.hpp"
-#include "mpm_explicit/ledger.hpp"
 #include "mpm_explicit/setup/case.hpp"
 #include "mpm_explicit/setup/scales.hpp"
+#include "mpm_explicit/state.hpp"
 #include "mpm_explicit/update_stress.hpp"
 
 namespace mpm_explicit {
-
-/// All that changes in a run.
-struct State {
-    Assembly assembly;
-    Frame frame;
-    Ledger ledger;
-};
-
-template <class Archive>
-void archive(Archive& a, State& state) {
-    archive(a, state.assembly);
-    mpm::archive(a, state.frame);
-    archive(a, state.ledger);
-}
 
 /// Stresses are taken half a step back with the velocities of the start, as leapfrog needs them:
 ///   sigma^{-1/2} = sigma^0 - T : e(v^0) dt/2

@@ -6,18 +6,10 @@
 #include <vector>
 
 #include "mpm_explicit/output/record_grains.hpp"
-#include "mpm_implicit/setup/initial_state.hpp"
+#include "mpm_implicit/state.hpp"
 #include "mpm_implicit/theory/compare_with_theory.hpp"
 
 namespace mpm_implicit {
-
-/// What one step has summed up.
-struct StepSums {
-    std::vector<StripSums> strips;
-    NodeWork nodes;
-    ContactSums contact;
-    SolveReport solver;
-};
 
 inline std::vector<common::Column> ledger_columns() {
     std::vector<common::Column> columns = Ledger::columns();

@@ -3,22 +3,11 @@
 #pragma once
 
 #include "mpm_explicit/setup/case_of_grains.hpp"
+#include "mpm_implicit/theta_scheme.hpp"
 
 namespace mpm_implicit {
 
 using namespace mpm;
-
-struct ThetaScheme {
-    double theta = 0.5;
-    std::string mass = "consistent", volumes = "kept", solver = "projected_cg",
-                preconditioner = "grains";
-    double tolerance = 1e-13;
-    long most_iterations = 5000, most_loops = 50;
-
-    bool consistent() const { return mass == "consistent"; }
-    bool keeps_volumes() const { return volumes == "kept"; }
-    bool newton() const { return solver == "newton_krylov"; }
-};
 
 /// The table of all parameters.
 inline common::ParameterTable describe(Case& w, ThetaScheme& scheme) {

@@ -11,10 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "flip/flip/cross_ends.hpp"
-#include "flip/flip/deposit_particles.hpp"
 #include "flip/flip/flip_fields.hpp"
-#include "flip/flip/move_mesh.hpp"
+#include "flip/flip/step.hpp"
 #include "tests/support/any_numbers.hpp"
 
 namespace facts {
@@ -29,45 +27,35 @@ struct Random {
     double operator()(double low, double high) { return low + (high - low) * (*this)(); }
 };
 
-/// The loop of flip.cpp, in its order and in parts.
+/// The steps of flip, whole and in parts.
 struct FlipRun {
     Case w;
-    Mesh mesh;
-    LagrangianScratch mass_matrix;
-    SortScratch scratch;
+    FlipScratch run;
     State state;
+    long steps_taken = 0;
 
-    FlipRun(const Case& wanted, const Particles& particles) : w(completed(wanted)) {
-        mesh = mesh_of(w);
+    FlipRun(const Case& wanted, const Particles& particles) : w(completed(wanted)), run(w) {
         state.particles = particles;
         sort();
     }
     explicit FlipRun(const Case& wanted) : FlipRun(wanted, load_particles(completed(wanted))) {}
 
     Particles& particles() { return state.particles; }
-    Nodes& nodes() { return mesh.nodes; }
-    Cells& cells() { return mesh.cells; }
+    Nodes& nodes() { return run.mesh.nodes; }
+    Cells& cells() { return run.mesh.cells; }
     const Grid& grid() const { return w.grid; }
 
-    void sort() { sort_particles(w.grid, scratch, state.particles); }
+    void sort() { sort_particles(w.grid, run.sort, state.particles); }
     /// particles -> mesh, and the pressure.
-    void deposit() {
-        deposit_particles(w, state.particles, mesh);
-        find_pressure(w, state.time, mesh);
-    }
+    void deposit() { find_fluid(w, state, run.mesh); }
     double move_nodes() {
-        const double dt = step_allowed(w, mesh, state.dt);
-        state.report = move_mesh(w, dt, state.particles, mass_matrix, mesh, state.books);
+        const double dt = step_allowed(w, run.mesh, state.dt);
+        state.report = move_mesh(w, dt, state.particles, run.mass_matrix, run.mesh, state.books);
         return dt;
     }
     void step() {
         deposit();
-        const double dt = move_nodes();
-        move_particles(w, dt, mesh, state.particles);
-        cross_ends(w, state.time, dt, state.particles, state.books);
-        sort();
-        state.time += dt;
-        state.dt = dt;
+        take_flip_step(w, steps_taken++, run, state);
     }
     void steps(int count) {
         for (int n = 0; n < count; ++n) step();

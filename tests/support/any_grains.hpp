@@ -6,8 +6,8 @@
 #include <cmath>
 #include <vector>
 
-#include "mpm_explicit/move_particles.hpp"
 #include "mpm_explicit/setup/initial_state.hpp"
+#include "mpm_explicit/step.hpp"
 #include "tests/support/any_cloud.hpp"
 
 namespace facts {
@@ -25,9 +25,7 @@ struct Run {
     GrainNodes nodes;
     long step = 0;
 
-    std::vector<StripSums> strips;
-    NodeWork at_nodes;
-    ContactSums in_contact;
+    StepSums sums;
     double largest_budget = 0, largest_remap = 0, largest_energy = 0, least_V = 1;  // so far
 
     /// in: prepare(assembly), what is changed before the start; step_size, 0: what the case says
@@ -77,31 +75,17 @@ struct Run {
         Particles& at = particles();
         const std::vector<Grain>& grains = state.assembly.grains;
         std::vector<RigidMotion>& rigid = state.assembly.rigid;
-        std::vector<Bond>& bonds = state.assembly.bonds;
         if (nodes.sort_is_due(state.frame)) nodes.sort(grains, at, state.frame);
         const BodyForce body = drive(wanted.problem, step, dt, rigid);
-        put_on_nodes(shape, at, nodes);
-        velocity_of_nodes(grains, rigid, nodes);
-        contact.join_bonds(bonds, nodes);
-        for_each_chunk(grains, nodes, strips, [&](Chunk& chunk) {
-            velocity_gradient(shape, at, nodes, OldVelocity{}, dt, chunk);
-            update_stress(laws, wanted.frozen, chunk, grains, at, strips);
-            add_internal_force(shape, at, chunk, nodes);
-            if (!wanted.frozen) turn_stress(chunk, at);
-        });
-        accelerate_nodes(body, grains, rigid, dt, nodes);
-        in_contact = contact.apply(dt, nodes, bonds, rigid);
-        at_nodes = work_on_nodes(body, dt, nodes);
-        move_particles(shape, grains, rigid, nodes, wanted.flip, wanted.frozen, dt, at, strips);
-        state.frame.moved += wanted.frozen ? 0 : dt * at_nodes.largest_speed;
+        take_step(shape, laws, contact, body, wanted.flip, wanted.frozen, dt, nodes, state, sums);
 
         Ledger& l = state.ledger;
-        enter_energies(step, strips, l);
+        enter_energies(step, sums.strips, l);
         largest_budget = worst({largest_budget, std::fabs(l.budget())});
         largest_remap = worst({largest_remap, std::fabs(l.remap)});
         largest_energy = worst({largest_energy, l.kinetic + l.elastic});
-        for (const StripSums& s : strips) least_V = std::min(least_V, s.least_V);
-        enter_work(nodes.strips(), strips, at_nodes, in_contact, l);
+        for (const StripSums& s : sums.strips) least_V = std::min(least_V, s.least_V);
+        enter_work(nodes.strips(), sums.strips, sums.nodes, sums.contact, l);
         ++step;
     }
 };

@@ -10,10 +10,8 @@
 #include <vector>
 
 #include "mpm_explicit/setup/scales.hpp"
-#include "mpm_explicit/strain.hpp"
-#include "mpm_implicit/move_particles.hpp"
-#include "mpm_implicit/setup/initial_state.hpp"
-#include "mpm_implicit/solve_with_newton.hpp"
+#include "mpm_implicit/state.hpp"
+#include "mpm_implicit/step.hpp"
 #include "tests/support/any_cloud.hpp"
 
 namespace facts {
@@ -33,10 +31,7 @@ struct ThetaRun {
     long step = 0;
     BodyForce body;
 
-    std::vector<StripSums> strips;
-    NodeWork at_nodes;
-    ContactSums in_contact;
-    SolveReport report;
+    StepSums sums;
     double size = 0;         // largest energy or work of loads, so far
     double growth = -1e300;  // largest of a step, beyond the work of loads and what laws undo
     double least_V = 1;      // smallest V^1/V^0 of a step
@@ -75,74 +70,63 @@ struct ThetaRun {
     /// Calls work(shape, solver), the solver as wide as the shape.
     template <class Work>
     void with(const Work& work) {
-        with_shape(wanted.scheme(), [&](const auto& shape) {
-            work(shape, solver<std::decay_t<decltype(shape)>::width - 1>());
-        });
+        with_scratch([&](const auto& shape, auto& run) { work(shape, run.solver); });
     }
 
     void advance(long steps = 1) {
-        with([&](const auto& shape, auto& solver) {
+        with_scratch([&](const auto& shape, auto& run) {
             for (long k = 0; k < steps; ++k) {
-                begin(shape, solver);
-                solve(shape, solver);
-                end(shape);
+                begin(shape, run);
+                solve(shape, run);
+                end(shape, run);
             }
         });
     }
     /// A step up to v_i^0: who meets is known, and the matrices.
     void begin() {
-        with([&](const auto& shape, auto& solver) { begin(shape, solver); });
+        with_scratch([&](const auto& shape, auto& run) { begin(shape, run); });
     }
     /// And v_i^theta, with the particles still where they were.
     void solve() {
-        with([&](const auto& shape, auto& solver) { solve(shape, solver); });
+        with_scratch([&](const auto& shape, auto& run) { solve(shape, run); });
     }
     void end() {
-        with([&](const auto& shape, auto&) { end(shape); });
+        with_scratch([&](const auto& shape, auto& run) { end(shape, run); });
     }
     /// The pairs of the last step.
-    const ContactSet& set() const { return wanted.shape == "linear" ? narrow_.set : wide_.set; }
+    const ContactSet& set() const {
+        return wanted.shape == "linear" ? narrow_.solver.set : wide_.solver.set;
+    }
 
    private:
+    template <class Work>
+    void with_scratch(const Work& work) {
+        with_shape(wanted.scheme(), [&](const auto& shape) {
+            work(shape, scratch<std::decay_t<decltype(shape)>::width - 1>());
+        });
+    }
     template <int reach>
-    auto& solver() {
+    auto& scratch() {
         if constexpr (reach == 1)
             return narrow_;
         else
             return wide_;
     }
-    template <class Shape, class Solver>
-    void begin(const Shape& shape, Solver& solver) {
+    template <class Shape, int reach>
+    void begin(const Shape& shape, StepScratch<reach>& run) {
         if (nodes.sort_is_due(state.frame)) nodes.sort(grains(), particles(), state.frame);
-        body = drive(wanted.problem, step, dt, state.assembly.rigid, solver.servos);
-        put_on_nodes(shape, particles(), nodes);
-        solver.assemble(shape, laws, scheme, body, dt, state, nodes);
-        solver.find_old_velocities(scheme, contact, state, nodes, report);
+        // What a test has changed since the last step.
+        run.laws = laws, run.scheme = scheme, run.flip = wanted.flip, run.frozen = wanted.frozen;
+        body = drive(wanted.problem, step, dt, state.assembly.rigid, run.solver.servos);
+        find_matrices(shape, body, dt, run, nodes, state, sums);
     }
-    template <class Shape, class Solver>
-    void solve(const Shape& shape, Solver& solver) {
-        const auto newton = [&](auto& newton_solver) {
-            return newton_solver.solve(shape, laws, scheme, contact, body, dt, state, solver, nodes,
-                                       report);
-        };
-        if (!scheme.newton())
-            in_contact = solver.solve(shape, scheme, contact, body, dt, state, nodes, report);
-        else if constexpr (Shape::width == 2)
-            in_contact = newton(narrow_newton_);
-        else
-            in_contact = newton(wide_newton_);
+    template <class Shape, int reach>
+    void solve(const Shape& shape, StepScratch<reach>& run) {
+        find_theta_velocities(shape, body, dt, run, nodes, state, sums);
     }
-    template <class Shape>
-    void end(const Shape& shape) {
-        for_each_chunk(grains(), nodes, strips, [&](Chunk& chunk) {
-            velocity_gradient(shape, particles(), nodes, NewVelocity{}, dt, chunk);
-            update_stress(laws, scheme, chunk, grains(), particles(), strips);
-            if (!wanted.frozen) turn_stress(chunk, particles());
-        });
-        at_nodes = work_on_nodes(body, scheme.theta, dt, nodes);
-        move_particles(shape, grains(), state.assembly.rigid, nodes, scheme.theta, wanted.flip,
-                       wanted.frozen, dt, particles(), strips);
-        state.frame.moved += wanted.frozen ? 0 : dt * at_nodes.largest_speed;
+    template <class Shape, int reach>
+    void end(const Shape& shape, StepScratch<reach>& run) {
+        move_to_new_level(shape, body, dt, run, nodes, state, sums);
 
         Ledger& l = state.ledger;
         const auto given = [&] {
@@ -150,18 +134,16 @@ struct ThetaRun {
         };
         const double before = given();
         enter_step(scheme.theta, scheme.consistent(), wanted.problem.damping, dt, nodes.strips(),
-                   strips, at_nodes, in_contact, l);
+                   sums.strips, sums.nodes, sums.contact, l);
         growth = std::max(growth, given() - before);
         size = worst({size, l.energy(), std::fabs(l.plate + l.gravity)});
-        for (const StripSums& s : strips) least_V = std::min(least_V, s.least_V);
-        held += report.held, loops += report.loops;
+        for (const StripSums& s : sums.strips) least_V = std::min(least_V, s.least_V);
+        held += sums.solver.held, loops += sums.solver.loops;
         ++step;
     }
 
-    NodeSolver<1> narrow_;
-    NodeSolver<2> wide_;
-    NewtonSolver<1> narrow_newton_;
-    NewtonSolver<2> wide_newton_;
+    StepScratch<1> narrow_{laws, scheme, contact, wanted.flip, wanted.frozen, {}, {}};
+    StepScratch<2> wide_{laws, scheme, contact, wanted.flip, wanted.frozen, {}, {}};
 };
 
 // ---- cases ---------------------------------------------------------------------------------------

@@ -1,8 +1,10 @@
-// What explicit_em keeps between steps besides its state, and the steps of its loop in those terms.
+// The step of explicit_em, call by call, and what it keeps between steps besides its state. The row of
+// t^n belongs between packing the field and moving the particles.
 #pragma once
 
 #include <vector>
 
+#include "common/step_clock.hpp"
 #include "implicit_moment/explicit_em/count_moments.hpp"
 #include "implicit_moment/explicit_em/sort_by_home.hpp"
 #include "implicit_moment/explicit_em/yee_field.hpp"
@@ -24,16 +26,30 @@ struct Leapfrog {
 };
 
 /// Packs E^n and B^n for the particles.
-inline void pack_push_field(Leapfrog& run, const FieldState& field) {
+template <class Clock = common::NoClock>
+void pack_push_field(Leapfrog& run, const FieldState& field, Clock&& clock = {}) {
     pack_push_field(run.wanted.grid, run.wanted.field.smoothing, field, run.smoothed, run.scratch,
                     run.push);
+    clock.lap("field");
 }
 
-/// Moves all particles from t^n to t^{n+1}; out: run.J.
-/// errors: NumericalError when a particle crosses more than a cell.
-inline void move_particles(Leapfrog& run, std::vector<Particles>& species) {
-    move_particles(run.push, run.wanted.grid, run.wanted.dt, run.wanted.leapfrog,
-                   run.wanted.field.smoothing, species, run.current, run.J);
+/// From t^n to t^{n+1}.
+/// in:     run.push of t^n
+/// in/out: field and particles
+/// errors: NumericalError when a particle crosses more than a cell
+template <class Clock = common::NoClock>
+void take_step(Leapfrog& run, FieldState& field, std::vector<Particles>& species,
+               Clock&& clock = {}) {
+    const Case& w = run.wanted;
+    // [step]
+    move_particles(run.push, w.grid, w.dt, w.leapfrog, w.field.smoothing, species, run.current,
+                   run.J);  // u^{n+1/2}, x^{n+1}, J^{n+1/2}
+    clock.lap("push");
+    advance_field(w.grid, w.dt, run.J, field);  // E^{n+1}, B^{n+1}
+    clock.lap("field");
+    sort_by_home(w.grid, w.leapfrog.order, run.sort, species);
+    clock.lap("sort");
+    // [/step]
 }
 
 /// The moments of t^n. in: run.push of t^n; what is behind a wall.

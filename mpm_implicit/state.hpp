@@ -1,4 +1,4 @@
-// All that changes in a run, and the loads of a step.
+// All that changes in a run of mpm_implicit, what a step sums up for the ledger, and its loads.
 #pragma once
 
 #include <tuple>
@@ -57,6 +57,14 @@ struct State {
     Ledger ledger;
     std::vector<PairMemory> pressed;  // pairs that were closed in the last step
     Effort effort;
+};
+
+/// What one step has summed up.
+struct StepSums {
+    std::vector<StripSums> strips;
+    NodeWork nodes;
+    ContactSums contact;
+    SolveReport solver;
 };
 
 template <class Archive>

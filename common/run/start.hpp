@@ -1,0 +1,41 @@
+// What every main does between the case and the first step.
+#pragma once
+
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/parallel.hpp"
+#include "common/run/session.hpp"
+
+namespace common {
+
+/// What follows from a case before it runs.
+struct Preparation {
+    std::string description;  // scales, memory and time in words
+    std::vector<std::string> warnings;
+    long steps = 0;    // to be run; a run until a time does not know them
+    double bytes = 0;  // of memory
+    long checkpoint_steps = 0;
+};
+
+/// Says what the case is and what may mislead in it, and opens the run.
+/// in:     prepared, of a case that was not refused
+/// out:    holder, the run; false with --dry-run, where the words are all
+/// errors: InputError where the folder, the memory or the length of the run is impossible
+inline bool start_run(const About& about, const CommandLine& command, const ParameterTable& table,
+                      const Preparation& prepared, std::optional<Session>& holder) {
+    for (const std::string& warning : prepared.warnings)
+        std::fprintf(stderr, "warning: %s\n", warning.c_str());
+    if (!command.quiet) std::printf("%s", prepared.description.c_str());
+    if (command.dry_run) return false;
+    refuse_before_start(command, prepared.steps, prepared.bytes);
+    set_thread_count(command.threads);
+    Session& session = holder.emplace(about, command, table);
+    for (const std::string& warning : prepared.warnings) session.summary.warning(warning);
+    session.checkpoint_steps = prepared.checkpoint_steps;
+    return true;
+}
+
+}  // namespace common

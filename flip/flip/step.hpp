@@ -1,0 +1,59 @@
+// The step of flip: the slide, call by call, as two functions. Between them what the mesh sees at t^n
+// is known.
+#pragma once
+
+#include "common/step_clock.hpp"
+#include "flip/flip/cross_ends.hpp"
+#include "flip/flip/deposit_particles.hpp"
+#include "flip/flip/find_pressure.hpp"
+#include "flip/flip/move_mesh.hpp"
+#include "flip/flip/move_particles.hpp"
+#include "flip/flip/rezone.hpp"
+
+namespace flip {
+
+/// What a run keeps between steps besides its state; all is made anew in every step.
+struct FlipScratch {
+    Mesh mesh;
+    LagrangianScratch mass_matrix;
+    SortScratch sort;
+
+    explicit FlipScratch(const Case& w) : mesh(mesh_of(w)) {}
+};
+
+/// The fluid on the mesh at t^n.
+/// in:     particles, sorted by row
+/// out:    velocity and mass of nodes, pressure of cells
+template <class Clock = common::NoClock>
+void find_fluid(const Case& w, const State& state, Mesh& mesh, Clock&& clock = {}) {
+    // [fluid]
+    deposit_particles(w, state.particles, mesh);  // particles -> mesh: v_g         [FLIP-8]
+    clock.lap("deposit");
+    find_pressure(w, state.time, mesh);  // on the mesh: p_c
+    clock.lap("mesh");
+    // [/fluid]
+}
+
+/// From t^n to t^{n+1}, as long as the flow allows.
+/// in:     run.mesh after find_fluid(); step, the number of steps before this one
+/// in/out: state: particles, time and the length of the last step, budget, report
+template <class Clock = common::NoClock>
+void take_flip_step(const Case& w, long step, FlipScratch& run, State& state, Clock&& clock = {}) {
+    Mesh& mesh = run.mesh;
+    Particles& particles = state.particles;
+    // [step]
+    const double dt = step_allowed(w, mesh, state.dt);
+    state.report = move_mesh(w, dt, particles, run.mass_matrix, mesh, state.books);  // F_g, v_g^L
+    clock.lap("mesh");
+    const long left = move_particles(w, dt, mesh, particles);  // v_p, x_p   [FLIP-6, FLIP-7]
+    clock.lap("move");
+    cross_ends(w, state.time, dt, particles, state.books, left);
+    if (w.rezone_steps > 0 && (step + 1) % w.rezone_steps == 0) rezone(w, particles);
+    sort_particles(w.grid, run.sort, particles);
+    clock.lap("sort");
+    // [/step]
+    state.time += dt;
+    state.dt = dt;
+}
+
+}  // namespace flip

@@ -1,0 +1,63 @@
+// The step of the implicit moment method: the slide, call by call. The row of t^n belongs between its
+// halves, as the moments are known then.
+#pragma once
+
+#include <vector>
+
+#include "common/step_clock.hpp"
+#include "implicit_moment/deposit_moments.hpp"
+#include "implicit_moment/move_particles.hpp"
+#include "implicit_moment/push_field.hpp"
+#include "implicit_moment/solve_field.hpp"
+#include "implicit_moment/sort_particles.hpp"
+
+namespace implicit_moment {
+
+/// What a run keeps between steps besides its state; all is made anew in every step.
+struct StepScratch {
+    std::vector<Moments> moments;  // of each species
+    FieldSolver solver;
+    PushField push;
+    SortScratch sort;
+
+    StepScratch(const Grid& grid, const FieldSettings& field, std::size_t species)
+        : moments(species, Moments(grid)), solver(grid, field) {}
+};
+
+/// The moments of t^n.
+/// in:     particles, sorted by node; B^n
+/// out:    run.moments
+template <class Clock = common::NoClock>
+void find_moments(const Grid& grid, double dt, const std::vector<Particles>& particles,
+                  const FieldState& field, StepScratch& run, Clock&& clock = {}) {
+    // [moments]
+    deposit_moments(particles, grid, field.B, dt, run.moments);  // particles -> grid   [IMM-9]
+    clock.lap("moments");
+    // [/moments]
+}
+
+/// From t^n to t^{n+1}.
+/// in:     run.moments of t^n; q/m of each species
+/// in/out: particles and field
+/// out:    iterations of the field, and why it ended
+/// errors: NumericalError when the field does not converge or a particle is lost
+template <class Clock = common::NoClock>
+FieldReport take_step(const Grid& grid, double dt, const MoverSettings& mover,
+                      const std::vector<double>& charge_over_mass, StepScratch& run,
+                      std::vector<Particles>& particles, FieldState& field, Clock&& clock = {}) {
+    // [step]
+    const FieldReport solved =
+        solve_field(run.solver, run.moments, charge_over_mass, dt, field);  // [IMM-10, 11, 12]
+    pack_push_field(run.solver, field, run.push);                           // grid -> particles
+    clock.lap("field");
+    move_particles(run.push, grid, dt, mover, particles);  // particles move
+    clock.lap("mover");
+    advance_field(run.solver, dt, field);  // [IMM-10]
+    clock.lap("field");
+    sort_particles(grid, run.sort, particles);  // for the next step
+    clock.lap("sort");
+    // [/step]
+    return solved;
+}
+
+}  // namespace implicit_moment

@@ -1,0 +1,97 @@
+// The step of mpm_implicit: the slide, call by call, in three parts, of which take_step() is the whole.
+#pragma once
+
+#include <vector>
+
+#include "common/step_clock.hpp"
+#include "mpm_explicit/strain.hpp"
+#include "mpm_explicit/transfer.hpp"
+#include "mpm_implicit/move_particles.hpp"
+#include "mpm_implicit/solve_nodes.hpp"
+#include "mpm_implicit/solve_with_newton.hpp"
+#include "mpm_implicit/state.hpp"
+#include "mpm_implicit/update_stress.hpp"
+
+namespace mpm_implicit {
+
+/// What a step takes from the case, and what it works with. reach: 1 for linear shapes, else 2.
+template <int reach>
+struct StepScratch {
+    std::vector<AnyLaw> laws;
+    ThetaScheme scheme;
+    const Contact& contact;
+    double flip = 1;      // the part of FLIP in the velocity of particles
+    bool frozen = false;  // particles keep their places
+    NodeSolver<reach> solver;
+    NewtonSolver<reach> newton;
+};
+
+/// The matrices of the step, and the velocities of the nodes at t^n.
+/// in:     nodes, sorted for where the particles are; body and rigid motions of this step
+/// out:    run.solver; nodes.motion, v_0; sums.solver
+template <class Shape, int reach, class Clock = common::NoClock>
+void find_matrices(const Shape& shape, const BodyForce& body, double dt, StepScratch<reach>& run,
+                   GrainNodes& nodes, State& state, StepSums& sums, Clock&& clock = {}) {
+    // [matrices]
+    put_on_nodes(shape, state.assembly.particles, nodes);  // particles -> grid
+    clock.lap("put");
+    run.solver.assemble(shape, run.laws, run.scheme, body, dt, state,
+                        nodes);  // M, K of  [MPM-5 ... 8]
+    clock.lap("matrix");
+    run.solver.find_old_velocities(run.scheme, run.contact, state, nodes, sums.solver);  // v_i^0
+    clock.lap("v_0");
+    // [/matrices]
+}
+
+/// The velocities of the nodes at t^n + theta dt, with the contacts of the same level.
+/// out:    nodes.motion, v^theta in the place of v_1; sums.contact, sums.solver
+/// errors: NumericalError when it is not found
+template <class Shape, int reach, class Clock = common::NoClock>
+void find_theta_velocities(const Shape& shape, const BodyForce& body, double dt,
+                           StepScratch<reach>& run, GrainNodes& nodes, State& state, StepSums& sums,
+                           Clock&& clock = {}) {
+    // [velocities]
+    sums.contact =
+        run.scheme.newton()  // v_i^theta, f_i^theta                                     [MPM-8]
+            ? run.newton.solve(shape, run.laws, run.scheme, run.contact, body, dt, state,
+                               run.solver, nodes, sums.solver)
+            : run.solver.solve(shape, run.scheme, run.contact, body, dt, state, nodes, sums.solver);
+    clock.lap("v_theta");
+    // [/velocities]
+}
+
+/// Stresses and particles at t^{n+1}.
+/// out:    sums.strips, sums.nodes
+template <class Shape, int reach, class Clock = common::NoClock>
+void move_to_new_level(const Shape& shape, const BodyForce& body, double dt,
+                       const StepScratch<reach>& run, GrainNodes& nodes, State& state,
+                       StepSums& sums, Clock&& clock = {}) {
+    Particles& particles = state.assembly.particles;
+    const std::vector<Grain>& grains = state.assembly.grains;
+    // [particles]
+    for_each_chunk(grains, nodes, sums.strips, [&](Chunk& chunk) {
+        velocity_gradient(shape, particles, nodes, NewVelocity{}, dt, chunk);        // [MPM-5]
+        update_stress(run.laws, run.scheme, chunk, grains, particles, sums.strips);  // [MPM-6, 7]
+        if (!run.frozen) turn_stress(chunk, particles);
+    });
+    sums.nodes = work_on_nodes(body, run.scheme.theta, dt, nodes);
+    move_particles(shape, grains, state.assembly.rigid, nodes, run.scheme.theta, run.flip,
+                   run.frozen, dt, particles, sums.strips);  // grid -> particles
+    // [/particles]
+    state.frame.moved += run.frozen ? 0 : dt * sums.nodes.largest_speed;
+    clock.lap("particles");
+}
+
+/// From t^n to t^{n+1}.
+/// in/out: nodes, sorted for where the particles are; state but the ledger
+/// out:    sums, which the ledger takes
+/// errors: NumericalError as the solvers
+template <class Shape, int reach, class Clock = common::NoClock>
+void take_step(const Shape& shape, const BodyForce& body, double dt, StepScratch<reach>& run,
+               GrainNodes& nodes, State& state, StepSums& sums, Clock&& clock = {}) {
+    find_matrices(shape, body, dt, run, nodes, state, sums, clock);
+    find_theta_velocities(shape, body, dt, run, nodes, state, sums, clock);
+    move_to_new_level(shape, body, dt, run, nodes, state, sums, clock);
+}
+
+}  // namespace mpm_implicit
