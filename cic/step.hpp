@@ -1,5 +1,5 @@
-// The step of clouds-in-cells: the slide, call by call, as two functions. Between them the field of t^n
-// is known, and after the second, in Chunk and energies, the velocities around t^n.
+// The step of clouds-in-cells: the slide, call by call, as two functions. Between them the field of
+// t^n is known.
 #pragma once
 
 #include <vector>

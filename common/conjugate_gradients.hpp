@@ -26,7 +26,8 @@ namespace common {
 /// exact: converged means |b - A x| <= tolerance |b| for the returned x. And always:
 ///        b = 0                        x = 0, no iteration, converged
 ///        guess good enough            x unchanged, no iteration, converged
-///        A or M not positive definite where it shows, not converged, x the best of the restarts
+///        A or M not positive          where it shows, not converged, x the best of the restarts
+///        definite
 ///        not finite: b, guess         at once, not converged; a guess that is not finite becomes 0
 ///        not finite: A or M^-1        where it shows, not converged, x the best of the restarts
 ///        b scaled by a power of two   the same bits of x / |b|, unless they under- or overflow
@@ -38,7 +39,8 @@ KrylovResult conjugate_gradients(const Operator& apply, const Preconditioner& pr
                                  const Eigen::VectorXd& b, Eigen::VectorXd& x, double tolerance,
                                  long max_iterations) {
     constexpr double unknown = std::numeric_limits<double>::infinity();
-    constexpr double too_far = 1e12;  // growth of the residual that no positive matrix has
+    // The residual grows by at most the root of the condition number; beyond this, A is singular.
+    constexpr double too_far = 1e12;
     if (x.size() != b.size())
         throw std::invalid_argument(
             "conjugate_gradients: the guess must be as long as the right-hand side");

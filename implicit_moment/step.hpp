@@ -1,5 +1,5 @@
-// The step of the implicit moment method: the slide, call by call. The row of t^n belongs between its
-// halves, as the moments are known then.
+// The step of the implicit moment method: the slide, call by call. The row of t^n belongs between the
+// two functions: there the moments of t^n are known.
 #pragma once
 
 #include <vector>
