@@ -22,62 +22,66 @@ namespace {
 
 using namespace cic;
 
-const common::About about{"cic", PROGRAM_VERSION,
-                          "clouds-in-cells, the electrostatic plasma method; the default case is "
-                          "the two-stream instability",
-                          "cic/cases/two_stream.toml"};
+const common::ProgramInfo info{
+    "cic", PROGRAM_VERSION,
+    "clouds-in-cells, the electrostatic plasma method; the default case is "
+    "the two-stream instability",
+    "cic/cases/two_stream.toml"};
 
-int run(int argc, char** argv, std::optional<common::Session>& holder) {
+int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     // 1. The case: defaults, file, command line; refuse, warn, or only describe.
-    Case wanted;
-    common::ParameterTable table = describe(wanted);
-    const common::CommandLine command = common::read_command_line(argc, argv, about, table);
-    refuse_impossible(wanted);
-    const Scales scales = scales_of(wanted);
-    if (!common::start_run(about, command, table,
-                           {describe_scales(wanted, scales), resolution_warnings(wanted, scales),
-                            scales.steps, scales.bytes, wanted.checkpoint_steps},
-                           holder))
+    Case parameters;
+    common::ParameterTable table = describe(parameters);
+    const common::CommandLine command = common::read_command_line(argc, argv, info, table);
+    validate(parameters);
+    const Scales scales = scales_of(parameters);
+    if (!common::start_run(
+            info, command, table,
+            {describe_scales(parameters, scales), resolution_warnings(parameters, scales),
+             scales.steps, scales.bytes, parameters.checkpoint_steps},
+            holder))
         return 0;
-    common::Session& session = *holder;
+    common::Run& run = *holder;
 
     // 2. Particles at t = 0, velocities half a step before.
-    const Grid& grid = wanted.grid;
-    const Scheme scheme = wanted.scheme();
-    const double dt = wanted.dt, background = fixed_background(wanted);
-    FieldSolver solver(grid, scheme, wanted.stencil == "nine_point", wanted.gauss_sign);
-    State state = initial_state(wanted, solver);
+    const Grid& grid = parameters.grid;
+    const Scheme scheme = parameters.scheme();
+    const double dt = parameters.dt, background = fixed_background(parameters);
+    FieldSolver solver(grid, scheme, parameters.stencil == "nine_point", parameters.gauss_sign);
+    State state = initial_state(parameters, solver);
     std::vector<Particles>& particles = state.species;
     Field rho_g;
     FieldState field;
     DepositScratch deposit_scratch;
     common::SortScratch<Real> sort_scratch;
-    Recorder recorder(wanted, state, session.history);
+    Recorder recorder(parameters, state, run.history);
 
     // 3. The loop of the slide.
     const long steps = scales.steps;
     long step = 0;
-    if (session.restarting()) session.restore(state, step);
-    while (session.keep_going(step, steps)) {
+    if (run.restarting()) run.restore(state, step);
+    while (run.not_finished(step, steps)) {
         field.walls = state.walls;
         find_field(particles, grid, scheme, background, deposit_scratch, solver, rho_g,
-                   field);                                                 // [CIC-1, 2]
-        recorder.snapshot(step, state, rho_g, field, session);             // files of t^n
-        push_particles(field.E_g, grid, scheme, wanted.B, dt, particles);  // [CIC-3, 4, 5]
-        recorder.record(step, state, rho_g, field, session);               // the row of t^n
-        meet_walls(wanted, step, state);
+                   field);                                                     // [CIC-1, 2]
+        recorder.snapshot(step, state, rho_g, field, run);                     // files of t^n
+        push_particles(field.E_g, grid, scheme, parameters.B, dt, particles);  // [CIC-3, 4, 5]
+        recorder.record(step, state, rho_g, field, run);                       // the row of t^n
+        meet_walls(parameters, step, state);
         ++step;
-        if (sort_is_due(wanted.sort_interval, step)) sort_particles(grid, sort_scratch, particles);
-        session.end_of_step(step, steps, static_cast<double>(step) * dt, state);
+        if (sort_is_due(parameters.sort_interval, step))
+            sort_particles(grid, sort_scratch, particles);
+        run.end_of_step(step, steps, static_cast<double>(step) * dt, state);
     }
 
     // 4. The results against theory, summary.json.
-    if (step == steps) recorder.finish(state, session);
-    return session.finish(step, static_cast<double>(state.count()));
+    if (step == steps) recorder.finish(state, run);
+    return run.finish(step, static_cast<double>(state.count()));
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    return common::guarded(about, [&](auto& session) { return run(argc, argv, session); });
+    return common::run_and_report_errors(info,
+                                         [&](auto& run) { return run_program(argc, argv, run); });
 }

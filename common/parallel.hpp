@@ -16,13 +16,13 @@ namespace common {
 inline constexpr int block_count = 16;
 
 /// Loops over fewer numbers than this are over before another thread has woken up.
-inline constexpr long worth_sharing = 4096;
+inline constexpr long parallel_threshold = 4096;
 
 /// Calls work(block, begin, end) once for each of block_count contiguous pieces of [0, count).
 /// in: numbers, how many a loop works on, where it is known to be short
 template <class Work>
-void for_each_block(long count, const Work& work, long numbers = worth_sharing) {
-#pragma omp parallel for schedule(dynamic, 1) if (numbers >= worth_sharing)
+void for_each_block(long count, const Work& work, long numbers = parallel_threshold) {
+#pragma omp parallel for schedule(dynamic, 1) if (numbers >= parallel_threshold)
     for (int block = 0; block < block_count; ++block) {
         work(block, count * block / block_count, count * (block + 1) / block_count);
     }
@@ -30,7 +30,7 @@ void for_each_block(long count, const Work& work, long numbers = worth_sharing) 
 
 /// Sum of partial(begin, end) over the blocks of [0, count), added in block order.
 template <class Partial>
-double sum_over_blocks(long count, const Partial& partial, long numbers = worth_sharing) {
+double sum_over_blocks(long count, const Partial& partial, long numbers = parallel_threshold) {
     std::array<double, block_count> part{};
     for_each_block(
         count,
@@ -46,8 +46,8 @@ double sum_over_blocks(long count, const Partial& partial, long numbers = worth_
 /// Calls work(row) for every row in [0, rows); rows must not write to each other's data.
 /// in: numbers, as above
 template <class Work>
-void for_each_row(long rows, const Work& work, long numbers = worth_sharing) {
-#pragma omp parallel for schedule(dynamic, 1) if (numbers >= worth_sharing)
+void for_each_row(long rows, const Work& work, long numbers = parallel_threshold) {
+#pragma omp parallel for schedule(dynamic, 1) if (numbers >= parallel_threshold)
     for (long row = 0; row < rows; ++row) work(row);
 }
 
@@ -55,8 +55,8 @@ void for_each_row(long rows, const Work& work, long numbers = worth_sharing) {
 /// and its two neighbors then meets nobody else's writes, and every sum on the mesh is added in
 /// the same order whatever the number of threads.
 template <class Work>
-void for_each_row_three_apart(long rows, const Work& work, long numbers = worth_sharing) {
-#pragma omp parallel if (numbers >= worth_sharing)
+void for_each_row_three_colors(long rows, const Work& work, long numbers = parallel_threshold) {
+#pragma omp parallel if (numbers >= parallel_threshold)
     for (long color = 0; color < 3; ++color) {
 #pragma omp for schedule(dynamic, 1)
         for (long row = color; row < rows; row += 3) work(row);
@@ -66,8 +66,8 @@ void for_each_row_three_apart(long rows, const Work& work, long numbers = worth_
 /// Calls work(row) for every row, first the even ones, then the odd ones: a row may write to what it
 /// shares with the next one, as long as it shares nothing with the next but one.
 template <class Work>
-void for_each_row_two_apart(long rows, const Work& work, long numbers = worth_sharing) {
-#pragma omp parallel if (numbers >= worth_sharing)
+void for_each_row_two_colors(long rows, const Work& work, long numbers = parallel_threshold) {
+#pragma omp parallel if (numbers >= parallel_threshold)
     for (long color = 0; color < 2; ++color) {
 #pragma omp for schedule(dynamic, 1)
         for (long row = color; row < rows; row += 2) work(row);

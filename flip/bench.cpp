@@ -39,16 +39,16 @@ Case heavy_on_light(long cells_x) {
 }
 
 common::StepClock time_flip(const Case& w, long steps, long& count) {
-    FlipScratch run(w);
+    FlipScratch scratch(w);
     State state;
     state.particles = load_particles(w);
     count = state.particles.count();
-    sort_particles(w.grid, run.sort, state.particles);
+    sort_particles(w.grid, scratch.sort, state.particles);
     common::StepClock clock;
     for (long step = 0; step <= steps; ++step) {
         if (step == 1) clock.restart();  // the first step meets empty caches
-        find_fluid(w, state, run.mesh, clock);
-        take_flip_step(w, step, run, state, clock);
+        find_fluid(w, state, scratch.mesh, clock);
+        take_flip_step(w, step, scratch, state, clock);
     }
     return clock;
 }

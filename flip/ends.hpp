@@ -41,9 +41,9 @@ namespace flip {
 /// Says that a particle is where none can be.
 /// errors: NumericalError, always
 [[noreturn]] inline void lost_particle(double x, double z, double time) {
-    throw common::NumericalError("a particle has gone through the wall to x = " + common::shown(x) +
-                                 ", z = " + common::shown(z) + " at t = " + common::shown(time) +
-                                 ": reduce time.cfl");
+    throw common::NumericalError(
+        "a particle has gone through the wall to x = " + common::format(x) +
+        ", z = " + common::format(z) + " at t = " + common::format(time) + ": reduce time.cfl");
 }
 
 /// Removes every particle that has left through an open end or back through an inflow.

@@ -22,20 +22,21 @@ struct Split {
     double iterations = 0;
 };
 
-Split time_steps(const Case& wanted, long steps, int threads, long& particle_count) {
+Split time_steps(const Case& parameters, long steps, int threads, long& particle_count) {
     common::set_thread_count(threads);
-    const Grid& grid = wanted.grid;
-    State state = initial_state(wanted);
+    const Grid& grid = parameters.grid;
+    State state = initial_state(parameters);
     std::vector<Particles>& particles = state.plasma.species;
     const std::vector<double> charge_over_mass = state.plasma.charge_over_mass();
-    StepScratch run(grid, wanted.field, particles.size());
+    StepScratch scratch(grid, parameters.field, particles.size());
     particle_count = state.plasma.count();
 
     Split split;
     for (long step = 0; step < steps; ++step) {
-        find_moments(grid, wanted.dt, particles, state.field, run, split.clock);
-        const FieldReport report = take_step(grid, wanted.dt, wanted.mover, charge_over_mass, run,
-                                             particles, state.field, split.clock);
+        find_moments(grid, parameters.dt, particles, state.field, scratch, split.clock);
+        const FieldReport report =
+            take_step(grid, parameters.dt, parameters.mover, charge_over_mass, run, particles,
+                      state.field, split.clock);
         split.iterations += report.iterations;
     }
     split.iterations /= static_cast<double>(steps);
@@ -50,9 +51,9 @@ double peak_memory() {
 
 // explicit_em on its default case: the loop without what happens once in twenty steps.
 void time_explicit(long steps) {
-    Case wanted;
-    describe_explicit(wanted);
-    const Grid& grid = wanted.grid;
+    Case parameters;
+    describe_explicit(parameters);
+    const Grid& grid = parameters.grid;
     std::printf("\nexplicit_em, GEM default case (%ld x %ld cells), %ld steps\n\n", grid.x.cells,
                 grid.z.cells, steps);
     std::printf("%8s %16s %9s %9s %9s %9s\n", "threads", "particle-steps/s", "speed-up", "push",
@@ -60,8 +61,8 @@ void time_explicit(long steps) {
     double one_thread = 0, count = 0;
     for (const int threads : {1, 2}) {
         common::set_thread_count(threads);
-        State state = leapfrog_state(wanted);
-        Leapfrog run(wanted);
+        State state = leapfrog_state(parameters);
+        Leapfrog run(parameters);
         std::vector<Particles>& particles = state.plasma.species;
         count = static_cast<double>(state.plasma.count());
         common::StepClock clock;
@@ -82,7 +83,7 @@ void time_explicit(long steps) {
 }  // namespace
 
 int main() {
-    const Case wanted;  // the defaults are the GEM challenge
+    const Case parameters;  // the defaults are the GEM challenge
     const long steps = 400;
     long particles = 0;
     double one_thread = 0;
@@ -90,7 +91,7 @@ int main() {
     std::printf("%8s %16s %9s %9s %9s %9s %9s %11s\n", "threads", "particle-steps/s", "speed-up",
                 "moments", "field", "mover", "sort", "iterations");
     for (const int threads : {1, 2}) {
-        const Split split = time_steps(wanted, steps, threads, particles);
+        const Split split = time_steps(parameters, steps, threads, particles);
         const double rate =
             static_cast<double>(particles) * static_cast<double>(steps) / split.clock.total();
         if (threads == 1) one_thread = rate;

@@ -25,7 +25,7 @@
 
 #include <array>
 
-#include "common/lanes.hpp"
+#include "common/simd.hpp"
 #include "common/splines.hpp"
 #include "implicit_moment/move_one.hpp"
 #include "implicit_moment/particles.hpp"
@@ -33,7 +33,7 @@
 
 namespace implicit_moment {
 
-using common::Lanes;
+using common::SimdVector;
 
 /// The moments of one species, per unit area of the mesh. P carries the charge, as J does: it is
 /// the sum of q v v S. Times m/q that is the slide's P, a flux of momentum; less n m u u, a
@@ -59,40 +59,41 @@ namespace detail {
 
 // The sums of one node's particles over its 3 x 3 surroundings, eight partial sums each.
 struct NodeSums {
-    Lanes rho[3][3]{}, J_y[3][3]{};
-    Lanes J_x[3][2]{}, P_xy[3][2]{};
-    Lanes J_z[2][3]{}, P_yz[2][3]{};
-    Lanes P_xz[2][2]{};
-    Lanes P_xx[3]{}, P_zz[3]{};
+    SimdVector rho[3][3]{}, J_y[3][3]{};
+    SimdVector J_x[3][2]{}, P_xy[3][2]{};
+    SimdVector J_z[2][3]{}, P_yz[2][3]{};
+    SimdVector P_xz[2][2]{};
+    SimdVector P_xx[3]{}, P_zz[3]{};
 
     // Adds eight particles of velocity v with the splines S; present is 0 for lanes that hold none.
-    void add(const common::QuadraticWeights<Lanes>& S_x, const common::QuadraticWeights<Lanes>& S_z,
-             const Lanes& v_x, const Lanes& v_y, const Lanes& v_z, const Lanes& present) {
+    void add(const common::QuadraticWeights<SimdVector>& S_x,
+             const common::QuadraticWeights<SimdVector>& S_z, const SimdVector& v_x,
+             const SimdVector& v_y, const SimdVector& v_z, const SimdVector& present) {
         // [splines]
         for (int j = 0; j < 3; ++j) {
-            const Lanes S = S_z.quadratic[j] * present;
+            const SimdVector S = S_z.quadratic[j] * present;
             P_xx[j] += S * v_x * v_x;
             for (int i = 0; i < 3; ++i) {
-                const Lanes w = S_x.quadratic[i] * S;
+                const SimdVector w = S_x.quadratic[i] * S;
                 rho[j][i] += w;
                 J_y[j][i] += w * v_y;
             }
             for (int i = 0; i < 2; ++i) {
-                const Lanes w_v = S_x.linear[i] * S * v_x;
+                const SimdVector w_v = S_x.linear[i] * S * v_x;
                 J_x[j][i] += w_v;
                 P_xy[j][i] += w_v * v_y;
             }
         }
         for (int j = 0; j < 2; ++j) {
-            const Lanes S_v = S_z.linear[j] * present * v_z;
+            const SimdVector S_v = S_z.linear[j] * present * v_z;
             for (int i = 0; i < 3; ++i) {
-                const Lanes w_v = S_x.quadratic[i] * S_v;
+                const SimdVector w_v = S_x.quadratic[i] * S_v;
                 J_z[j][i] += w_v;
                 P_yz[j][i] += w_v * v_y;
             }
             for (int i = 0; i < 2; ++i) P_xz[j][i] += S_x.linear[i] * S_v * v_x;
         }
-        const Lanes zz = present * v_z * v_z;
+        const SimdVector zz = present * v_z * v_z;
         for (int i = 0; i < 3; ++i) P_zz[i] += S_x.quadratic[i] * zz;
         // [/splines]
     }
@@ -109,11 +110,12 @@ struct Turn {
     long stride;
 
     // vbar = [ v + v x O + (v . O) O ] / (1 + O^2),  O = k B, with B at eight particles.
-    void operator()(long corner, const common::QuadraticWeights<Lanes>& S_x,
-                    const common::QuadraticWeights<Lanes>& S_z, Velocity<Lanes>& v) const {
+    void operator()(long corner, const common::QuadraticWeights<SimdVector>& S_x,
+                    const common::QuadraticWeights<SimdVector>& S_z,
+                    Velocity<SimdVector>& v) const {
         const auto& q_x = S_x.quadratic;
         const auto& l_x = S_x.linear;
-        Lanes b_x{}, b_y{}, b_z{};
+        SimdVector b_x{}, b_y{}, b_z{};
         for (int j = 0; j < 3; ++j) {
             const double* f = B_z + corner + j * stride;
             b_z += S_z.quadratic[j] * (l_x[0] * f[0] + l_x[1] * f[1]);
@@ -123,13 +125,14 @@ struct Turn {
             b_x += S_z.linear[j] * (q_x[0] * f[0] + q_x[1] * f[1] + q_x[2] * f[2]);
             b_y += S_z.linear[j] * (l_x[0] * g[0] + l_x[1] * g[1]);
         }
-        v = mean_velocity<Lanes>(v, {Lanes{}, Lanes{}, Lanes{}, b_x, b_y, b_z}, k * c);
+        v = mean_velocity<SimdVector>(v, {SimdVector{}, SimdVector{}, SimdVector{}, b_x, b_y, b_z},
+                                      k * c);
     }
 };
 
 struct NoTurn {
-    void operator()(long, const common::QuadraticWeights<Lanes>&,
-                    const common::QuadraticWeights<Lanes>&, Velocity<Lanes>&) const {}
+    void operator()(long, const common::QuadraticWeights<SimdVector>&,
+                    const common::QuadraticWeights<SimdVector>&, Velocity<SimdVector>&) const {}
 };
 
 template <class TurnOrNot>
@@ -142,9 +145,9 @@ inline void deposit(const Particles& particles, const Grid& grid, const TurnOrNo
     // Per row of nodes: sums of v_x, v_y, v_z and v^2.
     std::vector<std::array<double, 4>> sums_of_row(static_cast<std::size_t>(nodes_z(grid)));
 
-    common::for_each_row_three_apart(nodes_z(grid), [&](long row) {
+    common::for_each_row_three_colors(nodes_z(grid), [&](long row) {
         const double z_node = grid.z.at(static_cast<double>(row));
-        Lanes total_x{}, total_y{}, total_z{}, total_squared{};
+        SimdVector total_x{}, total_y{}, total_z{}, total_squared{};
         for (long column = 0; column < columns; ++column) {
             const std::size_t node = static_cast<std::size_t>(row * columns + column);
             const long begin = particles.first_of_node[node],
@@ -154,15 +157,17 @@ inline void deposit(const Particles& particles, const Grid& grid, const TurnOrNo
             const long corner = grid.index(column - 1, row - 1);  // the node down left of this one
 
             NodeSums sums;
-            for (long p = begin; p < end; p += common::lane_count) {
+            for (long p = begin; p < end; p += common::simd_width) {
                 const long count = end - p;
-                const Lanes present = common::first_lanes(count);
-                const Lanes d_x = (common::load_lanes(&particles.x_p[p], count) - x_node) * per_dx;
-                const Lanes d_z = (common::load_lanes(&particles.z_p[p], count) - z_node) * per_dz;
-                const common::QuadraticWeights<Lanes> S_x(d_x), S_z(d_z);
-                Velocity<Lanes> v{common::load_lanes(&particles.vx_p[p], count),
-                                  common::load_lanes(&particles.vy_p[p], count),
-                                  common::load_lanes(&particles.vz_p[p], count)};
+                const SimdVector present = common::first_simd(count);
+                const SimdVector d_x =
+                    (common::load_simd(&particles.x_p[p], count) - x_node) * per_dx;
+                const SimdVector d_z =
+                    (common::load_simd(&particles.z_p[p], count) - z_node) * per_dz;
+                const common::QuadraticWeights<SimdVector> S_x(d_x), S_z(d_z);
+                Velocity<SimdVector> v{common::load_simd(&particles.vx_p[p], count),
+                                       common::load_simd(&particles.vy_p[p], count),
+                                       common::load_simd(&particles.vz_p[p], count)};
                 total_x += present * v.x;
                 total_y += present * v.y;
                 total_z += present * v.z;
@@ -172,8 +177,8 @@ inline void deposit(const Particles& particles, const Grid& grid, const TurnOrNo
             }
 
             // Hand the sums to the mesh.
-            const auto give = [&](Field& f, long i, long j, const Lanes& sum) {
-                f[corner + j * stride + i] += q * common::sum_of_lanes(sum);
+            const auto give = [&](Field& f, long i, long j, const SimdVector& sum) {
+                f[corner + j * stride + i] += q * common::simd_sum(sum);
             };
             for (long j = 0; j < 3; ++j) {
                 give(moments.P_xx, 1, j, sums.P_xx[j]);
@@ -198,8 +203,8 @@ inline void deposit(const Particles& particles, const Grid& grid, const TurnOrNo
             }
         }
         sums_of_row[static_cast<std::size_t>(row)] = {
-            common::sum_of_lanes(total_x), common::sum_of_lanes(total_y),
-            common::sum_of_lanes(total_z), common::sum_of_lanes(total_squared)};
+            common::simd_sum(total_x), common::simd_sum(total_y), common::simd_sum(total_z),
+            common::simd_sum(total_squared)};
     });
 
     moments.kinetic_energy = 0;

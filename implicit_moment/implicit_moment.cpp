@@ -22,60 +22,62 @@ namespace {
 
 using namespace implicit_moment;
 
-const common::About about{
+const common::ProgramInfo info{
     "implicit_moment", PROGRAM_VERSION,
     "implicit moment method in 2.5 dimensions; the default case is the GEM reconnection challenge",
     "implicit_moment/cases/gem.toml"};
 
-int run(int argc, char** argv, std::optional<common::Session>& holder) {
+int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     // 1. The case: defaults, file, command line; refuse, warn, or only describe.
-    Case wanted;
-    common::ParameterTable table = describe(wanted);
-    const common::CommandLine command = common::read_command_line(argc, argv, about, table);
-    refuse_impossible(wanted);
-    if (wanted.wave != "none") theory_of_mode(wanted);
-    const Scales scales = scales_of(wanted);
+    Case parameters;
+    common::ParameterTable table = describe(parameters);
+    const common::CommandLine command = common::read_command_line(argc, argv, info, table);
+    validate(parameters);
+    if (parameters.wave != "none") theory_of_mode(parameters);
+    const Scales scales = scales_of(parameters);
     // Where the closure of the moments does not hold is a warning.                [IMM-13]
-    if (!common::start_run(about, command, table,
-                           {describe_scales(wanted, scales), closure_warnings(wanted, scales),
-                            scales.steps, scales.bytes, wanted.checkpoint_steps},
-                           holder))
+    if (!common::start_run(
+            info, command, table,
+            {describe_scales(parameters, scales), closure_warnings(parameters, scales),
+             scales.steps, scales.bytes, parameters.checkpoint_steps},
+            holder))
         return 0;
-    common::Session& session = *holder;
+    common::Run& run = *holder;
 
     // 2. Particles and fields at t = 0.
-    const Grid& grid = wanted.grid;
-    State state = initial_state(wanted);
+    const Grid& grid = parameters.grid;
+    State state = initial_state(parameters);
     std::vector<Particles>& particles = state.plasma.species;
     const std::vector<double> charge_over_mass = state.plasma.charge_over_mass();
-    StepScratch run(grid, wanted.field, particles.size());
+    StepScratch scratch(grid, parameters.field, particles.size());
     Recorder recorder(
-        wanted, state, [&](const State& now) { return slide_moments(grid, now); }, session.history);
+        parameters, state, [&](const State& now) { return slide_moments(grid, now); }, run.history);
 
     // 3. The loop of the slide.
-    const double dt = wanted.dt;
+    const double dt = parameters.dt;
     const long steps = scales.steps;
     long step = 0;
-    if (session.restarting()) session.restore(state, step);
-    while (session.keep_going(step, steps)) {
-        find_moments(grid, dt, particles, state.field, run);  // particles -> grid  [IMM-9]
-        recorder.record(step, state, run.moments, session);   // the row of t^n
-        take_step(grid, dt, wanted.mover, charge_over_mass, run, particles, state.field);
+    if (run.restarting()) run.restore(state, step);
+    while (run.not_finished(step, steps)) {
+        find_moments(grid, dt, particles, state.field, scratch);  // particles -> grid  [IMM-9]
+        recorder.record(step, state, scratch.moments, run);       // the row of t^n
+        take_step(grid, dt, parameters.mover, charge_over_mass, scratch, particles, state.field);
         ++step;
-        session.end_of_step(step, steps, static_cast<double>(step) * dt, state);
+        run.end_of_step(step, steps, static_cast<double>(step) * dt, state);
     }
 
     // 4. The last row, the results against theory, summary.json.
     if (step == steps) {
-        find_moments(grid, dt, particles, state.field, run);
-        recorder.record(step, state, run.moments, session);
-        recorder.finish(state, session);
+        find_moments(grid, dt, particles, state.field, scratch);
+        recorder.record(step, state, scratch.moments, run);
+        recorder.finish(state, run);
     }
-    return session.finish(step, static_cast<double>(state.plasma.count()));
+    return run.finish(step, static_cast<double>(state.plasma.count()));
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    return common::guarded(about, [&](auto& session) { return run(argc, argv, session); });
+    return common::run_and_report_errors(info,
+                                         [&](auto& run) { return run_program(argc, argv, run); });
 }

@@ -14,14 +14,14 @@
 #include <cmath>
 #include <vector>
 
-#include "common/lanes.hpp"
 #include "common/parallel.hpp"
 #include "common/run/parameters.hpp"
+#include "common/simd.hpp"
 #include "implicit_moment/move_one.hpp"
 
 namespace implicit_moment {
 
-using common::Lanes;
+using common::SimdVector;
 
 struct MoverReport {
     long one_by_one = 0;   // particles moved one by one
@@ -42,12 +42,12 @@ struct Cell {
 };
 
 // How far a coordinate is behind a wall, in cells; not positive inside, 0 in a periodic direction.
-inline Lanes behind_wall(const common::Axis& axis, const Lanes& x, double per_dx) {
-    if (axis.periodic) return Lanes{};
+inline SimdVector behind_wall(const common::Axis& axis, const SimdVector& x, double per_dx) {
+    if (axis.periodic) return SimdVector{};
     return common::larger(axis.low - x, x - axis.high()) * per_dx;
 }
 
-inline void wrap(const common::Axis& axis, Lanes& x) {
+inline void wrap(const common::Axis& axis, SimdVector& x) {
     if (!axis.periodic) return;
     x = x < axis.low ? x + axis.length : x;
     x = x >= axis.high() ? x - axis.length : x;
@@ -84,32 +84,32 @@ inline MoverReport move_particles(const PushField& field, const Grid& grid, doub
             const NodeField* corner =
                 &field[static_cast<std::size_t>(grid.index(column - 1, row - 1))];
 
-            for (long p = begin; p < end; p += common::lane_count) {
-                const long count = std::min<long>(end - p, common::lane_count);
-                Lanes x = common::load_lanes(&particles.x_p[p], count);
-                Lanes z = common::load_lanes(&particles.z_p[p], count);
-                Velocity<Lanes> v{common::load_lanes(&particles.vx_p[p], count),
-                                  common::load_lanes(&particles.vy_p[p], count),
-                                  common::load_lanes(&particles.vz_p[p], count)};
-                const Lanes from_x = (x - x_node) * per_dx, from_z = (z - z_node) * per_dz;
+            for (long p = begin; p < end; p += common::simd_width) {
+                const long count = std::min<long>(end - p, common::simd_width);
+                SimdVector x = common::load_simd(&particles.x_p[p], count);
+                SimdVector z = common::load_simd(&particles.z_p[p], count);
+                Velocity<SimdVector> v{common::load_simd(&particles.vx_p[p], count),
+                                       common::load_simd(&particles.vy_p[p], count),
+                                       common::load_simd(&particles.vz_p[p], count)};
+                const SimdVector from_x = (x - x_node) * per_dx, from_z = (z - z_node) * per_dz;
 
                 // Iterate all eight midpoints; note how far each strays beyond the node's cell.
-                Velocity<Lanes> u = v;
-                Lanes outside{}, change{};
+                Velocity<SimdVector> u = v;
+                SimdVector outside{}, change{};
                 for (long iteration = 0; iteration < settings.max_iterations; ++iteration) {
-                    const Lanes d_x = from_x + (h * per_dx) * u.x,
-                                d_z = from_z + (h * per_dz) * u.z;
+                    const SimdVector d_x = from_x + (h * per_dx) * u.x,
+                                     d_z = from_z + (h * per_dz) * u.z;
                     outside = common::larger(
                         outside,
                         common::larger(common::magnitude(d_x - cell_x.center) - cell_x.half,
                                        common::magnitude(d_z - cell_z.center) - cell_z.half));
-                    const auto at = gather_field<Lanes>(corner, grid.stride(), d_x, d_z);
-                    const Velocity<Lanes> next = mean_velocity<Lanes>(v, at, half_kick);
+                    const auto at = gather_field<SimdVector>(corner, grid.stride(), d_x, d_z);
+                    const Velocity<SimdVector> next = mean_velocity<SimdVector>(v, at, half_kick);
                     change = common::larger(common::magnitude(next.x - u.x) * (h * per_dx),
                                             common::magnitude(next.z - u.z) * (h * per_dz));
                     change = outside > 0.0 ? 0.0 * change : change;
                     u = next;
-                    if (iteration > 0 && common::largest_lane(change) <= settings.tolerance) break;
+                    if (iteration > 0 && common::simd_max(change) <= settings.tolerance) break;
                 }
 
                 outside =
@@ -148,11 +148,11 @@ inline MoverReport move_particles(const PushField& field, const Grid& grid, doub
                 v = {2.0 * u.x - v.x, 2.0 * u.y - v.y, 2.0 * u.z - v.z};
                 detail::wrap(grid.x, x);
                 detail::wrap(grid.z, z);
-                common::store_lanes(x, &particles.x_p[p], count);
-                common::store_lanes(z, &particles.z_p[p], count);
-                common::store_lanes(v.x, &particles.vx_p[p], count);
-                common::store_lanes(v.y, &particles.vy_p[p], count);
-                common::store_lanes(v.z, &particles.vz_p[p], count);
+                common::store_simd(x, &particles.x_p[p], count);
+                common::store_simd(z, &particles.z_p[p], count);
+                common::store_simd(v.x, &particles.vx_p[p], count);
+                common::store_simd(v.y, &particles.vy_p[p], count);
+                common::store_simd(v.z, &particles.vz_p[p], count);
             }
         }
     });

@@ -26,7 +26,7 @@ struct LocalField {
 ///     E_x(x_p) = sum_g E_x,g S1(x) S2(z),  B_z alike;   E_z, B_x with S2 S1;   E_y with S2 S2;
 ///     B_y with S1 S1
 /// in:     corner, the record down left of the nearest node; stride between rows. Real is double or
-///         eight Lanes that share one node.
+///         eight SimdVector that share one node.
 /// exact:  E is gathered with the splines that deposit J, so that the work done on particles is the
 ///         work taken from the mesh; a potential field E = -grad phi is gathered as the exact
 ///         gradient of the gathered potential, and the gathered B is divergence-free at every

@@ -26,35 +26,35 @@ struct StepScratch {
 
 /// The moments of t^n.
 /// in:     particles, sorted by node; B^n
-/// out:    run.moments
+/// out:    scratch.moments
 template <class Clock = common::NoClock>
 void find_moments(const Grid& grid, double dt, const std::vector<Particles>& particles,
-                  const FieldState& field, StepScratch& run, Clock&& clock = {}) {
+                  const FieldState& field, StepScratch& scratch, Clock&& clock = {}) {
     // [moments]
-    deposit_moments(particles, grid, field.B, dt, run.moments);  // particles -> grid   [IMM-9]
+    deposit_moments(particles, grid, field.B, dt, scratch.moments);  // particles -> grid   [IMM-9]
     clock.lap("moments");
     // [/moments]
 }
 
 /// From t^n to t^{n+1}.
-/// in:     run.moments of t^n; q/m of each species
+/// in:     scratch.moments of t^n; q/m of each species
 /// in/out: particles and field
 /// out:    iterations of the field, and why it ended
 /// errors: NumericalError when the field does not converge or a particle is lost
 template <class Clock = common::NoClock>
 FieldReport take_step(const Grid& grid, double dt, const MoverSettings& mover,
-                      const std::vector<double>& charge_over_mass, StepScratch& run,
+                      const std::vector<double>& charge_over_mass, StepScratch& scratch,
                       std::vector<Particles>& particles, FieldState& field, Clock&& clock = {}) {
     // [step]
-    const FieldReport solved =
-        solve_field(run.solver, run.moments, charge_over_mass, dt, field);  // [IMM-10, 11, 12]
-    pack_push_field(run.solver, field, run.push);                           // grid -> particles
+    const FieldReport solved = solve_field(scratch.solver, scratch.moments, charge_over_mass, dt,
+                                           field);         // [IMM-10, 11, 12]
+    pack_push_field(scratch.solver, field, scratch.push);  // grid -> particles
     clock.lap("field");
-    move_particles(run.push, grid, dt, mover, particles);  // particles move
+    move_particles(scratch.push, grid, dt, mover, particles);  // particles move
     clock.lap("mover");
-    advance_field(run.solver, dt, field);  // [IMM-10]
+    advance_field(scratch.solver, dt, field);  // [IMM-10]
     clock.lap("field");
-    sort_particles(grid, run.sort, particles);  // for the next step
+    sort_particles(grid, scratch.sort, particles);  // for the next step
     clock.lap("sort");
     // [/step]
     return solved;

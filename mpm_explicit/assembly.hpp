@@ -191,7 +191,7 @@ inline Assembly assemble(const Problem& w) {
         all.grains.push_back(grain);
 
         RigidMotion motion;
-        motion.wanted_vx = plan.from.velocity_x, motion.wanted_vy = plan.from.velocity_y;
+        motion.prescribed_vx = plan.from.velocity_x, motion.prescribed_vy = plan.from.velocity_y;
         motion.servo_x = plan.from.control == "force_x";
         motion.servo_y = plan.from.control == "force_y";
         motion.force = plan.from.force, motion.damping = plan.from.damping;

@@ -21,8 +21,8 @@
 #include <vector>
 
 #include "common/counting_sort.hpp"
-#include "common/lanes.hpp"
 #include "common/parallel.hpp"
+#include "common/simd.hpp"
 #include "mpm_explicit/grains.hpp"
 #include "mpm_explicit/mesh.hpp"
 #include "mpm_explicit/particles.hpp"
@@ -58,7 +58,7 @@ struct Image {
     long slot, of;
     double sign_x, sign_y;  // of velocity, momentum and force
     bool mirror_x, mirror_y;
-    double about;  // mirror: twice the coordinate of the wall; ring: the length of the mesh
+    double info;  // mirror: twice the coordinate of the wall; ring: the length of the mesh
 };
 
 /// A grain's field at a node that others may touch, too; or a frictional wall that the node is on
@@ -142,7 +142,7 @@ class GrainNodes {
     /// sums on nodes are added in the same order whatever the number of threads.
     template <class Work>
     void for_each_strip(const Work& work) const {
-        common::for_each_row_two_apart(static_cast<long>(pieces_.size()) - 1, [&](long piece) {
+        common::for_each_row_two_colors(static_cast<long>(pieces_.size()) - 1, [&](long piece) {
             const auto k = static_cast<std::size_t>(piece);
             for (long s = pieces_[k]; s < pieces_[k + 1]; ++s)
                 work(strips_[static_cast<std::size_t>(s)], static_cast<std::size_t>(s));

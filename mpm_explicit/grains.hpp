@@ -19,10 +19,10 @@ struct Grain {
 /// How a rigid grain moves: with a given velocity, or in one direction as a force drives it. Grains
 /// that are not rigid have one, too, and do not use it.
 struct RigidMotion {
-    double vx = 0, vy = 0;                // velocity in this step
-    double push_x = 0, push_y = 0;        // force of the other grains on it, in the last step
-    double travel_x = 0, travel_y = 0;    // since the start
-    double wanted_vx = 0, wanted_vy = 0;  // when the load has risen
+    double vx = 0, vy = 0;              // velocity in this step
+    double push_x = 0, push_y = 0;      // force of the other grains on it, in the last step
+    double travel_x = 0, travel_y = 0;  // since the start
+    double prescribed_vx = 0, prescribed_vy = 0;  // when the load has risen
     bool servo_x = false, servo_y = false;
     double force = 0, mass = 1, damping = 0;  // servo
 };

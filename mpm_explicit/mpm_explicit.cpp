@@ -21,76 +21,78 @@ namespace {
 
 using namespace mpm_explicit;
 
-const common::About about{"mpm_explicit", PROGRAM_VERSION,
-                          "the explicit material point method for grains in contact; the default "
-                          "case is two elastic disks that rebound",
-                          "mpm_explicit/cases/rebound.toml"};
+const common::ProgramInfo info{
+    "mpm_explicit", PROGRAM_VERSION,
+    "the explicit material point method for grains in contact; the default "
+    "case is two elastic disks that rebound",
+    "mpm_explicit/cases/rebound.toml"};
 
 template <class Shape>
-int run(const Shape& shape, const Case& wanted, const Scales& scales, common::Session& session) {
+int run_case(const Shape& shape, const Case& parameters, const Scales& scales, common::Run& run) {
     // 2. Particles at t = 0, stresses half a step before.
     State state;
-    state.assembly = assemble(wanted.problem);
+    state.assembly = assemble(parameters.problem);
     Particles& particles = state.assembly.particles;
     const std::vector<Grain>& grains = state.assembly.grains;
     std::vector<RigidMotion>& rigid = state.assembly.rigid;
-    const std::vector<AnyLaw> laws = laws_of(wanted.problem);
-    const Contact contact(wanted.problem.contact, grains, state.assembly.bonds);
+    const std::vector<AnyLaw> laws = laws_of(parameters.problem);
+    const Contact contact(parameters.problem.contact, grains, state.assembly.bonds);
     const double dt = scales.dt;
-    GrainNodes nodes(wanted.problem.mesh(), Shape::width, scales.least_mass);
-    LeapfrogRecorder recorder(wanted, scales, state, session.history);
+    GrainNodes nodes(parameters.problem.mesh(), Shape::width, scales.least_mass);
+    LeapfrogRecorder recorder(parameters, scales, state, run.history);
     StepSums sums;
     long step = 0;
-    if (session.restarting()) {
-        session.restore(state, step);
+    if (run.restarting()) {
+        run.restore(state, step);
         nodes.lay_out(grains, state.frame);
     } else {
         nodes.sort(grains, particles, state.frame);
-        start_leapfrog(shape, laws, contact, wanted.frozen, dt, nodes, state);
+        start_leapfrog(shape, laws, contact, parameters.frozen, dt, nodes, state);
     }
 
     // 3. The loop of the slide.
-    while (session.keep_going(step, scales.steps)) {
+    while (run.not_finished(step, scales.steps)) {
         if (nodes.sort_is_due(state.frame)) nodes.sort(grains, particles, state.frame);
-        recorder.snapshot(step, state, session);
-        const BodyForce body = drive(wanted.problem, step, dt, rigid);
-        take_step(shape, laws, contact, body, wanted.flip, wanted.frozen, dt, nodes, state,
+        recorder.snapshot(step, state, run);
+        const BodyForce body = drive(parameters.problem, step, dt, rigid);
+        take_step(shape, laws, contact, body, parameters.flip, parameters.frozen, dt, nodes, state,
                   sums);  // [MPM-4, 9 ... 12]
-        recorder.record(step, sums, nodes, state, session);
+        recorder.record(step, sums, nodes, state, run);
         ++step;
-        session.end_of_step(step, scales.steps, static_cast<double>(step) * dt, state);
+        run.end_of_step(step, scales.steps, static_cast<double>(step) * dt, state);
     }
 
     // 4. The results against theory, summary.json.
     if (step == scales.steps) {
-        recorder.snapshot(step, state, session);
-        recorder.finish(step, state, session);
+        recorder.snapshot(step, state, run);
+        recorder.finish(step, state, run);
     }
-    return session.finish(step, static_cast<double>(particles.count()));
+    return run.finish(step, static_cast<double>(particles.count()));
 }
 
-int start(int argc, char** argv, std::optional<common::Session>& holder) {
+int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     // 1. The case: defaults, file, command line; refuse, warn, or only describe.
-    Case wanted;
-    common::ParameterTable table = describe(wanted);
-    const common::CommandLine command = common::read_command_line(argc, argv, about, table);
-    refuse_impossible(wanted);
-    const Scales scales = scales_of(wanted);
-    if (!common::start_run(about, command, table,
-                           {describe_scales(wanted, scales), warnings_of(wanted, scales),
-                            scales.steps, scales.bytes, wanted.checkpoint_steps},
+    Case parameters;
+    common::ParameterTable table = describe(parameters);
+    const common::CommandLine command = common::read_command_line(argc, argv, info, table);
+    validate(parameters);
+    const Scales scales = scales_of(parameters);
+    if (!common::start_run(info, command, table,
+                           {describe_scales(parameters, scales), warnings_of(parameters, scales),
+                            scales.steps, scales.bytes, parameters.checkpoint_steps},
                            holder))
         return 0;
-    common::Session& session = *holder;
+    common::Run& run = *holder;
 
     int status = 0;
-    with_shape(wanted.scheme(),
-               [&](const auto& shape) { status = run(shape, wanted, scales, session); });
+    with_shape(parameters.scheme(),
+               [&](const auto& shape) { status = run_case(shape, parameters, scales, run); });
     return status;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    return common::guarded(about, [&](auto& session) { return start(argc, argv, session); });
+    return common::run_and_report_errors(info,
+                                         [&](auto& run) { return run_program(argc, argv, run); });
 }

@@ -34,8 +34,8 @@ inline void drive_plates(double t, double dt, double rise, std::vector<RigidMoti
         return (v + dt * (share * force + push) / is.mass) / (1 + dt * is.damping / is.mass);
     };
     for (RigidMotion& is : rigid) {
-        is.vx = is.servo_x ? servo(is, is.vx, is.force, is.push_x) : share * is.wanted_vx;
-        is.vy = is.servo_y ? servo(is, is.vy, is.force, is.push_y) : share * is.wanted_vy;
+        is.vx = is.servo_x ? servo(is, is.vx, is.force, is.push_x) : share * is.prescribed_vx;
+        is.vy = is.servo_y ? servo(is, is.vy, is.force, is.push_y) : share * is.prescribed_vy;
         is.travel_x += dt * is.vx, is.travel_y += dt * is.vy;
     }
 }

@@ -61,9 +61,10 @@ namespace detail {
 
 // One line of the cache at once.
 [[gnu::always_inline]] inline void add(NodeSums& node, double S, double Gx, double Gy,
-                                       const common::Lanes& carried, const common::Lanes& along_x,
-                                       const common::Lanes& along_y) {
-    common::Lanes lanes;
+                                       const common::SimdVector& carried,
+                                       const common::SimdVector& along_x,
+                                       const common::SimdVector& along_y) {
+    common::SimdVector lanes;
     std::memcpy(&lanes, &node, sizeof lanes);
     lanes += S * carried + Gx * along_x + Gy * along_y;
     std::memcpy(&node, &lanes, sizeof lanes);
@@ -82,9 +83,9 @@ inline void fold_sums(GrainNodes& nodes) {
         to.m += from.m, to.V += from.V;
         to.px += image.sign_x * from.px, to.py += image.sign_y * from.py;
         to.gx += flip_x * from.gx, to.gy += flip_y * from.gy;
-        to.mx += image.mirror_x ? image.about * from.m - from.mx
-                                : from.mx - (ring ? image.about * from.m : 0);
-        to.my += image.mirror_y ? image.about * from.m - from.my : from.my;
+        to.mx += image.mirror_x ? image.info * from.m - from.mx
+                                : from.mx - (ring ? image.info * from.m : 0);
+        to.my += image.mirror_y ? image.info * from.m - from.my : from.my;
         from = {};
     }
 }
@@ -128,7 +129,7 @@ void put_on_nodes(const Shape& shape, const Particles& particles, GrainNodes& no
         NodeSums* sums = nodes.sums.data();
         for (long p = strip.begin; p < strip.end; ++p) {
             const double x = x_p[p], y = y_p[p], m = m_p[p], V = V_p[p];
-            const common::Lanes carried{m, m * vx_p[p], m * vy_p[p], m * x, m * y, 0, 0, V},
+            const common::SimdVector carried{m, m * vx_p[p], m * vy_p[p], m * x, m * y, 0, 0, V},
                 along_x{0, 0, 0, 0, 0, V, 0, 0}, along_y{0, 0, 0, 0, 0, 0, V, 0};
             for_each_node(shape, at, origin, x, y, [&](long slot, double S, double Gx, double Gy) {
                 detail::add(sums[slot], S, Gx, Gy, carried, along_x, along_y);

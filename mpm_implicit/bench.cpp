@@ -101,7 +101,7 @@ Split implicit_steps(const Case& w, const mpm_implicit::ThetaScheme& scheme, lon
     GrainNodes nodes(w.problem.mesh(), LinearShape::width, scales.least_mass);
     nodes.sort(grains, particles, state.frame);
     mpm_implicit::open_ledger(state.assembly, laws, state.ledger);
-    StepScratch<1> run{laws, scheme, contact, w.flip, w.frozen, {}, {}};
+    StepScratch<1> scratch{laws, scheme, contact, w.flip, w.frozen, {}, {}};
     mpm_implicit::StepSums sums;
     Split split;
     for (long step = 0; step < (steps > 0 ? first + steps : scales.steps); ++step) {
@@ -109,8 +109,8 @@ Split implicit_steps(const Case& w, const mpm_implicit::ThetaScheme& scheme, lon
         split.clock.resume();
         if (nodes.sort_is_due(state.frame)) nodes.sort(grains, particles, state.frame);
         const BodyForce body =
-            mpm_implicit::drive(w.problem, step, dt, state.assembly.rigid, run.solver.servos);
-        take_step(shape, body, dt, run, nodes, state, sums, split.clock);
+            mpm_implicit::drive(w.problem, step, dt, state.assembly.rigid, scratch.solver.servos);
+        take_step(shape, body, dt, scratch, nodes, state, sums, split.clock);
         enter_step(scheme.theta, scheme.consistent(), 0, dt, nodes.strips(), sums.strips,
                    sums.nodes, sums.contact, state.ledger);
         split.clock.lap("particles");

@@ -21,82 +21,86 @@ namespace {
 
 using namespace mpm_implicit;
 
-const common::About about{"mpm_implicit", PROGRAM_VERSION,
-                          "the implicit material point method for grains in contact; the default "
-                          "case is two elastic disks that rebound",
-                          "mpm_implicit/cases/rebound.toml"};
+const common::ProgramInfo info{
+    "mpm_implicit", PROGRAM_VERSION,
+    "the implicit material point method for grains in contact; the default "
+    "case is two elastic disks that rebound",
+    "mpm_implicit/cases/rebound.toml"};
 
 template <class Shape>
-int run(const Shape& shape, const Case& wanted, const ThetaScheme& scheme, const Scales& scales,
-        common::Session& session) {
+int run_case(const Shape& shape, const Case& parameters, const ThetaScheme& scheme,
+             const Scales& scales, common::Run& run) {
     // 2. Particles at t = 0.
     State state;
-    state.assembly = assemble(wanted.problem);
+    state.assembly = assemble(parameters.problem);
     Particles& particles = state.assembly.particles;
     const std::vector<Grain>& grains = state.assembly.grains;
     std::vector<RigidMotion>& rigid = state.assembly.rigid;
     std::vector<Bond>& bonds = state.assembly.bonds;
-    const std::vector<AnyLaw> laws = laws_of(wanted.problem);
-    const Contact contact(wanted.problem.contact, grains, bonds);
+    const std::vector<AnyLaw> laws = laws_of(parameters.problem);
+    const Contact contact(parameters.problem.contact, grains, bonds);
     const double dt = scales.dt;
-    GrainNodes nodes(wanted.problem.mesh(), Shape::width, scales.least_mass);
-    StepScratch<Shape::width - 1> run{laws, scheme, contact, wanted.flip, wanted.frozen, {}, {}};
-    ThetaRecorder recorder(wanted, scheme, scales, state, session.history);
+    GrainNodes nodes(parameters.problem.mesh(), Shape::width, scales.least_mass);
+    StepScratch<Shape::width - 1> scratch{laws, scheme, contact, parameters.flip, parameters.frozen,
+                                          {},   {}};
+    ThetaRecorder recorder(parameters, scheme, scales, state, run.history);
     StepSums sums;
     long step = 0;
-    if (session.restarting()) {
-        session.restore(state, step);
+    if (run.restarting()) {
+        run.restore(state, step);
         nodes.lay_out(grains, state.frame);
     } else {
         nodes.sort(grains, particles, state.frame);
         open_ledger(state.assembly, laws, state.ledger);
-        recorder.start(state, session);
+        recorder.start(state, run);
     }
 
     // 3. The loop of the slide.
-    while (session.keep_going(step, scales.steps)) {
+    while (run.not_finished(step, scales.steps)) {
         if (nodes.sort_is_due(state.frame)) nodes.sort(grains, particles, state.frame);
-        recorder.snapshot(step, state, session);
-        const BodyForce body = drive(wanted.problem, step, dt, rigid, run.solver.servos);
-        take_step(shape, body, dt, run, nodes, state, sums);  // [MPM-5 ... 8]
-        recorder.record(step, sums, nodes, state, session);   // [MPM-13]
+        recorder.snapshot(step, state, run);
+        const BodyForce body = drive(parameters.problem, step, dt, rigid, scratch.solver.servos);
+        take_step(shape, body, dt, scratch, nodes, state, sums);  // [MPM-5 ... 8]
+        recorder.record(step, sums, nodes, state, run);           // [MPM-13]
         ++step;
-        session.end_of_step(step, scales.steps, static_cast<double>(step) * dt, state);
+        run.end_of_step(step, scales.steps, static_cast<double>(step) * dt, state);
     }
 
     // 4. The results against theory, summary.json.
     if (step == scales.steps) {
-        recorder.snapshot(step, state, session);
-        recorder.finish(step, state, session);
+        recorder.snapshot(step, state, run);
+        recorder.finish(step, state, run);
     }
-    return session.finish(step, static_cast<double>(particles.count()));
+    return run.finish(step, static_cast<double>(particles.count()));
 }
 
-int start(int argc, char** argv, std::optional<common::Session>& holder) {
+int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     // 1. The case: defaults, file, command line; refuse, warn, or only describe.
-    Case wanted;
+    Case parameters;
     ThetaScheme scheme;
-    common::ParameterTable table = describe(wanted, scheme);
-    const common::CommandLine command = common::read_command_line(argc, argv, about, table);
-    refuse_impossible(wanted, scheme);
-    Scales scales = scales_of(wanted);
-    scales.bytes = bytes_of(wanted, scheme, scales);
+    common::ParameterTable table = describe(parameters, scheme);
+    const common::CommandLine command = common::read_command_line(argc, argv, info, table);
+    validate(parameters, scheme);
+    Scales scales = scales_of(parameters);
+    scales.bytes = bytes_of(parameters, scheme, scales);
     if (!common::start_run(
-            about, command, table,
-            {describe_scales(wanted, scheme, scales), warnings_of(wanted, scheme, scales),
-             scales.steps, scales.bytes, wanted.checkpoint_steps},
+            info, command, table,
+            {describe_scales(parameters, scheme, scales), warnings_of(parameters, scheme, scales),
+             scales.steps, scales.bytes, parameters.checkpoint_steps},
             holder))
         return 0;
-    common::Session& session = *holder;
+    common::Run& run = *holder;
 
     int status = 0;
-    with_shape(wanted.scheme(),
-               [&](const auto& shape) { status = run(shape, wanted, scheme, scales, session); });
+    with_shape(parameters.scheme(), [&](const auto& shape) {
+        status = run_case(shape, parameters, scheme, scales, run);
+    });
     return status;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    return common::guarded(about, [&](auto& session) { return start(argc, argv, session); });
+    return common::run_and_report_errors(info,
+                                         [&](auto& run) { return run_program(argc, argv, run); });
 }

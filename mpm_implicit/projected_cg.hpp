@@ -56,7 +56,7 @@ inline double dot(const Vector& a, const Vector& b) {
 template <class Multiply, class Precondition>
 CgResult projected_cg(const Multiply& multiply, const Precondition& precondition,
                       const Constraints& constraints, const Vector& scale, const Vector& b,
-                      double tolerance, long most_iterations, Vector& v, PlateSystem& plates,
+                      double tolerance, long max_iterations, Vector& v, PlateSystem& plates,
                       CgWorkspace& work) {
     const std::size_t count = plates.V.size();
     const long n = v.size();
@@ -113,13 +113,13 @@ CgResult projected_cg(const Multiply& multiply, const Precondition& precondition
         const double goal = std::max(tolerance * size, round_off * std::sqrt(size_v));
         result.residual = size > 0 ? std::sqrt(rho) / size : 0;
         result.converged = std::sqrt(rho) <= goal;
-        if (result.converged || result.iterations >= most_iterations || round == most_rounds)
+        if (result.converged || result.iterations >= max_iterations || round == most_rounds)
             return result;
 
         bool first = true;
         double along = 0, along_before = 1;
         // A little more than asked for, as the residual that is followed drifts from the true one.
-        while (!(std::sqrt(rho) <= 0.1 * goal) && result.iterations < most_iterations) {
+        while (!(std::sqrt(rho) <= 0.1 * goal) && result.iterations < max_iterations) {
             // z in y = D^{1/2} v: t itself, or better.
             const Vector& better = precondition(work.t, work);
             along = &better == &work.t ? rho : dot(work.t, better);

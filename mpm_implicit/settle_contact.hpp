@@ -122,9 +122,9 @@ inline Change correct(const Vector& v, const std::vector<double>& V, const Grain
                                         const std::vector<Grain>& grains, long loops) {
     throw common::NumericalError("contact did not settle in " + std::to_string(loops) +
                                  " loops: " + set.names(change.pair, grains) +
-                                 " changed last, friction by " + common::shown(change.friction) +
+                                 " changed last, friction by " + common::format(change.friction) +
                                  " of the largest impulse; reduce time.alpha, or raise "
-                                 "solver.most_loops");
+                                 "solver.max_outer_iterations");
 }
 
 }  // namespace mpm_implicit

@@ -70,7 +70,7 @@ class NodeSolver {
         const auto multiply = [&](Vector& x, Vector& y) { matrix.multiply_mass(x, y); };
         const CgResult cg =
             projected_cg(multiply, mass_preconditioner(scheme), constraints, scale_, b_,
-                         scheme.tolerance, scheme.most_iterations, v_0_, none, work_);
+                         scheme.tolerance, scheme.max_iterations, v_0_, none, work_);
         report.mass_iterations = cg.iterations;
         if (!cg.converged) fail("the nodes before the step", cg, scheme);
         for_each_slot([&](long i, std::size_t n) {
@@ -127,7 +127,7 @@ class NodeSolver {
             constraints.obey(plates.V, v_);
             const CgResult cg =
                 projected_cg(multiply, preconditioner(constraints), constraints, scale_, right_,
-                             tolerance, scheme.most_iterations, v_, plates, work_);
+                             tolerance, scheme.max_iterations, v_, plates, work_);
             report.iterations += cg.iterations;
             if (!cg.converged) fail("the nodes", cg, scheme);
             constraints.find_impulses(work_.r, set);
@@ -140,8 +140,8 @@ class NodeSolver {
                 --report.loops;
                 continue;
             }
-            if (report.loops == scheme.most_loops)
-                fail_to_settle(change, set, grains, scheme.most_loops);
+            if (report.loops == scheme.max_outer_iterations)
+                fail_to_settle(change, set, grains, scheme.max_outer_iterations);
         }
         for (std::size_t s = 0; s < servos.size(); ++s) {
             RigidMotion& is = rigid[servos[s].grain];
@@ -270,9 +270,9 @@ class NodeSolver {
     [[noreturn]] void fail(const char* what, const CgResult& cg, const ThetaScheme& scheme) const {
         throw common::NumericalError(std::string("the velocities of ") + what +
                                      " are not found in " + std::to_string(cg.iterations) +
-                                     " iterations: residual " + common::shown(cg.residual) +
-                                     ", asked for " + common::shown(scheme.tolerance) +
-                                     "; raise solver.most_iterations, or reduce time.alpha");
+                                     " iterations: residual " + common::format(cg.residual) +
+                                     ", asked for " + common::format(scheme.tolerance) +
+                                     "; raise solver.max_iterations, or reduce time.alpha");
     }
 
     GrainFactors factors_;

@@ -40,7 +40,7 @@ class NewtonSolver {
         double unit = 0;
         common::NewtonResult result;
         // One Newton step at a time, each with the pairs that are closed then.
-        for (report.loops = 0; report.loops <= scheme.most_loops; ++report.loops) {
+        for (report.loops = 0; report.loops <= scheme.max_outer_iterations; ++report.loops) {
             step.watching = true;
             F_of(x_, F_);
             step.watching = false;
@@ -53,7 +53,7 @@ class NewtonSolver {
                          8 * std::numeric_limits<double>::epsilon() * common::safe_norm(x_) / unit);
             result = {0, 0, common::safe_norm(F_) / unit, false, "Newton's limit"};
             result.converged = result.residual <= tolerance;
-            if (result.converged || report.loops == scheme.most_loops) break;
+            if (result.converged || report.loops == scheme.max_outer_iterations) break;
             allowed_.build(solver.set, solver.scale(), nodes.size(), 0, false);
             options.size_of_x = unit;
             result =
@@ -233,7 +233,7 @@ class NewtonSolver {
         PlateSystem none;
         const CgResult cg =
             projected_cg(multiply, step.solver.preconditioner(allowed_), allowed_, scale, part_,
-                         1e-4, step.scheme.most_iterations, v_, none, cg_);
+                         1e-4, step.scheme.max_iterations, v_, none, cg_);
         step.report.iterations += cg.iterations;
         z = r;
         for_each_slot(2 * n, [&](long at, std::size_t) { z[at] = rest_[at] + root_[at] * v_[at]; });
@@ -264,9 +264,9 @@ class NewtonSolver {
         const std::string who =
             set.pairs.empty() ? "" : "; hardest pressed are " + set.names(hardest, grains);
         throw common::NumericalError("Newton's iteration did not converge: " + result.reason +
-                                     "; residual " + common::shown(result.residual) +
-                                     ", asked for " + common::shown(scheme.tolerance) + who +
-                                     ": reduce time.alpha, or raise solver.most_loops");
+                                     "; residual " + common::format(result.residual) +
+                                     ", asked for " + common::format(scheme.tolerance) + who +
+                                     ": reduce time.alpha, or raise solver.max_outer_iterations");
     }
 
     Vector root_, x_, F_, v_, Mv_, part_, rest_;

@@ -99,8 +99,8 @@ inline BodyForce drive(const Problem& problem, long step, double dt,
         if (is.servo_x || is.servo_y)
             servos.push_back(
                 {g, is.servo_x, is.mass, is.damping, share * is.force, is.servo_x ? is.vx : is.vy});
-        if (!is.servo_x) is.vx = share * is.wanted_vx, is.travel_x += dt * is.vx;
-        if (!is.servo_y) is.vy = share * is.wanted_vy, is.travel_y += dt * is.vy;
+        if (!is.servo_x) is.vx = share * is.prescribed_vx, is.travel_x += dt * is.vx;
+        if (!is.servo_y) is.vy = share * is.prescribed_vy, is.travel_y += dt * is.vy;
     }
     return body_force(problem, t);
 }

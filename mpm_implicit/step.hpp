@@ -28,17 +28,19 @@ struct StepScratch {
 
 /// The matrices of the step, and the velocities of the nodes at t^n.
 /// in:     nodes, sorted for where the particles are; body and rigid motions of this step
-/// out:    run.solver; nodes.motion, v_0; sums.solver
+/// out:    scratch.solver; nodes.motion, v_0; sums.solver
 template <class Shape, int reach, class Clock = common::NoClock>
-void find_matrices(const Shape& shape, const BodyForce& body, double dt, StepScratch<reach>& run,
-                   GrainNodes& nodes, State& state, StepSums& sums, Clock&& clock = {}) {
+void find_matrices(const Shape& shape, const BodyForce& body, double dt,
+                   StepScratch<reach>& scratch, GrainNodes& nodes, State& state, StepSums& sums,
+                   Clock&& clock = {}) {
     // [matrices]
     put_on_nodes(shape, state.assembly.particles, nodes);  // particles -> grid
     clock.lap("put");
-    run.solver.assemble(shape, run.laws, run.scheme, body, dt, state,
-                        nodes);  // M, K of  [MPM-5 ... 8]
+    scratch.solver.assemble(shape, scratch.laws, scratch.scheme, body, dt, state,
+                            nodes);  // M, K of  [MPM-5 ... 8]
     clock.lap("matrix");
-    run.solver.find_old_velocities(run.scheme, run.contact, state, nodes, sums.solver);  // v_i^0
+    scratch.solver.find_old_velocities(scratch.scheme, scratch.contact, state, nodes,
+                                       sums.solver);  // v_i^0
     clock.lap("v_0");
     // [/matrices]
 }
@@ -48,14 +50,15 @@ void find_matrices(const Shape& shape, const BodyForce& body, double dt, StepScr
 /// errors: NumericalError when it is not found
 template <class Shape, int reach, class Clock = common::NoClock>
 void find_theta_velocities(const Shape& shape, const BodyForce& body, double dt,
-                           StepScratch<reach>& run, GrainNodes& nodes, State& state, StepSums& sums,
-                           Clock&& clock = {}) {
+                           StepScratch<reach>& scratch, GrainNodes& nodes, State& state,
+                           StepSums& sums, Clock&& clock = {}) {
     // [velocities]
     sums.contact =
-        run.scheme.newton()  // v_i^theta, f_i^theta                                     [MPM-8]
-            ? run.newton.solve(shape, run.laws, run.scheme, run.contact, body, dt, state,
-                               run.solver, nodes, sums.solver)
-            : run.solver.solve(shape, run.scheme, run.contact, body, dt, state, nodes, sums.solver);
+        scratch.scheme.newton()  // v_i^theta, f_i^theta                                     [MPM-8]
+            ? scratch.newton.solve(shape, scratch.laws, scratch.scheme, scratch.contact, body, dt,
+                                   state, scratch.solver, nodes, sums.solver)
+            : scratch.solver.solve(shape, scratch.scheme, scratch.contact, body, dt, state, nodes,
+                                   sums.solver);
     clock.lap("v_theta");
     // [/velocities]
 }
@@ -64,21 +67,22 @@ void find_theta_velocities(const Shape& shape, const BodyForce& body, double dt,
 /// out:    sums.strips, sums.nodes
 template <class Shape, int reach, class Clock = common::NoClock>
 void move_to_new_level(const Shape& shape, const BodyForce& body, double dt,
-                       const StepScratch<reach>& run, GrainNodes& nodes, State& state,
+                       const StepScratch<reach>& scratch, GrainNodes& nodes, State& state,
                        StepSums& sums, Clock&& clock = {}) {
     Particles& particles = state.assembly.particles;
     const std::vector<Grain>& grains = state.assembly.grains;
     // [particles]
     for_each_chunk(grains, nodes, sums.strips, [&](Chunk& chunk) {
-        velocity_gradient(shape, particles, nodes, NewVelocity{}, dt, chunk);        // [MPM-5]
-        update_stress(run.laws, run.scheme, chunk, grains, particles, sums.strips);  // [MPM-6, 7]
-        if (!run.frozen) turn_stress(chunk, particles);
+        velocity_gradient(shape, particles, nodes, NewVelocity{}, dt, chunk);  // [MPM-5]
+        update_stress(scratch.laws, scratch.scheme, chunk, grains, particles,
+                      sums.strips);  // [MPM-6, 7]
+        if (!scratch.frozen) turn_stress(chunk, particles);
     });
-    sums.nodes = work_on_nodes(body, run.scheme.theta, dt, nodes);
-    move_particles(shape, grains, state.assembly.rigid, nodes, run.scheme.theta, run.flip,
-                   run.frozen, dt, particles, sums.strips);  // grid -> particles
+    sums.nodes = work_on_nodes(body, scratch.scheme.theta, dt, nodes);
+    move_particles(shape, grains, state.assembly.rigid, nodes, scratch.scheme.theta, scratch.flip,
+                   scratch.frozen, dt, particles, sums.strips);  // grid -> particles
     // [/particles]
-    state.frame.moved += run.frozen ? 0 : dt * sums.nodes.largest_speed;
+    state.frame.moved += scratch.frozen ? 0 : dt * sums.nodes.largest_speed;
     clock.lap("particles");
 }
 
@@ -87,11 +91,11 @@ void move_to_new_level(const Shape& shape, const BodyForce& body, double dt,
 /// out:    sums, which the ledger takes
 /// errors: NumericalError as the solvers
 template <class Shape, int reach, class Clock = common::NoClock>
-void take_step(const Shape& shape, const BodyForce& body, double dt, StepScratch<reach>& run,
+void take_step(const Shape& shape, const BodyForce& body, double dt, StepScratch<reach>& scratch,
                GrainNodes& nodes, State& state, StepSums& sums, Clock&& clock = {}) {
-    find_matrices(shape, body, dt, run, nodes, state, sums, clock);
-    find_theta_velocities(shape, body, dt, run, nodes, state, sums, clock);
-    move_to_new_level(shape, body, dt, run, nodes, state, sums, clock);
+    find_matrices(shape, body, dt, scratch, nodes, state, sums, clock);
+    find_theta_velocities(shape, body, dt, scratch, nodes, state, sums, clock);
+    move_to_new_level(shape, body, dt, scratch, nodes, state, sums, clock);
 }
 
 }  // namespace mpm_implicit

@@ -11,7 +11,7 @@ struct ThetaScheme {
     std::string mass = "consistent", volumes = "kept", solver = "projected_cg",
                 preconditioner = "grains";
     double tolerance = 1e-13;
-    long most_iterations = 5000, most_loops = 50;
+    long max_iterations = 5000, max_outer_iterations = 50;
 
     bool consistent() const { return mass == "consistent"; }
     bool keeps_volumes() const { return volumes == "kept"; }

@@ -439,7 +439,7 @@ TEST_CASE("walls take charge reflect speed and lose nothing") {
     Case w;
     w.dimensions = 2;
     w.grid = {{8, 0, 8, false}, {8, 0, 4, false}};
-    w.boundary_x = w.boundary_z = "walls";
+    w.boundary_x = w.boundary_z = "wall";
     w.walls[x_low] = {"floating", "absorb", 0};
     w.walls[x_high] = {"grounded", "reflect", 0};
     w.walls[z_low] = {"grounded", "absorb", 0};
@@ -483,7 +483,7 @@ TEST_CASE("walls take charge reflect speed and lose nothing") {
 TEST_CASE("a source emits its rate with the flux of a half Maxwellian") {
     Case w;
     w.grid.x = {8, 0, 1e6, false};
-    w.boundary_x = "walls";
+    w.boundary_x = "wall";
     w.dt = 0.25;
     w.walls[x_low] = {"floating", "source", 0};
     SpeciesCase from;

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/lanes.hpp"
+#include "common/simd.hpp"
 #include "common/splines.hpp"
 #include "implicit_moment/mesh_modes.hpp"
 #include "implicit_moment/smooth.hpp"
@@ -21,8 +21,8 @@
 namespace {
 
 using namespace facts;
-using common::Lanes, common::lane_count;
 using common::on_faces, common::on_nodes, common::on_x_edges, common::on_z_edges, common::spline;
+using common::SimdVector, common::simd_width;
 constexpr Parity even{+1, +1}, odd{-1, -1};
 
 // Every pair of ends, with few cells and with more than a loop is cut into.
@@ -233,10 +233,10 @@ TEST_CASE("the spline average keeps straight lines and multiplies waves with a c
 TEST_CASE("eight lanes and one number get the weights of the splines") {
     Random random;
     for (int sample = 0; sample < 100; ++sample) {
-        Lanes d{0.5, -0.5, 0};
-        for (int l = 3; l < lane_count; ++l) d[l] = 0.5 * random();
-        const common::QuadraticWeights<Lanes> eight(d);
-        for (int l = 0; l < lane_count; ++l) {
+        SimdVector d{0.5, -0.5, 0};
+        for (int l = 3; l < simd_width; ++l) d[l] = 0.5 * random();
+        const common::QuadraticWeights<SimdVector> eight(d);
+        for (int l = 0; l < simd_width; ++l) {
             const common::QuadraticWeights<double> one(d[l]);
             for (int g = 0; g < 3; ++g) {
                 CHECK(std::fabs(one.quadratic[g] - spline(2, d[l] - (g - 1))) <= eps);
@@ -252,26 +252,26 @@ TEST_CASE("eight lanes and one number get the weights of the splines") {
 
 TEST_CASE("a few lanes are loaded and added and stored without their neighbors") {
     Random random;
-    for (std::size_t count = 1; count <= lane_count; ++count) {
+    for (std::size_t count = 1; count <= simd_width; ++count) {
         std::vector<double> from(count), to(12, 7);
         for (double& value : from) value = random();
         const long few = static_cast<long>(count);
-        const Lanes lanes = common::load_lanes(from.data(), few);
-        for (std::size_t l = 0; l < lane_count; ++l) CHECK(lanes[l] == from[l < count ? l : 0]);
-        const double sum = common::sum_of_lanes(common::first_lanes(few) * lanes);
+        const SimdVector lanes = common::load_simd(from.data(), few);
+        for (std::size_t l = 0; l < simd_width; ++l) CHECK(lanes[l] == from[l < count ? l : 0]);
+        const double sum = common::simd_sum(common::first_simd(few) * lanes);
         CHECK(std::fabs(sum - std::accumulate(from.begin(), from.end(), 0.0)) <= 4 * eps);
-        CHECK(common::largest_lane(lanes) == *std::max_element(from.begin(), from.end()));
-        common::store_lanes(lanes, to.data(), few);
+        CHECK(common::simd_max(lanes) == *std::max_element(from.begin(), from.end()));
+        common::store_simd(lanes, to.data(), few);
         for (std::size_t l = 0; l < to.size(); ++l) CHECK(to[l] == (l < count ? from[l] : 7));
     }
 }
 
 TEST_CASE("the largest of eight lanes is NaN where one lane is") {
     const facts::Untrapped calm;
-    for (int l = 0; l < lane_count; ++l) {
-        Lanes lanes = common::first_lanes(lane_count);
+    for (int l = 0; l < simd_width; ++l) {
+        SimdVector lanes = common::first_simd(simd_width);
         lanes[l] = std::numeric_limits<double>::quiet_NaN();
-        CHECK(std::isnan(common::largest_lane(lanes)));
+        CHECK(std::isnan(common::simd_max(lanes)));
     }
 }
 
@@ -573,7 +573,7 @@ TEST_CASE("loops over blocks and rows cover everything once whatever the number 
                     if (row % count * 3 + row / count < count) give(row % count * 3 + row / count);
                 }
             } else {
-                common::for_each_row_three_apart(count, give);
+                common::for_each_row_three_colors(count, give);
             }
             CHECK(sums.back() == sums[0]);
             CHECK(rows.back() == rows[0]);

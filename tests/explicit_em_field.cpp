@@ -33,26 +33,28 @@ double wave_number(const common::Axis& axis, long number) {
 
 // A run of explicit_em in memory.
 struct Loop {
-    Case wanted;
+    Case parameters;
     State state;
     Leapfrog run;
 
-    explicit Loop(const Case& w) : wanted(w), state(leapfrog_state(wanted)), run(wanted) {}
+    explicit Loop(const Case& w)
+        : parameters(w), state(leapfrog_state(parameters)), run(parameters) {}
     void step() {
         pack_push_field(run, state.field);
         take_step(run, state.field, state.plasma.species);
     }
     // div E - 4 pi rho, rho by definition; its mean in a periodic box has no field.
     Field gauss() const {
-        Field rho = Field::Zero(wanted.grid.size()), scratch, G = rho;
+        Field rho = Field::Zero(parameters.grid.size()), scratch, G = rho;
         for (const Particles& particles : state.plasma.species)
-            rho += charge(wanted.grid, wanted.leapfrog.order, -1, particles);
-        const common::Axis &x = wanted.grid.x, &z = wanted.grid.z;
+            rho += charge(parameters.grid, parameters.leapfrog.order, -1, particles);
+        const common::Axis &x = parameters.grid.x, &z = parameters.grid.z;
         if (x.periodic && z.periodic)
-            rho.array() -= total(wanted.grid, on_nodes, rho) / (x.length * z.length);
-        common::fill_ghosts(wanted.grid, on_nodes, {-1, -1}, rho.data());
-        smooth(wanted.grid, on_nodes, {-1, -1}, wanted.field.smoothing, rho.data(), scratch);
-        divergence_of_electric(wanted.grid, state.field.E.all.data(), G);
+            rho.array() -= total(parameters.grid, on_nodes, rho) / (x.length * z.length);
+        common::fill_ghosts(parameters.grid, on_nodes, {-1, -1}, rho.data());
+        smooth(parameters.grid, on_nodes, {-1, -1}, parameters.field.smoothing, rho.data(),
+               scratch);
+        divergence_of_electric(parameters.grid, state.field.E.all.data(), G);
         return G - 4 * pi * rho;
     }
     const std::vector<Moments>& moments() {
@@ -60,8 +62,8 @@ struct Loop {
         return moments_now(run, state);
     }
     double energy() {
-        double sum =
-            field_energy(wanted.grid, state.field.E) + field_energy(wanted.grid, state.field.B);
+        double sum = field_energy(parameters.grid, state.field.E) +
+                     field_energy(parameters.grid, state.field.B);
         for (const Moments& m : moments()) sum += m.kinetic_energy;
         return sum;
     }
@@ -267,9 +269,9 @@ TEST_CASE("Gauss's law holds at the start and its residual stays to round-off in
 TEST_CASE("at the start velocities are half a step back and moments bring them forth") {
     for (const Grid& grid : meshes()) {
         for (const auto& [order, passes] : {std::pair{1L, 0L}, {2L, 0L}, {1L, 2L}, {2L, 2L}}) {
-            const Case wanted = hot_plasma(grid, order, passes);
-            Loop loop(wanted);
-            const State loaded = loaded_state(wanted);
+            const Case parameters = hot_plasma(grid, order, passes);
+            Loop loop(parameters);
+            const State loaded = loaded_state(parameters);
             const std::vector<Moments>& moments = loop.moments();
             CHECK(largest(loop.state.field.E.all) >= 0.01);
             for (std::size_t s = 0; s < 2; ++s) {

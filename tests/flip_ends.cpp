@@ -161,8 +161,8 @@ TEST_CASE("what is beyond a wall ends the run with where and when") {
                 message_of([&] { cross_ends(r.w, 1.5, 0.25, r.particles(), r.state.books); });
             CAPTURE(said);
             CHECK(said.find("through the wall") != std::string::npos);
-            CHECK(said.find("x = " + common::shown(x)) != std::string::npos);
-            CHECK(said.find("z = " + common::shown(z)) != std::string::npos);
+            CHECK(said.find("x = " + common::format(x)) != std::string::npos);
+            CHECK(said.find("z = " + common::format(z)) != std::string::npos);
             CHECK(said.find("t = 1.75") != std::string::npos);
             CHECK(said.find("time.cfl") != std::string::npos);
         }

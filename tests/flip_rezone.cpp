@@ -32,8 +32,8 @@ struct Cloud {
         w.materials = {{"light", 1.4, 0}, {"heavy", 1.6, 0}};
         w.per_cell_x = 4;
         w.per_cell_z = plane ? 4 : 1;
-        w.fewest = fewest;
-        w.most = most;
+        w.min_particles = fewest;
+        w.max_particles = most;
         if (volumes) w.density = "particles";
         RegionCase light, heavy;
         light.gas = {"light", 1, 1, 0.3, -0.2};

@@ -155,8 +155,8 @@ double difference(const FlipRun& a, const FlipRun& b,
 }
 
 // Particles anywhere, of one pressure, each with the volume that it has at it.
-Particles at_one_pressure(const Case& wanted, double p, std::uint64_t seed) {
-    const Case w = completed(wanted);
+Particles at_one_pressure(const Case& parameters, double p, std::uint64_t seed) {
+    const Case w = completed(parameters);
     Particles all = any_cloud(w, 0, seed, 10);
     for (std::size_t k = 0; k < all.m_p.size(); ++k)
         all.e_p[k] = internal_energy(w.materials[static_cast<std::size_t>(all.material[k])],
@@ -344,7 +344,7 @@ TEST_CASE("viscous forces sum to zero and take what heats the cells and spare ri
                 stir_nodes(grid, random, vx), stir_nodes(grid, random, vz);
                 const auto forces = [&] {
                     g.fx.setZero(grid.size()), g.fz.setZero(grid.size());
-                    add_viscous_force(r.w, r.run.mesh);
+                    add_viscous_force(r.w, r.scratch.mesh);
                 };
                 forces();
                 double work = 0, heat = 0, own_heat = 0, size = 0, x = 0, z = 0, lost = 0;
@@ -394,8 +394,8 @@ TEST_CASE("a viscous shear flow decays by the law of Newton" * doctest::descript
         r.nodes().vx[n] = 0, r.nodes().vz[n] = std::sin(k * grid.x.at(real(i)));
     });
     fill_nodes(grid, r.nodes().vz.data());
-    find_viscosity(r.w, r.run.mesh);
-    find_known_forces(r.w, r.run.mesh);
+    find_viscosity(r.w, r.scratch.mesh);
+    find_known_forces(r.w, r.scratch.mesh);
     for_own_nodes(grid, [&](long n) {
         const double rate = 0.03 * grid.cell_area() * (2 - 2 * std::cos(k * h)) / (h * h);
         CHECK(std::fabs(r.nodes().fz[n] + rate * r.nodes().vz[n]) <= 1e-14);
@@ -414,7 +414,7 @@ TEST_CASE("viscosities are those of their formulas in a uniform compression or e
             for_each_node(r.grid(), [&](long i, long, long n) {
                 r.nodes().vx[n] = a * r.grid().x.at(real(i)), r.nodes().vz[n] = 0.2;
             });
-            find_viscosity(r.w, r.run.mesh);
+            find_viscosity(r.w, r.scratch.mesh);
             const double h = rows == 1 ? 1.0 / 8 : std::sqrt(1.0 / 48), c = std::sqrt(1.4 / 2);
             const double q = a < 0 ? 2 * -a * h * (0.5 * c + 1.5 * h * -a) : 0;
             for_each_cell(r.grid(), [&](long, long, long n) {
@@ -589,9 +589,9 @@ TEST_CASE("an open end feels the pressure outside over its length and no further
     for (std::size_t k = 0; k < 4; ++k) w.ends[k].pressure = p[k];
     FlipRun r(w, any_cloud(w, 0, 7));
     r.deposit();
-    find_viscosity(r.w, r.run.mesh);
+    find_viscosity(r.w, r.scratch.mesh);
     r.cells().q.setZero();
-    find_known_forces(r.w, r.run.mesh);
+    find_known_forces(r.w, r.scratch.mesh);
     double x = 0, z = 0;
     for_own_nodes(r.grid(), [&](long n) {
         const long i = n % r.grid().stride() - 1, j = n / r.grid().stride() - 1;
@@ -639,7 +639,7 @@ TEST_CASE(
             const double owed = 0.5 * (dvx.dot(deficit * dvx) + dvz.dot(deficit * dvz));
             const std::vector<double> e = r.particles().e_p;
             const Eigen::VectorXd m = m_p;
-            move_particles(r.w, dt, r.run.mesh, r.particles());
+            move_particles(r.w, dt, r.scratch.mesh, r.particles());
             double heat = 0, coldest = 0;
             for (std::size_t k = 0; k < e.size(); ++k) {
                 const double de = r.particles().e_p[k] - e[k];
@@ -743,7 +743,7 @@ TEST_CASE("xpic of order one is pic and many orders give the velocity of the con
     filter_velocity(r.grid(), M, r.nodes().m, 4000, r.nodes().vx, many_x, last);
     filter_velocity(r.grid(), M, r.nodes().m, 4000, r.nodes().vz, many_z, last);
     CHECK(last.cwiseAbs().maxCoeff() <= 1e-12);
-    flip::detail::solve_velocity(r.w, M, r.run.mesh);
+    flip::detail::solve_velocity(r.w, M, r.scratch.mesh);
     const std::vector<long> nodes = own_nodes(r.grid());
     CHECK((on(nodes, many_x - r.nodes().vx)).cwiseAbs().maxCoeff() <= 1e-9);
     CHECK((on(nodes, many_z - r.nodes().vz)).cwiseAbs().maxCoeff() <= 1e-9);
@@ -860,7 +860,7 @@ TEST_CASE("an affine motion is exact with apic in a filled box") {
     r.w.q_linear = r.w.q_quadratic = 0;
     r.deposit();
     const double dt = r.move_nodes();
-    move_particles(r.w, dt, r.run.mesh, p);
+    move_particles(r.w, dt, r.scratch.mesh, p);
     double most = 0;
     for (std::size_t k = 0; k < p.x_p.size(); ++k)
         most = worst({most, std::fabs(p.vx_p[k] - before.vx_p[k]),
@@ -1050,7 +1050,7 @@ TEST_CASE("a step of a small sound wave has the factor of the theta scheme at an
             }
             const auto ratio_p = [&](const FlipRun& r, double p0) {
                 const Field p_new =
-                    (r.run.mesh.cells.p_step - (1 - theta) * r.run.mesh.cells.p) / theta;
+                    (r.scratch.mesh.cells.p_step - (1 - theta) * r.scratch.mesh.cells.p) / theta;
                 return wave_part(r.grid(), p_new, 1, 0.5).real() / p0;
             };
             const double c0 = std::sqrt(1.4);
@@ -1127,7 +1127,7 @@ TEST_CASE("slow flow becomes that of an incompressible fluid whatever its sound"
 
 TEST_CASE("an implicit pressure that does not converge ends the run with a word on the cure") {
     Case w = several_gases(12, 12, "slip", "slip");
-    w.pressure = "implicit", w.most_iterations = 1, w.tolerance = 1e-14, w.dt = 0.05;
+    w.pressure = "implicit", w.max_iterations = 1, w.tolerance = 1e-14, w.dt = 0.05;
     FlipRun r(w, any_cloud(w, 0.5, 25));
     std::string said;
     try {
@@ -1136,7 +1136,7 @@ TEST_CASE("an implicit pressure that does not converge ends the run with a word 
         said = error.what();
     }
     CHECK(said.find("implicit pressure has not converged") != std::string::npos);
-    CHECK(said.find("flip.most_iterations") != std::string::npos);
+    CHECK(said.find("flip.max_iterations") != std::string::npos);
 }
 
 // ---- particles that carry volumes ----------------------------------------------------------------
@@ -1178,7 +1178,7 @@ TEST_CASE("volumes change as the nodes say to round-off") {
             r.deposit();
             const double dt = r.move_nodes();
             const double before = column(r.particles().V_p).sum();
-            move_particles(r.w, dt, r.run.mesh, r.particles());
+            move_particles(r.w, dt, r.scratch.mesh, r.particles());
             const Nodes& g = r.nodes();
             const Field &vx = r.w.implicit() ? g.vx_work : g.vxL,
                         &vz = r.w.implicit() ? g.vz_work : g.vzL;

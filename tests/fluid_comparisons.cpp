@@ -30,20 +30,20 @@ struct Fluid {
 // The rows and results of a run whose fluid at each time is made by `at`.
 facts::Run recorded(const std::string& text, const std::string& program, int steps,
                     const std::function<void(const Case&, double, Fluid&)>& at) {
-    Case wanted;
-    common::ParameterTable table = describe(wanted);
+    Case parameters;
+    common::ParameterTable table = describe(parameters);
     for (const common::Setting& setting : common::read_case(text, "case.toml")) table.set(setting);
-    const Case w = completed(wanted);
-    refuse_impossible(w, program);
+    const Case w = completed(parameters);
+    validate(w, program);
     common::CommandLine command;
     command.case_name = "ideal";
     // Tests of other facts run at the same time.
     command.out_dir = facts::folder_of_test() + "/fluid_comparisons_" + std::to_string(getpid());
     std::filesystem::remove_all(command.out_dir);
-    const common::About about{program, "0", "", ""};
+    const common::ProgramInfo info{program, "0", "", ""};
     {
-        common::Session session(about, command, table);
-        Recorder recorder(w, program, session.history);
+        common::Run run(info, command, table);
+        Recorder recorder(w, program, run.history);
         Fluid fluid;
         for (int n = 0; n <= steps; ++n) {
             const double t = w.end * n / steps;
@@ -56,12 +56,12 @@ facts::Run recorded(const std::string& text, const std::string& program, int ste
             fluid.cells.rho_of.assign(w.materials.size(), Field::Zero(w.grid.size()));
             fluid.totals = {1, 0, 0, 1, 1, 1};
             at(w, t, fluid);
-            recorder.snapshot(n, fluid.state, fluid.cells, session);
-            recorder.record(n, fluid.state, fluid.totals, fluid.cells, session);
+            recorder.snapshot(n, fluid.state, fluid.cells, run);
+            recorder.record(n, fluid.state, fluid.totals, fluid.cells, run);
         }
-        recorder.finish(fluid.state, fluid.totals, fluid.cells, session);
-        session.history.flush();
-        session.summary.write(command.out_dir + "/summary.json", about, "ideal", 0, "");
+        recorder.finish(fluid.state, fluid.totals, fluid.cells, run);
+        run.history.flush();
+        run.summary.write(command.out_dir + "/summary.json", info, "ideal", 0, "");
     }
     facts::Run run = facts::finished_run(command.out_dir);
     std::filesystem::remove_all(command.out_dir);

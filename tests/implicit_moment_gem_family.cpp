@@ -55,10 +55,10 @@ std::vector<std::vector<double>> table(const std::string& path) {
 }
 
 Case with_guide_field(double guide_field) {
-    Case wanted;
-    wanted.harris.guide_field = guide_field;
-    wanted.harris.particles = 2000;
-    return wanted;
+    Case parameters;
+    parameters.harris.guide_field = guide_field;
+    parameters.harris.particles = 2000;
+    return parameters;
 }
 
 }  // namespace
@@ -123,12 +123,12 @@ TEST_CASE("a profile averages from the first step of unit flux over its time and
 }
 
 TEST_CASE("a profile is centered on the X-line and its B_z integrates to the flux on either side") {
-    Case wanted;
-    wanted.harris.perturbation = 0.5, wanted.harris.light_over_alfven = 40;
+    Case parameters;
+    parameters.harris.perturbation = 0.5, parameters.harris.light_over_alfven = 40;
     const double B0 = 1 / 40.0;
-    const Grid& grid = wanted.grid;
+    const Grid& grid = parameters.grid;
     FieldState field(grid);
-    harris_field(wanted, field);
+    harris_field(parameters, field);
     // The same sheet moved by nine cells along x.
     VectorField moved(grid);
     for (long j = 0; j <= grid.z.cells; ++j) {

@@ -43,8 +43,8 @@ struct Record {
 
 // What the program says about a record of a sheet.
 nlohmann::json results(const CurrentSheetCase& sheet, const Record& record) {
-    Case wanted;
-    wanted.current_sheet = sheet;
+    Case parameters;
+    parameters.current_sheet = sheet;
     common::History history(room("record") + "/history.dat");
     history.columns({{"time_Omega_ci", ""},
                      {"energy_drift", ""},
@@ -56,7 +56,7 @@ nlohmann::json results(const CurrentSheetCase& sheet, const Record& record) {
         history.row(std::vector<double>{record.times[n], 0, a, 0.005, 2 * a});
     }
     common::Summary summary;
-    compare_kink(wanted, history, summary);
+    compare_kink(parameters, history, summary);
     const std::string path = room("record") + "/summary.json";
     summary.write(path, {"p", "1", "", ""}, "c", 0, "m");
     std::ifstream file(path);

@@ -15,33 +15,33 @@ using namespace facts;
 
 // Two warm species that drift, 64 of each in a cell of a small periodic mesh.
 Case uniform_case(const std::string& loading, long seed = 1) {
-    Case wanted;
-    wanted.setup = "uniform", wanted.loading = loading, wanted.seed = seed;
-    wanted.grid = {{16, -2, 4, true}, {12, -3, 6, true}};
+    Case parameters;
+    parameters.setup = "uniform", parameters.loading = loading, parameters.seed = seed;
+    parameters.grid = {{16, -2, 4, true}, {12, -3, 6, true}};
     SpeciesCase ions, electrons;
     ions.name = "ions", electrons.name = "electrons";
     ions.drift_x = 0.01, ions.drift_y = -0.02, ions.drift_z = 0.03;
     ions.temperature_x = 1e-4, ions.temperature_y = 4e-4, ions.temperature_z = 9e-4;
     electrons.charge = -1, electrons.mass = 0.04;
     electrons.temperature_x = electrons.temperature_y = electrons.temperature_z = 4e-4;
-    wanted.uniform.species = {ions, electrons};
-    return wanted;
+    parameters.uniform.species = {ions, electrons};
+    return parameters;
 }
 
 }  // namespace
 
 TEST_CASE("the Harris sheet balances pressure and current and its field is free of divergence") {
-    const Case wanted;
-    const Grid& grid = wanted.grid;
-    const HarrisSheet sheet = harris_sheet(wanted.harris);
-    const double B0 = sheet.B0, lambda = wanted.harris.thickness, dz = grid.z.spacing();
+    const Case parameters;
+    const Grid& grid = parameters.grid;
+    const HarrisSheet sheet = harris_sheet(parameters.harris);
+    const double B0 = sheet.B0, lambda = parameters.harris.thickness, dz = grid.z.spacing();
     CHECK(std::fabs(n0 * (sheet.T_i + sheet.T_e) * 8 * pi / (B0 * B0) - 1) <= 4 * eps);
-    CHECK(std::fabs(sheet.T_i / sheet.T_e - wanted.harris.temperature_ratio) <= 64 * eps);
+    CHECK(std::fabs(sheet.T_i / sheet.T_e - parameters.harris.temperature_ratio) <= 64 * eps);
     CHECK(std::fabs(n0 * (sheet.u_i - sheet.u_e) * 4 * pi * lambda / (c * B0) - 1) <= 4 * eps);
     CHECK(std::fabs(sheet.u_i / sheet.T_i + sheet.u_e / sheet.T_e) <= 64 * eps / B0);
 
     FieldState field(grid);
-    harris_field(wanted, field);
+    harris_field(parameters, field);
     Field div(grid.size());
     divergence_of_magnetic(grid, field.B.all.data(), div);
     CHECK(largest(grid, on_faces, div) <= 4 * eps * B0 / dz);
@@ -51,7 +51,7 @@ TEST_CASE("the Harris sheet balances pressure and current and its field is free 
         if (2 * i >= grid.x.cells) flux += field.B.z()[grid.index(i, grid.z.cells / 2)];
         wall = worst({wall, std::fabs(field.B.z()[grid.index(i, 0)])});
     }
-    const double psi0 = wanted.harris.perturbation * B0;
+    const double psi0 = parameters.harris.perturbation * B0;
     CHECK(std::fabs(flux * grid.x.spacing() - 2 * psi0) <= 16 * eps * B0);
     CHECK(wall <= 0);
     // The mean over x is the sheet without the perturbation.
@@ -68,16 +68,17 @@ TEST_CASE("the Harris sheet balances pressure and current and its field is free 
 
 TEST_CASE("particles of a Harris sheet have equal weights and start with no charge") {
     for (const char* loading : {"quiet", "random"}) {
-        Case wanted;
-        wanted.loading = loading;
-        const Grid& grid = wanted.grid;
-        const HarrisSheet sheet = harris_sheet(wanted.harris);
-        const State state = initial_state(wanted);
+        Case parameters;
+        parameters.loading = loading;
+        const Grid& grid = parameters.grid;
+        const HarrisSheet sheet = harris_sheet(parameters.harris);
+        const State state = initial_state(parameters);
         const Particles &ions = state.plasma.species[0], &electrons = state.plasma.species[1];
-        CHECK(2 * ions.count() == wanted.harris.particles);
+        CHECK(2 * ions.count() == parameters.harris.particles);
         CHECK(ions.q_p == -electrons.q_p);
         CHECK(std::fabs(ions.q_p / ions.m_p - 1) <= eps);
-        CHECK(std::fabs(electrons.q_p / electrons.m_p / -wanted.harris.mass_ratio - 1) <= 4 * eps);
+        CHECK(std::fabs(electrons.q_p / electrons.m_p / -parameters.harris.mass_ratio - 1) <=
+              4 * eps);
         CHECK(ions.x_p == electrons.x_p);
         CHECK(ions.z_p == electrons.z_p);
 
@@ -91,9 +92,9 @@ TEST_CASE("particles of a Harris sheet have equal weights and start with no char
                 return f.segment(grid.index(0, j), grid.x.cells).mean() / n0;
             };
             const double sech2 = common::spline_average(
-                [&](double z) { return std::pow(std::cosh(z / wanted.harris.thickness), -2); },
+                [&](double z) { return std::pow(std::cosh(z / parameters.harris.thickness), -2); },
                 grid.z.at(real(j)), grid.z.spacing());
-            CHECK(std::fabs(mean(of_ions.rho) - sech2 - wanted.harris.background) <= 0.05);
+            CHECK(std::fabs(mean(of_ions.rho) - sech2 - parameters.harris.background) <= 0.05);
             CHECK(std::fabs(mean(J_y) - sech2 * (sheet.u_i - sheet.u_e)) <= 0.02);
         }
     }
@@ -101,13 +102,14 @@ TEST_CASE("particles of a Harris sheet have equal weights and start with no char
 
 TEST_CASE("a uniform plasma has the moments that were asked for") {
     for (const char* loading : {"quiet", "random"}) {
-        const Case wanted = uniform_case(loading);
-        const Plasma plasma = initial_state(wanted).plasma;
-        const double n = 64 * 16 * 12, charge = n0 * wanted.grid.x.length * wanted.grid.z.length;
+        const Case parameters = uniform_case(loading);
+        const Plasma plasma = initial_state(parameters).plasma;
+        const double n = 64 * 16 * 12,
+                     charge = n0 * parameters.grid.x.length * parameters.grid.z.length;
         CHECK(plasma.count() == 2 * 64 * 16 * 12);
         for (std::size_t k = 0; k < 2; ++k) {
             const Particles& particles = plasma.species[k];
-            const SpeciesCase& s = wanted.uniform.species[k];
+            const SpeciesCase& s = parameters.uniform.species[k];
             CHECK(std::fabs(particles.m_p * n / (s.mass * charge) - 1) <= 4 * eps);
             CHECK(std::fabs(particles.q_p * n / (s.charge * charge) - 1) <= 4 * eps);
             const Vector drift(s.drift_x, s.drift_y, s.drift_z),

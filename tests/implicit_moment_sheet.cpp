@@ -22,19 +22,19 @@ using Complex = std::complex<double>;
 
 // A sheet on a small mesh, looked at as the program does before it starts.
 Case thin_sheet(double temperature_ratio = 4, double drift = 1) {
-    Case wanted;
-    wanted.setup = "current_sheet";
-    wanted.grid.x.cells = 40, wanted.grid.z.cells = 90;
-    wanted.current_sheet.temperature_ratio = temperature_ratio;
-    wanted.current_sheet.drift = drift;
-    wanted.current_sheet.particles = 200000;
-    refuse_impossible(wanted);
-    return wanted;
+    Case parameters;
+    parameters.setup = "current_sheet";
+    parameters.grid.x.cells = 40, parameters.grid.z.cells = 90;
+    parameters.current_sheet.temperature_ratio = temperature_ratio;
+    parameters.current_sheet.drift = drift;
+    parameters.current_sheet.particles = 200000;
+    validate(parameters);
+    return parameters;
 }
 
-std::string refusal(Case wanted) {
+std::string refusal(Case parameters) {
     try {
-        refuse_impossible(wanted);
+        validate(parameters);
     } catch (const common::InputError& error) {
         return error.what();
     }
@@ -68,8 +68,8 @@ Run run(const std::string& name, const std::string& arguments) {
 TEST_CASE("a thin sheet has the half width of one gyroradius over its drift and is in balance") {
     for (const double ratio : {1.0, 2.0, 4.0, 10.0}) {
         for (const double drift : {0.5, 1.0, 2.0}) {
-            const Case wanted = thin_sheet(ratio, drift);
-            const HarrisCase h = harris_of(wanted);
+            const Case parameters = thin_sheet(ratio, drift);
+            const HarrisCase h = harris_of(parameters);
             const HarrisSheet sheet = harris_sheet(h);
             const double v_i = std::sqrt(2 * sheet.T_i), rho_i = v_i / sheet.Omega_ci;
             CHECK(std::fabs(h.thickness * drift / rho_i - 1) <= 8 * eps);
@@ -77,18 +77,18 @@ TEST_CASE("a thin sheet has the half width of one gyroradius over its drift and 
             CHECK(std::fabs(sheet.u_e / sheet.u_i * ratio + 1) <= 8 * eps);
             CHECK(std::fabs(n0 * (sheet.T_i + sheet.T_e) * 8 * pi / std::pow(sheet.B0, 2) - 1) <=
                   8 * eps);
-            CHECK(std::fabs(wanted.grid.x.length / h.thickness - 4) <= 16 * eps);
-            CHECK(std::fabs(wanted.grid.z.length / h.thickness - 9) <= 16 * eps);
+            CHECK(std::fabs(parameters.grid.x.length / h.thickness - 4) <= 16 * eps);
+            CHECK(std::fabs(parameters.grid.z.length / h.thickness - 9) <= 16 * eps);
         }
     }
 }
 
 TEST_CASE("the field of a thin sheet carries the current of its particles along x") {
-    const Case wanted = thin_sheet();
-    const Grid& grid = wanted.grid;
-    const HarrisCase h = harris_of(wanted);
+    const Case parameters = thin_sheet();
+    const Grid& grid = parameters.grid;
+    const HarrisCase h = harris_of(parameters);
     const double J0 = harris_sheet(h).B0 / (4 * pi * h.thickness);
-    const State state = initial_state(wanted);
+    const State state = initial_state(parameters);
     VectorField curl(grid);
     curl_of_magnetic(grid, state.field.B.all.data(), curl.all.data());
     const Moments ions = deposited(grid, state.plasma.species[0]),
@@ -114,12 +114,12 @@ TEST_CASE("the field of a thin sheet carries the current of its particles along 
 
 TEST_CASE("the particles of a thin sheet have its density and drifts and temperatures") {
     for (const char* loading : {"quiet", "random"}) {
-        Case wanted = thin_sheet();
-        wanted.loading = loading;
-        const Grid& grid = wanted.grid;
-        const HarrisCase h = harris_of(wanted);
+        Case parameters = thin_sheet();
+        parameters.loading = loading;
+        const Grid& grid = parameters.grid;
+        const HarrisCase h = harris_of(parameters);
         const HarrisSheet sheet = harris_sheet(h);
-        const State state = initial_state(wanted);
+        const State state = initial_state(parameters);
         for (const Particles& s : state.plasma.species) {
             const bool is_ions = s.q_p > 0;
             const double v_th = is_ions ? sheet.v_i : sheet.v_e;
@@ -141,7 +141,7 @@ TEST_CASE("the particles of a thin sheet have its density and drifts and tempera
         const Field rho = deposited(grid, state.plasma.species[0]).rho;
         for (long j = 1; j < grid.z.cells; ++j) {
             const double exact =
-                wanted.current_sheet.background +
+                parameters.current_sheet.background +
                 common::spline_average(
                     [&](double z) { return std::pow(std::cosh(z / h.thickness), -2); },
                     grid.z.at(real(j)), grid.z.spacing());
@@ -177,11 +177,11 @@ TEST_CASE("the amplitudes of waves along the current are found exactly") {
 }
 
 TEST_CASE("the displacement of a bent sheet is found to the cube of the row distance") {
-    Case wanted = thin_sheet();
-    const double L = harris_of(wanted).thickness;
+    Case parameters = thin_sheet();
+    const double L = harris_of(parameters).thickness;
     for (const long cells : {90L, 180L}) {
-        wanted.grid.z.cells = cells;
-        const Grid& grid = wanted.grid;
+        parameters.grid.z.cells = cells;
+        const Grid& grid = parameters.grid;
         Field B_y = Field::Zero(grid.size());
         const auto bend = [&](long i) {
             return 0.3 * L * std::cos(2 * pi * (real(i) + 0.5) / real(grid.x.cells) + 0.7);
@@ -199,7 +199,7 @@ TEST_CASE("the displacement of a bent sheet is found to the cube of the row dist
         CHECK(std::fabs(std::abs(RowModes(grid)(moved)[0]) / L - 0.3) <= 0.1 * dz * dz * dz);
     }
     // Where noise makes the field change sign three times, between the zeros.
-    const Grid& grid = wanted.grid;
+    const Grid& grid = parameters.grid;
     Field B_y = Field::Zero(grid.size());
     for (long j = 0; j < grid.z.cells; ++j) {
         const bool flipped = j == 100 || j == 79;
@@ -210,7 +210,7 @@ TEST_CASE("the displacement of a bent sheet is found to the cube of the row dist
 }
 
 TEST_CASE("growth rate and frequency and mode are read off a history that has them") {
-    const Case wanted = thin_sheet();
+    const Case parameters = thin_sheet();
     const std::string folder = room("sheet_history");
     common::History history(folder + "/history.dat");
     std::vector<common::Column> columns{{"time_Omega_ci", "1/Omega_ci"}};
@@ -232,7 +232,7 @@ TEST_CASE("growth rate and frequency and mode are read off a history that has th
         history.row(row);
     }
     common::Summary summary;
-    compare_current_sheet(wanted, history, summary);
+    compare_current_sheet(parameters, history, summary);
     history.flush();
     summary.write(folder + "/summary.json", {"implicit_moment", "1", "", ""}, "", 0, "done");
     const Run found = finished_run(folder);
@@ -246,38 +246,38 @@ TEST_CASE("growth rate and frequency and mode are read off a history that has th
 }
 
 TEST_CASE("lengths and meshes and speeds that a thin sheet cannot have are refused") {
-    Case wanted = thin_sheet();
-    CHECK(refusal(wanted).empty());  // the lengths that it computed itself
-    wanted.grid.x.length = 3;
-    CHECK(holds(refusal(wanted),
+    Case parameters = thin_sheet();
+    CHECK(refusal(parameters).empty());  // the lengths that it computed itself
+    parameters.grid.x.length = 3;
+    CHECK(holds(refusal(parameters),
                 "grid.length_x = 3 d_i, but current_sheet.length_x makes it 4 L = 3.578 d_i"));
-    wanted = thin_sheet();
-    wanted.grid.z.length = 12;
-    CHECK(
-        holds(refusal(wanted), "grid.length_z = 12 d_i, but current_sheet.length_z makes it 9 L"));
-    wanted = thin_sheet();
-    wanted.grid.x.cells = 32;
-    CHECK(holds(refusal(wanted), "grid.cells_x = 32: the first 16 modes"));
-    wanted = thin_sheet();
-    wanted.boundary_z = "periodic";
-    CHECK(holds(refusal(wanted), "the Harris sheet needs grid.boundary_x"));
-    wanted = thin_sheet();
-    wanted.current_sheet.light_over_alfven = 10;
-    CHECK(holds(refusal(wanted), "raise current_sheet.light_over_alfven above"));
-    wanted = thin_sheet();
-    wanted.wave = "light";
-    CHECK(holds(refusal(wanted), "theory.wave = \"light\" needs plasma.setup"));
+    parameters = thin_sheet();
+    parameters.grid.z.length = 12;
+    CHECK(holds(refusal(parameters),
+                "grid.length_z = 12 d_i, but current_sheet.length_z makes it 9 L"));
+    parameters = thin_sheet();
+    parameters.grid.x.cells = 32;
+    CHECK(holds(refusal(parameters), "grid.cells_x = 32: the first 16 modes"));
+    parameters = thin_sheet();
+    parameters.boundary_z = "periodic";
+    CHECK(holds(refusal(parameters), "the Harris sheet needs grid.boundary_x"));
+    parameters = thin_sheet();
+    parameters.current_sheet.light_over_alfven = 10;
+    CHECK(holds(refusal(parameters), "raise current_sheet.light_over_alfven above"));
+    parameters = thin_sheet();
+    parameters.wave = "light";
+    CHECK(holds(refusal(parameters), "theory.wave = \"light\" needs plasma.setup"));
 }
 
 TEST_CASE("waves of few cells and few particles are warned of") {
-    Case wanted = thin_sheet();
-    wanted.current_sheet.particles = 20000;
-    const auto warnings = sheet_warnings(wanted);
+    Case parameters = thin_sheet();
+    parameters.current_sheet.particles = 20000;
+    const auto warnings = sheet_warnings(parameters);
     REQUIRE(warnings.size() == 2);
     CHECK(holds(warnings[0], "are 5.027 cells long, and want 6: raise grid.cells_x to 48"));
     CHECK(holds(warnings[1], "raise current_sheet.particles"));
-    wanted.grid.x.cells = 48, wanted.current_sheet.particles = 800000;
-    CHECK(sheet_warnings(wanted).empty());
+    parameters.grid.x.cells = 48, parameters.current_sheet.particles = 800000;
+    CHECK(sheet_warnings(parameters).empty());
 }
 
 TEST_CASE("noise at the edges of a thin sheet grows in the modes that theory names" *

@@ -76,7 +76,7 @@ TEST_CASE("on approach alone grains meet before they touch" * doctest::descripti
 
 TEST_CASE("finer meshes rebound alike" * doctest::description("physics")) {
     for (const char* cells :
-         {"mesh.cells_x=24 mesh.cells_y=12", "mesh.cells_x=96 mesh.cells_y=48"}) {
+         {"grid.cells_x=24 grid.cells_y=12", "grid.cells_x=96 grid.cells_y=48"}) {
         const Run r = run("finer", "rebound", cells);
         CHECK(std::fabs(r.value("contact_begins") - 0.5) <= 0.02);
         CHECK(std::fabs(r.value("rebound") - 0.95) <= 0.04);
@@ -106,7 +106,7 @@ TEST_CASE("the colliding disks of Sulsky meet when their surfaces do" *
 TEST_CASE("a bar swings within one per cent of its period" * doctest::description("physics")) {
     check_results(run("bar", "vibrating_bar", ""), 2);
     check_results(
-        run("bar", "vibrating_bar", "grain.bar.mode=2 time.end=20 mesh.cells_x=40 mesh.cells_y=8"),
+        run("bar", "vibrating_bar", "grain.bar.mode=2 time.end=20 grid.cells_x=40 grid.cells_y=8"),
         2);
 }
 
@@ -116,8 +116,8 @@ TEST_CASE("a standing wave converges to second order" * doctest::description("ph
         for (const int cells : {16, 32, 64})
             error.push_back(run("wave", "standing_wave",
                                 std::string("method.shape=") + shape +
-                                    " mesh.cells_x=" + std::to_string(cells) +
-                                    " mesh.cells_y=" + std::to_string(cells / 4))
+                                    " grid.cells_x=" + std::to_string(cells) +
+                                    " grid.cells_y=" + std::to_string(cells / 4))
                                 .value("velocity_error"));
         CHECK(std::fabs(std::log2(error[0] / error[1]) - 2) <= 0.1);
         CHECK(std::fabs(std::log2(error[1] / error[2]) - 2) <= 0.1);
@@ -204,7 +204,7 @@ TEST_CASE("a disk that yields leaves slowly and its ledger closes" *
 }
 
 TEST_CASE("the compressed pack takes the work of its plate" * doctest::description("physics")) {
-    const Run r = run("compressed", "compressed", "mesh.cells_x=60 mesh.cells_y=52");
+    const Run r = run("compressed", "compressed", "grid.cells_x=60 grid.cells_y=52");
     check_budget(r);
     const double energy = r.column("energy").back(), work = r.column("external").back();
     CHECK(energy / work >= 0.9);

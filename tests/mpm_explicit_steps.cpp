@@ -1052,7 +1052,7 @@ TEST_CASE("a load rises smoothly from nothing to all") {
 
 TEST_CASE("a plate that is told a velocity rises to it and counts its way") {
     std::vector<RigidMotion> rigid(1);
-    rigid[0].wanted_vx = 2, rigid[0].wanted_vy = -1;
+    rigid[0].prescribed_vx = 2, rigid[0].prescribed_vy = -1;
     const double dt = 0.01;
     double way = 0;
     for (int step = 0; step < 100; ++step) {
@@ -1070,7 +1070,7 @@ TEST_CASE("loads are those of the middle of the step") {
     Case c = case_on(20, 20, 1);
     c.problem.gravity_x = 3, c.problem.gravity_y = -4, c.problem.damping = 0.7, c.problem.rise = 1;
     std::vector<RigidMotion> rigid(1);
-    rigid[0].wanted_vx = 2;
+    rigid[0].prescribed_vx = 2;
     for (const long step : {0L, 3L, 40L, 200L}) {
         const double dt = 0.02, share = share_of_load((real(step) + 0.5) * dt, 1);
         const BodyForce body = drive(c.problem, step, dt, rigid);
@@ -1090,7 +1090,7 @@ TEST_CASE("a servo reaches its force and never overshoots when it is overdamped"
             RigidMotion& is = rigid[0];
             (along_y ? is.servo_y : is.servo_x) = true;
             is.force = -3, is.mass = 2, is.damping = c;
-            is.wanted_vx = is.wanted_vy = 0;
+            is.prescribed_vx = is.prescribed_vy = 0;
             const double k = 50, dt = 0.01;
             double last = 0;
             bool back = false, beyond = false;

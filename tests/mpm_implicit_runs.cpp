@@ -23,11 +23,11 @@ Run run(const std::string& name, const std::string& file, const std::string& ove
 
 // The pack of mpm_explicit, from the same file, on a mesh so coarse that it takes a second.
 const std::string compressed =
-    "mpm_explicit/cases/compressed.toml mesh.cells_x=40 mesh.cells_y=34 "
+    "mpm_explicit/cases/compressed.toml grid.cells_x=40 grid.cells_y=34 "
     "theory.compare=compression";
 // Two disks that meet at t = 0.1, off their line of centers, on cells of 0.05.
 const std::string oblique =
-    "mpm_implicit/cases/rebound.toml mesh.cells_x=24 mesh.cells_y=12 grain.left.x=0.39 "
+    "mpm_implicit/cases/rebound.toml grid.cells_x=24 grid.cells_y=12 grain.left.x=0.39 "
     "grain.right.x=0.81 grain.left.y=0.35 theory.compare=none";
 
 void check_results(const Run& run, int at_least) { facts::check_results(run.summary, at_least); }
@@ -107,7 +107,7 @@ TEST_CASE("above theta one half what the energy lacks is what the theorem says" 
 
 TEST_CASE("the energy never grows however long the step" * doctest::description("physics")) {
     const std::string box =
-        " walls.x_low=slip walls.x_high=slip walls.y_low=slip walls.y_high=slip";
+        " boundary.x_low=slip boundary.x_high=slip boundary.y_low=slip boundary.y_high=slip";
     for (const char* mass : both_masses)
         for (const char* theta : {"0.5", "0.6", "1"})
             for (const auto& [alpha, end] :
@@ -149,7 +149,7 @@ TEST_CASE("conjugate gradients with an active set and Newton with Krylov agree" 
 
 TEST_CASE("both solvers drive a plate by the same force" * doctest::description("physics")) {
     const std::string plates =
-        "mesh.cells_x=20 mesh.cells_y=20 mesh.particles_per_side=2 load.rise=0.04 "
+        "grid.cells_x=20 grid.cells_y=20 grid.particles_per_side=2 load.rise=0.04 "
         "theory.compare=none method.theta=0.6 time.alpha=2 time.end=0.3";
     // A bond to the plate has no say before the step, or its work would be missing.
     for (const std::string bond : {"", " bond.glue.a=disk bond.glue.b=top"}) {
@@ -236,7 +236,7 @@ TEST_CASE("a disk between plates has the stress of the closed form" *
     // The servo holds the load.
     CHECK(std::fabs(r.value("load") / 237.5 - 1) <= 0.01);
     check_results(run("disk_gimp", "diametral_disk",
-                      "method.shape=gimp mesh.particles_per_side=3 time.alpha=8"),
+                      "method.shape=gimp grid.particles_per_side=3 time.alpha=8"),
                   5);
 }
 
@@ -265,8 +265,8 @@ TEST_CASE("a standing wave converges to second order in cells and steps together
     std::vector<double> error;
     for (const int cells : {32, 64, 128})
         error.push_back(run("wave", "standing_wave",
-                            "time.alpha=2 time.end=0.2045 mesh.cells_x=" + std::to_string(cells) +
-                                " mesh.cells_y=" + std::to_string(cells / 4))
+                            "time.alpha=2 time.end=0.2045 grid.cells_x=" + std::to_string(cells) +
+                                " grid.cells_y=" + std::to_string(cells / 4))
                             .value("velocity_error"));
     CHECK(std::fabs(std::log2(error[0] / error[1]) - 2) <= 0.15);
     CHECK(std::fabs(std::log2(error[1] / error[2]) - 2) <= 0.15);
@@ -282,7 +282,7 @@ TEST_CASE("one free node is the exact map of its scheme" * doctest::description(
                         run("node", "oscillator",
                             "time.end=" + std::to_string(12 * std::stod(alpha)) +
                                 " method.mass=" + mass + " method.theta=" + theta +
-                                " time.alpha=" + alpha + " mesh.particles_per_side=" + per_side);
+                                " time.alpha=" + alpha + " grid.particles_per_side=" + per_side);
                     check_theorem(r);
                     if (r.summary["results"].contains("overdamped")) continue;
                     check_results(r, 4);

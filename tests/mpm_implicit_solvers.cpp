@@ -740,7 +740,7 @@ TEST_CASE("impulses are found whose sum on every node is what is left of its equ
             pair.lambda_n = random(-1, 1), pair.lambda_t = random(-1, 1);
         std::vector<double> push(solver.servos.size());
         const Vector Hl = impulses_on(set, solver.scale(), push);
-        const ContactSet wanted = set;
+        const ContactSet parameters = set;
         for (MeetingPair& pair : set.pairs) pair.lambda_n = pair.lambda_t = 1e3;
         solver.constraints.find_impulses(-Hl, set);
         const Vector found = impulses_on(set, solver.scale(), push);
@@ -750,7 +750,7 @@ TEST_CASE("impulses are found whose sum on every node is what is left of its equ
             if (!pair.closed()) CHECK((pair.lambda_n == 0 && pair.lambda_t == 0));
             // Slip has the friction that it was given.
             if (pair.hold == Hold::slip) CHECK(pair.lambda_t == 1e3);
-            redundant += std::fabs(pair.lambda_n - wanted.pairs[k].lambda_n) > 1e-6;
+            redundant += std::fabs(pair.lambda_n - parameters.pairs[k].lambda_n) > 1e-6;
         }
     });
     CHECK(off <= 1e-11);
@@ -896,11 +896,11 @@ TEST_CASE("a step that is not solved ends the run with the reason") {
                         disk_at("right", 0.8, 0.32, 0.2, -0.1)};
     for (const char* solver : {"projected_cg", "newton_krylov"}) {
         ThetaScheme few = theta_scheme(0.5, "lumped", solver);
-        few.most_loops = 1;
+        few.max_outer_iterations = 1;
         ThetaRun run(c, few, [](Assembly& all) { shake(0.1, 1, all); });
         CHECK_THROWS_AS(run.advance(20), common::NumericalError);
         few = theta_scheme(0.5, "consistent", solver);
-        few.most_iterations = 1;
+        few.max_iterations = 1;
         ThetaRun again(c, few, [](Assembly& all) { shake(0.1, 1, all); });
         CHECK_THROWS_AS(again.advance(5), common::NumericalError);
     }

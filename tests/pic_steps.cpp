@@ -37,8 +37,8 @@ struct Run {
     Case w;
     PicCells cells;
     State state;
-    explicit Run(const Case& wanted)
-        : w(completed(wanted)), cells(w), state(initial_state(w, cells)) {}
+    explicit Run(const Case& parameters)
+        : w(completed(parameters)), cells(w), state(initial_state(w, cells)) {}
     double step() {
         share_pressure(w, state, cells);
         take_pic_step(w, state, cells);

@@ -28,9 +28,9 @@ const std::string plane =
     "[time]\nend = 2\n" +
     background + electrons;
 const std::string between_walls =
-    "[grid]\ncells_x = 16\nlength_x = 6\nboundary_x = \"walls\"\n[time]\nend = 2\n" + electrons +
+    "[grid]\ncells_x = 16\nlength_x = 6\nboundary_x = \"wall\"\n[time]\nend = 2\n" + electrons +
     "temperature_x = 1\n[species.ions]\ncharge = 1\nmass = 100\nparticles_per_cell = 8\n";
-const std::string box = " grid.boundary_x=walls grid.boundary_z=walls";
+const std::string box = " grid.boundary_x=wall grid.boundary_z=wall";
 
 std::string shipped(const std::string& name) { return read_all("cic/cases/" + name + ".toml"); }
 
@@ -40,8 +40,8 @@ TEST_CASE("a mesh or a time step that cannot run is refused" * doctest::descript
     check_refused({
         {"columns in one dimension", line, "grid.cells_z=8",
          "grid.cells_z = 8 needs grid.dimensions = 2"},
-        {"walls in z in one dimension", line, "grid.boundary_z=walls",
-         "grid.boundary_z = \"walls\" needs grid.dimensions = 2"},
+        {"walls in z in one dimension", line, "grid.boundary_z=wall",
+         "grid.boundary_z = \"wall\" needs grid.dimensions = 2"},
         {"one row in the plane", plane, "grid.cells_z=1",
          "grid.dimensions = 2 needs grid.cells_z of at least 2"},
         {"one column", plane, "grid.cells_x=1",
@@ -80,7 +80,7 @@ TEST_CASE("numbers whose products leave double precision are refused with the nu
     std::vector<Row> rows;
     for (const std::string name :
          {"grid.length_x", "time.dt", "plasma.B_x", "plasma.B_y", "plasma.B_z",
-          "walls.potential_x_high", "output.phase_v_max", "species.electrons.density",
+          "boundary.potential_x_high", "output.phase_v_max", "species.electrons.density",
           "species.electrons.charge", "species.electrons.mass", "species.electrons.drift_x",
           "species.electrons.drift_y", "species.electrons.drift_z",
           "species.electrons.temperature_x", "species.electrons.temperature_y",
@@ -114,7 +114,7 @@ TEST_CASE("a plasma that is not one is refused with its charge or its number of 
         {"too many ions in the plane", plane, "species.ions.density=3",
          "or add a fixed species with density 2 and charge -1"},
         {"ions between floating walls", between_walls,
-         "walls.x_low=floating walls.x_high=floating species.ions.density=1.5",
+         "boundary.x_low=floating boundary.x_high=floating species.ions.density=1.5",
          "the plasma is not neutral: its charge is 3, 20 % of the sum of all charges"},
         {"one particle", plane,
          "species.electrons.profile=point species.electrons.density=36 "
@@ -213,37 +213,38 @@ TEST_CASE("species that cannot be loaded are refused with the cure" *
         {"wave deeper than the plasma", line, "species.electrons.amplitude=1",
          "'species.electrons.amplitude' = 1 is out of range; allowed: -0.9 ... 0.9"},
         {"oblique wave between walls", plane,
-         "species.electrons.amplitude=0.1 species.electrons.mode_z=1 grid.boundary_z=walls",
+         "species.electrons.amplitude=0.1 species.electrons.mode_z=1 grid.boundary_z=wall",
          "species.electrons: mode (1, 1) would push particles through the walls: set mode_x or "
          "mode_z to 0"},
     });
 }
 
 TEST_CASE("walls that do not fit are refused with the cure" * doctest::description("robust")) {
-    const std::string source = " walls.particles_x_low=source";
+    const std::string source = " boundary.particles_x_low=source";
     check_refused({
-        {"potential without a wall", line, "walls.potential_x_high=1",
-         "there is no wall at x_high: set grid.boundary_x = \"walls\", or take out walls.x_high, "
-         "walls.potential_x_high and walls.particles_x_high"},
-        {"floating without a wall", plane, "walls.z_low=floating",
-         "there is no wall at z_low: set grid.boundary_z = \"walls\""},
-        {"mirror without a wall", plane, "walls.particles_z_high=reflect",
-         "there is no wall at z_high: set grid.boundary_z = \"walls\""},
-        {"source at the wrong end", between_walls, "walls.particles_x_high=source",
-         "'walls.particles_x_high' = \"source\" is not one of \"absorb\", \"reflect\""},
+        {"potential without a wall", line, "boundary.potential_x_high=1",
+         "there is no wall at x_high: set grid.boundary_x = \"wall\", or take out boundary.x_high, "
+         "boundary.potential_x_high and boundary.particles_x_high"},
+        {"floating without a wall", plane, "boundary.z_low=floating",
+         "there is no wall at z_low: set grid.boundary_z = \"wall\""},
+        {"mirror without a wall", plane, "boundary.particles_z_high=reflect",
+         "there is no wall at z_high: set grid.boundary_z = \"wall\""},
+        {"source at the wrong end", between_walls, "boundary.particles_x_high=source",
+         "'boundary.particles_x_high' = \"source\" is not one of \"absorb\", \"reflect\""},
         {"potential of a floating wall", between_walls,
-         "walls.x_high=floating walls.potential_x_high=-5",
-         "walls.potential_x_high = -5 belongs to a grounded wall; the charge of a floating one "
-         "finds its own: take it out, or set walls.x_high = \"grounded\""},
+         "boundary.x_high=floating boundary.potential_x_high=-5",
+         "boundary.potential_x_high = -5 belongs to a grounded wall; the charge of a floating one "
+         "finds its own: take it out, or set boundary.x_high = \"grounded\""},
         {"floating wall with the sign of the slide", between_walls,
-         "walls.x_low=floating gauss.sign=-1",
-         "gauss.sign = -1 is not for floating walls: set walls.x_low = \"grounded\""},
-        {"floating wall of a box", plane, "walls.z_low=floating" + box,
+         "boundary.x_low=floating gauss.sign=-1",
+         "gauss.sign = -1 is not for floating walls: set boundary.x_low = \"grounded\""},
+        {"floating wall of a box", plane, "boundary.z_low=floating" + box,
          "floating walls that meet grounded ones at a corner are not supported: make all walls "
          "grounded, or one direction periodic"},
         {"emission without a source", between_walls, "species.electrons.emission=1",
-         "species.electrons.emission needs walls.particles_x_low = \"source\" and grid.boundary_x "
-         "= \"walls\""},
+         "species.electrons.emission needs boundary.particles_x_low = \"source\" and "
+         "grid.boundary_x "
+         "= \"wall\""},
         {"endless emission", between_walls, "species.electrons.emission=1e9" + source,
          "species.electrons.emission = 1e+09 is 2.133e+09 particles in a step, more than 1e6: "
          "lower it, or raise density, which makes them heavier"},
@@ -329,7 +330,7 @@ TEST_CASE("theories are refused where they do not hold" * doctest::description("
          "species.electrons.wave = \"traveling\" with a magnetic field is for cold species"},
         {"diocotron without a layer", plane, "theory.compare=diocotron", layer},
         {"diocotron with ions", shipped("diocotron"), "species.ions.motion=fixed", layer},
-        {"diocotron in a box", shipped("diocotron"), "grid.boundary_x=walls", layer},
+        {"diocotron in a box", shipped("diocotron"), "grid.boundary_x=wall", layer},
         {"diocotron in an oblique field", shipped("diocotron"), "plasma.B_x=1", layer},
         {"diocotron with the sign of the slide", shipped("diocotron"), "gauss.sign=-1",
          "theory.compare = \"diocotron\" is for gauss.sign = 1"},
@@ -338,17 +339,18 @@ TEST_CASE("theories are refused where they do not hold" * doctest::description("
         {"diocotron across the layer", shipped("diocotron"), "theory.mode_z=1",
          "theory.compare = \"diocotron\" follows theory.mode_x, and not mode (1, 1)"},
         {"layer aside", shipped("diocotron"), "species.electrons.center_z=7", between},
-        {"layer beside a floating wall", shipped("diocotron"), "walls.z_high=floating", between},
-        {"layer between two potentials", shipped("diocotron"), "walls.potential_z_low=1", between},
+        {"layer beside a floating wall", shipped("diocotron"), "boundary.z_high=floating", between},
+        {"layer between two potentials", shipped("diocotron"), "boundary.potential_z_low=1",
+         between},
         {"thick layer", shipped("diocotron"), "species.electrons.half_width=5",
          "theory.compare = \"diocotron\": mode 1 of a layer of half_width 5 and charge -1 does not "
          "grow: make it thinner, or change theory.mode_x"},
         {"sheath without walls", line, "theory.compare=sheath", source},
         {"sheath without a source", shipped("sheath"),
-         "walls.particles_x_low=absorb species.electrons.emission=0 species.ions.emission=0",
+         "boundary.particles_x_low=absorb species.electrons.emission=0 species.ions.emission=0",
          source},
-        {"sheath at a grounded wall", shipped("sheath"), "walls.x_high=grounded", source},
-        {"sheath at a mirror", shipped("sheath"), "walls.particles_x_high=reflect", source},
+        {"sheath at a grounded wall", shipped("sheath"), "boundary.x_high=grounded", source},
+        {"sheath at a mirror", shipped("sheath"), "boundary.particles_x_high=reflect", source},
         {"sheath in a field", shipped("sheath"), "plasma.B_y=1", source},
         {"sheath of uneven emission", shipped("sheath"), "species.ions.emission=0.1", pair},
         {"sheath of doubly charged ions", shipped("sheath"),
@@ -363,7 +365,7 @@ TEST_CASE("theories are refused where they do not hold" * doctest::description("
         {"clouds on a line", line, "theory.compare=clouds", points},
         {"clouds and a third species", shipped("cloud_collision"),
          "species.ions.motion=fixed species.ions.charge=0", points},
-        {"clouds between walls", shipped("cloud_collision"), "grid.boundary_z=walls", points},
+        {"clouds between walls", shipped("cloud_collision"), "grid.boundary_z=wall", points},
         {"clouds with the energy scheme", shipped("cloud_collision"), "method.scheme=energy",
          points},
         {"clouds with the nine-point stencil", shipped("cloud_collision"),
@@ -405,8 +407,8 @@ TEST_CASE("a restart of cic keeps what its checkpoint says" * doctest::descripti
     check_refused({unchangeable("time.dt", "0.2"),
                    unchangeable("method.weighting", "tsc"),
                    unchangeable("output.modes", "4"),
-                   unchangeable("grid.boundary_x", "walls"),
-                   unchangeable("walls.x_low", "floating"),
+                   unchangeable("grid.boundary_x", "wall"),
+                   unchangeable("boundary.x_low", "floating"),
                    unchangeable("theory.compare", "wave"),
                    unchangeable("species.electrons.charge", "2"),
                    unchangeable("species.beam.density", "1"),
@@ -425,7 +427,7 @@ TEST_CASE("help of cic lists every parameter with unit and range and default" *
     CHECK(units["grid.length_x"] == "length");
     CHECK(units["time.dt"] == "1/omega_p");
     CHECK(units["plasma.B_y"] == "m omega_p/e");
-    CHECK(units["walls.potential_x_low"] == "m velocity^2/e");
+    CHECK(units["boundary.potential_x_low"] == "m velocity^2/e");
     CHECK(units["theory.near"] == "omega_p");
     CHECK(units["species.<name>.density"] == "n0");
     CHECK(units["species.<name>.temperature_x"] == "m velocity^2");
@@ -500,8 +502,8 @@ TEST_CASE("what may mislead in cic is a warning with the number and the limit" *
                    {"warning: output.fields_interval = 0.01 is below time.dt = 0.1: files are "
                     "written every step\n",
                     "warning: output.phase_interval = 0.05 is below time.dt = 0.1"});
-    check_warnings("source of nothing", between_walls, "walls.particles_x_low=source",
-                   {"warning: walls.particles_x_low = \"source\", and every emission is 0: the "
+    check_warnings("source of nothing", between_walls, "boundary.particles_x_low=source",
+                   {"warning: boundary.particles_x_low = \"source\", and every emission is 0: the "
                     "wall only gives back what reaches it, with emission_temperature\n"});
     check_warnings("slow wave", line, "theory.compare=wave species.electrons.amplitude=0.01",
                    {"warning: the wave of theory has the period 6.283, longer than time.end = 2: "
@@ -537,15 +539,15 @@ TEST_CASE("a case at the edge of what cic takes ends with status 0" *
     check(line,
           "gauss.sign=-1 time.energy_limit=0 time.dt=1e10 time.end=1e12 "
           "species.electrons.amplitude=0.1");
-    check(between_walls, "walls.x_low=floating walls.x_high=floating");
-    check(between_walls, "grid.cells_x=2 walls.potential_x_high=100 walls.x_low=floating");
+    check(between_walls, "boundary.x_low=floating boundary.x_high=floating");
+    check(between_walls, "grid.cells_x=2 boundary.potential_x_high=100 boundary.x_low=floating");
     // The last of the electrons is absorbed before new ones come.
     check(plane,
-          "grid.boundary_x=walls walls.particles_x_low=source walls.potential_x_low=-1e6 "
+          "grid.boundary_x=wall boundary.particles_x_low=source boundary.potential_x_low=-1e6 "
           "species.electrons.emission=0.5 plasma.B_y=0.1");
     // In a corner a particle meets the source and another wall in the same step.
     check(plane,
-          "walls.particles_x_low=source time.dt=0.4 time.end=20 species.electrons.emission=1 "
+          "boundary.particles_x_low=source time.dt=0.4 time.end=20 species.electrons.emission=1 "
           "species.electrons.temperature_x=30 species.electrons.temperature_z=30" +
               box);
     const std::string edge =
@@ -557,8 +559,8 @@ TEST_CASE("a case at the edge of what cic takes ends with status 0" *
     check(plane, edge + box);
     for (const std::string weighting : {"ngp", "cic", "tsc"})
         for (const std::string scheme : {"momentum", "energy"})
-            for (const std::string ends : {"", " grid.boundary_x=walls", " grid.boundary_z=walls",
-                                           " grid.boundary_x=walls grid.boundary_z=walls"}) {
+            for (const std::string ends : {"", " grid.boundary_x=wall", " grid.boundary_z=wall",
+                                           " grid.boundary_x=wall grid.boundary_z=wall"}) {
                 if (weighting == "ngp" && scheme == "energy") continue;
                 check(plane,
                       "grid.cells_x=3 grid.cells_z=3 method.stencil=nine_point time.end=10 "

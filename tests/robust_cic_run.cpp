@@ -38,8 +38,9 @@ const std::string layer =
 // A magnetized box with a source, an absorbing wall and two mirrors.
 const std::string box =
     plane +
-    " theory.compare=none grid.boundary_x=walls grid.boundary_z=walls walls.potential_x_high=1 "
-    "walls.particles_x_low=source walls.particles_z_low=reflect walls.particles_z_high=reflect "
+    " theory.compare=none grid.boundary_x=wall grid.boundary_z=wall boundary.potential_x_high=1 "
+    "boundary.particles_x_low=source boundary.particles_z_low=reflect "
+    "boundary.particles_z_high=reflect "
     "plasma.B_y=0.2 species.right.amplitude=0 species.left.amplitude=0 "
     "species.right.emission=0.3 species.left.emission=0.1";
 
@@ -124,8 +125,8 @@ TEST_CASE("a signal stops cic after a checkpoint from which it can go on" *
 TEST_CASE("a checkpoint of another program or of nothing is refused by cic" *
           doctest::description("robust")) {
     const std::string file = room() + "/foreign.bin", out = folder("foreign");
-    const auto refused = [&](const common::About& about, const std::string& reason) {
-        common::CheckpointWriter(about, "").write(file);
+    const auto refused = [&](const common::ProgramInfo& info, const std::string& reason) {
+        common::CheckpointWriter(info, "").write(file);
         CHECK(run(" --restart " + file, out) == 2);
         INFO(said(out));
         CHECK(holds(said(out), reason));
@@ -142,7 +143,7 @@ TEST_CASE("a run of cic that blows up says when and leaves a summary" *
         "species.electrons.temperature_x=0.1 species.electrons.particles_per_cell=100",
         ": reduce time.dt, refine the mesh, or allow more with time.energy_limit");
     // From mirror to mirror and beyond.
-    check_failure(box + " walls.potential_z_high=1e9",
+    check_failure(box + " boundary.potential_z_high=1e9",
                   "a particle moves farther than the box in one step, at step");
 }
 

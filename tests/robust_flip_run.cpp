@@ -21,9 +21,11 @@ const std::string implicit = " viscosity.linear=0 viscosity.quadratic=0 flip.pre
 const std::string vortex =
     " flip/cases/gresho.toml grid.cells_x=12 grid.cells_z=12 time.end=0.3 "
     "region.gas.pressure=70.92857142857143";
-const std::string rezoned = " rezone.steps=5 rezone.fewest=5 rezone.most=10",
-                  vortex_rezoned =
-                      vortex + " flip.density=cells rezone.steps=5 rezone.fewest=10 rezone.most=20";
+const std::string
+    rezoned = " rezone.steps=5 rezone.min_particles=5 rezone.max_particles=10",
+    vortex_rezoned =
+        vortex +
+        " flip.density=cells rezone.steps=5 rezone.min_particles=10 rezone.max_particles=20";
 const std::string held =
     layers +
     " boundary.z_low=no_slip boundary.z_high=no_slip boundary.slide_z_high=0.5 "
@@ -128,10 +130,10 @@ TEST_CASE("a run of flip that fails says what and where and when" *
         over(disk, "theory.compare=none gravity.x=100 boundary.x_low=slip boundary.x_high=slip"),
         "a particle has gone through the wall to x = NUMBER, z = NUMBER at t = NUMBER: "
         "reduce time.cfl \\(in step NUMBER\\)");
-    check_sentence(vortex + " flip.most_iterations=1",
+    check_sentence(vortex + " flip.max_iterations=1",
                    "the implicit pressure has not converged: the limit of iterations is reached; "
                    "after 1 iterations the residual is NUMBER and not NUMBER; raise "
-                   "flip.most_iterations or reduce time.cfl \\(in "
+                   "flip.max_iterations or reduce time.cfl \\(in "
                    "step 0\\)");
     check_sentence(tube + " time.energy_limit=0.99",
                    "the energy is NUMBER where the start and the work done are NUMBER, at step 0, "

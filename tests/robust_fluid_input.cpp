@@ -33,7 +33,7 @@ Case made(const std::string& text, const std::string& over) {
     for (const std::string& part : parts)
         for (const common::Setting& setting : common::read_case(part, "case.toml"))
             table.set(setting);
-    refuse_idle(w);
+    reject_unused(w);
     return completed(w);
 }
 
@@ -46,7 +46,7 @@ void check_refused(const std::vector<Row>& rows) {
     for (const Row& row : rows) {
         std::string message = "(nothing is refused)";
         try {
-            refuse_impossible(made(row.text, row.over), row.program);
+            validate(made(row.text, row.over), row.program);
         } catch (const common::InputError& error) {
             message = error.what();
         }
@@ -61,7 +61,7 @@ void check_accepted(const std::string& label, const std::string& text, const std
                     const std::string& program = "flip") {
     INFO(label);
     const Case w = made(text, over);
-    CHECK_NOTHROW(refuse_impossible(w, program));
+    CHECK_NOTHROW(validate(w, program));
     const Scales scales = scales_of(w, program);
     CHECK(std::isfinite(scales.steps));
     CHECK(std::isfinite(scales.bytes));
@@ -74,7 +74,7 @@ void check_accepted(const std::string& label, const std::string& text, const std
 void check_warnings(const std::string& label, const std::string& text, const std::string& over,
                     const std::vector<std::string>& expected, const std::string& program = "flip") {
     const Case w = made(text, over);
-    refuse_impossible(w, program);
+    validate(w, program);
     const std::vector<std::string> warnings =
         resolution_warnings(w, scales_of(w, program), program);
     std::string all;
@@ -251,9 +251,11 @@ TEST_CASE("what a method ignores is refused with what it needs" * doctest::descr
          "flip.xpic_order = 3 needs flip.transfer = \"xpic\""},
         {"theta of the explicit pressure", tube, "flip.theta = 0.6",
          "flip.theta = 0.6 needs flip.pressure = \"implicit\""},
-        {"rezoning never", tube, "rezone.most = 40", "rezone.most = 40 needs rezone.steps above 0"},
-        {"rezoning to and fro", tube, "rezone.steps = 1\nrezone.fewest = 8\nrezone.most = 15",
-         "rezone.most = 15 is below twice rezone.fewest = 8"},
+        {"rezoning never", tube, "rezone.max_particles = 40",
+         "rezone.max_particles = 40 needs rezone.steps above 0"},
+        {"rezoning to and fro", tube,
+         "rezone.steps = 1\nrezone.min_particles = 8\nrezone.max_particles = 15",
+         "rezone.max_particles = 15 is below twice rezone.min_particles = 8"},
         {"consistent and implicit", tube,
          "flip.mass = \"consistent\"\nflip.pressure = \"implicit\"",
          "flip.mass = \"consistent\" and flip.pressure = \"implicit\" do not go together"},
@@ -450,8 +452,8 @@ TEST_CASE("what may mislead in a fluid is a warning with the number and the limi
     check_warnings("few particles", tube, "particles.per_cell_x = 2\nparticles.per_cell_z = 1",
                    {"2 particles per cell are fewer than 4: a particle that leaves a cell takes 50 "
                     "% of its density along"});
-    check_warnings("crowd", tube, "rezone.steps = 5\nrezone.most = 12",
-                   {"rezone.most = 12 is below the 16 particles per cell of the start"});
+    check_warnings("crowd", tube, "rezone.steps = 5\nrezone.max_particles = 12",
+                   {"rezone.max_particles = 12 is below the 16 particles per cell of the start"});
     check_warnings("region that is lost", tube + "[region.drop]\nshape = \"disk\"\nradius = 1e-6\n",
                    "", {"region.drop contains no particle"});
     check_warnings("material that is nowhere", tube, "[material.a]\n[material.b]",
@@ -473,7 +475,7 @@ TEST_CASE("a dry run of a fluid shows scales and theory and memory and time" *
     const auto description = [](const std::string& text, const std::string& over,
                                 const std::string& program) {
         const Case w = made(text, over);
-        refuse_impossible(w, program);
+        validate(w, program);
         return describe_scales(w, scales_of(w, program), program);
     };
     const std::string tube_text =
@@ -545,6 +547,6 @@ TEST_CASE("every shipped fluid case passes" * doctest::description("robust")) {
         const std::string path = entry.path().string();
         INFO(path);
         const Case w = made(common::read_file(path), "");
-        CHECK_NOTHROW(refuse_impossible(w, "flip"));
+        CHECK_NOTHROW(validate(w, "flip"));
     }
 }

@@ -23,13 +23,13 @@ using namespace facts;
 const std::string newton = " solver.kind=newton_krylov";
 // Two disks that meet at t = 0.1, off their line of centers, and rub on each other to the end.
 const std::string rebound =
-    " mpm_implicit/cases/rebound.toml theory.compare=none mesh.cells_x=24 mesh.cells_y=12 "
+    " mpm_implicit/cases/rebound.toml theory.compare=none grid.cells_x=24 grid.cells_y=12 "
     "grain.left.x=0.39 grain.left.y=0.35 grain.left.velocity_y=0.1 grain.right.x=0.81 "
     "contact.friction=0.2 time.end=0.3";
 const std::string no_files = " output.particles_interval=0 output.fringes_interval=0";
 // Grains between rough plates, on a periodic mesh whose ends they cross, with sorts in between.
 const std::string shear =
-    " mpm_explicit/cases/shear.toml output.history_steps=1 mesh.cells_x=25 mesh.cells_y=23 "
+    " mpm_explicit/cases/shear.toml output.history_steps=1 grid.cells_x=25 grid.cells_y=23 "
     "time.alpha=1 output.pixels_per_cell=1 pack.top.velocity_x=2 pack.disk.shear_rate=2.8 "
     "material.default.E=1e6 time.end=0.04" +
     no_files;
@@ -39,12 +39,12 @@ const std::string bonded =
     "time.end=6";
 // A disk between two plates, of which a force drives one.
 const std::string press =
-    " mpm_implicit/cases/diametral_disk.toml theory.compare=none mesh.cells_x=20 mesh.cells_y=20 "
-    "mesh.particles_per_side=2 load.rise=0.04 time.end=0.4" +
+    " mpm_implicit/cases/diametral_disk.toml theory.compare=none grid.cells_x=20 grid.cells_y=20 "
+    "grid.particles_per_side=2 load.rise=0.04 time.end=0.4" +
     no_files;
 // A disk that yields at a wall.
 const std::string yielding =
-    " mpm_implicit/cases/yielding_disk.toml theory.compare=none mesh.cells_x=12 mesh.cells_y=12 "
+    " mpm_implicit/cases/yielding_disk.toml theory.compare=none grid.cells_x=12 grid.cells_y=12 "
     "grain.disk.x=0.22 time.end=0.4";
 const std::string wave = " mpm_implicit/cases/standing_wave.toml theory.compare=none time.alpha=1";
 
@@ -146,7 +146,7 @@ TEST_CASE("a signal stops mpm_implicit after a checkpoint from which it can go o
         return alpha * h / (std::sqrt(0.7 / (1.3 * 0.4) * E / 1000) + v);
     };
     const std::string slow_shear =
-        " mpm_explicit/cases/shear.toml output.history_steps=1 mesh.cells_x=25 mesh.cells_y=23 "
+        " mpm_explicit/cases/shear.toml output.history_steps=1 grid.cells_x=25 grid.cells_y=23 "
         "output.pixels_per_cell=1 time.alpha=1";
     check_interruption(slow_shear, dt(1, 0.04, 1e5, 0.2), SIGINT, 130);
     check_interruption(wave, dt(1, 1.0 / 32, 1e4, 1e-4), SIGTERM, 143);
@@ -182,20 +182,22 @@ TEST_CASE("what cannot change on a restart of mpm_implicit is refused" *
 TEST_CASE("a solver of mpm_implicit that does not get there says with whom and how far it was" *
           doctest::description("robust")) {
     const std::string pair = "grain 'left' and grain 'right'", lumped = " method.mass=lumped";
-    check_failure(rebound + " solver.most_iterations=1",
+    check_failure(rebound + " solver.max_iterations=1",
                   "the velocities of the nodes are not found in 1 iterations: residual ");
     check_failure(
-        rebound + newton + " solver.most_iterations=1",
+        rebound + newton + " solver.max_iterations=1",
         "the velocities of the nodes before the step are not found in 1 iterations: residual ");
-    check_failure(rebound + lumped + " solver.most_iterations=1 solver.preconditioner=diagonal",
+    check_failure(rebound + lumped + " solver.max_iterations=1 solver.preconditioner=diagonal",
                   "the velocities of the nodes are not found in 1 iterations: residual ");
-    check_failure(rebound + " solver.most_loops=1", "contact did not settle in 1 loops: " + pair);
-    check_failure(rebound + " solver.most_loops=1",
-                  "reduce time.alpha, or raise solver.most_loops");
-    check_failure(rebound + newton + " solver.most_loops=1",
+    check_failure(rebound + " solver.max_outer_iterations=1",
+                  "contact did not settle in 1 loops: " + pair);
+    check_failure(rebound + " solver.max_outer_iterations=1",
+                  "reduce time.alpha, or raise solver.max_outer_iterations");
+    check_failure(rebound + newton + " solver.max_outer_iterations=1",
                   "Newton's iteration did not converge: ");
-    check_failure(rebound + newton + " solver.most_loops=1", "hardest pressed are " + pair);
-    check_failure(rebound + newton + " solver.most_loops=1", "residual ");
+    check_failure(rebound + newton + " solver.max_outer_iterations=1",
+                  "hardest pressed are " + pair);
+    check_failure(rebound + newton + " solver.max_outer_iterations=1", "residual ");
 }
 
 TEST_CASE("a grain of mpm_implicit that leaves the mesh is named with place and time" *
@@ -231,12 +233,12 @@ TEST_CASE("schemes and solvers of mpm_implicit that do not go together are refus
          "'solver.tolerance' = 0 is out of range; allowed: 1e-15 ... 0.001"},
         {"coarse tolerance", disks, "solver.tolerance=0.1",
          "'solver.tolerance' = 0.1 is out of range; allowed: 1e-15 ... 0.001"},
-        {"no iteration", disks, "solver.most_iterations=0",
-         "'solver.most_iterations' = 0 is out of range; allowed: 1 ... 1e+06"},
-        {"no loop", disks, "solver.most_loops=0",
-         "'solver.most_loops' = 0 is out of range; allowed: 1 ... 1000"},
-        {"half a loop", disks, "solver.most_loops=1.5",
-         "'solver.most_loops' takes a whole number, not 1.5"},
+        {"no iteration", disks, "solver.max_iterations=0",
+         "'solver.max_iterations' = 0 is out of range; allowed: 1 ... 1e+06"},
+        {"no loop", disks, "solver.max_outer_iterations=0",
+         "'solver.max_outer_iterations' = 0 is out of range; allowed: 1 ... 1000"},
+        {"half a loop", disks, "solver.max_outer_iterations=1.5",
+         "'solver.max_outer_iterations' takes a whole number, not 1.5"},
         {"plastic disks and cg", disks, "material.default.law=j2",
          "[material.default] can yield, and solver.kind = \"projected_cg\" is for elastic grains: "
          "set solver.kind = \"newton_krylov\""},
@@ -248,8 +250,8 @@ TEST_CASE("schemes and solvers of mpm_implicit that do not go together are refus
         {"damping of a lumped bar", bar, "method.mass=lumped",
          "theory.compare = \"bar\" knows the damping of the consistent mass matrix only: set "
          "method.mass = \"consistent\", or compare with \"oscillator\""},
-        {"oscillator of many cells", shipped("oscillator"), "mesh.cells_x=4 mesh.cells_y=4",
-         "theory.compare = \"oscillator\" needs mesh.cells_x = 2, method.frozen = true, and linear "
+        {"oscillator of many cells", shipped("oscillator"), "grid.cells_x=4 grid.cells_y=4",
+         "theory.compare = \"oscillator\" needs grid.cells_x = 2, method.frozen = true, and linear "
          "FLIP"},
         {"collapse", disks, "theory.compare=collapse",
          "'theory.compare' = \"collapse\" is not one of"},
@@ -281,7 +283,7 @@ TEST_CASE("schemes and solvers of mpm_implicit that do not go together are refus
 TEST_CASE("what may mislead in mpm_implicit is a warning with the number and the limit" *
           doctest::description("robust")) {
     const std::string disks = shipped("rebound");
-    const std::string one = "mesh.particles_per_side=1 contact.separation=1.07 ";
+    const std::string one = "grid.particles_per_side=1 contact.separation=1.07 ";
     check_warnings("no warning", disks, "", {});
     check_warnings("no warning of long steps", disks, "time.alpha=15 time.end=6", {});
     check_warnings("steps across surfaces", disks,
@@ -294,7 +296,7 @@ TEST_CASE("what may mislead in mpm_implicit is a warning with the number and the
                    {"warning: method.flip = 0.9 is below 1: [MPM-13] is for FLIP, and the column "
                     "pic takes the rest\n"});
     check_warnings("one particle", disks, one,
-                   {"warning: mesh.particles_per_side = 1 with the consistent mass matrix, which "
+                   {"warning: grid.particles_per_side = 1 with the consistent mass matrix, which "
                     "is then nearly singular: take 2, or method.mass = \"lumped\"\n"});
     check_warnings("one particle and lumped mass", disks, one + "method.mass=lumped", {});
 }
@@ -348,8 +350,8 @@ TEST_CASE("a case at the edge of what mpm_implicit takes ends with status 0" *
     for (const std::string& solver : {std::string(), newton}) {
         check(disks, "time.end=0" + solver);
         check(disks, "time.alpha=1e30" + solver);
-        check(disks, "time.end=0.1 mesh.particles_per_side=1" + solver);
-        check(disks, "time.end=0.1 mesh.particles_per_side=8 method.shape=quadratic" + solver);
+        check(disks, "time.end=0.1 grid.particles_per_side=1" + solver);
+        check(disks, "time.end=0.1 grid.particles_per_side=8 method.shape=quadratic" + solver);
         check(disks, "grain.left.velocity_x=0 grain.right.velocity_x=0 time.end=0.1" + solver);
         // The smallest mesh, full, with every kind of wall.
         for (const std::string wall : {"slip", "stick", "frictional"})
@@ -358,8 +360,8 @@ TEST_CASE("a case at the edge of what mpm_implicit takes ends with status 0" *
                     "[mesh]\ncells_x = 2\ncells_y = 2\nlength_x = 0.8\n[time]\nend = 0.1\n"
                     "[grain.body]\nshape = \"box\"\nx = 0.4\ny = 0.4\nwidth = 0.8\n"
                     "height = 0.8\n",
-                    "load.gravity_y=-1e-3 method.shape=" + shape + " walls.x_low=" + wall +
-                        " walls.x_high=" + wall + " walls.y_low=" + wall + " walls.y_high=" + wall +
-                        solver);
+                    "load.gravity_y=-1e-3 method.shape=" + shape + " boundary.x_low=" + wall +
+                        " boundary.x_high=" + wall + " boundary.y_low=" + wall +
+                        " boundary.y_high=" + wall + solver);
     }
 }

@@ -26,7 +26,7 @@ const std::string left = "[grain.left]\nx = 0.35\ny = 0.3\nradius = 0.2\nvelocit
                   right = "[grain.right]\nx = 0.85\ny = 0.3\nradius = 0.2\nvelocity_x = -0.1\n";
 const std::string disks = mesh + end + left + right;
 const std::string around = disks + "[walls]\n[contact]\n";
-const std::string periodic = "mesh.periodic_x=true ";
+const std::string periodic = "grid.periodic_x=true ";
 const std::string plate = "shape = \"box\"\nwidth = 1\nheight = 0.1\nmaterial = \"plate\"\n";
 const std::string plates = mesh + end +
                            "[material.plate]\nlaw = \"rigid\"\n[grain.disk]\nx = 0.6\ny = 0.3\n"
@@ -36,7 +36,8 @@ const std::string plates = mesh + end +
 const std::string body =
     "[mesh]\ncells_x = 8\ncells_y = 4\nlength_x = 0.8\n[time]\nend = 0.1\n[grain.body]\n"
     "shape = \"box\"\nx = 0.4\ny = 0.2\nwidth = 0.8\nheight = 0.4\n";
-const std::string slip = "walls.x_low=slip walls.x_high=slip walls.y_low=slip walls.y_high=slip ";
+const std::string slip =
+    "boundary.x_low=slip boundary.x_high=slip boundary.y_low=slip boundary.y_high=slip ";
 
 std::string shipped(const std::string& name) {
     return read_all("mpm_explicit/cases/" + name + ".toml");
@@ -47,17 +48,17 @@ std::string shipped(const std::string& name) {
 TEST_CASE("a mesh or a run that mpm_explicit cannot carry is refused" *
           doctest::description("robust")) {
     check_refused({
-        {"walls at the ends of a periodic mesh", disks, periodic + "walls.x_low=slip",
-         "mesh.periodic_x = true leaves no walls at the ends of x: set walls.x_low and "
-         "walls.x_high "
+        {"walls at the ends of a periodic mesh", disks, periodic + "boundary.x_low=slip",
+         "grid.periodic_x = true leaves no walls at the ends of x: set boundary.x_low and "
+         "boundary.x_high "
          "to \"open\""},
-        {"short periodic mesh", body, periodic + "mesh.cells_x=7 mesh.length_x=0.7",
-         "mesh.cells_x = 7 is too few for a periodic mesh: take at least 8"},
-        {"one column", disks, "mesh.cells_x=1",
-         "'mesh.cells_x' = 1 is out of range; allowed: 2 ... 16384"},
-        {"far away", disks, "mesh.origin_y=1e9",
+        {"short periodic mesh", body, periodic + "grid.cells_x=7 grid.length_x=0.7",
+         "grid.cells_x = 7 is too few for a periodic mesh: take at least 8"},
+        {"one column", disks, "grid.cells_x=1",
+         "'grid.cells_x' = 1 is out of range; allowed: 2 ... 16384"},
+        {"far away", disks, "grid.low_y=1e9",
          "the mesh begins 2e+10 cells from the origin, more than 1e9, where places are lost to "
-         "round-off: move mesh.origin_x and origin_y nearer to 0"},
+         "round-off: move grid.low_x and low_y nearer to 0"},
         {"too many steps", disks, "time.alpha=1e-9",
          "the run would take 7.538e+09 steps, more than 1e9: raise time.alpha or lower time.end"},
         {"endless run", disks, "time.end=1e300",
@@ -65,11 +66,11 @@ TEST_CASE("a mesh or a run that mpm_explicit cannot carry is refused" *
         {"damping of all velocity", disks, "load.damping=400",
          "load.damping = 400 takes all velocity in a step of 0.003317: lower it below 301.5"},
         {"more particles than numbers", body,
-         "mesh.cells_x=16000 mesh.cells_y=8000 mesh.particles_per_side=16",
-         "32768000000 particles are more than 2e9: lower mesh.particles_per_side"},
+         "grid.cells_x=16000 grid.cells_y=8000 grid.particles_per_side=16",
+         "32768000000 particles are more than 2e9: lower grid.particles_per_side"},
         {"large rasters", body,
-         "mesh.cells_x=1600 output.fringes_interval=1 "
-         "mesh.cells_y=800 output.pixels_per_cell=64",
+         "grid.cells_x=1600 output.fringes_interval=1 "
+         "grid.cells_y=800 output.pixels_per_cell=64",
          "output.pixels_per_cell = 64 makes rasters of 5.243e+09 pixels, more than 5e7: take "
          "fewer"},
         {"no length of time", disks, "time.end=-1",
@@ -81,9 +82,9 @@ TEST_CASE("a mesh or a run that mpm_explicit cannot carry is refused" *
 TEST_CASE("numbers of mpm_explicit whose products leave double precision are refused" *
           doctest::description("robust")) {
     std::vector<Row> rows;
-    for (const std::string name : {"mesh.length_x",
-                                   "mesh.origin_x",
-                                   "walls.friction",
+    for (const std::string name : {"grid.length_x",
+                                   "grid.low_x",
+                                   "boundary.friction",
                                    "contact.friction",
                                    "load.gravity_y",
                                    "load.damping",
@@ -180,7 +181,7 @@ TEST_CASE("grains that mpm_explicit cannot fill or hold are refused" *
         {"beyond the right end", disks, "grain.right.x=1.1", "grain 'right' reaches from (0.9, "},
         {"below a periodic mesh", around, periodic + "grain.left.y=0.1",
          "grain 'left' reaches from (0.15, -0.1)"},
-        {"above the mesh", disks, "mesh.origin_y=-0.3", "beyond the mesh from (0, -0.3) to"},
+        {"above the mesh", disks, "grid.low_y=-0.3", "beyond the mesh from (0, -0.3) to"},
         {"two corners", disks, polygon + "'0.2 0.2, 0.5 0.2'",
          "[grain.left]: a polygon of 2 corners: give at least 3 and at most 1000"},
         {"crossing sides", disks, polygon + "'0.2 0.2, 0.5 0.5, 0.5 0.2, 0.2 0.5'",
@@ -364,7 +365,7 @@ TEST_CASE("comparisons of mpm_explicit are refused where theory does not hold" *
     const std::string meet = "theory.compare = \"rebound\" needs two equal disks that meet head on";
     const std::string bar =
         "theory.compare = \"bar\" needs boxes with profile = \"bar\", an amplitude, and "
-        "walls.x_low = \"slip\" or \"stick\"";
+        "boundary.x_low = \"slip\" or \"stick\"";
     const std::string wave =
         "theory.compare = \"standing_wave\" needs one box with profile = \"wave\", an amplitude, "
         "and all walls \"slip\"";
@@ -392,16 +393,16 @@ TEST_CASE("comparisons of mpm_explicit are refused where theory does not hold" *
          "raise time.end or lower output.history_steps"},
         {"few rows of many steps", disks, compare + "collapse output.history_steps=10",
          "theory.compare = \"collapse\" needs at least 10 rows of history, and there would be 3"},
-        {"bar without a profile", body, compare + "bar walls.x_low=slip", bar},
+        {"bar without a profile", body, compare + "bar boundary.x_low=slip", bar},
         {"bar without a wall", body, compare + "bar" + profile + "bar", bar},
-        {"bar at a rubbing wall", body, compare + "bar walls.x_low=frictional" + profile + "bar",
+        {"bar at a rubbing wall", body, compare + "bar boundary.x_low=frictional" + profile + "bar",
          bar},
-        {"bar without an amplitude", body, compare + "bar walls.x_low=slip grain.body.profile=bar",
-         bar},
+        {"bar without an amplitude", body,
+         compare + "bar boundary.x_low=slip grain.body.profile=bar", bar},
         {"bar beside the wall", body,
-         compare + "bar walls.x_low=slip grain.body.width=0.6" + profile + "bar",
+         compare + "bar boundary.x_low=slip grain.body.width=0.6" + profile + "bar",
          "theory.compare = \"bar\" needs a bar that begins at the wall, at x = 0, not at 0.1"},
-        {"bond of one bar", body, compare + "bond walls.x_low=slip" + profile + "bar",
+        {"bond of one bar", body, compare + "bond boundary.x_low=slip" + profile + "bar",
          "theory.compare = \"bond\" needs two boxes and a [bond.<name>] between them"},
         {"wave between open ends", body, compare + "standing_wave" + profile + "wave", wave},
         {"wave of a bar", body, compare + "standing_wave " + slip + profile + "bar", wave},
@@ -410,12 +411,12 @@ TEST_CASE("comparisons of mpm_explicit are refused where theory does not hold" *
          compare + "standing_wave " + slip + "grain.body.height=0.3" + profile + "wave",
          "theory.compare = \"standing_wave\" needs a box that fills the mesh: make it 0.8 by 0.4"},
         {"oscillator of many cells", body, compare + "oscillator " + slip + profile + "wave",
-         "theory.compare = \"oscillator\" needs mesh.cells_x = 2, method.frozen = true, and linear "
+         "theory.compare = \"oscillator\" needs grid.cells_x = 2, method.frozen = true, and linear "
          "FLIP"},
         {"oscillator that moves", shipped("oscillator"), "method.frozen=false",
-         "theory.compare = \"oscillator\" needs mesh.cells_x = 2, method.frozen = true"},
+         "theory.compare = \"oscillator\" needs grid.cells_x = 2, method.frozen = true"},
         {"oscillator of splines", shipped("oscillator"), "method.shape=quadratic",
-         "theory.compare = \"oscillator\" needs mesh.cells_x = 2, method.frozen = true"},
+         "theory.compare = \"oscillator\" needs grid.cells_x = 2, method.frozen = true"},
         {"block without a plate", body, compare + "block load.gravity_x=1 load.gravity_y=-1",
          "theory.compare = \"block\" " + incline},
         {"block on level ground", shipped("incline_block"), "load.gravity_x=0",
@@ -457,7 +458,7 @@ TEST_CASE("keys and values of grains are refused with their place" *
          "case.toml:17:9: unknown parameter 'grain.right.radus'; did you mean "
          "'grain.right.radius'?"},
         {"unknown section", disks + "[meash]\ncells_x = 3\n", "",
-         "unknown parameter 'meash.cells_x'; did you mean 'mesh.cells_x'?"},
+         "unknown parameter 'meash.cells_x'; did you mean 'grid.cells_x'?"},
         {"long override", disks, "grain.left.vertices='" + std::string(901, '1') + "'",
          "has 901 letters; write at most 900"},
         {"unknown override", disks, "grain.left.materiel=steel",
@@ -488,10 +489,10 @@ TEST_CASE("keys and values of grains are refused with their place" *
         {"not a name", disks, "grain.2.x=1",
          "'2' cannot name an item: use letters, digits and '_', a letter first"},
         {"number for a grain", disks + "[grain]\nmiddle = 3\n", "", "case.toml:18:"},
-        {"truth for a number", disks, "mesh.length_x=true",
-         "'mesh.length_x' takes a number, not true or false"},
-        {"number for truth", disks, "mesh.periodic_x=1",
-         "'mesh.periodic_x' takes true or false, not a whole number"},
+        {"truth for a number", disks, "grid.length_x=true",
+         "'grid.length_x' takes a number, not true or false"},
+        {"number for truth", disks, "grid.periodic_x=1",
+         "'grid.periodic_x' takes true or false, not a whole number"},
         {"no case", std::nullopt, "nowhere.toml", "nowhere.toml: there is no such file"},
     });
     std::string many = mesh;
@@ -523,8 +524,8 @@ TEST_CASE("a restart of mpm_explicit keeps what its checkpoint says" *
     check_refused(
         {unchangeable("time.alpha", "0.2"),
          unchangeable("method.shape", "gimp"),
-         unchangeable("mesh.periodic_x", "true"),
-         unchangeable("walls.x_low", "slip"),
+         unchangeable("grid.periodic_x", "true"),
+         unchangeable("boundary.x_low", "slip"),
          unchangeable("contact.friction", "1"),
          unchangeable("load.gravity_y", "-1"),
          unchangeable("material.default.E", "1"),
@@ -569,7 +570,7 @@ TEST_CASE("help of mpm_explicit lists every parameter with unit and range and de
         "[time]\nend = 0\n[grain.beam]\nx = 0.6\ny = 0.45\n",
         "material.beam.E=1 pack.beam.x=0.2 pack.beam.y=0.15 pack.beam.columns=2 pack.beam.rows=1 "
         "bond.beam.tension=1");
-    CHECK(units["mesh.length_x"] == "length");
+    CHECK(units["grid.length_x"] == "length");
     CHECK(units["contact.separation"] == "h");
     CHECK(units["load.gravity_x"] == "acceleration");
     CHECK(units["time.end"] == "time");
@@ -606,7 +607,7 @@ TEST_CASE("a dry run of mpm_explicit shows scales and memory and time" *
                 "50 x 46 cells of 0.02, periodic in x"));
     const std::string other =
         check_described("dry run of a variant", disks,
-                        "method.shape=gimp method.flip=0.9 method.frozen=true walls.y_low=stick")
+                        "method.shape=gimp method.flip=0.9 method.frozen=true boundary.y_low=stick")
             .out;
     CHECK(holds(other, "gimp shape functions, FLIP fraction 0.9, frozen particles\n"));
     CHECK(holds(other, "y: stick, open\n"));
@@ -633,10 +634,10 @@ TEST_CASE("what may mislead in mpm_explicit is a warning with the number and the
         {"warning: contact.separation = 0: grains meet where they share nodes, up to 1.5 "
          "cells too early\n"});
     check_warnings(
-        "late contact", disks, "mesh.particles_per_side=1",
+        "late contact", disks, "grid.particles_per_side=1",
         {"warning: contact.separation = 0.8 with one particle per side: grains will meet "
          "too late; take 1.07\n"});
-    check_warnings("contact in time", disks, "mesh.particles_per_side=1 contact.separation=1.07",
+    check_warnings("contact in time", disks, "grid.particles_per_side=1 contact.separation=1.07",
                    {});
     check_warnings("short intervals", disks,
                    "output.particles_interval=1e-3 output.fringes_interval=1 "
@@ -670,20 +671,20 @@ TEST_CASE("a case at the edge of what mpm_explicit takes ends with status 0" *
     check(disks, "time.end=1e-300 output.pack=true");
     check(disks, "time.alpha=1e30");
     check(disks, "output.particles_interval=1e300 output.grains_interval=1e300");
-    check(disks, "mesh.particles_per_side=16 time.end=0.01");
-    check(disks, "mesh.origin_x=-1000 grain.left.x=-999.65 grain.right.x=-999.15");
+    check(disks, "grid.particles_per_side=16 time.end=0.01");
+    check(disks, "grid.low_x=-1000 grain.left.x=-999.65 grain.right.x=-999.15");
     check(disks,
           "grain.left.velocity_x=0 grain.right.velocity_x=0 output.vtk=true "
           "output.particles_interval=0.05");
     // The smallest mesh, full, with every kind of wall.
     const std::string small =
-        "mesh.cells_x=2 mesh.cells_y=2 mesh.length_x=0.8 grain.body.y=0.4 "
+        "grid.cells_x=2 grid.cells_y=2 grid.length_x=0.8 grain.body.y=0.4 "
         "grain.body.height=0.8 load.gravity_y=-1e-3 ";
     for (const std::string shape : {"linear", "gimp", "quadratic"})
         for (const std::string wall : {"slip", "stick", "frictional"})
-            check(body, small + "method.shape=" + shape + " walls.x_low=" + wall +
-                            " walls.x_high=" + wall + " walls.y_low=" + wall +
-                            " walls.y_high=" + wall);
+            check(body, small + "method.shape=" + shape + " boundary.x_low=" + wall +
+                            " boundary.x_high=" + wall + " boundary.y_low=" + wall +
+                            " boundary.y_high=" + wall);
     // A ring around the shortest periodic mesh, and grains that straddle its ends.
     check(body, periodic + "grain.body.velocity_x=0.3 grain.body.height=0.3");
     check(body, periodic +

@@ -22,13 +22,13 @@ using namespace facts;
 
 // Two disks that meet at t = 0.1 and are in contact at the end, on cells of 0.05.
 const std::string rebound =
-    " mpm_explicit/cases/rebound.toml theory.compare=none mesh.cells_x=24 mesh.cells_y=12 "
+    " mpm_explicit/cases/rebound.toml theory.compare=none grid.cells_x=24 grid.cells_y=12 "
     "grain.left.x=0.39 grain.right.x=0.81";
 // Grains between rough plates; and so fast that particles are sorted again every 20 steps and
 // grains cross the ends of the periodic mesh.
 const std::string slow_shear =
     " mpm_explicit/cases/shear.toml output.history_steps=1 output.pixels_per_cell=1 "
-    "mesh.cells_x=25 mesh.cells_y=23";
+    "grid.cells_x=25 grid.cells_y=23";
 const std::string no_files = " output.particles_interval=0 output.fringes_interval=0";
 const std::string fast = " pack.top.velocity_x=2 pack.disk.shear_rate=2.8 material.default.E=1e6";
 const std::string shear = slow_shear + fast + no_files;
@@ -38,18 +38,18 @@ const std::string bonded =
 // A disk between two plates, of which a force drives one.
 const std::string plates =
     " mpm_explicit/cases/diametral_disk.toml theory.compare=none output.history_steps=1 "
-    "mesh.cells_x=20 mesh.cells_y=20" +
+    "grid.cells_x=20 grid.cells_y=20" +
     no_files;
 const std::string press = plates + " load.rise=0.04";
 // A disk that yields at a wall.
 const std::string small_disk =
-    " mpm_explicit/cases/yielding_disk.toml theory.compare=none mesh.cells_x=12 mesh.cells_y=12";
+    " mpm_explicit/cases/yielding_disk.toml theory.compare=none grid.cells_x=12 grid.cells_y=12";
 const std::string yielding = small_disk + " grain.disk.x=0.22 grain.disk.velocity_x=-1";
 // A column of sand between rubbing walls, damped.
 const std::string sand =
     small_disk +
     " grain.disk.shape=box grain.disk.width=0.3 grain.disk.height=0.4 grain.disk.x=0.3 "
-    "grain.disk.y=0.2 grain.disk.velocity_x=0.1 walls.y_low=frictional walls.friction=0.4 "
+    "grain.disk.y=0.2 grain.disk.velocity_x=0.1 boundary.y_low=frictional boundary.friction=0.4 "
     "load.gravity_y=-10 load.damping=1 material.default.law=drucker_prager";
 const std::string wave = " mpm_explicit/cases/standing_wave.toml theory.compare=none";
 
@@ -70,7 +70,7 @@ std::vector<std::string> runs() {
             rebound + " time.end=0.3 method.shape=gimp contact.friction=0.3",
             rebound + " time.end=0.3 method.shape=quadratic method.flip=0.95",
             shear + " time.end=0.04",
-            shear + " time.end=0.04 method.shape=quadratic mesh.particles_per_side=3",
+            shear + " time.end=0.04 method.shape=quadratic grid.particles_per_side=3",
             bonded + " time.end=5",
             press + " time.end=0.08",
             yielding + " time.end=0.05",
@@ -182,7 +182,7 @@ TEST_CASE("a second signal ends mpm_explicit at once" * doctest::description("ro
     const std::string out = folder("killed"),
                       arguments =
                           " mpm_explicit/cases/standing_wave.toml theory.compare=none "
-                          "mesh.cells_x=800 mesh.cells_y=200 time.end=100 --threads 1";
+                          "grid.cells_x=800 grid.cells_y=200 time.end=100 --threads 1";
     const pid_t child = fork();
     if (child == 0) {
         std::vector<std::string> words;
@@ -212,8 +212,8 @@ TEST_CASE("a second signal ends mpm_explicit at once" * doctest::description("ro
 TEST_CASE("a checkpoint of another program or of another case is refused by mpm_explicit" *
           doctest::description("robust")) {
     const std::string file = room() + "/foreign.bin", out = folder("foreign");
-    const auto refused = [&](const common::About& about, const std::string& reason) {
-        common::CheckpointWriter(about, "").write(file);
+    const auto refused = [&](const common::ProgramInfo& info, const std::string& reason) {
+        common::CheckpointWriter(info, "").write(file);
         CHECK(run(" --restart " + file, out) == 2);
         INFO(said(out));
         CHECK(holds(said(out), reason));
@@ -273,7 +273,7 @@ TEST_CASE("what loads have put in is remembered when they take it back" *
           doctest::description("robust")) {
     // A disk falls, is thrown back, and passes the height of its start with some energy to spare.
     const std::string out = folder("bounce");
-    CHECK(run(small_disk + " material.default.law=elastic walls.x_low=slip grain.disk.x=0.25 "
+    CHECK(run(small_disk + " material.default.law=elastic boundary.x_low=slip grain.disk.x=0.25 "
                            "method.shape=gimp "
                            "grain.disk.velocity_x=0 load.gravity_x=-2 time.end=1.2",
               out) == 0);

@@ -9,7 +9,7 @@
 #include "cic/output/diagnostics.hpp"
 #include "cic/output/write_output.hpp"
 #include "cic/setup/check_case.hpp"
-#include "common/run/session.hpp"
+#include "common/run/run.hpp"
 
 namespace cic {
 
@@ -17,18 +17,20 @@ namespace cic {
 /// time, kinetic energy centered there, momentum half a step later.
 class Recorder {
    public:
-    Recorder(const Case& wanted, const State& state, common::History& history) : wanted_(wanted) {
-        long mode_x = wanted.mode_x;
-        if (wanted.compare == "wave") mode_x = theory_of_wave(wanted).mode_x;
-        meters_.push_back(meter(mode_x, wanted.mode_z));
-        for (long m = 1; m <= wanted.modes; ++m) meters_.push_back(meter(m, 0));
-        background_ = fixed_background(wanted) * wanted.grid.x.length * wanted.grid.z.length;
+    Recorder(const Case& parameters, const State& state, common::History& history)
+        : parameters_(parameters) {
+        long mode_x = parameters.mode_x;
+        if (parameters.compare == "wave") mode_x = theory_of_wave(parameters).mode_x;
+        meters_.push_back(meter(mode_x, parameters.mode_z));
+        for (long m = 1; m <= parameters.modes; ++m) meters_.push_back(meter(m, 0));
+        background_ =
+            fixed_background(parameters) * parameters.grid.x.length * parameters.grid.z.length;
         double charge = 0;
-        for (const SpeciesCase& s : wanted.species)
-            charge += std::fabs(s.charge) * s.density * filled_volume(wanted, s);
+        for (const SpeciesCase& s : parameters.species)
+            charge += std::fabs(s.charge) * s.density * filled_volume(parameters, s);
         const double round_off = 100 * static_cast<double>(std::numeric_limits<Real>::epsilon());
         least_energy_ =
-            std::pow(round_off * charge, 2) * wanted.grid.x.length / wanted.grid.z.length;
+            std::pow(round_off * charge, 2) * parameters.grid.x.length / parameters.grid.z.length;
 
         const std::string energy = "n0*m*velocity^2*volume", momentum = "n0*m*velocity*volume";
         std::vector<common::Column> columns{{"time", "1/omega_p"}, {"energy", energy},
@@ -39,7 +41,7 @@ class Recorder {
             columns.push_back({std::string("momentum_") + a, momentum});
         columns.push_back({"mode_re", field_unit_});
         columns.push_back({"mode_im", field_unit_});
-        if (wanted.has_walls()) {
+        if (parameters.has_walls()) {
             for (const Particles& s : state.species) columns.push_back({"count_" + s.name, "1"});
             for (const std::string end : {"x_low", "x_high", "z_low", "z_high"}) {
                 columns.push_back({"charge_" + end, "e/area"});
@@ -47,8 +49,8 @@ class Recorder {
             }
             columns.push_back({"potential_middle", "m*velocity^2/e"});
         }
-        if (wanted.compare == "clouds") columns.push_back({"separation_x", "length"});
-        for (long m = 1; m <= wanted.modes; ++m) {
+        if (parameters.compare == "clouds") columns.push_back({"separation_x", "length"});
+        for (long m = 1; m <= parameters.modes; ++m) {
             columns.push_back({"E_" + std::to_string(m) + "_re", field_unit_});
             columns.push_back({"E_" + std::to_string(m) + "_im", field_unit_});
         }
@@ -57,26 +59,28 @@ class Recorder {
 
     /// Files of t^n, before the particles move on.
     void snapshot(long step, const State& state, const Field& rho_g, const FieldState& field,
-                  common::Session& session) {
-        if (wanted_.compare == "clouds") note_clouds(state);
-        const std::string folder = session.path(".");
-        if (due(wanted_.fields_interval, step))
-            write_fields(folder, step, wanted_, state, rho_g, field);
-        if (due(wanted_.particles_interval, step)) write_particles(folder, step, wanted_, state);
-        if (due(wanted_.phase_interval, step)) write_phase_space(folder, step, wanted_, state);
+                  common::Run& run) {
+        if (parameters_.compare == "clouds") note_clouds(state);
+        const std::string folder = run.path(".");
+        if (due(parameters_.fields_interval, step))
+            write_fields(folder, step, parameters_, state, rho_g, field);
+        if (due(parameters_.particles_interval, step))
+            write_particles(folder, step, parameters_, state);
+        if (due(parameters_.phase_interval, step))
+            write_phase_space(folder, step, parameters_, state);
     }
 
     /// One row for t^n, with the sums that the mover has made.
     /// errors: NumericalError when the energy is not finite or has left the limit of the case
     void record(long step, const State& state, const Field& rho_g, const FieldState& field,
-                common::Session& session) {
-        const Grid& grid = wanted_.grid;
-        const double time = static_cast<double>(step) * wanted_.dt;
+                common::Run& run) {
+        const Grid& grid = parameters_.grid;
+        const double time = static_cast<double>(step) * parameters_.dt;
         ParticleSums all;
         for (const Particles& s : state.species) all.add(s.sums);
-        const double in_field = field_energy(grid, wanted_.scheme(), rho_g, field);
+        const double in_field = field_energy(grid, parameters_.scheme(), rho_g, field);
         const double energy = all.kinetic + in_field;
-        const common::History& history = session.history;
+        const common::History& history = run.history;
         const bool first = history.all().empty();
         const double initial = first ? energy : history.first("energy");
         const double gross = first ? all.kinetic + std::fabs(in_field)
@@ -94,23 +98,23 @@ class Recorder {
             row_.insert(row_.end(), {mode.real(), mode.imag()});
         };
         add_mode(meters_[0]);
-        if (wanted_.has_walls()) {
+        if (parameters_.has_walls()) {
             for (const Particles& s : state.species) row_.push_back(static_cast<double>(s.count()));
             for (const Wall& wall : field.walls)
                 row_.insert(row_.end(), {wall.charge, wall.potential});
             row_.push_back(field.phi[grid.index(grid.x.cells / 2, grid.z.cells / 2)]);
         }
-        if (wanted_.compare == "clouds") row_.push_back(separation_);
+        if (parameters_.compare == "clouds") row_.push_back(separation_);
         for (std::size_t m = 1; m < meters_.size(); ++m) add_mode(meters_[m]);
-        session.history.row(row_);
+        run.history.row(row_);
     }
 
     /// The results of the whole run, after its last row.
-    void finish(const State& state, common::Session& session) const {
-        const common::History& history = session.history;
-        common::Summary& summary = session.summary;
+    void finish(const State& state, common::Run& run) const {
+        const common::History& history = run.history;
+        common::Summary& summary = run.summary;
         if (history.all().empty()) return;
-        compare_with_theory(wanted_, history, summary);
+        compare_with_theory(parameters_, history, summary);
         const auto largest = [&](const char* name) {
             double most = 0;
             for (const double value : history.column(name)) most = std::max(most, std::fabs(value));
@@ -121,17 +125,17 @@ class Recorder {
         const auto p_x = history.column("momentum_x");
         summary.conservation("momentum_x_change", p_x.back() - p_x.front(), "n0*m*velocity*volume");
         summary.performance("particles", static_cast<double>(state.count()));
-        if (wanted_.spectrum) write_spectrum(session.path("spectrum.dat"), wanted_, history);
+        if (parameters_.spectrum) write_spectrum(run.path("spectrum.dat"), parameters_, history);
     }
 
    private:
     WaveMeter meter(long mode_x, long mode_z) const {
-        return {wanted_.grid, mode_x, mode_z, wave_vector(wanted_, mode_x, mode_z).size()};
+        return {parameters_.grid, mode_x, mode_z, wave_vector(parameters_, mode_x, mode_z).size()};
     }
 
     // Whether a snapshot of the given interval falls on this step.
     bool due(double interval, long step) const {
-        const double every = std::max(1.0, std::round(interval / wanted_.dt));
+        const double every = std::max(1.0, std::round(interval / parameters_.dt));
         return interval > 0 && std::fmod(static_cast<double>(step), every) == 0;
     }
 
@@ -149,24 +153,25 @@ class Recorder {
     // large as what particles and field have now, and larger than round-off makes it.
     void check_energy(long step, double time, double energy, double change, double before,
                       double now) const {
-        const bool limited = wanted_.energy_limit > 0 && !wanted_.has_walls();
-        const bool beyond = limited && std::fabs(change) > (wanted_.energy_limit - 1) * before &&
+        const bool limited = parameters_.energy_limit > 0 && !parameters_.has_walls();
+        const bool beyond = limited &&
+                            std::fabs(change) > (parameters_.energy_limit - 1) * before &&
                             std::fabs(change) > 0.5 * now && before > 0 && now > least_energy_;
         if (std::isfinite(energy) && !beyond) return;
         throw common::NumericalError(
-            "the energy is " + shown(energy) + " and was " + shown(energy - change) +
-            " at the start, at step " + std::to_string(step) + ", t = " + shown(time) +
+            "the energy is " + format(energy) + " and was " + format(energy - change) +
+            " at the start, at step " + std::to_string(step) + ", t = " + format(time) +
             ": reduce time.dt, refine the mesh, or allow more with time.energy_limit");
     }
 
     // Distance of the first two particles along x, to the nearest image.
     void note_clouds(const State& state) {
-        const double length = wanted_.grid.x.length,
+        const double length = parameters_.grid.x.length,
                      d = double(state.species[1].x_p[0]) - double(state.species[0].x_p[0]);
         separation_ = d - length * std::floor(d / length + 0.5);
     }
 
-    const Case& wanted_;
+    const Case& parameters_;
     std::vector<WaveMeter> meters_;
     double background_ = 0;
     double least_energy_ = 0;  // of the field that round-off of all charges makes

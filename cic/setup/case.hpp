@@ -76,7 +76,7 @@ struct Case {
                 static_cast<int>(dimensions)};
     }
     bool magnetized() const { return B.size() > 0; }
-    bool has_walls() const { return boundary_x == "walls" || boundary_z == "walls"; }
+    bool has_walls() const { return boundary_x == "wall" || boundary_z == "wall"; }
 };
 
 namespace detail {
@@ -143,19 +143,19 @@ inline common::ParameterTable describe(Case& w) {
                 "cells along z, in two dimensions");
     table.real("grid.length_x", w.grid.x.length, "length", above(0), "length of the box along x");
     table.real("grid.length_z", w.grid.z.length, "length", above(0), "along z, in two dimensions");
-    table.choice("grid.boundary_x", w.boundary_x, {"periodic", "walls"}, "ends of x");
-    table.choice("grid.boundary_z", w.boundary_z, {"periodic", "walls"}, "ends of z");
+    table.choice("grid.boundary_x", w.boundary_x, {"periodic", "wall"}, "ends of x");
+    table.choice("grid.boundary_z", w.boundary_z, {"periodic", "wall"}, "ends of z");
 
     table.group("walls, where a direction has them");
     const std::array<const char*, 4> ends{"x_low", "x_high", "z_low", "z_high"};
     for (std::size_t k = 0; k < 4; ++k) {
         const std::string end = ends[k];
-        table.choice("walls." + end, w.walls[k].field, {"grounded", "floating"},
+        table.choice("boundary." + end, w.walls[k].field, {"grounded", "floating"},
                      "held at a potential, or insulated and charged by what it absorbs");
-        table.real("walls.potential_" + end, w.walls[k].potential, "m velocity^2/e", anything(),
+        table.real("boundary.potential_" + end, w.walls[k].potential, "m velocity^2/e", anything(),
                    "of a grounded wall");
         table.choice(
-            "walls.particles_" + end, w.walls[k].particles,
+            "boundary.particles_" + end, w.walls[k].particles,
             k == x_low ? std::vector<std::string>{"absorb", "reflect", "source"}
                        : std::vector<std::string>{"absorb", "reflect"},
             k == x_low ? "source: emits, and emits again what comes back" : "what becomes of them");
@@ -222,6 +222,7 @@ inline common::ParameterTable describe(Case& w) {
                 "steps between checkpoints; 0: only when stopped");
 
     // Columns of the history and the number of modes belong to the whole run.
+    table.renamed({{"walls.", "boundary."}});
     table.may_change_on_restart({"time.end", "output.fields_interval", "output.particles_interval",
                                  "output.phase_interval", "output.vtk", "output.checkpoint_steps"});
     return table;

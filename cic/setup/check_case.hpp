@@ -47,7 +47,7 @@ inline void refuse_comparison(const Case& w) {
                              [&](const SpeciesCase& s) { return s.profile == profile; });
     };
     refuse(w.end < 10 * w.dt,
-           compare + " needs at least 10 steps: raise time.end above " + shown(10 * w.dt));
+           compare + " needs at least 10 steps: raise time.end above " + format(10 * w.dt));
     refuse(w.compare != "wave" && w.gauss_sign < 0, compare + " is for gauss.sign = 1");
     if (w.compare == "wave") {
         refuse_wave(w, compare, w.mode_x, w.mode_z);
@@ -57,8 +57,8 @@ inline void refuse_comparison(const Case& w) {
                "theory.mode_x = 0 looks for the fastest growing of " + std::to_string(modes) +
                    " modes, and that is for 1 to 512 and theory.model = \"plasma\": name a mode");
     } else if (w.compare == "diocotron") {
-        refuse(w.species.size() != 1 || with_profile("layer") != 1 || w.boundary_z != "walls" ||
-                   w.boundary_x == "walls" || w.B.y == 0 || w.B.x != 0 || w.B.z != 0,
+        refuse(w.species.size() != 1 || with_profile("layer") != 1 || w.boundary_z != "wall" ||
+                   w.boundary_x == "wall" || w.B.y == 0 || w.B.x != 0 || w.B.z != 0,
                compare +
                    " needs one species with profile = \"layer\" and no other, plasma.B_y alone, "
                    "and walls in z only");
@@ -72,13 +72,13 @@ inline void refuse_comparison(const Case& w) {
                compare +
                    " needs grounded walls of the same potential, and the layer half-way between "
                    "them, at center_z = " +
-                   shown(0.5 * w.grid.z.length));
+                   format(0.5 * w.grid.z.length));
         refuse(diocotron_growth(w) == 0,
                compare + ": mode " + std::to_string(w.mode_x) + " of a layer of half_width " +
-                   shown(layer.half_width) + " and charge " + shown(layer.charge) +
+                   format(layer.half_width) + " and charge " + format(layer.charge) +
                    " does not grow: make it thinner, or change theory.mode_x");
     } else if (w.compare == "sheath") {
-        refuse(w.dimensions != 1 || w.magnetized() || w.boundary_x != "walls" ||
+        refuse(w.dimensions != 1 || w.magnetized() || w.boundary_x != "wall" ||
                    w.walls[x_low].particles != "source" || w.walls[x_low].field != "floating" ||
                    w.walls[x_high].particles != "absorb" || w.walls[x_high].field != "floating",
                compare +
@@ -102,15 +102,15 @@ inline void refuse_comparison(const Case& w) {
                    "momentum scheme and the five-point stencil, and no magnetic field");
         refuse(w.species[0].center_x == w.species[1].center_x,
                compare + " needs clouds apart along x, and both have center_x = " +
-                   shown(w.species[0].center_x));
+                   format(w.species[0].center_x));
     } else if (w.compare == "heating") {
         refuse(w.has_walls() || w.dimensions != 1,
                compare + " needs a warm plasma in one periodic dimension");
         for (const SpeciesCase& s : w.species)
             refuse(s.mobile() && (s.profile != "uniform" || s.charge == 0 || s.temperature_x == 0),
                    compare + " needs uniform, charged, warm species, and '" + s.name + "' has " +
-                       "profile \"" + s.profile + "\", charge " + shown(s.charge) +
-                       " and temperature_x " + shown(s.temperature_x));
+                       "profile \"" + s.profile + "\", charge " + format(s.charge) +
+                       " and temperature_x " + format(s.temperature_x));
     }
 }
 
@@ -118,19 +118,19 @@ inline void refuse_comparison(const Case& w) {
 
 /// Refuses what cannot run. errors: InputError, one sentence with the numbers and the cure.
 /// in/out: the mesh of the case gets its boundaries; in one dimension one cell of height 1.
-inline void refuse_impossible(Case& w) {
+inline void validate(Case& w) {
     using detail::refuse;
     w.grid.x.periodic = w.boundary_x == "periodic";
     w.grid.z.periodic = w.boundary_z == "periodic";
     if (w.dimensions == 1) {
-        refuse(w.boundary_z == "walls", "grid.boundary_z = \"walls\" needs grid.dimensions = 2");
+        refuse(w.boundary_z == "wall", "grid.boundary_z = \"wall\" needs grid.dimensions = 2");
         refuse(w.grid.z.cells != 1,
                "grid.cells_z = " + std::to_string(w.grid.z.cells) + " needs grid.dimensions = 2");
         w.grid.z.length = 1;
     } else {
         refuse(w.grid.z.cells < 2, "grid.dimensions = 2 needs grid.cells_z of at least 2");
     }
-    refuse(w.end / w.dt > 1e9, "time.end / time.dt is " + shown(w.end / w.dt) +
+    refuse(w.end / w.dt > 1e9, "time.end / time.dt is " + format(w.end / w.dt) +
                                    " steps, more than 1e9: raise time.dt or lower time.end");
     const std::vector<std::pair<const char*, double>> numbers{
         {"grid.length_x", w.grid.x.length},
@@ -142,7 +142,7 @@ inline void refuse_impossible(Case& w) {
         {"output.phase_v_max", w.phase_v_max}};
     for (const auto& [name, value] : numbers) detail::refuse_extreme(name, value);
     refuse(w.gauss_sign != 1 && w.gauss_sign != -1,
-           "gauss.sign = " + shown(w.gauss_sign) + " is neither 1 nor -1");
+           "gauss.sign = " + format(w.gauss_sign) + " is neither 1 nor -1");
     refuse(w.weighting == "ngp" && w.conserving == "energy",
            "method.scheme = \"energy\" gathers with one order less than it deposits, and there is "
            "none below method.weighting = \"ngp\": take \"cic\" or \"tsc\"");
@@ -184,19 +184,19 @@ inline void refuse_impossible(Case& w) {
         closed(w.boundary_x, x_low) && closed(w.boundary_z, z_low) && size > 0;
     if (must_be_neutral)
         refuse(std::fabs(total) > 1e-9 * size,
-               "the plasma is not neutral: its charge is " + shown(total) + ", " +
-                   shown(100 * total / size) +
+               "the plasma is not neutral: its charge is " + format(total) + ", " +
+                   format(100 * total / size) +
                    " % of the sum of all charges, and there is no grounded wall to carry the "
                    "opposite: "
                    "change a density, or add a fixed species with density " +
-                   shown(std::fabs(total) / (w.grid.x.length * w.grid.z.length)) + " and charge " +
+                   format(std::fabs(total) / (w.grid.x.length * w.grid.z.length)) + " and charge " +
                    (total > 0 ? "-1" : "1"));
     const Scales scales = scales_of(w);
     refuse(scales.particles < 2, "the case has " + std::to_string(scales.particles) +
                                      " particle, and alone it only feels itself: raise "
                                      "particles_per_cell");
     refuse(static_cast<double>(scales.particles) > 2e9,
-           shown(static_cast<double>(scales.particles)) +
+           format(static_cast<double>(scales.particles)) +
                " particles are more than 2e9: lower particles_per_cell");
     const double length =
         w.dimensions == 2 ? std::max(w.grid.x.length, w.grid.z.length) : w.grid.x.length;
@@ -204,17 +204,17 @@ inline void refuse_impossible(Case& w) {
         const double speed = s.drift + s.thermal_speed;
         if (speed > 0)
             refuse(speed * w.dt > length, "species." + s.name + ": particles move " +
-                                              shown(speed * w.dt / length) +
+                                              format(speed * w.dt / length) +
                                               " times the length of the box in one step: lower "
                                               "time.dt below " +
-                                              shown(length / speed));
+                                              format(length / speed));
     }
     const double fastest = scales.omega_p * w.dt;
     if (w.gauss_sign > 0 && fastest > 0)
         refuse(fastest >= 2,
-               "omega_p dt = " + shown(fastest) +
+               "omega_p dt = " + format(fastest) +
                    " is not below 2, where the leapfrog blows up: lower time.dt below " +
-                   shown(2 / scales.omega_p));
+                   format(2 / scales.omega_p));
     refuse(w.dimensions == 1 && w.mode_z != 0, "theory.mode_z needs grid.dimensions = 2");
     refuse(detail::is_above_cut_off(w, w.mode_x, w.mode_z),
            "the followed " + mode_text(w.mode_x, w.mode_z) +
@@ -223,11 +223,11 @@ inline void refuse_impossible(Case& w) {
     refuse(w.modes > 0 && 2 * w.modes > w.grid.x.cells,
            "output.modes = " + std::to_string(w.modes) + " is above the cut-off of the mesh, " +
                std::to_string(w.grid.x.cells / 2) + " modes: lower it or refine the mesh");
-    refuse(w.modes > 0 && w.boundary_x == "walls", "output.modes needs periodic x");
+    refuse(w.modes > 0 && w.boundary_x == "wall", "output.modes needs periodic x");
     refuse(w.spectrum && w.modes == 0, "output.spectrum needs output.modes");
     refuse(w.spectrum && scales.steps < 8,
            "output.spectrum needs at least 8 steps, and there are " + std::to_string(scales.steps) +
-               ": raise time.end above " + shown(8 * w.dt));
+               ": raise time.end above " + format(8 * w.dt));
     for (const SpeciesCase& s : w.species) {
         if (!s.mobile() || s.amplitude == 0 || s.wave != "traveling") continue;
         detail::refuse_wave(w, "species." + s.name + ".wave = \"traveling\"", s.mode_x, s.mode_z);

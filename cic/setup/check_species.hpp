@@ -11,7 +11,7 @@
 
 namespace cic {
 
-using common::shown;
+using common::format;
 
 namespace detail {
 
@@ -23,9 +23,9 @@ inline void refuse(bool bad, const std::string& sentence) {
 // Beyond these sizes, products of several numbers leave double precision.
 inline void refuse_extreme(const std::string& name, double value) {
     const double size = std::fabs(value);
-    refuse(
-        size != 0 && !(size > 1e-40 && size < 1e40),
-        name + " = " + shown(value) + " is not between 1e-40 and 1e40 in size: choose other units");
+    refuse(size != 0 && !(size > 1e-40 && size < 1e40),
+           name + " = " + format(value) +
+               " is not between 1e-40 and 1e40 in size: choose other units");
 }
 
 inline bool is_above_cut_off(const Case& w, long mode_x, long mode_z) {
@@ -38,20 +38,21 @@ inline void refuse_walls(const Case& w) {
     for (std::size_t k = 0; k < 4; ++k) {
         const WallCase& wall = w.walls[k];
         const std::string end = ends[k], direction = end.substr(0, 1);
-        const bool there = (k <= x_high ? w.boundary_x : w.boundary_z) == "walls";
+        const bool there = (k <= x_high ? w.boundary_x : w.boundary_z) == "wall";
         refuse(!there &&
                    (wall.field != "grounded" || wall.particles != "absorb" || wall.potential != 0),
                "there is no wall at " + end + ": set grid.boundary_" + direction +
-                   " = \"walls\", or take out walls." + end + ", walls.potential_" + end +
-                   " and walls.particles_" + end);
-        refuse_extreme("walls.potential_" + end, wall.potential);
+                   " = \"wall\", or take out boundary." + end + ", boundary.potential_" + end +
+                   " and boundary.particles_" + end);
+        refuse_extreme("boundary.potential_" + end, wall.potential);
         refuse(wall.field == "floating" && wall.potential != 0,
-               "walls.potential_" + end + " = " + shown(wall.potential) +
+               "boundary.potential_" + end + " = " + format(wall.potential) +
                    " belongs to a grounded wall; the charge of a floating one finds its own: take "
-                   "it out, or set walls." +
+                   "it out, or set boundary." +
                    end + " = \"grounded\"");
-        refuse(wall.field == "floating" && w.gauss_sign < 0,
-               "gauss.sign = -1 is not for floating walls: set walls." + end + " = \"grounded\"");
+        refuse(
+            wall.field == "floating" && w.gauss_sign < 0,
+            "gauss.sign = -1 is not for floating walls: set boundary." + end + " = \"grounded\"");
     }
 }
 
@@ -94,9 +95,9 @@ inline void refuse_species(const Case& w, const SpeciesCase& s) {
     const double reach = s.half_width + std::fabs(s.ripple);
     refuse(s.profile == "layer" &&
                (s.center_z - reach < w.grid.z.low || s.center_z + reach > w.grid.z.high()),
-           name + ": the layer reaches beyond the box, from z = " + shown(s.center_z - reach) +
-               " to " + shown(s.center_z + reach) + " in a box from 0 to " +
-               shown(w.grid.z.length));
+           name + ": the layer reaches beyond the box, from z = " + format(s.center_z - reach) +
+               " to " + format(s.center_z + reach) + " in a box from 0 to " +
+               format(w.grid.z.length));
     refuse(s.ripple != 0 && s.profile != "layer", name + ".ripple belongs to profile = \"layer\"");
     const double r = s.profile == "disk" ? s.half_width : 0;
     refuse((s.profile == "disk" || s.profile == "point") &&
@@ -131,7 +132,7 @@ inline void refuse_species(const Case& w, const SpeciesCase& s) {
                    " would push particles through the walls: set mode_x or mode_z to 0");
     }
     refuse(s.ripple != 0 && s.mode_x == 0,
-           name + ".ripple = " + shown(s.ripple) + " has no wave number: set mode_x");
+           name + ".ripple = " + format(s.ripple) + " has no wave number: set mode_x");
     refuse((s.amplitude != 0 || s.ripple != 0) && is_above_cut_off(w, s.mode_x, s.mode_z),
            name + ": " + mode_text(s.mode_x, s.mode_z) +
                " has more than one wavelength per two cells, the cut-off of the mesh: refine it "
@@ -139,23 +140,23 @@ inline void refuse_species(const Case& w, const SpeciesCase& s) {
     refuse(particle_count(w, s) < 1, name +
                                          " has no particle: raise particles_per_cell, or its "
                                          "half_width of " +
-                                         shown(s.half_width));
-    refuse(s.emission > 0 && !(w.boundary_x == "walls" && w.walls[x_low].particles == "source"),
+                                         format(s.half_width));
+    refuse(s.emission > 0 && !(w.boundary_x == "wall" && w.walls[x_low].particles == "source"),
            name +
-               ".emission needs walls.particles_x_low = \"source\" and grid.boundary_x = "
+               ".emission needs boundary.particles_x_low = \"source\" and grid.boundary_x = "
                "\"walls\"");
     if (w.walls[x_low].particles != "source") return;
     const double fastest = detail::fastest_emitted * std::sqrt(s.emission_temperature / s.mass);
     refuse(fastest * w.dt > w.grid.x.length,
-           name + ".emission_temperature = " + shown(s.emission_temperature) +
-               ": a particle emitted with " + shown(fastest) +
+           name + ".emission_temperature = " + format(s.emission_temperature) +
+               ": a particle emitted with " + format(fastest) +
                " crosses the whole box in one step: lower it, or time.dt below " +
-               shown(w.grid.x.length / fastest));
+               format(w.grid.x.length / fastest));
     const double weight =
                      s.density * filled_volume(w, s) / static_cast<double>(particle_count(w, s)),
                  emitted = emitted_per_step(w, s, weight);
     refuse(emitted > 1e6,
-           name + ".emission = " + shown(s.emission) + " is " + shown(emitted) +
+           name + ".emission = " + format(s.emission) + " is " + format(emitted) +
                " particles in a step, more than 1e6: lower it, or raise density, which makes them "
                "heavier");
 }

@@ -12,7 +12,7 @@
 
 namespace cic {
 
-using common::shown;
+using common::format;
 
 /// The scales of one species.
 struct SpeciesScales {
@@ -32,7 +32,7 @@ struct Scales {
 
 namespace detail {
 
-inline bool is_box(const Case& w) { return w.boundary_x == "walls" && w.boundary_z == "walls"; }
+inline bool is_box(const Case& w) { return w.boundary_x == "wall" && w.boundary_z == "wall"; }
 
 }  // namespace detail
 
@@ -88,34 +88,35 @@ inline std::vector<std::string> resolution_warnings(const Case& w, const Scales&
         w.dimensions == 2 ? std::max(w.grid.x.spacing(), w.grid.z.spacing()) : w.grid.x.spacing();
     const double omega_dt = scales.omega_p * w.dt;
     if (omega_dt > 0.5 && w.gauss_sign > 0)
-        warnings.push_back("omega_p dt = " + shown(omega_dt) + " is above 0.5: frequencies are " +
-                           shown(100 * (2 / omega_dt * std::asin(0.5 * omega_dt) - 1)) +
+        warnings.push_back("omega_p dt = " + format(omega_dt) + " is above 0.5: frequencies are " +
+                           format(100 * (2 / omega_dt * std::asin(0.5 * omega_dt) - 1)) +
                            " % too high; at 2 the leapfrog blows up");
     // Where each kind of weighting stops heating.
     const double least = w.weighting == "ngp" ? 0.6 : (w.weighting == "cic" ? 1 / pi : 0.15);
     if (w.conserving == "momentum" && scales.debye_length > 0 && scales.debye_length < least * dx)
-        warnings.push_back("the Debye length is " + shown(scales.debye_length / dx) +
-                           " cells, below " + shown(least) + " for " + w.weighting +
+        warnings.push_back("the Debye length is " + format(scales.debye_length / dx) +
+                           " cells, below " + format(least) + " for " + w.weighting +
                            ": the mesh will heat the plasma; refine it to cells of " +
-                           shown(scales.debye_length / least));
+                           format(scales.debye_length / least));
     for (const SpeciesScales& s : scales.species) {
         if (s.thermal_speed == 0 && s.drift > 0 && scales.omega_p > 0 && w.compare != "clouds") {
             const double u = s.drift / (scales.omega_p * dx);
             const double safe = cold_beam_threshold(w.weighting == "tsc" ? 2 : 1);
             if (w.conserving == "energy" && u < safe)
-                warnings.push_back(s.name + ": a cold beam at " + shown(u) +
-                                   " omega_p dx is below " + shown(safe) +
+                warnings.push_back(s.name + ": a cold beam at " + format(u) +
+                                   " omega_p dx is below " + format(safe) +
                                    ", where the energy-conserving mesh stops it; refine the mesh");
         }
         if (s.drift + s.thermal_speed > 2 * dx / w.dt)
             warnings.push_back(s.name + ": particles move " +
-                               shown((s.drift + s.thermal_speed) * w.dt / dx) +
+                               format((s.drift + s.thermal_speed) * w.dt / dx) +
                                " cells in a step; below 2 they see the field they cross");
         if (s.Omega_c * w.dt > 1)
-            warnings.push_back(s.name + ": Omega_c dt = " + shown(s.Omega_c * w.dt) +
-                               " is above 1: gyration is slowed by the time step to " +
-                               shown(std::atan(0.5 * s.Omega_c * w.dt) / (0.5 * s.Omega_c * w.dt)) +
-                               " of its frequency; drifts stay right");
+            warnings.push_back(
+                s.name + ": Omega_c dt = " + format(s.Omega_c * w.dt) +
+                " is above 1: gyration is slowed by the time step to " +
+                format(std::atan(0.5 * s.Omega_c * w.dt) / (0.5 * s.Omega_c * w.dt)) +
+                " of its frequency; drifts stay right");
     }
     const auto warn_of_slow_transform = [&](const std::string& what, long count) {
         const long factor = detail::largest_prime_factor(count);
@@ -134,8 +135,8 @@ inline std::vector<std::string> resolution_warnings(const Case& w, const Scales&
         {"output.phase_interval", w.phase_interval}};
     for (const auto& [name, interval] : intervals)
         if (interval > 0 && interval < w.dt)
-            warnings.push_back(std::string(name) + " = " + shown(interval) +
-                               " is below time.dt = " + shown(w.dt) +
+            warnings.push_back(std::string(name) + " = " + format(interval) +
+                               " is below time.dt = " + format(w.dt) +
                                ": files are written every step");
     double emission = 0;
     bool followed = false;
@@ -146,14 +147,15 @@ inline std::vector<std::string> resolution_warnings(const Case& w, const Scales&
     }
     if (w.walls[x_low].particles == "source" && emission == 0)
         warnings.push_back(
-            "walls.particles_x_low = \"source\", and every emission is 0: the wall only gives back "
+            "boundary.particles_x_low = \"source\", and every emission is 0: the wall only gives "
+            "back "
             "what reaches it, with emission_temperature");
     if (w.compare == "wave") {
         const std::complex<double> omega = theory_of_wave(w).omega;
         const double period = 2 * pi / std::fabs(omega.real());
         if (omega.imag() <= 0 && omega.real() != 0 && period > w.end)
-            warnings.push_back("the wave of theory has the period " + shown(period) +
-                               ", longer than time.end = " + shown(w.end) +
+            warnings.push_back("the wave of theory has the period " + format(period) +
+                               ", longer than time.end = " + format(w.end) +
                                ": its frequency cannot be measured well");
     }
     const bool one_mode = w.mode_x != 0 || w.mode_z != 0;
@@ -171,42 +173,42 @@ inline std::string describe_scales(const Case& w, const Scales& scales) {
         text +=
             "  " + name + std::string(name.size() < 34 ? 34 - name.size() : 1, ' ') + value + "\n";
     };
-    std::string mesh = std::to_string(w.grid.x.cells) + " cells of " + shown(dx);
+    std::string mesh = std::to_string(w.grid.x.cells) + " cells of " + format(dx);
     if (w.dimensions == 2)
         mesh = std::to_string(w.grid.x.cells) + " x " + std::to_string(w.grid.z.cells) +
-               " cells of " + shown(dx) + " x " + shown(w.grid.z.spacing());
+               " cells of " + format(dx) + " x " + format(w.grid.z.spacing());
     line("mesh", mesh + ", " + w.boundary_x + " in x" +
                      (w.dimensions == 2 ? ", " + w.boundary_z + " in z" : ""));
     line("method", w.weighting + " weighting, " + w.conserving + "-conserving" +
                        (w.gauss_sign < 0 ? ", div E = -rho as the slide prints it" : ""));
-    line("steps", std::to_string(scales.steps) + " of " + shown(w.dt));
+    line("steps", std::to_string(scales.steps) + " of " + format(w.dt));
     line("particles", std::to_string(scales.particles));
     line("unit of frequency", "omega_p of density 1, charge 1, mass 1");
     if (scales.omega_p > 0)
         line("all mobile species together",
-             "omega_p = " + shown(scales.omega_p) +
-                 ", omega_p dt = " + shown(scales.omega_p * w.dt) +
-                 (scales.debye_length > 0 ? ", Debye length = " + shown(scales.debye_length) +
-                                                " = " + shown(scales.debye_length / dx) + " dx"
+             "omega_p = " + format(scales.omega_p) +
+                 ", omega_p dt = " + format(scales.omega_p * w.dt) +
+                 (scales.debye_length > 0 ? ", Debye length = " + format(scales.debye_length) +
+                                                " = " + format(scales.debye_length / dx) + " dx"
                                           : ", cold"));
     for (const SpeciesScales& s : scales.species)
-        line(s.name, std::to_string(s.particles) + " particles, omega_p = " + shown(s.omega_p) +
-                         ", v_th = " + shown(s.thermal_speed) + ", drift = " + shown(s.drift) +
-                         (s.Omega_c > 0 ? ", Omega_c = " + shown(s.Omega_c) : ""));
+        line(s.name, std::to_string(s.particles) + " particles, omega_p = " + format(s.omega_p) +
+                         ", v_th = " + format(s.thermal_speed) + ", drift = " + format(s.drift) +
+                         (s.Omega_c > 0 ? ", Omega_c = " + format(s.Omega_c) : ""));
     if (w.compare == "wave") {
         const Theory theory = theory_of_wave(w);
         const double growth = theory.omega.imag();
         line("theory", mode_text(theory.mode_x, theory.mode_z) +
-                           ": omega = " + shown(theory.omega.real()) +
-                           ", growth = " + shown(growth) + " omega_p; " + theory.source);
+                           ": omega = " + format(theory.omega.real()) +
+                           ", growth = " + format(growth) + " omega_p; " + theory.source);
         const double onset = predicted_onset(w, theory);
-        if (onset > 0) line("onset", "about t = " + shown(onset) + ": " + onset_meaning());
+        if (onset > 0) line("onset", "about t = " + format(onset) + ": " + onset_meaning());
     }
-    line("memory", "about " + shown(scales.bytes / 1048576) + " MiB");
+    line("memory", "about " + format(scales.bytes / 1048576) + " MiB");
     const double work =
         static_cast<double>(scales.steps) *
         (static_cast<double>(scales.particles) + 30.0 * static_cast<double>(w.grid.size()));
-    line("time", "about " + shown(work / 80e6) + " s on one core");
+    line("time", "about " + format(work / 80e6) + " s on one core");
     return text;
 }
 

@@ -104,8 +104,8 @@ inline void compare_wave(const Case& w, const common::History& history, common::
     };
     if (grows) {
         const common::GrowthFit fit = common::fit_growth(times, amplitude, {3.0, 0.1});
-        const std::string where = theory.source + "; fitted from t = " + common::shown(fit.begin) +
-                                  " to " + common::shown(fit.end) +
+        const std::string where = theory.source + "; fitted from t = " + common::format(fit.begin) +
+                                  " to " + common::format(fit.end) +
                                   (fit.found ? "" : " (" + fit.reason + ")");
         summary.result_info("growth", fit.rate, omega_p_unit, where);
         summary.result("growth_over_theory", fit.rate / growth, "", 1, w.growth_tolerance, where);
@@ -163,8 +163,8 @@ inline void compare_wave(const Case& w, const common::History& history, common::
         omega = std::fabs(fit.frequency), gamma = fit.growth;
     }
     const std::string where = theory.source +
-                              "; fitted from t = " + common::shown(times[window.begin]) + " to " +
-                              common::shown(times[window.end - 1]);
+                              "; fitted from t = " + common::format(times[window.begin]) + " to " +
+                              common::format(times[window.end - 1]);
     summary.result_info("omega", omega, omega_p_unit, where);
     summary.result("omega_over_theory", omega / frequency, "", 1, w.frequency_tolerance, where);
     if (growth < -1e-3 * frequency)
@@ -191,7 +191,7 @@ inline void compare_diocotron(const Case& w, const common::History& history,
     const common::GrowthFit fit = common::fit_growth(times, amplitude, {2.0, 0.2});
     const std::string where =
         "guiding centers, two edges between grounded walls; fitted from t = " +
-        common::shown(fit.begin) + " to " + common::shown(fit.end);
+        common::format(fit.begin) + " to " + common::format(fit.end);
     summary.result_info("theory_growth", growth, omega_p_unit, where);
     summary.result_info("growth", fit.rate, omega_p_unit, where);
     summary.result("growth_over_theory", fit.rate / growth, "", 1, w.growth_tolerance, where);

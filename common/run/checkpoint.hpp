@@ -43,11 +43,11 @@ inline std::uint64_t checksum(std::span<const char> bytes) {
 /// An archive that collects named numbers; write() puts them into a file.
 class CheckpointWriter {
    public:
-    CheckpointWriter(const About& about, const std::string& effective_case) {
+    CheckpointWriter(const ProgramInfo& info, const std::string& effective_case) {
         put(checkpoint_detail::magic, 8);
         put_number(0);  // the length, known later
-        put_text(about.program);
-        put_text(about.version);
+        put_text(info.program);
+        put_text(info.version);
         put_text(effective_case);
     }
 
@@ -141,7 +141,7 @@ class CheckpointWriter {
 ///         version.
 class CheckpointReader {
    public:
-    CheckpointReader(const About& about, const std::string& path)
+    CheckpointReader(const ProgramInfo& info, const std::string& path)
         : path_(path), bytes_(read_file(path)) {
         if (bytes_.size() < 24 || std::memcmp(bytes_.data(), checkpoint_detail::magic, 8) != 0) {
             throw InputError(path + ": is not a checkpoint");
@@ -156,13 +156,13 @@ class CheckpointReader {
                 path + ": the checkpoint is damaged (its checksum is wrong); use an earlier one");
         }
         const std::string program = text(), version = text();
-        if (program != about.program) {
+        if (program != info.program) {
             throw InputError(path + ": is a checkpoint of '" + program + "', not of '" +
-                             about.program + "'");
+                             info.program + "'");
         }
-        if (version != about.version) {
+        if (version != info.version) {
             throw InputError(path + ": was written by version " + version + ", and this is " +
-                             about.version + "; continue it with the program that wrote it");
+                             info.version + "; continue it with the program that wrote it");
         }
         effective_case_ = text();
     }

@@ -31,18 +31,18 @@ bool is_there(const std::string& argument) {
 
 // The default case, found from the program's own place (build/ in the project) or the current
 // folder.
-std::string find_default_case(const About& about) {
+std::string find_default_case(const ProgramInfo& info) {
     std::error_code error;
     const fs::path program = fs::read_symlink("/proc/self/exe", error);
     for (fs::path folder = program.parent_path(); !error && folder.has_relative_path();
          folder = folder.parent_path()) {
-        const fs::path candidate = folder / about.default_case;
+        const fs::path candidate = folder / info.default_case;
         if (!fs::exists(candidate)) continue;
         const fs::path nearby = fs::relative(candidate, error);
         return !error && !nearby.empty() && nearby.begin()->string() != ".." ? nearby.string()
                                                                              : candidate.string();
     }
-    return about.default_case;
+    return info.default_case;
 }
 
 void apply_override(const std::string& argument, bool restarting, ParameterTable& table) {
@@ -74,7 +74,7 @@ int thread_number(const std::string& text) {
     return static_cast<int>(threads);
 }
 
-void print_help(const About& about, const ParameterTable& table) {
+void print_help(const ProgramInfo& info, const ParameterTable& table) {
     std::printf(
         "%s %s: %s\n\n"
         "usage: %s [case.toml] [section.key=value ...] [options]\n\n"
@@ -86,8 +86,8 @@ void print_help(const About& about, const ParameterTable& table) {
         "  --dry-run       show scales, memory and time, and write nothing\n"
         "  --quiet         no progress, no report\n"
         "  --help, --version\n%s",
-        about.program.c_str(), about.version.c_str(), about.one_line.c_str(), about.program.c_str(),
-        about.default_case.c_str(), about.program.c_str(), table.help().c_str());
+        info.program.c_str(), info.version.c_str(), info.one_line.c_str(), info.program.c_str(),
+        info.default_case.c_str(), info.program.c_str(), table.help().c_str());
 }
 
 }  // namespace
@@ -108,7 +108,8 @@ std::string read_file(const std::string& path) {
     return content;
 }
 
-CommandLine read_command_line(int argc, char** argv, const About& about, ParameterTable& table) {
+CommandLine read_command_line(int argc, char** argv, const ProgramInfo& info,
+                              ParameterTable& table) {
     CommandLine command;
     std::vector<std::string> overrides;
     bool help = false, version = false;
@@ -168,8 +169,8 @@ CommandLine read_command_line(int argc, char** argv, const About& about, Paramet
         }
     }
     if (help || version) {
-        if (help) print_help(about, table);
-        if (!help) std::printf("%s %s\n", about.program.c_str(), about.version.c_str());
+        if (help) print_help(info, table);
+        if (!help) std::printf("%s %s\n", info.program.c_str(), info.version.c_str());
         std::exit(0);
     }
 
@@ -179,7 +180,7 @@ CommandLine read_command_line(int argc, char** argv, const About& about, Paramet
             throw InputError("--restart takes its case from the checkpoint: leave out '" +
                              command.case_path + "'");
         }
-        CheckpointReader checkpoint(about, command.restart_path);
+        CheckpointReader checkpoint(info, command.restart_path);
         checkpoint("step", command.restart_step);
         for (const Setting& setting : read_case(checkpoint.effective_case(), command.restart_path))
             table.set(setting);
@@ -188,12 +189,12 @@ CommandLine read_command_line(int argc, char** argv, const About& about, Paramet
             command.out_dir = fs::path(command.restart_path).parent_path().string();
         if (command.out_dir.empty()) command.out_dir = ".";
     } else {
-        if (command.case_path.empty()) command.case_path = find_default_case(about);
+        if (command.case_path.empty()) command.case_path = find_default_case(info);
         command.case_name = fs::path(command.case_path).stem().string();
         for (const Setting& setting : read_case(read_file(command.case_path), command.case_path))
             table.set(setting);
         if (command.out_dir.empty())
-            command.out_dir = "out/" + about.program + "/" + command.case_name;
+            command.out_dir = "out/" + info.program + "/" + command.case_name;
     }
     std::set<std::string> seen;
     for (const std::string& one : overrides) {

@@ -1,6 +1,7 @@
 // One row per step, in columns for gnuplot: history.dat, and the same numbers in memory.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -17,6 +18,17 @@ struct Column {
     std::string name, unit;
 };
 
+/// One row of the history: each quantity's name, unit and value in one place.
+struct Row {
+    std::vector<Column> columns;
+    std::vector<double> values;
+
+    void add(const std::string& name, const std::string& unit, double value) {
+        columns.push_back({name, unit});
+        values.push_back(value);
+    }
+};
+
 class History {
    public:
     explicit History(const std::string& path) : path_(path) {}
@@ -29,6 +41,8 @@ class History {
     /// Names the columns, once, before the first row. The first line of the file is
     /// "# 1:name[unit] 2:...".
     void columns(const std::vector<Column>& columns) { columns_ = columns; }
+    /// The same from a row whose values do not count.
+    void columns(const Row& row) { columns_ = row.columns; }
 
     /// Adds a row.
     /// errors: NumericalError for a number that is not finite; InputError when the disk is full.
@@ -51,6 +65,8 @@ class History {
         if (now - flushed_ > std::chrono::seconds(1)) flush();
     }
 
+    void row(const Row& row) { this->row(row.values); }
+
     /// The first value of a column. errors: logic_error for a name that is not a column, or no row.
     double first(const std::string& name) const {
         for (std::size_t k = 0; k < columns_.size() && k < values_.size(); ++k) {
@@ -70,6 +86,13 @@ class History {
             return result;
         }
         throw std::logic_error("history: no column '" + name + "'");
+    }
+
+    /// Largest magnitude in a column; 0 without a row.
+    double largest(const std::string& name) const {
+        double most = 0;
+        for (const double value : column(name)) most = std::max(most, std::fabs(value));
+        return most;
     }
 
     /// Sends what is buffered to the file. errors: InputError when the disk is full.

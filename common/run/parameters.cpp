@@ -90,7 +90,7 @@ std::string number_text(double value) {
     return {text, end};
 }
 
-std::string shown(double value) {
+std::string format(double value) {
     char text[32];
     std::snprintf(text, sizeof text, "%.4g", value);
     return text;
@@ -186,6 +186,16 @@ std::string ParameterTable::nearest(const std::string& name) const {
     return best;
 }
 
+// The name that has taken the place of an earlier one; "" for a name that was never in use.
+std::string ParameterTable::new_name(const std::string& name) const {
+    for (const auto& [before, now] : renamed_) {
+        if (name == before) return now;
+        if (before.back() == '.' && name.compare(0, before.size(), before) == 0)
+            return now + name.substr(before.size());
+    }
+    return "";
+}
+
 // Makes the item that a name like species.beam.density belongs to, if it is new.
 void ParameterTable::make_item(const Setting& setting) {
     for (List& list : lists_) {
@@ -226,6 +236,10 @@ void ParameterTable::accept_empty_section(const Setting& setting) {
                        std::any_of(lists_.begin(), lists_.end(),
                                    [&](const List& list) { return list.name == setting.name; });
     if (known) return;
+    if (const std::string now = new_name(start); !now.empty()) {
+        throw InputError(setting.place + ": [" + setting.name + "] has a new name: write [" +
+                         now.substr(0, now.size() - 1) + "]");
+    }
     const std::string guess = nearest(setting.name);
     throw InputError(setting.place + ": unknown section [" + setting.name + "]" +
                      (guess.empty()
@@ -241,14 +255,18 @@ void ParameterTable::set(const Setting& setting) {
     make_item(setting);
     Entry* entry = find(setting.name);
     if (entry == nullptr) {
+        if (const std::string now = new_name(setting.name); find(now) != nullptr) {
+            throw InputError(setting.place + ": '" + setting.name + "' has a new name: write '" +
+                             now + "'");
+        }
         const std::string guess = nearest(setting.name);
         throw InputError(
             setting.place + ": unknown parameter '" + setting.name + "'" +
             (guess.empty() ? "; --help lists all" : "; did you mean '" + guess + "'?"));
     }
-    const auto wrong_type = [&](const std::string& wanted) {
-        return InputError(setting.place + ": '" + setting.name + "' takes " + wanted + ", not " +
-                          kind_of(setting));
+    const auto wrong_type = [&](const std::string& parameters) {
+        return InputError(setting.place + ": '" + setting.name + "' takes " + parameters +
+                          ", not " + kind_of(setting));
     };
     const auto refuse_outside = [&](double value) {
         if (!std::isfinite(value)) {

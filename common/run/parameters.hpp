@@ -9,6 +9,7 @@
 #include <map>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -84,6 +85,12 @@ class ParameterTable {
     void may_change_on_restart(const std::vector<std::string>& names) { changeable_ = names; }
     bool is_changeable(const std::string& name) const;
 
+    /// Pairs of an earlier name, or the beginning of earlier names that ends in '.', and its new
+    /// one: set() refuses the earlier name with the new one. The first pair that fits counts.
+    void renamed(const std::vector<std::pair<std::string, std::string>>& names) {
+        renamed_ = names;
+    }
+
     /// Whether a parameter takes text, so that it may stand without quotes on the command line.
     bool takes_text(const std::string& name);
 
@@ -128,16 +135,18 @@ class ParameterTable {
     void make_item(const Setting& setting);
     void accept_empty_section(const Setting& setting);
     std::string nearest(const std::string& name) const;
+    std::string new_name(const std::string& name) const;
 
     std::vector<Entry> entries_;
     std::vector<Group> groups_;
     std::vector<List> lists_;
     std::vector<Entry>* pattern_ = nullptr;  // where entries go while a list's pattern is described
     std::vector<std::string> changeable_;
+    std::vector<std::pair<std::string, std::string>> renamed_;
 };
 
 /// What a program says about itself.
-struct About {
+struct ProgramInfo {
     std::string program, version, one_line;
     std::string default_case;  // relative to the project's root
 };
@@ -156,7 +165,8 @@ struct CommandLine {
 /// With --restart the case is the one stored in the checkpoint, and only parameters that may change
 /// can be overridden.
 /// errors: InputError with the place and the cure; nothing has been written then.
-CommandLine read_command_line(int argc, char** argv, const About& about, ParameterTable& table);
+CommandLine read_command_line(int argc, char** argv, const ProgramInfo& info,
+                              ParameterTable& table);
 
 /// The settings in the text of a case file, in order.
 /// errors: InputError with source:line:column.
@@ -166,7 +176,7 @@ std::vector<Setting> read_case(const std::string& text, const std::string& sourc
 std::string number_text(double value);
 
 /// Text of a number for messages, four digits.
-std::string shown(double value);
+std::string format(double value);
 
 /// Whole content of a regular file. errors: InputError that says why it cannot be read.
 std::string read_file(const std::string& path);

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/parallel.hpp"
-#include "common/run/session.hpp"
+#include "common/run/run.hpp"
 
 namespace common {
 
@@ -24,17 +24,18 @@ struct Preparation {
 /// in:     prepared, of a case that was not refused
 /// out:    holder, the run; false with --dry-run, where the words are all
 /// errors: InputError where the folder, the memory or the length of the run is impossible
-inline bool start_run(const About& about, const CommandLine& command, const ParameterTable& table,
-                      const Preparation& prepared, std::optional<Session>& holder) {
+inline bool start_run(const ProgramInfo& info, const CommandLine& command,
+                      const ParameterTable& table, const Preparation& prepared,
+                      std::optional<Run>& holder) {
     for (const std::string& warning : prepared.warnings)
         std::fprintf(stderr, "warning: %s\n", warning.c_str());
     if (!command.quiet) std::printf("%s", prepared.description.c_str());
     if (command.dry_run) return false;
     refuse_before_start(command, prepared.steps, prepared.bytes);
     set_thread_count(command.threads);
-    Session& session = holder.emplace(about, command, table);
-    for (const std::string& warning : prepared.warnings) session.summary.warning(warning);
-    session.checkpoint_steps = prepared.checkpoint_steps;
+    Run& run = holder.emplace(info, command, table);
+    for (const std::string& warning : prepared.warnings) run.summary.warning(warning);
+    run.checkpoint_steps = prepared.checkpoint_steps;
     return true;
 }
 

@@ -36,11 +36,11 @@ bool Summary::is_finite() const {
            std::all_of(conservation_.begin(), conservation_.end(), finite);
 }
 
-void Summary::write(const std::string& path, const About& about, const std::string& case_name,
+void Summary::write(const std::string& path, const ProgramInfo& info, const std::string& case_name,
                     int status, const std::string& message) const {
     Json json;
-    json["program"] = about.program;
-    json["version"] = about.version;
+    json["program"] = info.program;
+    json["version"] = info.version;
     json["case"] = case_name;
     json["status"] = status;
     json["message"] = message;

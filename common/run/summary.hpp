@@ -40,7 +40,7 @@ class Summary {
     /// Writes the file. Numbers that are not finite are null, with "finite": false and
     /// "pass": false.
     /// in: status 0 done, 3 failed, 130 or 143 stopped by a signal; message, how the run ended.
-    void write(const std::string& path, const About& about, const std::string& case_name,
+    void write(const std::string& path, const ProgramInfo& info, const std::string& case_name,
                int status, const std::string& message) const;
 
     /// The results against theory, one line each, with PASS or FAIL.

@@ -122,7 +122,7 @@ inline void add_viscous_force(const Case& w, Mesh& mesh) {
     Nodes& g = mesh.nodes;
     const auto gradients = detail::corner_gradients(grid);
     const double part = 0.25 * grid.cell_area();
-    common::for_each_row_two_apart(grid.z.cells, [&](long j) {
+    common::for_each_row_two_colors(grid.z.cells, [&](long j) {
         for (long i = 0; i < grid.x.cells; ++i) {
             const long n = grid.index(i, j);
             if (is_frayed(grid, g.m, n)) continue;

@@ -91,7 +91,7 @@ inline void deposit_particles(const Case& w, const Particles& particles, Mesh& m
         },
         grid.size());
     const WeightScale scale(grid);
-    common::for_each_row_three_apart(
+    common::for_each_row_three_colors(
         grid.z.cells,
         [&](long j) {
             const auto begin = static_cast<std::size_t>(

@@ -80,8 +80,9 @@ inline void find_pressure(const Case& w, double time, Mesh& mesh) {
     const long i = bad % grid.stride() - 1, j = bad / grid.stride() - 1;
     throw common::NumericalError(
         "density or internal energy is negative in the cell at x = " +
-        common::shown(grid.x.at(static_cast<double>(i) + 0.5)) + ", z = " +
-        common::shown(grid.z.at(static_cast<double>(j) + 0.5)) + " at t = " + common::shown(time) +
+        common::format(grid.x.at(static_cast<double>(i) + 0.5)) +
+        ", z = " + common::format(grid.z.at(static_cast<double>(j) + 0.5)) +
+        " at t = " + common::format(time) +
         ": reduce time.cfl, raise viscosity.linear, or take more particles per cell");
 }
 

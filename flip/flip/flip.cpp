@@ -24,60 +24,62 @@ namespace {
 
 using namespace flip;
 
-const common::About about{"flip", PROGRAM_VERSION,
-                          "FLIP, particles that keep their momentum: compressible fluids at all "
-                          "speeds; the default case is Sod's shock tube",
-                          "flip/cases/sod.toml"};
+const common::ProgramInfo info{
+    "flip", PROGRAM_VERSION,
+    "FLIP, particles that keep their momentum: compressible fluids at all "
+    "speeds; the default case is Sod's shock tube",
+    "flip/cases/sod.toml"};
 
-int run(int argc, char** argv, std::optional<common::Session>& holder) {
+int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     // 1. The case: defaults, file, command line; refuse, warn, or only describe.
-    Case wanted;
-    common::ParameterTable table = describe(wanted);
-    const common::CommandLine command = common::read_command_line(argc, argv, about, table);
-    refuse_idle(wanted);
-    const Case w = completed(wanted);
-    refuse_impossible(w, about.program);
-    const Scales scales = scales_of(w, about.program);
-    if (!common::start_run(about, command, table,
-                           {describe_scales(w, scales, about.program),
-                            resolution_warnings(w, scales, about.program), LONG_MAX, scales.bytes,
-                            w.checkpoint_steps},
-                           holder))
+    Case parameters;
+    common::ParameterTable table = describe(parameters);
+    const common::CommandLine command = common::read_command_line(argc, argv, info, table);
+    reject_unused(parameters);
+    const Case w = completed(parameters);
+    validate(w, info.program);
+    const Scales scales = scales_of(w, info.program);
+    if (!common::start_run(
+            info, command, table,
+            {describe_scales(w, scales, info.program), resolution_warnings(w, scales, info.program),
+             LONG_MAX, scales.bytes, w.checkpoint_steps},
+            holder))
         return 0;
-    common::Session& session = *holder;
+    common::Run& run = *holder;
 
     // 2. Particles at t = 0, sorted; an empty mesh.
-    FlipScratch run(w);
-    const Mesh& mesh = run.mesh;
-    Recorder recorder(w, about.program, session.history);
+    FlipScratch scratch(w);
+    const Mesh& mesh = scratch.mesh;
+    Recorder recorder(w, info.program, run.history);
     State state;
     Particles& particles = state.particles = load_particles(w);
     long step = 0;
-    if (session.restarting()) session.restore(state, step);
-    sort_particles(w.grid, run.sort, particles);
+    if (run.restarting()) run.restore(state, step);
+    sort_particles(w.grid, scratch.sort, particles);
 
     // 3. The loop of the slide.
-    while (session.keep_going(step, state.time, w.end)) {
-        find_fluid(w, state, run.mesh);  // particles -> mesh: v_g, p_c          [FLIP-8]
-        recorder.look(step, state, particle_totals(w, particles), cell_fields(w, mesh), session);
-        take_flip_step(w, step, run, state);  // mesh -> particles: v_p, x_p     [FLIP-6, 7]
+    while (run.not_finished(step, state.time, w.end)) {
+        find_fluid(w, state, scratch.mesh);  // particles -> mesh: v_g, p_c          [FLIP-8]
+        recorder.look(step, state, particle_totals(w, particles), cell_fields(w, mesh), run);
+        take_flip_step(w, step, scratch, state);  // mesh -> particles: v_p, x_p     [FLIP-6, 7]
         ++step;
-        session.end_of_step(step, state.time, w.end, state);
+        run.end_of_step(step, state.time, w.end, state);
     }
 
     // 4. The end of the run, the results against theory, summary.json.
-    if (common::Session::reached(state.time, w.end)) {
-        find_fluid(w, state, run.mesh);
+    if (common::Run::reached(state.time, w.end)) {
+        find_fluid(w, state, scratch.mesh);
         const Totals totals = particle_totals(w, particles);
         const CellFields cells = cell_fields(w, mesh);
-        recorder.look(step, state, totals, cells, session);
-        recorder.finish(state, totals, cells, session);
+        recorder.look(step, state, totals, cells, run);
+        recorder.finish(state, totals, cells, run);
     }
-    return session.finish(step, static_cast<double>(particles.count()));
+    return run.finish(step, static_cast<double>(particles.count()));
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    return common::guarded(about, [&](auto& session) { return run(argc, argv, session); });
+    return common::run_and_report_errors(info,
+                                         [&](auto& run) { return run_program(argc, argv, run); });
 }

@@ -28,7 +28,7 @@ struct MassMatrix {
 inline void assemble_mass_matrix(const Grid& grid, const Particles& p, MassMatrix& M) {
     for (Field& f : M.entry) f.setZero(grid.size());
     const WeightScale scale(grid);
-    common::for_each_row_three_apart(
+    common::for_each_row_three_colors(
         grid.z.cells,
         [&](long j) {
             const auto row = static_cast<std::size_t>(j);

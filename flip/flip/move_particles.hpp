@@ -117,9 +117,9 @@ inline long move_particles(const Case& w, double dt, const Mesh& mesh, Particles
     if (inside_out >= 0) {
         const auto k = static_cast<std::size_t>(inside_out);
         throw common::NumericalError(
-            "the step turns the particle at x = " + common::shown(particles.x_p[k]) +
-            ", z = " + common::shown(particles.z_p[k]) + " inside out: its volume would be " +
-            common::shown(particles.V_p[k]) + "; reduce time.cfl");
+            "the step turns the particle at x = " + common::format(particles.x_p[k]) +
+            ", z = " + common::format(particles.z_p[k]) + " inside out: its volume would be " +
+            common::format(particles.V_p[k]) + "; reduce time.cfl");
     }
     return left;
 }

@@ -170,7 +170,7 @@ inline bool merge_one(const std::vector<Quarter>& q, bool plane, std::vector<std
 
 /// Splits particles in cells that have become poor in them, inside the fluid, and merges them in
 /// cells that are crowded.
-/// in:     rezone.fewest and most, particles of one material in a cell
+/// in:     rezone.min_particles and most, particles of one material in a cell
 /// in/out: particles; new ones at the end, so they are not sorted any more
 /// exact:  mass, momentum, total energy, and what deposit_particles() makes of mass and momentum on
 ///         every node and cell, to round-off; internal energy of the cells but for the heat of
@@ -212,24 +212,24 @@ inline RezoneReport rezone(const Case& w, Particles& p) {
         const long cell = q[order[begin]].cell;
         while (end < count && q[order[end]].cell == cell) ++end;
         long number = in_cell[static_cast<std::size_t>(cell)];
-        if (number < w.fewest && inside(cell / kinds)) {
+        if (number < w.min_particles && inside(cell / kinds)) {
             std::vector<std::size_t> heaviest(order.begin() + static_cast<long>(begin),
                                               order.begin() + static_cast<long>(end));
             std::stable_sort(heaviest.begin(), heaviest.end(),
                              [&](std::size_t a, std::size_t b) { return p.m_p[a] > p.m_p[b]; });
             for (const std::size_t k : heaviest) {
-                if (number >= w.fewest) break;
+                if (number >= w.min_particles) break;
                 if (!detail::split(w, q[k], k, p)) continue;
                 number += plane ? 3 : 1;
                 ++report.split;
             }
         }
-        if (number <= w.most) continue;
+        if (number <= w.max_particles) continue;
         // One after the other from the fullest quarter.
         std::array<std::vector<std::size_t>, 4> quarters;
         for (std::size_t n = begin; n < end; ++n)
             quarters[static_cast<std::size_t>(q[order[n]].part)].push_back(order[n]);
-        while (number > w.most) {
+        while (number > w.max_particles) {
             auto& fullest = *std::max_element(
                 quarters.begin(), quarters.end(),
                 [](const auto& one, const auto& other) { return one.size() < other.size(); });

@@ -203,15 +203,15 @@ inline StepReport solve_pressure(const Case& w, double dt, Mesh& mesh) {
     const double tolerance = std::min(1.0, w.tolerance * scale / load.norm());
     Eigen::VectorXd change = Eigen::VectorXd::Zero(count);
     const common::KrylovResult solved = common::conjugate_gradients(
-        multiply, precondition, load, change, tolerance, w.most_iterations);
+        multiply, precondition, load, change, tolerance, w.max_iterations);
     StepReport report;
     report.iterations = solved.iterations;
     if (!solved.converged)
         throw common::NumericalError(
             "the implicit pressure has not converged: " + solved.reason + "; after " +
             std::to_string(report.iterations) + " iterations the residual is " +
-            common::shown(solved.residual) + " and not " + common::shown(tolerance) +
-            "; raise flip.most_iterations or reduce time.cfl");
+            common::format(solved.residual) + " and not " + common::format(tolerance) +
+            "; raise flip.max_iterations or reduce time.cfl");
     for (long r = 0; r < count; ++r)
         c.p_step[cells.index[static_cast<std::size_t>(r)]] += change[r];
 

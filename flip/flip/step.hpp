@@ -35,21 +35,23 @@ void find_fluid(const Case& w, const State& state, Mesh& mesh, Clock&& clock = {
 }
 
 /// From t^n to t^{n+1}, as long as the flow allows.
-/// in:     run.mesh after find_fluid(); step, the number of steps before this one
+/// in:     scratch.mesh after find_fluid(); step, the number of steps before this one
 /// in/out: state: particles, time and the length of the last step, budget, report
 template <class Clock = common::NoClock>
-void take_flip_step(const Case& w, long step, FlipScratch& run, State& state, Clock&& clock = {}) {
-    Mesh& mesh = run.mesh;
+void take_flip_step(const Case& w, long step, FlipScratch& scratch, State& state,
+                    Clock&& clock = {}) {
+    Mesh& mesh = scratch.mesh;
     Particles& particles = state.particles;
     // [step]
     const double dt = step_allowed(w, mesh, state.dt);
-    state.report = move_mesh(w, dt, particles, run.mass_matrix, mesh, state.books);  // F_g, v_g^L
+    state.report =
+        move_mesh(w, dt, particles, scratch.mass_matrix, mesh, state.books);  // F_g, v_g^L
     clock.lap("mesh");
     const long left = move_particles(w, dt, mesh, particles);  // v_p, x_p   [FLIP-6, FLIP-7]
     clock.lap("move");
     cross_ends(w, state.time, dt, particles, state.books, left);
     if (w.rezone_steps > 0 && (step + 1) % w.rezone_steps == 0) rezone(w, particles);
-    sort_particles(w.grid, run.sort, particles);
+    sort_particles(w.grid, scratch.sort, particles);
     clock.lap("sort");
     // [/step]
     state.time += dt;

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "common/run/session.hpp"
+#include "common/run/run.hpp"
 #include "flip/output/write_output.hpp"
 #include "flip/theory/compare_with_theory.hpp"
 
@@ -20,8 +20,10 @@ namespace flip {
 /// note:   where the start has nothing to compare with, what has come in since then takes its place
 class Recorder {
    public:
-    Recorder(const Case& wanted, const std::string& program, common::History& history)
-        : wanted_(wanted), program_(program), sound_speed_(largest_sound_speed(wanted)) {
+    Recorder(const Case& parameters, const std::string& program, common::History& history)
+        : parameters_(parameters),
+          program_(program),
+          sound_speed_(largest_sound_speed(parameters)) {
         std::vector<common::Column> columns{{"time", "time"},
                                             {"dt", "time"},
                                             {"energy", "energy/length"},
@@ -39,31 +41,31 @@ class Recorder {
                                             {"largest_mach", "1"},
                                             {"iterations", "1"},
                                             {"divergence", "speed/dx"}};
-        for (const common::Column& column : followed_columns(wanted)) columns.push_back(column);
+        for (const common::Column& column : followed_columns(parameters)) columns.push_back(column);
         history.columns(columns);
     }
 
     /// The files of t^n that are due, and its row.
     void look(long step, const State& state, const Totals& now, const CellFields& cells,
-              common::Session& session) {
-        snapshot(step, state, cells, session);
-        record(step, state, now, cells, session);
+              common::Run& run) {
+        snapshot(step, state, cells, run);
+        record(step, state, now, cells, run);
     }
 
     /// Files of t^n.
-    void snapshot(long step, const State& state, const CellFields& cells,
-                  common::Session& session) const {
-        const std::string folder = session.path(".");
-        if (is_due(wanted_.fields_interval, state)) write_fields(folder, step, wanted_, cells);
-        if (is_due(wanted_.particles_interval, state))
-            write_particles(folder, step, wanted_, state.particles);
+    void snapshot(long step, const State& state, const CellFields& cells, common::Run& run) const {
+        const std::string folder = run.path(".");
+        if (is_due(parameters_.fields_interval, state))
+            write_fields(folder, step, parameters_, cells);
+        if (is_due(parameters_.particles_interval, state))
+            write_particles(folder, step, parameters_, state.particles);
     }
 
     /// One row for t^n.
     /// errors: NumericalError when the energy is not finite or has left the limit of the case
     void record(long step, const State& state, const Totals& now, const CellFields& cells,
-                common::Session& session) {
-        const common::History& history = session.history;
+                common::Run& run) {
+        const common::History& history = run.history;
         const bool is_first = history.all().empty();
         const auto first = [&](const char* name, double value) {
             return is_first ? value : history.first(name);
@@ -78,7 +80,7 @@ class Recorder {
         check_energy(step, state, energy, gross);
 
         const double momentum = std::sqrt(2 * kinetic * mass) + mass * sound_speed_;
-        const Extremes most = extremes(wanted_, cells);
+        const Extremes most = extremes(parameters_, cells);
         row_ = {state.time,
                 state.dt,
                 energy,
@@ -98,19 +100,19 @@ class Recorder {
                 most.mach,
                 static_cast<double>(state.report.iterations),
                 state.report.divergence};
-        add_followed(wanted_, state, now, cells, row_);
-        session.history.row(row_);
+        add_followed(parameters_, state, now, cells, row_);
+        run.history.row(row_);
     }
 
     /// The results of the whole run.
     /// in:     the state at its end, with its totals and cells
     void finish(const State& state, const Totals& now, const CellFields& cells,
-                common::Session& session) const {
-        const common::History& history = session.history;
-        common::Summary& summary = session.summary;
+                common::Run& run) const {
+        const common::History& history = run.history;
+        common::Summary& summary = run.summary;
         if (history.all().empty()) return;
         compare_with_theory(
-            {wanted_, program_, state, now, cells, history, session.path("profile.dat"), summary});
+            {parameters_, program_, state, now, cells, history, run.path("profile.dat"), summary});
         for (const char* name :
              {"mass_error", "momentum_x_error", "momentum_z_error", "energy_error"})
             summary.conservation(std::string("largest_") + name, largest(history, name), "1");
@@ -121,16 +123,17 @@ class Recorder {
     // An energy that is many times what the start and the work done account for is no result.
     void check_energy(long step, const State& state, double energy, double gross) const {
         const double accounted = gross + std::fabs(state.books.energy);
-        const bool beyond =
-            wanted_.energy_limit > 0 && std::fabs(energy) > wanted_.energy_limit * accounted;
+        const bool beyond = parameters_.energy_limit > 0 &&
+                            std::fabs(energy) > parameters_.energy_limit * accounted;
         if (std::isfinite(energy) && !beyond) return;
         throw common::NumericalError(
-            "the energy is " + shown(energy) + " where the start and the work done are " +
-            shown(accounted) + ", at step " + std::to_string(step) + ", t = " + shown(state.time) +
+            "the energy is " + format(energy) + " where the start and the work done are " +
+            format(accounted) + ", at step " + std::to_string(step) +
+            ", t = " + format(state.time) +
             ": reduce time.cfl, refine the mesh, or allow more with time.energy_limit");
     }
 
-    const Case wanted_;
+    const Case parameters_;
     const std::string program_;
     const double sound_speed_;
     std::vector<double> row_;

@@ -99,17 +99,17 @@ struct Brought {
 [[noreturn]] inline void refuse_cell(const Case& w, const State& state, const PicCells& cells,
                                      long i, long j) {
     const long n = w.grid.index(i, j);
-    std::string what = "the density, " + common::shown(cells.mass[n] / w.grid.cell_area()) + ",";
+    std::string what = "the density, " + common::format(cells.mass[n] / w.grid.cell_area()) + ",";
     for (std::size_t k = 0; k < cells.materials; ++k) {
         const double e = state.cells.e[k][n];
         if (!(e >= 0))
-            what = "the internal energy of " + w.materials[k].name + ", " + common::shown(e) + ",";
+            what = "the internal energy of " + w.materials[k].name + ", " + common::format(e) + ",";
     }
     throw common::NumericalError(
         what + " is negative or not finite in the cell at x = " +
-        common::shown(w.grid.x.at(static_cast<double>(i) + 0.5)) +
-        ", z = " + common::shown(w.grid.z.at(static_cast<double>(j) + 0.5)) +
-        " at t = " + common::shown(state.time) +
+        common::format(w.grid.x.at(static_cast<double>(i) + 0.5)) +
+        ", z = " + common::format(w.grid.z.at(static_cast<double>(j) + 0.5)) +
+        " at t = " + common::format(state.time) +
         ": use a smaller time.cfl, more particles per cell, or more viscosity");
 }
 

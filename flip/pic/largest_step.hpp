@@ -163,8 +163,8 @@ inline double largest_step(const Case& w, const State& state, PicCells& cells) {
     if (viscous > 0) dt = std::min(dt, 1 / viscous);
     if (state.dt > 0) dt = std::min(dt, 1.2 * state.dt);
     if (!(dt > 1e-10 * w.end)) {
-        throw common::NumericalError("the time step has fallen to " + common::shown(dt) +
-                                     " at t = " + common::shown(state.time) +
+        throw common::NumericalError("the time step has fallen to " + common::format(dt) +
+                                     " at t = " + common::format(state.time) +
                                      ": some cell has become very fast, hot or light; use more "
                                      "particles per cell or more viscosity");
     }

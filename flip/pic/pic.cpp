@@ -23,63 +23,64 @@ namespace {
 
 using namespace flip;
 
-const common::About about{
+const common::ProgramInfo info{
     "pic", PROGRAM_VERSION,
     "Harlow's particle-in-cell method for compressible flow; the default case "
     "is a ball that hits a plate",
     "flip/cases/sphere_hits_plate.toml"};
 
-int run(int argc, char** argv, std::optional<common::Session>& holder) {
+int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     // 1. The case: defaults, file, command line; refuse, warn, or only describe.
-    Case wanted;
-    common::ParameterTable table = describe(wanted);
-    const common::CommandLine command = common::read_command_line(argc, argv, about, table);
-    refuse_idle(wanted);
-    const Case w = completed(wanted);
-    refuse_impossible(w, about.program);
-    const Scales scales = scales_of(w, about.program);
-    if (!common::start_run(about, command, table,
-                           {describe_scales(w, scales, about.program),
-                            resolution_warnings(w, scales, about.program), LONG_MAX, scales.bytes,
-                            w.checkpoint_steps},
-                           holder))
+    Case parameters;
+    common::ParameterTable table = describe(parameters);
+    const common::CommandLine command = common::read_command_line(argc, argv, info, table);
+    reject_unused(parameters);
+    const Case w = completed(parameters);
+    validate(w, info.program);
+    const Scales scales = scales_of(w, info.program);
+    if (!common::start_run(
+            info, command, table,
+            {describe_scales(w, scales, info.program), resolution_warnings(w, scales, info.program),
+             LONG_MAX, scales.bytes, w.checkpoint_steps},
+            holder))
         return 0;
-    common::Session& session = *holder;
+    common::Run& run = *holder;
 
     // 2. Particles and cells at t = 0.
     PicCells cells(w);
-    Recorder recorder(w, about.program, session.history);
+    Recorder recorder(w, info.program, run.history);
     State state = initial_state(w, cells);
     CellFields fields;
     long step = 0;
-    if (session.restarting()) {
-        session.restore(state, step);
+    if (run.restarting()) {
+        run.restore(state, step);
         weigh_cells(w, state, cells);
     }
 
     // 3. The loop of the slide.
-    while (session.keep_going(step, state.time, w.end)) {
+    while (run.not_finished(step, state.time, w.end)) {
         share_pressure(w, state, cells);  // cells: p
         fields_of(w, state, cells, fields);
-        recorder.look(step, state, totals_of(w, state, cells), fields, session);
+        recorder.look(step, state, totals_of(w, state, cells), fields, run);
         take_pic_step(w, state, cells);  // Lagrangian phase, particles, Eulerian phase  [PIC]
         ++step;
-        session.end_of_step(step, state.time, w.end, state);
+        run.end_of_step(step, state.time, w.end, state);
     }
 
     // 4. The end of the run, the results against theory, summary.json.
-    if (common::Session::reached(state.time, w.end)) {
+    if (common::Run::reached(state.time, w.end)) {
         share_pressure(w, state, cells);
         const Totals totals = totals_of(w, state, cells);
         fields_of(w, state, cells, fields);
-        recorder.look(step, state, totals, fields, session);
-        recorder.finish(state, totals, fields, session);
+        recorder.look(step, state, totals, fields, run);
+        recorder.finish(state, totals, fields, run);
     }
-    return session.finish(step, static_cast<double>(state.particles.count()));
+    return run.finish(step, static_cast<double>(state.particles.count()));
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    return common::guarded(about, [&](auto& session) { return run(argc, argv, session); });
+    return common::run_and_report_errors(info,
+                                         [&](auto& run) { return run_program(argc, argv, run); });
 }

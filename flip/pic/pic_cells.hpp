@@ -75,7 +75,7 @@ inline int outside(const Grid& grid) { return static_cast<int>(grid.size()) - 1;
 /// Calls work(j) for every row of cells.
 template <class Work>
 void for_each_row_of_cells(const Grid& grid, const Work& work) {
-    if (grid.x.cells * grid.z.cells < common::worth_sharing) {
+    if (grid.x.cells * grid.z.cells < common::parallel_threshold) {
         for (long j = 0; j < grid.z.cells; ++j) work(j);
     } else {
         common::for_each_row(grid.z.cells, work);

@@ -80,8 +80,8 @@ struct Case {
     std::string pressure = "explicit";  // or implicit
     double theta = 1;
     double tolerance = 1e-8;
-    long most_iterations = 1000;
-    long rezone_steps = 0, fewest = 4, most = 32;
+    long max_iterations = 1000;
+    long rezone_steps = 0, min_particles = 4, max_particles = 32;
 
     // What the run is compared with.
     std::string compare = "none";
@@ -241,13 +241,14 @@ inline common::ParameterTable describe(Case& w) {
     table.real("flip.theta", w.theta, "", between(0.5, 1), "level of the implicit pressure");
     table.real("flip.tolerance", w.tolerance, "", between(1e-15, 0.1),
                "residual of the implicit pressure, relative");
-    table.whole("flip.most_iterations", w.most_iterations, "", between(1, 1e6),
+    table.whole("flip.max_iterations", w.max_iterations, "", between(1, 1e6),
                 "of the conjugate gradients");
     table.whole("rezone.steps", w.rezone_steps, "step", between(0, 1e9),
                 "steps between splitting and merging of particles; 0: never");
-    table.whole("rezone.fewest", w.fewest, "", between(1, 1e6),
+    table.whole("rezone.min_particles", w.min_particles, "", between(1, 1e6),
                 "cells with fewer particles of a material, and neighbors filled, split them");
-    table.whole("rezone.most", w.most, "", between(5, 1e6), "cells with more merge them");
+    table.whole("rezone.max_particles", w.max_particles, "", between(5, 1e6),
+                "cells with more merge them");
 
     table.group("comparison with theory");
     table.choice("theory.compare", w.compare,
@@ -270,6 +271,9 @@ inline common::ParameterTable describe(Case& w) {
     table.whole("output.checkpoint_steps", w.checkpoint_steps, "", between(0, 1e9),
                 "steps between checkpoints; 0: only when stopped");
 
+    table.renamed({{"flip.most_iterations", "flip.max_iterations"},
+                   {"rezone.fewest", "rezone.min_particles"},
+                   {"rezone.most", "rezone.max_particles"}});
     table.may_change_on_restart({"time.end", "output.fields_interval", "output.particles_interval",
                                  "output.vtk", "output.checkpoint_steps"});
     return table;

@@ -34,9 +34,9 @@ inline void refuse_methods(const Case& w, const std::string& program) {
     refuse(w.rezone_steps > 0 && w.transfer == "apic",
            "rezone.steps and flip.transfer = \"apic\" do not go together: a merged particle cannot "
            "keep the gradients of several; take \"flip\", or rezone.steps = 0");
-    refuse(w.rezone_steps > 0 && w.most < 2 * w.fewest,
-           "rezone.most = " + std::to_string(w.most) +
-               " is below twice rezone.fewest = " + std::to_string(w.fewest) +
+    refuse(w.rezone_steps > 0 && w.max_particles < 2 * w.min_particles,
+           "rezone.max_particles = " + std::to_string(w.max_particles) +
+               " is below twice rezone.min_particles = " + std::to_string(w.min_particles) +
                ": cells would split and merge the same particles in turn; raise it");
 }
 
@@ -45,7 +45,7 @@ inline void refuse_methods(const Case& w, const std::string& program) {
 /// Refuses what a case says in vain.
 /// in:     the case as it was read, before completed()
 /// errors: InputError, one sentence
-inline void refuse_idle(const Case& w) {
+inline void reject_unused(const Case& w) {
     const auto differs = [](const SideCase& a, const SideCase& b) {
         return a.density != b.density || a.pressure != b.pressure || a.velocity != b.velocity ||
                a.gamma != b.gamma || a.p_infinity != b.p_infinity;
@@ -64,13 +64,13 @@ inline void refuse_idle(const Case& w) {
 /// Refuses what cannot run.
 /// in:     a completed case; program, pic or flip
 /// errors: InputError, one sentence with the numbers and the cure
-inline void refuse_impossible(const Case& w, const std::string& program) {
+inline void validate(const Case& w, const std::string& program) {
     detail::refuse(w.regions.empty(),
                    "there is no fluid: add a [region.<name>], or set setup.kind = \"riemann\"");
     const bool between = w.interface > w.grid.x.low && w.interface < w.grid.x.low + w.grid.x.length;
     detail::refuse(w.setup == "riemann" && !between,
-                   "setup.interface = " + shown(w.interface) + " is not on the mesh, from " +
-                       shown(w.grid.x.low) + " to " + shown(w.grid.x.high()));
+                   "setup.interface = " + format(w.interface) + " is not on the mesh, from " +
+                       format(w.grid.x.low) + " to " + format(w.grid.x.high()));
     detail::refuse_sizes(w);
     detail::refuse_ends(w);
     detail::refuse_materials(w);

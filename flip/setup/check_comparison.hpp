@@ -68,7 +68,7 @@ inline void refuse_struck_wall(const Case& w, const std::string& what) {
                                               std::fabs(r.gas.velocity_x) + sound_speed_of(w, r));
     refuse(!fed && w.end > meeting,
            what + ": the other end of the mesh is felt behind the shock from t = " +
-               shown(meeting) + " on: lower time.end below that");
+               format(meeting) + " on: lower time.end below that");
 }
 
 inline void refuse_blast(const Case& w, const std::string& what) {
@@ -79,10 +79,10 @@ inline void refuse_blast(const Case& w, const std::string& what) {
                std::to_string(hot) + " have one");
     const double gamma = material_of(w, w.regions.front()).gamma;
     refuse(!(gamma > 1 && gamma < 2),
-           what + " is known for gamma between 1 and 2, and it is " + shown(gamma));
+           what + " is known for gamma between 1 and 2, and it is " + format(gamma));
     refuse(hot_region(w).gas.density != w.regions.front().gas.density,
            what + " needs the same density inside and outside: " +
-               shown(hot_region(w).gas.density) + " and " + shown(w.regions.front().gas.density));
+               format(hot_region(w).gas.density) + " and " + format(w.regions.front().gas.density));
     const Blast blast = blast_of(w);
     const double R = blast.radius(w.end);
     const auto room = [&](const common::Axis& axis, double center) {
@@ -90,8 +90,8 @@ inline void refuse_blast(const Case& w, const std::string& what) {
     };
     const double most = w.plane() ? std::min(room(w.grid.x, blast.x), room(w.grid.z, blast.z))
                                   : room(w.grid.x, blast.x);
-    refuse(R > most, what + ": at time.end the shock is at r = " + shown(R) +
-                         ", and the mesh ends at " + shown(most) + ": lower time.end");
+    refuse(R > most, what + ": at time.end the shock is at r = " + format(R) +
+                         ", and the mesh ends at " + format(most) + ": lower time.end");
 }
 
 inline void refuse_noh(const Case& w, const std::string& what) {
@@ -101,8 +101,8 @@ inline void refuse_noh(const Case& w, const std::string& what) {
     refuse(!(r.speed > 0), what + " needs region." + r.name + ".speed above 0, inward");
     refuse(r.gas.pressure > 0.01 * r.gas.density * r.speed * r.speed,
            what + " is for cold gas, and region." + r.name + ".pressure = " +
-               shown(r.gas.pressure) + " is above a hundredth of density speed^2, " +
-               shown(r.gas.density * r.speed * r.speed));
+               format(r.gas.pressure) + " is above a hundredth of density speed^2, " +
+               format(r.gas.density * r.speed * r.speed));
 }
 
 inline void refuse_interface(const Case& w, const std::string& what) {
@@ -112,11 +112,13 @@ inline void refuse_interface(const Case& w, const std::string& what) {
     refuse_mode(w, what, "overturn");
     refuse(w.grid.z.periodic, what + " needs walls in z");
     const RegionCase& upper = w.regions[1];
-    refuse(!(upper.center_z > w.grid.z.low && upper.center_z < w.grid.z.high()),
-           what + ": the interface at center_z = " + shown(upper.center_z) + " is not on the mesh");
-    refuse(!(theory_growth(w) > 0), what + ": density " + shown(upper.gas.density) + " above " +
-                                        shown(w.regions[0].gas.density) + " with gravity.z = " +
-                                        shown(w.gravity_z) + " does not overturn: turn one around");
+    refuse(
+        !(upper.center_z > w.grid.z.low && upper.center_z < w.grid.z.high()),
+        what + ": the interface at center_z = " + format(upper.center_z) + " is not on the mesh");
+    refuse(!(theory_growth(w) > 0), what + ": density " + format(upper.gas.density) + " above " +
+                                        format(w.regions[0].gas.density) +
+                                        " with gravity.z = " + format(w.gravity_z) +
+                                        " does not overturn: turn one around");
 }
 
 inline void refuse_shear(const Case& w, const std::string& what) {
@@ -126,9 +128,9 @@ inline void refuse_shear(const Case& w, const std::string& what) {
     refuse(w.grid.z.periodic, what + " needs walls in z");
     const double middle = w.grid.z.low + 0.5 * w.grid.z.length;
     refuse(std::fabs(r.center_z - middle) > 1e-6 * w.grid.z.length,
-           what + " needs the layer half-way between the walls, at center_z = " + shown(middle));
+           what + " needs the layer half-way between the walls, at center_z = " + format(middle));
     refuse(!(theory_growth(w) > 0), what + ": mode " + std::to_string(w.mode) +
-                                        " of a layer of half-width " + shown(r.width) +
+                                        " of a layer of half-width " + format(r.width) +
                                         " does not grow: make it thinner, or lower theory.mode");
 }
 
@@ -137,17 +139,17 @@ inline void refuse_dam(const Case& w, const std::string& what) {
     refuse(r.shape != "box", what + " needs a box of water as the last region");
     const WaterColumn water = water_of(w);
     refuse(!(water.gravity > 0),
-           what + " needs gravity.z below 0, and it is " + shown(w.gravity_z));
+           what + " needs gravity.z below 0, and it is " + format(w.gravity_z));
     refuse(!w.is(x_low, "slip") || !w.is(z_low, "slip"),
            what + " needs a wall at x_low and a floor at z_low: set both to \"slip\"");
     const double gap =
         std::max(r.center_x - r.half_x - w.grid.x.low, r.center_z - r.half_z - w.grid.z.low);
     refuse(gap > 0.5 * w.grid.x.spacing(),
-           what + " needs the water in the corner of x_low and z_low, and it is " + shown(gap) +
+           what + " needs the water in the corner of x_low and z_low, and it is " + format(gap) +
                " away");
     refuse(water.width >= w.grid.x.length, what + " needs room beyond the water: lower region." +
                                                r.name + ".half_x below " +
-                                               shown(0.5 * w.grid.x.length));
+                                               format(0.5 * w.grid.x.length));
     theory::read_table(dam_table);
 }
 
@@ -159,14 +161,14 @@ inline void refuse_cavity(const Case& w, const std::string& what) {
     for (const End end : {x_low, x_high, z_low})
         refuse(w.ends[end].slide != 0, what + " needs all walls but the lid at rest");
     refuse(std::fabs(w.grid.x.length - w.grid.z.length) > 1e-9 * w.grid.x.length,
-           what + " is for a square, and the mesh is " + shown(w.grid.x.length) + " x " +
-               shown(w.grid.z.length));
+           what + " is for a square, and the mesh is " + format(w.grid.x.length) + " x " +
+               format(w.grid.z.length));
     const double Re =
         w.viscosity > 0 ? w.regions.front().gas.density * U * w.grid.x.length / w.viscosity : 0;
     refuse(std::fabs(Re - 100) > 1,
            what + " is published for density speed length/flip.viscosity = 100, and it is " +
-               (Re > 0 ? shown(Re) : "infinite") + ": set flip.viscosity = " +
-               shown(w.regions.front().gas.density * U * w.grid.x.length / 100));
+               (Re > 0 ? format(Re) : "infinite") + ": set flip.viscosity = " +
+               format(w.regions.front().gas.density * U * w.grid.x.length / 100));
     theory::read_table(cavity_table);
 }
 
@@ -207,8 +209,8 @@ inline void refuse_comparison(const Case& w, const std::string& program) {
                what + " needs periodic ends or slip walls in z");
         refuse(r.amplitude == 0, what + " needs a blob: give region." + r.name + ".amplitude");
         refuse(10 * r.width > w.grid.x.length, what + " needs a mesh ten times as long as region." +
-                                                   r.name + ".width = " + shown(r.width) +
-                                                   ", and it is " + shown(w.grid.x.length));
+                                                   r.name + ".width = " + format(r.width) +
+                                                   ", and it is " + format(w.grid.x.length));
     }
     if (w.compare == "rotation" || w.compare == "gresho") {
         refuse_without_flow(w, what, w.compare);
@@ -219,8 +221,8 @@ inline void refuse_comparison(const Case& w, const std::string& program) {
                what + " in a moving frame needs periodic ends in that direction");
         refuse(w.compare == "gresho" &&
                    (r.gas.velocity_x != w.frame_x || r.gas.velocity_z != w.frame_z),
-               what + ": the vortex moves with " + shown(r.gas.velocity_x) + ", " +
-                   shown(r.gas.velocity_z) + ": set theory.frame_x and frame_z to that");
+               what + ": the vortex moves with " + format(r.gas.velocity_x) + ", " +
+                   format(r.gas.velocity_z) + ": set theory.frame_x and frame_z to that");
     }
     if (w.compare == "wave") {
         refuse_without_flow(w, what, "wave");
@@ -231,7 +233,7 @@ inline void refuse_comparison(const Case& w, const std::string& program) {
         refuse(sound_speed_of(w, r) == 0,
                what + " needs a gas with sound: give region." + r.name + ".pressure");
         refuse(r.gas.velocity_x != w.frame_x, what + ": the gas moves with " +
-                                                  shown(r.gas.velocity_x) +
+                                                  format(r.gas.velocity_x) +
                                                   ": set theory.frame_x to that");
     }
     if (w.compare == "ringing") {

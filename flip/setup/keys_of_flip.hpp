@@ -25,7 +25,7 @@ inline std::vector<IdleKey> keys_of_flip(const Case& w) {
     const std::string solver = "flip.pressure = \"implicit\"", rezone = "rezone.steps above 0";
     return {
         {"flip.transfer", quoted(w.transfer), w.transfer != d.transfer, true, ""},
-        {"flip.blend", common::shown(w.blend), w.blend != d.blend, w.transfer == "blend",
+        {"flip.blend", common::format(w.blend), w.blend != d.blend, w.transfer == "blend",
          "flip.transfer = \"blend\""},
         {"flip.xpic_order", whole(w.xpic_order), w.xpic_order != d.xpic_order, w.transfer == "xpic",
          "flip.transfer = \"xpic\""},
@@ -33,16 +33,18 @@ inline std::vector<IdleKey> keys_of_flip(const Case& w) {
         {"flip.deficit_to_heat", on_off(w.deficit_to_heat), w.deficit_to_heat != d.deficit_to_heat,
          true, ""},
         {"flip.density", quoted(w.density), w.density != d.density, true, ""},
-        {"flip.viscosity", common::shown(w.viscosity), w.viscosity != d.viscosity, true, ""},
+        {"flip.viscosity", common::format(w.viscosity), w.viscosity != d.viscosity, true, ""},
         {"flip.pressure", quoted(w.pressure), w.pressure != d.pressure, true, ""},
-        {"flip.theta", common::shown(w.theta), w.theta != d.theta, implicit, solver},
-        {"flip.tolerance", common::shown(w.tolerance), w.tolerance != d.tolerance, implicit,
+        {"flip.theta", common::format(w.theta), w.theta != d.theta, implicit, solver},
+        {"flip.tolerance", common::format(w.tolerance), w.tolerance != d.tolerance, implicit,
          solver},
-        {"flip.most_iterations", whole(w.most_iterations), w.most_iterations != d.most_iterations,
+        {"flip.max_iterations", whole(w.max_iterations), w.max_iterations != d.max_iterations,
          implicit, solver},
         {"rezone.steps", whole(w.rezone_steps), w.rezone_steps != d.rezone_steps, true, ""},
-        {"rezone.fewest", whole(w.fewest), w.fewest != d.fewest, rezones, rezone},
-        {"rezone.most", whole(w.most), w.most != d.most, rezones, rezone},
+        {"rezone.min_particles", whole(w.min_particles), w.min_particles != d.min_particles,
+         rezones, rezone},
+        {"rezone.max_particles", whole(w.max_particles), w.max_particles != d.max_particles,
+         rezones, rezone},
     };
 }
 

@@ -35,10 +35,11 @@ inline void warn_of_regions(const Case& w, const Scales& scales, std::vector<std
         out.push_back(std::to_string(per_cell) +
                       " particles per cell are fewer than 4: a particle "
                       "that leaves a cell takes " +
-                      shown(100.0 / static_cast<double>(per_cell)) + " % of its density along");
-    if (w.rezone_steps > 0 && per_cell > w.most)
-        out.push_back("rezone.most = " + std::to_string(w.most) + " is below the " +
-                      std::to_string(per_cell) + " particles per cell of the start");
+                      format(100.0 / static_cast<double>(per_cell)) + " % of its density along");
+    if (w.rezone_steps > 0 && per_cell > w.max_particles)
+        out.push_back("rezone.max_particles = " + std::to_string(w.max_particles) +
+                      " is below the " + std::to_string(per_cell) +
+                      " particles per cell of the start");
 }
 
 // Whether nothing but the flow itself moves the fluid: no jump of pressure, no energy set free.
@@ -59,14 +60,14 @@ inline void warn_of_speeds(const Case& w, const Scales& scales, const std::strin
                            std::vector<std::string>& out) {
     const bool slow = scales.sound_speed > 0 && scales.mach < 0.05;
     if (program == "pic" && slow && is_gentle(w))
-        out.push_back("the flow has Mach " + shown(scales.mach) +
+        out.push_back("the flow has Mach " + format(scales.mach) +
                       ", below 0.05: cells feel a particle only when it enters them, and what "
                       "classical PIC makes of such a flow is noise; take flip");
     const RegionCase& r = w.regions.front();
     const double c = sound_speed_of(w, r), M = c > 0 ? std::fabs(r.gas.velocity_x) / c : 0;
     if (program == "flip" && !w.implicit() && w.density == "cells" && w.compare != "ringing" &&
         M > 0.07 && M < 0.19)
-        out.push_back("region." + r.name + " flows over the mesh at Mach " + shown(M) +
+        out.push_back("region." + r.name + " flows over the mesh at Mach " + format(M) +
                       ", between 0.07 and 0.19, where explicit FLIP rings: try flip.pressure = "
                       "\"implicit\", or a frame of reference that moves along");
     const bool shocks = scales.mach > 0.5 || w.setup == "riemann" || !is_gentle(w);
@@ -84,7 +85,7 @@ inline void warn_of_speeds(const Case& w, const Scales& scales, const std::strin
             "a no_slip wall holds fluid without viscosity only through the mesh: set "
             "flip.viscosity, or make the wall slip");
     if (w.implicit() && scales.speed > 0.5 * scales.sound_speed && scales.sound_speed > 0)
-        out.push_back("the flow has Mach " + shown(scales.mach) +
+        out.push_back("the flow has Mach " + format(scales.mach) +
                       ", above 0.5, and time.cfl with implicit pressure does not follow its sound: "
                       "waves are damped");
 }
@@ -95,8 +96,8 @@ inline void warn_of_theory(const Case& w, const Scales& scales, std::vector<std:
         const double left = w.interface + (exact.left_head + w.frame_x) * w.end,
                      right = w.interface + (exact.right_head + w.frame_x) * w.end;
         if (left < w.grid.x.low || right > w.grid.x.high())
-            out.push_back("at time.end the waves are at x = " + shown(left) + " and " +
-                          shown(right) +
+            out.push_back("at time.end the waves are at x = " + format(left) + " and " +
+                          format(right) +
                           ", beyond the ends of the mesh, which the exact solution "
                           "does not know");
     }
@@ -104,29 +105,30 @@ inline void warn_of_theory(const Case& w, const Scales& scales, std::vector<std:
         const double period =
             2 * pi / (sound_speed_of(w, region_with_flow(w, "wave")) * followed_wave_number(w));
         if (period > w.end)
-            out.push_back("the wave has the period " + shown(period) + ", longer than time.end = " +
-                          shown(w.end) + ": its frequency cannot be measured well");
+            out.push_back("the wave has the period " + format(period) +
+                          ", longer than time.end = " + format(w.end) +
+                          ": its frequency cannot be measured well");
     }
     if (w.compare == "rayleigh_taylor" || w.compare == "kelvin_helmholtz") {
         const double growth = theory_growth(w);
         if (growth * w.end < 1)
-            out.push_back("theory has the growth rate " + shown(growth) + ", and time.end = " +
-                          shown(w.end) + " is less than the time " + shown(1 / growth) +
+            out.push_back("theory has the growth rate " + format(growth) + ", and time.end = " +
+                          format(w.end) + " is less than the time " + format(1 / growth) +
                           " in which the wave grows by e: its growth cannot be measured well");
     }
     if (w.compare == "gresho" && scales.regions.size() == 1) {
         const RegionCase& r = region_with_flow(w, "gresho");
         const double turn = std::fabs(pi * r.width / r.speed);
         if (w.end < 0.5 * turn)
-            out.push_back("time.end = " + shown(w.end) +
-                          " is less than half a turn of the vortex, " + shown(turn) +
+            out.push_back("time.end = " + format(w.end) +
+                          " is less than half a turn of the vortex, " + format(turn) +
                           ": what one turn loses is extrapolated");
     }
 }
 
 }  // namespace detail
 
-/// Warnings about a completed case that refuse_impossible has let through.
+/// Warnings about a completed case that validate has let through.
 inline std::vector<std::string> resolution_warnings(const Case& w, const Scales& scales,
                                                     const std::string& program) {
     std::vector<std::string> warnings;
@@ -142,8 +144,8 @@ inline std::vector<std::string> resolution_warnings(const Case& w, const Scales&
         {"output.particles_interval", w.particles_interval}};
     for (const auto& [name, interval] : intervals)
         if (interval > 0 && interval < scales.dt)
-            warnings.push_back(std::string(name) + " = " + shown(interval) +
-                               " is below the first time step, " + shown(scales.dt) +
+            warnings.push_back(std::string(name) + " = " + format(interval) +
+                               " is below the first time step, " + format(scales.dt) +
                                ": files are written every step");
     return warnings;
 }

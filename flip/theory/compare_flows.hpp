@@ -29,7 +29,7 @@ inline void compare_dam(const FinishedRun& run) {
         T.push_back(theory::column_time(times[n], water.width, water.height, water.gravity));
         Z.push_back((front[n] - w.grid.x.low) / water.width);
     }
-    run.summary.result_info("front", Z.back(), "a", "at T = " + shown(T.back()));
+    run.summary.result_info("front", Z.back(), "a", "at T = " + format(T.back()));
     run.summary.result_info("wall_height", height.back() / water.height, "H", "at the same time");
     if (std::fabs(water.height / water.width - 2) > 0.05) return;
     const auto table = theory::read_table(dam_table);

@@ -59,7 +59,7 @@ inline void compare_wave(const FinishedRun& run) {
         run.summary.result_info("amplitude_per_period", kept, "", "the flow diffuses it");
     else
         run.summary.result("amplitude_per_period", kept, "", expected, w.theory_tolerance,
-                           scheme + "; factor per step " + shown(wave.amplification));
+                           scheme + "; factor per step " + format(wave.amplification));
     const Spiral pressure =
         unwound(run.history.column("pressure_re"), run.history.column("pressure_im"));
     run.summary.result_info("pressure_amplitude_per_period",
@@ -73,10 +73,10 @@ inline void compare_ringing(const FinishedRun& run) {
     const double c = sound_speed_of(w, w.regions.front()), dx = w.grid.x.spacing();
     const auto times = run.history.column("time"), noise = run.history.column("noise");
     const common::GrowthFit fit = common::fit_growth(times, noise);
-    run.summary.result_info(
-        "growth", fit.rate * dx / c, "c/dx",
-        fit.found ? "measured from t = " + shown(fit.begin) + " to " + shown(fit.end) + "; exact: 0"
-                  : fit.reason);
+    run.summary.result_info("growth", fit.rate * dx / c, "c/dx",
+                            fit.found ? "measured from t = " + format(fit.begin) + " to " +
+                                            format(fit.end) + "; exact: 0"
+                                      : fit.reason);
     run.summary.result_info("mach", std::fabs(w.regions.front().gas.velocity_x) / c, "",
                             "of the flow over the mesh");
     run.summary.result_info("largest_noise", largest(run.history, "noise") / c, "c",
@@ -105,8 +105,8 @@ inline void compare_instability(const FinishedRun& run) {
         run.summary.result_info("growth", 0, "1/time", "no five rows at small amplitude");
         return;
     }
-    const std::string where =
-        source + "; fitted up to t = " + shown(times[count - 1]) + ", misfit " + shown(fit.misfit);
+    const std::string where = source + "; fitted up to t = " + format(times[count - 1]) +
+                              ", misfit " + format(fit.misfit);
     run.summary.result_info("growth", fit.rate, "1/time", where);
     run.summary.result("growth_over_theory", fit.rate / expected, "", 1, w.theory_tolerance, where);
     run.summary.result("fit_misfit", fit.misfit, "", 0, 0.2,

@@ -141,7 +141,7 @@ inline void compare_sedov(const FinishedRun& run) {
     }
     const double peak = *std::max_element(profile.rho.begin(), profile.rho.end());
     run.summary.result_info("peak_density_ratio", peak / blast.density, "",
-                            "exact: " + shown((blast.wave.gamma + 1) / (blast.wave.gamma - 1)));
+                            "exact: " + format((blast.wave.gamma + 1) / (blast.wave.gamma - 1)));
     common::write_table(run.profile, {{"r", "length", profile.r},
                                       {"rho", "mass/length^3", profile.rho},
                                       {"v_r", "velocity", profile.v_r},
@@ -178,9 +178,9 @@ inline void compare_noh(const FinishedRun& run) {
         run.result("shock_radius", radius, "length", R_then, source);
     } else {
         run.summary.result_info("plateau_density_over_theory", plateau / behind.density, "",
-                                source + ": " + shown(behind.density));
+                                source + ": " + format(behind.density));
         run.summary.result_info("shock_radius_over_theory", R_then > 0 ? radius / R_then : 0, "",
-                                source + ": " + shown(R_then));
+                                source + ": " + format(R_then));
     }
     run.summary.result_info("middle_density_over_theory", profile.rho[0] / behind.density, "",
                             "wall heating: the ring in the middle");
@@ -245,7 +245,7 @@ inline void compare_rotation(const FinishedRun& run) {
     if (run.program == "flip" && w.transfer == "pic" && region.shape == "disk") {
         const double steps = static_cast<double>(run.history.column("time").size()) - 1;
         const double once = 1 - theory::round_trip_loss(h, region.radius);
-        source = "measured; 2 h^2/(3 R^2) lost in each step leave " + shown(std::pow(once, steps));
+        source = "measured; 2 h^2/(3 R^2) lost in each step leave " + format(std::pow(once, steps));
     }
     run.summary.result_info("angular_momentum_kept", L, "", source);
     run.summary.result_info("kinetic_energy_kept", K, "", source);

@@ -14,7 +14,7 @@
 
 namespace flip {
 
-using common::shown;
+using common::format;
 
 /// Largest size of a column of the history.
 inline double largest(const common::History& history, const std::string& name) {

@@ -41,7 +41,7 @@ inline void count_moments(const PushField& field, const Grid& grid, double dt,
     const long columns = Homes<l>::count(grid.x), rows = Homes<l>::count(grid.z);
     std::vector<std::array<double, 4>> sums_of_row(static_cast<std::size_t>(rows));
 
-    common::for_each_row_three_apart(rows, [&](long row) {
+    common::for_each_row_three_colors(rows, [&](long row) {
         std::array<double, 4>& sums = sums_of_row[static_cast<std::size_t>(row)];
         const double z_home = grid.z.at(static_cast<double>(row));
         for (long column = 0; column < columns; ++column) {

@@ -22,62 +22,64 @@ namespace {
 
 using namespace implicit_moment;
 
-const common::About about{
+const common::ProgramInfo info{
     "explicit_em", PROGRAM_VERSION,
     "explicit electromagnetic particle-in-cell in 2.5 dimensions; the default case is the explicit "
     "run of the talk's cost slide",
     "implicit_moment/cases/gem_explicit.toml"};
 
-int run(int argc, char** argv, std::optional<common::Session>& holder) {
+int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     // 1. The case: defaults, file, command line; refuse, warn, or only describe.
-    Case wanted;
-    common::ParameterTable table = describe_explicit(wanted);
-    const common::CommandLine command = common::read_command_line(argc, argv, about, table);
-    refuse_impossible(wanted);
-    refuse_unstable(wanted);
-    if (wanted.wave != "none") theory_of_mode(wanted);
-    const Scales scales = scales_of(wanted);
-    if (!common::start_run(about, command, table,
-                           {describe_scales(wanted, scales), leapfrog_warnings(wanted, scales),
-                            scales.steps, scales.bytes, wanted.checkpoint_steps},
-                           holder))
+    Case parameters;
+    common::ParameterTable table = describe_explicit(parameters);
+    const common::CommandLine command = common::read_command_line(argc, argv, info, table);
+    validate(parameters);
+    refuse_unstable(parameters);
+    if (parameters.wave != "none") theory_of_mode(parameters);
+    const Scales scales = scales_of(parameters);
+    if (!common::start_run(
+            info, command, table,
+            {describe_scales(parameters, scales), leapfrog_warnings(parameters, scales),
+             scales.steps, scales.bytes, parameters.checkpoint_steps},
+            holder))
         return 0;
-    common::Session& session = *holder;
+    common::Run& run = *holder;
 
     // 2. Particles and fields at t = 0.
-    State state = leapfrog_state(wanted);
-    Leapfrog leapfrog(wanted);
-    const auto shown = [&](const State& now) {
+    State state = leapfrog_state(parameters);
+    Leapfrog leapfrog(parameters);
+    const auto plasma_moments = [&](const State& now) {
         return moments_now(leapfrog, now, detail::Images::plasma);
     };
-    Recorder recorder(wanted, state, shown, session.history);
+    Recorder recorder(parameters, state, plasma_moments, run.history);
 
     // 3. The loop.
-    const double dt = wanted.dt;
+    const double dt = parameters.dt;
     const long steps = scales.steps;
     long step = 0;
-    if (session.restarting()) session.restore(state, step);
+    if (run.restarting()) run.restore(state, step);
     std::vector<Particles>& particles = state.plasma.species;
-    while (session.keep_going(step, steps)) {
-        pack_push_field(leapfrog, state.field);  // E^n, B^n
-        if (step % wanted.history_steps == 0)    // the row of t^n
-            recorder.record(step, state, moments_now(leapfrog, state), session);
+    while (run.not_finished(step, steps)) {
+        pack_push_field(leapfrog, state.field);    // E^n, B^n
+        if (step % parameters.history_steps == 0)  // the row of t^n
+            recorder.record(step, state, moments_now(leapfrog, state), run);
         take_step(leapfrog, state.field, particles);  // u, J^{n+1/2}; x, E, B^{n+1}
         ++step;
-        session.end_of_step(step, steps, static_cast<double>(step) * dt, state);
+        run.end_of_step(step, steps, static_cast<double>(step) * dt, state);
     }
 
     // 4. The last row, the results against theory, summary.json.
     if (step == steps) {
         pack_push_field(leapfrog, state.field);
-        recorder.record(step, state, moments_now(leapfrog, state), session);
-        recorder.finish(state, session);
+        recorder.record(step, state, moments_now(leapfrog, state), run);
+        recorder.finish(state, run);
     }
-    return session.finish(step, static_cast<double>(state.plasma.count()));
+    return run.finish(step, static_cast<double>(state.plasma.count()));
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    return common::guarded(about, [&](auto& session) { return run(argc, argv, session); });
+    return common::run_and_report_errors(info,
+                                         [&](auto& run) { return run_program(argc, argv, run); });
 }

@@ -17,7 +17,7 @@ namespace implicit_moment {
 /// node; l = 2: the nearest node), in cells:
 ///     node[0..l]   = S^(l) to the nodes, from the lowest that it touches
 ///     half[0..l-1] = S^(l-1) to the midpoints between them
-/// Real is double or Lanes.
+/// Real is double or SimdVector.
 /// exact:  d node[k] / dd = half[k-1] - half[k], from which charge conservation follows.
 template <int l, class Real>
 struct HomeWeights;

@@ -39,10 +39,10 @@ inline void start_back(const PushField& field, const Grid& grid, double dt, doub
 /// Particles at x^0, u^{-1/2} and fields at t = 0; particles sorted by home.
 /// exact:  div E = 4 pi rho with rho smoothed as J will be, on every node inside.
 /// note:   the loaded velocities are taken for u = gamma v.
-inline State leapfrog_state(const Case& wanted) {
-    const Grid& grid = wanted.grid;
-    const LeapfrogSettings& settings = wanted.leapfrog;
-    State state = loaded_state(wanted);
+inline State leapfrog_state(const Case& parameters) {
+    const Grid& grid = parameters.grid;
+    const LeapfrogSettings& settings = parameters.leapfrog;
+    State state = loaded_state(parameters);
     std::vector<Particles>& species = state.plasma.species;
 
     SortScratch sort;
@@ -55,15 +55,15 @@ inline State leapfrog_state(const Case& wanted) {
     count_moments(push, grid, 0, settings, species, detail::Images::conductor, moments);
     Field rho = Field::Zero(grid.size());
     for (const Moments& m : moments) rho += m.rho;
-    smooth(grid, on_nodes, {-1, -1}, wanted.field.smoothing, rho.data(), scratch);
+    smooth(grid, on_nodes, {-1, -1}, parameters.field.smoothing, rho.data(), scratch);
     add_electrostatic_field(grid, MeshModes(grid), rho, state.field);
 
-    pack_push_field(grid, wanted.field.smoothing, state.field, smoothed, scratch, push);
+    pack_push_field(grid, parameters.field.smoothing, state.field, smoothed, scratch, push);
     const double per_c_squared = detail::per_c_squared(settings);
     for (Particles& particles : species) {
         settings.order == 1
-            ? detail::start_back<1>(push, grid, wanted.dt, per_c_squared, particles)
-            : detail::start_back<2>(push, grid, wanted.dt, per_c_squared, particles);
+            ? detail::start_back<1>(push, grid, parameters.dt, per_c_squared, particles)
+            : detail::start_back<2>(push, grid, parameters.dt, per_c_squared, particles);
     }
     return state;
 }

@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "common/lanes.hpp"
 #include "common/parallel.hpp"
 #include "common/run/parameters.hpp"
+#include "common/simd.hpp"
 #include "implicit_moment/explicit_em/follow_path.hpp"
 #include "implicit_moment/explicit_em/leapfrog_settings.hpp"
 #include "implicit_moment/move_particles.hpp"
@@ -25,7 +25,7 @@
 
 namespace implicit_moment {
 
-using common::Lanes;
+using common::SimdVector;
 
 /// Fields at a particle at distance d from its home.
 /// in:     corner, the record of the lowest node that the home touches.
@@ -169,26 +169,27 @@ inline long move_particles(const PushField& field, const Grid& grid, double dt,
                 const bool wraps_x = grid.x.periodic && (column == 0 || column == columns - 1);
                 const NodeField* corner = &field[static_cast<std::size_t>(
                     grid.index(column + Homes<l>::first, row + Homes<l>::first))];
-                leaving.resize(static_cast<std::size_t>(end - begin + common::lane_count));
+                leaving.resize(static_cast<std::size_t>(end - begin + common::simd_width));
                 long leaving_count = 0;
 
-                PathSums<l, Lanes> paths;
-                for (long p = begin; p < end; p += common::lane_count) {
-                    const long count = std::min<long>(end - p, common::lane_count);
-                    Lanes x = common::load_lanes(&particles.x_p[p], count);
-                    Lanes z = common::load_lanes(&particles.z_p[p], count);
-                    Velocity<Lanes> u{common::load_lanes(&particles.vx_p[p], count),
-                                      common::load_lanes(&particles.vy_p[p], count),
-                                      common::load_lanes(&particles.vz_p[p], count)};
-                    const Lanes d_x = (x - x_home) * per_dx, d_z = (z - z_home) * per_dz;
-                    push<Lanes>(u, gather_at_home<l, Lanes>(corner, grid.stride(), d_x, d_z),
-                                half_kick, per_c_squared);
-                    const Lanes way = dt * inverse_gamma(u, per_c_squared);  // dt / gamma
-                    const Lanes D_x = way * u.x * per_dx, D_z = way * u.z * per_dz;
-                    const Lanes to_x = d_x + D_x, to_z = d_z + D_z;
+                PathSums<l, SimdVector> paths;
+                for (long p = begin; p < end; p += common::simd_width) {
+                    const long count = std::min<long>(end - p, common::simd_width);
+                    SimdVector x = common::load_simd(&particles.x_p[p], count);
+                    SimdVector z = common::load_simd(&particles.z_p[p], count);
+                    Velocity<SimdVector> u{common::load_simd(&particles.vx_p[p], count),
+                                           common::load_simd(&particles.vy_p[p], count),
+                                           common::load_simd(&particles.vz_p[p], count)};
+                    const SimdVector d_x = (x - x_home) * per_dx, d_z = (z - z_home) * per_dz;
+                    push<SimdVector>(u,
+                                     gather_at_home<l, SimdVector>(corner, grid.stride(), d_x, d_z),
+                                     half_kick, per_c_squared);
+                    const SimdVector way = dt * inverse_gamma(u, per_c_squared);  // dt / gamma
+                    const SimdVector D_x = way * u.x * per_dx, D_z = way * u.z * per_dz;
+                    const SimdVector to_x = d_x + D_x, to_z = d_z + D_z;
 
                     // Who stays at home is moved and counted here; who leaves is noted.
-                    Lanes stays = common::first_lanes(count);
+                    SimdVector stays = common::first_simd(count);
                     stays = to_x >= low_x ? stays : 0.0 * stays;
                     stays = to_x <= high_x ? stays : 0.0 * stays;
                     stays = to_z >= low_z ? stays : 0.0 * stays;
@@ -198,18 +199,18 @@ inline long move_particles(const PushField& field, const Grid& grid, double dt,
                     z += stays * way * u.z;
                     if (wraps_x) detail::wrap(grid.x, x);
                     if (wraps_z) detail::wrap(grid.z, z);
-                    for (int k = 0; k < common::lane_count; ++k) {
+                    for (int k = 0; k < common::simd_width; ++k) {
                         leaving[static_cast<std::size_t>(leaving_count)] = p + k;
                         leaving_count += k < count && stays[k] == 0.0;
                     }
-                    common::store_lanes(x, &particles.x_p[p], count);
-                    common::store_lanes(z, &particles.z_p[p], count);
-                    common::store_lanes(u.x, &particles.vx_p[p], count);
-                    common::store_lanes(u.y, &particles.vy_p[p], count);
-                    common::store_lanes(u.z, &particles.vz_p[p], count);
+                    common::store_simd(x, &particles.x_p[p], count);
+                    common::store_simd(z, &particles.z_p[p], count);
+                    common::store_simd(u.x, &particles.vx_p[p], count);
+                    common::store_simd(u.y, &particles.vy_p[p], count);
+                    common::store_simd(u.z, &particles.vz_p[p], count);
                 }
                 strip.take(column, row, paths,
-                           [](const Lanes& sum) { return common::sum_of_lanes(sum); });
+                           [](const SimdVector& sum) { return common::simd_sum(sum); });
 
                 for (long k = 0; k < leaving_count; ++k) {
                     const auto p = static_cast<std::size_t>(leaving[static_cast<std::size_t>(k)]);

@@ -14,7 +14,7 @@ namespace implicit_moment {
 
 /// Nothing of it is state: all is made anew in every step.
 struct Leapfrog {
-    const Case& wanted;
+    const Case& parameters;
     PushField push;           // E^n and B^n, where particles feel them
     VectorField J, smoothed;  // J^{n+1/2}; E^n smoothed as J is
     Field scratch;
@@ -22,14 +22,14 @@ struct Leapfrog {
     SortScratch sort;
     std::vector<Moments> now;
 
-    explicit Leapfrog(const Case& w) : wanted(w), J(w.grid), smoothed(w.grid) {}
+    explicit Leapfrog(const Case& w) : parameters(w), J(w.grid), smoothed(w.grid) {}
 };
 
 /// Packs E^n and B^n for the particles.
 template <class Clock = common::NoClock>
 void pack_push_field(Leapfrog& run, const FieldState& field, Clock&& clock = {}) {
-    pack_push_field(run.wanted.grid, run.wanted.field.smoothing, field, run.smoothed, run.scratch,
-                    run.push);
+    pack_push_field(run.parameters.grid, run.parameters.field.smoothing, field, run.smoothed,
+                    run.scratch, run.push);
     clock.lap("field");
 }
 
@@ -40,7 +40,7 @@ void pack_push_field(Leapfrog& run, const FieldState& field, Clock&& clock = {})
 template <class Clock = common::NoClock>
 void take_step(Leapfrog& run, FieldState& field, std::vector<Particles>& species,
                Clock&& clock = {}) {
-    const Case& w = run.wanted;
+    const Case& w = run.parameters;
     // [step]
     move_particles(run.push, w.grid, w.dt, w.leapfrog, w.field.smoothing, species, run.current,
                    run.J);  // u^{n+1/2}, x^{n+1}, J^{n+1/2}
@@ -56,9 +56,10 @@ void take_step(Leapfrog& run, FieldState& field, std::vector<Particles>& species
 inline const std::vector<Moments>& moments_now(Leapfrog& run, const State& state,
                                                detail::Images images = detail::Images::conductor) {
     const std::vector<Particles>& species = state.plasma.species;
-    if (run.now.size() != species.size()) run.now.assign(species.size(), Moments(run.wanted.grid));
-    count_moments(run.push, run.wanted.grid, run.wanted.dt, run.wanted.leapfrog, species, images,
-                  run.now);
+    if (run.now.size() != species.size())
+        run.now.assign(species.size(), Moments(run.parameters.grid));
+    count_moments(run.push, run.parameters.grid, run.parameters.dt, run.parameters.leapfrog,
+                  species, images, run.now);
     return run.now;
 }
 

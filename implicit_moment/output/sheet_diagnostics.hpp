@@ -77,11 +77,11 @@ inline Eigen::VectorXd displacement(const Grid& grid, const double* B_y) {
 ///            lower-hybrid drift instability grows fastest   [B0 v_A/c]
 class SheetDiagnostics {
    public:
-    explicit SheetDiagnostics(const Case& wanted)
-        : grid_(wanted.grid),
-          modes_(wanted.grid),
-          L_(harris_of(wanted).thickness),
-          B0_(harris_sheet(harris_of(wanted)).B0) {
+    explicit SheetDiagnostics(const Case& parameters)
+        : grid_(parameters.grid),
+          modes_(parameters.grid),
+          L_(harris_of(parameters).thickness),
+          B0_(harris_sheet(harris_of(parameters)).B0) {
         const auto row = [&](double z) {
             return std::lround((0.5 * grid_.z.length - z * L_) / grid_.z.spacing());
         };
@@ -132,14 +132,14 @@ class SheetDiagnostics {
 };
 
 /// Writes profile_NNNNNN.dat: means over x, row by row of the nodes.
-inline void write_profile(const std::string& folder, long step, const Case& wanted,
+inline void write_profile(const std::string& folder, long step, const Case& parameters,
                           const FieldState& field, const std::vector<Moments>& moments) {
-    const Grid& grid = wanted.grid;
-    const HarrisCase h = harris_of(wanted);
+    const Grid& grid = parameters.grid;
+    const HarrisCase h = harris_of(parameters);
     const HarrisSheet sheet = harris_sheet(h);
     const double J0 = c * sheet.B0 / (4 * pi * h.thickness);
     const double v_i = std::sqrt(2 * sheet.T_i), rows = static_cast<double>(nodes_z(grid));
-    const double time = static_cast<double>(step) * wanted.dt * sheet.Omega_ci;
+    const double time = static_cast<double>(step) * parameters.dt * sheet.Omega_ci;
     const Moments &ions = moments[0], &electrons = moments[1];
     std::array<std::vector<double>, 8> data;
     for (long j = 0; j < nodes_z(grid); ++j) {

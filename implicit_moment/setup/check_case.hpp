@@ -29,7 +29,7 @@ struct Scales {
     double bytes = 0;  // memory that the run will take
 };
 
-using common::shown;
+using common::format;
 
 inline Scales scales_of(const Case& w) {
     Scales s;
@@ -69,7 +69,7 @@ inline Scales scales_of(const Case& w) {
 }
 
 /// Refuses what cannot run. errors: InputError, one sentence with the numbers and the cure.
-inline void refuse_impossible(Case& w) {
+inline void validate(Case& w) {
     const auto refuse = [](bool bad, const std::string& sentence) {
         if (bad) throw common::InputError(sentence);
     };
@@ -78,7 +78,7 @@ inline void refuse_impossible(Case& w) {
     if (w.setup == "current_sheet") fit_mesh_to_sheet(w);
     w.grid.x.low = -0.5 * w.grid.x.length;
     w.grid.z.low = -0.5 * w.grid.z.length;
-    refuse(w.end / w.dt > 1e9, "time.end / time.dt is " + shown(w.end / w.dt) +
+    refuse(w.end / w.dt > 1e9, "time.end / time.dt is " + format(w.end / w.dt) +
                                    " steps, more than 1e9: raise time.dt or lower time.end");
 
     if (w.setup != "uniform") {
@@ -95,15 +95,15 @@ inline void refuse_impossible(Case& w) {
                "grid.cells_z = " + std::to_string(w.grid.z.cells) +
                    " is odd: the flux is measured on the row z = 0, so make it even");
         refuse(h.thickness > 0.25 * w.grid.z.length,
-               "harris.thickness = " + shown(h.thickness) + " d_i does not fit between walls " +
-                   shown(w.grid.z.length) + " d_i apart: at most a quarter of grid.length_z");
+               "harris.thickness = " + format(h.thickness) + " d_i does not fit between walls " +
+                   format(w.grid.z.length) + " d_i apart: at most a quarter of grid.length_z");
         const HarrisSheet sheet = harris_sheet(h);
         const double fastest =
             std::max({sheet.u_i, std::fabs(sheet.u_e), 3 * sheet.v_e, 3 * sheet.v_i});
         refuse(fastest > 1,
-               "the sheet has speeds of " + shown(fastest) +
+               "the sheet has speeds of " + format(fastest) +
                    " c (drift or three thermal speeds), and the mover is not relativistic: raise " +
-                   w.setup + ".light_over_alfven above " + shown(h.light_over_alfven * fastest));
+                   w.setup + ".light_over_alfven above " + format(h.light_over_alfven * fastest));
         if (!w.uniform.species.empty()) {
             refuse(true, "[species." + w.uniform.species.front().name +
                              "] belongs to plasma.setup = \"uniform\"; the Harris sheet makes its "
@@ -117,8 +117,8 @@ inline void refuse_impossible(Case& w) {
         const double current_balance =
             n0 * (sheet.u_i - sheet.u_e) / (c * sheet.B0 / (4 * pi * h.thickness));
         refuse(!(std::fabs(pressure - 1) < 1e-12 && std::fabs(current_balance - 1) < 1e-12),
-               "the Harris sheet is out of balance: pressure " + shown(pressure) + ", current " +
-                   shown(current_balance));
+               "the Harris sheet is out of balance: pressure " + format(pressure) + ", current " +
+                   format(current_balance));
         return;
     }
 
@@ -130,10 +130,10 @@ inline void refuse_impossible(Case& w) {
            "seeded fields need periodic boundaries: take out uniform.wave_E_*, uniform.wave_B_* or "
            "the walls");
     refuse(w.boundary_x == "wall" && u.B_x != 0,
-           "uniform.B_x = " + shown(u.B_x) +
+           "uniform.B_x = " + format(u.B_x) +
                " would cross the conducting walls normal to x: make it 0");
     refuse(w.boundary_z == "wall" && u.B_z != 0,
-           "uniform.B_z = " + shown(u.B_z) +
+           "uniform.B_z = " + format(u.B_z) +
                " would cross the conducting walls normal to z: make it 0");
     const double k_x = static_cast<double>(u.mode_x) / w.grid.x.length,
                  k_z = static_cast<double>(u.mode_z) / w.grid.z.length;
@@ -154,15 +154,15 @@ inline void refuse_impossible(Case& w) {
         const double T = std::max({s.temperature_x, s.temperature_y, s.temperature_z});
         const double drift = std::hypot(s.drift_x, s.drift_y, s.drift_z);
         const double fastest = std::max(drift, 3 * std::sqrt(T / s.mass));
-        refuse(fastest > 1, "species '" + s.name + "' has speeds of " + shown(fastest) +
+        refuse(fastest > 1, "species '" + s.name + "' has speeds of " + format(fastest) +
                                 " c (drift or three thermal speeds), and the mover is not "
                                 "relativistic: lower them");
     }
     refuse(u.species.empty() && !seeded,
            "an empty uniform plasma: add a [species.<name>] or seed a field with uniform.wave_E_y");
-    refuse(
-        w.wave != "none" && w.end < 10 * w.dt,
-        "theory.wave needs at least 10 steps to measure: raise time.end above " + shown(10 * w.dt));
+    refuse(w.wave != "none" && w.end < 10 * w.dt,
+           "theory.wave needs at least 10 steps to measure: raise time.end above " +
+               format(10 * w.dt));
     refuse(
         w.wave != "none" && (u.mode_x != 0) == (u.mode_z != 0),
         "theory.wave needs a mode along x or along z: set uniform.mode_x or uniform.mode_z to 0");
@@ -203,15 +203,15 @@ inline std::vector<std::string> closure_warnings(const Case& w, const Scales& sc
         const double most = s.thermal_speed * w.dt / std::min(dx, dz);
         if (most > 1) {
             warnings.push_back(
-                s.name + ": v_th dt/dx = " + shown(most) +
+                s.name + ": v_th dt/dx = " + format(most) +
                 " is above 1, where the moment closure fails [IMM-13]: lower time.dt to " +
-                shown(w.dt / most));
+                format(w.dt / most));
         }
         const bool unresolved = s.debye_length > 0 && s.debye_length < 0.3 * std::min(dx, dz);
         if (most < 0.05 && unresolved && s.thermal_speed > 0 && s.omega_p_dt > 0.5) {
-            warnings.push_back(s.name + ": v_th dt/dx = " + shown(most) +
+            warnings.push_back(s.name + ": v_th dt/dx = " + format(most) +
                                " is below 0.05 and the Debye length is " +
-                               shown(s.debye_length / std::min(dx, dz)) +
+                               format(s.debye_length / std::min(dx, dz)) +
                                " cells: finite-grid heating is possible, watch the energy");
         }
     }
@@ -222,7 +222,7 @@ inline std::vector<std::string> closure_warnings(const Case& w, const Scales& sc
     if (largest > 0) {
         for (const SpeciesScales& s : scales.species) {
             if (s.Omega_c_dt > 2 * pi) {
-                warnings.push_back(s.name + ": Omega_c dt = " + shown(s.Omega_c_dt) +
+                warnings.push_back(s.name + ": Omega_c dt = " + format(s.Omega_c_dt) +
                                    " is above 2 pi, gyration is not followed");
             }
         }
@@ -239,34 +239,34 @@ inline std::string describe_scales(const Case& w, const Scales& scales) {
             "  " + name + std::string(name.size() < 34 ? 34 - name.size() : 1, ' ') + value + "\n";
     };
     line("mesh", std::to_string(w.grid.x.cells) + " x " + std::to_string(w.grid.z.cells) +
-                     " cells of " + shown(dx) + " x " + shown(dz) + " d_i, " + w.boundary_x +
+                     " cells of " + format(dx) + " x " + format(dz) + " d_i, " + w.boundary_x +
                      " in x, " + w.boundary_z + " in z");
-    line("steps", std::to_string(scales.steps) + " of " + shown(w.dt) + " / omega_pi, c dt/dx = " +
-                      shown(c * w.dt / dx) + ", c dt/dz = " + shown(c * w.dt / dz));
+    line("steps", std::to_string(scales.steps) + " of " + format(w.dt) + " / omega_pi, c dt/dx = " +
+                      format(c * w.dt / dx) + ", c dt/dz = " + format(c * w.dt / dz));
     line("particles", std::to_string(scales.particles) + ", " +
-                          shown(static_cast<double>(scales.particles) /
-                                static_cast<double>(w.grid.x.cells * w.grid.z.cells)) +
+                          format(static_cast<double>(scales.particles) /
+                                 static_cast<double>(w.grid.x.cells * w.grid.z.cells)) +
                           " per cell");
     if (scales.B > 0)
         line("magnetic field",
-             shown(scales.B) + " m_i c omega_pi/e, Omega_ci dt = " + shown(scales.B * w.dt));
+             format(scales.B) + " m_i c omega_pi/e, Omega_ci dt = " + format(scales.B * w.dt));
     for (const SpeciesScales& s : scales.species) {
-        line(s.name, "omega_p dt = " + shown(s.omega_p_dt) + ", Omega_c dt = " +
-                         shown(s.Omega_c_dt) + ", v_th = " + shown(s.thermal_speed) +
-                         " c, v_th dt/dx = " + shown(s.thermal_speed * w.dt / dx) + " and " +
-                         shown(s.thermal_speed * w.dt / dz) +
-                         ", Debye length = " + shown(s.debye_length) + " d_i");
+        line(s.name, "omega_p dt = " + format(s.omega_p_dt) + ", Omega_c dt = " +
+                         format(s.Omega_c_dt) + ", v_th = " + format(s.thermal_speed) +
+                         " c, v_th dt/dx = " + format(s.thermal_speed * w.dt / dx) + " and " +
+                         format(s.thermal_speed * w.dt / dz) +
+                         ", Debye length = " + format(s.debye_length) + " d_i");
     }
     if (w.setup != "uniform" && !w.leapfrog.chosen) {
-        line("explicit instead", "about " + shown(cost_ratio(harris_of(w).mass_ratio, 2)) +
+        line("explicit instead", "about " + format(cost_ratio(harris_of(w).mass_ratio, 2)) +
                                      " times the time, by the slide's formula [COST]");
     }
-    line("memory", "about " + shown(scales.bytes / 1048576) + " MiB");
+    line("memory", "about " + format(scales.bytes / 1048576) + " MiB");
     const double work =
         static_cast<double>(scales.steps) *
         (static_cast<double>(scales.particles) + 10.0 * static_cast<double>(w.grid.size()));
     const double per_second = w.leapfrog.chosen ? 40e6 : 15e6;
-    line("time", "about " + shown(work / per_second) + " s on one core");
+    line("time", "about " + format(work / per_second) + " s on one core");
     return text;
 }
 

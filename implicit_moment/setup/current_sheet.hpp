@@ -37,51 +37,53 @@ inline HarrisCase harris_of(const CurrentSheetCase& s) {
 }
 
 /// The Harris sheet of a case, across its current or along it.
-inline HarrisCase harris_of(const Case& wanted) {
-    return wanted.setup == "current_sheet" ? harris_of(wanted.current_sheet) : wanted.harris;
+inline HarrisCase harris_of(const Case& parameters) {
+    return parameters.setup == "current_sheet" ? harris_of(parameters.current_sheet)
+                                               : parameters.harris;
 }
 
 /// Sets the lengths of the mesh, which a current sheet gives in units of L.
 /// errors: InputError for lengths in the case file that are others.
-inline void fit_mesh_to_sheet(Case& wanted) {
-    const CurrentSheetCase& s = wanted.current_sheet;
+inline void fit_mesh_to_sheet(Case& parameters) {
+    const CurrentSheetCase& s = parameters.current_sheet;
     const double L = harris_of(s).thickness;
     const Case initial;
     const auto fit = [&](const std::string& letter, double in_L, double untouched, double& length) {
         const double fitting = in_L * L;
         if (length != untouched && std::fabs(length / fitting - 1) > 1e-12) {
-            throw common::InputError("grid.length_" + letter + " = " + common::shown(length) +
+            throw common::InputError("grid.length_" + letter + " = " + common::format(length) +
                                      " d_i, but current_sheet.length_" + letter + " makes it " +
-                                     common::shown(in_L) + " L = " + common::shown(fitting) +
+                                     common::format(in_L) + " L = " + common::format(fitting) +
                                      " d_i: take grid.length_" + letter + " out");
         }
         length = fitting;
     };
-    fit("x", s.length_x, initial.grid.x.length, wanted.grid.x.length);
-    fit("z", s.length_z, initial.grid.z.length, wanted.grid.z.length);
+    fit("x", s.length_x, initial.grid.x.length, parameters.grid.x.length);
+    fit("z", s.length_z, initial.grid.z.length, parameters.grid.z.length);
 }
 
 /// Warnings with the number and the limit, for sheets whose instability would not be seen.
 /// note:   the talk's mode has k L = 12.5; with random numbers its noise is that of the particles.
-inline std::vector<std::string> sheet_warnings(const Case& wanted) {
-    const CurrentSheetCase& s = wanted.current_sheet;
+inline std::vector<std::string> sheet_warnings(const Case& parameters) {
+    const CurrentSheetCase& s = parameters.current_sheet;
     std::vector<std::string> warnings;
     const double wavelength = 2 * pi / 12.5;  // [L]
-    const double cells = wavelength * static_cast<double>(wanted.grid.x.cells) / s.length_x;
+    const double cells = wavelength * static_cast<double>(parameters.grid.x.cells) / s.length_x;
     if (cells < least_cells_in_wave) {
-        warnings.push_back("the waves of the talk, k L = 12.5, are " + common::shown(cells) +
-                           " cells long, and want " + common::shown(least_cells_in_wave) +
-                           ": raise grid.cells_x to " +
-                           common::shown(std::ceil(least_cells_in_wave / wavelength * s.length_x)));
+        warnings.push_back(
+            "the waves of the talk, k L = 12.5, are " + common::format(cells) +
+            " cells long, and want " + common::format(least_cells_in_wave) +
+            ": raise grid.cells_x to " +
+            common::format(std::ceil(least_cells_in_wave / wavelength * s.length_x)));
     }
     const double area = s.length_x * (2 + s.background * s.length_z);  // at density n0 [L^2]
     const double in_cell = 0.5 * static_cast<double>(s.particles) / area * s.length_x * s.length_z /
-                           static_cast<double>(wanted.grid.x.cells * wanted.grid.z.cells);
+                           static_cast<double>(parameters.grid.x.cells * parameters.grid.z.cells);
     if (in_cell < least_particles_in_cell) {
-        warnings.push_back("there are " + common::shown(in_cell) +
+        warnings.push_back("there are " + common::format(in_cell) +
                            " particles of a species in a cell in the middle of the sheet, and "
                            "their noise hides the waves below " +
-                           common::shown(least_particles_in_cell) +
+                           common::format(least_particles_in_cell) +
                            ": raise current_sheet.particles");
     }
     return warnings;

@@ -13,9 +13,9 @@ namespace implicit_moment {
 /// B of a Harris sheet with the GEM perturbation, as the curl of A_y on nodes, so that div B = 0
 /// to round-off and B_n = 0 on walls; and a uniform B_y, which pushes nothing that drifts along y.
 ///     A_y = -B0 lambda ln cosh(z/lambda) - psi0 cos(2 pi x/L_x) cos(pi z/L_z)
-inline void harris_field(const Case& wanted, FieldState& field) {
-    const Grid& grid = wanted.grid;
-    const HarrisCase& h = wanted.harris;
+inline void harris_field(const Case& parameters, FieldState& field) {
+    const Grid& grid = parameters.grid;
+    const HarrisCase& h = parameters.harris;
     const double B0 = harris_sheet(h).B0;
     const double z_middle = grid.z.low + 0.5 * grid.z.length;
     const double x_middle = grid.x.low + 0.5 * grid.x.length;
@@ -41,9 +41,9 @@ inline void harris_field(const Case& wanted, FieldState& field) {
 }
 
 /// B of a current sheet along x: B_y = -B0 tanh(z/L), averaged over each row of faces.
-inline void current_sheet_field(const Case& wanted, FieldState& field) {
-    const Grid& grid = wanted.grid;
-    const HarrisCase h = harris_of(wanted);
+inline void current_sheet_field(const Case& parameters, FieldState& field) {
+    const Grid& grid = parameters.grid;
+    const HarrisCase h = harris_of(parameters);
     const auto potential = [&](long j) {
         const double z = grid.z.at(static_cast<double>(j)) - (grid.z.low + 0.5 * grid.z.length);
         return -harris_sheet(h).B0 * h.thickness * std::log(std::cosh(z / h.thickness));
@@ -57,9 +57,9 @@ inline void current_sheet_field(const Case& wanted, FieldState& field) {
 
 /// The uniform magnetic field and the seeded mode; its part of B in the plane is made from A_y,
 /// so that div B = 0 to round-off.
-inline void uniform_field(const Case& wanted, FieldState& field) {
-    const UniformCase& u = wanted.uniform;
-    const Grid& grid = wanted.grid;
+inline void uniform_field(const Case& parameters, FieldState& field) {
+    const UniformCase& u = parameters.uniform;
+    const Grid& grid = parameters.grid;
     const double degree = pi / 180;
     const double k_x = 2 * pi * static_cast<double>(u.mode_x) / grid.x.length;
     const double k_z = 2 * pi * static_cast<double>(u.mode_z) / grid.z.length;
@@ -70,14 +70,14 @@ inline void uniform_field(const Case& wanted, FieldState& field) {
     VectorField potential(grid);
     const auto mode = [&](double i, double j, double amplitude, double phase) {
         return amplitude *
-               std::cos(mode_phase(wanted, grid.x.at(i), grid.z.at(j)) + phase * degree);
+               std::cos(mode_phase(parameters, grid.x.at(i), grid.z.at(j)) + phase * degree);
     };
     for (long m = -1; m <= grid.z.cells + 1; ++m) {
         for (long l = -1; l <= grid.x.cells + 1; ++l) {
             const long n = grid.index(l, m);
             const double i = static_cast<double>(l), j = static_cast<double>(m);
             potential.y()[n] =
-                A * std::sin(mode_phase(wanted, grid.x.at(i), grid.z.at(j)) + A_phase);
+                A * std::sin(mode_phase(parameters, grid.x.at(i), grid.z.at(j)) + A_phase);
             field.E.x()[n] = mode(i + 0.5, j, u.wave_E_x, u.phase_E_x);
             field.E.y()[n] = mode(i, j, u.wave_E_y, u.phase_E_y);
             field.E.z()[n] = mode(i, j + 0.5, u.wave_E_z, u.phase_E_z);
@@ -138,20 +138,20 @@ void archive(Archive& a, State& state) {
 }
 
 /// Particles and fields of the set-up, before E has its part that follows from the charge.
-inline State loaded_state(const Case& wanted) {
-    State state{wanted.setup == "uniform" ? load_uniform(wanted) : load_harris(wanted),
-                FieldState(wanted.grid),
+inline State loaded_state(const Case& parameters) {
+    State state{parameters.setup == "uniform" ? load_uniform(parameters) : load_harris(parameters),
+                FieldState(parameters.grid),
                 {}};
-    if (wanted.setup == "harris") harris_field(wanted, state.field);
-    if (wanted.setup == "current_sheet") current_sheet_field(wanted, state.field);
-    if (wanted.setup == "uniform") uniform_field(wanted, state.field);
+    if (parameters.setup == "harris") harris_field(parameters, state.field);
+    if (parameters.setup == "current_sheet") current_sheet_field(parameters, state.field);
+    if (parameters.setup == "uniform") uniform_field(parameters, state.field);
     return state;
 }
 
 /// Particles and fields at t = 0, sorted, with E from Gauss's law.
-inline State initial_state(const Case& wanted) {
-    const Grid& grid = wanted.grid;
-    State state = loaded_state(wanted);
+inline State initial_state(const Case& parameters) {
+    const Grid& grid = parameters.grid;
+    State state = loaded_state(parameters);
     SortScratch scratch;
     sort_particles(grid, scratch, state.plasma.species);
     Field rho = Field::Zero(grid.size());
@@ -160,7 +160,7 @@ inline State initial_state(const Case& wanted) {
         deposit_moments(species, grid, state.field.B, 0, moments);
         rho += moments.rho;
     }
-    smooth(grid, on_nodes, {-1, -1}, wanted.field.smoothing, rho.data(), moments.rho);
+    smooth(grid, on_nodes, {-1, -1}, parameters.field.smoothing, rho.data(), moments.rho);
     add_electrostatic_field(grid, MeshModes(grid), rho, state.field);
     state.field.E_theta = state.field.E;
     return state;

@@ -19,16 +19,16 @@ struct HarrisSheet {
 /// u_e = -u_i T_e/T_i.
 /// exact:  n0 e (u_i - u_e) = c B0 / (4 pi lambda), Ampere's law in the middle of the sheet.
 /// source: Harris, Nuovo Cimento 23, 115 (1962).
-inline HarrisSheet harris_sheet(const HarrisCase& wanted) {
+inline HarrisSheet harris_sheet(const HarrisCase& parameters) {
     HarrisSheet sheet{};
-    sheet.B0 = 1 / wanted.light_over_alfven;
+    sheet.B0 = 1 / parameters.light_over_alfven;
     const double T = sheet.B0 * sheet.B0 / (8 * pi * n0);
-    sheet.T_i = T * wanted.temperature_ratio / (1 + wanted.temperature_ratio);
+    sheet.T_i = T * parameters.temperature_ratio / (1 + parameters.temperature_ratio);
     sheet.T_e = T - sheet.T_i;
-    sheet.u_i = 2 * c * sheet.T_i / (sheet.B0 * wanted.thickness);
-    sheet.u_e = -sheet.u_i / wanted.temperature_ratio;
+    sheet.u_i = 2 * c * sheet.T_i / (sheet.B0 * parameters.thickness);
+    sheet.u_e = -sheet.u_i / parameters.temperature_ratio;
     sheet.v_i = std::sqrt(sheet.T_i);
-    sheet.v_e = std::sqrt(sheet.T_e * wanted.mass_ratio);
+    sheet.v_e = std::sqrt(sheet.T_e * parameters.mass_ratio);
     sheet.Omega_ci = sheet.B0 / c;
     return sheet;
 }
@@ -62,11 +62,11 @@ inline void resize(Particles& particles, long count) {
 /// Loads ions and electrons of a Harris sheet with equal weights; every electron starts on an
 /// ion, so that rho = 0 and E = 0.
 ///     n = n0 sech^2(z/lambda), drifting along y (a current sheet: along x);   n_inf, at rest
-inline Plasma load_harris(const Case& wanted) {
-    const HarrisCase h = harris_of(wanted);
-    const Grid& grid = wanted.grid;
+inline Plasma load_harris(const Case& parameters) {
+    const HarrisCase h = harris_of(parameters);
+    const Grid& grid = parameters.grid;
     const HarrisSheet sheet = harris_sheet(h);
-    const bool along_x = wanted.setup == "current_sheet";
+    const bool along_x = parameters.setup == "current_sheet";
     const double reach = std::tanh(0.5 * grid.z.length / h.thickness);
     const double in_sheet = n0 * grid.x.length * 2 * h.thickness * reach;
     const double in_background = n0 * h.background * grid.x.length * grid.z.length;
@@ -84,8 +84,8 @@ inline Plasma load_harris(const Case& wanted) {
     detail::resize(ions, pairs);
     detail::resize(electrons, pairs);
 
-    const common::LoadingNumbers load{wanted.loading == "quiet",
-                                      static_cast<std::uint64_t>(wanted.seed)};
+    const common::LoadingNumbers load{parameters.loading == "quiet",
+                                      static_cast<std::uint64_t>(parameters.seed)};
     common::for_each_block(pairs, [&](int, long begin, long end) {
         for (long p = begin; p < end; ++p) {
             const auto k = static_cast<std::size_t>(p);
@@ -111,23 +111,23 @@ inline Plasma load_harris(const Case& wanted) {
 }
 
 /// Phase of the seeded mode at a point of the plane.
-inline double mode_phase(const Case& wanted, double x, double z) {
-    const Grid& grid = wanted.grid;
+inline double mode_phase(const Case& parameters, double x, double z) {
+    const Grid& grid = parameters.grid;
     return 2 * pi *
-           (static_cast<double>(wanted.uniform.mode_x) * (x - grid.x.low) / grid.x.length +
-            static_cast<double>(wanted.uniform.mode_z) * (z - grid.z.low) / grid.z.length);
+           (static_cast<double>(parameters.uniform.mode_x) * (x - grid.x.low) / grid.x.length +
+            static_cast<double>(parameters.uniform.mode_z) * (z - grid.z.low) / grid.z.length);
 }
 
 /// Loads the species of a uniform plasma; all have the same number of particles at the same
 /// positions, so that opposite charges cancel at t = 0.
 ///     v_p = drift + Maxwellian + amplitude cos(k x + phase)
-inline Plasma load_uniform(const Case& wanted) {
-    const UniformCase& u = wanted.uniform;
-    const Grid& grid = wanted.grid;
+inline Plasma load_uniform(const Case& parameters) {
+    const UniformCase& u = parameters.uniform;
+    const Grid& grid = parameters.grid;
     const long count = u.particles_per_cell * grid.x.cells * grid.z.cells;
     const double area = grid.x.length * grid.z.length;
-    const common::LoadingNumbers load{wanted.loading == "quiet",
-                                      static_cast<std::uint64_t>(wanted.seed)};
+    const common::LoadingNumbers load{parameters.loading == "quiet",
+                                      static_cast<std::uint64_t>(parameters.seed)};
 
     Plasma plasma;
     for (const SpeciesCase& s : u.species) {
@@ -147,7 +147,7 @@ inline Plasma load_uniform(const Case& wanted) {
                 const auto k = static_cast<std::size_t>(p);
                 const double x = grid.x.low + grid.x.length * load.uniform(0, 2, p);
                 const double z = grid.z.low + grid.z.length * load.uniform(0, 3, p);
-                const double phase = mode_phase(wanted, x, z);
+                const double phase = mode_phase(parameters, x, z);
                 particles.x_p[k] = x;
                 particles.z_p[k] = z;
                 particles.vx_p[k] = s.drift_x + s.wave_x * std::cos(phase + s.phase_x * degree);

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "common/run/session.hpp"
+#include "common/run/run.hpp"
 #include "common/theory/fit_growth.hpp"
 #include "implicit_moment/output/sheet_diagnostics.hpp"
 #include "implicit_moment/theory/drift_dispersion.hpp"
@@ -103,8 +103,8 @@ inline void compare_current_sheet(const Case& w, const common::History& history,
         {times.data(), top + 1}, {wave.amplitude.data(), top + 1}, {2.0, 0.7, 0.1, 0.6});
     // What grows for less than a growth time of theory is a whim of the noise.
     if (!fit.found || (fit.end - fit.begin) * theory.gamma < 1) return;
-    const std::string window = local + "; fitted from t Omega_ci = " + common::shown(fit.begin) +
-                               " to " + common::shown(fit.end);
+    const std::string window = local + "; fitted from t Omega_ci = " + common::format(fit.begin) +
+                               " to " + common::format(fit.end);
     summary.result_within("growth_over_theory", fit.rate / theory.gamma, "", 0.6, 1.1, window);
     const auto row = [&](double t) { return static_cast<std::size_t>(std::lround(t / dt)); };
     const std::size_t lag = std::max<std::size_t>(1, row(0.1));

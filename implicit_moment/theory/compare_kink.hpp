@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "common/run/session.hpp"
+#include "common/run/run.hpp"
 #include "common/theory/fit_growth.hpp"
 #include "implicit_moment/setup/current_sheet.hpp"
 
@@ -77,14 +77,14 @@ inline void compare_kink(const Case& w, const common::History& history, common::
             summary.result_info(name, value, unit, source);
         else
             summary.result_within(name, value, unit, 0.5 * (*sheet).*talk, 2 * (*sheet).*talk,
-                                  "talk, figure 14: " + common::shown((*sheet).*talk) +
+                                  "talk, figure 14: " + common::format((*sheet).*talk) +
                                       ", within a factor 2; " + source);
     };
     const auto growth = [&](const std::string& name, const std::vector<double>& a, bool compared) {
         const common::GrowthFit fit = second_growth(times, a);
         if (!fit.found) return;
-        const std::string window = "fitted from t Omega_ci = " + common::shown(fit.begin) + " to " +
-                                   common::shown(fit.end);
+        const std::string window = "fitted from t Omega_ci = " + common::format(fit.begin) +
+                                   " to " + common::format(fit.end);
         if (compared)
             report(name, fit.rate, "Omega_ci", &TalkKink::growth, window);
         else

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "common/run/session.hpp"
+#include "common/run/run.hpp"
 #include "common/theory/fit_growth.hpp"
 #include "common/theory/fit_oscillation.hpp"
 #include "common/theory/kinetic_dispersion.hpp"
@@ -226,7 +226,7 @@ inline Theory theory_of_mode(const Case& w) {
     }
     if (!root.found) {
         throw common::InputError("no root of the " + w.wave + " dispersion relation was found" +
-                                 (w.near != 0 ? " near " + shown(w.near) : std::string()) +
+                                 (w.near != 0 ? " near " + format(w.near) : std::string()) +
                                  ": change theory.near, or set theory.wave = \"none\"");
     }
     return {root.omega, "root of the kinetic dispersion relation"};
@@ -250,7 +250,7 @@ inline void compare_mode(const Case& w, const common::History& history, common::
         const common::GrowthFit fit = common::fit_growth(times, amplitude, {3.0, 0.1});
         summary.result(
             "growth_over_theory", fit.rate / growth, "", 1, tolerance,
-            theory.source + "; fitted from t = " + shown(fit.begin) + " to " + shown(fit.end));
+            theory.source + "; fitted from t = " + format(fit.begin) + " to " + format(fit.end));
         return;
     }
 

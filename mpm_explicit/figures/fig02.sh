@@ -7,6 +7,6 @@ folder=$2
 for alpha in 0.25 1; do
     for end in 0.7 2; do
         "$program" mpm_explicit/cases/rebound.toml time.alpha=$alpha time.end=$end time.energy_limit=0 output.particles_interval=$end \
-            mesh.cells_x=64 mesh.cells_y=32 mesh.length_x=1.6 mesh.origin_x=-0.2 mesh.origin_y=-0.1 --threads 1 --force --quiet --out "$folder/alpha_${alpha}_to_$end"
+            grid.cells_x=64 grid.cells_y=32 grid.length_x=1.6 grid.low_x=-0.2 grid.low_y=-0.1 --threads 1 --force --quiet --out "$folder/alpha_${alpha}_to_$end"
     done
 done

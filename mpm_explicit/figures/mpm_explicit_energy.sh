@@ -5,7 +5,7 @@ set -eu
 program=$1
 folder=$2
 rebound() {
-    "$program" mpm_explicit/cases/rebound.toml time.energy_limit=0 output.particles_interval=0 mesh.cells_x=64 mesh.cells_y=32 mesh.length_x=1.6 mesh.origin_x=-0.2 mesh.origin_y=-0.1 \
+    "$program" mpm_explicit/cases/rebound.toml time.energy_limit=0 output.particles_interval=0 grid.cells_x=64 grid.cells_y=32 grid.length_x=1.6 grid.low_x=-0.2 grid.low_y=-0.1 \
         --threads 1 --force --quiet --out "$@"
 }
 # Status 3: a particle has left even this mesh.

@@ -11,7 +11,7 @@ wave() {
     echo '# 1:cells 2:velocity_error' > "$table.partial"
     for cells in 8 16 32 64 128; do
         run=$folder/runs/${name}_$cells
-        "$program" mpm_explicit/cases/standing_wave.toml mesh.cells_x=$cells mesh.cells_y=$((cells / 4)) --threads 1 --force --quiet --out "$run" "$@"
+        "$program" mpm_explicit/cases/standing_wave.toml grid.cells_x=$cells grid.cells_y=$((cells / 4)) --threads 1 --force --quiet --out "$run" "$@"
         echo "$cells $(awk -v key=results.velocity_error.value -f common/json_lines.awk "$run/summary.json")" >> "$table.partial"
     done
     mv "$table.partial" "$table"

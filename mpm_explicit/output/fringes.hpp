@@ -160,9 +160,9 @@ inline std::vector<double> cover_pixels(const Patch& patch, const Reach& in_x, c
 /// have the area of its particles.
 /// note:  Coverage is smooth over a cell, so that its line of one half lies inside of a small disk.
 inline double outline_level(std::vector<double> covered, double pixels) {
-    const auto wanted = static_cast<std::size_t>(std::max(pixels, 0.0) + 0.5);
-    if (wanted >= covered.size()) return 0;
-    const auto place = covered.begin() + static_cast<std::ptrdiff_t>(wanted);
+    const auto parameters = static_cast<std::size_t>(std::max(pixels, 0.0) + 0.5);
+    if (parameters >= covered.size()) return 0;
+    const auto place = covered.begin() + static_cast<std::ptrdiff_t>(parameters);
     std::nth_element(covered.begin(), place, covered.end(), std::greater<>());
     // Round it, but to no simple fraction, so that pixels of equal coverage are on the same side.
     return (std::floor(*place * 1024) + std::numbers::inv_pi) / 1024;

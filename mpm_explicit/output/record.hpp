@@ -31,20 +31,20 @@ inline std::vector<double> ledger_row(const Ledger& l) {
 
 class LeapfrogRecorder {
    public:
-    LeapfrogRecorder(const Case& wanted, const Scales& scales, const State& state,
+    LeapfrogRecorder(const Case& parameters, const Scales& scales, const State& state,
                      common::History& history)
         : dt_(scales.dt),
-          recorder_(wanted, scales, state.assembly, ledger_columns(), "budget", history) {}
+          recorder_(parameters, scales, state.assembly, ledger_columns(), "budget", history) {}
 
     /// Writes the files that are due at this step, before it.
-    void snapshot(long step, const State& state, const common::Session& session) const {
-        recorder_.snapshot(step, state.assembly, session);
+    void snapshot(long step, const State& state, const common::Run& run) const {
+        recorder_.snapshot(step, state.assembly, run);
     }
 
     /// Enters a step into the ledger and writes its row of the history.
     /// errors: NumericalError as Recorder::refuse_failure
     void record(long step, const StepSums& sums, const GrainNodes& nodes, State& state,
-                common::Session& session) {
+                common::Run& run) {
         Ledger& l = state.ledger;
         enter_energies(step, sums.strips, l);
         const bool finite =
@@ -53,18 +53,17 @@ class LeapfrogRecorder {
             });
         if (finite && recorder_.row_is_due(step))
             recorder_.write_row(static_cast<double>(step) * dt_, dt_, ledger_row(l), l.momentum_x,
-                                l.momentum_y, sums.contact, state.assembly, session);
+                                l.momentum_y, sums.contact, state.assembly, run);
         recorder_.refuse_failure(step, sums.strips, nodes, state.assembly, l.start, l.external,
-                                 l.kinetic + l.elastic, session.history);
+                                 l.kinetic + l.elastic, run.history);
         enter_work(nodes.strips(), sums.strips, sums.nodes, sums.contact, l);
     }
 
     /// The results of the whole run, after its last step.
-    void finish(long step, const State& state, common::Session& session) const {
-        if (session.history.all().empty()) return;
-        compare_with_theory(recorder_.ended(step, state.assembly, session.history),
-                            session.summary);
-        recorder_.finish_conservation({{"remap", "largest_remap_error"}}, state.assembly, session);
+    void finish(long step, const State& state, common::Run& run) const {
+        if (run.history.all().empty()) return;
+        compare_with_theory(recorder_.ended(step, state.assembly, run.history), run.summary);
+        recorder_.finish_conservation({{"remap", "largest_remap_error"}}, state.assembly, run);
     }
 
    private:

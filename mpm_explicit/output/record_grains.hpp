@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/run/session.hpp"
+#include "common/run/run.hpp"
 #include "mpm_explicit/contact.hpp"
 #include "mpm_explicit/output/write_output.hpp"
 #include "mpm_explicit/theory/compare_elastic.hpp"
@@ -19,10 +19,13 @@ class Recorder {
    public:
     /// in: ledger_columns, what the rows of the ledger hold; among them "kinetic", "elastic",
     ///     "energy", "external" and what is left when all is counted, called `rest`
-    Recorder(const Case& wanted, const Scales& scales, const Assembly& all,
+    Recorder(const Case& parameters, const Scales& scales, const Assembly& all,
              const std::vector<common::Column>& ledger_columns, const std::string& rest,
              common::History& history)
-        : wanted_(wanted), scales_(scales), subject_(subject_of(wanted, all.grains)), rest_(rest) {
+        : parameters_(parameters),
+          scales_(scales),
+          subject_(subject_of(parameters, all.grains)),
+          rest_(rest) {
         std::vector<common::Column> columns{{"time", "time"}};
         columns.insert(columns.end(), ledger_columns.begin(), ledger_columns.end());
         columns.insert(columns.end(), {{"momentum_x", "momentum"},
@@ -50,27 +53,29 @@ class Recorder {
             columns.push_back({"bond_shear_" + number, "stress"});
         }
         if (!all.bonds.empty()) columns.push_back({"broken_bonds", "1"});
-        for (const common::Column& column : columns_of_comparison(wanted))
+        for (const common::Column& column : columns_of_comparison(parameters))
             columns.push_back(column);
         history.columns(columns);
     }
 
     /// Writes the files that are due at this step, before it.
-    void snapshot(long step, const Assembly& all, const common::Session& session) const {
-        const std::string folder = session.path("");
-        if (due(wanted_.particles_interval, step)) write_particles(folder, step, wanted_, all);
-        if (due(wanted_.grains_interval, step)) write_grains(folder, step, all);
-        if (due(wanted_.fringes_interval, step)) write_fringe_raster(folder, step, wanted_, all);
-        if (wanted_.pack && step == 0) write_pack_of(folder, wanted_);
+    void snapshot(long step, const Assembly& all, const common::Run& run) const {
+        const std::string folder = run.path("");
+        if (due(parameters_.particles_interval, step))
+            write_particles(folder, step, parameters_, all);
+        if (due(parameters_.grains_interval, step)) write_grains(folder, step, all);
+        if (due(parameters_.fringes_interval, step))
+            write_fringe_raster(folder, step, parameters_, all);
+        if (parameters_.pack && step == 0) write_pack_of(folder, parameters_);
     }
 
-    bool row_is_due(long step) const { return step % wanted_.history_steps == 0; }
+    bool row_is_due(long step) const { return step % parameters_.history_steps == 0; }
 
     /// Writes a row of the history.
     /// in: time, the ledger and the momenta of every grain then; dt and what contact did, of the step
     void write_row(double time, double dt, const std::vector<double>& ledger_row,
                    const std::vector<double>& momentum_x, const std::vector<double>& momentum_y,
-                   const ContactSums& contact, const Assembly& all, common::Session& session) {
+                   const ContactSums& contact, const Assembly& all, common::Run& run) {
         row_ = {time};
         row_.insert(row_.end(), ledger_row.begin(), ledger_row.end());
         double sum_x = 0, sum_y = 0;
@@ -91,8 +96,8 @@ class Recorder {
         if (!bonds.empty())
             row_.push_back(static_cast<double>(std::count_if(
                 bonds.begin(), bonds.end(), [](const Bond& bond) { return bond.broken; })));
-        add_comparison(wanted_, subject_, all, row_);
-        session.history.row(row_);
+        add_comparison(parameters_, subject_, all, row_);
+        run.history.row(row_);
     }
 
     /// Looks at what a step has made.
@@ -117,19 +122,19 @@ class Recorder {
 
     /// The run after its last step, for comparison with theory.
     theory::Run ended(long step, const Assembly& all, const common::History& history) const {
-        const std::vector<Material> materials = materials_of(wanted_.problem);
-        return {wanted_,   scales_,
-                all,       history,
-                subject_,  static_cast<double>(step) * scales_.dt,
-                materials, plan_grains(wanted_.problem, materials)};
+        const std::vector<Material> materials = materials_of(parameters_.problem);
+        return {parameters_, scales_,
+                all,         history,
+                subject_,    static_cast<double>(step) * scales_.dt,
+                materials,   plan_grains(parameters_.problem, materials)};
     }
 
     /// What was conserved: the budget of the energy, momentum, and residuals of the scheme's own.
     /// in: residuals, column of the history and name in the summary [energy]
     void finish_conservation(const std::vector<std::pair<std::string, std::string>>& residuals,
-                             const Assembly& all, common::Session& session) const {
-        const common::History& history = session.history;
-        common::Summary& summary = session.summary;
+                             const Assembly& all, common::Run& run) const {
+        const common::History& history = run.history;
+        common::Summary& summary = run.summary;
         const auto largest = [&](const std::string& name) {
             double most = 0;
             for (const double value : history.column(name)) most = std::max(most, std::fabs(value));
@@ -158,11 +163,11 @@ class Recorder {
 
     std::string when(long step) const {
         return " at step " + std::to_string(step) +
-               ", t = " + common::shown(static_cast<double>(step) * scales_.dt);
+               ", t = " + common::format(static_cast<double>(step) * scales_.dt);
     }
 
     static std::string place_of(const Particles& at, std::size_t p) {
-        return " at (" + common::shown(at.x_p[p]) + ", " + common::shown(at.y_p[p]) + ")";
+        return " at (" + common::format(at.x_p[p]) + ", " + common::format(at.y_p[p]) + ")";
     }
 
     template <class Sums>
@@ -212,8 +217,8 @@ class Recorder {
     }
 
     void refuse_energy(long step, const Assembly& all, double put_in, double now) const {
-        if (std::isfinite(now) &&
-            !(wanted_.energy_limit > 0 && now > wanted_.energy_limit * put_in && put_in > 0))
+        if (std::isfinite(now) && !(parameters_.energy_limit > 0 &&
+                                    now > parameters_.energy_limit * put_in && put_in > 0))
             return;
         const Particles& at = all.particles;
         // Name the grain that moves fastest.
@@ -228,14 +233,14 @@ class Recorder {
             }
         }
         throw common::NumericalError(
-            "the energy is " + common::shown(now) + ", and " + common::shown(put_in) +
+            "the energy is " + common::format(now) + ", and " + common::format(put_in) +
             " was put in," + when(step) + "; fastest is grain '" + all.grains[whose].name + "'" +
             place_of(at, fastest) +
             ": reduce time.alpha, refine the mesh, or allow more with time.energy_limit");
     }
 
     static constexpr std::size_t most_followed = 16;
-    const Case& wanted_;
+    const Case& parameters_;
     const Scales& scales_;
     Subject subject_;
     std::string rest_;

@@ -90,6 +90,12 @@ inline void describe_output(common::ParameterTable& table, Case& w) {
     table.whole("output.checkpoint_steps", w.checkpoint_steps, "", between(0, 1e9),
                 "steps between checkpoints; 0: only when stopped");
 
+    table.renamed({{"mesh.origin_x", "grid.low_x"},
+                   {"mesh.origin_y", "grid.low_y"},
+                   {"mesh.", "grid."},
+                   {"walls.", "boundary."},
+                   {"solver.most_iterations", "solver.max_iterations"},
+                   {"solver.most_loops", "solver.max_outer_iterations"}});
     table.may_change_on_restart({"time.end", "output.particles_interval", "output.fringes_interval",
                                  "output.grains_interval", "output.pixels_per_cell", "output.vtk",
                                  "output.checkpoint_steps"});

@@ -15,7 +15,7 @@ inline std::vector<std::string> warnings_of(const Case& w, const Scales& scales)
     std::vector<std::string> warnings = resolution_warnings(w, scales);
     if (w.alpha > 0.7 && !w.frozen)
         warnings.insert(warnings.begin(),
-                        "time.alpha = " + common::shown(w.alpha) +
+                        "time.alpha = " + common::format(w.alpha) +
                             " is above 0.7: nothing bounds the energy of explicit solutions, and "
                             "grains that meet will burst");
     return warnings;
@@ -24,7 +24,7 @@ inline std::vector<std::string> warnings_of(const Case& w, const Scales& scales)
 /// The resolved scales as text, for --dry-run and the head of a run.
 inline std::string describe_scales(const Case& w, const Scales& scales) {
     constexpr double particle_steps_per_second = 15e6;
-    const std::string flip = w.flip == 1 ? "FLIP" : "FLIP fraction " + common::shown(w.flip);
+    const std::string flip = w.flip == 1 ? "FLIP" : "FLIP fraction " + common::format(w.flip);
     return mpm::describe_scales(
         w, scales, w.shape + " shape functions, " + flip + (w.frozen ? ", frozen particles" : ""),
         static_cast<double>(scales.steps) * static_cast<double>(scales.particles) /

@@ -54,8 +54,8 @@ inline void refuse_comparison(const Case& w, const std::vector<PlannedGrain>& pl
                      closing = std::hypot(a.from.velocity_x - b.from.velocity_x,
                                           a.from.velocity_y - b.from.velocity_y);
         refuse(w.end < 1.05 * gap / closing,
-               compare + ": the disks meet at t = " + common::shown(gap / closing) +
-                   ", and the run ends at " + common::shown(w.end) + ": raise time.end");
+               compare + ": the disks meet at t = " + common::format(gap / closing) +
+                   ", and the run ends at " + common::format(w.end) + ": raise time.end");
     }
     const Mesh mesh = problem.mesh();
     const auto fills = [&](double low, double high, double from, double to) {
@@ -65,12 +65,12 @@ inline void refuse_comparison(const Case& w, const std::vector<PlannedGrain>& pl
         const bool held = wall(x_low, "slip") || wall(x_low, "stick");
         refuse(!profile("bar") || !held,
                compare +
-                   " needs boxes with profile = \"bar\", an amplitude, and walls.x_low = "
+                   " needs boxes with profile = \"bar\", an amplitude, and boundary.x_low = "
                    "\"slip\" or \"stick\"");
         const double low = profile_bounds(plans).x_low;
         refuse(!fills(low, low, mesh.x_low, mesh.x_low),
                compare + " needs a bar that begins at the wall, at x = " +
-                   common::shown(mesh.x_low) + ", not at " + common::shown(low));
+                   common::format(mesh.x_low) + ", not at " + common::format(low));
     }
     if (is("bond"))
         refuse(problem.bonds.empty() || free != 2,
@@ -86,12 +86,12 @@ inline void refuse_comparison(const Case& w, const std::vector<PlannedGrain>& pl
         refuse(!fills(box.x_low, box.x_high, mesh.x_low, mesh.x_high()) ||
                    !fills(box.y_low, box.y_high, mesh.y_low, mesh.y_high()),
                compare + " needs a box that fills the mesh: make it " +
-                   common::shown(mesh.length_x()) + " by " +
-                   common::shown(mesh.y_high() - mesh.y_low));
+                   common::format(mesh.length_x()) + " by " +
+                   common::format(mesh.y_high() - mesh.y_low));
     }
     if (is("oscillator"))
         refuse(problem.cells_x != 2 || !w.frozen || w.shape != "linear" || w.flip != 1,
-               compare + " needs mesh.cells_x = 2, method.frozen = true, and linear FLIP");
+               compare + " needs grid.cells_x = 2, method.frozen = true, and linear FLIP");
     if (is("block") || is("cylinder"))
         refuse(free != 1 || rigid < 1 || problem.gravity_x == 0 || !(problem.gravity_y < 0),
                compare +
@@ -103,9 +103,9 @@ inline void refuse_comparison(const Case& w, const std::vector<PlannedGrain>& pl
                compare + " needs a disk, first in the case, and rigid plates, at most 16");
     for (const auto& [name, value, wants_rigid] :
          {std::tuple("theory.grain", w.grain, false), std::tuple("theory.plate", w.plate, true)}) {
-        const auto found =
-            std::find_if(plans.begin(), plans.end(),
-                         [&wanted = value](const auto& plan) { return plan.name == wanted; });
+        const auto found = std::find_if(
+            plans.begin(), plans.end(),
+            [&parameters = value](const auto& plan) { return plan.name == parameters; });
         if (value.empty()) continue;
         refuse(found == plans.end(), std::string(name) + ": there is no grain '" + value + "'");
         refuse(is_rigid(*found) != wants_rigid, std::string(name) + ": '" + value + "' is " +
@@ -135,7 +135,7 @@ inline void refuse_comparison(const Case& w, const std::vector<PlannedGrain>& pl
 inline void refuse_extreme(const std::string& section, const char* key, double value) {
     const double size = std::fabs(value);
     refuse(size != 0 && !(size > 1e-40 && size < 1e40),
-           section + "." + key + " = " + common::shown(value) +
+           section + "." + key + " = " + common::format(value) +
                " is not between 1e-40 and 1e40 in size: choose other units");
 }
 
@@ -182,9 +182,9 @@ inline void refuse_extremes(const Case& w) {
         check("bond." + b.name, {{"tension", b.tension}, {"shear", b.shear}});
     const Mesh mesh = problem.mesh();
     const double far = std::max(std::fabs(mesh.x_low), std::fabs(mesh.y_low)) / mesh.h;
-    refuse(far > 1e9, "the mesh begins " + common::shown(far) +
+    refuse(far > 1e9, "the mesh begins " + common::format(far) +
                           " cells from the origin, more than 1e9, where places are lost to "
-                          "round-off: move mesh.origin_x and origin_y nearer to 0");
+                          "round-off: move grid.low_x and low_y nearer to 0");
 }
 
 }  // namespace mpm::detail

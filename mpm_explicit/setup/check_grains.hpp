@@ -20,26 +20,27 @@ inline void refuse_grain(const PlannedGrain& plan, const Material& material, con
     const std::string grain = "grain '" + plan.name + "'";
     const double thin = thinnest(plan.outline);
     refuse(thin < 2 * mesh.h * (1 - 1e-9),
-           grain + " is " + common::shown(thin / mesh.h) +
+           grain + " is " + common::format(thin / mesh.h) +
                " cells thin, below 2: refine the mesh to cells of at most " +
-               common::shown(0.5 * thin) + ", or take a larger grain");
+               common::format(0.5 * thin) + ", or take a larger grain");
     const Bounds box = bounds(plan.outline);
     const double slack = 1e-9 * mesh.h;
     refuse(box.y_low < mesh.y_low - slack || box.y_high > mesh.y_high() + slack ||
                (!mesh.periodic_x &&
                 (box.x_low < mesh.x_low - slack || box.x_high > mesh.x_high() + slack)),
-           grain + " reaches from (" + common::shown(box.x_low) + ", " + common::shown(box.y_low) +
-               ") to (" + common::shown(box.x_high) + ", " + common::shown(box.y_high) +
-               "), beyond the mesh from (" + common::shown(mesh.x_low) + ", " +
-               common::shown(mesh.y_low) + ") to (" + common::shown(mesh.x_high()) + ", " +
-               common::shown(mesh.y_high()) + "): move the grain or widen the mesh");
+           grain + " reaches from (" + common::format(box.x_low) + ", " +
+               common::format(box.y_low) + ") to (" + common::format(box.x_high) + ", " +
+               common::format(box.y_high) + "), beyond the mesh from (" +
+               common::format(mesh.x_low) + ", " + common::format(mesh.y_low) + ") to (" +
+               common::format(mesh.x_high()) + ", " + common::format(mesh.y_high()) +
+               "): move the grain or widen the mesh");
     const double length = mesh.length_x();
     refuse(mesh.periodic_x && box.x_high - box.x_low > length + slack,
-           grain + " is longer than the periodic mesh: shorten it to " + common::shown(length));
+           grain + " is longer than the periodic mesh: shorten it to " + common::format(length));
     refuse(
         mesh.periodic_x && (box.x_low < mesh.x_low - length || box.x_high > mesh.x_high() + length),
-        grain + " reaches from x = " + common::shown(box.x_low) + " to " +
-            common::shown(box.x_high) + ", more than its length of " + common::shown(length) +
+        grain + " reaches from x = " + common::format(box.x_low) + " to " +
+            common::format(box.x_high) + ", more than its length of " + common::format(length) +
             " beyond the periodic mesh: move it by whole lengths");
     // What is two cells wide may still be a thin angle between the points of the lattice.
     const double side = mesh.h / static_cast<double>(per_side);
@@ -61,25 +62,25 @@ inline void refuse_grain(const PlannedGrain& plan, const Material& material, con
 
 /// Refuses combinations that cannot run.
 /// errors: InputError with the numbers and the cure
-inline void refuse_impossible(const Case& w) {
+inline void validate(const Case& w) {
     using detail::refuse;
     const Problem& problem = w.problem;
     detail::refuse_extremes(w);
     const Mesh mesh = problem.mesh();
     for (const Side side : {x_low, x_high})
         refuse(problem.periodic_x && problem.walls[static_cast<std::size_t>(side)] != "open",
-               "mesh.periodic_x = true leaves no walls at the ends of x: set walls.x_low and "
-               "walls.x_high to \"open\"");
+               "grid.periodic_x = true leaves no walls at the ends of x: set boundary.x_low and "
+               "boundary.x_high to \"open\"");
     refuse(problem.periodic_x && problem.cells_x < 8,
-           "mesh.cells_x = " + std::to_string(problem.cells_x) +
+           "grid.cells_x = " + std::to_string(problem.cells_x) +
                " is too few for a periodic mesh: take at least 8");
     const std::vector<Material> materials = materials_of(problem);
     const std::vector<PlannedGrain> plans = plan_grains(problem, materials);
     refuse(plans.empty(), "there is no grain: add a [grain.<name>] or a [pack.<name>]");
     for (const Material& m : materials)
         refuse(m.law == Law::drucker_prager && m.dilatancy_angle > m.friction_angle,
-               "[material." + m.name + "]: dilatancy_angle = " + common::shown(m.dilatancy_angle) +
-                   " is above friction_angle = " + common::shown(m.friction_angle) +
+               "[material." + m.name + "]: dilatancy_angle = " + common::format(m.dilatancy_angle) +
+                   " is above friction_angle = " + common::format(m.friction_angle) +
                    ": flow would make energy; take at most the friction angle");
     std::set<std::string> names;
     bool moves = false;
@@ -101,8 +102,8 @@ inline void refuse_impossible(const Case& w) {
     const Overlap worst =
         overlaps(outlines, problem.periodic_x ? mesh.length_x() : 0, 1e-6 * mesh.h);
     refuse(worst.depth > 0, "grains '" + worst.first + "' and '" + worst.second + "' overlap by " +
-                                common::shown(worst.depth) + ", " +
-                                common::shown(worst.depth / mesh.h) +
+                                common::format(worst.depth) + ", " +
+                                common::format(worst.depth / mesh.h) +
                                 " cells: move them apart or make them smaller");
     (void)bonds_of(problem, plans, materials);
     detail::refuse_comparison(w, plans, materials);
@@ -110,7 +111,7 @@ inline void refuse_impossible(const Case& w) {
                           static_cast<double>(problem.cells_y * w.pixels_per_cell);
     refuse(w.fringes_interval > 0 && pixels > 5e7,
            "output.pixels_per_cell = " + std::to_string(w.pixels_per_cell) + " makes rasters of " +
-               common::shown(pixels) + " pixels, more than 5e7: take fewer");
+               common::format(pixels) + " pixels, more than 5e7: take fewer");
 }
 
 /// Warnings with the number and the limit, for choices that run but may mislead.
@@ -119,22 +120,22 @@ inline std::vector<std::string> resolution_warnings(const Case& w, const Scales&
     const Problem& problem = w.problem;
     const Mesh mesh = problem.mesh();
     if (scales.speed > 0.05 * scales.sound_speed && scales.grains > 1)
-        warnings.push_back("|v|/c_p = " + common::shown(scales.speed / scales.sound_speed) +
+        warnings.push_back("|v|/c_p = " + common::format(scales.speed / scales.sound_speed) +
                            " is above 0.05: an impact strains the grains by more than the small "
                            "strains of the material laws");
     const double g = std::hypot(problem.gravity_x, problem.gravity_y);
     const double height = mesh.y_high() - mesh.y_low,
                  strain = g * height / (scales.sound_speed * scales.sound_speed);
     if (strain > 0.05)
-        warnings.push_back("g H/c_p^2 = " + common::shown(strain) +
+        warnings.push_back("g H/c_p^2 = " + common::format(strain) +
                            " is above 0.05: grains at the bottom are crushed by the weight of a "
                            "full mesh; stiffen the material");
     if (problem.per_side == 1 && problem.contact.separation > 0 && problem.contact.separation < 1)
-        warnings.push_back("contact.separation = " + common::shown(problem.contact.separation) +
+        warnings.push_back("contact.separation = " + common::format(problem.contact.separation) +
                            " with one particle per side: grains will meet too late; take 1.07");
     if (problem.contact.separation == 0)
         warnings.push_back("contact.separation = 0: grains meet where they share nodes, up to " +
-                           common::shown(2 - 1 / static_cast<double>(problem.per_side)) +
+                           common::format(2 - 1 / static_cast<double>(problem.per_side)) +
                            " cells too early");
     const std::vector<std::pair<const char*, double>> intervals{
         {"output.particles_interval", w.particles_interval},
@@ -142,8 +143,8 @@ inline std::vector<std::string> resolution_warnings(const Case& w, const Scales&
         {"output.grains_interval", w.grains_interval}};
     for (const auto& [name, interval] : intervals)
         if (interval > 0 && interval < scales.dt)
-            warnings.push_back(std::string(name) + " = " + common::shown(interval) +
-                               " is below the time step " + common::shown(scales.dt) +
+            warnings.push_back(std::string(name) + " = " + common::format(interval) +
+                               " is below the time step " + common::format(scales.dt) +
                                ": files are written every step");
     for (const PlannedGrain& plan : plan_grains(problem, materials_of(problem))) {
         if (plan.from.control == "velocity" && plan.from.force != 0)
@@ -154,7 +155,7 @@ inline std::vector<std::string> resolution_warnings(const Case& w, const Scales&
                                                                : 0;
         if (unused != 0)
             warnings.push_back("grain '" + plan.name + "' has control = \"" + plan.from.control +
-                               "\" and a velocity in that direction, " + common::shown(unused) +
+                               "\" and a velocity in that direction, " + common::format(unused) +
                                ": it does nothing, the grain starts at rest");
     }
     return warnings;
@@ -172,21 +173,21 @@ inline std::string describe_scales(const Case& w, const Scales& scales,
             "  " + name + std::string(name.size() < 22 ? 22 - name.size() : 1, ' ') + value + "\n";
     };
     line("mesh", std::to_string(mesh.cells_x) + " x " + std::to_string(mesh.cells_y) +
-                     " cells of " + common::shown(mesh.h) +
+                     " cells of " + common::format(mesh.h) +
                      (mesh.periodic_x ? ", periodic in x" : ""));
     line("walls", "x: " + problem.walls[0] + ", " + problem.walls[1] + "; y: " + problem.walls[2] +
                       ", " + problem.walls[3]);
     line("method", method_line);
     line("grains", std::to_string(scales.grains) + ", the thinnest " +
-                       common::shown(scales.thinnest / mesh.h) + " cells");
+                       common::format(scales.thinnest / mesh.h) + " cells");
     line("particles", std::to_string(scales.particles) + ", " + std::to_string(problem.per_side) +
                           " x " + std::to_string(problem.per_side) + " per cell");
-    line("sound", "c_p = " + common::shown(scales.sound_speed) +
-                      ", largest |v| = " + common::shown(scales.speed));
-    line("steps", std::to_string(scales.steps) + " of dt = " + common::shown(scales.dt) +
-                      ", alpha = " + common::shown(w.alpha));
-    line("memory", "about " + common::shown(scales.bytes / 1048576) + " MiB");
-    line("time", "about " + common::shown(seconds) + " s on one core");
+    line("sound", "c_p = " + common::format(scales.sound_speed) +
+                      ", largest |v| = " + common::format(scales.speed));
+    line("steps", std::to_string(scales.steps) + " of dt = " + common::format(scales.dt) +
+                      ", alpha = " + common::format(w.alpha));
+    line("memory", "about " + common::format(scales.bytes / 1048576) + " MiB");
+    line("time", "about " + common::format(seconds) + " s on one core");
     return text;
 }
 

@@ -234,11 +234,12 @@ inline std::vector<Point> fill(const Outline& outline, const Mesh& mesh, long pe
     const Bounds box = bounds(outline);
     const auto require_room = [&](double low, double high, double room_low, double room_high,
                                   const std::string& axis) {
-        detail::require(
-            low >= room_low - 1e-6 * spacing && high <= room_high + 1e-6 * spacing,
-            "an outline from " + axis + " = " + common::shown(low) + " to " + common::shown(high) +
-                " does not fit on the mesh, which has room from " + common::shown(room_low) +
-                " to " + common::shown(room_high) + ": move the grain or widen the mesh");
+        detail::require(low >= room_low - 1e-6 * spacing && high <= room_high + 1e-6 * spacing,
+                        "an outline from " + axis + " = " + common::format(low) + " to " +
+                            common::format(high) +
+                            " does not fit on the mesh, which has room from " +
+                            common::format(room_low) + " to " + common::format(room_high) +
+                            ": move the grain or widen the mesh");
     };
     const double wrapped = mesh.periodic_x ? mesh.length_x() : 0;
     require_room(box.x_low, box.x_high, mesh.x_low - wrapped, mesh.x_high() + wrapped, "x");

@@ -54,7 +54,7 @@ inline std::vector<PackedGrain> named(const std::vector<Outline>& outlines) {
 ///     hexagonal: shift = spacing_x / 2
 /// out:    names g0001, g0002, ... in that order
 inline std::vector<PackedGrain> hexagonal_rows(const Rows& rows) {
-    using detail::require, common::shown;
+    using detail::require, common::format;
     detail::require_length(rows.radius, "the radius of the disks in rows");
     require(rows.columns >= (rows.one_less && rows.rows > 1 ? 2 : 1) && rows.rows >= 1 &&
                 static_cast<double>(rows.columns) * static_cast<double>(rows.rows) <= 1e6,
@@ -62,7 +62,7 @@ inline std::vector<PackedGrain> hexagonal_rows(const Rows& rows) {
                 " disks: give at least one disk in each row, and at most 1e6");
     for (const double length : {rows.gap, rows.spacing_x, rows.spacing_y})
         require(detail::usable(length) && length >= 0,
-                "a gap or spacing of rows is " + shown(length) + ": give a length, or 0");
+                "a gap or spacing of rows is " + format(length) + ": give a length, or 0");
     require(detail::usable(rows.shift), "the shift of rows is no number: give a length, or 0");
     const double apart = 2 * rows.radius + rows.gap,
                  spacing_x = rows.spacing_x > 0 ? rows.spacing_x : apart,
@@ -71,7 +71,7 @@ inline std::vector<PackedGrain> hexagonal_rows(const Rows& rows) {
                  least_y = rows.rows > 2 ? std::max(beside_row, apart / 2) : beside_row,
                  spacing_y = rows.spacing_y > 0 ? rows.spacing_y : least_y;
     require(spacing_y > 0 || rows.rows == 1,
-            "two rows shifted by " + shown(rows.shift) + " fall into one: give their spacing");
+            "two rows shifted by " + format(rows.shift) + " fall into one: give their spacing");
     std::vector<Outline> outlines;
     for (long j = 0; j < rows.rows; ++j) {
         const bool odd = j % 2 == 1;

@@ -199,22 +199,22 @@ inline void describe_bond(common::ParameterTable& table, const std::string& pref
 inline void describe_problem(common::ParameterTable& table, Problem& w) {
     using common::above, common::anything, common::at_least, common::between;
     table.group("mesh: square cells in the plane (x, y), plane strain");
-    table.whole("mesh.cells_x", w.cells_x, "", between(2, 16384), "cells along x");
-    table.whole("mesh.cells_y", w.cells_y, "", between(2, 16384), "cells along y");
-    table.real("mesh.length_x", w.length_x, "length", above(0), "length along x");
-    table.real("mesh.origin_x", w.origin_x, "length", anything(), "left end");
-    table.real("mesh.origin_y", w.origin_y, "length", anything(), "lower end");
-    table.flag("mesh.periodic_x", w.periodic_x, "the left end is the right one");
-    table.whole("mesh.particles_per_side", w.per_side, "", between(1, 16),
+    table.whole("grid.cells_x", w.cells_x, "", between(2, 16384), "cells along x");
+    table.whole("grid.cells_y", w.cells_y, "", between(2, 16384), "cells along y");
+    table.real("grid.length_x", w.length_x, "length", above(0), "length along x");
+    table.real("grid.low_x", w.origin_x, "length", anything(), "left end");
+    table.real("grid.low_y", w.origin_y, "length", anything(), "lower end");
+    table.flag("grid.periodic_x", w.periodic_x, "the left end is the right one");
+    table.whole("grid.particles_per_side", w.per_side, "", between(1, 16),
                 "particles in a cell at the start, along each side");
 
     table.group("walls, on the outermost lines of nodes");
     const std::array<const char*, 4> ends{"x_low", "x_high", "y_low", "y_high"};
     for (std::size_t k = 0; k < 4; ++k)
-        table.choice("walls." + std::string(ends[k]), w.walls[k],
+        table.choice("boundary." + std::string(ends[k]), w.walls[k],
                      {"open", "slip", "stick", "frictional"},
                      "nothing; roller; clamp; pushes back and rubs");
-    table.real("walls.friction", w.contact.wall_friction, "", at_least(0),
+    table.real("boundary.friction", w.contact.wall_friction, "", at_least(0),
                "Coulomb's coefficient, of frictional walls");
 
     table.group("contact between grains");

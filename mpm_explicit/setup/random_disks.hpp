@@ -161,8 +161,8 @@ class Deposit {
 // Draws of one pack.
 constexpr std::uint32_t pack_radii = 0x9a11, pack_places = 0x9a12;
 
-inline void refuse_impossible(const RandomDisks& pack) {
-    using common::shown;
+inline void validate(const RandomDisks& pack) {
+    using common::format;
     const double width = pack.box.x_high - pack.box.x_low,
                  height = pack.box.y_high - pack.box.y_low, least = pack.radius_min,
                  largest = 2 * pack.radius_max + pack.gap, least_widths = pack.periodic_x ? 5 : 1;
@@ -170,25 +170,25 @@ inline void refuse_impossible(const RandomDisks& pack) {
     require_length(height, "the height of a pack");
     require_length(least, "the least radius of a pack");
     require(pack.radius_max >= least && pack.radius_max <= 100 * least,
-            "the largest radius of a pack, " + shown(pack.radius_max) +
-                ", must be 1 to 100 times the least, " + shown(least));
+            "the largest radius of a pack, " + format(pack.radius_max) +
+                ", must be 1 to 100 times the least, " + format(least));
     require(pack.gap >= 0 && usable(pack.gap),
-            "the gap of a pack is " + shown(pack.gap) + ": give a length, or 0");
+            "the gap of a pack is " + format(pack.gap) + ": give a length, or 0");
     require(
         width * (1 + resolution) >= least_widths * largest && height * (1 + resolution) >= largest,
-        "a box of " + shown(width) + " by " + shown(height) + " is too small for disks " +
-            shown(largest) + " wide: it must be as high, and " + shown(least_widths) +
+        "a box of " + format(width) + " by " + format(height) + " is too small for disks " +
+            format(largest) + " wide: it must be as high, and " + format(least_widths) +
             " times as wide");
     require(pack.solid_fraction >= 0 && pack.solid_fraction < 1,
-            "the solid fraction of a pack is " + shown(pack.solid_fraction) +
+            "the solid fraction of a pack is " + format(pack.solid_fraction) +
                 ": give one from 0, for none, to below 1");
     require(pack.count >= 0 && (pack.count == 0 || pack.solid_fraction == 0) &&
                 (!pack.loose || pack.count > 0 || pack.solid_fraction > 0),
             "a pack of " + std::to_string(pack.count) + " disks and a solid fraction of " +
-                shown(pack.solid_fraction) + ": give one of the two");
+                format(pack.solid_fraction) + ": give one of the two");
     const double most =
         pack.count > 0 ? static_cast<double>(pack.count) : width * height / (4 * least * least);
-    require(most <= 1e6, "a pack of up to " + shown(most) +
+    require(most <= 1e6, "a pack of up to " + format(most) +
                              " disks: give larger radii or a smaller box, for at most 1e6");
 }
 
@@ -220,7 +220,7 @@ inline bool strew(const RandomDisks& pack, const Bounds& box, double r, DiskCell
 ///         than 1/16 of their range.
 /// errors: InputError when they do not fit, with how many do
 inline std::vector<Outline> place_random_disks(const RandomDisks& pack) {
-    detail::refuse_impossible(pack);
+    detail::validate(pack);
     const double half_gap = 0.5 * pack.gap, largest = pack.radius_max + half_gap;
     // Far from the origin a pack is the same.
     const Bounds box{0, pack.box.x_high - pack.box.x_low, 0, pack.box.y_high - pack.box.y_low};
@@ -239,7 +239,7 @@ inline std::vector<Outline> place_random_disks(const RandomDisks& pack) {
             pack.loose ? detail::strew(pack, box, r + half_gap, strewn) : deposit.add(r + half_gap);
         if (!placed && fill_up) break;
         detail::require(placed, "the box is full with " + std::to_string(k) +
-                                    " disks and a solid fraction of " + common::shown(fraction) +
+                                    " disks and a solid fraction of " + common::format(fraction) +
                                     ": ask for fewer, or make the box larger");
         const detail::Round& at = (pack.loose ? strewn : deposit.disks()).all().back();
         outlines.push_back(disk(pack.box.x_low + at.x, pack.box.y_low + at.y, r));

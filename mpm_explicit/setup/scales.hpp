@@ -48,7 +48,7 @@ inline Scales scales_of(const Case& w) {
     s.dt = w.alpha * mesh.h / (s.sound_speed + s.speed);
     const double steps = w.end / s.dt;
     if (!(steps <= 1e9))
-        throw common::InputError("the run would take " + common::shown(steps) +
+        throw common::InputError("the run would take " + common::format(steps) +
                                  " steps, more than 1e9: raise time.alpha or lower time.end");
     s.steps = std::lround(steps);
     const long rows = s.steps / w.history_steps;
@@ -57,12 +57,12 @@ inline Scales scales_of(const Case& w) {
                                  "of history, and there would be " + std::to_string(rows) +
                                  ": raise time.end or lower output.history_steps");
     if (!(problem.damping * s.dt < 1))
-        throw common::InputError("load.damping = " + common::shown(problem.damping) +
-                                 " takes all velocity in a step of " + common::shown(s.dt) +
-                                 ": lower it below " + common::shown(1 / s.dt));
+        throw common::InputError("load.damping = " + common::format(problem.damping) +
+                                 " takes all velocity in a step of " + common::format(s.dt) +
+                                 ": lower it below " + common::format(1 / s.dt));
     if (s.particles > 2'000'000'000)
         throw common::InputError(std::to_string(s.particles) +
-                                 " particles are more than 2e9: lower mesh.particles_per_side");
+                                 " particles are more than 2e9: lower grid.particles_per_side");
     // Particles and their copies while they are sorted; the nodes of each grain, with a margin; the
     // table of all nodes.
     const double particles = static_cast<double>(s.particles);

@@ -18,7 +18,7 @@ namespace mpm::theory {
 
 /// A run that has ended, for its comparison.
 struct Run {
-    const Case& wanted;
+    const Case& parameters;
     const Scales& scales;
     const Assembly& all;
     const common::History& history;
@@ -97,7 +97,7 @@ inline void compare_rebound(const Run& run, double energy_tolerance, common::Sum
 
 /// The bar that all grains make together, held at the left end and free at the other.
 inline Bar bar_of(const Run& run) {
-    const Problem& problem = run.wanted.problem;
+    const Problem& problem = run.parameters.problem;
     const Material m = run.material();
     const bool held = problem.walls[y_low] == "slip" && problem.walls[y_high] == "slip";
     const GrainCase& from = run.plans.front().from;
@@ -110,9 +110,9 @@ inline void compare_frequency(const Run& run, double expected, const std::string
                               common::Summary& summary) {
     const common::OscillationFit fit =
         common::fit_oscillation(run.history.column("momentum_x"),
-                                run.scales.dt * static_cast<double>(run.wanted.history_steps));
-    summary.result("frequency", fit.frequency, "1/time", expected, run.wanted.tolerance * expected,
-                   source);
+                                run.scales.dt * static_cast<double>(run.parameters.history_steps));
+    summary.result("frequency", fit.frequency, "1/time", expected,
+                   run.parameters.tolerance * expected, source);
 }
 
 inline void compare_bar(const Run& run, double energy_tolerance, common::Summary& summary) {
@@ -122,7 +122,7 @@ inline void compare_bar(const Run& run, double energy_tolerance, common::Summary
 
 /// A compression wave that stands between rollers.
 inline void compare_standing_wave(const Run& run, common::Summary& summary) {
-    const Problem& problem = run.wanted.problem;
+    const Problem& problem = run.parameters.problem;
     const Material m = run.material();
     const GrainCase& from = problem.grains.front();
     StandingWave wave{problem.length_x, 1, m.density, moduli(m), static_cast<int>(from.mode)};
@@ -137,7 +137,7 @@ inline void compare_standing_wave(const Run& run, common::Summary& summary) {
         error += (at.vx_p[p] - exact) * (at.vx_p[p] - exact) + at.vy_p[p] * at.vy_p[p];
         size += 0.5 * from.amplitude * from.amplitude;
     }
-    summary.result("velocity_error", std::sqrt(error / size), "1", 0, run.wanted.tolerance,
+    summary.result("velocity_error", std::sqrt(error / size), "1", 0, run.parameters.tolerance,
                    "rms over particles at the end, of the wave's own rms; exact for small strain");
 }
 
@@ -153,13 +153,13 @@ inline void compare_bond(const Run& run, double energy_tolerance, common::Summar
         const double breaks = common::time_at_level(times, broken, 0.5);
         const bool holds = std::isnan(breaks);
         summary.result("bond_breaks", holds ? times.back() : breaks, "time", expected,
-                       run.wanted.tolerance * expected,
+                       run.parameters.tolerance * expected,
                        holds ? "it held to the end" : "stress of the bar at the joint");
     } else {
         compare_bar(run, energy_tolerance, summary);
         const double peak = bar_stress(bar, joint, 0.5 * std::numbers::pi / bar.frequency());
         summary.result("largest_bond_stress", *std::max_element(normal.begin(), normal.end()),
-                       "stress", peak, run.wanted.tolerance * peak,
+                       "stress", peak, run.parameters.tolerance * peak,
                        "stress of the bar at the joint");
     }
 }

@@ -27,11 +27,11 @@ inline double slope(const std::vector<double>& x, const std::vector<double>& y, 
 
 /// A block or a cylinder on a rigid plate, gravity inclined.
 inline void compare_incline(const Run& run, common::Summary& summary) {
-    const Problem& problem = run.wanted.problem;
+    const Problem& problem = run.parameters.problem;
     const double g = std::hypot(problem.gravity_x, problem.gravity_y),
                  angle = std::atan2(std::fabs(problem.gravity_x), -problem.gravity_y),
                  mu = problem.contact.friction;
-    const bool block = run.wanted.compare == "block";
+    const bool block = run.parameters.compare == "block";
     const double exact =
         block ? block_acceleration(g, angle, mu) : cylinder_acceleration(g, angle, mu);
     auto v = run.momentum_x();
@@ -43,7 +43,8 @@ inline void compare_incline(const Run& run, common::Summary& summary) {
                                    ? "g (sin - mu cos), or 0 where friction holds"
                                    : "(2/3) g sin where it rolls, g (sin - mu cos) where it slips";
     summary.result("acceleration", measured, "acceleration", exact,
-                   exact > 0 ? run.wanted.tolerance * exact : 0.01 * g * std::sin(angle), source);
+                   exact > 0 ? run.parameters.tolerance * exact : 0.01 * g * std::sin(angle),
+                   source);
     summary.result_info("speed_at_end", v.back(), "velocity", "along the plate");
 }
 
@@ -60,7 +61,7 @@ inline void compare_disk(const Run& run, common::Summary& summary) {
     };
     double P = 0, plates = 0;
     for (const Grain& grain : grains)
-        if (grain.rigid && (run.wanted.plate.empty() || grain.name == run.wanted.plate))
+        if (grain.rigid && (run.parameters.plate.empty() || grain.name == run.parameters.plate))
             P += std::fabs(mean_late("force_y_" + grain.name)), plates += 1;
     P /= plates;
     const double R = run.plans[run.subject.grain].outline.radius;
@@ -71,10 +72,10 @@ inline void compare_disk(const Run& run, common::Summary& summary) {
     summary.result_info("load", P, "force",
                         "of the plates, the mean over the last tenth of the run");
     summary.result("center_difference", std::hypot(xx - yy, 2 * xy) / exact, "1", 1,
-                   run.wanted.tolerance, source + ", over 8P/(pi D)");
-    summary.result("center_xx", xx / center.xx, "1", 1, run.wanted.tolerance,
+                   run.parameters.tolerance, source + ", over 8P/(pi D)");
+    summary.result("center_xx", xx / center.xx, "1", 1, run.parameters.tolerance,
                    source + ", over 2P/(pi D)");
-    summary.result("center_yy", yy / center.yy, "1", 1, run.wanted.tolerance,
+    summary.result("center_yy", yy / center.yy, "1", 1, run.parameters.tolerance,
                    source + ", over -6P/(pi D)");
     const Material m = run.material();
     const double b = contact_half_width({R, m.density, m.E, m.nu}, P);
@@ -119,7 +120,7 @@ inline void compare_collapse(const Run& run, common::Summary& summary) {
         low = std::min(low, box.x_low), high = std::max(high, box.x_high);
         top = std::max(top, box.y_high);
     }
-    const double width = high - low, a = (top - run.wanted.problem.origin_y) / width,
+    const double width = high - low, a = (top - run.parameters.problem.origin_y) / width,
                  runout = (last(front) - high) / width;
     summary.result_info("aspect_ratio", a, "1", "height over width of the column");
     summary.result_within("runout", runout, "1", runout_in_experiments(a), runout_of_disks(a),
@@ -141,7 +142,7 @@ struct EnergyTolerance {
 inline void compare_with_theory(const theory::Run& run, const theory::EnergyTolerance& tolerance,
                                 common::Summary& summary) {
     using namespace theory;
-    const std::string& compare = run.wanted.compare;
+    const std::string& compare = run.parameters.compare;
     if (compare == "rebound") compare_rebound(run, tolerance.rebound, summary);
     if (compare == "bar") compare_bar(run, tolerance.bar, summary);
     if (compare == "standing_wave") compare_standing_wave(run, summary);

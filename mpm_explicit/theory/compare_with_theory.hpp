@@ -14,7 +14,7 @@ using namespace mpm;
 
 /// The one free node between two fixed ends, with frozen particles.
 inline void compare_oscillator(const theory::Run& run, common::Summary& summary) {
-    const Problem& problem = run.wanted.problem;
+    const Problem& problem = run.parameters.problem;
     const double h = problem.mesh().h, c = sound_speed(run.material()), dt = run.scales.dt,
                  w = node_oscillator_frequency(static_cast<int>(problem.per_side)) * c / h;
     summary.result_info("omega_dt", w * dt, "1", "one free node, exact");
@@ -46,7 +46,7 @@ inline void compare_oscillator(const theory::Run& run, common::Summary& summary)
 }
 
 inline void compare_with_theory(const theory::Run& run, common::Summary& summary) {
-    if (run.wanted.compare == "oscillator") compare_oscillator(run, summary);
+    if (run.parameters.compare == "oscillator") compare_oscillator(run, summary);
     mpm::compare_with_theory(run, {.rebound = 0.03, .bar = 0.01}, summary);
 }
 

@@ -3,4 +3,4 @@
 set -eu
 program=$1
 folder=$2
-"$program" mpm_implicit/cases/rebound.toml grain.left.y=0.2 grain.right.y=0.4 mesh.cells_y=32 mesh.origin_y=-0.1 contact.friction=0.3 method.theta=0.75 method.mass=lumped theory.compare=none output.particles_interval=0 --force --quiet --out "$folder/oblique"
+"$program" mpm_implicit/cases/rebound.toml grain.left.y=0.2 grain.right.y=0.4 grid.cells_y=32 grid.low_y=-0.1 contact.friction=0.3 method.theta=0.75 method.mass=lumped theory.compare=none output.particles_interval=0 --force --quiet --out "$folder/oblique"

@@ -8,7 +8,7 @@ for alpha in 0.25 0.5 1 2 4 8 16 32 64; do
     line=$alpha
     for preconditioner in grains diagonal; do
         run=$folder/${preconditioner}_$alpha
-        "$program" mpm_implicit/cases/compressed.toml mesh.cells_x=40 mesh.cells_y=34 time.alpha=$alpha time.end=0.3 theory.compare=none solver.preconditioner=$preconditioner output.fringes_interval=0 --threads 1 --force --quiet --out "$run"
+        "$program" mpm_implicit/cases/compressed.toml grid.cells_x=40 grid.cells_y=34 time.alpha=$alpha time.end=0.3 theory.compare=none solver.preconditioner=$preconditioner output.fringes_interval=0 --threads 1 --force --quiet --out "$run"
         of() { awk -v key="performance.$1" -f common/json_lines.awk "$run/summary.json"; }
         line="$line $(of iterations_per_step) $(of loops_per_step)"
     done

@@ -30,9 +30,9 @@ inline common::ParameterTable describe(Case& w, ThetaScheme& scheme) {
                  "for v^theta: each grain factorized, or the diagonal");
     table.real("solver.tolerance", scheme.tolerance, "", between(1e-15, 1e-3),
                "on the residual, relative");
-    table.whole("solver.most_iterations", scheme.most_iterations, "", between(1, 1e6),
+    table.whole("solver.max_iterations", scheme.max_iterations, "", between(1, 1e6),
                 "of a linear system; beyond, the run fails");
-    table.whole("solver.most_loops", scheme.most_loops, "", between(1, 1000),
+    table.whole("solver.max_outer_iterations", scheme.max_outer_iterations, "", between(1, 1000),
                 "guesses of who presses, or Newton steps; beyond, the run fails");
     describe_comparison(table, w,
                         {"none", "rebound", "bar", "standing_wave", "oscillator", "block",

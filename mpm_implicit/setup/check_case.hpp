@@ -62,9 +62,9 @@ inline void refuse_billet(const Case& w) {
 
 /// Refuses combinations that cannot run.
 /// errors: InputError with the cure
-inline void refuse_impossible(const Case& w, const ThetaScheme& scheme) {
+inline void validate(const Case& w, const ThetaScheme& scheme) {
     using mpm::detail::refuse;
-    mpm::refuse_impossible(w);
+    mpm::validate(w);
     for (const Material& m : materials_of(w.problem))
         refuse(!scheme.newton() && (m.law == Law::j2 || m.law == Law::drucker_prager),
                "[material." + m.name +
@@ -85,15 +85,15 @@ inline std::vector<std::string> warnings_of(const Case& w, const ThetaScheme& sc
     std::vector<std::string> warnings = resolution_warnings(w, scales);
     const double cells = scales.speed * scales.dt / w.problem.mesh().h;
     if (cells > 0.5 && scales.grains > 1)
-        warnings.push_back("|v| dt/h = " + common::shown(cells) +
+        warnings.push_back("|v| dt/h = " + common::format(cells) +
                            " is above 0.5: grains can pass through each other's surfaces before "
                            "they are seen to touch; reduce time.alpha");
     if (w.flip < 1)
-        warnings.push_back("method.flip = " + common::shown(w.flip) +
+        warnings.push_back("method.flip = " + common::format(w.flip) +
                            " is below 1: [MPM-13] is for FLIP, and the column pic takes the rest");
     if (w.problem.per_side == 1 && scheme.consistent())
         warnings.push_back(
-            "mesh.particles_per_side = 1 with the consistent mass matrix, which is then nearly "
+            "grid.particles_per_side = 1 with the consistent mass matrix, which is then nearly "
             "singular: take 2, or method.mass = \"lumped\"");
     return warnings;
 }
@@ -116,11 +116,11 @@ inline double bytes_of(const Case& w, const ThetaScheme& scheme, const Scales& s
 inline std::string describe_scales(const Case& w, const ThetaScheme& scheme, const Scales& scales) {
     // A step takes about as long as so many of the explicit program.
     const double explicit_steps = 6 + 6 * std::sqrt(w.alpha), particle_steps_per_second = 15e6;
-    const std::string flip = w.flip == 1 ? "FLIP" : "FLIP fraction " + common::shown(w.flip);
+    const std::string flip = w.flip == 1 ? "FLIP" : "FLIP fraction " + common::format(w.flip);
     return mpm::describe_scales(
         w, scales,
         w.shape + " shape functions, " + flip + (w.frozen ? ", frozen particles" : "") +
-            ", theta = " + common::shown(scheme.theta) + ", " + scheme.mass + " mass",
+            ", theta = " + common::format(scheme.theta) + ", " + scheme.mass + " mass",
         explicit_steps * static_cast<double>(scales.steps) * static_cast<double>(scales.particles) /
             particle_steps_per_second);
 }

@@ -47,17 +47,17 @@ inline void compare_energy_theorem(const theory::Run& run, const ThetaScheme& sc
 /// What the theta scheme makes of an oscillation of frequency w: its frequency and damping.
 inline void compare_oscillation(const theory::Run& run, double w, double theta,
                                 common::Summary& summary) {
-    const double dt = run.scales.dt, rows = static_cast<double>(run.wanted.history_steps);
+    const double dt = run.scales.dt, rows = static_cast<double>(run.parameters.history_steps);
     const std::complex<double> g = common::theta_light_wave(theta, w * dt);
     const double frequency = std::arg(g) / dt, damping = -std::log(std::abs(g)) / dt;
     const common::OscillationFit fit =
         common::fit_oscillation(run.history.column("momentum_x"), dt * rows);
     summary.result("frequency", fit.frequency, "1/time", frequency,
-                   run.wanted.tolerance * frequency,
+                   run.parameters.tolerance * frequency,
                    "the theta scheme's, for the exact frequency of the body");
     if (theta > 0.5)
-        summary.result("damping", -fit.growth, "1/time", damping, run.wanted.tolerance * damping,
-                       "the theta scheme's");
+        summary.result("damping", -fit.growth, "1/time", damping,
+                       run.parameters.tolerance * damping, "the theta scheme's");
     else
         summary.result("damping", -fit.growth / frequency, "1", 0, 1e-3,
                        "none, over the frequency");
@@ -66,7 +66,7 @@ inline void compare_oscillation(const theory::Run& run, double w, double theta,
 /// The one free node between two fixed ends, with frozen particles.
 inline void compare_oscillator(const theory::Run& run, const ThetaScheme& scheme,
                                common::Summary& summary) {
-    const Problem& problem = run.wanted.problem;
+    const Problem& problem = run.parameters.problem;
     const int per_side = static_cast<int>(problem.per_side);
     const double dt = run.scales.dt, c = sound_speed(run.material()), h = problem.mesh().h,
                  filter = node_filter(per_side), f = scheme.consistent() ? 1 : filter,
@@ -82,9 +82,9 @@ inline void compare_oscillator(const theory::Run& run, const ThetaScheme& scheme
         summary.result_info("overdamped", std::real(g), "1", "nothing oscillates; " + source);
         return;
     }
-    const double size = std::abs(std::log(g)) / dt, tolerance = run.wanted.tolerance * size;
+    const double size = std::abs(std::log(g)) / dt, tolerance = run.parameters.tolerance * size;
     const common::OscillationFit fit =
-        common::fit_oscillation(change, dt * static_cast<double>(run.wanted.history_steps));
+        common::fit_oscillation(change, dt * static_cast<double>(run.parameters.history_steps));
     summary.result("frequency", fit.frequency, "1/time", std::arg(g) / dt, tolerance, source);
     summary.result("damping", -fit.growth, "1/time", -std::log(std::abs(g)) / dt, tolerance,
                    source);
@@ -95,7 +95,7 @@ inline void compare_oscillator(const theory::Run& run, const ThetaScheme& scheme
 inline void compare_billet(const theory::Run& run, common::Summary& summary) {
     const Outline& block = run.plans[run.subject.grain].outline;
     const Bounds box = bounds(block);
-    const std::string plate = billet_plate(run.wanted, run.plans, run.materials);
+    const std::string plate = billet_plate(run.parameters, run.plans, run.materials);
     const auto force = run.history.column("force_y_" + plate),
                way = run.history.column("travel_y_" + plate);
     const double width = box.x_high - box.x_low, height = box.y_high - box.y_low,
@@ -104,7 +104,7 @@ inline void compare_billet(const theory::Run& run, common::Summary& summary) {
     summary.result_info("strain", std::fabs(way.back()) / height, "1", "at the end");
     if (m.law == Law::j2) {
         const double limit = plane_strain_strength(m.yield_stress);
-        summary.result("limit", press / limit, "1", 1, run.wanted.tolerance,
+        summary.result("limit", press / limit, "1", 1, run.parameters.tolerance,
                        "stress on the plate at the end, over 2 Y/3^1/2, a plane block's limit");
         return;
     }
@@ -113,7 +113,7 @@ inline void compare_billet(const theory::Run& run, common::Summary& summary) {
         strain.push_back(std::fabs(way[n]) / height), stress.push_back(std::fabs(force[n]) / width);
     const double exact = plane_strain_modulus(m.E, m.nu);
     summary.result("modulus", theory::slope(strain, stress, 0.5 * strain.back()), "stress", exact,
-                   run.wanted.tolerance * exact,
+                   run.parameters.tolerance * exact,
                    "E/(1 - nu^2): stress on the plate against strain, second half of the run");
 }
 
@@ -127,7 +127,7 @@ inline void compare_compression(const theory::Run& run, const ThetaScheme& schem
     double apart = 0;
     for (std::size_t n = 0; n < energy.size(); ++n)
         apart = std::max(apart, std::fabs(energy[n] - energy[0] - work[n] - friction[n]));
-    if (keeps_energy(run.wanted, scheme))
+    if (keeps_energy(run.parameters, scheme))
         summary.result("energy_less_work", apart / most, "1", 0, 1e-10,
                        "energy less work of plate and friction, over the work");
     summary.result_info("plate_work", work.back(), "energy", "at the end");
@@ -137,7 +137,7 @@ inline void compare_compression(const theory::Run& run, const ThetaScheme& schem
 
 inline void compare_with_theory(const theory::Run& run, const ThetaScheme& scheme, const Ledger& l,
                                 common::Summary& summary) {
-    const Case& w = run.wanted;
+    const Case& w = run.parameters;
     compare_energy_theorem(run, scheme, l, summary);
     const double none = std::numeric_limits<double>::infinity();
     const bool keeps = keeps_energy(w, scheme) && w.problem.contact.friction == 0;

@@ -30,32 +30,35 @@ struct Random {
 /// The steps of flip, whole and in parts.
 struct FlipRun {
     Case w;
-    FlipScratch run;
+    FlipScratch scratch;
     State state;
     long steps_taken = 0;
 
-    FlipRun(const Case& wanted, const Particles& particles) : w(completed(wanted)), run(w) {
+    FlipRun(const Case& parameters, const Particles& particles)
+        : w(completed(parameters)), scratch(w) {
         state.particles = particles;
         sort();
     }
-    explicit FlipRun(const Case& wanted) : FlipRun(wanted, load_particles(completed(wanted))) {}
+    explicit FlipRun(const Case& parameters)
+        : FlipRun(parameters, load_particles(completed(parameters))) {}
 
     Particles& particles() { return state.particles; }
-    Nodes& nodes() { return run.mesh.nodes; }
-    Cells& cells() { return run.mesh.cells; }
+    Nodes& nodes() { return scratch.mesh.nodes; }
+    Cells& cells() { return scratch.mesh.cells; }
     const Grid& grid() const { return w.grid; }
 
-    void sort() { sort_particles(w.grid, run.sort, state.particles); }
+    void sort() { sort_particles(w.grid, scratch.sort, state.particles); }
     /// particles -> mesh, and the pressure.
-    void deposit() { find_fluid(w, state, run.mesh); }
+    void deposit() { find_fluid(w, state, scratch.mesh); }
     double move_nodes() {
-        const double dt = step_allowed(w, run.mesh, state.dt);
-        state.report = move_mesh(w, dt, state.particles, run.mass_matrix, run.mesh, state.books);
+        const double dt = step_allowed(w, scratch.mesh, state.dt);
+        state.report =
+            move_mesh(w, dt, state.particles, scratch.mass_matrix, scratch.mesh, state.books);
         return dt;
     }
     void step() {
         deposit();
-        take_flip_step(w, steps_taken++, run, state);
+        take_flip_step(w, steps_taken++, scratch, state);
     }
     void steps(int count) {
         for (int n = 0; n < count; ++n) step();
@@ -108,9 +111,9 @@ inline void add_cloud(const Case& w, long count, const CloudBox& box, double den
     }
 }
 /// Twelve particles per cell anywhere on the mesh.
-inline Particles any_cloud(const Case& wanted, double speed, std::uint64_t seed,
+inline Particles any_cloud(const Case& parameters, double speed, std::uint64_t seed,
                            long per_cell = 12) {
-    const Case w = completed(wanted);
+    const Case w = completed(parameters);
     Random random(seed);
     Particles p;
     add_cloud(w, per_cell * w.grid.x.cells * w.grid.z.cells,

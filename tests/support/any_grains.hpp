@@ -16,7 +16,7 @@ using namespace mpm_explicit;
 
 /// The steps of mpm_explicit in the order of its main, with the ledger and without files.
 struct Run {
-    Case wanted;
+    Case parameters;
     Scales scales;
     double dt;
     State state;
@@ -31,7 +31,7 @@ struct Run {
     /// in: prepare(assembly), what is changed before the start; step_size, 0: what the case says
     template <class Prepare>
     Run(const Case& c, const Prepare& prepare, double step_size = 0)
-        : wanted(c),
+        : parameters(c),
           scales(scales_of(c)),
           dt(step_size > 0 ? step_size : scales.dt),
           state{assemble(c.problem), {}, {}},
@@ -47,7 +47,7 @@ struct Run {
         prepare(state.assembly);
         nodes.sort(state.assembly.grains, p, state.frame);
         with_shape(c.scheme(), [&](const auto& shape) {
-            start_leapfrog(shape, laws, contact, wanted.frozen, dt, nodes, state);
+            start_leapfrog(shape, laws, contact, parameters.frozen, dt, nodes, state);
         });
     }
     explicit Run(const Case& c) : Run(c, [](Assembly&) {}) {}
@@ -56,7 +56,7 @@ struct Run {
     const Ledger& ledger() const { return state.ledger; }
 
     void advance(long steps = 1) {
-        with_shape(wanted.scheme(), [&](const auto& shape) {
+        with_shape(parameters.scheme(), [&](const auto& shape) {
             for (long k = 0; k < steps; ++k) advance_once(shape);
         });
     }
@@ -76,8 +76,9 @@ struct Run {
         const std::vector<Grain>& grains = state.assembly.grains;
         std::vector<RigidMotion>& rigid = state.assembly.rigid;
         if (nodes.sort_is_due(state.frame)) nodes.sort(grains, at, state.frame);
-        const BodyForce body = drive(wanted.problem, step, dt, rigid);
-        take_step(shape, laws, contact, body, wanted.flip, wanted.frozen, dt, nodes, state, sums);
+        const BodyForce body = drive(parameters.problem, step, dt, rigid);
+        take_step(shape, laws, contact, body, parameters.flip, parameters.frozen, dt, nodes, state,
+                  sums);
 
         Ledger& l = state.ledger;
         enter_energies(step, sums.strips, l);

@@ -22,8 +22,8 @@ inline void check_results(const nlohmann::json& summary, int at_least) {
     int compared = 0;
     for (const auto& [name, result] : summary["results"].items()) {
         if (!result.contains("pass")) continue;
-        const std::string shown = name + " = " + result.dump();
-        INFO(shown);
+        const std::string format = name + " = " + result.dump();
+        INFO(format);
         CHECK(result["pass"].get<bool>());
         ++compared;
     }

@@ -20,7 +20,7 @@ using namespace mpm_implicit;
 
 /// The steps of mpm_implicit in the order of its main, with the ledger and without files.
 struct ThetaRun {
-    Case wanted;
+    Case parameters;
     ThetaScheme scheme;
     Scales scales;
     double dt;
@@ -40,7 +40,7 @@ struct ThetaRun {
     /// in: prepare(assembly), what is changed before the start
     template <class Prepare>
     ThetaRun(const Case& c, const ThetaScheme& s, const Prepare& prepare)
-        : wanted(c),
+        : parameters(c),
           scheme(s),
           scales(scales_of(c)),
           dt(scales.dt),
@@ -70,71 +70,72 @@ struct ThetaRun {
     /// Calls work(shape, solver), the solver as wide as the shape.
     template <class Work>
     void with(const Work& work) {
-        with_scratch([&](const auto& shape, auto& run) { work(shape, run.solver); });
+        with_scratch([&](const auto& shape, auto& scratch) { work(shape, scratch.solver); });
     }
 
     void advance(long steps = 1) {
-        with_scratch([&](const auto& shape, auto& run) {
+        with_scratch([&](const auto& shape, auto& scratch) {
             for (long k = 0; k < steps; ++k) {
-                begin(shape, run);
-                solve(shape, run);
-                end(shape, run);
+                begin(shape, scratch);
+                solve(shape, scratch);
+                end(shape, scratch);
             }
         });
     }
     /// A step up to v_i^0: who meets is known, and the matrices.
     void begin() {
-        with_scratch([&](const auto& shape, auto& run) { begin(shape, run); });
+        with_scratch([&](const auto& shape, auto& scratch) { begin(shape, scratch); });
     }
     /// And v_i^theta, with the particles still where they were.
     void solve() {
-        with_scratch([&](const auto& shape, auto& run) { solve(shape, run); });
+        with_scratch([&](const auto& shape, auto& scratch) { solve(shape, scratch); });
     }
     void end() {
-        with_scratch([&](const auto& shape, auto& run) { end(shape, run); });
+        with_scratch([&](const auto& shape, auto& scratch) { end(shape, scratch); });
     }
     /// The pairs of the last step.
     const ContactSet& set() const {
-        return wanted.shape == "linear" ? narrow_.solver.set : wide_.solver.set;
+        return parameters.shape == "linear" ? narrow_.solver.set : wide_.solver.set;
     }
 
    private:
     template <class Work>
     void with_scratch(const Work& work) {
-        with_shape(wanted.scheme(), [&](const auto& shape) {
-            work(shape, scratch<std::decay_t<decltype(shape)>::width - 1>());
+        with_shape(parameters.scheme(), [&](const auto& shape) {
+            work(shape, scratch_of<std::decay_t<decltype(shape)>::width - 1>());
         });
     }
     template <int reach>
-    auto& scratch() {
+    auto& scratch_of() {
         if constexpr (reach == 1)
             return narrow_;
         else
             return wide_;
     }
     template <class Shape, int reach>
-    void begin(const Shape& shape, StepScratch<reach>& run) {
+    void begin(const Shape& shape, StepScratch<reach>& scratch) {
         if (nodes.sort_is_due(state.frame)) nodes.sort(grains(), particles(), state.frame);
         // What a test has changed since the last step.
-        run.laws = laws, run.scheme = scheme, run.flip = wanted.flip, run.frozen = wanted.frozen;
-        body = drive(wanted.problem, step, dt, state.assembly.rigid, run.solver.servos);
-        find_matrices(shape, body, dt, run, nodes, state, sums);
+        scratch.laws = laws, scratch.scheme = scheme, scratch.flip = parameters.flip,
+        scratch.frozen = parameters.frozen;
+        body = drive(parameters.problem, step, dt, state.assembly.rigid, scratch.solver.servos);
+        find_matrices(shape, body, dt, scratch, nodes, state, sums);
     }
     template <class Shape, int reach>
-    void solve(const Shape& shape, StepScratch<reach>& run) {
-        find_theta_velocities(shape, body, dt, run, nodes, state, sums);
+    void solve(const Shape& shape, StepScratch<reach>& scratch) {
+        find_theta_velocities(shape, body, dt, scratch, nodes, state, sums);
     }
     template <class Shape, int reach>
-    void end(const Shape& shape, StepScratch<reach>& run) {
-        move_to_new_level(shape, body, dt, run, nodes, state, sums);
+    void end(const Shape& shape, StepScratch<reach>& scratch) {
+        move_to_new_level(shape, body, dt, scratch, nodes, state, sums);
 
         Ledger& l = state.ledger;
         const auto given = [&] {
             return l.energy() - l.plate - l.gravity - l.volume + std::min(l.plastic, 0.0);
         };
         const double before = given();
-        enter_step(scheme.theta, scheme.consistent(), wanted.problem.damping, dt, nodes.strips(),
-                   sums.strips, sums.nodes, sums.contact, l);
+        enter_step(scheme.theta, scheme.consistent(), parameters.problem.damping, dt,
+                   nodes.strips(), sums.strips, sums.nodes, sums.contact, l);
         growth = std::max(growth, given() - before);
         size = worst({size, l.energy(), std::fabs(l.plate + l.gravity)});
         for (const StripSums& s : sums.strips) least_V = std::min(least_V, s.least_V);
@@ -142,8 +143,8 @@ struct ThetaRun {
         ++step;
     }
 
-    StepScratch<1> narrow_{laws, scheme, contact, wanted.flip, wanted.frozen, {}, {}};
-    StepScratch<2> wide_{laws, scheme, contact, wanted.flip, wanted.frozen, {}, {}};
+    StepScratch<1> narrow_{laws, scheme, contact, parameters.flip, parameters.frozen, {}, {}};
+    StepScratch<2> wide_{laws, scheme, contact, parameters.flip, parameters.frozen, {}, {}};
 };
 
 // ---- cases ---------------------------------------------------------------------------------------
@@ -154,7 +155,7 @@ inline ThetaScheme theta_scheme(double theta, const std::string& mass = "consist
                                 const std::string& solver = "projected_cg") {
     ThetaScheme s;
     s.theta = theta, s.mass = mass, s.solver = solver;
-    s.most_loops = 300;  // that friction settles is not for every test
+    s.max_outer_iterations = 300;  // that friction settles is not for every test
     return s;
 }
 

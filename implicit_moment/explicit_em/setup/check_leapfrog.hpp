@@ -29,16 +29,16 @@ inline void refuse_unstable(const Case& w) {
     const double limit = courant_limit(w.grid);
     if (!(w.dt < limit)) {
         throw common::InputError(
-            "time.dt = " + shown(w.dt) + " is not below the limit of light on this mesh, " +
-            shown(limit) + " / omega_pi (c dt < (1/dx^2 + 1/dz^2)^(-1/2)): lower time.dt to " +
-            shown(0.85 * limit) + " or use larger cells");
+            "time.dt = " + format(w.dt) + " is not below the limit of light on this mesh, " +
+            format(limit) + " / omega_pi (c dt < (1/dx^2 + 1/dz^2)^(-1/2)): lower time.dt to " +
+            format(0.85 * limit) + " or use larger cells");
     }
     const double omega_p_dt = detail::omega_p_dt(w, scales_of(w));
     if (!(omega_p_dt < 2)) {
-        throw common::InputError("omega_p dt = " + shown(omega_p_dt) +
+        throw common::InputError("omega_p dt = " + format(omega_p_dt) +
                                  " is not below 2, the limit of leapfrogged plasma oscillations: "
                                  "lower time.dt to " +
-                                 shown(w.dt * 1.5 / omega_p_dt) + " or use implicit_moment");
+                                 format(w.dt * 1.5 / omega_p_dt) + " or use implicit_moment");
     }
 }
 
@@ -49,25 +49,25 @@ inline std::vector<std::string> leapfrog_warnings(const Case& w, const Scales& s
     const double cell = std::min(w.grid.x.spacing(), w.grid.z.spacing());
     const double omega_p_dt = detail::omega_p_dt(w, scales);
     if (omega_p_dt > 1.62) {
-        warnings.push_back("omega_p dt = " + shown(omega_p_dt) +
+        warnings.push_back("omega_p dt = " + format(omega_p_dt) +
                            " is above 1.62, where oscillations of a warm plasma may grow: lower "
                            "time.dt to " +
-                           shown(w.dt * 1.5 / omega_p_dt));
+                           format(w.dt * 1.5 / omega_p_dt));
     }
     for (const SpeciesScales& s : scales.species) {
         if (s.debye_length > 0 && s.debye_length < 0.2 * cell) {
-            warnings.push_back(s.name + ": the Debye length is " + shown(s.debye_length / cell) +
+            warnings.push_back(s.name + ": the Debye length is " + format(s.debye_length / cell) +
                                " cells, below 0.2: where the plasma drifts the mesh may heat it, "
                                "watch the energy");
         }
         if (s.Omega_c_dt > 0.5) {
-            warnings.push_back(s.name + ": Omega_c dt = " + shown(s.Omega_c_dt) +
+            warnings.push_back(s.name + ": Omega_c dt = " + format(s.Omega_c_dt) +
                                " is above 0.5, gyration is too slow by more than 2 %: lower "
                                "time.dt to " +
-                               shown(w.dt * 0.5 / s.Omega_c_dt));
+                               format(w.dt * 0.5 / s.Omega_c_dt));
         }
         if (!w.leapfrog.relativistic && 4 * s.thermal_speed > c) {
-            warnings.push_back(s.name + ": four thermal speeds are " + shown(4 * s.thermal_speed) +
+            warnings.push_back(s.name + ": four thermal speeds are " + format(4 * s.thermal_speed) +
                                " c, and the push is not relativistic");
         }
     }

@@ -6,26 +6,26 @@
 
 namespace common {
 
-inline constexpr int lane_count = 8;
+inline constexpr int simd_width = 8;
 
 /// Eight doubles with +, -, *, / and comparisons per lane; a plain double meets all lanes.
-using Lanes [[gnu::vector_size(lane_count * sizeof(double))]] = double;
+using SimdVector [[gnu::vector_size(simd_width * sizeof(double))]] = double;
 
-/// Lanes holding from[0], ..., from[count-1]; the lanes beyond count repeat from[0], so that they
+/// SimdVector holding from[0], ..., from[count-1]; the lanes beyond count repeat from[0], so that they
 /// stay harmless.
-inline Lanes load_lanes(const double* from, long count) {
-    Lanes lanes;
-    if (count >= lane_count) {
+inline SimdVector load_simd(const double* from, long count) {
+    SimdVector lanes;
+    if (count >= simd_width) {
         __builtin_memcpy(&lanes, from, sizeof lanes);
     } else {
-        for (int l = 0; l < lane_count; ++l) lanes[l] = from[l < count ? l : 0];
+        for (int l = 0; l < simd_width; ++l) lanes[l] = from[l < count ? l : 0];
     }
     return lanes;
 }
 
 /// Writes the first count lanes.
-inline void store_lanes(const Lanes& lanes, double* to, long count) {
-    if (count >= lane_count) {
+inline void store_simd(const SimdVector& lanes, double* to, long count) {
+    if (count >= simd_width) {
         __builtin_memcpy(to, &lanes, sizeof lanes);
     } else {
         for (int l = 0; l < count; ++l) to[l] = lanes[l];
@@ -33,14 +33,14 @@ inline void store_lanes(const Lanes& lanes, double* to, long count) {
 }
 
 /// 1 in the first count lanes and 0 in the rest.
-inline Lanes first_lanes(long count) {
-    Lanes lanes{};
-    for (int l = 0; l < lane_count; ++l) lanes[l] = l < count ? 1.0 : 0.0;
+inline SimdVector first_simd(long count) {
+    SimdVector lanes{};
+    for (int l = 0; l < simd_width; ++l) lanes[l] = l < count ? 1.0 : 0.0;
     return lanes;
 }
 
 /// Sum of the eight lanes, always in the order ((0+4)+(2+6)) + ((1+5)+(3+7)).
-inline double sum_of_lanes(const Lanes& lanes) {
+inline double simd_sum(const SimdVector& lanes) {
     using Half [[gnu::vector_size(4 * sizeof(double))]] = double;
     using Quarter [[gnu::vector_size(2 * sizeof(double))]] = double;
     const Half half = __builtin_shufflevector(lanes, lanes, 0, 1, 2, 3) +
@@ -52,11 +52,11 @@ inline double sum_of_lanes(const Lanes& lanes) {
 
 /// Larger of a and b, lane by lane, the magnitude and the square root; overloads let one formula
 /// serve a single number and lanes.
-inline Lanes larger(const Lanes& a, const Lanes& b) { return a > b ? a : b; }
-inline Lanes magnitude(const Lanes& a) { return a < 0.0 ? -a : a; }
-inline Lanes square_root(const Lanes& a) {
-    Lanes root;
-    for (int l = 0; l < lane_count; ++l) root[l] = std::sqrt(a[l]);
+inline SimdVector larger(const SimdVector& a, const SimdVector& b) { return a > b ? a : b; }
+inline SimdVector magnitude(const SimdVector& a) { return a < 0.0 ? -a : a; }
+inline SimdVector square_root(const SimdVector& a) {
+    SimdVector root;
+    for (int l = 0; l < simd_width; ++l) root[l] = std::sqrt(a[l]);
     return root;
 }
 inline double larger(double a, double b) { return a > b ? a : b; }
@@ -64,13 +64,13 @@ inline double magnitude(double a) { return std::fabs(a); }
 inline double square_root(double a) { return std::sqrt(a); }
 
 /// Largest of the eight lanes; NaN in any lane gives NaN.
-inline double largest_lane(const Lanes& lanes) {
+inline double simd_max(const SimdVector& lanes) {
     double largest = lanes[0];
-    for (int l = 1; l < lane_count; ++l) {
+    for (int l = 1; l < simd_width; ++l) {
         largest = lanes[l] > largest || lanes[l] != lanes[l] ? lanes[l] : largest;
     }
     return largest;
 }
-inline double largest_lane(double a) { return a; }
+inline double simd_max(double a) { return a; }
 
 }  // namespace common

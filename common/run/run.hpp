@@ -16,14 +16,14 @@
 
 namespace common {
 
-class Session {
+class Run {
    public:
     /// Prepares the output folder, writes case.toml there and listens to SIGINT and SIGTERM.
     /// errors: InputError when the folder holds something else, or an earlier run without --force.
-    Session(const About& about, const CommandLine& command, const ParameterTable& table);
-    Session(const Session&) = delete;
-    Session& operator=(const Session&) = delete;
-    ~Session();
+    Run(const ProgramInfo& info, const CommandLine& command, const ParameterTable& table);
+    Run(const Run&) = delete;
+    Run& operator=(const Run&) = delete;
+    ~Run();
 
     History history;
     Summary summary;
@@ -34,7 +34,7 @@ class Session {
     /// Reads the checkpoint named by --restart into state, history and step.
     template <class State>
     void restore(State& state, long& step) {
-        CheckpointReader reader(about_, command_.restart_path);
+        CheckpointReader reader(info_, command_.restart_path);
         std::vector<double> rows;
         reader("step", step);
         reader("history", rows);
@@ -46,8 +46,8 @@ class Session {
     /// False at the end of the run, or when a signal has asked to stop. Steps may all be equal and
     /// known in number, or as long as the flow allows until a time is reached; the last of those may
     /// end later, so that a run does not depend on where it was meant to end.
-    bool keep_going(long step, long steps);
-    bool keep_going(long step, double time, double end);
+    bool not_finished(long step, long steps);
+    bool not_finished(long step, double time, double end);
     static bool reached(double time, double end) { return time >= end * (1 - 1e-9); }
 
     /// Shows progress; writes a checkpoint when one is due, at the end, or when a signal has asked
@@ -87,7 +87,7 @@ class Session {
         const bool due = checkpoint_steps > 0 && (step % checkpoint_steps == 0 || last);
         if (!due && stopped_by() == 0) return;
         history.flush();
-        CheckpointWriter writer(about_, effective_case_);
+        CheckpointWriter writer(info_, effective_case_);
         writer("step", step);
         writer("history", history.all());
         archive(writer, state);
@@ -97,7 +97,7 @@ class Session {
     void show_progress(long step, long steps, double time, double done);
     void write_checkpoint(CheckpointWriter& writer, long step);
 
-    About about_;
+    ProgramInfo info_;
     CommandLine command_;
     std::string effective_case_, last_note_;
     long first_step_ = 0;
@@ -114,7 +114,8 @@ void refuse_before_start(const CommandLine& command, long steps, double bytes);
 
 /// Runs a program and turns errors into one sentence on stderr and the exit status: 2 bad input,
 /// 3 numerical failure.
-/// in: run(session) builds the session in place, so that a failed run still leaves its summary.
-int guarded(const About& about, const std::function<int(std::optional<Session>&)>& run);
+/// in: program(run) builds the run in place, so that a failed run still leaves its summary.
+int run_and_report_errors(const ProgramInfo& info,
+                          const std::function<int(std::optional<Run>&)>& program);
 
 }  // namespace common

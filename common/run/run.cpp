@@ -1,4 +1,4 @@
-#include "common/run/session.hpp"
+#include "common/run/run.hpp"
 
 #include <sys/ioctl.h>
 #include <sys/resource.h>
@@ -86,18 +86,18 @@ std::string clock_text(double seconds) {
 
 }  // namespace
 
-int Session::stopped_by() { return stop_signal; }
+int Run::stopped_by() { return stop_signal; }
 
-Session::Session(const About& about, const CommandLine& command, const ParameterTable& table)
+Run::Run(const ProgramInfo& info, const CommandLine& command, const ParameterTable& table)
     : history(command.out_dir + "/history.dat"),
-      about_(about),
+      info_(info),
       command_(command),
       effective_case_(table.effective_case()),
       start_(std::chrono::steady_clock::now()),
       shown_(start_) {
     prepare_folder();
     OutputFile file(path("case.toml"));
-    file.text("# " + about_.program + " " + about_.version + ": the complete input of this run\n" +
+    file.text("# " + info_.program + " " + info_.version + ": the complete input of this run\n" +
               effective_case_);
     file.finish();
     listen_to(SIGINT);
@@ -105,11 +105,11 @@ Session::Session(const About& about, const CommandLine& command, const Parameter
     terminal_ = isatty(STDERR_FILENO) != 0 && std::getenv("NO_PROGRESS") == nullptr;
 }
 
-Session::~Session() {
+Run::~Run() {
     if (line_open_) std::fputs("\n", stderr);
 }
 
-void Session::prepare_folder() {
+void Run::prepare_folder() {
     std::error_code error;
     const fs::path folder = command_.out_dir;
     if (fs::exists(folder, error) && !fs::is_directory(folder, error)) {
@@ -150,24 +150,24 @@ void Session::prepare_folder() {
     }
 }
 
-bool Session::keep_going(long step, long steps) {
+bool Run::not_finished(long step, long steps) {
     step_ = step;
     if (first_done_ < 0 && steps > 0) first_done_ = double(step) / double(steps);
     return step < steps && stop_signal == 0;
 }
 
-bool Session::keep_going(long step, double time, double end) {
+bool Run::not_finished(long step, double time, double end) {
     step_ = step;
     if (first_done_ < 0 && end > 0) first_done_ = time / end;
     return !reached(time, end) && stop_signal == 0;
 }
 
-std::string Session::when(const std::string& message) const {
+std::string Run::when(const std::string& message) const {
     if (step_ < 0 || message.find("step ") != std::string::npos) return message;
     return message + " (in step " + std::to_string(step_) + ")";
 }
 
-void Session::show_progress(long step, long steps, double time, double done) {
+void Run::show_progress(long step, long steps, double time, double done) {
     if (command_.quiet) return;
     const auto now = std::chrono::steady_clock::now();
     const double elapsed = std::chrono::duration<double>(now - start_).count();
@@ -176,7 +176,7 @@ void Session::show_progress(long step, long steps, double time, double done) {
     const std::string of_all = steps > 0 ? " of " + std::to_string(steps) : "";
     char note[160];
     std::snprintf(note, sizeof note, "%s %3ld %%  step %ld%s  t = %.4g  %s elapsed  %s left",
-                  about_.program.c_str(), percent, step, of_all.c_str(), time,
+                  info_.program.c_str(), percent, step, of_all.c_str(), time,
                   clock_text(elapsed).c_str(), clock_text(left).c_str());
     if (terminal_) {
         if (now - shown_ < std::chrono::milliseconds(100) && done < 1) return;
@@ -194,7 +194,7 @@ void Session::show_progress(long step, long steps, double time, double done) {
     shown_ = now;
 }
 
-void Session::write_checkpoint(CheckpointWriter& writer, long step) {
+void Run::write_checkpoint(CheckpointWriter& writer, long step) {
     char name[64];
     std::snprintf(name, sizeof name, "checkpoint_%010ld.bin", step);
     writer.write(path(name));
@@ -210,7 +210,7 @@ void Session::write_checkpoint(CheckpointWriter& writer, long step) {
     for (std::size_t k = 0; k + 2 < names.size(); ++k) fs::remove(names[k], error);
 }
 
-int Session::finish(long step, double count) {
+int Run::finish(long step, double count) {
     if (line_open_) std::fputs("\n", stderr);
     line_open_ = false;
     history.flush();
@@ -236,22 +236,22 @@ int Session::finish(long step, double count) {
         status = 3;
         message = "a result is not finite";
     }
-    summary.write(path("summary.json"), about_, command_.case_name, status, message);
+    summary.write(path("summary.json"), info_, command_.case_name, status, message);
     if (!command_.quiet) {
         std::printf("%s%s: %s after %ld steps in %s; results in %s\n", summary.table().c_str(),
-                    about_.program.c_str(), message.c_str(), step, clock_text(wall).c_str(),
+                    info_.program.c_str(), message.c_str(), step, clock_text(wall).c_str(),
                     command_.out_dir.c_str());
     }
     if (status == 3)
-        std::fprintf(stderr, "%s: %s; see %s\n", about_.program.c_str(), message.c_str(),
+        std::fprintf(stderr, "%s: %s; see %s\n", info_.program.c_str(), message.c_str(),
                      path("summary.json").c_str());
     return status;
 }
 
-int Session::fail(int status, const std::string& message) {
+int Run::fail(int status, const std::string& message) {
     try {
         history.flush();
-        summary.write(path("summary.json"), about_, command_.case_name, status, message);
+        summary.write(path("summary.json"), info_, command_.case_name, status, message);
     } catch (const std::exception&) {
         // The disk may be full; what has failed is on the terminal anyway.
     }
@@ -274,21 +274,22 @@ void refuse_before_start(const CommandLine& command, long steps, double bytes) {
     }
 }
 
-int guarded(const About& about, const std::function<int(std::optional<Session>&)>& run) {
+int run_and_report_errors(const ProgramInfo& info,
+                          const std::function<int(std::optional<Run>&)>& program) {
     std::signal(SIGPIPE, SIG_IGN);
-    std::optional<Session> session;
+    std::optional<Run> run;
     const auto end = [&](int status, const std::string& message) {
-        if (session) session->fail(status, message);
-        session.reset();
-        std::fprintf(stderr, "%s: %s\n", about.program.c_str(), printable(message).c_str());
+        if (run) run->fail(status, message);
+        run.reset();
+        std::fprintf(stderr, "%s: %s\n", info.program.c_str(), printable(message).c_str());
         return status;
     };
     try {
-        return run(session);
+        return program(run);
     } catch (const InputError& error) {
         return end(2, error.what());
     } catch (const NumericalError& error) {
-        return end(3, session ? session->when(error.what()) : error.what());
+        return end(3, run ? run->when(error.what()) : error.what());
     } catch (const std::bad_alloc&) {
         return end(2,
                    "not enough memory for this case; use fewer particles or cells (--dry-run shows "
