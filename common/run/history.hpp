@@ -23,6 +23,7 @@ struct Row {
     std::vector<Column> columns;
     std::vector<double> values;
 
+    Row() = default;
     void add(const std::string& name, const std::string& unit, double value) {
         columns.push_back({name, unit});
         values.push_back(value);
