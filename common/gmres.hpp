@@ -57,6 +57,7 @@ constexpr double negligible = 1e-14;
 
 enum class Growth { grown, complete, dependent, not_finite };
 
+/// Gives every array of the workspace its size: n unknowns, at most `restart` basis vectors.
 inline void prepare(GmresWorkspace& work, Eigen::Index n, int restart) {
     work.basis.resize(n, restart + 1);
     work.preconditioned.resize(n, restart);

@@ -23,17 +23,24 @@ struct Axis {
     double length = 0;  // [length]
     bool periodic = true;
 
+    /// Distance of neighboring nodes.
     double spacing() const { return length / static_cast<double>(cells); }
+    /// Coordinate of the upper boundary.
     double high() const { return low + length; }
+    /// Coordinate of a node; a fraction lies between nodes.
     double at(double node) const { return low + node * spacing(); }
 };
 
 struct Grid {
     Axis x, z;
 
+    /// Numbers per row of nodes: cells + 1 nodes and a ghost node on either side.
     long stride() const { return x.cells + 3; }
+    /// Numbers per field, ghost nodes included.
     long size() const { return stride() * (z.cells + 3); }
+    /// Place of node (i, j) in a field; i and j begin at -1, the ghost nodes.
     long index(long i, long j) const { return (j + 1) * stride() + i + 1; }
+    /// Area of a cell; what a charge is divided by to give a density.
     double cell_area() const { return x.spacing() * z.spacing(); }
 };
 

@@ -74,7 +74,9 @@ void for_each_row_two_colors(long rows, const Work& work, long numbers = paralle
     }
 }
 
+/// Threads that a parallel region will have.
 inline int thread_count() { return omp_get_max_threads(); }
+/// Sets the number of threads; 0 leaves it as it is.
 inline void set_thread_count(int threads) {
     if (threads > 0) omp_set_num_threads(threads);
 }

@@ -70,11 +70,13 @@ inline double shifted_radical_inverse(std::uint64_t i, unsigned base, std::uint6
 struct LoadingNumbers {
     bool quiet;
     std::uint64_t seed;
+    /// Uniform in (0, 1): the radical inverse in `base` when quiet, else random.
     double uniform(std::uint32_t purpose, unsigned base, long particle) const {
         const auto p = static_cast<std::uint64_t>(particle);
         return quiet ? shifted_radical_inverse(p, base, seed + 1000 * purpose)
                      : common::uniform(seed, purpose, p, base);
     }
+    /// Gaussian with mean 0 and variance 1, from the same sequence.
     double gaussian(std::uint32_t purpose, unsigned base, long particle) const {
         return gsl_cdf_ugaussian_Pinv(uniform(purpose, base, particle));
     }

@@ -53,12 +53,15 @@ inline double simd_sum(const SimdVector& lanes) {
 /// Larger of a and b, lane by lane, the magnitude and the square root; overloads let one formula
 /// serve a single number and lanes.
 inline SimdVector larger(const SimdVector& a, const SimdVector& b) { return a > b ? a : b; }
+/// |a|, component by component.
 inline SimdVector magnitude(const SimdVector& a) { return a < 0.0 ? -a : a; }
+/// The square root, component by component.
 inline SimdVector square_root(const SimdVector& a) {
     SimdVector root;
     for (int l = 0; l < simd_width; ++l) root[l] = std::sqrt(a[l]);
     return root;
 }
+/// The same for one number, so that a kernel can be written once.
 inline double larger(double a, double b) { return a > b ? a : b; }
 inline double magnitude(double a) { return std::fabs(a); }
 inline double square_root(double a) { return std::sqrt(a); }

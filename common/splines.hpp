@@ -51,6 +51,7 @@ struct QuadraticWeights {
     Real quadratic[3];
     Real linear[2];
 
+    /// in: d, distance from the nearest node in cells, -1/2 <= d <= 1/2
     explicit QuadraticWeights(const Real& d)
         : quadratic{0.5 * (0.5 - d) * (0.5 - d), 0.75 - d * d, 0.5 * (0.5 + d) * (0.5 + d)},
           linear{0.5 - d, 0.5 + d} {}

@@ -29,10 +29,12 @@ class StepClock {
         seconds_[part] += std::chrono::duration<double>(now - last_).count();
         last_ = now;
     }
+    /// Seconds spent in a part so far; 0 for a part that is not known.
     double seconds(const std::string& part) const {
         const auto found = seconds_.find(part);
         return found == seconds_.end() ? 0 : found->second;
     }
+    /// Seconds spent in all parts.
     double total() const {
         double sum = 0;
         for (const auto& [part, seconds] : seconds_) sum += seconds;

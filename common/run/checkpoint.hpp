@@ -17,6 +17,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "common/run/parameters.hpp"
@@ -38,6 +39,15 @@ inline std::uint64_t checksum(std::span<const char> bytes) {
     return sum;
 }
 
+/// The letter that stands for a type of number in a file.
+template <class Number>
+constexpr char letter_of() {
+    if constexpr (std::is_same_v<Number, double>) return 'd';
+    if constexpr (std::is_same_v<Number, float>) return 'f';
+    if constexpr (std::is_same_v<Number, long>) return 'l';
+    if constexpr (std::is_same_v<Number, int>) return 'i';
+}
+
 }  // namespace checkpoint_detail
 
 /// An archive that collects named numbers; write() puts them into a file.
@@ -51,23 +61,19 @@ class CheckpointWriter {
         put_text(effective_case);
     }
 
-    void operator()(const std::string& name, const long& value) {
-        block(name, 'l', &value, 1, sizeof value);
+    /// Adds one number.
+    template <class Number>
+    void operator()(const std::string& name, const Number& value) {
+        block(name, &value, 1);
     }
-    void operator()(const std::string& name, const double& value) {
-        block(name, 'd', &value, 1, sizeof value);
+    /// Adds a list of numbers.
+    template <class Number>
+    void operator()(const std::string& name, const std::vector<Number>& values) {
+        block(name, values.data(), values.size());
     }
-    void operator()(const std::string& name, const std::vector<double>& values) {
-        block(name, 'd', values.data(), values.size(), sizeof(double));
-    }
-    void operator()(const std::string& name, const std::vector<float>& values) {
-        block(name, 'f', values.data(), values.size(), sizeof(float));
-    }
-    void operator()(const std::string& name, const std::vector<int>& values) {
-        block(name, 'i', values.data(), values.size(), sizeof(int));
-    }
+    /// Adds a list of numbers.
     void operator()(const std::string& name, const Eigen::VectorXd& values) {
-        block(name, 'd', values.data(), static_cast<std::size_t>(values.size()), sizeof(double));
+        block(name, values.data(), static_cast<std::size_t>(values.size()));
     }
 
     /// Writes beside `path`, flushes to the disk, then renames: `path` is the old file or the whole
@@ -125,12 +131,13 @@ class CheckpointWriter {
         put_number(text.size());
         put(text.data(), text.size());
     }
-    void block(const std::string& name, char type, const void* from, std::size_t count,
-               std::size_t size) {
+    template <class Number>
+    void block(const std::string& name, const Number* from, std::size_t count) {
+        const char type = checkpoint_detail::letter_of<Number>();
         put_text(name);
         put(&type, 1);
         put_number(count);
-        put(from, count * size);
+        put(from, count * sizeof(Number));
     }
 
     std::vector<char> bytes_;
@@ -167,28 +174,23 @@ class CheckpointReader {
         effective_case_ = text();
     }
 
+    /// The complete input of the run that wrote the file, as TOML.
     const std::string& effective_case() const { return effective_case_; }
 
-    void operator()(const std::string& name, long& value) {
-        block(name, 'l', &value, 1, sizeof value);
+    /// Reads one number.
+    template <class Number>
+    void operator()(const std::string& name, Number& value) {
+        block(name, &value, 1);
     }
-    void operator()(const std::string& name, double& value) {
-        block(name, 'd', &value, 1, sizeof value);
+    /// Reads a list of numbers of any length.
+    template <class Number>
+    void operator()(const std::string& name, std::vector<Number>& values) {
+        values.resize(count<Number>(name));
+        copy(values.data(), values.size() * sizeof(Number));
     }
-    void operator()(const std::string& name, std::vector<double>& values) {
-        values.resize(count(name, 'd', sizeof(double)));
-        copy(values.data(), values.size() * sizeof(double));
-    }
-    void operator()(const std::string& name, std::vector<float>& values) {
-        values.resize(count(name, 'f', sizeof(float)));
-        copy(values.data(), values.size() * sizeof(float));
-    }
-    void operator()(const std::string& name, std::vector<int>& values) {
-        values.resize(count(name, 'i', sizeof(int)));
-        copy(values.data(), values.size() * sizeof(int));
-    }
+    /// Reads a list of numbers whose length is known.
     void operator()(const std::string& name, Eigen::VectorXd& values) {
-        block(name, 'd', values.data(), static_cast<std::size_t>(values.size()), sizeof(double));
+        block(name, values.data(), static_cast<std::size_t>(values.size()));
     }
 
    private:
@@ -209,25 +211,28 @@ class CheckpointReader {
         return value;
     }
     // Length of the next block, which must have this name and type.
-    std::size_t count(const std::string& name, char type, std::size_t size) {
+    template <class Number>
+    std::size_t count(const std::string& name) {
         const std::string found = text();
         char found_type = 0;
         copy(&found_type, 1);
         const std::size_t length = number();
-        if (found != name || found_type != type || length > bytes_.size() / size) {
+        if (found != name || found_type != checkpoint_detail::letter_of<Number>() ||
+            length > bytes_.size() / sizeof(Number)) {
             throw InputError(path_ + ": holds '" + found + "' where '" + name +
                              "' is expected; it belongs to another case");
         }
         return length;
     }
-    void block(const std::string& name, char type, void* to, std::size_t length, std::size_t size) {
-        const std::size_t found = count(name, type, size);
+    template <class Number>
+    void block(const std::string& name, Number* to, std::size_t length) {
+        const std::size_t found = count<Number>(name);
         if (found != length) {
             throw InputError(path_ + ": '" + name + "' has " + std::to_string(found) +
                              " values where " + std::to_string(length) +
                              " are expected; it belongs to another case");
         }
-        copy(to, length * size);
+        copy(to, length * sizeof(Number));
     }
 
     std::string path_, bytes_;

@@ -24,6 +24,7 @@ struct Row {
     std::vector<double> values;
 
     Row() = default;
+    /// Adds a column on the right.
     void add(const std::string& name, const std::string& unit, double value) {
         columns.push_back({name, unit});
         values.push_back(value);
@@ -32,6 +33,7 @@ struct Row {
 
 class History {
    public:
+    /// Nothing is written before the first row.
     explicit History(const std::string& path) : path_(path) {}
     History(const History&) = delete;
     History& operator=(const History&) = delete;
@@ -66,6 +68,7 @@ class History {
         if (now - flushed_ > std::chrono::seconds(1)) flush();
     }
 
+    /// The same from a row that also names its quantities.
     void row(const Row& row) { this->row(row.values); }
 
     /// The first value of a column. errors: logic_error for a name that is not a column, or no row.

@@ -16,6 +16,7 @@ namespace common {
 /// A file that appears under its name only when finish() has been called and everything is written.
 class OutputFile {
    public:
+    /// Opens path.partial. errors: InputError where it cannot be created.
     explicit OutputFile(const std::string& path) : path_(path), partial_(path + ".partial") {
         refuse_special_file(path_);
         refuse_special_file(partial_);
@@ -30,13 +31,16 @@ class OutputFile {
         std::remove(partial_.c_str());
     }
 
+    /// Writes words as they are.
     void text(std::string_view words) {
         buffer_ += words;
         if (buffer_.size() > 1 << 16) flush();
     }
+    /// Writes the shortest text that reads back as the same number.
     void number(double value) { print(value); }
     void number(long value) { print(value); }
 
+    /// Gives the file its name. errors: InputError where the disk is full.
     void finish() {
         flush();
         std::FILE* file = file_;

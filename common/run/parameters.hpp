@@ -32,9 +32,13 @@ struct Range {
     double low, high;
     bool open_low = false;
 };
+/// Every number.
 Range anything();
+/// low and more.
 Range at_least(double low);
+/// More than low.
 Range above(double low);
+/// low to high, both allowed.
 Range between(double low, double high);
 
 /// A section of a case file without any key.

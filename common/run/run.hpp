@@ -29,6 +29,7 @@ class Run {
     Summary summary;
     long checkpoint_steps = 0;  // steps between checkpoints; 0: only when a signal stops the run
 
+    /// Whether the run continues from a checkpoint.
     bool restarting() const { return !command_.restart_path.empty(); }
 
     /// Reads the checkpoint named by --restart into state, history and step.
@@ -76,6 +77,7 @@ class Run {
     /// Writes summary.json for a run that has failed. out: the exit status.
     int fail(int status, const std::string& message);
 
+    /// The path of a file in the folder of the run.
     std::string path(const std::string& file) const { return command_.out_dir + "/" + file; }
 
     /// The signal that has asked to stop, or 0.

@@ -26,12 +26,15 @@ class Summary {
                      const std::string& source) {
         results_.push_back({name, unit, source, value, 0, 0, false});
     }
+    /// How well a conserved quantity was kept.
     void conservation(const std::string& name, double value, const std::string& unit) {
         conservation_.push_back({name, unit, "", value, 0, 0, false});
     }
+    /// A number about the speed or size of the run.
     void performance(const std::string& name, double value) {
         performance_.push_back({name, "", "", value, 0, 0, false});
     }
+    /// A sentence that was printed as a warning before the run.
     void warning(const std::string& text) { warnings_.push_back(text); }
 
     /// Whether every number is finite; a run with one that is not has failed.

@@ -25,6 +25,7 @@ struct SampledAxis {
     double first = 0.0, step = 1.0;
     long count = 1;
 
+    /// Coordinate of point i.
     double at(long i) const { return first + static_cast<double>(i) * step; }
 };
 
@@ -42,10 +43,12 @@ struct VectorColumn {
 
 namespace writers_detail {
 
+/// errors: InputError with the path and the sentence where the condition does not hold
 inline void require(bool condition, const std::string& path, const std::string& sentence) {
     if (!condition) throw InputError(path + ": " + sentence);
 }
 
+/// errors: InputError where a list does not have `count` values
 inline void require_length(std::span<const double> values, long count, const std::string& path,
                            const std::string& name) {
     require(static_cast<long>(values.size()) == count, path,
@@ -64,6 +67,7 @@ inline void write_column_names(OutputFile& file, const std::vector<ScalarColumn>
     file.text("\n");
 }
 
+/// Text with the four letters that mean something in XML spelled out.
 inline std::string xml_text(const std::string& plain) {
     std::string escaped;
     for (const char c : plain) {
@@ -111,10 +115,12 @@ void write_data_array(OutputFile& file, const std::string& name, int components,
     file.text("\n</DataArray>\n");
 }
 
+/// name[unit], or the name alone for a pure number.
 inline std::string label(const std::string& name, const std::string& unit) {
     return unit.empty() ? name : name + " [" + unit + "]";
 }
 
+/// x0 y0 z0 x1 y1 z1 ..., the order of vectors in VTK files.
 inline std::vector<double> interleave(std::span<const double> x, std::span<const double> y,
                                       std::span<const double> z) {
     std::vector<double> mixed(3 * x.size());
@@ -126,6 +132,7 @@ inline std::vector<double> interleave(std::span<const double> x, std::span<const
     return mixed;
 }
 
+/// The section of a VTK file that holds the quantities at its points.
 inline void write_point_data(OutputFile& file, const std::string& path, long count,
                              const std::vector<ScalarColumn>& scalars,
                              const std::vector<VectorColumn>& vectors) {
@@ -142,6 +149,7 @@ inline void write_point_data(OutputFile& file, const std::string& path, long cou
     file.text("</PointData>\n");
 }
 
+/// The first lines of a VTK file of this type.
 inline void begin_vtk(OutputFile& file, const std::string& type) {
     const bool little = std::endian::native == std::endian::little;
     file.text("<?xml version=\"1.0\"?>\n<VTKFile type=\"" + type +

@@ -53,6 +53,7 @@ struct RunningSums {
     }
 };
 
+/// The middle value; of an even number of values the upper middle one.
 inline double median(std::vector<double> values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());

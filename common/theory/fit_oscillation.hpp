@@ -28,6 +28,7 @@ struct OscillationFit {
     bool found = false;
     std::string reason = "found";
 
+    /// The fitted y at time t.
     double at(double t) const {
         return amplitude * std::cos(frequency * t + phase) * std::exp(growth * t);
     }
@@ -42,6 +43,7 @@ struct RotationFit {
 
 namespace oscillation_detail {
 
+/// Whether every value is finite.
 inline bool all_finite(std::span<const double> values) {
     return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
 }
@@ -112,6 +114,7 @@ inline int rest(const gsl_vector* p, void* data, gsl_vector* f) {
     return GSL_SUCCESS;
 }
 
+/// The derivatives of these differences by the four parameters, as GSL asks for them.
 inline int slopes(const gsl_vector* p, void* data, gsl_matrix* J) {
     const auto& samples = *static_cast<const Samples*>(data);
     const double C = gsl_vector_get(p, 2), S = gsl_vector_get(p, 3);

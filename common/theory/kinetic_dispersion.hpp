@@ -32,9 +32,11 @@ struct PlasmaSpecies {
                                       // plasma of the one along E, with m u^2 of drifts along E
     double gyrofrequency = 0.0;       // q B_0 / (m c), with its sign; B_0 along k, or zero
 
+    /// The plasma frequency squared, 4 pi n q^2 / m.
     double frequency_squared() const {
         return 4.0 * std::numbers::pi * density * charge * charge / mass;
     }
+    /// The thermal speed along k, (T / m)^1/2.
     double speed_along() const { return std::sqrt(temperature_along / mass); }
 };
 

@@ -55,6 +55,7 @@ struct Values {
     Complex Z, one_plus_zeta_Z;
 };
 
+/// Z for Im zeta >= 0: the continued fraction far from the origin, the sum near to it.
 inline Values not_below_real_axis(Complex zeta) {
     if (std::norm(zeta) > 49.0) {
         const Complex q = continued_fraction_tail(zeta);
