@@ -2,6 +2,9 @@
 
 VERSION := 0.1.0
 
+# Numbers are read and written with a decimal point, whatever language the user speaks.
+export LC_ALL := C.UTF-8
+
 # ---- what there is (the figures are further down, one line each) --------------------------------
 
 # The source of each main; a program is called like its main.
@@ -166,7 +169,7 @@ define runs_of_program
 out/$(1)/%/.complete: $(2)/cases/%.toml $(BUILD)/$(1) $$$$(wildcard out/$(1)/$$$$*/case.toml) | $(packages_first)
 	@rm -f $$@
 	@mkdir -p $$(@D)
-	$$(one_at_a_time) $(BUILD)/$(1) $$< --out $$(@D) --force
+	$$(one_at_a_time) $(BUILD)/$(1) $$< --out $$(@D) --resume
 	@touch $$@
 endef
 $(foreach p,$(programs),$(eval $(call runs_of_program,$p,$(call method_of,$p))))
@@ -180,7 +183,7 @@ $(1): out/figures/$(1).png
 out/figures/$(1).png: $(2)/figures/$(1).gp $(3)/.complete $(wildcard common/*.gp $(2)/*/*.csv) | $(packages_first)
 	$$(call need,gnuplot)
 	@mkdir -p $$(@D)
-	LC_ALL=C.UTF-8 gnuplot -e "run='$(3)'; out='$$@'" $$<
+	gnuplot -e "run='$(3)'; out='$$@'" $$<
 	@test -s $$@
 endef
 
@@ -224,10 +227,8 @@ cost: fig_cost
 # The full explicit run of the cost slide, an hour on two cores, and what is kept of it for figures 9 and 10. It goes on where it was stopped.
 explicit_gem: $(BUILD)/explicit_em
 	@mkdir -p out/explicit_em/gem_explicit
-	last=$$(ls out/explicit_em/gem_explicit/checkpoint_*.bin 2>/dev/null | tail -n 1); \
-	    case=implicit_moment/cases/gem_explicit.toml; [ -z "$$last" ] || case="--restart $$last"; \
-	    $(one_at_a_time) $(BUILD)/explicit_em $$case \
-	    --out out/explicit_em/gem_explicit --force
+	$(one_at_a_time) $(BUILD)/explicit_em implicit_moment/cases/gem_explicit.toml \
+	    --out out/explicit_em/gem_explicit --resume
 	sh implicit_moment/data/keep_explicit_gem.sh out/explicit_em/gem_explicit implicit_moment/data
 
 $(eval $(call figure,implicit_moment_mass_ratio,implicit_moment,out/implicit_moment/mass_ratios))
@@ -352,6 +353,9 @@ $(patsubst %,out/figures/%.png,fig04 fig05 fig07 mpm_explicit_shear mpm_explicit
 mpm_figures = $(filter mpm_%,$(figures))
 
 figures: $(figures)
+
+# The same without the zero.
+$(foreach n,1 2 3 4 5 6 7 8 9,$(eval .PHONY: fig$n)$(eval fig$n: fig0$n))
 
 # Figures of the talk whose method has no program so far.
 fig11 fig12 fig13 fig14 fig15: method := the thin current sheet of implicit_moment

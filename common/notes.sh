@@ -16,6 +16,7 @@
 #   notes.sh compare    finished runs against numbers.txt, within the tolerances
 #   notes.sh ledger     every function and test that the ledger of equations names exists
 set -eu
+export LC_ALL=C.UTF-8
 cd "$(dirname "$0")/.."
 
 numbers=lecture_notes/numbers.txt

@@ -2,6 +2,7 @@
 # packages.sh [package ...]: install what is missing, by default everything that the build, the
 # tests and the figures need. With nothing missing it does nothing and needs no rights.
 set -eu
+export LC_ALL=C.UTF-8
 
 # package, the command or header that proves that it is there, and its name elsewhere
 needed='g++                    command g++               a C++20 compiler with OpenMP
@@ -13,6 +14,7 @@ libtomlplusplus-dev    header  toml++/toml.h     toml++ 3
 nlohmann-json3-dev     header  nlohmann/json.hpp JSON for Modern C++
 librandom123-dev       header  Random123/philox.h Random123
 doctest-dev            header  doctest/doctest.h doctest 2.4
+libxxhash-dev          header  xxhash.h          xxHash 0.8
 clang-format           command clang-format      clang-format 14'
 
 CXX=${CXX:-g++}

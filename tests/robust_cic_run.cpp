@@ -126,7 +126,7 @@ TEST_CASE("a checkpoint of another program or of nothing is refused by cic" *
           doctest::description("robust")) {
     const std::string file = room() + "/foreign.bin", out = folder("foreign");
     const auto refused = [&](const common::ProgramInfo& info, const std::string& reason) {
-        common::CheckpointWriter(info, "").write(file);
+        common::CheckpointWriter(info, file, "", "").finish();
         CHECK(run(" --restart " + file, out) == 2);
         INFO(said(out));
         CHECK(holds(said(out), reason));

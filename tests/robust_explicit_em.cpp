@@ -135,7 +135,7 @@ TEST_CASE("a checkpoint of another program is refused and nothing is written" *
           doctest::description("robust")) {
     const std::string bad = room() + "/foreign.bin", other = folder("other");
     fs::create_directories(room());
-    common::CheckpointWriter({"implicit_moment", PROGRAM_VERSION, "", ""}, "").write(bad);
+    common::CheckpointWriter({"implicit_moment", PROGRAM_VERSION, "", ""}, bad, "", "").finish();
     CHECK(run(" --restart " + bad, other) == 2);
     INFO(said(other));
     CHECK(holds(said(other), "of 'implicit_moment'"));

@@ -156,7 +156,7 @@ TEST_CASE("a checkpoint of mpm_explicit is refused by mpm_implicit" *
           doctest::description("robust")) {
     const std::string file = room() + "/foreign.bin", out = folder("foreign");
     fs::create_directories(room());
-    common::CheckpointWriter({"mpm_explicit", PROGRAM_VERSION, "", ""}, "").write(file);
+    common::CheckpointWriter({"mpm_explicit", PROGRAM_VERSION, "", ""}, file, "", "").finish();
     CHECK(run(" --restart " + file, out) == 2);
     INFO(said(out));
     CHECK(holds(said(out), "of 'mpm_explicit', not of 'mpm_implicit'"));

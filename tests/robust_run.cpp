@@ -90,27 +90,28 @@ TEST_CASE("damaged and cut and foreign checkpoints are refused and nothing is wr
 
     // Another program, another version.
     using common::CheckpointWriter;
-    CheckpointWriter({"cic", PROGRAM_VERSION, "", ""}, "").write(bad);
+    CheckpointWriter({"cic", PROGRAM_VERSION, "", ""}, bad, "", "").finish();
     refused(read_all(bad), "of 'cic'");
-    CheckpointWriter({"implicit_moment", "0.0.1", "", ""}, "").write(bad);
+    CheckpointWriter({"implicit_moment", "0.0.1", "", ""}, bad, "", "").finish();
     refused(read_all(bad), "version 0.0.1");
-    CheckpointWriter({"implicit_moment", PROGRAM_VERSION, "", ""}, "").write(bad);
+    CheckpointWriter({"implicit_moment", PROGRAM_VERSION, "", ""}, bad, "", "").finish();
     refused(read_all(bad), "ends too early");
 }
 
 TEST_CASE("a checkpoint replaces regular files only and leaves no half of one") {
     const std::string out = folder("targets");
     fs::create_directories(out);
-    const common::CheckpointWriter writer({"implicit_moment", "1", "", ""}, "");
     auto target = out + "/checkpoint";
-    common::CheckpointWriter mutable_writer = writer;
+    const auto write = [&] {
+        common::CheckpointWriter({"implicit_moment", "1", "", ""}, target, "", "").finish();
+    };
     fs::create_symlink("elsewhere", target);
-    CHECK_THROWS_AS(mutable_writer.write(target), common::InputError);
+    CHECK_THROWS_AS(write(), common::InputError);
     fs::remove(target);
     fs::create_directory(target);
-    CHECK_THROWS_AS(mutable_writer.write(target), common::InputError);
+    CHECK_THROWS_AS(write(), common::InputError);
     fs::remove(target);
-    mutable_writer.write(target);
+    write();
     CHECK(fs::is_regular_file(target));
     CHECK(!fs::exists(target + ".partial"));
 }

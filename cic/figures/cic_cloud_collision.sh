@@ -2,10 +2,11 @@
 # cic_cloud_collision.sh PROGRAM FOLDER: two clouds that swing through each other, with three kinds of weighting, and pairs that pass through each other at once, each
 # pair elsewhere on the mesh.
 set -eu
+export LC_ALL=C.UTF-8
 program=$1
 folder=$2
 for weighting in ngp cic tsc; do
-    clouds() { "$program" cic/cases/cloud_collision.toml method.weighting=$weighting --threads 1 --force --quiet --out "$@"; }
+    clouds() { "$program" cic/cases/cloud_collision.toml method.weighting=$weighting --threads 1 --resume --quiet --out "$@"; }
     clouds "$folder/${weighting}_swinging"
     for place in 0 1 2 3 4 5 6 7; do
         # Eight places within a cell.

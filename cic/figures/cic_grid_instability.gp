@@ -31,9 +31,9 @@ unset title; unset arrow 1; set border 3
 set bmargin at screen 0.1; set tmargin at screen 0.42
 set xrange [0:200]; set xtics 50; set xlabel 't ω_p'
 # Where v_th passes 1e-3, and the rate of theory there.
-passes(n) = real(system(sprintf("awk '!/#/ && sqrt((2 * $%d / %g - ($%d / %g)^2)^2) > 1e-6 { print $1; exit }' %s", kinetic, L, momentum, L, file(n))))
+passes(n) = real(system(sprintf("LC_ALL=C awk '!/#/ && sqrt((2 * $%d / %g - ($%d / %g)^2)^2) > 1e-6 { print $1; exit }' '%s'", kinetic, L, momentum, L, file(n))))
 array since[4]; array rate[4]
-at_end(n) = real(system(sprintf("awk 'END { print sqrt(2 * $%d / %g - ($%d / %g)^2) }' %s", kinetic, L, momentum, L, file(n))))
+at_end(n) = real(system(sprintf("LC_ALL=C awk 'END { print sqrt(2 * $%d / %g - ($%d / %g)^2) }' '%s'", kinetic, L, momentum, L, file(n))))
 set label 5 'at the end' at graph 0.97, 0.42 right font ',17'
 do for [n = 1:4] { set label 5 + n sprintf('%s %.2f', word(titles, n), at_end(n)) at graph 0.97, 0.42 - 0.085 * n right textcolor rgb word(tint, n) font ',17' }
 do for [n = 2:4] { run = scheme(n); rate[n] = result('theory_growth'); since[n] = passes(n) }

@@ -2,13 +2,13 @@
 # them back: none comes back faster than those that just did not reach it (dashed). Ions are only accelerated. Dashed in all panels: the theory of Schwager and Birdsall.
 wide = 1500; high = 1080
 load 'common/style.gp'
-second_half = sprintf('awk -v first=%d -f cic/figures/mean_of_files.awk ', int(0.5 * parameter('end') / parameter('dt')))
+second_half = sprintf('LC_ALL=C awk -v first=%d -f cic/figures/mean_of_files.awk ', int(0.5 * parameter('end') / parameter('dt')))
 $fields << EOD
 EOD
-set print $fields; print system(second_half.run.'/fields_*.dat'); unset print
+set print $fields; print system(second_half.'"'.run.'"/fields_*.dat'); unset print
 $f << EOD
 EOD
-set print $f; print system(second_half.run.'/phase_*.dat'); unset print
+set print $f; print system(second_half.'"'.run.'"/phase_*.dat'); unset print
 fields = run.'/fields_000000.dat'
 phi = col(fields, 'phi'); n_e = col(fields, 'particles_electrons'); n_i = col(fields, 'particles_ions')
 history = run.'/history.dat'

@@ -2,11 +2,12 @@
 # cic_upper_hybrid.sh PROGRAM FOLDER: the wave of upper_hybrid.toml in magnetic fields of several strengths; the frequencies as a table, and the orbit of one electron, where
 # the displacement is largest, in three of them.
 set -eu
+export LC_ALL=C.UTF-8
 program=$1
 folder=$2
 table=$folder/frequencies.dat
 echo '# 1:Omega_c 2:omega' > "$table.partial"
-wave() { "$program" cic/cases/upper_hybrid.toml output.particles_interval="$1" --threads 1 --force --quiet --out "$2" plasma.B_y="$3" theory.near="$4" time.end="$5"; }
+wave() { "$program" cic/cases/upper_hybrid.toml output.particles_interval="$1" --threads 1 --resume --quiet --out "$2" plasma.B_y="$3" theory.near="$4" time.end="$5"; }
 for B in 0.25 0.5 0.75 1 1.25 1.5 1.75 2; do
     run=$folder/runs/$B
     near=$(awk -v B=$B 'BEGIN { print sqrt(1 + B^2) }')

@@ -18,7 +18,7 @@ if (onset ne '') {
 } else {
     fitted = entry('results.growth.source')
     fitted = fitted[strstrt(fitted, 'from t = ') + 9 :]
-    height = real(system(sprintf("awk '$%d >= %s && $%d <= %s { sum += 0.5 * log($%d^2 + $%d^2) - %.15g * $%d; n++ } END { print sum / n }' %s", \
+    height = real(system(sprintf("LC_ALL=C awk '$%d >= %s && $%d <= %s { sum += 0.5 * log($%d^2 + $%d^2) - %.15g * $%d; n++ } END { print sum / n }' '%s'", \
         t, word(fitted, 1), t, word(fitted, 3), re, im, rate, t, history)))
 }
 set logscale y; set format y '10^{%T}'

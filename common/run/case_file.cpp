@@ -45,9 +45,11 @@ std::size_t sequence_length(const std::string& text, std::size_t k) {
 // Also bounds how deeply names can be nested: one level takes two letters.
 constexpr std::size_t longest_line = 2000;
 
-// Refuses what is not UTF-8 text; the library is not safe on other bytes.
+// Refuses what is not UTF-8 text, and letters that TOML takes only in strings and comments; the
+// library is not safe on either.
 void refuse_bad_bytes(const std::string& text, const std::string& source) {
     std::size_t line = 1, column = 1;
+    char inside = '\n';  // a string that ends with this quote, a comment, or neither
     for (std::size_t k = 0; k < text.size();) {
         const std::size_t length = sequence_length(text, k);
         const auto byte = static_cast<unsigned char>(text[k]);
@@ -63,6 +65,16 @@ void refuse_bad_bytes(const std::string& text, const std::string& source) {
             throw InputError(at(source, line, column) + ": the line has more than " +
                              std::to_string(longest_line) + " letters; this is not a case file");
         }
+        if (byte >= 0x80 && inside == '\n') {
+            throw InputError(at(source, line, column) + ": '" + text.substr(k, length) +
+                             "' may stand in text and comments only; use letters without accents");
+        }
+        const bool escaped = inside == '"' && byte == '\\' && k + 1 < text.size();
+        if (byte == '\n' || (byte == inside && inside != '#'))
+            inside = '\n';
+        else if (inside == '\n' && (byte == '"' || byte == '\'' || byte == '#'))
+            inside = text[k];
+        if (escaped && (text[k + 1] == '"' || text[k + 1] == '\\')) ++column, ++k;
         column = byte == '\n' ? 1 : column + 1;
         if (byte == '\n') ++line;
         k += length;

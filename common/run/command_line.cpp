@@ -13,6 +13,7 @@
 
 #include "common/run/checkpoint.hpp"
 #include "common/run/parameters.hpp"
+#include "common/run/summary.hpp"
 
 namespace common {
 
@@ -20,8 +21,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<const char*, 8> option_names{"--out",   "--restart", "--threads", "--dry-run",
-                                                  "--quiet", "--force",   "--help",    "--version"};
+constexpr std::array<const char*, 11> option_names{
+    "--out",   "--force",  "--resume",  "--restart", "--verify", "--threads",
+    "--quiet", "--strict", "--dry-run", "--help",    "--version"};
 
 // An argument longer than a path may be is no path.
 bool is_there(const std::string& argument) {
@@ -29,20 +31,113 @@ bool is_there(const std::string& argument) {
     return fs::exists(argument, unreadable);
 }
 
-// The default case, found from the program's own place (build/ in the project) or the current
+// A file of the project, found from the program's own place (build/ in the project) or the current
 // folder.
-std::string find_default_case(const ProgramInfo& info) {
+std::string find_in_project(const std::string& file) {
     std::error_code error;
     const fs::path program = fs::read_symlink("/proc/self/exe", error);
     for (fs::path folder = program.parent_path(); !error && folder.has_relative_path();
          folder = folder.parent_path()) {
-        const fs::path candidate = folder / info.default_case;
+        const fs::path candidate = folder / file;
         if (!fs::exists(candidate)) continue;
         const fs::path nearby = fs::relative(candidate, error);
         return !error && !nearby.empty() && nearby.begin()->string() != ".." ? nearby.string()
                                                                              : candidate.string();
     }
-    return info.default_case;
+    return file;
+}
+
+// The cases of a program, for who has mistaken the path of one.
+std::string list_cases(const ProgramInfo& info, const std::string& wrong) {
+    const fs::path folder = fs::path(find_in_project(info.default_case)).parent_path();
+    std::vector<std::string> names;
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(folder, error)) {
+        if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
+    }
+    std::sort(names.begin(), names.end());
+    const std::string name = fs::path(wrong).stem().string();
+    if (std::find(names.begin(), names.end(), name) != names.end())
+        return "; did you mean " + (folder / name).string() + ".toml?";
+    std::string list;
+    for (const std::string& one : names) list += (list.empty() ? "" : ", ") + one;
+    return list.empty() ? "" : "; in " + folder.string() + "/ there are: " + list;
+}
+
+// errors: InputError where a case lies in the folder of another method
+void refuse_case_of_another_method(const ProgramInfo& info, const std::string& path) {
+    const fs::path folder = fs::weakly_canonical(path).parent_path();
+    const std::string method = folder.parent_path().filename().string();
+    const std::string own = fs::path(info.default_case).begin()->string();
+    const bool is_method = fs::exists(find_in_project(method + "/cases")) && !method.empty();
+    if (folder.filename() == "cases" && method != own && is_method) {
+        throw InputError(path + ": is a case of " + method + ", not of " + info.program +
+                         "; the programs of a case are named in " + method + "/README.md");
+    }
+}
+
+// What a run that is to be resumed has left in its folder: it may be complete, it may have a
+// checkpoint, or it has to begin again. Nothing counts that is older than the program or that
+// belongs to another input.
+void look_for_earlier_run(const ProgramInfo& info, const ParameterTable& table,
+                          CommandLine& command) {
+    std::error_code error;
+    const auto built = fs::last_write_time("/proc/self/exe", error);
+    const auto counts = [&](const fs::path& file) {
+        std::error_code missing;
+        return fs::is_regular_file(file, missing) && fs::last_write_time(file, missing) > built;
+    };
+    command.force = true;
+    const fs::path folder = command.out_dir, summary = folder / "summary.json";
+    const std::string effective_case = table.effective_case();
+    const auto ends_with = [](const std::string& text, const std::string& end) {
+        return text.size() >= end.size() &&
+               text.compare(text.size() - end.size(), end.size(), end) == 0;
+    };
+    if (counts(summary) && is_summary_of_complete_run(summary) && counts(folder / "case.toml") &&
+        ends_with(read_file(folder / "case.toml"), "\n" + effective_case)) {
+        command.complete = true;
+        return;
+    }
+    std::vector<fs::path> checkpoints;
+    for (const auto& entry : fs::directory_iterator(folder, error)) {
+        const bool named = entry.path().filename().string().rfind("checkpoint_", 0) == 0;
+        if (named && entry.path().extension() == ".bin" && counts(entry.path()))
+            checkpoints.push_back(entry.path());
+    }
+    std::sort(checkpoints.rbegin(), checkpoints.rend());
+    for (const fs::path& path : checkpoints) {
+        try {
+            CheckpointReader checkpoint(info, path);
+            checkpoint("step", command.restart_step);
+            if (checkpoint.effective_case() != effective_case) continue;
+            command.restart_path = path;
+            return;
+        } catch (const InputError&) {
+            // Damaged, or of another version: the one before may do.
+        }
+    }
+    command.restart_step = 0;
+}
+
+// Says whether a checkpoint is whole and of what it is, and ends the program.
+// errors: InputError where it is not
+[[noreturn]] void verify_checkpoint(const ProgramInfo& info, const std::string& path) {
+    CheckpointReader checkpoint(info, path);
+    long step = 0;
+    checkpoint("step", step);
+    std::printf("%s: whole; case '%s' of %s %s at step %ld, %ld blocks\n", path.c_str(),
+                checkpoint.case_name().c_str(), info.program.c_str(), info.version.c_str(), step,
+                checkpoint.blocks());
+    std::exit(0);
+}
+
+// A number such as -.5 with the zero that TOML asks for.
+std::string with_leading_zero(const std::string& value) {
+    const std::size_t sign = value.find_first_not_of("+-");
+    const bool bare = sign <= 1 && value.size() > sign + 1 && value[sign] == '.' &&
+                      std::isdigit(static_cast<unsigned char>(value[sign + 1]));
+    return bare ? value.substr(0, sign) + "0" + value.substr(sign) : value;
 }
 
 void apply_override(const std::string& argument, bool restarting, ParameterTable& table) {
@@ -59,7 +154,10 @@ void apply_override(const std::string& argument, bool restarting, ParameterTable
                          "' cannot change on a restart; start a new run with it");
     }
     const bool quoted = !value.empty() && (value.front() == '"' || value.front() == '\'');
-    if (table.takes_text(name) && !quoted) value = "'" + value + "'";
+    if (table.takes_text(name) && !quoted)
+        value = "'" + value + "'";
+    else
+        value = with_leading_zero(value);
     if (value.find('\n') != std::string::npos) throw InputError(place + ": one line, one value");
     for (const Setting& setting : read_case(name + " = " + value, place)) table.set(setting);
 }
@@ -81,23 +179,35 @@ void print_help(const ProgramInfo& info, const ParameterTable& table) {
         "  without a case file: %s\n"
         "  --out DIR       folder of the results; default out/%s/<case name>\n"
         "  --force         replace an earlier run in that folder\n"
+        "  --resume        go on with an earlier run of the same input in that folder; if there\n"
+        "                  is none, begin; if it is complete, do nothing\n"
         "  --restart FILE  continue from a checkpoint\n"
+        "  --verify FILE   say whether a checkpoint is whole, and of what it is\n"
         "  --threads N     number of threads; results do not depend on it\n"
         "  --dry-run       show scales, memory and time, and write nothing\n"
-        "  --quiet         no progress, no report\n"
-        "  --help, --version\n%s",
+        "  --quiet         no progress, no report; what fell short is still said\n"
+        "  --strict        status 1 where a result fell short\n"
+        "  --help, --version\n\n"
+        "status: 0 done; 1 only with --strict; 2 bad input; 3 numerical failure; 130 or 143\n"
+        "        stopped by Ctrl-C or SIGTERM after a checkpoint; a second Ctrl-C kills at once\n"
+        "A folder takes one run at a time. --dry-run tells the memory, and a case that needs more\n"
+        "than there is (machine, control group, ulimit) is refused.\n%s",
         info.program.c_str(), info.version.c_str(), info.one_line.c_str(), info.program.c_str(),
         info.default_case.c_str(), info.program.c_str(), table.help().c_str());
 }
 
 }  // namespace
 
-std::string read_file(const std::string& path) {
+void refuse_unreadable(const std::string& path) {
     std::error_code error;
     const auto status = fs::status(path, error);
     if (!fs::exists(status)) throw InputError(path + ": there is no such file");
     if (fs::is_directory(status)) throw InputError(path + ": is a folder, not a file");
     if (!fs::is_regular_file(status)) throw InputError(path + ": is not a regular file");
+}
+
+std::string read_file(const std::string& path) {
+    refuse_unreadable(path);
     std::ifstream file(path, std::ios::binary);
     std::string content;
     for (char piece[4096]; file.good();) {
@@ -111,7 +221,9 @@ std::string read_file(const std::string& path) {
 CommandLine read_command_line(int argc, char** argv, const ProgramInfo& info,
                               ParameterTable& table) {
     CommandLine command;
+    command.program = argv[0];
     std::vector<std::string> overrides;
+    std::string to_verify;
     bool help = false, version = false;
     for (int k = 1; k < argc; ++k) {
         std::string argument = argv[k], value;
@@ -127,11 +239,12 @@ CommandLine read_command_line(int argc, char** argv, const ProgramInfo& info,
             }
             return argv[++k];
         };
-        if (argument == "--out" || argument == "--restart") {
-            (argument == "--out" ? command.out_dir : command.restart_path) = value_of();
-            if ((argument == "--out" ? command.out_dir : command.restart_path).empty()) {
-                throw InputError(argument + " needs a path that is not empty");
-            }
+        if (argument == "--out" || argument == "--restart" || argument == "--verify") {
+            std::string& path = argument == "--out"       ? command.out_dir
+                                : argument == "--restart" ? command.restart_path
+                                                          : to_verify;
+            path = value_of();
+            if (path.empty()) throw InputError(argument + " needs a path that is not empty");
         } else if (argument == "--threads") {
             command.threads = thread_number(value_of());
         } else if (is_option && joined) {
@@ -143,6 +256,10 @@ CommandLine read_command_line(int argc, char** argv, const ProgramInfo& info,
             command.quiet = true;
         } else if (argument == "--force") {
             command.force = true;
+        } else if (argument == "--resume") {
+            command.resume = true;
+        } else if (argument == "--strict") {
+            command.strict = true;
         } else if (argument == "--help" || argument == "-h") {
             help = true;
         } else if (argument == "--version") {
@@ -173,6 +290,7 @@ CommandLine read_command_line(int argc, char** argv, const ProgramInfo& info,
         if (!help) std::printf("%s %s\n", info.program.c_str(), info.version.c_str());
         std::exit(0);
     }
+    if (!to_verify.empty()) verify_checkpoint(info, to_verify);
 
     const bool restarting = !command.restart_path.empty();
     if (restarting) {
@@ -180,16 +298,24 @@ CommandLine read_command_line(int argc, char** argv, const ProgramInfo& info,
             throw InputError("--restart takes its case from the checkpoint: leave out '" +
                              command.case_path + "'");
         }
+        if (command.resume)
+            throw InputError("--resume finds the checkpoint itself: leave out --restart, or it");
         CheckpointReader checkpoint(info, command.restart_path);
         checkpoint("step", command.restart_step);
         for (const Setting& setting : read_case(checkpoint.effective_case(), command.restart_path))
             table.set(setting);
-        command.case_name = "restart";
+        command.case_name = checkpoint.case_name();
         if (command.out_dir.empty())
             command.out_dir = fs::path(command.restart_path).parent_path().string();
         if (command.out_dir.empty()) command.out_dir = ".";
     } else {
-        if (command.case_path.empty()) command.case_path = find_default_case(info);
+        if (command.case_path.empty()) command.case_path = find_in_project(info.default_case);
+        std::error_code missing;
+        if (!fs::exists(command.case_path, missing)) {
+            throw InputError(command.case_path + ": there is no such file" +
+                             list_cases(info, command.case_path));
+        }
+        refuse_case_of_another_method(info, command.case_path);
         command.case_name = fs::path(command.case_path).stem().string();
         for (const Setting& setting : read_case(read_file(command.case_path), command.case_path))
             table.set(setting);
@@ -205,6 +331,7 @@ CommandLine read_command_line(int argc, char** argv, const ProgramInfo& info,
         }
         apply_override(one, restarting, table);
     }
+    if (command.resume) look_for_earlier_run(info, table, command);
     return command;
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "common/run/output_file.hpp"
 #include "common/run/parameters.hpp"
 
 namespace common {
@@ -107,10 +108,14 @@ class History {
         flushed_ = std::chrono::steady_clock::now();
     }
 
-    /// All rows, for a checkpoint; and back again, which writes the file anew with the same bytes.
+    /// All rows, for a checkpoint.
     const std::vector<double>& all() const { return values_; }
+    /// Takes the rows of a checkpoint and writes the file anew with the same bytes.
+    /// errors: InputError where they are no rows of these columns, or not finite
     void restore(const std::vector<double>& values) {
-        if (columns_.empty() || values.size() % columns_.size() != 0) {
+        const auto finite = [](double value) { return std::isfinite(value); };
+        if (columns_.empty() || values.size() % columns_.size() != 0 ||
+            !std::all_of(values.begin(), values.end(), finite)) {
             throw InputError("the history in the checkpoint belongs to another case");
         }
         open();
@@ -122,8 +127,7 @@ class History {
 
    private:
     void open() {
-        file_ = std::fopen(path_.c_str(), "w");
-        if (file_ == nullptr) throw InputError(path_ + ": cannot be created");
+        file_ = open_for_writing(path_);
         std::string line = "#";
         for (std::size_t k = 0; k < columns_.size(); ++k) {
             line.append(" ").append(std::to_string(k + 1)).append(":");

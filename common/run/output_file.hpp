@@ -5,7 +5,6 @@
 #include <charconv>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -13,22 +12,27 @@
 
 namespace common {
 
+/// errors: InputError where something is there that is neither a regular file nor nothing: a link, a
+///         folder, a device
+void refuse_special_file(const std::string& path);
+
+/// Opens a regular file, empty, and never what a symbolic link points at.
+/// errors: InputError that says why it cannot be written
+std::FILE* open_for_writing(const std::string& path);
+
 /// A file that appears under its name only when finish() has been called and everything is written.
 class OutputFile {
    public:
     /// Opens path.partial. errors: InputError where it cannot be created.
     explicit OutputFile(const std::string& path) : path_(path), partial_(path + ".partial") {
         refuse_special_file(path_);
-        refuse_special_file(partial_);
-        file_ = std::fopen(partial_.c_str(), "wb");
-        if (file_ == nullptr) fail("cannot be opened for writing");
+        file_ = open_for_writing(partial_);
     }
     OutputFile(const OutputFile&) = delete;
     OutputFile& operator=(const OutputFile&) = delete;
     ~OutputFile() {
-        if (file_ == nullptr) return;
-        std::fclose(file_);
-        std::remove(partial_.c_str());
+        if (file_ != nullptr) std::fclose(file_);
+        if (!finished_) std::remove(partial_.c_str());
     }
 
     /// Writes words as they are.
@@ -47,6 +51,7 @@ class OutputFile {
         file_ = nullptr;
         if (std::fclose(file) != 0) fail("cannot be written");
         if (std::rename(partial_.c_str(), path_.c_str()) != 0) fail("cannot be renamed into place");
+        finished_ = true;
     }
 
    private:
@@ -61,18 +66,13 @@ class OutputFile {
             fail("cannot be written");
         buffer_.clear();
     }
-    void refuse_special_file(const std::string& path) const {
-        std::error_code ignored;
-        const auto status = std::filesystem::symlink_status(path, ignored);
-        if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
-            throw InputError(path + ": is not a regular file; remove it or write elsewhere");
-    }
     [[noreturn]] void fail(const std::string& what) const {
         throw InputError(path_ + ": " + what + " (" + std::strerror(errno) + ")");
     }
 
     std::string path_, partial_, buffer_;
     std::FILE* file_ = nullptr;
+    bool finished_ = false;
 };
 
 }  // namespace common

@@ -170,8 +170,19 @@ bool ParameterTable::takes_text(const std::string& name) {
     return false;
 }
 
+// The name with the word before its first dot spelled like a list; "" where none is near.
+std::string ParameterTable::in_nearest_list(const std::string& name) const {
+    const std::size_t dot = std::min(name.find('.'), name.size());
+    for (const List& list : lists_) {
+        const std::size_t distance = edit_distance(name.substr(0, dot), list.name);
+        if (distance > 0 && distance <= 2) return list.name + name.substr(dot);
+    }
+    return "";
+}
+
 std::string ParameterTable::nearest(const std::string& name) const {
-    std::string best;
+    std::string best = in_nearest_list(name);
+    if (!best.empty()) return best;
     std::size_t least = std::max<std::size_t>(3, name.size() / 3) + 1;
     const auto consider = [&](const std::string& candidate) {
         const std::size_t distance = edit_distance(name, candidate);
@@ -240,11 +251,13 @@ void ParameterTable::accept_empty_section(const Setting& setting) {
         throw InputError(setting.place + ": [" + setting.name + "] has a new name: write [" +
                          now.substr(0, now.size() - 1) + "]");
     }
-    const std::string guess = nearest(setting.name);
+    std::string guess = in_nearest_list(setting.name);
+    if (guess.empty()) {
+        const std::string parameter = nearest(setting.name);
+        guess = parameter.substr(0, std::min(parameter.rfind('.'), parameter.size()));
+    }
     throw InputError(setting.place + ": unknown section [" + setting.name + "]" +
-                     (guess.empty()
-                          ? "; --help lists all"
-                          : "; did you mean [" + guess.substr(0, guess.rfind('.')) + "]?"));
+                     (guess.empty() ? "; --help lists all" : "; did you mean [" + guess + "]?"));
 }
 
 void ParameterTable::set(const Setting& setting) {

@@ -139,6 +139,7 @@ class ParameterTable {
     void make_item(const Setting& setting);
     void accept_empty_section(const Setting& setting);
     std::string nearest(const std::string& name) const;
+    std::string in_nearest_list(const std::string& name) const;
     std::string new_name(const std::string& name) const;
 
     std::vector<Entry> entries_;
@@ -157,12 +158,15 @@ struct ProgramInfo {
 
 /// What the command line said, besides parameters.
 struct CommandLine {
+    std::string program;               // as it was called
     std::string case_path, case_name;  // the file, and its name without ending
     std::string out_dir;               // --out, or out/<program>/<case name>
     std::string restart_path;          // "" without --restart
     long restart_step = 0;             // the step of that checkpoint
-    int threads = 0;                   // 0: as many as OpenMP likes
-    bool dry_run = false, quiet = false, force = false;
+    int threads = 0;                   // 0: as many as there are cores to use
+    bool dry_run = false, quiet = false, force = false, strict = false;
+    bool resume = false;    // go on with the run in the folder, if it is of this case
+    bool complete = false;  // and that run has nothing left to do
 };
 
 /// Reads case file and overrides into the table. --help and --version print and end the program.
@@ -181,6 +185,9 @@ std::string number_text(double value);
 
 /// Text of a number for messages, four digits.
 std::string format(double value);
+
+/// errors: InputError where there is no regular file of this name
+void refuse_unreadable(const std::string& path);
 
 /// Whole content of a regular file. errors: InputError that says why it cannot be read.
 std::string read_file(const std::string& path);

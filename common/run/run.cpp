@@ -1,15 +1,21 @@
 #include "common/run/run.hpp"
 
+#include <fcntl.h>
+#include <sys/file.h>
 #include <sys/ioctl.h>
-#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
+#include <ctime>
 #include <filesystem>
 #include <new>
 
 #include "common/parallel.hpp"
+#include "common/run/machine.hpp"
 #include "common/run/output_file.hpp"
 
 namespace common {
@@ -18,19 +24,60 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* lock_name = ".lock";
+
 // Set by the signal handler, read by the loop.
 volatile std::sig_atomic_t stop_signal = 0;
 
-extern "C" void ask_to_stop(int signal) { stop_signal = signal; }
+// What a signal before the first step has to take away, and to say; a handler cannot allocate.
+struct Beginning {
+    volatile std::sig_atomic_t is_all = 0;  // nothing has been computed so far
+    char files[4][4096] = {};               // three files and then, if it is new, the folder
+    char sentence[8192] = {};
+} beginning;
 
-// A first signal asks to stop, a second one kills. A signal that is ignored (nohup) stays ignored.
+// A first signal asks to stop, a second one kills; one that comes with the first is the same one,
+// which some senders give to the program and to its group.
+struct timespec first_signal {};
+
+extern "C" void ask_to_stop(int signal) {
+    struct timespec now {};
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    if (stop_signal != 0) {
+        const double later = static_cast<double>(now.tv_sec - first_signal.tv_sec) +
+                             1e-9 * static_cast<double>(now.tv_nsec - first_signal.tv_nsec);
+        if (later < 0.3) return;
+        std::signal(signal, SIG_DFL);
+        raise(signal);
+    }
+    first_signal = now;
+    stop_signal = signal;
+    if (beginning.is_all == 0) return;
+    for (const char* file : {beginning.files[0], beginning.files[1], beginning.files[2]})
+        if (file[0] != '\0') unlink(file);
+    if (beginning.files[3][0] != '\0') rmdir(beginning.files[3]);
+    [[maybe_unused]] const ssize_t written =
+        write(STDERR_FILENO, beginning.sentence, std::strlen(beginning.sentence));
+    _exit(128 + signal);
+}
+
+// Makes a signal end the program with a sentence, and take these files away if it is to.
+void forget_on_signal(const std::string& sentence, const std::vector<std::string>& files) {
+    beginning.is_all = 0;
+    std::snprintf(beginning.sentence, sizeof beginning.sentence, "%s\n", sentence.c_str());
+    for (std::size_t k = 0; k < files.size(); ++k)
+        std::snprintf(beginning.files[k], sizeof beginning.files[k], "%s", files[k].c_str());
+    beginning.is_all = 1;
+}
+
+// A signal that is ignored (nohup) stays ignored.
 void listen_to(int signal) {
     struct sigaction old {};
     sigaction(signal, nullptr, &old);
     if (old.sa_handler == SIG_IGN) return;
     struct sigaction action {};
     action.sa_handler = ask_to_stop;
-    action.sa_flags = static_cast<int>(SA_RESETHAND);
+    action.sa_flags = SA_RESTART;
     sigaction(signal, &action, nullptr);
 }
 
@@ -86,7 +133,21 @@ std::string clock_text(double seconds) {
 
 }  // namespace
 
-int Run::stopped_by() { return stop_signal; }
+bool Run::asked_to_stop() { return stop_signal != 0; }
+
+std::string Run::checkpoint_name(long step) {
+    char name[64];
+    std::snprintf(name, sizeof name, "checkpoint_%010ld.bin", step);
+    return name;
+}
+
+std::string Run::command_to_continue(const std::string& checkpoint) const {
+    std::string command = shell_word(command_.program) + " --restart " + shell_word(checkpoint);
+    if (fs::path(checkpoint).parent_path() != fs::path(command_.out_dir))
+        command += " --out " + shell_word(command_.out_dir);
+    if (command_.threads > 0) command += " --threads " + std::to_string(command_.threads);
+    return command;
+}
 
 Run::Run(const ProgramInfo& info, const CommandLine& command, const ParameterTable& table)
     : history(command.out_dir + "/history.dat"),
@@ -95,13 +156,24 @@ Run::Run(const ProgramInfo& info, const CommandLine& command, const ParameterTab
       effective_case_(table.effective_case()),
       start_(std::chrono::steady_clock::now()),
       shown_(start_) {
+    std::error_code error;
+    const bool is_new = !fs::exists(command_.out_dir, error);
+    const std::string stopped =
+        info_.program + ": stopped by a signal before the first step; " +
+        (restarting() ? "continue with: " + command_to_continue(command_.restart_path)
+                      : "there is nothing to continue");
+    // What is there already stays, until it is known that it may be replaced.
+    const std::vector<std::string> begun{path("case.toml"), path("case.toml.partial"),
+                                         path(lock_name), is_new ? command_.out_dir : ""};
+    forget_on_signal(stopped, is_new ? begun : std::vector<std::string>{});
+    listen_to(SIGINT);
+    listen_to(SIGTERM);
     prepare_folder();
+    if (!restarting()) forget_on_signal(stopped, begun);
     OutputFile file(path("case.toml"));
     file.text("# " + info_.program + " " + info_.version + ": the complete input of this run\n" +
               effective_case_);
     file.finish();
-    listen_to(SIGINT);
-    listen_to(SIGTERM);
     terminal_ = isatty(STDERR_FILENO) != 0 && std::getenv("NO_PROGRESS") == nullptr;
 }
 
@@ -120,6 +192,7 @@ void Run::prepare_folder() {
     if (error)
         throw InputError(command_.out_dir + ": cannot be created: " + error.message() +
                          "; choose another --out");
+    lock_folder();
 
     std::vector<fs::path> ours;
     bool foreign = false;
@@ -150,16 +223,48 @@ void Run::prepare_folder() {
     }
 }
 
+// The lock is held until the program ends, however it ends; it lies in a file that stays.
+void Run::lock_folder() {
+    const std::string name = path(lock_name);
+    for (;;) {
+        refuse_special_file(name);
+        const int file = open(name.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
+        lock_.reset(file < 0 ? nullptr : fdopen(file, "r+"), [](std::FILE* lock) {
+            if (lock != nullptr) std::fclose(lock);
+        });
+        if (lock_ == nullptr)
+            throw InputError(command_.out_dir + ": cannot be written to: " + std::strerror(errno) +
+                             "; choose another --out");
+        if (flock(file, LOCK_EX | LOCK_NB) != 0) {
+            // A file system without locks goes without.
+            if (errno != EWOULDBLOCK) return;
+            throw InputError(command_.out_dir +
+                             ": another run is writing into this folder; wait for its end, or "
+                             "choose another --out");
+        }
+        // The run before may have taken its file away between these two calls.
+        struct stat status {};
+        if (fstat(file, &status) == 0 && status.st_nlink > 0) return;
+    }
+}
+
+// The step that was begun is finished, so that there is a checkpoint to continue from.
+bool Run::go_on(bool more) {
+    beginning.is_all = 0;
+    complete_ = !more;
+    return more && !(asked_to_stop() && stepped_);
+}
+
 bool Run::not_finished(long step, long steps) {
     step_ = step;
     if (first_done_ < 0 && steps > 0) first_done_ = double(step) / double(steps);
-    return step < steps && stop_signal == 0;
+    return go_on(step < steps);
 }
 
 bool Run::not_finished(long step, double time, double end) {
     step_ = step;
     if (first_done_ < 0 && end > 0) first_done_ = time / end;
-    return !reached(time, end) && stop_signal == 0;
+    return go_on(!reached(time, end));
 }
 
 std::string Run::when(const std::string& message) const {
@@ -194,16 +299,13 @@ void Run::show_progress(long step, long steps, double time, double done) {
     shown_ = now;
 }
 
-void Run::write_checkpoint(CheckpointWriter& writer, long step) {
-    char name[64];
-    std::snprintf(name, sizeof name, "checkpoint_%010ld.bin", step);
-    writer.write(path(name));
-    // Keep the last two.
+void Run::keep_two_checkpoints() const {
+    const std::string last = fs::path(last_checkpoint_).filename();
     std::error_code error;
     std::vector<std::string> names;
     for (const auto& entry : fs::directory_iterator(command_.out_dir, error)) {
         const std::string found = entry.path().filename().string();
-        if (begins(found, "checkpoint_") && entry.path().extension() == ".bin" && found <= name)
+        if (begins(found, "checkpoint_") && entry.path().extension() == ".bin" && found <= last)
             names.push_back(entry.path().string());
     }
     std::sort(names.begin(), names.end());
@@ -217,34 +319,40 @@ int Run::finish(long step, double count) {
     const double wall =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
     const double steps = static_cast<double>(step - first_step_);
-    struct rusage usage {};
-    getrusage(RUSAGE_SELF, &usage);
     summary.performance("wall_s", wall);
     summary.performance("steps", steps);
     summary.performance("particle_steps", steps * count);
     summary.performance("particle_steps_per_s", wall > 0 ? steps * count / wall : 0);
     summary.performance("threads", thread_count());
-    summary.performance("peak_memory_bytes", 1024.0 * static_cast<double>(usage.ru_maxrss));
+    summary.performance("peak_memory_bytes", peak_memory_bytes());
 
     int status = 0;
-    std::string message = "done";
-    if (stop_signal != 0) {
+    std::string message = "done", next;
+    const std::vector<std::string> shortfalls = summary.shortfalls();
+    if (asked_to_stop() && !complete_) {
         status = 128 + stop_signal;
-        message =
-            "stopped by a signal at step " + std::to_string(step) + "; continue with --restart";
+        message = "stopped by a signal at step " + std::to_string(step);
+        next = "continue with: " + command_to_continue(last_checkpoint_);
     } else if (!summary.is_finite()) {
         status = 3;
         message = "a result is not finite";
+    } else if (command_.strict && !shortfalls.empty()) {
+        status = 1;
+        message = "a result fell short";
     }
-    summary.write(path("summary.json"), info_, command_.case_name, status, message);
+    summary.write(path("summary.json"), info_, command_.case_name, status,
+                  next.empty() ? message : message + "; " + next);
     if (!command_.quiet) {
         std::printf("%s%s: %s after %ld steps in %s; results in %s\n", summary.table().c_str(),
                     info_.program.c_str(), message.c_str(), step, clock_text(wall).c_str(),
                     command_.out_dir.c_str());
+        if (!next.empty()) std::printf("%s\n", next.c_str());
     }
-    if (status == 3)
-        std::fprintf(stderr, "%s: %s; see %s\n", info_.program.c_str(), message.c_str(),
-                     path("summary.json").c_str());
+    for (const std::string& sentence : shortfalls)
+        std::fprintf(stderr, "%s: %s\n", info_.program.c_str(), sentence.c_str());
+    if (status == 3 || (status > 128 && command_.quiet))
+        std::fprintf(stderr, "%s: %s; %s\n", info_.program.c_str(), message.c_str(),
+                     next.empty() ? ("see " + path("summary.json")).c_str() : next.c_str());
     return status;
 }
 
@@ -264,8 +372,7 @@ void refuse_before_start(const CommandLine& command, long steps, double bytes) {
                          std::to_string(command.restart_step) + ", and the run ends at step " +
                          std::to_string(steps) + ": raise time.end");
     }
-    const double there =
-        static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+    const double there = memory_limit_bytes();
     if (bytes > there) {
         char sizes[80];
         std::snprintf(sizes, sizeof sizes, "the case needs %.3g GiB of memory, and there is %.3g",
@@ -274,9 +381,12 @@ void refuse_before_start(const CommandLine& command, long steps, double bytes) {
     }
 }
 
-int run_and_report_errors(const ProgramInfo& info,
+int run_and_report_errors(const ProgramInfo& info, char** argv,
                           const std::function<int(std::optional<Run>&)>& program) {
+    open_standard_descriptors();
+    share_cores(argv);
     std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);
     std::optional<Run> run;
     const auto end = [&](int status, const std::string& message) {
         if (run) run->fail(status, message);

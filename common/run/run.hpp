@@ -6,6 +6,7 @@
 #include <chrono>
 #include <csignal>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -18,8 +19,11 @@ namespace common {
 
 class Run {
    public:
-    /// Prepares the output folder, writes case.toml there and listens to SIGINT and SIGTERM.
-    /// errors: InputError when the folder holds something else, or an earlier run without --force.
+    /// Prepares the output folder, locks it, writes case.toml there and listens to SIGINT and
+    /// SIGTERM. Until the first step begins, a signal ends the program at once and takes away what
+    /// it has begun; afterwards the step is finished and a checkpoint is written.
+    /// errors: InputError when another run writes into the folder, or it holds something else, or an
+    ///         earlier run without --force.
     Run(const ProgramInfo& info, const CommandLine& command, const ParameterTable& table);
     Run(const Run&) = delete;
     Run& operator=(const Run&) = delete;
@@ -40,15 +44,17 @@ class Run {
         reader("step", step);
         reader("history", rows);
         archive(reader, state);
+        reader.finish();
         history.restore(rows);
         first_step_ = step;
     }
 
-    /// False at the end of the run, or when a signal has asked to stop. Steps may all be equal and
+    /// False at the end of the run, or after the step in which a signal asked to stop. Steps may all be equal and
     /// known in number, or as long as the flow allows until a time is reached; the last of those may
     /// end later, so that a run does not depend on where it was meant to end.
     bool not_finished(long step, long steps);
     bool not_finished(long step, double time, double end);
+    /// Whether a time is the end, but for the round-off of a sum of steps.
     static bool reached(double time, double end) { return time >= end * (1 - 1e-9); }
 
     /// Shows progress; writes a checkpoint when one is due, at the end, or when a signal has asked
@@ -67,8 +73,8 @@ class Run {
     /// Writes summary.json and prints the results.
     /// in:     step, how many steps the run has come to; count, particles (or what else is
     ///         advanced) in each.
-    /// out:    the exit status: 0 done, 130 or 143 stopped by a signal, 3 for a result that is not
-    ///         finite.
+    /// out:    the exit status: 0 done, 1 with --strict where a result fell short, 130 or 143
+    ///         stopped by a signal, 3 for a result that is not finite.
     int finish(long step, double count);
 
     /// A message about a failure, with the step if it does not say which.
@@ -80,44 +86,52 @@ class Run {
     /// The path of a file in the folder of the run.
     std::string path(const std::string& file) const { return command_.out_dir + "/" + file; }
 
-    /// The signal that has asked to stop, or 0.
-    static int stopped_by();
-
    private:
     template <class State>
     void checkpoint_if_due(long step, bool last, State& state) {
         const bool due = checkpoint_steps > 0 && (step % checkpoint_steps == 0 || last);
-        if (!due && stopped_by() == 0) return;
+        stepped_ = true;
+        if (!due && !asked_to_stop()) return;
         history.flush();
-        CheckpointWriter writer(info_, effective_case_);
+        last_checkpoint_ = path(checkpoint_name(step));
+        CheckpointWriter writer(info_, last_checkpoint_, command_.case_name, effective_case_);
         writer("step", step);
         writer("history", history.all());
         archive(writer, state);
-        write_checkpoint(writer, step);
+        writer.finish();
+        keep_two_checkpoints();
     }
+    static bool asked_to_stop();
+    static std::string checkpoint_name(long step);
+    bool go_on(bool more);
+    void lock_folder();
     void prepare_folder();
     void show_progress(long step, long steps, double time, double done);
-    void write_checkpoint(CheckpointWriter& writer, long step);
+    void keep_two_checkpoints() const;
+    std::string command_to_continue(const std::string& checkpoint) const;
 
     ProgramInfo info_;
     CommandLine command_;
-    std::string effective_case_, last_note_;
+    std::string effective_case_, last_checkpoint_;
+    std::shared_ptr<std::FILE> lock_;
     long first_step_ = 0;
     double first_done_ = -1;  // part of the run that was done before the first step
     std::chrono::steady_clock::time_point start_, shown_;
     long step_ = -1;  // that is being taken
     long tenths_shown_ = 0;
     bool terminal_ = false, line_open_ = false;
+    bool stepped_ = false;   // a step has ended since the start
+    bool complete_ = false;  // the end of the run is reached
 };
 
 /// Refuses, before anything is written, a restart beyond the end of the run and a case larger than
 /// the machine's memory. in: steps of the whole run; bytes it will take.
 void refuse_before_start(const CommandLine& command, long steps, double bytes);
 
-/// Runs a program and turns errors into one sentence on stderr and the exit status: 2 bad input,
+/// Prepares the machine, runs a program and turns errors into one sentence on stderr and the exit status: 2 bad input,
 /// 3 numerical failure.
-/// in: program(run) builds the run in place, so that a failed run still leaves its summary.
-int run_and_report_errors(const ProgramInfo& info,
+/// in: argv of main; program(run) builds the run in place, so that a failed run still leaves its summary.
+int run_and_report_errors(const ProgramInfo& info, char** argv,
                           const std::function<int(std::optional<Run>&)>& program);
 
 }  // namespace common

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdio>
+#include <cstdlib>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "common/parallel.hpp"
+#include "common/run/machine.hpp"
 #include "common/run/run.hpp"
 
 namespace common {
@@ -22,7 +24,8 @@ struct Preparation {
 
 /// Says what the case is and what may mislead in it, and opens the run.
 /// in:     prepared, of a case that was not refused
-/// out:    holder, the run; false with --dry-run, where the words are all
+/// out:    holder, the run; false with --dry-run, where the words are all, and where --resume finds
+///         the run complete
 /// errors: InputError where the folder, the memory or the length of the run is impossible
 inline bool start_run(const ProgramInfo& info, const CommandLine& command,
                       const ParameterTable& table, const Preparation& prepared,
@@ -31,8 +34,16 @@ inline bool start_run(const ProgramInfo& info, const CommandLine& command,
         std::fprintf(stderr, "warning: %s\n", warning.c_str());
     if (!command.quiet) std::printf("%s", prepared.description.c_str());
     if (command.dry_run) return false;
+    if (command.complete) {
+        if (!command.quiet)
+            std::printf("%s: %s holds this run, complete\n", info.program.c_str(),
+                        command.out_dir.c_str());
+        return false;
+    }
     refuse_before_start(command, prepared.steps, prepared.bytes);
-    set_thread_count(command.threads);
+    // OMP_NUM_THREADS is obeyed, and so is --threads before it.
+    const bool unsaid = command.threads == 0 && std::getenv("OMP_NUM_THREADS") == nullptr;
+    set_thread_count(unsaid ? free_cores() : command.threads);
     Run& run = holder.emplace(info, command, table);
     for (const std::string& warning : prepared.warnings) run.summary.warning(warning);
     run.checkpoint_steps = prepared.checkpoint_steps;

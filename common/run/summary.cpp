@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "common/run/output_file.hpp"
@@ -69,6 +70,23 @@ void Summary::write(const std::string& path, const ProgramInfo& info, const std:
     OutputFile file(path);
     file.text(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
     file.finish();
+}
+
+std::vector<std::string> Summary::shortfalls() const {
+    std::vector<std::string> sentences;
+    for (const Entry& entry : results_) {
+        if (!entry.compared || entry.pass()) continue;
+        sentences.push_back("FAIL " + entry.name + " = " + format(entry.value) + ", and " +
+                            format(entry.expected) + " +- " + format(entry.tolerance) +
+                            " is expected (" + entry.source + ")");
+    }
+    return sentences;
+}
+
+bool is_summary_of_complete_run(const std::string& path) {
+    std::ifstream file(path);
+    const Json json = Json::parse(file, nullptr, false);
+    return json.is_object() && json.contains("status") && json["status"] == 0;
 }
 
 std::string Summary::table() const {

@@ -37,6 +37,9 @@ class Summary {
     /// A sentence that was printed as a warning before the run.
     void warning(const std::string& text) { warnings_.push_back(text); }
 
+    /// The results that fell short, a sentence each.
+    std::vector<std::string> shortfalls() const;
+
     /// Whether every number is finite; a run with one that is not has failed.
     bool is_finite() const;
 
@@ -59,5 +62,8 @@ class Summary {
     std::vector<Entry> results_, conservation_, performance_;
     std::vector<std::string> warnings_;
 };
+
+/// Whether a file is the summary of a run that ended with status 0.
+bool is_summary_of_complete_run(const std::string& path);
 
 }  // namespace common

@@ -2,7 +2,7 @@
 # of the vortex by Ghia, Ghia and Shin (1982). Right, velocities on both middle lines, and their points.
 wide = 1500; high = 720
 load 'common/style.gp'
-last = system(sprintf("ls %s/fields_*.dat | tail -n 1", run))
+last = system(sprintf("ls '%s'/fields_*.dat | tail -n 1", run))
 vx = col(last, 'v_x'); vz = col(last, 'v_z'); n = parameter('cells_x')
 speed(u, v) = sqrt(u**2 + v**2)
 set multiplot title 'Cavity under a sliding lid, Re = 100' font ',24'

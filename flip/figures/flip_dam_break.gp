@@ -2,7 +2,7 @@
 # the front against the laboratory's: their dam took a time to vanish, and behind the same points with a later clock the speeds agree. Right, the height at the wall behind.
 wide = 1500; high = 940
 load 'common/style.gp'
-files = system(sprintf("ls %s/particles_*.dat", run))
+files = system(sprintf("ls '%s'/particles_*.dat", run))
 history = run.'/history.dat'
 set multiplot title 'A broken dam' font ',24'
 eval colors(viridis); set cbrange [0:2.5]; set cbtics 0.5

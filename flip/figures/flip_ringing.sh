@@ -1,6 +1,7 @@
 #!/bin/sh
 # flip_ringing.sh PIC FLIP FOLDER: uniform flow over a row of cells at Mach 0 to 0.4, with flip and with what may cure its ringing. Folders are called by cure and Mach number.
 set -eu
+export LC_ALL=C.UTF-8
 flip=$2
 folder=$3
 
@@ -8,7 +9,7 @@ scan() {
     name=$1
     shift
     for mach in 0 0.03 0.06 0.08 0.1 0.12 0.14 0.16 0.18 0.2 0.25 0.3 0.4; do
-        "$flip" flip/cases/ringing.toml region.gas.velocity_x=$mach --threads 1 --force --quiet --out "$folder/$name-$mach" "$@"
+        "$flip" flip/cases/ringing.toml region.gas.velocity_x=$mach --threads 1 --resume --quiet --out "$folder/$name-$mach" "$@"
     done
 }
 scan flip

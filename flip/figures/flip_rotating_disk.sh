@@ -1,6 +1,7 @@
 #!/bin/sh
 # flip_rotating_disk.sh PIC FLIP FOLDER: a disk of dust that turns once in a harmonic trap, with every transfer of flip and with pic, in 241 to 2413 steps.
 set -eu
+export LC_ALL=C.UTF-8
 pic=$1
 flip=$2
 folder=$3
@@ -14,7 +15,7 @@ disk() {
     for steps in 241 483 1081 2413; do
         # A hair more than the even share, lest round-off adds a step.
         dt=$(awk -v n=$steps 'BEGIN { printf "%.12g", 8 * atan2(1, 1) / n * (1 + 1e-9) }')
-        "$program" flip/cases/rotating_disk.toml time.dt="$dt" "$@" --force --quiet --threads 1 --out "$folder/$name.$steps"
+        "$program" flip/cases/rotating_disk.toml time.dt="$dt" "$@" --resume --quiet --threads 1 --out "$folder/$name.$steps"
         echo "$steps $(kept)" >> "$folder/$name.dat"
     done
 }

@@ -1,7 +1,8 @@
 #!/bin/sh
 # flip_sedov.sh PIC FLIP FOLDER: a blast with both programs.
 set -eu
+export LC_ALL=C.UTF-8
 folder=$3
 for program in "$1" "$2"; do
-    "$program" flip/cases/sedov.toml --force --quiet --threads 1 --out "$folder/$(basename "$program")"
+    "$program" flip/cases/sedov.toml --resume --quiet --threads 1 --out "$folder/$(basename "$program")"
 done

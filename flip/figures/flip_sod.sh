@@ -1,11 +1,12 @@
 #!/bin/sh
 # flip_sod.sh PIC FLIP FOLDER: Sod's shock tube with both programs, on 100 cells and then on 50 to 800; pic also with short steps and with many particles.
 set -eu
+export LC_ALL=C.UTF-8
 pic=$1
 flip=$2
 folder=$3
 
-tube() { "$@" --force --quiet --threads 1; }
+tube() { "$@" --resume --quiet --threads 1; }
 tube "$pic" flip/cases/sod.toml --out "$folder/pic"
 tube "$flip" flip/cases/sod.toml --out "$folder/flip"
 

@@ -1,6 +1,7 @@
 #!/bin/sh
 # flip_translating_frame.sh PIC FLIP FOLDER: Sod's shock tube in frames of reference that move with 0 to 4, with every transfer of flip and with pic.
 set -eu
+export LC_ALL=C.UTF-8
 pic=$1
 flip=$2
 folder=$3
@@ -14,7 +15,7 @@ tube() {
     for V in 0 0.25 0.5 1 1.5 2 2.5 3 3.5 4; do
         ends="inflow.velocity_x=$V"
         if [ $V = 0 ]; then ends='boundary.x_low="slip" inflow.velocity_x=0 inflow.material=""'; fi
-        "$program" flip/cases/translating_frame.toml $ends left.velocity=$V right.velocity=$V theory.frame_x=$V "$@" --force --quiet --threads 1 --out "$folder/scan"
+        "$program" flip/cases/translating_frame.toml $ends left.velocity=$V right.velocity=$V theory.frame_x=$V "$@" --resume --quiet --threads 1 --out "$folder/scan"
         echo "$V $(error density) $(error velocity)" >> "$folder/$name.dat"
         if [ $V = 0 ] || [ $V = 4 ]; then cp "$folder/scan/profile.dat" "$folder/$name.$V.dat"; fi
     done

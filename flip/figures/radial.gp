@@ -2,7 +2,7 @@
 # bottoms, tops and steps of the three profiles, and exact(k), the value of the exact k-th in a row of profile.dat.
 folder(p) = run.'/'.p
 file(p) = folder(p).'/profile.dat'
-map = system(sprintf('ls %s/flip/fields_*.dat | tail -1', run))
+map = system(sprintf('ls "%s"/flip/fields_*.dat | tail -1', run))
 set multiplot title head font ',24'
 set bmargin at screen 0.1; set tmargin at screen 0.87
 set lmargin at screen 0.06; set rmargin at screen 0.44

@@ -80,6 +80,6 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    return common::run_and_report_errors(info,
+    return common::run_and_report_errors(info, argv,
                                          [&](auto& run) { return run_program(argc, argv, run); });
 }

@@ -1,6 +1,7 @@
 #!/bin/sh
 # keep_explicit_gem.sh RUN FOLDER: keeps what figures 9 and 10 need of a full explicit GEM run: the flux every half of 1/Omega_ci, and the profiles at unit flux.
 set -eu
+export LC_ALL=C.UTF-8
 run=$1
 folder=$2
 entry() { awk -v key="$1" -f common/json_lines.awk "$run/summary.json"; }

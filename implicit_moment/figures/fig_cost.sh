@@ -4,6 +4,7 @@
 # proportion to m_i/m_e at equal numbers per cell, steps to (m_i/m_e)^(1/2), to the time of unit flux that the implicit run has measured (at 25: the full
 # explicit run, implicit_moment/data/explicit_gem_flux.csv). Beyond 100 the time of a particle-step is that of 100: extrapolated, and said so.
 set -eu
+export LC_ALL=C.UTF-8
 implicit=$1
 explicit=$2
 folder=$3
@@ -16,7 +17,7 @@ of() { awk "BEGIN { printf \"%.10g\", $1 }"; }
 # seconds STEPS CELLS_X CELLS_Z DT C_OVER_V_A M PARTICLES: wall time of a short explicit run
 seconds() {
     "$explicit" $cases/gem_explicit.toml time.end="$(of "$1 * $4")" grid.cells_x="$2" grid.cells_z="$3" time.dt="$4" harris.light_over_alfven="$5" \
-        harris.mass_ratio="$6" harris.particles="$7" output.fields_interval=0 output.checkpoint_steps=0 --threads 1 --force --quiet --out "$folder/explicit_$6"
+        harris.mass_ratio="$6" harris.particles="$7" output.fields_interval=0 output.checkpoint_steps=0 --threads 1 --resume --quiet --out "$folder/explicit_$6"
     entry performance.wall_s "$folder/explicit_$6"
 }
 
@@ -30,7 +31,7 @@ per_step=0
 while read -r mass c dt particles; do
     run=$folder/implicit_$mass
     "$implicit" $cases/gem.toml harris.mass_ratio="$mass" harris.light_over_alfven="$c" time.dt="$dt" harris.particles="$particles" \
-        time.end="$(of "18 * $c")" output.fields_interval=0 --threads 1 --force --quiet --out "$run"
+        time.end="$(of "18 * $c")" output.fields_interval=0 --threads 1 --resume --quiet --out "$run"
     unit=$(entry results.time_at_unit_flux.value "$run")
     implicit_steps=$(of "$unit * $c / $dt")
     implicit_s=$(of "$(entry performance.wall_s "$run") * $unit / 18")

@@ -3,6 +3,7 @@
 # several time steps; one table per wave and theta in FOLDER. The angle is c dt K for light and omega_p dt for the plasma; damping is over the exact
 # one where there is one, and the measured rate where there is none (theta = 1/2).
 set -eu
+export LC_ALL=C.UTF-8
 program=$1
 folder=$2
 cases=implicit_moment/cases
@@ -22,7 +23,7 @@ for wave in light langmuir; do
             dt=$angle
             [ $wave = light ] && dt=$(awk -v a="$angle" 'BEGIN { print a / 0.981354 }')
             "$program" "$file" time.dt="$dt" time.end="$(awk -v dt="$dt" 'BEGIN { print 100 * dt }')" field.theta=$theta \
-                --out "$run" --force --quiet
+                --out "$run" --resume --quiet
             damping=$(entry damping_over_theory "$run")
             [ -n "$damping" ] || damping=$(entry damping "$run")
             echo "$angle $(entry omega_over_theory "$run") $damping $(entry theory_omega "$run") $(entry theory_growth "$run") $dt" >> "$table.partial"

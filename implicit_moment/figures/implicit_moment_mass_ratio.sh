@@ -2,6 +2,7 @@
 # implicit_moment_mass_ratio.sh PROGRAM FOLDER: the GEM challenge with m_i/m_e = 25, 180 and 1836, the lighter ones with three seeds, until the rate is known; in rates.dat
 # mass ratio, seed, time of unit flux and peak rate of each run.
 set -eu
+export LC_ALL=C.UTF-8
 program=$1
 folder=$2
 cases=implicit_moment/cases
@@ -12,7 +13,7 @@ one_run() {
     ratio=$1
     seed=$2
     shift 2
-    "$program" "$@" plasma.seed="$seed" output.fields_interval=0 --out "$run" --force --quiet
+    "$program" "$@" plasma.seed="$seed" output.fields_interval=0 --out "$run" --resume --quiet
     of() { awk -v key="results.$1.value" -f common/json_lines.awk "$run/summary.json"; }
     echo "$ratio $seed $(of time_at_unit_flux) $(of peak_reconnection_rate)" >> "$folder/rates.new"
 }

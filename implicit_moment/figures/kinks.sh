@@ -3,6 +3,7 @@
 # FOLDER/kinks.dat growth rate of the kink and level of the lower-hybrid drift instability beside figure 14 of the talk, and whether they have its order.
 # Electrons are the faster against L the warmer they are, v_the/L ~ (T_e/T_i)^(1/2), and the warmest take shorter steps: v_the dt/dx < 0.9.
 set -eu
+export LC_ALL=C.UTF-8
 program=$1
 folder=$2
 case=implicit_moment/cases/${3:-kink}.toml
@@ -11,7 +12,7 @@ dt=$(awk '$1 == "dt" { print $3 }' "$case")
 echo '# 1:T_i/T_e[1] 2:kink_growth[Omega_ci] 3:talk[Omega_ci] 4:lhdi_level[B0] 5:talk[B0] 6:energy_drift[1]' > "$folder/kinks.new"
 while read -r ratio part growth level; do
     run=$folder/ratio_$ratio
-    "$program" "$case" current_sheet.temperature_ratio="$ratio" time.dt="$(awk "BEGIN { print $dt * $part }")" --out "$run" --force --quiet
+    "$program" "$case" current_sheet.temperature_ratio="$ratio" time.dt="$(awk "BEGIN { print $dt * $part }")" --out "$run" --resume --quiet
     of() { awk -v key="results.$1.value" -f common/json_lines.awk "$run/summary.json" || echo nan; }
     echo "$ratio $(of kink_growth) $growth $(of lhdi_level) $level $(of energy_drift_at_end)" >> "$folder/kinks.new"
 done <<END

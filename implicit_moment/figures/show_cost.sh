@@ -1,6 +1,7 @@
 #!/bin/sh
 # show_cost.sh TABLE: the table of fig_cost.sh for the reader.
 set -eu
+export LC_ALL=C.UTF-8
 awk '!/^#/ {
     if (!head++) {
         printf "\ntime to unit flux of the GEM challenge, one thread\n\n%8s %28s %46s %30s\n", "", "implicit", "explicit", "explicit / implicit"

@@ -10,7 +10,7 @@ panel_width = 0.43; panel_height = panel_width * wide / high * 3.2 / 6.3
 do for [row = 1:2] { do for [column = 1:2] {
     end = word('0.7 2', row); alpha = word('0.25 1', column)
     run = folder.'/alpha_'.alpha.'_to_'.end
-    rows = sprintf("awk '!/#/ { e = $%d; if (n++ == 0) f = e } END { print e / f }' %s", col(run.'/history.dat', 'energy'), run.'/history.dat')
+    rows = sprintf("LC_ALL=C awk '!/#/ { e = $%d; if (n++ == 0) f = e } END { print e / f }' '%s'", col(run.'/history.dat', 'energy'), run.'/history.dat')
     energy = real(system(rows))
     if (row == 2 && column == 1) {
         lasts = real(entry('results.contact_lasts.expected')); apart = 0.1 * (2 - lasts - 0.5)
@@ -26,6 +26,6 @@ do for [row = 1:2] { do for [column = 1:2] {
         set object 1 circle at (0.4 - apart) / R, 1.5 size 1 front fillstyle empty border lc rgb ink lw 2 dt 2
         set object 2 circle at (0.8 + apart) / R, 1.5 size 1 front fillstyle empty border lc rgb ink lw 2 dt 2
     }
-    plot for [g = 0:1] system('ls '.run.'/particles_*.dat | tail -n 1') using ($5 == g ? $1 / R : NaN):($2 / R) with points pt 7 ps 0.62 lc rgb (g == 0 ? blue : orange)
+    plot for [g = 0:1] system('ls "'.run.'"/particles_*.dat | tail -n 1') using ($5 == g ? $1 / R : NaN):($2 / R) with points pt 7 ps 0.62 lc rgb (g == 0 ? blue : orange)
 } }
 unset multiplot

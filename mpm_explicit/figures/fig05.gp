@@ -15,14 +15,14 @@ do for [row = 1:2] { do for [column = 1:2] {
     run = folder.'/'.word(shapes, column)
     if (row == 1) { eval in_one_color; unset colorbox } else { eval in_white_light }
     set size noratio
-    travel = real(system(sprintf("awk 'END { print $%d }' %s", col(run.'/history.dat', 'travel_y_plate'), run.'/history.dat')))
+    travel = real(system(sprintf("LC_ALL=C awk 'END { print $%d }' '%s'", col(run.'/history.dat', 'travel_y_plate'), run.'/history.dat')))
     set object 1 rectangle from 0, plate + travel to 1, graph 1 front fillcolor rgb '#8a8a8a' fillstyle solid noborder
     left = 0.075 + (column - 1) * (panel_width + 0.045); top = 0.89 - (row - 1) * (panel_height + 0.035)
     set lmargin at screen left; set rmargin at screen left + panel_width
     set tmargin at screen top; set bmargin at screen top - panel_height
     if (row == 1) { set title (column == 1 ? 'linear shape functions' : 'gimp') offset 0, -0.4; set format x ''; unset xlabel } else { unset title; set format x '%g'; set xlabel 'x / L' }
     if (column == 1) { set ylabel 'y / L' offset 1, 0; set format y '%g' } else { unset ylabel; set format y '' }
-    file = system('ls '.run.'/fringes_*.dat | tail -n 1')
+    file = system('ls "'.run.'"/fringes_*.dat | tail -n 1')
     if (row == 1) { plot file @one_color notitle } else { plot file @white_light notitle }
 } }
 unset multiplot

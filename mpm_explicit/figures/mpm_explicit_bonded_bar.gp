@@ -8,7 +8,7 @@ folder = run
 holds = folder.'/holds/history.dat'; breaks = folder.'/breaks/history.dat'
 stress = col(holds, 'bond_normal_1'); left = col(holds, 'momentum_x_left'); right = col(holds, 'momentum_x_right')
 run = folder.'/breaks'
-strength = real(system(sprintf("awk '$1 == \"tension\" && $3 < 1e20 { s = $3 } END { print s }' %s/case.toml", run)))
+strength = real(system(sprintf("LC_ALL=C awk '$1 == \"tension\" && $3 < 1e20 { s = $3 } END { print s }' '%s'/case.toml", run)))
 breaks_at = real(entry('results.bond_breaks.expected')); measured_at = result('bond_breaks')
 set multiplot title 'Two bonded halves of a bar' font ',24'
 set xrange [0:2]; set xtics 0.5

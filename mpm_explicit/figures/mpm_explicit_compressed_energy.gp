@@ -38,7 +38,7 @@ set lmargin at screen 0.585; set rmargin at screen 0.98
 set title 'rest of the ledger / final work'
 set yrange [-2e-14:2e-14]
 set ytics ('−2·10^{−14}' -2e-14, '−10^{−14}' -1e-14, '0' 0, '10^{−14}' 1e-14, '2·10^{−14}' 2e-14)
-end = real(system(sprintf("awk 'END { print $%d }' %s", work, one)))
+end = real(system(sprintf("LC_ALL=C awk 'END { print $%d }' '%s'", work, one)))
 unset key
 plot one using @travel:(column(budget) / end) with lines lt 8 lw 1.5
 unset multiplot

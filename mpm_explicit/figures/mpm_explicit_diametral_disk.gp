@@ -5,9 +5,9 @@ load 'common/style.gp'
 f_sigma = 300.0; wider = 2.5   # in white light, whose higher orders are pale
 load 'mpm_explicit/figures/polariscope.gp'
 R = 0.2; P = result('load'); unit = 2 * P / (pi * 2 * R)
-last(what) = system('ls '.run.'/'.what.'_*.dat | tail -n 1')
+last(what) = system('ls "'.run.'"/'.what.'_*.dat | tail -n 1')
 fringes = last('fringes'); particles = last('particles')
-middle(axis) = real(system(sprintf("awk '$5 == 0 { s += $%d; n++ } END { print s / n }' %s", axis, particles)))
+middle(axis) = real(system(sprintf("LC_ALL=C awk '$5 == 0 { s += $%d; n++ } END { print s / n }' '%s'", axis, particles)))
 x_0 = middle(1); y_0 = middle(2)
 # Hertz's disk, in units of R and of s_xx at its center.
 q(x, y) = (x**2 + y**2)**2

@@ -27,7 +27,7 @@ do for [k = 1:2] {
     file(n) = folder.'/'.body.'_'.word(frictions, n).'/history.dat'
     p_x = col(file(1), 'momentum_x_'.body)
     run = folder.'/'.body.'_0'
-    mass = real(system(sprintf("awk 'END { print $%d }' %s", p_x, file(1)))) / result('speed_at_end')
+    mass = real(system(sprintf("LC_ALL=C awk 'END { print $%d }' '%s'", p_x, file(1)))) / result('speed_at_end')
     plot for [n = 1:4] file(n) using ($1 / time):(column(p_x) / mass / speed) with lines lc rgb word(tint, n) title 'μ = '.word(frictions, n), \
          for [n = 1:4] (x * time > rise ? theory_of(body, real(word(frictions, n))) * g * (x * time - rise / 2) / speed : NaN) with lines lw 2 dt 2 lc rgb ink notitle
 }

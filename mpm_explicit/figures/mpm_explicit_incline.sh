@@ -1,6 +1,7 @@
 #!/bin/sh
 # mpm_explicit_incline.sh PROGRAM FOLDER: a block and a cylinder on a plate inclined by 30 degrees, with several coefficients of friction; accelerations as a table of each.
 set -eu
+export LC_ALL=C.UTF-8
 program=$1
 folder=$2
 mkdir -p "$folder"
@@ -9,7 +10,7 @@ for body in block cylinder; do
     echo '# 1:friction 2:acceleration 3:theory' > "$table.partial"
     for friction in 0 0.1 0.2 0.3 0.4 0.5 0.6 0.7; do
         run=$folder/${body}_$friction
-        "$program" mpm_explicit/cases/incline_$body.toml contact.friction=$friction --threads 1 --force --quiet --out "$run"
+        "$program" mpm_explicit/cases/incline_$body.toml contact.friction=$friction --threads 1 --resume --quiet --out "$run"
         number() { awk -v key=results.acceleration.$1 -f common/json_lines.awk "$run/summary.json"; }
         echo "$friction $(number value) $(number expected)" >> "$table.partial"
     done

@@ -6,7 +6,7 @@ folder = run
 steps = '0.5 1.9 2.02'
 file(n) = folder.'/omega_dt_'.word(steps, n).'/history.dat'
 kinetic = col(file(1), 'kinetic'); energy_14 = col(file(1), 'energy_14'); energy_15 = col(file(1), 'energy_15'); p_x = col(file(1), 'momentum_x')
-row(n, what, k) = real(system(sprintf("awk '!/#/ && n++ == %d { print $%d; exit }' %s", k, what, file(n))))
+row(n, what, k) = real(system(sprintf("LC_ALL=C awk '!/#/ && n++ == %d { print $%d; exit }' '%s'", k, what, file(n))))
 K_0 = row(1, kinetic, 0)
 set multiplot title 'One free node, leapfrog' font ',24'
 set samples 2000

@@ -7,7 +7,7 @@ k = pi / (2 * L); omega = k * sqrt(E / rho); T = 2 * pi / omega; mass = rho * L 
 file = run.'/history.dat'
 p_x = col(file, 'momentum_x'); kinetic = col(file, 'kinetic'); elastic = col(file, 'elastic'); energy = col(file, 'energy')
 unit = mass * v_0**2 / 4
-dt = real(system(sprintf("awk '!/#/ && n++ == 1 { print $1; exit }' %s", file)))
+dt = real(system(sprintf("LC_ALL=C awk '!/#/ && n++ == 1 { print $1; exit }' '%s'", file)))
 set multiplot title 'A bar held at one end' font ',24'
 set xrange [0:5]; set xtics 1
 set xlabel 't / period'
@@ -23,9 +23,9 @@ set title 'energy / initial'
 set yrange [0:1.5]; set ytics 0.5
 plot file using ($1 / T):(column(energy) / unit) with lines lt 8 lw 2 title 'total', file using ($1 / T):(column(kinetic) / unit) with lines lt 1 title 'kinetic', \
      file using ($1 / T):(column(elastic) / unit) with lines lt 2 title 'elastic'
-files = system('ls '.run.'/particles_*.dat | head -n 5')
+files = system('ls "'.run.'"/particles_*.dat | head -n 5')
 # A one before the digits keeps zeros in front from making the number octal.
-step(n) = real('1'.system(sprintf("basename %s .dat | tr -dc 0-9", word(files, n)))) - 1e6
+step(n) = real('1'.system(sprintf("basename '%s' .dat | tr -dc 0-9", word(files, n)))) - 1e6
 tint = blue.' '.sky.' '.green.' '.amber.' '.orange
 set xrange [0:1.2]; set xtics 0.2
 set xlabel 'x / L'

@@ -5,7 +5,7 @@ load 'common/style.gp'
 R = 0.2; v_0 = 0.1; interval = 0.1
 file = run.'/history.dat'
 energy = col(file, 'energy'); elastic = col(file, 'elastic')
-at(what, t) = real(system(sprintf("awk -v t=%g '!/#/ { if ($1 <= t + 1e-9) v = $%d } END { print v }' %s", t, what, file)))
+at(what, t) = real(system(sprintf("LC_ALL=C awk -v t=%g '!/#/ { if ($1 <= t + 1e-9) v = $%d } END { print v }' '%s'", t, what, file)))
 E_0 = at(energy, 0)
 set multiplot title 'Elastic rebound, implicit, α = 1.00: grain positions' font ',24'
 set border 15; unset grid; unset key; set tics front
@@ -23,6 +23,6 @@ do for [row = 1:3] { do for [column = 1:2] {
     set label 1 sprintf('t = %.1f', t) at graph 0.02, 0.92
     set label 2 sprintf('elastic %.0f %% of E_0', 100 * at(elastic, t) / E_0) at graph 0.98, 0.92 right
     if (row == 1 && column == 1) { set colorbox user origin 0.93, top - 3 * panel_height - 0.044 size 0.013, 3 * panel_height + 0.044; set label 3 'v_x / v_0' at screen 0.985, top right offset 0, 1 } else { unset colorbox; unset label 3 }
-    plot system(sprintf("ls %s/particles_*.dat | sed -n %dp", run, int(t / interval + 1.5))) using ($1 / R):($2 / R):($3 / v_0) with points pt 7 ps 0.6 lc palette
+    plot system(sprintf("ls '%s'/particles_*.dat | sed -n %dp", run, int(t / interval + 1.5))) using ($1 / R):($2 / R):($3 / v_0) with points pt 7 ps 0.6 lc palette
 } }
 unset multiplot

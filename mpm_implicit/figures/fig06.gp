@@ -24,7 +24,7 @@ do for [n = 1:2] {
 unset key
 set xlabel 'travel of the plate / (L/100)'
 set tmargin at screen 0.4; set bmargin at screen 0.115
-last(n, what) = real(system(sprintf("awk 'END { print $%d }' %s", what, file(n))))
+last(n, what) = real(system(sprintf("LC_ALL=C awk 'END { print $%d }' '%s'", what, file(n))))
 set lmargin at screen 0.085; set rmargin at screen 0.48
 set title 'energy less work / final work'
 set yrange [-0.06:0.06]; set ytics 0.02

@@ -5,7 +5,7 @@ load 'common/style.gp'
 f_sigma = 2500.0
 load 'mpm_explicit/figures/polariscope.gp'
 U = 0.2; L = 1.0; height = 0.92; rigid_low = 0.1; rigid_high = 0.82
-particles = system('ls '.run.'/particles_*.dat | tail -n 3'); fringes = system('ls '.run.'/fringes_*.dat | tail -n 3')
+particles = system('ls "'.run.'"/particles_*.dat | tail -n 3'); fringes = system('ls "'.run.'"/fringes_*.dat | tail -n 3')
 with_rigid = "using 1:2:($5 < 0 ? 0 : $5 < 5 || $5 > 19 ? 0.3 : dark_field($3 / f_sigma)) with image"
 panel_width = 0.268; gap = 0.018
 panel_height = panel_width * wide / high * height / L

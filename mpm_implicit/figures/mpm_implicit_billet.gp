@@ -7,8 +7,8 @@ implicit = run.'/alpha_1000/history.dat'; leapfrog = run.'/explicit/history.dat'
 strain_of(file) = sprintf('(-100 * $%d / height)', col(file, 'travel_y_top'))
 stress_of(file) = sprintf('(1000 * abs($%d) / width / E)', col(file, 'force_y_top'))
 i_strain = strain_of(implicit); i_stress = stress_of(implicit); e_strain = strain_of(leapfrog); e_stress = stress_of(leapfrog)
-explicit_wall = real(system(sprintf("awk '{ print $3 }' %s", run.'/costs_explicit.dat'))); explicit_steps = real(system(sprintf("awk '{ print $2 }' %s", run.'/costs_explicit.dat')))
-implicit_steps = real(system(sprintf("awk '$1 == 1000 { print $2 }' %s", run.'/costs.dat')))
+explicit_wall = real(system(sprintf("LC_ALL=C awk '{ print $3 }' '%s'", run.'/costs_explicit.dat'))); explicit_steps = real(system(sprintf("LC_ALL=C awk '{ print $2 }' '%s'", run.'/costs_explicit.dat')))
+implicit_steps = real(system(sprintf("LC_ALL=C awk '$1 == 1000 { print $2 }' '%s'", run.'/costs.dat')))
 set multiplot title 'A slowly pressed block, implicit and explicit' font ',24'
 set lmargin at screen 0.085; set rmargin at screen 0.48
 set tmargin at screen 0.82; set bmargin at screen 0.14

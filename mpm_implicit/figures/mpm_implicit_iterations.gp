@@ -11,7 +11,7 @@ set tmargin at screen 0.81; set bmargin at screen 0.14
 set title 'iterations per solve' offset 0, -0.4
 set samples 1000; set yrange [3:2000]; set ytics (3, 10, 30, 100, 300, 1000)
 set key top left
-taken(alpha, column) = real(system(sprintf("awk '$1 == %g { print $%d }' %s", alpha, column, file)))
+taken(alpha, column) = real(system(sprintf("LC_ALL=C awk '$1 == %g { print $%d }' '%s'", alpha, column, file)))
 with_diagonal = taken(8, 4) / 8; with_grains = taken(4, 2) / 2
 plot file using 1:4 with linespoints lt 2 ps 1.6 title 'diagonal', file using 1:2 with linespoints lt 1 ps 1.6 title 'grains, factorized', (x >= 3 && x <= 24 ? with_diagonal * x : NaN) with lines lt 8 dt 3 lw 1.8 title '∝ α', (x >= 1 ? with_grains * sqrt(x) : NaN) with lines lt 8 dt 2 lw 1.8 title '∝ α^{1/2}'
 set lmargin at screen 0.72; set rmargin at screen 0.98

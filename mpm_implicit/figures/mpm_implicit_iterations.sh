@@ -1,6 +1,7 @@
 #!/bin/sh
 # mpm_implicit_iterations.sh PROGRAM FOLDER: the compressed grains on a coarser mesh with CFL numbers from 1/4 to 64 and both preconditioners of conjugate gradients; in iterations.dat what they took.
 set -eu
+export LC_ALL=C.UTF-8
 program=$1
 folder=$2
 echo '# 1:alpha[] 2:grains[iterations per solve] 3:grains[solves per step] 4:diagonal[iterations per solve] 5:diagonal[solves per step]' > "$folder/iterations.new"
@@ -8,7 +9,7 @@ for alpha in 0.25 0.5 1 2 4 8 16 32 64; do
     line=$alpha
     for preconditioner in grains diagonal; do
         run=$folder/${preconditioner}_$alpha
-        "$program" mpm_implicit/cases/compressed.toml grid.cells_x=40 grid.cells_y=34 time.alpha=$alpha time.end=0.3 theory.compare=none solver.preconditioner=$preconditioner output.fringes_interval=0 --threads 1 --force --quiet --out "$run"
+        "$program" mpm_implicit/cases/compressed.toml grid.cells_x=40 grid.cells_y=34 time.alpha=$alpha time.end=0.3 theory.compare=none solver.preconditioner=$preconditioner output.fringes_interval=0 --threads 1 --resume --quiet --out "$run"
         of() { awk -v key="performance.$1" -f common/json_lines.awk "$run/summary.json"; }
         line="$line $(of iterations_per_step) $(of loops_per_step)"
     done

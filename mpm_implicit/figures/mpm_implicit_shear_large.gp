@@ -5,10 +5,10 @@ load 'common/style.gp'
 f_sigma = 2500.0
 load 'mpm_explicit/figures/polariscope.gp'
 U = 0.3; L = 2.6; height = 2.92; R = 0.1
-particles = system('ls '.run.'/particles_*.dat | tail -n 1'); fringes = system('ls '.run.'/fringes_*.dat | tail -n 1')
+particles = system('ls "'.run.'"/particles_*.dat | tail -n 1'); fringes = system('ls "'.run.'"/fringes_*.dat | tail -n 1')
 rigid(g) = g < 13 || g > 156
 light(g, s) = g < 0 ? 0 : rigid(g) ? 0.3 : dark_field(s / f_sigma)
-travel = real(system(sprintf("awk 'END { print $%d }' %s", col(run.'/history.dat', 'travel_x_top_g0001'), run.'/history.dat')))
+travel = real(system(sprintf("LC_ALL=C awk 'END { print $%d }' '%s'", col(run.'/history.dat', 'travel_x_top_g0001'), run.'/history.dat')))
 set multiplot title sprintf('Disks in shear, implicit, α = 4, shift %.1f R', travel / R) font ',24'
 set xrange [0:L / R]; set yrange [0:height / R]; set xtics 5; set ytics 5
 unset key

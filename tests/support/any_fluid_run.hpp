@@ -81,9 +81,9 @@ inline void check_bad_checkpoints(const std::string& other_program) {
                   " output.checkpoint_steps=20 --quiet --out " + foreign + " 2> /dev/null") == 0);
     refused(read_all(checkpoints(foreign).back()),
             "of '" + other_program + "', not of '" + program_name + "'");
-    common::CheckpointWriter({program_name, "0.0.1", "", ""}, "").write(bad);
+    common::CheckpointWriter({program_name, "0.0.1", "", ""}, bad, "", "").finish();
     refused(read_all(bad), "was written by version 0.0.1");
-    common::CheckpointWriter({program_name, PROGRAM_VERSION, "", ""}, "").write(bad);
+    common::CheckpointWriter({program_name, PROGRAM_VERSION, "", ""}, bad, "", "").finish();
     refused(read_all(bad), "ends too early");
     // Another case.
     refused(good, "time.cfl", " time.cfl=0.2");

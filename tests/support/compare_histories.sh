@@ -4,6 +4,7 @@
 # (120), and the rows that both have written are compared byte by byte; names of columns may differ.
 # Run it in NEW. Says what differs, and ends with status 1 if something does.
 set -u
+export LC_ALL=C.UTF-8
 old=$1 new=$2 seconds=${3:-120}
 room=$(mktemp -d)
 trap 'rm -rf "$room"' EXIT

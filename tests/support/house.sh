@@ -1,6 +1,7 @@
 #!/bin/sh
 # house.sh: what a script can check of the order of the house. Run it in the root of the project.
 set -u
+export LC_ALL=C.UTF-8
 status=0
 complain() { echo "$*" >&2; status=1; }
 

@@ -1,0 +1,225 @@
+#include "common/run/checkpoint.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+#include "common/run/output_file.hpp"
+
+#define XXH_INLINE_ALL 1
+#include <xxhash.h>
+
+namespace common {
+
+namespace {
+
+constexpr char magic[] = "PICSTAT2";
+constexpr char end_of_file[] = "end";
+
+}  // namespace
+
+struct CheckpointWriter::File {
+    std::string partial;
+    std::FILE* stream = nullptr;
+
+    explicit File(const std::string& path)
+        : partial(path + ".partial"), stream(open_for_writing(partial)) {}
+    File(const File&) = delete;
+    File& operator=(const File&) = delete;
+    ~File() {
+        if (stream != nullptr) std::fclose(stream);
+        if (!partial.empty()) unlink(partial.c_str());
+    }
+};
+
+CheckpointWriter::CheckpointWriter(const ProgramInfo& info, const std::string& path,
+                                   const std::string& case_name, const std::string& effective_case)
+    : path_(path) {
+    refuse_special_file(path);
+    file_ = std::make_shared<File>(path);
+    write(magic, 8);
+    (*this)("program", info.program);
+    (*this)("version", info.version);
+    (*this)("case_name", case_name);
+    (*this)("case", effective_case);
+}
+
+void CheckpointWriter::fail(const std::string& what) {
+    throw InputError(path_ + ": cannot " + what + " the checkpoint: " + std::strerror(errno));
+}
+
+void CheckpointWriter::write(const void* from, std::size_t bytes) {
+    if (bytes > 0 && std::fwrite(from, 1, bytes, file_->stream) != bytes) fail("write");
+    checksum_ = XXH3_64bits_withSeed(from, bytes, checksum_);
+}
+
+void CheckpointWriter::write_block(const std::string& name, char type, const void* from,
+                                   std::size_t count, std::size_t size) {
+    const std::uint64_t letters = name.size(), numbers = count;
+    write(&letters, sizeof letters);
+    write(name.data(), name.size());
+    write(&type, 1);
+    write(&numbers, sizeof numbers);
+    write(from, count * size);
+    const std::uint64_t sum = checksum_;
+    write(&sum, sizeof sum);
+}
+
+void CheckpointWriter::finish() {
+    (*this)(end_of_file, std::string());
+    std::FILE* stream = std::exchange(file_->stream, nullptr);
+    const bool flushed = std::fflush(stream) == 0 && fsync(fileno(stream)) == 0;
+    if (std::fclose(stream) != 0 || !flushed) fail("write");
+    if (rename(file_->partial.c_str(), path_.c_str()) != 0) fail("rename");
+    file_->partial.clear();
+    // The new name is on the disk when the folder is.
+    const std::string folder = std::filesystem::path(path_).parent_path().string();
+    const int directory =
+        open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (directory >= 0) {
+        fsync(directory);
+        close(directory);
+    }
+}
+
+CheckpointReader::CheckpointReader(const ProgramInfo& info, const std::string& path) : path_(path) {
+    refuse_unreadable(path);
+    file_.reset(std::fopen(path.c_str(), "rbe"), [](std::FILE* file) {
+        if (file != nullptr) std::fclose(file);
+    });
+    struct stat status {};
+    if (file_ == nullptr || fstat(fileno(file_.get()), &status) != 0)
+        throw InputError(path + ": cannot be read: " + std::strerror(errno));
+    left_ = static_cast<std::uint64_t>(status.st_size);
+
+    char found[8] = {};
+    if (left_ >= 8) read(found, 8);
+    if (std::memcmp(found, "PICSTATE", 8) == 0) {
+        throw InputError(path +
+                         ": was written by an earlier version of the program; continue it "
+                         "with the program that wrote it");
+    }
+    if (std::memcmp(found, magic, 8) != 0) throw InputError(path + ": is not a checkpoint");
+    blocks_ = verify();
+    const std::string program = text("program"), version = text("version");
+    if (program != info.program) {
+        throw InputError(path + ": is a checkpoint of '" + program + "', not of '" + info.program +
+                         "'");
+    }
+    if (version != info.version) {
+        throw InputError(path + ": was written by version " + version + ", and this is " +
+                         info.version + "; continue it with the program that wrote it");
+    }
+    case_name_ = text("case_name");
+    effective_case_ = text("case");
+}
+
+void CheckpointReader::read(void* to, std::size_t bytes) {
+    if (bytes > left_)
+        throw InputError(path_ + ": the checkpoint is cut off or too long; use an earlier one");
+    if (bytes > 0 && std::fread(to, 1, bytes, file_.get()) != bytes)
+        throw InputError(path_ + ": cannot be read: " + std::strerror(errno));
+    left_ -= bytes;
+    checksum_ = XXH3_64bits_withSeed(to, bytes, checksum_);
+}
+
+CheckpointReader::Header CheckpointReader::read_header() {
+    constexpr std::uint64_t longest_name = 4096;
+    std::uint64_t letters = 0, count = 0;
+    char type = 0;
+    read(&letters, sizeof letters);
+    if (letters > longest_name)
+        throw InputError(path_ + ": the checkpoint is damaged; use an earlier one");
+    std::string name(letters, '\0');
+    read(name.data(), name.size());
+    read(&type, 1);
+    read(&count, sizeof count);
+    return {name, type, count};
+}
+
+void CheckpointReader::check_sum() {
+    const std::uint64_t expected = checksum_;
+    std::uint64_t found = 0;
+    read(&found, sizeof found);
+    if (found != expected) {
+        throw InputError(path_ +
+                         ": the checkpoint is damaged (its checksum is wrong); use an earlier one");
+    }
+}
+
+std::size_t CheckpointReader::begin_block(const std::string& name, char type, std::size_t size) {
+    const Header header = read_header();
+    if (header.name == end_of_file && name != end_of_file)
+        throw InputError(path_ + ": the checkpoint ends too early; use an earlier one");
+    if (header.name != name || header.type != type) {
+        throw InputError(path_ + ": holds '" + header.name + "' where '" + name +
+                         "' is expected; it belongs to another case");
+    }
+    if (header.count > left_ / size)
+        throw InputError(path_ + ": the checkpoint is cut off or too long; use an earlier one");
+    return header.count;
+}
+
+void CheckpointReader::end_block(void* to, std::size_t bytes) {
+    read(to, bytes);
+    check_sum();
+}
+
+void CheckpointReader::require_length(const std::string& name, std::size_t found,
+                                      std::size_t wanted) const {
+    if (found == wanted) return;
+    throw InputError(path_ + ": '" + name + "' has " + std::to_string(found) + " values where " +
+                     std::to_string(wanted) + " are expected; it belongs to another case");
+}
+
+std::string CheckpointReader::text(const std::string& name) {
+    std::string text(begin_block(name, 'c', 1), '\0');
+    end_block(text.data(), text.size());
+    return text;
+}
+
+void CheckpointReader::finish() {
+    text(end_of_file);
+    if (left_ > 0)
+        throw InputError(path_ + ": the checkpoint is cut off or too long; use an earlier one");
+}
+
+long CheckpointReader::verify() {
+    const long begin = std::ftell(file_.get());
+    const std::uint64_t left = left_, checksum = checksum_;
+    long blocks = 0;
+    std::vector<char> piece(1 << 20);
+    for (bool more = true; more; ++blocks) {
+        const Header header = read_header();
+        const std::string types = "dflic";
+        const std::size_t sizes[] = {8, 4, 8, 4, 1}, kind = types.find(header.type);
+        if (kind == std::string::npos || header.count > left_ / sizes[kind])
+            throw InputError(path_ + ": the checkpoint is damaged; use an earlier one");
+        // The checksum of a block is that of its numbers in one piece.
+        XXH3_state_t state;
+        XXH3_64bits_reset_withSeed(&state, checksum_);
+        for (std::uint64_t bytes = header.count * sizes[kind]; bytes > 0;) {
+            const std::size_t part = std::min<std::uint64_t>(bytes, piece.size());
+            read(piece.data(), part);
+            XXH3_64bits_update(&state, piece.data(), part);
+            bytes -= part;
+        }
+        checksum_ = XXH3_64bits_digest(&state);
+        check_sum();
+        more = header.name != end_of_file;
+    }
+    if (left_ > 0)
+        throw InputError(path_ + ": the checkpoint is cut off or too long; use an earlier one");
+    if (std::fseek(file_.get(), begin, SEEK_SET) != 0)
+        throw InputError(path_ + ": cannot be read: " + std::strerror(errno));
+    left_ = left;
+    checksum_ = checksum;
+    return blocks;
+}
+
+}  // namespace common

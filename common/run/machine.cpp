@@ -1,0 +1,106 @@
+#include "common/run/machine.hpp"
+
+#include <fcntl.h>
+#include <omp.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <string>
+
+namespace common {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// How often a waiting thread of libgomp looks for work before it sleeps: some microseconds.
+constexpr const char* short_spin = "1000";
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// The smallest of what limit(folder) says of the control group of this process and of those around
+// it.
+template <class Limit>
+double smallest_limit(const Limit& limit) {
+    double smallest = infinity;
+    std::ifstream groups("/proc/self/cgroup");
+    for (std::string line; std::getline(groups, line);) {
+        if (line.rfind("0::/", 0) != 0) continue;
+        fs::path group = "/sys/fs/cgroup";
+        for (const fs::path& part : fs::path("." + line.substr(3)))
+            smallest = std::min(smallest, limit(group /= part));
+    }
+    return smallest;
+}
+
+}  // namespace
+
+void open_standard_descriptors() {
+    for (int lowest = 0; lowest <= STDERR_FILENO;) {
+        lowest = open("/dev/null", O_RDWR);
+        if (lowest > STDERR_FILENO) close(lowest);
+        if (lowest < 0) return;
+    }
+}
+
+void share_cores(char** argv) {
+    if (std::getenv("OMP_WAIT_POLICY") != nullptr || std::getenv("GOMP_SPINCOUNT") != nullptr)
+        return;
+    std::error_code error;
+    const fs::path program = fs::read_symlink("/proc/self/exe", error);
+    if (error) return;
+    setenv("GOMP_SPINCOUNT", short_spin, 1);
+    execv(program.c_str(), argv);  // returns where it fails; then it goes on as it is
+}
+
+int free_cores() {
+    const double quota = smallest_limit([](const fs::path& group) {
+        double time = 0, period = 0;
+        std::ifstream file(group / "cpu.max");  // "max 100000" is no limit
+        return file >> time >> period && period > 0 ? time / period : infinity;
+    });
+    return std::max(1, static_cast<int>(std::min<double>(omp_get_num_procs(), quota)));
+}
+
+double memory_limit_bytes() {
+    const double installed =
+        static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+    double bytes = std::min(installed, smallest_limit([](const fs::path& group) {
+                                double limit = 0;
+                                std::ifstream file(group / "memory.max");  // "max" is no limit
+                                return file >> limit ? limit : infinity;
+                            }));
+    struct rlimit shell {};
+    if (getrlimit(RLIMIT_AS, &shell) == 0 && shell.rlim_cur != RLIM_INFINITY)
+        bytes = std::min(bytes, static_cast<double>(shell.rlim_cur));
+    return bytes;
+}
+
+double peak_memory_bytes() {
+    std::ifstream status("/proc/self/status");
+    for (std::string word; status >> word;) {
+        double kilobytes = 0;
+        if (word == "VmHWM:" && status >> kilobytes) return 1024.0 * kilobytes;
+    }
+    struct rusage usage {};
+    getrusage(RUSAGE_SELF, &usage);
+    return 1024.0 * static_cast<double>(usage.ru_maxrss);
+}
+
+std::string shell_word(const std::string& text) {
+    const auto plain = [](unsigned char c) {
+        return std::isalnum(c) || c == '/' || c == '.' || c == '_' || c == '-' || c == '=';
+    };
+    if (!text.empty() && std::all_of(text.begin(), text.end(), plain)) return text;
+    std::string word = "'";
+    for (const char letter : text)
+        word += letter == '\'' ? std::string("'\\''") : std::string(1, letter);
+    return word + "'";
+}
+
+}  // namespace common

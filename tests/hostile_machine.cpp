@@ -1,0 +1,271 @@
+// What happens to a run is not the run's doing: other work on the machine, signals, closed
+// descriptors, full disks, damaged files, a second run in the same folder.
+#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#include <doctest/doctest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/support/folder_of_test.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string read_all(const fs::path& path) {
+    std::ifstream in(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void write_all(const fs::path& path, const std::string& bytes) {
+    std::ofstream(path, std::ios::binary) << bytes;
+}
+
+bool holds(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
+
+struct Outcome {
+    int status;
+    std::string out, err;
+};
+
+// A folder of the test, empty, with a helper that runs commands there in the environment of a user.
+struct Room {
+    fs::path folder = fs::absolute(facts::folder_of_test());
+
+    Room() {
+        fs::remove_all(folder);
+        fs::create_directories(folder);
+    }
+
+    // in: command, as a shell reads it, in the root of the project
+    Outcome run(const std::string& command) const {
+        const std::string out = folder / "stdout", err = folder / "stderr";
+        const int status =
+            std::system(("env -u OMP_WAIT_POLICY -u GOMP_SPINCOUNT -u OMP_NUM_THREADS sh -c '" +
+                         command + "' </dev/null >" + out + " 2>" + err)
+                            .c_str());
+        return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), read_all(out),
+                read_all(err)};
+    }
+    std::string path(const std::string& name) const { return folder / name; }
+};
+
+std::string program(const std::string& name) { return std::string(BUILD_FOLDER) + "/" + name; }
+
+// A run of cic that takes a second or less, in so many steps.
+std::string short_run(const std::string& out, int steps) {
+    return program("cic") + " theory.compare=none time.end=" + std::to_string(0.05 * steps) +
+           " --out " + out + " ";
+}
+
+std::string newest_checkpoint(const fs::path& folder) {
+    std::string newest;
+    for (const auto& entry : fs::directory_iterator(folder))
+        if (entry.path().extension() == ".bin") newest = std::max(newest, entry.path().string());
+    return newest;
+}
+
+const std::vector<std::string> programs{
+    "cic", "pic", "flip", "mpm_explicit", "mpm_implicit", "implicit_moment", "explicit_em"};
+
+}  // namespace
+
+TEST_CASE("beside busy work a program is as fast as with threads that sleep while they wait" *
+          doctest::description("robust")) {
+    const Room room;
+    const auto seconds = [&](const std::string& policy) {
+        const auto start = std::chrono::steady_clock::now();
+        CHECK(room.run(policy + short_run(room.path("run"), 300) + "--threads 2 --quiet --force")
+                  .status == 0);
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    };
+    std::vector<pid_t> busy;
+    for (long core = 0; core < sysconf(_SC_NPROCESSORS_ONLN); ++core) {
+        const pid_t child = fork();
+        if (child == 0) execlp("sh", "sh", "-c", "while :; do :; done", nullptr);
+        busy.push_back(child);
+    }
+    const double passive = seconds("OMP_WAIT_POLICY=passive "), own = seconds("");
+    for (const pid_t child : busy) {
+        kill(child, SIGKILL);
+        waitpid(child, nullptr, 0);
+    }
+    INFO("passive " << passive << " s, as a user starts it " << own << " s");
+    CHECK(own <= 2.0 * passive + 0.5);
+}
+
+TEST_CASE("what is meant for a closed terminal does not get into a file" *
+          doctest::description("robust")) {
+    const Room room;
+    CHECK(room.run(short_run(room.path("open"), 20)).status == 0);
+    CHECK(room.run(short_run(room.path("closed"), 20) + "0<&- 1>&- 2>&-").status == 0);
+    CHECK(read_all(room.path("closed/history.dat")) == read_all(room.path("open/history.dat")));
+}
+
+TEST_CASE("a signal at any moment leaves nothing or a checkpoint and the command that continues" *
+          doctest::description("robust")) {
+    const Room room;
+    for (const std::string& name : programs) {
+        const std::string out = room.path(name);
+        for (const std::string after : {"0.003", "0.01", "0.03", "0.1", "0.3"}) {
+            INFO(name << " stopped after " << after << " s");
+            fs::remove_all(out);
+            const Outcome stopped =
+                room.run("timeout --foreground --preserve-status -s INT " + after + " " +
+                         program(name) + " --quiet --threads 1 --out " + out);
+            CHECK((stopped.status == 130 || stopped.status == 0));
+            if (!fs::exists(out) || stopped.status == 0) continue;
+            const std::string checkpoint = newest_checkpoint(out);
+            INFO("left: " << room.run("ls -A " + out).out << stopped.err << stopped.status);
+            REQUIRE(!checkpoint.empty());
+            CHECK(room.run(program(name) + " --verify " + checkpoint).status == 0);
+            CHECK(holds(stopped.err, "continue with: " + program(name) + " --restart " +
+                                         checkpoint + " --threads 1\n"));
+        }
+    }
+}
+
+TEST_CASE("a run that is resumed after a signal gives the same bytes, and a complete one is left" *
+          doctest::description("robust")) {
+    const Room room;
+    const std::string whole = room.path("whole"), parts = room.path("parts");
+    CHECK(room.run(short_run(whole, 400) + "--quiet").status == 0);
+    int stops = 0;
+    for (int k = 0; k < 20; ++k) {
+        const Outcome part = room.run("timeout --foreground --preserve-status -s TERM 0.2 " +
+                                      short_run(parts, 400) + "--quiet --resume");
+        if (part.status == 0) break;
+        CHECK(part.status == 143);
+        ++stops;
+    }
+    INFO(stops << " stops");
+    CHECK(read_all(parts + "/history.dat") == read_all(whole + "/history.dat"));
+    const auto written = fs::last_write_time(parts + "/history.dat");
+    const Outcome again = room.run(short_run(parts, 400) + "--resume");
+    CHECK(again.status == 0);
+    CHECK(holds(again.out, "holds this run, complete"));
+    CHECK(fs::last_write_time(parts + "/history.dat") == written);
+    CHECK(room.run(short_run(parts, 401) + "--quiet --resume").status == 0);
+    CHECK(read_all(parts + "/history.dat").size() > read_all(whole + "/history.dat").size());
+}
+
+TEST_CASE("a checkpoint with flipped bits or of another length is refused" *
+          doctest::description("robust")) {
+    const Room room;
+    const std::string out = room.path("run"), bad = room.path("bad.bin");
+    CHECK(room.run(short_run(out, 5) + "output.checkpoint_steps=5 --quiet").status == 0);
+    const std::string good = read_all(newest_checkpoint(out));
+    const auto is_refused = [&](const std::string& bytes) {
+        write_all(bad, bytes);
+        const Outcome outcome = room.run(program("cic") + " --verify " + bad);
+        return outcome.status == 2 && holds(outcome.err, "checkpoint");
+    };
+    REQUIRE(good.size() > 10000);
+    CHECK_FALSE(is_refused(good));
+    int refused = 0, tried = 0;
+    for (std::size_t at = 0; at < good.size(); at += good.size() / 40 + 1) {
+        std::string one = good, pair = good;
+        one[at] = static_cast<char>(one[at] ^ 1);
+        // Two signs of numbers.
+        for (const std::size_t sign : {at / 2, at})
+            pair[sign] = static_cast<char>(pair[sign] ^ 128);
+        if (at == 0) pair = good + '\0';
+        for (const std::string& bytes : {one, pair, good.substr(0, at)}) {
+            refused += is_refused(bytes);
+            ++tried;
+        }
+    }
+    CHECK(refused == tried);
+}
+
+TEST_CASE("a second run in the same folder is refused while the first one writes" *
+          doctest::description("robust")) {
+    const Room room;
+    const std::string out = room.path("run");
+    const Outcome both =
+        room.run(short_run(out, 100000) + "--quiet & first=$!; sleep 0.5; " + short_run(out, 5) +
+                 "--quiet --force; echo second $?; kill $first; wait $first; echo first $?");
+    CHECK(holds(both.err, "another run is writing into this folder"));
+    CHECK(holds(both.out, "second 2"));
+    CHECK(holds(both.out, "first 143"));
+    CHECK(room.run(short_run(out, 5) + "--quiet --force").status == 0);
+}
+
+TEST_CASE("nothing is written through a link, on a full disk nothing is left half" *
+          doctest::description("robust")) {
+    const Room room;
+    const std::string out = room.path("run"), victim = room.path("victim");
+    CHECK(room.run(short_run(out, 5) + "output.checkpoint_steps=5 --quiet").status == 0);
+    write_all(victim, "mine\n");
+    fs::remove(out + "/history.dat");
+    fs::create_symlink(victim, out + "/history.dat");
+    const Outcome linked =
+        room.run(program("cic") + " --quiet time.end=1 --restart " + newest_checkpoint(out));
+    CHECK(linked.status == 2);
+    CHECK(holds(linked.err, "history.dat: is not a regular file"));
+    CHECK(read_all(victim) == "mine\n");
+
+    // No file may be longer than a block of 512 bytes.
+    const std::string small = room.path("small");
+    const Outcome full = room.run("ulimit -f 1; " + short_run(small, 400) + "--quiet");
+    CHECK(full.status == 2);
+    for (const auto& entry : fs::directory_iterator(small))
+        CHECK(entry.path().extension() != ".partial");
+}
+
+TEST_CASE("a result that fell short is said even with --quiet, and is status 1 with --strict" *
+          doctest::description("robust")) {
+    const Room room;
+    // The waves have no time to grow.
+    const std::string early =
+        program("cic") + " time.end=1 --quiet --force --out " + room.path("run") + " ";
+    const Outcome quiet = room.run(early), strict = room.run(early + "--strict");
+    CHECK(quiet.status == 0);
+    CHECK(holds(quiet.err, "cic: FAIL growth_over_theory = "));
+    CHECK(strict.status == 1);
+    CHECK(holds(read_all(room.path("run/summary.json")), "\"status\": 1"));
+}
+
+TEST_CASE("the peak of memory is the program's, not that of what started it" *
+          doctest::description("robust")) {
+    const Room room;
+    const std::string large(200 << 20, 'x');
+    CHECK(large.size() > 1000);
+    CHECK(room.run(short_run(room.path("run"), 5) + "--quiet").status == 0);
+    std::smatch found;
+    const std::string summary = read_all(room.path("run/summary.json"));
+    REQUIRE(std::regex_search(summary, found, std::regex("\"peak_memory_bytes\": ([0-9.e+]+)")));
+    CHECK(std::stod(found[1]) < 100e6);
+}
+
+TEST_CASE("a slip in a case or on the command line is answered with what was meant" *
+          doctest::description("robust")) {
+    const Room room;
+    const auto answer = [&](const std::string& text, const std::string& arguments) {
+        write_all(room.path("slip.toml"), text);
+        const Outcome outcome =
+            room.run(program("cic") + " " + (text.empty() ? "" : room.path("slip.toml")) + " " +
+                     arguments + " --dry-run");
+        CHECK(outcome.status == 2);
+        return outcome.err;
+    };
+    CHECK(holds(answer("", "two_stream"), "did you mean cic/cases/two_stream.toml?"));
+    CHECK(holds(answer("", "tow_stream"), "there are: "));
+    CHECK(holds(answer("", "flip/cases/sod.toml"), "is a case of flip, not of cic"));
+    CHECK(holds(answer("[specie.x]\n", ""), "did you mean [species.x]?"));
+    CHECK(holds(answer("[specie.x]\ndensity = 1\n", ""), "did you mean 'species.x.density'?"));
+    CHECK(holds(answer("[time]\nend = 1é\n", ""), "slip.toml:2:8: 'é' may stand in text"));
+    CHECK(holds(answer("[time]\nx = \"é \\\\\" é\n", ""), "slip.toml:2:11: 'é' may stand in text"));
+    CHECK(holds(answer("# é\n[time]\né = 1\n", ""), "slip.toml:3:1: 'é' may stand in text"));
+    CHECK(room.run(program("cic") + " species.right.drift_x=-.5 --dry-run").status == 0);
+}
