@@ -277,63 +277,50 @@ void ParameterTable::set(const Setting& setting) {
             setting.place + ": unknown parameter '" + setting.name + "'" +
             (guess.empty() ? "; --help lists all" : "; did you mean '" + guess + "'?"));
     }
-    const auto wrong_type = [&](const std::string& parameters) {
-        return InputError(setting.place + ": '" + setting.name + "' takes " + parameters +
-                          ", not " + kind_of(setting));
-    };
-    const auto refuse_outside = [&](double value) {
-        if (!std::isfinite(value)) {
-            throw InputError(setting.place + ": '" + setting.name + "' must be finite, not " +
-                             number_text(value));
-        }
-        if (!contains(entry->allowed, value)) {
-            throw InputError(setting.place + ": '" + setting.name + "' = " + number_text(value) +
-                             " is out of range; allowed: " + text_of(entry->allowed) +
-                             (entry->unit.empty() ? "" : " " + entry->unit));
-        }
+    const auto refuse = [&](const std::string& why) {
+        throw InputError(setting.place + ": '" + setting.name + "'" + why);
     };
     const bool* truth = std::get_if<bool>(&setting.value);
     const long* integer = std::get_if<long>(&setting.value);
     const double* number = std::get_if<double>(&setting.value);
     const std::string* text = std::get_if<std::string>(&setting.value);
-    if (auto target = std::get_if<bool*>(&entry->target)) {
-        if (truth == nullptr) throw wrong_type("true or false");
-        **target = *truth;
-    } else if (auto target_long = std::get_if<long*>(&entry->target)) {
-        if (integer == nullptr && number == nullptr) throw wrong_type("a whole number");
-        const double value = number != nullptr ? *number : static_cast<double>(*integer);
-        refuse_outside(value);
-        if (value != std::floor(value) || std::fabs(value) > 9007199254740992.0) {
-            throw InputError(setting.place + ": '" + setting.name + "' takes a whole number, not " +
-                             number_text(value));
+    const bool is_number = integer != nullptr || number != nullptr;
+    const double value = number != nullptr    ? *number
+                         : integer != nullptr ? static_cast<double>(*integer)
+                                              : 0;
+    const auto require = [&](bool right_type, const std::string& type) {
+        if (!right_type) refuse(" takes " + type + ", not " + kind_of(setting));
+        if (!is_number) return;
+        if (!std::isfinite(value)) refuse(" must be finite, not " + number_text(value));
+        if (!contains(entry->allowed, value)) {
+            refuse(" = " + number_text(value) + " is out of range; allowed: " +
+                   text_of(entry->allowed) + (entry->unit.empty() ? "" : " " + entry->unit));
         }
-        **target_long = static_cast<long>(value);
-    } else if (auto target_real = std::get_if<double*>(&entry->target)) {
-        if (integer == nullptr && number == nullptr) throw wrong_type("a number");
-        const double value = number != nullptr ? *number : static_cast<double>(*integer);
-        refuse_outside(value);
-        **target_real = value;
-    } else if (!entry->choices.empty()) {
-        std::string list;
-        for (const std::string& choice : entry->choices)
-            list += (list.empty() ? "" : ", ") + quoted(choice);
-        if (text == nullptr) throw wrong_type("text, one of " + list);
-        const auto& choices = entry->choices;
-        if (std::find(choices.begin(), choices.end(), *text) == choices.end()) {
-            throw InputError(setting.place + ": '" + setting.name + "' = " + quoted(*text) +
-                             " is not one of " + list);
-        }
-        **std::get_if<std::string*>(&entry->target) = *text;
+    };
+    if (auto flag = std::get_if<bool*>(&entry->target)) {
+        require(truth != nullptr, "true or false");
+        **flag = *truth;
+    } else if (auto whole = std::get_if<long*>(&entry->target)) {
+        require(is_number, "a whole number");
+        if (value != std::floor(value) || std::fabs(value) > 9007199254740992.0)
+            refuse(" takes a whole number, not " + number_text(value));
+        **whole = static_cast<long>(value);
+    } else if (auto real = std::get_if<double*>(&entry->target)) {
+        require(is_number, "a number");
+        **real = value;
     } else {
-        if (text == nullptr) throw wrong_type("text");
-        if (std::any_of(text->begin(), text->end(), is_control)) {
-            throw InputError(setting.place + ": '" + setting.name +
-                             "' holds a control character; write plain text");
-        }
+        const std::vector<std::string>& choices = entry->choices;
+        std::string list;
+        for (const std::string& choice : choices)
+            list += (list.empty() ? "" : ", ") + quoted(choice);
+        require(text != nullptr, list.empty() ? "text" : "text, one of " + list);
+        if (!choices.empty() && std::find(choices.begin(), choices.end(), *text) == choices.end())
+            refuse(" = " + quoted(*text) + " is not one of " + list);
+        if (std::any_of(text->begin(), text->end(), is_control))
+            refuse(" holds a control character; write plain text");
         if (text->size() > longest_text) {
-            throw InputError(setting.place + ": '" + setting.name + "' has " +
-                             std::to_string(text->size()) + " letters; write at most " +
-                             std::to_string(longest_text));
+            refuse(" has " + std::to_string(text->size()) + " letters; write at most " +
+                   std::to_string(longest_text));
         }
         **std::get_if<std::string*>(&entry->target) = *text;
     }
