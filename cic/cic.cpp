@@ -1,5 +1,6 @@
 // Clouds-in-cells: charged particles in the electric field of their own charge, which is computed
-// on a mesh. One or two dimensions, a uniform magnetic field, periodic or between walls.
+// on a mesh. One dimension, x, or the plane (x, z); a uniform magnetic field; periodic or between
+// walls.
 //
 // The default case is the two-stream instability: two cold beams pass through each other, roll up
 // into vortices in phase space and turn their energy into heat.
@@ -11,7 +12,7 @@
 // slide, deposit_charge.hpp, solve_field.hpp, gather_field.hpp, move_particles.hpp.
 #include <optional>
 
-#include "cic/meet_walls.hpp"
+#include "cic/apply_particle_boundaries.hpp"
 #include "cic/output/record.hpp"
 #include "cic/setup/initial_state.hpp"
 #include "cic/sort_particles.hpp"
@@ -67,7 +68,7 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
         recorder.snapshot(step, state, rho_g, field, run);                     // files of t^n
         push_particles(field.E_g, grid, scheme, parameters.B, dt, particles);  // [CIC-3, 4, 5]
         recorder.record(step, state, rho_g, field, run);                       // the row of t^n
-        meet_walls(parameters, step, state);
+        apply_particle_boundaries(parameters, step, state);
         ++step;
         if (sort_is_due(parameters.sort_interval, step))
             sort_particles(grid, sort_scratch, particles);

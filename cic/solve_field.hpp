@@ -15,9 +15,12 @@ struct FieldState {
     Walls walls;
 };
 
+/// What solve_field() needs beside the charge: the mesh, where the field is wanted, and the prepared
+/// solver of Poisson's equation. Nothing in it changes from step to step but scratch room.
 class FieldSolver {
    public:
-    /// in:     gauss_sign, +1, or -1 for the law as the slide prints it
+    /// in:     nine_point, the Laplacian with the corners; gauss_sign, +1, or -1 for the law as the
+    ///         slide prints it
     FieldSolver(const Grid& grid, const Scheme& scheme, bool nine_point, double gauss_sign)
         : grid_(grid), scheme_(scheme), gauss_sign_(gauss_sign), poisson_(grid, nine_point) {}
 
@@ -40,9 +43,8 @@ inline void field_on_edges(const Grid& grid, const Field& phi, MeshField& E_g) {
     common::for_each_row(grid.z.cells + 2, [&](long row) {
         for (long i = -1; i <= grid.x.cells; ++i) {
             const long n = grid.index(i, row - 1);
-            E_g[static_cast<std::size_t>(n)] = {
-                static_cast<Real>((phi[n] - phi[n + 1]) * per_dx),
-                static_cast<Real>((phi[n] - phi[n + stride]) * per_dz)};
+            E_g[n] = {static_cast<Real>((phi[n] - phi[n + 1]) * per_dx),
+                      static_cast<Real>((phi[n] - phi[n + stride]) * per_dz)};
         }
     });
 }
@@ -54,9 +56,8 @@ inline void field_on_nodes(const Grid& grid, const Field& phi, MeshField& E_g) {
     common::for_each_row(grid.z.cells + 1, [&](long row) {
         for (long i = 0; i <= grid.x.cells; ++i) {
             const long n = grid.index(i, row);
-            E_g[static_cast<std::size_t>(n)] = {
-                static_cast<Real>((phi[n - 1] - phi[n + 1]) * half_per_dx),
-                static_cast<Real>((phi[n - stride] - phi[n + stride]) * half_per_dz)};
+            E_g[n] = {static_cast<Real>((phi[n - 1] - phi[n + 1]) * half_per_dx),
+                      static_cast<Real>((phi[n - stride] - phi[n + stride]) * half_per_dz)};
         }
     });
 }
@@ -86,9 +87,7 @@ void for_each_wall_node(const Grid& grid, bool along_x, const Visit& visit) {
 // Fills the ghost places of the packed field: periodic images, or mirror images behind walls, such
 // that gather_field stays the transpose of deposit_charge.
 inline void fill_ghosts(const Grid& grid, bool on_edges, MeshField& E_g) {
-    const auto at = [&](long i, long j) -> NodeField& {
-        return E_g[static_cast<std::size_t>(grid.index(i, j))];
-    };
+    const auto at = [&](long i, long j) -> NodeField& { return E_g[grid.index(i, j)]; };
     const long nx = grid.x.cells, nz = grid.z.cells;
     const auto mirror = [&](const common::Axis& axis, bool half, const auto& copy) {
         common::detail::ghosts_along(axis, half, half ? -1 : 1, copy);
@@ -144,7 +143,7 @@ inline void solve_field(FieldSolver& solver, const Field& rho_g, FieldState& fie
             if (!field.walls[w].floating) field.walls[w].charge = charge[w];
     }
 
-    field.E_g.resize(static_cast<std::size_t>(grid.size()));
+    field.E_g.resize(grid.size());
     if (solver.scheme_.energy_conserving) {
         detail::field_on_edges(grid, phi, field.E_g);
     } else {
@@ -157,7 +156,7 @@ inline void solve_field(FieldSolver& solver, const Field& rho_g, FieldState& fie
                     const double sigma =
                         detail::surface_charge(phi[n], phi[n + in], rho[n], axis.spacing());
                     const double E_half = (phi[n] - phi[n + in]) / axis.spacing();
-                    auto& E = field.E_g[static_cast<std::size_t>(n)];
+                    auto& E = field.E_g[n];
                     (along_x ? E.x : E.z) = static_cast<Real>(sign * 0.5 * (sigma + E_half));
                 });
         }

@@ -48,9 +48,9 @@ inline double charge_on_mesh(const Grid& grid, const Field& rho_g) {
 /// Complex amplitudes of waves exp(i k x) in the field along k,
 ///   E_k = -i |k| (2/N) sum_g phi_g exp(-i k x_g)
 /// for wavelengths that fit into the box; in a direction with walls the mean is taken.
-class WaveMeter {
+class FourierMode {
    public:
-    WaveMeter(const Grid& grid, long mode_x, long mode_z, double k) : k_(k) {
+    FourierMode(const Grid& grid, long mode_x, long mode_z, double k) : k_(k) {
         const auto table = [](const common::Axis& axis, long mode) {
             std::vector<std::complex<double>> phases;
             const long count = axis.periodic ? axis.cells : axis.cells + 1;

@@ -93,7 +93,7 @@ class Recorder {
         row_ = {time, energy, drift, all.kinetic, in_field, charge_error(charge, state)};
         for (const Particles& s : state.species) row_.push_back(s.sums.kinetic);
         row_.insert(row_.end(), all.momentum.begin(), all.momentum.end());
-        const auto add_mode = [&](const WaveMeter& meter) {
+        const auto add_mode = [&](const FourierMode& meter) {
             const std::complex<double> mode = meter.amplitude(grid, field.phi);
             row_.insert(row_.end(), {mode.real(), mode.imag()});
         };
@@ -129,7 +129,7 @@ class Recorder {
     }
 
    private:
-    WaveMeter meter(long mode_x, long mode_z) const {
+    FourierMode meter(long mode_x, long mode_z) const {
         return {parameters_.grid, mode_x, mode_z, wave_vector(parameters_, mode_x, mode_z).size()};
     }
 
@@ -172,7 +172,7 @@ class Recorder {
     }
 
     const Case& parameters_;
-    std::vector<WaveMeter> meters_;
+    std::vector<FourierMode> meters_;
     double background_ = 0;
     double least_energy_ = 0;  // of the field that round-off of all charges makes
     std::vector<double> row_;

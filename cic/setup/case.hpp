@@ -132,93 +132,101 @@ inline void describe_species(common::ParameterTable& table, const std::string& p
 
 /// The table of all parameters: names, units, ranges and meanings of the fields of a Case, which
 /// hold the defaults.
-inline common::ParameterTable describe(Case& w) {
+inline common::ParameterTable describe(Case& parameters) {
     using common::anything, common::above, common::at_least, common::between;
     common::ParameterTable table;
 
     table.group("mesh: x, or the plane (x, z); nothing depends on y");
-    table.whole("grid.dimensions", w.dimensions, "", between(1, 2), "1: nothing depends on z");
-    table.whole("grid.cells_x", w.grid.x.cells, "", between(2, 16384), "cells along x");
-    table.whole("grid.cells_z", w.grid.z.cells, "", between(1, 16384),
+    table.whole("grid.dimensions", parameters.dimensions, "", between(1, 2),
+                "1: nothing depends on z");
+    table.whole("grid.cells_x", parameters.grid.x.cells, "", between(2, 16384), "cells along x");
+    table.whole("grid.cells_z", parameters.grid.z.cells, "", between(1, 16384),
                 "cells along z, in two dimensions");
-    table.real("grid.length_x", w.grid.x.length, "length", above(0), "length of the box along x");
-    table.real("grid.length_z", w.grid.z.length, "length", above(0), "along z, in two dimensions");
-    table.choice("grid.boundary_x", w.boundary_x, {"periodic", "wall"}, "ends of x");
-    table.choice("grid.boundary_z", w.boundary_z, {"periodic", "wall"}, "ends of z");
+    table.real("grid.length_x", parameters.grid.x.length, "length", above(0),
+               "length of the box along x");
+    table.real("grid.length_z", parameters.grid.z.length, "length", above(0),
+               "along z, in two dimensions");
+    table.choice("grid.boundary_x", parameters.boundary_x, {"periodic", "wall"}, "ends of x");
+    table.choice("grid.boundary_z", parameters.boundary_z, {"periodic", "wall"}, "ends of z");
 
     table.group("walls, where a direction has them");
     const std::array<const char*, 4> ends{"x_low", "x_high", "z_low", "z_high"};
     for (std::size_t k = 0; k < 4; ++k) {
         const std::string end = ends[k];
-        table.choice("boundary." + end, w.walls[k].field, {"grounded", "floating"},
+        table.choice("boundary." + end, parameters.walls[k].field, {"grounded", "floating"},
                      "held at a potential, or insulated and charged by what it absorbs");
-        table.real("boundary.potential_" + end, w.walls[k].potential, "m velocity^2/e", anything(),
-                   "of a grounded wall");
+        table.real("boundary.potential_" + end, parameters.walls[k].potential, "m velocity^2/e",
+                   anything(), "of a grounded wall");
         table.choice(
-            "boundary.particles_" + end, w.walls[k].particles,
+            "boundary.particles_" + end, parameters.walls[k].particles,
             k == x_low ? std::vector<std::string>{"absorb", "reflect", "source"}
                        : std::vector<std::string>{"absorb", "reflect"},
             k == x_low ? "source: emits, and emits again what comes back" : "what becomes of them");
     }
 
     table.group("time");
-    table.real("time.dt", w.dt, "1/omega_p", above(0), "time step");
-    table.real("time.end", w.end, "1/omega_p", at_least(0), "length of the run");
-    table.real("time.energy_limit", w.energy_limit, "", at_least(0),
+    table.real("time.dt", parameters.dt, "1/omega_p", above(0), "time step");
+    table.real("time.end", parameters.end, "1/omega_p", at_least(0), "length of the run");
+    table.real("time.energy_limit", parameters.energy_limit, "", at_least(0),
                "periodic runs fail when the energy is this many times the initial; 0: never");
 
     table.group("method");
-    table.choice("method.weighting", w.weighting, {"ngp", "cic", "tsc"},
+    table.choice("method.weighting", parameters.weighting, {"ngp", "cic", "tsc"},
                  "nearest grid point, cloud in cell, triangular cloud");
-    table.choice("method.scheme", w.conserving, {"momentum", "energy"},
+    table.choice("method.scheme", parameters.conserving, {"momentum", "energy"},
                  "what the gather conserves; energy: one order less, from the edges (Lewis)");
-    table.choice("method.stencil", w.stencil, {"five_point", "nine_point"},
+    table.choice("method.stencil", parameters.stencil, {"five_point", "nine_point"},
                  "Laplacian in two dimensions");
-    table.real("gauss.sign", w.gauss_sign, "", between(-1, 1),
+    table.real("gauss.sign", parameters.gauss_sign, "", between(-1, 1),
                "+1 for div E = rho; -1 for the law as the slide prints it");
-    table.whole("method.sort_interval", w.sort_interval, "step", between(0, 1e9),
+    table.whole("method.sort_interval", parameters.sort_interval, "step", between(0, 1e9),
                 "steps between sorts by row, in two dimensions; 0: never");
 
     table.group("plasma");
-    table.real("plasma.B_x", w.B.x, "m omega_p/e", anything(), "uniform magnetic field along x");
-    table.real("plasma.B_y", w.B.y, "m omega_p/e", anything(), "out of the plane");
-    table.real("plasma.B_z", w.B.z, "m omega_p/e", anything(), "along z");
-    table.whole("plasma.seed", w.seed, "", between(0, 1e9), "another number, another realization");
-    table.list("species", w.species, detail::describe_species,
+    table.real("plasma.B_x", parameters.B.x, "m omega_p/e", anything(),
+               "uniform magnetic field along x");
+    table.real("plasma.B_y", parameters.B.y, "m omega_p/e", anything(), "out of the plane");
+    table.real("plasma.B_z", parameters.B.z, "m omega_p/e", anything(), "along z");
+    table.whole("plasma.seed", parameters.seed, "", between(0, 1e9),
+                "another number, another realization");
+    table.list("species", parameters.species, detail::describe_species,
                "a species of the plasma, [species.<name>]");
 
     table.group("comparison with theory");
-    table.choice("theory.compare", w.compare,
+    table.choice("theory.compare", parameters.compare,
                  {"none", "wave", "diocotron", "sheath", "clouds", "heating"},
                  "what the run is compared with; wave: the dispersion relation of its species");
-    table.choice("theory.model", w.model, {"plasma", "mesh"},
+    table.choice("theory.model", parameters.model, {"plasma", "mesh"},
                  "waves of the plasma, or of the plasma as mesh and time step see it");
-    table.whole("theory.mode_x", w.mode_x, "", between(-2048, 2048),
+    table.whole("theory.mode_x", parameters.mode_x, "", between(-2048, 2048),
                 "followed wavelengths in length_x; with mode_z = 0 also 0: the fastest growing");
-    table.whole("theory.mode_z", w.mode_z, "", between(-2048, 2048), "in length_z");
-    table.real("theory.near", w.near, "omega_p", anything(),
+    table.whole("theory.mode_z", parameters.mode_z, "", between(-2048, 2048), "in length_z");
+    table.real("theory.near", parameters.near, "omega_p", anything(),
                "frequency near which the root is sought; 0: the fastest growing");
-    table.real("theory.growth_tolerance", w.growth_tolerance, "", between(0, 1),
+    table.real("theory.growth_tolerance", parameters.growth_tolerance, "", between(0, 1),
                "of rates, sheath potentials and thermal noise, relative");
-    table.real("theory.frequency_tolerance", w.frequency_tolerance, "", between(0, 1),
+    table.real("theory.frequency_tolerance", parameters.frequency_tolerance, "", between(0, 1),
                "of frequencies, relative");
 
     table.group("output");
-    table.whole("output.modes", w.modes, "", between(0, 512),
+    table.whole("output.modes", parameters.modes, "", between(0, 512),
                 "modes along x whose amplitudes are columns of the history");
-    table.flag("output.spectrum", w.spectrum, "spectrum.dat: those modes against frequency");
-    table.real("output.fields_interval", w.fields_interval, "1/omega_p", at_least(0),
+    table.flag("output.spectrum", parameters.spectrum,
+               "spectrum.dat: those modes against frequency");
+    table.real("output.fields_interval", parameters.fields_interval, "1/omega_p", at_least(0),
                "time between fields files; 0: none");
-    table.real("output.particles_interval", w.particles_interval, "1/omega_p", at_least(0),
+    table.real("output.particles_interval", parameters.particles_interval, "1/omega_p", at_least(0),
                "time between particles files; 0: none");
-    table.real("output.phase_interval", w.phase_interval, "1/omega_p", at_least(0),
+    table.real("output.phase_interval", parameters.phase_interval, "1/omega_p", at_least(0),
                "time between files of f(x, v_x) and f(v_x); 0: none");
-    table.whole("output.phase_bins_x", w.phase_bins_x, "", between(1, 4096), "bins along x");
-    table.whole("output.phase_bins_v", w.phase_bins_v, "", between(2, 4096), "bins along v_x");
-    table.real("output.phase_v_max", w.phase_v_max, "velocity", at_least(0),
+    table.whole("output.phase_bins_x", parameters.phase_bins_x, "", between(1, 4096),
+                "bins along x");
+    table.whole("output.phase_bins_v", parameters.phase_bins_v, "", between(2, 4096),
+                "bins along v_x");
+    table.real("output.phase_v_max", parameters.phase_v_max, "velocity", at_least(0),
                "bins reach from -v_max to v_max; 0: far enough for the start");
-    table.flag("output.vtk", w.vtk, "also write .vti and .vtp for ParaView");
-    table.whole("output.checkpoint_steps", w.checkpoint_steps, "", between(0, 1e9),
+    table.flag("output.vtk", parameters.vtk, "also write .vti and .vtp for ParaView");
+    table.whole("output.checkpoint_steps", parameters.checkpoint_steps, "", between(0, 1e9),
                 "steps between checkpoints; 0: only when stopped");
 
     // Columns of the history and the number of modes belong to the whole run.

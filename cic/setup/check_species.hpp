@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "cic/meet_walls.hpp"
+#include "cic/apply_particle_boundaries.hpp"
 
 namespace cic {
 
@@ -28,17 +28,17 @@ inline void refuse_extreme(const std::string& name, double value) {
                " is not between 1e-40 and 1e40 in size: choose other units");
 }
 
-inline bool is_above_cut_off(const Case& w, long mode_x, long mode_z) {
-    return 2 * std::labs(mode_x) > w.grid.x.cells ||
-           (w.dimensions == 2 && 2 * std::labs(mode_z) > w.grid.z.cells);
+inline bool is_above_cut_off(const Case& parameters, long mode_x, long mode_z) {
+    return 2 * std::labs(mode_x) > parameters.grid.x.cells ||
+           (parameters.dimensions == 2 && 2 * std::labs(mode_z) > parameters.grid.z.cells);
 }
 
-inline void refuse_walls(const Case& w) {
+inline void refuse_walls(const Case& parameters) {
     const std::array<const char*, 4> ends{"x_low", "x_high", "z_low", "z_high"};
     for (std::size_t k = 0; k < 4; ++k) {
-        const WallCase& wall = w.walls[k];
+        const WallCase& wall = parameters.walls[k];
         const std::string end = ends[k], direction = end.substr(0, 1);
-        const bool there = (k <= x_high ? w.boundary_x : w.boundary_z) == "wall";
+        const bool there = (k <= x_high ? parameters.boundary_x : parameters.boundary_z) == "wall";
         refuse(!there &&
                    (wall.field != "grounded" || wall.particles != "absorb" || wall.potential != 0),
                "there is no wall at " + end + ": set grid.boundary_" + direction +
@@ -51,14 +51,14 @@ inline void refuse_walls(const Case& w) {
                    "it out, or set boundary." +
                    end + " = \"grounded\"");
         refuse(
-            wall.field == "floating" && w.gauss_sign < 0,
+            wall.field == "floating" && parameters.gauss_sign < 0,
             "gauss.sign = -1 is not for floating walls: set boundary." + end + " = \"grounded\"");
     }
 }
 
-inline void refuse_species(const Case& w, const SpeciesCase& s) {
+inline void refuse_species(const Case& parameters, const SpeciesCase& s) {
     const std::string name = "species." + s.name;
-    const bool plane = w.dimensions == 2;
+    const bool plane = parameters.dimensions == 2;
     const std::vector<std::pair<const char*, double>> numbers{
         {"density", s.density},
         {"charge", s.charge},
@@ -93,18 +93,20 @@ inline void refuse_species(const Case& w, const SpeciesCase& s) {
     const bool sized = s.profile == "layer" || s.profile == "disk";
     refuse(sized && s.half_width == 0, name + ".half_width = 0: a " + s.profile + " needs a width");
     const double reach = s.half_width + std::fabs(s.ripple);
-    refuse(s.profile == "layer" &&
-               (s.center_z - reach < w.grid.z.low || s.center_z + reach > w.grid.z.high()),
+    refuse(s.profile == "layer" && (s.center_z - reach < parameters.grid.z.low ||
+                                    s.center_z + reach > parameters.grid.z.high()),
            name + ": the layer reaches beyond the box, from z = " + format(s.center_z - reach) +
                " to " + format(s.center_z + reach) + " in a box from 0 to " +
-               format(w.grid.z.length));
+               format(parameters.grid.z.length));
     refuse(s.ripple != 0 && s.profile != "layer", name + ".ripple belongs to profile = \"layer\"");
     const double r = s.profile == "disk" ? s.half_width : 0;
-    refuse((s.profile == "disk" || s.profile == "point") &&
-               (s.center_x - r < w.grid.x.low || s.center_x + r > w.grid.x.high() ||
-                (plane && (s.center_z - r < w.grid.z.low || s.center_z + r > w.grid.z.high()))),
-           name + ": the " + s.profile + " reaches beyond the box: move " + name +
-               ".center_x or center_z, or make it smaller");
+    refuse(
+        (s.profile == "disk" || s.profile == "point") &&
+            (s.center_x - r < parameters.grid.x.low || s.center_x + r > parameters.grid.x.high() ||
+             (plane && (s.center_z - r < parameters.grid.z.low ||
+                        s.center_z + r > parameters.grid.z.high()))),
+        name + ": the " + s.profile + " reaches beyond the box: move " + name +
+            ".center_x or center_z, or make it smaller");
     refuse(s.loading == "lattice" && sized,
            name + ".loading = \"lattice\" fills the whole box: take \"quiet\" for a " + s.profile);
     refuse(s.loading == "lattice" &&
@@ -112,49 +114,51 @@ inline void refuse_species(const Case& w, const SpeciesCase& s) {
            name + ".loading = \"lattice\" is for cold species: take \"quiet\"");
     const bool across = s.temperature_y != 0 || s.drift_y != 0;
     const bool along_z = s.temperature_z != 0 || s.drift_z != 0;
-    refuse(!w.magnetized() && across,
+    refuse(!parameters.magnetized() && across,
            name +
                " has a velocity out of the plane, which nothing can see without a magnetic "
                "field: take out drift_y and temperature_y, or set plasma.B_x, B_y or B_z");
-    refuse(!w.magnetized() && !plane && along_z,
+    refuse(!parameters.magnetized() && !plane && along_z,
            name +
                " has a velocity along z, which nothing can see in one dimension without a "
                "magnetic field: take out drift_z and temperature_z");
-    refuse(s.start == "ExB" && !w.magnetized(),
+    refuse(s.start == "ExB" && !parameters.magnetized(),
            name + ".start = \"ExB\" needs a magnetic field: set plasma.B_x, B_y or B_z");
     if (s.amplitude != 0) {
         refuse(s.mode_x == 0 && (s.mode_z == 0 || !plane),
                name + ": the perturbed mode has no wave number: set mode_x" +
                    (plane ? " or mode_z" : ""));
         refuse(!plane && s.mode_z != 0, name + ".mode_z needs grid.dimensions = 2");
-        refuse(w.has_walls() && s.mode_x != 0 && s.mode_z != 0,
+        refuse(parameters.has_walls() && s.mode_x != 0 && s.mode_z != 0,
                name + ": " + mode_text(s.mode_x, s.mode_z) +
                    " would push particles through the walls: set mode_x or mode_z to 0");
     }
     refuse(s.ripple != 0 && s.mode_x == 0,
            name + ".ripple = " + format(s.ripple) + " has no wave number: set mode_x");
-    refuse((s.amplitude != 0 || s.ripple != 0) && is_above_cut_off(w, s.mode_x, s.mode_z),
+    refuse((s.amplitude != 0 || s.ripple != 0) && is_above_cut_off(parameters, s.mode_x, s.mode_z),
            name + ": " + mode_text(s.mode_x, s.mode_z) +
                " has more than one wavelength per two cells, the cut-off of the mesh: refine it "
                "or lower the mode");
-    refuse(particle_count(w, s) < 1, name +
-                                         " has no particle: raise particles_per_cell, or its "
-                                         "half_width of " +
-                                         format(s.half_width));
-    refuse(s.emission > 0 && !(w.boundary_x == "wall" && w.walls[x_low].particles == "source"),
+    refuse(particle_count(parameters, s) < 1,
+           name +
+               " has no particle: raise particles_per_cell, or its "
+               "half_width of " +
+               format(s.half_width));
+    refuse(s.emission > 0 &&
+               !(parameters.boundary_x == "wall" && parameters.walls[x_low].particles == "source"),
            name +
                ".emission needs boundary.particles_x_low = \"source\" and grid.boundary_x = "
                "\"walls\"");
-    if (w.walls[x_low].particles != "source") return;
+    if (parameters.walls[x_low].particles != "source") return;
     const double fastest = detail::fastest_emitted * std::sqrt(s.emission_temperature / s.mass);
-    refuse(fastest * w.dt > w.grid.x.length,
+    refuse(fastest * parameters.dt > parameters.grid.x.length,
            name + ".emission_temperature = " + format(s.emission_temperature) +
                ": a particle emitted with " + format(fastest) +
                " crosses the whole box in one step: lower it, or time.dt below " +
-               format(w.grid.x.length / fastest));
-    const double weight =
-                     s.density * filled_volume(w, s) / static_cast<double>(particle_count(w, s)),
-                 emitted = emitted_per_step(w, s, weight);
+               format(parameters.grid.x.length / fastest));
+    const double weight = s.density * filled_volume(parameters, s) /
+                          static_cast<double>(particle_count(parameters, s)),
+                 emitted = emitted_per_step(parameters, s, weight);
     refuse(emitted > 1e6,
            name + ".emission = " + format(s.emission) + " is " + format(emitted) +
                " particles in a step, more than 1e6: lower it, or raise density, which makes them "

@@ -55,11 +55,11 @@ inline constexpr double fastest_emitted = 8.7;
 
 // Velocity from the wall at x_low: half-Maxwellian weighted with the speed at which it leaves. The
 // particle has been on its way for a random part of the step.
-inline void emit(const Case& w, const SpeciesCase& from, const EmissionNumbers& random,
+inline void emit(const Case& parameters, const SpeciesCase& from, const EmissionNumbers& random,
                  Particles& s, std::size_t n) {
     const double v_th = std::sqrt(from.emission_temperature / from.mass);
     const double v_x = v_th * std::sqrt(-2 * std::log(random.uniform(0)));
-    s.x_p[n] = static_cast<Real>(w.grid.x.low + random.uniform(1) * w.dt * v_x);
+    s.x_p[n] = static_cast<Real>(parameters.grid.x.low + random.uniform(1) * parameters.dt * v_x);
     s.vx_p[n] = static_cast<Real>(v_x);
     if (!s.vy_p.empty()) s.vy_p[n] = static_cast<Real>(v_th * random.gaussian(2));
     if (!s.vz_p.empty()) s.vz_p[n] = static_cast<Real>(v_th * random.gaussian(3));
@@ -94,29 +94,30 @@ inline const End* wall_before(const std::vector<End>& ends, std::size_t n) {
 }
 
 // Area of a wall: 1 in one dimension.
-inline double area_of(const Case& w, WallName wall) {
-    if (w.dimensions == 1) return 1;
-    return wall == x_low || wall == x_high ? w.grid.z.length : w.grid.x.length;
+inline double area_of(const Case& parameters, WallName wall) {
+    if (parameters.dimensions == 1) return 1;
+    return wall == x_low || wall == x_high ? parameters.grid.z.length : parameters.grid.x.length;
 }
 
 }  // namespace detail
 
 /// Simulation particles of one species, of this weight, that a source wall emits in a step.
-inline double emitted_per_step(const Case& w, const SpeciesCase& s, double weight) {
-    return s.emission * w.dt * (w.dimensions == 2 ? w.grid.z.length : 1) / weight;
+inline double emitted_per_step(const Case& parameters, const SpeciesCase& s, double weight) {
+    return s.emission * parameters.dt *
+           (parameters.dimensions == 2 ? parameters.grid.z.length : 1) / weight;
 }
 
 namespace detail {
 
 // Lets the particles of one species that are behind a wall meet it; what is absorbed is gone.
-inline void meet_ends(const Case& w, const SpeciesCase& from, std::uint32_t purpose, long step,
-                      Particles& s, Walls& walls, long& emitted_again) {
-    const std::vector<End> ends = walls_around(w.grid, s);
+inline void meet_ends(const Case& parameters, const SpeciesCase& from, std::uint32_t purpose,
+                      long step, Particles& s, Walls& walls, long& emitted_again) {
+    const std::vector<End> ends = walls_around(parameters.grid, s);
     std::vector<long> absorbed;
-    for (const long p : particles_outside(w.grid, s)) {
+    for (const long p : particles_outside(parameters.grid, s)) {
         const auto n = static_cast<std::size_t>(p);
         for (int bounces = 0; const End* end = wall_before(ends, n); ++bounces) {
-            const std::string& does = w.walls[end->name].particles;
+            const std::string& does = parameters.walls[end->name].particles;
             if (bounces > 2)
                 throw common::NumericalError(
                     s.name + ": a particle moves farther than the box in one step, at step " +
@@ -124,12 +125,13 @@ inline void meet_ends(const Case& w, const SpeciesCase& from, std::uint32_t purp
             if (does == "absorb") {
                 absorbed.push_back(p);
                 if (walls[end->name].floating)
-                    walls[end->name].charge += s.q_p / area_of(w, end->name);
+                    walls[end->name].charge += s.q_p / area_of(parameters, end->name);
                 break;
             }
             if (does == "source") {
                 const auto count = static_cast<std::uint64_t>(emitted_again++);
-                emit(w, from, {static_cast<std::uint64_t>(w.seed), purpose, count}, s, n);
+                emit(parameters, from,
+                     {static_cast<std::uint64_t>(parameters.seed), purpose, count}, s, n);
             } else {
                 Real &x = (*end->x_p)[n], &v = (*end->v_p)[n];
                 x = static_cast<Real>(2 * end->at - double(x));
@@ -141,9 +143,9 @@ inline void meet_ends(const Case& w, const SpeciesCase& from, std::uint32_t purp
 }
 
 // Lets the source wall emit what is due in this step, at an even rate.
-inline void emit_new(const Case& w, const SpeciesCase& from, std::uint32_t purpose, long step,
-                     Particles& s, Walls& walls) {
-    const double per_step = emitted_per_step(w, from, s.m_p / from.mass);
+inline void emit_new(const Case& parameters, const SpeciesCase& from, std::uint32_t purpose,
+                     long step, Particles& s, Walls& walls) {
+    const double per_step = emitted_per_step(parameters, from, s.m_p / from.mass);
     const auto emitted_before = [&](long steps) {
         return static_cast<long>(std::floor(per_step * static_cast<double>(steps)));
     };
@@ -153,15 +155,16 @@ inline void emit_new(const Case& w, const SpeciesCase& from, std::uint32_t purpo
         throw common::NumericalError(
             s.name + ": the source has filled the box with more than 2e9 particles, at step " +
             std::to_string(step) + ": lower its emission, or let a wall absorb them");
-    resize(w, new_count, s);
+    resize(parameters, new_count, s);
     for (long k = first; k < last; ++k) {
         const auto n = static_cast<std::size_t>(old_count + k - first);
-        const EmissionNumbers random{static_cast<std::uint64_t>(w.seed), purpose,
+        const EmissionNumbers random{static_cast<std::uint64_t>(parameters.seed), purpose,
                                      static_cast<std::uint64_t>(k)};
-        emit(w, from, random, s, n);
+        emit(parameters, from, random, s, n);
         if (!s.z_p.empty())
-            s.z_p[n] = static_cast<Real>(w.grid.z.low + w.grid.z.length * random.uniform(4));
-        walls[x_low].charge -= s.q_p / area_of(w, x_low);
+            s.z_p[n] = static_cast<Real>(parameters.grid.z.low +
+                                         parameters.grid.z.length * random.uniform(4));
+        walls[x_low].charge -= s.q_p / area_of(parameters, x_low);
     }
 }
 
@@ -177,15 +180,17 @@ inline void emit_new(const Case& w, const SpeciesCase& from, std::uint32_t purpo
 ///         counted on the source wall
 /// note:   A reflected particle keeps the leapfrog centered: its mirror image would have moved so.
 /// errors: NumericalError when a particle leaps over the whole box, or when they are too many
-inline void meet_walls(const Case& w, long step, State& state) {
-    if (!w.has_walls()) return;
+inline void apply_particle_boundaries(const Case& parameters, long step, State& state) {
+    if (!parameters.has_walls()) return;
     std::size_t index = 0;
-    for (const SpeciesCase& from : w.species) {
+    for (const SpeciesCase& from : parameters.species) {
         if (!from.mobile()) continue;
         Particles& s = state.species[index];
         const auto purpose = static_cast<std::uint32_t>(1000 + 2 * index);
-        detail::meet_ends(w, from, purpose, step, s, state.walls, state.emitted_again[index]);
-        if (from.emission > 0) detail::emit_new(w, from, purpose + 1, step, s, state.walls);
+        detail::meet_ends(parameters, from, purpose, step, s, state.walls,
+                          state.emitted_again[index]);
+        if (from.emission > 0)
+            detail::emit_new(parameters, from, purpose + 1, step, s, state.walls);
         ++index;
     }
 }
