@@ -55,6 +55,7 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     FieldState field;
     DepositScratch deposit_scratch;
     common::SortScratch<Real> sort_scratch;
+    const ParticleBoundaries boundaries = particle_boundaries(parameters, particles);
     Recorder recorder(parameters, state, run.history);
 
     // 3. The loop of the slide.
@@ -68,7 +69,8 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
         recorder.snapshot(step, state, rho_g, field, run);                     // files of t^n
         push_particles(field.E_g, grid, scheme, parameters.B, dt, particles);  // [CIC-3, 4, 5]
         recorder.record(step, state, rho_g, field, run);                       // the row of t^n
-        apply_particle_boundaries(parameters, step, state);
+        apply_particle_boundaries(grid, boundaries, step, particles, state.walls,
+                                  state.emitted_again);
         ++step;
         if (sort_is_due(parameters.sort_interval, step))
             sort_particles(grid, sort_scratch, particles);

@@ -40,6 +40,15 @@ struct Particles {
     std::array<std::vector<Real>*, 5> all() { return {&x_p, &z_p, &vx_p, &vy_p, &vz_p}; }
 };
 
+/// Gives a species room for as many particles, with the components that can change.
+inline void resize(long count, bool plane, bool magnetized, Particles& particles) {
+    particles.x_p.resize(count);
+    particles.vx_p.resize(count);
+    if (plane) particles.z_p.resize(count);
+    if (magnetized) particles.vy_p.resize(count);
+    if (magnetized || plane) particles.vz_p.resize(count);
+}
+
 /// The most particles that are worked on together: few enough for all their numbers to stay in the
 /// nearest cache from one line of the slide to the next.
 inline constexpr long batch_size = 512;

@@ -13,6 +13,7 @@
 
 #include "cic/apply_particle_boundaries.hpp"
 #include "cic/output/diagnostics.hpp"
+#include "cic/setup/initial_state.hpp"
 #include "cic/sort_particles.hpp"
 #include "common/splines.hpp"
 #include "tests/support/any_numbers.hpp"
@@ -459,7 +460,8 @@ TEST_CASE("walls take charge reflect speed and lose nothing") {
     s.vx_p = {1, -2, 3, 1, 1, 2};
     s.vz_p = {1, 1, 1, -1, 2, 3};
     state.species = {s};
-    apply_particle_boundaries(parameters, 0, state);
+    apply_particle_boundaries(parameters.grid, particle_boundaries(parameters, state.species), 0,
+                              state.species, state.walls, state.emitted_again);
     const Particles& after = state.species[0];
     REQUIRE(after.count() == 4);
     CHECK(state.walls[x_low].charge == -0.5 / 4);  // per area, over the length of the wall
@@ -497,7 +499,10 @@ TEST_CASE("a source emits its rate with the flux of a half Maxwellian") {
     s.q_p = -0.001, s.m_p = 0.004;  // 0.001 electrons
     state.species = {s};
     const long steps = 200;
-    for (long step = 0; step < steps; ++step) apply_particle_boundaries(parameters, step, state);
+    const ParticleBoundaries boundaries = particle_boundaries(parameters, state.species);
+    for (long step = 0; step < steps; ++step)
+        apply_particle_boundaries(parameters.grid, boundaries, step, state.species, state.walls,
+                                  state.emitted_again);
     const Particles& after = state.species[0];
     const double N = static_cast<double>(after.count());
     CHECK(after.count() == 125000);  // 2.5 / 0.001 per unit of time for 50

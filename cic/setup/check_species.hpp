@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "cic/apply_particle_boundaries.hpp"
+#include "cic/setup/initial_state.hpp"
 
 namespace cic {
 
@@ -150,7 +150,7 @@ inline void refuse_species(const Case& parameters, const SpeciesCase& s) {
                ".emission needs boundary.particles_x_low = \"source\" and grid.boundary_x = "
                "\"walls\"");
     if (parameters.walls[x_low].particles != "source") return;
-    const double fastest = detail::fastest_emitted * std::sqrt(s.emission_temperature / s.mass);
+    const double fastest = fastest_emitted * std::sqrt(s.emission_temperature / s.mass);
     refuse(fastest * parameters.dt > parameters.grid.x.length,
            name + ".emission_temperature = " + format(s.emission_temperature) +
                ": a particle emitted with " + format(fastest) +

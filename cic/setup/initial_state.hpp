@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "cic/apply_particle_boundaries.hpp"
 #include "cic/deposit_charge.hpp"
 #include "cic/setup/load_plasma.hpp"
 #include "cic/solve_field.hpp"
@@ -44,6 +45,34 @@ inline Walls walls_of(const Case& parameters) {
     for (std::size_t k = 0; k < 4; ++k)
         walls[k] = {parameters.walls[k].field == "floating", parameters.walls[k].potential, 0};
     return walls;
+}
+
+/// Simulation particles of one species, of this weight, that a source wall emits in a step.
+inline double emitted_per_step(const Case& parameters, const SpeciesCase& s, double weight) {
+    return s.emission * parameters.dt * parameters.grid.z.length / weight;
+}
+
+/// The boundary conditions of the particles of a case, which have been loaded.
+inline ParticleBoundaries particle_boundaries(const Case& parameters,
+                                              const std::vector<Particles>& species) {
+    ParticleBoundaries conditions;
+    for (std::size_t k = 0; k < 4; ++k) {
+        const std::string& does = parameters.walls[k].particles;
+        conditions.walls[k] = does == "absorb"    ? AtWall::absorb
+                              : does == "reflect" ? AtWall::reflect
+                                                  : AtWall::source;
+    }
+    for (const SpeciesCase& s : parameters.species) {
+        if (!s.mobile()) continue;
+        const double weight = species[conditions.emission.size()].m_p / s.mass;
+        conditions.emission.push_back(
+            {std::sqrt(s.emission_temperature / s.mass), emitted_per_step(parameters, s, weight)});
+    }
+    conditions.dt = parameters.dt;
+    conditions.seed = static_cast<std::uint64_t>(parameters.seed);
+    conditions.plane = parameters.dimensions == 2;
+    conditions.magnetized = parameters.magnetized();
+    return conditions;
 }
 
 /// Replaces the velocities of a species by the drift in E and B,

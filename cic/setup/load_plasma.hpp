@@ -35,17 +35,6 @@ inline double fixed_background(const Case& parameters) {
     return rho;
 }
 
-/// Gives a species room for as many particles, with the components that the case needs.
-inline void resize(const Case& parameters, long count, Particles& particles) {
-    const auto size = static_cast<std::size_t>(count);
-    const bool plane = parameters.dimensions == 2;
-    particles.x_p.resize(size);
-    particles.vx_p.resize(size);
-    if (plane) particles.z_p.resize(size);
-    if (parameters.magnetized()) particles.vy_p.resize(size);
-    if (parameters.magnetized() || plane) particles.vz_p.resize(size);
-}
-
 namespace detail {
 
 // Rows and columns of a lattice in each cell, as square as the number allows.
@@ -102,7 +91,7 @@ inline Particles load_species(const Case& parameters, const SpeciesCase& s, std:
     const double weight = s.density * filled_volume(parameters, s) / static_cast<double>(count);
     particles.q_p = weight * s.charge;
     particles.m_p = weight * s.mass;
-    resize(parameters, count, particles);
+    resize(count, plane, parameters.magnetized(), particles);
 
     const WaveVector k = wave_vector(parameters, s.mode_x, s.mode_z);
     double phase_speed = 0;
