@@ -26,6 +26,7 @@ struct Wall {
     double charge = 0;     // per area. in: of a floating wall; out: of a grounded one
 };
 enum WallName : std::size_t { x_low, x_high, z_low, z_high };
+inline constexpr std::array<const char*, 4> wall_names{"x_low", "x_high", "z_low", "z_high"};
 using Walls = std::array<Wall, 4>;
 
 /// -c phi'' + K2 phi = rho on the nodes 0..N from wall to wall, by elimination.

@@ -150,9 +150,8 @@ inline common::ParameterTable describe(Case& parameters) {
     table.choice("grid.boundary_z", parameters.boundary_z, {"periodic", "wall"}, "ends of z");
 
     table.group("walls, where a direction has them");
-    const std::array<const char*, 4> ends{"x_low", "x_high", "z_low", "z_high"};
     for (std::size_t k = 0; k < 4; ++k) {
-        const std::string end = ends[k];
+        const std::string end = wall_names[k];
         table.choice("boundary." + end, parameters.walls[k].field, {"grounded", "floating"},
                      "held at a potential, or insulated and charged by what it absorbs");
         table.real("boundary.potential_" + end, parameters.walls[k].potential, "m velocity^2/e",

@@ -34,10 +34,9 @@ inline bool is_above_cut_off(const Case& parameters, long mode_x, long mode_z) {
 }
 
 inline void refuse_walls(const Case& parameters) {
-    const std::array<const char*, 4> ends{"x_low", "x_high", "z_low", "z_high"};
     for (std::size_t k = 0; k < 4; ++k) {
         const WallCase& wall = parameters.walls[k];
-        const std::string end = ends[k], direction = end.substr(0, 1);
+        const std::string end = wall_names[k], direction = end.substr(0, 1);
         const bool there = (k <= x_high ? parameters.boundary_x : parameters.boundary_z) == "wall";
         refuse(!there &&
                    (wall.field != "grounded" || wall.particles != "absorb" || wall.potential != 0),
