@@ -14,6 +14,8 @@
 
 #include "cic/apply_particle_boundaries.hpp"
 #include "cic/output/record.hpp"
+#include "cic/setup/check_case.hpp"
+#include "cic/setup/describe_case.hpp"
 #include "cic/setup/initial_state.hpp"
 #include "cic/sort_particles.hpp"
 #include "cic/step.hpp"

@@ -8,7 +8,7 @@
 
 #include "cic/output/diagnostics.hpp"
 #include "cic/output/write_output.hpp"
-#include "cic/setup/check_case.hpp"
+#include "cic/theory/comparisons.hpp"
 #include "common/run/run.hpp"
 
 namespace cic {
@@ -18,10 +18,8 @@ namespace cic {
 class Recorder {
    public:
     Recorder(const Case& parameters, const State& state, common::History& history)
-        : parameters_(parameters) {
-        long mode_x = parameters.mode_x;
-        if (parameters.compare == "wave") mode_x = theory_of_wave(parameters).mode_x;
-        add_mode("mode", mode_x, parameters.mode_z);
+        : parameters_(parameters), comparison_(comparison_of(parameters)) {
+        add_mode("mode", comparison_.recorded_mode_x(parameters), parameters.mode_z);
         for (long m = 1; m <= parameters.modes; ++m) add_mode("E_" + std::to_string(m), m, 0);
         const Grid& grid = parameters.grid;
         background_ = fixed_background(parameters) * grid.x.length * grid.z.length;
@@ -70,7 +68,7 @@ class Recorder {
         const common::History& history = run.history;
         common::Summary& summary = run.summary;
         if (history.all().empty()) return;
-        compare_with_theory(parameters_, history, summary);
+        comparison_.add_results(parameters_, history, summary);
         summary.conservation("largest_energy_drift", history.largest("energy_drift"), "1");
         summary.conservation("largest_charge_error", history.largest("charge_error"), "1");
         const auto p_x = history.column("momentum_x");
@@ -176,13 +174,11 @@ class Recorder {
 
     void record_positions(const State& state) {
         of_positions_ = {};
-        if (parameters_.compare != "clouds") return;
-        const double length = parameters_.grid.x.length,
-                     d = double(state.species[1].x_p[0]) - double(state.species[0].x_p[0]);
-        of_positions_.add("separation_x", "length", d - length * std::floor(d / length + 0.5));
+        comparison_.add_columns(parameters_, state.species, of_positions_);
     }
 
     const Case& parameters_;
+    const Comparison& comparison_;
     std::vector<RecordedMode> modes_;
     double background_ = 0;     // charge of the fixed species
     double least_energy_ = 0;   // of the field that round-off of all charges makes

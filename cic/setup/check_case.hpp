@@ -1,5 +1,4 @@
-// What is refused before a run starts: combinations that cannot run, and comparisons that theory
-// cannot answer.
+// What is refused before a run starts: combinations that cannot run.
 #pragma once
 
 #include <algorithm>
@@ -10,129 +9,13 @@
 
 #include "cic/setup/check_species.hpp"
 #include "cic/setup/scales.hpp"
+#include "cic/theory/comparisons.hpp"
 
 namespace cic {
-
-namespace detail {
-
-// Where the dispersion relations of theory_of_case.hpp do not hold.
-inline void refuse_wave(const Case& parameters, const std::string& what, long mode_x, long mode_z) {
-    refuse(parameters.has_walls(), what + " needs periodic boundaries");
-    for (const SpeciesCase& s : parameters.species) {
-        if (!s.mobile()) continue;
-        refuse(s.profile != "uniform",
-               what + " needs uniform species, and '" + s.name + "' is a " + s.profile);
-        const bool cold = s.temperature_x == 0 && s.temperature_y == 0 && s.temperature_z == 0;
-        const bool at_rest = s.drift_x == 0 && s.drift_y == 0 && s.drift_z == 0;
-        refuse(parameters.magnetized() && !(cold && at_rest),
-               what + " with a magnetic field is for cold species at rest, and '" + s.name +
-                   "' is warm or drifts: take out plasma.B_x, B_y and B_z, or set theory.compare = "
-                   "\"none\" and waves to \"standing\"");
-    }
-    refuse(parameters.model == "mesh" && mode_x != 0 && mode_z != 0,
-           "theory.model = \"mesh\" needs a mode along x or along z, and not " +
-               mode_text(mode_x, mode_z));
-    refuse(parameters.model == "mesh" && (parameters.magnetized() || parameters.gauss_sign < 0),
-           "theory.model = \"mesh\" has neither a magnetic field nor gauss.sign = -1: take "
-           "\"plasma\"");
-    refuse(parameters.magnetized() && parameters.gauss_sign < 0,
-           what + " with a magnetic field is for gauss.sign = 1");
-}
-
-inline void refuse_comparison(const Case& parameters) {
-    const std::string compare = "theory.compare = \"" + parameters.compare + "\"";
-    if (parameters.compare == "none") return;
-    const auto with_profile = [&](const char* profile) {
-        return std::count_if(parameters.species.begin(), parameters.species.end(),
-                             [&](const SpeciesCase& s) { return s.profile == profile; });
-    };
-    refuse(
-        parameters.end < 10 * parameters.dt,
-        compare + " needs at least 10 steps: raise time.end above " + format(10 * parameters.dt));
-    refuse(parameters.compare != "wave" && parameters.gauss_sign < 0,
-           compare + " is for gauss.sign = 1");
-    if (parameters.compare == "wave") {
-        refuse_wave(parameters, compare, parameters.mode_x, parameters.mode_z);
-        const bool search = parameters.mode_x == 0 && parameters.mode_z == 0;
-        const long modes = (parameters.grid.x.cells - 1) / 2;
-        refuse(search && (modes < 1 || modes > 512 || parameters.model == "mesh"),
-               "theory.mode_x = 0 looks for the fastest growing of " + std::to_string(modes) +
-                   " modes, and that is for 1 to 512 and theory.model = \"plasma\": name a mode");
-    } else if (parameters.compare == "diocotron") {
-        refuse(parameters.species.size() != 1 || with_profile("layer") != 1 ||
-                   parameters.boundary_z != "wall" || parameters.boundary_x == "wall" ||
-                   parameters.B.y == 0 || parameters.B.x != 0 || parameters.B.z != 0,
-               compare +
-                   " needs one species with profile = \"layer\" and no other, plasma.B_y alone, "
-                   "and walls in z only");
-        const SpeciesCase& layer = parameters.species[0];
-        refuse(parameters.mode_x == 0 || parameters.mode_z != 0,
-               compare + " follows theory.mode_x, and not " +
-                   mode_text(parameters.mode_x, parameters.mode_z));
-        const WallCase &low = parameters.walls[z_low], &high = parameters.walls[z_high];
-        refuse(low.field != "grounded" || high.field != "grounded" ||
-                   low.potential != high.potential ||
-                   std::fabs(layer.center_z - 0.5 * parameters.grid.z.length) >
-                       1e-6 * parameters.grid.z.length,
-               compare +
-                   " needs grounded walls of the same potential, and the layer half-way between "
-                   "them, at center_z = " +
-                   format(0.5 * parameters.grid.z.length));
-        refuse(diocotron_growth(parameters) == 0,
-               compare + ": mode " + std::to_string(parameters.mode_x) +
-                   " of a layer of half_width " + format(layer.half_width) + " and charge " +
-                   format(layer.charge) +
-                   " does not grow: make it thinner, or change theory.mode_x");
-    } else if (parameters.compare == "sheath") {
-        refuse(parameters.dimensions != 1 || parameters.magnetized() ||
-                   parameters.boundary_x != "wall" ||
-                   parameters.walls[x_low].particles != "source" ||
-                   parameters.walls[x_low].field != "floating" ||
-                   parameters.walls[x_high].particles != "absorb" ||
-                   parameters.walls[x_high].field != "floating",
-               compare +
-                   " needs grid.dimensions = 1, no magnetic field, a floating source at x_low and "
-                   "a floating, absorbing wall at x_high");
-        refuse(parameters.species.size() != 2 || !parameters.species[0].mobile() ||
-                   !parameters.species[1].mobile() ||
-                   parameters.species[0].emission != parameters.species[1].emission ||
-                   parameters.species[0].charge != -parameters.species[1].charge ||
-                   parameters.species[0].emission == 0,
-               compare + " needs two mobile species of opposite charge with the same emission");
-        const std::size_t electron = parameters.species[0].charge < 0 ? 0 : 1;
-        const SpeciesCase &electrons = parameters.species[electron],
-                          &ions = parameters.species[1 - electron];
-        // This throws where there is no sheath.
-        collector_sheath(ions.mass / electrons.mass,
-                         ions.emission_temperature / electrons.emission_temperature);
-    } else if (parameters.compare == "clouds") {
-        refuse(parameters.species.size() != 2 || with_profile("point") != 2 ||
-                   parameters.dimensions != 2 || parameters.has_walls() ||
-                   parameters.magnetized() || parameters.conserving != "momentum" ||
-                   parameters.stencil != "five_point",
-               compare +
-                   " needs two species with profile = \"point\" in a periodic plane, the "
-                   "momentum scheme and the five-point stencil, and no magnetic field");
-        refuse(parameters.species[0].center_x == parameters.species[1].center_x,
-               compare + " needs clouds apart along x, and both have center_x = " +
-                   format(parameters.species[0].center_x));
-    } else if (parameters.compare == "heating") {
-        refuse(parameters.has_walls() || parameters.dimensions != 1,
-               compare + " needs a warm plasma in one periodic dimension");
-        for (const SpeciesCase& s : parameters.species)
-            refuse(s.mobile() && (s.profile != "uniform" || s.charge == 0 || s.temperature_x == 0),
-                   compare + " needs uniform, charged, warm species, and '" + s.name + "' has " +
-                       "profile \"" + s.profile + "\", charge " + format(s.charge) +
-                       " and temperature_x " + format(s.temperature_x));
-    }
-}
-
-}  // namespace detail
 
 /// Refuses what cannot run. errors: InputError, one sentence with the numbers and the cure.
 /// in/out: the mesh of the case gets its boundaries; in one dimension one cell of height 1.
 inline void validate(Case& parameters) {
-    using detail::refuse;
     parameters.grid.x.periodic = parameters.boundary_x == "periodic";
     parameters.grid.z.periodic = parameters.boundary_z == "periodic";
     if (parameters.dimensions == 1) {
@@ -156,7 +39,7 @@ inline void validate(Case& parameters) {
         {"plasma.B_y", parameters.B.y},
         {"plasma.B_z", parameters.B.z},
         {"output.phase_v_max", parameters.phase_v_max}};
-    for (const auto& [name, value] : numbers) detail::refuse_extreme(name, value);
+    for (const auto& [name, value] : numbers) refuse_extreme(name, value);
     refuse(parameters.gauss_sign != 1 && parameters.gauss_sign != -1,
            "gauss.sign = " + format(parameters.gauss_sign) + " is neither 1 nor -1");
     refuse(parameters.weighting == "ngp" && parameters.conserving == "energy",
@@ -164,9 +47,9 @@ inline void validate(Case& parameters) {
            "none below method.weighting = \"ngp\": take \"cic\" or \"tsc\"");
     refuse(parameters.stencil == "nine_point" && parameters.dimensions == 1,
            "method.stencil = \"nine_point\" needs grid.dimensions = 2");
-    detail::refuse_walls(parameters);
+    refuse_walls(parameters);
     refuse(parameters.species.empty(), "there is no plasma: add a [species.<name>]");
-    for (const SpeciesCase& s : parameters.species) detail::refuse_species(parameters, s);
+    for (const SpeciesCase& s : parameters.species) refuse_species(parameters, s);
     const bool has_mobile = std::any_of(parameters.species.begin(), parameters.species.end(),
                                         [](const SpeciesCase& s) { return s.mobile(); });
     refuse(!has_mobile, "every species is fixed, so nothing can happen: make one mobile");
@@ -175,7 +58,7 @@ inline void validate(Case& parameters) {
         return parameters.walls[low].field == "floating" ||
                parameters.walls[low + 1].field == "floating";
     };
-    const bool box = detail::is_box(parameters);
+    const bool box = parameters.is_box();
     refuse(box && (mixed(x_low) || mixed(z_low)),
            "floating walls that meet grounded ones at a corner are not supported: make all walls "
            "grounded, or one direction periodic");
@@ -239,7 +122,7 @@ inline void validate(Case& parameters) {
                    format(2 / scales.omega_p));
     refuse(parameters.dimensions == 1 && parameters.mode_z != 0,
            "theory.mode_z needs grid.dimensions = 2");
-    refuse(detail::is_above_cut_off(parameters, parameters.mode_x, parameters.mode_z),
+    refuse(is_above_cut_off(parameters, parameters.mode_x, parameters.mode_z),
            "the followed " + mode_text(parameters.mode_x, parameters.mode_z) +
                " has more than one wavelength per two cells, the cut-off of the mesh: refine it "
                "or lower theory.mode_x and mode_z");
@@ -255,11 +138,10 @@ inline void validate(Case& parameters) {
                ": raise time.end above " + format(8 * parameters.dt));
     for (const SpeciesCase& s : parameters.species) {
         if (!s.mobile() || s.amplitude == 0 || s.wave != "traveling") continue;
-        detail::refuse_wave(parameters, "species." + s.name + ".wave = \"traveling\"", s.mode_x,
-                            s.mode_z);
+        refuse_wave(parameters, "species." + s.name + ".wave = \"traveling\"", s.mode_x, s.mode_z);
         theory_of_wave(parameters, s.mode_x, s.mode_z);  // throws where there is no such wave
     }
-    detail::refuse_comparison(parameters);
+    validate_comparison(parameters);
 }
 
 }  // namespace cic

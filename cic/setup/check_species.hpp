@@ -11,16 +11,7 @@
 
 namespace cic {
 
-using common::format;
-
-namespace detail {
-
-// One sentence for bad input.
-inline void refuse(bool bad, const std::string& sentence) {
-    if (bad) throw common::InputError(sentence);
-}
-
-// Beyond these sizes, products of several numbers leave double precision.
+/// Refuses sizes beyond which products of several numbers leave double precision.
 inline void refuse_extreme(const std::string& name, double value) {
     const double size = std::fabs(value);
     refuse(size != 0 && !(size > 1e-40 && size < 1e40),
@@ -28,11 +19,13 @@ inline void refuse_extreme(const std::string& name, double value) {
                " is not between 1e-40 and 1e40 in size: choose other units");
 }
 
+/// Whether a mode has more than one wavelength per two cells.
 inline bool is_above_cut_off(const Case& parameters, long mode_x, long mode_z) {
     return 2 * std::labs(mode_x) > parameters.grid.x.cells ||
            (parameters.dimensions == 2 && 2 * std::labs(mode_z) > parameters.grid.z.cells);
 }
 
+/// Refuses walls that are not there, or cannot be what they are asked to be.
 inline void refuse_walls(const Case& parameters) {
     for (std::size_t k = 0; k < 4; ++k) {
         const WallCase& wall = parameters.walls[k];
@@ -55,6 +48,7 @@ inline void refuse_walls(const Case& parameters) {
     }
 }
 
+/// Refuses a species that cannot be loaded, moved or emitted.
 inline void refuse_species(const Case& parameters, const SpeciesCase& s) {
     const std::string name = "species." + s.name;
     const bool plane = parameters.dimensions == 2;
@@ -147,7 +141,7 @@ inline void refuse_species(const Case& parameters, const SpeciesCase& s) {
                !(parameters.boundary_x == "wall" && parameters.walls[x_low].particles == "source"),
            name +
                ".emission needs boundary.particles_x_low = \"source\" and grid.boundary_x = "
-               "\"walls\"");
+               "\"wall\"");
     if (parameters.walls[x_low].particles != "source") return;
     const double fastest = fastest_emitted * std::sqrt(s.emission_temperature / s.mass);
     refuse(fastest * parameters.dt > parameters.grid.x.length,
@@ -163,7 +157,5 @@ inline void refuse_species(const Case& parameters, const SpeciesCase& s) {
                " particles in a step, more than 1e6: lower it, or raise density, which makes them "
                "heavier");
 }
-
-}  // namespace detail
 
 }  // namespace cic

@@ -8,11 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "cic/theory/compare_with_theory.hpp"
+#include "cic/theory/comparisons.hpp"
 
 namespace cic {
-
-using common::format;
 
 /// The scales of one species.
 struct SpeciesScales {
@@ -30,14 +28,7 @@ struct Scales {
     double bytes = 0;  // memory that the run will take
 };
 
-namespace detail {
-
-inline bool is_box(const Case& parameters) {
-    return parameters.boundary_x == "wall" && parameters.boundary_z == "wall";
-}
-
-}  // namespace detail
-
+/// The scales of a case whose mesh has its boundaries.
 inline Scales scales_of(const Case& parameters) {
     Scales s;
     double inverse_debye2 = 0;
@@ -66,7 +57,7 @@ inline Scales scales_of(const Case& parameters) {
         per_particle * static_cast<double>(s.particles) +
         static_cast<double>(parameters.grid.size()) * (common::block_count + 8) * sizeof(double);
     // The factors of the matrix of a box.
-    if (detail::is_box(parameters)) {
+    if (parameters.is_box()) {
         const double points = static_cast<double>(parameters.grid.size());
         s.bytes += 30 * points * std::log2(points);
     }
@@ -105,8 +96,7 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
                            ": the mesh will heat the plasma; refine it to cells of " +
                            format(scales.debye_length / least));
     for (const SpeciesScales& s : scales.species) {
-        if (s.thermal_speed == 0 && s.drift > 0 && scales.omega_p > 0 &&
-            parameters.compare != "clouds") {
+        if (s.thermal_speed == 0 && s.drift > 0 && scales.omega_p > 0) {
             const double u = s.drift / (scales.omega_p * dx);
             const double safe = cold_beam_threshold(parameters.weighting == "tsc" ? 2 : 1);
             if (parameters.conserving == "energy" && u < safe)
@@ -159,17 +149,10 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
             "boundary.particles_x_low = \"source\", and every emission is 0: the wall only gives "
             "back "
             "what reaches it, with emission_temperature");
-    if (parameters.compare == "wave") {
-        const std::complex<double> omega = theory_of_wave(parameters).omega;
-        const double period = 2 * pi / std::fabs(omega.real());
-        if (omega.imag() <= 0 && omega.real() != 0 && period > parameters.end)
-            warnings.push_back("the wave of theory has the period " + format(period) +
-                               ", longer than time.end = " + format(parameters.end) +
-                               ": its frequency cannot be measured well");
-    }
+    const Comparison& comparison = comparison_of(parameters);
+    comparison.add_warnings(parameters, warnings);
     const bool one_mode = parameters.mode_x != 0 || parameters.mode_z != 0;
-    if ((parameters.compare == "wave" || parameters.compare == "diocotron") && one_mode &&
-        !followed)
+    if (comparison.follows_mode && one_mode && !followed)
         warnings.push_back("no species is perturbed in the followed " +
                            mode_text(parameters.mode_x, parameters.mode_z) +
                            ": only noise can start the wave");
@@ -184,13 +167,16 @@ inline std::string describe_scales(const Case& parameters, const Scales& scales)
         text +=
             "  " + name + std::string(name.size() < 34 ? 34 - name.size() : 1, ' ') + value + "\n";
     };
+    const auto ends = [](const std::string& boundary) {
+        return boundary == "wall" ? "walls" : boundary;
+    };
     std::string mesh = std::to_string(parameters.grid.x.cells) + " cells of " + format(dx);
     if (parameters.dimensions == 2)
         mesh = std::to_string(parameters.grid.x.cells) + " x " +
                std::to_string(parameters.grid.z.cells) + " cells of " + format(dx) + " x " +
                format(parameters.grid.z.spacing());
-    line("mesh", mesh + ", " + parameters.boundary_x + " in x" +
-                     (parameters.dimensions == 2 ? ", " + parameters.boundary_z + " in z" : ""));
+    line("mesh", mesh + ", " + ends(parameters.boundary_x) + " in x" +
+                     (parameters.dimensions == 2 ? ", " + ends(parameters.boundary_z) + " in z" : ""));
     line("method", parameters.weighting + " weighting, " + parameters.conserving + "-conserving" +
                        (parameters.gauss_sign < 0 ? ", div E = -rho as the slide prints it" : ""));
     line("steps", std::to_string(scales.steps) + " of " + format(parameters.dt));
@@ -207,15 +193,8 @@ inline std::string describe_scales(const Case& parameters, const Scales& scales)
         line(s.name, std::to_string(s.particles) + " particles, omega_p = " + format(s.omega_p) +
                          ", v_th = " + format(s.thermal_speed) + ", drift = " + format(s.drift) +
                          (s.Omega_c > 0 ? ", Omega_c = " + format(s.Omega_c) : ""));
-    if (parameters.compare == "wave") {
-        const Theory theory = theory_of_wave(parameters);
-        const double growth = theory.omega.imag();
-        line("theory", mode_text(theory.mode_x, theory.mode_z) +
-                           ": omega = " + format(theory.omega.real()) +
-                           ", growth = " + format(growth) + " omega_p; " + theory.source);
-        const double onset = predicted_onset(parameters, theory);
-        if (onset > 0) line("onset", "about t = " + format(onset) + ": " + onset_meaning());
-    }
+    for (const auto& [name, value] : comparison_of(parameters).describe(parameters))
+        line(name, value);
     line("memory", "about " + format(scales.bytes / 1048576) + " MiB");
     const double work =
         static_cast<double>(scales.steps) * (static_cast<double>(scales.particles) +

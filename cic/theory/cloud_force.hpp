@@ -15,11 +15,15 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
+#include "cic/theory/comparison.hpp"
 #include "common/grid.hpp"
 #include "common/splines.hpp"
+#include "common/theory/fit_oscillation.hpp"
 
 namespace cic {
 
@@ -142,5 +146,56 @@ inline Eigen::Vector2d overlap_frequency_squared(const CloudPair& pair, double q
                                                  double q_2, double m_2) {
     return -q_1 * q_2 * (1.0 / m_1 + 1.0 / m_2) * mean_force_slope(pair);
 }
+
+/// Two clouds of opposite charge swing through each other along x.
+inline void compare_clouds(const Case& parameters, const common::History& history,
+                           common::Summary& summary) {
+    const SpeciesCase &a = parameters.species[0], &b = parameters.species[1];
+    const auto separation = history.column("separation_x");
+    const CloudPair pair =
+        make_cloud_pair(parameters.grid.x, parameters.grid.z, parameters.scheme().order);
+    const double expected = std::sqrt(
+        std::max(0.0, overlap_frequency_squared(pair, a.density * a.charge, a.density * a.mass,
+                                                b.density * b.charge, b.density * b.mass)[0]));
+    if (expected == 0) {
+        summary.result_info("largest_separation",
+                            *std::max_element(separation.begin(), separation.end()), "length",
+                            "measured");
+        return;
+    }
+    const common::OscillationFit fit = common::fit_oscillation(separation, parameters.dt);
+    summary.result("omega_over_theory", fit.frequency / expected, "", 1,
+                   parameters.frequency_tolerance,
+                   "linear force of overlapping clouds, mean over all places on the mesh");
+    summary.result_info("omega", fit.frequency, omega_p_unit, "measured");
+    summary.result_info("misfit", fit.misfit, "", "rms of what is not harmonic");
+}
+
+/// Refuses a case that is not two points in a periodic plane.
+inline void validate_clouds(const Case& parameters) {
+    refuse(parameters.species.size() != 2 || count_with_profile(parameters, "point") != 2 ||
+               parameters.dimensions != 2 || parameters.has_walls() || parameters.magnetized() ||
+               parameters.conserving != "momentum" || parameters.stencil != "five_point",
+           asked_for(parameters) +
+               " needs two species with profile = \"point\" in a periodic plane, the "
+               "momentum scheme and the five-point stencil, and no magnetic field");
+    refuse(parameters.species[0].center_x == parameters.species[1].center_x,
+           asked_for(parameters) + " needs clouds apart along x, and both have center_x = " +
+               format(parameters.species[0].center_x));
+}
+
+/// Adds the distance of the two clouds along x, to the nearest image.
+inline void add_separation(const Case& parameters, const std::vector<Particles>& species,
+                           common::Row& row) {
+    const double length = parameters.grid.x.length,
+                 d = double(species[1].x_p[0]) - double(species[0].x_p[0]);
+    row.add("separation_x", "length", d - length * std::floor(d / length + 0.5));
+}
+
+/// The comparison of two clouds.
+inline constexpr Comparison clouds_comparison{.name = "clouds",
+                                              .validate = validate_clouds,
+                                              .add_columns = add_separation,
+                                              .add_results = compare_clouds};
 
 }  // namespace cic

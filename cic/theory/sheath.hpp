@@ -20,9 +20,10 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <string>
 #include <vector>
 
-#include "common/run/parameters.hpp"
+#include "cic/theory/comparison.hpp"
 #include "common/theory/plasma_dispersion.hpp"
 
 namespace cic {
@@ -189,5 +190,55 @@ inline std::vector<SheathPoint> sheath_profile(const Sheath& s, double edge, int
     }
     return points;
 }
+
+/// Potentials of a floating wall in front of a plasma from a source, mean of the last half.
+inline void compare_sheath(const Case& parameters, const common::History& history,
+                           common::Summary& summary) {
+    const bool first_is_electron = parameters.species[0].charge < 0;
+    const SpeciesCase &electrons = parameters.species[first_is_electron ? 0 : 1],
+                      &ions = parameters.species[first_is_electron ? 1 : 0];
+    const double T_e = electrons.emission_temperature;
+    const Sheath sheath =
+        collector_sheath(ions.mass / electrons.mass, ions.emission_temperature / T_e);
+    const std::string source = "Schwager and Birdsall 1990, solved here";
+    const double e = std::fabs(electrons.charge);
+    summary.result("collector_potential",
+                   e * mean_of_last_half(history.column("potential_x_high")) / T_e, "T_e/e",
+                   sheath.collector_potential,
+                   parameters.growth_tolerance * std::fabs(sheath.collector_potential), source);
+    summary.result("plasma_potential",
+                   e * mean_of_last_half(history.column("potential_middle")) / T_e, "T_e/e",
+                   sheath.plasma_potential,
+                   parameters.growth_tolerance * std::fabs(sheath.plasma_potential), source);
+}
+
+/// Refuses a case that is not a source of pairs in front of a floating wall.
+inline void validate_sheath(const Case& parameters) {
+    refuse(parameters.dimensions != 1 || parameters.magnetized() ||
+               parameters.boundary_x != "wall" || parameters.walls[x_low].particles != "source" ||
+               parameters.walls[x_low].field != "floating" ||
+               parameters.walls[x_high].particles != "absorb" ||
+               parameters.walls[x_high].field != "floating",
+           asked_for(parameters) +
+               " needs grid.dimensions = 1, no magnetic field, a floating source at x_low and "
+               "a floating, absorbing wall at x_high");
+    refuse(parameters.species.size() != 2 || !parameters.species[0].mobile() ||
+               !parameters.species[1].mobile() ||
+               parameters.species[0].emission != parameters.species[1].emission ||
+               parameters.species[0].charge != -parameters.species[1].charge ||
+               parameters.species[0].emission == 0,
+           asked_for(parameters) +
+               " needs two mobile species of opposite charge with the same emission");
+    const std::size_t electron = parameters.species[0].charge < 0 ? 0 : 1;
+    const SpeciesCase &electrons = parameters.species[electron],
+                      &ions = parameters.species[1 - electron];
+    // This throws where there is no sheath.
+    collector_sheath(ions.mass / electrons.mass,
+                     ions.emission_temperature / electrons.emission_temperature);
+}
+
+/// The comparison of a floating wall.
+inline constexpr Comparison sheath_comparison{
+    .name = "sheath", .validate = validate_sheath, .add_results = compare_sheath};
 
 }  // namespace cic
