@@ -111,10 +111,10 @@ struct EmissionNumbers {
 inline void emit(const Grid& grid, double dt, double v_th, const EmissionNumbers& random,
                  Particles& s, long p) {
     const double v_x = v_th * std::sqrt(-2 * std::log(random.uniform(0)));
-    s.x_p[p] = static_cast<Real>(grid.x.low + random.uniform(1) * dt * v_x);
-    s.vx_p[p] = static_cast<Real>(v_x);
-    if (!s.vy_p.empty()) s.vy_p[p] = static_cast<Real>(v_th * random.gaussian(2));
-    if (!s.vz_p.empty()) s.vz_p[p] = static_cast<Real>(v_th * random.gaussian(3));
+    s.x_p[p] = Real(grid.x.low + random.uniform(1) * dt * v_x);
+    s.vx_p[p] = Real(v_x);
+    if (!s.vy_p.empty()) s.vy_p[p] = Real(v_th * random.gaussian(2));
+    if (!s.vz_p.empty()) s.vz_p[p] = Real(v_th * random.gaussian(3));
 }
 
 // Treats the particles of one species that are behind a wall; what is absorbed is gone.
@@ -141,7 +141,7 @@ inline void apply_at_walls(const Grid& grid, const ParticleBoundaries& condition
                 emit(grid, conditions.dt, v_th, {conditions.seed, purpose, count}, s, p);
             } else {
                 Real &x = (*wall->x_p)[p], &v = (*wall->v_p)[p];
-                x = static_cast<Real>(2 * wall->at - double(x));
+                x = Real(2 * wall->at - double(x));
                 v = -v;
             }
         }
@@ -154,7 +154,7 @@ inline void emit_new(const Grid& grid, const ParticleBoundaries& conditions,
                      const Emission& emission, std::uint32_t purpose, long step, Particles& s,
                      Wall& source) {
     const auto emitted_before = [&](long steps) {
-        return static_cast<long>(std::floor(emission.per_step * static_cast<double>(steps)));
+        return static_cast<long>(std::floor(emission.per_step * double(steps)));
     };
     const long first = emitted_before(step), last = emitted_before(step + 1);
     const long old_count = s.count(), new_count = old_count + last - first;
@@ -167,8 +167,7 @@ inline void emit_new(const Grid& grid, const ParticleBoundaries& conditions,
         const long p = old_count + k - first;
         const EmissionNumbers random{conditions.seed, purpose, static_cast<std::uint64_t>(k)};
         emit(grid, conditions.dt, emission.thermal_speed, random, s, p);
-        if (conditions.plane)
-            s.z_p[p] = static_cast<Real>(grid.z.low + grid.z.length * random.uniform(4));
+        if (conditions.plane) s.z_p[p] = Real(grid.z.low + grid.z.length * random.uniform(4));
         source.charge -= s.q_p / grid.z.length;
     }
 }

@@ -71,8 +71,7 @@ int main() {
                 "deposit", "field", "push", "sort");
     for (const int threads : {1, 2}) {
         const common::StepClock clock = time_steps(parameters, steps, threads, particles);
-        const double rate =
-            static_cast<double>(particles) * static_cast<double>(steps) / clock.total();
+        const double rate = double(particles) * double(steps) / clock.total();
         if (threads == 1) one_thread = rate;
         const auto percent = [&](const char* part) {
             return 100 * clock.seconds(part) / clock.total();
@@ -86,7 +85,6 @@ int main() {
     const double carried = 4 * sizeof(Real), scratch = sizeof(Real) + sizeof(int);
     std::printf(
         "\n%ld particles, %.0f bytes each (%.0f carried, %.0f to sort); peak memory %.1f MiB\n",
-        particles, carried + scratch, carried, scratch,
-        static_cast<double>(usage.ru_maxrss) / 1024);
+        particles, carried + scratch, carried, scratch, double(usage.ru_maxrss) / 1024);
     return 0;
 }

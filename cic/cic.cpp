@@ -76,12 +76,12 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
         ++step;
         if (sort_is_due(parameters.sort_interval, step))
             sort_particles(grid, sort_scratch, particles);
-        run.end_of_step(step, steps, static_cast<double>(step) * dt, state);
+        run.end_of_step(step, steps, double(step) * dt, state);
     }
 
     // 4. The results against theory, summary.json.
     if (step == steps) recorder.finish(state, run);
-    return run.finish(step, static_cast<double>(state.count()));
+    return run.finish(step, double(state.count()));
 }
 
 }  // namespace

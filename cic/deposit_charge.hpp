@@ -17,9 +17,8 @@ namespace detail {
 // Adds S of the particles [begin, end) to one mesh.
 template <int order, int dimensions>
 void add_weights(const Particles& particles, const Grid& grid, long begin, long end, Real* sum) {
-    const Real x_low = static_cast<Real>(grid.x.low), z_low = static_cast<Real>(grid.z.low);
-    const Real per_dx = static_cast<Real>(1 / grid.x.spacing()),
-               per_dz = static_cast<Real>(1 / grid.z.spacing());
+    const Real x_low = Real(grid.x.low), z_low = Real(grid.z.low);
+    const Real per_dx = Real(1 / grid.x.spacing()), per_dz = Real(1 / grid.z.spacing());
     const long stride = grid.stride();
     Real* const origin = sum + grid.index(0, 0);
     // [deposit]
@@ -57,7 +56,7 @@ inline void add_charge(const Particles& particles, const Grid& grid, const Schem
     common::for_each_row(grid.z.cells + 3, [&](long row) {
         for (long n = row * grid.stride(); n < (row + 1) * grid.stride(); ++n) {
             double sum = 0;
-            for (const auto& block : scratch.sum_of_block) sum += static_cast<double>(block[n]);
+            for (const auto& block : scratch.sum_of_block) sum += double(block[n]);
             rho_g[n] += charge * sum;
         }
     });

@@ -32,9 +32,8 @@ void gather_field(const MeshField& E_g, const Grid& grid, const ParticleBatch& b
                   FieldAtParticles& E_p) {
     constexpr int along = energy_conserving ? order - 1 : order;
     constexpr Real to_edge = energy_conserving ? Real(-0.5) : Real(0);
-    const Real x_low = static_cast<Real>(grid.x.low), z_low = static_cast<Real>(grid.z.low);
-    const Real per_dx = static_cast<Real>(1 / grid.x.spacing()),
-               per_dz = static_cast<Real>(1 / grid.z.spacing());
+    const Real x_low = Real(grid.x.low), z_low = Real(grid.z.low);
+    const Real per_dx = Real(1 / grid.x.spacing()), per_dz = Real(1 / grid.z.spacing());
     const long stride = grid.stride();
     const NodeField* const origin = E_g.data() + grid.index(0, 0);
     // [gather]

@@ -96,7 +96,7 @@ inline std::array<ComponentSums, 3> accelerate_and_turn(Real half_kick,
 inline void accelerate(const FieldAtParticles& E_p, const MagneticField& B, double dt,
                        ParticleBatch& batch) {
     const double charge_over_mass = batch.q_p / batch.m_p;
-    const Real kick = static_cast<Real>(charge_over_mass * dt);
+    const Real kick = Real(charge_over_mass * dt);
     std::array<detail::ComponentSums, 3> sums{};
     if (batch.vy_p != nullptr) {
         sums = detail::accelerate_and_turn(kick / 2, rotation_of_step(B, charge_over_mass, dt, 1),
@@ -108,8 +108,8 @@ inline void accelerate(const FieldAtParticles& E_p, const MagneticField& B, doub
     }
     batch.sums = {};
     for (std::size_t a = 0; a < 3; ++a) {
-        batch.sums.kinetic += 0.5 * batch.m_p * static_cast<double>(sums[a].product);
-        batch.sums.momentum[a] = batch.m_p * static_cast<double>(sums[a].v_new);
+        batch.sums.kinetic += 0.5 * batch.m_p * double(sums[a].product);
+        batch.sums.momentum[a] = batch.m_p * double(sums[a].v_new);
     }
 }
 
@@ -125,11 +125,10 @@ inline void start_leapfrog(const FieldAtParticles& E_p, const MagneticField& B, 
         const auto at = [p](const Real* v) { return v == nullptr ? 0.0 : double(v[p]); };
         const Eigen::Vector3d v =
             R * Eigen::Vector3d(at(batch.vx_p), at(batch.vy_p), at(batch.vz_p));
-        batch.vx_p[p] = static_cast<Real>(v[0] - h * double(E_p.x[p]));
-        if (batch.vy_p != nullptr) batch.vy_p[p] = static_cast<Real>(v[1]);
+        batch.vx_p[p] = Real(v[0] - h * double(E_p.x[p]));
+        if (batch.vy_p != nullptr) batch.vy_p[p] = Real(v[1]);
         if (batch.vz_p != nullptr)
-            batch.vz_p[p] =
-                static_cast<Real>(v[2] - (batch.z_p != nullptr ? h * double(E_p.z[p]) : 0.0));
+            batch.vz_p[p] = Real(v[2] - (batch.z_p != nullptr ? h * double(E_p.z[p]) : 0.0));
     }
 }
 
@@ -137,9 +136,8 @@ namespace detail {
 
 // One direction of move_particles().
 inline void move_along(const common::Axis& axis, Real dt, long count, const Real* v, Real* x) {
-    const Real low = static_cast<Real>(axis.low), high = static_cast<Real>(axis.high()),
-               length = static_cast<Real>(axis.length),
-               per_length = static_cast<Real>(1 / axis.length);
+    const Real low = Real(axis.low), high = Real(axis.high()), length = Real(axis.length),
+               per_length = Real(1 / axis.length);
     if (axis.periodic) {
         // The last line keeps round-off, and what is not finite any more, on the mesh.
         // [move]
@@ -164,9 +162,9 @@ inline void move_along(const common::Axis& axis, Real dt, long count, const Real
 ///         walls they may end behind one: see apply_particle_boundaries
 /// source: [CIC-5]
 inline void move_particles(const Grid& grid, double dt, ParticleBatch& batch) {
-    detail::move_along(grid.x, static_cast<Real>(dt), batch.count, batch.vx_p, batch.x_p);
+    detail::move_along(grid.x, Real(dt), batch.count, batch.vx_p, batch.x_p);
     if (batch.z_p != nullptr)
-        detail::move_along(grid.z, static_cast<Real>(dt), batch.count, batch.vz_p, batch.z_p);
+        detail::move_along(grid.z, Real(dt), batch.count, batch.vz_p, batch.z_p);
 }
 
 }  // namespace cic

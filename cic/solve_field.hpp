@@ -43,8 +43,8 @@ inline void field_on_edges(const Grid& grid, const Field& phi, MeshField& E_g) {
     common::for_each_row(grid.z.cells + 2, [&](long row) {
         for (long i = -1; i <= grid.x.cells; ++i) {
             const long n = grid.index(i, row - 1);
-            E_g[n] = {static_cast<Real>((phi[n] - phi[n + 1]) * per_dx),
-                      static_cast<Real>((phi[n] - phi[n + stride]) * per_dz)};
+            E_g[n] = {Real((phi[n] - phi[n + 1]) * per_dx),
+                      Real((phi[n] - phi[n + stride]) * per_dz)};
         }
     });
 }
@@ -56,8 +56,8 @@ inline void field_on_nodes(const Grid& grid, const Field& phi, MeshField& E_g) {
     common::for_each_row(grid.z.cells + 1, [&](long row) {
         for (long i = 0; i <= grid.x.cells; ++i) {
             const long n = grid.index(i, row);
-            E_g[n] = {static_cast<Real>((phi[n - 1] - phi[n + 1]) * half_per_dx),
-                      static_cast<Real>((phi[n - stride] - phi[n + stride]) * half_per_dz)};
+            E_g[n] = {Real((phi[n - 1] - phi[n + 1]) * half_per_dx),
+                      Real((phi[n - stride] - phi[n + stride]) * half_per_dz)};
         }
     });
 }
@@ -76,7 +76,7 @@ void for_each_wall_node(const Grid& grid, bool along_x, const Visit& visit) {
     const long N = along_x ? grid.x.cells : grid.z.cells, step = along_x ? 1 : grid.stride();
     for (long k = 0; k <= (other.periodic ? other.cells - 1 : other.cells); ++k) {
         const bool corner = !other.periodic && (k == 0 || k == other.cells);
-        const double share = (corner ? 0.5 : 1.0) / static_cast<double>(other.cells);
+        const double share = (corner ? 0.5 : 1.0) / double(other.cells);
         visit(along_x ? grid.index(0, k) : grid.index(k, 0), step, along_x ? x_low : z_low, 1.0,
               share);
         visit(along_x ? grid.index(N, k) : grid.index(k, N), -step, along_x ? x_high : z_high, -1.0,
@@ -93,16 +93,14 @@ inline void fill_ghosts(const Grid& grid, bool on_edges, MeshField& E_g) {
         common::detail::ghosts_along(axis, half, half ? -1 : 1, copy);
     };
     for (long j = 0; j <= nz; ++j) {
-        mirror(grid.x, on_edges, [&](long to, long from, int sign) {
-            at(to, j).x = static_cast<Real>(sign) * at(from, j).x;
-        });
+        mirror(grid.x, on_edges,
+               [&](long to, long from, int sign) { at(to, j).x = Real(sign) * at(from, j).x; });
         mirror(grid.x, false, [&](long to, long from, int) { at(to, j).z = at(from, j).z; });
     }
     for (long i = -1; i <= nx + 1; ++i) {
         mirror(grid.z, false, [&](long to, long from, int) { at(i, to).x = at(i, from).x; });
-        mirror(grid.z, on_edges, [&](long to, long from, int sign) {
-            at(i, to).z = static_cast<Real>(sign) * at(i, from).z;
-        });
+        mirror(grid.z, on_edges,
+               [&](long to, long from, int sign) { at(i, to).z = Real(sign) * at(i, from).z; });
     }
 }
 
@@ -128,40 +126,33 @@ inline void solve_field(FieldSolver& solver, const Field& rho_g, FieldState& fie
     solver.poisson_.solve(rho, field.walls, phi);
     common::fill_ghosts(grid, common::on_nodes, {1, 1}, phi.data());
 
-    // What the walls got: the mean charge of a grounded one, the potential of a floating one.
+    field.E_g.resize(grid.size());
+    const bool on_edges = solver.scheme_.energy_conserving;
+    if (on_edges)
+        detail::field_on_edges(grid, phi, field.E_g);
+    else
+        detail::field_on_nodes(grid, phi, field.E_g);
+
+    // What the walls got: the mean charge of a grounded one, the potential of a floating one; and
+    // the field on their nodes.
     for (const bool along_x : {true, false}) {
         const common::Axis& axis = along_x ? grid.x : grid.z;
         if (axis.periodic) continue;
         std::array<double, 4> charge{};
         detail::for_each_wall_node(
-            grid, along_x, [&](long n, long in, WallName w, double, double share) {
-                charge[w] +=
-                    share * detail::surface_charge(phi[n], phi[n + in], rho[n], axis.spacing());
-                if (field.walls[w].floating) field.walls[w].potential = phi[n];
+            grid, along_x, [&](long n, long in, WallName wall, double sign, double share) {
+                const double sigma =
+                    detail::surface_charge(phi[n], phi[n + in], rho[n], axis.spacing());
+                charge[wall] += share * sigma;
+                if (field.walls[wall].floating) field.walls[wall].potential = phi[n];
+                if (on_edges) return;
+                const double E_half = (phi[n] - phi[n + in]) / axis.spacing();
+                (along_x ? field.E_g[n].x : field.E_g[n].z) = Real(sign * 0.5 * (sigma + E_half));
             });
-        for (const WallName w : {along_x ? x_low : z_low, along_x ? x_high : z_high})
-            if (!field.walls[w].floating) field.walls[w].charge = charge[w];
+        for (const WallName wall : {along_x ? x_low : z_low, along_x ? x_high : z_high})
+            if (!field.walls[wall].floating) field.walls[wall].charge = charge[wall];
     }
-
-    field.E_g.resize(grid.size());
-    if (solver.scheme_.energy_conserving) {
-        detail::field_on_edges(grid, phi, field.E_g);
-    } else {
-        detail::field_on_nodes(grid, phi, field.E_g);
-        for (const bool along_x : {true, false}) {
-            const common::Axis& axis = along_x ? grid.x : grid.z;
-            if (axis.periodic) continue;
-            detail::for_each_wall_node(
-                grid, along_x, [&](long n, long in, WallName, double sign, double) {
-                    const double sigma =
-                        detail::surface_charge(phi[n], phi[n + in], rho[n], axis.spacing());
-                    const double E_half = (phi[n] - phi[n + in]) / axis.spacing();
-                    auto& E = field.E_g[n];
-                    (along_x ? E.x : E.z) = static_cast<Real>(sign * 0.5 * (sigma + E_half));
-                });
-        }
-    }
-    detail::fill_ghosts(grid, solver.scheme_.energy_conserving, field.E_g);
+    detail::fill_ghosts(grid, on_edges, field.E_g);
 }
 
 }  // namespace cic

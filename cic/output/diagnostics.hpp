@@ -55,8 +55,7 @@ class FourierMode {
             std::vector<std::complex<double>> phases;
             const long count = axis.periodic ? axis.cells : axis.cells + 1;
             for (long i = 0; i < count; ++i)
-                phases.push_back(std::polar(1.0, -2 * pi * static_cast<double>(mode * i) /
-                                                     static_cast<double>(axis.cells)));
+                phases.push_back(std::polar(1.0, -2 * pi * double(mode * i) / double(axis.cells)));
             return phases;
         };
         along_x_ = table(grid.x, mode_x);
@@ -71,7 +70,7 @@ class FourierMode {
             for (std::size_t i = 0; i < along_x_.size(); ++i) row += values[i] * along_x_[i];
             sum += row * along_z_[j];
         }
-        const double nodes = static_cast<double>(along_x_.size() * along_z_.size());
+        const double nodes = double(along_x_.size() * along_z_.size());
         return sum * std::complex<double>(0, -2 * k_ / nodes);
     }
 

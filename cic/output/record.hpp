@@ -143,15 +143,15 @@ class Recorder {
     // Whether a snapshot of the given interval falls on this step.
     bool due(double interval, long step) const {
         const double every = std::max(1.0, std::round(interval / parameters_.dt));
-        return interval > 0 && std::fmod(static_cast<double>(step), every) == 0;
+        return interval > 0 && std::fmod(double(step), every) == 0;
     }
 
     // Charge on the mesh less that of background and particles, relative to their sizes.
     double charge_error(double on_mesh, const State& state) const {
         double expected = background_, size = std::fabs(background_);
         for (const Particles& s : state.species) {
-            expected += s.q_p * static_cast<double>(s.count());
-            size += std::fabs(s.q_p) * static_cast<double>(s.count());
+            expected += s.q_p * double(s.count());
+            size += std::fabs(s.q_p) * double(s.count());
         }
         return size > 0 ? (on_mesh - expected) / size : 0;
     }

@@ -33,11 +33,8 @@ inline void write_fields(const std::string& folder, long step, const Case& param
     };
     add("rho", "n0*e", [&](long n) { return rho_g[n]; });
     add("phi", "m*velocity^2/e", [&](long n) { return field.phi[n]; });
-    add("E_x", "m*velocity*omega_p/e",
-        [&](long n) { return double(field.E_g[static_cast<std::size_t>(n)].x); });
-    if (plane)
-        add("E_z", "m*velocity*omega_p/e",
-            [&](long n) { return double(field.E_g[static_cast<std::size_t>(n)].z); });
+    add("E_x", "m*velocity*omega_p/e", [&](long n) { return double(field.E_g[n].x); });
+    if (plane) add("E_z", "m*velocity*omega_p/e", [&](long n) { return double(field.E_g[n].z); });
     DepositScratch scratch;
     for (const Particles& s : state.species) {
         Field charge = Field::Zero(grid.size());
@@ -70,17 +67,16 @@ inline void write_particles(const std::string& folder, long step, const Case& pa
     for (std::size_t k = 0; k < state.species.size(); ++k) {
         const Particles& s = state.species[k];
         const auto at = [](const std::vector<Real>& values, std::size_t n) {
-            return values.empty() ? 0.0 : static_cast<double>(values[n]);
+            return values.empty() ? 0.0 : double(values[n]);
         };
         // Radical inverses repeat themselves: a stride of many particles would draw a pattern.
         for (long p = 0; p < s.count(); ++p) {
-            if (every > 1 && common::uniform(7, 7, static_cast<std::uint64_t>(p), 0) *
-                                     static_cast<double>(every) >=
-                                 1)
+            if (every > 1 &&
+                common::uniform(7, 7, static_cast<std::uint64_t>(p), 0) * double(every) >= 1)
                 continue;
-            const auto n = static_cast<std::size_t>(p);
-            const std::array<double, 6> row{static_cast<double>(k), at(s.x_p, n),  at(s.z_p, n),
-                                            at(s.vx_p, n),          at(s.vy_p, n), at(s.vz_p, n)};
+            const auto n = p;
+            const std::array<double, 6> row{double(k),     at(s.x_p, n),  at(s.z_p, n),
+                                            at(s.vx_p, n), at(s.vy_p, n), at(s.vz_p, n)};
             for (std::size_t a = 0; a < 6; ++a) data[a].push_back(row[a]);
         }
     }
@@ -117,8 +113,8 @@ inline double phase_v_max(const Case& parameters) {
 inline void write_phase_space(const std::string& folder, long step, const Case& parameters,
                               const State& state) {
     const long nx = parameters.phase_bins_x, nv = parameters.phase_bins_v;
-    const double v_max = phase_v_max(parameters), dv = 2 * v_max / static_cast<double>(nv),
-                 dx = parameters.grid.x.length / static_cast<double>(nx),
+    const double v_max = phase_v_max(parameters), dv = 2 * v_max / double(nv),
+                 dx = parameters.grid.x.length / double(nx),
                  L_z = parameters.dimensions == 2 ? parameters.grid.z.length : 1;
     const common::SampledAxis x{"x", "length", parameters.grid.x.low + 0.5 * dx, dx, nx},
         v{"v_x", "velocity", -v_max + 0.5 * dv, dv, nv};
@@ -132,13 +128,11 @@ inline void write_phase_space(const std::string& folder, long step, const Case& 
         const double weight = s.m_p / from->mass / (dx * dv * L_z);
         for (std::size_t n = 0; n < s.x_p.size(); ++n) {
             const long i = std::min(
-                nx - 1,
-                static_cast<long>((static_cast<double>(s.x_p[n]) - parameters.grid.x.low) / dx));
-            const long l =
-                static_cast<long>(std::floor((static_cast<double>(s.vx_p[n]) + v_max) / dv));
+                nx - 1, static_cast<long>((double(s.x_p[n]) - parameters.grid.x.low) / dx));
+            const long l = static_cast<long>(std::floor((double(s.vx_p[n]) + v_max) / dv));
             if (l < 0 || l >= nv) continue;
             f.back()[static_cast<std::size_t>(l * nx + i)] += weight;
-            f_v.back()[static_cast<std::size_t>(l)] += weight / static_cast<double>(nx);
+            f_v.back()[l] += weight / double(nx);
         }
     }
     std::vector<double> speeds;
@@ -168,8 +162,7 @@ inline void write_spectrum(const std::string& path, const Case& parameters,
                    im = history.column("E_" + std::to_string(m) + "_im");
         std::vector<double> z;
         for (std::size_t n = 0; n < count; ++n) {
-            const double h =
-                1 - std::cos(2 * pi * static_cast<double>(n) / static_cast<double>(count));
+            const double h = 1 - std::cos(2 * pi * double(n) / double(count));
             z.push_back(h * re[n] * parameters.dt);
             z.push_back(h * im[n] * parameters.dt);
         }
@@ -178,7 +171,7 @@ inline void write_spectrum(const std::string& path, const Case& parameters,
         // From the lowest frequency up; the transform divides by count.
         for (std::size_t n = 0; n < count; ++n) {
             const std::size_t from = (n + count - count / 2) % count;
-            const double factor = static_cast<double>(count);
+            const double factor = double(count);
             row.push_back(factor * factor *
                           (z[2 * from] * z[2 * from] + z[2 * from + 1] * z[2 * from + 1]));
         }
@@ -187,14 +180,13 @@ inline void write_spectrum(const std::string& path, const Case& parameters,
     gsl_fft_complex_wavetable_free(wavetable);
     gsl_fft_complex_workspace_free(workspace);
 
-    const double d_omega = 2 * pi / (static_cast<double>(count) * parameters.dt);
+    const double d_omega = 2 * pi / (double(count) * parameters.dt);
     const double k_1 = 2 * pi / parameters.grid.x.length;
     std::vector<double> all;
     for (const auto& row : power) all.insert(all.end(), row.begin(), row.end());
-    common::write_fields(path,
-                         {"omega", "omega_p", -d_omega * static_cast<double>(count / 2), d_omega,
-                          static_cast<long>(count)},
-                         {"k", "1/length", k_1, k_1, parameters.modes}, {{"power", "E^2", all}});
+    common::write_fields(
+        path, {"omega", "omega_p", -d_omega * double(count / 2), d_omega, static_cast<long>(count)},
+        {"k", "1/length", k_1, k_1, parameters.modes}, {{"power", "E^2", all}});
 }
 
 }  // namespace cic

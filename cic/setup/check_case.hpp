@@ -98,8 +98,8 @@ inline void validate(Case& parameters) {
     refuse(scales.particles < 2, "the case has " + std::to_string(scales.particles) +
                                      " particle, and alone it only feels itself: raise "
                                      "particles_per_cell");
-    refuse(static_cast<double>(scales.particles) > 2e9,
-           format(static_cast<double>(scales.particles)) +
+    refuse(double(scales.particles) > 2e9,
+           format(double(scales.particles)) +
                " particles are more than 2e9: lower particles_per_cell");
     const double length = parameters.dimensions == 2
                               ? std::max(parameters.grid.x.length, parameters.grid.z.length)

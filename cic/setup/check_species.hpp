@@ -150,7 +150,7 @@ inline void refuse_species(const Case& parameters, const SpeciesCase& s) {
                " crosses the whole box in one step: lower it, or time.dt below " +
                format(parameters.grid.x.length / fastest));
     const double weight = s.density * filled_volume(parameters, s) /
-                          static_cast<double>(particle_count(parameters, s)),
+                          double(particle_count(parameters, s)),
                  emitted = emitted_per_step(parameters, s, weight);
     refuse(emitted > 1e6,
            name + ".emission = " + format(s.emission) + " is " + format(emitted) +

@@ -89,9 +89,9 @@ inline void start_drifting(const MeshField& E_g, const Case& parameters, Particl
             const Eigen::Vector3d E(double(E_p.x[p]), 0,
                                     batch.z_p == nullptr ? 0 : double(E_p.z[p]));
             const Eigen::Vector3d v = E.cross(B) / B.squaredNorm();
-            batch.vx_p[p] = static_cast<Real>(v[0]);
-            batch.vy_p[p] = static_cast<Real>(v[1]);
-            batch.vz_p[p] = static_cast<Real>(v[2]);
+            batch.vx_p[p] = Real(v[0]);
+            batch.vy_p[p] = Real(v[1]);
+            batch.vz_p[p] = Real(v[2]);
         }
     });
     particles = std::move(one[0]);

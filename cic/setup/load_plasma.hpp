@@ -24,7 +24,7 @@ inline long particle_count(const Case& parameters, const SpeciesCase& s) {
     if (!s.mobile()) return 0;
     if (s.profile == "point") return 1;
     const double cells = filled_volume(parameters, s) / parameters.grid.cell_area();
-    return std::lround(static_cast<double>(s.particles_per_cell) * cells);
+    return std::lround(double(s.particles_per_cell) * cells);
 }
 
 /// Charge density of all fixed species.
@@ -39,7 +39,7 @@ namespace detail {
 
 // Rows and columns of a lattice in each cell, as square as the number allows.
 inline long lattice_columns(long per_cell) {
-    long columns = static_cast<long>(std::sqrt(static_cast<double>(per_cell)));
+    long columns = static_cast<long>(std::sqrt(double(per_cell)));
     while (per_cell % columns != 0) --columns;
     return per_cell / columns;
 }
@@ -52,15 +52,13 @@ struct Position {
 inline Position position_of(const Case& parameters, const SpeciesCase& s, std::uint32_t purpose,
                             const common::LoadingNumbers& load, long p, long count) {
     const Grid& grid = parameters.grid;
-    const double even = (static_cast<double>(p) + 0.5) / static_cast<double>(count);
+    const double even = (double(p) + 0.5) / double(count);
     if (s.profile == "point") return {s.center_x, s.center_z};
     if (s.loading == "lattice" && parameters.dimensions == 2) {
         const long columns = lattice_columns(s.particles_per_cell) * grid.x.cells,
                    rows = count / columns;
-        return {grid.x.low + grid.x.length * (static_cast<double>(p % columns) + 0.5) /
-                                 static_cast<double>(columns),
-                grid.z.low + grid.z.length * (static_cast<double>(p / columns) + 0.5) /
-                                 static_cast<double>(rows)};
+        return {grid.x.low + grid.x.length * (double(p % columns) + 0.5) / double(columns),
+                grid.z.low + grid.z.length * (double(p / columns) + 0.5) / double(rows)};
     }
     const double u = s.loading == "random" ? load.uniform(purpose, 2, p) : even;
     if (parameters.dimensions == 1) return {grid.x.low + grid.x.length * u, 0};
@@ -88,7 +86,7 @@ inline Particles load_species(const Case& parameters, const SpeciesCase& s, std:
     const bool plane = parameters.dimensions == 2;
     Particles particles;
     particles.name = s.name;
-    const double weight = s.density * filled_volume(parameters, s) / static_cast<double>(count);
+    const double weight = s.density * filled_volume(parameters, s) / double(count);
     particles.q_p = weight * s.charge;
     particles.m_p = weight * s.mass;
     resize(count, plane, parameters.magnetized(), particles);
@@ -108,7 +106,7 @@ inline Particles load_species(const Case& parameters, const SpeciesCase& s, std:
     const std::uint32_t velocities = 100 + purpose;
     common::for_each_block(count, [&](int, long begin, long end) {
         for (long p = begin; p < end; ++p) {
-            const auto n = static_cast<std::size_t>(p);
+            const auto n = p;
             detail::Position at = detail::position_of(parameters, s, purpose, load, p, count);
             double u_x = s.drift_x, u_y = s.drift_y, u_z = s.drift_z;
             if (v_x > 0) u_x += v_x * load.gaussian(velocities, base_x, p);
@@ -128,11 +126,11 @@ inline Particles load_species(const Case& parameters, const SpeciesCase& s, std:
                 if (plane && grid.z.periodic)
                     at.z -= grid.z.length * std::floor((at.z - grid.z.low) / grid.z.length);
             }
-            particles.x_p[n] = static_cast<Real>(at.x);
-            particles.vx_p[n] = static_cast<Real>(u_x);
-            if (plane) particles.z_p[n] = static_cast<Real>(at.z);
-            if (!particles.vy_p.empty()) particles.vy_p[n] = static_cast<Real>(u_y);
-            if (!particles.vz_p.empty()) particles.vz_p[n] = static_cast<Real>(u_z);
+            particles.x_p[n] = Real(at.x);
+            particles.vx_p[n] = Real(u_x);
+            if (plane) particles.z_p[n] = Real(at.z);
+            if (!particles.vy_p.empty()) particles.vy_p[n] = Real(u_y);
+            if (!particles.vz_p.empty()) particles.vz_p[n] = Real(u_z);
         }
     });
     return particles;

@@ -52,13 +52,12 @@ inline Scales scales_of(const Case& parameters) {
     }
     s.debye_length = inverse_debye2 > 0 ? 1 / std::sqrt(inverse_debye2) : 0;
     s.steps = std::lround(parameters.end / parameters.dt);
-    const double per_particle = static_cast<double>(components + 1) * sizeof(Real) + sizeof(int);
-    s.bytes =
-        per_particle * static_cast<double>(s.particles) +
-        static_cast<double>(parameters.grid.size()) * (common::block_count + 8) * sizeof(double);
+    const double per_particle = double(components + 1) * sizeof(Real) + sizeof(int);
+    s.bytes = per_particle * double(s.particles) +
+              double(parameters.grid.size()) * (common::block_count + 8) * sizeof(double);
     // The factors of the matrix of a box.
     if (parameters.is_box()) {
-        const double points = static_cast<double>(parameters.grid.size());
+        const double points = double(parameters.grid.size());
         s.bytes += 30 * points * std::log2(points);
     }
     return s;
@@ -175,8 +174,9 @@ inline std::string describe_scales(const Case& parameters, const Scales& scales)
         mesh = std::to_string(parameters.grid.x.cells) + " x " +
                std::to_string(parameters.grid.z.cells) + " cells of " + format(dx) + " x " +
                format(parameters.grid.z.spacing());
-    line("mesh", mesh + ", " + ends(parameters.boundary_x) + " in x" +
-                     (parameters.dimensions == 2 ? ", " + ends(parameters.boundary_z) + " in z" : ""));
+    line("mesh",
+         mesh + ", " + ends(parameters.boundary_x) + " in x" +
+             (parameters.dimensions == 2 ? ", " + ends(parameters.boundary_z) + " in z" : ""));
     line("method", parameters.weighting + " weighting, " + parameters.conserving + "-conserving" +
                        (parameters.gauss_sign < 0 ? ", div E = -rho as the slide prints it" : ""));
     line("steps", std::to_string(scales.steps) + " of " + format(parameters.dt));
@@ -197,8 +197,7 @@ inline std::string describe_scales(const Case& parameters, const Scales& scales)
         line(name, value);
     line("memory", "about " + format(scales.bytes / 1048576) + " MiB");
     const double work =
-        static_cast<double>(scales.steps) * (static_cast<double>(scales.particles) +
-                                             30.0 * static_cast<double>(parameters.grid.size()));
+        double(scales.steps) * (double(scales.particles) + 30.0 * double(parameters.grid.size()));
     line("time", "about " + format(work / 80e6) + " s on one core");
     return text;
 }

@@ -59,12 +59,11 @@ struct Waves {
     explicit Waves(const common::Axis& axis)
         : cosine(axis.cells, axis.cells), K_squared(axis.cells) {
         const long n = axis.cells;
-        const double angle = 2.0 * std::numbers::pi / static_cast<double>(n);
+        const double angle = 2.0 * std::numbers::pi / double(n);
         for (long m = 0; m < n; ++m) {
-            const double K = 2.0 / axis.spacing() * std::sin(0.5 * angle * static_cast<double>(m));
+            const double K = 2.0 / axis.spacing() * std::sin(0.5 * angle * double(m));
             K_squared[m] = K * K;
-            for (long i = 0; i < n; ++i)
-                cosine(i, m) = std::cos(angle * static_cast<double>(i * m % n));
+            for (long i = 0; i < n; ++i) cosine(i, m) = std::cos(angle * double(i * m % n));
         }
     }
 };
@@ -81,9 +80,9 @@ inline double potential(const CloudPair& pair, double r_x, double r_z, bool deri
     for (long j = at_z - pair.order; j <= at_z + pair.order + 1; ++j) {
         double row = 0.0;
         for (long i = at_x - pair.order; i <= at_x + pair.order + 1; ++i)
-            row += spline(order, s_x - static_cast<double>(i), derivative_x) *
+            row += spline(order, s_x - double(i), derivative_x) *
                    pair.phi(wrap(i, pair.x.cells), wrap(j, pair.z.cells));
-        sum += row * spline(order, s_z - static_cast<double>(j), derivative_z);
+        sum += row * spline(order, s_z - double(j), derivative_z);
     }
     if (derivative_x) sum /= pair.x.spacing();
     if (derivative_z) sum /= pair.z.spacing();

@@ -75,7 +75,7 @@ inline Complex susceptibility(const PlasmaSpecies& s, double k, double dt, Compl
 template <class Summand>
 Complex near_sum(const Summand& f, long count) {
     Complex sum = f(0.0);
-    for (long p = count; p > 0; --p) sum += f(static_cast<double>(p)) + f(-static_cast<double>(p));
+    for (long p = count; p > 0; --p) sum += f(double(p)) + f(-double(p));
     return sum;
 }
 
@@ -92,7 +92,7 @@ Complex far_sum(const Summand& f, long count) {
                                           {0.7966664774136267, 0.2223810344533745},
                                           {0.9602898564975363, 0.1012285362903763}}};
     const auto both = [&](double p) { return f(p) + f(-p); };
-    const double P = static_cast<double>(count), edge = P + 0.5;
+    const double P = double(count), edge = P + 0.5;
     Complex sum = (both(P + 1.0) - both(P)) / 24.0;
     for (const Point& point : gauss) {
         for (const double sign : {-1.0, 1.0}) {

@@ -23,9 +23,8 @@ struct WaveVector {
     double size() const { return std::hypot(x, z); }
 };
 inline WaveVector wave_vector(const Case& parameters, long mode_x, long mode_z) {
-    WaveVector k{2 * pi * static_cast<double>(mode_x) / parameters.grid.x.length, 0};
-    if (parameters.dimensions == 2)
-        k.z = 2 * pi * static_cast<double>(mode_z) / parameters.grid.z.length;
+    WaveVector k{2 * pi * double(mode_x) / parameters.grid.x.length, 0};
+    if (parameters.dimensions == 2) k.z = 2 * pi * double(mode_z) / parameters.grid.z.length;
     return k;
 }
 

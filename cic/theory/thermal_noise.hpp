@@ -18,14 +18,14 @@ namespace cic {
 inline double thermal_noise(double debye_over_dx, double per_cell, long cells, int order) {
     double sum = 0;
     for (long m = 1; m < cells; ++m) {
-        const double theta = 2 * pi * static_cast<double>(m) / static_cast<double>(cells);
+        const double theta = 2 * pi * double(m) / double(cells);
         const double K2 = 2 - 2 * std::cos(theta);
         const double A = order == 0   ? 1
                          : order == 1 ? (2 + std::cos(theta)) / 3
                                       : (33 + 26 * std::cos(theta) + std::cos(2 * theta)) / 60;
         sum += A / (A + K2 * debye_over_dx * debye_over_dx);
     }
-    return sum / (per_cell * static_cast<double>(cells));
+    return sum / (per_cell * double(cells));
 }
 
 /// How a warm plasma at rest does: the energy of its noise, and how fast the mesh heats it.
@@ -38,7 +38,7 @@ inline void compare_heating(const Case& parameters, const common::History& histo
     for (const SpeciesCase& s : parameters.species) {
         if (!s.mobile()) continue;
         inverse_debye2 += s.density * s.charge * s.charge / s.temperature_x;
-        per_cell += static_cast<double>(s.particles_per_cell);
+        per_cell += double(s.particles_per_cell);
     }
     const double at_start = 1 / std::sqrt(inverse_debye2) / parameters.grid.x.spacing();
     const double mean = mean_of_last_half(kinetic);

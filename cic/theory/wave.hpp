@@ -103,7 +103,7 @@ inline void compare_wave(const Case& parameters, const common::History& history,
     const double growth = theory.omega.imag(), frequency = std::fabs(theory.omega.real());
     summary.result_info("theory_omega", theory.omega.real(), omega_p_unit, theory.source);
     summary.result_info("theory_growth", growth, omega_p_unit, theory.source);
-    summary.result_info("mode_x", static_cast<double>(theory.mode_x), "", "followed");
+    summary.result_info("mode_x", double(theory.mode_x), "", "followed");
 
     const bool grows = growth > 1e-3 * std::abs(theory.omega);
     std::vector<std::complex<double>> mode;
