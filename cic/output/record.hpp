@@ -166,10 +166,9 @@ class Recorder {
                             change > 0.5 * now.size();
         if (std::isfinite(now.sum()) && !beyond) return;
         throw common::NumericalError(
-            "the energy is " + format(now.sum()) + " and was " + format(now.sum() - now.change) +
-            " at the start, at step " + std::to_string(step) +
-            ", t = " + format(double(step) * parameters_.dt) +
-            ": reduce time.dt, refine the mesh, or allow more with time.energy_limit");
+            sentence("the energy is ", now.sum(), " and was ", now.sum() - now.change,
+                     " at the start, at step ", step, ", t = ", double(step) * parameters_.dt,
+                     ": reduce time.dt, refine the mesh, or allow more with time.energy_limit"));
     }
 
     void record_positions(const State& state) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "cic/gather_field.hpp"
@@ -82,9 +83,25 @@ struct Case {
 
 using common::format;
 
-/// Ends the program with one sentence about impossible input.
-inline void refuse(bool is_impossible, const std::string& sentence) {
-    if (is_impossible) throw common::InputError(sentence);
+/// Words and numbers as one sentence.
+template <class... Pieces>
+std::string sentence(const Pieces&... pieces) {
+    const auto text = [](const auto& piece) {
+        using Piece = std::decay_t<decltype(piece)>;
+        if constexpr (std::is_integral_v<Piece>)
+            return std::to_string(piece);
+        else if constexpr (std::is_floating_point_v<Piece>)
+            return common::format(piece);
+        else
+            return std::string(piece);
+    };
+    return (text(pieces) + ...);
+}
+
+/// Ends the program with a sentence about impossible input.
+template <class... Pieces>
+void refuse(bool is_impossible, const Pieces&... pieces) {
+    if (is_impossible) throw common::InputError(sentence(pieces...));
 }
 
 }  // namespace cic

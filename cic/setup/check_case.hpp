@@ -16,24 +16,23 @@ namespace cic {
 /// Refuses what cannot run. errors: InputError, one sentence with the numbers and the cure.
 /// in/out: the mesh of the case gets its boundaries; in one dimension one cell of height 1.
 inline void validate(Case& parameters) {
-    parameters.grid.x.periodic = parameters.boundary_x == "periodic";
-    parameters.grid.z.periodic = parameters.boundary_z == "periodic";
+    Grid& grid = parameters.grid;
+    grid.x.periodic = parameters.boundary_x == "periodic";
+    grid.z.periodic = parameters.boundary_z == "periodic";
     if (parameters.dimensions == 1) {
         refuse(parameters.boundary_z == "wall",
                "grid.boundary_z = \"wall\" needs grid.dimensions = 2");
-        refuse(parameters.grid.z.cells != 1,
-               "grid.cells_z = " + std::to_string(parameters.grid.z.cells) +
-                   " needs grid.dimensions = 2");
-        parameters.grid.z.length = 1;
+        refuse(grid.z.cells != 1, "grid.cells_z = ", grid.z.cells, " needs grid.dimensions = 2");
+        grid.z.length = 1;
     } else {
-        refuse(parameters.grid.z.cells < 2, "grid.dimensions = 2 needs grid.cells_z of at least 2");
+        refuse(grid.z.cells < 2, "grid.dimensions = 2 needs grid.cells_z of at least 2");
     }
-    refuse(parameters.end / parameters.dt > 1e9,
-           "time.end / time.dt is " + format(parameters.end / parameters.dt) +
-               " steps, more than 1e9: raise time.dt or lower time.end");
+    refuse(parameters.end / parameters.dt > 1e9, "time.end / time.dt is ",
+           parameters.end / parameters.dt,
+           " steps, more than 1e9: raise time.dt or lower time.end");
     const std::vector<std::pair<const char*, double>> numbers{
-        {"grid.length_x", parameters.grid.x.length},
-        {"grid.length_z", parameters.grid.z.length},
+        {"grid.length_x", grid.x.length},
+        {"grid.length_z", grid.z.length},
         {"time.dt", parameters.dt},
         {"plasma.B_x", parameters.B.x},
         {"plasma.B_y", parameters.B.y},
@@ -41,7 +40,7 @@ inline void validate(Case& parameters) {
         {"output.phase_v_max", parameters.phase_v_max}};
     for (const auto& [name, value] : numbers) refuse_extreme(name, value);
     refuse(parameters.gauss_sign != 1 && parameters.gauss_sign != -1,
-           "gauss.sign = " + format(parameters.gauss_sign) + " is neither 1 nor -1");
+           "gauss.sign = ", parameters.gauss_sign, " is neither 1 nor -1");
     refuse(parameters.weighting == "ngp" && parameters.conserving == "energy",
            "method.scheme = \"energy\" gathers with one order less than it deposits, and there is "
            "none below method.weighting = \"ngp\": take \"cic\" or \"tsc\"");
@@ -62,19 +61,17 @@ inline void validate(Case& parameters) {
     refuse(box && (mixed(x_low) || mixed(z_low)),
            "floating walls that meet grounded ones at a corner are not supported: make all walls "
            "grounded, or one direction periodic");
-    refuse(box && (parameters.grid.x.cells < 3 || parameters.grid.z.cells < 3),
-           "a box needs at least 3 x 3 cells");
-    refuse(box && parameters.grid.x.cells * parameters.grid.z.cells > 4000000,
-           "a box between four walls of " + std::to_string(parameters.grid.x.cells) + " x " +
-               std::to_string(parameters.grid.z.cells) +
-               " cells is more than the 4e6 whose matrix is factorized in minutes: take fewer, or "
-               "make one direction periodic");
+    refuse(box && (grid.x.cells < 3 || grid.z.cells < 3), "a box needs at least 3 x 3 cells");
+    refuse(box && grid.x.cells * grid.z.cells > 4000000, "a box between four walls of ",
+           grid.x.cells, " x ", grid.z.cells,
+           " cells is more than the 4e6 whose matrix is factorized in minutes: take fewer, or make "
+           "one direction periodic");
 
     // Nothing but walls can carry the opposite charge.
     double total = 0, size = 0;
     for (const SpeciesCase& s : parameters.species) {
-        const double volume = s.mobile() ? filled_volume(parameters, s)
-                                         : parameters.grid.x.length * parameters.grid.z.length;
+        const double volume =
+            s.mobile() ? filled_volume(parameters, s) : grid.x.length * grid.z.length;
         total += s.charge * s.density * volume;
         size += std::fabs(s.charge) * s.density * volume;
     }
@@ -85,57 +82,47 @@ inline void validate(Case& parameters) {
     const bool must_be_neutral =
         closed(parameters.boundary_x, x_low) && closed(parameters.boundary_z, z_low) && size > 0;
     if (must_be_neutral)
-        refuse(
-            std::fabs(total) > 1e-9 * size,
-            "the plasma is not neutral: its charge is " + format(total) + ", " +
-                format(100 * total / size) +
-                " % of the sum of all charges, and there is no grounded wall to carry the "
-                "opposite: "
-                "change a density, or add a fixed species with density " +
-                format(std::fabs(total) / (parameters.grid.x.length * parameters.grid.z.length)) +
-                " and charge " + (total > 0 ? "-1" : "1"));
+        refuse(std::fabs(total) > 1e-9 * size, "the plasma is not neutral: its charge is ", total,
+               ", ", 100 * total / size,
+               " % of the sum of all charges, and there is no grounded wall to carry the opposite: "
+               "change a density, or add a fixed species with density ",
+               std::fabs(total) / (grid.x.length * grid.z.length), " and charge ",
+               (total > 0 ? "-1" : "1"));
     const Scales scales = scales_of(parameters);
-    refuse(scales.particles < 2, "the case has " + std::to_string(scales.particles) +
-                                     " particle, and alone it only feels itself: raise "
-                                     "particles_per_cell");
-    refuse(double(scales.particles) > 2e9,
-           format(double(scales.particles)) +
-               " particles are more than 2e9: lower particles_per_cell");
-    const double length = parameters.dimensions == 2
-                              ? std::max(parameters.grid.x.length, parameters.grid.z.length)
-                              : parameters.grid.x.length;
+    refuse(scales.particles < 2, "the case has ", scales.particles,
+           " particle, and alone it only feels itself: raise particles_per_cell");
+    refuse(double(scales.particles) > 2e9, double(scales.particles),
+           " particles are more than 2e9: lower particles_per_cell");
+    const double length =
+        parameters.dimensions == 2 ? std::max(grid.x.length, grid.z.length) : grid.x.length;
     for (const SpeciesScales& s : scales.species) {
         const double speed = s.drift + s.thermal_speed;
         if (speed > 0)
-            refuse(speed * parameters.dt > length,
-                   "species." + s.name + ": particles move " +
-                       format(speed * parameters.dt / length) +
-                       " times the length of the box in one step: lower "
-                       "time.dt below " +
-                       format(length / speed));
+            refuse(speed * parameters.dt > length, "species.", s.name, ": particles move ",
+                   speed * parameters.dt / length,
+                   " times the length of the box in one step: lower time.dt below ",
+                   length / speed);
     }
     const double fastest = scales.omega_p * parameters.dt;
     if (parameters.gauss_sign > 0 && fastest > 0)
-        refuse(fastest >= 2,
-               "omega_p dt = " + format(fastest) +
-                   " is not below 2, where the leapfrog blows up: lower time.dt below " +
-                   format(2 / scales.omega_p));
+        refuse(fastest >= 2, "omega_p dt = ", fastest,
+               " is not below 2, where the leapfrog blows up: lower time.dt below ",
+               2 / scales.omega_p);
     refuse(parameters.dimensions == 1 && parameters.mode_z != 0,
            "theory.mode_z needs grid.dimensions = 2");
-    refuse(is_above_cut_off(parameters, parameters.mode_x, parameters.mode_z),
-           "the followed " + mode_text(parameters.mode_x, parameters.mode_z) +
-               " has more than one wavelength per two cells, the cut-off of the mesh: refine it "
-               "or lower theory.mode_x and mode_z");
-    refuse(parameters.modes > 0 && 2 * parameters.modes > parameters.grid.x.cells,
-           "output.modes = " + std::to_string(parameters.modes) +
-               " is above the cut-off of the mesh, " + std::to_string(parameters.grid.x.cells / 2) +
-               " modes: lower it or refine the mesh");
+    refuse(is_above_cut_off(parameters, parameters.mode_x, parameters.mode_z), "the followed ",
+           mode_text(parameters.mode_x, parameters.mode_z),
+           " has more than one wavelength per two cells, the cut-off of the mesh: refine it or "
+           "lower theory.mode_x and mode_z");
+    refuse(parameters.modes > 0 && 2 * parameters.modes > grid.x.cells,
+           "output.modes = ", parameters.modes, " is above the cut-off of the mesh, ",
+           grid.x.cells / 2, " modes: lower it or refine the mesh");
     refuse(parameters.modes > 0 && parameters.boundary_x == "wall",
            "output.modes needs periodic x");
     refuse(parameters.spectrum && parameters.modes == 0, "output.spectrum needs output.modes");
     refuse(parameters.spectrum && scales.steps < 8,
-           "output.spectrum needs at least 8 steps, and there are " + std::to_string(scales.steps) +
-               ": raise time.end above " + format(8 * parameters.dt));
+           "output.spectrum needs at least 8 steps, and there are ", scales.steps,
+           ": raise time.end above ", 8 * parameters.dt);
     for (const SpeciesCase& s : parameters.species) {
         if (!s.mobile() || s.amplitude == 0 || s.wave != "traveling") continue;
         refuse_wave(parameters, "species." + s.name + ".wave = \"traveling\"", s.mode_x, s.mode_z);

@@ -77,53 +77,49 @@ inline long largest_prime_factor(long number) {
 /// Warnings with the number and the limit, for choices that run but may mislead.
 inline std::vector<std::string> resolution_warnings(const Case& parameters, const Scales& scales) {
     std::vector<std::string> warnings;
-    const double dx = parameters.dimensions == 2
-                          ? std::max(parameters.grid.x.spacing(), parameters.grid.z.spacing())
-                          : parameters.grid.x.spacing();
+    const auto warn = [&](const auto&... pieces) { warnings.push_back(sentence(pieces...)); };
+    const Grid& grid = parameters.grid;
+    const double dx = parameters.dimensions == 2 ? std::max(grid.x.spacing(), grid.z.spacing())
+                                                 : grid.x.spacing();
     const double omega_dt = scales.omega_p * parameters.dt;
     if (omega_dt > 0.5 && parameters.gauss_sign > 0)
-        warnings.push_back("omega_p dt = " + format(omega_dt) + " is above 0.5: frequencies are " +
-                           format(100 * (2 / omega_dt * std::asin(0.5 * omega_dt) - 1)) +
-                           " % too high; at 2 the leapfrog blows up");
+        warn("omega_p dt = ", omega_dt, " is above 0.5: frequencies are ",
+             100 * (2 / omega_dt * std::asin(0.5 * omega_dt) - 1),
+             " % too high; at 2 the leapfrog blows up");
     // Where each kind of weighting stops heating.
     const double least =
         parameters.weighting == "ngp" ? 0.6 : (parameters.weighting == "cic" ? 1 / pi : 0.15);
     if (parameters.conserving == "momentum" && scales.debye_length > 0 &&
         scales.debye_length < least * dx)
-        warnings.push_back("the Debye length is " + format(scales.debye_length / dx) +
-                           " cells, below " + format(least) + " for " + parameters.weighting +
-                           ": the mesh will heat the plasma; refine it to cells of " +
-                           format(scales.debye_length / least));
+        warn("the Debye length is ", scales.debye_length / dx, " cells, below ", least, " for ",
+             parameters.weighting, ": the mesh will heat the plasma; refine it to cells of ",
+             scales.debye_length / least);
     for (const SpeciesScales& s : scales.species) {
         if (s.thermal_speed == 0 && s.drift > 0 && scales.omega_p > 0) {
             const double u = s.drift / (scales.omega_p * dx);
             const double safe = cold_beam_threshold(parameters.weighting == "tsc" ? 2 : 1);
             if (parameters.conserving == "energy" && u < safe)
-                warnings.push_back(s.name + ": a cold beam at " + format(u) +
-                                   " omega_p dx is below " + format(safe) +
-                                   ", where the energy-conserving mesh stops it; refine the mesh");
+                warn(s.name, ": a cold beam at ", u, " omega_p dx is below ", safe,
+                     ", where the energy-conserving mesh stops it; refine the mesh");
         }
         if (s.drift + s.thermal_speed > 2 * dx / parameters.dt)
-            warnings.push_back(s.name + ": particles move " +
-                               format((s.drift + s.thermal_speed) * parameters.dt / dx) +
-                               " cells in a step; below 2 they see the field they cross");
+            warn(s.name, ": particles move ", (s.drift + s.thermal_speed) * parameters.dt / dx,
+                 " cells in a step; below 2 they see the field they cross");
         if (s.Omega_c * parameters.dt > 1)
-            warnings.push_back(s.name + ": Omega_c dt = " + format(s.Omega_c * parameters.dt) +
-                               " is above 1: gyration is slowed by the time step to " +
-                               format(std::atan(0.5 * s.Omega_c * parameters.dt) /
-                                      (0.5 * s.Omega_c * parameters.dt)) +
-                               " of its frequency; drifts stay right");
+            warn(s.name, ": Omega_c dt = ", s.Omega_c * parameters.dt,
+                 " is above 1: gyration is slowed by the time step to ",
+                 std::atan(0.5 * s.Omega_c * parameters.dt) / (0.5 * s.Omega_c * parameters.dt),
+                 " of its frequency; drifts stay right");
     }
     const auto warn_of_slow_transform = [&](const std::string& what, long count) {
         const long factor = detail::largest_prime_factor(count);
         if (factor > 200)
-            warnings.push_back(
-                what + " = " + std::to_string(count) + " has the prime factor " +
-                std::to_string(factor) + ", above 200: its Fourier transforms take about " +
-                std::to_string(factor / 20) + " times as long as those of a product of 2, 3 and 5");
+            warn(what, " = ", count, " has the prime factor ", factor,
+                 ", above 200: its Fourier transforms take about ", factor / 20,
+                 " times as long as those of a product of 2, 3 and 5");
     };
-    if (parameters.grid.x.periodic) warn_of_slow_transform("grid.cells_x", parameters.grid.x.cells);
-    if (parameters.grid.z.periodic) warn_of_slow_transform("grid.cells_z", parameters.grid.z.cells);
+    if (grid.x.periodic) warn_of_slow_transform("grid.cells_x", grid.x.cells);
+    if (grid.z.periodic) warn_of_slow_transform("grid.cells_z", grid.z.cells);
     if (parameters.spectrum)
         warn_of_slow_transform("output.spectrum: time.end / time.dt", scales.steps);
     const std::vector<std::pair<const char*, double>> intervals{
@@ -132,9 +128,8 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
         {"output.phase_interval", parameters.phase_interval}};
     for (const auto& [name, interval] : intervals)
         if (interval > 0 && interval < parameters.dt)
-            warnings.push_back(std::string(name) + " = " + format(interval) +
-                               " is below time.dt = " + format(parameters.dt) +
-                               ": files are written every step");
+            warn(name, " = ", interval, " is below time.dt = ", parameters.dt,
+                 ": files are written every step");
     double emission = 0;
     bool followed = false;
     for (const SpeciesCase& s : parameters.species) {
@@ -144,17 +139,15 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
                    (perturbed && s.mode_x == parameters.mode_x && s.mode_z == parameters.mode_z);
     }
     if (parameters.walls[x_low].particles == "source" && emission == 0)
-        warnings.push_back(
+        warn(
             "boundary.particles_x_low = \"source\", and every emission is 0: the wall only gives "
-            "back "
-            "what reaches it, with emission_temperature");
+            "back what reaches it, with emission_temperature");
     const Comparison& comparison = comparison_of(parameters);
     comparison.add_warnings(parameters, warnings);
     const bool one_mode = parameters.mode_x != 0 || parameters.mode_z != 0;
     if (comparison.follows_mode && one_mode && !followed)
-        warnings.push_back("no species is perturbed in the followed " +
-                           mode_text(parameters.mode_x, parameters.mode_z) +
-                           ": only noise can start the wave");
+        warn("no species is perturbed in the followed ",
+             mode_text(parameters.mode_x, parameters.mode_z), ": only noise can start the wave");
     return warnings;
 }
 
@@ -162,43 +155,40 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
 inline std::string describe_scales(const Case& parameters, const Scales& scales) {
     const double dx = parameters.grid.x.spacing();
     std::string text;
-    const auto line = [&](const std::string& name, const std::string& value) {
-        text +=
-            "  " + name + std::string(name.size() < 34 ? 34 - name.size() : 1, ' ') + value + "\n";
+    const auto line = [&](const std::string& name, const auto&... pieces) {
+        const std::string gap(name.size() < 34 ? 34 - name.size() : 1, ' ');
+        text += "  " + name + gap + sentence(pieces...) + "\n";
     };
+    const Grid& grid = parameters.grid;
     const auto ends = [](const std::string& boundary) {
         return boundary == "wall" ? "walls" : boundary;
     };
-    std::string mesh = std::to_string(parameters.grid.x.cells) + " cells of " + format(dx);
+    std::string mesh = std::to_string(grid.x.cells) + " cells of " + format(dx);
     if (parameters.dimensions == 2)
-        mesh = std::to_string(parameters.grid.x.cells) + " x " +
-               std::to_string(parameters.grid.z.cells) + " cells of " + format(dx) + " x " +
-               format(parameters.grid.z.spacing());
-    line("mesh",
-         mesh + ", " + ends(parameters.boundary_x) + " in x" +
-             (parameters.dimensions == 2 ? ", " + ends(parameters.boundary_z) + " in z" : ""));
-    line("method", parameters.weighting + " weighting, " + parameters.conserving + "-conserving" +
-                       (parameters.gauss_sign < 0 ? ", div E = -rho as the slide prints it" : ""));
-    line("steps", std::to_string(scales.steps) + " of " + format(parameters.dt));
-    line("particles", std::to_string(scales.particles));
+        mesh = std::to_string(grid.x.cells) + " x " + std::to_string(grid.z.cells) + " cells of " +
+               format(dx) + " x " + format(grid.z.spacing());
+    line("mesh", mesh, ", ", ends(parameters.boundary_x), " in x",
+         (parameters.dimensions == 2 ? ", " + ends(parameters.boundary_z) + " in z" : ""));
+    line("method", parameters.weighting, " weighting, ", parameters.conserving, "-conserving",
+         (parameters.gauss_sign < 0 ? ", div E = -rho as the slide prints it" : ""));
+    line("steps", scales.steps, " of ", parameters.dt);
+    line("particles", scales.particles);
     line("unit of frequency", "omega_p of density 1, charge 1, mass 1");
     if (scales.omega_p > 0)
-        line("all mobile species together",
-             "omega_p = " + format(scales.omega_p) +
-                 ", omega_p dt = " + format(scales.omega_p * parameters.dt) +
-                 (scales.debye_length > 0 ? ", Debye length = " + format(scales.debye_length) +
-                                                " = " + format(scales.debye_length / dx) + " dx"
-                                          : ", cold"));
+        line("all mobile species together", "omega_p = ", scales.omega_p,
+             ", omega_p dt = ", scales.omega_p * parameters.dt,
+             (scales.debye_length > 0 ? ", Debye length = " + format(scales.debye_length) + " = " +
+                                            format(scales.debye_length / dx) + " dx"
+                                      : ", cold"));
     for (const SpeciesScales& s : scales.species)
-        line(s.name, std::to_string(s.particles) + " particles, omega_p = " + format(s.omega_p) +
-                         ", v_th = " + format(s.thermal_speed) + ", drift = " + format(s.drift) +
-                         (s.Omega_c > 0 ? ", Omega_c = " + format(s.Omega_c) : ""));
+        line(s.name, s.particles, " particles, omega_p = ", s.omega_p, ", v_th = ", s.thermal_speed,
+             ", drift = ", s.drift, (s.Omega_c > 0 ? ", Omega_c = " + format(s.Omega_c) : ""));
     for (const auto& [name, value] : comparison_of(parameters).describe(parameters))
         line(name, value);
-    line("memory", "about " + format(scales.bytes / 1048576) + " MiB");
+    line("memory", "about ", scales.bytes / 1048576, " MiB");
     const double work =
-        double(scales.steps) * (double(scales.particles) + 30.0 * double(parameters.grid.size()));
-    line("time", "about " + format(work / 80e6) + " s on one core");
+        double(scales.steps) * (double(scales.particles) + 30.0 * double(grid.size()));
+    line("time", "about ", work / 80e6, " s on one core");
     return text;
 }
 

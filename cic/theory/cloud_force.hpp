@@ -175,12 +175,12 @@ inline void validate_clouds(const Case& parameters) {
     refuse(parameters.species.size() != 2 || count_with_profile(parameters, "point") != 2 ||
                parameters.dimensions != 2 || parameters.has_walls() || parameters.magnetized() ||
                parameters.conserving != "momentum" || parameters.stencil != "five_point",
-           asked_for(parameters) +
-               " needs two species with profile = \"point\" in a periodic plane, the "
-               "momentum scheme and the five-point stencil, and no magnetic field");
-    refuse(parameters.species[0].center_x == parameters.species[1].center_x,
-           asked_for(parameters) + " needs clouds apart along x, and both have center_x = " +
-               format(parameters.species[0].center_x));
+           asked_for(parameters),
+           " needs two species with profile = \"point\" in a periodic plane, the momentum scheme "
+           "and the five-point stencil, and no magnetic field");
+    refuse(
+        parameters.species[0].center_x == parameters.species[1].center_x, asked_for(parameters),
+        " needs clouds apart along x, and both have center_x = ", parameters.species[0].center_x);
 }
 
 /// Adds the distance of the two clouds along x, to the nearest image.

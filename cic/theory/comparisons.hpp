@@ -39,12 +39,11 @@ inline const Comparison& comparison_of(const Case& parameters) {
 /// Refuses a case that its comparison cannot be made with. errors: InputError
 inline void validate_comparison(const Case& parameters) {
     const Comparison& comparison = comparison_of(parameters);
-    refuse(parameters.end < double(comparison.least_steps) * parameters.dt,
-           asked_for(parameters) + " needs at least " + std::to_string(comparison.least_steps) +
-               " steps: raise time.end above " +
-               format(double(comparison.least_steps) * parameters.dt));
-    refuse(!comparison.either_sign && parameters.gauss_sign < 0,
-           asked_for(parameters) + " is for gauss.sign = 1");
+    refuse(parameters.end < double(comparison.least_steps) * parameters.dt, asked_for(parameters),
+           " needs at least ", comparison.least_steps, " steps: raise time.end above ",
+           double(comparison.least_steps) * parameters.dt);
+    refuse(!comparison.either_sign && parameters.gauss_sign < 0, asked_for(parameters),
+           " is for gauss.sign = 1");
     comparison.validate(parameters);
 }
 

@@ -86,25 +86,23 @@ inline void validate_diocotron(const Case& parameters) {
     refuse(parameters.species.size() != 1 || count_with_profile(parameters, "layer") != 1 ||
                parameters.boundary_z != "wall" || parameters.boundary_x == "wall" ||
                parameters.B.y == 0 || parameters.B.x != 0 || parameters.B.z != 0,
-           asked_for(parameters) +
-               " needs one species with profile = \"layer\" and no other, plasma.B_y alone, "
-               "and walls in z only");
+           asked_for(parameters),
+           " needs one species with profile = \"layer\" and no other, plasma.B_y alone, and walls "
+           "in z only");
     const SpeciesCase& layer = parameters.species[0];
-    refuse(parameters.mode_x == 0 || parameters.mode_z != 0,
-           asked_for(parameters) + " follows theory.mode_x, and not " +
-               mode_text(parameters.mode_x, parameters.mode_z));
+    refuse(parameters.mode_x == 0 || parameters.mode_z != 0, asked_for(parameters),
+           " follows theory.mode_x, and not ", mode_text(parameters.mode_x, parameters.mode_z));
     const WallCase &low = parameters.walls[z_low], &high = parameters.walls[z_high];
     refuse(low.field != "grounded" || high.field != "grounded" || low.potential != high.potential ||
                std::fabs(layer.center_z - 0.5 * parameters.grid.z.length) >
                    1e-6 * parameters.grid.z.length,
-           asked_for(parameters) +
-               " needs grounded walls of the same potential, and the layer half-way between "
-               "them, at center_z = " +
-               format(0.5 * parameters.grid.z.length));
-    refuse(diocotron_growth(parameters) == 0,
-           asked_for(parameters) + ": mode " + std::to_string(parameters.mode_x) +
-               " of a layer of half_width " + format(layer.half_width) + " and charge " +
-               format(layer.charge) + " does not grow: make it thinner, or change theory.mode_x");
+           asked_for(parameters),
+           " needs grounded walls of the same potential, and the layer half-way between them, at "
+           "center_z = ",
+           0.5 * parameters.grid.z.length);
+    refuse(diocotron_growth(parameters) == 0, asked_for(parameters), ": mode ", parameters.mode_x,
+           " of a layer of half_width ", layer.half_width, " and charge ", layer.charge,
+           " does not grow: make it thinner, or change theory.mode_x");
 }
 
 /// The comparison of a charged layer.

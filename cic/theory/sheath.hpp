@@ -219,16 +219,16 @@ inline void validate_sheath(const Case& parameters) {
                parameters.walls[x_low].field != "floating" ||
                parameters.walls[x_high].particles != "absorb" ||
                parameters.walls[x_high].field != "floating",
-           asked_for(parameters) +
-               " needs grid.dimensions = 1, no magnetic field, a floating source at x_low and "
-               "a floating, absorbing wall at x_high");
+           asked_for(parameters),
+           " needs grid.dimensions = 1, no magnetic field, a floating source at x_low and a "
+           "floating, absorbing wall at x_high");
     refuse(parameters.species.size() != 2 || !parameters.species[0].mobile() ||
                !parameters.species[1].mobile() ||
                parameters.species[0].emission != parameters.species[1].emission ||
                parameters.species[0].charge != -parameters.species[1].charge ||
                parameters.species[0].emission == 0,
-           asked_for(parameters) +
-               " needs two mobile species of opposite charge with the same emission");
+           asked_for(parameters),
+           " needs two mobile species of opposite charge with the same emission");
     const std::size_t electron = parameters.species[0].charge < 0 ? 0 : 1;
     const SpeciesCase &electrons = parameters.species[electron],
                       &ions = parameters.species[1 - electron];

@@ -128,10 +128,9 @@ inline Theory theory_of_wave(const Case& parameters, long mode_x, long mode_z) {
         : on_mesh            ? fastest_growing_on_mesh(plasma, k.size(), scheme)
                   : common::fastest_growing_root(D, common::fan_of_guesses(plasma, k.size()));
     if (!root.found)
-        throw common::InputError("no root of the dispersion relation was found for " +
-                                 mode_text(mode_x, mode_z) +
-                                 ": give theory.near a frequency to look at, or set "
-                                 "theory.compare = \"none\"");
+        throw common::InputError(sentence(
+            "no root of the dispersion relation was found for ", mode_text(mode_x, mode_z),
+            ": give theory.near a frequency to look at, or set theory.compare = \"none\""));
     // What is only round-off is zero.
     const double least = 1e-9 * std::abs(root.omega);
     theory.omega = {std::fabs(root.omega.real()) < least ? 0 : root.omega.real(),

@@ -52,13 +52,13 @@ inline void compare_heating(const Case& parameters, const common::History& histo
 
 /// Refuses a case that is not a uniform warm plasma in one periodic dimension.
 inline void validate_heating(const Case& parameters) {
-    refuse(parameters.has_walls() || parameters.dimensions != 1,
-           asked_for(parameters) + " needs a warm plasma in one periodic dimension");
+    refuse(parameters.has_walls() || parameters.dimensions != 1, asked_for(parameters),
+           " needs a warm plasma in one periodic dimension");
     for (const SpeciesCase& s : parameters.species)
         refuse(s.mobile() && (s.profile != "uniform" || s.charge == 0 || s.temperature_x == 0),
-               asked_for(parameters) + " needs uniform, charged, warm species, and '" + s.name +
-                   "' has " + "profile \"" + s.profile + "\", charge " + format(s.charge) +
-                   " and temperature_x " + format(s.temperature_x));
+               asked_for(parameters), " needs uniform, charged, warm species, and '", s.name,
+               "' has profile \"", s.profile, "\", charge ", s.charge, " and temperature_x ",
+               s.temperature_x);
 }
 
 /// The comparison of a warm plasma at rest.

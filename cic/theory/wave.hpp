@@ -18,26 +18,26 @@ namespace cic {
 /// Refuses a case for which the dispersion relations of theory_of_case.hpp do not hold.
 /// in:     what asks for them, and for which mode
 inline void refuse_wave(const Case& parameters, const std::string& what, long mode_x, long mode_z) {
-    refuse(parameters.has_walls(), what + " needs periodic boundaries");
+    refuse(parameters.has_walls(), what, " needs periodic boundaries");
     for (const SpeciesCase& s : parameters.species) {
         if (!s.mobile()) continue;
-        refuse(s.profile != "uniform",
-               what + " needs uniform species, and '" + s.name + "' is a " + s.profile);
+        refuse(s.profile != "uniform", what, " needs uniform species, and '", s.name, "' is a ",
+               s.profile);
         const bool cold = s.temperature_x == 0 && s.temperature_y == 0 && s.temperature_z == 0;
         const bool at_rest = s.drift_x == 0 && s.drift_y == 0 && s.drift_z == 0;
-        refuse(parameters.magnetized() && !(cold && at_rest),
-               what + " with a magnetic field is for cold species at rest, and '" + s.name +
-                   "' is warm or drifts: take out plasma.B_x, B_y and B_z, or set theory.compare = "
-                   "\"none\" and waves to \"standing\"");
+        refuse(parameters.magnetized() && !(cold && at_rest), what,
+               " with a magnetic field is for cold species at rest, and '", s.name,
+               "' is warm or drifts: take out plasma.B_x, B_y and B_z, or set theory.compare = "
+               "\"none\" and waves to \"standing\"");
     }
     refuse(parameters.model == "mesh" && mode_x != 0 && mode_z != 0,
-           "theory.model = \"mesh\" needs a mode along x or along z, and not " +
-               mode_text(mode_x, mode_z));
+           "theory.model = \"mesh\" needs a mode along x or along z, and not ",
+           mode_text(mode_x, mode_z));
     refuse(parameters.model == "mesh" && (parameters.magnetized() || parameters.gauss_sign < 0),
            "theory.model = \"mesh\" has neither a magnetic field nor gauss.sign = -1: take "
            "\"plasma\"");
-    refuse(parameters.magnetized() && parameters.gauss_sign < 0,
-           what + " with a magnetic field is for gauss.sign = 1");
+    refuse(parameters.magnetized() && parameters.gauss_sign < 0, what,
+           " with a magnetic field is for gauss.sign = 1");
 }
 
 /// Amplitude of the field at which an instability is visible: a tenth of the one in which the
@@ -209,10 +209,9 @@ inline constexpr Comparison wave_comparison{
             refuse_wave(parameters, asked_for(parameters), parameters.mode_x, parameters.mode_z);
             const bool search = parameters.mode_x == 0 && parameters.mode_z == 0;
             const long modes = (parameters.grid.x.cells - 1) / 2;
-            refuse(
-                search && (modes < 1 || modes > 512 || parameters.model == "mesh"),
-                "theory.mode_x = 0 looks for the fastest growing of " + std::to_string(modes) +
-                    " modes, and that is for 1 to 512 and theory.model = \"plasma\": name a mode");
+            refuse(search && (modes < 1 || modes > 512 || parameters.model == "mesh"),
+                   "theory.mode_x = 0 looks for the fastest growing of ", modes,
+                   " modes, and that is for 1 to 512 and theory.model = \"plasma\": name a mode");
         },
     .recorded_mode_x = [](const Case& parameters) { return theory_of_wave(parameters).mode_x; },
     .describe = describe_wave,
@@ -221,9 +220,9 @@ inline constexpr Comparison wave_comparison{
             const std::complex<double> omega = theory_of_wave(parameters).omega;
             const double period = 2 * pi / std::fabs(omega.real());
             if (omega.imag() <= 0 && omega.real() != 0 && period > parameters.end)
-                warnings.push_back("the wave of theory has the period " + format(period) +
-                                   ", longer than time.end = " + format(parameters.end) +
-                                   ": its frequency cannot be measured well");
+                warnings.push_back(sentence("the wave of theory has the period ", period,
+                                            ", longer than time.end = ", parameters.end,
+                                            ": its frequency cannot be measured well"));
         },
     .add_results = compare_wave};
 
