@@ -25,6 +25,7 @@ struct Wall {
     double potential = 0;  // in: of a grounded wall; out: of a floating one
     double charge = 0;     // per area. in: of a floating wall; out: of a grounded one
 };
+/// Which wall: an index of Walls, and its name in a case.
 enum WallName : std::size_t { x_low, x_high, z_low, z_high };
 inline constexpr std::array<const char*, 4> wall_names{"x_low", "x_high", "z_low", "z_high"};
 using Walls = std::array<Wall, 4>;
@@ -70,6 +71,7 @@ inline void solve_tridiagonal(double dx, double c, double K2, const Wall& low, c
 /// Solves -lap phi = rho on one mesh again and again.
 class PoissonSolver {
    public:
+    /// in:     nine_point, the Laplacian with the corners; a box with four walls is factorized here
     PoissonSolver(const Grid& grid, bool nine_point)
         : grid_(grid),
           coupling_(
@@ -81,6 +83,7 @@ class PoissonSolver {
         if (!grid.x.periodic && !grid.z.periodic) factorize();
     }
 
+    /// Solves for one charge density.
     /// in:     rho on the nodes, ghosts filled; walls
     /// out:    phi on the nodes, interior only
     /// exact:  the difference equation holds to round-off. Without walls the mean of rho is taken

@@ -17,12 +17,14 @@ namespace cic {
 /// diagonal.
 class RealTransform {
    public:
+    /// in:     length of the rows
     explicit RealTransform(long length)
         : length_(length),
           forward_(gsl_fft_real_wavetable_alloc(length_), gsl_fft_real_wavetable_free),
           backward_(gsl_fft_halfcomplex_wavetable_alloc(length_),
                     gsl_fft_halfcomplex_wavetable_free) {}
 
+    /// Every row to its coefficients, and back.
     /// in/out: rows of values(:, j) for all j, or the same backwards with the factor 1/length; one
     ///         number stays as it is
     void forward(Eigen::MatrixXd& values) const {

@@ -62,12 +62,6 @@ inline void field_on_nodes(const Grid& grid, const Field& phi, MeshField& E_g) {
     });
 }
 
-// Charge per area on the inner face of a wall, from Gauss's law in the half cell before it.
-//   sigma = E_1/2 - rho_0 dx/2, E pointing away from the wall
-inline double surface_charge(double phi_wall, double phi_next, double rho_wall, double dx) {
-    return (phi_wall - phi_next) / dx - 0.5 * dx * rho_wall;
-}
-
 // Visits the nodes of both walls of a direction: visit(node, step to the next node inside, wall,
 // +1 or -1 for a normal along or against the axis, share of the wall's area).
 template <class Visit>
@@ -84,13 +78,21 @@ void for_each_wall_node(const Grid& grid, bool along_x, const Visit& visit) {
     }
 }
 
-// Fills the ghost places of the packed field: periodic images, or mirror images behind walls, such
-// that gather_field stays the transpose of deposit_charge.
+}  // namespace detail
+
+/// Charge per area on the inner face of a wall, from Gauss's law in the half cell before it.
+///   sigma = E_1/2 - rho_0 dx/2, E pointing away from the wall
+inline double surface_charge(double phi_wall, double phi_next, double rho_wall, double dx) {
+    return (phi_wall - phi_next) / dx - 0.5 * dx * rho_wall;
+}
+
+/// Fills the ghost places of the packed field: periodic images, or mirror images behind walls, such
+/// that gather_field stays the transpose of deposit_charge.
 inline void fill_ghosts(const Grid& grid, bool on_edges, MeshField& E_g) {
     const auto at = [&](long i, long j) -> NodeField& { return E_g[grid.index(i, j)]; };
     const long nx = grid.x.cells, nz = grid.z.cells;
     const auto mirror = [&](const common::Axis& axis, bool half, const auto& copy) {
-        common::detail::ghosts_along(axis, half, half ? -1 : 1, copy);
+        common::ghosts_along(axis, half, half ? -1 : 1, copy);
     };
     for (long j = 0; j <= nz; ++j) {
         mirror(grid.x, on_edges,
@@ -103,8 +105,6 @@ inline void fill_ghosts(const Grid& grid, bool on_edges, MeshField& E_g) {
                [&](long to, long from, int sign) { at(i, to).z = Real(sign) * at(i, from).z; });
     }
 }
-
-}  // namespace detail
 
 /// The field of the charge density.
 ///   div E = rho,  E = -grad phi:   -lap phi = rho
@@ -141,8 +141,7 @@ inline void solve_field(FieldSolver& solver, const Field& rho_g, FieldState& fie
         std::array<double, 4> charge{};
         detail::for_each_wall_node(
             grid, along_x, [&](long n, long in, WallName wall, double sign, double share) {
-                const double sigma =
-                    detail::surface_charge(phi[n], phi[n + in], rho[n], axis.spacing());
+                const double sigma = surface_charge(phi[n], phi[n + in], rho[n], axis.spacing());
                 charge[wall] += share * sigma;
                 if (field.walls[wall].floating) field.walls[wall].potential = phi[n];
                 if (on_edges) return;
@@ -152,7 +151,7 @@ inline void solve_field(FieldSolver& solver, const Field& rho_g, FieldState& fie
         for (const WallName wall : {along_x ? x_low : z_low, along_x ? x_high : z_high})
             if (!field.walls[wall].floating) field.walls[wall].charge = charge[wall];
     }
-    detail::fill_ghosts(grid, on_edges, field.E_g);
+    fill_ghosts(grid, on_edges, field.E_g);
 }
 
 }  // namespace cic

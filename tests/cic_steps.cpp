@@ -167,7 +167,7 @@ TEST_CASE("the gather is the transpose of the deposit") {
                     any.field.E_g[static_cast<std::size_t>(m.grid.index(a, b))];
             }
         }
-        cic::detail::fill_ghosts(m.grid, false, any.field.E_g);
+        cic::fill_ghosts(m.grid, false, any.field.E_g);
         DepositScratch scratch;
         Field rho_g;
         deposit_charge(species, m.grid, m.scheme, 0, scratch, rho_g);
@@ -337,8 +337,8 @@ TEST_CASE("a floating wall carries its charge and a row of floating walls no net
     double sigma = 0, spread = 0;
     for (long j = 0; j < m.grid.z.cells; ++j) {
         const long n = m.grid.index(N, j);
-        sigma += cic::detail::surface_charge(s.field.phi[n], s.field.phi[n - 1], s.rho_g[n],
-                                             m.grid.x.spacing()) /
+        sigma += cic::surface_charge(s.field.phi[n], s.field.phi[n - 1], s.rho_g[n],
+                                     m.grid.x.spacing()) /
                  static_cast<double>(m.grid.z.cells);
         spread = worst({spread, std::fabs(s.field.phi[n] - s.field.phi[m.grid.index(N, 0)])});
     }

@@ -50,6 +50,7 @@ inline double charge_on_mesh(const Grid& grid, const Field& rho_g) {
 /// for wavelengths that fit into the box; in a direction with walls the mean is taken.
 class FourierMode {
    public:
+    /// in:     mode_x, mode_z, wavelengths in the box; k = |k|
     FourierMode(const Grid& grid, long mode_x, long mode_z, double k) : k_(k) {
         const auto table = [](const common::Axis& axis, long mode) {
             std::vector<std::complex<double>> phases;
@@ -62,6 +63,7 @@ class FourierMode {
         along_z_ = table(grid.z, mode_z);
     }
 
+    /// E_k of a potential on the nodes.
     std::complex<double> amplitude(const Grid& grid, const Field& phi) const {
         std::complex<double> sum = 0;
         for (std::size_t j = 0; j < along_z_.size(); ++j) {

@@ -17,6 +17,7 @@ namespace cic {
 /// field and positions of that time, kinetic energy centered there, momentum half a step later.
 class Recorder {
    public:
+    /// in:     state at t = 0; history gets its columns
     Recorder(const Case& parameters, const State& state, common::History& history)
         : parameters_(parameters), comparison_(comparison_of(parameters)) {
         add_mode("mode", comparison_.recorded_mode_x(parameters), parameters.mode_z);

@@ -15,6 +15,7 @@
 
 namespace cic {
 
+/// About how many particles a file holds at most.
 inline constexpr long most_particles_written = 40000;
 
 /// Writes fields_NNNNNN.dat (and .vti): rho, phi, E_x, E_z on nodes, density of every species; E of
@@ -66,17 +67,15 @@ inline void write_particles(const std::string& folder, long step, const Case& pa
     std::array<std::vector<double>, 6> data;
     for (std::size_t k = 0; k < state.species.size(); ++k) {
         const Particles& s = state.species[k];
-        const auto at = [](const std::vector<Real>& values, std::size_t n) {
-            return values.empty() ? 0.0 : double(values[n]);
+        const auto at = [](const std::vector<Real>& values, long p) {
+            return values.empty() ? 0.0 : double(values[p]);
         };
         // Radical inverses repeat themselves: a stride of many particles would draw a pattern.
         for (long p = 0; p < s.count(); ++p) {
-            if (every > 1 &&
-                common::uniform(7, 7, static_cast<std::uint64_t>(p), 0) * double(every) >= 1)
+            if (every > 1 && common::uniform(7, 7, std::uint64_t(p), 0) * double(every) >= 1)
                 continue;
-            const auto n = p;
-            const std::array<double, 6> row{double(k),     at(s.x_p, n),  at(s.z_p, n),
-                                            at(s.vx_p, n), at(s.vy_p, n), at(s.vz_p, n)};
+            const std::array<double, 6> row{double(k),     at(s.x_p, p),  at(s.z_p, p),
+                                            at(s.vx_p, p), at(s.vy_p, p), at(s.vz_p, p)};
             for (std::size_t a = 0; a < 6; ++a) data[a].push_back(row[a]);
         }
     }
@@ -156,7 +155,7 @@ inline void write_spectrum(const std::string& path, const Case& parameters,
     if (count < 8) return;
     const auto wavetable = gsl_fft_complex_wavetable_alloc(count);
     const auto workspace = gsl_fft_complex_workspace_alloc(count);
-    std::vector<std::vector<double>> power;
+    std::vector<double> power;
     for (long m = 1; m <= parameters.modes; ++m) {
         const auto re = history.column("E_" + std::to_string(m) + "_re"),
                    im = history.column("E_" + std::to_string(m) + "_im");
@@ -167,26 +166,21 @@ inline void write_spectrum(const std::string& path, const Case& parameters,
             z.push_back(h * im[n] * parameters.dt);
         }
         gsl_fft_complex_inverse(z.data(), 1, count, wavetable, workspace);
-        std::vector<double> row;
         // From the lowest frequency up; the transform divides by count.
         for (std::size_t n = 0; n < count; ++n) {
-            const std::size_t from = (n + count - count / 2) % count;
-            const double factor = double(count);
-            row.push_back(factor * factor *
-                          (z[2 * from] * z[2 * from] + z[2 * from + 1] * z[2 * from + 1]));
+            const std::size_t from = 2 * ((n + count - count / 2) % count);
+            const double factor = double(count) * double(count);
+            power.push_back(factor * (z[from] * z[from] + z[from + 1] * z[from + 1]));
         }
-        power.push_back(row);
     }
     gsl_fft_complex_wavetable_free(wavetable);
     gsl_fft_complex_workspace_free(workspace);
 
     const double d_omega = 2 * pi / (double(count) * parameters.dt);
     const double k_1 = 2 * pi / parameters.grid.x.length;
-    std::vector<double> all;
-    for (const auto& row : power) all.insert(all.end(), row.begin(), row.end());
     common::write_fields(
         path, {"omega", "omega_p", -d_omega * double(count / 2), d_omega, static_cast<long>(count)},
-        {"k", "1/length", k_1, k_1, parameters.modes}, {{"power", "E^2", all}});
+        {"k", "1/length", k_1, k_1, parameters.modes}, {{"power", "E^2", power}});
 }
 
 }  // namespace cic

@@ -72,6 +72,7 @@ struct Case {
     bool spectrum = false, vtk = false;
     long checkpoint_steps = 0;
 
+    /// The weighting, the scheme and the dimensions as numbers.
     Scheme scheme() const {
         return {weighting == "ngp" ? 0 : (weighting == "cic" ? 1 : 2), conserving == "energy",
                 static_cast<int>(dimensions)};

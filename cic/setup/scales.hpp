@@ -20,6 +20,7 @@ struct SpeciesScales {
     long particles = 0;
 };
 
+/// The scales of a run.
 struct Scales {
     std::vector<SpeciesScales> species;
     double omega_p = 0;       // of all mobile species together

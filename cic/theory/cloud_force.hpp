@@ -35,7 +35,7 @@ struct CloudPair {
     Eigen::MatrixXd phi;  // on node (i, j), of a unit charge on node (0, 0), eps0 = 1
 };
 
-namespace cloud_force_detail {
+namespace detail {
 
 /// S^(order) of any order, by the recurrence of B-splines.
 ///   order S^(l)(s) = (h + s) S^(l-1)(s + 1/2) + (h - s) S^(l-1)(s - 1/2),  h = (order + 1) / 2
@@ -89,14 +89,14 @@ inline double potential(const CloudPair& pair, double r_x, double r_z, bool deri
     return sum;
 }
 
-}  // namespace cloud_force_detail
+}  // namespace detail
 
 /// The potential of one node, from which all forces follow.
 ///   K^2 phi_k = rho_k, the five-point Laplacian;  phi_(k = 0) = 0
 /// in:     both axes periodic; one cell across makes the clouds sheets
 /// note:   two small matrix products; with a few hundred cells per direction that is no work.
 inline CloudPair make_cloud_pair(const common::Axis& x, const common::Axis& z, int order) {
-    const cloud_force_detail::Waves along_x(x), along_z(z);
+    const detail::Waves along_x(x), along_z(z);
     Eigen::MatrixXd phi_k(x.cells, z.cells);
     for (long n = 0; n < z.cells; ++n)
         for (long m = 0; m < x.cells; ++m)
@@ -118,7 +118,7 @@ inline CloudPair make_cloud_pair(const common::Axis& x, const common::Axis& z, i
 ///         along z, with kinks there, also at r = 0; and only the mean is. A single pair sees a
 ///         staircase: no force while both are in one cell, a jump whenever one changes cells.
 inline Eigen::Vector2d mean_force(const CloudPair& pair, double r_x, double r_z) {
-    using cloud_force_detail::potential;
+    using detail::potential;
     const double dx = pair.x.spacing(), dz = pair.z.spacing();
     return {(potential(pair, r_x - dx, r_z) - potential(pair, r_x + dx, r_z)) / (2.0 * dx),
             (potential(pair, r_x, r_z - dz) - potential(pair, r_x, r_z + dz)) / (2.0 * dz)};
@@ -131,7 +131,7 @@ inline Eigen::Vector2d mean_force(const CloudPair& pair, double r_x, double r_z)
 /// note:   A pair that stays at one place of the mesh has a slope of its own: there, from 0.125 to
 ///         0.182 with cic, from 0.103 to 0.135 with tsc, and zero with ngp.
 inline Eigen::Vector2d mean_force_slope(const CloudPair& pair) {
-    using cloud_force_detail::potential;
+    using detail::potential;
     const double dx = pair.x.spacing(), dz = pair.z.spacing();
     const auto along_x = [&](double r_x) { return potential(pair, r_x, 0.0, true, false); };
     const auto along_z = [&](double r_z) { return potential(pair, 0.0, r_z, false, true); };

@@ -63,6 +63,7 @@ inline std::vector<double> amplitude_of_mode(const common::History& history) {
     return amplitude;
 }
 
+/// Mean over the second half of a run.
 inline double mean_of_last_half(const std::vector<double>& values) {
     double sum = 0;
     const std::size_t half = values.size() / 2;

@@ -20,6 +20,7 @@
 
 namespace cic {
 
+/// The layer, between its walls.
 struct ChargedLayer {
     double shear_rate;     // S = rho_0 / B
     double half_width;     // d

@@ -17,11 +17,13 @@ inline std::string mode_text(long mode_x, long mode_z) {
     return "mode (" + std::to_string(mode_x) + ", " + std::to_string(mode_z) + ")";
 }
 
-/// A wave vector, from the number of wavelengths in the box.
+/// A wave vector in the plane of the mesh.
 struct WaveVector {
     double x = 0, z = 0;
     double size() const { return std::hypot(x, z); }
 };
+
+/// The wave vector of a mode: the numbers of its wavelengths in the box.
 inline WaveVector wave_vector(const Case& parameters, long mode_x, long mode_z) {
     WaveVector k{2 * pi * double(mode_x) / parameters.grid.x.length, 0};
     if (parameters.dimensions == 2) k.z = 2 * pi * double(mode_z) / parameters.grid.z.length;

@@ -59,6 +59,7 @@ inline double predicted_onset(const Case& parameters, const Theory& theory) {
                ? std::log(onset / theory.seed) / growth
                : 0;
 }
+/// What the onset is, in words.
 inline const std::string onset_meaning = "the seed has grown to a tenth of what traps particles";
 
 namespace detail {
