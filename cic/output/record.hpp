@@ -86,10 +86,6 @@ class Recorder {
         double sum() const { return kinetic + field; }
         double size() const { return kinetic + std::fabs(field); }
     };
-    struct RecordedMode {
-        std::string name;
-        FourierMode mode;
-    };
 
     void add_mode(const std::string& name, long mode_x, long mode_z) {
         const double k = wave_vector(parameters_, mode_x, mode_z).size();
@@ -116,12 +112,13 @@ class Recorder {
         row.add("momentum_x", momentum, all.momentum[0]);
         row.add("momentum_y", momentum, all.momentum[1]);
         row.add("momentum_z", momentum, all.momentum[2]);
-        const auto add_amplitude = [&](const RecordedMode& recorded) {
-            const std::complex<double> E_k = recorded.mode.amplitude(grid, field.phi);
-            row.add(recorded.name + "_re", "m*velocity*omega_p/e", E_k.real());
-            row.add(recorded.name + "_im", "m*velocity*omega_p/e", E_k.imag());
+        const auto add_amplitude = [&](std::size_t m) {
+            const auto& [name, mode] = modes_[m];
+            const std::complex<double> E_k = mode.amplitude(grid, field.phi);
+            row.add(name + "_re", "m*velocity*omega_p/e", E_k.real());
+            row.add(name + "_im", "m*velocity*omega_p/e", E_k.imag());
         };
-        add_amplitude(modes_[0]);
+        add_amplitude(0);
         if (parameters_.has_walls()) {
             for (const Particles& s : state.species)
                 row.add("count_" + s.name, "1", double(s.count()));
@@ -137,7 +134,7 @@ class Recorder {
             const common::Column& column = of_positions_.columns[k];
             row.add(column.name, column.unit, of_positions_.values[k]);
         }
-        for (std::size_t m = 1; m < modes_.size(); ++m) add_amplitude(modes_[m]);
+        for (std::size_t m = 1; m < modes_.size(); ++m) add_amplitude(m);
         return row;
     }
 
@@ -162,10 +159,10 @@ class Recorder {
     void check_energy(long step, const Energies& now) const {
         const bool limited = parameters_.energy_limit > 0 && !parameters_.has_walls();
         const double change = std::fabs(now.change);
-        const bool beyond = limited && now.at_start > 0 && now.size() > least_energy_ &&
-                            change > (parameters_.energy_limit - 1) * now.at_start &&
-                            change > 0.5 * now.size();
-        if (std::isfinite(now.sum()) && !beyond) return;
+        const bool exceeded = limited && now.at_start > 0 && now.size() > least_energy_ &&
+                              change > (parameters_.energy_limit - 1) * now.at_start &&
+                              change > 0.5 * now.size();
+        if (std::isfinite(now.sum()) && !exceeded) return;
         throw common::NumericalError(
             sentence("the energy is ", now.sum(), " and was ", now.sum() - now.change,
                      " at the start, at step ", step, ", t = ", double(step) * parameters_.dt,
@@ -179,7 +176,8 @@ class Recorder {
 
     const Case& parameters_;
     const Comparison& comparison_;
-    std::vector<RecordedMode> modes_;
+    std::vector<std::pair<std::string, FourierMode>> modes_;  // by the names of their columns
+
     double background_ = 0;     // charge of the fixed species
     double least_energy_ = 0;   // of the field that round-off of all charges makes
     common::Row of_positions_;  // columns that need the positions of t^n

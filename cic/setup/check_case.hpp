@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "cic/setup/check_species.hpp"
 #include "cic/setup/scales.hpp"
@@ -30,15 +28,9 @@ inline void validate(Case& parameters) {
     refuse(parameters.end / parameters.dt > 1e9, "time.end / time.dt is ",
            parameters.end / parameters.dt,
            " steps, more than 1e9: raise time.dt or lower time.end");
-    const std::vector<std::pair<const char*, double>> numbers{
-        {"grid.length_x", grid.x.length},
-        {"grid.length_z", grid.z.length},
-        {"time.dt", parameters.dt},
-        {"plasma.B_x", parameters.B.x},
-        {"plasma.B_y", parameters.B.y},
-        {"plasma.B_z", parameters.B.z},
-        {"output.phase_v_max", parameters.phase_v_max}};
-    for (const auto& [name, value] : numbers) refuse_extreme(name, value);
+    refuse_extreme("", "grid.length_x", grid.x.length, "grid.length_z", grid.z.length, "time.dt",
+                   parameters.dt, "plasma.B_x", parameters.B.x, "plasma.B_y", parameters.B.y,
+                   "plasma.B_z", parameters.B.z, "output.phase_v_max", parameters.phase_v_max);
     refuse(parameters.gauss_sign != 1 && parameters.gauss_sign != -1,
            "gauss.sign = ", parameters.gauss_sign, " is neither 1 nor -1");
     refuse(parameters.weighting == "ngp" && parameters.conserving == "energy",
@@ -49,9 +41,9 @@ inline void validate(Case& parameters) {
     refuse_walls(parameters);
     refuse(parameters.species.empty(), "there is no plasma: add a [species.<name>]");
     for (const SpeciesCase& s : parameters.species) refuse_species(parameters, s);
-    const bool has_mobile = std::any_of(parameters.species.begin(), parameters.species.end(),
-                                        [](const SpeciesCase& s) { return s.mobile(); });
-    refuse(!has_mobile, "every species is fixed, so nothing can happen: make one mobile");
+    const auto mobile = [](const SpeciesCase& s) { return s.mobile(); };
+    refuse(std::none_of(parameters.species.begin(), parameters.species.end(), mobile),
+           "every species is fixed, so nothing can happen: make one mobile");
 
     const auto mixed = [&](std::size_t low) {
         return parameters.walls[low].field == "floating" ||

@@ -75,8 +75,8 @@ inline common::ParameterTable describe(Case& parameters) {
                "length of the box along x");
     table.real("grid.length_z", parameters.grid.z.length, "length", above(0),
                "along z, in two dimensions");
-    table.choice("grid.boundary_x", parameters.boundary_x, {"periodic", "wall"}, "ends of x");
-    table.choice("grid.boundary_z", parameters.boundary_z, {"periodic", "wall"}, "ends of z");
+    table.choice("grid.boundary_x", parameters.boundary_x, {"periodic", "wall"}, "both ends of x");
+    table.choice("grid.boundary_z", parameters.boundary_z, {"periodic", "wall"}, "both ends of z");
 
     table.group("walls, where a direction has them");
     for (std::size_t k = 0; k < 4; ++k) {

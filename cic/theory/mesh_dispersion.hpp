@@ -204,15 +204,6 @@ inline double cold_mesh_frequency(double k, const MeshScheme& scheme, double ome
     return scheme.dt > 0.0 ? 2.0 / scheme.dt * std::asin(0.5 * scheme.dt * omega_g) : omega_g;
 }
 
-/// The rate at which the same plasma blows up when Gauss's law has the wrong sign.
-///   div E = -rho:  gamma = (2 / dt) asinh(omega_g dt / 2)
-/// source: [CIC-2], as the slide prints it
-inline double cold_mesh_growth_as_printed(double k, const MeshScheme& scheme, double omega_p) {
-    const double omega_g =
-        cold_mesh_frequency(k, {scheme.dx, 0.0, scheme.order, scheme.energy_conserving}, omega_p);
-    return scheme.dt > 0.0 ? 2.0 / scheme.dt * std::asinh(0.5 * scheme.dt * omega_g) : omega_g;
-}
-
 /// The drift u / (omega_p dx) below which the energy-conserving scheme makes a cold beam unstable.
 ///   The last wave to become stable alternates from node to node, k = pi / dx. Its aliases come in
 ///   pairs +-k_p, so D has its maximum between the resonances omega = +-(pi / dx) u at zero, and

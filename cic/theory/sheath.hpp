@@ -160,50 +160,51 @@ inline Sheath collector_sheath(double mass_ratio, double temperature_ratio) {
                            -detail::sign_change(missing, 0.0, -lowest));
 }
 
+/// Which of two species of opposite charge is the electrons; the other is the ions.
+inline const SpeciesCase& electrons_of(const Case& parameters) {
+    return parameters.species[parameters.species[0].charge < 0 ? 0 : 1];
+}
+
+/// The sheath of a case with two such species. errors: InputError where there is none
+inline Sheath sheath_of(const Case& parameters) {
+    const SpeciesCase& electrons = electrons_of(parameters);
+    const SpeciesCase& ions = parameters.species[&electrons == &parameters.species[0] ? 1 : 0];
+    return collector_sheath(ions.mass / electrons.mass,
+                            ions.emission_temperature / electrons.emission_temperature);
+}
+
 /// Potentials of a floating wall in front of a plasma from a source, mean of the last half.
 inline void compare_sheath(const Case& parameters, const common::History& history,
                            common::Summary& summary) {
-    const bool first_is_electron = parameters.species[0].charge < 0;
-    const SpeciesCase &electrons = parameters.species[first_is_electron ? 0 : 1],
-                      &ions = parameters.species[first_is_electron ? 1 : 0];
-    const double T_e = electrons.emission_temperature;
-    const Sheath sheath =
-        collector_sheath(ions.mass / electrons.mass, ions.emission_temperature / T_e);
-    const std::string source = "Schwager and Birdsall 1990, solved here";
-    const double e = std::fabs(electrons.charge);
-    summary.result("collector_potential",
-                   e * mean_of_last_half(history.column("potential_x_high")) / T_e, "T_e/e",
-                   sheath.collector_potential,
-                   parameters.growth_tolerance * std::fabs(sheath.collector_potential), source);
-    summary.result("plasma_potential",
-                   e * mean_of_last_half(history.column("potential_middle")) / T_e, "T_e/e",
-                   sheath.plasma_potential,
-                   parameters.growth_tolerance * std::fabs(sheath.plasma_potential), source);
+    const SpeciesCase& electrons = electrons_of(parameters);
+    const Sheath sheath = sheath_of(parameters);
+    const auto compare = [&](const char* name, const char* column, double expected) {
+        const double e_phi =
+            std::fabs(electrons.charge) * mean_of_last_half(history.column(column));
+        summary.result(name, e_phi / electrons.emission_temperature, "T_e/e", expected,
+                       parameters.growth_tolerance * std::fabs(expected),
+                       "Schwager and Birdsall 1990, solved here");
+    };
+    compare("collector_potential", "potential_x_high", sheath.collector_potential);
+    compare("plasma_potential", "potential_middle", sheath.plasma_potential);
 }
 
 /// Refuses a case that is not a source of pairs in front of a floating wall.
 inline void validate_sheath(const Case& parameters) {
+    const WallCase &low = parameters.walls[x_low], &high = parameters.walls[x_high];
     refuse(parameters.dimensions != 1 || parameters.magnetized() ||
-               parameters.boundary_x != "wall" || parameters.walls[x_low].particles != "source" ||
-               parameters.walls[x_low].field != "floating" ||
-               parameters.walls[x_high].particles != "absorb" ||
-               parameters.walls[x_high].field != "floating",
+               parameters.boundary_x != "wall" || low.particles != "source" ||
+               low.field != "floating" || high.particles != "absorb" || high.field != "floating",
            asked_for(parameters),
            " needs grid.dimensions = 1, no magnetic field, a floating source at x_low and a "
            "floating, absorbing wall at x_high");
-    refuse(parameters.species.size() != 2 || !parameters.species[0].mobile() ||
-               !parameters.species[1].mobile() ||
-               parameters.species[0].emission != parameters.species[1].emission ||
-               parameters.species[0].charge != -parameters.species[1].charge ||
-               parameters.species[0].emission == 0,
+    const std::vector<SpeciesCase>& species = parameters.species;
+    refuse(species.size() != 2 || !species[0].mobile() || !species[1].mobile() ||
+               species[0].emission != species[1].emission || species[0].emission == 0 ||
+               species[0].charge != -species[1].charge,
            asked_for(parameters),
            " needs two mobile species of opposite charge with the same emission");
-    const std::size_t electron = parameters.species[0].charge < 0 ? 0 : 1;
-    const SpeciesCase &electrons = parameters.species[electron],
-                      &ions = parameters.species[1 - electron];
-    // This throws where there is no sheath.
-    collector_sheath(ions.mass / electrons.mass,
-                     ions.emission_temperature / electrons.emission_temperature);
+    sheath_of(parameters);  // throws where there is no sheath
 }
 
 /// The comparison of a floating wall.
