@@ -42,6 +42,7 @@ struct Weights<1> {
     }
 };
 
+// The polynomials of common::QuadraticWeights, for single precision, too.
 template <>
 struct Weights<2> {
     static constexpr int count = 3;
