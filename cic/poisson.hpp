@@ -53,9 +53,8 @@ inline void solve_tridiagonal(double dx, double c, double K2, const Wall& low, c
         ratio[0] = 0;
     }
     for (long i = 1; i < N; ++i) {
-        const auto n = i;
-        const double pivot = 1 / (diagonal - off * ratio[n - 1]);
-        ratio[n] = off * pivot;
+        const double pivot = 1 / (diagonal - off * ratio[i - 1]);
+        ratio[i] = off * pivot;
         rho[i] = (rho[i] - off * rho[i - 1]) * pivot;
     }
     const double before = ratio[N - 1];

@@ -106,7 +106,6 @@ inline Particles load_species(const Case& parameters, const SpeciesCase& s, std:
     const std::uint32_t velocities = 100 + purpose;
     common::for_each_block(count, [&](int, long begin, long end) {
         for (long p = begin; p < end; ++p) {
-            const auto n = p;
             detail::Position at = detail::position_of(parameters, s, purpose, load, p, count);
             double u_x = s.drift_x, u_y = s.drift_y, u_z = s.drift_z;
             if (v_x > 0) u_x += v_x * load.gaussian(velocities, base_x, p);
@@ -126,11 +125,11 @@ inline Particles load_species(const Case& parameters, const SpeciesCase& s, std:
                 if (plane && grid.z.periodic)
                     at.z -= grid.z.length * std::floor((at.z - grid.z.low) / grid.z.length);
             }
-            particles.x_p[n] = Real(at.x);
-            particles.vx_p[n] = Real(u_x);
-            if (plane) particles.z_p[n] = Real(at.z);
-            if (!particles.vy_p.empty()) particles.vy_p[n] = Real(u_y);
-            if (!particles.vz_p.empty()) particles.vz_p[n] = Real(u_z);
+            particles.x_p[p] = Real(at.x);
+            particles.vx_p[p] = Real(u_x);
+            if (plane) particles.z_p[p] = Real(at.z);
+            if (!particles.vy_p.empty()) particles.vy_p[p] = Real(u_y);
+            if (!particles.vz_p.empty()) particles.vz_p[p] = Real(u_z);
         }
     });
     return particles;

@@ -147,8 +147,7 @@ inline Eigen::Vector2d overlap_frequency_squared(const CloudPair& pair, double q
 }
 
 /// Two clouds of opposite charge swing through each other along x.
-inline void compare_clouds(const Case& parameters, const common::History& history,
-                           common::Summary& summary) {
+inline void compare_clouds(const Case& parameters, const History& history, Summary& summary) {
     const SpeciesCase &a = parameters.species[0], &b = parameters.species[1];
     const auto separation = history.column("separation_x");
     const CloudPair pair =

@@ -14,6 +14,11 @@
 
 namespace cic {
 
+using common::History, common::Summary;
+
+/// Lines of a description, each a name and its text.
+using Lines = std::vector<std::pair<std::string, std::string>>;
+
 /// One comparison: its name in a case file, what it needs, what it adds to the description, the
 /// warnings and the history of a run, and its results. What it leaves out adds nothing.
 struct Comparison {
@@ -26,18 +31,16 @@ struct Comparison {
     void (*validate)(const Case&) = [](const Case&) {};
     /// The mode along x whose amplitude is recorded.
     long (*recorded_mode_x)(const Case&) = [](const Case& parameters) { return parameters.mode_x; };
-    /// Lines of the description, each a name and its text.
-    std::vector<std::pair<std::string, std::string>> (*describe)(const Case&) = [](const Case&) {
-        return std::vector<std::pair<std::string, std::string>>{};
-    };
+    /// What the run will show, before it begins.
+    Lines (*describe)(const Case&) = [](const Case&) { return Lines{}; };
     /// Where the run can mislead.
     void (*add_warnings)(const Case&, std::vector<std::string>&) = [](const Case&, auto&) {};
     /// Columns of the history that need the positions of t^n.
     void (*add_columns)(const Case&, const std::vector<Particles>&,
                         common::Row&) = [](const Case&, const auto&, auto&) {};
     /// What was measured, beside what theory says.
-    void (*add_results)(const Case&, const common::History&,
-                        common::Summary&) = [](const Case&, const auto&, auto&) {};
+    void (*add_results)(const Case&, const History&, Summary&) = [](const Case&, const auto&,
+                                                                    auto&) {};
 };
 
 /// Units of frequencies in the results, with the convention.
@@ -56,7 +59,7 @@ inline long count_with_profile(const Case& parameters, const char* profile) {
 }
 
 /// |E_k| of the recorded mode, at all times.
-inline std::vector<double> amplitude_of_mode(const common::History& history) {
+inline std::vector<double> amplitude_of_mode(const History& history) {
     const auto re = history.column("mode_re"), im = history.column("mode_im");
     std::vector<double> amplitude;
     for (std::size_t n = 0; n < re.size(); ++n) amplitude.push_back(std::hypot(re[n], im[n]));

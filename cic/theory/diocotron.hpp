@@ -68,8 +68,7 @@ inline double diocotron_growth(const Case& parameters) {
 }
 
 /// The rate at which the edges of a charged layer wind up.
-inline void compare_diocotron(const Case& parameters, const common::History& history,
-                              common::Summary& summary) {
+inline void compare_diocotron(const Case& parameters, const History& history, Summary& summary) {
     const double growth = diocotron_growth(parameters);
     const common::GrowthFit fit =
         common::fit_growth(history.column("time"), amplitude_of_mode(history), {2.0, 0.2});

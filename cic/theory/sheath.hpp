@@ -174,8 +174,7 @@ inline Sheath sheath_of(const Case& parameters) {
 }
 
 /// Potentials of a floating wall in front of a plasma from a source, mean of the last half.
-inline void compare_sheath(const Case& parameters, const common::History& history,
-                           common::Summary& summary) {
+inline void compare_sheath(const Case& parameters, const History& history, Summary& summary) {
     const SpeciesCase& electrons = electrons_of(parameters);
     const Sheath sheath = sheath_of(parameters);
     const auto compare = [&](const char* name, const char* column, double expected) {

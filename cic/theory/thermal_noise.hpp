@@ -29,8 +29,7 @@ inline double thermal_noise(double debye_over_dx, double per_cell, long cells, i
 }
 
 /// How a warm plasma at rest does: the energy of its noise, and how fast the mesh heats it.
-inline void compare_heating(const Case& parameters, const common::History& history,
-                            common::Summary& summary) {
+inline void compare_heating(const Case& parameters, const History& history, Summary& summary) {
     const auto kinetic = history.column("kinetic"), field = history.column("field");
     const double ratio = kinetic.back() / kinetic.front();
     summary.result_info("kinetic_over_initial", ratio, "", "measured");

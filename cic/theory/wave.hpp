@@ -95,8 +95,7 @@ inline Window ringing_window(const std::vector<double>& amplitude, double dt, do
 /// A wave or an instability against the dispersion relation.
 ///   growing: rate by fit_growth, frequency by rotation within the same times, onset
 ///   otherwise: frequency and damping within ringing_window
-inline void compare_wave(const Case& parameters, const common::History& history,
-                         common::Summary& summary) {
+inline void compare_wave(const Case& parameters, const History& history, Summary& summary) {
     const Theory theory = theory_of_wave(parameters);
     const auto times = history.column("time"), re = history.column("mode_re"),
                im = history.column("mode_im");
@@ -189,12 +188,11 @@ inline void compare_wave(const Case& parameters, const common::History& history,
 }
 
 /// Frequency, growth and onset of the followed mode in words, before the run.
-inline std::vector<std::pair<std::string, std::string>> describe_wave(const Case& parameters) {
+inline Lines describe_wave(const Case& parameters) {
     const Theory theory = theory_of_wave(parameters);
-    std::vector<std::pair<std::string, std::string>> lines{
-        {"theory", mode_text(theory.mode_x, theory.mode_z) +
-                       ": omega = " + format(theory.omega.real()) +
-                       ", growth = " + format(theory.omega.imag()) + " omega_p; " + theory.source}};
+    Lines lines{{"theory", mode_text(theory.mode_x, theory.mode_z) +
+                               ": omega = " + format(theory.omega.real()) + ", growth = " +
+                               format(theory.omega.imag()) + " omega_p; " + theory.source}};
     const double onset = predicted_onset(parameters, theory);
     if (onset > 0) lines.push_back({"onset", "about t = " + format(onset) + ": " + onset_meaning});
     return lines;
