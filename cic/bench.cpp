@@ -16,9 +16,9 @@ using namespace cic;
 
 // 256 x 256 cells as wide as the Debye length, 100 electrons in each, ions at rest.
 Case warm_plasma() {
-    Case w;
-    w.dimensions = 2;
-    w.grid = {{256, 0, 256, true}, {256, 0, 256, true}};
+    Case parameters;
+    parameters.dimensions = 2;
+    parameters.grid = {{256, 0, 256, true}, {256, 0, 256, true}};
     SpeciesCase electrons, ions;
     electrons.name = "electrons";
     electrons.particles_per_cell = 100;
@@ -27,14 +27,15 @@ Case warm_plasma() {
     ions.name = "ions";
     ions.motion = "fixed";
     ions.charge = 1;
-    w.species = {electrons, ions};
-    return w;
+    parameters.species = {electrons, ions};
+    return parameters;
 }
 
-common::StepClock time_steps(const Case& w, long steps, int threads, long& particle_count) {
+common::StepClock time_steps(const Case& parameters, long steps, int threads,
+                             long& particle_count) {
     common::set_thread_count(threads);
-    FieldSolver solver(w.grid, w.scheme(), false, 1);
-    State state = initial_state(w, solver);
+    FieldSolver solver(parameters.grid, parameters.scheme(), false, 1);
+    State state = initial_state(parameters, solver);
     particle_count = state.count();
     FieldState field;
     Field rho_g;
@@ -44,10 +45,12 @@ common::StepClock time_steps(const Case& w, long steps, int threads, long& parti
     common::StepClock clock;
     for (long step = 0; step <= steps; ++step) {
         if (step == 1) clock.restart();  // the first step meets empty caches and unsorted particles
-        find_field(state.species, w.grid, w.scheme(), 1, deposit_scratch, solver, rho_g, field,
-                   clock);
-        push_particles(field.E_g, w.grid, w.scheme(), w.B, w.dt, state.species, clock);
-        if (step % w.sort_interval == 0) sort_particles(w.grid, sort_scratch, state.species);
+        find_field(state.species, parameters.grid, parameters.scheme(), 1, deposit_scratch, solver,
+                   rho_g, field, clock);
+        push_particles(field.E_g, parameters.grid, parameters.scheme(), parameters.B, parameters.dt,
+                       state.species, clock);
+        if (step % parameters.sort_interval == 0)
+            sort_particles(parameters.grid, sort_scratch, state.species);
         clock.lap("sort");
     }
     return clock;
@@ -56,8 +59,8 @@ common::StepClock time_steps(const Case& w, long steps, int threads, long& parti
 }  // namespace
 
 int main() {
-    const Case w = warm_plasma();
-    const long steps = 2 * w.sort_interval;
+    const Case parameters = warm_plasma();
+    const long steps = 2 * parameters.sort_interval;
     long particles = 0;
     double one_thread = 0;
     std::printf(
@@ -67,9 +70,8 @@ int main() {
     std::printf("%8s %16s %9s %9s %9s %9s %9s\n", "threads", "particle-steps/s", "speed-up",
                 "deposit", "field", "push", "sort");
     for (const int threads : {1, 2}) {
-        const common::StepClock clock = time_steps(w, steps, threads, particles);
-        const double rate =
-            static_cast<double>(particles) * static_cast<double>(steps) / clock.total();
+        const common::StepClock clock = time_steps(parameters, steps, threads, particles);
+        const double rate = double(particles) * double(steps) / clock.total();
         if (threads == 1) one_thread = rate;
         const auto percent = [&](const char* part) {
             return 100 * clock.seconds(part) / clock.total();
@@ -83,7 +85,6 @@ int main() {
     const double carried = 4 * sizeof(Real), scratch = sizeof(Real) + sizeof(int);
     std::printf(
         "\n%ld particles, %.0f bytes each (%.0f carried, %.0f to sort); peak memory %.1f MiB\n",
-        particles, carried + scratch, carried, scratch,
-        static_cast<double>(usage.ru_maxrss) / 1024);
+        particles, carried + scratch, carried, scratch, double(usage.ru_maxrss) / 1024);
     return 0;
 }

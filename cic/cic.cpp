@@ -1,5 +1,6 @@
 // Clouds-in-cells: charged particles in the electric field of their own charge, which is computed
-// on a mesh. One or two dimensions, a uniform magnetic field, periodic or between walls.
+// on a mesh. One dimension, x, or the plane (x, z); a uniform magnetic field; periodic or between
+// walls.
 //
 // The default case is the two-stream instability: two cold beams pass through each other, roll up
 // into vortices in phase space and turn their energy into heat.
@@ -11,8 +12,10 @@
 // slide, deposit_charge.hpp, solve_field.hpp, gather_field.hpp, move_particles.hpp.
 #include <optional>
 
-#include "cic/meet_walls.hpp"
+#include "cic/apply_particle_boundaries.hpp"
 #include "cic/output/record.hpp"
+#include "cic/setup/check_case.hpp"
+#include "cic/setup/describe_case.hpp"
 #include "cic/setup/initial_state.hpp"
 #include "cic/sort_particles.hpp"
 #include "cic/step.hpp"
@@ -54,6 +57,7 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     FieldState field;
     DepositScratch deposit_scratch;
     common::SortScratch<Real> sort_scratch;
+    const ParticleBoundaries boundaries = particle_boundaries(parameters, particles);
     Recorder recorder(parameters, state, run.history);
 
     // 3. The loop of the slide.
@@ -67,16 +71,17 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
         recorder.snapshot(step, state, rho_g, field, run);                     // files of t^n
         push_particles(field.E_g, grid, scheme, parameters.B, dt, particles);  // [CIC-3, 4, 5]
         recorder.record(step, state, rho_g, field, run);                       // the row of t^n
-        meet_walls(parameters, step, state);
+        apply_particle_boundaries(grid, boundaries, step, particles, state.walls,
+                                  state.emitted_again);
         ++step;
         if (sort_is_due(parameters.sort_interval, step))
             sort_particles(grid, sort_scratch, particles);
-        run.end_of_step(step, steps, static_cast<double>(step) * dt, state);
+        run.end_of_step(step, steps, double(step) * dt, state);
     }
 
     // 4. The results against theory, summary.json.
     if (step == steps) recorder.finish(state, run);
-    return run.finish(step, static_cast<double>(state.count()));
+    return run.finish(step, double(state.count()));
 }
 
 }  // namespace

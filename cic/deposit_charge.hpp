@@ -17,19 +17,17 @@ namespace detail {
 // Adds S of the particles [begin, end) to one mesh.
 template <int order, int dimensions>
 void add_weights(const Particles& particles, const Grid& grid, long begin, long end, Real* sum) {
-    const Real x_low = static_cast<Real>(grid.x.low), z_low = static_cast<Real>(grid.z.low);
-    const Real per_dx = static_cast<Real>(1 / grid.x.spacing()),
-               per_dz = static_cast<Real>(1 / grid.z.spacing());
+    const Real x_low = Real(grid.x.low), z_low = Real(grid.z.low);
+    const Real per_dx = Real(1 / grid.x.spacing()), per_dz = Real(1 / grid.z.spacing());
     const long stride = grid.stride();
     Real* const origin = sum + grid.index(0, 0);
     // [deposit]
     for (long p = begin; p < end; ++p) {
-        const auto k = static_cast<std::size_t>(p);
-        const Weights<order> S_x((particles.x_p[k] - x_low) * per_dx);
+        const Weights<order> S_x((particles.x_p[p] - x_low) * per_dx);
         if constexpr (dimensions == 1) {
             for (int i = 0; i < S_x.count; ++i) origin[S_x.first + i] += S_x.S[i];
         } else {
-            const Weights<order> S_z((particles.z_p[k] - z_low) * per_dz);
+            const Weights<order> S_z((particles.z_p[p] - z_low) * per_dz);
             Real* node = origin + S_z.first * stride + S_x.first;
             for (int j = 0; j < S_z.count; ++j, node += stride)
                 for (int i = 0; i < S_x.count; ++i) node[i] += S_x.S[i] * S_z.S[j];
@@ -45,22 +43,21 @@ void add_weights(const Particles& particles, const Grid& grid, long begin, long 
 /// in/out: rho_g, grid.size() values; what falls on ghost nodes stays there
 inline void add_charge(const Particles& particles, const Grid& grid, const Scheme& scheme,
                        DepositScratch& scratch, Field& rho_g) {
-    const auto size = static_cast<std::size_t>(grid.size());
+    const long size = grid.size();
     scratch.sum_of_block.resize(common::block_count, std::vector<Real>(size));
     with_order_and_dimensions(scheme, [&](auto order, auto dimensions) {
         common::for_each_block(particles.count(), [&](int block, long begin, long end) {
-            auto& sum = scratch.sum_of_block[static_cast<std::size_t>(block)];
+            auto& sum = scratch.sum_of_block[block];
             sum.assign(size, 0);
             detail::add_weights<order(), dimensions()>(particles, grid, begin, end, sum.data());
         });
     });
     const double charge = particles.q_p / grid.cell_area();
     common::for_each_row(grid.z.cells + 3, [&](long row) {
-        const auto begin = static_cast<std::size_t>(row * grid.stride());
-        for (std::size_t n = begin; n < begin + static_cast<std::size_t>(grid.stride()); ++n) {
+        for (long n = row * grid.stride(); n < (row + 1) * grid.stride(); ++n) {
             double sum = 0;
-            for (const auto& block : scratch.sum_of_block) sum += static_cast<double>(block[n]);
-            rho_g[static_cast<long>(n)] += charge * sum;
+            for (const auto& block : scratch.sum_of_block) sum += double(block[n]);
+            rho_g[n] += charge * sum;
         }
     });
 }

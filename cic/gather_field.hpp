@@ -16,7 +16,7 @@ struct NodeField {
 };
 using MeshField = std::vector<NodeField>;
 
-/// The field at every particle of a chunk.
+/// The field at every particle of a batch.
 ///   E_p = sum_g E_g S(x_g - x_p)
 /// and in the energy-conserving scheme, per component a,
 ///   E_a,p = sum_e E_a,e S'(x_e - x_p),  S' of one order less than S along a, and equal to S across
@@ -28,23 +28,23 @@ using MeshField = std::vector<NodeField>;
 /// source: [CIC-3]; Lewis, J. Comput. Phys. 6, 136 (1970), for the energy-conserving pairing.
 /// note:   The slide writes S(x - x_p) without the index of the node.
 template <int order, int dimensions, bool energy_conserving>
-void gather_field(const MeshField& E_g, const Grid& grid, const Chunk& p, FieldAtParticles& E_p) {
+void gather_field(const MeshField& E_g, const Grid& grid, const ParticleBatch& batch,
+                  FieldAtParticles& E_p) {
     constexpr int along = energy_conserving ? order - 1 : order;
     constexpr Real to_edge = energy_conserving ? Real(-0.5) : Real(0);
-    const Real x_low = static_cast<Real>(grid.x.low), z_low = static_cast<Real>(grid.z.low);
-    const Real per_dx = static_cast<Real>(1 / grid.x.spacing()),
-               per_dz = static_cast<Real>(1 / grid.z.spacing());
+    const Real x_low = Real(grid.x.low), z_low = Real(grid.z.low);
+    const Real per_dx = Real(1 / grid.x.spacing()), per_dz = Real(1 / grid.z.spacing());
     const long stride = grid.stride();
     const NodeField* const origin = E_g.data() + grid.index(0, 0);
     // [gather]
-    for (long k = 0; k < p.count; ++k) {
-        const Real s_x = (p.x_p[k] - x_low) * per_dx;
+    for (long p = 0; p < batch.count; ++p) {
+        const Real s_x = (batch.x_p[p] - x_low) * per_dx;
         Real E_x = 0, E_z = 0;
         if constexpr (dimensions == 1) {
             const Weights<along> S_x(s_x + to_edge);
             for (int i = 0; i < S_x.count; ++i) E_x += S_x.S[i] * origin[S_x.first + i].x;
         } else if constexpr (!energy_conserving) {
-            const Real s_z = (p.z_p[k] - z_low) * per_dz;
+            const Real s_z = (batch.z_p[p] - z_low) * per_dz;
             const Weights<order> S_x(s_x), S_z(s_z);
             const NodeField* node = origin + S_z.first * stride + S_x.first;
             for (int j = 0; j < S_z.count; ++j, node += stride) {
@@ -55,7 +55,7 @@ void gather_field(const MeshField& E_g, const Grid& grid, const Chunk& p, FieldA
                 }
             }
         } else {
-            const Real s_z = (p.z_p[k] - z_low) * per_dz;
+            const Real s_z = (batch.z_p[p] - z_low) * per_dz;
             const Weights<order> S_x(s_x), S_z(s_z);
             const Weights<along> edge_x(s_x + to_edge), edge_z(s_z + to_edge);
             for (int j = 0; j < S_z.count; ++j)
@@ -67,21 +67,21 @@ void gather_field(const MeshField& E_g, const Grid& grid, const Chunk& p, FieldA
                     E_z += S_x.S[i] * edge_z.S[j] *
                            origin[(edge_z.first + j) * stride + S_x.first + i].z;
         }
-        E_p.x[k] = E_x;
-        if constexpr (dimensions == 2) E_p.z[k] = E_z;
+        E_p.x[p] = E_x;
+        if constexpr (dimensions == 2) E_p.z[p] = E_z;
     }
     // [/gather]
 }
 
 /// The same with the scheme chosen at run time.
 inline void gather_field(const MeshField& E_g, const Grid& grid, const Scheme& scheme,
-                         const Chunk& p, FieldAtParticles& E_p) {
+                         const ParticleBatch& batch, FieldAtParticles& E_p) {
     with_order_and_dimensions(scheme, [&](auto order, auto dimensions) {
         if (!scheme.energy_conserving)
-            gather_field<order(), dimensions(), false>(E_g, grid, p, E_p);
+            gather_field<order(), dimensions(), false>(E_g, grid, batch, E_p);
         if constexpr (order() > 0) {
             if (scheme.energy_conserving)
-                gather_field<order(), dimensions(), true>(E_g, grid, p, E_p);
+                gather_field<order(), dimensions(), true>(E_g, grid, batch, E_p);
         }
     });
 }

@@ -48,9 +48,9 @@ inline ComponentSums accelerate_along(Real kick, long count, const Real* E_p, Re
     Real product = 0, sum = 0;
     // [accelerate]
 #pragma omp simd reduction(+ : product, sum)
-    for (long k = 0; k < count; ++k) {
-        const Real v_old = v_p[k], v_new = v_old + kick * E_p[k];
-        v_p[k] = v_new;
+    for (long p = 0; p < count; ++p) {
+        const Real v_old = v_p[p], v_new = v_old + kick * E_p[p];
+        v_p[p] = v_new;
         product += v_old * v_new;
         sum += v_new;
     }
@@ -61,22 +61,23 @@ inline ComponentSums accelerate_along(Real kick, long count, const Real* E_p, Re
 // All three components with B: half a kick, the rotation, the other half.
 inline std::array<ComponentSums, 3> accelerate_and_turn(Real half_kick,
                                                         const Eigen::Matrix3d& rotation,
-                                                        const FieldAtParticles& E_p, Chunk& p) {
+                                                        const FieldAtParticles& E_p,
+                                                        ParticleBatch& batch) {
     const Eigen::Matrix<Real, 3, 3> R = rotation.cast<Real>();
-    const bool plane = p.z_p != nullptr;
-    Real *const vx = p.vx_p, *const vy = p.vy_p, *const vz = p.vz_p;
+    const bool plane = batch.z_p != nullptr;
+    Real *const vx = batch.vx_p, *const vy = batch.vy_p, *const vz = batch.vz_p;
     Real product = 0, sum_x = 0, sum_y = 0, sum_z = 0;
 #pragma omp simd reduction(+ : product, sum_x, sum_y, sum_z)
-    for (long k = 0; k < p.count; ++k) {
-        const Real h_x = half_kick * E_p.x[k], h_z = plane ? half_kick * E_p.z[k] : Real(0);
-        const Real x = vx[k] + h_x, y = vy[k], z = vz[k] + h_z;
-        vx[k] = R(0, 0) * x + R(0, 1) * y + R(0, 2) * z + h_x;
-        vy[k] = R(1, 0) * x + R(1, 1) * y + R(1, 2) * z;
-        vz[k] = R(2, 0) * x + R(2, 1) * y + R(2, 2) * z + h_z;
+    for (long p = 0; p < batch.count; ++p) {
+        const Real h_x = half_kick * E_p.x[p], h_z = plane ? half_kick * E_p.z[p] : Real(0);
+        const Real x = vx[p] + h_x, y = vy[p], z = vz[p] + h_z;
+        vx[p] = R(0, 0) * x + R(0, 1) * y + R(0, 2) * z + h_x;
+        vy[p] = R(1, 0) * x + R(1, 1) * y + R(1, 2) * z;
+        vz[p] = R(2, 0) * x + R(2, 1) * y + R(2, 2) * z + h_z;
         product += x * x + y * y + z * z - h_x * h_x - h_z * h_z;
-        sum_x += vx[k];
-        sum_y += vy[k];
-        sum_z += vz[k];
+        sum_x += vx[p];
+        sum_y += vy[p];
+        sum_z += vz[p];
     }
     return {ComponentSums{product, sum_x}, ComponentSums{0, sum_y}, ComponentSums{0, sum_z}};
 }
@@ -86,27 +87,29 @@ inline std::array<ComponentSums, 3> accelerate_and_turn(Real half_kick,
 /// The momentum equation over one step.
 ///   v^(n+1/2) = v^(n-1/2) + (q/m) dt E_p,  and with B
 ///   v^(n+1/2) = R [v^(n-1/2) + h] + h,  h = (q/m) (dt/2) E_p,  R the rotation of one step
-/// in/out: velocities of the chunk; in one dimension only vx without B
-/// out:    p.sums: momentum at n+1/2, and the kinetic energy at n that energy theorems want,
+/// in/out: velocities of the batch; in one dimension only vx without B
+/// out:    batch.sums: momentum at n+1/2, and the kinetic energy at n that energy theorems want,
 ///           (1/2) m v^(n-1/2) . v^(n+1/2)
 ///         written (1/2) m (|v^(n-1/2) + h|^2 - |h|^2), which is the same without B and does not
 ///         see the rotation with it
 /// source: [CIC-4]
-inline void accelerate(const FieldAtParticles& E_p, const MagneticField& B, double dt, Chunk& p) {
-    const double charge_over_mass = p.q_p / p.m_p;
-    const Real kick = static_cast<Real>(charge_over_mass * dt);
+inline void accelerate(const FieldAtParticles& E_p, const MagneticField& B, double dt,
+                       ParticleBatch& batch) {
+    const double charge_over_mass = batch.q_p / batch.m_p;
+    const Real kick = Real(charge_over_mass * dt);
     std::array<detail::ComponentSums, 3> sums{};
-    if (p.vy_p != nullptr) {
+    if (batch.vy_p != nullptr) {
         sums = detail::accelerate_and_turn(kick / 2, rotation_of_step(B, charge_over_mass, dt, 1),
-                                           E_p, p);
+                                           E_p, batch);
     } else {
-        sums[0] = detail::accelerate_along(kick, p.count, E_p.x, p.vx_p);
-        if (p.vz_p != nullptr) sums[2] = detail::accelerate_along(kick, p.count, E_p.z, p.vz_p);
+        sums[0] = detail::accelerate_along(kick, batch.count, E_p.x, batch.vx_p);
+        if (batch.vz_p != nullptr)
+            sums[2] = detail::accelerate_along(kick, batch.count, E_p.z, batch.vz_p);
     }
-    p.sums = {};
+    batch.sums = {};
     for (std::size_t a = 0; a < 3; ++a) {
-        p.sums.kinetic += 0.5 * p.m_p * static_cast<double>(sums[a].product);
-        p.sums.momentum[a] = p.m_p * static_cast<double>(sums[a].v_new);
+        batch.sums.kinetic += 0.5 * batch.m_p * double(sums[a].product);
+        batch.sums.momentum[a] = batch.m_p * double(sums[a].v_new);
     }
 }
 
@@ -114,17 +117,18 @@ inline void accelerate(const FieldAtParticles& E_p, const MagneticField& B, doub
 ///   v^(-1/2) = R^(-1/2) v^0 - h
 /// exact:  accelerate() then gives v^(1/2) = R^(1/2) v^0 + h, the mirror image in time
 inline void start_leapfrog(const FieldAtParticles& E_p, const MagneticField& B, double dt,
-                           Chunk& p) {
-    const double charge_over_mass = p.q_p / p.m_p;
+                           ParticleBatch& batch) {
+    const double charge_over_mass = batch.q_p / batch.m_p;
     const Eigen::Matrix3d R = rotation_of_step(B, charge_over_mass, dt, -0.5);
     const double h = 0.5 * charge_over_mass * dt;
-    for (long k = 0; k < p.count; ++k) {
-        const auto at = [k](const Real* v) { return v == nullptr ? 0.0 : double(v[k]); };
-        const Eigen::Vector3d v = R * Eigen::Vector3d(at(p.vx_p), at(p.vy_p), at(p.vz_p));
-        p.vx_p[k] = static_cast<Real>(v[0] - h * double(E_p.x[k]));
-        if (p.vy_p != nullptr) p.vy_p[k] = static_cast<Real>(v[1]);
-        if (p.vz_p != nullptr)
-            p.vz_p[k] = static_cast<Real>(v[2] - (p.z_p != nullptr ? h * double(E_p.z[k]) : 0.0));
+    for (long p = 0; p < batch.count; ++p) {
+        const auto at = [p](const Real* v) { return v == nullptr ? 0.0 : double(v[p]); };
+        const Eigen::Vector3d v =
+            R * Eigen::Vector3d(at(batch.vx_p), at(batch.vy_p), at(batch.vz_p));
+        batch.vx_p[p] = Real(v[0] - h * double(E_p.x[p]));
+        if (batch.vy_p != nullptr) batch.vy_p[p] = Real(v[1]);
+        if (batch.vz_p != nullptr)
+            batch.vz_p[p] = Real(v[2] - (batch.z_p != nullptr ? h * double(E_p.z[p]) : 0.0));
     }
 }
 
@@ -132,22 +136,21 @@ namespace detail {
 
 // One direction of move_particles().
 inline void move_along(const common::Axis& axis, Real dt, long count, const Real* v, Real* x) {
-    const Real low = static_cast<Real>(axis.low), high = static_cast<Real>(axis.high()),
-               length = static_cast<Real>(axis.length),
-               per_length = static_cast<Real>(1 / axis.length);
+    const Real low = Real(axis.low), high = Real(axis.high()), length = Real(axis.length),
+               per_length = Real(1 / axis.length);
     if (axis.periodic) {
         // The last line keeps round-off, and what is not finite any more, on the mesh.
         // [move]
 #pragma omp simd
-        for (long k = 0; k < count; ++k) {
-            const Real to = x[k] + dt * v[k];
+        for (long p = 0; p < count; ++p) {
+            const Real to = x[p] + dt * v[p];
             const Real on_mesh = to - length * std::floor((to - low) * per_length);
-            x[k] = on_mesh > low ? (on_mesh < high ? on_mesh : high) : low;
+            x[p] = on_mesh > low ? (on_mesh < high ? on_mesh : high) : low;
         }
         // [/move]
     } else {
 #pragma omp simd
-        for (long k = 0; k < count; ++k) x[k] += dt * v[k];
+        for (long p = 0; p < count; ++p) x[p] += dt * v[p];
     }
 }
 
@@ -155,12 +158,13 @@ inline void move_along(const common::Axis& axis, Real dt, long count, const Real
 
 /// The positions over one step.
 ///   x^(n+1) = x^n + dt v^(n+1/2)
-/// in/out: positions of the chunk; in a periodic direction they come back on the mesh, between
-///         walls they may end behind one: see meet_walls
+/// in/out: positions of the batch; in a periodic direction they come back on the mesh, between
+///         walls they may end behind one: see apply_particle_boundaries
 /// source: [CIC-5]
-inline void move_particles(const Grid& grid, double dt, Chunk& p) {
-    detail::move_along(grid.x, static_cast<Real>(dt), p.count, p.vx_p, p.x_p);
-    if (p.z_p != nullptr) detail::move_along(grid.z, static_cast<Real>(dt), p.count, p.vz_p, p.z_p);
+inline void move_particles(const Grid& grid, double dt, ParticleBatch& batch) {
+    detail::move_along(grid.x, Real(dt), batch.count, batch.vx_p, batch.x_p);
+    if (batch.z_p != nullptr)
+        detail::move_along(grid.z, Real(dt), batch.count, batch.vz_p, batch.z_p);
 }
 
 }  // namespace cic

@@ -40,37 +40,49 @@ struct Particles {
     std::array<std::vector<Real>*, 5> all() { return {&x_p, &z_p, &vx_p, &vy_p, &vz_p}; }
 };
 
-/// Particles that are worked on together: few enough for all their numbers to stay in the nearest
-/// cache from one line of the slide to the next.
-inline constexpr long chunk_size = 512;
-struct Chunk {
+/// Gives a species room for as many particles, with the components that can change.
+inline void resize(long count, bool plane, bool magnetized, Particles& particles) {
+    particles.x_p.resize(count);
+    particles.vx_p.resize(count);
+    if (plane) particles.z_p.resize(count);
+    if (magnetized) particles.vy_p.resize(count);
+    if (magnetized || plane) particles.vz_p.resize(count);
+}
+
+/// The most particles that are worked on together: few enough for all their numbers to stay in the
+/// nearest cache from one line of the slide to the next.
+inline constexpr long batch_size = 512;
+
+/// A batch of consecutive particles of one species, a view of its arrays; null where the species
+/// has no such component.
+struct ParticleBatch {
     Real *x_p, *z_p, *vx_p, *vy_p, *vz_p;
     long count;
     double q_p, m_p;
     ParticleSums sums;
 };
 
-/// The field at the particles of a chunk; z only in two dimensions.
+/// The field at the particles of a batch, E_p.z only in two dimensions.
 struct FieldAtParticles {
-    Real x[chunk_size], z[chunk_size];
+    Real x[batch_size], z[batch_size];
 };
 
-/// Calls work(chunk) for all particles of all species, chunk by chunk.
+/// Calls work(batch) for all particles of all species, batch by batch.
 /// out:    sums of every species, added in an order that does not depend on the threads.
 template <class Work>
-void for_each_chunk(std::vector<Particles>& species, const Work& work) {
+void for_each_batch(std::vector<Particles>& species, const Work& work) {
     for (Particles& s : species) {
         std::array<ParticleSums, common::block_count> sums{};
         common::for_each_block(s.count(), [&](int block, long begin, long end) {
             const auto from = [](std::vector<Real>& values, long p) {
                 return values.empty() ? nullptr : values.data() + p;
             };
-            for (long p = begin; p < end; p += chunk_size) {
-                Chunk chunk{from(s.x_p, p),  from(s.z_p, p),  from(s.vx_p, p),
-                            from(s.vy_p, p), from(s.vz_p, p), std::min(chunk_size, end - p),
-                            s.q_p,           s.m_p,           {}};
-                work(chunk);
-                sums[static_cast<std::size_t>(block)].add(chunk.sums);
+            for (long p = begin; p < end; p += batch_size) {
+                ParticleBatch batch{from(s.x_p, p),  from(s.z_p, p),  from(s.vx_p, p),
+                                    from(s.vy_p, p), from(s.vz_p, p), std::min(batch_size, end - p),
+                                    s.q_p,           s.m_p,           {}};
+                work(batch);
+                sums[block].add(batch.sums);
             }
         });
         s.sums = {};

@@ -25,7 +25,9 @@ struct Wall {
     double potential = 0;  // in: of a grounded wall; out: of a floating one
     double charge = 0;     // per area. in: of a floating wall; out: of a grounded one
 };
+/// Which wall: an index of Walls, and its name in a case.
 enum WallName : std::size_t { x_low, x_high, z_low, z_high };
+inline constexpr std::array<const char*, 4> wall_names{"x_low", "x_high", "z_low", "z_high"};
 using Walls = std::array<Wall, 4>;
 
 /// -c phi'' + K2 phi = rho on the nodes 0..N from wall to wall, by elimination.
@@ -39,7 +41,7 @@ inline void solve_tridiagonal(double dx, double c, double K2, const Wall& low, c
                               double* rho, long N, std::vector<double>& scratch) {
     const double off = -c / (dx * dx), diagonal = 2 * c / (dx * dx) + K2;
     std::vector<double>& ratio = scratch;
-    ratio.resize(static_cast<std::size_t>(N) + 1);
+    ratio.resize(N + 1);
     const bool pinned = low.floating && high.floating && K2 == 0;
     // First row: a potential, or Gauss's law for the half cell, E_1/2 = sigma + rho_0 dx/2.
     if (low.floating && !pinned) {
@@ -51,24 +53,24 @@ inline void solve_tridiagonal(double dx, double c, double K2, const Wall& low, c
         ratio[0] = 0;
     }
     for (long i = 1; i < N; ++i) {
-        const auto n = static_cast<std::size_t>(i);
-        const double pivot = 1 / (diagonal - off * ratio[n - 1]);
-        ratio[n] = off * pivot;
+        const double pivot = 1 / (diagonal - off * ratio[i - 1]);
+        ratio[i] = off * pivot;
         rho[i] = (rho[i] - off * rho[i - 1]) * pivot;
     }
-    const double before = ratio[static_cast<std::size_t>(N) - 1];
+    const double before = ratio[N - 1];
     if (high.floating) {
         const double d = c / dx * (1 + before) + 0.5 * dx * K2;
         rho[N] = (high.charge + 0.5 * dx * rho[N] + c / dx * rho[N - 1]) / d;
     } else {
         rho[N] = high.potential;
     }
-    for (long i = N - 1; i >= 0; --i) rho[i] -= ratio[static_cast<std::size_t>(i)] * rho[i + 1];
+    for (long i = N - 1; i >= 0; --i) rho[i] -= ratio[i] * rho[i + 1];
 }
 
 /// Solves -lap phi = rho on one mesh again and again.
 class PoissonSolver {
    public:
+    /// in:     nine_point, the Laplacian with the corners; a box with four walls is factorized here
     PoissonSolver(const Grid& grid, bool nine_point)
         : grid_(grid),
           coupling_(
@@ -80,6 +82,7 @@ class PoissonSolver {
         if (!grid.x.periodic && !grid.z.periodic) factorize();
     }
 
+    /// Solves for one charge density.
     /// in:     rho on the nodes, ghosts filled; walls
     /// out:    phi on the nodes, interior only
     /// exact:  the difference equation holds to round-off. Without walls the mean of rho is taken
@@ -88,10 +91,8 @@ class PoissonSolver {
         phi.resize(grid_.size());
         if (grid_.x.periodic && grid_.z.periodic)
             solve_periodic(rho, phi);
-        else if (grid_.z.periodic)
-            solve_between_x_walls(rho, walls, phi);
-        else if (grid_.x.periodic)
-            solve_between_z_walls(rho, walls, phi);
+        else if (grid_.x.periodic || grid_.z.periodic)
+            solve_between_walls(grid_.z.periodic, rho, walls, phi);
         else
             solve_in_box(rho, walls, phi);
     }
@@ -104,12 +105,8 @@ class PoissonSolver {
         rows_.resize(nx, nz);
         for (long j = 0; j < nz; ++j) rows_.col(j) = rho.segment(grid_.index(0, j), nx);
         along_x_.forward(rows_);
-        if (nz > 1) {
-            transpose(rows_, columns_);
-            along_z_.forward(columns_);
-        } else {
-            columns_ = rows_.transpose();
-        }
+        transpose(rows_, columns_);
+        along_z_.forward(columns_);
         common::for_each_row(nx, [&](long m) {
             const double Kx2 = RealTransform::minus_delta(grid_.x, m);
             for (long l = 0; l < nz; ++l) {
@@ -117,47 +114,38 @@ class PoissonSolver {
                 columns_(l, m) = m + l > 0 ? columns_(l, m) / K2 : 0;
             }
         });
-        if (nz > 1) {
-            along_z_.backward(columns_);
-            transpose(columns_, rows_);
-        } else {
-            rows_ = columns_.transpose();
-        }
+        along_z_.backward(columns_);
+        transpose(columns_, rows_);
         along_x_.backward(rows_);
         for (long j = 0; j < nz; ++j) phi.segment(grid_.index(0, j), nx) = rows_.col(j);
     }
 
-    void solve_between_x_walls(const Field& rho, const Walls& walls, Field& phi) {
-        const long N = grid_.x.cells, nz = grid_.z.cells;
-        columns_.resize(nz, N + 1);
-        for (long i = 0; i <= N; ++i)
-            for (long j = 0; j < nz; ++j) columns_(j, i) = rho[grid_.index(i, j)];
-        if (nz > 1) along_z_.forward(columns_);
-        transpose(columns_, rows_);
-        solve_modes(grid_.x, grid_.z, walls[x_low], walls[x_high], rows_);
+    // Fourier transforms along the walls, and a tridiagonal solve for each mode across.
+    void solve_between_walls(bool walls_in_x, const Field& rho, const Walls& walls, Field& phi) {
+        const common::Axis &across = walls_in_x ? grid_.x : grid_.z,
+                           &along = walls_in_x ? grid_.z : grid_.x;
+        const RealTransform& transform = walls_in_x ? along_z_ : along_x_;
+        const auto node = [&](long a, long c) {
+            return walls_in_x ? grid_.index(c, a) : grid_.index(a, c);
+        };
+        rows_.resize(along.cells, across.cells + 1);
+        for (long c = 0; c <= across.cells; ++c)
+            for (long a = 0; a < along.cells; ++a) rows_(a, c) = rho[node(a, c)];
+        transform.forward(rows_);
         transpose(rows_, columns_);
-        if (nz > 1) along_z_.backward(columns_);
-        for (long i = 0; i <= N; ++i)
-            for (long j = 0; j < nz; ++j) phi[grid_.index(i, j)] = columns_(j, i);
-    }
-
-    void solve_between_z_walls(const Field& rho, const Walls& walls, Field& phi) {
-        const long nx = grid_.x.cells, N = grid_.z.cells;
-        rows_.resize(nx, N + 1);
-        for (long j = 0; j <= N; ++j) rows_.col(j) = rho.segment(grid_.index(0, j), nx);
-        along_x_.forward(rows_);
-        transpose(rows_, columns_);
-        solve_modes(grid_.z, grid_.x, walls[z_low], walls[z_high], columns_);
+        solve_modes(across, along, walls[walls_in_x ? x_low : z_low],
+                    walls[walls_in_x ? x_high : z_high], columns_);
         transpose(columns_, rows_);
-        along_x_.backward(rows_);
-        for (long j = 0; j <= N; ++j) phi.segment(grid_.index(0, j), nx) = rows_.col(j);
+        transform.backward(rows_);
+        for (long c = 0; c <= across.cells; ++c)
+            for (long a = 0; a < along.cells; ++a) phi[node(a, c)] = rows_(a, c);
     }
 
     // One tridiagonal system per column, a mode of the periodic direction; only mode 0 sees the
     // potential or the charge of the walls.
     void solve_modes(const common::Axis& from_wall_to_wall, const common::Axis& periodic, Wall low,
                      Wall high, Eigen::MatrixXd& modes) {
-        const double count = static_cast<double>(periodic.cells);
+        const double count = double(periodic.cells);
         low.potential *= count, low.charge *= count;
         high.potential *= count, high.charge *= count;
         common::for_each_block(modes.cols(), [&](int, long begin, long end) {

@@ -17,45 +17,45 @@ namespace cic {
 /// diagonal.
 class RealTransform {
    public:
+    /// in:     length of the rows
     explicit RealTransform(long length)
-        : length_(static_cast<std::size_t>(length)),
+        : length_(length),
           forward_(gsl_fft_real_wavetable_alloc(length_), gsl_fft_real_wavetable_free),
           backward_(gsl_fft_halfcomplex_wavetable_alloc(length_),
                     gsl_fft_halfcomplex_wavetable_free) {}
 
-    /// in/out: rows of values(:, j) for all j, or the same backwards with the factor 1/length.
+    /// Every row to its coefficients, and back.
+    /// in/out: rows of values(:, j) for all j, or the same backwards with the factor 1/length; one
+    ///         number stays as it is
     void forward(Eigen::MatrixXd& values) const {
-        common::for_each_block(values.cols(), [&](int, long begin, long end) {
-            const Workspace work(length_);
-            for (long j = begin; j < end; ++j)
-                gsl_fft_real_transform(values.col(j).data(), 1, length_, forward_.get(),
-                                       work.get());
+        for_each_row(values, [&](double* row, gsl_fft_real_workspace* work) {
+            gsl_fft_real_transform(row, 1, length_, forward_.get(), work);
         });
     }
     void backward(Eigen::MatrixXd& values) const {
-        common::for_each_block(values.cols(), [&](int, long begin, long end) {
-            const Workspace work(length_);
-            for (long j = begin; j < end; ++j)
-                gsl_fft_halfcomplex_inverse(values.col(j).data(), 1, length_, backward_.get(),
-                                            work.get());
+        for_each_row(values, [&](double* row, gsl_fft_real_workspace* work) {
+            gsl_fft_halfcomplex_inverse(row, 1, length_, backward_.get(), work);
         });
     }
 
     /// K^2 = (2/dx sin(k dx/2))^2 of coefficient m: what -delta_xx multiplies it by.
     static double minus_delta(const common::Axis& axis, long m) {
-        const double angle =
-            2 * pi * static_cast<double>((m + 1) / 2) / static_cast<double>(axis.cells);
+        const double angle = 2 * pi * double((m + 1) / 2) / double(axis.cells);
         const double K = 2 / axis.spacing() * std::sin(0.5 * angle);
         return K * K;
     }
 
    private:
-    struct Workspace {
-        explicit Workspace(std::size_t n) : room(gsl_fft_real_workspace_alloc(n), &free_it) {}
-        gsl_fft_real_workspace* get() const { return room.get(); }
-        static void free_it(gsl_fft_real_workspace* w) { gsl_fft_real_workspace_free(w); }
-        std::unique_ptr<gsl_fft_real_workspace, void (*)(gsl_fft_real_workspace*)> room;
-    };
+    template <class Transform>
+    void for_each_row(Eigen::MatrixXd& values, const Transform& transform) const {
+        if (length_ == 1) return;
+        common::for_each_block(values.cols(), [&](int, long begin, long end) {
+            const std::unique_ptr<gsl_fft_real_workspace, void (*)(gsl_fft_real_workspace*)> work(
+                gsl_fft_real_workspace_alloc(length_), gsl_fft_real_workspace_free);
+            for (long j = begin; j < end; ++j) transform(values.col(j).data(), work.get());
+        });
+    }
+
     std::size_t length_;
     std::unique_ptr<gsl_fft_real_wavetable, void (*)(gsl_fft_real_wavetable*)> forward_;
     std::unique_ptr<gsl_fft_halfcomplex_wavetable, void (*)(gsl_fft_halfcomplex_wavetable*)>

@@ -15,9 +15,12 @@ struct FieldState {
     Walls walls;
 };
 
+/// What solve_field() needs beside the charge: the mesh, where the field is wanted, and the prepared
+/// solver of Poisson's equation. Nothing in it changes from step to step but scratch room.
 class FieldSolver {
    public:
-    /// in:     gauss_sign, +1, or -1 for the law as the slide prints it
+    /// in:     nine_point, the Laplacian with the corners; gauss_sign, +1, or -1 for the law as the
+    ///         slide prints it
     FieldSolver(const Grid& grid, const Scheme& scheme, bool nine_point, double gauss_sign)
         : grid_(grid), scheme_(scheme), gauss_sign_(gauss_sign), poisson_(grid, nine_point) {}
 
@@ -40,9 +43,8 @@ inline void field_on_edges(const Grid& grid, const Field& phi, MeshField& E_g) {
     common::for_each_row(grid.z.cells + 2, [&](long row) {
         for (long i = -1; i <= grid.x.cells; ++i) {
             const long n = grid.index(i, row - 1);
-            E_g[static_cast<std::size_t>(n)] = {
-                static_cast<Real>((phi[n] - phi[n + 1]) * per_dx),
-                static_cast<Real>((phi[n] - phi[n + stride]) * per_dz)};
+            E_g[n] = {Real((phi[n] - phi[n + 1]) * per_dx),
+                      Real((phi[n] - phi[n + stride]) * per_dz)};
         }
     });
 }
@@ -54,17 +56,10 @@ inline void field_on_nodes(const Grid& grid, const Field& phi, MeshField& E_g) {
     common::for_each_row(grid.z.cells + 1, [&](long row) {
         for (long i = 0; i <= grid.x.cells; ++i) {
             const long n = grid.index(i, row);
-            E_g[static_cast<std::size_t>(n)] = {
-                static_cast<Real>((phi[n - 1] - phi[n + 1]) * half_per_dx),
-                static_cast<Real>((phi[n - stride] - phi[n + stride]) * half_per_dz)};
+            E_g[n] = {Real((phi[n - 1] - phi[n + 1]) * half_per_dx),
+                      Real((phi[n - stride] - phi[n + stride]) * half_per_dz)};
         }
     });
-}
-
-// Charge per area on the inner face of a wall, from Gauss's law in the half cell before it.
-//   sigma = E_1/2 - rho_0 dx/2, E pointing away from the wall
-inline double surface_charge(double phi_wall, double phi_next, double rho_wall, double dx) {
-    return (phi_wall - phi_next) / dx - 0.5 * dx * rho_wall;
 }
 
 // Visits the nodes of both walls of a direction: visit(node, step to the next node inside, wall,
@@ -75,7 +70,7 @@ void for_each_wall_node(const Grid& grid, bool along_x, const Visit& visit) {
     const long N = along_x ? grid.x.cells : grid.z.cells, step = along_x ? 1 : grid.stride();
     for (long k = 0; k <= (other.periodic ? other.cells - 1 : other.cells); ++k) {
         const bool corner = !other.periodic && (k == 0 || k == other.cells);
-        const double share = (corner ? 0.5 : 1.0) / static_cast<double>(other.cells);
+        const double share = (corner ? 0.5 : 1.0) / double(other.cells);
         visit(along_x ? grid.index(0, k) : grid.index(k, 0), step, along_x ? x_low : z_low, 1.0,
               share);
         visit(along_x ? grid.index(N, k) : grid.index(k, N), -step, along_x ? x_high : z_high, -1.0,
@@ -83,31 +78,33 @@ void for_each_wall_node(const Grid& grid, bool along_x, const Visit& visit) {
     }
 }
 
-// Fills the ghost places of the packed field: periodic images, or mirror images behind walls, such
-// that gather_field stays the transpose of deposit_charge.
+}  // namespace detail
+
+/// Charge per area on the inner face of a wall, from Gauss's law in the half cell before it.
+///   sigma = E_1/2 - rho_0 dx/2, E pointing away from the wall
+inline double surface_charge(double phi_wall, double phi_next, double rho_wall, double dx) {
+    return (phi_wall - phi_next) / dx - 0.5 * dx * rho_wall;
+}
+
+/// Fills the ghost places of the packed field: periodic images, or mirror images behind walls, such
+/// that gather_field stays the transpose of deposit_charge.
 inline void fill_ghosts(const Grid& grid, bool on_edges, MeshField& E_g) {
-    const auto at = [&](long i, long j) -> NodeField& {
-        return E_g[static_cast<std::size_t>(grid.index(i, j))];
-    };
+    const auto at = [&](long i, long j) -> NodeField& { return E_g[grid.index(i, j)]; };
     const long nx = grid.x.cells, nz = grid.z.cells;
     const auto mirror = [&](const common::Axis& axis, bool half, const auto& copy) {
-        common::detail::ghosts_along(axis, half, half ? -1 : 1, copy);
+        common::ghosts_along(axis, half, half ? -1 : 1, copy);
     };
     for (long j = 0; j <= nz; ++j) {
-        mirror(grid.x, on_edges, [&](long to, long from, int sign) {
-            at(to, j).x = static_cast<Real>(sign) * at(from, j).x;
-        });
+        mirror(grid.x, on_edges,
+               [&](long to, long from, int sign) { at(to, j).x = Real(sign) * at(from, j).x; });
         mirror(grid.x, false, [&](long to, long from, int) { at(to, j).z = at(from, j).z; });
     }
     for (long i = -1; i <= nx + 1; ++i) {
         mirror(grid.z, false, [&](long to, long from, int) { at(i, to).x = at(i, from).x; });
-        mirror(grid.z, on_edges, [&](long to, long from, int sign) {
-            at(i, to).z = static_cast<Real>(sign) * at(i, from).z;
-        });
+        mirror(grid.z, on_edges,
+               [&](long to, long from, int sign) { at(i, to).z = Real(sign) * at(i, from).z; });
     }
 }
-
-}  // namespace detail
 
 /// The field of the charge density.
 ///   div E = rho,  E = -grad phi:   -lap phi = rho
@@ -129,40 +126,32 @@ inline void solve_field(FieldSolver& solver, const Field& rho_g, FieldState& fie
     solver.poisson_.solve(rho, field.walls, phi);
     common::fill_ghosts(grid, common::on_nodes, {1, 1}, phi.data());
 
-    // What the walls got: the mean charge of a grounded one, the potential of a floating one.
+    field.E_g.resize(grid.size());
+    const bool on_edges = solver.scheme_.energy_conserving;
+    if (on_edges)
+        detail::field_on_edges(grid, phi, field.E_g);
+    else
+        detail::field_on_nodes(grid, phi, field.E_g);
+
+    // What the walls got: the mean charge of a grounded one, the potential of a floating one; and
+    // the field on their nodes.
     for (const bool along_x : {true, false}) {
         const common::Axis& axis = along_x ? grid.x : grid.z;
         if (axis.periodic) continue;
         std::array<double, 4> charge{};
         detail::for_each_wall_node(
-            grid, along_x, [&](long n, long in, WallName w, double, double share) {
-                charge[w] +=
-                    share * detail::surface_charge(phi[n], phi[n + in], rho[n], axis.spacing());
-                if (field.walls[w].floating) field.walls[w].potential = phi[n];
+            grid, along_x, [&](long n, long in, WallName wall, double sign, double share) {
+                const double sigma = surface_charge(phi[n], phi[n + in], rho[n], axis.spacing());
+                charge[wall] += share * sigma;
+                if (field.walls[wall].floating) field.walls[wall].potential = phi[n];
+                if (on_edges) return;
+                const double E_half = (phi[n] - phi[n + in]) / axis.spacing();
+                (along_x ? field.E_g[n].x : field.E_g[n].z) = Real(sign * 0.5 * (sigma + E_half));
             });
-        for (const WallName w : {along_x ? x_low : z_low, along_x ? x_high : z_high})
-            if (!field.walls[w].floating) field.walls[w].charge = charge[w];
+        for (const WallName wall : {along_x ? x_low : z_low, along_x ? x_high : z_high})
+            if (!field.walls[wall].floating) field.walls[wall].charge = charge[wall];
     }
-
-    field.E_g.resize(static_cast<std::size_t>(grid.size()));
-    if (solver.scheme_.energy_conserving) {
-        detail::field_on_edges(grid, phi, field.E_g);
-    } else {
-        detail::field_on_nodes(grid, phi, field.E_g);
-        for (const bool along_x : {true, false}) {
-            const common::Axis& axis = along_x ? grid.x : grid.z;
-            if (axis.periodic) continue;
-            detail::for_each_wall_node(
-                grid, along_x, [&](long n, long in, WallName, double sign, double) {
-                    const double sigma =
-                        detail::surface_charge(phi[n], phi[n + in], rho[n], axis.spacing());
-                    const double E_half = (phi[n] - phi[n + in]) / axis.spacing();
-                    auto& E = field.E_g[static_cast<std::size_t>(n)];
-                    (along_x ? E.x : E.z) = static_cast<Real>(sign * 0.5 * (sigma + E_half));
-                });
-        }
-    }
-    detail::fill_ghosts(grid, solver.scheme_.energy_conserving, field.E_g);
+    fill_ghosts(grid, on_edges, field.E_g);
 }
 
 }  // namespace cic

@@ -21,8 +21,7 @@ inline void sort_particles(const Grid& grid, common::SortScratch<Real>& scratch,
     for (Particles& s : species) {
         if (s.z_p.empty()) continue;
         const auto row = [&](long p) {
-            return static_cast<int>(
-                (static_cast<double>(s.z_p[static_cast<std::size_t>(p)]) - z_low) * per_dz);
+            return static_cast<int>((double(s.z_p[p]) - z_low) * per_dz);
         };
         common::counting_sort(s.count(), grid.z.cells + 1, row, scratch);
         for (std::vector<Real>* quantity : s.all())

@@ -35,11 +35,11 @@ void push_particles(const MeshField& E_g, const Grid& grid, const Scheme& scheme
                     const MagneticField& B, double dt, std::vector<Particles>& particles,
                     Clock&& clock = {}) {
     // [push]
-    for_each_chunk(particles, [&](Chunk& p) {
+    for_each_batch(particles, [&](ParticleBatch& batch) {
         FieldAtParticles E_p;
-        gather_field(E_g, grid, scheme, p, E_p);  // [CIC-3]
-        accelerate(E_p, B, dt, p);                // [CIC-4]
-        move_particles(grid, dt, p);              // [CIC-5]
+        gather_field(E_g, grid, scheme, batch, E_p);  // [CIC-3]
+        accelerate(E_p, B, dt, batch);                // [CIC-4]
+        move_particles(grid, dt, batch);              // [CIC-5]
     });
     clock.lap("push");
     // [/push]

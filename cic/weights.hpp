@@ -36,19 +36,20 @@ struct Weights<1> {
     int first;
     Real S[2];
     explicit Weights(Real s) : first(static_cast<int>(s + 1) - 1) {
-        const Real d = s - static_cast<Real>(first);
+        const Real d = s - Real(first);
         S[0] = 1 - d;
         S[1] = d;
     }
 };
 
+// The polynomials of common::QuadraticWeights, for single precision, too.
 template <>
 struct Weights<2> {
     static constexpr int count = 3;
     int first;
     Real S[3];
     explicit Weights(Real s) : first(static_cast<int>(s + Real(0.5)) - 1) {
-        const Real d = s - static_cast<Real>(first + 1), half = Real(0.5);
+        const Real d = s - Real(first + 1), half = Real(0.5);
         S[0] = half * (half - d) * (half - d);
         S[1] = Real(0.75) - d * d;
         S[2] = half * (half + d) * (half + d);

@@ -60,10 +60,8 @@ struct Parity {
 /// One number per point, ghosts included: a column of grid.size() values.
 using Field = Eigen::VectorXd;
 
-namespace detail {
-
-// Visits the ghost points beyond both ends of one direction, each with its interior source and the
-// sign of its image.
+/// Visits the ghost points beyond both ends of one direction: visit(ghost, interior, sign), the
+/// interior point that it is the image of and the sign of the image.
 template <class Visit>
 void ghosts_along(const Axis& axis, bool half, int parity, const Visit& visit) {
     const long n = axis.cells;
@@ -80,8 +78,6 @@ void ghosts_along(const Axis& axis, bool half, int parity, const Visit& visit) {
     }
 }
 
-}  // namespace detail
-
 /// Copies the interior to the ghost points: periodic images, or mirror images with the given
 /// parity behind a wall.
 /// in/out: f, grid.size() values. An odd quantity on a node of the wall is set to zero.
@@ -90,13 +86,13 @@ inline void fill_ghosts(const Grid& grid, Place place, Parity parity, double* f)
     for (long j = 0; j <= nz; ++j) {
         double* row = f + grid.index(0, j);
         if (!grid.x.periodic && !place.half_x && parity.x < 0) row[0] = row[nx] = 0;
-        detail::ghosts_along(grid.x, place.half_x, parity.x,
-                             [&](long to, long from, int sign) { row[to] = sign * row[from]; });
+        ghosts_along(grid.x, place.half_x, parity.x,
+                     [&](long to, long from, int sign) { row[to] = sign * row[from]; });
     }
     if (!grid.z.periodic && !place.half_z && parity.z < 0) {
         for (const long j : {0L, nz}) std::fill_n(f + grid.index(-1, j), stride, 0.0);
     }
-    detail::ghosts_along(grid.z, place.half_z, parity.z, [&](long to, long from, int sign) {
+    ghosts_along(grid.z, place.half_z, parity.z, [&](long to, long from, int sign) {
         const double* source = f + grid.index(-1, from);
         double* target = f + grid.index(-1, to);
         for (long i = 0; i < stride; ++i) target[i] = sign * source[i];
@@ -109,7 +105,7 @@ inline void fill_ghosts(const Grid& grid, Place place, Parity parity, double* f)
 /// and an odd one vanishes there. Afterwards the ghosts hold the images.
 inline void fold_ghosts(const Grid& grid, Place place, Parity parity, double* f) {
     const long nx = grid.x.cells, nz = grid.z.cells, stride = grid.stride();
-    detail::ghosts_along(grid.z, place.half_z, parity.z, [&](long from, long to, int sign) {
+    ghosts_along(grid.z, place.half_z, parity.z, [&](long from, long to, int sign) {
         const double* source = f + grid.index(-1, from);
         double* target = f + grid.index(-1, to);
         for (long i = 0; i < stride; ++i) target[i] += sign * source[i];
@@ -122,8 +118,8 @@ inline void fold_ghosts(const Grid& grid, Place place, Parity parity, double* f)
     }
     for (long j = 0; j <= nz; ++j) {
         double* row = f + grid.index(0, j);
-        detail::ghosts_along(grid.x, place.half_x, parity.x,
-                             [&](long from, long to, int sign) { row[to] += sign * row[from]; });
+        ghosts_along(grid.x, place.half_x, parity.x,
+                     [&](long from, long to, int sign) { row[to] += sign * row[from]; });
         if (!grid.x.periodic && !place.half_x) {
             for (const long i : {0L, nx}) row[i] += parity.x * row[i];
         }

@@ -11,8 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "cic/meet_walls.hpp"
+#include "cic/apply_particle_boundaries.hpp"
 #include "cic/output/diagnostics.hpp"
+#include "cic/setup/initial_state.hpp"
 #include "cic/sort_particles.hpp"
 #include "common/splines.hpp"
 #include "tests/support/any_numbers.hpp"
@@ -94,12 +95,12 @@ Solved solve(const Mesh& m, const std::vector<Particles>& species, double backgr
 std::vector<std::array<double, 2>> gathered(const Mesh& m, const MeshField& E_g, Particles s) {
     std::vector<std::array<double, 2>> E(s.x_p.size());
     std::vector<Particles> one{s};
-    for_each_chunk(one, [&](Chunk& p) {
+    for_each_batch(one, [&](ParticleBatch& batch) {
         FieldAtParticles E_p;
-        gather_field(E_g, m.grid, m.scheme, p, E_p);
-        for (long k = 0; k < p.count; ++k)
-            E[static_cast<std::size_t>(p.x_p - one[0].x_p.data() + k)] = {
-                E_p.x[k], m.scheme.dimensions == 2 ? E_p.z[k] : 0};
+        gather_field(E_g, m.grid, m.scheme, batch, E_p);
+        for (long k = 0; k < batch.count; ++k)
+            E[batch.x_p - one[0].x_p.data() + k] = {E_p.x[k],
+                                                    m.scheme.dimensions == 2 ? E_p.z[k] : 0};
     });
     return E;
 }
@@ -108,7 +109,7 @@ double mean_charge(const Mesh& m, const Particles& s) {
     return s.q_p * static_cast<double>(s.count()) / (m.grid.x.length * m.grid.z.length);
 }
 
-Chunk whole(Particles& s) {
+ParticleBatch whole(Particles& s) {
     const auto from = [](std::vector<Real>& v) { return v.empty() ? nullptr : v.data(); };
     return {from(s.x_p), from(s.z_p), from(s.vx_p), from(s.vy_p), from(s.vz_p), s.count(), s.q_p,
             s.m_p,       {}};
@@ -166,7 +167,7 @@ TEST_CASE("the gather is the transpose of the deposit") {
                     any.field.E_g[static_cast<std::size_t>(m.grid.index(a, b))];
             }
         }
-        cic::detail::fill_ghosts(m.grid, false, any.field.E_g);
+        cic::fill_ghosts(m.grid, false, any.field.E_g);
         DepositScratch scratch;
         Field rho_g;
         deposit_charge(species, m.grid, m.scheme, 0, scratch, rho_g);
@@ -336,8 +337,8 @@ TEST_CASE("a floating wall carries its charge and a row of floating walls no net
     double sigma = 0, spread = 0;
     for (long j = 0; j < m.grid.z.cells; ++j) {
         const long n = m.grid.index(N, j);
-        sigma += cic::detail::surface_charge(s.field.phi[n], s.field.phi[n - 1], s.rho_g[n],
-                                             m.grid.x.spacing()) /
+        sigma += cic::surface_charge(s.field.phi[n], s.field.phi[n - 1], s.rho_g[n],
+                                     m.grid.x.spacing()) /
                  static_cast<double>(m.grid.z.cells);
         spread = worst({spread, std::fabs(s.field.phi[n] - s.field.phi[m.grid.index(N, 0)])});
     }
@@ -359,14 +360,15 @@ TEST_CASE("the leapfrog can be run backwards") {
     const auto steps = [&](double dt, bool move_first) {
         for (int n = 0; n < 50; ++n) {
             if (move_first)
-                for_each_chunk(species, [&](Chunk& p) { move_particles(m.grid, dt, p); });
+                for_each_batch(species,
+                               [&](ParticleBatch& batch) { move_particles(m.grid, dt, batch); });
             deposit_charge(species, m.grid, m.scheme, 1, scratch, rho_g);
             solve_field(solver, rho_g, field);
-            for_each_chunk(species, [&](Chunk& p) {
+            for_each_batch(species, [&](ParticleBatch& batch) {
                 FieldAtParticles E_p;
-                gather_field(field.E_g, m.grid, m.scheme, p, E_p);
-                accelerate(E_p, B, dt, p);
-                if (!move_first) move_particles(m.grid, dt, p);
+                gather_field(field.E_g, m.grid, m.scheme, batch, E_p);
+                accelerate(E_p, B, dt, batch);
+                if (!move_first) move_particles(m.grid, dt, batch);
             });
         }
     };
@@ -389,9 +391,9 @@ TEST_CASE("the rotation keeps the speed and its angle is twice the arc tangent")
     const MagneticField B{0.4, -0.3, 1.2};
     const double dt = 0.6, Omega_dt = -2.0 * B.size() * dt;
     const Eigen::Vector3d b = Eigen::Vector3d(B.x, B.y, B.z) / B.size(), v(0.3, -0.2, 0.7);
-    Chunk p = whole(s);
+    ParticleBatch batch = whole(s);
     FieldAtParticles E_p{};
-    accelerate(E_p, B, dt, p);
+    accelerate(E_p, B, dt, batch);
     const Eigen::Vector3d after(s.vx_p[0], s.vy_p[0], s.vz_p[0]);
     CHECK(std::fabs(after.norm() - v.norm()) <= 4 * eps);
     CHECK(std::fabs(after.dot(b) - v.dot(b)) <= 4 * eps);
@@ -399,7 +401,7 @@ TEST_CASE("the rotation keeps the speed and its angle is twice the arc tangent")
     // dv/dt = (q/m) v x B turns by -Omega about b.
     const double angle = std::atan2(before_across.cross(across).dot(b), before_across.dot(across));
     CHECK(std::fabs(angle + 2 * std::atan(0.5 * Omega_dt)) <= 8 * eps);
-    CHECK(std::fabs(p.sums.kinetic - 0.5 * 0.25 * v.squaredNorm()) <= 4 * eps);
+    CHECK(std::fabs(batch.sums.kinetic - 0.5 * 0.25 * v.squaredNorm()) <= 4 * eps);
 }
 
 TEST_CASE("the drift in E and B is exact for any time step") {
@@ -412,11 +414,11 @@ TEST_CASE("the drift in E and B is exact for any time step") {
     FieldAtParticles E_p{};
     E_p.x[0] = E_x, E_p.z[0] = E_z;
     for (const double dt : {0.001, 0.01, 0.1}) {  // Omega dt = 0.2, 2, 20
-        Chunk p = whole(s);
-        for (int n = 0; n < 100; ++n) accelerate(E_p, B, dt, p);
+        ParticleBatch batch = whole(s);
+        for (int n = 0; n < 100; ++n) accelerate(E_p, B, dt, batch);
         CHECK(std::fabs(s.vx_p[0] + E_z / 2) <= 1e-13);
         CHECK(std::fabs(s.vz_p[0] - E_x / 2) <= 1e-13);
-        CHECK(std::fabs(p.sums.kinetic - 0.5 * 0.01 * (0.25 * 0.25 + 0.15 * 0.15)) <= 1e-13);
+        CHECK(std::fabs(batch.sums.kinetic - 0.5 * 0.01 * (0.25 * 0.25 + 0.15 * 0.15)) <= 1e-13);
     }
 }
 
@@ -426,29 +428,29 @@ TEST_CASE("the start is half a step before") {
     s.x_p = {0.1}, s.vx_p = {0.25};
     FieldAtParticles E_p{};
     E_p.x[0] = 0.8;
-    Chunk p = whole(s);
-    start_leapfrog(E_p, {}, 0.1, p);
+    ParticleBatch batch = whole(s);
+    start_leapfrog(E_p, {}, 0.1, batch);
     CHECK(std::fabs(s.vx_p[0] - (0.25 + 0.05 * 0.8)) <= eps);
-    accelerate(E_p, {}, 0.1, p);
+    accelerate(E_p, {}, 0.1, batch);
     CHECK(std::fabs(s.vx_p[0] - (0.25 - 0.05 * 0.8)) <= eps);
     // (1/2) m v_old v_new = (1/2) m (v^2 - h^2)
-    CHECK(std::fabs(p.sums.kinetic - 0.5 * (0.25 * 0.25 - 0.04 * 0.04)) <= eps);
+    CHECK(std::fabs(batch.sums.kinetic - 0.5 * (0.25 * 0.25 - 0.04 * 0.04)) <= eps);
 }
 
 TEST_CASE("walls take charge reflect speed and lose nothing") {
-    Case w;
-    w.dimensions = 2;
-    w.grid = {{8, 0, 8, false}, {8, 0, 4, false}};
-    w.boundary_x = w.boundary_z = "wall";
-    w.walls[x_low] = {"floating", "absorb", 0};
-    w.walls[x_high] = {"grounded", "reflect", 0};
-    w.walls[z_low] = {"grounded", "absorb", 0};
-    w.walls[z_high] = {"grounded", "reflect", 0};
+    Case parameters;
+    parameters.dimensions = 2;
+    parameters.grid = {{8, 0, 8, false}, {8, 0, 4, false}};
+    parameters.boundary_x = parameters.boundary_z = "wall";
+    parameters.walls[x_low] = {"floating", "absorb", 0};
+    parameters.walls[x_high] = {"grounded", "reflect", 0};
+    parameters.walls[z_low] = {"grounded", "absorb", 0};
+    parameters.walls[z_high] = {"grounded", "reflect", 0};
     SpeciesCase from;
     from.name = "scattered";
-    w.species = {from};
+    parameters.species = {from};
     State state;
-    state.walls = walls_of(w);
+    state.walls = walls_of(parameters);
     state.emitted_again = {0};
     Particles s;
     s.q_p = -0.5, s.m_p = 0.5;
@@ -458,7 +460,8 @@ TEST_CASE("walls take charge reflect speed and lose nothing") {
     s.vx_p = {1, -2, 3, 1, 1, 2};
     s.vz_p = {1, 1, 1, -1, 2, 3};
     state.species = {s};
-    meet_walls(w, 0, state);
+    apply_particle_boundaries(parameters.grid, particle_boundaries(parameters, state.species), 0,
+                              state.species, state.walls, state.emitted_again);
     const Particles& after = state.species[0];
     REQUIRE(after.count() == 4);
     CHECK(state.walls[x_low].charge == -0.5 / 4);  // per area, over the length of the wall
@@ -481,22 +484,25 @@ TEST_CASE("walls take charge reflect speed and lose nothing") {
 }
 
 TEST_CASE("a source emits its rate with the flux of a half Maxwellian") {
-    Case w;
-    w.grid.x = {8, 0, 1e6, false};
-    w.boundary_x = "wall";
-    w.dt = 0.25;
-    w.walls[x_low] = {"floating", "source", 0};
+    Case parameters;
+    parameters.grid.x = {8, 0, 1e6, false};
+    parameters.boundary_x = "wall";
+    parameters.dt = 0.25;
+    parameters.walls[x_low] = {"floating", "source", 0};
     SpeciesCase from;
     from.name = "electrons", from.mass = 4, from.emission = 2.5, from.emission_temperature = 9;
-    w.species = {from};
+    parameters.species = {from};
     State state;
-    state.walls = walls_of(w);
+    state.walls = walls_of(parameters);
     state.emitted_again = {0};
     Particles s;
     s.q_p = -0.001, s.m_p = 0.004;  // 0.001 electrons
     state.species = {s};
     const long steps = 200;
-    for (long step = 0; step < steps; ++step) meet_walls(w, step, state);
+    const ParticleBoundaries boundaries = particle_boundaries(parameters, state.species);
+    for (long step = 0; step < steps; ++step)
+        apply_particle_boundaries(parameters.grid, boundaries, step, state.species, state.walls,
+                                  state.emitted_again);
     const Particles& after = state.species[0];
     const double N = static_cast<double>(after.count());
     CHECK(after.count() == 125000);  // 2.5 / 0.001 per unit of time for 50
@@ -529,17 +535,17 @@ TEST_CASE("sorting by row moves whole particles") {
 TEST_CASE("a perturbed species has the density that the case asks for") {
     for (const std::string loading : {"quiet", "lattice", "random"}) {
         CAPTURE(loading);
-        Case w;
-        w.grid.x = {32, 0, 2.0, true};
+        Case parameters;
+        parameters.grid.x = {32, 0, 2.0, true};
         SpeciesCase s;
         s.name = "electrons", s.loading = loading, s.particles_per_cell = 4000;
         s.amplitude = 0.02, s.mode_x = 3, s.density = 0.5;
-        w.species = {s};
-        const Particles particles = load_species(w, s, 1);
+        parameters.species = {s};
+        const Particles particles = load_species(parameters, s, 1);
         CHECK(particles.count() == 128000);
         CHECK(std::fabs(particles.q_p * 128000 + 0.5 * 2.0) <= 1e-12);
         std::complex<double> mode = 0;
-        const double k = wave_vector(w, 3, 0).x;
+        const double k = wave_vector(parameters, 3, 0).x;
         for (const double x : particles.x_p) mode += std::polar(2.0 / 128000, -k * x);
         // The displacement is linear in the amplitude: 3/8 of its square remains.
         const double noise = loading == "random" ? 4 * std::sqrt(2.0 / 128000) : 1e-5;
@@ -548,13 +554,13 @@ TEST_CASE("a perturbed species has the density that the case asks for") {
 }
 
 TEST_CASE("a quiet Maxwellian has its moments") {
-    Case w;
-    w.grid.x = {32, 0, 32, true};
+    Case parameters;
+    parameters.grid.x = {32, 0, 32, true};
     SpeciesCase s;
     s.name = "electrons", s.particles_per_cell = 1000;
     s.temperature_x = 2, s.mass = 0.5, s.drift_x = 0.7;
-    w.species = {s};
-    const Particles particles = load_species(w, s, 1);
+    parameters.species = {s};
+    const Particles particles = load_species(parameters, s, 1);
     double v = 0, v2 = 0, v4 = 0;
     for (const double u : particles.vx_p) {
         const double c = (u - 0.7) / 2;

@@ -43,6 +43,35 @@ std::vector<Sheath> sheaths() {
     return all;
 }
 
+struct SheathPoint {
+    double distance, potential;  // in lambda_D from the edge, and in T_e / e
+};
+
+// The potential from one edge into the plasma, where it approaches phi_P exponentially.
+//   distance = integral dphi / E  with  phi - phi_P = (phi_edge - phi_P) / cosh^2 u,
+// and a smooth integrand dx / du, although E vanishes at the source and in the plasma.
+// in:    edge, the potential 0 of the source or phi_C of the collector
+// out:   samples + 1 points with equal steps of u, the last one at phi_P + 1e-4 (phi_edge - phi_P)
+std::vector<SheathPoint> sheath_profile(const Sheath& s, double edge, int samples = 200) {
+    const double du = std::acosh(100.0) / samples, height = edge - s.plasma_potential;
+    const auto potential = [&](double u) {
+        return s.plasma_potential + height / (std::cosh(u) * std::cosh(u));
+    };
+    const auto slope = [&](double u) {
+        const double dphi = 2.0 * std::abs(height) * std::tanh(u) / (std::cosh(u) * std::cosh(u));
+        return dphi / cic::electric_field(s, potential(u));
+    };
+    std::vector<SheathPoint> points{{0.0, edge}};
+    double x = 0.0;
+    for (int n = 0; n < samples; ++n) {
+        // Integrate by the two points of Gauss, which avoid u = 0.
+        const double middle = (n + 0.5) * du, aside = 0.5 * du / std::numbers::sqrt3;
+        x += 0.5 * du * (slope(middle - aside) + slope(middle + aside));
+        points.push_back({x, potential((n + 1.0) * du)});
+    }
+    return points;
+}
+
 // The electrons where the potential is phi: the moment of v^power over those that have not reached
 // the collector.
 double electron_moment(const Sheath& s, double phi, int power) {
@@ -206,7 +235,7 @@ TEST_CASE("the collector sheath drops what a fluid with a Bohm speed says") {
 TEST_CASE("the profile of a sheath obeys Poisson's equation") {
     for (const auto& s : sheaths())
         for (const double edge : {0.0, s.collector_potential}) {
-            const auto points = cic::sheath_profile(s, edge);
+            const auto points = sheath_profile(s, edge);
             const double sense = edge == 0.0 ? -1.0 : 1.0;
             const auto curvature = [&](double phi) {
                 phi = std::clamp(phi, s.collector_potential, 0.0);

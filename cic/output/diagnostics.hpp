@@ -48,21 +48,22 @@ inline double charge_on_mesh(const Grid& grid, const Field& rho_g) {
 /// Complex amplitudes of waves exp(i k x) in the field along k,
 ///   E_k = -i |k| (2/N) sum_g phi_g exp(-i k x_g)
 /// for wavelengths that fit into the box; in a direction with walls the mean is taken.
-class WaveMeter {
+class FourierMode {
    public:
-    WaveMeter(const Grid& grid, long mode_x, long mode_z, double k) : k_(k) {
+    /// in:     mode_x, mode_z, wavelengths in the box; k = |k|
+    FourierMode(const Grid& grid, long mode_x, long mode_z, double k) : k_(k) {
         const auto table = [](const common::Axis& axis, long mode) {
             std::vector<std::complex<double>> phases;
             const long count = axis.periodic ? axis.cells : axis.cells + 1;
             for (long i = 0; i < count; ++i)
-                phases.push_back(std::polar(1.0, -2 * pi * static_cast<double>(mode * i) /
-                                                     static_cast<double>(axis.cells)));
+                phases.push_back(std::polar(1.0, -2 * pi * double(mode * i) / double(axis.cells)));
             return phases;
         };
         along_x_ = table(grid.x, mode_x);
         along_z_ = table(grid.z, mode_z);
     }
 
+    /// E_k of a potential on the nodes.
     std::complex<double> amplitude(const Grid& grid, const Field& phi) const {
         std::complex<double> sum = 0;
         for (std::size_t j = 0; j < along_z_.size(); ++j) {
@@ -71,7 +72,7 @@ class WaveMeter {
             for (std::size_t i = 0; i < along_x_.size(); ++i) row += values[i] * along_x_[i];
             sum += row * along_z_[j];
         }
-        const double nodes = static_cast<double>(along_x_.size() * along_z_.size());
+        const double nodes = double(along_x_.size() * along_z_.size());
         return sum * std::complex<double>(0, -2 * k_ / nodes);
     }
 

@@ -15,14 +15,15 @@
 
 namespace cic {
 
+/// About how many particles a file holds at most.
 inline constexpr long most_particles_written = 40000;
 
 /// Writes fields_NNNNNN.dat (and .vti): rho, phi, E_x, E_z on nodes, density of every species; E of
 /// the energy-conserving scheme is that of the edge behind the node.
-inline void write_fields(const std::string& folder, long step, const Case& w, const State& state,
-                         const Field& rho_g, const FieldState& field) {
-    const Grid& grid = w.grid;
-    const bool plane = w.dimensions == 2;
+inline void write_fields(const std::string& folder, long step, const Case& parameters,
+                         const State& state, const Field& rho_g, const FieldState& field) {
+    const Grid& grid = parameters.grid;
+    const bool plane = parameters.dimensions == 2;
     std::vector<std::vector<double>> data;
     std::vector<std::string> names, units;
     const auto add = [&](const std::string& name, const std::string& unit, const auto& at) {
@@ -33,15 +34,12 @@ inline void write_fields(const std::string& folder, long step, const Case& w, co
     };
     add("rho", "n0*e", [&](long n) { return rho_g[n]; });
     add("phi", "m*velocity^2/e", [&](long n) { return field.phi[n]; });
-    add("E_x", "m*velocity*omega_p/e",
-        [&](long n) { return double(field.E_g[static_cast<std::size_t>(n)].x); });
-    if (plane)
-        add("E_z", "m*velocity*omega_p/e",
-            [&](long n) { return double(field.E_g[static_cast<std::size_t>(n)].z); });
+    add("E_x", "m*velocity*omega_p/e", [&](long n) { return double(field.E_g[n].x); });
+    if (plane) add("E_z", "m*velocity*omega_p/e", [&](long n) { return double(field.E_g[n].z); });
     DepositScratch scratch;
     for (const Particles& s : state.species) {
         Field charge = Field::Zero(grid.size());
-        add_charge(s, grid, w.scheme(), scratch, charge);
+        add_charge(s, grid, parameters.scheme(), scratch, charge);
         common::fold_ghosts(grid, common::on_nodes, {1, 1}, charge.data());
         const double weight = s.q_p != 0 ? 1 / s.q_p : 0;
         add("particles_" + s.name, "1/volume", [&](long n) { return charge[n] * weight; });
@@ -53,7 +51,7 @@ inline void write_fields(const std::string& folder, long step, const Case& w, co
     std::vector<common::ScalarColumn> columns;
     for (std::size_t k = 0; k < data.size(); ++k) columns.push_back({names[k], units[k], data[k]});
     common::write_fields(folder + "/" + common::numbered("fields", step, "dat"), x, z, columns);
-    if (w.vtk) {
+    if (parameters.vtk) {
         const common::SampledAxis y{"y", "length", 0, 1, 1};
         common::write_vti(folder + "/" + common::numbered("fields", step, "vti"), {x, y, z},
                           columns, {});
@@ -62,25 +60,22 @@ inline void write_fields(const std::string& folder, long step, const Case& w, co
 
 /// Writes particles_NNNNNN.dat (and .vtp): a random sample of each species, about
 /// most_particles_written in all; positions at t^n, velocities half a step before.
-inline void write_particles(const std::string& folder, long step, const Case& w,
+inline void write_particles(const std::string& folder, long step, const Case& parameters,
                             const State& state) {
     const long every =
         std::max(1L, (state.count() + most_particles_written - 1) / most_particles_written);
     std::array<std::vector<double>, 6> data;
     for (std::size_t k = 0; k < state.species.size(); ++k) {
         const Particles& s = state.species[k];
-        const auto at = [](const std::vector<Real>& values, std::size_t n) {
-            return values.empty() ? 0.0 : static_cast<double>(values[n]);
+        const auto at = [](const std::vector<Real>& values, long p) {
+            return values.empty() ? 0.0 : double(values[p]);
         };
         // Radical inverses repeat themselves: a stride of many particles would draw a pattern.
         for (long p = 0; p < s.count(); ++p) {
-            if (every > 1 && common::uniform(7, 7, static_cast<std::uint64_t>(p), 0) *
-                                     static_cast<double>(every) >=
-                                 1)
+            if (every > 1 && common::uniform(7, 7, std::uint64_t(p), 0) * double(every) >= 1)
                 continue;
-            const auto n = static_cast<std::size_t>(p);
-            const std::array<double, 6> row{static_cast<double>(k), at(s.x_p, n),  at(s.z_p, n),
-                                            at(s.vx_p, n),          at(s.vy_p, n), at(s.vz_p, n)};
+            const std::array<double, 6> row{double(k),     at(s.x_p, p),  at(s.z_p, p),
+                                            at(s.vx_p, p), at(s.vy_p, p), at(s.vz_p, p)};
             for (std::size_t a = 0; a < 6; ++a) data[a].push_back(row[a]);
         }
     }
@@ -91,7 +86,7 @@ inline void write_particles(const std::string& folder, long step, const Case& w,
                          {"v_x", "velocity", data[3]},
                          {"v_y", "velocity", data[4]},
                          {"v_z", "velocity", data[5]}});
-    if (w.vtk) {
+    if (parameters.vtk) {
         const std::vector<double> zero(data[0].size(), 0.0);
         common::write_vtp(folder + "/" + common::numbered("particles", step, "vtp"),
                           {"position", "length", data[1], zero, data[2]},
@@ -101,10 +96,10 @@ inline void write_particles(const std::string& folder, long step, const Case& w,
 }
 
 /// Largest speed that the bins of f(x, v) must hold, from the start of the run.
-inline double phase_v_max(const Case& w) {
-    if (w.phase_v_max > 0) return w.phase_v_max;
+inline double phase_v_max(const Case& parameters) {
+    if (parameters.phase_v_max > 0) return parameters.phase_v_max;
     double most = 0;
-    for (const SpeciesCase& s : w.species)
+    for (const SpeciesCase& s : parameters.species)
         if (s.mobile())
             most = std::max(most,
                             1.8 * std::fabs(s.drift_x) + 5 * std::sqrt(s.temperature_x / s.mass));
@@ -114,30 +109,29 @@ inline double phase_v_max(const Case& w) {
 /// Writes phase_NNNNNN.dat, the phase-space density f_s(x, v_x) of every species, and
 /// velocities_NNNNNN.dat, f_s(v_x). What is faster than the bins reach is left out.
 /// exact:  sum f dx dv (times L_z in two dimensions) is the number of particles in the bins
-inline void write_phase_space(const std::string& folder, long step, const Case& w,
+inline void write_phase_space(const std::string& folder, long step, const Case& parameters,
                               const State& state) {
-    const long nx = w.phase_bins_x, nv = w.phase_bins_v;
-    const double v_max = phase_v_max(w), dv = 2 * v_max / static_cast<double>(nv),
-                 dx = w.grid.x.length / static_cast<double>(nx),
-                 L_z = w.dimensions == 2 ? w.grid.z.length : 1;
-    const common::SampledAxis x{"x", "length", w.grid.x.low + 0.5 * dx, dx, nx},
+    const long nx = parameters.phase_bins_x, nv = parameters.phase_bins_v;
+    const double v_max = phase_v_max(parameters), dv = 2 * v_max / double(nv),
+                 dx = parameters.grid.x.length / double(nx),
+                 L_z = parameters.dimensions == 2 ? parameters.grid.z.length : 1;
+    const common::SampledAxis x{"x", "length", parameters.grid.x.low + 0.5 * dx, dx, nx},
         v{"v_x", "velocity", -v_max + 0.5 * dv, dv, nv};
     std::vector<std::vector<double>> f, f_v;
     for (const Particles& s : state.species) {
         f.emplace_back(static_cast<std::size_t>(nx * nv), 0.0);
         f_v.emplace_back(static_cast<std::size_t>(nv), 0.0);
         const SpeciesCase* from = nullptr;
-        for (const SpeciesCase& c : w.species)
+        for (const SpeciesCase& c : parameters.species)
             if (c.name == s.name) from = &c;
         const double weight = s.m_p / from->mass / (dx * dv * L_z);
         for (std::size_t n = 0; n < s.x_p.size(); ++n) {
             const long i = std::min(
-                nx - 1, static_cast<long>((static_cast<double>(s.x_p[n]) - w.grid.x.low) / dx));
-            const long l =
-                static_cast<long>(std::floor((static_cast<double>(s.vx_p[n]) + v_max) / dv));
+                nx - 1, static_cast<long>((double(s.x_p[n]) - parameters.grid.x.low) / dx));
+            const long l = static_cast<long>(std::floor((double(s.vx_p[n]) + v_max) / dv));
             if (l < 0 || l >= nv) continue;
             f.back()[static_cast<std::size_t>(l * nx + i)] += weight;
-            f_v.back()[static_cast<std::size_t>(l)] += weight / static_cast<double>(nx);
+            f_v.back()[l] += weight / double(nx);
         }
     }
     std::vector<double> speeds;
@@ -154,45 +148,39 @@ inline void write_phase_space(const std::string& folder, long step, const Case& 
 /// Writes spectrum.dat: |E|^2 of the recorded modes against frequency, in units of 1/omega_p times
 /// the square of the field; negative frequencies travel against x.
 ///   E(omega, k) = sum_n h_n E_k(t_n) exp(i omega t_n) dt,  h_n Hann's window
-inline void write_spectrum(const std::string& path, const Case& w, const common::History& history) {
+inline void write_spectrum(const std::string& path, const Case& parameters,
+                           const common::History& history) {
     const auto times = history.column("time");
     const std::size_t count = times.size();
     if (count < 8) return;
     const auto wavetable = gsl_fft_complex_wavetable_alloc(count);
     const auto workspace = gsl_fft_complex_workspace_alloc(count);
-    std::vector<std::vector<double>> power;
-    for (long m = 1; m <= w.modes; ++m) {
+    std::vector<double> power;
+    for (long m = 1; m <= parameters.modes; ++m) {
         const auto re = history.column("E_" + std::to_string(m) + "_re"),
                    im = history.column("E_" + std::to_string(m) + "_im");
         std::vector<double> z;
         for (std::size_t n = 0; n < count; ++n) {
-            const double h =
-                1 - std::cos(2 * pi * static_cast<double>(n) / static_cast<double>(count));
-            z.push_back(h * re[n] * w.dt);
-            z.push_back(h * im[n] * w.dt);
+            const double h = 1 - std::cos(2 * pi * double(n) / double(count));
+            z.push_back(h * re[n] * parameters.dt);
+            z.push_back(h * im[n] * parameters.dt);
         }
         gsl_fft_complex_inverse(z.data(), 1, count, wavetable, workspace);
-        std::vector<double> row;
         // From the lowest frequency up; the transform divides by count.
         for (std::size_t n = 0; n < count; ++n) {
-            const std::size_t from = (n + count - count / 2) % count;
-            const double factor = static_cast<double>(count);
-            row.push_back(factor * factor *
-                          (z[2 * from] * z[2 * from] + z[2 * from + 1] * z[2 * from + 1]));
+            const std::size_t from = 2 * ((n + count - count / 2) % count);
+            const double factor = double(count) * double(count);
+            power.push_back(factor * (z[from] * z[from] + z[from + 1] * z[from + 1]));
         }
-        power.push_back(row);
     }
     gsl_fft_complex_wavetable_free(wavetable);
     gsl_fft_complex_workspace_free(workspace);
 
-    const double d_omega = 2 * pi / (static_cast<double>(count) * w.dt);
-    const double k_1 = 2 * pi / w.grid.x.length;
-    std::vector<double> all;
-    for (const auto& row : power) all.insert(all.end(), row.begin(), row.end());
-    common::write_fields(path,
-                         {"omega", "omega_p", -d_omega * static_cast<double>(count / 2), d_omega,
-                          static_cast<long>(count)},
-                         {"k", "1/length", k_1, k_1, w.modes}, {{"power", "E^2", all}});
+    const double d_omega = 2 * pi / (double(count) * parameters.dt);
+    const double k_1 = 2 * pi / parameters.grid.x.length;
+    common::write_fields(
+        path, {"omega", "omega_p", -d_omega * double(count / 2), d_omega, static_cast<long>(count)},
+        {"k", "1/length", k_1, k_1, parameters.modes}, {{"power", "E^2", power}});
 }
 
 }  // namespace cic

@@ -1,166 +1,139 @@
 // What is refused of walls and of one species, before a run starts.
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <string>
-#include <utility>
-#include <vector>
 
-#include "cic/meet_walls.hpp"
+#include "cic/setup/initial_state.hpp"
 
 namespace cic {
 
-using common::format;
-
-namespace detail {
-
-// One sentence for bad input.
-inline void refuse(bool bad, const std::string& sentence) {
-    if (bad) throw common::InputError(sentence);
-}
-
-// Beyond these sizes, products of several numbers leave double precision.
-inline void refuse_extreme(const std::string& name, double value) {
+/// Refuses sizes beyond which products of several numbers leave double precision.
+/// in:     names and values in turn
+template <class... Others>
+void refuse_extreme(const std::string& prefix, const std::string& name, double value,
+                    const Others&... others) {
     const double size = std::fabs(value);
-    refuse(size != 0 && !(size > 1e-40 && size < 1e40),
-           name + " = " + format(value) +
-               " is not between 1e-40 and 1e40 in size: choose other units");
+    refuse(size != 0 && !(size > 1e-40 && size < 1e40), prefix, name, " = ", value,
+           " is not between 1e-40 and 1e40 in size: choose other units");
+    if constexpr (sizeof...(others) > 0) refuse_extreme(prefix, others...);
 }
 
-inline bool is_above_cut_off(const Case& w, long mode_x, long mode_z) {
-    return 2 * std::labs(mode_x) > w.grid.x.cells ||
-           (w.dimensions == 2 && 2 * std::labs(mode_z) > w.grid.z.cells);
+/// Whether a mode has more than one wavelength per two cells.
+inline bool is_above_cut_off(const Case& parameters, long mode_x, long mode_z) {
+    return 2 * std::labs(mode_x) > parameters.grid.x.cells ||
+           (parameters.dimensions == 2 && 2 * std::labs(mode_z) > parameters.grid.z.cells);
 }
 
-inline void refuse_walls(const Case& w) {
-    const std::array<const char*, 4> ends{"x_low", "x_high", "z_low", "z_high"};
+/// Refuses walls that are not there, or cannot be what they are asked to be.
+inline void refuse_walls(const Case& parameters) {
     for (std::size_t k = 0; k < 4; ++k) {
-        const WallCase& wall = w.walls[k];
-        const std::string end = ends[k], direction = end.substr(0, 1);
-        const bool there = (k <= x_high ? w.boundary_x : w.boundary_z) == "wall";
+        const WallCase& wall = parameters.walls[k];
+        const std::string end = wall_names[k], direction = end.substr(0, 1);
+        const bool there = (k <= x_high ? parameters.boundary_x : parameters.boundary_z) == "wall";
         refuse(!there &&
                    (wall.field != "grounded" || wall.particles != "absorb" || wall.potential != 0),
-               "there is no wall at " + end + ": set grid.boundary_" + direction +
-                   " = \"wall\", or take out boundary." + end + ", boundary.potential_" + end +
-                   " and boundary.particles_" + end);
-        refuse_extreme("boundary.potential_" + end, wall.potential);
-        refuse(wall.field == "floating" && wall.potential != 0,
-               "boundary.potential_" + end + " = " + format(wall.potential) +
-                   " belongs to a grounded wall; the charge of a floating one finds its own: take "
-                   "it out, or set boundary." +
-                   end + " = \"grounded\"");
-        refuse(
-            wall.field == "floating" && w.gauss_sign < 0,
-            "gauss.sign = -1 is not for floating walls: set boundary." + end + " = \"grounded\"");
+               "there is no wall at ", end, ": set grid.boundary_", direction,
+               " = \"wall\", or take out boundary.", end, ", boundary.potential_", end,
+               " and boundary.particles_", end);
+        refuse_extreme("boundary.potential_", end, wall.potential);
+        refuse(wall.field == "floating" && wall.potential != 0, "boundary.potential_", end, " = ",
+               wall.potential,
+               " belongs to a grounded wall; the charge of a floating one finds its own: take it "
+               "out, or set boundary.",
+               end, " = \"grounded\"");
+        refuse(wall.field == "floating" && parameters.gauss_sign < 0,
+               "gauss.sign = -1 is not for floating walls: set boundary.", end, " = \"grounded\"");
     }
 }
 
-inline void refuse_species(const Case& w, const SpeciesCase& s) {
+/// Refuses a species that cannot be loaded, moved or emitted.
+inline void refuse_species(const Case& parameters, const SpeciesCase& s) {
     const std::string name = "species." + s.name;
-    const bool plane = w.dimensions == 2;
-    const std::vector<std::pair<const char*, double>> numbers{
-        {"density", s.density},
-        {"charge", s.charge},
-        {"mass", s.mass},
-        {"drift_x", s.drift_x},
-        {"drift_y", s.drift_y},
-        {"drift_z", s.drift_z},
-        {"temperature_x", s.temperature_x},
-        {"temperature_y", s.temperature_y},
-        {"temperature_z", s.temperature_z},
-        {"emission", s.emission},
-        {"emission_temperature", s.emission_temperature}};
-    for (const auto& [what, value] : numbers) refuse_extreme(name + "." + what, value);
+    const bool plane = parameters.dimensions == 2;
+    const Grid& grid = parameters.grid;
+    refuse_extreme(name + ".", "density", s.density, "charge", s.charge, "mass", s.mass, "drift_x",
+                   s.drift_x, "drift_y", s.drift_y, "drift_z", s.drift_z, "temperature_x",
+                   s.temperature_x, "temperature_y", s.temperature_y, "temperature_z",
+                   s.temperature_z, "emission", s.emission, "emission_temperature",
+                   s.emission_temperature);
     if (!s.mobile()) {
-        refuse(s.profile != "uniform",
-               name +
-                   ": a fixed species is a uniform background: take out profile, or make it "
-                   "mobile and heavy");
+        refuse(s.profile != "uniform", name,
+               ": a fixed species is a uniform background: take out profile, or make it mobile and "
+               "heavy");
         const bool moves = s.drift_x != 0 || s.drift_y != 0 || s.drift_z != 0 ||
                            s.temperature_x != 0 || s.temperature_y != 0 || s.temperature_z != 0;
-        refuse(moves || s.amplitude != 0 || s.ripple != 0 || s.emission != 0,
-               name +
-                   ": a fixed species stays as it is: take out drift, temperature, amplitude, "
-                   "ripple and emission, or make it mobile");
+        refuse(moves || s.amplitude != 0 || s.ripple != 0 || s.emission != 0, name,
+               ": a fixed species stays as it is: take out drift, temperature, amplitude, ripple "
+               "and emission, or make it mobile");
         return;
     }
-    refuse(s.density == 0, name +
-                               ".density = 0 leaves its particles without charge and mass: raise "
-                               "it, or take the species out");
-    refuse(!plane && (s.profile == "layer" || s.profile == "disk"),
-           name + ".profile = \"" + s.profile + "\" needs grid.dimensions = 2");
+    refuse(s.density == 0, name,
+           ".density = 0 leaves its particles without charge and mass: raise it, or take the "
+           "species out");
+    refuse(!plane && (s.profile == "layer" || s.profile == "disk"), name, ".profile = \"",
+           s.profile, "\" needs grid.dimensions = 2");
     const bool sized = s.profile == "layer" || s.profile == "disk";
-    refuse(sized && s.half_width == 0, name + ".half_width = 0: a " + s.profile + " needs a width");
+    refuse(sized && s.half_width == 0, name, ".half_width = 0: a ", s.profile, " needs a width");
     const double reach = s.half_width + std::fabs(s.ripple);
     refuse(s.profile == "layer" &&
-               (s.center_z - reach < w.grid.z.low || s.center_z + reach > w.grid.z.high()),
-           name + ": the layer reaches beyond the box, from z = " + format(s.center_z - reach) +
-               " to " + format(s.center_z + reach) + " in a box from 0 to " +
-               format(w.grid.z.length));
-    refuse(s.ripple != 0 && s.profile != "layer", name + ".ripple belongs to profile = \"layer\"");
+               (s.center_z - reach < grid.z.low || s.center_z + reach > grid.z.high()),
+           name, ": the layer reaches beyond the box, from z = ", s.center_z - reach, " to ",
+           s.center_z + reach, " in a box from 0 to ", grid.z.length);
+    refuse(s.ripple != 0 && s.profile != "layer", name, ".ripple belongs to profile = \"layer\"");
     const double r = s.profile == "disk" ? s.half_width : 0;
     refuse((s.profile == "disk" || s.profile == "point") &&
-               (s.center_x - r < w.grid.x.low || s.center_x + r > w.grid.x.high() ||
-                (plane && (s.center_z - r < w.grid.z.low || s.center_z + r > w.grid.z.high()))),
-           name + ": the " + s.profile + " reaches beyond the box: move " + name +
-               ".center_x or center_z, or make it smaller");
-    refuse(s.loading == "lattice" && sized,
-           name + ".loading = \"lattice\" fills the whole box: take \"quiet\" for a " + s.profile);
+               (s.center_x - r < grid.x.low || s.center_x + r > grid.x.high() ||
+                (plane && (s.center_z - r < grid.z.low || s.center_z + r > grid.z.high()))),
+           name, ": the ", s.profile, " reaches beyond the box: move ", name,
+           ".center_x or center_z, or make it smaller");
+    refuse(s.loading == "lattice" && sized, name,
+           ".loading = \"lattice\" fills the whole box: take \"quiet\" for a ", s.profile);
     refuse(s.loading == "lattice" &&
                (s.temperature_x > 0 || s.temperature_y > 0 || s.temperature_z > 0),
-           name + ".loading = \"lattice\" is for cold species: take \"quiet\"");
+           name, ".loading = \"lattice\" is for cold species: take \"quiet\"");
     const bool across = s.temperature_y != 0 || s.drift_y != 0;
     const bool along_z = s.temperature_z != 0 || s.drift_z != 0;
-    refuse(!w.magnetized() && across,
-           name +
-               " has a velocity out of the plane, which nothing can see without a magnetic "
-               "field: take out drift_y and temperature_y, or set plasma.B_x, B_y or B_z");
-    refuse(!w.magnetized() && !plane && along_z,
-           name +
-               " has a velocity along z, which nothing can see in one dimension without a "
-               "magnetic field: take out drift_z and temperature_z");
-    refuse(s.start == "ExB" && !w.magnetized(),
-           name + ".start = \"ExB\" needs a magnetic field: set plasma.B_x, B_y or B_z");
+    refuse(!parameters.magnetized() && across, name,
+           " has a velocity out of the plane, which nothing can see without a magnetic field: take "
+           "out drift_y and temperature_y, or set plasma.B_x, B_y or B_z");
+    refuse(!parameters.magnetized() && !plane && along_z, name,
+           " has a velocity along z, which nothing can see in one dimension without a magnetic "
+           "field: take out drift_z and temperature_z");
+    refuse(s.start == "ExB" && !parameters.magnetized(), name,
+           ".start = \"ExB\" needs a magnetic field: set plasma.B_x, B_y or B_z");
     if (s.amplitude != 0) {
-        refuse(s.mode_x == 0 && (s.mode_z == 0 || !plane),
-               name + ": the perturbed mode has no wave number: set mode_x" +
-                   (plane ? " or mode_z" : ""));
-        refuse(!plane && s.mode_z != 0, name + ".mode_z needs grid.dimensions = 2");
-        refuse(w.has_walls() && s.mode_x != 0 && s.mode_z != 0,
-               name + ": " + mode_text(s.mode_x, s.mode_z) +
-                   " would push particles through the walls: set mode_x or mode_z to 0");
+        refuse(s.mode_x == 0 && (s.mode_z == 0 || !plane), name,
+               ": the perturbed mode has no wave number: set mode_x", (plane ? " or mode_z" : ""));
+        refuse(!plane && s.mode_z != 0, name, ".mode_z needs grid.dimensions = 2");
+        refuse(parameters.has_walls() && s.mode_x != 0 && s.mode_z != 0, name, ": ",
+               mode_text(s.mode_x, s.mode_z),
+               " would push particles through the walls: set mode_x or mode_z to 0");
     }
-    refuse(s.ripple != 0 && s.mode_x == 0,
-           name + ".ripple = " + format(s.ripple) + " has no wave number: set mode_x");
-    refuse((s.amplitude != 0 || s.ripple != 0) && is_above_cut_off(w, s.mode_x, s.mode_z),
-           name + ": " + mode_text(s.mode_x, s.mode_z) +
-               " has more than one wavelength per two cells, the cut-off of the mesh: refine it "
-               "or lower the mode");
-    refuse(particle_count(w, s) < 1, name +
-                                         " has no particle: raise particles_per_cell, or its "
-                                         "half_width of " +
-                                         format(s.half_width));
-    refuse(s.emission > 0 && !(w.boundary_x == "wall" && w.walls[x_low].particles == "source"),
-           name +
-               ".emission needs boundary.particles_x_low = \"source\" and grid.boundary_x = "
-               "\"walls\"");
-    if (w.walls[x_low].particles != "source") return;
-    const double fastest = detail::fastest_emitted * std::sqrt(s.emission_temperature / s.mass);
-    refuse(fastest * w.dt > w.grid.x.length,
-           name + ".emission_temperature = " + format(s.emission_temperature) +
-               ": a particle emitted with " + format(fastest) +
-               " crosses the whole box in one step: lower it, or time.dt below " +
-               format(w.grid.x.length / fastest));
-    const double weight =
-                     s.density * filled_volume(w, s) / static_cast<double>(particle_count(w, s)),
-                 emitted = emitted_per_step(w, s, weight);
-    refuse(emitted > 1e6,
-           name + ".emission = " + format(s.emission) + " is " + format(emitted) +
-               " particles in a step, more than 1e6: lower it, or raise density, which makes them "
-               "heavier");
+    refuse(s.ripple != 0 && s.mode_x == 0, name, ".ripple = ", s.ripple,
+           " has no wave number: set mode_x");
+    refuse((s.amplitude != 0 || s.ripple != 0) && is_above_cut_off(parameters, s.mode_x, s.mode_z),
+           name, ": ", mode_text(s.mode_x, s.mode_z),
+           " has more than one wavelength per two cells, the cut-off of the mesh: refine it or "
+           "lower the mode");
+    refuse(particle_count(parameters, s) < 1, name,
+           " has no particle: raise particles_per_cell, or its half_width of ", s.half_width);
+    refuse(s.emission > 0 &&
+               !(parameters.boundary_x == "wall" && parameters.walls[x_low].particles == "source"),
+           name,
+           ".emission needs boundary.particles_x_low = \"source\" and grid.boundary_x = \"wall\"");
+    if (parameters.walls[x_low].particles != "source") return;
+    const double fastest = fastest_emitted * std::sqrt(s.emission_temperature / s.mass);
+    refuse(fastest * parameters.dt > grid.x.length, name,
+           ".emission_temperature = ", s.emission_temperature, ": a particle emitted with ",
+           fastest, " crosses the whole box in one step: lower it, or time.dt below ",
+           grid.x.length / fastest);
+    const double weight = s.density * filled_volume(parameters, s) /
+                          double(particle_count(parameters, s)),
+                 emitted = emitted_per_step(parameters, s, weight);
+    refuse(emitted > 1e6, name, ".emission = ", s.emission, " is ", emitted,
+           " particles in a step, more than 1e6: lower it, or raise density, which makes them "
+           "heavier");
 }
-
-}  // namespace detail
 
 }  // namespace cic

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "cic/apply_particle_boundaries.hpp"
 #include "cic/deposit_charge.hpp"
 #include "cic/setup/load_plasma.hpp"
 #include "cic/solve_field.hpp"
@@ -39,58 +40,88 @@ void archive(Archive& a, State& state) {
 }
 
 /// The walls of a case at t = 0, uncharged.
-inline Walls walls_of(const Case& w) {
+inline Walls walls_of(const Case& parameters) {
     Walls walls;
     for (std::size_t k = 0; k < 4; ++k)
-        walls[k] = {w.walls[k].field == "floating", w.walls[k].potential, 0};
+        walls[k] = {parameters.walls[k].field == "floating", parameters.walls[k].potential, 0};
     return walls;
+}
+
+/// Simulation particles of one species, of this weight, that a source wall emits in a step.
+inline double emitted_per_step(const Case& parameters, const SpeciesCase& s, double weight) {
+    return s.emission * parameters.dt * parameters.grid.z.length / weight;
+}
+
+/// The boundary conditions of the particles of a case, which have been loaded.
+inline ParticleBoundaries particle_boundaries(const Case& parameters,
+                                              const std::vector<Particles>& species) {
+    ParticleBoundaries conditions;
+    for (std::size_t k = 0; k < 4; ++k) {
+        const std::string& does = parameters.walls[k].particles;
+        conditions.walls[k] = does == "absorb"    ? AtWall::absorb
+                              : does == "reflect" ? AtWall::reflect
+                                                  : AtWall::source;
+    }
+    for (const SpeciesCase& s : parameters.species) {
+        if (!s.mobile()) continue;
+        const double weight = species[conditions.emission.size()].m_p / s.mass;
+        conditions.emission.push_back(
+            {std::sqrt(s.emission_temperature / s.mass), emitted_per_step(parameters, s, weight)});
+    }
+    conditions.dt = parameters.dt;
+    conditions.seed = static_cast<std::uint64_t>(parameters.seed);
+    conditions.plane = parameters.dimensions == 2;
+    conditions.magnetized = parameters.magnetized();
+    return conditions;
 }
 
 /// Replaces the velocities of a species by the drift in E and B,
 ///   v_p = E_p x B / B^2
 /// note:   At t = -1/2 dt as at t = 0: accelerate() leaves this velocity as it is.
-inline void start_drifting(const MeshField& E_g, const Case& w, Particles& particles) {
-    const Eigen::Vector3d B(w.B.x, w.B.y, w.B.z);
+inline void start_drifting(const MeshField& E_g, const Case& parameters, Particles& particles) {
+    const Eigen::Vector3d B(parameters.B.x, parameters.B.y, parameters.B.z);
     std::vector<Particles> one(1);
     one[0] = std::move(particles);
-    for_each_chunk(one, [&](Chunk& p) {
+    for_each_batch(one, [&](ParticleBatch& batch) {
         FieldAtParticles E_p;
-        gather_field(E_g, w.grid, w.scheme(), p, E_p);
-        for (long k = 0; k < p.count; ++k) {
-            const Eigen::Vector3d E(double(E_p.x[k]), 0, p.z_p == nullptr ? 0 : double(E_p.z[k]));
+        gather_field(E_g, parameters.grid, parameters.scheme(), batch, E_p);
+        for (long p = 0; p < batch.count; ++p) {
+            const Eigen::Vector3d E(double(E_p.x[p]), 0,
+                                    batch.z_p == nullptr ? 0 : double(E_p.z[p]));
             const Eigen::Vector3d v = E.cross(B) / B.squaredNorm();
-            p.vx_p[k] = static_cast<Real>(v[0]);
-            p.vy_p[k] = static_cast<Real>(v[1]);
-            p.vz_p[k] = static_cast<Real>(v[2]);
+            batch.vx_p[p] = Real(v[0]);
+            batch.vy_p[p] = Real(v[1]);
+            batch.vz_p[p] = Real(v[2]);
         }
     });
     particles = std::move(one[0]);
 }
 
 /// Particles at t = 0, with velocities half a step earlier.
-inline State initial_state(const Case& w, FieldSolver& solver) {
+inline State initial_state(const Case& parameters, FieldSolver& solver) {
     State state;
     std::uint32_t purpose = 0;
-    for (const SpeciesCase& s : w.species)
-        if (s.mobile()) state.species.push_back(load_species(w, s, ++purpose));
+    for (const SpeciesCase& s : parameters.species)
+        if (s.mobile()) state.species.push_back(load_species(parameters, s, ++purpose));
     state.emitted_again.assign(state.species.size(), 0);
-    state.walls = walls_of(w);
+    state.walls = walls_of(parameters);
 
     DepositScratch scratch;
     Field rho_g;
     FieldState field;
     field.walls = state.walls;
-    deposit_charge(state.species, w.grid, w.scheme(), fixed_background(w), scratch, rho_g);
+    deposit_charge(state.species, parameters.grid, parameters.scheme(),
+                   fixed_background(parameters), scratch, rho_g);
     solve_field(solver, rho_g, field);
-    for_each_chunk(state.species, [&](Chunk& p) {
+    for_each_batch(state.species, [&](ParticleBatch& batch) {
         FieldAtParticles E_p;
-        gather_field(field.E_g, w.grid, w.scheme(), p, E_p);
-        start_leapfrog(E_p, w.B, w.dt, p);
+        gather_field(field.E_g, parameters.grid, parameters.scheme(), batch, E_p);
+        start_leapfrog(E_p, parameters.B, parameters.dt, batch);
     });
     std::size_t mobile = 0;
-    for (const SpeciesCase& s : w.species) {
+    for (const SpeciesCase& s : parameters.species) {
         if (!s.mobile()) continue;
-        if (s.start == "ExB") start_drifting(field.E_g, w, state.species[mobile]);
+        if (s.start == "ExB") start_drifting(field.E_g, parameters, state.species[mobile]);
         ++mobile;
     }
     return state;

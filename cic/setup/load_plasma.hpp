@@ -12,45 +12,34 @@ namespace cic {
 
 /// The part of the mesh that a species fills: a length in one dimension, an area in two, and 1 for
 /// a point.
-inline double filled_volume(const Case& w, const SpeciesCase& s) {
-    if (s.profile == "layer") return w.grid.x.length * 2 * s.half_width;
+inline double filled_volume(const Case& parameters, const SpeciesCase& s) {
+    if (s.profile == "layer") return parameters.grid.x.length * 2 * s.half_width;
     if (s.profile == "disk") return pi * s.half_width * s.half_width;
     if (s.profile == "point") return 1;
-    return w.grid.x.length * (w.dimensions == 2 ? w.grid.z.length : 1);
+    return parameters.grid.x.length * (parameters.dimensions == 2 ? parameters.grid.z.length : 1);
 }
 
 /// Simulation particles of a species.
-inline long particle_count(const Case& w, const SpeciesCase& s) {
+inline long particle_count(const Case& parameters, const SpeciesCase& s) {
     if (!s.mobile()) return 0;
     if (s.profile == "point") return 1;
-    const double cells = filled_volume(w, s) / w.grid.cell_area();
-    return std::lround(static_cast<double>(s.particles_per_cell) * cells);
+    const double cells = filled_volume(parameters, s) / parameters.grid.cell_area();
+    return std::lround(double(s.particles_per_cell) * cells);
 }
 
 /// Charge density of all fixed species.
-inline double fixed_background(const Case& w) {
+inline double fixed_background(const Case& parameters) {
     double rho = 0;
-    for (const SpeciesCase& s : w.species)
+    for (const SpeciesCase& s : parameters.species)
         if (!s.mobile()) rho += s.charge * s.density;
     return rho;
-}
-
-/// Gives a species room for as many particles, with the components that the case needs.
-inline void resize(const Case& w, long count, Particles& particles) {
-    const auto size = static_cast<std::size_t>(count);
-    const bool plane = w.dimensions == 2;
-    particles.x_p.resize(size);
-    particles.vx_p.resize(size);
-    if (plane) particles.z_p.resize(size);
-    if (w.magnetized()) particles.vy_p.resize(size);
-    if (w.magnetized() || plane) particles.vz_p.resize(size);
 }
 
 namespace detail {
 
 // Rows and columns of a lattice in each cell, as square as the number allows.
 inline long lattice_columns(long per_cell) {
-    long columns = static_cast<long>(std::sqrt(static_cast<double>(per_cell)));
+    long columns = static_cast<long>(std::sqrt(double(per_cell)));
     while (per_cell % columns != 0) --columns;
     return per_cell / columns;
 }
@@ -60,21 +49,19 @@ struct Position {
 };
 
 // Position of one particle before the perturbation.
-inline Position position_of(const Case& w, const SpeciesCase& s, std::uint32_t purpose,
+inline Position position_of(const Case& parameters, const SpeciesCase& s, std::uint32_t purpose,
                             const common::LoadingNumbers& load, long p, long count) {
-    const Grid& grid = w.grid;
-    const double even = (static_cast<double>(p) + 0.5) / static_cast<double>(count);
+    const Grid& grid = parameters.grid;
+    const double even = (double(p) + 0.5) / double(count);
     if (s.profile == "point") return {s.center_x, s.center_z};
-    if (s.loading == "lattice" && w.dimensions == 2) {
+    if (s.loading == "lattice" && parameters.dimensions == 2) {
         const long columns = lattice_columns(s.particles_per_cell) * grid.x.cells,
                    rows = count / columns;
-        return {grid.x.low + grid.x.length * (static_cast<double>(p % columns) + 0.5) /
-                                 static_cast<double>(columns),
-                grid.z.low + grid.z.length * (static_cast<double>(p / columns) + 0.5) /
-                                 static_cast<double>(rows)};
+        return {grid.x.low + grid.x.length * (double(p % columns) + 0.5) / double(columns),
+                grid.z.low + grid.z.length * (double(p / columns) + 0.5) / double(rows)};
     }
     const double u = s.loading == "random" ? load.uniform(purpose, 2, p) : even;
-    if (w.dimensions == 1) return {grid.x.low + grid.x.length * u, 0};
+    if (parameters.dimensions == 1) return {grid.x.low + grid.x.length * u, 0};
     const double v = load.uniform(purpose, s.loading == "random" ? 3 : 2, p);
     if (s.profile == "layer")
         return {grid.x.low + grid.x.length * u, s.center_z + s.half_width * (2 * v - 1)};
@@ -93,23 +80,24 @@ inline Position position_of(const Case& w, const SpeciesCase& s, std::uint32_t p
 ///     v_p = drift + Maxwellian, and for a traveling wave + (omega/k - u) A cos(k x) along k
 /// exact:  to first order in A the density is 1 + A cos(k x); a traveling wave is that of
 ///         theory where it is not damped
-inline Particles load_species(const Case& w, const SpeciesCase& s, std::uint32_t purpose) {
-    const Grid& grid = w.grid;
-    const long count = particle_count(w, s);
-    const bool plane = w.dimensions == 2;
+inline Particles load_species(const Case& parameters, const SpeciesCase& s, std::uint32_t purpose) {
+    const Grid& grid = parameters.grid;
+    const long count = particle_count(parameters, s);
+    const bool plane = parameters.dimensions == 2;
     Particles particles;
     particles.name = s.name;
-    const double weight = s.density * filled_volume(w, s) / static_cast<double>(count);
+    const double weight = s.density * filled_volume(parameters, s) / double(count);
     particles.q_p = weight * s.charge;
     particles.m_p = weight * s.mass;
-    resize(w, count, particles);
+    resize(count, plane, parameters.magnetized(), particles);
 
-    const WaveVector k = wave_vector(w, s.mode_x, s.mode_z);
+    const WaveVector k = wave_vector(parameters, s.mode_x, s.mode_z);
     double phase_speed = 0;
     if (s.amplitude != 0 && s.wave == "traveling")
-        phase_speed = theory_of_wave(w, s.mode_x, s.mode_z).omega.real() / k.size() -
+        phase_speed = theory_of_wave(parameters, s.mode_x, s.mode_z).omega.real() / k.size() -
                       (s.drift_x * k.x + s.drift_z * k.z) / k.size();
-    const common::LoadingNumbers load{s.loading != "random", static_cast<std::uint64_t>(w.seed)};
+    const common::LoadingNumbers load{s.loading != "random",
+                                      static_cast<std::uint64_t>(parameters.seed)};
     const double v_x = std::sqrt(s.temperature_x / s.mass),
                  v_y = std::sqrt(s.temperature_y / s.mass),
                  v_z = std::sqrt(s.temperature_z / s.mass);
@@ -118,8 +106,7 @@ inline Particles load_species(const Case& w, const SpeciesCase& s, std::uint32_t
     const std::uint32_t velocities = 100 + purpose;
     common::for_each_block(count, [&](int, long begin, long end) {
         for (long p = begin; p < end; ++p) {
-            const auto n = static_cast<std::size_t>(p);
-            detail::Position at = detail::position_of(w, s, purpose, load, p, count);
+            detail::Position at = detail::position_of(parameters, s, purpose, load, p, count);
             double u_x = s.drift_x, u_y = s.drift_y, u_z = s.drift_z;
             if (v_x > 0) u_x += v_x * load.gaussian(velocities, base_x, p);
             if (v_y > 0) u_y += v_y * load.gaussian(velocities, base_y, p);
@@ -138,11 +125,11 @@ inline Particles load_species(const Case& w, const SpeciesCase& s, std::uint32_t
                 if (plane && grid.z.periodic)
                     at.z -= grid.z.length * std::floor((at.z - grid.z.low) / grid.z.length);
             }
-            particles.x_p[n] = static_cast<Real>(at.x);
-            particles.vx_p[n] = static_cast<Real>(u_x);
-            if (plane) particles.z_p[n] = static_cast<Real>(at.z);
-            if (!particles.vy_p.empty()) particles.vy_p[n] = static_cast<Real>(u_y);
-            if (!particles.vz_p.empty()) particles.vz_p[n] = static_cast<Real>(u_z);
+            particles.x_p[p] = Real(at.x);
+            particles.vx_p[p] = Real(u_x);
+            if (plane) particles.z_p[p] = Real(at.z);
+            if (!particles.vy_p.empty()) particles.vy_p[p] = Real(u_y);
+            if (!particles.vz_p.empty()) particles.vz_p[p] = Real(u_z);
         }
     });
     return particles;

@@ -8,11 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "cic/theory/compare_with_theory.hpp"
+#include "cic/theory/comparisons.hpp"
 
 namespace cic {
-
-using common::format;
 
 /// The scales of one species.
 struct SpeciesScales {
@@ -22,6 +20,7 @@ struct SpeciesScales {
     long particles = 0;
 };
 
+/// The scales of a run.
 struct Scales {
     std::vector<SpeciesScales> species;
     double omega_p = 0;       // of all mobile species together
@@ -30,17 +29,12 @@ struct Scales {
     double bytes = 0;  // memory that the run will take
 };
 
-namespace detail {
-
-inline bool is_box(const Case& w) { return w.boundary_x == "wall" && w.boundary_z == "wall"; }
-
-}  // namespace detail
-
-inline Scales scales_of(const Case& w) {
+/// The scales of a case whose mesh has its boundaries.
+inline Scales scales_of(const Case& parameters) {
     Scales s;
     double inverse_debye2 = 0;
-    long components = w.dimensions + (w.magnetized() ? 3 : w.dimensions);
-    for (const SpeciesCase& k : w.species) {
+    long components = parameters.dimensions + (parameters.magnetized() ? 3 : parameters.dimensions);
+    for (const SpeciesCase& k : parameters.species) {
         if (!k.mobile()) continue;
         SpeciesScales scale;
         scale.name = k.name;
@@ -49,22 +43,22 @@ inline Scales scales_of(const Case& w) {
         scale.thermal_speed =
             std::sqrt(std::max({k.temperature_x, k.temperature_y, k.temperature_z}) / k.mass);
         scale.drift = std::hypot(k.drift_x, k.drift_y, k.drift_z);
-        scale.Omega_c = std::fabs(k.charge) * w.B.size() / k.mass;
+        scale.Omega_c = std::fabs(k.charge) * parameters.B.size() / k.mass;
         scale.debye_length = omega2 > 0 ? scale.thermal_speed / scale.omega_p : 0;
-        scale.particles = particle_count(w, k);
+        scale.particles = particle_count(parameters, k);
         if (scale.debye_length > 0) inverse_debye2 += 1 / std::pow(scale.debye_length, 2);
         if (k.profile != "point") s.omega_p = std::hypot(s.omega_p, scale.omega_p);
         s.particles += scale.particles;
         s.species.push_back(scale);
     }
     s.debye_length = inverse_debye2 > 0 ? 1 / std::sqrt(inverse_debye2) : 0;
-    s.steps = std::lround(w.end / w.dt);
-    const double per_particle = static_cast<double>(components + 1) * sizeof(Real) + sizeof(int);
-    s.bytes = per_particle * static_cast<double>(s.particles) +
-              static_cast<double>(w.grid.size()) * (common::block_count + 8) * sizeof(double);
+    s.steps = std::lround(parameters.end / parameters.dt);
+    const double per_particle = double(components + 1) * sizeof(Real) + sizeof(int);
+    s.bytes = per_particle * double(s.particles) +
+              double(parameters.grid.size()) * (common::block_count + 8) * sizeof(double);
     // The factors of the matrix of a box.
-    if (detail::is_box(w)) {
-        const double points = static_cast<double>(w.grid.size());
+    if (parameters.is_box()) {
+        const double points = double(parameters.grid.size());
         s.bytes += 30 * points * std::log2(points);
     }
     return s;
@@ -82,133 +76,120 @@ inline long largest_prime_factor(long number) {
 }  // namespace detail
 
 /// Warnings with the number and the limit, for choices that run but may mislead.
-inline std::vector<std::string> resolution_warnings(const Case& w, const Scales& scales) {
+inline std::vector<std::string> resolution_warnings(const Case& parameters, const Scales& scales) {
     std::vector<std::string> warnings;
-    const double dx =
-        w.dimensions == 2 ? std::max(w.grid.x.spacing(), w.grid.z.spacing()) : w.grid.x.spacing();
-    const double omega_dt = scales.omega_p * w.dt;
-    if (omega_dt > 0.5 && w.gauss_sign > 0)
-        warnings.push_back("omega_p dt = " + format(omega_dt) + " is above 0.5: frequencies are " +
-                           format(100 * (2 / omega_dt * std::asin(0.5 * omega_dt) - 1)) +
-                           " % too high; at 2 the leapfrog blows up");
+    const auto warn = [&](const auto&... pieces) { warnings.push_back(sentence(pieces...)); };
+    const Grid& grid = parameters.grid;
+    const double dx = parameters.dimensions == 2 ? std::max(grid.x.spacing(), grid.z.spacing())
+                                                 : grid.x.spacing();
+    const double omega_dt = scales.omega_p * parameters.dt;
+    if (omega_dt > 0.5 && parameters.gauss_sign > 0)
+        warn("omega_p dt = ", omega_dt, " is above 0.5: frequencies are ",
+             100 * (2 / omega_dt * std::asin(0.5 * omega_dt) - 1),
+             " % too high; at 2 the leapfrog blows up");
     // Where each kind of weighting stops heating.
-    const double least = w.weighting == "ngp" ? 0.6 : (w.weighting == "cic" ? 1 / pi : 0.15);
-    if (w.conserving == "momentum" && scales.debye_length > 0 && scales.debye_length < least * dx)
-        warnings.push_back("the Debye length is " + format(scales.debye_length / dx) +
-                           " cells, below " + format(least) + " for " + w.weighting +
-                           ": the mesh will heat the plasma; refine it to cells of " +
-                           format(scales.debye_length / least));
+    const double least =
+        parameters.weighting == "ngp" ? 0.6 : (parameters.weighting == "cic" ? 1 / pi : 0.15);
+    if (parameters.conserving == "momentum" && scales.debye_length > 0 &&
+        scales.debye_length < least * dx)
+        warn("the Debye length is ", scales.debye_length / dx, " cells, below ", least, " for ",
+             parameters.weighting, ": the mesh will heat the plasma; refine it to cells of ",
+             scales.debye_length / least);
     for (const SpeciesScales& s : scales.species) {
-        if (s.thermal_speed == 0 && s.drift > 0 && scales.omega_p > 0 && w.compare != "clouds") {
+        if (s.thermal_speed == 0 && s.drift > 0 && scales.omega_p > 0) {
             const double u = s.drift / (scales.omega_p * dx);
-            const double safe = cold_beam_threshold(w.weighting == "tsc" ? 2 : 1);
-            if (w.conserving == "energy" && u < safe)
-                warnings.push_back(s.name + ": a cold beam at " + format(u) +
-                                   " omega_p dx is below " + format(safe) +
-                                   ", where the energy-conserving mesh stops it; refine the mesh");
+            const double safe = cold_beam_threshold(parameters.weighting == "tsc" ? 2 : 1);
+            if (parameters.conserving == "energy" && u < safe)
+                warn(s.name, ": a cold beam at ", u, " omega_p dx is below ", safe,
+                     ", where the energy-conserving mesh stops it; refine the mesh");
         }
-        if (s.drift + s.thermal_speed > 2 * dx / w.dt)
-            warnings.push_back(s.name + ": particles move " +
-                               format((s.drift + s.thermal_speed) * w.dt / dx) +
-                               " cells in a step; below 2 they see the field they cross");
-        if (s.Omega_c * w.dt > 1)
-            warnings.push_back(
-                s.name + ": Omega_c dt = " + format(s.Omega_c * w.dt) +
-                " is above 1: gyration is slowed by the time step to " +
-                format(std::atan(0.5 * s.Omega_c * w.dt) / (0.5 * s.Omega_c * w.dt)) +
-                " of its frequency; drifts stay right");
+        if (s.drift + s.thermal_speed > 2 * dx / parameters.dt)
+            warn(s.name, ": particles move ", (s.drift + s.thermal_speed) * parameters.dt / dx,
+                 " cells in a step; below 2 they see the field they cross");
+        if (s.Omega_c * parameters.dt > 1)
+            warn(s.name, ": Omega_c dt = ", s.Omega_c * parameters.dt,
+                 " is above 1: gyration is slowed by the time step to ",
+                 std::atan(0.5 * s.Omega_c * parameters.dt) / (0.5 * s.Omega_c * parameters.dt),
+                 " of its frequency; drifts stay right");
     }
     const auto warn_of_slow_transform = [&](const std::string& what, long count) {
         const long factor = detail::largest_prime_factor(count);
         if (factor > 200)
-            warnings.push_back(
-                what + " = " + std::to_string(count) + " has the prime factor " +
-                std::to_string(factor) + ", above 200: its Fourier transforms take about " +
-                std::to_string(factor / 20) + " times as long as those of a product of 2, 3 and 5");
+            warn(what, " = ", count, " has the prime factor ", factor,
+                 ", above 200: its Fourier transforms take about ", factor / 20,
+                 " times as long as those of a product of 2, 3 and 5");
     };
-    if (w.grid.x.periodic) warn_of_slow_transform("grid.cells_x", w.grid.x.cells);
-    if (w.grid.z.periodic) warn_of_slow_transform("grid.cells_z", w.grid.z.cells);
-    if (w.spectrum) warn_of_slow_transform("output.spectrum: time.end / time.dt", scales.steps);
+    if (grid.x.periodic) warn_of_slow_transform("grid.cells_x", grid.x.cells);
+    if (grid.z.periodic) warn_of_slow_transform("grid.cells_z", grid.z.cells);
+    if (parameters.spectrum)
+        warn_of_slow_transform("output.spectrum: time.end / time.dt", scales.steps);
     const std::vector<std::pair<const char*, double>> intervals{
-        {"output.fields_interval", w.fields_interval},
-        {"output.particles_interval", w.particles_interval},
-        {"output.phase_interval", w.phase_interval}};
+        {"output.fields_interval", parameters.fields_interval},
+        {"output.particles_interval", parameters.particles_interval},
+        {"output.phase_interval", parameters.phase_interval}};
     for (const auto& [name, interval] : intervals)
-        if (interval > 0 && interval < w.dt)
-            warnings.push_back(std::string(name) + " = " + format(interval) +
-                               " is below time.dt = " + format(w.dt) +
-                               ": files are written every step");
+        if (interval > 0 && interval < parameters.dt)
+            warn(name, " = ", interval, " is below time.dt = ", parameters.dt,
+                 ": files are written every step");
     double emission = 0;
     bool followed = false;
-    for (const SpeciesCase& s : w.species) {
+    for (const SpeciesCase& s : parameters.species) {
         emission += s.emission;
         const bool perturbed = s.amplitude != 0 || s.ripple != 0;
-        followed = followed || (perturbed && s.mode_x == w.mode_x && s.mode_z == w.mode_z);
+        followed = followed ||
+                   (perturbed && s.mode_x == parameters.mode_x && s.mode_z == parameters.mode_z);
     }
-    if (w.walls[x_low].particles == "source" && emission == 0)
-        warnings.push_back(
+    if (parameters.walls[x_low].particles == "source" && emission == 0)
+        warn(
             "boundary.particles_x_low = \"source\", and every emission is 0: the wall only gives "
-            "back "
-            "what reaches it, with emission_temperature");
-    if (w.compare == "wave") {
-        const std::complex<double> omega = theory_of_wave(w).omega;
-        const double period = 2 * pi / std::fabs(omega.real());
-        if (omega.imag() <= 0 && omega.real() != 0 && period > w.end)
-            warnings.push_back("the wave of theory has the period " + format(period) +
-                               ", longer than time.end = " + format(w.end) +
-                               ": its frequency cannot be measured well");
-    }
-    const bool one_mode = w.mode_x != 0 || w.mode_z != 0;
-    if ((w.compare == "wave" || w.compare == "diocotron") && one_mode && !followed)
-        warnings.push_back("no species is perturbed in the followed " +
-                           mode_text(w.mode_x, w.mode_z) + ": only noise can start the wave");
+            "back what reaches it, with emission_temperature");
+    const Comparison& comparison = comparison_of(parameters);
+    comparison.add_warnings(parameters, warnings);
+    const bool one_mode = parameters.mode_x != 0 || parameters.mode_z != 0;
+    if (comparison.follows_mode && one_mode && !followed)
+        warn("no species is perturbed in the followed ",
+             mode_text(parameters.mode_x, parameters.mode_z), ": only noise can start the wave");
     return warnings;
 }
 
 /// The resolved scales as text, for --dry-run and the head of a run.
-inline std::string describe_scales(const Case& w, const Scales& scales) {
-    const double dx = w.grid.x.spacing();
+inline std::string describe_scales(const Case& parameters, const Scales& scales) {
+    const double dx = parameters.grid.x.spacing();
     std::string text;
-    const auto line = [&](const std::string& name, const std::string& value) {
-        text +=
-            "  " + name + std::string(name.size() < 34 ? 34 - name.size() : 1, ' ') + value + "\n";
+    const auto line = [&](const std::string& name, const auto&... pieces) {
+        const std::string gap(name.size() < 34 ? 34 - name.size() : 1, ' ');
+        text += "  " + name + gap + sentence(pieces...) + "\n";
     };
-    std::string mesh = std::to_string(w.grid.x.cells) + " cells of " + format(dx);
-    if (w.dimensions == 2)
-        mesh = std::to_string(w.grid.x.cells) + " x " + std::to_string(w.grid.z.cells) +
-               " cells of " + format(dx) + " x " + format(w.grid.z.spacing());
-    line("mesh", mesh + ", " + w.boundary_x + " in x" +
-                     (w.dimensions == 2 ? ", " + w.boundary_z + " in z" : ""));
-    line("method", w.weighting + " weighting, " + w.conserving + "-conserving" +
-                       (w.gauss_sign < 0 ? ", div E = -rho as the slide prints it" : ""));
-    line("steps", std::to_string(scales.steps) + " of " + format(w.dt));
-    line("particles", std::to_string(scales.particles));
+    const Grid& grid = parameters.grid;
+    const auto ends = [](const std::string& boundary) {
+        return boundary == "wall" ? "walls" : boundary;
+    };
+    std::string mesh = std::to_string(grid.x.cells) + " cells of " + format(dx);
+    if (parameters.dimensions == 2)
+        mesh = std::to_string(grid.x.cells) + " x " + std::to_string(grid.z.cells) + " cells of " +
+               format(dx) + " x " + format(grid.z.spacing());
+    line("mesh", mesh, ", ", ends(parameters.boundary_x), " in x",
+         (parameters.dimensions == 2 ? ", " + ends(parameters.boundary_z) + " in z" : ""));
+    line("method", parameters.weighting, " weighting, ", parameters.conserving, "-conserving",
+         (parameters.gauss_sign < 0 ? ", div E = -rho as the slide prints it" : ""));
+    line("steps", scales.steps, " of ", parameters.dt);
+    line("particles", scales.particles);
     line("unit of frequency", "omega_p of density 1, charge 1, mass 1");
     if (scales.omega_p > 0)
-        line("all mobile species together",
-             "omega_p = " + format(scales.omega_p) +
-                 ", omega_p dt = " + format(scales.omega_p * w.dt) +
-                 (scales.debye_length > 0 ? ", Debye length = " + format(scales.debye_length) +
-                                                " = " + format(scales.debye_length / dx) + " dx"
-                                          : ", cold"));
+        line("all mobile species together", "omega_p = ", scales.omega_p,
+             ", omega_p dt = ", scales.omega_p * parameters.dt,
+             (scales.debye_length > 0 ? ", Debye length = " + format(scales.debye_length) + " = " +
+                                            format(scales.debye_length / dx) + " dx"
+                                      : ", cold"));
     for (const SpeciesScales& s : scales.species)
-        line(s.name, std::to_string(s.particles) + " particles, omega_p = " + format(s.omega_p) +
-                         ", v_th = " + format(s.thermal_speed) + ", drift = " + format(s.drift) +
-                         (s.Omega_c > 0 ? ", Omega_c = " + format(s.Omega_c) : ""));
-    if (w.compare == "wave") {
-        const Theory theory = theory_of_wave(w);
-        const double growth = theory.omega.imag();
-        line("theory", mode_text(theory.mode_x, theory.mode_z) +
-                           ": omega = " + format(theory.omega.real()) +
-                           ", growth = " + format(growth) + " omega_p; " + theory.source);
-        const double onset = predicted_onset(w, theory);
-        if (onset > 0) line("onset", "about t = " + format(onset) + ": " + onset_meaning());
-    }
-    line("memory", "about " + format(scales.bytes / 1048576) + " MiB");
+        line(s.name, s.particles, " particles, omega_p = ", s.omega_p, ", v_th = ", s.thermal_speed,
+             ", drift = ", s.drift, (s.Omega_c > 0 ? ", Omega_c = " + format(s.Omega_c) : ""));
+    for (const auto& [name, value] : comparison_of(parameters).describe(parameters))
+        line(name, value);
+    line("memory", "about ", scales.bytes / 1048576, " MiB");
     const double work =
-        static_cast<double>(scales.steps) *
-        (static_cast<double>(scales.particles) + 30.0 * static_cast<double>(w.grid.size()));
-    line("time", "about " + format(work / 80e6) + " s on one core");
+        double(scales.steps) * (double(scales.particles) + 30.0 * double(grid.size()));
+    line("time", "about ", work / 80e6, " s on one core");
     return text;
 }
 

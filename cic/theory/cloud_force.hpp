@@ -15,11 +15,15 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
+#include "cic/theory/comparison.hpp"
 #include "common/grid.hpp"
 #include "common/splines.hpp"
+#include "common/theory/fit_oscillation.hpp"
 
 namespace cic {
 
@@ -31,7 +35,7 @@ struct CloudPair {
     Eigen::MatrixXd phi;  // on node (i, j), of a unit charge on node (0, 0), eps0 = 1
 };
 
-namespace cloud_force_detail {
+namespace detail {
 
 /// S^(order) of any order, by the recurrence of B-splines.
 ///   order S^(l)(s) = (h + s) S^(l-1)(s + 1/2) + (h - s) S^(l-1)(s - 1/2),  h = (order + 1) / 2
@@ -55,12 +59,11 @@ struct Waves {
     explicit Waves(const common::Axis& axis)
         : cosine(axis.cells, axis.cells), K_squared(axis.cells) {
         const long n = axis.cells;
-        const double angle = 2.0 * std::numbers::pi / static_cast<double>(n);
+        const double angle = 2.0 * std::numbers::pi / double(n);
         for (long m = 0; m < n; ++m) {
-            const double K = 2.0 / axis.spacing() * std::sin(0.5 * angle * static_cast<double>(m));
+            const double K = 2.0 / axis.spacing() * std::sin(0.5 * angle * double(m));
             K_squared[m] = K * K;
-            for (long i = 0; i < n; ++i)
-                cosine(i, m) = std::cos(angle * static_cast<double>(i * m % n));
+            for (long i = 0; i < n; ++i) cosine(i, m) = std::cos(angle * double(i * m % n));
         }
     }
 };
@@ -77,23 +80,23 @@ inline double potential(const CloudPair& pair, double r_x, double r_z, bool deri
     for (long j = at_z - pair.order; j <= at_z + pair.order + 1; ++j) {
         double row = 0.0;
         for (long i = at_x - pair.order; i <= at_x + pair.order + 1; ++i)
-            row += spline(order, s_x - static_cast<double>(i), derivative_x) *
+            row += spline(order, s_x - double(i), derivative_x) *
                    pair.phi(wrap(i, pair.x.cells), wrap(j, pair.z.cells));
-        sum += row * spline(order, s_z - static_cast<double>(j), derivative_z);
+        sum += row * spline(order, s_z - double(j), derivative_z);
     }
     if (derivative_x) sum /= pair.x.spacing();
     if (derivative_z) sum /= pair.z.spacing();
     return sum;
 }
 
-}  // namespace cloud_force_detail
+}  // namespace detail
 
 /// The potential of one node, from which all forces follow.
 ///   K^2 phi_k = rho_k, the five-point Laplacian;  phi_(k = 0) = 0
 /// in:     both axes periodic; one cell across makes the clouds sheets
 /// note:   two small matrix products; with a few hundred cells per direction that is no work.
 inline CloudPair make_cloud_pair(const common::Axis& x, const common::Axis& z, int order) {
-    const cloud_force_detail::Waves along_x(x), along_z(z);
+    const detail::Waves along_x(x), along_z(z);
     Eigen::MatrixXd phi_k(x.cells, z.cells);
     for (long n = 0; n < z.cells; ++n)
         for (long m = 0; m < x.cells; ++m)
@@ -115,7 +118,7 @@ inline CloudPair make_cloud_pair(const common::Axis& x, const common::Axis& z, i
 ///         along z, with kinks there, also at r = 0; and only the mean is. A single pair sees a
 ///         staircase: no force while both are in one cell, a jump whenever one changes cells.
 inline Eigen::Vector2d mean_force(const CloudPair& pair, double r_x, double r_z) {
-    using cloud_force_detail::potential;
+    using detail::potential;
     const double dx = pair.x.spacing(), dz = pair.z.spacing();
     return {(potential(pair, r_x - dx, r_z) - potential(pair, r_x + dx, r_z)) / (2.0 * dx),
             (potential(pair, r_x, r_z - dz) - potential(pair, r_x, r_z + dz)) / (2.0 * dz)};
@@ -128,7 +131,7 @@ inline Eigen::Vector2d mean_force(const CloudPair& pair, double r_x, double r_z)
 /// note:   A pair that stays at one place of the mesh has a slope of its own: there, from 0.125 to
 ///         0.182 with cic, from 0.103 to 0.135 with tsc, and zero with ngp.
 inline Eigen::Vector2d mean_force_slope(const CloudPair& pair) {
-    using cloud_force_detail::potential;
+    using detail::potential;
     const double dx = pair.x.spacing(), dz = pair.z.spacing();
     const auto along_x = [&](double r_x) { return potential(pair, r_x, 0.0, true, false); };
     const auto along_z = [&](double r_z) { return potential(pair, 0.0, r_z, false, true); };
@@ -142,5 +145,55 @@ inline Eigen::Vector2d overlap_frequency_squared(const CloudPair& pair, double q
                                                  double q_2, double m_2) {
     return -q_1 * q_2 * (1.0 / m_1 + 1.0 / m_2) * mean_force_slope(pair);
 }
+
+/// Two clouds of opposite charge swing through each other along x.
+inline void compare_clouds(const Case& parameters, const History& history, Summary& summary) {
+    const SpeciesCase &a = parameters.species[0], &b = parameters.species[1];
+    const auto separation = history.column("separation_x");
+    const CloudPair pair =
+        make_cloud_pair(parameters.grid.x, parameters.grid.z, parameters.scheme().order);
+    const double expected = std::sqrt(
+        std::max(0.0, overlap_frequency_squared(pair, a.density * a.charge, a.density * a.mass,
+                                                b.density * b.charge, b.density * b.mass)[0]));
+    if (expected == 0) {
+        summary.result_info("largest_separation",
+                            *std::max_element(separation.begin(), separation.end()), "length",
+                            "measured");
+        return;
+    }
+    const common::OscillationFit fit = common::fit_oscillation(separation, parameters.dt);
+    summary.result("omega_over_theory", fit.frequency / expected, "", 1,
+                   parameters.frequency_tolerance,
+                   "linear force of overlapping clouds, mean over all places on the mesh");
+    summary.result_info("omega", fit.frequency, omega_p_unit, "measured");
+    summary.result_info("misfit", fit.misfit, "", "rms of what is not harmonic");
+}
+
+/// Refuses a case that is not two points in a periodic plane.
+inline void validate_clouds(const Case& parameters) {
+    refuse(parameters.species.size() != 2 || count_with_profile(parameters, "point") != 2 ||
+               parameters.dimensions != 2 || parameters.has_walls() || parameters.magnetized() ||
+               parameters.conserving != "momentum" || parameters.stencil != "five_point",
+           asked_for(parameters),
+           " needs two species with profile = \"point\" in a periodic plane, the momentum scheme "
+           "and the five-point stencil, and no magnetic field");
+    refuse(
+        parameters.species[0].center_x == parameters.species[1].center_x, asked_for(parameters),
+        " needs clouds apart along x, and both have center_x = ", parameters.species[0].center_x);
+}
+
+/// Adds the distance of the two clouds along x, to the nearest image.
+inline void add_separation(const Case& parameters, const std::vector<Particles>& species,
+                           common::Row& row) {
+    const double length = parameters.grid.x.length,
+                 d = double(species[1].x_p[0]) - double(species[0].x_p[0]);
+    row.add("separation_x", "length", d - length * std::floor(d / length + 0.5));
+}
+
+/// The comparison of two clouds.
+inline constexpr Comparison clouds_comparison{.name = "clouds",
+                                              .validate = validate_clouds,
+                                              .add_columns = add_separation,
+                                              .add_results = compare_clouds};
 
 }  // namespace cic

@@ -11,9 +11,16 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <string>
+#include <vector>
+
+#include "cic/theory/comparison.hpp"
+#include "cic/theory/theory_of_case.hpp"
+#include "common/theory/fit_growth.hpp"
 
 namespace cic {
 
+/// The layer, between its walls.
 struct ChargedLayer {
     double shear_rate;     // S = rho_0 / B
     double half_width;     // d
@@ -50,5 +57,58 @@ inline std::complex<double> diocotron_frequency(const ChargedLayer& layer, doubl
     const double S = layer.shear_rate;
     return std::sqrt(std::complex<double>(S * S * (kd - g_even) * (kd - g_odd)));
 }
+
+/// Growth rate of the followed mode of a case whose only species is a layer.
+inline double diocotron_growth(const Case& parameters) {
+    const SpeciesCase& s = parameters.species[0];
+    const ChargedLayer layer{s.charge * s.density / parameters.B.y, s.half_width,
+                             0.5 * parameters.grid.z.length};
+    return std::fabs(
+        diocotron_frequency(layer, wave_vector(parameters, parameters.mode_x, 0).size()).imag());
+}
+
+/// The rate at which the edges of a charged layer wind up.
+inline void compare_diocotron(const Case& parameters, const History& history, Summary& summary) {
+    const double growth = diocotron_growth(parameters);
+    const common::GrowthFit fit =
+        common::fit_growth(history.column("time"), amplitude_of_mode(history), {2.0, 0.2});
+    const std::string where =
+        "guiding centers, two edges between grounded walls; fitted from t = " + format(fit.begin) +
+        " to " + format(fit.end);
+    summary.result_info("theory_growth", growth, omega_p_unit, where);
+    summary.result_info("growth", fit.rate, omega_p_unit, where);
+    summary.result("growth_over_theory", fit.rate / growth, "", 1, parameters.growth_tolerance,
+                   where);
+}
+
+/// Refuses a case that is not one layer between grounded walls, across the magnetic field.
+inline void validate_diocotron(const Case& parameters) {
+    refuse(parameters.species.size() != 1 || count_with_profile(parameters, "layer") != 1 ||
+               parameters.boundary_z != "wall" || parameters.boundary_x == "wall" ||
+               parameters.B.y == 0 || parameters.B.x != 0 || parameters.B.z != 0,
+           asked_for(parameters),
+           " needs one species with profile = \"layer\" and no other, plasma.B_y alone, and walls "
+           "in z only");
+    const SpeciesCase& layer = parameters.species[0];
+    refuse(parameters.mode_x == 0 || parameters.mode_z != 0, asked_for(parameters),
+           " follows theory.mode_x, and not ", mode_text(parameters.mode_x, parameters.mode_z));
+    const WallCase &low = parameters.walls[z_low], &high = parameters.walls[z_high];
+    refuse(low.field != "grounded" || high.field != "grounded" || low.potential != high.potential ||
+               std::fabs(layer.center_z - 0.5 * parameters.grid.z.length) >
+                   1e-6 * parameters.grid.z.length,
+           asked_for(parameters),
+           " needs grounded walls of the same potential, and the layer half-way between them, at "
+           "center_z = ",
+           0.5 * parameters.grid.z.length);
+    refuse(diocotron_growth(parameters) == 0, asked_for(parameters), ": mode ", parameters.mode_x,
+           " of a layer of half_width ", layer.half_width, " and charge ", layer.charge,
+           " does not grow: make it thinner, or change theory.mode_x");
+}
+
+/// The comparison of a charged layer.
+inline constexpr Comparison diocotron_comparison{.name = "diocotron",
+                                                 .follows_mode = true,
+                                                 .validate = validate_diocotron,
+                                                 .add_results = compare_diocotron};
 
 }  // namespace cic

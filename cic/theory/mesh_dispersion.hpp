@@ -40,7 +40,7 @@ struct MeshScheme {
     bool energy_conserving = false;
 };
 
-namespace mesh_dispersion_detail {
+namespace detail {
 
 using common::Complex, common::PlasmaSpecies;
 
@@ -75,7 +75,7 @@ inline Complex susceptibility(const PlasmaSpecies& s, double k, double dt, Compl
 template <class Summand>
 Complex near_sum(const Summand& f, long count) {
     Complex sum = f(0.0);
-    for (long p = count; p > 0; --p) sum += f(static_cast<double>(p)) + f(-static_cast<double>(p));
+    for (long p = count; p > 0; --p) sum += f(double(p)) + f(-double(p));
     return sum;
 }
 
@@ -92,7 +92,7 @@ Complex far_sum(const Summand& f, long count) {
                                           {0.7966664774136267, 0.2223810344533745},
                                           {0.9602898564975363, 0.1012285362903763}}};
     const auto both = [&](double p) { return f(p) + f(-p); };
-    const double P = static_cast<double>(count), edge = P + 0.5;
+    const double P = double(count), edge = P + 0.5;
     Complex sum = (both(P + 1.0) - both(P)) / 24.0;
     for (const Point& point : gauss) {
         for (const double sign : {-1.0, 1.0}) {
@@ -128,7 +128,7 @@ inline Complex mesh_susceptibility(const PlasmaSpecies& s, double k, const MeshS
     return near_sum(f, aliases(std::pow(1e10, 1.0 / power)));
 }
 
-}  // namespace mesh_dispersion_detail
+}  // namespace detail
 
 /// Waves along an axis of the mesh; see the top of this file.
 ///   chi = sum_s omega_s^2 / (k v_s)^2 [1 + zeta_s Z(zeta_s)],
@@ -146,8 +146,7 @@ inline Complex mesh_susceptibility(const PlasmaSpecies& s, double k, const MeshS
 inline common::Complex mesh_dispersion(std::span<const common::PlasmaSpecies> plasma, double k,
                                        const MeshScheme& scheme, common::Complex omega) {
     common::Complex D = 1.0;
-    for (const auto& s : plasma)
-        D += mesh_dispersion_detail::mesh_susceptibility(s, k, scheme, omega);
+    for (const auto& s : plasma) D += detail::mesh_susceptibility(s, k, scheme, omega);
     return D;
 }
 
@@ -162,8 +161,7 @@ inline common::DispersionRoot fastest_growing_on_mesh(std::span<const common::Pl
     using common::Complex;
     const auto rough_D = [&](Complex omega) {
         Complex D = 1.0;
-        for (const auto& s : plasma)
-            D += mesh_dispersion_detail::mesh_susceptibility(s, k, scheme, omega, true);
+        for (const auto& s : plasma) D += detail::mesh_susceptibility(s, k, scheme, omega, true);
         return D;
     };
     std::vector<Complex> guesses = common::fan_of_guesses(plasma, k);
@@ -200,19 +198,10 @@ inline common::DispersionRoot fastest_growing_on_mesh(std::span<const common::Pl
 /// out:    not a number where the leapfrog is unstable, omega_g dt > 2
 /// exact:  D = 0
 inline double cold_mesh_frequency(double k, const MeshScheme& scheme, double omega_p) {
-    const double omega_g = omega_p * std::sqrt(mesh_dispersion_detail::sum_of_alias_weights(
-                                         scheme, 0.5 * k * scheme.dx));
+    const double omega_g =
+        omega_p * std::sqrt(detail::sum_of_alias_weights(scheme, 0.5 * k * scheme.dx));
     if (scheme.dt * omega_g > 2.0) return std::numeric_limits<double>::quiet_NaN();
     return scheme.dt > 0.0 ? 2.0 / scheme.dt * std::asin(0.5 * scheme.dt * omega_g) : omega_g;
-}
-
-/// The rate at which the same plasma blows up when Gauss's law has the wrong sign.
-///   div E = -rho:  gamma = (2 / dt) asinh(omega_g dt / 2)
-/// source: [CIC-2], as the slide prints it
-inline double cold_mesh_growth_as_printed(double k, const MeshScheme& scheme, double omega_p) {
-    const double omega_g =
-        cold_mesh_frequency(k, {scheme.dx, 0.0, scheme.order, scheme.energy_conserving}, omega_p);
-    return scheme.dt > 0.0 ? 2.0 / scheme.dt * std::asinh(0.5 * scheme.dt * omega_g) : omega_g;
 }
 
 /// The drift u / (omega_p dx) below which the energy-conserving scheme makes a cold beam unstable.

@@ -20,13 +20,15 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <string>
 #include <vector>
 
-#include "common/run/parameters.hpp"
+#include "cic/theory/comparison.hpp"
 #include "common/theory/plasma_dispersion.hpp"
 
 namespace cic {
 
+/// The two sheaths in front of one floating wall.
 struct Sheath {
     double mass_ratio, temperature_ratio;          // M, tau
     double plasma_potential, collector_potential;  // phi_P and phi_C, both negative
@@ -34,7 +36,7 @@ struct Sheath {
     double emission;  // of electrons at the source, new ones and returned ones
 };
 
-namespace sheath_detail {
+namespace detail {
 
 /// exp(y) erfc(y^1/2), also where the exponential overflows.
 inline double scaled_erfc(double y) {
@@ -58,7 +60,7 @@ double sign_change(const Function& f, double low, double high) {
     }
 }
 
-}  // namespace sheath_detail
+}  // namespace detail
 
 /// The density of electrons where the potential is phi.
 ///   n_e = exp(phi - phi_P) (1 + erf (phi - phi_C)^1/2) / (1 + erf (phi_P - phi_C)^1/2)
@@ -66,9 +68,8 @@ double sign_change(const Function& f, double low, double high) {
 /// exact: 1 at phi_P
 inline double electron_density(const Sheath& s, double phi) {
     const double drop = s.plasma_potential - s.collector_potential;
-    return std::exp(phi - s.plasma_potential) *
-           sheath_detail::one_plus_erf(phi - s.collector_potential) /
-           sheath_detail::one_plus_erf(drop);
+    return std::exp(phi - s.plasma_potential) * detail::one_plus_erf(phi - s.collector_potential) /
+           detail::one_plus_erf(drop);
 }
 
 /// The density of ions where the potential is phi.
@@ -76,8 +77,8 @@ inline double electron_density(const Sheath& s, double phi) {
 /// in:    phi, from phi_C to 0
 /// exact: 1 at phi_P
 inline double ion_density(const Sheath& s, double phi) {
-    return sheath_detail::scaled_erfc(-phi / s.temperature_ratio) /
-           sheath_detail::scaled_erfc(-s.plasma_potential / s.temperature_ratio);
+    return detail::scaled_erfc(-phi / s.temperature_ratio) /
+           detail::scaled_erfc(-s.plasma_potential / s.temperature_ratio);
 }
 
 /// The momentum that both species carry through a plane per area and time, in n_P T_e.
@@ -90,11 +91,11 @@ inline double momentum_flux(const Sheath& s, double phi) {
     const double drop = s.plasma_potential - s.collector_potential;
     const double height = std::max(phi - s.collector_potential, 0.0);
     const double absorbed =
-        two_over_root_pi * std::exp(-drop) * std::sqrt(height) / sheath_detail::one_plus_erf(drop);
+        two_over_root_pi * std::exp(-drop) * std::sqrt(height) / detail::one_plus_erf(drop);
     const double y = std::max(-phi / s.temperature_ratio, 0.0);
     const double ions = s.temperature_ratio *
-                        (sheath_detail::scaled_erfc(y) + two_over_root_pi * std::sqrt(y)) /
-                        sheath_detail::scaled_erfc(-s.plasma_potential / s.temperature_ratio);
+                        (detail::scaled_erfc(y) + two_over_root_pi * std::sqrt(y)) /
+                        detail::scaled_erfc(-s.plasma_potential / s.temperature_ratio);
     return electron_density(s, phi) - absorbed + ions;
 }
 
@@ -108,7 +109,7 @@ inline double electric_field(const Sheath& s, double phi) {
     return std::sqrt(2.0 * std::max(stress, 0.0));
 }
 
-namespace sheath_detail {
+namespace detail {
 
 /// The sheath with the given phi_P whose plasma is neutral and whose collector floats. A Maxwellian
 /// of n_e and of n_i emitted at the source would obey
@@ -124,7 +125,7 @@ inline Sheath floating_sheath(double mass_ratio, double temperature_ratio, doubl
     return {mass_ratio, temperature_ratio, phi_P, phi_P - d, flux, flux * std::exp(d - phi_P)};
 }
 
-}  // namespace sheath_detail
+}  // namespace detail
 
 /// The floating collector of a plane source of pairs.
 /// in:    M and tau; M / tau > 1, and for M < 2 also tau above about 0.03
@@ -132,7 +133,7 @@ inline Sheath floating_sheath(double mass_ratio, double temperature_ratio, doubl
 /// exact: n_e = n_i = 1 at phi_P; E = 0 at phi_P and at the source; emission exp(phi_C) = flux
 /// errors: InputError where no potential falls all the way from the source to the collector.
 inline Sheath collector_sheath(double mass_ratio, double temperature_ratio) {
-    using sheath_detail::floating_sheath;
+    using detail::floating_sheath;
     const bool ions_are_slower =
         temperature_ratio > 0.0 && mass_ratio > temperature_ratio && std::isfinite(mass_ratio);
     if (!ions_are_slower)
@@ -142,10 +143,8 @@ inline Sheath collector_sheath(double mass_ratio, double temperature_ratio) {
 
     // The collector sheath vanishes where phi_P is so low that the ions are as fast as electrons.
     const double root = std::sqrt(mass_ratio / temperature_ratio);
-    const double lowest = -sheath_detail::sign_change(
-        [&](double depth) {
-            return root * sheath_detail::scaled_erfc(depth / temperature_ratio) - 1.0;
-        },
+    const double lowest = -detail::sign_change(
+        [&](double depth) { return root * detail::scaled_erfc(depth / temperature_ratio) - 1.0; },
         0.0, mass_ratio / std::numbers::pi);
 
     // A shallow source sheath has too little momentum in the plasma, a deep one too much.
@@ -158,36 +157,57 @@ inline Sheath collector_sheath(double mass_ratio, double temperature_ratio) {
             "no potential falls from the source to a floating collector for such light and cold "
             "ions: raise m_i / m_e or T_i / T_e");
     return floating_sheath(mass_ratio, temperature_ratio,
-                           -sheath_detail::sign_change(missing, 0.0, -lowest));
+                           -detail::sign_change(missing, 0.0, -lowest));
 }
 
-struct SheathPoint {
-    double distance, potential;  // in lambda_D from the edge, and in T_e / e
-};
-
-/// The potential from one edge into the plasma, where it approaches phi_P exponentially.
-///   distance = integral dphi / E  with  phi - phi_P = (phi_edge - phi_P) / cosh^2 u,
-/// and a smooth integrand dx / du, although E vanishes at the source and in the plasma.
-/// in:    edge, the potential 0 of the source or phi_C of the collector
-/// out:   samples + 1 points with equal steps of u, the last one at phi_P + 1e-4 (phi_edge - phi_P)
-inline std::vector<SheathPoint> sheath_profile(const Sheath& s, double edge, int samples = 200) {
-    const double du = std::acosh(100.0) / samples, height = edge - s.plasma_potential;
-    const auto potential = [&](double u) {
-        return s.plasma_potential + height / (std::cosh(u) * std::cosh(u));
-    };
-    const auto slope = [&](double u) {
-        const double dphi = 2.0 * std::abs(height) * std::tanh(u) / (std::cosh(u) * std::cosh(u));
-        return dphi / electric_field(s, potential(u));
-    };
-    std::vector<SheathPoint> points{{0.0, edge}};
-    double x = 0.0;
-    for (int n = 0; n < samples; ++n) {
-        // Integrate by the two points of Gauss, which avoid u = 0.
-        const double middle = (n + 0.5) * du, aside = 0.5 * du / std::numbers::sqrt3;
-        x += 0.5 * du * (slope(middle - aside) + slope(middle + aside));
-        points.push_back({x, potential((n + 1.0) * du)});
-    }
-    return points;
+/// Which of two species of opposite charge is the electrons; the other is the ions.
+inline const SpeciesCase& electrons_of(const Case& parameters) {
+    return parameters.species[parameters.species[0].charge < 0 ? 0 : 1];
 }
+
+/// The sheath of a case with two such species. errors: InputError where there is none
+inline Sheath sheath_of(const Case& parameters) {
+    const SpeciesCase& electrons = electrons_of(parameters);
+    const SpeciesCase& ions = parameters.species[&electrons == &parameters.species[0] ? 1 : 0];
+    return collector_sheath(ions.mass / electrons.mass,
+                            ions.emission_temperature / electrons.emission_temperature);
+}
+
+/// Potentials of a floating wall in front of a plasma from a source, mean of the last half.
+inline void compare_sheath(const Case& parameters, const History& history, Summary& summary) {
+    const SpeciesCase& electrons = electrons_of(parameters);
+    const Sheath sheath = sheath_of(parameters);
+    const auto compare = [&](const char* name, const char* column, double expected) {
+        const double e_phi =
+            std::fabs(electrons.charge) * mean_of_last_half(history.column(column));
+        summary.result(name, e_phi / electrons.emission_temperature, "T_e/e", expected,
+                       parameters.growth_tolerance * std::fabs(expected),
+                       "Schwager and Birdsall 1990, solved here");
+    };
+    compare("collector_potential", "potential_x_high", sheath.collector_potential);
+    compare("plasma_potential", "potential_middle", sheath.plasma_potential);
+}
+
+/// Refuses a case that is not a source of pairs in front of a floating wall.
+inline void validate_sheath(const Case& parameters) {
+    const WallCase &low = parameters.walls[x_low], &high = parameters.walls[x_high];
+    refuse(parameters.dimensions != 1 || parameters.magnetized() ||
+               parameters.boundary_x != "wall" || low.particles != "source" ||
+               low.field != "floating" || high.particles != "absorb" || high.field != "floating",
+           asked_for(parameters),
+           " needs grid.dimensions = 1, no magnetic field, a floating source at x_low and a "
+           "floating, absorbing wall at x_high");
+    const std::vector<SpeciesCase>& species = parameters.species;
+    refuse(species.size() != 2 || !species[0].mobile() || !species[1].mobile() ||
+               species[0].emission != species[1].emission || species[0].emission == 0 ||
+               species[0].charge != -species[1].charge,
+           asked_for(parameters),
+           " needs two mobile species of opposite charge with the same emission");
+    sheath_of(parameters);  // throws where there is no sheath
+}
+
+/// The comparison of a floating wall.
+inline constexpr Comparison sheath_comparison{
+    .name = "sheath", .validate = validate_sheath, .add_results = compare_sheath};
 
 }  // namespace cic

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "cic/units.hpp"
+#include "cic/theory/comparison.hpp"
 
 namespace cic {
 
@@ -18,14 +18,50 @@ namespace cic {
 inline double thermal_noise(double debye_over_dx, double per_cell, long cells, int order) {
     double sum = 0;
     for (long m = 1; m < cells; ++m) {
-        const double theta = 2 * pi * static_cast<double>(m) / static_cast<double>(cells);
+        const double theta = 2 * pi * double(m) / double(cells);
         const double K2 = 2 - 2 * std::cos(theta);
         const double A = order == 0   ? 1
                          : order == 1 ? (2 + std::cos(theta)) / 3
                                       : (33 + 26 * std::cos(theta) + std::cos(2 * theta)) / 60;
         sum += A / (A + K2 * debye_over_dx * debye_over_dx);
     }
-    return sum / (per_cell * static_cast<double>(cells));
+    return sum / (per_cell * double(cells));
 }
+
+/// How a warm plasma at rest does: the energy of its noise, and how fast the mesh heats it.
+inline void compare_heating(const Case& parameters, const History& history, Summary& summary) {
+    const auto kinetic = history.column("kinetic"), field = history.column("field");
+    const double ratio = kinetic.back() / kinetic.front();
+    summary.result_info("kinetic_over_initial", ratio, "", "measured");
+    double inverse_debye2 = 0, per_cell = 0;
+    for (const SpeciesCase& s : parameters.species) {
+        if (!s.mobile()) continue;
+        inverse_debye2 += s.density * s.charge * s.charge / s.temperature_x;
+        per_cell += double(s.particles_per_cell);
+    }
+    const double at_start = 1 / std::sqrt(inverse_debye2) / parameters.grid.x.spacing();
+    const double mean = mean_of_last_half(kinetic);
+    const double then = at_start * std::sqrt(mean / kinetic.front());
+    summary.result_info("debye_length_over_dx", at_start * std::sqrt(ratio), "", "at the end");
+    const double expected =
+        thermal_noise(then, per_cell, parameters.grid.x.cells, parameters.scheme().order);
+    summary.result("field_over_kinetic", mean_of_last_half(field) / mean, "", expected,
+                   parameters.growth_tolerance * expected, "thermal noise on this mesh");
+}
+
+/// Refuses a case that is not a uniform warm plasma in one periodic dimension.
+inline void validate_heating(const Case& parameters) {
+    refuse(parameters.has_walls() || parameters.dimensions != 1, asked_for(parameters),
+           " needs a warm plasma in one periodic dimension");
+    for (const SpeciesCase& s : parameters.species)
+        refuse(s.mobile() && (s.profile != "uniform" || s.charge == 0 || s.temperature_x == 0),
+               asked_for(parameters), " needs uniform, charged, warm species, and '", s.name,
+               "' has profile \"", s.profile, "\", charge ", s.charge, " and temperature_x ",
+               s.temperature_x);
+}
+
+/// The comparison of a warm plasma at rest.
+inline constexpr Comparison heating_comparison{
+    .name = "heating", .validate = validate_heating, .add_results = compare_heating};
 
 }  // namespace cic
