@@ -24,25 +24,11 @@ class Recorder {
         : parameters_(parameters),
           program_(program),
           sound_speed_(largest_sound_speed(parameters)) {
-        std::vector<common::Column> columns{{"time", "time"},
-                                            {"dt", "time"},
-                                            {"energy", "energy/length"},
-                                            {"kinetic", "energy/length"},
-                                            {"internal", "energy/length"},
-                                            {"mass", "mass/length"},
-                                            {"momentum_x", "momentum/length"},
-                                            {"momentum_z", "momentum/length"},
-                                            {"angular_momentum", "momentum"},
-                                            {"mass_error", "1"},
-                                            {"momentum_x_error", "1"},
-                                            {"momentum_z_error", "1"},
-                                            {"energy_error", "1"},
-                                            {"largest_speed", "velocity"},
-                                            {"largest_mach", "1"},
-                                            {"iterations", "1"},
-                                            {"divergence", "speed/dx"}};
-        for (const common::Column& column : followed_columns(parameters)) columns.push_back(column);
-        history.columns(columns);
+        CellFields empty;
+        for (Field* f : {&empty.rho, &empty.vx, &empty.vz, &empty.p, &empty.e})
+            *f = Field::Zero(parameters.grid.size());
+        empty.rho_of.assign(parameters.materials.size(), empty.rho);
+        history.columns(row_of({}, {}, empty, history));
     }
 
     /// The files of t^n that are due, and its row.
@@ -64,44 +50,11 @@ class Recorder {
     /// One row for t^n.
     /// errors: NumericalError when the energy is not finite or has left the limit of the case
     void record(long step, const State& state, const Totals& now, const CellFields& cells,
-                common::Run& run) {
-        const common::History& history = run.history;
-        const bool is_first = history.all().empty();
-        const auto first = [&](const char* name, double value) {
-            return is_first ? value : history.first(name);
-        };
-        const auto relative = [](double change, double before, double came_in) {
-            const double scale = before > 0 ? before : std::fabs(came_in);
-            return scale > 0 ? change / scale : 0.0;
-        };
-        const Books& books = state.books;
-        const double mass = first("mass", now.mass), kinetic = first("kinetic", now.kinetic);
-        const double energy = now.kinetic + now.internal, gross = first("energy", energy);
-        check_energy(step, state, energy, gross);
-
-        const double momentum = std::sqrt(2 * kinetic * mass) + mass * sound_speed_;
-        const Extremes most = extremes(parameters_, cells);
-        row_ = {state.time,
-                state.dt,
-                energy,
-                now.kinetic,
-                now.internal,
-                now.mass,
-                now.momentum_x,
-                now.momentum_z,
-                now.angular_momentum,
-                relative(now.mass - books.mass - mass, mass, books.mass),
-                relative(now.momentum_x - books.momentum_x - first("momentum_x", now.momentum_x),
-                         momentum, books.momentum_x),
-                relative(now.momentum_z - books.momentum_z - first("momentum_z", now.momentum_z),
-                         momentum, books.momentum_z),
-                relative(energy - books.energy - gross, gross, books.energy),
-                most.speed,
-                most.mach,
-                static_cast<double>(state.report.iterations),
-                state.report.divergence};
-        add_followed(parameters_, state, now, cells, row_);
-        run.history.row(row_);
+                common::Run& run) const {
+        const double energy = now.kinetic + now.internal;
+        const bool is_first = run.history.all().empty();
+        check_energy(step, state, energy, is_first ? energy : run.history.first("energy"));
+        run.history.row(row_of(state, now, cells, run.history));
     }
 
     /// The results of the whole run.
@@ -115,11 +68,53 @@ class Recorder {
             {parameters_, program_, state, now, cells, history, run.path("profile.dat"), summary});
         for (const char* name :
              {"mass_error", "momentum_x_error", "momentum_z_error", "energy_error"})
-            summary.conservation(std::string("largest_") + name, largest(history, name), "1");
+            summary.conservation(std::string("largest_") + name, history.largest(name), "1");
         summary.performance("particles", static_cast<double>(state.particles.count()));
     }
 
    private:
+    // The quantities of t^n, each beside its name and unit.
+    common::Row row_of(const State& state, const Totals& now, const CellFields& cells,
+                       const common::History& history) const {
+        const auto first = [&](const char* name, double value) {
+            return history.all().empty() ? value : history.first(name);
+        };
+        const auto relative = [](double change, double before, double came_in) {
+            const double scale = before > 0 ? before : std::fabs(came_in);
+            return scale > 0 ? change / scale : 0.0;
+        };
+        const Books& books = state.books;
+        const double mass = first("mass", now.mass), kinetic = first("kinetic", now.kinetic);
+        const double energy = now.kinetic + now.internal, gross = first("energy", energy);
+        const double momentum = std::sqrt(2 * kinetic * mass) + mass * sound_speed_;
+        const auto momentum_error = [&](const char* name, double value, double came_in) {
+            return relative(value - came_in - first(name, value), momentum, came_in);
+        };
+        const Extremes most = extremes(parameters_, cells);
+        common::Row row;
+        row.add("time", "time", state.time);
+        row.add("dt", "time", state.dt);
+        row.add("energy", "energy/length", energy);
+        row.add("kinetic", "energy/length", now.kinetic);
+        row.add("internal", "energy/length", now.internal);
+        row.add("mass", "mass/length", now.mass);
+        row.add("momentum_x", "momentum/length", now.momentum_x);
+        row.add("momentum_z", "momentum/length", now.momentum_z);
+        row.add("angular_momentum", "momentum", now.angular_momentum);
+        row.add("mass_error", "1", relative(now.mass - books.mass - mass, mass, books.mass));
+        row.add("momentum_x_error", "1",
+                momentum_error("momentum_x", now.momentum_x, books.momentum_x));
+        row.add("momentum_z_error", "1",
+                momentum_error("momentum_z", now.momentum_z, books.momentum_z));
+        row.add("energy_error", "1", relative(energy - books.energy - gross, gross, books.energy));
+        row.add("largest_speed", "velocity", most.speed);
+        row.add("largest_mach", "1", most.mach);
+        row.add("iterations", "1", static_cast<double>(state.report.iterations));
+        row.add("divergence", "speed/dx", state.report.divergence);
+        track(parameters_, state, now, cells, row);
+        return row;
+    }
+
     // An energy that is many times what the start and the work done account for is no result.
     void check_energy(long step, const State& state, double energy, double gross) const {
         const double accounted = gross + std::fabs(state.books.energy);
@@ -136,7 +131,6 @@ class Recorder {
     const Case parameters_;
     const std::string program_;
     const double sound_speed_;
-    std::vector<double> row_;
 };
 
 }  // namespace flip

@@ -153,7 +153,7 @@ inline void compare_cavity(const FinishedRun& run) {
 inline void compare_impact(const FinishedRun& run) {
     const double round_off = 1e-12;
     for (const char* name : {"mass_error", "momentum_x_error", "momentum_z_error", "energy_error"})
-        run.summary.result(std::string("largest_") + name, largest(run.history, name), "", 0,
+        run.summary.result(std::string("largest_") + name, run.history.largest(name), "", 0,
                            round_off, "exact but for round-off");
     const Impact impact = impact_of(run.w);
     const GasCase& gas = impact.projectile->gas;

@@ -79,7 +79,7 @@ inline void compare_ringing(const FinishedRun& run) {
                                       : fit.reason);
     run.summary.result_info("mach", std::fabs(w.regions.front().gas.velocity_x) / c, "",
                             "of the flow over the mesh");
-    run.summary.result_info("largest_noise", largest(run.history, "noise") / c, "c",
+    run.summary.result_info("largest_noise", run.history.largest("noise") / c, "c",
                             "rms of the velocity on the cells");
 }
 

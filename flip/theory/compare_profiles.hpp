@@ -210,7 +210,7 @@ inline void compare_gresho(const FinishedRun& run) {
                        source);
     run.summary.result("angular_momentum_kept", kept("swirl"), "", 1, w.theory_tolerance, source);
     run.summary.result_info("turns", t / std::fabs(turn), "", "of the core");
-    run.summary.result_info("largest_divergence", largest(run.history, "divergence"), "speed/dx",
+    run.summary.result_info("largest_divergence", run.history.largest("divergence"), "speed/dx",
                             "after the implicit pressure");
     const RadialProfile profile =
         radial_profile(w, run.cells, region.center_x + w.frame_x * t,

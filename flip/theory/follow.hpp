@@ -16,13 +16,6 @@ namespace flip {
 
 using common::format;
 
-/// Largest size of a column of the history.
-inline double largest(const common::History& history, const std::string& name) {
-    double most = 0;
-    for (const double value : history.column(name)) most = std::max(most, std::fabs(value));
-    return most;
-}
-
 /// Largest sound speed of the fluid at the start, from the uniform states of the case.
 inline double largest_sound_speed(const Case& w) {
     double most = 0;
@@ -132,7 +125,7 @@ inline Blob blob_of(const Case& w, const CellFields& cells) {
 }
 
 // Water along the floor and along the wall behind it.
-inline void add_dam(const Case& w, const CellFields& cells, std::vector<double>& row) {
+inline void add_dam(const Case& w, const CellFields& cells, common::Row& row) {
     const WaterColumn water = water_of(w);
     const Field& rho = cells.rho_of[water.material];
     const auto filled = [&](long i, long j) { return rho[w.grid.index(i, j)] / water.density; };
@@ -143,13 +136,13 @@ inline void add_dam(const Case& w, const CellFields& cells, std::vector<double>&
     const double beyond = inside > outside ? (inside - 0.5) / (inside - outside) : 0.5;
     double height = 0;
     for (long j = 0; j < w.grid.z.cells; ++j) height += filled(0, j) * w.grid.z.spacing();
-    row.push_back(w.grid.x.at(std::max(0.0, static_cast<double>(i) - 0.5 + beyond)));
-    row.push_back(height);
+    row.add("front_x", "length", w.grid.x.at(std::max(0.0, static_cast<double>(i) - 0.5 + beyond)));
+    row.add("wall_height", "length", height);
 }
 
 // Momentum of the target, and how far the projectile has come beyond its face.
 inline void add_impact(const Case& w, const State& state, const CellFields& cells,
-                       std::vector<double>& row) {
+                       common::Row& row) {
     const Impact impact = impact_of(w);
     const auto index = [&](const RegionCase& r) { return material_index(w, r.gas.material); };
     const Field& rho = cells.rho_of[static_cast<std::size_t>(index(*impact.target))];
@@ -171,54 +164,36 @@ inline void add_impact(const Case& w, const State& state, const CellFields& cell
     for (std::size_t p = 0; p < positions.size(); ++p)
         if (state.particles.material[p] == index(from))
             foremost = std::max(foremost, sign * positions[p]);
-    row.insert(row.end(), {px, pz, std::isfinite(foremost) ? foremost - face : 0.0});
+    row.add("target_momentum_x", "momentum/length", px);
+    row.add("target_momentum_z", "momentum/length", pz);
+    row.add("depth", "length", std::isfinite(foremost) ? foremost - face : 0.0);
 }
 
 }  // namespace detail
 
-/// Columns of the history that the comparison of the case needs.
-inline std::vector<common::Column> followed_columns(const Case& w) {
-    if (w.compare == "wall_shock" || w.compare == "piston") return {{"shock_distance", "length"}};
-    if (w.compare == "diffusion") return {{"middle", "length"}, {"variance", "length^2"}};
-    if (w.compare == "sedov" || w.compare == "noh") return {{"shock_radius", "length"}};
-    if (w.compare == "gresho")
-        return {{"kinetic_in_frame", "energy/length"}, {"swirl", "momentum"}};
-    if (w.compare == "wave")
-        return {{"mode_re", "velocity"},
-                {"mode_im", "velocity"},
-                {"pressure_re", "pressure"},
-                {"pressure_im", "pressure"}};
-    if (w.compare == "ringing") return {{"noise", "velocity"}};
-    if (w.compare == "rayleigh_taylor") return {{"mode_re", "length"}, {"mode_im", "length"}};
-    if (w.compare == "kelvin_helmholtz") return {{"mode_re", "velocity"}, {"mode_im", "velocity"}};
-    if (w.compare == "dam_break") return {{"front_x", "length"}, {"wall_height", "length"}};
-    if (w.compare == "impact")
-        return {{"target_momentum_x", "momentum/length"},
-                {"target_momentum_z", "momentum/length"},
-                {"depth", "length"}};
-    return {};
-}
-
-/// Their values in one row, at the end of `row`.
-inline void add_followed(const Case& w, const State& state, const Totals& now,
-                         const CellFields& cells, std::vector<double>& row) {
-    const auto add_mode = [&](const std::complex<double>& z) {
-        row.push_back(z.real());
-        row.push_back(z.imag());
+/// What the comparison of the case needs in the history, at the end of `row`.
+inline void track(const Case& w, const State& state, const Totals& now, const CellFields& cells,
+                  common::Row& row) {
+    const auto add_mode = [&](const std::string& name, const std::string& unit,
+                              const std::complex<double>& z) {
+        row.add(name + "_re", unit, z.real());
+        row.add(name + "_im", unit, z.imag());
     };
     if (w.compare == "wall_shock" || w.compare == "piston") {
         const StruckWall wall = struck_wall(w);
         const detail::FromWall profile = detail::from_wall(w, cells);
-        row.push_back(
-            outermost(profile.distance, profile.rho, 0.5 * (wall.density + wall.shock.density)));
+        const double level = 0.5 * (wall.density + wall.shock.density);
+        row.add("shock_distance", "length", outermost(profile.distance, profile.rho, level));
     } else if (w.compare == "diffusion") {
         const detail::Blob blob = detail::blob_of(w, cells);
-        row.insert(row.end(), {blob.middle, blob.variance});
+        row.add("middle", "length", blob.middle);
+        row.add("variance", "length^2", blob.variance);
     } else if (w.compare == "sedov") {
         const Blast blast = blast_of(w);
         const RadialProfile profile = radial_profile(w, cells, blast.x, blast.z);
         const double most = *std::max_element(profile.rho.begin(), profile.rho.end());
-        row.push_back(outermost(profile.r, profile.rho, 0.5 * (blast.density + most)));
+        row.add("shock_radius", "length",
+                outermost(profile.r, profile.rho, 0.5 * (blast.density + most)));
     } else if (w.compare == "noh") {
         const RegionCase& r = region_with_flow(w, "radial");
         const theory::NohProblem noh = noh_of(w);
@@ -226,12 +201,13 @@ inline void add_followed(const Case& w, const State& state, const Totals& now,
         const double level = 0.5 * (theory::noh_state(noh, 0.5 * R, 1).density +
                                     theory::noh_state(noh, 1.000001 * R, 1).density);
         const RadialProfile profile = radial_profile(w, cells, r.center_x, r.center_z);
-        row.push_back(outermost(profile.r, profile.rho, level));
+        row.add("shock_radius", "length", outermost(profile.r, profile.rho, level));
     } else if (w.compare == "gresho") {
         const RegionCase& r = region_with_flow(w, "gresho");
         const double V2 = w.frame_x * w.frame_x + w.frame_z * w.frame_z;
-        row.push_back(now.kinetic - w.frame_x * now.momentum_x - w.frame_z * now.momentum_z +
-                      0.5 * now.mass * V2);
+        row.add("kinetic_in_frame", "energy/length",
+                now.kinetic - w.frame_x * now.momentum_x - w.frame_z * now.momentum_z +
+                    0.5 * now.mass * V2);
         const double x0 = r.center_x + w.frame_x * state.time,
                      z0 = r.center_z + w.frame_z * state.time;
         double swirl = 0;
@@ -244,23 +220,23 @@ inline void add_followed(const Case& w, const State& state, const Totals& now,
                          (dx * (cells.vz[c] - w.frame_z) - dz * (cells.vx[c] - w.frame_x));
             }
         }
-        row.push_back(swirl);
+        row.add("swirl", "momentum", swirl);
     } else if (w.compare == "wave") {
         const double from = w.grid.x.low + w.frame_x * state.time;
-        add_mode(detail::mode_of(w, cells.vx, 0, w.grid.z.cells, from));
-        add_mode(detail::mode_of(w, cells.p, 0, w.grid.z.cells, from));
+        add_mode("mode", "velocity", detail::mode_of(w, cells.vx, 0, w.grid.z.cells, from));
+        add_mode("pressure", "pressure", detail::mode_of(w, cells.p, 0, w.grid.z.cells, from));
     } else if (w.compare == "ringing") {
         const std::vector<double> vx = mean_over_z(w.grid, cells.vx);
         double mean = 0, squares = 0;
         for (const double v : vx) mean += v / static_cast<double>(vx.size());
         for (const double v : vx) squares += (v - mean) * (v - mean);
-        row.push_back(std::sqrt(squares / static_cast<double>(vx.size())));
+        row.add("noise", "velocity", std::sqrt(squares / static_cast<double>(vx.size())));
     } else if (w.compare == "rayleigh_taylor") {
-        add_mode(detail::interface_height(w, cells));
+        add_mode("mode", "length", detail::interface_height(w, cells));
     } else if (w.compare == "kelvin_helmholtz") {
         const RegionCase& r = region_with_flow(w, "shear");
         const detail::Rows rows = detail::rows_at(w.grid.z, r.center_z);
-        add_mode(detail::mode_of(w, cells.vz, rows.low, rows.high, r.center_x));
+        add_mode("mode", "velocity", detail::mode_of(w, cells.vz, rows.low, rows.high, r.center_x));
     } else if (w.compare == "dam_break") {
         detail::add_dam(w, cells, row);
     } else if (w.compare == "impact") {
