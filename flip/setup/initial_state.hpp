@@ -3,10 +3,12 @@
 
 #include <cmath>
 #include <string>
+#include <string_view>
 
 #include "common/random.hpp"
 #include "flip/particles.hpp"
 #include "flip/setup/case.hpp"
+#include "flip/theory/vortex.hpp"
 
 namespace flip {
 
@@ -45,6 +47,23 @@ inline int material_index(const Case& w, const std::string& name) {
     return -1;
 }
 
+/// The material of a region; the region must name one that exists.
+inline const Material& material_of(const Case& w, const RegionCase& r) {
+    return w.materials[material_index(w, r.gas.material)];
+}
+
+/// The first region with a flow, or the first of all.
+inline const RegionCase& region_with_flow(const Case& w, std::string_view flow) {
+    for (const RegionCase& r : w.regions)
+        if (r.flow == flow) return r;
+    return w.regions.front();
+}
+
+/// The sound speed of the uniform state of a region.
+inline double sound_speed_of(const Case& w, const RegionCase& r) {
+    return std::sqrt(stiffness(material_of(w, r), r.gas.pressure) / r.gas.density);
+}
+
 /// The fluid at one place.
 struct FluidState {
     int material = 0;
@@ -62,17 +81,6 @@ inline bool contains(const Case& w, const RegionCase& r, double x, double z) {
         return dz > r.ripple * std::cos(k * dx);
     }
     return true;
-}
-
-// Pressure of the Gresho vortex above that of its center, and its velocity, at s = r/(width/2), in
-// units of density speed^2 and speed: the centrifugal balance dp/dr = rho v^2/r.
-struct Swirl {
-    double p, v;
-};
-inline Swirl gresho(double s) {
-    if (s < 1) return {0.5 * s * s, s};
-    if (s < 2) return {0.5 * s * s + 4 * (1 - s + std::log(s)), 2 - s};
-    return {4 * std::log(2.0) - 2, 0};
 }
 
 // The irrotational flow on both sides of an interface at z = 0 between walls: its normal velocity
@@ -103,11 +111,11 @@ inline FluidState fluid_of(const Case& w, const RegionCase& r, double x, double 
         vx -= r.speed * (row ? (dx > 0 ? 1 : -1) : dx / distance);
         vz -= row ? 0 : r.speed * dz / distance;
     } else if (r.flow == "gresho") {
-        const detail::Swirl swirl = detail::gresho(2 * distance / r.width);
-        p += rho * r.speed * r.speed * swirl.p;
+        const theory::GreshoVortex swirl = theory::gresho_vortex(2 * distance / r.width);
+        p += rho * r.speed * r.speed * swirl.pressure;
         if (distance > 0) {
-            vx -= r.speed * swirl.v * dz / distance;
-            vz += r.speed * swirl.v * dx / distance;
+            vx -= r.speed * swirl.velocity * dz / distance;
+            vz += r.speed * swirl.velocity * dx / distance;
         }
     } else if (r.flow == "wave") {
         const double c = std::sqrt(stiffness(a, p) / rho), crest = r.amplitude * std::cos(k * dx);

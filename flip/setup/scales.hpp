@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "common/parallel.hpp"
-#include "flip/theory/compare_with_theory.hpp"
+#include "flip/theory/comparisons.hpp"
 
 namespace flip {
 
@@ -135,81 +135,43 @@ inline Scales scales_of(const Case& w, const std::string& program = "flip") {
     return s;
 }
 
-namespace detail {
-
-/// What theory says about the case, in one line; empty where it says nothing in advance.
-inline std::string theory_line(const Case& w, const Scales& scales, const std::string& program) {
-    if (w.compare == "riemann") {
-        const theory::RiemannSolution s = riemann_of(w);
-        return "pressure " + format(s.left_of_contact.pressure) + " and velocity " +
-               format(s.left_contact) + " at the contact";
-    }
-    if (w.compare == "wall_shock" || w.compare == "piston") {
-        const theory::DrivenShock s = struck_wall(w).shock;
-        return "density " + format(s.density) + " behind a shock at " + format(s.speed_from_wall) +
-               " from the wall, Mach " + format(s.mach);
-    }
-    if (w.compare == "sedov")
-        return "shock at r = " + format(blast_of(w).radius(w.end)) + " at t = " + format(w.end);
-    if (w.compare == "noh")
-        return "shock at r = " + format(theory::noh_shock_radius(noh_of(w), w.end)) +
-               " at t = " + format(w.end);
-    if (w.compare == "gresho") {
-        const RegionCase& r = region_with_flow(w, "gresho");
-        return "one turn in t = " + format(std::fabs(pi * r.width / r.speed));
-    }
-    if (w.compare == "wave") {
-        const SoundWave s = sound_wave_of(w, program, scales.dt);
-        return "period " + format(2 * pi / s.frequency) + "; a step of " + format(scales.dt) +
-               " multiplies the wave by " + format(s.amplification);
-    }
-    if (w.compare == "rayleigh_taylor" || w.compare == "kelvin_helmholtz")
-        return "growth rate " + format(theory_growth(w));
-    return "";
-}
-
-}  // namespace detail
-
 /// The resolved scales as text, for --dry-run and the head of a run.
 inline std::string describe_scales(const Case& w, const Scales& scales,
                                    const std::string& program) {
     std::string text;
-    const auto line = [&](const std::string& name, const std::string& value) {
-        text +=
-            "  " + name + std::string(name.size() < 20 ? 20 - name.size() : 1, ' ') + value + "\n";
+    const auto line = [&](const std::string& name, const auto&... value) {
+        const std::string space(name.size() < 20 ? 20 - name.size() : 1, ' ');
+        text += sentence("  ", name, space, value..., "\n");
     };
     const Grid& grid = w.grid;
     const auto ends = [&](End low) {
         const std::string &a = w.ends[low].kind, &b = w.ends[low + 1].kind;
         return a == b ? a : a + " and " + b;
     };
-    line("mesh", std::to_string(grid.x.cells) + " x " + std::to_string(grid.z.cells) +
-                     " cells of " + format(grid.x.spacing()) + " x " + format(grid.z.spacing()) +
-                     ", " + ends(x_low) + " in x, " + ends(z_low) + " in z");
+    line("mesh", grid.x.cells, " x ", grid.z.cells, " cells of ", grid.x.spacing(), " x ",
+         grid.z.spacing(), ", ", ends(x_low), " in x, ", ends(z_low), " in z");
     if (program == "flip") {
         std::string method = w.transfer;
         if (w.transfer == "blend") method += " " + format(w.blend);
         if (w.transfer == "xpic") method += " of order " + std::to_string(w.xpic_order);
-        line("method", method + " transfer, " + w.mass + " mass, density of " + w.density + ", " +
-                           w.pressure + " pressure" +
-                           (w.implicit() ? " at theta = " + format(w.theta) : ""));
+        line("method", method, " transfer, ", w.mass, " mass, density of ", w.density, ", ",
+             w.pressure, " pressure", (w.implicit() ? " at theta = " + format(w.theta) : ""));
     } else {
         line("method", "velocity and energy on the cells");
     }
     for (const RegionScales& r : scales.regions)
-        line(r.name, "about " + format(r.particles) + " particles, sound speed " +
-                         format(r.sound_speed) + ", speed up to " + format(r.speed) +
-                         (r.mach > 0 ? ", Mach " + format(r.mach) : ""));
-    line("particles", "about " + format(scales.particles));
-    line("steps", (w.dt > 0 ? "" : "about ") + format(scales.steps) +
-                      (w.dt > 0 ? " of " : "; the first of ") + format(scales.dt));
-    const std::string theory = detail::theory_line(w, scales, program);
-    if (!theory.empty()) line("theory", theory);
-    line("memory", "about " + format(scales.bytes / 1048576) + " MiB");
+        line(r.name, "about ", r.particles, " particles, sound speed ", r.sound_speed,
+             ", speed up to ", r.speed, (r.mach > 0 ? ", Mach " + format(r.mach) : ""));
+    line("particles", "about ", scales.particles);
+    line("steps", (w.dt > 0 ? "" : "about "), scales.steps, (w.dt > 0 ? " of " : "; the first of "),
+         scales.dt);
+    const Comparison& comparison = comparison_of(w);
+    if (comparison.predict != nullptr) line("theory", comparison.predict(w, program, scales.dt));
+    line("memory", "about ", scales.bytes / 1048576, " MiB");
     const double per_second = program == "pic" ? 30e6 : 12e6;
     const double work =
         scales.steps * (scales.particles + 2.0 * static_cast<double>(grid.x.cells * grid.z.cells));
-    line("time", "about " + format(work / per_second) + " s on one core");
+    line("time", "about ", work / per_second, " s on one core");
     return text;
 }
 

@@ -1,0 +1,214 @@
+// Waves that grow: at the interface of two fluids (Rayleigh-Taylor) and in a layer of shear
+// (Kelvin-Helmholtz).
+#pragma once
+
+#include <complex>
+#include <limits>
+
+#include "flip/theory/instabilities.hpp"
+#include "flip/theory/modes.hpp"
+
+namespace flip {
+
+/// Heavy fluid above light fluid, between the ends in z.
+inline theory::TwoLayers layers_of(const Case& w) {
+    const RegionCase &lower = w.regions.front(), &upper = w.regions.back();
+    theory::TwoLayers s;
+    s.lower_density = lower.gas.density;
+    s.upper_density = upper.gas.density;
+    s.gravity = -w.gravity_z;
+    s.lower_depth = upper.center_z - w.grid.z.low;
+    s.upper_depth = w.grid.z.high() - upper.center_z;
+    return s;
+}
+
+/// Growth rate of the tracked mode of the interface.
+inline double interface_growth_of(const Case& w) {
+    return theory::interface_growth(layers_of(w), tracked_wave_number(w));
+}
+
+/// Growth rate of the tracked mode of the layer of shear, half-way between the ends in z.
+inline double shear_growth_of(const Case& w) {
+    const RegionCase& r = region_with_flow(w, "shear");
+    return theory::shear_layer_growth({2 * r.speed, r.width, 0.5 * w.grid.z.length},
+                                      tracked_wave_number(w));
+}
+
+/// z(t) = A cosh(rate t) + B sinh(rate t), with complex A and B.
+struct HyperbolicFit {
+    double rate = 0;
+    double misfit = 0;  // rms of the rest, relative to that of z
+    long samples = 0;
+};
+
+// Sum of |z - A cosh - B sinh|^2 for the best A and B.
+inline double hyperbolic_misfit(const std::vector<double>& t,
+                                const std::vector<std::complex<double>>& z, std::size_t count,
+                                double rate) {
+    double cc = 0, cs = 0, ss = 0;
+    std::complex<double> cz = 0, sz = 0;
+    for (std::size_t n = 0; n < count; ++n) {
+        const double c = std::cosh(rate * t[n]), s = std::sinh(rate * t[n]);
+        cc += c * c, cs += c * s, ss += s * s;
+        cz += c * z[n], sz += s * z[n];
+    }
+    const double determinant = cc * ss - cs * cs;
+    if (!(determinant > 1e-14 * cc * ss)) return std::numeric_limits<double>::infinity();
+    const std::complex<double> A = (ss * cz - cs * sz) / determinant,
+                               B = (cc * sz - cs * cz) / determinant;
+    double rest = 0;
+    for (std::size_t n = 0; n < count; ++n)
+        rest += std::norm(z[n] - A * std::cosh(rate * t[n]) - B * std::sinh(rate * t[n]));
+    return rest;
+}
+
+/// The growth rate of a linear instability from its very start, where the growing and the decaying
+/// wave are both there.
+/// in:     t from 0; z; the first `count` samples are used; rates from expected/5 to 5 expected
+inline HyperbolicFit fit_hyperbolic(const std::vector<double>& t,
+                                    const std::vector<std::complex<double>>& z, std::size_t count,
+                                    double expected) {
+    HyperbolicFit fit;
+    if (count < 5 || !(expected > 0)) return fit;
+    const auto misfit = [&](double log_rate) {
+        return hyperbolic_misfit(t, z, count, std::exp(log_rate));
+    };
+    // Find the valley, then narrow it by golden sections.
+    const double low = std::log(expected / 5), step = std::log(25.0) / 100;
+    double best = low, smallest = std::numeric_limits<double>::infinity();
+    for (int n = 0; n <= 100; ++n) {
+        const double here = misfit(low + n * step);
+        if (here < smallest) smallest = here, best = low + n * step;
+    }
+    const double part = 0.5 * (std::sqrt(5.0) - 1);
+    double a = best - step, b = best + step;
+    for (int n = 0; n < 60; ++n) {
+        const double left = b - part * (b - a), right = a + part * (b - a);
+        (misfit(left) < misfit(right) ? b : a) = misfit(left) < misfit(right) ? right : left;
+    }
+    double squares = 0;
+    for (std::size_t n = 0; n < count; ++n) squares += std::norm(z[n]);
+    fit.rate = std::exp(0.5 * (a + b));
+    fit.misfit = std::sqrt(misfit(0.5 * (a + b)) / squares);
+    fit.samples = static_cast<long>(count);
+    return fit;
+}
+
+inline std::string predict_growth(double growth) { return "growth rate " + format(growth); }
+
+inline std::string warn_of_growth(const Case& w, double growth) {
+    if (growth * w.end >= 1) return "";
+    return sentence("theory has the growth rate ", growth, ", and time.end = ", w.end,
+                    " is less than the time ", 1 / growth,
+                    " in which the wave grows by e: its growth cannot be measured well");
+}
+
+// The growth from the start on, while the mode is smaller than `most`.
+inline void compare_growth(const FinishedRun& run, double expected, double most,
+                           const std::string& source) {
+    const auto times = run.history.column("time");
+    const std::vector<std::complex<double>> mode = mode_column(run.history, "mode");
+    std::size_t count = 0;
+    while (count < mode.size() && std::abs(mode[count]) < most) ++count;
+    const HyperbolicFit fit = fit_hyperbolic(times, mode, count, expected);
+    run.info("theory_growth", expected, "1/time", source);
+    if (fit.samples == 0) {
+        run.info("growth", 0, "1/time", "no five rows at small amplitude");
+        return;
+    }
+    const std::string where =
+        sentence(source, "; fitted up to t = ", times[count - 1], ", misfit ", fit.misfit);
+    run.info("growth", fit.rate, "1/time", where);
+    run.result("growth_over_theory", fit.rate / expected, "", 1, where);
+    run.summary.result("fit_misfit", fit.misfit, "", 0, 0.2,
+                       "what is no sum of a growing and a decaying wave, rms");
+    run.info("e_foldings", expected * times[count - 1], "", "within the fit");
+}
+
+inline void validate_interface(const Case& w, const Refusal& refuse) {
+    refuse(w.regions.size() != 2 || w.regions[0].shape != "everywhere" ||
+               w.regions[1].shape != "above",
+           " needs two regions, one everywhere and one above it");
+    validate_mode(w, refuse, "overturn");
+    refuse(w.grid.z.periodic, " needs walls in z");
+    const RegionCase& upper = w.regions[1];
+    refuse(!(upper.center_z > w.grid.z.low && upper.center_z < w.grid.z.high()),
+           ": the interface at center_z = ", upper.center_z, " is not on the mesh");
+    refuse(!(interface_growth_of(w) > 0), ": density ", upper.gas.density, " above ",
+           w.regions[0].gas.density, " with gravity.z = ", w.gravity_z,
+           " does not overturn: turn one around");
+}
+
+inline std::string predict_interface(const Case& w, const std::string&, double) {
+    return predict_growth(interface_growth_of(w));
+}
+
+inline std::string warn_of_interface(const Case& w) {
+    return warn_of_growth(w, interface_growth_of(w));
+}
+
+// Height of the interface, from the mass of the columns,
+//   (rho_lower - rho_upper) eta(x) = integral of rho over z - its mean
+// note: it is linear in eta, where velocities at a fixed height lose (8/3 pi) k eta of themselves
+inline void track_interface(const Snapshot& now, common::Row& row) {
+    const Case& w = now.parameters;
+    const theory::TwoLayers layers = layers_of(w);
+    add_mode(row, "mode", "length",
+             w.grid.z.length / (layers.lower_density - layers.upper_density) *
+                 mode_of(w, now.cells.rho, 0, w.grid.z.cells, w.regions.back().center_x));
+}
+
+// While the crests are lower than 0.3/k.
+inline void compare_interface(const FinishedRun& run) {
+    compare_growth(run, interface_growth_of(run.parameters),
+                   0.3 / tracked_wave_number(run.parameters), "two layers between walls");
+}
+
+inline void validate_shear(const Case& w, const Refusal& refuse) {
+    validate_flow(w, refuse, "shear");
+    validate_mode(w, refuse, "shear");
+    const RegionCase& r = region_with_flow(w, "shear");
+    refuse(w.grid.z.periodic, " needs walls in z");
+    const double half_way = w.grid.z.low + 0.5 * w.grid.z.length;
+    refuse(std::fabs(r.center_z - half_way) > 1e-6 * w.grid.z.length,
+           " needs the layer half-way between the walls, at center_z = ", half_way);
+    refuse(!(shear_growth_of(w) > 0), ": mode ", w.mode, " of a layer of half-width ", r.width,
+           " does not grow: make it thinner, or lower theory.mode");
+}
+
+inline std::string predict_shear(const Case& w, const std::string&, double) {
+    return predict_growth(shear_growth_of(w));
+}
+
+inline std::string warn_of_shear(const Case& w) { return warn_of_growth(w, shear_growth_of(w)); }
+
+// Velocity across the layer, in the rows on both sides of its middle; in one row where the middle
+// goes through it.
+inline void track_shear(const Snapshot& now, common::Row& row) {
+    const Case& w = now.parameters;
+    const RegionCase& r = region_with_flow(w, "shear");
+    const common::Axis& axis = w.grid.z;
+    const double node = (r.center_z - axis.low) / axis.spacing(), nearest = std::floor(node + 0.5);
+    const bool between = std::fabs(node - nearest) < 0.25;
+    const long j = static_cast<long>(between ? nearest - 1 : std::floor(node)),
+               j_low = std::clamp(j, 0L, axis.cells - 1),
+               j_high = std::clamp(j + (between ? 2 : 1), 1L, axis.cells);
+    add_mode(row, "mode", "velocity", mode_of(w, now.cells.vz, j_low, j_high, r.center_x));
+}
+
+// While the crests, whose height is velocity over growth rate, are lower than 0.3/k.
+inline void compare_shear(const FinishedRun& run) {
+    const double growth = shear_growth_of(run.parameters);
+    compare_growth(run, growth, 0.3 / tracked_wave_number(run.parameters) * growth,
+                   "layer of constant shear between walls");
+}
+
+inline constexpr Comparison interface_comparison{
+    "rayleigh_taylor", validate_interface, predict_interface, warn_of_interface,
+    track_interface,   compare_interface,  Rows::several};
+
+inline constexpr Comparison shear_comparison{"kelvin_helmholtz", validate_shear, predict_shear,
+                                             warn_of_shear,      track_shear,    compare_shear,
+                                             Rows::several};
+
+}  // namespace flip

@@ -1,0 +1,103 @@
+// The blast wave of an energy that is set free in cold gas, against Sedov's solution.
+#pragma once
+
+#include "flip/theory/comparison.hpp"
+#include "flip/theory/sedov.hpp"
+
+namespace flip {
+
+/// A blast: all its energy, with what mirrors behind slip walls add to it.
+struct Blast {
+    theory::BlastWave wave;
+    double energy, density;
+    double x, z;  // its middle
+    double radius(double t) const { return theory::blast_radius(wave, energy, density, t); }
+};
+
+/// The region in which the energy is set free.
+inline const RegionCase& hot_region(const Case& w) {
+    for (const RegionCase& r : w.regions)
+        if (r.energy > 0) return r;
+    return w.regions.back();
+}
+
+/// The blast of a case.
+inline Blast blast_of(const Case& w) {
+    const RegionCase &hot = hot_region(w), &cold = w.regions.front();
+    double energy = hot.energy / (w.plane() ? 1 : w.grid.z.length);
+    const auto mirrored = [&](End low, const common::Axis& axis, double center) {
+        const double near = 0.5 * axis.spacing();
+        const bool at_low = w.is(low, "slip") && std::fabs(center - axis.low) <= near;
+        const bool at_high = w.is(End(low + 1), "slip") && std::fabs(center - axis.high()) <= near;
+        return at_low || at_high ? 2.0 : 1.0;
+    };
+    energy *= mirrored(x_low, w.grid.x, hot.center_x);
+    if (w.plane()) energy *= mirrored(z_low, w.grid.z, hot.center_z);
+    return {theory::blast_wave(material_of(w, cold).gamma, w.plane() ? 2 : 1), energy,
+            cold.gas.density, hot.center_x, hot.center_z};
+}
+
+inline void validate_sedov(const Case& w, const Refusal& refuse) {
+    const RegionCase& cold = w.regions.front();
+    const auto hot = std::count_if(w.regions.begin(), w.regions.end(),
+                                   [](const RegionCase& r) { return r.energy > 0; });
+    refuse(hot != 1 || w.regions.size() < 2 || cold.energy > 0,
+           " needs a cold region first, and one with an energy inside it; ", hot, " have one");
+    const double gamma = material_of(w, cold).gamma;
+    refuse(!(gamma > 1 && gamma < 2), " is known for gamma between 1 and 2, and it is ", gamma);
+    refuse(hot_region(w).gas.density != cold.gas.density,
+           " needs the same density inside and outside: ", hot_region(w).gas.density, " and ",
+           cold.gas.density);
+    const Blast blast = blast_of(w);
+    const auto room = [&](const common::Axis& axis, double center) {
+        return std::max(axis.high() - center, center - axis.low);
+    };
+    double most = room(w.grid.x, blast.x);
+    if (w.plane()) most = std::min(most, room(w.grid.z, blast.z));
+    refuse(blast.radius(w.end) > most, ": at time.end the shock is at r = ", blast.radius(w.end),
+           ", and the mesh ends at ", most, ": lower time.end");
+}
+
+inline std::string predict_sedov(const Case& w, const std::string&, double) {
+    return sentence("shock at r = ", blast_of(w).radius(w.end), " at t = ", w.end);
+}
+
+inline void track_sedov(const Snapshot& now, common::Row& row) {
+    const Blast blast = blast_of(now.parameters);
+    const RadialProfile profile = radial_profile(now.parameters.grid, now.cells, blast.x, blast.z);
+    const double most = *std::max_element(profile.rho.begin(), profile.rho.end());
+    row.add("shock_radius", "length",
+            outermost(profile.r, profile.rho, 0.5 * (blast.density + most)));
+}
+
+inline void compare_sedov(const FinishedRun& run) {
+    const Blast blast = blast_of(run.parameters);
+    const double t = run.state.time, R = blast.radius(t);
+    run.result("shock_radius", run.history.column("shock_radius").back(), "length",
+               blast.radius(run.history.column("time").back()),
+               "Sedov's similarity solution; outer half height of the density");
+    const RadialProfile profile = radial_profile(run.parameters.grid, run.cells, blast.x, blast.z);
+    std::vector<double> rho_exact, v_exact, p_exact;
+    const double D = t > 0 ? theory::blast_speed(blast.wave, blast.energy, blast.density, t) : 0;
+    for (const double r : profile.r) {
+        const theory::BlastPoint at = theory::blast_point(blast.wave, R > 0 ? r / R : 2);
+        rho_exact.push_back(blast.density * at.density);
+        v_exact.push_back(D * at.velocity);
+        p_exact.push_back(blast.density * D * D * at.pressure);
+    }
+    const double peak = *std::max_element(profile.rho.begin(), profile.rho.end());
+    run.info("peak_density_ratio", peak / blast.density, "",
+             sentence("exact: ", (blast.wave.gamma + 1) / (blast.wave.gamma - 1)));
+    common::write_table(run.profile, {{"r", "length", profile.r},
+                                      {"rho", "mass/length^3", profile.rho},
+                                      {"v_r", "velocity", profile.v_r},
+                                      {"p", "pressure", profile.p},
+                                      {"rho_exact", "mass/length^3", rho_exact},
+                                      {"v_exact", "velocity", v_exact},
+                                      {"p_exact", "pressure", p_exact}});
+}
+
+inline constexpr Comparison sedov_comparison{"sedov", validate_sedov, predict_sedov,
+                                             nullptr, track_sedov,    compare_sedov};
+
+}  // namespace flip
