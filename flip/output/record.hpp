@@ -19,15 +19,15 @@ struct Extremes {
 /// The largest speed and Mach number.
 /// note:   the sound speed is that of the material with most mass in the cell; cells without sound,
 ///         as dust, have no Mach number
-inline Extremes extremes(const Case& w, const CellFields& cells) {
+inline Extremes extremes(const Case& parameters, const CellFields& cells) {
     Extremes most;
-    visit_cells(w.grid, [&](long c, double, double) {
+    visit_cells(parameters.grid, [&](long c, double, double) {
         if (!(cells.rho[c] > 0)) return;
         std::size_t main = 0;
         for (std::size_t k = 1; k < cells.rho_of.size(); ++k)
             if (cells.rho_of[k][c] > cells.rho_of[main][c]) main = k;
         const double speed = std::hypot(cells.vx[c], cells.vz[c]);
-        const double sound2 = stiffness(w.materials[main], cells.p[c]) / cells.rho[c];
+        const double sound2 = stiffness(parameters.materials[main], cells.p[c]) / cells.rho[c];
         most.speed = std::max(most.speed, speed);
         if (sound2 > 0) most.mach = std::max(most.mach, speed / std::sqrt(sound2));
     });
@@ -54,26 +54,15 @@ class Recorder {
         history.columns(row_of({}, {}, empty, history));
     }
 
-    /// The files of t^n that are due, and its row.
-    void look(long step, const State& state, const Totals& now, const CellFields& cells,
-              common::Run& run) {
-        snapshot(step, state, cells, run);
-        record(step, state, now, cells, run);
-    }
-
-    /// Files of t^n.
-    void snapshot(long step, const State& state, const CellFields& cells, common::Run& run) const {
+    /// Writes the files of t^n that are due, and adds its row to the history.
+    /// errors: NumericalError when the energy is not finite or has left the limit of the case
+    void record(long step, const State& state, const Totals& now, const CellFields& cells,
+                common::Run& run) const {
         const std::string folder = run.path(".");
         if (is_due(parameters_.fields_interval, state))
             write_fields(folder, step, parameters_, cells);
         if (is_due(parameters_.particles_interval, state))
             write_particles(folder, step, parameters_, state.particles);
-    }
-
-    /// One row for t^n.
-    /// errors: NumericalError when the energy is not finite or has left the limit of the case
-    void record(long step, const State& state, const Totals& now, const CellFields& cells,
-                common::Run& run) const {
         const double energy = now.kinetic + now.internal;
         const bool is_first = run.history.all().empty();
         check_energy(step, state, energy, is_first ? energy : run.history.first("energy"));

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/grid.hpp"
+#include "common/run/parameters.hpp"
 #include "flip/equation_of_state.hpp"
 
 namespace flip {

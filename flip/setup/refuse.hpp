@@ -3,6 +3,7 @@
 
 #include <string>
 #include <type_traits>
+#include <vector>
 
 #include "common/run/parameters.hpp"
 
@@ -31,6 +32,12 @@ std::string sentence(const Part&... parts) {
 template <class... Part>
 void refuse(bool bad, const Part&... parts) {
     if (bad) throw common::InputError(sentence(parts...));
+}
+
+/// Adds a sentence to the warnings where the input may mislead.
+template <class... Part>
+void warn(std::vector<std::string>& warnings, bool doubtful, const Part&... parts) {
+    if (doubtful) warnings.push_back(sentence(parts...));
 }
 
 }  // namespace flip

@@ -9,17 +9,19 @@ namespace flip {
 
 inline constexpr const char* cavity_table = "flip/data/ghia_re100.csv";
 
-inline void validate_cavity(const Case& w, const Refusal& refuse) {
-    for (const EndCase& end : w.ends)
+inline void validate_cavity(const Case& parameters, const Refusal& refuse) {
+    for (const EndCase& end : parameters.ends)
         refuse(end.kind != "no_slip", " needs no_slip walls on all sides");
-    const double U = w.ends[z_high].slide;
+    const double U = parameters.ends[z_high].slide;
     refuse(!(U > 0), " needs a lid that moves: set boundary.slide_z_high above 0");
     for (const End end : {x_low, x_high, z_low})
-        refuse(w.ends[end].slide != 0, " needs all walls but the lid at rest");
-    refuse(std::fabs(w.grid.x.length - w.grid.z.length) > 1e-9 * w.grid.x.length,
-           " is for a square, and the mesh is ", w.grid.x.length, " x ", w.grid.z.length);
-    const double inertia = w.regions.front().gas.density * U * w.grid.x.length,
-                 Re = w.viscosity > 0 ? inertia / w.viscosity : 0;
+        refuse(parameters.ends[end].slide != 0, " needs all walls but the lid at rest");
+    refuse(std::fabs(parameters.grid.x.length - parameters.grid.z.length) >
+               1e-9 * parameters.grid.x.length,
+           " is for a square, and the mesh is ", parameters.grid.x.length, " x ",
+           parameters.grid.z.length);
+    const double inertia = parameters.regions.front().gas.density * U * parameters.grid.x.length,
+                 Re = parameters.viscosity > 0 ? inertia / parameters.viscosity : 0;
     refuse(std::fabs(Re - 100) > 1,
            " is published for density speed length/flip.viscosity = 100, and it is ",
            Re > 0 ? format(Re) : "infinite", ": set flip.viscosity = ", inertia / 100);
@@ -30,9 +32,9 @@ inline void validate_cavity(const Case& w, const Refusal& refuse) {
 struct Midlines {
     std::vector<double> u, v;  // u on x = 1/2 from the bottom up, v on z = 1/2 from the left
 };
-inline Midlines midlines(const Case& w, const CellFields& cells) {
-    const Grid& grid = w.grid;
-    const double U = w.ends[z_high].slide;
+inline Midlines midlines(const Case& parameters, const CellFields& cells) {
+    const Grid& grid = parameters.grid;
+    const double U = parameters.ends[z_high].slide;
     const long i1 = (grid.x.cells - 1) / 2, i2 = grid.x.cells / 2, j1 = (grid.z.cells - 1) / 2,
                j2 = grid.z.cells / 2;
     Midlines lines;
@@ -57,9 +59,9 @@ inline double between_walls(const std::vector<double>& values, double low, doubl
 struct VortexCenter {
     double x = 0, z = 0, flux = 0;
 };
-inline VortexCenter vortex_center(const Case& w, const CellFields& cells) {
-    const Grid& grid = w.grid;
-    const double U = w.ends[z_high].slide, nx = static_cast<double>(grid.x.cells),
+inline VortexCenter vortex_center(const Case& parameters, const CellFields& cells) {
+    const Grid& grid = parameters.grid;
+    const double U = parameters.ends[z_high].slide, nx = static_cast<double>(grid.x.cells),
                  nz = static_cast<double>(grid.z.cells);
     const auto flux = [&](long i, long j) {
         double sum = 0;
@@ -88,11 +90,11 @@ inline VortexCenter vortex_center(const Case& w, const CellFields& cells) {
 }
 
 inline void compare_cavity(const FinishedRun& run) {
-    const Case& w = run.parameters;
+    const Case& parameters = run.parameters;
     const auto table = theory::read_table(cavity_table);
     const std::vector<double>&y = table.at("y"), &u = table.at("u"), &x = table.at("x"),
           &v = table.at("v");
-    const Midlines lines = midlines(w, run.cells);
+    const Midlines lines = midlines(parameters, run.cells);
     std::vector<double> u_here, v_here;
     double u_most = 0, v_most = 0;
     for (std::size_t n = 0; n < y.size(); ++n) {
@@ -104,7 +106,7 @@ inline void compare_cavity(const FinishedRun& run) {
     const std::string source = "Ghia, Ghia and Shin 1982, tables I and II";
     run.absolute_result("largest_u_difference", u_most, "lid speed", 0, source);
     run.absolute_result("largest_v_difference", v_most, "lid speed", 0, source);
-    const VortexCenter center = vortex_center(w, run.cells);
+    const VortexCenter center = vortex_center(parameters, run.cells);
     run.absolute_result("vortex_x", center.x, "length_x", 0.6172, source);
     run.absolute_result("vortex_z", center.z, "length_z", 0.7344, source);
     run.info("vortex_flux", center.flux, "lid speed*length", source + ": 0.1034");

@@ -8,33 +8,34 @@
 
 namespace flip {
 
-inline void validate_diffusion(const Case& w, const Refusal& refuse) {
-    validate_flow(w, refuse, "gaussian");
-    const RegionCase& r = region_with_flow(w, "gaussian");
-    refuse(!w.grid.x.periodic, " needs periodic ends in x");
-    refuse(w.dt == 0, " needs steps of one length: set time.dt");
+inline void validate_diffusion(const Case& parameters, const Refusal& refuse) {
+    validate_flow(parameters, refuse, "gaussian");
+    const RegionCase& r = region_with_flow(parameters, "gaussian");
+    refuse(!parameters.grid.x.periodic, " needs periodic ends in x");
+    refuse(parameters.dt == 0, " needs steps of one length: set time.dt");
     refuse(r.gas.velocity_x == 0, " needs a flow over the mesh: give region.", r.name,
            ".velocity_x");
-    refuse(material_of(w, r).gamma != 1,
+    refuse(material_of(parameters, r).gamma != 1,
            " needs dust, whose energy has no pressure: set gamma = 1");
-    refuse(w.plane() && !w.grid.z.periodic && !w.is(z_low, "slip"),
+    refuse(parameters.plane() && !parameters.grid.z.periodic && !parameters.is(z_low, "slip"),
            " needs periodic ends or slip walls in z");
     refuse(r.amplitude == 0, " needs a blob: give region.", r.name, ".amplitude");
-    refuse(10 * r.width > w.grid.x.length, " needs a mesh ten times as long as region.", r.name,
-           ".width = ", r.width, ", and it is ", w.grid.x.length);
+    refuse(10 * r.width > parameters.grid.x.length, " needs a mesh ten times as long as region.",
+           r.name, ".width = ", r.width, ", and it is ", parameters.grid.x.length);
 }
 
 // Middle and variance along x of the energy above that of the background.
 // note:   the phase of the first Fourier mode finds the middle across a periodic end
 inline void track_diffusion(const Snapshot& now, common::Row& row) {
-    const Case& w = now.parameters;
+    const Case& parameters = now.parameters;
     const CellFields& cells = now.cells;
-    const RegionCase& r = region_with_flow(w, "gaussian");
-    const double background = internal_energy(material_of(w, r), r.gas.density, r.gas.pressure);
+    const RegionCase& r = region_with_flow(parameters, "gaussian");
+    const double background =
+        internal_energy(material_of(parameters, r), r.gas.density, r.gas.pressure);
     const Field above =
-        cells.rho.cwiseProduct(cells.e - Field::Constant(w.grid.size(), background));
-    const std::vector<double> heat = mean_over_z(w.grid, above);
-    const common::Axis& axis = w.grid.x;
+        cells.rho.cwiseProduct(cells.e - Field::Constant(parameters.grid.size(), background));
+    const std::vector<double> heat = mean_over_z(parameters.grid, above);
+    const common::Axis& axis = parameters.grid.x;
     std::complex<double> turn = 0;
     for (long n = 0; n < axis.cells; ++n)
         turn += heat[n] * std::polar(1.0, 2 * pi * middle(axis, n) / axis.length);
@@ -52,19 +53,20 @@ inline void track_diffusion(const Snapshot& now, common::Row& row) {
 // The diffusivity.
 //   variance' = 2 D
 inline void compare_diffusion(const FinishedRun& run) {
-    const Case& w = run.parameters;
-    const double u = region_with_flow(w, "gaussian").gas.velocity_x, dx = w.grid.x.spacing();
-    const double unit = std::fabs(u) * dx, tolerance = w.theory_tolerance * 0.5;
+    const Case& parameters = run.parameters;
+    const double u = region_with_flow(parameters, "gaussian").gas.velocity_x,
+                 dx = parameters.grid.x.spacing();
+    const double unit = std::fabs(u) * dx, tolerance = parameters.theory_tolerance * 0.5;
     const double D = 0.5 * slope(run.history.column("time"), run.history.column("variance")) / unit;
-    run.info("courant_number", std::fabs(u) * w.dt / dx, "", "|u| dt/dx");
+    run.info("courant_number", std::fabs(u) * parameters.dt / dx, "", "|u| dt/dx");
     if (run.program != "pic") {
         run.summary.result("diffusivity", D, "u dx", 0, tolerance, "particles carry energy");
         return;
     }
-    const double many = theory::harlow_diffusivity(u, dx, w.dt),
-                 expected = w.loading == "lattice"
-                                ? theory::harlow_lattice_diffusivity(u, dx, w.dt,
-                                                                     static_cast<int>(w.per_cell_x))
+    const double many = theory::harlow_diffusivity(u, dx, parameters.dt),
+                 expected = parameters.loading == "lattice"
+                                ? theory::harlow_lattice_diffusivity(
+                                      u, dx, parameters.dt, static_cast<int>(parameters.per_cell_x))
                                 : many;
     run.summary.result("diffusivity", D, "u dx", expected / unit, tolerance,
                        "cells mix what enters them");

@@ -14,22 +14,22 @@ struct Impact {
         return std::fabs(projectile->gas.velocity_x) >= std::fabs(projectile->gas.velocity_z);
     }
 };
-inline Impact impact_of(const Case& w) {
-    Impact s{&w.regions.front(), nullptr};
+inline Impact impact_of(const Case& parameters) {
+    Impact s{&parameters.regions.front(), nullptr};
     const auto speed = [](const RegionCase& r) {
         return std::hypot(r.gas.velocity_x, r.gas.velocity_z);
     };
-    for (const RegionCase& r : w.regions)
+    for (const RegionCase& r : parameters.regions)
         if (speed(r) > speed(*s.projectile)) s.projectile = &r;
-    for (const RegionCase& r : w.regions)
+    for (const RegionCase& r : parameters.regions)
         if (s.target == nullptr && r.shape == "box" &&
-            &material_of(w, r) != &material_of(w, *s.projectile))
+            &material_of(parameters, r) != &material_of(parameters, *s.projectile))
             s.target = &r;
     return s;
 }
 
-inline void validate_impact(const Case& w, const Refusal& refuse) {
-    const Impact impact = impact_of(w);
+inline void validate_impact(const Case& parameters, const Refusal& refuse) {
+    const Impact impact = impact_of(parameters);
     refuse(impact.target == nullptr,
            " needs two materials, and the one that is hit in a region of shape \"box\"");
     const GasCase& gas = impact.projectile->gas;
@@ -38,14 +38,14 @@ inline void validate_impact(const Case& w, const Refusal& refuse) {
 
 // Momentum of the target, and how far the projectile has come beyond its face.
 inline void track_impact(const Snapshot& now, common::Row& row) {
-    const Case& w = now.parameters;
-    const Impact impact = impact_of(w);
+    const Case& parameters = now.parameters;
+    const Impact impact = impact_of(parameters);
     const RegionCase &hit = *impact.target, &from = *impact.projectile;
-    const Field& rho = now.cells.rho_of[material_index(w, hit.gas.material)];
+    const Field& rho = now.cells.rho_of[material_index(parameters, hit.gas.material)];
     double px = 0, pz = 0;
-    visit_cells(w.grid, [&](long c, double, double) {
-        px += rho[c] * now.cells.vx[c] * w.grid.cell_area();
-        pz += rho[c] * now.cells.vz[c] * w.grid.cell_area();
+    visit_cells(parameters.grid, [&](long c, double, double) {
+        px += rho[c] * now.cells.vx[c] * parameters.grid.cell_area();
+        pz += rho[c] * now.cells.vz[c] * parameters.grid.cell_area();
     });
     const bool along_x = impact.along_x();
     const double sign = (along_x ? from.gas.velocity_x : from.gas.velocity_z) < 0 ? -1 : 1;
@@ -53,7 +53,7 @@ inline void track_impact(const Snapshot& now, common::Row& row) {
         sign * (along_x ? hit.center_x : hit.center_z) - (along_x ? hit.half_x : hit.half_z);
     const Particles& particles = now.state.particles;
     const auto& positions = along_x ? particles.x_p : particles.z_p;
-    const int material = material_index(w, from.gas.material);
+    const int material = material_index(parameters, from.gas.material);
     double foremost = -std::numeric_limits<double>::infinity();
     for (std::size_t p = 0; p < positions.size(); ++p)
         if (particles.material[p] == material) foremost = std::max(foremost, sign * positions[p]);

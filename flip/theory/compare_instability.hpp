@@ -11,27 +11,27 @@
 namespace flip {
 
 /// Heavy fluid above light fluid, between the ends in z.
-inline theory::TwoLayers layers_of(const Case& w) {
-    const RegionCase &lower = w.regions.front(), &upper = w.regions.back();
+inline theory::TwoLayers layers_of(const Case& parameters) {
+    const RegionCase &lower = parameters.regions.front(), &upper = parameters.regions.back();
     theory::TwoLayers s;
     s.lower_density = lower.gas.density;
     s.upper_density = upper.gas.density;
-    s.gravity = -w.gravity_z;
-    s.lower_depth = upper.center_z - w.grid.z.low;
-    s.upper_depth = w.grid.z.high() - upper.center_z;
+    s.gravity = -parameters.gravity_z;
+    s.lower_depth = upper.center_z - parameters.grid.z.low;
+    s.upper_depth = parameters.grid.z.high() - upper.center_z;
     return s;
 }
 
 /// Growth rate of the tracked mode of the interface.
-inline double interface_growth_of(const Case& w) {
-    return theory::interface_growth(layers_of(w), tracked_wave_number(w));
+inline double interface_growth_of(const Case& parameters) {
+    return theory::interface_growth(layers_of(parameters), tracked_wave_number(parameters));
 }
 
 /// Growth rate of the tracked mode of the layer of shear, half-way between the ends in z.
-inline double shear_growth_of(const Case& w) {
-    const RegionCase& r = region_with_flow(w, "shear");
-    return theory::shear_layer_growth({2 * r.speed, r.width, 0.5 * w.grid.z.length},
-                                      tracked_wave_number(w));
+inline double shear_growth_of(const Case& parameters) {
+    const RegionCase& r = region_with_flow(parameters, "shear");
+    return theory::shear_layer_growth({2 * r.speed, r.width, 0.5 * parameters.grid.z.length},
+                                      tracked_wave_number(parameters));
 }
 
 /// z(t) = A cosh(rate t) + B sinh(rate t), with complex A and B.
@@ -96,11 +96,11 @@ inline HyperbolicFit fit_hyperbolic(const std::vector<double>& t,
 
 inline std::string predict_growth(double growth) { return "growth rate " + format(growth); }
 
-inline std::string warn_of_growth(const Case& w, double growth) {
-    if (growth * w.end >= 1) return "";
-    return sentence("theory has the growth rate ", growth, ", and time.end = ", w.end,
-                    " is less than the time ", 1 / growth,
-                    " in which the wave grows by e: its growth cannot be measured well");
+inline void warn_of_growth(const Case& parameters, double growth,
+                           std::vector<std::string>& warnings) {
+    warn(warnings, growth * parameters.end < 1, "theory has the growth rate ", growth,
+         ", and time.end = ", parameters.end, " is less than the time ", 1 / growth,
+         " in which the wave grows by e: its growth cannot be measured well");
 }
 
 // The growth from the start on, while the mode is smaller than `most`.
@@ -125,37 +125,38 @@ inline void compare_growth(const FinishedRun& run, double expected, double most,
     run.info("e_foldings", expected * times[count - 1], "", "within the fit");
 }
 
-inline void validate_interface(const Case& w, const Refusal& refuse) {
-    refuse(w.regions.size() != 2 || w.regions[0].shape != "everywhere" ||
-               w.regions[1].shape != "above",
+inline void validate_interface(const Case& parameters, const Refusal& refuse) {
+    refuse(parameters.regions.size() != 2 || parameters.regions[0].shape != "everywhere" ||
+               parameters.regions[1].shape != "above",
            " needs two regions, one everywhere and one above it");
-    validate_mode(w, refuse, "overturn");
-    refuse(w.grid.z.periodic, " needs walls in z");
-    const RegionCase& upper = w.regions[1];
-    refuse(!(upper.center_z > w.grid.z.low && upper.center_z < w.grid.z.high()),
+    validate_mode(parameters, refuse, "overturn");
+    refuse(parameters.grid.z.periodic, " needs walls in z");
+    const RegionCase& upper = parameters.regions[1];
+    refuse(!(upper.center_z > parameters.grid.z.low && upper.center_z < parameters.grid.z.high()),
            ": the interface at center_z = ", upper.center_z, " is not on the mesh");
-    refuse(!(interface_growth_of(w) > 0), ": density ", upper.gas.density, " above ",
-           w.regions[0].gas.density, " with gravity.z = ", w.gravity_z,
+    refuse(!(interface_growth_of(parameters) > 0), ": density ", upper.gas.density, " above ",
+           parameters.regions[0].gas.density, " with gravity.z = ", parameters.gravity_z,
            " does not overturn: turn one around");
 }
 
-inline std::string predict_interface(const Case& w, const std::string&, double) {
-    return predict_growth(interface_growth_of(w));
+inline std::string predict_interface(const Case& parameters, const std::string&, double) {
+    return predict_growth(interface_growth_of(parameters));
 }
 
-inline std::string warn_of_interface(const Case& w) {
-    return warn_of_growth(w, interface_growth_of(w));
+inline void warn_of_interface(const Case& parameters, std::vector<std::string>& warnings) {
+    warn_of_growth(parameters, interface_growth_of(parameters), warnings);
 }
 
 // Height of the interface, from the mass of the columns,
 //   (rho_lower - rho_upper) eta(x) = integral of rho over z - its mean
 // note: it is linear in eta, where velocities at a fixed height lose (8/3 pi) k eta of themselves
 inline void track_interface(const Snapshot& now, common::Row& row) {
-    const Case& w = now.parameters;
-    const theory::TwoLayers layers = layers_of(w);
+    const Case& parameters = now.parameters;
+    const theory::TwoLayers layers = layers_of(parameters);
     add_mode(row, "mode", "length",
-             w.grid.z.length / (layers.lower_density - layers.upper_density) *
-                 mode_of(w, now.cells.rho, 0, w.grid.z.cells, w.regions.back().center_x));
+             parameters.grid.z.length / (layers.lower_density - layers.upper_density) *
+                 mode_of(parameters, now.cells.rho, 0, parameters.grid.z.cells,
+                         parameters.regions.back().center_x));
 }
 
 // While the crests are lower than 0.3/k.
@@ -164,36 +165,39 @@ inline void compare_interface(const FinishedRun& run) {
                    0.3 / tracked_wave_number(run.parameters), "two layers between walls");
 }
 
-inline void validate_shear(const Case& w, const Refusal& refuse) {
-    validate_flow(w, refuse, "shear");
-    validate_mode(w, refuse, "shear");
-    const RegionCase& r = region_with_flow(w, "shear");
-    refuse(w.grid.z.periodic, " needs walls in z");
-    const double half_way = w.grid.z.low + 0.5 * w.grid.z.length;
-    refuse(std::fabs(r.center_z - half_way) > 1e-6 * w.grid.z.length,
+inline void validate_shear(const Case& parameters, const Refusal& refuse) {
+    validate_flow(parameters, refuse, "shear");
+    validate_mode(parameters, refuse, "shear");
+    const RegionCase& r = region_with_flow(parameters, "shear");
+    refuse(parameters.grid.z.periodic, " needs walls in z");
+    const double half_way = parameters.grid.z.low + 0.5 * parameters.grid.z.length;
+    refuse(std::fabs(r.center_z - half_way) > 1e-6 * parameters.grid.z.length,
            " needs the layer half-way between the walls, at center_z = ", half_way);
-    refuse(!(shear_growth_of(w) > 0), ": mode ", w.mode, " of a layer of half-width ", r.width,
+    refuse(!(shear_growth_of(parameters) > 0), ": mode ", parameters.mode,
+           " of a layer of half-width ", r.width,
            " does not grow: make it thinner, or lower theory.mode");
 }
 
-inline std::string predict_shear(const Case& w, const std::string&, double) {
-    return predict_growth(shear_growth_of(w));
+inline std::string predict_shear(const Case& parameters, const std::string&, double) {
+    return predict_growth(shear_growth_of(parameters));
 }
 
-inline std::string warn_of_shear(const Case& w) { return warn_of_growth(w, shear_growth_of(w)); }
+inline void warn_of_shear(const Case& parameters, std::vector<std::string>& warnings) {
+    warn_of_growth(parameters, shear_growth_of(parameters), warnings);
+}
 
 // Velocity across the layer, in the rows on both sides of its middle; in one row where the middle
 // goes through it.
 inline void track_shear(const Snapshot& now, common::Row& row) {
-    const Case& w = now.parameters;
-    const RegionCase& r = region_with_flow(w, "shear");
-    const common::Axis& axis = w.grid.z;
+    const Case& parameters = now.parameters;
+    const RegionCase& r = region_with_flow(parameters, "shear");
+    const common::Axis& axis = parameters.grid.z;
     const double node = (r.center_z - axis.low) / axis.spacing(), nearest = std::floor(node + 0.5);
     const bool between = std::fabs(node - nearest) < 0.25;
     const long j = static_cast<long>(between ? nearest - 1 : std::floor(node)),
                j_low = std::clamp(j, 0L, axis.cells - 1),
                j_high = std::clamp(j + (between ? 2 : 1), 1L, axis.cells);
-    add_mode(row, "mode", "velocity", mode_of(w, now.cells.vz, j_low, j_high, r.center_x));
+    add_mode(row, "mode", "velocity", mode_of(parameters, now.cells.vz, j_low, j_high, r.center_x));
 }
 
 // While the crests, whose height is velocity over growth rate, are lower than 0.3/k.

@@ -7,15 +7,15 @@
 namespace flip {
 
 /// Noh's problem of a case: cold gas that falls into a line, or in a row of cells into a plane.
-inline theory::NohProblem noh_of(const Case& w) {
-    const RegionCase& r = region_with_flow(w, "radial");
-    return {material_of(w, r).gamma, w.plane() ? 2 : 1, r.gas.density, r.speed};
+inline theory::NohProblem noh_of(const Case& parameters) {
+    const RegionCase& r = region_with_flow(parameters, "radial");
+    return {material_of(parameters, r).gamma, parameters.plane() ? 2 : 1, r.gas.density, r.speed};
 }
 
-inline void validate_noh(const Case& w, const Refusal& refuse) {
-    validate_flow(w, refuse, "radial");
-    const RegionCase& r = region_with_flow(w, "radial");
-    refuse(material_of(w, r).gamma == 1, " is for a gas, and gamma = 1 is dust");
+inline void validate_noh(const Case& parameters, const Refusal& refuse) {
+    validate_flow(parameters, refuse, "radial");
+    const RegionCase& r = region_with_flow(parameters, "radial");
+    refuse(material_of(parameters, r).gamma == 1, " is for a gas, and gamma = 1 is dust");
     refuse(!(r.speed > 0), " needs region.", r.name, ".speed above 0, inward");
     const double most = r.gas.density * r.speed * r.speed;
     refuse(r.gas.pressure > 0.01 * r.gas.density * r.speed * r.speed,
@@ -23,13 +23,14 @@ inline void validate_noh(const Case& w, const Refusal& refuse) {
            " is above a hundredth of density speed^2, ", most);
 }
 
-inline std::string predict_noh(const Case& w, const std::string&, double) {
-    return sentence("shock at r = ", theory::noh_shock_radius(noh_of(w), w.end), " at t = ", w.end);
+inline std::string predict_noh(const Case& parameters, const std::string&, double) {
+    return sentence("shock at r = ", theory::noh_shock_radius(noh_of(parameters), parameters.end),
+                    " at t = ", parameters.end);
 }
 
-inline RadialProfile noh_profile(const Case& w, const CellFields& cells) {
-    const RegionCase& r = region_with_flow(w, "radial");
-    return radial_profile(w.grid, cells, r.center_x, r.center_z);
+inline RadialProfile noh_profile(const Case& parameters, const CellFields& cells) {
+    const RegionCase& r = region_with_flow(parameters, "radial");
+    return radial_profile(parameters.grid, cells, r.center_x, r.center_z);
 }
 
 inline void track_noh(const Snapshot& now, common::Row& row) {

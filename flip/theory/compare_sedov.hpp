@@ -15,51 +15,54 @@ struct Blast {
 };
 
 /// The region in which the energy is set free.
-inline const RegionCase& hot_region(const Case& w) {
-    for (const RegionCase& r : w.regions)
+inline const RegionCase& hot_region(const Case& parameters) {
+    for (const RegionCase& r : parameters.regions)
         if (r.energy > 0) return r;
-    return w.regions.back();
+    return parameters.regions.back();
 }
 
 /// The blast of a case.
-inline Blast blast_of(const Case& w) {
-    const RegionCase &hot = hot_region(w), &cold = w.regions.front();
-    double energy = hot.energy / (w.plane() ? 1 : w.grid.z.length);
+inline Blast blast_of(const Case& parameters) {
+    const RegionCase &hot = hot_region(parameters), &cold = parameters.regions.front();
+    double energy = hot.energy / (parameters.plane() ? 1 : parameters.grid.z.length);
     const auto mirrored = [&](End low, const common::Axis& axis, double center) {
         const double near = 0.5 * axis.spacing();
-        const bool at_low = w.is(low, "slip") && std::fabs(center - axis.low) <= near;
-        const bool at_high = w.is(End(low + 1), "slip") && std::fabs(center - axis.high()) <= near;
+        const bool at_low = parameters.is(low, "slip") && std::fabs(center - axis.low) <= near;
+        const bool at_high =
+            parameters.is(End(low + 1), "slip") && std::fabs(center - axis.high()) <= near;
         return at_low || at_high ? 2.0 : 1.0;
     };
-    energy *= mirrored(x_low, w.grid.x, hot.center_x);
-    if (w.plane()) energy *= mirrored(z_low, w.grid.z, hot.center_z);
-    return {theory::blast_wave(material_of(w, cold).gamma, w.plane() ? 2 : 1), energy,
-            cold.gas.density, hot.center_x, hot.center_z};
+    energy *= mirrored(x_low, parameters.grid.x, hot.center_x);
+    if (parameters.plane()) energy *= mirrored(z_low, parameters.grid.z, hot.center_z);
+    return {theory::blast_wave(material_of(parameters, cold).gamma, parameters.plane() ? 2 : 1),
+            energy, cold.gas.density, hot.center_x, hot.center_z};
 }
 
-inline void validate_sedov(const Case& w, const Refusal& refuse) {
-    const RegionCase& cold = w.regions.front();
-    const auto hot = std::count_if(w.regions.begin(), w.regions.end(),
+inline void validate_sedov(const Case& parameters, const Refusal& refuse) {
+    const RegionCase& cold = parameters.regions.front();
+    const auto hot = std::count_if(parameters.regions.begin(), parameters.regions.end(),
                                    [](const RegionCase& r) { return r.energy > 0; });
-    refuse(hot != 1 || w.regions.size() < 2 || cold.energy > 0,
+    refuse(hot != 1 || parameters.regions.size() < 2 || cold.energy > 0,
            " needs a cold region first, and one with an energy inside it; ", hot, " have one");
-    const double gamma = material_of(w, cold).gamma;
+    const double gamma = material_of(parameters, cold).gamma;
     refuse(!(gamma > 1 && gamma < 2), " is known for gamma between 1 and 2, and it is ", gamma);
-    refuse(hot_region(w).gas.density != cold.gas.density,
-           " needs the same density inside and outside: ", hot_region(w).gas.density, " and ",
-           cold.gas.density);
-    const Blast blast = blast_of(w);
+    refuse(hot_region(parameters).gas.density != cold.gas.density,
+           " needs the same density inside and outside: ", hot_region(parameters).gas.density,
+           " and ", cold.gas.density);
+    const Blast blast = blast_of(parameters);
     const auto room = [&](const common::Axis& axis, double center) {
         return std::max(axis.high() - center, center - axis.low);
     };
-    double most = room(w.grid.x, blast.x);
-    if (w.plane()) most = std::min(most, room(w.grid.z, blast.z));
-    refuse(blast.radius(w.end) > most, ": at time.end the shock is at r = ", blast.radius(w.end),
+    double most = room(parameters.grid.x, blast.x);
+    if (parameters.plane()) most = std::min(most, room(parameters.grid.z, blast.z));
+    refuse(blast.radius(parameters.end) > most,
+           ": at time.end the shock is at r = ", blast.radius(parameters.end),
            ", and the mesh ends at ", most, ": lower time.end");
 }
 
-inline std::string predict_sedov(const Case& w, const std::string&, double) {
-    return sentence("shock at r = ", blast_of(w).radius(w.end), " at t = ", w.end);
+inline std::string predict_sedov(const Case& parameters, const std::string&, double) {
+    return sentence("shock at r = ", blast_of(parameters).radius(parameters.end),
+                    " at t = ", parameters.end);
 }
 
 inline void track_sedov(const Snapshot& now, common::Row& row) {

@@ -17,64 +17,69 @@ struct SoundWave {
 };
 
 /// The sound wave of a case in steps of dt.
-inline SoundWave sound_wave_of(const Case& w, const std::string& program, double dt) {
-    const RegionCase& r = region_with_flow(w, "wave");
-    const double k = tracked_wave_number(w), dx = w.grid.x.spacing(), c = sound_speed_of(w, r);
+inline SoundWave sound_wave_of(const Case& parameters, const std::string& program, double dt) {
+    const RegionCase& r = region_with_flow(parameters, "wave");
+    const double k = tracked_wave_number(parameters), dx = parameters.grid.x.spacing(),
+                 c = sound_speed_of(parameters, r);
     const bool on_cells = program == "pic";
     // Differences over two cells, or from cells to the nodes between them.
     const double kappa = on_cells ? std::sin(k * dx) / dx : 2 * std::sin(0.5 * k * dx) / dx;
     const double a = c * kappa * dt;
     // In a gas 1/gamma of a change of pressure is that of density at constant energy; in a
     // stiffened gas it is (p + gamma p_infinity)/(gamma (p + p_infinity)).
-    const Material& gas = material_of(w, r);
+    const Material& gas = material_of(parameters, r);
     const double p = r.gas.pressure, gamma = stiffness(gas, p) / (p + gas.gamma * gas.p_infinity);
     theory::WaveTransfer part;
     if (!on_cells) {
         const double once = theory::pic_smoothing(k, dx), lost = 1 - once;
-        part.kick = part.energy = once;
-        if (w.transfer == "pic") part.kept = once;
-        if (w.transfer == "blend") part.kept = w.blend + (1 - w.blend) * once;
-        if (w.transfer == "xpic") part.kept = 1 - std::pow(lost, static_cast<double>(w.xpic_order));
+        part.increment = part.energy = once;
+        if (parameters.transfer == "pic") part.kept = once;
+        if (parameters.transfer == "blend")
+            part.kept = parameters.blend + (1 - parameters.blend) * once;
+        if (parameters.transfer == "xpic")
+            part.kept = 1 - std::pow(lost, static_cast<double>(parameters.xpic_order));
         // A particle of apic hands both nodes of its row what it has from them.
-        if (w.transfer == "apic") part.kick = 1;
+        if (parameters.transfer == "apic") part.increment = 1;
         // Motion changes the mass in a cell by what crosses its ends, with the velocity around them.
-        part.density = w.density == "cells" ? 1 - 0.75 * lost : once;
+        part.density = parameters.density == "cells" ? 1 - 0.75 * lost : once;
     }
     const std::complex<double> factor =
-        theory::carried_factor(w.implicit() ? w.theta : -1, gamma, a, part);
+        theory::carried_factor(parameters.implicit() ? parameters.theta : -1, gamma, a, part);
     return {c * k, std::arg(factor), std::abs(factor)};
 }
 
-inline void validate_wave(const Case& w, const Refusal& refuse) {
-    validate_flow(w, refuse, "wave");
-    validate_mode(w, refuse, "wave");
-    const RegionCase& r = region_with_flow(w, "wave");
+inline void validate_wave(const Case& parameters, const Refusal& refuse) {
+    validate_flow(parameters, refuse, "wave");
+    validate_mode(parameters, refuse, "wave");
+    const RegionCase& r = region_with_flow(parameters, "wave");
     refuse(r.amplitude == 0, " needs a wave: give region.", r.name, ".amplitude");
-    refuse(w.regions.size() != 1, " needs a single region");
-    refuse(sound_speed_of(w, r) == 0, " needs a gas with sound: give region.", r.name, ".pressure");
-    refuse(r.gas.velocity_x != w.frame_x, ": the gas moves with ", r.gas.velocity_x,
+    refuse(parameters.regions.size() != 1, " needs a single region");
+    refuse(sound_speed_of(parameters, r) == 0, " needs a gas with sound: give region.", r.name,
+           ".pressure");
+    refuse(r.gas.velocity_x != parameters.frame_x, ": the gas moves with ", r.gas.velocity_x,
            ": set theory.frame_x to that");
 }
 
-inline std::string predict_wave(const Case& w, const std::string& program, double dt) {
-    const SoundWave s = sound_wave_of(w, program, dt);
+inline std::string predict_wave(const Case& parameters, const std::string& program, double dt) {
+    const SoundWave s = sound_wave_of(parameters, program, dt);
     return sentence("period ", 2 * pi / s.frequency, "; a step of ", dt, " multiplies the wave by ",
                     s.amplification);
 }
 
-inline std::string warn_of_wave(const Case& w) {
-    const double c = sound_speed_of(w, region_with_flow(w, "wave")),
-                 period = 2 * pi / (c * tracked_wave_number(w));
-    if (period <= w.end) return "";
-    return sentence("the wave has the period ", period, ", longer than time.end = ", w.end,
-                    ": its frequency cannot be measured well");
+inline void warn_of_wave(const Case& parameters, std::vector<std::string>& warnings) {
+    const double c = sound_speed_of(parameters, region_with_flow(parameters, "wave")),
+                 period = 2 * pi / (c * tracked_wave_number(parameters));
+    warn(warnings, period > parameters.end, "the wave has the period ", period,
+         ", longer than time.end = ", parameters.end, ": its frequency cannot be measured well");
 }
 
 inline void track_wave(const Snapshot& now, common::Row& row) {
-    const Case& w = now.parameters;
-    const double from = w.grid.x.low + w.frame_x * now.state.time;
-    add_mode(row, "mode", "velocity", mode_of(w, now.cells.vx, 0, w.grid.z.cells, from));
-    add_mode(row, "pressure", "pressure", mode_of(w, now.cells.p, 0, w.grid.z.cells, from));
+    const Case& parameters = now.parameters;
+    const double from = parameters.grid.x.low + parameters.frame_x * now.state.time;
+    add_mode(row, "mode", "velocity",
+             mode_of(parameters, now.cells.vx, 0, parameters.grid.z.cells, from));
+    add_mode(row, "pressure", "pressure",
+             mode_of(parameters, now.cells.p, 0, parameters.grid.z.cells, from));
 }
 
 // Phase and logarithm of the size of a mode that turns by less than half a turn between samples.
@@ -94,11 +99,11 @@ inline Spiral unwound(const std::vector<std::complex<double>>& mode) {
 
 // Frequency, and the change of the amplitude in a period.
 inline void compare_wave(const FinishedRun& run) {
-    const Case& w = run.parameters;
+    const Case& parameters = run.parameters;
     const auto times = run.history.column("time");
     if (times.size() < 3) return;
     const double dt = times.back() / static_cast<double>(times.size() - 1);
-    const SoundWave wave = sound_wave_of(w, run.program, dt);
+    const SoundWave wave = sound_wave_of(parameters, run.program, dt);
     const Spiral velocity = unwound(mode_column(run.history, "mode")),
                  pressure = unwound(mode_column(run.history, "pressure"));
     const double frequency = -slope(times, velocity.phase);
@@ -107,12 +112,12 @@ inline void compare_wave(const FinishedRun& run) {
         return std::exp(slope(times, mode.log_size) * period);
     };
     const std::string scheme =
-        w.implicit() ? "theta scheme" : "explicit step: density follows the new velocity";
+        parameters.implicit() ? "theta scheme" : "explicit step: density follows the new velocity";
     run.info("frequency", frequency, "1/time", "of velocity");
     run.info("theory_frequency", wave.frequency, "1/time", "c k");
     run.result("frequency_over_ck", frequency / wave.frequency, "",
                wave.phase / (wave.frequency * dt), scheme);
-    if (run.program == "pic" && w.frame_x != 0)
+    if (run.program == "pic" && parameters.frame_x != 0)
         run.info("amplitude_per_period", per_period(velocity), "", "the flow diffuses it");
     else
         run.absolute_result("amplitude_per_period", per_period(velocity), "",
@@ -122,12 +127,12 @@ inline void compare_wave(const FinishedRun& run) {
     run.info("periods", times.back() / period, "", "of c k");
 }
 
-inline void validate_ringing(const Case& w, const Refusal& refuse) {
-    const RegionCase& r = w.regions.front();
-    refuse(w.regions.size() != 1 || r.flow != "uniform" || r.shape != "everywhere" ||
-               !w.grid.x.periodic,
+inline void validate_ringing(const Case& parameters, const Refusal& refuse) {
+    const RegionCase& r = parameters.regions.front();
+    refuse(parameters.regions.size() != 1 || r.flow != "uniform" || r.shape != "everywhere" ||
+               !parameters.grid.x.periodic,
            " needs a single uniform region everywhere, and periodic ends in x");
-    refuse(sound_speed_of(w, r) == 0, " needs a gas with sound");
+    refuse(sound_speed_of(parameters, r) == 0, " needs a gas with sound");
     refuse(r.noise == 0, " needs a seed: give region.", r.name, ".noise");
 }
 
@@ -141,9 +146,9 @@ inline void track_ringing(const Snapshot& now, common::Row& row) {
 
 // A uniform flow should stay one: how fast its noise grows.
 inline void compare_ringing(const FinishedRun& run) {
-    const Case& w = run.parameters;
-    const RegionCase& r = w.regions.front();
-    const double c = sound_speed_of(w, r), dx = w.grid.x.spacing();
+    const Case& parameters = run.parameters;
+    const RegionCase& r = parameters.regions.front();
+    const double c = sound_speed_of(parameters, r), dx = parameters.grid.x.spacing();
     const common::GrowthFit fit =
         common::fit_growth(run.history.column("time"), run.history.column("noise"));
     run.info("growth", fit.rate * dx / c, "c/dx",

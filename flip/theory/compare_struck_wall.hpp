@@ -13,43 +13,44 @@ struct StruckWall {
     double density;
 };
 /// The wall that the gas of the first region runs into, and the shock in front of it.
-inline StruckWall struck_wall(const Case& w) {
-    const RegionCase& r = w.regions.front();
-    const Material& a = material_of(w, r);
+inline StruckWall struck_wall(const Case& parameters) {
+    const RegionCase& r = parameters.regions.front();
+    const Material& a = material_of(parameters, r);
     return {theory::driven_shock(std::fabs(r.gas.velocity_x), r.gas.density, r.gas.pressure,
                                  a.gamma, a.p_infinity),
             r.gas.velocity_x < 0, r.gas.density};
 }
 
-inline void validate_wall_shock(const Case& w, const Refusal& refuse) {
-    const RegionCase& r = w.regions.front();
-    refuse(w.regions.size() != 1 || r.shape != "everywhere" || r.flow != "uniform",
+inline void validate_wall_shock(const Case& parameters, const Refusal& refuse) {
+    const RegionCase& r = parameters.regions.front();
+    refuse(parameters.regions.size() != 1 || r.shape != "everywhere" || r.flow != "uniform",
            " needs a single region, uniform and everywhere");
     refuse(r.gas.velocity_x == 0, " needs gas that runs into a wall: give region.", r.name,
            ".velocity_x");
     const End wall = r.gas.velocity_x < 0 ? x_low : x_high;
     const char* name = end_names[wall];
-    refuse(!w.is(wall, "slip"), ": the gas runs towards ", name,
+    refuse(!parameters.is(wall, "slip"), ": the gas runs towards ", name,
            ", which is not a wall: set boundary.", name, " = \"slip\"");
-    refuse(material_of(w, r).gamma == 1, " is for a gas, and gamma = 1 is dust");
+    refuse(material_of(parameters, r).gamma == 1, " is for a gas, and gamma = 1 is dust");
     // What comes from the other end, at best with the flow and its sound.
-    const bool fed = w.is(wall == x_low ? x_high : x_low, "inflow");
-    const double meeting = w.grid.x.length / (struck_wall(w).shock.speed_from_wall +
-                                              std::fabs(r.gas.velocity_x) + sound_speed_of(w, r));
-    refuse(!fed && w.end > meeting,
+    const bool fed = parameters.is(wall == x_low ? x_high : x_low, "inflow");
+    const double meeting =
+        parameters.grid.x.length / (struck_wall(parameters).shock.speed_from_wall +
+                                    std::fabs(r.gas.velocity_x) + sound_speed_of(parameters, r));
+    refuse(!fed && parameters.end > meeting,
            ": the other end of the mesh is felt behind the shock from t = ", meeting,
            " on: lower time.end below that");
 }
 
-inline void validate_piston(const Case& w, const Refusal& refuse) {
-    validate_wall_shock(w, refuse);
-    const RegionCase& r = w.regions.front();
-    refuse(r.gas.pressure + material_of(w, r).p_infinity == 0,
+inline void validate_piston(const Case& parameters, const Refusal& refuse) {
+    validate_wall_shock(parameters, refuse);
+    const RegionCase& r = parameters.regions.front();
+    refuse(r.gas.pressure + material_of(parameters, r).p_infinity == 0,
            " needs gas with a pressure: give region.", r.name, ".pressure");
 }
 
-inline std::string predict_wall_shock(const Case& w, const std::string&, double) {
-    const theory::DrivenShock s = struck_wall(w).shock;
+inline std::string predict_wall_shock(const Case& parameters, const std::string&, double) {
+    const theory::DrivenShock s = struck_wall(parameters).shock;
     return sentence("density ", s.density, " behind a shock at ", s.speed_from_wall,
                     " from the wall, Mach ", s.mach);
 }
@@ -58,11 +59,11 @@ inline std::string predict_wall_shock(const Case& w, const std::string&, double)
 struct FromWall {
     std::vector<double> distance, rho;
 };
-inline FromWall from_wall(const Case& w, const CellFields& cells) {
-    FromWall s{{}, mean_over_z(w.grid, cells.rho)};
-    if (!struck_wall(w).at_low) std::reverse(s.rho.begin(), s.rho.end());
+inline FromWall from_wall(const Case& parameters, const CellFields& cells) {
+    FromWall s{{}, mean_over_z(parameters.grid, cells.rho)};
+    if (!struck_wall(parameters).at_low) std::reverse(s.rho.begin(), s.rho.end());
     for (std::size_t n = 0; n < s.rho.size(); ++n)
-        s.distance.push_back((static_cast<double>(n) + 0.5) * w.grid.x.spacing());
+        s.distance.push_back((static_cast<double>(n) + 0.5) * parameters.grid.x.spacing());
     return s;
 }
 
@@ -75,11 +76,11 @@ inline void track_wall_shock(const Snapshot& now, common::Row& row) {
 
 // The plateau behind the shock, and how fast the shock moves away from the wall.
 inline void compare_wall_shock(const FinishedRun& run) {
-    const Case& w = run.parameters;
-    const StruckWall wall = struck_wall(w);
-    const double dx = w.grid.x.spacing(), R = wall.shock.speed_from_wall * run.state.time;
+    const Case& parameters = run.parameters;
+    const StruckWall wall = struck_wall(parameters);
+    const double dx = parameters.grid.x.spacing(), R = wall.shock.speed_from_wall * run.state.time;
     const std::string source = "balance of mass, momentum and energy across the shock";
-    const FromWall profile = from_wall(w, run.cells);
+    const FromWall profile = from_wall(parameters, run.cells);
     const double from = std::max(0.2 * R, 6 * dx), to = R - std::max(0.15 * R, 5 * dx);
     double count = 0, sum = 0, squares = 0;
     std::vector<double> exact;
@@ -99,7 +100,7 @@ inline void compare_wall_shock(const FinishedRun& run) {
                wall.shock.speed_from_wall, source + "; from the wall, in the second half");
     run.summary.result("shock_distance", distance.back(), "length",
                        wall.shock.speed_from_wall * times.back(),
-                       std::max(3 * dx, w.theory_tolerance * R), source);
+                       std::max(3 * dx, parameters.theory_tolerance * R), source);
     run.info("wall_density_over_theory", profile.rho[0] / wall.shock.density, "",
              "wall heating: the cell at the wall");
     common::write_table(run.profile, {{"distance", "length", profile.distance},

@@ -69,14 +69,14 @@ enum class Frame { at_rest, moves_along_x, moves };
 /// One comparison with theory: its name in theory.compare, and what it does; null: nothing.
 ///   validate  refuses a case that theory has no answer for
 ///   predict   what theory says before the run, in one line; dt is the first time step
-///   warn      a warning, or an empty text
+///   warn      adds to the warnings what may mislead about the comparison
 ///   track     adds the diagnostics of t^n that the comparison needs to the row of the history
 ///   compare   adds the results to the summary
 struct Comparison {
     const char* name;
     void (*validate)(const Case&, const Refusal& refuse) = nullptr;
     std::string (*predict)(const Case&, const std::string& program, double dt) = nullptr;
-    std::string (*warn)(const Case&) = nullptr;
+    void (*warn)(const Case&, std::vector<std::string>& warnings) = nullptr;
     void (*track)(const Snapshot&, common::Row& row) = nullptr;
     void (*compare)(const FinishedRun&) = nullptr;
     Rows rows = Rows::any;
@@ -84,9 +84,9 @@ struct Comparison {
 };
 
 /// Refuses a case without a region that has a flow.
-inline void validate_flow(const Case& w, const Refusal& refuse, const std::string& flow) {
+inline void validate_flow(const Case& parameters, const Refusal& refuse, const std::string& flow) {
     bool found = false;
-    for (const RegionCase& r : w.regions) found = found || r.flow == flow;
+    for (const RegionCase& r : parameters.regions) found = found || r.flow == flow;
     refuse(!found, " needs a region with flow = \"", flow, "\"");
 }
 

@@ -27,23 +27,23 @@ inline constexpr std::array comparisons{
     shear_comparison,     dam_break_comparison, cavity_comparison,     impact_comparison};
 
 /// The comparison that a case asks for.
-inline const Comparison& comparison_of(const Case& w) {
+inline const Comparison& comparison_of(const Case& parameters) {
     for (const Comparison& c : comparisons)
-        if (w.compare == c.name) return c;
+        if (parameters.compare == c.name) return c;
     return no_comparison;
 }
 
 /// Refuses what the comparison of a case cannot be made with.
 /// in:     a completed case that runs
 /// errors: InputError, one sentence
-inline void validate_comparison(const Case& w) {
-    const Comparison& c = comparison_of(w);
+inline void validate_comparison(const Case& parameters) {
+    const Comparison& c = comparison_of(parameters);
     const Refusal refuse{sentence("theory.compare = \"", c.name, "\"")};
-    refuse(c.rows == Rows::several && !w.plane(), " needs grid.cells_z of at least 2");
-    refuse((w.frame_x != 0 && c.frame == Frame::at_rest) ||
-               (w.frame_z != 0 && c.frame != Frame::moves),
+    refuse(c.rows == Rows::several && !parameters.plane(), " needs grid.cells_z of at least 2");
+    refuse((parameters.frame_x != 0 && c.frame == Frame::at_rest) ||
+               (parameters.frame_z != 0 && c.frame != Frame::moves),
            " is stated in the frame of the mesh: take out theory.frame_x and frame_z");
-    if (c.validate != nullptr) c.validate(w, refuse);
+    if (c.validate != nullptr) c.validate(parameters, refuse);
 }
 
 }  // namespace flip

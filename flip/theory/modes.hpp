@@ -9,31 +9,34 @@ namespace flip {
 
 /// The tracked wave number.
 ///   k = 2 pi mode/length_x
-inline double tracked_wave_number(const Case& w) {
-    return 2 * pi * static_cast<double>(w.mode) / w.grid.x.length;
+inline double tracked_wave_number(const Case& parameters) {
+    return 2 * pi * static_cast<double>(parameters.mode) / parameters.grid.x.length;
 }
 
 /// Refuses a mesh that has no such mode, and a region whose flow has another.
-inline void validate_mode(const Case& w, const Refusal& refuse, const std::string& flow) {
-    refuse(!w.grid.x.periodic, " needs periodic ends in x");
-    refuse(2 * w.mode >= w.grid.x.cells, " follows theory.mode = ", w.mode, ", and ",
-           w.grid.x.cells, " cells have no waves above ", (w.grid.x.cells - 1) / 2,
+inline void validate_mode(const Case& parameters, const Refusal& refuse, const std::string& flow) {
+    refuse(!parameters.grid.x.periodic, " needs periodic ends in x");
+    refuse(2 * parameters.mode >= parameters.grid.x.cells,
+           " follows theory.mode = ", parameters.mode, ", and ", parameters.grid.x.cells,
+           " cells have no waves above ", (parameters.grid.x.cells - 1) / 2,
            ": refine the mesh or lower it");
-    for (const RegionCase& r : w.regions)
-        refuse(r.flow == flow && r.mode != w.mode, " follows theory.mode = ", w.mode,
-               ", and region.", r.name, ".mode = ", r.mode, ": make them the same");
+    for (const RegionCase& r : parameters.regions)
+        refuse(r.flow == flow && r.mode != parameters.mode,
+               " follows theory.mode = ", parameters.mode, ", and region.", r.name,
+               ".mode = ", r.mode, ": make them the same");
 }
 
 /// Fourier amplitude along x of rows j_low <= j < j_high of a field, its phase that at x = from.
 ///   (2/N) sum f exp(-i k (x - from))
-inline std::complex<double> mode_of(const Case& w, const Field& f, long j_low, long j_high,
+inline std::complex<double> mode_of(const Case& parameters, const Field& f, long j_low, long j_high,
                                     double from) {
-    const double k = tracked_wave_number(w);
+    const double k = tracked_wave_number(parameters);
     std::complex<double> sum = 0;
     for (long j = j_low; j < j_high; ++j)
-        for (long i = 0; i < w.grid.x.cells; ++i)
-            sum += f[w.grid.index(i, j)] * std::polar(1.0, -k * (middle(w.grid.x, i) - from));
-    return 2.0 / static_cast<double>(w.grid.x.cells * (j_high - j_low)) * sum;
+        for (long i = 0; i < parameters.grid.x.cells; ++i)
+            sum += f[parameters.grid.index(i, j)] *
+                   std::polar(1.0, -k * (middle(parameters.grid.x, i) - from));
+    return 2.0 / static_cast<double>(parameters.grid.x.cells * (j_high - j_low)) * sum;
 }
 
 /// Adds name_re and name_im to a row of the history.

@@ -120,14 +120,4 @@ inline BlastPoint blast_point(const BlastWave& w, double lambda) {
     return sedov_detail::at_parameter(w.gamma, w.dimension, high).point;
 }
 
-/// The profile from the middle to the shock.
-/// out:   samples + 1 points in equal steps of the parameter, the last one at the shock
-inline std::vector<BlastPoint> blast_profile(const BlastWave& w, int samples = 400) {
-    std::vector<BlastPoint> points;
-    for (int i = 0; i <= samples; ++i)
-        points.push_back(
-            sedov_detail::at_parameter(w.gamma, w.dimension, i / double(samples)).point);
-    return points;
-}
-
 }  // namespace flip::theory
