@@ -28,8 +28,8 @@ inline void refuse_methods(const Case& parameters, const std::string& program) {
            "implicit pressure divides by lumped masses; take \"lumped\" or \"explicit\"");
     refuse(parameters.mass == "consistent" && parameters.transfer != "flip",
            "flip.mass = \"consistent\" and flip.transfer = \"", parameters.transfer,
-           "\" do not go together: the other transfers make up for what lumped masses lose; "
-           "take \"lumped\", or \"flip\"");
+           "\" do not go together: the other transfers make up for what lumped masses lose; take "
+           "\"lumped\", or \"flip\"");
     refuse(parameters.rezone_steps > 0 && parameters.transfer == "apic",
            "rezone.steps and flip.transfer = \"apic\" do not go together: a merged particle cannot "
            "keep the gradients of several; take \"flip\", or rezone.steps = 0");
@@ -50,8 +50,8 @@ inline void reject_unused(const Case& parameters) {
                                                                 !(parameters.right == d.right) ||
                                                                 parameters.interface != d.interface;
     refuse(riemann && !(parameters.regions.empty() && parameters.materials.empty()),
-           "setup.kind = \"riemann\" makes its regions and materials from [left] and "
-           "[right]: take out [region.*] and [material.*]");
+           "setup.kind = \"riemann\" makes its regions and materials from [left] and [right]: take "
+           "out [region.*] and [material.*]");
     refuse(!riemann && sides, "[left], [right] and setup.interface need setup.kind = \"riemann\"");
 }
 

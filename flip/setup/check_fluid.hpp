@@ -35,8 +35,7 @@ inline void refuse_sizes(const Case& parameters) {
                      cells * static_cast<double>(parameters.per_cell_x * parameters.per_cell_z);
     refuse(places > 2e9, cells, " cells with ", parameters.per_cell_x * parameters.per_cell_z,
            " places for particles in each are ", places,
-           ", more than 2e9: lower particles.per_cell_x and per_cell_z, or take "
-           "fewer cells");
+           ", more than 2e9: lower particles.per_cell_x and per_cell_z, or take fewer cells");
     const std::vector<std::pair<const char*, double>> numbers{
         {"grid.length_x", parameters.grid.x.length},
         {"grid.length_z", parameters.grid.z.length},
@@ -61,8 +60,8 @@ inline void refuse_sizes(const Case& parameters) {
     const auto refuse_far = [](const std::string& name, const common::Axis& axis) {
         const double away = std::fabs(axis.low) / axis.spacing();
         refuse(!(away <= 1e9), "grid.", name, " = ", axis.low, " is ", away,
-               " cells from the origin, more than 1e9, where places are lost "
-               "to round-off: move it nearer to 0");
+               " cells from the origin, more than 1e9, where places are lost to round-off: move it "
+               "nearer to 0");
     };
     refuse_far("low_x", parameters.grid.x);
     refuse_far("low_z", parameters.grid.z);
@@ -117,11 +116,11 @@ inline void refuse_materials(const Case& parameters) {
                ".p_infinity = ", a.p_infinity,
                " needs gamma above 1: gamma = 1 is dust, without pressure");
         refuse(a.gamma == 1 && parameters.implicit(), "material.", a.name,
-               ".gamma = 1 is dust, without pressure, and flip.pressure = "
-               "\"implicit\" needs gamma above 1: take \"explicit\"");
+               ".gamma = 1 is dust, without pressure, and flip.pressure = \"implicit\" needs gamma "
+               "above 1: take \"explicit\"");
         refuse(a.gamma > 1 && a.gamma < 1.001, "material.", a.name, ".gamma = ", a.gamma,
-               " is between 1 and 1.001, where internal energies drown pressures in "
-               "round-off: raise it, or take 1, dust");
+               " is between 1 and 1.001, where internal energies drown pressures in round-off: "
+               "raise it, or take 1, dust");
     }
     refuse(material_index(parameters, parameters.inflow.material) < 0, "inflow.material = \"",
            parameters.inflow.material, "\" is none of ", list_of_materials(parameters));
@@ -177,8 +176,7 @@ inline void refuse_tension(const Case& parameters) {
                          p = (a.gamma - 1) * fluid.density * fluid.e - stiff;
             refuse(!(p >= -1e-9 * (stiff + std::fabs(p))) || !(fluid.density > 0), "region.",
                    parameters.regions[n].name, " has the pressure ", p, " at x = ", x, ", z = ", z,
-                   ", and fluids here hold no tension: raise its "
-                   "pressure by that much");
+                   ", and fluids here hold no tension: raise its pressure by that much");
         });
 }
 

@@ -1,5 +1,4 @@
-// The parameters that a case file may give: the table that the file, the command line and --help are
-// read from.
+// The table of parameters, from which case files, the command line and --help are read.
 #pragma once
 
 #include <string>
@@ -46,14 +45,14 @@ inline void describe_region(common::ParameterTable& table, const std::string& pr
     table.choice(
         prefix + ".flow", r.flow,
         {"uniform", "rotation", "radial", "gresho", "wave", "gaussian", "shear", "overturn"},
-        "added to the uniform state: rigid rotation by speed/width; inward motion; the "
-        "Gresho vortex; a sound wave along x; a Gaussian of energy, width its sigma; a "
-        "layer of shear of half-width `width`; the flow that starts Rayleigh-Taylor");
+        "added to the uniform state: rigid rotation by speed/width; inward motion; the Gresho "
+        "vortex; a sound wave along x; a Gaussian of energy, width its sigma; a layer of shear of "
+        "half-width `width`; the flow that starts Rayleigh-Taylor");
     table.real(prefix + ".speed", r.speed, "velocity", anything(), "of that flow");
     table.real(prefix + ".width", r.width, "length", at_least(0), "of that flow");
-    table.real(prefix + ".amplitude", r.amplitude, "", anything(),
-               "of wave (relative density), gaussian (relative energy), shear and overturn "
-               "(velocity)");
+    table.real(
+        prefix + ".amplitude", r.amplitude, "", anything(),
+        "of wave (relative density), gaussian (relative energy), shear and overturn (velocity)");
     table.whole(prefix + ".mode", r.mode, "", between(1, 4096), "wavelengths in length_x");
     table.real(prefix + ".energy", r.energy, "energy/length", at_least(0),
                "added to the internal energy, shared by the mass of the region");

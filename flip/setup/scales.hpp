@@ -24,6 +24,7 @@ struct RegionScales {
     double mach = 0;         // the largest; 0 where there is no sound
 };
 
+/// The scales of all regions, and the steps, cost and memory that follow.
 struct Scales {
     std::vector<RegionScales> regions;
     double particles = 0;    // at the start

@@ -18,8 +18,8 @@ inline void warn_of_regions(const Case& parameters, const Scales& scales,
                             std::vector<std::string>& out) {
     for (const RegionScales& r : scales.regions)
         warn(out, r.particles == 0, "region.", r.name,
-             " contains no particle: it is outside the mesh, narrower than the "
-             "distance between particles, or replaced by a later region");
+             " contains no particle: it is outside the mesh, narrower than the distance between "
+             "particles, or replaced by a later region");
     for (std::size_t k = 0; k < parameters.materials.size(); ++k) {
         const auto is_here = [&](const GasCase& gas) {
             return material_index(parameters, gas.material) == static_cast<int>(k);
@@ -32,8 +32,7 @@ inline void warn_of_regions(const Case& parameters, const Scales& scales,
     }
     const long per_cell = parameters.per_cell_x * parameters.per_cell_z;
     warn(out, per_cell < 4, per_cell,
-         " particles per cell are fewer than 4: a particle "
-         "that leaves a cell takes ",
+         " particles per cell are fewer than 4: a particle that leaves a cell takes ",
          100.0 / static_cast<double>(per_cell), " % of its density along");
     warn(out, parameters.rezone_steps > 0 && per_cell > parameters.max_particles,
          "rezone.max_particles = ", parameters.max_particles, " is below the ", per_cell,
@@ -59,36 +58,35 @@ inline void warn_of_speeds(const Case& parameters, const Scales& scales, const s
                            std::vector<std::string>& out) {
     const bool slow = scales.sound_speed > 0 && scales.mach < 0.05;
     warn(out, program == "pic" && slow && is_gentle(parameters), "the flow has Mach ", scales.mach,
-         ", below 0.05: cells feel a particle only when it enters them, and what "
-         "classical PIC makes of such a flow is noise; take flip");
+         ", below 0.05: cells feel a particle only when it enters them, and what classical PIC "
+         "makes of such a flow is noise; take flip");
     const RegionCase& r = parameters.regions.front();
     const double c = sound_speed_of(parameters, r), M = c > 0 ? std::fabs(r.gas.velocity_x) / c : 0;
     warn(out,
          program == "flip" && !parameters.implicit() && parameters.density == "cells" &&
              parameters.compare != ringing_comparison.name && M > 0.07 && M < 0.19,
          "region.", r.name, " flows over the mesh at Mach ", M,
-         ", between 0.07 and 0.19, where explicit FLIP rings: try flip.pressure = "
-         "\"implicit\", or a frame of reference that moves along");
+         ", between 0.07 and 0.19, where explicit FLIP rings: try flip.pressure = \"implicit\", or "
+         "a frame of reference that moves along");
     const bool shocks =
         scales.mach > 0.5 || parameters.setup == "riemann" || !is_gentle(parameters);
     warn(out,
          parameters.q_linear == 0 && parameters.q_quadratic == 0 && shocks &&
              !parameters.implicit() && scales.sound_speed > 0,
-         program == "pic"
-             ? "without artificial viscosity the method has none where the fluid rests: behind "
-               "a shock at a wall, density scatters by tens of percent"
-             : "without artificial viscosity particles pile up at shocks: set viscosity.linear "
-               "= 0.5 and viscosity.quadratic = 1");
+         program == "pic" ? "without artificial viscosity the method has none where the fluid "
+                            "rests: behind a shock at a wall, density scatters by tens of percent"
+                          : "without artificial viscosity particles pile up at shocks: set "
+                            "viscosity.linear = 0.5 and viscosity.quadratic = 1");
     const bool held = std::any_of(parameters.ends.begin(), parameters.ends.end(),
                                   [](const EndCase& end) { return end.kind == "no_slip"; });
     warn(out, held && parameters.viscosity == 0,
-         "a no_slip wall holds fluid without viscosity only through the mesh: set "
-         "flip.viscosity, or make the wall slip");
+         "a no_slip wall holds fluid without viscosity only through the mesh: set flip.viscosity, "
+         "or make the wall slip");
     warn(out,
          parameters.implicit() && scales.speed > 0.5 * scales.sound_speed && scales.sound_speed > 0,
          "the flow has Mach ", scales.mach,
-         ", above 0.5, and time.cfl with implicit pressure does not follow its sound: "
-         "waves are damped");
+         ", above 0.5, and time.cfl with implicit pressure does not follow its sound: waves are "
+         "damped");
 }
 
 }  // namespace detail

@@ -20,7 +20,8 @@ struct WaveTransfer {
 };
 
 /// The factor by which a step multiplies a sound wave that particles carry.
-///   u_new = kept u + increment du,  p_new = p - i a [density/gamma u_move + energy (1 - 1/gamma) u_work]
+///   u_new = kept u + increment du
+///   p_new = p - i a [density/gamma u_move + energy (1 - 1/gamma) u_work]
 /// with du of the mesh alone; explicit: u_move = u + du, u_work = u + du/2; of the theta scheme:
 /// u_move = u_work = u + theta du
 /// in:    theta < 0: explicit; gamma, 1 over the part of density in a change of pressure

@@ -7,8 +7,10 @@
 
 namespace flip {
 
+/// Tables I and II of Ghia, Ghia and Shin.
 inline constexpr const char* cavity_table = "flip/data/ghia_re100.csv";
 
+/// Needs a square with a lid at Reynolds number 100.
 inline void validate_cavity(const Case& parameters, const Refusal& refuse) {
     for (const EndCase& end : parameters.ends)
         refuse(end.kind != "no_slip", " needs no_slip walls on all sides");
@@ -28,10 +30,11 @@ inline void validate_cavity(const Case& parameters, const Refusal& refuse) {
     theory::read_table(cavity_table);
 }
 
-// Velocities in units of the lid's along both middle lines of the mesh.
+/// Velocities in units of the lid's along both middle lines of the mesh.
 struct Midlines {
     std::vector<double> u, v;  // u on x = 1/2 from the bottom up, v on z = 1/2 from the left
 };
+/// Means of the two cells next to the middle, where the number of cells is even.
 inline Midlines midlines(const Case& parameters, const CellFields& cells) {
     const Grid& grid = parameters.grid;
     const double U = parameters.ends[z_high].slide;
@@ -45,7 +48,7 @@ inline Midlines midlines(const Case& parameters, const CellFields& cells) {
     return lines;
 }
 
-// Linear between the middles of the cells and the walls at s = 0 and 1.
+/// Linear between the middles of the cells and the walls at s = 0 and 1.
 inline double between_walls(const std::vector<double>& values, double low, double high, double s) {
     const double n = static_cast<double>(values.size()), at = s * n - 0.5;
     if (at <= 0) return low + (values.front() - low) * 2 * s * n;
@@ -55,10 +58,11 @@ inline double between_walls(const std::vector<double>& values, double low, doubl
     return (1 - part) * values[i] + part * values[i + 1];
 }
 
-// Where the flow turns around: the largest flux between there and the bottom, in units of the box.
+/// Where the flow turns around: the largest flux between there and the bottom, in units of the box.
 struct VortexCenter {
     double x = 0, z = 0, flux = 0;
 };
+/// The center from the stream function -integral u dz, with a parabola through three nodes.
 inline VortexCenter vortex_center(const Case& parameters, const CellFields& cells) {
     const Grid& grid = parameters.grid;
     const double U = parameters.ends[z_high].slide, nx = static_cast<double>(grid.x.cells),
@@ -89,6 +93,7 @@ inline VortexCenter vortex_center(const Case& parameters, const CellFields& cell
             here};
 }
 
+/// Profiles through the middle, the center of the vortex, and how steady the flow is.
 inline void compare_cavity(const FinishedRun& run) {
     const Case& parameters = run.parameters;
     const auto table = theory::read_table(cavity_table);

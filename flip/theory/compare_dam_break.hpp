@@ -6,6 +6,7 @@
 
 namespace flip {
 
+/// The fronts of Martin and Moyce.
 inline constexpr const char* dam_table = "flip/data/martin_moyce.csv";
 
 /// The time of Martin and Moyce, for a column of width a and height n^2 a.
@@ -29,6 +30,7 @@ inline WaterColumn water_of(const Case& parameters) {
             material_index(parameters, r.gas.material)};
 }
 
+/// Needs a box of water in the corner of a wall and a floor.
 inline void validate_dam_break(const Case& parameters, const Refusal& refuse) {
     const RegionCase& r = parameters.regions.back();
     refuse(r.shape != "box", " needs a box of water as the last region");
@@ -45,7 +47,7 @@ inline void validate_dam_break(const Case& parameters, const Refusal& refuse) {
     theory::read_table(dam_table);
 }
 
-// Water along the floor, up to half density, and along the wall behind it.
+/// Water along the floor, up to half density, and along the wall behind it.
 inline void track_dam_break(const Snapshot& now, common::Row& row) {
     const Grid& grid = now.parameters.grid;
     const WaterColumn water = water_of(now.parameters);
@@ -63,8 +65,8 @@ inline void track_dam_break(const Snapshot& now, common::Row& row) {
     row.add("wall_height", "length", height);
 }
 
-// The front in the scales of Martin and Moyce, whose column was twice as high as wide.
-// note:   their dam took a time to vanish, so that speeds can be compared and times cannot
+/// The front in the scales of Martin and Moyce, whose column was twice as high as wide.
+/// note:   their dam took a time to vanish, so that speeds can be compared and times cannot
 inline void compare_dam_break(const FinishedRun& run) {
     const WaterColumn water = water_of(run.parameters);
     const auto times = run.history.column("time"), front = run.history.column("front_x"),

@@ -8,6 +8,7 @@
 
 namespace flip {
 
+/// Needs a Gaussian of energy in dust that flows over a periodic mesh in steps of one length.
 inline void validate_diffusion(const Case& parameters, const Refusal& refuse) {
     validate_flow(parameters, refuse, "gaussian");
     const RegionCase& r = region_with_flow(parameters, "gaussian");
@@ -24,8 +25,8 @@ inline void validate_diffusion(const Case& parameters, const Refusal& refuse) {
            r.name, ".width = ", r.width, ", and it is ", parameters.grid.x.length);
 }
 
-// Middle and variance along x of the energy above that of the background.
-// note:   the phase of the first Fourier mode finds the middle across a periodic end
+/// Middle and variance along x of the energy above that of the background.
+/// note:   the phase of the first Fourier mode finds the middle across a periodic end
 inline void track_diffusion(const Snapshot& now, common::Row& row) {
     const Case& parameters = now.parameters;
     const CellFields& cells = now.cells;
@@ -50,8 +51,8 @@ inline void track_diffusion(const Snapshot& now, common::Row& row) {
     row.add("variance", "length^2", sum != 0 ? second / sum - mean * mean : 0);
 }
 
-// The diffusivity.
-//   variance' = 2 D
+/// The diffusivity.
+///   variance' = 2 D
 inline void compare_diffusion(const FinishedRun& run) {
     const Case& parameters = run.parameters;
     const double u = region_with_flow(parameters, "gaussian").gas.velocity_x,

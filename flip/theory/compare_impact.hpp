@@ -7,13 +7,14 @@
 
 namespace flip {
 
-// The fastest region, and the first box of another material.
+/// The fastest region, and the first box of another material.
 struct Impact {
     const RegionCase *projectile, *target;  // null where there is none
     bool along_x() const {
         return std::fabs(projectile->gas.velocity_x) >= std::fabs(projectile->gas.velocity_z);
     }
 };
+/// The impact of a case.
 inline Impact impact_of(const Case& parameters) {
     Impact s{&parameters.regions.front(), nullptr};
     const auto speed = [](const RegionCase& r) {
@@ -28,6 +29,7 @@ inline Impact impact_of(const Case& parameters) {
     return s;
 }
 
+/// Needs a region that moves and a box of another material.
 inline void validate_impact(const Case& parameters, const Refusal& refuse) {
     const Impact impact = impact_of(parameters);
     refuse(impact.target == nullptr,
@@ -36,7 +38,7 @@ inline void validate_impact(const Case& parameters, const Refusal& refuse) {
     refuse(gas.velocity_x == 0 && gas.velocity_z == 0, " needs a region that moves");
 }
 
-// Momentum of the target, and how far the projectile has come beyond its face.
+/// Momentum of the target, and how far the projectile has come beyond its face.
 inline void track_impact(const Snapshot& now, common::Row& row) {
     const Case& parameters = now.parameters;
     const Impact impact = impact_of(parameters);
@@ -62,6 +64,7 @@ inline void track_impact(const Snapshot& now, common::Row& row) {
     row.add("depth", "length", std::isfinite(foremost) ? foremost - face : 0.0);
 }
 
+/// Conservation to round-off, and how much momentum and depth the target has taken.
 inline void compare_impact(const FinishedRun& run) {
     const double round_off = 1e-12;
     for (const char* name : {"mass_error", "momentum_x_error", "momentum_z_error", "energy_error"})

@@ -41,7 +41,7 @@ struct HyperbolicFit {
     long samples = 0;
 };
 
-// Sum of |z - A cosh - B sinh|^2 for the best A and B.
+/// Sum of |z - A cosh - B sinh|^2 for the best A and B.
 inline double hyperbolic_misfit(const std::vector<double>& t,
                                 const std::vector<std::complex<double>>& z, std::size_t count,
                                 double rate) {
@@ -94,8 +94,10 @@ inline HyperbolicFit fit_hyperbolic(const std::vector<double>& t,
     return fit;
 }
 
+/// The growth rate in one line.
 inline std::string predict_growth(double growth) { return "growth rate " + format(growth); }
 
+/// Warns of a run shorter than one growth time.
 inline void warn_of_growth(const Case& parameters, double growth,
                            std::vector<std::string>& warnings) {
     warn(warnings, growth * parameters.end < 1, "theory has the growth rate ", growth,
@@ -103,7 +105,7 @@ inline void warn_of_growth(const Case& parameters, double growth,
          " in which the wave grows by e: its growth cannot be measured well");
 }
 
-// The growth from the start on, while the mode is smaller than `most`.
+/// The growth from the start on, while the mode is smaller than `most`.
 inline void compare_growth(const FinishedRun& run, double expected, double most,
                            const std::string& source) {
     const auto times = run.history.column("time");
@@ -125,6 +127,7 @@ inline void compare_growth(const FinishedRun& run, double expected, double most,
     run.info("e_foldings", expected * times[count - 1], "", "within the fit");
 }
 
+/// Needs heavy fluid above light fluid between walls.
 inline void validate_interface(const Case& parameters, const Refusal& refuse) {
     refuse(parameters.regions.size() != 2 || parameters.regions[0].shape != "everywhere" ||
                parameters.regions[1].shape != "above",
@@ -139,17 +142,19 @@ inline void validate_interface(const Case& parameters, const Refusal& refuse) {
            " does not overturn: turn one around");
 }
 
+/// The growth rate of the interface.
 inline std::string predict_interface(const Case& parameters, const std::string&, double) {
     return predict_growth(interface_growth_of(parameters));
 }
 
+/// Warns of a run shorter than one growth time of the interface.
 inline void warn_of_interface(const Case& parameters, std::vector<std::string>& warnings) {
     warn_of_growth(parameters, interface_growth_of(parameters), warnings);
 }
 
-// Height of the interface, from the mass of the columns,
-//   (rho_lower - rho_upper) eta(x) = integral of rho over z - its mean
-// note: it is linear in eta, where velocities at a fixed height lose (8/3 pi) k eta of themselves
+/// Height of the interface, from the mass of the columns,
+///   (rho_lower - rho_upper) eta(x) = integral of rho over z - its mean
+/// note: it is linear in eta, where velocities at a fixed height lose (8/3 pi) k eta of themselves
 inline void track_interface(const Snapshot& now, common::Row& row) {
     const Case& parameters = now.parameters;
     const theory::TwoLayers layers = layers_of(parameters);
@@ -159,12 +164,13 @@ inline void track_interface(const Snapshot& now, common::Row& row) {
                          parameters.regions.back().center_x));
 }
 
-// While the crests are lower than 0.3/k.
+/// The growth of the interface while its crests are lower than 0.3/k.
 inline void compare_interface(const FinishedRun& run) {
     compare_growth(run, interface_growth_of(run.parameters),
                    0.3 / tracked_wave_number(run.parameters), "two layers between walls");
 }
 
+/// Needs a layer of shear half-way between walls, in which the mode grows.
 inline void validate_shear(const Case& parameters, const Refusal& refuse) {
     validate_flow(parameters, refuse, "shear");
     validate_mode(parameters, refuse, "shear");
@@ -178,16 +184,18 @@ inline void validate_shear(const Case& parameters, const Refusal& refuse) {
            " does not grow: make it thinner, or lower theory.mode");
 }
 
+/// The growth rate of the layer.
 inline std::string predict_shear(const Case& parameters, const std::string&, double) {
     return predict_growth(shear_growth_of(parameters));
 }
 
+/// Warns of a run shorter than one growth time of the layer.
 inline void warn_of_shear(const Case& parameters, std::vector<std::string>& warnings) {
     warn_of_growth(parameters, shear_growth_of(parameters), warnings);
 }
 
-// Velocity across the layer, in the rows on both sides of its middle; in one row where the middle
-// goes through it.
+/// Velocity across the layer, in the rows on both sides of its middle; in one row where the middle
+/// goes through it.
 inline void track_shear(const Snapshot& now, common::Row& row) {
     const Case& parameters = now.parameters;
     const RegionCase& r = region_with_flow(parameters, "shear");
@@ -200,7 +208,7 @@ inline void track_shear(const Snapshot& now, common::Row& row) {
     add_mode(row, "mode", "velocity", mode_of(parameters, now.cells.vz, j_low, j_high, r.center_x));
 }
 
-// While the crests, whose height is velocity over growth rate, are lower than 0.3/k.
+/// The growth of the layer while its crests, velocity over growth rate, are lower than 0.3/k.
 inline void compare_shear(const FinishedRun& run) {
     const double growth = shear_growth_of(run.parameters);
     compare_growth(run, growth, 0.3 / tracked_wave_number(run.parameters) * growth,

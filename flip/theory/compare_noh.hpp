@@ -12,6 +12,7 @@ inline theory::NohProblem noh_of(const Case& parameters) {
     return {material_of(parameters, r).gamma, parameters.plane() ? 2 : 1, r.gas.density, r.speed};
 }
 
+/// Needs cold gas that falls inward.
 inline void validate_noh(const Case& parameters, const Refusal& refuse) {
     validate_flow(parameters, refuse, "radial");
     const RegionCase& r = region_with_flow(parameters, "radial");
@@ -23,16 +24,19 @@ inline void validate_noh(const Case& parameters, const Refusal& refuse) {
            " is above a hundredth of density speed^2, ", most);
 }
 
+/// The radius of the shock at the end.
 inline std::string predict_noh(const Case& parameters, const std::string&, double) {
     return sentence("shock at r = ", theory::noh_shock_radius(noh_of(parameters), parameters.end),
                     " at t = ", parameters.end);
 }
 
+/// Means over rings around the point that the gas falls to.
 inline RadialProfile noh_profile(const Case& parameters, const CellFields& cells) {
     const RegionCase& r = region_with_flow(parameters, "radial");
     return radial_profile(parameters.grid, cells, r.center_x, r.center_z);
 }
 
+/// The radius at which the density is half-way between both sides of the exact shock.
 inline void track_noh(const Snapshot& now, common::Row& row) {
     const theory::NohProblem noh = noh_of(now.parameters);
     const double R = theory::noh_shock_radius(noh, 1);
@@ -42,8 +46,9 @@ inline void track_noh(const Snapshot& now, common::Row& row) {
     row.add("shock_radius", "length", outermost(profile.r, profile.rho, level));
 }
 
-// note:   in the plane every method of this kind is known to err near the middle, so that what it
-//         gives there stands beside theory without a verdict
+/// The plateau behind the shock, the radius of the shock, and the profile.
+/// note:   in the plane every method of this kind is known to err near the middle, so that what it
+///         gives there stands beside theory without a verdict
 inline void compare_noh(const FinishedRun& run) {
     const theory::NohProblem noh = noh_of(run.parameters);
     const double t = run.state.time, R = theory::noh_shock_radius(noh, t);

@@ -17,6 +17,7 @@ inline theory::RiemannSolution riemann_of(const Case& parameters) {
     return theory::solve_riemann(side(parameters.left), side(parameters.right));
 }
 
+/// Needs two half-spaces without gravity, and ends in x.
 inline void validate_riemann(const Case& parameters, const Refusal& refuse) {
     refuse(parameters.setup != "riemann", " needs setup.kind = \"riemann\"");
     refuse(parameters.grid.x.periodic, " needs ends in x, and they are periodic: make them open");
@@ -25,12 +26,14 @@ inline void validate_riemann(const Case& parameters, const Refusal& refuse) {
     riemann_of(parameters);
 }
 
+/// Pressure and velocity between the waves.
 inline std::string predict_riemann(const Case& parameters, const std::string&, double) {
     const theory::RiemannSolution s = riemann_of(parameters);
     return sentence("pressure ", s.left_of_contact.pressure, " and velocity ", s.left_contact,
                     " at the contact");
 }
 
+/// Warns where the waves leave the mesh before the end.
 inline void warn_of_riemann(const Case& parameters, std::vector<std::string>& warnings) {
     const theory::RiemannSolution exact = riemann_of(parameters);
     const double left =
@@ -42,9 +45,9 @@ inline void warn_of_riemann(const Case& parameters, std::vector<std::string>& wa
          ", beyond the ends of the mesh, which the exact solution does not know");
 }
 
-// Density, velocity, contact and pressure between the waves.
-//   L1(q) = dx/L sum_i |q_i - mean of the exact q over cell i|
-// note:   cells to which the ends of the mesh could have sent a signal are compared all the same
+/// Density, velocity, contact and pressure between the waves.
+///   L1(q) = dx/L sum_i |q_i - mean of the exact q over cell i|
+/// note:   cells to which the ends of the mesh could have sent a signal are compared all the same
 inline void compare_riemann(const FinishedRun& run) {
     const Case& parameters = run.parameters;
     const double t = run.state.time;

@@ -38,6 +38,7 @@ inline Blast blast_of(const Case& parameters) {
             energy, cold.gas.density, hot.center_x, hot.center_z};
 }
 
+/// Needs one region with an energy in cold gas, and room for the shock until the end.
 inline void validate_sedov(const Case& parameters, const Refusal& refuse) {
     const RegionCase& cold = parameters.regions.front();
     const auto hot = std::count_if(parameters.regions.begin(), parameters.regions.end(),
@@ -60,11 +61,13 @@ inline void validate_sedov(const Case& parameters, const Refusal& refuse) {
            ", and the mesh ends at ", most, ": lower time.end");
 }
 
+/// The radius of the shock at the end.
 inline std::string predict_sedov(const Case& parameters, const std::string&, double) {
     return sentence("shock at r = ", blast_of(parameters).radius(parameters.end),
                     " at t = ", parameters.end);
 }
 
+/// The outer radius at which the density is half-way to its peak.
 inline void track_sedov(const Snapshot& now, common::Row& row) {
     const Blast blast = blast_of(now.parameters);
     const RadialProfile profile = radial_profile(now.parameters.grid, now.cells, blast.x, blast.z);
@@ -73,6 +76,7 @@ inline void track_sedov(const Snapshot& now, common::Row& row) {
             outermost(profile.r, profile.rho, 0.5 * (blast.density + most)));
 }
 
+/// The radius of the shock, the peak of the density, and the profiles.
 inline void compare_sedov(const FinishedRun& run) {
     const Blast blast = blast_of(run.parameters);
     const double t = run.state.time, R = blast.radius(t);

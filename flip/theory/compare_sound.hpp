@@ -48,6 +48,7 @@ inline SoundWave sound_wave_of(const Case& parameters, const std::string& progra
     return {c * k, std::arg(factor), std::abs(factor)};
 }
 
+/// Needs a single region of gas with a sound wave whose mode is tracked.
 inline void validate_wave(const Case& parameters, const Refusal& refuse) {
     validate_flow(parameters, refuse, "wave");
     validate_mode(parameters, refuse, "wave");
@@ -60,12 +61,14 @@ inline void validate_wave(const Case& parameters, const Refusal& refuse) {
            ": set theory.frame_x to that");
 }
 
+/// The period, and the factor by which a step multiplies the wave.
 inline std::string predict_wave(const Case& parameters, const std::string& program, double dt) {
     const SoundWave s = sound_wave_of(parameters, program, dt);
     return sentence("period ", 2 * pi / s.frequency, "; a step of ", dt, " multiplies the wave by ",
                     s.amplification);
 }
 
+/// Warns of a run shorter than one period.
 inline void warn_of_wave(const Case& parameters, std::vector<std::string>& warnings) {
     const double c = sound_speed_of(parameters, region_with_flow(parameters, "wave")),
                  period = 2 * pi / (c * tracked_wave_number(parameters));
@@ -73,6 +76,7 @@ inline void warn_of_wave(const Case& parameters, std::vector<std::string>& warni
          ", longer than time.end = ", parameters.end, ": its frequency cannot be measured well");
 }
 
+/// The mode of velocity and pressure, in the frame of theory.
 inline void track_wave(const Snapshot& now, common::Row& row) {
     const Case& parameters = now.parameters;
     const double from = parameters.grid.x.low + parameters.frame_x * now.state.time;
@@ -82,10 +86,11 @@ inline void track_wave(const Snapshot& now, common::Row& row) {
              mode_of(parameters, now.cells.p, 0, parameters.grid.z.cells, from));
 }
 
-// Phase and logarithm of the size of a mode that turns by less than half a turn between samples.
+/// Phase and logarithm of the size of a mode that turns by less than half a turn between samples.
 struct Spiral {
     std::vector<double> phase, log_size;
 };
+/// The phase and size of each sample.
 inline Spiral unwound(const std::vector<std::complex<double>>& mode) {
     Spiral s;
     for (const std::complex<double>& z : mode) {
@@ -97,7 +102,7 @@ inline Spiral unwound(const std::vector<std::complex<double>>& mode) {
     return s;
 }
 
-// Frequency, and the change of the amplitude in a period.
+/// Frequency, and the change of the amplitude in a period.
 inline void compare_wave(const FinishedRun& run) {
     const Case& parameters = run.parameters;
     const auto times = run.history.column("time");
@@ -127,6 +132,7 @@ inline void compare_wave(const FinishedRun& run) {
     run.info("periods", times.back() / period, "", "of c k");
 }
 
+/// Needs a uniform gas with noise on a periodic mesh.
 inline void validate_ringing(const Case& parameters, const Refusal& refuse) {
     const RegionCase& r = parameters.regions.front();
     refuse(parameters.regions.size() != 1 || r.flow != "uniform" || r.shape != "everywhere" ||
@@ -136,6 +142,7 @@ inline void validate_ringing(const Case& parameters, const Refusal& refuse) {
     refuse(r.noise == 0, " needs a seed: give region.", r.name, ".noise");
 }
 
+/// The rms of the velocity on the cells.
 inline void track_ringing(const Snapshot& now, common::Row& row) {
     const std::vector<double> vx = mean_over_z(now.parameters.grid, now.cells.vx);
     double mean = 0, squares = 0;
@@ -144,7 +151,7 @@ inline void track_ringing(const Snapshot& now, common::Row& row) {
     row.add("noise", "velocity", std::sqrt(squares / static_cast<double>(vx.size())));
 }
 
-// A uniform flow should stay one: how fast its noise grows.
+/// A uniform flow should stay one: how fast its noise grows.
 inline void compare_ringing(const FinishedRun& run) {
     const Case& parameters = run.parameters;
     const RegionCase& r = parameters.regions.front();

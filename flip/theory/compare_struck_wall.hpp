@@ -21,6 +21,7 @@ inline StruckWall struck_wall(const Case& parameters) {
             r.gas.velocity_x < 0, r.gas.density};
 }
 
+/// Needs uniform gas that runs into a wall, until the other end of the mesh is felt.
 inline void validate_wall_shock(const Case& parameters, const Refusal& refuse) {
     const RegionCase& r = parameters.regions.front();
     refuse(parameters.regions.size() != 1 || r.shape != "everywhere" || r.flow != "uniform",
@@ -42,6 +43,7 @@ inline void validate_wall_shock(const Case& parameters, const Refusal& refuse) {
            " on: lower time.end below that");
 }
 
+/// Needs what wall_shock needs, and gas with a pressure.
 inline void validate_piston(const Case& parameters, const Refusal& refuse) {
     validate_wall_shock(parameters, refuse);
     const RegionCase& r = parameters.regions.front();
@@ -49,16 +51,18 @@ inline void validate_piston(const Case& parameters, const Refusal& refuse) {
            " needs gas with a pressure: give region.", r.name, ".pressure");
 }
 
+/// Density, speed and Mach number of the shock.
 inline std::string predict_wall_shock(const Case& parameters, const std::string&, double) {
     const theory::DrivenShock s = struck_wall(parameters).shock;
     return sentence("density ", s.density, " behind a shock at ", s.speed_from_wall,
                     " from the wall, Mach ", s.mach);
 }
 
-// Density against the distance from the wall that the gas runs into.
+/// Density against the distance from the wall that the gas runs into.
 struct FromWall {
     std::vector<double> distance, rho;
 };
+/// The means over z, turned around where the wall is x_high.
 inline FromWall from_wall(const Case& parameters, const CellFields& cells) {
     FromWall s{{}, mean_over_z(parameters.grid, cells.rho)};
     if (!struck_wall(parameters).at_low) std::reverse(s.rho.begin(), s.rho.end());
@@ -67,6 +71,7 @@ inline FromWall from_wall(const Case& parameters, const CellFields& cells) {
     return s;
 }
 
+/// The distance at which the density is half-way between both sides of the shock.
 inline void track_wall_shock(const Snapshot& now, common::Row& row) {
     const StruckWall wall = struck_wall(now.parameters);
     const FromWall profile = from_wall(now.parameters, now.cells);
@@ -74,7 +79,7 @@ inline void track_wall_shock(const Snapshot& now, common::Row& row) {
             outermost(profile.distance, profile.rho, 0.5 * (wall.density + wall.shock.density)));
 }
 
-// The plateau behind the shock, and how fast the shock moves away from the wall.
+/// The plateau behind the shock, and how fast the shock moves away from the wall.
 inline void compare_wall_shock(const FinishedRun& run) {
     const Case& parameters = run.parameters;
     const StruckWall wall = struck_wall(parameters);
@@ -108,6 +113,7 @@ inline void compare_wall_shock(const FinishedRun& run) {
                                       {"rho_exact", "mass/length^3", exact}});
 }
 
+/// The results of wall_shock, after the Mach number of the shock.
 inline void compare_piston(const FinishedRun& run) {
     const double mach = struck_wall(run.parameters).shock.mach;
     if (std::isfinite(mach))

@@ -7,15 +7,17 @@
 
 namespace flip {
 
+/// The region with the vortex.
 inline const RegionCase& gresho_region(const Case& parameters) {
     return region_with_flow(parameters, "gresho");
 }
 
-// The time in which the core turns once.
+/// The time in which the core turns once.
 inline double turn_of_gresho(const Case& parameters) {
     return std::fabs(pi * gresho_region(parameters).width / gresho_region(parameters).speed);
 }
 
+/// Needs a vortex that moves with the frame of theory.
 inline void validate_gresho(const Case& parameters, const Refusal& refuse) {
     validate_flow(parameters, refuse, "gresho");
     const RegionCase& r = gresho_region(parameters);
@@ -28,10 +30,12 @@ inline void validate_gresho(const Case& parameters, const Refusal& refuse) {
            ": set theory.frame_x and frame_z to that");
 }
 
+/// The time of one turn.
 inline std::string predict_gresho(const Case& parameters, const std::string&, double) {
     return sentence("one turn in t = ", turn_of_gresho(parameters));
 }
 
+/// Warns of a run shorter than half a turn.
 inline void warn_of_gresho(const Case& parameters, std::vector<std::string>& warnings) {
     warn(warnings,
          parameters.regions.size() == 1 && parameters.end < 0.5 * turn_of_gresho(parameters),
@@ -39,7 +43,7 @@ inline void warn_of_gresho(const Case& parameters, std::vector<std::string>& war
          turn_of_gresho(parameters), ": what one turn loses is extrapolated");
 }
 
-// Kinetic energy and angular momentum about the middle of the vortex, both in its frame.
+/// Kinetic energy and angular momentum about the middle of the vortex, both in its frame.
 inline void track_gresho(const Snapshot& now, common::Row& row) {
     const Case& parameters = now.parameters;
     const CellFields& cells = now.cells;
@@ -61,8 +65,8 @@ inline void track_gresho(const Snapshot& now, common::Row& row) {
     row.add("swirl", "momentum", swirl);
 }
 
-// What one turn leaves of the vortex.
-//   kept = (at the end / at the start)^(turn / duration)
+/// What one turn leaves of the vortex.
+///   kept = (at the end / at the start)^(turn / duration)
 inline void compare_gresho(const FinishedRun& run) {
     const Case& parameters = run.parameters;
     const RegionCase& region = gresho_region(parameters);
@@ -93,13 +97,14 @@ inline void compare_gresho(const FinishedRun& run) {
                                       {"v_exact", "velocity", exact}});
 }
 
+/// Needs a region that turns rigidly.
 inline void validate_rotation(const Case& parameters, const Refusal& refuse) {
     validate_flow(parameters, refuse, "rotation");
     const RegionCase& r = region_with_flow(parameters, "rotation");
     refuse(r.speed == 0, " needs a flow: give region.", r.name, ".speed");
 }
 
-// note:   PIC's transfer loses 2 h^2/(3 R^2) in each step; blends lose their part of that
+/// note:   PIC's transfer loses 2 h^2/(3 R^2) in each step; blends lose their part of that
 inline void compare_rotation(const FinishedRun& run) {
     const Case& parameters = run.parameters;
     const RegionCase& region = region_with_flow(parameters, "rotation");

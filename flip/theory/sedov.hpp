@@ -16,6 +16,7 @@
 
 namespace flip::theory {
 
+/// The gas at one radius, in units of the shock.
 struct BlastPoint {
     double radius;    // lambda = r / R
     double density;   // rho / rho_0
@@ -23,6 +24,7 @@ struct BlastPoint {
     double pressure;  // p / (rho_0 D^2)
 };
 
+/// What all radii need to know of a blast.
 struct BlastWave {
     double gamma;
     int dimension;  // 1 plane, 2 cylinder, 3 sphere
