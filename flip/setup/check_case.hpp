@@ -11,8 +11,7 @@
 
 namespace flip {
 
-namespace detail {
-
+/// Refuses methods that the program does not have, and those that do not go together.
 inline void refuse_methods(const Case& parameters, const std::string& program) {
     for (const FlipKey& key : keys_of_flip(parameters)) {
         const bool physics = key.name == "flip.viscosity" || key.name == "flip.pressure";
@@ -39,8 +38,6 @@ inline void refuse_methods(const Case& parameters, const std::string& program) {
            ": cells would split and merge the same particles in turn; raise it");
 }
 
-}  // namespace detail
-
 /// Refuses what a case says in vain.
 /// in:     the case as it was read, before completed()
 /// errors: InputError, one sentence
@@ -65,13 +62,13 @@ inline void validate(const Case& parameters, const std::string& program) {
                          parameters.interface < parameters.grid.x.low + parameters.grid.x.length;
     refuse(parameters.setup == "riemann" && !between, "setup.interface = ", parameters.interface,
            " is not on the mesh, from ", parameters.grid.x.low, " to ", parameters.grid.x.high());
-    detail::refuse_sizes(parameters);
-    detail::refuse_boundaries(parameters);
-    detail::refuse_materials(parameters);
-    for (const RegionCase& r : parameters.regions) detail::refuse_region(parameters, r);
-    detail::refuse_methods(parameters, program);
-    detail::refuse_tension(parameters);
-    detail::refuse_steps(parameters, scales_of(parameters, program));
+    refuse_sizes(parameters);
+    refuse_boundaries(parameters);
+    refuse_materials(parameters);
+    for (const RegionCase& r : parameters.regions) refuse_region(parameters, r);
+    refuse_methods(parameters, program);
+    refuse_tension(parameters);
+    refuse_steps(parameters, scales_of(parameters, program));
     validate_comparison(parameters);
 }
 

@@ -12,15 +12,14 @@
 
 namespace flip {
 
-namespace detail {
-
-// Beyond these sizes, products of several numbers leave double precision.
+/// Refuses numbers beyond 1e-40 and 1e40, whose products leave double precision.
 inline void refuse_extreme(const std::string& name, double value) {
     const double size = std::fabs(value);
     refuse(size != 0 && !(size > 1e-40 && size < 1e40), name, " = ", value,
            " is not between 1e-40 and 1e40 in size: choose other units");
 }
 
+/// The same for a state of the gas.
 inline void refuse_extreme(const std::string& prefix, const GasCase& gas) {
     refuse_extreme(prefix + ".density", gas.density);
     refuse_extreme(prefix + ".pressure", gas.pressure);
@@ -28,6 +27,7 @@ inline void refuse_extreme(const std::string& prefix, const GasCase& gas) {
     refuse_extreme(prefix + ".velocity_z", gas.velocity_z);
 }
 
+/// Refuses too many particles, and numbers that lose precision.
 inline void refuse_sizes(const Case& parameters) {
     const double cells = static_cast<double>(parameters.grid.x.cells) *
                          static_cast<double>(parameters.grid.z.cells),
@@ -67,6 +67,7 @@ inline void refuse_sizes(const Case& parameters) {
     refuse_far("low_z", parameters.grid.z);
 }
 
+/// Refuses boundaries that do not go together, and numbers that none of them uses.
 inline void refuse_boundaries(const Case& parameters) {
     for (const End low : {x_low, z_low}) {
         const std::string a = end_names[low], b = end_names[low + 1];
@@ -101,6 +102,7 @@ inline void refuse_boundaries(const Case& parameters) {
            " needs grid.cells_z of at least 2");
 }
 
+/// The names of all materials, quoted, for a sentence.
 inline std::string list_of_materials(const Case& parameters) {
     std::string list;
     for (const Material& a : parameters.materials)
@@ -108,6 +110,7 @@ inline std::string list_of_materials(const Case& parameters) {
     return list;
 }
 
+/// Refuses materials that the equation of state or the program cannot hold.
 inline void refuse_materials(const Case& parameters) {
     refuse(parameters.materials.size() > most_materials, parameters.materials.size(),
            " materials are more than the ", most_materials, " that a cell can hold: use fewer");
@@ -126,6 +129,7 @@ inline void refuse_materials(const Case& parameters) {
            parameters.inflow.material, "\" is none of ", list_of_materials(parameters));
 }
 
+/// Refuses a region without shape, or with a flow that it cannot have.
 inline void refuse_region(const Case& parameters, const RegionCase& r) {
     const std::string region = "region." + r.name;
     refuse(material_index(parameters, r.gas.material) < 0, region, ".material = \"", r.gas.material,
@@ -166,20 +170,20 @@ inline void refuse_region(const Case& parameters, const RegionCase& r) {
            (r.hydrostatic ? "hydrostatic = true" : "flow = \"" + r.flow + "\""));
 }
 
-// Pressures that the equation of state does not have, at the places of the particles.
+/// Refuses pressures that the equation of state does not have, at the places of the particles.
 inline void refuse_tension(const Case& parameters) {
-    for_each_place(
-        parameters, [&](std::size_t n, const FluidState& fluid, double x, double z, double) {
-            const Material& a = parameters.materials[static_cast<std::size_t>(fluid.material)];
-            if (a.gamma == 1) return;
-            const double stiff = a.gamma * a.p_infinity,
-                         p = (a.gamma - 1) * fluid.density * fluid.e - stiff;
-            refuse(!(p >= -1e-9 * (stiff + std::fabs(p))) || !(fluid.density > 0), "region.",
-                   parameters.regions[n].name, " has the pressure ", p, " at x = ", x, ", z = ", z,
-                   ", and fluids here hold no tension: raise its pressure by that much");
-        });
+    for_each_place(parameters, [&](long n, const FluidState& fluid, double x, double z, double) {
+        const Material& a = parameters.materials[fluid.material];
+        if (a.gamma == 1) return;
+        const double stiff = a.gamma * a.p_infinity,
+                     p = (a.gamma - 1) * fluid.density * fluid.e - stiff;
+        refuse(!(p >= -1e-9 * (stiff + std::fabs(p))) || !(fluid.density > 0), "region.",
+               parameters.regions[n].name, " has the pressure ", p, " at x = ", x, ", z = ", z,
+               ", and fluids here hold no tension: raise its pressure by that much");
+    });
 }
 
+/// Refuses a run without particles, and a time step that is too long.
 inline void refuse_steps(const Case& parameters, const Scales& s) {
     refuse(s.particles == 0 && !std::any_of(parameters.ends.begin(), parameters.ends.end(),
                                             [](const EndCase& e) { return e.kind == "inflow"; }),
@@ -205,7 +209,5 @@ inline void refuse_steps(const Case& parameters, const Scales& s) {
            " is above 0.5, where explicit viscosity blows up: lower it below ",
            0.5 * parameters.dt / number);
 }
-
-}  // namespace detail
 
 }  // namespace flip

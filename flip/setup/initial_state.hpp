@@ -95,10 +95,17 @@ inline void overturn(double k, double x, double z, double depth, double amplitud
 
 }  // namespace detail
 
+/// Index of the region at (x, z), the last that contains it; -1 in a void.
+inline long region_at(const Case& parameters, double x, double z) {
+    long n = static_cast<long>(parameters.regions.size()) - 1;
+    while (n >= 0 && !detail::contains(parameters, parameters.regions[n], x, z)) --n;
+    return n;
+}
+
 /// The fluid of one region at (x, z).
 inline FluidState fluid_of(const Case& parameters, const RegionCase& r, double x, double z) {
     const int index = material_index(parameters, r.gas.material);
-    const Material& a = parameters.materials[static_cast<std::size_t>(index)];
+    const Material& a = parameters.materials[index];
     const double dx = x - r.center_x, dz = z - r.center_z, distance = std::hypot(dx, dz);
     const double k = 2 * pi * static_cast<double>(r.mode) / parameters.grid.x.length;
     double rho = r.gas.density, p = r.gas.pressure, heat = 1;
@@ -154,7 +161,7 @@ inline Particles load_particles(const Case& parameters) {
                rows = grid.z.cells * parameters.per_cell_z;
     const auto seed = static_cast<std::uint64_t>(parameters.seed);
     std::vector<double> region_mass(parameters.regions.size(), 0.0);
-    std::vector<std::size_t> region_of;
+    std::vector<long> region_of;
     for (long j = 0; j < rows; ++j) {
         for (long i = 0; i < columns; ++i) {
             const auto place = static_cast<std::uint64_t>(j * columns + i);
@@ -163,10 +170,9 @@ inline Particles load_particles(const Case& parameters) {
                          v = random ? common::uniform(seed, where, place, 1) : 0.5;
             const double x = grid.x.low + dx * (static_cast<double>(i) + u),
                          z = grid.z.low + dz * (static_cast<double>(j) + v);
-            std::size_t n = parameters.regions.size();
-            while (n > 0 && !detail::contains(parameters, parameters.regions[n - 1], x, z)) --n;
-            if (n == 0) continue;
-            const RegionCase& region = parameters.regions[n - 1];
+            const long n = region_at(parameters, x, z);
+            if (n < 0) continue;
+            const RegionCase& region = parameters.regions[n];
             const FluidState fluid = fluid_of(parameters, region, x, z);
             const double noise = region.noise * (2 * common::uniform(seed, how_fast, place, 0) - 1);
             particles.x_p.push_back(x);
@@ -176,12 +182,12 @@ inline Particles load_particles(const Case& parameters) {
             particles.vz_p.push_back(fluid.vz);
             particles.e_p.push_back(fluid.e);
             particles.material.push_back(fluid.material);
-            region_mass[n - 1] += fluid.density * dx * dz;
-            region_of.push_back(n - 1);
+            region_mass[n] += fluid.density * dx * dz;
+            region_of.push_back(n);
         }
     }
     for (std::size_t p = 0; p < region_of.size(); ++p) {
-        const std::size_t n = region_of[p];
+        const long n = region_of[p];
         if (parameters.regions[n].energy > 0)
             particles.e_p[p] += parameters.regions[n].energy / region_mass[n];
     }

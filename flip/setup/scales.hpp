@@ -55,17 +55,15 @@ void for_each_place(const Case& parameters, const Visit& visit) {
         for (long i = stride_x / 2; i < columns; i += stride_x) {
             const double x = grid.x.low + dx * (static_cast<double>(i) + 0.5),
                          z = grid.z.low + dz * (static_cast<double>(j) + 0.5);
-            std::size_t n = parameters.regions.size();
-            while (n > 0 && !detail::contains(parameters, parameters.regions[n - 1], x, z)) --n;
-            if (n == 0) continue;
-            visit(n - 1, fluid_of(parameters, parameters.regions[n - 1], x, z), x, z,
+            const long n = region_at(parameters, x, z);
+            if (n < 0) continue;
+            visit(n, fluid_of(parameters, parameters.regions[n], x, z), x, z,
                   static_cast<double>(stride_x * stride_z));
         }
     }
 }
 
-namespace detail {
-
+/// Memory of particles and fields [byte].
 inline double bytes_of(const Case& parameters, const std::string& program, double particles) {
     double per_particle = 3 * sizeof(double) + 2 * sizeof(int) + sizeof(double);  // and a sort
     if (program == "flip") {
@@ -79,8 +77,6 @@ inline double bytes_of(const Case& parameters, const std::string& program, doubl
            fields * sizeof(double) * static_cast<double>(parameters.grid.size());
 }
 
-}  // namespace detail
-
 /// The scales of a completed case.
 /// in:     program, pic or flip, which takes more memory
 inline Scales scales_of(const Case& parameters, const std::string& program = "flip") {
@@ -91,22 +87,21 @@ inline Scales scales_of(const Case& parameters, const std::string& program = "fl
     const double both = std::hypot(per_dx, per_dz);
     const double place = parameters.grid.cell_area() /
                          static_cast<double>(parameters.per_cell_x * parameters.per_cell_z);
-    for_each_place(
-        parameters, [&](std::size_t n, const FluidState& fluid, double, double, double weight) {
-            RegionScales& r = s.regions[n];
-            const Material& a = parameters.materials[static_cast<std::size_t>(fluid.material)];
-            const double speed = std::hypot(fluid.vx, fluid.vz),
-                         p = pressure(a, fluid.density, fluid.e),
-                         c = std::sqrt(stiffness(a, p) / fluid.density);
-            r.sound_speed = r.particles > 0 ? std::min(r.sound_speed, c) : c;
-            r.speed = std::max(r.speed, speed);
-            if (c > 0) r.mach = std::max(r.mach, speed / c);
-            r.particles += weight;
-            r.mass += weight * fluid.density * place;
-            s.sound_speed = std::max(s.sound_speed, c);
-            s.rate = std::max(s.rate, std::fabs(fluid.vx) * per_dx + std::fabs(fluid.vz) * per_dz +
-                                          (parameters.implicit() ? 0 : c * both));
-        });
+    for_each_place(parameters, [&](long n, const FluidState& fluid, double, double, double weight) {
+        RegionScales& r = s.regions[n];
+        const Material& a = parameters.materials[fluid.material];
+        const double speed = std::hypot(fluid.vx, fluid.vz),
+                     p = pressure(a, fluid.density, fluid.e),
+                     c = std::sqrt(stiffness(a, p) / fluid.density);
+        r.sound_speed = r.particles > 0 ? std::min(r.sound_speed, c) : c;
+        r.speed = std::max(r.speed, speed);
+        if (c > 0) r.mach = std::max(r.mach, speed / c);
+        r.particles += weight;
+        r.mass += weight * fluid.density * place;
+        s.sound_speed = std::max(s.sound_speed, c);
+        s.rate = std::max(s.rate, std::fabs(fluid.vx) * per_dx + std::fabs(fluid.vz) * per_dz +
+                                      (parameters.implicit() ? 0 : c * both));
+    });
     for (std::size_t n = 0; n < parameters.regions.size(); ++n) {
         // A region that an energy has been set free in: c^2 = gamma (gamma - 1) e.
         RegionScales& r = s.regions[n];
@@ -138,7 +133,7 @@ inline Scales scales_of(const Case& parameters, const std::string& program = "fl
     if (parameters.dt > 0) s.dt = parameters.dt;
     s.dt = std::min(s.dt, parameters.end);
     s.steps = s.dt > 0 ? std::max(1.0, std::ceil(parameters.end / s.dt * (1 - 1e-12))) : 0;
-    s.bytes = detail::bytes_of(parameters, program, s.particles);
+    s.bytes = bytes_of(parameters, program, s.particles);
     return s;
 }
 

@@ -26,10 +26,12 @@ inline void validate_diffusion(const Case& parameters, const Refusal& refuse) {
 }
 
 /// Middle and variance along x of the energy above that of the background.
+struct Blob {
+    double middle, variance;
+};
+/// The blob of a Gaussian.
 /// note:   the phase of the first Fourier mode finds the middle across a periodic end
-inline void track_diffusion(const Snapshot& now, common::Row& row) {
-    const Case& parameters = now.parameters;
-    const CellFields& cells = now.cells;
+inline Blob blob_of(const Case& parameters, const CellFields& cells) {
     const RegionCase& r = region_with_flow(parameters, "gaussian");
     const double background =
         internal_energy(material_of(parameters, r), r.gas.density, r.gas.pressure);
@@ -37,18 +39,25 @@ inline void track_diffusion(const Snapshot& now, common::Row& row) {
         cells.rho.cwiseProduct(cells.e - Field::Constant(parameters.grid.size(), background));
     const std::vector<double> heat = mean_over_z(parameters.grid, above);
     const common::Axis& axis = parameters.grid.x;
+    const auto at = [&](std::size_t n) { return axis.at(static_cast<double>(n) + 0.5); };
     std::complex<double> turn = 0;
-    for (long n = 0; n < axis.cells; ++n)
-        turn += heat[n] * std::polar(1.0, 2 * pi * middle(axis, n) / axis.length);
+    for (std::size_t n = 0; n < heat.size(); ++n)
+        turn += heat[n] * std::polar(1.0, 2 * pi * at(n) / axis.length);
     const double guess = std::arg(turn) / (2 * pi) * axis.length;
     double sum = 0, first = 0, second = 0;
-    for (long n = 0; n < axis.cells; ++n) {
-        const double d = apart(axis, guess, middle(axis, n));
+    for (std::size_t n = 0; n < heat.size(); ++n) {
+        const double d = apart(axis, guess, at(n));
         sum += heat[n], first += heat[n] * d, second += heat[n] * d * d;
     }
     const double mean = sum != 0 ? first / sum : 0;
-    row.add("middle", "length", guess + mean);
-    row.add("variance", "length^2", sum != 0 ? second / sum - mean * mean : 0);
+    return {guess + mean, sum != 0 ? second / sum - mean * mean : 0};
+}
+
+/// The blob of t^n.
+inline void track_diffusion(const Snapshot& now, common::Row& row) {
+    const Blob blob = blob_of(now.parameters, now.cells);
+    row.add("middle", "length", blob.middle);
+    row.add("variance", "length^2", blob.variance);
 }
 
 /// The diffusivity.
