@@ -10,6 +10,7 @@
 #include "common/splines.hpp"
 #include "flip/theory/acoustics.hpp"
 #include "tests/support/any_fluid.hpp"
+#include "tests/support/exact_sound.hpp"
 
 namespace {
 

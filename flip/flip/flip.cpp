@@ -60,7 +60,7 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     // 3. The loop of the slide.
     while (run.not_finished(step, state.time, w.end)) {
         find_fluid(w, state, scratch.mesh);  // particles -> mesh: v_g, p_c          [FLIP-8]
-        recorder.look(step, state, particle_totals(w, particles), cell_fields(w, mesh), run);
+        recorder.record(step, state, particle_totals(w, particles), cell_fields(w, mesh), run);
         take_flip_step(w, step, scratch, state);  // mesh -> particles: v_p, x_p     [FLIP-6, 7]
         ++step;
         run.end_of_step(step, state.time, w.end, state);
@@ -71,7 +71,7 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
         find_fluid(w, state, scratch.mesh);
         const Totals totals = particle_totals(w, particles);
         const CellFields cells = cell_fields(w, mesh);
-        recorder.look(step, state, totals, cells, run);
+        recorder.record(step, state, totals, cells, run);
         recorder.finish(state, totals, cells, run);
     }
     return run.finish(step, static_cast<double>(particles.count()));

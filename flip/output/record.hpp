@@ -7,9 +7,32 @@
 
 #include "common/run/run.hpp"
 #include "flip/output/write_output.hpp"
-#include "flip/theory/compare_with_theory.hpp"
+#include "flip/theory/comparisons.hpp"
 
 namespace flip {
+
+/// Largest speed and Mach number of a cell.
+struct Extremes {
+    double speed = 0, mach = 0;
+};
+
+/// The largest speed and Mach number.
+/// note:   the sound speed is that of the material with most mass in the cell; cells without sound,
+///         as dust, have no Mach number
+inline Extremes extremes(const Case& parameters, const CellFields& cells) {
+    Extremes most;
+    visit_cells(parameters.grid, [&](long c, double, double) {
+        if (!(cells.rho[c] > 0)) return;
+        std::size_t main = 0;
+        for (std::size_t k = 1; k < cells.rho_of.size(); ++k)
+            if (cells.rho_of[k][c] > cells.rho_of[main][c]) main = k;
+        const double speed = std::hypot(cells.vx[c], cells.vz[c]);
+        const double sound2 = stiffness(parameters.materials[main], cells.p[c]) / cells.rho[c];
+        most.speed = std::max(most.speed, speed);
+        if (sound2 > 0) most.mach = std::max(most.mach, speed / std::sqrt(sound2));
+    });
+    return most;
+}
 
 /// What the loop hands its results to. A row belongs to t^n: particles, cells and totals of that
 /// time, and the step that led to it.
@@ -21,87 +44,29 @@ namespace flip {
 class Recorder {
    public:
     Recorder(const Case& parameters, const std::string& program, common::History& history)
-        : parameters_(parameters),
-          program_(program),
-          sound_speed_(largest_sound_speed(parameters)) {
-        std::vector<common::Column> columns{{"time", "time"},
-                                            {"dt", "time"},
-                                            {"energy", "energy/length"},
-                                            {"kinetic", "energy/length"},
-                                            {"internal", "energy/length"},
-                                            {"mass", "mass/length"},
-                                            {"momentum_x", "momentum/length"},
-                                            {"momentum_z", "momentum/length"},
-                                            {"angular_momentum", "momentum"},
-                                            {"mass_error", "1"},
-                                            {"momentum_x_error", "1"},
-                                            {"momentum_z_error", "1"},
-                                            {"energy_error", "1"},
-                                            {"largest_speed", "velocity"},
-                                            {"largest_mach", "1"},
-                                            {"iterations", "1"},
-                                            {"divergence", "speed/dx"}};
-        for (const common::Column& column : followed_columns(parameters)) columns.push_back(column);
-        history.columns(columns);
+        : parameters_(parameters), program_(program) {
+        for (const RegionCase& r : parameters.regions)
+            sound_speed_ = std::max(sound_speed_, sound_speed_of(parameters, r));
+        CellFields empty;
+        for (Field* f : {&empty.rho, &empty.vx, &empty.vz, &empty.p, &empty.e})
+            *f = Field::Zero(parameters.grid.size());
+        empty.rho_of.assign(parameters.materials.size(), empty.rho);
+        history.columns(row_of({}, {}, empty, history));
     }
 
-    /// The files of t^n that are due, and its row.
-    void look(long step, const State& state, const Totals& now, const CellFields& cells,
-              common::Run& run) {
-        snapshot(step, state, cells, run);
-        record(step, state, now, cells, run);
-    }
-
-    /// Files of t^n.
-    void snapshot(long step, const State& state, const CellFields& cells, common::Run& run) const {
+    /// Writes the files of t^n that are due, and adds its row to the history.
+    /// errors: NumericalError when the energy is not finite or has left the limit of the case
+    void record(long step, const State& state, const Totals& now, const CellFields& cells,
+                common::Run& run) const {
         const std::string folder = run.path(".");
         if (is_due(parameters_.fields_interval, state))
             write_fields(folder, step, parameters_, cells);
         if (is_due(parameters_.particles_interval, state))
             write_particles(folder, step, parameters_, state.particles);
-    }
-
-    /// One row for t^n.
-    /// errors: NumericalError when the energy is not finite or has left the limit of the case
-    void record(long step, const State& state, const Totals& now, const CellFields& cells,
-                common::Run& run) {
-        const common::History& history = run.history;
-        const bool is_first = history.all().empty();
-        const auto first = [&](const char* name, double value) {
-            return is_first ? value : history.first(name);
-        };
-        const auto relative = [](double change, double before, double came_in) {
-            const double scale = before > 0 ? before : std::fabs(came_in);
-            return scale > 0 ? change / scale : 0.0;
-        };
-        const Books& books = state.books;
-        const double mass = first("mass", now.mass), kinetic = first("kinetic", now.kinetic);
-        const double energy = now.kinetic + now.internal, gross = first("energy", energy);
-        check_energy(step, state, energy, gross);
-
-        const double momentum = std::sqrt(2 * kinetic * mass) + mass * sound_speed_;
-        const Extremes most = extremes(parameters_, cells);
-        row_ = {state.time,
-                state.dt,
-                energy,
-                now.kinetic,
-                now.internal,
-                now.mass,
-                now.momentum_x,
-                now.momentum_z,
-                now.angular_momentum,
-                relative(now.mass - books.mass - mass, mass, books.mass),
-                relative(now.momentum_x - books.momentum_x - first("momentum_x", now.momentum_x),
-                         momentum, books.momentum_x),
-                relative(now.momentum_z - books.momentum_z - first("momentum_z", now.momentum_z),
-                         momentum, books.momentum_z),
-                relative(energy - books.energy - gross, gross, books.energy),
-                most.speed,
-                most.mach,
-                static_cast<double>(state.report.iterations),
-                state.report.divergence};
-        add_followed(parameters_, state, now, cells, row_);
-        run.history.row(row_);
+        const double energy = now.kinetic + now.internal;
+        const bool is_first = run.history.all().empty();
+        check_energy(step, state, energy, is_first ? energy : run.history.first("energy"));
+        run.history.row(row_of(state, now, cells, run.history));
     }
 
     /// The results of the whole run.
@@ -111,15 +76,60 @@ class Recorder {
         const common::History& history = run.history;
         common::Summary& summary = run.summary;
         if (history.all().empty()) return;
-        compare_with_theory(
-            {parameters_, program_, state, now, cells, history, run.path("profile.dat"), summary});
+        const Comparison& comparison = comparison_of(parameters_);
+        if (comparison.compare != nullptr)
+            comparison.compare({parameters_, program_, state, now, cells, history,
+                                run.path("profile.dat"), summary});
         for (const char* name :
              {"mass_error", "momentum_x_error", "momentum_z_error", "energy_error"})
-            summary.conservation(std::string("largest_") + name, largest(history, name), "1");
+            summary.conservation(std::string("largest_") + name, history.largest(name), "1");
         summary.performance("particles", static_cast<double>(state.particles.count()));
     }
 
    private:
+    // The quantities of t^n, each beside its name and unit.
+    common::Row row_of(const State& state, const Totals& now, const CellFields& cells,
+                       const common::History& history) const {
+        const auto first = [&](const char* name, double value) {
+            return history.all().empty() ? value : history.first(name);
+        };
+        const auto relative = [](double change, double before, double came_in) {
+            const double scale = before > 0 ? before : std::fabs(came_in);
+            return scale > 0 ? change / scale : 0.0;
+        };
+        const Books& books = state.books;
+        const double mass = first("mass", now.mass), kinetic = first("kinetic", now.kinetic);
+        const double energy = now.kinetic + now.internal, gross = first("energy", energy);
+        const double momentum = std::sqrt(2 * kinetic * mass) + mass * sound_speed_;
+        const auto momentum_error = [&](const char* name, double value, double came_in) {
+            return relative(value - came_in - first(name, value), momentum, came_in);
+        };
+        const Extremes most = extremes(parameters_, cells);
+        common::Row row;
+        row.add("time", "time", state.time);
+        row.add("dt", "time", state.dt);
+        row.add("energy", "energy/length", energy);
+        row.add("kinetic", "energy/length", now.kinetic);
+        row.add("internal", "energy/length", now.internal);
+        row.add("mass", "mass/length", now.mass);
+        row.add("momentum_x", "momentum/length", now.momentum_x);
+        row.add("momentum_z", "momentum/length", now.momentum_z);
+        row.add("angular_momentum", "momentum", now.angular_momentum);
+        row.add("mass_error", "1", relative(now.mass - books.mass - mass, mass, books.mass));
+        row.add("momentum_x_error", "1",
+                momentum_error("momentum_x", now.momentum_x, books.momentum_x));
+        row.add("momentum_z_error", "1",
+                momentum_error("momentum_z", now.momentum_z, books.momentum_z));
+        row.add("energy_error", "1", relative(energy - books.energy - gross, gross, books.energy));
+        row.add("largest_speed", "velocity", most.speed);
+        row.add("largest_mach", "1", most.mach);
+        row.add("iterations", "1", static_cast<double>(state.report.iterations));
+        row.add("divergence", "speed/dx", state.report.divergence);
+        const Comparison& comparison = comparison_of(parameters_);
+        if (comparison.track != nullptr) comparison.track({parameters_, state, now, cells}, row);
+        return row;
+    }
+
     // An energy that is many times what the start and the work done account for is no result.
     void check_energy(long step, const State& state, double energy, double gross) const {
         const double accounted = gross + std::fabs(state.books.energy);
@@ -135,8 +145,7 @@ class Recorder {
 
     const Case parameters_;
     const std::string program_;
-    const double sound_speed_;
-    std::vector<double> row_;
+    double sound_speed_ = 0;  // the largest of the start
 };
 
 }  // namespace flip

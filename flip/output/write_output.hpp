@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/run/writers.hpp"
-#include "flip/state.hpp"
+#include "flip/theory/profiles.hpp"
 
 namespace flip {
 
@@ -15,32 +15,28 @@ inline constexpr long most_particles_written = 40000;
 /// Writes fields_NNNNNN.dat (and .vti): rho, v_x, v_z, p, e at the middles of the cells, and the
 /// density of each material.
 /// in:     cells, zero where there is no fluid
-inline void write_fields(const std::string& folder, long step, const Case& w,
+inline void write_fields(const std::string& folder, long step, const Case& parameters,
                          const CellFields& cells) {
-    const Grid& grid = w.grid;
+    const Grid& grid = parameters.grid;
     std::vector<std::vector<double>> data;
-    std::vector<std::string> names, units;
+    std::vector<common::ScalarColumn> columns;
     const auto add = [&](const std::string& name, const std::string& unit, const Field& f) {
-        std::vector<double> values;
-        values.reserve(static_cast<std::size_t>(grid.x.cells * grid.z.cells));
-        for (long j = 0; j < grid.z.cells; ++j)
-            for (long i = 0; i < grid.x.cells; ++i) values.push_back(f[grid.index(i, j)]);
-        names.push_back(name), units.push_back(unit), data.push_back(std::move(values));
+        std::vector<double>& values = data.emplace_back();
+        visit_cells(grid, [&](long c, double, double) { values.push_back(f[c]); });
+        columns.push_back({name, unit, values});
     };
     add("rho", "mass/length^3", cells.rho);
     add("v_x", "velocity", cells.vx);
     add("v_z", "velocity", cells.vz);
     add("p", "pressure", cells.p);
     add("e", "velocity^2", cells.e);
-    for (std::size_t k = 0; k < cells.rho_of.size() && k < w.materials.size(); ++k)
-        add("rho_" + w.materials[k].name, "mass/length^3", cells.rho_of[k]);
+    for (std::size_t k = 0; k < cells.rho_of.size() && k < parameters.materials.size(); ++k)
+        add("rho_" + parameters.materials[k].name, "mass/length^3", cells.rho_of[k]);
 
     const common::SampledAxis x{"x", "length", grid.x.at(0.5), grid.x.spacing(), grid.x.cells};
     const common::SampledAxis z{"z", "length", grid.z.at(0.5), grid.z.spacing(), grid.z.cells};
-    std::vector<common::ScalarColumn> columns;
-    for (std::size_t k = 0; k < data.size(); ++k) columns.push_back({names[k], units[k], data[k]});
     common::write_fields(folder + "/" + common::numbered("fields", step, "dat"), x, z, columns);
-    if (!w.vtk) return;
+    if (!parameters.vtk) return;
     const common::SampledAxis y{"y", "length", 0, 1, 1};
     const std::vector<double> zero(data[0].size(), 0.0);
     columns.erase(columns.begin() + 1, columns.begin() + 3);
@@ -51,7 +47,7 @@ inline void write_fields(const std::string& folder, long step, const Case& w,
 /// Writes particles_NNNNNN.dat (and .vtp): position, material and, where particles carry them,
 /// velocity and internal energy. One particle, drawn at random, stands for each group of neighbors
 /// in memory, so that there are at most most_particles_written.
-inline void write_particles(const std::string& folder, long step, const Case& w,
+inline void write_particles(const std::string& folder, long step, const Case& parameters,
                             const Particles& particles) {
     const long count = particles.count();
     const long every = std::max(1L, (count + most_particles_written - 1) / most_particles_written);
@@ -77,7 +73,7 @@ inline void write_particles(const std::string& folder, long step, const Case& w,
         columns.push_back({"e", "velocity^2", e});
     }
     common::write_table(folder + "/" + common::numbered("particles", step, "dat"), columns);
-    if (!w.vtk) return;
+    if (!parameters.vtk) return;
     const std::vector<double> zero(x.size(), 0.0);
     std::vector<common::ScalarColumn> scalars{{"material", "", material}};
     std::vector<common::VectorColumn> vectors;

@@ -61,7 +61,7 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     while (run.not_finished(step, state.time, w.end)) {
         share_pressure(w, state, cells);  // cells: p
         fields_of(w, state, cells, fields);
-        recorder.look(step, state, totals_of(w, state, cells), fields, run);
+        recorder.record(step, state, totals_of(w, state, cells), fields, run);
         take_pic_step(w, state, cells);  // Lagrangian phase, particles, Eulerian phase  [PIC]
         ++step;
         run.end_of_step(step, state.time, w.end, state);
@@ -72,7 +72,7 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
         share_pressure(w, state, cells);
         const Totals totals = totals_of(w, state, cells);
         fields_of(w, state, cells, fields);
-        recorder.look(step, state, totals, fields, run);
+        recorder.record(step, state, totals, fields, run);
         recorder.finish(state, totals, fields, run);
     }
     return run.finish(step, static_cast<double>(state.particles.count()));

@@ -3,22 +3,24 @@
 
 #include <cmath>
 #include <string>
+#include <string_view>
 
 #include "common/random.hpp"
 #include "flip/particles.hpp"
 #include "flip/setup/case.hpp"
+#include "flip/theory/vortex.hpp"
 
 namespace flip {
 
 /// The case as the programs use it: periodic directions marked, at least one material, and a
 /// Riemann problem written as two materials in two regions.
-inline Case completed(Case w) {
-    w.grid.x.periodic = w.is(x_low, "periodic");
-    w.grid.z.periodic = w.is(z_low, "periodic");
-    if (w.setup == "riemann") {
-        const double x_end = w.grid.x.low + w.grid.x.length;
-        w.materials = {{"left", w.left.gamma, w.left.p_infinity},
-                       {"right", w.right.gamma, w.right.p_infinity}};
+inline Case completed(Case parameters) {
+    parameters.grid.x.periodic = parameters.is(x_low, "periodic");
+    parameters.grid.z.periodic = parameters.is(z_low, "periodic");
+    if (parameters.setup == "riemann") {
+        const double x_end = parameters.grid.x.low + parameters.grid.x.length;
+        parameters.materials = {{"left", parameters.left.gamma, parameters.left.p_infinity},
+                                {"right", parameters.right.gamma, parameters.right.p_infinity}};
         const auto side = [&](const char* name, const SideCase& s, double from, double to) {
             RegionCase r;
             r.name = name;
@@ -26,23 +28,41 @@ inline Case completed(Case w) {
             r.shape = "box";
             r.center_x = 0.5 * (from + to);
             r.half_x = 0.5 * (to - from);
-            r.center_z = w.grid.z.at(0.5 * static_cast<double>(w.grid.z.cells));
-            r.half_z = w.grid.z.length;
+            r.center_z = parameters.grid.z.at(0.5 * static_cast<double>(parameters.grid.z.cells));
+            r.half_z = parameters.grid.z.length;
             return r;
         };
-        w.regions = {side("left", w.left, w.grid.x.low, w.interface),
-                     side("right", w.right, w.interface, x_end)};
+        parameters.regions = {
+            side("left", parameters.left, parameters.grid.x.low, parameters.interface),
+            side("right", parameters.right, parameters.interface, x_end)};
     }
-    if (w.materials.empty()) w.materials = {{"gas", 1.4, 0}};
-    return w;
+    if (parameters.materials.empty()) parameters.materials = {{"gas", 1.4, 0}};
+    return parameters;
 }
 
 /// Index of a material by name; the first for an empty name, -1 for an unknown one.
-inline int material_index(const Case& w, const std::string& name) {
+inline int material_index(const Case& parameters, const std::string& name) {
     if (name.empty()) return 0;
-    for (std::size_t k = 0; k < w.materials.size(); ++k)
-        if (w.materials[k].name == name) return static_cast<int>(k);
+    for (std::size_t k = 0; k < parameters.materials.size(); ++k)
+        if (parameters.materials[k].name == name) return static_cast<int>(k);
     return -1;
+}
+
+/// The material of a region; the region must name one that exists.
+inline const Material& material_of(const Case& parameters, const RegionCase& r) {
+    return parameters.materials[material_index(parameters, r.gas.material)];
+}
+
+/// The first region with a flow, or the first of all.
+inline const RegionCase& region_with_flow(const Case& parameters, std::string_view flow) {
+    for (const RegionCase& r : parameters.regions)
+        if (r.flow == flow) return r;
+    return parameters.regions.front();
+}
+
+/// The sound speed of the uniform state of a region.
+inline double sound_speed_of(const Case& parameters, const RegionCase& r) {
+    return std::sqrt(stiffness(material_of(parameters, r), r.gas.pressure) / r.gas.density);
 }
 
 /// The fluid at one place.
@@ -53,26 +73,15 @@ struct FluidState {
 
 namespace detail {
 
-inline bool contains(const Case& w, const RegionCase& r, double x, double z) {
+inline bool contains(const Case& parameters, const RegionCase& r, double x, double z) {
     const double dx = x - r.center_x, dz = z - r.center_z;
     if (r.shape == "box") return std::fabs(dx) <= r.half_x && std::fabs(dz) <= r.half_z;
     if (r.shape == "disk") return dx * dx + dz * dz <= r.radius * r.radius;
     if (r.shape == "above") {
-        const double k = 2 * pi * static_cast<double>(r.mode) / w.grid.x.length;
+        const double k = 2 * pi * static_cast<double>(r.mode) / parameters.grid.x.length;
         return dz > r.ripple * std::cos(k * dx);
     }
     return true;
-}
-
-// Pressure of the Gresho vortex above that of its center, and its velocity, at s = r/(width/2), in
-// units of density speed^2 and speed: the centrifugal balance dp/dr = rho v^2/r.
-struct Swirl {
-    double p, v;
-};
-inline Swirl gresho(double s) {
-    if (s < 1) return {0.5 * s * s, s};
-    if (s < 2) return {0.5 * s * s + 4 * (1 - s + std::log(s)), 2 - s};
-    return {4 * std::log(2.0) - 2, 0};
 }
 
 // The irrotational flow on both sides of an interface at z = 0 between walls: its normal velocity
@@ -86,28 +95,35 @@ inline void overturn(double k, double x, double z, double depth, double amplitud
 
 }  // namespace detail
 
+/// Index of the region at (x, z), the last that contains it; -1 in a void.
+inline long region_at(const Case& parameters, double x, double z) {
+    long n = static_cast<long>(parameters.regions.size()) - 1;
+    while (n >= 0 && !detail::contains(parameters, parameters.regions[n], x, z)) --n;
+    return n;
+}
+
 /// The fluid of one region at (x, z).
-inline FluidState fluid_of(const Case& w, const RegionCase& r, double x, double z) {
-    const int index = material_index(w, r.gas.material);
-    const Material& a = w.materials[static_cast<std::size_t>(index)];
+inline FluidState fluid_of(const Case& parameters, const RegionCase& r, double x, double z) {
+    const int index = material_index(parameters, r.gas.material);
+    const Material& a = parameters.materials[index];
     const double dx = x - r.center_x, dz = z - r.center_z, distance = std::hypot(dx, dz);
-    const double k = 2 * pi * static_cast<double>(r.mode) / w.grid.x.length;
+    const double k = 2 * pi * static_cast<double>(r.mode) / parameters.grid.x.length;
     double rho = r.gas.density, p = r.gas.pressure, heat = 1;
     double vx = r.gas.velocity_x, vz = r.gas.velocity_z;
-    if (r.hydrostatic) p += rho * w.gravity_z * dz;
+    if (r.hydrostatic) p += rho * parameters.gravity_z * dz;
     if (r.flow == "rotation") {
         vx -= r.speed * dz / r.width;
         vz += r.speed * dx / r.width;
     } else if (r.flow == "radial" && distance > 0) {
-        const bool row = !w.plane();
+        const bool row = !parameters.plane();
         vx -= r.speed * (row ? (dx > 0 ? 1 : -1) : dx / distance);
         vz -= row ? 0 : r.speed * dz / distance;
     } else if (r.flow == "gresho") {
-        const detail::Swirl swirl = detail::gresho(2 * distance / r.width);
-        p += rho * r.speed * r.speed * swirl.p;
+        const theory::GreshoVortex swirl = theory::gresho_vortex(2 * distance / r.width);
+        p += rho * r.speed * r.speed * swirl.pressure;
         if (distance > 0) {
-            vx -= r.speed * swirl.v * dz / distance;
-            vz += r.speed * swirl.v * dx / distance;
+            vx -= r.speed * swirl.velocity * dz / distance;
+            vz += r.speed * swirl.velocity * dx / distance;
         }
     } else if (r.flow == "wave") {
         const double c = std::sqrt(stiffness(a, p) / rho), crest = r.amplitude * std::cos(k * dx);
@@ -115,15 +131,16 @@ inline FluidState fluid_of(const Case& w, const RegionCase& r, double x, double 
         vx += c * crest;
         rho *= 1 + crest;
     } else if (r.flow == "gaussian") {
-        heat += r.amplitude *
-                std::exp(-0.5 * (w.plane() ? distance * distance : dx * dx) / (r.width * r.width));
+        heat += r.amplitude * std::exp(-0.5 * (parameters.plane() ? distance * distance : dx * dx) /
+                                       (r.width * r.width));
     } else if (r.flow == "shear") {
         const double side = dz > 0 ? 1 : -1, decay = r.amplitude * std::exp(-k * std::fabs(dz));
         vx += r.speed * std::min(1.0, std::max(-1.0, dz / r.width));
         vx += side * decay * std::sin(k * dx);
         vz += decay * std::cos(k * dx);
     } else if (r.flow == "overturn") {
-        const double depth = dz > 0 ? w.grid.z.high() - r.center_z : r.center_z - w.grid.z.low;
+        const double depth =
+            dz > 0 ? parameters.grid.z.high() - r.center_z : r.center_z - parameters.grid.z.low;
         detail::overturn(k, dx, dz, depth, r.amplitude, vx, vz);
     }
     return {index, rho, vx, vz, heat * internal_energy(a, rho, p)};
@@ -134,29 +151,29 @@ inline FluidState fluid_of(const Case& w, const RegionCase& r, double x, double 
 /// out:    all columns that FLIP needs; unsorted
 /// exact:  m_p is density times volume, so uniform fluid has equal masses; a particle of apic begins
 ///         with the gradient of the flow of its region
-inline Particles load_particles(const Case& w) {
+inline Particles load_particles(const Case& parameters) {
     constexpr std::uint32_t where = 1, how_fast = 2;
     Particles particles;
-    const Grid& grid = w.grid;
-    const double dx = grid.x.spacing() / static_cast<double>(w.per_cell_x),
-                 dz = grid.z.spacing() / static_cast<double>(w.per_cell_z);
-    const long columns = grid.x.cells * w.per_cell_x, rows = grid.z.cells * w.per_cell_z;
-    const auto seed = static_cast<std::uint64_t>(w.seed);
-    std::vector<double> region_mass(w.regions.size(), 0.0);
-    std::vector<std::size_t> region_of;
+    const Grid& grid = parameters.grid;
+    const double dx = grid.x.spacing() / static_cast<double>(parameters.per_cell_x),
+                 dz = grid.z.spacing() / static_cast<double>(parameters.per_cell_z);
+    const long columns = grid.x.cells * parameters.per_cell_x,
+               rows = grid.z.cells * parameters.per_cell_z;
+    const auto seed = static_cast<std::uint64_t>(parameters.seed);
+    std::vector<double> region_mass(parameters.regions.size(), 0.0);
+    std::vector<long> region_of;
     for (long j = 0; j < rows; ++j) {
         for (long i = 0; i < columns; ++i) {
             const auto place = static_cast<std::uint64_t>(j * columns + i);
-            const bool random = w.loading == "random";
+            const bool random = parameters.loading == "random";
             const double u = random ? common::uniform(seed, where, place, 0) : 0.5,
                          v = random ? common::uniform(seed, where, place, 1) : 0.5;
             const double x = grid.x.low + dx * (static_cast<double>(i) + u),
                          z = grid.z.low + dz * (static_cast<double>(j) + v);
-            std::size_t n = w.regions.size();
-            while (n > 0 && !detail::contains(w, w.regions[n - 1], x, z)) --n;
-            if (n == 0) continue;
-            const RegionCase& region = w.regions[n - 1];
-            const FluidState fluid = fluid_of(w, region, x, z);
+            const long n = region_at(parameters, x, z);
+            if (n < 0) continue;
+            const RegionCase& region = parameters.regions[n];
+            const FluidState fluid = fluid_of(parameters, region, x, z);
             const double noise = region.noise * (2 * common::uniform(seed, how_fast, place, 0) - 1);
             particles.x_p.push_back(x);
             particles.z_p.push_back(z);
@@ -165,24 +182,25 @@ inline Particles load_particles(const Case& w) {
             particles.vz_p.push_back(fluid.vz);
             particles.e_p.push_back(fluid.e);
             particles.material.push_back(fluid.material);
-            region_mass[n - 1] += fluid.density * dx * dz;
-            region_of.push_back(n - 1);
+            region_mass[n] += fluid.density * dx * dz;
+            region_of.push_back(n);
         }
     }
     for (std::size_t p = 0; p < region_of.size(); ++p) {
-        const std::size_t n = region_of[p];
-        if (w.regions[n].energy > 0) particles.e_p[p] += w.regions[n].energy / region_mass[n];
+        const long n = region_of[p];
+        if (parameters.regions[n].energy > 0)
+            particles.e_p[p] += parameters.regions[n].energy / region_mass[n];
     }
-    if (w.density == "particles") particles.V_p.assign(particles.x_p.size(), dx * dz);
-    if (w.transfer == "apic") {
+    if (parameters.density == "particles") particles.V_p.assign(particles.x_p.size(), dx * dz);
+    if (parameters.transfer == "apic") {
         const double step_x = 1e-3 * grid.x.spacing(), step_z = 1e-3 * grid.z.spacing();
         for (std::size_t p = 0; p < region_of.size(); ++p) {
             const double x = particles.x_p[p], z = particles.z_p[p];
-            const RegionCase& region = w.regions[region_of[p]];
-            const FluidState left = fluid_of(w, region, x - step_x, z),
-                             right = fluid_of(w, region, x + step_x, z),
-                             below = fluid_of(w, region, x, z - step_z),
-                             above = fluid_of(w, region, x, z + step_z);
+            const RegionCase& region = parameters.regions[region_of[p]];
+            const FluidState left = fluid_of(parameters, region, x - step_x, z),
+                             right = fluid_of(parameters, region, x + step_x, z),
+                             below = fluid_of(parameters, region, x, z - step_z),
+                             above = fluid_of(parameters, region, x, z + step_z);
             particles.Cxx_p.push_back((right.vx - left.vx) / (2 * step_x));
             particles.Cxz_p.push_back((above.vx - below.vx) / (2 * step_z));
             particles.Czx_p.push_back((right.vz - left.vz) / (2 * step_x));

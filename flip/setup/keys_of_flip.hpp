@@ -1,51 +1,57 @@
-// The parameters that say how FLIP goes about it, and which of them a case has changed.
+// The parameters that only FLIP has, and which of them a case has changed.
 #pragma once
 
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "flip/setup/case.hpp"
+#include "flip/setup/refuse.hpp"
 
-namespace flip::detail {
+namespace flip {
 
-// Keys that do nothing unless another has a certain value.
-struct IdleKey {
+/// A parameter that does nothing unless another has a certain value.
+struct FlipKey {
     std::string name, value;
-    bool changed;
-    bool used;
-    std::string needs;
+    bool changed;       // not the default
+    bool used;          // by this case
+    std::string needs;  // what would make it used
 };
 
-inline std::vector<IdleKey> keys_of_flip(const Case& w) {
-    const Case d;
-    const auto on_off = [](bool value) { return std::string(value ? "true" : "false"); };
-    const auto whole = [](long value) { return std::to_string(value); };
-    const auto quoted = [](const std::string& text) { return "\"" + text + "\""; };
-    const bool implicit = w.implicit(), rezones = w.rezone_steps > 0;
-    const std::string solver = "flip.pressure = \"implicit\"", rezone = "rezone.steps above 0";
+/// All parameters of FLIP alone, with the values that a case gives them.
+inline std::vector<FlipKey> keys_of_flip(const Case& parameters) {
+    const auto key = [&](const char* name, auto member, bool used = true, const char* needs = "") {
+        const Case defaults;
+        const auto& value = parameters.*member;
+        std::string text;
+        if constexpr (std::is_same_v<decltype(member), bool Case::*>)
+            text = value ? "true" : "false";
+        else if constexpr (std::is_same_v<decltype(member), std::string Case::*>)
+            text = sentence("\"", value, "\"");
+        else
+            text = sentence(value);
+        return FlipKey{name, text, value != defaults.*member, used, needs};
+    };
+    const bool implicit = parameters.implicit(), rezones = parameters.rezone_steps > 0;
+    const char *solver = "flip.pressure = \"implicit\"", *rezone = "rezone.steps above 0";
     return {
-        {"flip.transfer", quoted(w.transfer), w.transfer != d.transfer, true, ""},
-        {"flip.blend", common::format(w.blend), w.blend != d.blend, w.transfer == "blend",
-         "flip.transfer = \"blend\""},
-        {"flip.xpic_order", whole(w.xpic_order), w.xpic_order != d.xpic_order, w.transfer == "xpic",
-         "flip.transfer = \"xpic\""},
-        {"flip.mass", quoted(w.mass), w.mass != d.mass, true, ""},
-        {"flip.deficit_to_heat", on_off(w.deficit_to_heat), w.deficit_to_heat != d.deficit_to_heat,
-         true, ""},
-        {"flip.density", quoted(w.density), w.density != d.density, true, ""},
-        {"flip.viscosity", common::format(w.viscosity), w.viscosity != d.viscosity, true, ""},
-        {"flip.pressure", quoted(w.pressure), w.pressure != d.pressure, true, ""},
-        {"flip.theta", common::format(w.theta), w.theta != d.theta, implicit, solver},
-        {"flip.tolerance", common::format(w.tolerance), w.tolerance != d.tolerance, implicit,
-         solver},
-        {"flip.max_iterations", whole(w.max_iterations), w.max_iterations != d.max_iterations,
-         implicit, solver},
-        {"rezone.steps", whole(w.rezone_steps), w.rezone_steps != d.rezone_steps, true, ""},
-        {"rezone.min_particles", whole(w.min_particles), w.min_particles != d.min_particles,
-         rezones, rezone},
-        {"rezone.max_particles", whole(w.max_particles), w.max_particles != d.max_particles,
-         rezones, rezone},
+        key("flip.transfer", &Case::transfer),
+        key("flip.blend", &Case::blend, parameters.transfer == "blend",
+            "flip.transfer = \"blend\""),
+        key("flip.xpic_order", &Case::xpic_order, parameters.transfer == "xpic",
+            "flip.transfer = \"xpic\""),
+        key("flip.mass", &Case::mass),
+        key("flip.deficit_to_heat", &Case::deficit_to_heat),
+        key("flip.density", &Case::density),
+        key("flip.viscosity", &Case::viscosity),
+        key("flip.pressure", &Case::pressure),
+        key("flip.theta", &Case::theta, implicit, solver),
+        key("flip.tolerance", &Case::tolerance, implicit, solver),
+        key("flip.max_iterations", &Case::max_iterations, implicit, solver),
+        key("rezone.steps", &Case::rezone_steps),
+        key("rezone.min_particles", &Case::min_particles, rezones, rezone),
+        key("rezone.max_particles", &Case::max_particles, rezones, rezone),
     };
 }
 
-}  // namespace flip::detail
+}  // namespace flip

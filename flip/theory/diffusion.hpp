@@ -25,19 +25,10 @@ inline double harlow_lattice_diffusivity(double u, double dx, double dt, int n) 
     return 0.5 * dx * dx / dt * (C - square);
 }
 
-/// The viscosity of PIC's transfer, which interpolates all velocities anew in every step.
-///   nu = dx^2 / (6 dt), from the factor (2 + cos k dx) / 3 per step
-/// note:  shorter steps make it larger.
-inline double pic_transfer_viscosity(double dx, double dt) { return dx * dx / (6.0 * dt); }
-
 /// The part of its angular momentum that a rigid disk loses when its velocities go to the mesh and
 /// back once by linear weights.
 ///   2 h^2 / (3 R^2)
 /// note:  the mesh has all of it: the particles lose it on their way back. For h << R.
 inline double round_trip_loss(double h, double R) { return 2.0 * h * h / (3.0 * R * R); }
-
-/// The same for quadratic weights.
-///   h^2 / R^2
-inline double round_trip_loss_quadratic(double h, double R) { return h * h / (R * R); }
 
 }  // namespace flip::theory

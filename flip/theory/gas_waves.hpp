@@ -12,6 +12,7 @@
 
 namespace flip::theory {
 
+/// A gas at one place; a density of 0 is a void.
 struct GasState {
     double density, velocity, pressure;
     double gamma, p_infinity = 0.0;

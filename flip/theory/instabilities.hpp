@@ -45,26 +45,6 @@ inline double interface_growth(const TwoLayers& s, double k) {
     return interface_frequency(s, k).imag();
 }
 
-/// The vertical velocity of a wave at an interface of fluids at rest, relative to that of the
-/// interface.
-///   w(z) = sinh k (H_1 + z) / sinh k H_1 below, sinh k (H_2 - z) / sinh k H_2 above
-/// exact: zero at the walls; exp(-k |z|) for deep fluids
-inline double interface_mode(const TwoLayers& s, double k, double z) {
-    const double depth = z < 0.0 ? s.lower_depth : s.upper_depth, away = std::abs(z);
-    if (std::isinf(depth)) return std::exp(-k * away);
-    return std::exp(-k * away) * std::expm1(-2.0 * k * (depth - away)) /
-           std::expm1(-2.0 * k * depth);
-}
-
-/// The stream function of a standing wave at the interface, whose vertical velocity at z = 0 is
-/// cos(k x).
-///   psi = -w(z) sin(k x) / k,  u = dpsi/dz,  w = -dpsi/dx
-/// exact: differences of psi between the nodes of a mesh are fluxes without divergence
-/// note:  the wave that grows has the displacement w(0) cos(k x) / Im omega at z = 0.
-inline double interface_stream_function(const TwoLayers& s, double k, double x, double z) {
-    return -interface_mode(s, k, z) * std::sin(k * x) / k;
-}
-
 /// A fluid of one density with U(z) = velocity_difference / 2 times z / half_width, clamped to
 /// +-1, between rigid walls at z = +-wall_distance.
 struct ShearLayer {
@@ -108,19 +88,6 @@ inline std::complex<double> shear_layer_frequency(const ShearLayer& s, double k)
 /// The growth rate of waves in a shear layer; zero where they do not grow.
 inline double shear_layer_growth(const ShearLayer& s, double k) {
     return shear_layer_frequency(s, k).imag();
-}
-
-/// The stream function psi(z) of the wave of shear_layer_frequency, 1 at z = 0.
-///   u = Re dpsi/dz exp(i k x),  w = Re -i k psi exp(i k x)
-/// in:    k where the wave grows
-/// exact: psi(-z) is the complex conjugate of psi(z); zero at the walls
-inline std::complex<double> shear_layer_mode(const ShearLayer& s, double k, double z) {
-    using instabilities_detail::green;
-    const double d = s.half_width, b = s.wall_distance, S = 0.5 * s.velocity_difference / d;
-    const double same = green(k, b, d, d), other = green(k, b, d, -d);
-    const std::complex<double> c = shear_layer_frequency(s, k) / k;
-    const std::complex<double> ratio = (S * (d - same) - c) / (S * other);
-    return (green(k, b, z, d) + ratio * green(k, b, z, -d)) / ((1.0 + ratio) * green(k, b, 0.0, d));
 }
 
 }  // namespace flip::theory

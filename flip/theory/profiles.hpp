@@ -9,13 +9,25 @@
 
 namespace flip {
 
-/// Mean over z of a field, at the middles of the cells along x.
-inline std::vector<double> mean_over_z(const Grid& grid, const Field& f) {
-    std::vector<double> mean(static_cast<std::size_t>(grid.x.cells), 0.0);
+/// The middle of cell i along an axis.
+inline double middle(const common::Axis& axis, long i) {
+    return axis.at(static_cast<double>(i) + 0.5);
+}
+
+/// Calls visit(c, x, z) for each cell, row by row: its index on_faces and its middle.
+template <class Visit>
+void visit_cells(const Grid& grid, const Visit& visit) {
     for (long j = 0; j < grid.z.cells; ++j)
         for (long i = 0; i < grid.x.cells; ++i)
-            mean[static_cast<std::size_t>(i)] +=
-                f[grid.index(i, j)] / static_cast<double>(grid.z.cells);
+            visit(grid.index(i, j), middle(grid.x, i), middle(grid.z, j));
+}
+
+/// Mean over z of a field, at the middles of the cells along x.
+inline std::vector<double> mean_over_z(const Grid& grid, const Field& f) {
+    std::vector<double> mean(grid.x.cells, 0.0);
+    for (long j = 0; j < grid.z.cells; ++j)
+        for (long i = 0; i < grid.x.cells; ++i)
+            mean[i] += f[grid.index(i, j)] / static_cast<double>(grid.z.cells);
     return mean;
 }
 
@@ -30,37 +42,33 @@ struct RadialProfile {
     std::vector<double> r, rho, v_r, v_phi, p, e;  // v_phi counterclockwise from x to z
 };
 
+/// The fluid around (x0, z0), in a frame that moves with (vx0, vz0).
 /// out:    density and pressure are means over the area, velocity and energy over the mass
-inline RadialProfile radial_profile(const Case& w, const CellFields& cells, double x0, double z0,
+inline RadialProfile radial_profile(const Grid& grid, const CellFields& cells, double x0, double z0,
                                     double vx0 = 0, double vz0 = 0) {
-    const Grid& grid = w.grid;
-    const double step = std::max(grid.x.spacing(), w.plane() ? grid.z.spacing() : 0.0);
+    const bool plane = grid.z.cells > 1;
+    const double step = std::max(grid.x.spacing(), plane ? grid.z.spacing() : 0.0);
     RadialProfile sums;
     std::vector<double> count, mass;
-    for (long j = 0; j < grid.z.cells; ++j) {
-        for (long i = 0; i < grid.x.cells; ++i) {
-            const double dx = apart(grid.x, x0, grid.x.at(static_cast<double>(i) + 0.5)),
-                         dz = w.plane() ? apart(grid.z, z0, grid.z.at(static_cast<double>(j) + 0.5))
-                                        : 0.0,
-                         r = std::hypot(dx, dz);
-            const auto n = static_cast<std::size_t>(r / step);
-            if (n >= count.size())
-                for (auto* column :
-                     {&count, &mass, &sums.r, &sums.rho, &sums.v_r, &sums.v_phi, &sums.p, &sums.e})
-                    column->resize(n + 1, 0.0);
-            const long c = grid.index(i, j);
-            const double m = cells.rho[c], vx = cells.vx[c] - vx0, vz = cells.vz[c] - vz0;
-            count[n] += 1;
-            mass[n] += m;
-            sums.r[n] += r;
-            sums.rho[n] += m;
-            sums.p[n] += cells.p[c];
-            sums.e[n] += m * cells.e[c];
-            if (r == 0) continue;
-            sums.v_r[n] += m * (vx * dx + vz * dz) / r;
-            sums.v_phi[n] += m * (vz * dx - vx * dz) / r;
-        }
-    }
+    visit_cells(grid, [&](long c, double x, double z) {
+        const double dx = apart(grid.x, x0, x), dz = plane ? apart(grid.z, z0, z) : 0.0,
+                     r = std::hypot(dx, dz);
+        const auto n = static_cast<std::size_t>(r / step);
+        if (n >= count.size())
+            for (auto* column :
+                 {&count, &mass, &sums.r, &sums.rho, &sums.v_r, &sums.v_phi, &sums.p, &sums.e})
+                column->resize(n + 1, 0.0);
+        const double m = cells.rho[c], vx = cells.vx[c] - vx0, vz = cells.vz[c] - vz0;
+        count[n] += 1;
+        mass[n] += m;
+        sums.r[n] += r;
+        sums.rho[n] += m;
+        sums.p[n] += cells.p[c];
+        sums.e[n] += m * cells.e[c];
+        if (r == 0) return;
+        sums.v_r[n] += m * (vx * dx + vz * dz) / r;
+        sums.v_phi[n] += m * (vz * dx - vx * dz) / r;
+    });
     RadialProfile profile;
     for (std::size_t n = 0; n < count.size(); ++n) {
         if (count[n] == 0) continue;

@@ -14,6 +14,7 @@
 
 namespace flip::theory {
 
+/// The solution: four states and the speeds of the edges between them.
 struct RiemannSolution {
     GasState left, right;                        // the gases in front of the waves
     GasState left_of_contact, right_of_contact;  // behind the waves; differ in velocity at a void
@@ -127,6 +128,7 @@ inline GasState sample(const RiemannSolution& s, double x_over_t) {
     return x_over_t > s.right_tail ? in_fan({s.right, 1.0}, x_over_t) : s.right_of_contact;
 }
 
+/// Mass, momentum and energy.
 struct Conserved {
     double mass, momentum, energy;  // per volume
 };

@@ -16,6 +16,7 @@
 
 namespace flip::theory {
 
+/// The gas at one radius, in units of the shock.
 struct BlastPoint {
     double radius;    // lambda = r / R
     double density;   // rho / rho_0
@@ -23,6 +24,7 @@ struct BlastPoint {
     double pressure;  // p / (rho_0 D^2)
 };
 
+/// What all radii need to know of a blast.
 struct BlastWave {
     double gamma;
     int dimension;  // 1 plane, 2 cylinder, 3 sphere
@@ -118,16 +120,6 @@ inline BlastPoint blast_point(const BlastWave& w, double lambda) {
         (inside ? low : high) = middle;
     }
     return sedov_detail::at_parameter(w.gamma, w.dimension, high).point;
-}
-
-/// The profile from the middle to the shock.
-/// out:   samples + 1 points in equal steps of the parameter, the last one at the shock
-inline std::vector<BlastPoint> blast_profile(const BlastWave& w, int samples = 400) {
-    std::vector<BlastPoint> points;
-    for (int i = 0; i <= samples; ++i)
-        points.push_back(
-            sedov_detail::at_parameter(w.gamma, w.dimension, i / double(samples)).point);
-    return points;
 }
 
 }  // namespace flip::theory

@@ -9,6 +9,7 @@
 
 namespace flip::theory {
 
+/// A shock and the gas behind it.
 struct DrivenShock {
     double speed;            // D, seen from the gas in front of it
     double speed_from_wall;  // D - u_p, seen from the piston or wall
@@ -47,12 +48,14 @@ inline DrivenShock driven_shock(double u_p, double density, double pressure, dou
     return s;
 }
 
+/// Cold gas at the start.
 struct NohProblem {
     double gamma;
     int dimension;                      // 1 plane, 2 cylinder, 3 sphere
     double density = 1.0, speed = 1.0;  // rho_0 and v_0 of the cold gas at the start
 };
 
+/// The gas at one radius.
 struct NohState {
     double density, velocity, pressure, internal_energy;  // the velocity outward
 };

@@ -1,0 +1,88 @@
+// Something fast hits something at rest: what is conserved, and what the target has got.
+#pragma once
+
+#include <limits>
+
+#include "flip/theory/comparison.hpp"
+
+namespace flip {
+
+/// The fastest region, and the first box of another material.
+struct Impact {
+    const RegionCase *projectile, *target;  // null where there is none
+    bool along_x() const {
+        return std::fabs(projectile->gas.velocity_x) >= std::fabs(projectile->gas.velocity_z);
+    }
+};
+/// The impact of a case.
+inline Impact impact_of(const Case& parameters) {
+    Impact s{&parameters.regions.front(), nullptr};
+    const auto speed = [](const RegionCase& r) {
+        return std::hypot(r.gas.velocity_x, r.gas.velocity_z);
+    };
+    for (const RegionCase& r : parameters.regions)
+        if (speed(r) > speed(*s.projectile)) s.projectile = &r;
+    for (const RegionCase& r : parameters.regions)
+        if (s.target == nullptr && r.shape == "box" &&
+            &material_of(parameters, r) != &material_of(parameters, *s.projectile))
+            s.target = &r;
+    return s;
+}
+
+/// Needs a region that moves and a box of another material.
+inline void validate_impact(const Case& parameters, const Refusal& refuse) {
+    const Impact impact = impact_of(parameters);
+    refuse(impact.target == nullptr,
+           " needs two materials, and the one that is hit in a region of shape \"box\"");
+    const GasCase& gas = impact.projectile->gas;
+    refuse(gas.velocity_x == 0 && gas.velocity_z == 0, " needs a region that moves");
+}
+
+/// Momentum of the target, and how far the projectile has come beyond its face.
+inline void track_impact(const Snapshot& now, common::Row& row) {
+    const Case& parameters = now.parameters;
+    const Impact impact = impact_of(parameters);
+    const RegionCase &hit = *impact.target, &from = *impact.projectile;
+    const Field& rho = now.cells.rho_of[material_index(parameters, hit.gas.material)];
+    double px = 0, pz = 0;
+    visit_cells(parameters.grid, [&](long c, double, double) {
+        px += rho[c] * now.cells.vx[c] * parameters.grid.cell_area();
+        pz += rho[c] * now.cells.vz[c] * parameters.grid.cell_area();
+    });
+    const bool along_x = impact.along_x();
+    const double sign = (along_x ? from.gas.velocity_x : from.gas.velocity_z) < 0 ? -1 : 1;
+    const double face =
+        sign * (along_x ? hit.center_x : hit.center_z) - (along_x ? hit.half_x : hit.half_z);
+    const Particles& particles = now.state.particles;
+    const auto& positions = along_x ? particles.x_p : particles.z_p;
+    const int material = material_index(parameters, from.gas.material);
+    double foremost = -std::numeric_limits<double>::infinity();
+    for (std::size_t p = 0; p < positions.size(); ++p)
+        if (particles.material[p] == material) foremost = std::max(foremost, sign * positions[p]);
+    row.add("target_momentum_x", "momentum/length", px);
+    row.add("target_momentum_z", "momentum/length", pz);
+    row.add("depth", "length", std::isfinite(foremost) ? foremost - face : 0.0);
+}
+
+/// Conservation to round-off, and how much momentum and depth the target has taken.
+inline void compare_impact(const FinishedRun& run) {
+    const double round_off = 1e-12;
+    for (const char* name : {"mass_error", "momentum_x_error", "momentum_z_error", "energy_error"})
+        run.summary.result(std::string("largest_") + name, run.history.largest(name), "", 0,
+                           round_off, "exact but for round-off");
+    const char* along = impact_of(run.parameters).along_x() ? "momentum_x" : "momentum_z";
+    const double momentum = run.history.first(along);
+    const double given = run.history.column(std::string("target_") + along).back();
+    run.info("momentum_given", momentum != 0 ? given / momentum : 0, "",
+             "part of all that the target has at the end");
+    const auto depth = run.history.column("depth");
+    run.info("depth", *std::max_element(depth.begin(), depth.end()), "length",
+             "of the foremost particle behind the face of the target");
+    run.info("kinetic_energy_left", run.totals.kinetic / run.history.first("kinetic"), "",
+             "relative to the start");
+}
+
+inline constexpr Comparison impact_comparison{"impact", validate_impact, nullptr,
+                                              nullptr,  track_impact,    compare_impact};
+
+}  // namespace flip

@@ -1,0 +1,226 @@
+// Waves that grow: at the interface of two fluids (Rayleigh-Taylor) and in a layer of shear
+// (Kelvin-Helmholtz).
+#pragma once
+
+#include <complex>
+#include <limits>
+
+#include "flip/theory/instabilities.hpp"
+#include "flip/theory/modes.hpp"
+
+namespace flip {
+
+/// Heavy fluid above light fluid, between the ends in z.
+inline theory::TwoLayers layers_of(const Case& parameters) {
+    const RegionCase &lower = parameters.regions.front(), &upper = parameters.regions.back();
+    theory::TwoLayers s;
+    s.lower_density = lower.gas.density;
+    s.upper_density = upper.gas.density;
+    s.gravity = -parameters.gravity_z;
+    s.lower_depth = upper.center_z - parameters.grid.z.low;
+    s.upper_depth = parameters.grid.z.high() - upper.center_z;
+    return s;
+}
+
+/// Growth rate of the tracked mode of the interface.
+inline double interface_growth_of(const Case& parameters) {
+    return theory::interface_growth(layers_of(parameters), tracked_wave_number(parameters));
+}
+
+/// Growth rate of the tracked mode of the layer of shear, half-way between the ends in z.
+inline double shear_growth_of(const Case& parameters) {
+    const RegionCase& r = region_with_flow(parameters, "shear");
+    return theory::shear_layer_growth({2 * r.speed, r.width, 0.5 * parameters.grid.z.length},
+                                      tracked_wave_number(parameters));
+}
+
+/// z(t) = A cosh(rate t) + B sinh(rate t), with complex A and B.
+struct HyperbolicFit {
+    double rate = 0;
+    double misfit = 0;  // rms of the rest, relative to that of z
+    long samples = 0;
+};
+
+/// Sum of |z - A cosh - B sinh|^2 for the best A and B.
+inline double hyperbolic_misfit(const std::vector<double>& t,
+                                const std::vector<std::complex<double>>& z, std::size_t count,
+                                double rate) {
+    double cc = 0, cs = 0, ss = 0;
+    std::complex<double> cz = 0, sz = 0;
+    for (std::size_t n = 0; n < count; ++n) {
+        const double c = std::cosh(rate * t[n]), s = std::sinh(rate * t[n]);
+        cc += c * c, cs += c * s, ss += s * s;
+        cz += c * z[n], sz += s * z[n];
+    }
+    const double determinant = cc * ss - cs * cs;
+    if (!(determinant > 1e-14 * cc * ss)) return std::numeric_limits<double>::infinity();
+    const std::complex<double> A = (ss * cz - cs * sz) / determinant,
+                               B = (cc * sz - cs * cz) / determinant;
+    double rest = 0;
+    for (std::size_t n = 0; n < count; ++n)
+        rest += std::norm(z[n] - A * std::cosh(rate * t[n]) - B * std::sinh(rate * t[n]));
+    return rest;
+}
+
+/// The growth rate of a linear instability from its very start, where the growing and the decaying
+/// wave are both there.
+/// in:     t from 0; z; the first `count` samples are used; rates from expected/5 to 5 expected
+inline HyperbolicFit fit_hyperbolic(const std::vector<double>& t,
+                                    const std::vector<std::complex<double>>& z, std::size_t count,
+                                    double expected) {
+    HyperbolicFit fit;
+    if (count < 5 || !(expected > 0)) return fit;
+    const auto misfit = [&](double log_rate) {
+        return hyperbolic_misfit(t, z, count, std::exp(log_rate));
+    };
+    // Find the valley, then narrow it by golden sections.
+    const double low = std::log(expected / 5), step = std::log(25.0) / 100;
+    double best = low, smallest = std::numeric_limits<double>::infinity();
+    for (int n = 0; n <= 100; ++n) {
+        const double here = misfit(low + n * step);
+        if (here < smallest) smallest = here, best = low + n * step;
+    }
+    const double part = 0.5 * (std::sqrt(5.0) - 1);
+    double a = best - step, b = best + step;
+    for (int n = 0; n < 60; ++n) {
+        const double left = b - part * (b - a), right = a + part * (b - a);
+        (misfit(left) < misfit(right) ? b : a) = misfit(left) < misfit(right) ? right : left;
+    }
+    double squares = 0;
+    for (std::size_t n = 0; n < count; ++n) squares += std::norm(z[n]);
+    fit.rate = std::exp(0.5 * (a + b));
+    fit.misfit = std::sqrt(misfit(0.5 * (a + b)) / squares);
+    fit.samples = static_cast<long>(count);
+    return fit;
+}
+
+/// The growth rate in one line.
+inline std::string predict_growth(double growth) { return "growth rate " + format(growth); }
+
+/// Warns of a run shorter than one growth time.
+inline void warn_of_growth(const Case& parameters, double growth,
+                           std::vector<std::string>& warnings) {
+    warn(warnings, growth * parameters.end < 1, "theory has the growth rate ", growth,
+         ", and time.end = ", parameters.end, " is less than the time ", 1 / growth,
+         " in which the wave grows by e: its growth cannot be measured well");
+}
+
+/// The growth from the start on, while the mode is smaller than `most`.
+inline void compare_growth(const FinishedRun& run, double expected, double most,
+                           const std::string& source) {
+    const auto times = run.history.column("time");
+    const std::vector<std::complex<double>> mode = mode_column(run.history, "mode");
+    std::size_t count = 0;
+    while (count < mode.size() && std::abs(mode[count]) < most) ++count;
+    const HyperbolicFit fit = fit_hyperbolic(times, mode, count, expected);
+    run.info("theory_growth", expected, "1/time", source);
+    if (fit.samples == 0) {
+        run.info("growth", 0, "1/time", "no five rows at small amplitude");
+        return;
+    }
+    const std::string where =
+        sentence(source, "; fitted up to t = ", times[count - 1], ", misfit ", fit.misfit);
+    run.info("growth", fit.rate, "1/time", where);
+    run.result("growth_over_theory", fit.rate / expected, "", 1, where);
+    run.summary.result("fit_misfit", fit.misfit, "", 0, 0.2,
+                       "what is no sum of a growing and a decaying wave, rms");
+    run.info("e_foldings", expected * times[count - 1], "", "within the fit");
+}
+
+/// Needs heavy fluid above light fluid between walls.
+inline void validate_interface(const Case& parameters, const Refusal& refuse) {
+    refuse(parameters.regions.size() != 2 || parameters.regions[0].shape != "everywhere" ||
+               parameters.regions[1].shape != "above",
+           " needs two regions, one everywhere and one above it");
+    validate_mode(parameters, refuse, "overturn");
+    refuse(parameters.grid.z.periodic, " needs walls in z");
+    const RegionCase& upper = parameters.regions[1];
+    refuse(!(upper.center_z > parameters.grid.z.low && upper.center_z < parameters.grid.z.high()),
+           ": the interface at center_z = ", upper.center_z, " is not on the mesh");
+    refuse(!(interface_growth_of(parameters) > 0), ": density ", upper.gas.density, " above ",
+           parameters.regions[0].gas.density, " with gravity.z = ", parameters.gravity_z,
+           " does not overturn: turn one around");
+}
+
+/// The growth rate of the interface.
+inline std::string predict_interface(const Case& parameters, const std::string&, double) {
+    return predict_growth(interface_growth_of(parameters));
+}
+
+/// Warns of a run shorter than one growth time of the interface.
+inline void warn_of_interface(const Case& parameters, std::vector<std::string>& warnings) {
+    warn_of_growth(parameters, interface_growth_of(parameters), warnings);
+}
+
+/// Height of the interface, from the mass of the columns,
+///   (rho_lower - rho_upper) eta(x) = integral of rho over z - its mean
+/// note: it is linear in eta, where velocities at a fixed height lose (8/3 pi) k eta of themselves
+inline void track_interface(const Snapshot& now, common::Row& row) {
+    const Case& parameters = now.parameters;
+    const theory::TwoLayers layers = layers_of(parameters);
+    add_mode(row, "mode", "length",
+             parameters.grid.z.length / (layers.lower_density - layers.upper_density) *
+                 mode_of(parameters, now.cells.rho, 0, parameters.grid.z.cells,
+                         parameters.regions.back().center_x));
+}
+
+/// The growth of the interface while its crests are lower than 0.3/k.
+inline void compare_interface(const FinishedRun& run) {
+    compare_growth(run, interface_growth_of(run.parameters),
+                   0.3 / tracked_wave_number(run.parameters), "two layers between walls");
+}
+
+/// Needs a layer of shear half-way between walls, in which the mode grows.
+inline void validate_shear(const Case& parameters, const Refusal& refuse) {
+    validate_flow(parameters, refuse, "shear");
+    validate_mode(parameters, refuse, "shear");
+    const RegionCase& r = region_with_flow(parameters, "shear");
+    refuse(parameters.grid.z.periodic, " needs walls in z");
+    const double half_way = parameters.grid.z.low + 0.5 * parameters.grid.z.length;
+    refuse(std::fabs(r.center_z - half_way) > 1e-6 * parameters.grid.z.length,
+           " needs the layer half-way between the walls, at center_z = ", half_way);
+    refuse(!(shear_growth_of(parameters) > 0), ": mode ", parameters.mode,
+           " of a layer of half-width ", r.width,
+           " does not grow: make it thinner, or lower theory.mode");
+}
+
+/// The growth rate of the layer.
+inline std::string predict_shear(const Case& parameters, const std::string&, double) {
+    return predict_growth(shear_growth_of(parameters));
+}
+
+/// Warns of a run shorter than one growth time of the layer.
+inline void warn_of_shear(const Case& parameters, std::vector<std::string>& warnings) {
+    warn_of_growth(parameters, shear_growth_of(parameters), warnings);
+}
+
+/// Velocity across the layer, in the rows on both sides of its middle; in one row where the middle
+/// goes through it.
+inline void track_shear(const Snapshot& now, common::Row& row) {
+    const Case& parameters = now.parameters;
+    const RegionCase& r = region_with_flow(parameters, "shear");
+    const common::Axis& axis = parameters.grid.z;
+    const double node = (r.center_z - axis.low) / axis.spacing(), nearest = std::floor(node + 0.5);
+    const bool between = std::fabs(node - nearest) < 0.25;
+    const long j = static_cast<long>(between ? nearest - 1 : std::floor(node)),
+               j_low = std::clamp(j, 0L, axis.cells - 1),
+               j_high = std::clamp(j + (between ? 2 : 1), 1L, axis.cells);
+    add_mode(row, "mode", "velocity", mode_of(parameters, now.cells.vz, j_low, j_high, r.center_x));
+}
+
+/// The growth of the layer while its crests, velocity over growth rate, are lower than 0.3/k.
+inline void compare_shear(const FinishedRun& run) {
+    const double growth = shear_growth_of(run.parameters);
+    compare_growth(run, growth, 0.3 / tracked_wave_number(run.parameters) * growth,
+                   "layer of constant shear between walls");
+}
+
+inline constexpr Comparison interface_comparison{
+    "rayleigh_taylor", validate_interface, predict_interface, warn_of_interface,
+    track_interface,   compare_interface,  Rows::several};
+
+inline constexpr Comparison shear_comparison{"kelvin_helmholtz", validate_shear, predict_shear,
+                                             warn_of_shear,      track_shear,    compare_shear,
+                                             Rows::several};
+
+}  // namespace flip

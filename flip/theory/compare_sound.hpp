@@ -1,0 +1,176 @@
+// Sound: a wave, against what each step of the method does to it; and a uniform flow, which should
+// make none.
+#pragma once
+
+#include <complex>
+
+#include "flip/theory/acoustics.hpp"
+#include "flip/theory/modes.hpp"
+
+namespace flip {
+
+/// What one time step does to the tracked sound wave, in the frame of the gas.
+struct SoundWave {
+    double frequency;      // c k
+    double phase;          // by which a step turns it
+    double amplification;  // by which a step multiplies it
+};
+
+/// The sound wave of a case in steps of dt.
+inline SoundWave sound_wave_of(const Case& parameters, const std::string& program, double dt) {
+    const RegionCase& r = region_with_flow(parameters, "wave");
+    const double k = tracked_wave_number(parameters), dx = parameters.grid.x.spacing(),
+                 c = sound_speed_of(parameters, r);
+    const bool on_cells = program == "pic";
+    // Differences over two cells, or from cells to the nodes between them.
+    const double kappa = on_cells ? std::sin(k * dx) / dx : 2 * std::sin(0.5 * k * dx) / dx;
+    const double a = c * kappa * dt;
+    // In a gas 1/gamma of a change of pressure is that of density at constant energy; in a
+    // stiffened gas it is (p + gamma p_infinity)/(gamma (p + p_infinity)).
+    const Material& gas = material_of(parameters, r);
+    const double p = r.gas.pressure, gamma = stiffness(gas, p) / (p + gas.gamma * gas.p_infinity);
+    theory::WaveTransfer part;
+    if (!on_cells) {
+        const double once = theory::pic_smoothing(k, dx), lost = 1 - once;
+        part.increment = part.energy = once;
+        if (parameters.transfer == "pic") part.kept = once;
+        if (parameters.transfer == "blend")
+            part.kept = parameters.blend + (1 - parameters.blend) * once;
+        if (parameters.transfer == "xpic")
+            part.kept = 1 - std::pow(lost, static_cast<double>(parameters.xpic_order));
+        // A particle of apic hands both nodes of its row what it has from them.
+        if (parameters.transfer == "apic") part.increment = 1;
+        // Motion changes the mass in a cell by what crosses its ends, with the velocity around them.
+        part.density = parameters.density == "cells" ? 1 - 0.75 * lost : once;
+    }
+    const std::complex<double> factor =
+        theory::carried_factor(parameters.implicit() ? parameters.theta : -1, gamma, a, part);
+    return {c * k, std::arg(factor), std::abs(factor)};
+}
+
+/// Needs a single region of gas with a sound wave whose mode is tracked.
+inline void validate_wave(const Case& parameters, const Refusal& refuse) {
+    validate_flow(parameters, refuse, "wave");
+    validate_mode(parameters, refuse, "wave");
+    const RegionCase& r = region_with_flow(parameters, "wave");
+    refuse(r.amplitude == 0, " needs a wave: give region.", r.name, ".amplitude");
+    refuse(parameters.regions.size() != 1, " needs a single region");
+    refuse(sound_speed_of(parameters, r) == 0, " needs a gas with sound: give region.", r.name,
+           ".pressure");
+    refuse(r.gas.velocity_x != parameters.frame_x, ": the gas moves with ", r.gas.velocity_x,
+           ": set theory.frame_x to that");
+}
+
+/// The period, and the factor by which a step multiplies the wave.
+inline std::string predict_wave(const Case& parameters, const std::string& program, double dt) {
+    const SoundWave s = sound_wave_of(parameters, program, dt);
+    return sentence("period ", 2 * pi / s.frequency, "; a step of ", dt, " multiplies the wave by ",
+                    s.amplification);
+}
+
+/// Warns of a run shorter than one period.
+inline void warn_of_wave(const Case& parameters, std::vector<std::string>& warnings) {
+    const double c = sound_speed_of(parameters, region_with_flow(parameters, "wave")),
+                 period = 2 * pi / (c * tracked_wave_number(parameters));
+    warn(warnings, period > parameters.end, "the wave has the period ", period,
+         ", longer than time.end = ", parameters.end, ": its frequency cannot be measured well");
+}
+
+/// The mode of velocity and pressure, in the frame of theory.
+inline void track_wave(const Snapshot& now, common::Row& row) {
+    const Case& parameters = now.parameters;
+    const double from = parameters.grid.x.low + parameters.frame_x * now.state.time;
+    add_mode(row, "mode", "velocity",
+             mode_of(parameters, now.cells.vx, 0, parameters.grid.z.cells, from));
+    add_mode(row, "pressure", "pressure",
+             mode_of(parameters, now.cells.p, 0, parameters.grid.z.cells, from));
+}
+
+/// Phase and logarithm of the size of a mode that turns by less than half a turn between samples.
+struct Spiral {
+    std::vector<double> phase, log_size;
+};
+/// The phase and size of each sample.
+inline Spiral unwound(const std::vector<std::complex<double>>& mode) {
+    Spiral s;
+    for (const std::complex<double>& z : mode) {
+        const double phase = std::atan2(z.imag(), z.real());
+        const double before = s.phase.empty() ? phase : s.phase.back();
+        s.phase.push_back(before + std::remainder(phase - before, 2 * pi));
+        s.log_size.push_back(std::log(std::max(std::hypot(z.real(), z.imag()), 1e-300)));
+    }
+    return s;
+}
+
+/// Frequency, and the change of the amplitude in a period.
+inline void compare_wave(const FinishedRun& run) {
+    const Case& parameters = run.parameters;
+    const auto times = run.history.column("time");
+    if (times.size() < 3) return;
+    const double dt = times.back() / static_cast<double>(times.size() - 1);
+    const SoundWave wave = sound_wave_of(parameters, run.program, dt);
+    const Spiral velocity = unwound(mode_column(run.history, "mode")),
+                 pressure = unwound(mode_column(run.history, "pressure"));
+    const double frequency = -slope(times, velocity.phase);
+    const double period = 2 * pi / wave.frequency, steps = period / dt;
+    const auto per_period = [&](const Spiral& mode) {
+        return std::exp(slope(times, mode.log_size) * period);
+    };
+    const std::string scheme =
+        parameters.implicit() ? "theta scheme" : "explicit step: density follows the new velocity";
+    run.info("frequency", frequency, "1/time", "of velocity");
+    run.info("theory_frequency", wave.frequency, "1/time", "c k");
+    run.result("frequency_over_ck", frequency / wave.frequency, "",
+               wave.phase / (wave.frequency * dt), scheme);
+    if (run.program == "pic" && parameters.frame_x != 0)
+        run.info("amplitude_per_period", per_period(velocity), "", "the flow diffuses it");
+    else
+        run.absolute_result("amplitude_per_period", per_period(velocity), "",
+                            std::pow(wave.amplification, steps),
+                            scheme + "; factor per step " + format(wave.amplification));
+    run.info("pressure_amplitude_per_period", per_period(pressure), "", "measured");
+    run.info("periods", times.back() / period, "", "of c k");
+}
+
+/// Needs a uniform gas with noise on a periodic mesh.
+inline void validate_ringing(const Case& parameters, const Refusal& refuse) {
+    const RegionCase& r = parameters.regions.front();
+    refuse(parameters.regions.size() != 1 || r.flow != "uniform" || r.shape != "everywhere" ||
+               !parameters.grid.x.periodic,
+           " needs a single uniform region everywhere, and periodic ends in x");
+    refuse(sound_speed_of(parameters, r) == 0, " needs a gas with sound");
+    refuse(r.noise == 0, " needs a seed: give region.", r.name, ".noise");
+}
+
+/// The rms of the velocity on the cells.
+inline void track_ringing(const Snapshot& now, common::Row& row) {
+    const std::vector<double> vx = mean_over_z(now.parameters.grid, now.cells.vx);
+    double mean = 0, squares = 0;
+    for (const double v : vx) mean += v / static_cast<double>(vx.size());
+    for (const double v : vx) squares += (v - mean) * (v - mean);
+    row.add("noise", "velocity", std::sqrt(squares / static_cast<double>(vx.size())));
+}
+
+/// A uniform flow should stay one: how fast its noise grows.
+inline void compare_ringing(const FinishedRun& run) {
+    const Case& parameters = run.parameters;
+    const RegionCase& r = parameters.regions.front();
+    const double c = sound_speed_of(parameters, r), dx = parameters.grid.x.spacing();
+    const common::GrowthFit fit =
+        common::fit_growth(run.history.column("time"), run.history.column("noise"));
+    run.info("growth", fit.rate * dx / c, "c/dx",
+             fit.found ? sentence("measured from t = ", fit.begin, " to ", fit.end, "; exact: 0")
+                       : fit.reason);
+    run.info("mach", std::fabs(r.gas.velocity_x) / c, "", "of the flow over the mesh");
+    run.info("largest_noise", run.history.largest("noise") / c, "c",
+             "rms of the velocity on the cells");
+}
+
+inline constexpr Comparison wave_comparison{"wave",       validate_wave,       predict_wave,
+                                            warn_of_wave, track_wave,          compare_wave,
+                                            Rows::any,    Frame::moves_along_x};
+
+inline constexpr Comparison ringing_comparison{"ringing", validate_ringing, nullptr,
+                                               nullptr,   track_ringing,    compare_ringing};
+
+}  // namespace flip

@@ -1,0 +1,49 @@
+// All comparisons with theory, and the one that a case asks for.
+#pragma once
+
+#include <array>
+
+#include "flip/theory/compare_cavity.hpp"
+#include "flip/theory/compare_dam_break.hpp"
+#include "flip/theory/compare_diffusion.hpp"
+#include "flip/theory/compare_impact.hpp"
+#include "flip/theory/compare_instability.hpp"
+#include "flip/theory/compare_noh.hpp"
+#include "flip/theory/compare_riemann.hpp"
+#include "flip/theory/compare_sedov.hpp"
+#include "flip/theory/compare_sound.hpp"
+#include "flip/theory/compare_struck_wall.hpp"
+#include "flip/theory/compare_vortex.hpp"
+
+namespace flip {
+
+inline constexpr Comparison no_comparison{.name = "none", .frame = Frame::moves};
+
+/// Every value of theory.compare.
+inline constexpr std::array comparisons{
+    no_comparison,        riemann_comparison,   wall_shock_comparison, piston_comparison,
+    diffusion_comparison, rotation_comparison,  sedov_comparison,      noh_comparison,
+    gresho_comparison,    wave_comparison,      ringing_comparison,    interface_comparison,
+    shear_comparison,     dam_break_comparison, cavity_comparison,     impact_comparison};
+
+/// The comparison that a case asks for.
+inline const Comparison& comparison_of(const Case& parameters) {
+    for (const Comparison& c : comparisons)
+        if (parameters.compare == c.name) return c;
+    return no_comparison;
+}
+
+/// Refuses what the comparison of a case cannot be made with.
+/// in:     a completed case that runs
+/// errors: InputError, one sentence
+inline void validate_comparison(const Case& parameters) {
+    const Comparison& c = comparison_of(parameters);
+    const Refusal refuse{sentence("theory.compare = \"", c.name, "\"")};
+    refuse(c.rows == Rows::several && !parameters.plane(), " needs grid.cells_z of at least 2");
+    refuse((parameters.frame_x != 0 && c.frame == Frame::at_rest) ||
+               (parameters.frame_z != 0 && c.frame != Frame::moves),
+           " is stated in the frame of the mesh: take out theory.frame_x and frame_z");
+    if (c.validate != nullptr) c.validate(parameters, refuse);
+}
+
+}  // namespace flip

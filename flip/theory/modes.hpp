@@ -1,0 +1,58 @@
+// The Fourier mode along x that a comparison tracks.
+#pragma once
+
+#include <complex>
+
+#include "flip/theory/comparison.hpp"
+
+namespace flip {
+
+/// The tracked wave number.
+///   k = 2 pi mode/length_x
+inline double tracked_wave_number(const Case& parameters) {
+    return 2 * pi * static_cast<double>(parameters.mode) / parameters.grid.x.length;
+}
+
+/// Refuses a mesh that has no such mode, and a region whose flow has another.
+inline void validate_mode(const Case& parameters, const Refusal& refuse, const std::string& flow) {
+    refuse(!parameters.grid.x.periodic, " needs periodic ends in x");
+    refuse(2 * parameters.mode >= parameters.grid.x.cells,
+           " follows theory.mode = ", parameters.mode, ", and ", parameters.grid.x.cells,
+           " cells have no waves above ", (parameters.grid.x.cells - 1) / 2,
+           ": refine the mesh or lower it");
+    for (const RegionCase& r : parameters.regions)
+        refuse(r.flow == flow && r.mode != parameters.mode,
+               " follows theory.mode = ", parameters.mode, ", and region.", r.name,
+               ".mode = ", r.mode, ": make them the same");
+}
+
+/// Fourier amplitude along x of rows j_low <= j < j_high of a field, its phase that at x = from.
+///   (2/N) sum f exp(-i k (x - from))
+inline std::complex<double> mode_of(const Case& parameters, const Field& f, long j_low, long j_high,
+                                    double from) {
+    const double k = tracked_wave_number(parameters);
+    std::complex<double> sum = 0;
+    for (long j = j_low; j < j_high; ++j)
+        for (long i = 0; i < parameters.grid.x.cells; ++i)
+            sum += f[parameters.grid.index(i, j)] *
+                   std::polar(1.0, -k * (middle(parameters.grid.x, i) - from));
+    return 2.0 / static_cast<double>(parameters.grid.x.cells * (j_high - j_low)) * sum;
+}
+
+/// Adds name_re and name_im to a row of the history.
+inline void add_mode(common::Row& row, const std::string& name, const std::string& unit,
+                     const std::complex<double>& z) {
+    row.add(name + "_re", unit, z.real());
+    row.add(name + "_im", unit, z.imag());
+}
+
+/// The columns name_re and name_im of a history.
+inline std::vector<std::complex<double>> mode_column(const common::History& history,
+                                                     const std::string& name) {
+    const auto re = history.column(name + "_re"), im = history.column(name + "_im");
+    std::vector<std::complex<double>> z;
+    for (std::size_t n = 0; n < re.size(); ++n) z.emplace_back(re[n], im[n]);
+    return z;
+}
+
+}  // namespace flip
