@@ -11,6 +11,7 @@
 #include "flip/flip/step.hpp"
 #include "flip/pic/pic_start.hpp"
 #include "flip/pic/step.hpp"
+#include "flip/setup/problem_of_case.hpp"
 
 namespace {
 
@@ -39,7 +40,8 @@ Case heavy_on_light(long cells_x) {
 }
 
 common::StepClock time_flip(const Case& w, long steps, long& count) {
-    FlipScratch scratch(w);
+    const Problem problem = problem_of(w);
+    FlipScratch scratch(problem);
     State state;
     state.particles = load_particles(w);
     count = state.particles.count();
@@ -47,22 +49,23 @@ common::StepClock time_flip(const Case& w, long steps, long& count) {
     common::StepClock clock;
     for (long step = 0; step <= steps; ++step) {
         if (step == 1) clock.restart();  // the first step meets empty caches
-        find_fluid(w, state, scratch.mesh, clock);
-        take_flip_step(w, step, scratch, state, clock);
+        find_fluid(problem, state, scratch.mesh, clock);
+        take_flip_step(problem, step, scratch, state, clock);
     }
     return clock;
 }
 
 common::StepClock time_pic(const Case& w, long steps, long& count) {
-    PicCells cells(w);
-    State state = initial_state(w, cells);
+    const Problem problem = problem_of(w);
+    PicCells cells(problem);
+    State state = initial_state(problem, load_particles(w), cells);
     count = state.particles.count();
     common::StepClock clock;
     for (long step = 0; step <= steps; ++step) {
         if (step == 1) clock.restart();
-        share_pressure(w, state, cells);
+        share_pressure(problem, state, cells);
         clock.lap("mesh");
-        take_pic_step(w, state, cells, clock);
+        take_pic_step(problem, state, cells, clock);
     }
     return clock;
 }

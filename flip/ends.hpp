@@ -7,6 +7,7 @@
 #include <string>
 
 #include "common/parallel.hpp"
+#include "common/run/parameters.hpp"
 #include "flip/state.hpp"
 
 namespace flip {
@@ -53,18 +54,17 @@ namespace flip {
 /// out:    left(p) has been called for every particle that leaves, before anything has moved
 /// errors: NumericalError for a particle beyond a wall, or a position that is not finite
 template <class Left>
-void remove_leaving(const Case& w, double time, Particles& particles, const Left& left) {
-    bool closed = true;
-    for (const EndCase& end : w.ends) closed = closed && end.kind != "open" && end.kind != "inflow";
+void remove_leaving(const Problem& problem, double time, Particles& particles, const Left& left) {
     std::size_t kept = 0;
     const std::size_t count = particles.x_p.size();
     const auto columns = particles.all();
     for (std::size_t p = 0; p < count; ++p) {
         const double x = particles.x_p[p], z = particles.z_p[p];
-        const int end = beyond(w.grid, x, z);
+        const int end = beyond(problem.grid, x, z);
         if (end >= 0) {
-            const std::string& kind = w.ends[static_cast<std::size_t>(end)].kind;
-            if ((kind != "open" && kind != "inflow") || !std::isfinite(x + z))
+            const BoundaryKind kind = problem.boundaries.side[end].kind;
+            if ((kind != BoundaryKind::open && kind != BoundaryKind::inflow) ||
+                !std::isfinite(x + z))
                 lost_particle(x, z, time);
             left(p);
             continue;
@@ -84,20 +84,20 @@ void remove_leaving(const Case& w, double time, Particles& particles, const Left
 /// Adds the particles that enter through inflow ends between t and t + dt: columns as far apart as
 /// on the lattice of the start, each where it has got to by t + dt.
 /// out:    the number added, at the end of the columns; all columns that are in use are filled
-inline long add_inflow(const Case& w, double t, double dt, Particles& particles) {
+inline long add_inflow(const Problem& problem, double t, double dt, Particles& particles) {
     long added = 0;
-    const int index = material_index(w, w.inflow.material);
-    const Material& a = w.materials[static_cast<std::size_t>(index)];
-    for (const End end : {x_low, x_high, z_low, z_high}) {
-        if (!w.is(end, "inflow")) continue;
+    const Inflow& in = problem.boundaries.inflow;
+    for (const Side end : all_sides) {
+        if (!problem.boundaries.is(end, BoundaryKind::inflow)) continue;
         const bool along_x = end == x_low || end == x_high, low = end == x_low || end == z_low;
-        const common::Axis &across = along_x ? w.grid.x : w.grid.z,
-                           &aside = along_x ? w.grid.z : w.grid.x;
-        const double speed = (low ? 1 : -1) * (along_x ? w.inflow.velocity_x : w.inflow.velocity_z);
+        const common::Axis &across = along_x ? problem.grid.x : problem.grid.z,
+                           &aside = along_x ? problem.grid.z : problem.grid.x;
+        const double speed = (low ? 1 : -1) * (along_x ? in.vx : in.vz);
         if (speed <= 0) continue;
-        const double step =
-            across.spacing() / static_cast<double>(along_x ? w.per_cell_x : w.per_cell_z);
-        const long per_cell = along_x ? w.per_cell_z : w.per_cell_x, count = per_cell * aside.cells;
+        const double step = across.spacing() /
+                            static_cast<double>(along_x ? problem.per_cell_x : problem.per_cell_z);
+        const long per_cell = along_x ? problem.per_cell_z : problem.per_cell_x,
+                   count = per_cell * aside.cells;
         const double width = aside.spacing() / static_cast<double>(per_cell);
         // Column n crosses the end at t_n = (n + 1/2) step/speed.
         const auto crossed = [&](double time) {
@@ -112,17 +112,17 @@ inline long add_inflow(const Case& w, double t, double dt, Particles& particles)
                     if (used) column.push_back(value);
                 };
                 const bool moving = has(particles.vx_p) || particles.x_p.empty();
-                add(particles.vx_p, moving, w.inflow.velocity_x);
-                add(particles.vz_p, moving, w.inflow.velocity_z);
-                add(particles.e_p, moving, internal_energy(a, w.inflow.density, w.inflow.pressure));
-                add(particles.V_p, w.density == "particles" && moving, step * width);
+                add(particles.vx_p, moving, in.vx);
+                add(particles.vz_p, moving, in.vz);
+                add(particles.e_p, moving, in.e);
+                add(particles.V_p, problem.scheme.particle_volumes && moving, step * width);
                 for (auto* C :
                      {&particles.Cxx_p, &particles.Cxz_p, &particles.Czx_p, &particles.Czz_p})
-                    add(*C, w.transfer == "apic" && moving, 0.0);
+                    add(*C, problem.scheme.transfer.affine && moving, 0.0);
                 particles.x_p.push_back(along_x ? at : beside);
                 particles.z_p.push_back(along_x ? beside : at);
-                particles.m_p.push_back(w.inflow.density * step * width);
-                particles.material.push_back(index);
+                particles.m_p.push_back(in.rho * step * width);
+                particles.material.push_back(in.material);
                 ++added;
             }
         }

@@ -5,7 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "flip/setup/initial_state.hpp"
+#include "flip/particles.hpp"
+#include "flip/problem.hpp"
 
 namespace flip {
 

@@ -14,10 +14,10 @@ using namespace facts;
 constexpr double tiny = std::numeric_limits<double>::denorm_min();
 
 // One end of a mesh lets fluid in, the opposite one lets it out.
-Case channel(End in) {
+Case channel(Side in) {
     Case w = flip_case(8, 6, "slip", "slip");
     w.grid.x.low = -0.3, w.grid.z.low = 2;
-    const End out = static_cast<End>(in ^ 1);
+    const Side out = static_cast<Side>(in ^ 1);
     w.ends[in].kind = "inflow", w.ends[out] = {"open", 0, 1};
     w.inflow = {"", 2, 1, 0, 0};
     const double v = in == x_low || in == z_low ? 0.9 : -0.9;
@@ -150,7 +150,7 @@ TEST_CASE("particles at the ends and on mesh lines and denormally near them do n
 TEST_CASE("what is beyond a wall ends the run with where and when") {
     const facts::Untrapped calm;
     for (const char* kind : {"slip", "no_slip"}) {
-        for (const End end : {x_low, x_high, z_low, z_high}) {
+        for (const Side end : all_sides) {
             Case w = flip_case(4, 4, kind, kind);
             w.dt = 0.25;
             double x = 0.4, z = 0.6;
@@ -158,7 +158,7 @@ TEST_CASE("what is beyond a wall ends the run with where and when") {
             FlipRun r = alone(w, 0.4, 0.6);
             r.particles().x_p[0] = x, r.particles().z_p[0] = z;
             const std::string said =
-                message_of([&] { cross_ends(r.w, 1.5, 0.25, r.particles(), r.state.books); });
+                message_of([&] { cross_ends(r.problem, 1.5, 0.25, r.particles(), r.state.books); });
             CAPTURE(said);
             CHECK(said.find("through the wall") != std::string::npos);
             CHECK(said.find("x = " + common::format(x)) != std::string::npos);
@@ -173,7 +173,7 @@ TEST_CASE("what is beyond a wall ends the run with where and when") {
         for (const double bad :
              {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
             r.particles().x_p[0] = bad;
-            CHECK(message_of([&] { cross_ends(r.w, 0, 1, r.particles(), r.state.books); }) !=
+            CHECK(message_of([&] { cross_ends(r.problem, 0, 1, r.particles(), r.state.books); }) !=
                   "nothing");
         }
     }
@@ -182,7 +182,7 @@ TEST_CASE("what is beyond a wall ends the run with where and when") {
 TEST_CASE("what leaves through an open end is in the books to the last bit of energy") {
     for (const char* transfer : {"flip", "apic"}) {
         for (const char* density : {"cells", "particles"}) {
-            for (const End end : {x_low, x_high, z_low, z_high}) {
+            for (const Side end : all_sides) {
                 Case w = flip_case(4, 4, "open", "open");
                 w.transfer = transfer, w.density = density, w.dt = 0.1;
                 w.materials = {{"dust", 1, 0}};
@@ -214,7 +214,7 @@ TEST_CASE("what leaves through an open end is in the books to the last bit of en
 }
 
 TEST_CASE("inflow brings the mass that its density and speed say to one column") {
-    for (const End in : {x_low, x_high, z_low, z_high}) {
+    for (const Side in : all_sides) {
         for (const double dt : {0.003, 0.0471, 0.01}) {
             for (const char* density : {"cells", "particles"}) {
                 Case w = channel(in);
@@ -225,12 +225,13 @@ TEST_CASE("inflow brings the mass that its density and speed say to one column")
                                    &aside = along_x ? w.grid.z : w.grid.x;
                 const double step = across.spacing() / (along_x ? 3 : 2),
                              column = 2 * step * aside.length;
+                const Problem problem = problem_of(w);
                 Particles p;
                 Books books;
                 double t = 0;
                 std::map<double, int> depths;
                 while (t < 0.6) {
-                    cross_ends(w, t, dt, p, books);
+                    cross_ends(problem, t, dt, p, books);
                     t += dt;
                     // All that has entered moves on with the stream before the next step.
                     CHECK(std::fabs(books.mass - 2 * 0.9 * t * aside.length) <=
@@ -271,7 +272,7 @@ TEST_CASE("inflow brings the mass that its density and speed say to one column")
 }
 
 TEST_CASE("a uniform stream through a channel stays uniform whatever side it comes from") {
-    for (const End in : {x_low, x_high, z_low, z_high}) {
+    for (const Side in : all_sides) {
         for (const char* pressure : {"explicit", "implicit"}) {
             for (const char* density : {"cells", "particles"}) {
                 Case w = channel(in);
@@ -299,7 +300,7 @@ TEST_CASE("a uniform stream through a channel stays uniform whatever side it com
 }
 
 TEST_CASE("fluid enters a mesh that was empty and all of it is in the books") {
-    for (const End in : {x_low, x_high, z_low, z_high}) {
+    for (const Side in : all_sides) {
         for (const char* transfer : {"flip", "pic", "blend", "apic", "xpic"}) {
             for (const char* density : {"cells", "particles"}) {
                 Case w = channel(in);
@@ -380,7 +381,7 @@ TEST_CASE("walls hold what they are to hold and nothing else") {
     w.ends[z_high].slide = 0.7;
     w = completed(w);
     Field vx = Field::Constant(w.grid.size(), 2), vz = Field::Constant(w.grid.size(), 3);
-    set_walls(w, vx, vz);
+    set_walls(problem_of(w), vx, vz);
     for (long j = 0; j <= 4; ++j) {
         for (long i = 0; i <= 5; ++i) {
             const long n = w.grid.index(i, j);

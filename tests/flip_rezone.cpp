@@ -9,6 +9,7 @@
 #include "flip/flip/deposit_particles.hpp"
 #include "flip/flip/flip_fields.hpp"
 #include "flip/flip/rezone.hpp"
+#include "flip/setup/problem_of_case.hpp"
 #include "tests/support/any_numbers.hpp"
 
 namespace {
@@ -57,15 +58,16 @@ struct Cloud {
     }
 
     void rezone_all() {
+        const Problem problem = problem_of(w);
         SortScratch scratch;
         sort_particles(w.grid, scratch, p);
-        before = mesh_of(w), after = mesh_of(w);
-        deposit_particles(w, p, before);
-        totals_before = particle_totals(w, p);
-        report = rezone(w, p);
+        before = mesh_of(problem), after = mesh_of(problem);
+        deposit_particles(problem, p, before);
+        totals_before = particle_totals(problem, p);
+        report = rezone(problem, p);
         sort_particles(w.grid, scratch, p);
-        deposit_particles(w, p, after);
-        totals_after = particle_totals(w, p);
+        deposit_particles(problem, p, after);
+        totals_after = particle_totals(problem, p);
     }
 
     double node_change() const {

@@ -344,7 +344,7 @@ TEST_CASE("viscous forces sum to zero and take what heats the cells and spare ri
                 stir_nodes(grid, random, vx), stir_nodes(grid, random, vz);
                 const auto forces = [&] {
                     g.fx.setZero(grid.size()), g.fz.setZero(grid.size());
-                    add_viscous_force(r.w, r.scratch.mesh);
+                    add_viscous_force(r.problem, r.scratch.mesh);
                 };
                 forces();
                 double work = 0, heat = 0, own_heat = 0, size = 0, x = 0, z = 0, lost = 0;
@@ -356,8 +356,8 @@ TEST_CASE("viscous forces sum to zero and take what heats the cells and spare ri
                 });
                 double coldest = 0;
                 for_each_cell(grid, [&](long, long, long n) {
-                    heat += viscous_heat(r.w, g, vx, vz, n);
-                    own_heat = viscous_heat(r.w, g, g.vx0, g.vz0, n);
+                    heat += viscous_heat(r.problem, g, vx, vz, n);
+                    own_heat = viscous_heat(r.problem, g, g.vx0, g.vz0, n);
                     coldest = std::min(coldest, own_heat);
                 });
                 CHECK(size > 1);
@@ -394,8 +394,8 @@ TEST_CASE("a viscous shear flow decays by the law of Newton" * doctest::descript
         r.nodes().vx[n] = 0, r.nodes().vz[n] = std::sin(k * grid.x.at(real(i)));
     });
     fill_nodes(grid, r.nodes().vz.data());
-    find_viscosity(r.w, r.scratch.mesh);
-    find_known_forces(r.w, r.scratch.mesh);
+    find_viscosity(r.problem, r.scratch.mesh);
+    find_known_forces(r.problem, r.scratch.mesh);
     for_own_nodes(grid, [&](long n) {
         const double rate = 0.03 * grid.cell_area() * (2 - 2 * std::cos(k * h)) / (h * h);
         CHECK(std::fabs(r.nodes().fz[n] + rate * r.nodes().vz[n]) <= 1e-14);
@@ -414,13 +414,14 @@ TEST_CASE("viscosities are those of their formulas in a uniform compression or e
             for_each_node(r.grid(), [&](long i, long, long n) {
                 r.nodes().vx[n] = a * r.grid().x.at(real(i)), r.nodes().vz[n] = 0.2;
             });
-            find_viscosity(r.w, r.scratch.mesh);
+            find_viscosity(r.problem, r.scratch.mesh);
             const double h = rows == 1 ? 1.0 / 8 : std::sqrt(1.0 / 48), c = std::sqrt(1.4 / 2);
             const double q = a < 0 ? 2 * -a * h * (0.5 * c + 1.5 * h * -a) : 0;
             for_each_cell(r.grid(), [&](long, long, long n) {
                 CHECK(std::fabs(r.cells().q[n] - q) <= 1e-13);
                 // mu (2 a - 2 a/3) a
-                const double heat = viscous_heat(r.w, r.nodes(), r.nodes().vx, r.nodes().vz, n);
+                const double heat =
+                    viscous_heat(r.problem, r.nodes(), r.nodes().vx, r.nodes().vz, n);
                 CHECK(std::fabs(heat / r.grid().cell_area() - 0.3 * 4 / 3 * a * a) <= 1e-13);
             });
         }
@@ -573,7 +574,7 @@ TEST_CASE("the trap pulls alike at both images of a seam and towards the middle"
         FlipRun r(w, any_cloud(w, 0, 6));
         for (long j = 0; j <= r.grid().z.cells; ++j) {
             for (long i = 0; i <= 7; ++i) {
-                const Eigen::Vector2d pull = pull_on_node(r.w, r.grid().index(i, j));
+                const Eigen::Vector2d pull = pull_on_node(r.problem, r.grid().index(i, j));
                 const double x = i % 7 == 0 ? 0 : 0.5 - real(i) / 7,
                              z = j % rows == 0 ? 0 : 0.5 - real(j) / 6;
                 CHECK(std::fabs(pull[0] - 2 * x) <= 1e-15);
@@ -589,9 +590,9 @@ TEST_CASE("an open end feels the pressure outside over its length and no further
     for (std::size_t k = 0; k < 4; ++k) w.ends[k].pressure = p[k];
     FlipRun r(w, any_cloud(w, 0, 7));
     r.deposit();
-    find_viscosity(r.w, r.scratch.mesh);
+    find_viscosity(r.problem, r.scratch.mesh);
     r.cells().q.setZero();
-    find_known_forces(r.w, r.scratch.mesh);
+    find_known_forces(r.problem, r.scratch.mesh);
     double x = 0, z = 0;
     for_own_nodes(r.grid(), [&](long n) {
         const long i = n % r.grid().stride() - 1, j = n / r.grid().stride() - 1;
@@ -639,7 +640,7 @@ TEST_CASE(
             const double owed = 0.5 * (dvx.dot(deficit * dvx) + dvz.dot(deficit * dvz));
             const std::vector<double> e = r.particles().e_p;
             const Eigen::VectorXd m = m_p;
-            move_particles(r.w, dt, r.scratch.mesh, r.particles());
+            move_particles(r.problem, dt, r.scratch.mesh, r.particles());
             double heat = 0, coldest = 0;
             for (std::size_t k = 0; k < e.size(); ++k) {
                 const double de = r.particles().e_p[k] - e[k];
@@ -743,7 +744,7 @@ TEST_CASE("xpic of order one is pic and many orders give the velocity of the con
     filter_velocity(r.grid(), M, r.nodes().m, 4000, r.nodes().vx, many_x, last);
     filter_velocity(r.grid(), M, r.nodes().m, 4000, r.nodes().vz, many_z, last);
     CHECK(last.cwiseAbs().maxCoeff() <= 1e-12);
-    flip::detail::solve_velocity(r.w, M, r.scratch.mesh);
+    flip::detail::solve_velocity(r.problem, M, r.scratch.mesh);
     const std::vector<long> nodes = own_nodes(r.grid());
     CHECK((on(nodes, many_x - r.nodes().vx)).cwiseAbs().maxCoeff() <= 1e-9);
     CHECK((on(nodes, many_z - r.nodes().vz)).cwiseAbs().maxCoeff() <= 1e-9);
@@ -857,10 +858,10 @@ TEST_CASE("an affine motion is exact with apic in a filled box") {
         p.Cxx_p[k] = a[1], p.Cxz_p[k] = a[2], p.Czx_p[k] = a[4], p.Czz_p[k] = a[5];
     }
     const Particles before = p;
-    r.w.q_linear = r.w.q_quadratic = 0;
+    r.problem.q = {0, 0};
     r.deposit();
     const double dt = r.move_nodes();
-    move_particles(r.w, dt, r.scratch.mesh, p);
+    move_particles(r.problem, dt, r.scratch.mesh, p);
     double most = 0;
     for (std::size_t k = 0; k < p.x_p.size(); ++k)
         most = worst({most, std::fabs(p.vx_p[k] - before.vx_p[k]),
@@ -1178,7 +1179,7 @@ TEST_CASE("volumes change as the nodes say to round-off") {
             r.deposit();
             const double dt = r.move_nodes();
             const double before = column(r.particles().V_p).sum();
-            move_particles(r.w, dt, r.scratch.mesh, r.particles());
+            move_particles(r.problem, dt, r.scratch.mesh, r.particles());
             const Nodes& g = r.nodes();
             const Field &vx = r.w.implicit() ? g.vx_work : g.vxL,
                         &vz = r.w.implicit() ? g.vz_work : g.vzL;

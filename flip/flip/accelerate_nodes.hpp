@@ -33,43 +33,45 @@ inline Eigen::Vector2d pressure_force(const Grid& grid, const Field& p, long n) 
 /// Artificial viscosity of every cell, from the velocity that the walls let stand.
 ///   q = rho (-d) h (linear c + quadratic h (-d)),  d = div v < 0,  h = dx, or sqrt(dx dz)
 /// out:    nodes.vx0, vz0; cells.q
-inline void find_viscosity(const Case& w, Mesh& mesh) {
-    const Grid& grid = w.grid;
+inline void find_viscosity(const Problem& problem, Mesh& mesh) {
+    const Grid& grid = problem.grid;
     Nodes& g = mesh.nodes;
     Cells& c = mesh.cells;
     for_each_node(grid, [&](long, long, long n) {
         g.vx0[n] = g.vx[n];
         g.vz0[n] = g.vz[n];
     });
-    set_walls(w, g.vx0, g.vz0);
+    set_walls(problem, g.vx0, g.vz0);
     const double V_c = grid.cell_area();
-    const double h = w.plane() ? std::sqrt(V_c) : grid.x.spacing();
+    const double h = is_plane(problem.grid) ? std::sqrt(V_c) : grid.x.spacing();
     for_each_cell(grid, [&](long, long, long n) {
         const double d = dilation(grid, g.vx0, g.vz0, n) / V_c;
         const bool squeezed = d < 0 && c.M[n] > 0 && c.surface[static_cast<std::size_t>(n)] == 0;
         const double rho = c.M[n] / (c.volume.size() > 0 ? std::max(c.volume[n], 1e-300) : V_c);
-        c.q[n] =
-            squeezed
-                ? rho * -d * h *
-                      (w.q_linear * sound_speed(rho, c.compressibility[n]) - w.q_quadratic * h * d)
-                : 0;
+        c.q[n] = squeezed ? rho * -d * h *
+                                (problem.q.linear * sound_speed(rho, c.compressibility[n]) -
+                                 problem.q.quadratic * h * d)
+                          : 0;
     });
 }
 
 /// Acceleration by gravity and trap at a place.
-inline Eigen::Vector2d pull_at(const Case& w, double x, double z) {
-    return {w.gravity_x + w.trap * (w.grid.x.low + 0.5 * w.grid.x.length - x),
-            w.gravity_z + w.trap * (w.grid.z.low + 0.5 * w.grid.z.length - z)};
+inline Eigen::Vector2d pull_at(const Problem& problem, double x, double z) {
+    return {problem.body_force.gravity_x +
+                problem.body_force.trap * (problem.grid.x.low + 0.5 * problem.grid.x.length - x),
+            problem.body_force.gravity_z +
+                problem.body_force.trap * (problem.grid.z.low + 0.5 * problem.grid.z.length - z)};
 }
 /// The same on a node. The two images of a node at the seam of a periodic direction are as far from
 /// the middle on either side: there the trap does not pull.
-inline Eigen::Vector2d pull_on_node(const Case& w, long n) {
-    const long stride = w.grid.stride();
+inline Eigen::Vector2d pull_on_node(const Problem& problem, long n) {
+    const long stride = problem.grid.stride();
     const auto place = [](const common::Axis& axis, long k) {
         const bool seam = axis.periodic && (k == 0 || k == axis.cells);
         return axis.at(seam ? 0.5 * static_cast<double>(axis.cells) : static_cast<double>(k));
     };
-    return pull_at(w, place(w.grid.x, n % stride - 1), place(w.grid.z, n / stride - 1));
+    return pull_at(problem, place(problem.grid.x, n % stride - 1),
+                   place(problem.grid.z, n / stride - 1));
 }
 
 namespace detail {
@@ -116,9 +118,9 @@ inline std::array<long, 4> corners_of(const Grid& grid, long n) {
 /// Adds the viscous force of the fluid, from the velocities before the step.
 ///   F_g -= sum over cells of the integral of tau . grad S_g, by Gauss's rule of four points
 /// exact:  forces sum to zero but for walls; a rigid motion feels none
-inline void add_viscous_force(const Case& w, Mesh& mesh) {
-    if (w.viscosity == 0) return;
-    const Grid& grid = w.grid;
+inline void add_viscous_force(const Problem& problem, Mesh& mesh) {
+    if (problem.viscosity == 0) return;
+    const Grid& grid = problem.grid;
     Nodes& g = mesh.nodes;
     const auto gradients = detail::corner_gradients(grid);
     const double part = 0.25 * grid.cell_area();
@@ -128,7 +130,8 @@ inline void add_viscous_force(const Case& w, Mesh& mesh) {
             if (is_frayed(grid, g.m, n)) continue;
             const auto corners = detail::corners_of(grid, n);
             for (const detail::CornerGradients& d : gradients) {
-                const auto tau = detail::viscous_stress(w.viscosity, d, corners, g.vx0, g.vz0);
+                const auto tau =
+                    detail::viscous_stress(problem.viscosity, d, corners, g.vx0, g.vz0);
                 for (std::size_t a = 0; a < 4; ++a) {
                     g.fx[corners[a]] -= part * (tau.xx * d.x[a] + tau.xz * d.z[a]);
                     g.fz[corners[a]] -= part * (tau.xz * d.x[a] + tau.zz * d.z[a]);
@@ -141,31 +144,32 @@ inline void add_viscous_force(const Case& w, Mesh& mesh) {
 }
 
 /// Heat that viscosity makes in one cell per time, from stresses of v0 and the motion vbar.
-inline double viscous_heat(const Case& w, const Nodes& g, const Field& vx, const Field& vz,
+inline double viscous_heat(const Problem& problem, const Nodes& g, const Field& vx, const Field& vz,
                            long n) {
-    if (is_frayed(w.grid, g.m, n)) return 0;
-    const auto corners = detail::corners_of(w.grid, n);
+    if (is_frayed(problem.grid, g.m, n)) return 0;
+    const auto corners = detail::corners_of(problem.grid, n);
     double sum = 0;
-    for (const detail::CornerGradients& d : detail::corner_gradients(w.grid)) {
-        const auto tau = detail::viscous_stress(w.viscosity, d, corners, g.vx0, g.vz0);
+    for (const detail::CornerGradients& d : detail::corner_gradients(problem.grid)) {
+        const auto tau = detail::viscous_stress(problem.viscosity, d, corners, g.vx0, g.vz0);
         for (std::size_t a = 0; a < 4; ++a)
             sum += vx[corners[a]] * (tau.xx * d.x[a] + tau.xz * d.z[a]) +
                    vz[corners[a]] * (tau.xz * d.x[a] + tau.zz * d.z[a]);
     }
-    return 0.25 * w.grid.cell_area() * sum;
+    return 0.25 * problem.grid.cell_area() * sum;
 }
 
 /// The forces that are known before the step: q, the viscosity of the fluid, and the pressure
 /// outside of open ends.
 /// out:    nodes.fx, fz
-inline void find_known_forces(const Case& w, Mesh& mesh) {
-    const Grid& grid = w.grid;
+inline void find_known_forces(const Problem& problem, Mesh& mesh) {
+    const Grid& grid = problem.grid;
     Nodes& g = mesh.nodes;
     for_each_node(grid, [&](long, long, long n) { g.fx[n] = g.fz[n] = 0; });
-    add_viscous_force(w, mesh);
+    add_viscous_force(problem, mesh);
     fill_pressure(grid, mesh.cells.q);
     for_each_node(grid, [&](long i, long j, long n) {
-        const Eigen::Vector2d F = pressure_force(grid, mesh.cells.q, n) + outside_force(w, i, j);
+        const Eigen::Vector2d F =
+            pressure_force(grid, mesh.cells.q, n) + outside_force(problem, i, j);
         g.fx[n] += F[0];
         g.fz[n] += F[1];
     });
@@ -178,8 +182,8 @@ inline void find_known_forces(const Case& w, Mesh& mesh) {
 /// out:    nodes.vxL, vzL, 0 on nodes without mass
 /// exact:  internal forces sum to zero
 /// source: [FLIP-6]
-inline void accelerate_nodes(const Case& w, double dt, Mesh& mesh) {
-    const Grid& grid = w.grid;
+inline void accelerate_nodes(const Problem& problem, double dt, Mesh& mesh) {
+    const Grid& grid = problem.grid;
     Nodes& g = mesh.nodes;
     fill_pressure(grid, mesh.cells.p_step);
     for_each_node(grid, [&](long, long, long n) {
@@ -187,11 +191,11 @@ inline void accelerate_nodes(const Case& w, double dt, Mesh& mesh) {
         g.fx[n] += F[0];
         g.fz[n] += F[1];
         const double per_mass = g.m[n] > 0 ? 1 / g.m[n] : 0;
-        const Eigen::Vector2d pull = pull_on_node(w, n);
+        const Eigen::Vector2d pull = pull_on_node(problem, n);
         g.vxL[n] = per_mass > 0 ? g.vx0[n] + dt * (per_mass * g.fx[n] + pull[0]) : 0;
         g.vzL[n] = per_mass > 0 ? g.vz0[n] + dt * (per_mass * g.fz[n] + pull[1]) : 0;
     });
-    set_walls(w, g.vxL, g.vzL);
+    set_walls(problem, g.vxL, g.vzL);
 }
 
 }  // namespace flip

@@ -12,9 +12,9 @@ namespace flip {
 /// out:    books: mass, momentum and energy of what crossed, with apic also that of the motion within
 ///         a particle, as move_particles() has left it
 /// errors: NumericalError for a particle beyond a wall
-inline void cross_ends(const Case& w, double t, double dt, Particles& p, Books& books,
+inline void cross_ends(const Problem& problem, double t, double dt, Particles& p, Books& books,
                        long left = 1) {
-    const WeightScale scale(w.grid);
+    const WeightScale scale(problem.grid);
     const auto enter = [&](std::size_t k, double sign) {
         const double m = sign * p.m_p[k], vx = p.vx_p[k], vz = p.vz_p[k];
         books.mass += m;
@@ -23,10 +23,10 @@ inline void cross_ends(const Case& w, double t, double dt, Particles& p, Books& 
         books.energy += m * (0.5 * (vx * vx + vz * vz) + p.e_p[k]);
         if (!has(p.Cxx_p)) return;
         const double C[4] = {p.Cxx_p[k], p.Cxz_p[k], p.Czx_p[k], p.Czz_p[k]};
-        books.energy += m * affine_energy(w.grid, weights_at(scale, p.x_p[k], p.z_p[k]), C);
+        books.energy += m * affine_energy(problem.grid, weights_at(scale, p.x_p[k], p.z_p[k]), C);
     };
-    if (left > 0) remove_leaving(w, t + dt, p, [&](std::size_t k) { enter(k, -1); });
-    const long added = add_inflow(w, t, dt, p);
+    if (left > 0) remove_leaving(problem, t + dt, p, [&](std::size_t k) { enter(k, -1); });
+    const long added = add_inflow(problem, t, dt, p);
     for (std::size_t k = p.x_p.size() - static_cast<std::size_t>(added); k < p.x_p.size(); ++k)
         enter(k, 1);
 }

@@ -71,8 +71,8 @@ void deposit_row(const WeightScale& scale, const std::vector<Material>& material
 /// source: [FLIP-8]; with apic, v_p + C_p (x_g - x_p) for v_p: Jiang, Schroeder and Teran,
 ///         J. Comput. Phys. 338, 137 (2017).
 /// note:   "Fabre" on the slide is Favre: weighted by mass.
-inline void deposit_particles(const Case& w, const Particles& particles, Mesh& mesh) {
-    const Grid& grid = w.grid;
+inline void deposit_particles(const Problem& problem, const Particles& particles, Mesh& mesh) {
+    const Grid& grid = problem.grid;
     const bool volumes = has(particles.V_p), affine = has(particles.Cxx_p);
     Nodes& g = mesh.nodes;
     Cells& c = mesh.cells;
@@ -99,17 +99,17 @@ inline void deposit_particles(const Case& w, const Particles& particles, Mesh& m
                        end = static_cast<std::size_t>(
                            particles.first_of_row[static_cast<std::size_t>(j) + 1]);
             if (affine && volumes)
-                detail::deposit_row<true, true>(scale, w.materials, particles, begin, end, grid,
-                                                mesh);
+                detail::deposit_row<true, true>(scale, problem.materials, particles, begin, end,
+                                                grid, mesh);
             else if (affine)
-                detail::deposit_row<true, false>(scale, w.materials, particles, begin, end, grid,
-                                                 mesh);
+                detail::deposit_row<true, false>(scale, problem.materials, particles, begin, end,
+                                                 grid, mesh);
             else if (volumes)
-                detail::deposit_row<false, true>(scale, w.materials, particles, begin, end, grid,
-                                                 mesh);
+                detail::deposit_row<false, true>(scale, problem.materials, particles, begin, end,
+                                                 grid, mesh);
             else
-                detail::deposit_row<false, false>(scale, w.materials, particles, begin, end, grid,
-                                                  mesh);
+                detail::deposit_row<false, false>(scale, problem.materials, particles, begin, end,
+                                                  grid, mesh);
         },
         particles.count());
     fold_nodes(grid, g.sum.data());

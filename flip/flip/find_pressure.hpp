@@ -35,8 +35,8 @@ inline bool is_frayed(const Grid& grid, const Field& m, long n) {
 /// out:    cells.p, compressibility, share, surface (1: p = 0 whatever happens)
 /// exact:  with volumes a state of equal pressure stays one wherever the particles are
 /// errors: NumericalError for a negative or not finite density or energy, with where and when
-inline void find_pressure(const Case& w, double time, Mesh& mesh) {
-    const Grid& grid = w.grid;
+inline void find_pressure(const Problem& problem, double time, Mesh& mesh) {
+    const Grid& grid = problem.grid;
     Cells& c = mesh.cells;
     const bool volumes = c.volume.size() > 0;
     const double V_c = grid.cell_area();
@@ -55,14 +55,14 @@ inline void find_pressure(const Case& w, double time, Mesh& mesh) {
             const CellSum& sum = c.sum[static_cast<std::size_t>(n) * kinds + k];
             M[k] = sum.M;
             U[k] = std::max(sum.U, 0.0);
-            gas = gas || (sum.M > 0 && w.materials[k].p_infinity == 0);
-            const bool dust = w.materials[k].gamma == 1;  // whose energy does nothing
+            gas = gas || (sum.M > 0 && problem.materials[k].p_infinity == 0);
+            const bool dust = problem.materials[k].gamma == 1;  // whose energy does nothing
             sound = sound && sum.M >= 0 &&
                     (dust ? std::isfinite(sum.U) : sum.U >= -cold_enough * sum.M * speed2);
         }
         if (!sound) bad = n;
         const CellState cell =
-            share_cell(w.materials, M, U, V_c, &c.share[static_cast<std::size_t>(n) * kinds]);
+            share_cell(problem.materials, M, U, V_c, &c.share[static_cast<std::size_t>(n) * kinds]);
         c.p[n] = cell.p;
         c.compressibility[n] = cell.compressibility;
         bool surface = cell.surface;
@@ -97,12 +97,12 @@ inline double sound_speed(double rho, double compressibility) {
 /// nu also dt <= 1/(4 nu (1/dx^2 + 1/dz^2)); at most 1.2 times the last step
 /// in:     find_pressure() has been called; last, the last step, 0 before the first
 /// out:    time.dt where the case gives it
-inline double step_allowed(const Case& w, const Mesh& mesh, double last) {
-    if (w.dt > 0) return w.dt;
-    const Grid& grid = w.grid;
+inline double step_allowed(const Problem& problem, const Mesh& mesh, double last) {
+    if (problem.limits.dt > 0) return problem.limits.dt;
+    const Grid& grid = problem.grid;
     const Nodes& g = mesh.nodes;
     const Cells& c = mesh.cells;
-    const bool plane = w.plane();
+    const bool plane = is_plane(problem.grid);
     const double per_dx = 1 / grid.x.spacing(), per_dz = plane ? 1 / grid.z.spacing() : 0;
     const double per_dx2 = per_dx * per_dx + per_dz * per_dz, V_c = grid.cell_area();
     std::vector<double> of_row(static_cast<std::size_t>(grid.z.cells), 0.0);
@@ -123,11 +123,12 @@ inline double step_allowed(const Case& w, const Mesh& mesh, double last) {
                 // Through a cell that is partly void no sound runs.
                 const bool silent = c.surface[static_cast<std::size_t>(n)] != 0;
                 const double sound =
-                    silent || (w.implicit() && last > 0)
+                    silent || (problem.scheme.implicit && last > 0)
                         ? 0
                         : sound_speed(rho, c.compressibility[n]) * std::sqrt(per_dx2);
-                double rate = (vx * per_dx + vz * per_dz + sound) / w.cfl;
-                if (w.viscosity > 0) rate = std::max(rate, 4 * w.viscosity / rho * per_dx2);
+                double rate = (vx * per_dx + vz * per_dz + sound) / problem.limits.cfl;
+                if (problem.viscosity > 0)
+                    rate = std::max(rate, 4 * problem.viscosity / rho * per_dx2);
                 most = std::max(most, rate);
             }
             of_row[static_cast<std::size_t>(j)] = most;
@@ -136,14 +137,15 @@ inline double step_allowed(const Case& w, const Mesh& mesh, double last) {
     const double most = *std::max_element(of_row.begin(), of_row.end());
 
     // A fluid at rest is limited by how fast it can begin to move.
-    const double pull = std::hypot(w.gravity_x, w.gravity_z);
-    double dt = most > 0 ? 1 / most : w.end / 100;
+    const double pull = std::hypot(problem.body_force.gravity_x, problem.body_force.gravity_z);
+    double dt = most > 0 ? 1 / most : problem.limits.end / 100;
     if (pull > 0)
         dt = std::min(
-            dt, std::sqrt(w.cfl *
+            dt, std::sqrt(problem.limits.cfl *
                           std::min(grid.x.spacing(), plane ? grid.z.spacing() : grid.x.spacing()) /
                           pull));
-    if (w.trap > 0) dt = std::min(dt, w.cfl / std::sqrt(w.trap));
+    if (problem.body_force.trap > 0)
+        dt = std::min(dt, problem.limits.cfl / std::sqrt(problem.body_force.trap));
     return last > 0 ? std::min(dt, 1.2 * last) : dt;
 }
 

@@ -18,6 +18,7 @@
 #include "flip/flip/step.hpp"
 #include "flip/output/record.hpp"
 #include "flip/setup/check_case.hpp"
+#include "flip/setup/problem_of_case.hpp"
 #include "flip/setup/warn_of_case.hpp"
 
 namespace {
@@ -48,7 +49,8 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     common::Run& run = *holder;
 
     // 2. Particles at t = 0, sorted; an empty mesh.
-    FlipScratch scratch(w);
+    const Problem problem = problem_of(w);
+    FlipScratch scratch(problem);
     const Mesh& mesh = scratch.mesh;
     Recorder recorder(w, info.program, run.history);
     State state;
@@ -59,18 +61,20 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
 
     // 3. The loop of the slide.
     while (run.not_finished(step, state.time, w.end)) {
-        find_fluid(w, state, scratch.mesh);  // particles -> mesh: v_g, p_c          [FLIP-8]
-        recorder.look(step, state, particle_totals(w, particles), cell_fields(w, mesh), run);
-        take_flip_step(w, step, scratch, state);  // mesh -> particles: v_p, x_p     [FLIP-6, 7]
+        find_fluid(problem, state, scratch.mesh);  // particles -> mesh: v_g, p_c          [FLIP-8]
+        recorder.look(step, state, particle_totals(problem, particles), cell_fields(problem, mesh),
+                      run);
+        take_flip_step(problem, step, scratch,
+                       state);  // mesh -> particles: v_p, x_p     [FLIP-6, 7]
         ++step;
         run.end_of_step(step, state.time, w.end, state);
     }
 
     // 4. The end of the run, the results against theory, summary.json.
     if (common::Run::reached(state.time, w.end)) {
-        find_fluid(w, state, scratch.mesh);
-        const Totals totals = particle_totals(w, particles);
-        const CellFields cells = cell_fields(w, mesh);
+        find_fluid(problem, state, scratch.mesh);
+        const Totals totals = particle_totals(problem, particles);
+        const CellFields cells = cell_fields(problem, mesh);
         recorder.look(step, state, totals, cells, run);
         recorder.finish(state, totals, cells, run);
     }

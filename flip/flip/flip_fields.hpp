@@ -10,10 +10,10 @@ namespace flip {
 
 /// Sums over the particles; with apic the motion within a particle counts.
 /// exact:  added in an order that does not depend on the number of threads
-inline Totals particle_totals(const Case& w, const Particles& p) {
-    const WeightScale scale(w.grid);
-    const double x_mid = w.grid.x.low + 0.5 * w.grid.x.length,
-                 z_mid = w.grid.z.low + 0.5 * w.grid.z.length;
+inline Totals particle_totals(const Problem& problem, const Particles& p) {
+    const WeightScale scale(problem.grid);
+    const double x_mid = problem.grid.x.low + 0.5 * problem.grid.x.length,
+                 z_mid = problem.grid.z.low + 0.5 * problem.grid.z.length;
     const bool affine = has(p.Cxx_p);
     std::array<Totals, common::block_count> parts{};
     common::for_each_block(
@@ -31,8 +31,8 @@ inline Totals particle_totals(const Case& w, const Particles& p) {
                 if (!affine) continue;
                 const Weights at = weights_at(scale, p.x_p[k], p.z_p[k]);
                 const double C[4] = {p.Cxx_p[k], p.Cxz_p[k], p.Czx_p[k], p.Czz_p[k]};
-                const double dx = w.grid.x.spacing(), dz = w.grid.z.spacing();
-                sum.kinetic += m * affine_energy(w.grid, at, C);
+                const double dx = problem.grid.x.spacing(), dz = problem.grid.z.spacing();
+                sum.kinetic += m * affine_energy(problem.grid, at, C);
                 sum.angular_momentum += m * (C[2] * at.S_x[0] * at.S_x[1] * dx * dx -
                                              C[1] * at.S_z[0] * at.S_z[1] * dz * dz);
             }
@@ -53,8 +53,8 @@ inline Totals particle_totals(const Case& w, const Particles& p) {
 
 /// The fluid on the cells.
 /// in:     deposit_particles() and find_pressure() have been called
-inline CellFields cell_fields(const Case& w, const Mesh& mesh) {
-    const Grid& grid = w.grid;
+inline CellFields cell_fields(const Problem& problem, const Mesh& mesh) {
+    const Grid& grid = problem.grid;
     const Nodes& g = mesh.nodes;
     const std::size_t kinds = mesh.materials;
     const double per_V = 1 / grid.cell_area();

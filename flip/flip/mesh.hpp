@@ -13,8 +13,9 @@
 #include <vector>
 
 #include "common/parallel.hpp"
+#include "common/run/parameters.hpp"
 #include "flip/particles.hpp"
-#include "flip/setup/case.hpp"
+#include "flip/problem.hpp"
 
 namespace flip {
 
@@ -64,9 +65,9 @@ struct Mesh {
 };
 
 /// Makes room, once.
-inline Mesh mesh_of(const Case& w) {
+inline Mesh mesh_of(const Problem& problem) {
     Mesh mesh;
-    const long size = w.grid.size();
+    const long size = problem.grid.size();
     const auto count = static_cast<std::size_t>(size);
     Nodes& g = mesh.nodes;
     for (Field* f : {&g.m, &g.vx, &g.vz, &g.vx0, &g.vz0, &g.fx, &g.fz, &g.vxL, &g.vzL, &g.vx_bar,
@@ -74,18 +75,18 @@ inline Mesh mesh_of(const Case& w) {
         f->setZero(size);
     g.sum.assign(count, Four::Zero());
     g.kick.assign(count, Four::Zero());
-    if (w.mass == "consistent")
+    if (problem.scheme.consistent_mass)
         for (Field* f : {&g.reaction_x, &g.reaction_z, &g.stopped}) f->setZero(size);
-    if (w.transfer != "flip") g.carry.assign(count, Four::Zero());
+    if (!problem.scheme.transfer.flip) g.carry.assign(count, Four::Zero());
     Cells& c = mesh.cells;
-    mesh.materials = w.materials.size();
+    mesh.materials = problem.materials.size();
     c.sum.assign(count * mesh.materials, {});
     c.share.assign(count * mesh.materials, 0);
     c.de.assign(count * mesh.materials, 0);
     c.relative_de.assign(count * mesh.materials, 0);
     c.surface.assign(count, 0);
     for (Field* f : {&c.M, &c.p, &c.q, &c.compressibility, &c.p_step}) f->setZero(size);
-    if (w.density == "particles")
+    if (problem.scheme.particle_volumes)
         for (Field* f : {&c.volume, &c.give, &c.give_p, &c.strain, &c.work, &c.q_work})
             f->setZero(size);
     return mesh;

@@ -12,9 +12,9 @@ namespace detail {
 
 // Work on one particle that carries its volume, which it takes at its own pressure; per mass.
 // in: cells.strain, work, q_work; in/out: V_p
-inline double work_on_volume(const Case& w, const WeightScale& scale, const Weights& at,
+inline double work_on_volume(const Problem& problem, const WeightScale& scale, const Weights& at,
                              const Cells& cells, std::size_t k, Particles& p) {
-    const Material& a = w.materials[static_cast<std::size_t>(p.material[k])];
+    const Material& a = problem.materials[static_cast<std::size_t>(p.material[k])];
     const double V = p.V_p[k], p_p = pressure(a, p.m_p[k] / V, p.e_p[k]);
     const double give = compliance(a, V, p_p);
     double strain = 0, work = 0;
@@ -32,15 +32,15 @@ struct RowMoved {
 };
 
 template <bool pure_flip, bool volumes>
-RowMoved move_row(const Case& w, const WeightScale& scale, const Mesh& mesh,
+RowMoved move_row(const Problem& problem, const WeightScale& scale, const Mesh& mesh,
                   const Transfer& transfer, double dt, std::size_t begin, std::size_t end,
                   Particles& p) {
-    const Grid& grid = w.grid;
+    const Grid& grid = problem.grid;
     const Four* const kick = mesh.nodes.kick.data();
     const double *const heat = mesh.nodes.heat.data(), *const de = mesh.cells.de.data(),
                         *const relative_de = mesh.cells.relative_de.data();
     const long kinds = static_cast<long>(mesh.materials);
-    const double deficit = w.heats() ? 0.5 : 0;
+    const double deficit = problem.scheme.transfer.dissipates ? 0.5 : 0;
     RowMoved moved;
     // [move]
     for (std::size_t k = begin; k < end; ++k) {
@@ -58,7 +58,7 @@ RowMoved move_row(const Case& w, const WeightScale& scale, const Mesh& mesh,
         });
         gained -= deficit * dv.square();
         if constexpr (volumes) {
-            gained += work_on_volume(w, scale, at, mesh.cells, k, p);
+            gained += work_on_volume(problem, scale, at, mesh.cells, k, p);
             if (!(p.V_p[k] > 0)) moved.inside_out = static_cast<long>(k);
         }
         Velocity v{p.vx_p[k] + dv.x, p.vz_p[k] + dv.z};           // [FLIP-6]
@@ -94,13 +94,14 @@ RowMoved move_row(const Case& w, const WeightScale& scale, const Mesh& mesh,
 /// source: [FLIP-6, FLIP-7]
 /// note:   The slide's F_g is a force per mass of the node: dv_p/dt = sum_g (F_g/m_g) S. Particles
 ///         move with the velocity of the mesh and not with their own: they never pass each other.
-inline long move_particles(const Case& w, double dt, const Mesh& mesh, Particles& particles) {
-    const Transfer transfer = transfer_of(w);
-    const bool pure = w.transfer == "flip", volumes = has(particles.V_p);
-    const WeightScale scale(w.grid);
+inline long move_particles(const Problem& problem, double dt, const Mesh& mesh,
+                           Particles& particles) {
+    const Transfer& transfer = problem.scheme.transfer;
+    const bool pure = problem.scheme.transfer.flip, volumes = has(particles.V_p);
+    const WeightScale scale(problem.grid);
     std::atomic<long> left{0}, inside_out{-1};
     common::for_each_row(
-        w.grid.z.cells,
+        problem.grid.z.cells,
         [&](long j) {
             const auto row = static_cast<std::size_t>(j);
             const auto begin = static_cast<std::size_t>(particles.first_of_row[row]),
@@ -109,7 +110,7 @@ inline long move_particles(const Case& w, double dt, const Mesh& mesh, Particles
                 pure ? (volumes ? detail::move_row<true, true> : detail::move_row<true, false>)
                      : (volumes ? detail::move_row<false, true> : detail::move_row<false, false>);
             const detail::RowMoved moved =
-                move(w, scale, mesh, transfer, dt, begin, end, particles);
+                move(problem, scale, mesh, transfer, dt, begin, end, particles);
             left += moved.left;
             if (moved.inside_out >= 0) inside_out = moved.inside_out;
         },

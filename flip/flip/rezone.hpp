@@ -32,11 +32,11 @@ struct Quarter {
     int part = 0;         // 0 to 3: left or right, below or above
     double x = 0, z = 0;  // in cells, from the center of the cell
 };
-inline Quarter quarter_of(const Case& w, const Particles& p, std::size_t k) {
-    const Grid& grid = w.grid;
+inline Quarter quarter_of(const Problem& problem, const Particles& p, std::size_t k) {
+    const Grid& grid = problem.grid;
     const long i = cell_along(grid.x, p.x_p[k]), j = cell_along(grid.z, p.z_p[k]);
     Quarter q;
-    q.cell = (j * grid.x.cells + i) * static_cast<long>(w.materials.size()) + p.material[k];
+    q.cell = (j * grid.x.cells + i) * static_cast<long>(problem.materials.size()) + p.material[k];
     q.x = (p.x_p[k] - grid.x.low) / grid.x.spacing() - static_cast<double>(i) - 0.5;
     q.z = (p.z_p[k] - grid.z.low) / grid.z.spacing() - static_cast<double>(j) - 0.5;
     q.part = (q.x >= 0 ? 1 : 0) + (q.z >= 0 ? 2 : 0);
@@ -50,13 +50,14 @@ inline double room(double from_center) {
 }
 
 // Splits one particle; its children stay in its quarter. out: whether there was room.
-inline bool split(const Case& w, const Quarter& q, std::size_t k, Particles& p) {
-    const bool plane = w.plane();
-    const double a = std::min(0.25 / static_cast<double>(w.per_cell_x), room(q.x)),
-                 b = plane ? std::min(0.25 / static_cast<double>(w.per_cell_z), room(q.z)) : 0;
+inline bool split(const Problem& problem, const Quarter& q, std::size_t k, Particles& p) {
+    const bool plane = is_plane(problem.grid);
+    const double a = std::min(0.25 / static_cast<double>(problem.per_cell_x), room(q.x)),
+                 b = plane ? std::min(0.25 / static_cast<double>(problem.per_cell_z), room(q.z))
+                           : 0;
     if (a < 0.01 || (plane && b < 0.01)) return false;
-    const double x = p.x_p[k], z = p.z_p[k], dx = a * w.grid.x.spacing(),
-                 dz = b * w.grid.z.spacing(), part = plane ? 0.25 : 0.5;
+    const double x = p.x_p[k], z = p.z_p[k], dx = a * problem.grid.x.spacing(),
+                 dz = b * problem.grid.z.spacing(), part = plane ? 0.25 : 0.5;
     p.m_p[k] *= part;
     if (has(p.V_p)) p.V_p[k] *= part;
     for (int child = 1; child < (plane ? 4 : 2); ++child) {
@@ -177,16 +178,16 @@ inline bool merge_one(const std::vector<Quarter>& q, bool plane, std::vector<std
 ///         mixing; with volumes their sum
 /// source: the aim is that of Lapenta and Brackbill, Comput. Phys. Commun. 87, 139 (1995); the
 ///         exact merging by weights is ours.
-inline RezoneReport rezone(const Case& w, Particles& p) {
+inline RezoneReport rezone(const Problem& problem, Particles& p) {
     RezoneReport report;
-    const Grid& grid = w.grid;
-    const auto kinds = static_cast<long>(w.materials.size());
+    const Grid& grid = problem.grid;
+    const auto kinds = static_cast<long>(problem.materials.size());
     const std::size_t count = p.x_p.size();
     std::vector<detail::Quarter> q(count);
     std::vector<long> in_cell(static_cast<std::size_t>(grid.x.cells * grid.z.cells * kinds), 0);
     std::vector<char> filled(static_cast<std::size_t>(grid.x.cells * grid.z.cells), 0);
     for (std::size_t k = 0; k < count; ++k) {
-        q[k] = detail::quarter_of(w, p, k);
+        q[k] = detail::quarter_of(problem, p, k);
         ++in_cell[static_cast<std::size_t>(q[k].cell)];
         filled[static_cast<std::size_t>(q[k].cell / kinds)] = 1;
     }
@@ -207,29 +208,29 @@ inline RezoneReport rezone(const Case& w, Particles& p) {
                is_filled(i, j + 1);
     };
 
-    const bool plane = w.plane();
+    const bool plane = is_plane(problem.grid);
     for (std::size_t begin = 0, end = 0; begin < count; begin = end) {
         const long cell = q[order[begin]].cell;
         while (end < count && q[order[end]].cell == cell) ++end;
         long number = in_cell[static_cast<std::size_t>(cell)];
-        if (number < w.min_particles && inside(cell / kinds)) {
+        if (number < problem.scheme.min_particles && inside(cell / kinds)) {
             std::vector<std::size_t> heaviest(order.begin() + static_cast<long>(begin),
                                               order.begin() + static_cast<long>(end));
             std::stable_sort(heaviest.begin(), heaviest.end(),
                              [&](std::size_t a, std::size_t b) { return p.m_p[a] > p.m_p[b]; });
             for (const std::size_t k : heaviest) {
-                if (number >= w.min_particles) break;
-                if (!detail::split(w, q[k], k, p)) continue;
+                if (number >= problem.scheme.min_particles) break;
+                if (!detail::split(problem, q[k], k, p)) continue;
                 number += plane ? 3 : 1;
                 ++report.split;
             }
         }
-        if (number <= w.max_particles) continue;
+        if (number <= problem.scheme.max_particles) continue;
         // One after the other from the fullest quarter.
         std::array<std::vector<std::size_t>, 4> quarters;
         for (std::size_t n = begin; n < end; ++n)
             quarters[static_cast<std::size_t>(q[order[n]].part)].push_back(order[n]);
-        while (number > w.max_particles) {
+        while (number > problem.scheme.max_particles) {
             auto& fullest = *std::max_element(
                 quarters.begin(), quarters.end(),
                 [](const auto& one, const auto& other) { return one.size() < other.size(); });

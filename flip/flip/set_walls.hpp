@@ -6,12 +6,12 @@
 
 namespace flip {
 
-/// Whether the end keeps the fluid's velocity from changing across it.
-inline bool holds_normal(const EndCase& end) {
-    return end.kind == "slip" || end.kind == "no_slip" || end.kind == "inflow";
+inline bool holds_tangential(const Boundary& end) {
+    return end.kind == BoundaryKind::no_slip || end.kind == BoundaryKind::inflow;
 }
-inline bool holds_tangential(const EndCase& end) {
-    return end.kind == "no_slip" || end.kind == "inflow";
+/// Whether the end keeps the fluid's velocity from changing across it.
+inline bool holds_normal(const Boundary& end) {
+    return end.kind == BoundaryKind::slip || holds_tangential(end);
 }
 
 /// Which components of a node are given by the ends that it lies on.
@@ -21,17 +21,17 @@ struct Held {
 };
 
 /// in:     i from 0 to cells_x, j from 0 to cells_z
-inline Held held_at(const Case& w, long i, long j) {
+inline Held held_at(const Problem& problem, long i, long j) {
     Held held;
-    const auto meet = [&](End e) {
-        const EndCase& end = w.ends[e];
+    const auto meet = [&](Side e) {
+        const Boundary& end = problem.boundaries.side[e];
         const bool along_x = e == x_low || e == x_high;
-        const double normal = end.kind != "inflow" ? 0
-                              : along_x            ? w.inflow.velocity_x
-                                                   : w.inflow.velocity_z;
-        const double tangential = end.kind != "inflow" ? end.slide
-                                  : along_x            ? w.inflow.velocity_z
-                                                       : w.inflow.velocity_x;
+        const double normal = end.kind != BoundaryKind::inflow ? 0
+                              : along_x                        ? problem.boundaries.inflow.vx
+                                                               : problem.boundaries.inflow.vz;
+        const double tangential = end.kind != BoundaryKind::inflow ? end.slide
+                                  : along_x                        ? problem.boundaries.inflow.vz
+                                                                   : problem.boundaries.inflow.vx;
         if (holds_normal(end)) {
             (along_x ? held.x : held.z) = true;
             (along_x ? held.vx : held.vz) = normal;
@@ -42,18 +42,18 @@ inline Held held_at(const Case& w, long i, long j) {
         }
     };
     if (i == 0) meet(x_low);
-    if (i == w.grid.x.cells) meet(x_high);
+    if (i == problem.grid.x.cells) meet(x_high);
     if (j == 0) meet(z_low);
-    if (j == w.grid.z.cells) meet(z_high);
+    if (j == problem.grid.z.cells) meet(z_high);
     return held;
 }
 
 /// Sets the components of nodes that the ends of the mesh hold.
 /// in/out: velocities on the nodes
-inline void set_walls(const Case& w, Field& vx, Field& vz) {
-    const Grid& grid = w.grid;
+inline void set_walls(const Problem& problem, Field& vx, Field& vz) {
+    const Grid& grid = problem.grid;
     const auto set = [&](long i, long j) {
-        const Held held = held_at(w, i, j);
+        const Held held = held_at(problem, i, j);
         const long n = grid.index(i, j);
         if (held.x) vx[n] = held.vx;
         if (held.z) vz[n] = held.vz;
@@ -64,16 +64,20 @@ inline void set_walls(const Case& w, Field& vx, Field& vz) {
 
 /// Force of the pressure outside of open ends on a node, half as much on a corner.
 /// in:     i from 0 to cells_x, j from 0 to cells_z
-inline Eigen::Vector2d outside_force(const Case& w, long i, long j) {
+inline Eigen::Vector2d outside_force(const Problem& problem, long i, long j) {
     const auto reach = [](const common::Axis& axis, long k) {
         const bool corner = !axis.periodic && (k == 0 || k == axis.cells);
         return corner ? 0.5 * axis.spacing() : axis.spacing();
     };
-    const auto press = [&](End e, bool on) {
-        return on && w.is(e, "open") ? w.ends[e].pressure : 0;
+    const auto press = [&](Side e, bool on) {
+        return on && problem.boundaries.is(e, BoundaryKind::open)
+                   ? problem.boundaries.side[e].pressure
+                   : 0;
     };
-    return {reach(w.grid.z, j) * (press(x_low, i == 0) - press(x_high, i == w.grid.x.cells)),
-            reach(w.grid.x, i) * (press(z_low, j == 0) - press(z_high, j == w.grid.z.cells))};
+    return {reach(problem.grid.z, j) *
+                (press(x_low, i == 0) - press(x_high, i == problem.grid.x.cells)),
+            reach(problem.grid.x, i) *
+                (press(z_low, j == 0) - press(z_high, j == problem.grid.z.cells))};
 }
 
 /// Fills the ring of ghost cells: around a periodic direction the other side, else nothing. A wall

@@ -28,10 +28,10 @@ struct NodePush {
     std::array<double, 4> x, z;  // force per pressure; 0 where the node is held
 };
 
-inline NodePush push_on(const Case& w, const Cells& c, long i, long j) {
-    const Grid& grid = w.grid;
+inline NodePush push_on(const Problem& problem, const Cells& c, long i, long j) {
+    const Grid& grid = problem.grid;
     NodePush push;
-    const Held held = held_at(w, i, j);
+    const Held held = held_at(problem, i, j);
     std::size_t k = 0;
     for (const long b : {j - 1, j}) {
         for (const long a : {i - 1, i}) {
@@ -61,8 +61,8 @@ struct PressureCells {
 // Leaves out cells without pressure, and those so compressible that all which the change of their
 // pressure does to the velocity is round-off: (theta^2 dt^2 D M^-1 D^T)_cc below V/K by that much.
 // There p = p^n, and their weight in the sums of conjugate gradients would be none.
-inline PressureCells number_cells(const Case& w, double dt, const Mesh& mesh) {
-    const Grid& grid = w.grid;
+inline PressureCells number_cells(const Problem& problem, double dt, const Mesh& mesh) {
+    const Grid& grid = problem.grid;
     const Cells& c = mesh.cells;
     Field response = Field::Zero(grid.size());
     const long nx = grid.x.cells - (grid.x.periodic ? 1 : 0),
@@ -71,10 +71,11 @@ inline PressureCells number_cells(const Case& w, double dt, const Mesh& mesh) {
         for (long i = 0; i <= nx; ++i) {
             const double m = mesh.nodes.m[grid.index(i, j)];
             if (m <= 0) continue;
-            const NodePush push = push_on(w, c, i, j);
+            const NodePush push = push_on(problem, c, i, j);
             for (std::size_t k = 0; k < 4; ++k)
                 if (push.cell[k] >= 0)
-                    response[push.cell[k]] += w.theta * w.theta * dt * dt / m *
+                    response[push.cell[k]] += problem.scheme.theta * problem.scheme.theta * dt *
+                                              dt / m *
                                               (push.x[k] * push.x[k] + push.z[k] * push.z[k]);
         }
     }
@@ -97,10 +98,10 @@ inline PressureCells number_cells(const Case& w, double dt, const Mesh& mesh) {
 
 // The matrix V/K + theta^2 dt^2 D M^-1 D^T, its lower half: V/K on the diagonal, and every node
 // couples the cells around it.
-inline Eigen::SparseMatrix<double> pressure_matrix(const Case& w, double dt, const Mesh& mesh,
-                                                   const PressureCells& cells,
+inline Eigen::SparseMatrix<double> pressure_matrix(const Problem& problem, double dt,
+                                                   const Mesh& mesh, const PressureCells& cells,
                                                    const Eigen::VectorXd& inertia) {
-    const Grid& grid = w.grid;
+    const Grid& grid = problem.grid;
     std::vector<Eigen::Triplet<double>> entries;
     entries.reserve(static_cast<std::size_t>(17 * cells.count()));
     for (long r = 0; r < cells.count(); ++r)
@@ -111,8 +112,8 @@ inline Eigen::SparseMatrix<double> pressure_matrix(const Case& w, double dt, con
         for (long i = 0; i <= nx; ++i) {
             const double m = mesh.nodes.m[grid.index(i, j)];
             if (m <= 0) continue;
-            const NodePush push = push_on(w, mesh.cells, i, j);
-            const double factor = w.theta * w.theta * dt * dt / m;
+            const NodePush push = push_on(problem, mesh.cells, i, j);
+            const double factor = problem.scheme.theta * problem.scheme.theta * dt * dt / m;
             for (std::size_t a = 0; a < 4; ++a) {
                 for (std::size_t b = 0; b < 4; ++b) {
                     if (push.cell[a] < 0 || push.cell[b] < 0) continue;
@@ -162,18 +163,18 @@ class PressurePreconditioner {
 /// exact:  sound is multiplied by sqrt((1 + (1-theta)^2 a^2)/(1 + theta^2 a^2)) per step, a = c k dt,
 ///         never more than 1
 /// source: the idea is ICE's: Harlow and Amsden, J. Comput. Phys. 8, 197 (1971).
-inline StepReport solve_pressure(const Case& w, double dt, Mesh& mesh) {
-    const Grid& grid = w.grid;
+inline StepReport solve_pressure(const Problem& problem, double dt, Mesh& mesh) {
+    const Grid& grid = problem.grid;
     Nodes& g = mesh.nodes;
     Cells& c = mesh.cells;
-    const double V_c = grid.cell_area(), theta = w.theta;
+    const double V_c = grid.cell_area(), theta = problem.scheme.theta;
 
-    const detail::PressureCells cells = detail::number_cells(w, dt, mesh);
+    const detail::PressureCells cells = detail::number_cells(problem, dt, mesh);
     const long count = cells.count();
 
     // The velocity at the level theta if the pressure did not change; its divergence is the load.
     c.p_step = c.p;
-    accelerate_nodes(w, dt, mesh);
+    accelerate_nodes(problem, dt, mesh);
     if (count == 0) return {};
     const auto level_theta = [&](Field& vx, Field& vz) {
         vx = (1 - theta) * g.vx0 + theta * g.vxL;
@@ -192,18 +193,19 @@ inline StepReport solve_pressure(const Case& w, double dt, Mesh& mesh) {
     // beside speed/dx.
     double speed = 0;
     for_own_nodes(grid, [&](long n) { speed = std::max(speed, std::hypot(vx[n], vz[n])); });
-    const double h = w.plane() ? std::sqrt(V_c) : grid.x.spacing();
+    const double h = is_plane(problem.grid) ? std::sqrt(V_c) : grid.x.spacing();
     const double scale = theta * dt * V_c * speed / h * std::sqrt(static_cast<double>(count));
-    if (!(load.norm() > w.tolerance * scale)) return {0, load.norm() / std::max(scale, 1e-300)};
-    const auto A = detail::pressure_matrix(w, dt, mesh, cells, inertia);
+    if (!(load.norm() > problem.scheme.tolerance * scale))
+        return {0, load.norm() / std::max(scale, 1e-300)};
+    const auto A = detail::pressure_matrix(problem, dt, mesh, cells, inertia);
     const detail::PressurePreconditioner precondition(A);
     const auto multiply = [&A](const Eigen::VectorXd& v, Eigen::VectorXd& Av) {
         Av.noalias() = A.selfadjointView<Eigen::Lower>() * v;
     };
-    const double tolerance = std::min(1.0, w.tolerance * scale / load.norm());
+    const double tolerance = std::min(1.0, problem.scheme.tolerance * scale / load.norm());
     Eigen::VectorXd change = Eigen::VectorXd::Zero(count);
     const common::KrylovResult solved = common::conjugate_gradients(
-        multiply, precondition, load, change, tolerance, w.max_iterations);
+        multiply, precondition, load, change, tolerance, problem.scheme.max_iterations);
     StepReport report;
     report.iterations = solved.iterations;
     if (!solved.converged)
@@ -216,8 +218,8 @@ inline StepReport solve_pressure(const Case& w, double dt, Mesh& mesh) {
         c.p_step[cells.index[static_cast<std::size_t>(r)]] += change[r];
 
     // What the equation for the pressure leaves of the divergence.
-    find_known_forces(w, mesh);
-    accelerate_nodes(w, dt, mesh);
+    find_known_forces(problem, mesh);
+    accelerate_nodes(problem, dt, mesh);
     level_theta(vx, vz);
     double sum = 0;
     for (long r = 0; r < count; ++r) {

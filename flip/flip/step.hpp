@@ -18,18 +18,18 @@ struct FlipScratch {
     LagrangianScratch mass_matrix;
     SortScratch sort;
 
-    explicit FlipScratch(const Case& w) : mesh(mesh_of(w)) {}
+    explicit FlipScratch(const Problem& problem) : mesh(mesh_of(problem)) {}
 };
 
 /// The fluid on the mesh at t^n.
 /// in:     particles, sorted by row
 /// out:    velocity and mass of nodes, pressure of cells
 template <class Clock = common::NoClock>
-void find_fluid(const Case& w, const State& state, Mesh& mesh, Clock&& clock = {}) {
+void find_fluid(const Problem& problem, const State& state, Mesh& mesh, Clock&& clock = {}) {
     // [fluid]
-    deposit_particles(w, state.particles, mesh);  // particles -> mesh: v_g         [FLIP-8]
+    deposit_particles(problem, state.particles, mesh);  // particles -> mesh: v_g         [FLIP-8]
     clock.lap("deposit");
-    find_pressure(w, state.time, mesh);  // on the mesh: p_c
+    find_pressure(problem, state.time, mesh);  // on the mesh: p_c
     clock.lap("mesh");
     // [/fluid]
 }
@@ -38,20 +38,21 @@ void find_fluid(const Case& w, const State& state, Mesh& mesh, Clock&& clock = {
 /// in:     scratch.mesh after find_fluid(); step, the number of steps before this one
 /// in/out: state: particles, time and the length of the last step, budget, report
 template <class Clock = common::NoClock>
-void take_flip_step(const Case& w, long step, FlipScratch& scratch, State& state,
+void take_flip_step(const Problem& problem, long step, FlipScratch& scratch, State& state,
                     Clock&& clock = {}) {
     Mesh& mesh = scratch.mesh;
     Particles& particles = state.particles;
     // [step]
-    const double dt = step_allowed(w, mesh, state.dt);
+    const double dt = step_allowed(problem, mesh, state.dt);
     state.report =
-        move_mesh(w, dt, particles, scratch.mass_matrix, mesh, state.books);  // F_g, v_g^L
+        move_mesh(problem, dt, particles, scratch.mass_matrix, mesh, state.books);  // F_g, v_g^L
     clock.lap("mesh");
-    const long left = move_particles(w, dt, mesh, particles);  // v_p, x_p   [FLIP-6, FLIP-7]
+    const long left = move_particles(problem, dt, mesh, particles);  // v_p, x_p   [FLIP-6, FLIP-7]
     clock.lap("move");
-    cross_ends(w, state.time, dt, particles, state.books, left);
-    if (w.rezone_steps > 0 && (step + 1) % w.rezone_steps == 0) rezone(w, particles);
-    sort_particles(w.grid, scratch.sort, particles);
+    cross_ends(problem, state.time, dt, particles, state.books, left);
+    if (problem.scheme.rezone_steps > 0 && (step + 1) % problem.scheme.rezone_steps == 0)
+        rezone(problem, particles);
+    sort_particles(problem.grid, scratch.sort, particles);
     clock.lap("sort");
     // [/step]
     state.time += dt;

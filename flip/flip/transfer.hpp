@@ -13,17 +13,6 @@
 
 namespace flip {
 
-struct Transfer {
-    double part = 0;
-    bool affine = false, filtered = false;
-    bool heat = true;  // what the motion loses becomes internal energy
-};
-
-inline Transfer transfer_of(const Case& w) {
-    const double part = w.transfer == "flip" ? 0 : (w.transfer == "blend" ? 1 - w.blend : 1);
-    return {part, w.transfer == "apic", w.transfer == "xpic", w.heats()};
-}
-
 struct Velocity {
     double x, z;
     double square() const { return x * x + z * z; }
@@ -115,7 +104,7 @@ inline double follow_mesh(const Transfer& rule, const Grid& grid, const WeightSc
     const Velocity apart{old.x - mesh[0], old.z - mesh[1]};
     v.x -= rule.part * apart.x;
     v.z -= rule.part * apart.z;
-    if (rule.filtered && rule.heat)
+    if (rule.filtered && rule.dissipates)
         return 0.5 * apart.square() +
                detail::lost_in_filter(scale, at, carry, nodes.kick.data(), v);
     if (rule.filtered) return 0;
@@ -128,7 +117,7 @@ inline double follow_mesh(const Transfer& rule, const Grid& grid, const WeightSc
         p.Czx_p[k] = C_new[2], p.Czz_p[k] = C_new[3];
         heat = affine_energy(grid, at, C_new) - affine_energy(grid, later, C_new);
     }
-    if (!rule.heat) return 0;
+    if (!rule.dissipates) return 0;
     const double pic = detail::lost_on_mesh(grid, scale, at, carry, old, C, {mesh[2], mesh[3]},
                                             C_new),
                  flip = detail::lost_by_kick(scale, at, nodes.kick.data(), kick);
@@ -139,11 +128,11 @@ inline double follow_mesh(const Transfer& rule, const Grid& grid, const WeightSc
 /// in:     velocities on the nodes with v^L; or for xpic what filter_velocity() makes of them, with
 ///         its last term
 /// out:    nodes.carry
-inline void prepare_transfer(const Case& w, const Field& vx, const Field& vz, const Field& other_x,
-                             const Field& other_z, Mesh& mesh) {
-    if (w.transfer == "flip") return;
+inline void prepare_transfer(const Problem& problem, const Field& vx, const Field& vz,
+                             const Field& other_x, const Field& other_z, Mesh& mesh) {
+    if (problem.scheme.transfer.flip) return;
     Nodes& g = mesh.nodes;
-    for_each_node(w.grid, [&](long, long, long n) {
+    for_each_node(problem.grid, [&](long, long, long n) {
         g.carry[static_cast<std::size_t>(n)] = Four(vx[n], vz[n], other_x[n], other_z[n]);
     });
 }

@@ -9,11 +9,12 @@ namespace flip {
 /// Enters what comes from outside within the step: gravity, the pressure outside of open ends, and
 /// what walls give to the nodes that they hold, R = m (v^L - v) - dt (F + m g).
 ///   momentum: the impulses;  energy: impulse . vbar, of walls impulse . velocity of the wall
-inline void enter_outside(const Case& w, double dt, const Nodes& g, Books& books) {
-    const Grid& grid = w.grid;
+inline void enter_outside(const Problem& problem, double dt, const Nodes& g, Books& books) {
+    const Grid& grid = problem.grid;
     const long nx = grid.x.cells - (grid.x.periodic ? 1 : 0),
                nz = grid.z.cells - (grid.z.periodic ? 1 : 0);
-    const bool pulled = w.gravity_x != 0 || w.gravity_z != 0 || w.trap != 0;
+    const bool pulled = problem.body_force.gravity_x != 0 || problem.body_force.gravity_z != 0 ||
+                        problem.body_force.trap != 0;
     std::vector<Books> of_row(static_cast<std::size_t>(nz) + 1);
     const auto enter_row = [&](long j) {
         Books& sum = of_row[static_cast<std::size_t>(j)];
@@ -26,10 +27,10 @@ inline void enter_outside(const Case& w, double dt, const Nodes& g, Books& books
             const bool edge = i == 0 || j == 0 || i == grid.x.cells || j == grid.z.cells;
             if (!pulled && !edge) continue;
             const long n = grid.index(i, j);
-            const Eigen::Vector2d pull = dt * g.m[n] * pull_on_node(w, n);
+            const Eigen::Vector2d pull = dt * g.m[n] * pull_on_node(problem, n);
             enter(pull[0], pull[1], g.vx_bar[n], g.vz_bar[n]);
             if (!edge || g.m[n] <= 0) continue;
-            const Held held = held_at(w, i, j);
+            const Held held = held_at(problem, i, j);
             const bool lumped = g.reaction_x.size() == 0;
             if (held.x)
                 enter(lumped ? g.m[n] * (g.vxL[n] - g.vx[n]) - dt * g.fx[n] - pull[0]
@@ -40,7 +41,7 @@ inline void enter_outside(const Case& w, double dt, const Nodes& g, Books& books
                       lumped ? g.m[n] * (g.vzL[n] - g.vz[n]) - dt * g.fz[n] - pull[1]
                              : g.reaction_z[n],
                       0, held.vz);
-            const Eigen::Vector2d press = dt * outside_force(w, i, j);
+            const Eigen::Vector2d press = dt * outside_force(problem, i, j);
             enter(press[0], press[1], g.vx_bar[n], g.vz_bar[n]);
         }
     };
@@ -65,14 +66,14 @@ inline void enter_outside(const Case& w, double dt, const Nodes& g, Books& books
 /// out:    cells.de, relative_de, and with volumes strain, work, q_work; nodes.kick, heat; books
 /// exact:  sum_c dE_c + change of (1/2) sum_g m_g v_g^2 + heat of walls and of theta = what the books
 ///         have entered
-inline void work_on_cells(const Case& w, double dt, Mesh& mesh, Books& books) {
-    const Grid& grid = w.grid;
+inline void work_on_cells(const Problem& problem, double dt, Mesh& mesh, Books& books) {
+    const Grid& grid = problem.grid;
     Nodes& g = mesh.nodes;
     Cells& c = mesh.cells;
     const std::size_t kinds = mesh.materials;
-    const double level = w.implicit() ? w.theta : 0.5;
-    const Field& move_x = w.implicit() ? g.vx_work : g.vxL;
-    const Field& move_z = w.implicit() ? g.vz_work : g.vzL;
+    const double level = problem.scheme.implicit ? problem.scheme.theta : 0.5;
+    const Field& move_x = problem.scheme.implicit ? g.vx_work : g.vxL;
+    const Field& move_z = problem.scheme.implicit ? g.vz_work : g.vzL;
 
     for_each_node(grid, [&](long, long, long n) {
         const double dvx = g.vxL[n] - g.vx[n], dvz = g.vzL[n] - g.vz[n];
@@ -82,24 +83,25 @@ inline void work_on_cells(const Case& w, double dt, Mesh& mesh, Books& books) {
         g.vx_work[n] = (1 - level) * g.vx0[n] + level * g.vxL[n];
         g.vz_work[n] = (1 - level) * g.vz0[n] + level * g.vzL[n];
         g.heat[n] = g.stopped.size() > 0 ? g.stopped[n] : 0.5 * (stop_x * stop_x + stop_z * stop_z);
-        if (w.heats()) g.heat[n] += 0.5 * (dvx * dvx + dvz * dvz);
-        if (w.implicit() && g.m[n] > 0) {
+        if (problem.scheme.transfer.dissipates) g.heat[n] += 0.5 * (dvx * dvx + dvz * dvz);
+        if (problem.scheme.implicit && g.m[n] > 0) {
             const Eigen::Vector2d F = pressure_force(grid, c.p_step, n);
-            g.heat[n] += (w.theta - 0.5) * dt / g.m[n] *
+            g.heat[n] += (problem.scheme.theta - 0.5) * dt / g.m[n] *
                          (F[0] * (g.vxL[n] - g.vx0[n]) + F[1] * (g.vzL[n] - g.vz0[n]));
         }
         g.kick[static_cast<std::size_t>(n)] =
             g.m[n] > 0 ? Four(dvx, dvz, move_x[n], move_z[n]) : Four::Zero();
     });
-    enter_outside(w, dt, g, books);
+    enter_outside(problem, dt, g, books);
 
     const bool volumes = c.volume.size() > 0;
     for_each_cell(grid, [&](long, long, long n) {
         const double work = dilation(grid, g.vx_work, g.vz_work, n),
                      bar = dilation(grid, g.vx_bar, g.vz_bar, n);
         double adiabatic = 0;
-        double dE =
-            w.viscosity > 0 && c.M[n] > 0 ? dt * viscous_heat(w, g, g.vx_bar, g.vz_bar, n) : 0;
+        double dE = problem.viscosity > 0 && c.M[n] > 0
+                        ? dt * viscous_heat(problem, g, g.vx_bar, g.vz_bar, n)
+                        : 0;
         if (volumes) {
             // Particles know their own pressure; the viscous heat goes by mass.
             const bool gives = c.surface[static_cast<std::size_t>(n)] == 0 && c.give[n] > 0;

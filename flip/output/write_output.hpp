@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "common/random.hpp"
 #include "common/run/writers.hpp"
+#include "flip/setup/case.hpp"
 #include "flip/state.hpp"
 
 namespace flip {

@@ -23,9 +23,9 @@ inline constexpr long chunk = 512;
 // areas; where `holes` are near, empty cells have no say.
 // out: how many are beyond an end of the mesh
 template <bool plane, bool holes>
-long move_chunk(const Case& w, double dt, long j, long begin, long end, Particles& particles,
-                PicCells& cells) {
-    const Grid& grid = w.grid;
+long move_chunk(const Problem& problem, double dt, long j, long begin, long end,
+                Particles& particles, PicCells& cells) {
+    const Grid& grid = problem.grid;
     double *const x_p = particles.x_p.data(), *const z_p = particles.z_p.data();
     int* const home = cells.home.data();
     const CellVelocity* const v = cells.v_tilde.data();
@@ -96,27 +96,29 @@ struct Brought {
     double vx, vz, e;
 };
 
-[[noreturn]] inline void refuse_cell(const Case& w, const State& state, const PicCells& cells,
-                                     long i, long j) {
-    const long n = w.grid.index(i, j);
-    std::string what = "the density, " + common::format(cells.mass[n] / w.grid.cell_area()) + ",";
+[[noreturn]] inline void refuse_cell(const Problem& problem, const State& state,
+                                     const PicCells& cells, long i, long j) {
+    const long n = problem.grid.index(i, j);
+    std::string what =
+        "the density, " + common::format(cells.mass[n] / problem.grid.cell_area()) + ",";
     for (std::size_t k = 0; k < cells.materials; ++k) {
         const double e = state.cells.e[k][n];
         if (!(e >= 0))
-            what = "the internal energy of " + w.materials[k].name + ", " + common::format(e) + ",";
+            what = "the internal energy of " + problem.materials[k].name + ", " +
+                   common::format(e) + ",";
     }
     throw common::NumericalError(
         what + " is negative or not finite in the cell at x = " +
-        common::format(w.grid.x.at(static_cast<double>(i) + 0.5)) +
-        ", z = " + common::format(w.grid.z.at(static_cast<double>(j) + 0.5)) +
+        common::format(problem.grid.x.at(static_cast<double>(i) + 0.5)) +
+        ", z = " + common::format(problem.grid.z.at(static_cast<double>(j) + 0.5)) +
         " at t = " + common::format(state.time) +
         ": use a smaller time.cfl, more particles per cell, or more viscosity");
 }
 
 // Sums over the particles of every row, cell by cell; brought(p) says what particle p brings.
 template <class What>
-void collect(const Case& w, const What& brought, State& state, PicCells& cells) {
-    const Grid& grid = w.grid;
+void collect(const Problem& problem, const What& brought, State& state, PicCells& cells) {
+    const Grid& grid = problem.grid;
     const Particles& particles = state.particles;
     const long nx = grid.x.cells;
     const std::size_t K = cells.materials, width = 3 + 2 * K;
@@ -170,14 +172,14 @@ void collect(const Case& w, const What& brought, State& state, PicCells& cells) 
     });
     for (long j = 0; j < grid.z.cells; ++j) {
         const double refused = cells.row[static_cast<std::size_t>(j)];
-        if (refused >= 0) refuse_cell(w, state, cells, static_cast<long>(refused), j);
+        if (refused >= 0) refuse_cell(problem, state, cells, static_cast<long>(refused), j);
     }
 }
 
 // Sorts by row of cells, with the homes where particles have some.
-inline void sort_with_homes(const Case& w, Particles& particles, PicCells& cells) {
-    if (w.plane()) {
-        sort_particles(w.grid, cells.sort, particles);
+inline void sort_with_homes(const Problem& problem, Particles& particles, PicCells& cells) {
+    if (is_plane(problem.grid)) {
+        sort_particles(problem.grid, cells.sort, particles);
         if (!cells.home.empty())
             common::carry_to_place(cells.home, cells.sort.numbers.target, cells.sort.labels);
     } else {
@@ -193,7 +195,8 @@ inline void forget_motion(Particles& particles) {
 }
 
 // Takes away who has left and brings in who enters, with the books.
-inline void exchange_with_outside(const Case& w, double dt, State& state, PicCells& cells) {
+inline void exchange_with_outside(const Problem& problem, double dt, State& state,
+                                  PicCells& cells) {
     Particles& particles = state.particles;
     Books& books = state.books;
     const auto enter = [&](double m, const CellVelocity& v, double e) {
@@ -208,21 +211,21 @@ inline void exchange_with_outside(const Case& w, double dt, State& state, PicCel
         enter(-particles.m_p[p], cells.v_tilde[A], cells.e_tilde[A * cells.materials + k]);
         cells.home[p] = -1;
     };
-    remove_leaving(w, state.time + dt, particles, leaves);
+    remove_leaving(problem, state.time + dt, particles, leaves);
     std::erase(cells.home, -1);
 
-    const long added = add_inflow(w, state.time, dt, particles);
+    const long added = add_inflow(problem, state.time, dt, particles);
     if (added == 0) return;
     forget_motion(particles);
-    const Incoming& in = cells.incoming;
-    const auto corner = static_cast<std::size_t>(outside(w.grid));
-    cells.v_tilde[corner] = in.v;
+    const Inflow& in = problem.boundaries.inflow;
+    const auto corner = static_cast<std::size_t>(outside(problem.grid));
+    cells.v_tilde[corner] = {in.vx, in.vz};
     for (std::size_t k = 0; k < cells.materials; ++k)
         cells.e_tilde[corner * cells.materials + k] = in.e;
-    cells.home.resize(particles.x_p.size(), outside(w.grid));
+    cells.home.resize(particles.x_p.size(), outside(problem.grid));
     for (std::size_t p = particles.x_p.size() - static_cast<std::size_t>(added);
          p < particles.x_p.size(); ++p)
-        enter(particles.m_p[p], in.v, in.e);
+        enter(particles.m_p[p], {in.vx, in.vz}, in.e);
 }
 
 }  // namespace detail
@@ -236,11 +239,11 @@ inline void exchange_with_outside(const Case& w, double dt, State& state, PicCel
 /// errors: NumericalError for a particle beyond a wall, or a position that is not finite
 /// note:   in a single row of cells nothing moves along z
 /// source: [PIC, particles move to final position]
-inline void move_particles(const Case& w, double dt, State& state, PicCells& cells) {
-    const Grid& grid = w.grid;
+inline void move_particles(const Problem& problem, double dt, State& state, PicCells& cells) {
+    const Grid& grid = problem.grid;
     Particles& particles = state.particles;
     cells.home.resize(particles.x_p.size());
-    const bool plane = w.plane();
+    const bool plane = is_plane(problem.grid);
     const double lost = sum_over_rows(grid, cells, [&](long j) {
         const bool holes = detail::has_holes(grid, cells.filled, j);
         const long begin = particles.first_of_row[static_cast<std::size_t>(j)],
@@ -248,18 +251,19 @@ inline void move_particles(const Case& w, double dt, State& state, PicCells& cel
         long beyond_it = 0;
         for (long p = begin; p < end; p += detail::chunk) {
             const long to = std::min(end, p + detail::chunk);
-            beyond_it +=
-                plane
-                    ? (holes ? detail::move_chunk<true, true>(w, dt, j, p, to, particles, cells)
-                             : detail::move_chunk<true, false>(w, dt, j, p, to, particles, cells))
-                    : (holes ? detail::move_chunk<false, true>(w, dt, j, p, to, particles, cells)
-                             : detail::move_chunk<false, false>(w, dt, j, p, to, particles, cells));
+            beyond_it += plane ? (holes ? detail::move_chunk<true, true>(problem, dt, j, p, to,
+                                                                         particles, cells)
+                                        : detail::move_chunk<true, false>(problem, dt, j, p, to,
+                                                                          particles, cells))
+                               : (holes ? detail::move_chunk<false, true>(problem, dt, j, p, to,
+                                                                          particles, cells)
+                                        : detail::move_chunk<false, false>(problem, dt, j, p, to,
+                                                                           particles, cells));
         }
         return static_cast<double>(beyond_it);
     });
-    bool comes_in = false;
-    for (const EndCase& end : w.ends) comes_in = comes_in || end.kind == "inflow";
-    if (lost > 0 || comes_in) detail::exchange_with_outside(w, dt, state, cells);
+    const bool comes_in = problem.boundaries.has(BoundaryKind::inflow);
+    if (lost > 0 || comes_in) detail::exchange_with_outside(problem, dt, state, cells);
 }
 
 /// The Eulerian mesh is restored from what particles bring: mass, momentum and energy.
@@ -270,14 +274,14 @@ inline void move_particles(const Case& w, double dt, State& state, PicCells& cel
 /// exact:  mass, momentum, total energy; a cell without particles is empty to the last bit
 /// errors: NumericalError for a density or energy that is negative or not finite
 /// source: [PIC, Eulerian phase]
-inline void repartition(const Case& w, State& state, PicCells& cells) {
-    detail::sort_with_homes(w, state.particles, cells);
+inline void repartition(const Problem& problem, State& state, PicCells& cells) {
+    detail::sort_with_homes(problem, state.particles, cells);
     const int *home = cells.home.data(), *material = state.particles.material.data();
     const CellVelocity* v_tilde = cells.v_tilde.data();
     const double* e_tilde = cells.e_tilde.data();
     const long K = static_cast<long>(cells.materials);
     detail::collect(
-        w,
+        problem,
         [=](long p) -> detail::Brought {
             const CellVelocity& v = v_tilde[home[p]];
             return {v.x, v.z, e_tilde[home[p] * K + material[p]]};

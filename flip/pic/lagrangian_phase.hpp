@@ -21,10 +21,10 @@ inline double face_pressure(const PicCells& cells, long left, long right, double
 }
 
 // Viscous pressure on the faces below row j, and between its cells.
-inline void viscous_pressure(const Case& w, long j, PicCells& cells) {
-    const Grid& grid = w.grid;
+inline void viscous_pressure(const Problem& problem, long j, PicCells& cells) {
+    const Grid& grid = problem.grid;
     const long nx = grid.x.cells, stride = grid.stride();
-    const Viscosity viscosity{w.q_linear, w.q_quadratic};
+    const ArtificialViscosity viscosity = problem.q;
     const double half_per_V = 0.5 / grid.cell_area();
     const double *filled = cells.filled.data(), *mass = cells.mass.data(), *c = cells.c.data();
     const CellVelocity* v = cells.v.data();
@@ -36,13 +36,13 @@ inline void viscous_pressure(const Case& w, long j, PicCells& cells) {
     double *q_x = cells.q_x.data(), *q_z = cells.q_z.data();
     if (j < grid.z.cells)
         for (long m = n; m <= n + nx; ++m) q_x[m] = q(m - 1, m, v[m].x - v[m - 1].x);
-    if (w.plane())
+    if (is_plane(problem.grid))
         for (long m = n; m < n + nx; ++m) q_z[m] = q(m - stride, m, v[m].z - v[m - stride].z);
 }
 
 // Calls visit(inside, beyond, face) for the faces on one end of the mesh.
 template <class Visit>
-void for_each_face_on(const Grid& grid, End end, const Visit& visit) {
+void for_each_face_on(const Grid& grid, Side end, const Visit& visit) {
     const long nx = grid.x.cells, nz = grid.z.cells;
     const bool low = end == x_low || end == z_low;
     if (end == x_low || end == x_high) {
@@ -65,15 +65,15 @@ void for_each_face_on(const Grid& grid, End end, const Visit& visit) {
 ///         the momentum, in the books
 /// exact:  momentum, with the books; a face of an empty cell carries no pressure: a free surface
 /// source: [PIC, Lagrangian phase]
-inline void accelerate_cells(const Case& w, double dt, State& state, PicCells& cells) {
-    const Grid& grid = w.grid;
+inline void accelerate_cells(const Problem& problem, double dt, State& state, PicCells& cells) {
+    const Grid& grid = problem.grid;
     const long nx = grid.x.cells, nz = grid.z.cells, stride = grid.stride();
-    const bool plane = w.plane();
+    const bool plane = is_plane(problem.grid);
     const double A_x = grid.z.spacing(), A_z = grid.x.spacing();
-    const BodyForce g(w);
+    const CellAcceleration g(problem);
     for_each_row_of_cells(grid, [&](long j) {
-        detail::viscous_pressure(w, j, cells);
-        if (j == nz - 1) detail::viscous_pressure(w, nz, cells);
+        detail::viscous_pressure(problem, j, cells);
+        if (j == nz - 1) detail::viscous_pressure(problem, nz, cells);
     });
     for_each_row_of_cells(grid, [&](long j) {
         const auto P_x = [&](long m) {
@@ -92,12 +92,12 @@ inline void accelerate_cells(const Case& w, double dt, State& state, PicCells& c
             if (plane) v_tilde.z -= kick * A_z * (P_z(n + stride) - P_z(n));
         }
     });
-    fill_ghosts(w, cells.incoming, cells.v_tilde);
+    fill_ghosts(problem, cells.v_tilde);
 
     Books& books = state.books;
-    for (const End end : {x_low, x_high, z_low, z_high}) {
+    for (const Side end : all_sides) {
         const bool along_x = end == x_low || end == x_high;
-        if (w.is(end, "periodic") || (!along_x && !plane)) continue;
+        if (problem.boundaries.is(end, BoundaryKind::periodic) || (!along_x && !plane)) continue;
         double push = 0;
         detail::for_each_face_on(grid, end, [&](long inside, long beyond_it, long face) {
             push += detail::face_pressure(cells, inside, beyond_it,
@@ -138,11 +138,11 @@ inline double half_step(double v_here, double v_beyond, double v_tilde_here,
 /// out:    e_tilde; what comes through open ends, from gravity and from the trap, in the books
 /// exact:  the total energy, with the books: sum of M (u~^2 - u^2)/2 + M (I~ - I); walls do no work
 /// source: [PIC, Lagrangian phase]
-inline void do_work(const Case& w, double dt, State& state, PicCells& cells) {
-    const Grid& grid = w.grid;
+inline void do_work(const Problem& problem, double dt, State& state, PicCells& cells) {
+    const Grid& grid = problem.grid;
     const long nx = grid.x.cells, stride = grid.stride();
     const std::size_t K = cells.materials;
-    const bool plane = w.plane();
+    const bool plane = is_plane(problem.grid);
     const double A_x = grid.z.spacing(), A_z = grid.x.spacing();
     const Field &p = cells.p, &q_x = cells.q_x, &q_z = cells.q_z, &filled = cells.filled;
     const auto step_x = [&](long here, long beyond_it) {
@@ -179,9 +179,11 @@ inline void do_work(const Case& w, double dt, State& state, PicCells& cells) {
 
     // What the world outside does, and what it does not notice is zero: behind a wall ubar is odd.
     Books& books = state.books;
-    for (const End end : {x_low, x_high, z_low, z_high}) {
+    for (const Side end : all_sides) {
         const bool along_x = end == x_low || end == x_high;
-        if (w.is(end, "periodic") || w.is(end, "slip") || (!along_x && !plane)) continue;
+        if (problem.boundaries.is(end, BoundaryKind::periodic) ||
+            problem.boundaries.is(end, BoundaryKind::slip) || (!along_x && !plane))
+            continue;
         double work = 0;
         detail::for_each_face_on(grid, end, [&](long inside, long beyond_it, long face) {
             const double q = along_x ? q_x[face] : q_z[face];
@@ -195,7 +197,7 @@ inline void do_work(const Case& w, double dt, State& state, PicCells& cells) {
         const double inward = end == x_low || end == z_low ? 1 : -1;
         books.energy += inward * dt * (along_x ? A_x : A_z) * work;
     }
-    const BodyForce g(w);
+    const CellAcceleration g(problem);
     books.energy += dt * sum_over_rows(grid, cells, [&](long j) {
                         double sum = 0;
                         for (long i = 0; i < nx; ++i) {

@@ -6,32 +6,20 @@
 
 namespace flip {
 
-/// Artificial viscosity on one face between two cells.
-///   q = rho (-du) (linear c + quadratic (-du)) where du = u_right - u_left < 0, else 0
-/// note:   the method's own viscosity, rho |u| dx/2, is missing where the fluid stands still
-struct Viscosity {
-    double linear, quadratic;
-    /// q/(-du)
-    double slope(double rho, double c, double du) const {
-        return rho * (linear * c - quadratic * du);
-    }
-    double operator()(double rho, double c, double du) const {
-        return du < 0 ? -du * slope(rho, c, du) : 0.0;
-    }
-};
-
 /// The acceleration of gravity and of the trap at the center of cell (i, j); in a single row
 /// nothing moves along z.
-struct BodyForce {
+struct CellAcceleration {
     double x_first, z_first, x_change, z_change;
-    explicit BodyForce(const Case& w) {
+    explicit CellAcceleration(const Problem& problem) {
         const auto first = [&](const common::Axis& a, double g) {
-            return g + w.trap * 0.5 * (a.length - a.spacing());
+            return g + problem.body_force.trap * 0.5 * (a.length - a.spacing());
         };
-        x_first = first(w.grid.x, w.gravity_x);
-        x_change = -w.trap * w.grid.x.spacing();
-        z_first = w.plane() ? first(w.grid.z, w.gravity_z) : 0.0;
-        z_change = w.plane() ? -w.trap * w.grid.z.spacing() : 0.0;
+        x_first = first(problem.grid.x, problem.body_force.gravity_x);
+        x_change = -problem.body_force.trap * problem.grid.x.spacing();
+        z_first =
+            is_plane(problem.grid) ? first(problem.grid.z, problem.body_force.gravity_z) : 0.0;
+        z_change =
+            is_plane(problem.grid) ? -problem.body_force.trap * problem.grid.z.spacing() : 0.0;
     }
     double x(long i) const { return x_first + x_change * static_cast<double>(i); }
     double z(long j) const { return z_first + z_change * static_cast<double>(j); }
@@ -46,8 +34,8 @@ struct BodyForce {
 ///   c^2 = 1/(rho compressibility);  of a cell with a free surface, that of the material in it
 /// in:     masses of the cells and what the state knows of them
 /// out:    mass, per_mass, filled, p, c, share, v, with ghosts
-inline void share_pressure(const Case& w, const State& state, PicCells& cells) {
-    const Grid& grid = w.grid;
+inline void share_pressure(const Problem& problem, const State& state, PicCells& cells) {
+    const Grid& grid = problem.grid;
     const std::size_t K = cells.materials;
     const double V = grid.cell_area();
     for_each_row_of_cells(grid, [&](long j) {
@@ -62,12 +50,13 @@ inline void share_pressure(const Case& w, const State& state, PicCells& cells) {
                 mass += M[k];
                 U[k] = M[k] * state.cells.e[k][n];
             }
-            const CellState cell = share_cell(w.materials, M, U.data(), V, share);
+            const CellState cell = share_cell(problem.materials, M, U.data(), V, share);
             double part = 1;  // of the cell that is not void
             if (cell.surface) {
                 part = 0;
                 for (std::size_t k = 0; k < K; ++k)
-                    part += cell.compressibility * share[k] * stiffness(w.materials[k], cell.p);
+                    part +=
+                        cell.compressibility * share[k] * stiffness(problem.materials[k], cell.p);
             }
             cells.mass[n] = mass;
             cells.per_mass[n] = mass > 0 ? 1 / mass : 0.0;
@@ -79,7 +68,7 @@ inline void share_pressure(const Case& w, const State& state, PicCells& cells) {
             cells.v[at] = {state.cells.vx[n], state.cells.vz[n]};
         }
     });
-    fill_ghosts(w, cells);
+    fill_ghosts(problem, cells);
 }
 
 namespace detail {
@@ -97,9 +86,9 @@ double largest_over_cells(const Grid& grid, PicCells& cells, const OfCell& of_ce
 
 // Rate at which the fastest signal crosses a cell. The speed of sound counts as no less than
 // sqrt(P/rho), what the pressure P on a face can give to a light cell.
-inline double rate_of_signals(const Case& w, PicCells& cells) {
-    const Grid& grid = w.grid;
-    const bool plane = w.plane();
+inline double rate_of_signals(const Problem& problem, PicCells& cells) {
+    const Grid& grid = problem.grid;
+    const bool plane = is_plane(problem.grid);
     const double per_dx = 1 / grid.x.spacing(), per_dz = plane ? 1 / grid.z.spacing() : 0.0,
                  both = std::sqrt(per_dx * per_dx + per_dz * per_dz), V = grid.cell_area();
     const long stride = grid.stride();
@@ -117,11 +106,11 @@ inline double rate_of_signals(const Case& w, PicCells& cells) {
 }
 
 // Rate at which viscosity takes away differences of velocity, all faces of a cell together.
-inline double rate_of_viscosity(const Case& w, PicCells& cells) {
-    const Grid& grid = w.grid;
+inline double rate_of_viscosity(const Problem& problem, PicCells& cells) {
+    const Grid& grid = problem.grid;
     const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing(), V = grid.cell_area();
     const long stride = grid.stride();
-    const Viscosity viscosity{w.q_linear, w.q_quadratic};
+    const ArtificialViscosity viscosity = problem.q;
     const Field &mass = cells.mass, &per_mass = cells.per_mass, &c = cells.c;
     const auto v = [&](long m) { return cells.v[static_cast<std::size_t>(m)]; };
     return largest_over_cells(grid, cells, [&](long n) {
@@ -134,7 +123,7 @@ inline double rate_of_viscosity(const Case& w, PicCells& cells) {
         };
         face(n + 1, v(n + 1).x - v(n).x, per_dx);
         face(n - 1, v(n).x - v(n - 1).x, per_dx);
-        if (w.plane()) {
+        if (is_plane(problem.grid)) {
             face(n + stride, v(n + stride).z - v(n).z, per_dz);
             face(n - stride, v(n).z - v(n - stride).z, per_dz);
         }
@@ -150,19 +139,19 @@ inline double rate_of_viscosity(const Case& w, PicCells& cells) {
 /// by cfl^2 dx, or than 1.2 times the last step. A fixed time.dt overrules all of them.
 /// in:     cells after share_pressure(); the step and time of the state
 /// errors: NumericalError when the step gets so short that the run would never end
-inline double largest_step(const Case& w, const State& state, PicCells& cells) {
-    if (w.dt > 0) return w.dt;
+inline double largest_step(const Problem& problem, const State& state, PicCells& cells) {
+    if (problem.limits.dt > 0) return problem.limits.dt;
 
-    const Grid& grid = w.grid;
+    const Grid& grid = problem.grid;
     const double least_spacing =
-        w.plane() ? std::min(grid.x.spacing(), grid.z.spacing()) : grid.x.spacing();
-    const double falling = std::sqrt(BodyForce(w).largest(grid) / least_spacing),
-                 fastest = std::max(falling, detail::rate_of_signals(w, cells)),
-                 viscous = detail::rate_of_viscosity(w, cells);
-    double dt = fastest > 0 ? w.cfl / fastest : w.end / 100;
+        is_plane(problem.grid) ? std::min(grid.x.spacing(), grid.z.spacing()) : grid.x.spacing();
+    const double falling = std::sqrt(CellAcceleration(problem).largest(grid) / least_spacing),
+                 fastest = std::max(falling, detail::rate_of_signals(problem, cells)),
+                 viscous = detail::rate_of_viscosity(problem, cells);
+    double dt = fastest > 0 ? problem.limits.cfl / fastest : problem.limits.end / 100;
     if (viscous > 0) dt = std::min(dt, 1 / viscous);
     if (state.dt > 0) dt = std::min(dt, 1.2 * state.dt);
-    if (!(dt > 1e-10 * w.end)) {
+    if (!(dt > 1e-10 * problem.limits.end)) {
         throw common::NumericalError("the time step has fallen to " + common::format(dt) +
                                      " at t = " + common::format(state.time) +
                                      ": some cell has become very fast, hot or light; use more "

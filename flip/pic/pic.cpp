@@ -17,6 +17,7 @@
 #include "flip/pic/pic_start.hpp"
 #include "flip/pic/step.hpp"
 #include "flip/setup/check_case.hpp"
+#include "flip/setup/problem_of_case.hpp"
 #include "flip/setup/warn_of_case.hpp"
 
 namespace {
@@ -47,31 +48,32 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     common::Run& run = *holder;
 
     // 2. Particles and cells at t = 0.
-    PicCells cells(w);
+    const Problem problem = problem_of(w);
+    PicCells cells(problem);
     Recorder recorder(w, info.program, run.history);
-    State state = initial_state(w, cells);
+    State state = initial_state(problem, load_particles(w), cells);
     CellFields fields;
     long step = 0;
     if (run.restarting()) {
         run.restore(state, step);
-        weigh_cells(w, state, cells);
+        weigh_cells(problem, state, cells);
     }
 
     // 3. The loop of the slide.
     while (run.not_finished(step, state.time, w.end)) {
-        share_pressure(w, state, cells);  // cells: p
-        fields_of(w, state, cells, fields);
-        recorder.look(step, state, totals_of(w, state, cells), fields, run);
-        take_pic_step(w, state, cells);  // Lagrangian phase, particles, Eulerian phase  [PIC]
+        share_pressure(problem, state, cells);  // cells: p
+        fields_of(problem, state, cells, fields);
+        recorder.look(step, state, totals_of(problem, state, cells), fields, run);
+        take_pic_step(problem, state, cells);  // Lagrangian phase, particles, Eulerian phase  [PIC]
         ++step;
         run.end_of_step(step, state.time, w.end, state);
     }
 
     // 4. The end of the run, the results against theory, summary.json.
     if (common::Run::reached(state.time, w.end)) {
-        share_pressure(w, state, cells);
-        const Totals totals = totals_of(w, state, cells);
-        fields_of(w, state, cells, fields);
+        share_pressure(problem, state, cells);
+        const Totals totals = totals_of(problem, state, cells);
+        fields_of(problem, state, cells, fields);
         recorder.look(step, state, totals, fields, run);
         recorder.finish(state, totals, fields, run);
     }

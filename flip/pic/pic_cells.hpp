@@ -22,12 +22,6 @@ struct CellVelocity {
     double x = 0, z = 0;
 };
 
-/// What particles that enter through an inflow bring with them.
-struct Incoming {
-    double rho = 0, p = 0, c = 0, e = 0;
-    CellVelocity v;
-};
-
 /// The scratch pad. Of several materials, those of one cell lie together: [cell * materials + k].
 struct PicCells {
     std::size_t materials = 1;
@@ -46,26 +40,18 @@ struct PicCells {
     std::vector<double> sums;  // what particles bring to a cell
     std::vector<double> row;   // one number per row of cells
     SortScratch sort;
-    Incoming incoming;
 
-    explicit PicCells(const Case& w) : materials(w.materials.size()) {
-        const auto size = static_cast<std::size_t>(w.grid.size());
+    explicit PicCells(const Problem& problem) : materials(problem.materials.size()) {
+        const auto size = static_cast<std::size_t>(problem.grid.size());
         for (Field* f : {&mass, &per_mass, &filled, &p, &c, &q_x, &q_z})
-            *f = Field::Zero(w.grid.size());
+            *f = Field::Zero(problem.grid.size());
         for (auto* f : {&M, &share, &e_tilde}) f->assign(size * materials, 0.0);
         v.assign(size, {});
         v_tilde.assign(size, {});
-        row.assign(static_cast<std::size_t>(w.grid.z.cells), 0.0);
-        sums.assign(static_cast<std::size_t>(w.grid.x.cells * w.grid.z.cells) * (3 + 2 * materials),
+        row.assign(static_cast<std::size_t>(problem.grid.z.cells), 0.0);
+        sums.assign(static_cast<std::size_t>(problem.grid.x.cells * problem.grid.z.cells) *
+                        (3 + 2 * materials),
                     0.0);
-        const int k = material_index(w, w.inflow.material);
-        if (k < 0) return;
-        const Material& a = w.materials[static_cast<std::size_t>(k)];
-        incoming.rho = w.inflow.density;
-        incoming.e = internal_energy(a, incoming.rho, w.inflow.pressure);
-        incoming.p = pressure(a, incoming.rho, incoming.e);
-        incoming.c = std::sqrt(stiffness(a, incoming.p) / incoming.rho);
-        incoming.v = {w.inflow.velocity_x, w.inflow.velocity_z};
     }
 };
 
@@ -95,7 +81,7 @@ double sum_over_rows(const Grid& grid, PicCells& cells, const SumOfRow& sum_of_r
 /// Calls visit(ghost, inside) for every ghost cell behind one end, with the cell whose image it is.
 /// note:   first the ends along x, then those along z, which take the corners with them
 template <class Visit>
-void for_each_ghost(const Grid& grid, End end, const Visit& visit) {
+void for_each_ghost(const Grid& grid, Side end, const Visit& visit) {
     const long nx = grid.x.cells, nz = grid.z.cells;
     const bool low = end == x_low || end == z_low;
     if (end == x_low || end == x_high) {
@@ -109,40 +95,44 @@ void for_each_ghost(const Grid& grid, End end, const Visit& visit) {
 
 /// Fills the ghosts of a velocity: images around a periodic direction; the mirror image behind a
 /// wall, whose normal component is odd; the same velocity behind an open end; what comes in.
-inline void fill_ghosts(const Case& w, const Incoming& incoming, std::vector<CellVelocity>& v) {
-    for (const End end : {x_low, x_high, z_low, z_high}) {
-        const bool wall = w.is(end, "slip"), along_x = end == x_low || end == x_high;
+inline void fill_ghosts(const Problem& problem, std::vector<CellVelocity>& v) {
+    const Inflow& in = problem.boundaries.inflow;
+    for (const Side end : all_sides) {
+        const bool wall = problem.boundaries.is(end, BoundaryKind::slip),
+                   along_x = end == x_low || end == x_high;
         const double odd_x = wall && along_x ? -1 : 1, odd_z = wall && !along_x ? -1 : 1;
-        const bool comes_in = w.is(end, "inflow");
-        for_each_ghost(w.grid, end, [&](long ghost, long inside) {
+        const bool comes_in = problem.boundaries.is(end, BoundaryKind::inflow);
+        for_each_ghost(problem.grid, end, [&](long ghost, long inside) {
             const CellVelocity a = v[static_cast<std::size_t>(inside)];
             v[static_cast<std::size_t>(ghost)] =
-                comes_in ? incoming.v : CellVelocity{odd_x * a.x, odd_z * a.z};
+                comes_in ? CellVelocity{in.vx, in.vz} : CellVelocity{odd_x * a.x, odd_z * a.z};
         });
     }
 }
 
 /// Fills the ghosts of what share_pressure() makes.
 /// note:   behind an open end p is such that its mean with the cell inside is the pressure outside
-inline void fill_ghosts(const Case& w, PicCells& cells) {
-    const double V = w.grid.cell_area();
-    for (const End end : {x_low, x_high, z_low, z_high}) {
-        const bool open = w.is(end, "open"), comes_in = w.is(end, "inflow");
-        const double outside_pressure = w.ends[end].pressure;
-        for_each_ghost(w.grid, end, [&](long ghost, long inside) {
+inline void fill_ghosts(const Problem& problem, PicCells& cells) {
+    const Inflow& in = problem.boundaries.inflow;
+    const double V = problem.grid.cell_area();
+    for (const Side end : all_sides) {
+        const bool open = problem.boundaries.is(end, BoundaryKind::open),
+                   comes_in = problem.boundaries.is(end, BoundaryKind::inflow);
+        const double outside_pressure = problem.boundaries.side[end].pressure;
+        for_each_ghost(problem.grid, end, [&](long ghost, long inside) {
             for (Field* f : {&cells.mass, &cells.per_mass, &cells.filled, &cells.p, &cells.c})
                 (*f)[ghost] = (*f)[inside];
             if (open) cells.p[ghost] = 2 * outside_pressure - cells.p[inside];
             if (comes_in) {
-                cells.mass[ghost] = cells.incoming.rho * V;
+                cells.mass[ghost] = in.rho * V;
                 cells.per_mass[ghost] = 1 / cells.mass[ghost];
                 cells.filled[ghost] = 1;
-                cells.p[ghost] = cells.incoming.p;
-                cells.c[ghost] = cells.incoming.c;
+                cells.p[ghost] = in.p;
+                cells.c[ghost] = in.c;
             }
         });
     }
-    fill_ghosts(w, cells.incoming, cells.v);
+    fill_ghosts(problem, cells.v);
 }
 
 /// Column of cells of a position along x, and of its row along z; the same everywhere, so that a
@@ -160,8 +150,8 @@ struct Columns {
 
 /// Sums over the cells.
 /// in: cells whose mass belongs to the state: after repartition() or weigh_cells()
-inline Totals totals_of(const Case& w, const State& state, PicCells& cells) {
-    const Grid& grid = w.grid;
+inline Totals totals_of(const Problem& problem, const State& state, PicCells& cells) {
+    const Grid& grid = problem.grid;
     const long nx = grid.x.cells;
     const std::size_t K = cells.materials;
     const double x_middle = grid.x.low + 0.5 * grid.x.length,
@@ -199,9 +189,9 @@ inline Totals totals_of(const Case& w, const State& state, PicCells& cells) {
 /// The fluid on the cells.
 /// in:  cells after share_pressure()
 /// out: fields, zero in empty cells; reused from step to step
-inline void fields_of(const Case& w, const State& state, const PicCells& cells,
+inline void fields_of(const Problem& problem, const State& state, const PicCells& cells,
                       CellFields& fields) {
-    const Grid& grid = w.grid;
+    const Grid& grid = problem.grid;
     const std::size_t K = cells.materials;
     const double per_V = 1 / grid.cell_area();
     if (fields.rho.size() != grid.size()) {

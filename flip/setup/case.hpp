@@ -8,7 +8,7 @@
 
 #include "common/grid.hpp"
 #include "common/run/parameters.hpp"
-#include "flip/equation_of_state.hpp"
+#include "flip/problem.hpp"
 
 namespace flip {
 
@@ -46,7 +46,6 @@ struct EndCase {
     double slide = 0;               // speed of a no-slip wall along itself
     double pressure = 0;            // outside an open end
 };
-enum End : std::size_t { x_low, x_high, z_low, z_high };
 
 /// A complete input. Any consistent units; per unit length along y.
 struct Case {
@@ -97,7 +96,7 @@ struct Case {
     bool heats() const { return deficit_to_heat && mass == "lumped"; }
     bool implicit() const { return pressure == "implicit"; }
     bool plane() const { return grid.z.cells > 1; }
-    bool is(End e, const char* kind) const { return ends[e].kind == kind; }
+    bool is(Side e, const char* kind) const { return ends[e].kind == kind; }
 };
 
 namespace detail {

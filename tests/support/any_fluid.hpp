@@ -13,6 +13,7 @@
 
 #include "flip/flip/flip_fields.hpp"
 #include "flip/flip/step.hpp"
+#include "flip/setup/problem_of_case.hpp"
 #include "tests/support/any_numbers.hpp"
 
 namespace facts {
@@ -30,12 +31,13 @@ struct Random {
 /// The steps of flip, whole and in parts.
 struct FlipRun {
     Case w;
+    Problem problem;
     FlipScratch scratch;
     State state;
     long steps_taken = 0;
 
     FlipRun(const Case& parameters, const Particles& particles)
-        : w(completed(parameters)), scratch(w) {
+        : w(completed(parameters)), problem(problem_of(w)), scratch(problem) {
         state.particles = particles;
         sort();
     }
@@ -49,21 +51,21 @@ struct FlipRun {
 
     void sort() { sort_particles(w.grid, scratch.sort, state.particles); }
     /// particles -> mesh, and the pressure.
-    void deposit() { find_fluid(w, state, scratch.mesh); }
+    void deposit() { find_fluid(problem, state, scratch.mesh); }
     double move_nodes() {
-        const double dt = step_allowed(w, scratch.mesh, state.dt);
+        const double dt = step_allowed(problem, scratch.mesh, state.dt);
         state.report =
-            move_mesh(w, dt, state.particles, scratch.mass_matrix, scratch.mesh, state.books);
+            move_mesh(problem, dt, state.particles, scratch.mass_matrix, scratch.mesh, state.books);
         return dt;
     }
     void step() {
         deposit();
-        take_flip_step(w, steps_taken++, scratch, state);
+        take_flip_step(problem, steps_taken++, scratch, state);
     }
     void steps(int count) {
         for (int n = 0; n < count; ++n) step();
     }
-    Totals totals() const { return particle_totals(w, state.particles); }
+    Totals totals() const { return particle_totals(problem, state.particles); }
 };
 
 /// A mesh on (0, 1) in x; a plane of unit height or a row of cells.
