@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "flip/flip/step.hpp"
-#include "flip/pic/pic_start.hpp"
 #include "flip/pic/step.hpp"
 #include "flip/setup/problem_of_case.hpp"
 
@@ -20,12 +19,12 @@ using namespace flip;
 // Where the time of a step goes; the names of the parts differ between the two.
 // Heavy gas on light gas, in a box twice as high as wide.
 Case heavy_on_light(long cells_x) {
-    Case w;
-    w.grid = {{cells_x, 0, 1, true}, {2 * cells_x, -1, 2, false}};
-    w.ends[z_low].kind = w.ends[z_high].kind = "slip";
-    w.materials = {{"light", 1.4, 0}, {"heavy", 1.4, 0}};
-    w.per_cell_x = w.per_cell_z = 3;
-    w.gravity_z = -1;
+    Case parameters;
+    parameters.grid = {{cells_x, 0, 1, true}, {2 * cells_x, -1, 2, false}};
+    parameters.ends[z_low].kind = parameters.ends[z_high].kind = "slip";
+    parameters.materials = {{"light", 1.4, 0}, {"heavy", 1.4, 0}};
+    parameters.per_cell_x = parameters.per_cell_z = 3;
+    parameters.gravity_z = -1;
     RegionCase light, heavy;
     light.gas = {"light", 1, 20, 0, 0};
     light.flow = "overturn";
@@ -35,17 +34,17 @@ Case heavy_on_light(long cells_x) {
     heavy.shape = "above";
     heavy.gas.material = "heavy";
     heavy.gas.density = 2;
-    w.regions = {light, heavy};
-    return completed(w);
+    parameters.regions = {light, heavy};
+    return completed(parameters);
 }
 
-common::StepClock time_flip(const Case& w, long steps, long& count) {
-    const Problem problem = problem_of(w);
+common::StepClock time_flip(const Case& parameters, long steps, long& count) {
+    const Problem problem = problem_of(parameters);
     FlipScratch scratch(problem);
     State state;
-    state.particles = load_particles(w);
+    state.particles = load_particles(parameters);
     count = state.particles.count();
-    sort_particles(w.grid, scratch.sort, state.particles);
+    sort_particles(parameters.grid, scratch.sort, state.particles);
     common::StepClock clock;
     for (long step = 0; step <= steps; ++step) {
         if (step == 1) clock.restart();  // the first step meets empty caches
@@ -55,23 +54,23 @@ common::StepClock time_flip(const Case& w, long steps, long& count) {
     return clock;
 }
 
-common::StepClock time_pic(const Case& w, long steps, long& count) {
-    const Problem problem = problem_of(w);
+common::StepClock time_pic(const Case& parameters, long steps, long& count) {
+    const Problem problem = problem_of(parameters);
     PicCells cells(problem);
-    State state = initial_state(problem, load_particles(w), cells);
+    State state = initial_state(problem, load_particles(parameters), cells);
     count = state.particles.count();
     common::StepClock clock;
     for (long step = 0; step <= steps; ++step) {
         if (step == 1) clock.restart();
-        share_pressure(problem, state, cells);
+        find_pressure(problem, state, cells);
         clock.lap("mesh");
         take_pic_step(problem, state, cells, clock);
     }
     return clock;
 }
 
-common::StepClock time_steps(bool pic, const Case& w, long steps, long& count) {
-    return pic ? time_pic(w, steps, count) : time_flip(w, steps, count);
+common::StepClock time_steps(bool pic, const Case& parameters, long steps, long& count) {
+    return pic ? time_pic(parameters, steps, count) : time_flip(parameters, steps, count);
 }
 
 }  // namespace
@@ -83,13 +82,13 @@ int main() {
         std::printf("%8s %16s %9s %9s %9s %9s %9s\n", "threads", "particle-steps/s", "speed-up",
                     pic ? "repart." : "deposit", pic ? "Lagrange" : "mesh", "move",
                     pic ? "" : "sort");
-        const Case w = heavy_on_light(256);
+        const Case parameters = heavy_on_light(256);
         double one_thread = 0;
         for (const int threads : {1, 2}) {
             common::set_thread_count(threads);
             long count = 0;
             const long steps = 20;
-            const common::StepClock clock = time_steps(pic, w, steps, count);
+            const common::StepClock clock = time_steps(pic, parameters, steps, count);
             const double rate =
                 static_cast<double>(count) * static_cast<double>(steps) / clock.total();
             if (threads == 1) one_thread = rate;

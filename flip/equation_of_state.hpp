@@ -65,8 +65,8 @@ inline constexpr std::size_t most_materials = 8;
 /// exact:  for gases the sum of partial pressures; shares sum to 1 in a cell that is not empty
 /// source: Newton's method from the largest pressure that one material alone would have: the sum is
 ///         convex and falls, so no step goes beyond the root
-inline CellState share_cell(std::span<const Material> materials, const double* M, const double* U,
-                            double V, double* share) {
+inline CellState find_equilibrium(std::span<const Material> materials, const double* M,
+                                  const double* U, double V, double* share) {
     const std::size_t count = materials.size();
     CellState cell;
     double p = 0, mass = 0;

@@ -2,6 +2,7 @@
 // fields on the cells for pictures and comparisons.
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -10,9 +11,10 @@
 
 namespace flip {
 
-/// What has come in since the start from outside the fluid: through open ends and inflow, from
-/// walls, gravity and the trap. What the particles have now, less this, does not change.
-struct Books {
+/// Energy and momentum budget: what has come in since the start from outside the fluid, through open
+/// and inflow boundaries, from walls, gravity and the trap.
+/// exact: what the particles have now, minus this, does not change
+struct Budget {
     double mass = 0, momentum_x = 0, momentum_z = 0, energy = 0;
 };
 
@@ -32,7 +34,7 @@ struct StepReport {
 struct State {
     Particles particles;
     CellFluid cells;
-    Books books;
+    Budget budget;
     double time = 0;
     double dt = 0;  // of the last step; 0 before the first
     StepReport report;
@@ -45,10 +47,10 @@ void archive(Archive& a, State& s) {
     a("vx_c", s.cells.vx);
     a("vz_c", s.cells.vz);
     for (std::size_t k = 0; k < s.cells.e.size(); ++k) a("e_c" + std::to_string(k), s.cells.e[k]);
-    a("mass_in", s.books.mass);
-    a("momentum_x_in", s.books.momentum_x);
-    a("momentum_z_in", s.books.momentum_z);
-    a("energy_in", s.books.energy);
+    a("mass_in", s.budget.mass);
+    a("momentum_x_in", s.budget.momentum_x);
+    a("momentum_z_in", s.budget.momentum_z);
+    a("energy_in", s.budget.energy);
     a("time", s.time);
     a("dt", s.dt);
     a("iterations", s.report.iterations);

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "flip/flip/deposit_particles.hpp"
-#include "flip/flip/flip_fields.hpp"
 #include "flip/flip/rezone.hpp"
+#include "flip/output/flip_diagnostics.hpp"
 #include "flip/setup/problem_of_case.hpp"
 #include "tests/support/any_numbers.hpp"
 
@@ -62,12 +62,12 @@ struct Cloud {
         SortScratch scratch;
         sort_particles(w.grid, scratch, p);
         before = mesh_of(problem), after = mesh_of(problem);
-        deposit_particles(problem, p, before);
-        totals_before = particle_totals(problem, p);
+        deposit_particles(w.grid, w.materials, p, before);
+        totals_before = particle_totals(w.grid, p);
         report = rezone(problem, p);
         sort_particles(w.grid, scratch, p);
-        deposit_particles(problem, p, after);
-        totals_after = particle_totals(problem, p);
+        deposit_particles(w.grid, w.materials, p, after);
+        totals_after = particle_totals(w.grid, p);
     }
 
     double node_change() const {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "common/step_clock.hpp"
-#include "flip/flip/cross_ends.hpp"
 #include "flip/flip/deposit_particles.hpp"
 #include "flip/flip/find_pressure.hpp"
 #include "flip/flip/move_mesh.hpp"
@@ -15,7 +14,7 @@ namespace flip {
 /// What a run keeps between steps besides its state; all is made anew in every step.
 struct FlipScratch {
     Mesh mesh;
-    LagrangianScratch mass_matrix;
+    MassMatrix mass_matrix;
     SortScratch sort;
 
     explicit FlipScratch(const Problem& problem) : mesh(mesh_of(problem)) {}
@@ -26,10 +25,12 @@ struct FlipScratch {
 /// out:    velocity and mass of nodes, pressure of cells
 template <class Clock = common::NoClock>
 void find_fluid(const Problem& problem, const State& state, Mesh& mesh, Clock&& clock = {}) {
+    const Grid& grid = problem.grid;
+    const std::vector<Material>& materials = problem.materials;
     // [fluid]
-    deposit_particles(problem, state.particles, mesh);  // particles -> mesh: v_g         [FLIP-8]
+    deposit_particles(grid, materials, state.particles, mesh);  // particles -> mesh: v_g [FLIP-8]
     clock.lap("deposit");
-    find_pressure(problem, state.time, mesh);  // on the mesh: p_c
+    find_pressure(grid, materials, state.time, mesh);  // on the mesh: p_c
     clock.lap("mesh");
     // [/fluid]
 }
@@ -45,13 +46,12 @@ void take_flip_step(const Problem& problem, long step, FlipScratch& scratch, Sta
     // [step]
     const double dt = step_allowed(problem, mesh, state.dt);
     state.report =
-        move_mesh(problem, dt, particles, scratch.mass_matrix, mesh, state.books);  // F_g, v_g^L
+        move_mesh(problem, dt, particles, scratch.mass_matrix, mesh, state.budget);  // F_g, v_g^L
     clock.lap("mesh");
     const long left = move_particles(problem, dt, mesh, particles);  // v_p, x_p   [FLIP-6, FLIP-7]
     clock.lap("move");
-    cross_ends(problem, state.time, dt, particles, state.books, left);
-    if (problem.scheme.rezone_steps > 0 && (step + 1) % problem.scheme.rezone_steps == 0)
-        rezone(problem, particles);
+    apply_particle_boundaries(problem, state.time, dt, particles, state.budget, left);
+    if (rezone_is_due(problem.scheme, step)) rezone(problem, particles);
     sort_particles(problem.grid, scratch.sort, particles);
     clock.lap("sort");
     // [/step]

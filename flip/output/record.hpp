@@ -13,10 +13,10 @@ namespace flip {
 
 /// What the loop hands its results to. A row belongs to t^n: particles, cells and totals of that
 /// time, and the step that led to it.
-///   mass_error:     (mass - books.mass - first) / first
-///   momentum_error: (momentum - books.momentum - first) / (sqrt(2 kinetic mass) + mass c), with
+///   mass_error:     (mass - budget.mass - first) / first
+///   momentum_error: (momentum - budget.momentum - first) / (sqrt(2 kinetic mass) + mass c), with
 ///                   kinetic energy and mass of the start, c its largest sound speed
-///   energy_error:   (energy - books.energy - first) / first
+///   energy_error:   (energy - budget.energy - first) / first
 /// note:   where the start has nothing to compare with, what has come in since then takes its place
 class Recorder {
    public:
@@ -74,7 +74,7 @@ class Recorder {
             const double scale = before > 0 ? before : std::fabs(came_in);
             return scale > 0 ? change / scale : 0.0;
         };
-        const Books& books = state.books;
+        const Budget& budget = state.budget;
         const double mass = first("mass", now.mass), kinetic = first("kinetic", now.kinetic);
         const double energy = now.kinetic + now.internal, gross = first("energy", energy);
         check_energy(step, state, energy, gross);
@@ -90,12 +90,12 @@ class Recorder {
                 now.momentum_x,
                 now.momentum_z,
                 now.angular_momentum,
-                relative(now.mass - books.mass - mass, mass, books.mass),
-                relative(now.momentum_x - books.momentum_x - first("momentum_x", now.momentum_x),
-                         momentum, books.momentum_x),
-                relative(now.momentum_z - books.momentum_z - first("momentum_z", now.momentum_z),
-                         momentum, books.momentum_z),
-                relative(energy - books.energy - gross, gross, books.energy),
+                relative(now.mass - budget.mass - mass, mass, budget.mass),
+                relative(now.momentum_x - budget.momentum_x - first("momentum_x", now.momentum_x),
+                         momentum, budget.momentum_x),
+                relative(now.momentum_z - budget.momentum_z - first("momentum_z", now.momentum_z),
+                         momentum, budget.momentum_z),
+                relative(energy - budget.energy - gross, gross, budget.energy),
                 most.speed,
                 most.mach,
                 static_cast<double>(state.report.iterations),
@@ -122,7 +122,7 @@ class Recorder {
    private:
     // An energy that is many times what the start and the work done account for is no result.
     void check_energy(long step, const State& state, double energy, double gross) const {
-        const double accounted = gross + std::fabs(state.books.energy);
+        const double accounted = gross + std::fabs(state.budget.energy);
         const bool beyond = parameters_.energy_limit > 0 &&
                             std::fabs(energy) > parameters_.energy_limit * accounted;
         if (std::isfinite(energy) && !beyond) return;

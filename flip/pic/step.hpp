@@ -10,7 +10,7 @@
 namespace flip {
 
 /// From t^n to t^{n+1}, as long as the flow allows.
-/// in:     cells after share_pressure() for t^n
+/// in:     cells after find_pressure() for t^n
 /// in/out: state: particles, cells, time and the length of the last step, budget
 template <class Clock = common::NoClock>
 void take_pic_step(const Problem& problem, State& state, PicCells& cells, Clock&& clock = {}) {

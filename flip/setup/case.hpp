@@ -46,6 +46,7 @@ struct EndCase {
     double slide = 0;               // speed of a no-slip wall along itself
     double pressure = 0;            // outside an open end
 };
+using End = Side;
 
 /// A complete input. Any consistent units; per unit length along y.
 struct Case {
@@ -96,7 +97,7 @@ struct Case {
     bool heats() const { return deficit_to_heat && mass == "lumped"; }
     bool implicit() const { return pressure == "implicit"; }
     bool plane() const { return grid.z.cells > 1; }
-    bool is(Side e, const char* kind) const { return ends[e].kind == kind; }
+    bool is(End e, const char* kind) const { return ends[e].kind == kind; }
 };
 
 namespace detail {

@@ -55,7 +55,7 @@ inline void refuse_struck_wall(const Case& w, const std::string& what) {
            what + " needs a single region, uniform and everywhere");
     refuse(r.gas.velocity_x == 0,
            what + " needs gas that runs into a wall: give region." + r.name + ".velocity_x");
-    const Side end = r.gas.velocity_x < 0 ? x_low : x_high;
+    const End end = r.gas.velocity_x < 0 ? x_low : x_high;
     const char* name = end == x_low ? "x_low" : "x_high";
     refuse(!w.is(end, "slip"), what + ": the gas runs towards " + name +
                                    ", which is not a wall: set boundary." + name + " = \"slip\"");
@@ -158,7 +158,7 @@ inline void refuse_cavity(const Case& w, const std::string& what) {
         refuse(end.kind != "no_slip", what + " needs no_slip walls on all sides");
     const double U = w.ends[z_high].slide;
     refuse(!(U > 0), what + " needs a lid that moves: set boundary.slide_z_high above 0");
-    for (const Side end : {x_low, x_high, z_low})
+    for (const End end : {x_low, x_high, z_low})
         refuse(w.ends[end].slide != 0, what + " needs all walls but the lid at rest");
     refuse(std::fabs(w.grid.x.length - w.grid.z.length) > 1e-9 * w.grid.x.length,
            what + " is for a square, and the mesh is " + format(w.grid.x.length) + " x " +

@@ -70,7 +70,7 @@ inline void refuse_sizes(const Case& w) {
 }
 
 inline void refuse_ends(const Case& w) {
-    for (const Side low : {x_low, z_low}) {
+    for (const End low : {x_low, z_low}) {
         const std::string a = end_names[low], b = end_names[low + 1];
         refuse((w.ends[low].kind == "periodic") != (w.ends[low + 1].kind == "periodic"),
                "boundary." + a + " = \"" + w.ends[low].kind + "\" and boundary." + b + " = \"" +

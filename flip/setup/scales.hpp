@@ -179,7 +179,7 @@ inline std::string describe_scales(const Case& w, const Scales& scales,
             "  " + name + std::string(name.size() < 20 ? 20 - name.size() : 1, ' ') + value + "\n";
     };
     const Grid& grid = w.grid;
-    const auto ends = [&](Side low) {
+    const auto ends = [&](End low) {
         const std::string &a = w.ends[low].kind, &b = w.ends[low + 1].kind;
         return a == b ? a : a + " and " + b;
     };

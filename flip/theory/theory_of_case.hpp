@@ -83,7 +83,7 @@ inline const RegionCase& hot_region(const Case& w) {
 inline Blast blast_of(const Case& w) {
     const RegionCase &hot = hot_region(w), &cold = w.regions.front();
     double energy = hot.energy / (w.plane() ? 1 : w.grid.z.length);
-    const auto mirrored = [&](Side low, const common::Axis& axis, double center) {
+    const auto mirrored = [&](End low, const common::Axis& axis, double center) {
         const double near = 0.5 * axis.spacing();
         const bool at_low = w.ends[low].kind == "slip" && std::fabs(center - axis.low) <= near;
         const bool at_high =

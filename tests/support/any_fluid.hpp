@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "flip/flip/flip_fields.hpp"
 #include "flip/flip/step.hpp"
+#include "flip/output/flip_diagnostics.hpp"
 #include "flip/setup/problem_of_case.hpp"
 #include "tests/support/any_numbers.hpp"
 
@@ -54,8 +54,8 @@ struct FlipRun {
     void deposit() { find_fluid(problem, state, scratch.mesh); }
     double move_nodes() {
         const double dt = step_allowed(problem, scratch.mesh, state.dt);
-        state.report =
-            move_mesh(problem, dt, state.particles, scratch.mass_matrix, scratch.mesh, state.books);
+        state.report = move_mesh(problem, dt, state.particles, scratch.mass_matrix, scratch.mesh,
+                                 state.budget);
         return dt;
     }
     void step() {
@@ -65,7 +65,7 @@ struct FlipRun {
     void steps(int count) {
         for (int n = 0; n < count; ++n) step();
     }
-    Totals totals() const { return particle_totals(problem, state.particles); }
+    Totals totals() const { return particle_totals(problem.grid, state.particles); }
 };
 
 /// A mesh on (0, 1) in x; a plane of unit height or a row of cells.
@@ -126,16 +126,16 @@ inline Particles any_cloud(const Case& parameters, double speed, std::uint64_t s
 /// Random numbers on the nodes that are not images, images filled.
 inline void stir_nodes(const Grid& grid, Random& random, Field& f) {
     f.setZero(grid.size());
-    for_own_nodes(grid, [&](long n) { f[n] = random(-1, 1); });
+    for_own_nodes(grid, [&](long, long, long n) { f[n] = random(-1, 1); });
     fill_nodes(grid, f.data());
 }
 
-/// How much a step leaves of mass, momentum and energy beside the books, relative.
+/// How much a step leaves of mass, momentum and energy beside the budget, relative.
 struct Leak {
     double mass = 0, momentum = 0, energy = 0;
     double most() const { return worst({mass, momentum, energy}); }
 };
-inline Leak leak(const Totals& a, const Totals& b, const Books& before, const Books& after) {
+inline Leak leak(const Totals& a, const Totals& b, const Budget& before, const Budget& after) {
     const double energy = worst({a.kinetic + a.internal, b.kinetic + b.internal}),
                  mass = worst({a.mass, b.mass}), momentum = std::sqrt(2 * energy * mass);
     Leak l;
