@@ -16,7 +16,6 @@ namespace {
 
 using namespace flip;
 
-// Where the time of a step goes; the names of the parts differ between the two.
 // Heavy gas on light gas, in a box twice as high as wide.
 Case heavy_on_light(long cells_x) {
     Case parameters;
@@ -38,39 +37,30 @@ Case heavy_on_light(long cells_x) {
     return completed(parameters);
 }
 
-common::StepClock time_flip(const Case& parameters, long steps, long& count) {
+// The time of `steps` steps of one of the programs, after a first one that meets empty caches.
+// out: count, the number of particles
+common::StepClock time_steps(bool pic, const Case& parameters, long steps, long& count) {
     const Problem problem = problem_of(parameters);
     FlipScratch scratch(problem);
+    PicCells cells(problem);
     State state;
     state.particles = load_particles(parameters);
+    if (pic) state = initial_state(problem, state.particles, cells);
     count = state.particles.count();
-    sort_particles(parameters.grid, scratch.sort, state.particles);
-    common::StepClock clock;
-    for (long step = 0; step <= steps; ++step) {
-        if (step == 1) clock.restart();  // the first step meets empty caches
-        find_fluid(problem, state, scratch.mesh, clock);
-        take_flip_step(problem, step, scratch, state, clock);
-    }
-    return clock;
-}
-
-common::StepClock time_pic(const Case& parameters, long steps, long& count) {
-    const Problem problem = problem_of(parameters);
-    PicCells cells(problem);
-    State state = initial_state(problem, load_particles(parameters), cells);
-    count = state.particles.count();
+    sort_particles(problem.grid, scratch.sort, state.particles);
     common::StepClock clock;
     for (long step = 0; step <= steps; ++step) {
         if (step == 1) clock.restart();
-        find_pressure(problem, state, cells);
-        clock.lap("mesh");
-        take_pic_step(problem, state, cells, clock);
+        if (pic) {
+            find_pressure(problem, state, cells);
+            clock.lap("mesh");
+            take_pic_step(problem, state, cells, clock);
+        } else {
+            find_fluid(problem, state, scratch.mesh, clock);
+            take_flip_step(problem, step, scratch, state, clock);
+        }
     }
     return clock;
-}
-
-common::StepClock time_steps(bool pic, const Case& parameters, long steps, long& count) {
-    return pic ? time_pic(parameters, steps, count) : time_flip(parameters, steps, count);
 }
 
 }  // namespace

@@ -20,6 +20,7 @@ inline constexpr std::array<Side, 4> all_sides{x_low, x_high, z_low, z_high};
 inline bool is_x_side(Side side) { return side == x_low || side == x_high; }
 inline bool is_low_side(Side side) { return side == x_low || side == z_low; }
 
+/// Conditions that a boundary can set.
 enum class BoundaryKind { periodic, slip, no_slip, open, inflow };
 
 /// The boundary condition on one side.
@@ -37,6 +38,7 @@ struct Inflow {
     double vx = 0, vz = 0;
 };
 
+/// The conditions on all four sides.
 struct Boundaries {
     std::array<Boundary, 4> side;
     Inflow inflow;
@@ -69,7 +71,8 @@ struct ArtificialViscosity {
     }
 };
 
-/// How long a step may be: a part cfl of what the fastest signal allows, or dt where that is given.
+/// How long a step may be: a part cfl of what the fastest signal allows, or dt where that is not 0;
+/// and the time at which the run ends.
 struct StepLimits {
     double cfl = 0.3, dt = 0, end = 1;
 };
@@ -84,7 +87,7 @@ struct Transfer {
     bool dissipates = true;  // kinetic energy that the transfer loses becomes internal energy
 };
 
-/// What only `flip` has.
+/// How `flip` goes about it; `pic` has no choices.
 struct Scheme {
     Transfer transfer;
     bool consistent_mass = false;   // mass matrix of the nodes: consistent instead of lumped
@@ -96,6 +99,7 @@ struct Scheme {
     long min_particles = 4, max_particles = 32;  // of one material in a cell
 };
 
+/// All that a step has to know of the run.
 struct Problem {
     Grid grid;
     std::vector<Material> materials;

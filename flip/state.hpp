@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "common/run/parameters.hpp"
 #include "flip/particles.hpp"
 #include "flip/problem.hpp"
 
@@ -69,6 +70,14 @@ struct CellFields {
     Field rho, vx, vz, p, e;
     std::vector<Field> rho_of;  // of each material
 };
+
+/// Where and when a cell is, for messages.
+inline std::string cell_and_time(const Grid& grid, long n, double time) {
+    const double i = static_cast<double>(n % grid.stride()) - 0.5,
+                 j = static_cast<double>(n / grid.stride()) - 0.5;
+    return "in the cell at x = " + common::format(grid.x.at(i)) +
+           ", z = " + common::format(grid.z.at(j)) + " at t = " + common::format(time);
+}
 
 /// Whether a time of `interval` has passed within the last step; always at the start.
 inline bool is_due(double interval, const State& s) {

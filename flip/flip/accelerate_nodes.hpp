@@ -1,5 +1,5 @@
-// on the mesh: the Lagrangian phase. The mesh moves with the fluid for one step: pressure,
-// viscosity and gravity accelerate its nodes, and the motion of the nodes works on the cells.
+// on the mesh: forces on the nodes and their velocities in the Lagrangian phase, from pressure,
+// viscosity and gravity.
 //
 // Force and work are one operator and its transpose, so what the nodes gain the cells lose, to
 // round-off:  sum_g F_g . v_g = sum_c p_c V_c (div v)_c  for any v on the nodes.

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <span>
 
-#include "common/run/parameters.hpp"
 #include "flip/flip/mesh.hpp"
+#include "flip/state.hpp"
 
 namespace flip {
 
@@ -81,12 +81,8 @@ inline void find_pressure(const Grid& grid, std::span<const Material> materials,
         if (surface) c.p[n] = 0;
     });
     if (bad < 0) return;
-    const long i = bad % grid.stride() - 1, j = bad / grid.stride() - 1;
     throw common::NumericalError(
-        "density or internal energy is negative in the cell at x = " +
-        common::format(grid.x.at(static_cast<double>(i) + 0.5)) +
-        ", z = " + common::format(grid.z.at(static_cast<double>(j) + 0.5)) +
-        " at t = " + common::format(time) +
+        "density or internal energy is negative " + cell_and_time(grid, bad, time) +
         ": reduce time.cfl, raise viscosity.linear, or take more particles per cell");
 }
 

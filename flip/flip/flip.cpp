@@ -7,9 +7,9 @@
 // Run:   build/flip flip/cases/sod.toml flip.transfer=pic
 // Run:   build/flip flip/cases/gresho.toml
 //
-// Reading order: step.hpp; then ../particles.hpp, ../equation_of_state.hpp, mesh.hpp,
-// deposit_particles.hpp, find_pressure.hpp, accelerate_nodes.hpp, solve_pressure.hpp,
-// work_on_cells.hpp, move_mesh.hpp, move_particles.hpp.
+// Reading order: step.hpp; then ../particles.hpp, ../problem.hpp, ../equation_of_state.hpp, mesh.hpp,
+// deposit_particles.hpp, find_pressure.hpp, move_mesh.hpp, accelerate_nodes.hpp, solve_pressure.hpp,
+// move_particles.hpp, ../boundaries.hpp.
 #include <climits>
 #include <optional>
 

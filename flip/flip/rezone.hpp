@@ -20,6 +20,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <numeric>
 #include <vector>
 
@@ -148,13 +149,12 @@ inline bool merge_one(const std::vector<Quarter>& q, bool plane, std::vector<lon
                       Particles& p) {
     const std::size_t needed = plane ? 4 : 2, candidates = plane ? 7 : 4;
     if (here.size() < needed + 1) return false;
-    std::stable_sort(here.begin(), here.end(), [&](long a, long b) { return p.m_p[a] < p.m_p[b]; });
+    std::ranges::stable_sort(here, {}, [&](long k) { return p.m_p[k]; });
     for (const long i : here) {
         std::vector<long> near = here;
         std::erase(near, i);
         const auto distance = [&](long a) { return std::hypot(q[a].x - q[i].x, q[a].z - q[i].z); };
-        std::stable_sort(near.begin(), near.end(),
-                         [&](long a, long b) { return distance(a) < distance(b); });
+        std::ranges::stable_sort(near, {}, distance);
         near.resize(std::min(near.size(), candidates));
         std::vector<bool> chosen(near.size(), false);
         std::fill_n(chosen.begin(), needed, true);
@@ -203,21 +203,18 @@ inline RezoneReport rezone(const Problem& problem, Particles& p) {
         filled[q[k].cell / materials] = 1;
     }
     std::iota(order.begin(), order.end(), 0L);
-    std::stable_sort(order.begin(), order.end(), [&](long a, long b) {
-        return std::pair(q[a].cell, q[a].part) < std::pair(q[b].cell, q[b].part);
-    });
+    std::ranges::stable_sort(order, {}, [&](long k) { return std::pair(q[k].cell, q[k].part); });
+    const auto is_filled = [&](long i, long j) {
+        if (grid.x.periodic) i = (i + grid.x.cells) % grid.x.cells;
+        if (grid.z.periodic) j = (j + grid.z.cells) % grid.z.cells;
+        if (i < 0 || j < 0 || i >= grid.x.cells || j >= grid.z.cells) return true;
+        return filled[j * grid.x.cells + i] != 0;
+    };
     const auto inside = [&](long cell) {
         const long i = cell % grid.x.cells, j = cell / grid.x.cells;
-        const auto is_filled = [&](long a, long b) {
-            if (grid.x.periodic) a = (a + grid.x.cells) % grid.x.cells;
-            if (grid.z.periodic) b = (b + grid.z.cells) % grid.z.cells;
-            if (a < 0 || b < 0 || a >= grid.x.cells || b >= grid.z.cells) return true;
-            return filled[b * grid.x.cells + a] != 0;
-        };
         return is_filled(i - 1, j) && is_filled(i + 1, j) && is_filled(i, j - 1) &&
                is_filled(i, j + 1);
     };
-
     const bool plane = is_plane(grid);
     for (long begin = 0, end = 0; begin < count; begin = end) {
         const long cell = q[order[begin]].cell;
@@ -225,8 +222,7 @@ inline RezoneReport rezone(const Problem& problem, Particles& p) {
         long number = in_cell[cell];
         if (number < scheme.min_particles && inside(cell / materials)) {
             std::vector<long> heaviest(order.begin() + begin, order.begin() + end);
-            std::stable_sort(heaviest.begin(), heaviest.end(),
-                             [&](long a, long b) { return p.m_p[a] > p.m_p[b]; });
+            std::ranges::stable_sort(heaviest, std::greater{}, [&](long k) { return p.m_p[k]; });
             for (const long k : heaviest) {
                 if (number >= scheme.min_particles) break;
                 if (!detail::split(problem, q[k], k, p)) continue;
@@ -239,16 +235,12 @@ inline RezoneReport rezone(const Problem& problem, Particles& p) {
         std::array<std::vector<long>, 4> quarters;
         for (long n = begin; n < end; ++n) quarters[q[order[n]].part].push_back(order[n]);
         while (number > scheme.max_particles) {
-            auto& fullest = *std::max_element(
-                quarters.begin(), quarters.end(),
-                [](const auto& one, const auto& other) { return one.size() < other.size(); });
+            auto& fullest = *std::ranges::max_element(quarters, {}, &std::vector<long>::size);
             if (fullest.empty()) break;
-            if (detail::merge_one(q, plane, fullest, p)) {
-                --number;
-                ++report.merged;
-            } else {
+            if (detail::merge_one(q, plane, fullest, p))
+                --number, ++report.merged;
+            else
                 fullest.clear();
-            }
         }
     }
     if (report.merged > 0) remove_if(p, [&](long k) { return p.m_p[k] == 0; });

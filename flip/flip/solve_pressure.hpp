@@ -127,29 +127,6 @@ inline Eigen::SparseMatrix<double> pressure_matrix(const Problem& problem, doubl
     return A;
 }
 
-// z = S F^-1 S r with incomplete Cholesky factors F of S A S and S = 1/sqrt(diagonal of A). A cell
-// that is nearly empty, or nearly without pressure, gives A entries hundreds of orders of magnitude
-// beyond the others, whose squares no number holds; S A S has ones on its diagonal.
-class PressurePreconditioner {
-   public:
-    // in: the lower half of A; its diagonal is positive, as inertia is
-    explicit PressurePreconditioner(const Eigen::SparseMatrix<double>& A)
-        : scale_(A.diagonal().cwiseSqrt().cwiseInverse()) {
-        const Eigen::SparseMatrix<double> scaled = scale_.asDiagonal() * A * scale_.asDiagonal();
-        factors_.compute(scaled);
-    }
-    void operator()(const Eigen::VectorXd& r, Eigen::VectorXd& z) const {
-        z = scale_.cwiseProduct(r);
-        // Without factors it is the diagonal.
-        if (factors_.info() == Eigen::Success) z = factors_.solve(z).eval();
-        z = scale_.cwiseProduct(z);
-    }
-
-   private:
-    Eigen::VectorXd scale_;
-    Eigen::IncompleteCholesky<double> factors_;
-};
-
 }  // namespace detail
 
 /// Solves for the pressure at the level theta.
@@ -199,11 +176,22 @@ inline StepReport solve_pressure(const Problem& problem, double dt, Mesh& mesh) 
     const auto multiply = [&A](const Eigen::VectorXd& v, Eigen::VectorXd& Av) {
         Av.noalias() = A.selfadjointView<Eigen::Lower>() * v;
     };
+    // Preconditioned with z = S F^-1 S r, F the incomplete Cholesky factors of S A S and
+    // S = 1/sqrt(diagonal of A). A cell that is nearly empty, or nearly without pressure, gives A
+    // entries hundreds of orders of magnitude beyond the others, whose squares no number holds; S A S
+    // has ones on its diagonal. Without factors the preconditioner is the diagonal.
+    const Eigen::VectorXd S = A.diagonal().cwiseSqrt().cwiseInverse();
+    const Eigen::SparseMatrix<double> scaled = S.asDiagonal() * A * S.asDiagonal();
+    const Eigen::IncompleteCholesky<double> factors(scaled);
+    const auto precondition = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
+        z = S.cwiseProduct(r);
+        if (factors.info() == Eigen::Success) z = factors.solve(z).eval();
+        z = S.cwiseProduct(z);
+    };
     const double tolerance = std::min(1.0, scheme.tolerance * scale / load.norm());
     Eigen::VectorXd change = Eigen::VectorXd::Zero(count);
-    const common::KrylovResult solved =
-        common::conjugate_gradients(multiply, detail::PressurePreconditioner(A), load, change,
-                                    tolerance, scheme.max_iterations);
+    const common::KrylovResult solved = common::conjugate_gradients(
+        multiply, precondition, load, change, tolerance, scheme.max_iterations);
     if (!solved.converged)
         throw common::NumericalError(
             "the implicit pressure has not converged: " + solved.reason + "; after " +

@@ -22,23 +22,17 @@ struct Contribution {
 };
 
 [[noreturn]] inline void refuse_cell(const Problem& problem, const State& state,
-                                     const PicCells& cells, long i, long j) {
+                                     const PicCells& cells, long n) {
     const Grid& grid = problem.grid;
-    const long n = grid.index(i, j);
-    std::string what = "the density, " + common::format(cells.mass[n] / grid.cell_area()) + ",";
+    std::string what = "the density, " + common::format(cells.mass[n] / grid.cell_area());
     for (long k = 0; k < cells.materials; ++k) {
         const double e = state.cells.e[k][n];
         if (!(e >= 0))
-            what = "the internal energy of " + problem.materials[k].name + ", " +
-                   common::format(e) + ",";
+            what = "the internal energy of " + problem.materials[k].name + ", " + common::format(e);
     }
     throw common::NumericalError(
-        what + " is negative or not finite in the cell at x = " +
-        common::format(grid.x.at(static_cast<double>(i) + 0.5)) +
-        ", z = " + common::format(grid.z.at(static_cast<double>(j) + 0.5)) +
-        " at t = " + common::format(state.time) +
-        ": use a smaller time.cfl, more particles per cell, or more "
-        "viscosity");
+        what + ", is negative or not finite " + cell_and_time(grid, n, state.time) +
+        ": use a smaller time.cfl, more particles per cell, or more viscosity");
 }
 
 // Sums over the particles of every row, cell by cell; contribution(p) says what particle p brings.
@@ -48,7 +42,8 @@ void sum_contributions(const Problem& problem, const What& contribution, State& 
                        PicCells& cells) {
     const Grid& grid = problem.grid;
     const Particles& particles = state.particles;
-    const long nx = grid.x.cells, K = cells.materials, width = 3 + 2 * K;
+    const long nx = grid.x.cells;
+    const std::size_t K = cells.materials, width = 3 + 2 * K;
     const Columns column(grid.x);
     const double *x_p = particles.x_p.data(), *m_p = particles.m_p.data();
     const int *material = particles.material.data(), *first = particles.first_of_row.data();
@@ -73,7 +68,7 @@ void sum_contributions(const Problem& problem, const What& contribution, State& 
             const double* const cell = sums + i * width;
             double* const M = &cells.M[n * K];
             double mass = 0;
-            for (long k = 0; k < K; ++k) {
+            for (std::size_t k = 0; k < K; ++k) {
                 M[k] = cell[3 + 2 * k];
                 mass += M[k];
             }
@@ -84,7 +79,7 @@ void sum_contributions(const Problem& problem, const What& contribution, State& 
             const double heat = kinetic - 0.5 * (vx * vx + vz * vz);
             // [/mix]
             bool sound = mass >= 0 && std::isfinite(mass + kinetic);
-            for (long k = 0; k < K; ++k) {
+            for (std::size_t k = 0; k < K; ++k) {
                 const double e = M[k] > 0 ? cell[4 + 2 * k] / M[k] + heat : 0.0;
                 state.cells.e[k][n] = e;
                 sound = sound && e >= -1e-10 * kinetic - 1e-200 && std::isfinite(e);
@@ -92,13 +87,12 @@ void sum_contributions(const Problem& problem, const What& contribution, State& 
             state.cells.vx[n] = vx;
             state.cells.vz[n] = vz;
             cells.mass[n] = mass;
-            if (!sound && refused < 0) refused = static_cast<double>(i);
+            if (!sound && refused < 0) refused = static_cast<double>(n);
         }
         cells.row[j] = refused;
     });
-    for (long j = 0; j < grid.z.cells; ++j)
-        if (cells.row[j] >= 0)
-            refuse_cell(problem, state, cells, static_cast<long>(cells.row[j]), j);
+    for (const double refused : cells.row)
+        if (refused >= 0) refuse_cell(problem, state, cells, static_cast<long>(refused));
 }
 
 // Sorts by row of cells, with the donor cells where particles have some.

@@ -40,24 +40,23 @@ inline void viscous_pressure(const Grid& grid, const ArtificialViscosity& given,
         for (long m = n; m < n + nx; ++m) q_z[m] = q(m - stride, m, v[m].z - v[m - stride].z);
 }
 
-// What comes in through one side in a step: dt A times the sum of flux(inside, beyond, q) over its
-// faces, with the cells on both sides of a face and its viscous pressure; outward through high sides.
-template <class Flux>
-double through_side(const Grid& grid, const PicCells& cells, Side side, double dt,
-                    const Flux& flux) {
+// Sum of of_face(inside, beyond, q) over the faces on one side, with the cells on both sides of a face
+// and its viscous pressure.
+template <class OfFace>
+double sum_over_faces(const Grid& grid, const PicCells& cells, Side side, const OfFace& of_face) {
     const long nx = grid.x.cells, nz = grid.z.cells;
     const bool low = is_low_side(side);
     double sum = 0;
     if (is_x_side(side)) {
         for (long j = 0; j < nz; ++j)
-            sum += flux(grid.index(low ? 0 : nx - 1, j), grid.index(low ? -1 : nx, j),
-                        cells.q_x[grid.index(low ? 0 : nx, j)]);
+            sum += of_face(grid.index(low ? 0 : nx - 1, j), grid.index(low ? -1 : nx, j),
+                           cells.q_x[grid.index(low ? 0 : nx, j)]);
     } else {
         for (long i = 0; i < nx; ++i)
-            sum += flux(grid.index(i, low ? 0 : nz - 1), grid.index(i, low ? -1 : nz),
-                        cells.q_z[grid.index(i, low ? 0 : nz)]);
+            sum += of_face(grid.index(i, low ? 0 : nz - 1), grid.index(i, low ? -1 : nz),
+                           cells.q_z[grid.index(i, low ? 0 : nz)]);
     }
-    return (low ? 1 : -1) * dt * (is_x_side(side) ? grid.z.spacing() : grid.x.spacing()) * sum;
+    return sum;
 }
 
 }  // namespace detail
@@ -101,11 +100,15 @@ inline void accelerate_cells(const Problem& problem, double dt, State& state, Pi
 
     Budget& budget = state.budget;
     for (const Side side : all_sides) {
-        if (boundaries.is(side, BoundaryKind::periodic) || (!is_x_side(side) && !plane)) continue;
-        (is_x_side(side) ? budget.momentum_x : budget.momentum_z) +=
-            detail::through_side(grid, cells, side, dt, [&](long inside, long beyond, double q) {
+        const bool along_x = is_x_side(side);
+        if (boundaries.is(side, BoundaryKind::periodic) || (!along_x && !plane)) continue;
+        const double inward = is_low_side(side) ? 1 : -1;
+        const double push =
+            detail::sum_over_faces(grid, cells, side, [&](long inside, long beyond, double q) {
                 return detail::face_pressure(cells, inside, beyond, q);
             });
+        (along_x ? budget.momentum_x : budget.momentum_z) +=
+            inward * dt * (along_x ? A_x : A_z) * push;
     }
     const auto weight = [&](const auto& acceleration) {
         return sum_over_rows(grid, cells, [&](long j) {
@@ -168,14 +171,16 @@ inline void do_work(const Problem& problem, double dt, State& state, PicCells& c
         if (boundaries.is(side, BoundaryKind::periodic) ||
             boundaries.is(side, BoundaryKind::slip) || (!along_x && !plane))
             continue;
-        budget.energy +=
-            detail::through_side(grid, cells, side, dt, [&](long inside, long beyond, double q) {
+        const double inward = is_low_side(side) ? 1 : -1;
+        const double work =
+            detail::sum_over_faces(grid, cells, side, [&](long inside, long beyond, double q) {
                 const double ubar = along_x ? 0.5 * (v[inside].x + v_tilde[inside].x)
                                             : 0.5 * (v[inside].z + v_tilde[inside].z);
                 const double step = along_x ? step_x(inside, beyond) : step_z(inside, beyond);
                 return detail::face_pressure(cells, inside, beyond, q) * ubar +
                        filled[inside] * filled[beyond] * (p[inside] + q) * step;
             });
+        budget.energy += inward * dt * (along_x ? A_x : A_z) * work;
     }
     const CellAcceleration g(problem);
     budget.energy +=
