@@ -47,7 +47,9 @@ FlipRun alone(const Case& w, double x, double z, double vx = 0, double vz = 0) {
 
 }  // namespace
 
-TEST_CASE("a position wrapped around a periodic direction is always on the mesh and moved by its length") {
+TEST_CASE(
+    "a position wrapped around a periodic direction is always on the mesh and moved by its "
+    "length") {
     Random random(1);
     for (const double low : {0.0, -0.3, 1e9, -1e-9, 7.0}) {
         for (const double length : {1.0, 0.1, 3e5, 1e-3}) {
