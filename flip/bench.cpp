@@ -9,22 +9,21 @@
 #include <vector>
 
 #include "flip/flip/step.hpp"
-#include "flip/pic/pic_start.hpp"
 #include "flip/pic/step.hpp"
+#include "flip/setup/problem_of_case.hpp"
 
 namespace {
 
 using namespace flip;
 
-// Where the time of a step goes; the names of the parts differ between the two.
 // Heavy gas on light gas, in a box twice as high as wide.
 Case heavy_on_light(long cells_x) {
-    Case w;
-    w.grid = {{cells_x, 0, 1, true}, {2 * cells_x, -1, 2, false}};
-    w.ends[z_low].kind = w.ends[z_high].kind = "slip";
-    w.materials = {{"light", 1.4, 0}, {"heavy", 1.4, 0}};
-    w.per_cell_x = w.per_cell_z = 3;
-    w.gravity_z = -1;
+    Case parameters;
+    parameters.grid = {{cells_x, 0, 1, true}, {2 * cells_x, -1, 2, false}};
+    parameters.boundaries[z_low].kind = parameters.boundaries[z_high].kind = "slip";
+    parameters.materials = {{"light", 1.4, 0}, {"heavy", 1.4, 0}};
+    parameters.per_cell_x = parameters.per_cell_z = 3;
+    parameters.gravity_z = -1;
     RegionCase light, heavy;
     light.gas = {"light", 1, 20, 0, 0};
     light.flow = "overturn";
@@ -34,41 +33,34 @@ Case heavy_on_light(long cells_x) {
     heavy.shape = "above";
     heavy.gas.material = "heavy";
     heavy.gas.density = 2;
-    w.regions = {light, heavy};
-    return completed(w);
+    parameters.regions = {light, heavy};
+    return completed(parameters);
 }
 
-common::StepClock time_flip(const Case& w, long steps, long& count) {
-    FlipScratch scratch(w);
+// The time of `steps` steps of one of the programs, after a first one that meets empty caches.
+// out: count, the number of particles
+common::StepClock time_steps(bool pic, const Case& parameters, long steps, long& count) {
+    const Problem problem = problem_of(parameters);
+    FlipScratch scratch(problem);
+    PicCells cells(problem);
     State state;
-    state.particles = load_particles(w);
+    state.particles = load_particles(parameters);
+    if (pic) state = initial_state(problem, state.particles, cells);
     count = state.particles.count();
-    sort_particles(w.grid, scratch.sort, state.particles);
-    common::StepClock clock;
-    for (long step = 0; step <= steps; ++step) {
-        if (step == 1) clock.restart();  // the first step meets empty caches
-        find_fluid(w, state, scratch.mesh, clock);
-        take_flip_step(w, step, scratch, state, clock);
-    }
-    return clock;
-}
-
-common::StepClock time_pic(const Case& w, long steps, long& count) {
-    PicCells cells(w);
-    State state = initial_state(w, cells);
-    count = state.particles.count();
+    sort_particles(problem.grid, scratch.sort, state.particles);
     common::StepClock clock;
     for (long step = 0; step <= steps; ++step) {
         if (step == 1) clock.restart();
-        share_pressure(w, state, cells);
-        clock.lap("mesh");
-        take_pic_step(w, state, cells, clock);
+        if (pic) {
+            find_pressure(problem, state, cells);
+            clock.lap("mesh");
+            take_pic_step(problem, state, cells, clock);
+        } else {
+            find_fluid(problem, state, scratch.mesh, clock);
+            take_flip_step(problem, step, scratch, state, clock);
+        }
     }
     return clock;
-}
-
-common::StepClock time_steps(bool pic, const Case& w, long steps, long& count) {
-    return pic ? time_pic(w, steps, count) : time_flip(w, steps, count);
 }
 
 }  // namespace
@@ -80,13 +72,13 @@ int main() {
         std::printf("%8s %16s %9s %9s %9s %9s %9s\n", "threads", "particle-steps/s", "speed-up",
                     pic ? "repart." : "deposit", pic ? "Lagrange" : "mesh", "move",
                     pic ? "" : "sort");
-        const Case w = heavy_on_light(256);
+        const Case parameters = heavy_on_light(256);
         double one_thread = 0;
         for (const int threads : {1, 2}) {
             common::set_thread_count(threads);
             long count = 0;
             const long steps = 20;
-            const common::StepClock clock = time_steps(pic, w, steps, count);
+            const common::StepClock clock = time_steps(pic, parameters, steps, count);
             const double rate =
                 static_cast<double>(count) * static_cast<double>(steps) / clock.total();
             if (threads == 1) one_thread = rate;

@@ -29,13 +29,13 @@ inline double pressure(const Material& a, double rho, double e) {
 /// rho c^2, the modulus of an adiabatic change of volume.
 inline double stiffness(const Material& a, double p) { return a.gamma * (p + a.p_infinity); }
 
-/// A modulus below which compressibility is beyond all numbers: that of dust, and of a gas without
-/// energy.
+/// The compressibility of a smaller modulus is too large for a number: that of dust, and of a gas
+/// without energy.
 inline constexpr double least_stiffness = 1e-200;
 
 /// -dV/dp of a volume V at constant entropy.
 ///   V / (rho c^2)
-/// out:    0 below least_stiffness: what cannot press has no say in the pressure of a cell, and its
+/// out:    0 below least_stiffness: such a material takes no part in the pressure of a cell, and its
 ///         volume stays
 inline double compliance(const Material& a, double V, double p) {
     const double K = stiffness(a, p);
@@ -55,6 +55,7 @@ struct CellState {
     bool surface = false;        // the materials do not fill the cell: p = 0
 };
 
+/// Materials that one cell can hold.
 inline constexpr std::size_t most_materials = 8;
 
 /// The pressure at which all materials together fill a cell.
@@ -65,8 +66,8 @@ inline constexpr std::size_t most_materials = 8;
 /// exact:  for gases the sum of partial pressures; shares sum to 1 in a cell that is not empty
 /// source: Newton's method from the largest pressure that one material alone would have: the sum is
 ///         convex and falls, so no step goes beyond the root
-inline CellState share_cell(std::span<const Material> materials, const double* M, const double* U,
-                            double V, double* share) {
+inline CellState find_equilibrium(std::span<const Material> materials, const double* M,
+                                  const double* U, double V, double* share) {
     const std::size_t count = materials.size();
     CellState cell;
     double p = 0, mass = 0;
@@ -98,8 +99,8 @@ inline CellState share_cell(std::span<const Material> materials, const double* M
     }
     cell.p = p;
 
-    // A material that nothing can compress, and dust, have no say; their share goes by mass. So
-    // does that of a gas so cold that its compressibility is beyond all numbers.
+    // A material that nothing can compress, dust, and a gas below least_stiffness take no part in a
+    // change of volume; where there is nothing else, shares go by mass.
     double filled = 0, sum = 0;
     for (std::size_t k = 0; k < count; ++k) {
         const double V_k = volume_of(k, p), stiff = stiffness(materials[k], p);

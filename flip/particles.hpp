@@ -23,17 +23,19 @@ struct Particles {
     std::vector<int> material;       // which one, from 0
     std::vector<double> vx_p, vz_p;  // velocity
     std::vector<double> e_p;         // specific internal energy
-    std::vector<double> V_p;         // volume, where the case lets particles carry it
+    std::vector<double> V_p;         // volume, where the scheme has particles carry it
     std::vector<double> Cxx_p, Cxz_p, Czx_p,
         Czz_p;                      // apic: gradient of the velocity, C_ij = dv_i/dx_j
     std::vector<int> first_of_row;  // row j of cells has particles [first_of_row[j], [j + 1])
 
     long count() const { return static_cast<long>(x_p.size()); }
+    /// Every column of numbers, in use or not.
     std::array<std::vector<double>*, 11> all() {
         return {&x_p, &z_p, &m_p, &vx_p, &vz_p, &e_p, &V_p, &Cxx_p, &Cxz_p, &Czx_p, &Czz_p};
     }
 };
 
+/// Names the columns, for writing and for reading a checkpoint alike.
 template <class Archive>
 void archive(Archive& a, Particles& particles) {
     static constexpr std::array<const char*, 11> names{
@@ -45,6 +47,25 @@ void archive(Archive& a, Particles& particles) {
 
 /// Whether a column is in use.
 inline bool has(const std::vector<double>& column) { return !column.empty(); }
+
+/// Removes the particles p for which gone(p) is true; the others keep their order.
+template <class Gone>
+void remove_if(Particles& particles, const Gone& gone) {
+    long kept = 0;
+    const auto columns = particles.all();
+    for (long p = 0; p < particles.count(); ++p) {
+        if (gone(p)) continue;
+        if (kept != p) {
+            for (std::vector<double>* column : columns)
+                if (has(*column)) (*column)[kept] = (*column)[p];
+            particles.material[kept] = particles.material[p];
+        }
+        ++kept;
+    }
+    for (std::vector<double>* column : columns)
+        if (has(*column)) column->resize(kept);
+    particles.material.resize(kept);
+}
 
 /// The cell that a position is in; a position on the upper end of the mesh counts to the last cell.
 inline long cell_along(const common::Axis& axis, double position) {

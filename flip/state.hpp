@@ -2,16 +2,20 @@
 // fields on the cells for pictures and comparisons.
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
-#include "flip/setup/initial_state.hpp"
+#include "common/run/parameters.hpp"
+#include "flip/particles.hpp"
+#include "flip/problem.hpp"
 
 namespace flip {
 
-/// What has come in since the start from outside the fluid: through open ends and inflow, from
-/// walls, gravity and the trap. What the particles have now, less this, does not change.
-struct Books {
+/// Energy and momentum budget: what has come in since the start from outside the fluid, through open
+/// and inflow boundaries, from walls, gravity and the trap.
+/// exact: what the particles have now, minus this, does not change
+struct Budget {
     double mass = 0, momentum_x = 0, momentum_z = 0, energy = 0;
 };
 
@@ -31,7 +35,7 @@ struct StepReport {
 struct State {
     Particles particles;
     CellFluid cells;
-    Books books;
+    Budget budget;
     double time = 0;
     double dt = 0;  // of the last step; 0 before the first
     StepReport report;
@@ -44,10 +48,10 @@ void archive(Archive& a, State& s) {
     a("vx_c", s.cells.vx);
     a("vz_c", s.cells.vz);
     for (std::size_t k = 0; k < s.cells.e.size(); ++k) a("e_c" + std::to_string(k), s.cells.e[k]);
-    a("mass_in", s.books.mass);
-    a("momentum_x_in", s.books.momentum_x);
-    a("momentum_z_in", s.books.momentum_z);
-    a("energy_in", s.books.energy);
+    a("mass_in", s.budget.mass);
+    a("momentum_x_in", s.budget.momentum_x);
+    a("momentum_z_in", s.budget.momentum_z);
+    a("energy_in", s.budget.energy);
     a("time", s.time);
     a("dt", s.dt);
     a("iterations", s.report.iterations);
@@ -66,6 +70,14 @@ struct CellFields {
     Field rho, vx, vz, p, e;
     std::vector<Field> rho_of;  // of each material
 };
+
+/// Where and when a cell is, for messages.
+inline std::string cell_and_time(const Grid& grid, long n, double time) {
+    const double i = static_cast<double>(n % grid.stride()) - 0.5,
+                 j = static_cast<double>(n / grid.stride()) - 0.5;
+    return "in the cell at x = " + common::format(grid.x.at(i)) +
+           ", z = " + common::format(grid.z.at(j)) + " at t = " + common::format(time);
+}
 
 /// Whether a time of `interval` has passed within the last step; always at the start.
 inline bool is_due(double interval, const State& s) {

@@ -7,8 +7,9 @@
 #include <vector>
 
 #include "flip/flip/deposit_particles.hpp"
-#include "flip/flip/flip_fields.hpp"
 #include "flip/flip/rezone.hpp"
+#include "flip/output/flip_diagnostics.hpp"
+#include "flip/setup/problem_of_case.hpp"
 #include "tests/support/any_numbers.hpp"
 
 namespace {
@@ -28,7 +29,7 @@ struct Cloud {
         w.grid.x.cells = 12;
         w.grid.z.cells = plane ? 9 : 1;
         w.grid.z.length = plane ? 0.8 : 0.1;
-        w.ends[x_low].kind = w.ends[x_high].kind = "slip";
+        w.boundaries[x_low].kind = w.boundaries[x_high].kind = "slip";
         w.materials = {{"light", 1.4, 0}, {"heavy", 1.6, 0}};
         w.per_cell_x = 4;
         w.per_cell_z = plane ? 4 : 1;
@@ -57,15 +58,16 @@ struct Cloud {
     }
 
     void rezone_all() {
+        const Problem problem = problem_of(w);
         SortScratch scratch;
         sort_particles(w.grid, scratch, p);
-        before = mesh_of(w), after = mesh_of(w);
-        deposit_particles(w, p, before);
-        totals_before = particle_totals(w, p);
-        report = rezone(w, p);
+        before = mesh_of(problem), after = mesh_of(problem);
+        deposit_particles(w.grid, w.materials, p, before);
+        totals_before = particle_totals(w.grid, p);
+        report = rezone(problem, p);
         sort_particles(w.grid, scratch, p);
-        deposit_particles(w, p, after);
-        totals_after = particle_totals(w, p);
+        deposit_particles(w.grid, w.materials, p, after);
+        totals_after = particle_totals(w.grid, p);
     }
 
     double node_change() const {

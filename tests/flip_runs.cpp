@@ -126,10 +126,10 @@ TEST_CASE(
     check_conserved(run("flip", "deficit", "sod", "flip.mass=consistent"));
 }
 
-TEST_CASE("what comes in with a stream is in the books of both programs" *
+TEST_CASE("what comes in with a stream is in the budget of both programs" *
           doctest::description("physics")) {
     for (const std::string program : {"pic", "flip"}) {
-        const Run r = run(program, "books", "wall_shock", "grid.cells_x=60 time.end=1");
+        const Run r = run(program, "budget", "wall_shock", "grid.cells_x=60 time.end=1");
         check_conserved(r);
         CHECK(r.column("mass").back() >= 1.9 * r.column("mass").front());
     }

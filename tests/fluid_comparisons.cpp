@@ -329,7 +329,7 @@ TEST_CASE("conservation errors are what has changed less what came in") {
     const std::string text = "time.end = 1\n[region.gas]\n";
     const auto run = recorded(text, "flip", 10, [](const Case&, double t, Fluid& f) {
         f.totals = {2 + t, 3 * t, 0, 1, 1 + 4 * t, 1};
-        f.state.books = {t, 3 * t, -t, 4 * t + 0.5 * t * t};
+        f.state.budget = {t, 3 * t, -t, 4 * t + 0.5 * t * t};
     });
     CHECK(run.conservation("largest_mass_error") <= 1e-15);
     CHECK(run.conservation("largest_momentum_x_error") <= 1e-15);
@@ -344,7 +344,7 @@ TEST_CASE("an energy that nothing accounts for ends the run with step and time")
     const auto with_energy = [&](double energy, double work) {
         recorded(text, "flip", 10, [=](const Case&, double t, Fluid& f) {
             f.totals.kinetic = t > 0.45 ? energy : 1;
-            f.state.books.energy = t > 0.45 ? work : 0;
+            f.state.budget.energy = t > 0.45 ? work : 0;
         });
     };
     CHECK_NOTHROW(with_energy(18, 0));

@@ -1,5 +1,5 @@
-// on the mesh: the Lagrangian phase. The mesh moves with the fluid for one step: pressure,
-// viscosity and gravity accelerate its nodes, and the motion of the nodes works on the cells.
+// on the mesh: forces on the nodes and their velocities in the Lagrangian phase, from pressure,
+// viscosity and gravity.
 //
 // Force and work are one operator and its transpose, so what the nodes gain the cells lose, to
 // round-off:  sum_g F_g . v_g = sum_c p_c V_c (div v)_c  for any v on the nodes.
@@ -8,9 +8,8 @@
 #include <array>
 #include <cmath>
 
+#include "flip/boundaries.hpp"
 #include "flip/flip/find_pressure.hpp"
-#include "flip/flip/set_walls.hpp"
-#include "flip/state.hpp"
 
 namespace flip {
 
@@ -32,44 +31,42 @@ inline Eigen::Vector2d pressure_force(const Grid& grid, const Field& p, long n) 
 
 /// Artificial viscosity of every cell, from the velocity that the walls let stand.
 ///   q = rho (-d) h (linear c + quadratic h (-d)),  d = div v < 0,  h = dx, or sqrt(dx dz)
-/// out:    nodes.vx0, vz0; cells.q
-inline void find_viscosity(const Case& w, Mesh& mesh) {
-    const Grid& grid = w.grid;
+/// out:    nodes.vx0, vz0; cells.q, 0 in a cell that expands, is empty or partly void
+inline void find_viscosity(const Grid& grid, const Boundaries& boundaries,
+                           const ArtificialViscosity& q, Mesh& mesh) {
     Nodes& g = mesh.nodes;
     Cells& c = mesh.cells;
     for_each_node(grid, [&](long, long, long n) {
         g.vx0[n] = g.vx[n];
         g.vz0[n] = g.vz[n];
     });
-    set_walls(w, g.vx0, g.vz0);
-    const double V_c = grid.cell_area();
-    const double h = w.plane() ? std::sqrt(V_c) : grid.x.spacing();
+    set_walls(grid, boundaries, g.vx0, g.vz0);
+    const double V_c = grid.cell_area(), h = is_plane(grid) ? std::sqrt(V_c) : grid.x.spacing();
     for_each_cell(grid, [&](long, long, long n) {
         const double d = dilation(grid, g.vx0, g.vz0, n) / V_c;
-        const bool squeezed = d < 0 && c.M[n] > 0 && c.surface[static_cast<std::size_t>(n)] == 0;
-        const double rho = c.M[n] / (c.volume.size() > 0 ? std::max(c.volume[n], 1e-300) : V_c);
-        c.q[n] =
-            squeezed
-                ? rho * -d * h *
-                      (w.q_linear * sound_speed(rho, c.compressibility[n]) - w.q_quadratic * h * d)
-                : 0;
+        const bool squeezed = d < 0 && c.M[n] > 0 && c.surface[n] == 0;
+        const double rho = density_of(c, V_c, n);
+        c.q[n] = squeezed
+                     ? rho * -d * h *
+                           (q.linear * sound_speed(rho, c.compressibility[n]) - q.quadratic * h * d)
+                     : 0;
     });
 }
 
-/// Acceleration by gravity and trap at a place.
-inline Eigen::Vector2d pull_at(const Case& w, double x, double z) {
-    return {w.gravity_x + w.trap * (w.grid.x.low + 0.5 * w.grid.x.length - x),
-            w.gravity_z + w.trap * (w.grid.z.low + 0.5 * w.grid.z.length - z)};
-}
-/// The same on a node. The two images of a node at the seam of a periodic direction are as far from
-/// the middle on either side: there the trap does not pull.
-inline Eigen::Vector2d pull_on_node(const Case& w, long n) {
-    const long stride = w.grid.stride();
-    const auto place = [](const common::Axis& axis, long k) {
+/// Acceleration by gravity and trap on a node.
+///   a = g + trap (x_middle - x)
+/// note:   the two images of a node at the seam of a periodic direction are as far from the middle
+///         on either side: there the trap does not accelerate
+inline Eigen::Vector2d node_acceleration(const Grid& grid, const BodyForce& force, long n) {
+    const auto along = [&](const common::Axis& axis, double gravity, long k) {
         const bool seam = axis.periodic && (k == 0 || k == axis.cells);
-        return axis.at(seam ? 0.5 * static_cast<double>(axis.cells) : static_cast<double>(k));
+        const double x =
+            axis.at(seam ? 0.5 * static_cast<double>(axis.cells) : static_cast<double>(k));
+        return gravity + force.trap * (axis.low + 0.5 * axis.length - x);
     };
-    return pull_at(w, place(w.grid.x, n % stride - 1), place(w.grid.z, n / stride - 1));
+    const long stride = grid.stride();
+    return {along(grid.x, force.gravity_x, n % stride - 1),
+            along(grid.z, force.gravity_z, n / stride - 1)};
 }
 
 namespace detail {
@@ -107,28 +104,37 @@ inline ViscousStress viscous_stress(double mu, const CornerGradients& d,
     return {mu * (2 * xx - mean), mu * (2 * zz - mean), mu * xz};
 }
 
-inline std::array<long, 4> corners_of(const Grid& grid, long n) {
-    return {n, n + 1, n + grid.stride(), n + grid.stride() + 1};
-}
-
 }  // namespace detail
+
+/// Fills the ghosts of a pressure: around a periodic direction the other side, else nothing. A wall
+/// holds its nodes itself, and boundary_force() is what acts on an open boundary.
+inline void fill_pressure(const Grid& grid, Field& p) {
+    const long nx = grid.x.cells, nz = grid.z.cells;
+    for (long j = 0; j < nz; ++j) {
+        p[grid.index(-1, j)] = grid.x.periodic ? p[grid.index(nx - 1, j)] : 0;
+        p[grid.index(nx, j)] = grid.x.periodic ? p[grid.index(0, j)] : 0;
+    }
+    for (long i = -1; i <= nx; ++i) {
+        p[grid.index(i, -1)] = grid.z.periodic ? p[grid.index(i, nz - 1)] : 0;
+        p[grid.index(i, nz)] = grid.z.periodic ? p[grid.index(i, 0)] : 0;
+    }
+}
 
 /// Adds the viscous force of the fluid, from the velocities before the step.
 ///   F_g -= sum over cells of the integral of tau . grad S_g, by Gauss's rule of four points
 /// exact:  forces sum to zero but for walls; a rigid motion feels none
-inline void add_viscous_force(const Case& w, Mesh& mesh) {
-    if (w.viscosity == 0) return;
-    const Grid& grid = w.grid;
+inline void add_viscous_force(const Grid& grid, double viscosity, Mesh& mesh) {
+    if (viscosity == 0) return;
     Nodes& g = mesh.nodes;
     const auto gradients = detail::corner_gradients(grid);
     const double part = 0.25 * grid.cell_area();
     common::for_each_row_two_colors(grid.z.cells, [&](long j) {
         for (long i = 0; i < grid.x.cells; ++i) {
             const long n = grid.index(i, j);
-            if (is_frayed(grid, g.m, n)) continue;
-            const auto corners = detail::corners_of(grid, n);
+            if (has_light_node(grid, g.m, n)) continue;
+            const auto corners = corners_of(grid, n);
             for (const detail::CornerGradients& d : gradients) {
-                const auto tau = detail::viscous_stress(w.viscosity, d, corners, g.vx0, g.vz0);
+                const auto tau = detail::viscous_stress(viscosity, d, corners, g.vx0, g.vz0);
                 for (std::size_t a = 0; a < 4; ++a) {
                     g.fx[corners[a]] -= part * (tau.xx * d.x[a] + tau.xz * d.z[a]);
                     g.fz[corners[a]] -= part * (tau.xz * d.x[a] + tau.zz * d.z[a]);
@@ -140,32 +146,33 @@ inline void add_viscous_force(const Case& w, Mesh& mesh) {
     fold_nodes(grid, g.fz.data());
 }
 
-/// Heat that viscosity makes in one cell per time, from stresses of v0 and the motion vbar.
-inline double viscous_heat(const Case& w, const Nodes& g, const Field& vx, const Field& vz,
-                           long n) {
-    if (is_frayed(w.grid, g.m, n)) return 0;
-    const auto corners = detail::corners_of(w.grid, n);
+/// Heat that viscosity makes in one cell per time, from stresses of v^0 and the motion v_bar.
+inline double viscous_heating(const Grid& grid, double viscosity, const Nodes& g, const Field& vx,
+                              const Field& vz, long n) {
+    if (has_light_node(grid, g.m, n)) return 0;
+    const auto corners = corners_of(grid, n);
     double sum = 0;
-    for (const detail::CornerGradients& d : detail::corner_gradients(w.grid)) {
-        const auto tau = detail::viscous_stress(w.viscosity, d, corners, g.vx0, g.vz0);
+    for (const detail::CornerGradients& d : detail::corner_gradients(grid)) {
+        const auto tau = detail::viscous_stress(viscosity, d, corners, g.vx0, g.vz0);
         for (std::size_t a = 0; a < 4; ++a)
             sum += vx[corners[a]] * (tau.xx * d.x[a] + tau.xz * d.z[a]) +
                    vz[corners[a]] * (tau.xz * d.x[a] + tau.zz * d.z[a]);
     }
-    return 0.25 * w.grid.cell_area() * sum;
+    return 0.25 * grid.cell_area() * sum;
 }
 
 /// The forces that are known before the step: q, the viscosity of the fluid, and the pressure
-/// outside of open ends.
+/// outside of open boundaries.
 /// out:    nodes.fx, fz
-inline void find_known_forces(const Case& w, Mesh& mesh) {
-    const Grid& grid = w.grid;
+inline void find_known_forces(const Grid& grid, const Boundaries& boundaries, double viscosity,
+                              Mesh& mesh) {
     Nodes& g = mesh.nodes;
     for_each_node(grid, [&](long, long, long n) { g.fx[n] = g.fz[n] = 0; });
-    add_viscous_force(w, mesh);
+    add_viscous_force(grid, viscosity, mesh);
     fill_pressure(grid, mesh.cells.q);
     for_each_node(grid, [&](long i, long j, long n) {
-        const Eigen::Vector2d F = pressure_force(grid, mesh.cells.q, n) + outside_force(w, i, j);
+        const Eigen::Vector2d F =
+            pressure_force(grid, mesh.cells.q, n) + boundary_force(grid, boundaries, i, j);
         g.fx[n] += F[0];
         g.fz[n] += F[1];
     });
@@ -178,8 +185,8 @@ inline void find_known_forces(const Case& w, Mesh& mesh) {
 /// out:    nodes.vxL, vzL, 0 on nodes without mass
 /// exact:  internal forces sum to zero
 /// source: [FLIP-6]
-inline void accelerate_nodes(const Case& w, double dt, Mesh& mesh) {
-    const Grid& grid = w.grid;
+inline void accelerate_nodes(const Problem& problem, double dt, Mesh& mesh) {
+    const Grid& grid = problem.grid;
     Nodes& g = mesh.nodes;
     fill_pressure(grid, mesh.cells.p_step);
     for_each_node(grid, [&](long, long, long n) {
@@ -187,11 +194,11 @@ inline void accelerate_nodes(const Case& w, double dt, Mesh& mesh) {
         g.fx[n] += F[0];
         g.fz[n] += F[1];
         const double per_mass = g.m[n] > 0 ? 1 / g.m[n] : 0;
-        const Eigen::Vector2d pull = pull_on_node(w, n);
-        g.vxL[n] = per_mass > 0 ? g.vx0[n] + dt * (per_mass * g.fx[n] + pull[0]) : 0;
-        g.vzL[n] = per_mass > 0 ? g.vz0[n] + dt * (per_mass * g.fz[n] + pull[1]) : 0;
+        const Eigen::Vector2d a = node_acceleration(grid, problem.body_force, n);
+        g.vxL[n] = per_mass > 0 ? g.vx0[n] + dt * (per_mass * g.fx[n] + a[0]) : 0;
+        g.vzL[n] = per_mass > 0 ? g.vz0[n] + dt * (per_mass * g.fz[n] + a[1]) : 0;
     });
-    set_walls(w, g.vxL, g.vzL);
+    set_walls(grid, problem.boundaries, g.vxL, g.vzL);
 }
 
 }  // namespace flip

@@ -7,17 +7,18 @@
 // Run:   build/flip flip/cases/sod.toml flip.transfer=pic
 // Run:   build/flip flip/cases/gresho.toml
 //
-// Reading order: step.hpp; then ../particles.hpp, ../equation_of_state.hpp, mesh.hpp,
-// deposit_particles.hpp, find_pressure.hpp, accelerate_nodes.hpp, solve_pressure.hpp,
-// work_on_cells.hpp, move_mesh.hpp, move_particles.hpp.
+// Reading order: step.hpp; then ../particles.hpp, ../problem.hpp, ../equation_of_state.hpp, mesh.hpp,
+// deposit_particles.hpp, find_pressure.hpp, move_mesh.hpp, accelerate_nodes.hpp, solve_pressure.hpp,
+// move_particles.hpp, ../boundaries.hpp.
 #include <climits>
 #include <optional>
 
 #include "common/run/start.hpp"
-#include "flip/flip/flip_fields.hpp"
 #include "flip/flip/step.hpp"
+#include "flip/output/flip_diagnostics.hpp"
 #include "flip/output/record.hpp"
 #include "flip/setup/check_case.hpp"
+#include "flip/setup/problem_of_case.hpp"
 #include "flip/setup/warn_of_case.hpp"
 
 namespace {
@@ -32,45 +33,48 @@ const common::ProgramInfo info{
 
 int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     // 1. The case: defaults, file, command line; refuse, warn, or only describe.
-    Case parameters;
-    common::ParameterTable table = describe(parameters);
+    Case given;
+    common::ParameterTable table = describe(given);
     const common::CommandLine command = common::read_command_line(argc, argv, info, table);
-    reject_unused(parameters);
-    const Case w = completed(parameters);
-    validate(w, info.program);
-    const Scales scales = scales_of(w, info.program);
-    if (!common::start_run(
-            info, command, table,
-            {describe_scales(w, scales, info.program), resolution_warnings(w, scales, info.program),
-             LONG_MAX, scales.bytes, w.checkpoint_steps},
-            holder))
+    reject_unused(given);
+    const Case parameters = completed(given);
+    validate(parameters, info.program);
+    const Scales scales = scales_of(parameters, info.program);
+    if (!common::start_run(info, command, table,
+                           {describe_scales(parameters, scales, info.program),
+                            resolution_warnings(parameters, scales, info.program), LONG_MAX,
+                            scales.bytes, parameters.checkpoint_steps},
+                           holder))
         return 0;
     common::Run& run = *holder;
 
     // 2. Particles at t = 0, sorted; an empty mesh.
-    FlipScratch scratch(w);
+    const Problem problem = problem_of(parameters);
+    FlipScratch scratch(problem);
     const Mesh& mesh = scratch.mesh;
-    Recorder recorder(w, info.program, run.history);
+    Recorder recorder(parameters, info.program, run.history);
     State state;
-    Particles& particles = state.particles = load_particles(w);
+    Particles& particles = state.particles = load_particles(parameters);
     long step = 0;
     if (run.restarting()) run.restore(state, step);
-    sort_particles(w.grid, scratch.sort, particles);
+    sort_particles(parameters.grid, scratch.sort, particles);
 
     // 3. The loop of the slide.
-    while (run.not_finished(step, state.time, w.end)) {
-        find_fluid(w, state, scratch.mesh);  // particles -> mesh: v_g, p_c          [FLIP-8]
-        recorder.record(step, state, particle_totals(w, particles), cell_fields(w, mesh), run);
-        take_flip_step(w, step, scratch, state);  // mesh -> particles: v_p, x_p     [FLIP-6, 7]
+    while (run.not_finished(step, state.time, parameters.end)) {
+        find_fluid(problem, state, scratch.mesh);  // particles -> mesh: v_g, p_c          [FLIP-8]
+        recorder.record(step, state, particle_totals(problem.grid, particles),
+                        cell_fields(problem.grid, mesh), run);
+        take_flip_step(problem, step, scratch,
+                       state);  // mesh -> particles: v_p, x_p     [FLIP-6, 7]
         ++step;
-        run.end_of_step(step, state.time, w.end, state);
+        run.end_of_step(step, state.time, parameters.end, state);
     }
 
     // 4. The end of the run, the results against theory, summary.json.
-    if (common::Run::reached(state.time, w.end)) {
-        find_fluid(w, state, scratch.mesh);
-        const Totals totals = particle_totals(w, particles);
-        const CellFields cells = cell_fields(w, mesh);
+    if (common::Run::reached(state.time, parameters.end)) {
+        find_fluid(problem, state, scratch.mesh);
+        const Totals totals = particle_totals(problem.grid, particles);
+        const CellFields cells = cell_fields(problem.grid, mesh);
         recorder.record(step, state, totals, cells, run);
         recorder.finish(state, totals, cells, run);
     }

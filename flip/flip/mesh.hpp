@@ -1,12 +1,16 @@
-// The scratch pad of flip: what the mesh knows within one step. Velocities live on nodes, pressure
-// on cells; a particle reaches the four nodes of its cell and the four cells whose centers are
-// around it, both by area weighting.
+// The scratch pad of flip: what the mesh knows within one step. Velocities live on nodes, pressures
+// on cells. A particle * reaches the four nodes of its cell, with weights S, and the four cells whose
+// centers are around it, with weights R; both are area weights.
 //
-//     o-----------o          o  node (i, j): mass m_g, velocity v_g
-//     |     |     |          f  cell (i, j): materials, pressure p_c, at index(i, j) too
-//     |  ---f---  |
-//     |     |     |          a cell changes its volume by what its four nodes do,
-//     o-----------o          and its pressure pushes the same four nodes
+//     o-----------o-----------o      o  node (i, j): mass m_g, velocity v_g
+//     |           |           |      f  cell (i, j): materials, pressure p_c; at index(i, j) too
+//     |     f . . | . . f     |
+//     |     .     | *   .     |      the nodes o of the right cell get m_p, v_p of *;
+//     o-----.-----o-----.-----o      the four cells f around * get m_p, e_p
+//     |     .     |     .     |
+//     |     f . . | . . f     |      a cell changes its volume by what its four nodes do,
+//     |           |           |      and its pressure pushes the same four nodes
+//     o-----------o-----------o
 #pragma once
 
 #include <Eigen/Core>
@@ -14,7 +18,7 @@
 
 #include "common/parallel.hpp"
 #include "flip/particles.hpp"
-#include "flip/setup/case.hpp"
+#include "flip/problem.hpp"
 
 namespace flip {
 
@@ -27,20 +31,19 @@ struct CellSum {
 
 /// The nodes; all columns grid.size() long.
 struct Nodes {
-    std::vector<Four> sum;   // m_g, momentum x and z, nothing
-    Field m;                 // m_g
-    Field vx, vz;            // Favre average of the particles' velocities  [FLIP-8]
-    Field vx0, vz0;          // the same, with the walls' part set
-    Field fx, fz;            // force of pressure, q and viscosity
-    Field vxL, vzL;          // after the Lagrangian phase
-    Field vx_bar, vz_bar;    // mean of v^0 and v^L
-    Field vx_work, vz_work;  // at which pressure works: v_bar, or v^theta of an implicit one
-    std::vector<Four>
-        kick;  // change of velocity x and z, velocity that particles move with x and z
-    std::vector<Four> carry;       // what particles keep instead of their own velocity, not in flip
-    Field heat;                    // specific energy that leaves the motion of the nodes
-    Field reaction_x, reaction_z;  // impulse of the walls, with the consistent mass matrix
-    Field stopped;                 // specific energy that they take then
+    std::vector<Four> sum;         // m_g, momentum x and z, nothing
+    Field m;                       // m_g
+    Field vx, vz;                  // Favre average of the particles' velocities  [FLIP-8]
+    Field vx0, vz0;                // the same, with the walls' part set
+    Field fx, fz;                  // force of pressure, q and viscosity
+    Field vxL, vzL;                // after the Lagrangian phase
+    Field vx_bar, vz_bar;          // mean of v^0 and v^L
+    Field vx_work, vz_work;        // at which pressure works: v_bar, or v^theta when implicit
+    std::vector<Four> increment;   // of the velocity, x and z; velocity that moves particles
+    std::vector<Four> filtered;    // velocity that replaces the particles' own, not in flip: v, v^L
+    Field dissipated;              // specific energy that leaves the motion of the nodes
+    Field reaction_x, reaction_z;  // consistent mass matrix: impulse of the walls,
+    Field wall_dissipation;        //     and the specific energy that they dissipate
 };
 
 /// The cells; columns of grid.size(), those per material with the materials of a cell together.
@@ -53,40 +56,40 @@ struct Cells {
     Field compressibility;            // -(dV/dp)/V; 0 in an empty cell
     Field p_step;                     // the pressure that acts in this step
     std::vector<char> surface;        // 1: partly void, p = 0 whatever happens
-    Field volume, give, give_p;       // sums over particles that carry volumes: V, V/K, p V/K
-    Field strain, work, q_work;       // V_c div v dt per sum of V/K, for such particles
+    // Only where particles carry volumes: sums of V_p, of the compliance V_p/K_p, and of p_p V_p/K_p;
+    // V_c div v dt, and its work, per compliance.
+    Field volume, compliance, compliance_p, strain, work, q_work;
 };
 
+/// The scratch pad.
 struct Mesh {
     Nodes nodes;
     Cells cells;
-    std::size_t materials = 1;
+    long materials = 1;
 };
 
 /// Makes room, once.
-inline Mesh mesh_of(const Case& w) {
+inline Mesh mesh_of(const Problem& problem) {
     Mesh mesh;
-    const long size = w.grid.size();
-    const auto count = static_cast<std::size_t>(size);
+    const Scheme& scheme = problem.scheme;
+    const long size = problem.grid.size();
     Nodes& g = mesh.nodes;
     for (Field* f : {&g.m, &g.vx, &g.vz, &g.vx0, &g.vz0, &g.fx, &g.fz, &g.vxL, &g.vzL, &g.vx_bar,
-                     &g.vz_bar, &g.vx_work, &g.vz_work, &g.heat})
+                     &g.vz_bar, &g.vx_work, &g.vz_work, &g.dissipated})
         f->setZero(size);
-    g.sum.assign(count, Four::Zero());
-    g.kick.assign(count, Four::Zero());
-    if (w.mass == "consistent")
-        for (Field* f : {&g.reaction_x, &g.reaction_z, &g.stopped}) f->setZero(size);
-    if (w.transfer != "flip") g.carry.assign(count, Four::Zero());
+    g.sum.assign(size, Four::Zero());
+    g.increment.assign(size, Four::Zero());
+    if (scheme.consistent_mass)
+        for (Field* f : {&g.reaction_x, &g.reaction_z, &g.wall_dissipation}) f->setZero(size);
+    if (!scheme.transfer.flip) g.filtered.assign(size, Four::Zero());
     Cells& c = mesh.cells;
-    mesh.materials = w.materials.size();
-    c.sum.assign(count * mesh.materials, {});
-    c.share.assign(count * mesh.materials, 0);
-    c.de.assign(count * mesh.materials, 0);
-    c.relative_de.assign(count * mesh.materials, 0);
-    c.surface.assign(count, 0);
+    mesh.materials = static_cast<long>(problem.materials.size());
+    c.sum.assign(size * mesh.materials, {});
+    for (auto* f : {&c.share, &c.de, &c.relative_de}) f->assign(size * mesh.materials, 0);
+    c.surface.assign(size, 0);
     for (Field* f : {&c.M, &c.p, &c.q, &c.compressibility, &c.p_step}) f->setZero(size);
-    if (w.density == "particles")
-        for (Field* f : {&c.volume, &c.give, &c.give_p, &c.strain, &c.work, &c.q_work})
+    if (scheme.particle_volumes)
+        for (Field* f : {&c.volume, &c.compliance, &c.compliance_p, &c.strain, &c.work, &c.q_work})
             f->setZero(size);
     return mesh;
 }
@@ -132,7 +135,7 @@ struct WeightScale {
     return w;
 }
 
-/// Calls visit(index, weight) for the four nodes, or the four cells, of a particle.
+/// Calls visit(index, weight) for the four nodes of a particle.
 template <class Visit>
 void for_nodes(const WeightScale& a, const Weights& w, const Visit& visit) {
     visit(w.node, w.S_x[0] * w.S_z[0]);
@@ -140,6 +143,7 @@ void for_nodes(const WeightScale& a, const Weights& w, const Visit& visit) {
     visit(w.node + a.stride, w.S_x[0] * w.S_z[1]);
     visit(w.node + a.stride + 1, w.S_x[1] * w.S_z[1]);
 }
+/// The same for the four cells around it.
 template <class Visit>
 void for_cells(const WeightScale& a, const Weights& w, const Visit& visit) {
     visit(w.cell, w.R_x[0] * w.R_z[0]);
@@ -148,34 +152,26 @@ void for_cells(const WeightScale& a, const Weights& w, const Visit& visit) {
     visit(w.cell + a.stride + 1, w.R_x[1] * w.R_z[1]);
 }
 
-namespace detail {
-
-// Calls visit(to, from) for the two images beyond the ends of a periodic direction of nodes.
-template <class Visit>
-void node_images(long cells, const Visit& visit) {
-    visit(cells, 0L);
-    visit(-1L, cells - 1);
-    visit(cells + 1, cells > 1 ? 1L : 0L);
-}
-
-}  // namespace detail
-
-/// Copies nodes to their periodic images; what is beyond a wall stays as it is.
+/// Copies nodes to their periodic images; what is beyond a boundary stays as it is.
 template <class Number>
 void fill_nodes(const Grid& grid, Number* f) {
     const long nx = grid.x.cells, nz = grid.z.cells, stride = grid.stride();
+    const auto images = [](long cells, const auto& copy) {  // copy(to, from)
+        copy(cells, 0L);
+        copy(-1L, cells - 1);
+        copy(cells + 1, cells > 1 ? 1L : 0L);
+    };
     if (grid.x.periodic)
         for (long j = 0; j <= nz; ++j)
-            detail::node_images(
-                nx, [&](long to, long from) { f[grid.index(to, j)] = f[grid.index(from, j)]; });
+            images(nx, [&](long to, long from) { f[grid.index(to, j)] = f[grid.index(from, j)]; });
     if (grid.z.periodic)
-        detail::node_images(nz, [&](long to, long from) {
+        images(nz, [&](long to, long from) {
             std::copy_n(f + grid.index(-1, from), stride, f + grid.index(-1, to));
         });
 }
 
 /// Adds what was deposited on the last node of a periodic direction to the first, which it is; then
-/// fills.
+/// fills the images.
 template <class Number>
 void fold_nodes(const Grid& grid, Number* f) {
     const long nx = grid.x.cells, nz = grid.z.cells;
@@ -186,7 +182,7 @@ void fold_nodes(const Grid& grid, Number* f) {
     fill_nodes(grid, f);
 }
 
-/// Copies cells to the ring of ghosts around the mesh: periodic images, or beyond any other end the
+/// Copies cells to the ghosts around the mesh: periodic images, or beyond any other boundary the
 /// nearest cell; `width` numbers per cell.
 inline void fill_cells(const Grid& grid, double* f, long width = 1) {
     const long nx = grid.x.cells, nz = grid.z.cells, row = width * grid.stride();
@@ -200,7 +196,7 @@ inline void fill_cells(const Grid& grid, double* f, long width = 1) {
 }
 
 /// Adds what was deposited on ghosts to the cells that they are images of; the transpose of
-/// fill_cells, without filling.
+/// fill_cells(), without filling.
 inline void fold_cells(const Grid& grid, double* f, long width = 1) {
     const long nx = grid.x.cells, nz = grid.z.cells, row = width * grid.stride();
     const auto at = [&](long i, long j) { return f + width * grid.index(i, j); };
@@ -215,35 +211,39 @@ inline void fold_cells(const Grid& grid, double* f, long width = 1) {
     }
 }
 
-/// Calls work(i, j, index) for every cell, or every node, blocks of rows in parallel.
+namespace detail {
+
+// Calls work(i, j, index) on columns [0, nx) and rows [0, nz), blocks of rows in parallel.
 template <class Work>
-void for_each_cell(const Grid& grid, const Work& work) {
+void for_each_point(const Grid& grid, long nx, long nz, const Work& work) {
     common::for_each_block(
-        grid.z.cells,
+        nz,
         [&](int, long begin, long end) {
             for (long j = begin; j < end; ++j)
-                for (long i = 0; i < grid.x.cells; ++i) work(i, j, grid.index(i, j));
-        },
-        grid.size());
-}
-template <class Work>
-void for_each_node(const Grid& grid, const Work& work) {
-    common::for_each_block(
-        grid.z.cells + 1,
-        [&](int, long begin, long end) {
-            for (long j = begin; j < end; ++j)
-                for (long i = 0; i <= grid.x.cells; ++i) work(i, j, grid.index(i, j));
+                for (long i = 0; i < nx; ++i) work(i, j, grid.index(i, j));
         },
         grid.size());
 }
 
-/// Calls visit(index) once for every node that is not the image of another, row by row.
+}  // namespace detail
+
+/// Calls work(i, j, index) for every cell, in parallel.
+template <class Work>
+void for_each_cell(const Grid& grid, const Work& work) {
+    detail::for_each_point(grid, grid.x.cells, grid.z.cells, work);
+}
+/// The same for every node, periodic images of the first ones included.
+template <class Work>
+void for_each_node(const Grid& grid, const Work& work) {
+    detail::for_each_point(grid, grid.x.cells + 1, grid.z.cells + 1, work);
+}
+/// Calls visit(i, j, index) once for every node that is not the image of another, row by row.
 template <class Visit>
 void for_own_nodes(const Grid& grid, const Visit& visit) {
     const long nx = grid.x.cells - (grid.x.periodic ? 1 : 0),
                nz = grid.z.cells - (grid.z.periodic ? 1 : 0);
     for (long j = 0; j <= nz; ++j)
-        for (long i = 0; i <= nx; ++i) visit(grid.index(i, j));
+        for (long i = 0; i <= nx; ++i) visit(i, j, grid.index(i, j));
 }
 
 }  // namespace flip

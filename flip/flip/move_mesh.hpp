@@ -1,118 +1,186 @@
-// on the mesh: the whole Lagrangian phase of flip, in which the mesh moves with the fluid.
+// on the mesh: the whole Lagrangian phase of flip, in which the mesh moves with the fluid; what the
+// motion of the nodes does to the fluid in the cells, and what the nodes hand to the particles.
+//
+//     v  --walls-->  v^0  --forces-->  v^L          nodes; v from the particles
+//                     \________________/
+//                   v_bar = (v^0 + v^L)/2           at which forces work, as a square changes by
+//                                                   twice its mean times its change
+//     p_c, q_c act on nodes with D^T and work on cells with D v_bar: what nodes gain, cells lose
 #pragma once
 
 #include "flip/flip/mass_matrix.hpp"
-#include "flip/flip/move_particles.hpp"
 #include "flip/flip/solve_pressure.hpp"
-#include "flip/flip/work_on_cells.hpp"
 
 namespace flip {
 
-/// The mass matrix, where the case asks for more than its lumped sums; kept between steps.
-using LagrangianScratch = MassMatrix;
+/// Adds to the budget what comes from outside within the step: gravity, the pressure outside of open
+/// boundaries, and what walls give to the nodes that they hold, R = m (v^L - v) - dt (F + m g).
+///   momentum: the impulses;  energy: impulse . v_bar, of walls impulse . velocity of the wall
+inline void add_external_work(const Problem& problem, double dt, const Nodes& g, Budget& budget) {
+    const Grid& grid = problem.grid;
+    const BodyForce& force = problem.body_force;
+    const long nx = grid.x.cells - (grid.x.periodic ? 1 : 0),
+               nz = grid.z.cells - (grid.z.periodic ? 1 : 0);
+    const bool falls = force.gravity_x != 0 || force.gravity_z != 0 || force.trap != 0;
+    std::vector<Budget> of_row(nz + 1);
+    const auto add_row = [&](long j) {
+        Budget& sum = of_row[j];
+        const auto add = [&](double impulse_x, double impulse_z, double vx, double vz) {
+            sum.momentum_x += impulse_x;
+            sum.momentum_z += impulse_z;
+            sum.energy += impulse_x * vx + impulse_z * vz;
+        };
+        for (long i = 0; i <= nx; ++i) {
+            const bool edge = i == 0 || j == 0 || i == grid.x.cells || j == grid.z.cells;
+            if (!falls && !edge) continue;
+            const long n = grid.index(i, j);
+            const Eigen::Vector2d weight = dt * g.m[n] * node_acceleration(grid, force, n);
+            add(weight[0], weight[1], g.vx_bar[n], g.vz_bar[n]);
+            if (!edge || g.m[n] <= 0) continue;
+            const Held held = held_at(grid, problem.boundaries, i, j);
+            const bool lumped = g.reaction_x.size() == 0;
+            if (held.x)
+                add(lumped ? g.m[n] * (g.vxL[n] - g.vx[n]) - dt * g.fx[n] - weight[0]
+                           : g.reaction_x[n],
+                    0, held.vx, 0);
+            if (held.z)
+                add(0,
+                    lumped ? g.m[n] * (g.vzL[n] - g.vz[n]) - dt * g.fz[n] - weight[1]
+                           : g.reaction_z[n],
+                    0, held.vz);
+            const Eigen::Vector2d push = dt * boundary_force(grid, problem.boundaries, i, j);
+            add(push[0], push[1], g.vx_bar[n], g.vz_bar[n]);
+        }
+    };
+    common::for_each_row(nz + 1, add_row, grid.size());
+    for (const Budget& sum : of_row) {
+        budget.momentum_x += sum.momentum_x;
+        budget.momentum_z += sum.momentum_z;
+        budget.energy += sum.energy;
+    }
+}
+
+/// The work of pressure and viscosity on the cells, and what the particles need of the nodes.
+///   dE_c = -dt (p V div v_work + q V div v_bar) + viscous heating
+/// For the particles of material k pressure changes e in proportion to e, as it does at one pressure
+/// when nothing else happens, so that each keeps its entropy; viscosity by mass:
+///   relative_de_ck = -dt share_ck p V div v_work / U_ck,   de_ck = share_ck (rest of dE_c) / M_ck
+///   dissipated_g = |v^0 - v|^2/2                      of what walls stop, or with the consistent
+///                                                     mass (v^0 - v) M (v^0 - v)/(2 m_g)
+///          + (theta - 1/2) dt F_g . (v^L - v^0)/m_g   of an implicit pressure, v_work = v^theta
+///          + |v^L - v|^2/2                            that the lumped mass owes the particles
+/// in:     v, v^0, v^L; p_step, q; forces
+/// out:    cells.de, relative_de, and with volumes strain, work, q_work; nodes.increment, dissipated;
+///         budget
+/// exact:  sum_c dE_c + change of (1/2) sum_g m_g v_g^2 + what walls and theta dissipate = what the
+///         budget has got
+inline void work_on_cells(const Problem& problem, double dt, Mesh& mesh, Budget& budget) {
+    const Grid& grid = problem.grid;
+    Nodes& g = mesh.nodes;
+    Cells& c = mesh.cells;
+    const bool implicit = problem.scheme.implicit;
+    const double theta = problem.scheme.theta, level = implicit ? theta : 0.5;
+    const Field& move_x = implicit ? g.vx_work : g.vxL;
+    const Field& move_z = implicit ? g.vz_work : g.vzL;
+
+    for_each_node(grid, [&](long, long, long n) {
+        const double dvx = g.vxL[n] - g.vx[n], dvz = g.vzL[n] - g.vz[n];
+        const double stop_x = g.vx0[n] - g.vx[n], stop_z = g.vz0[n] - g.vz[n];
+        g.vx_bar[n] = 0.5 * (g.vx0[n] + g.vxL[n]);
+        g.vz_bar[n] = 0.5 * (g.vz0[n] + g.vzL[n]);
+        g.vx_work[n] = (1 - level) * g.vx0[n] + level * g.vxL[n];
+        g.vz_work[n] = (1 - level) * g.vz0[n] + level * g.vzL[n];
+        g.dissipated[n] = g.wall_dissipation.size() > 0 ? g.wall_dissipation[n]
+                                                        : 0.5 * (stop_x * stop_x + stop_z * stop_z);
+        if (problem.scheme.transfer.dissipates) g.dissipated[n] += 0.5 * (dvx * dvx + dvz * dvz);
+        if (implicit && g.m[n] > 0) {
+            const Eigen::Vector2d F = pressure_force(grid, c.p_step, n);
+            g.dissipated[n] += (theta - 0.5) * dt / g.m[n] *
+                               (F[0] * (g.vxL[n] - g.vx0[n]) + F[1] * (g.vzL[n] - g.vz0[n]));
+        }
+        g.increment[n] = g.m[n] > 0 ? Four(dvx, dvz, move_x[n], move_z[n]) : Four::Zero();
+    });
+    add_external_work(problem, dt, g, budget);
+
+    const bool volumes = c.volume.size() > 0;
+    const long count = mesh.materials;
+    for_each_cell(grid, [&](long, long, long n) {
+        const double work = dilation(grid, g.vx_work, g.vz_work, n),
+                     bar = dilation(grid, g.vx_bar, g.vz_bar, n), viscosity = problem.viscosity;
+        double adiabatic = 0;
+        double dE = viscosity > 0 && c.M[n] > 0
+                        ? dt * viscous_heating(grid, viscosity, g, g.vx_bar, g.vz_bar, n)
+                        : 0;
+        if (volumes) {
+            // Particles know their own pressure; the viscous heat goes by mass.
+            const bool yields = c.surface[n] == 0 && c.compliance[n] > 0;
+            const double per_compliance = yields ? dt / c.compliance[n] : 0;
+            c.strain[n] = per_compliance * dilation(grid, move_x, move_z, n);
+            c.work[n] = per_compliance * work;
+            c.q_work[n] = per_compliance * (c.q[n] * bar + (c.p_step[n] - c.p[n]) * work);
+        } else {
+            adiabatic = -dt * c.p_step[n] * work;
+            dE -= dt * c.q[n] * bar;
+        }
+        for (long ck = n * count; ck < (n + 1) * count; ++ck) {
+            const double M = c.sum[ck].M, U = c.sum[ck].U;
+            const double share = volumes ? (c.M[n] > 0 ? M / c.M[n] : 0) : c.share[ck];
+            c.de[ck] = M > 0 ? share * (U > 0 ? dE : dE + adiabatic) / M : 0;
+            c.relative_de[ck] = U > 0 ? share * adiabatic / U : 0;
+        }
+    });
+    fill_cells(grid, c.de.data(), count);
+    fill_cells(grid, c.relative_de.data(), count);
+    if (volumes)
+        for (Field* f : {&c.strain, &c.work, &c.q_work}) fill_cells(grid, f->data());
+}
 
 namespace detail {
 
-// M change = load on the nodes that are free; on those that the ends hold, change is given.
-// in/out: change, 0 where it is not given; out: reaction, what holds those nodes beside their load
-inline void solve_held(const Case& w, const MassMatrix& M, const Nodes& g, bool along_x,
-                       const Field& load, Field& change, Field& reaction) {
-    std::vector<char> held(static_cast<std::size_t>(w.grid.size()), 0);
-    for_each_node(w.grid, [&](long i, long j, long n) {
-        const Held h = held_at(w, i, j);
-        held[static_cast<std::size_t>(n)] = along_x ? h.x : h.z;
+// What particles take from the mesh in place of their own velocity: v and v^L; or for xpic the
+// filtered velocity with its last term.
+// out: nodes.filtered
+inline void filter_nodes(const Problem& problem, const MassMatrix& M, Nodes& g) {
+    const Transfer& transfer = problem.scheme.transfer;
+    if (transfer.flip) return;
+    Field vx = g.vx, vz = g.vz, other_x = g.vxL, other_z = g.vzL;
+    if (transfer.filtered) {
+        filter_velocity(problem.grid, M, g.m, transfer.xpic_order, g.vx, vx, other_x);
+        filter_velocity(problem.grid, M, g.m, transfer.xpic_order, g.vz, vz, other_z);
+    }
+    for_each_node(problem.grid, [&](long, long, long n) {
+        g.filtered[n] = Four(vx[n], vz[n], other_x[n], other_z[n]);
     });
-    solve_mass(w.grid, M, g.m, held, load, change);
-    multiply(w.grid, M, change, reaction);
-    for_each_node(w.grid, [&](long, long, long n) {
-        reaction[n] = held[static_cast<std::size_t>(n)] != 0 ? reaction[n] - load[n] : 0;
-    });
-}
-
-// The consistent mass matrix in place of the lumped one. First the walls stop what runs against
-// them: M (v^0 - v) is their impulse, on the nodes that they hold alone, and
-// (1/2) (v^0 - v) M (v^0 - v) becomes heat where they are.
-// in: nodes.v, from M v = momentum; v0 on the nodes that are held; out: v0, reaction, stopped
-inline void stop_consistently(const Case& w, const MassMatrix& M, Nodes& g) {
-    const Field none = Field::Zero(w.grid.size());
-    g.stopped = none;
-    for (const bool along_x : {true, false}) {
-        const Field& v = along_x ? g.vx : g.vz;
-        Field &start = along_x ? g.vx0 : g.vz0, &reaction = along_x ? g.reaction_x : g.reaction_z;
-        Field change = start - v;
-        for_each_node(w.grid, [&](long, long, long n) {
-            if (g.m[n] <= 0) change[n] = 0;
-        });
-        solve_held(w, M, g, along_x, none, change, reaction);
-        start = v + change;
-        for_each_node(w.grid, [&](long, long, long n) {
-            if (g.m[n] > 0) g.stopped[n] += 0.5 * change[n] * reaction[n] / g.m[n];
-        });
-    }
-}
-
-// Then M (v^L - v^0) = dt (F + m g) on the nodes that are free. Nothing is lost to the particles, so
-// the nodes owe them no heat.
-// in: nodes.v0, forces; out: vL; in/out: reaction
-inline void accelerate_consistently(const Case& w, double dt, const MassMatrix& M, Nodes& g) {
-    for (const bool along_x : {true, false}) {
-        const Field& force = along_x ? g.fx : g.fz;
-        Field load = Field::Zero(w.grid.size()), change = load, reaction;
-        for_each_node(w.grid, [&](long, long, long n) {
-            load[n] = dt * (force[n] + g.m[n] * pull_on_node(w, n)[along_x ? 0 : 1]);
-        });
-        solve_held(w, M, g, along_x, load, change, reaction);
-        (along_x ? g.vxL : g.vzL) = (along_x ? g.vx0 : g.vz0) + change;
-        (along_x ? g.reaction_x : g.reaction_z) += reaction;
-    }
-}
-
-// Velocities M^-1 of the momentum that the particles brought.
-inline void solve_velocity(const Case& w, const MassMatrix& M, Mesh& mesh) {
-    const std::vector<char> none(static_cast<std::size_t>(w.grid.size()), 0);
-    for (const int component : {1, 2}) {
-        Field momentum = Field::Zero(w.grid.size());
-        for_each_node(w.grid, [&](long, long, long n) {
-            momentum[n] = mesh.nodes.sum[static_cast<std::size_t>(n)][component];
-        });
-        solve_mass(w.grid, M, mesh.nodes.m, none, momentum,
-                   component == 1 ? mesh.nodes.vx : mesh.nodes.vz);
-    }
 }
 
 }  // namespace detail
 
 /// One Lagrangian step of the mesh.
 /// in:     deposit_particles() and find_pressure() have been called
-/// out:    what move_particles() needs: nodes.kick, heat, carry; cells.de; books
-inline StepReport move_mesh(const Case& w, double dt, const Particles& particles,
-                            LagrangianScratch& M, Mesh& mesh, Books& books) {
+/// in/out: M, room for the mass matrix, where the scheme asks for one; budget
+/// out:    what move_particles() needs: nodes.increment, dissipated, filtered; cells.de
+inline StepReport move_mesh(const Problem& problem, double dt, const Particles& particles,
+                            MassMatrix& M, Mesh& mesh, Budget& budget) {
+    const Grid& grid = problem.grid;
+    const Boundaries& boundaries = problem.boundaries;
     Nodes& g = mesh.nodes;
     StepReport report;
-    const bool consistent = w.mass == "consistent", filtered = w.transfer == "xpic";
-    if (consistent || filtered) assemble_mass_matrix(w.grid, particles, M);
-    if (consistent) detail::solve_velocity(w, M, mesh);
+    const bool consistent = problem.scheme.consistent_mass;
+    if (consistent || problem.scheme.transfer.filtered) assemble_mass_matrix(grid, particles, M);
+    if (consistent) solve_velocity(grid, M, g);
 
-    find_viscosity(w, mesh);
-    if (consistent) detail::stop_consistently(w, M, g);
-    find_known_forces(w, mesh);
-    if (w.implicit()) {
-        report = solve_pressure(w, dt, mesh);
+    find_viscosity(grid, boundaries, problem.q, mesh);
+    if (consistent) stop_at_walls(problem, M, g);
+    find_known_forces(grid, boundaries, problem.viscosity, mesh);
+    if (problem.scheme.implicit) {
+        report = solve_pressure(problem, dt, mesh);
     } else {
-        for_each_cell(w.grid, [&](long, long, long n) { mesh.cells.p_step[n] = mesh.cells.p[n]; });
-        accelerate_nodes(w, dt, mesh);
+        for_each_cell(grid, [&](long, long, long n) { mesh.cells.p_step[n] = mesh.cells.p[n]; });
+        accelerate_nodes(problem, dt, mesh);
     }
-    if (consistent) detail::accelerate_consistently(w, dt, M, g);
-    work_on_cells(w, dt, mesh, books);
-
-    if (filtered) {
-        Field vx, vz, last_x, last_z;
-        filter_velocity(w.grid, M, g.m, w.xpic_order, g.vx, vx, last_x);
-        filter_velocity(w.grid, M, g.m, w.xpic_order, g.vz, vz, last_z);
-        prepare_transfer(w, vx, vz, last_x, last_z, mesh);
-    } else {
-        prepare_transfer(w, g.vx, g.vz, g.vxL, g.vzL, mesh);
-    }
+    if (consistent) accelerate_consistently(problem, dt, M, g);
+    work_on_cells(problem, dt, mesh, budget);
+    detail::filter_nodes(problem, M, g);
     return report;
 }
 

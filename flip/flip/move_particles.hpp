@@ -1,78 +1,82 @@
-// mesh -> particles: they take the change of velocity, move with the mesh, and share the work on
+// mesh -> particles: they take the velocity increment, move with the mesh, and share the work on
 // their cells.  [FLIP-6, FLIP-7]
 #pragma once
 
 #include <atomic>
 
+#include "flip/boundaries.hpp"
 #include "flip/flip/transfer.hpp"
+#include "flip/state.hpp"
 
 namespace flip {
 
 namespace detail {
 
 // Work on one particle that carries its volume, which it takes at its own pressure; per mass.
+//   V_p += (V_p/K_p) sum_c R strain_c
 // in: cells.strain, work, q_work; in/out: V_p
-inline double work_on_volume(const Case& w, const WeightScale& scale, const Weights& at,
-                             const Cells& cells, std::size_t k, Particles& p) {
-    const Material& a = w.materials[static_cast<std::size_t>(p.material[k])];
+inline double work_on_volume(const Material* materials, const WeightScale& scale, const Weights& at,
+                             const Cells& cells, long k, Particles& p) {
+    const Material& a = materials[p.material[k]];
     const double V = p.V_p[k], p_p = pressure(a, p.m_p[k] / V, p.e_p[k]);
-    const double give = compliance(a, V, p_p);
+    const double V_per_K = compliance(a, V, p_p);
     double strain = 0, work = 0;
     for_cells(scale, at, [&](long c, double R) {
         strain += R * cells.strain[c];
         work += R * (p_p * cells.work[c] + cells.q_work[c]);
     });
-    p.V_p[k] += give * strain;
-    return -give * work / p.m_p[k];
+    p.V_p[k] += V_per_K * strain;
+    return -V_per_K * work / p.m_p[k];
 }
 
 // What came of a row: how many particles left the mesh, and one without volume, -1: none.
 struct RowMoved {
-    long left = 0, inside_out = -1;
+    long left = 0, inverted = -1;
 };
 
 template <bool pure_flip, bool volumes>
-RowMoved move_row(const Case& w, const WeightScale& scale, const Mesh& mesh,
-                  const Transfer& transfer, double dt, std::size_t begin, std::size_t end,
-                  Particles& p) {
-    const Grid& grid = w.grid;
-    const Four* const kick = mesh.nodes.kick.data();
-    const double *const heat = mesh.nodes.heat.data(), *const de = mesh.cells.de.data(),
+RowMoved move_row(const Problem& problem, const WeightScale& scale, const Mesh& mesh, double dt,
+                  long begin, long end, Particles& p) {
+    const Grid& grid = problem.grid;
+    const Transfer& transfer = problem.scheme.transfer;
+    const Four* const increment = mesh.nodes.increment.data();
+    const double *const dissipated = mesh.nodes.dissipated.data(), *const de = mesh.cells.de.data(),
                         *const relative_de = mesh.cells.relative_de.data();
-    const long kinds = static_cast<long>(mesh.materials);
-    const double deficit = w.heats() ? 0.5 : 0;
+    const long count = mesh.materials;
+    const double deficit = transfer.dissipates ? 0.5 : 0;
     RowMoved moved;
     // [move]
-    for (std::size_t k = begin; k < end; ++k) {
+    for (long k = begin; k < end; ++k) {
         const Weights at = weights_at(scale, p.x_p[k], p.z_p[k]);
         Four sum = Four::Zero();
         double gained = 0;
         for_nodes(scale, at, [&](long n, double S) {
-            sum += S * kick[n];
-            gained += S * heat[n];
+            sum += S * increment[n];
+            gained += S * dissipated[n];
         });
         const Velocity dv{sum[0], sum[1]};
-        const long kind = p.material[k];
+        const long material = p.material[k];
         for_cells(scale, at, [&](long c, double R) {
-            gained += R * (de[c * kinds + kind] + p.e_p[k] * relative_de[c * kinds + kind]);
+            const long ck = c * count + material;
+            gained += R * (de[ck] + p.e_p[k] * relative_de[ck]);
         });
         gained -= deficit * dv.square();
         if constexpr (volumes) {
-            gained += work_on_volume(w, scale, at, mesh.cells, k, p);
-            if (!(p.V_p[k] > 0)) moved.inside_out = static_cast<long>(k);
+            gained += work_on_volume(problem.materials.data(), scale, at, mesh.cells, k, p);
+            if (!(p.V_p[k] > 0)) moved.inverted = k;
         }
-        Velocity v{p.vx_p[k] + dv.x, p.vz_p[k] + dv.z};           // [FLIP-6]
-        const double x = around(grid.x, p.x_p[k] + dt * sum[2]),  // [FLIP-7]
-            z = around(grid.z, p.z_p[k] + dt * sum[3]);
+        Velocity v{p.vx_p[k] + dv.x, p.vz_p[k] + dv.z};         // [FLIP-6]
+        const double x = wrap(grid.x, p.x_p[k] + dt * sum[2]),  // [FLIP-7]
+            z = wrap(grid.z, p.z_p[k] + dt * sum[3]);
         if constexpr (!pure_flip)
-            gained += follow_mesh(transfer, grid, scale, at, weights_at(scale, x, z), mesh.nodes,
-                                  {p.vx_p[k], p.vz_p[k]}, dv, k, p, v);
+            gained += apply_transfer(transfer, grid, scale, at, weights_at(scale, x, z), mesh.nodes,
+                                     {p.vx_p[k], p.vz_p[k]}, dv, k, p, v);
         p.vx_p[k] = v.x;
         p.vz_p[k] = v.z;
         p.e_p[k] += gained;
         p.x_p[k] = x;
         p.z_p[k] = z;
-        moved.left += beyond(grid, x, z) >= 0;
+        moved.left += side_crossed(grid, x, z) >= 0;
     }
     // [/move]
     return moved;
@@ -83,45 +87,65 @@ RowMoved move_row(const Case& w, const WeightScale& scale, const Mesh& mesh,
 /// Particles after the step.
 ///   v_p += sum_g S (v_g^L - v_g)                                                  [FLIP-6]
 ///   x_p += dt sum_g S v_g^L; with an implicit pressure v_g^theta                  [FLIP-7]
-///   e_p += sum_c R (de_c + e_p relative_de_c) + sum_g S heat_g - |sum_g S dv_g|^2/2
-///   and what another transfer than flip makes of v_p: follow_mesh()
-/// in:     nodes.kick, heat, carry; cells.de, relative_de
+///   e_p += sum_c R (de_c + e_p relative_de_c) + sum_g S dissipated_g - |sum_g S dv_g|^2/2
+///   and what another transfer than flip makes of v_p: apply_transfer()
+/// in:     nodes.increment, dissipated, filtered; cells.de, relative_de
 /// in/out: particles, sorted by row; afterwards out of order
-/// out:    how many are beyond an end now
+/// out:    how many are beyond a boundary now
 /// errors: NumericalError when the volume of a particle is not positive any more
 /// exact:  mass and momentum; total energy when the deficit goes to heat: what the lumped mass
 ///         matrix owes is sum_p m_p [sum_g S |dv_g|^2 - |sum_g S dv_g|^2]/2, never negative
 /// source: [FLIP-6, FLIP-7]
 /// note:   The slide's F_g is a force per mass of the node: dv_p/dt = sum_g (F_g/m_g) S. Particles
 ///         move with the velocity of the mesh and not with their own: they never pass each other.
-inline long move_particles(const Case& w, double dt, const Mesh& mesh, Particles& particles) {
-    const Transfer transfer = transfer_of(w);
-    const bool pure = w.transfer == "flip", volumes = has(particles.V_p);
-    const WeightScale scale(w.grid);
-    std::atomic<long> left{0}, inside_out{-1};
+inline long move_particles(const Problem& problem, double dt, const Mesh& mesh,
+                           Particles& particles) {
+    const bool volumes = has(particles.V_p);
+    const WeightScale scale(problem.grid);
+    const auto move =
+        problem.scheme.transfer.flip
+            ? (volumes ? detail::move_row<true, true> : detail::move_row<true, false>)
+            : (volumes ? detail::move_row<false, true> : detail::move_row<false, false>);
+    std::atomic<long> left{0}, inverted{-1};
     common::for_each_row(
-        w.grid.z.cells,
+        problem.grid.z.cells,
         [&](long j) {
-            const auto row = static_cast<std::size_t>(j);
-            const auto begin = static_cast<std::size_t>(particles.first_of_row[row]),
-                       end = static_cast<std::size_t>(particles.first_of_row[row + 1]);
-            const auto move =
-                pure ? (volumes ? detail::move_row<true, true> : detail::move_row<true, false>)
-                     : (volumes ? detail::move_row<false, true> : detail::move_row<false, false>);
-            const detail::RowMoved moved =
-                move(w, scale, mesh, transfer, dt, begin, end, particles);
+            const detail::RowMoved moved = move(problem, scale, mesh, dt, particles.first_of_row[j],
+                                                particles.first_of_row[j + 1], particles);
             left += moved.left;
-            if (moved.inside_out >= 0) inside_out = moved.inside_out;
+            if (moved.inverted >= 0) inverted = moved.inverted;
         },
         particles.count());
-    if (inside_out >= 0) {
-        const auto k = static_cast<std::size_t>(inside_out);
+    if (const long k = inverted; k >= 0)
         throw common::NumericalError(
             "the step turns the particle at x = " + common::format(particles.x_p[k]) +
             ", z = " + common::format(particles.z_p[k]) + " inside out: its volume would be " +
             common::format(particles.V_p[k]) + "; reduce time.cfl");
-    }
     return left;
+}
+
+/// Particles that have left are removed, and those that have entered are added, out of order.
+/// in:     t, dt of the step that has moved them; left, how many it has moved beyond a boundary, or
+///         any number above 0 when that is not known
+/// out:    budget: mass, momentum and energy of what crossed, with apic also that of the motion
+///         within a particle, as move_particles() has left it
+/// errors: NumericalError for a particle beyond a wall
+inline void apply_particle_boundaries(const Problem& problem, double t, double dt, Particles& p,
+                                      Budget& budget, long left = 1) {
+    const WeightScale scale(problem.grid);
+    const auto enter = [&](long k, double sign) {
+        const double m = sign * p.m_p[k], vx = p.vx_p[k], vz = p.vz_p[k];
+        budget.mass += m;
+        budget.momentum_x += m * vx;
+        budget.momentum_z += m * vz;
+        budget.energy += m * (0.5 * (vx * vx + vz * vz) + p.e_p[k]);
+        if (!has(p.Cxx_p)) return;
+        const double C[4] = {p.Cxx_p[k], p.Cxz_p[k], p.Czx_p[k], p.Czz_p[k]};
+        budget.energy += m * affine_energy(problem.grid, weights_at(scale, p.x_p[k], p.z_p[k]), C);
+    };
+    if (left > 0) remove_outflow(problem, t + dt, p, [&](long k) { enter(k, -1); });
+    for (long added = add_inflow(problem, t, dt, p); added > 0; --added)
+        enter(p.count() - added, 1);
 }
 
 }  // namespace flip

@@ -1,13 +1,19 @@
 // on the mesh: the pressure at the level theta, for all flow speeds. The time step then knows the
 // flow and not the sound.
 //
-//     v^L = v* - (dt/m) G p^theta              v*: with every force but the pressure
-//     p^theta = p^n - theta dt K div v^theta   K = rho c^2,  v^theta = (1 - theta) v^0 + theta v^L
+//     v^L = v* + (dt/m) D^T p^theta            v*: with every force but the pressure
+//     p^theta = p^n - theta dt (K/V) D v^theta   K = rho c^2,  v^theta = (1 - theta) v^0 + theta v^L
 //
+// with D v = V div v on the cells (dilation) and D^T p the force on the nodes (pressure_force).
 // Eliminating v^L leaves a symmetric positive definite system for the change of pressure,
-//     [V/K + theta^2 dt^2 D M^-1 D^T] (p^theta - p^n) = -theta dt D v^theta(p^n),
-// with D v = V div v on the cells. For slow flow V/K is nothing beside the rest, and what remains is
-// the projection of an incompressible fluid.
+//     [V/K + theta^2 dt^2 D M^-1 D^T] (p^theta - p^n) = -theta dt D v^theta(p^n).
+// For slow flow the compliance V/K is nothing beside the rest, and what remains is the projection of
+// an incompressible fluid. The matrix is assembled node by node, because M is diagonal: a node
+// couples the four cells around it, and a cell so meets its eight neighbors.
+//
+//     2 | 3      cells 0 to 3 around a node o; a pressure p of cell 0 pushes it with
+//     --o--      p dz/2 along x and p dx/2 along z, of cell 3 with the opposite; a component
+//     0 | 1      that a boundary gives is not pushed at all
 #pragma once
 
 #include <Eigen/IterativeLinearSolvers>
@@ -17,38 +23,48 @@
 
 #include "common/conjugate_gradients.hpp"
 #include "flip/flip/accelerate_nodes.hpp"
+#include "flip/state.hpp"
 
 namespace flip {
 
 namespace detail {
 
-// A node as the pressures around it see it: the cells that push it, and how.
-struct NodePush {
+// One column of D^T: the four cells around a node, and the force of a unit pressure in each.
+struct NodeStencil {
     std::array<long, 4> cell;    // index, or -1: none, or one without pressure
-    std::array<double, 4> x, z;  // force per pressure; 0 where the node is held
+    std::array<double, 4> x, z;  // force per pressure; 0 where a boundary gives the velocity
 };
 
-inline NodePush push_on(const Case& w, const Cells& c, long i, long j) {
-    const Grid& grid = w.grid;
-    NodePush push;
-    const Held held = held_at(w, i, j);
+inline NodeStencil stencil_at(const Problem& problem, const Cells& c, long i, long j) {
+    const Grid& grid = problem.grid;
+    NodeStencil stencil;
+    const Held held = held_at(grid, problem.boundaries, i, j);
+    const auto inside = [](const common::Axis& axis, long cell) {
+        return axis.periodic ? (cell + axis.cells) % axis.cells
+                             : (cell < 0 || cell >= axis.cells ? -1 : cell);
+    };
     std::size_t k = 0;
     for (const long b : {j - 1, j}) {
         for (const long a : {i - 1, i}) {
-            const auto inside = [](const common::Axis& axis, long cell) {
-                return axis.periodic ? (cell + axis.cells) % axis.cells
-                                     : (cell < 0 || cell >= axis.cells ? -1 : cell);
-            };
             const long ia = inside(grid.x, a), jb = inside(grid.z, b);
             const long n = ia < 0 || jb < 0 ? -1 : grid.index(ia, jb);
-            const bool pushes = n >= 0 && c.M[n] > 0 && c.surface[static_cast<std::size_t>(n)] == 0;
-            push.cell[k] = pushes ? n : -1;
-            push.x[k] = held.x ? 0 : (a < i ? 0.5 : -0.5) * grid.z.spacing();
-            push.z[k] = held.z ? 0 : (b < j ? 0.5 : -0.5) * grid.x.spacing();
+            stencil.cell[k] = n >= 0 && c.M[n] > 0 && c.surface[n] == 0 ? n : -1;
+            stencil.x[k] = held.x ? 0 : (a < i ? 0.5 : -0.5) * grid.z.spacing();
+            stencil.z[k] = held.z ? 0 : (b < j ? 0.5 : -0.5) * grid.x.spacing();
             ++k;
         }
     }
-    return push;
+    return stencil;
+}
+
+// Calls visit(stencil, theta^2 dt^2/m) for every node that has mass.
+template <class Visit>
+void for_each_stencil(const Problem& problem, double dt, const Mesh& mesh, const Visit& visit) {
+    const double theta = problem.scheme.theta;
+    for_own_nodes(problem.grid, [&](long i, long j, long n) {
+        const double m = mesh.nodes.m[n];
+        if (m > 0) visit(stencil_at(problem, mesh.cells, i, j), theta * theta * dt * dt / m);
+    });
 }
 
 // The cells that have a pressure, numbered.
@@ -61,34 +77,26 @@ struct PressureCells {
 // Leaves out cells without pressure, and those so compressible that all which the change of their
 // pressure does to the velocity is round-off: (theta^2 dt^2 D M^-1 D^T)_cc below V/K by that much.
 // There p = p^n, and their weight in the sums of conjugate gradients would be none.
-inline PressureCells number_cells(const Case& w, double dt, const Mesh& mesh) {
-    const Grid& grid = w.grid;
+inline PressureCells number_cells(const Problem& problem, double dt, const Mesh& mesh) {
+    const Grid& grid = problem.grid;
     const Cells& c = mesh.cells;
     Field response = Field::Zero(grid.size());
-    const long nx = grid.x.cells - (grid.x.periodic ? 1 : 0),
-               nz = grid.z.cells - (grid.z.periodic ? 1 : 0);
-    for (long j = 0; j <= nz; ++j) {
-        for (long i = 0; i <= nx; ++i) {
-            const double m = mesh.nodes.m[grid.index(i, j)];
-            if (m <= 0) continue;
-            const NodePush push = push_on(w, c, i, j);
-            for (std::size_t k = 0; k < 4; ++k)
-                if (push.cell[k] >= 0)
-                    response[push.cell[k]] += w.theta * w.theta * dt * dt / m *
-                                              (push.x[k] * push.x[k] + push.z[k] * push.z[k]);
-        }
-    }
+    for_each_stencil(problem, dt, mesh, [&](const NodeStencil& at, double factor) {
+        for (std::size_t k = 0; k < 4; ++k)
+            if (at.cell[k] >= 0)
+                response[at.cell[k]] += factor * (at.x[k] * at.x[k] + at.z[k] * at.z[k]);
+    });
     constexpr double round_off = std::numeric_limits<double>::epsilon();
     PressureCells cells;
-    cells.number.assign(static_cast<std::size_t>(grid.size()), -1);
+    cells.number.assign(grid.size(), -1);
     for (long j = 0; j < grid.z.cells; ++j) {
         for (long i = 0; i < grid.x.cells; ++i) {
             const long n = grid.index(i, j);
             const double inertia = grid.cell_area() * c.compressibility[n];
-            if (c.M[n] <= 0 || c.surface[static_cast<std::size_t>(n)] != 0 || inertia <= 0 ||
+            if (c.M[n] <= 0 || c.surface[n] != 0 || inertia <= 0 ||
                 response[n] <= round_off * inertia)
                 continue;
-            cells.number[static_cast<std::size_t>(n)] = static_cast<int>(cells.count());
+            cells.number[n] = static_cast<int>(cells.count());
             cells.index.push_back(n);
         }
     }
@@ -97,136 +105,112 @@ inline PressureCells number_cells(const Case& w, double dt, const Mesh& mesh) {
 
 // The matrix V/K + theta^2 dt^2 D M^-1 D^T, its lower half: V/K on the diagonal, and every node
 // couples the cells around it.
-inline Eigen::SparseMatrix<double> pressure_matrix(const Case& w, double dt, const Mesh& mesh,
-                                                   const PressureCells& cells,
+inline Eigen::SparseMatrix<double> pressure_matrix(const Problem& problem, double dt,
+                                                   const Mesh& mesh, const PressureCells& cells,
                                                    const Eigen::VectorXd& inertia) {
-    const Grid& grid = w.grid;
     std::vector<Eigen::Triplet<double>> entries;
-    entries.reserve(static_cast<std::size_t>(17 * cells.count()));
-    for (long r = 0; r < cells.count(); ++r)
-        entries.emplace_back(static_cast<int>(r), static_cast<int>(r), inertia[r]);
-    const long nx = grid.x.cells - (grid.x.periodic ? 1 : 0),
-               nz = grid.z.cells - (grid.z.periodic ? 1 : 0);
-    for (long j = 0; j <= nz; ++j) {
-        for (long i = 0; i <= nx; ++i) {
-            const double m = mesh.nodes.m[grid.index(i, j)];
-            if (m <= 0) continue;
-            const NodePush push = push_on(w, mesh.cells, i, j);
-            const double factor = w.theta * w.theta * dt * dt / m;
-            for (std::size_t a = 0; a < 4; ++a) {
-                for (std::size_t b = 0; b < 4; ++b) {
-                    if (push.cell[a] < 0 || push.cell[b] < 0) continue;
-                    const int row = cells.number[static_cast<std::size_t>(push.cell[a])],
-                              column = cells.number[static_cast<std::size_t>(push.cell[b])];
-                    if (row >= column && column >= 0)
-                        entries.emplace_back(
-                            row, column, factor * (push.x[a] * push.x[b] + push.z[a] * push.z[b]));
-                }
+    entries.reserve(17 * cells.index.size());
+    for (int r = 0; r < cells.count(); ++r) entries.emplace_back(r, r, inertia[r]);
+    for_each_stencil(problem, dt, mesh, [&](const NodeStencil& at, double factor) {
+        for (std::size_t a = 0; a < 4; ++a) {
+            for (std::size_t b = 0; b < 4; ++b) {
+                if (at.cell[a] < 0 || at.cell[b] < 0) continue;
+                const int row = cells.number[at.cell[a]], column = cells.number[at.cell[b]];
+                if (row >= column && column >= 0)
+                    entries.emplace_back(row, column,
+                                         factor * (at.x[a] * at.x[b] + at.z[a] * at.z[b]));
             }
         }
-    }
+    });
     Eigen::SparseMatrix<double> A(cells.count(), cells.count());
     A.setFromTriplets(entries.begin(), entries.end());
     return A;
 }
 
-// z = S F^-1 S r with incomplete Cholesky factors F of S A S and S = 1/sqrt(diagonal of A). A cell
-// that is nearly empty, or nearly without pressure, gives A entries hundreds of orders of magnitude
-// beyond the others, whose squares no number holds; S A S has ones on its diagonal.
-class PressurePreconditioner {
-   public:
-    // in: the lower half of A; its diagonal is positive, as inertia is
-    explicit PressurePreconditioner(const Eigen::SparseMatrix<double>& A)
-        : scale_(A.diagonal().cwiseSqrt().cwiseInverse()) {
-        const Eigen::SparseMatrix<double> scaled = scale_.asDiagonal() * A * scale_.asDiagonal();
-        factors_.compute(scaled);
-    }
-    void operator()(const Eigen::VectorXd& r, Eigen::VectorXd& z) const {
-        z = scale_.cwiseProduct(r);
-        // Without factors it is the diagonal.
-        if (factors_.info() == Eigen::Success) z = factors_.solve(z).eval();
-        z = scale_.cwiseProduct(z);
-    }
-
-   private:
-    Eigen::VectorXd scale_;
-    Eigen::IncompleteCholesky<double> factors_;
-};
-
 }  // namespace detail
 
 /// Solves for the pressure at the level theta.
 /// in:     cells.p, compressibility, surface; known forces; nodes.vx0, vz0
-/// out:    cells.p_step = p^theta, 0 where there is no fluid or no pressure
-/// errors: NumericalError when conjugate gradients do not reach the tolerance
+/// out:    cells.p_step = p^theta, 0 where there is no fluid or no pressure; nodes.vxL, vzL with it;
+///         the iterations, and what they leave of the divergence
+/// errors: NumericalError when conjugate gradients do not reach the tolerance, which is relative to
+///         a divergence of speed/dx in every cell
 /// exact:  sound is multiplied by sqrt((1 + (1-theta)^2 a^2)/(1 + theta^2 a^2)) per step, a = c k dt,
 ///         never more than 1
 /// source: the idea is ICE's: Harlow and Amsden, J. Comput. Phys. 8, 197 (1971).
-inline StepReport solve_pressure(const Case& w, double dt, Mesh& mesh) {
-    const Grid& grid = w.grid;
+inline StepReport solve_pressure(const Problem& problem, double dt, Mesh& mesh) {
+    const Grid& grid = problem.grid;
+    const Scheme& scheme = problem.scheme;
     Nodes& g = mesh.nodes;
     Cells& c = mesh.cells;
-    const double V_c = grid.cell_area(), theta = w.theta;
-
-    const detail::PressureCells cells = detail::number_cells(w, dt, mesh);
+    const double V_c = grid.cell_area(), theta = scheme.theta;
+    const detail::PressureCells cells = detail::number_cells(problem, dt, mesh);
     const long count = cells.count();
 
     // The velocity at the level theta if the pressure did not change; its divergence is the load.
     c.p_step = c.p;
-    accelerate_nodes(w, dt, mesh);
+    accelerate_nodes(problem, dt, mesh);
     if (count == 0) return {};
-    const auto level_theta = [&](Field& vx, Field& vz) {
+    Field vx, vz;
+    const auto find_v_theta = [&] {
         vx = (1 - theta) * g.vx0 + theta * g.vxL;
         vz = (1 - theta) * g.vz0 + theta * g.vzL;
     };
-    Field vx, vz;
-    level_theta(vx, vz);
+    find_v_theta();
     Eigen::VectorXd load(count), inertia(count);
     for (long r = 0; r < count; ++r) {
-        const long n = cells.index[static_cast<std::size_t>(r)];
+        const long n = cells.index[r];
         inertia[r] = V_c * c.compressibility[n];
         load[r] = -theta * dt * dilation(grid, vx, vz, n);
     }
 
-    // Conjugate gradients for the change of pressure, until what is left of the divergence is small
-    // beside speed/dx.
+    // Conjugate gradients for the change of pressure.
     double speed = 0;
-    for_own_nodes(grid, [&](long n) { speed = std::max(speed, std::hypot(vx[n], vz[n])); });
-    const double h = w.plane() ? std::sqrt(V_c) : grid.x.spacing();
+    for_own_nodes(grid,
+                  [&](long, long, long n) { speed = std::max(speed, std::hypot(vx[n], vz[n])); });
+    const double h = is_plane(grid) ? std::sqrt(V_c) : grid.x.spacing();
     const double scale = theta * dt * V_c * speed / h * std::sqrt(static_cast<double>(count));
-    if (!(load.norm() > w.tolerance * scale)) return {0, load.norm() / std::max(scale, 1e-300)};
-    const auto A = detail::pressure_matrix(w, dt, mesh, cells, inertia);
-    const detail::PressurePreconditioner precondition(A);
+    if (!(load.norm() > scheme.tolerance * scale))
+        return {0, load.norm() / std::max(scale, 1e-300)};
+    const auto A = detail::pressure_matrix(problem, dt, mesh, cells, inertia);
     const auto multiply = [&A](const Eigen::VectorXd& v, Eigen::VectorXd& Av) {
         Av.noalias() = A.selfadjointView<Eigen::Lower>() * v;
     };
-    const double tolerance = std::min(1.0, w.tolerance * scale / load.norm());
+    // Preconditioned with z = S F^-1 S r, F the incomplete Cholesky factors of S A S and
+    // S = 1/sqrt(diagonal of A). A cell that is nearly empty, or nearly without pressure, gives A
+    // entries hundreds of orders of magnitude beyond the others, whose squares no number holds; S A S
+    // has ones on its diagonal. Without factors the preconditioner is the diagonal.
+    const Eigen::VectorXd S = A.diagonal().cwiseSqrt().cwiseInverse();
+    const Eigen::SparseMatrix<double> scaled = S.asDiagonal() * A * S.asDiagonal();
+    const Eigen::IncompleteCholesky<double> factors(scaled);
+    const auto precondition = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
+        z = S.cwiseProduct(r);
+        if (factors.info() == Eigen::Success) z = factors.solve(z).eval();
+        z = S.cwiseProduct(z);
+    };
+    const double tolerance = std::min(1.0, scheme.tolerance * scale / load.norm());
     Eigen::VectorXd change = Eigen::VectorXd::Zero(count);
     const common::KrylovResult solved = common::conjugate_gradients(
-        multiply, precondition, load, change, tolerance, w.max_iterations);
-    StepReport report;
-    report.iterations = solved.iterations;
+        multiply, precondition, load, change, tolerance, scheme.max_iterations);
     if (!solved.converged)
         throw common::NumericalError(
             "the implicit pressure has not converged: " + solved.reason + "; after " +
-            std::to_string(report.iterations) + " iterations the residual is " +
+            std::to_string(solved.iterations) + " iterations the residual is " +
             common::format(solved.residual) + " and not " + common::format(tolerance) +
             "; raise flip.max_iterations or reduce time.cfl");
-    for (long r = 0; r < count; ++r)
-        c.p_step[cells.index[static_cast<std::size_t>(r)]] += change[r];
+    for (long r = 0; r < count; ++r) c.p_step[cells.index[r]] += change[r];
 
     // What the equation for the pressure leaves of the divergence.
-    find_known_forces(w, mesh);
-    accelerate_nodes(w, dt, mesh);
-    level_theta(vx, vz);
+    find_known_forces(grid, problem.boundaries, problem.viscosity, mesh);
+    accelerate_nodes(problem, dt, mesh);
+    find_v_theta();
     double sum = 0;
     for (long r = 0; r < count; ++r) {
-        const double left = dilation(grid, vx, vz, cells.index[static_cast<std::size_t>(r)]) +
-                            inertia[r] * change[r] / (theta * dt);
+        const double left =
+            dilation(grid, vx, vz, cells.index[r]) + inertia[r] * change[r] / (theta * dt);
         sum += left * left;
     }
-    report.divergence = theta * dt * std::sqrt(sum) / scale;
-    return report;
+    return {solved.iterations, theta * dt * std::sqrt(sum) / scale};
 }
 
 }  // namespace flip

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "common/step_clock.hpp"
-#include "flip/flip/cross_ends.hpp"
 #include "flip/flip/deposit_particles.hpp"
 #include "flip/flip/find_pressure.hpp"
 #include "flip/flip/move_mesh.hpp"
@@ -15,21 +14,23 @@ namespace flip {
 /// What a run keeps between steps besides its state; all is made anew in every step.
 struct FlipScratch {
     Mesh mesh;
-    LagrangianScratch mass_matrix;
+    MassMatrix mass_matrix;
     SortScratch sort;
 
-    explicit FlipScratch(const Case& w) : mesh(mesh_of(w)) {}
+    explicit FlipScratch(const Problem& problem) : mesh(mesh_of(problem)) {}
 };
 
 /// The fluid on the mesh at t^n.
 /// in:     particles, sorted by row
 /// out:    velocity and mass of nodes, pressure of cells
 template <class Clock = common::NoClock>
-void find_fluid(const Case& w, const State& state, Mesh& mesh, Clock&& clock = {}) {
+void find_fluid(const Problem& problem, const State& state, Mesh& mesh, Clock&& clock = {}) {
+    const Grid& grid = problem.grid;
+    const std::vector<Material>& materials = problem.materials;
     // [fluid]
-    deposit_particles(w, state.particles, mesh);  // particles -> mesh: v_g         [FLIP-8]
+    deposit_particles(grid, materials, state.particles, mesh);  // particles -> mesh: v_g [FLIP-8]
     clock.lap("deposit");
-    find_pressure(w, state.time, mesh);  // on the mesh: p_c
+    find_pressure(grid, materials, state.time, mesh);  // on the mesh: p_c
     clock.lap("mesh");
     // [/fluid]
 }
@@ -38,20 +39,20 @@ void find_fluid(const Case& w, const State& state, Mesh& mesh, Clock&& clock = {
 /// in:     scratch.mesh after find_fluid(); step, the number of steps before this one
 /// in/out: state: particles, time and the length of the last step, budget, report
 template <class Clock = common::NoClock>
-void take_flip_step(const Case& w, long step, FlipScratch& scratch, State& state,
+void take_flip_step(const Problem& problem, long step, FlipScratch& scratch, State& state,
                     Clock&& clock = {}) {
     Mesh& mesh = scratch.mesh;
     Particles& particles = state.particles;
     // [step]
-    const double dt = step_allowed(w, mesh, state.dt);
+    const double dt = step_allowed(problem, mesh, state.dt);
     state.report =
-        move_mesh(w, dt, particles, scratch.mass_matrix, mesh, state.books);  // F_g, v_g^L
+        move_mesh(problem, dt, particles, scratch.mass_matrix, mesh, state.budget);  // F_g, v_g^L
     clock.lap("mesh");
-    const long left = move_particles(w, dt, mesh, particles);  // v_p, x_p   [FLIP-6, FLIP-7]
+    const long left = move_particles(problem, dt, mesh, particles);  // v_p, x_p   [FLIP-6, FLIP-7]
     clock.lap("move");
-    cross_ends(w, state.time, dt, particles, state.books, left);
-    if (w.rezone_steps > 0 && (step + 1) % w.rezone_steps == 0) rezone(w, particles);
-    sort_particles(w.grid, scratch.sort, particles);
+    apply_particle_boundaries(problem, state.time, dt, particles, state.budget, left);
+    if (rezone_is_due(problem.scheme, step)) rezone(problem, particles);
+    sort_particles(problem.grid, scratch.sort, particles);
     clock.lap("sort");
     // [/step]
     state.time += dt;

@@ -36,10 +36,10 @@ inline Extremes extremes(const Case& parameters, const CellFields& cells) {
 
 /// What the loop hands its results to. A row belongs to t^n: particles, cells and totals of that
 /// time, and the step that led to it.
-///   mass_error:     (mass - books.mass - first) / first
-///   momentum_error: (momentum - books.momentum - first) / (sqrt(2 kinetic mass) + mass c), with
+///   mass_error:     (mass - budget.mass - first) / first
+///   momentum_error: (momentum - budget.momentum - first) / (sqrt(2 kinetic mass) + mass c), with
 ///                   kinetic energy and mass of the start, c its largest sound speed
-///   energy_error:   (energy - books.energy - first) / first
+///   energy_error:   (energy - budget.energy - first) / first
 /// note:   where the start has nothing to compare with, what has come in since then takes its place
 class Recorder {
    public:
@@ -97,7 +97,7 @@ class Recorder {
             const double scale = before > 0 ? before : std::fabs(came_in);
             return scale > 0 ? change / scale : 0.0;
         };
-        const Books& books = state.books;
+        const Budget& budget = state.budget;
         const double mass = first("mass", now.mass), kinetic = first("kinetic", now.kinetic);
         const double energy = now.kinetic + now.internal, gross = first("energy", energy);
         const double momentum = std::sqrt(2 * kinetic * mass) + mass * sound_speed_;
@@ -115,12 +115,13 @@ class Recorder {
         row.add("momentum_x", "momentum/length", now.momentum_x);
         row.add("momentum_z", "momentum/length", now.momentum_z);
         row.add("angular_momentum", "momentum", now.angular_momentum);
-        row.add("mass_error", "1", relative(now.mass - books.mass - mass, mass, books.mass));
+        row.add("mass_error", "1", relative(now.mass - budget.mass - mass, mass, budget.mass));
         row.add("momentum_x_error", "1",
-                momentum_error("momentum_x", now.momentum_x, books.momentum_x));
+                momentum_error("momentum_x", now.momentum_x, budget.momentum_x));
         row.add("momentum_z_error", "1",
-                momentum_error("momentum_z", now.momentum_z, books.momentum_z));
-        row.add("energy_error", "1", relative(energy - books.energy - gross, gross, books.energy));
+                momentum_error("momentum_z", now.momentum_z, budget.momentum_z));
+        row.add("energy_error", "1",
+                relative(energy - budget.energy - gross, gross, budget.energy));
         row.add("largest_speed", "velocity", most.speed);
         row.add("largest_mach", "1", most.mach);
         row.add("iterations", "1", static_cast<double>(state.report.iterations));
@@ -132,7 +133,7 @@ class Recorder {
 
     // An energy that is many times what the start and the work done account for is no result.
     void check_energy(long step, const State& state, double energy, double gross) const {
-        const double accounted = gross + std::fabs(state.books.energy);
+        const double accounted = gross + std::fabs(state.budget.energy);
         const bool beyond = parameters_.energy_limit > 0 &&
                             std::fabs(energy) > parameters_.energy_limit * accounted;
         if (std::isfinite(energy) && !beyond) return;

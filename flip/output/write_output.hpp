@@ -5,7 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "common/random.hpp"
 #include "common/run/writers.hpp"
+#include "flip/setup/case.hpp"
+#include "flip/state.hpp"
 #include "flip/theory/profiles.hpp"
 
 namespace flip {

@@ -21,10 +21,10 @@ inline double face_pressure(const PicCells& cells, long left, long right, double
 }
 
 // Viscous pressure on the faces below row j, and between its cells.
-inline void viscous_pressure(const Case& w, long j, PicCells& cells) {
-    const Grid& grid = w.grid;
+inline void viscous_pressure(const Grid& grid, const ArtificialViscosity& given, long j,
+                             PicCells& cells) {
     const long nx = grid.x.cells, stride = grid.stride();
-    const Viscosity viscosity{w.q_linear, w.q_quadratic};
+    const ArtificialViscosity viscosity = given;
     const double half_per_V = 0.5 / grid.cell_area();
     const double *filled = cells.filled.data(), *mass = cells.mass.data(), *c = cells.c.data();
     const CellVelocity* v = cells.v.data();
@@ -36,44 +36,48 @@ inline void viscous_pressure(const Case& w, long j, PicCells& cells) {
     double *q_x = cells.q_x.data(), *q_z = cells.q_z.data();
     if (j < grid.z.cells)
         for (long m = n; m <= n + nx; ++m) q_x[m] = q(m - 1, m, v[m].x - v[m - 1].x);
-    if (w.plane())
+    if (is_plane(grid))
         for (long m = n; m < n + nx; ++m) q_z[m] = q(m - stride, m, v[m].z - v[m - stride].z);
 }
 
-// Calls visit(inside, beyond, face) for the faces on one end of the mesh.
-template <class Visit>
-void for_each_face_on(const Grid& grid, End end, const Visit& visit) {
+// Sum of of_face(inside, beyond, q) over the faces on one side, with the cells on both sides of a face
+// and its viscous pressure.
+template <class OfFace>
+double sum_over_faces(const Grid& grid, const PicCells& cells, Side side, const OfFace& of_face) {
     const long nx = grid.x.cells, nz = grid.z.cells;
-    const bool low = end == x_low || end == z_low;
-    if (end == x_low || end == x_high) {
+    const bool low = is_low_side(side);
+    double sum = 0;
+    if (is_x_side(side)) {
         for (long j = 0; j < nz; ++j)
-            visit(grid.index(low ? 0 : nx - 1, j), grid.index(low ? -1 : nx, j),
-                  grid.index(low ? 0 : nx, j));
+            sum += of_face(grid.index(low ? 0 : nx - 1, j), grid.index(low ? -1 : nx, j),
+                           cells.q_x[grid.index(low ? 0 : nx, j)]);
     } else {
         for (long i = 0; i < nx; ++i)
-            visit(grid.index(i, low ? 0 : nz - 1), grid.index(i, low ? -1 : nz),
-                  grid.index(i, low ? 0 : nz));
+            sum += of_face(grid.index(i, low ? 0 : nz - 1), grid.index(i, low ? -1 : nz),
+                           cells.q_z[grid.index(i, low ? 0 : nz)]);
     }
+    return sum;
 }
 
 }  // namespace detail
 
 /// The momentum equation.
 ///   u~ = u - (dt A/M) (P_right - P_left) + dt g
-/// in:     cells after share_pressure()
-/// out:    v_tilde with ghosts, zero in empty cells; q_x, q_z; what ends, gravity and trap give to
-///         the momentum, in the books
-/// exact:  momentum, with the books; a face of an empty cell carries no pressure: a free surface
+/// in:     cells after find_pressure()
+/// out:    v_tilde with ghosts, zero in empty cells; q_x, q_z; what boundaries, gravity and trap give
+///         to the momentum, in the budget
+/// exact:  momentum, with the budget; a face of an empty cell carries no pressure: a free surface
 /// source: [PIC, Lagrangian phase]
-inline void accelerate_cells(const Case& w, double dt, State& state, PicCells& cells) {
-    const Grid& grid = w.grid;
+inline void accelerate_cells(const Problem& problem, double dt, State& state, PicCells& cells) {
+    const Grid& grid = problem.grid;
+    const Boundaries& boundaries = problem.boundaries;
     const long nx = grid.x.cells, nz = grid.z.cells, stride = grid.stride();
-    const bool plane = w.plane();
+    const bool plane = is_plane(grid);
     const double A_x = grid.z.spacing(), A_z = grid.x.spacing();
-    const BodyForce g(w);
+    const CellAcceleration g(problem);
     for_each_row_of_cells(grid, [&](long j) {
-        detail::viscous_pressure(w, j, cells);
-        if (j == nz - 1) detail::viscous_pressure(w, nz, cells);
+        detail::viscous_pressure(grid, problem.q, j, cells);
+        if (j == nz - 1) detail::viscous_pressure(grid, problem.q, nz, cells);
     });
     for_each_row_of_cells(grid, [&](long j) {
         const auto P_x = [&](long m) {
@@ -84,76 +88,61 @@ inline void accelerate_cells(const Case& w, double dt, State& state, PicCells& c
         };
         for (long i = 0; i < nx; ++i) {
             const long n = grid.index(i, j);
-            const double kick = dt * cells.per_mass[n], here = dt * cells.filled[n];
-            const CellVelocity& v = cells.v[static_cast<std::size_t>(n)];
-            CellVelocity& v_tilde = cells.v_tilde[static_cast<std::size_t>(n)];
-            v_tilde.x = v.x - kick * A_x * (P_x(n + 1) - P_x(n)) + here * g.x(i);
-            v_tilde.z = v.z + here * g.z(j);
-            if (plane) v_tilde.z -= kick * A_z * (P_z(n + stride) - P_z(n));
+            const double dt_per_M = dt * cells.per_mass[n], dt_here = dt * cells.filled[n];
+            const CellVelocity& v = cells.v[n];
+            CellVelocity& v_tilde = cells.v_tilde[n];
+            v_tilde.x = v.x - dt_per_M * A_x * (P_x(n + 1) - P_x(n)) + dt_here * g.x(i);
+            v_tilde.z = v.z + dt_here * g.z(j);
+            if (plane) v_tilde.z -= dt_per_M * A_z * (P_z(n + stride) - P_z(n));
         }
     });
-    fill_ghosts(w, cells.incoming, cells.v_tilde);
+    fill_ghosts(grid, boundaries, cells.v_tilde);
 
-    Books& books = state.books;
-    for (const End end : {x_low, x_high, z_low, z_high}) {
-        const bool along_x = end == x_low || end == x_high;
-        if (w.is(end, "periodic") || (!along_x && !plane)) continue;
-        double push = 0;
-        detail::for_each_face_on(grid, end, [&](long inside, long beyond_it, long face) {
-            push += detail::face_pressure(cells, inside, beyond_it,
-                                          along_x ? cells.q_x[face] : cells.q_z[face]);
-        });
-        const double inward = end == x_low || end == z_low ? 1 : -1;
-        (along_x ? books.momentum_x : books.momentum_z) +=
+    Budget& budget = state.budget;
+    for (const Side side : all_sides) {
+        const bool along_x = is_x_side(side);
+        if (boundaries.is(side, BoundaryKind::periodic) || (!along_x && !plane)) continue;
+        const double inward = is_low_side(side) ? 1 : -1;
+        const double push =
+            detail::sum_over_faces(grid, cells, side, [&](long inside, long beyond, double q) {
+                return detail::face_pressure(cells, inside, beyond, q);
+            });
+        (along_x ? budget.momentum_x : budget.momentum_z) +=
             inward * dt * (along_x ? A_x : A_z) * push;
     }
-    books.momentum_x += dt * sum_over_rows(grid, cells, [&](long j) {
-                            double sum = 0;
-                            for (long i = 0; i < nx; ++i)
-                                sum += cells.mass[grid.index(i, j)] * g.x(i);
-                            return sum;
-                        });
-    books.momentum_z += dt * sum_over_rows(grid, cells, [&](long j) {
-                            double sum = 0;
-                            for (long i = 0; i < nx; ++i)
-                                sum += cells.mass[grid.index(i, j)] * g.z(j);
-                            return sum;
-                        });
+    const auto weight = [&](const auto& acceleration) {
+        return sum_over_rows(grid, cells, [&](long j) {
+            double sum = 0;
+            for (long i = 0; i < nx; ++i) sum += cells.mass[grid.index(i, j)] * acceleration(i, j);
+            return sum;
+        });
+    };
+    budget.momentum_x += dt * weight([&](long i, long) { return g.x(i); });
+    budget.momentum_z += dt * weight([&](long, long j) { return g.z(j); });
 }
-
-namespace detail {
-
-// Half the difference of ubar across a face, beyond it less here.
-inline double half_step(double v_here, double v_beyond, double v_tilde_here,
-                        double v_tilde_beyond) {
-    return 0.25 * ((v_beyond + v_tilde_beyond) - (v_here + v_tilde_here));
-}
-
-}  // namespace detail
 
 /// The energy equation: what pressure and viscosity do to a cell whose faces move with
 /// (ubar_here + ubar_beyond)/2; a face beside an empty cell moves with the cell.
 ///   M (I~ - I) = -dt sum over faces A (p + q) (ubar_beyond - ubar)/2 along the normal outward
 /// in:     cells after accelerate_cells()
-/// out:    e_tilde; what comes through open ends, from gravity and from the trap, in the books
-/// exact:  the total energy, with the books: sum of M (u~^2 - u^2)/2 + M (I~ - I); walls do no work
+/// out:    e_tilde; what comes through open boundaries, from gravity and trap, in the budget
+/// exact:  the total energy, with the budget: sum of M (u~^2 - u^2)/2 + M (I~ - I); walls do no work,
+///         because behind a wall ubar is odd
 /// source: [PIC, Lagrangian phase]
-inline void do_work(const Case& w, double dt, State& state, PicCells& cells) {
-    const Grid& grid = w.grid;
-    const long nx = grid.x.cells, stride = grid.stride();
-    const std::size_t K = cells.materials;
-    const bool plane = w.plane();
+inline void do_work(const Problem& problem, double dt, State& state, PicCells& cells) {
+    const Grid& grid = problem.grid;
+    const Boundaries& boundaries = problem.boundaries;
+    const long nx = grid.x.cells, stride = grid.stride(), K = cells.materials;
+    const bool plane = is_plane(grid);
     const double A_x = grid.z.spacing(), A_z = grid.x.spacing();
     const Field &p = cells.p, &q_x = cells.q_x, &q_z = cells.q_z, &filled = cells.filled;
-    const auto step_x = [&](long here, long beyond_it) {
-        const auto a = static_cast<std::size_t>(here), b = static_cast<std::size_t>(beyond_it);
-        return detail::half_step(cells.v[a].x, cells.v[b].x, cells.v_tilde[a].x,
-                                 cells.v_tilde[b].x);
+    const std::vector<CellVelocity>&v = cells.v, &v_tilde = cells.v_tilde;
+    // Half the difference of ubar across a face, beyond it minus here.
+    const auto step_x = [&](long here, long beyond) {
+        return 0.25 * ((v[beyond].x + v_tilde[beyond].x) - (v[here].x + v_tilde[here].x));
     };
-    const auto step_z = [&](long here, long beyond_it) {
-        const auto a = static_cast<std::size_t>(here), b = static_cast<std::size_t>(beyond_it);
-        return detail::half_step(cells.v[a].z, cells.v[b].z, cells.v_tilde[a].z,
-                                 cells.v_tilde[b].z);
+    const auto step_z = [&](long here, long beyond) {
+        return 0.25 * ((v[beyond].z + v_tilde[beyond].z) - (v[here].z + v_tilde[here].z));
     };
     for_each_row_of_cells(grid, [&](long j) {
         for (long i = 0; i < nx; ++i) {
@@ -168,44 +157,42 @@ inline void do_work(const Case& w, double dt, State& state, PicCells& cells) {
             }
             const double work = -dt * growth;
             // [/work]
-            const std::size_t first = static_cast<std::size_t>(n) * K;
-            for (std::size_t k = 0; k < K; ++k) {
-                const double M = cells.M[first + k];
-                cells.e_tilde[first + k] =
-                    state.cells.e[k][n] + (M > 0 ? cells.share[first + k] * work / M : 0.0);
+            for (long k = 0; k < K; ++k) {
+                const double M = cells.M[n * K + k];
+                cells.e_tilde[n * K + k] =
+                    state.cells.e[k][n] + (M > 0 ? cells.share[n * K + k] * work / M : 0.0);
             }
         }
     });
 
-    // What the world outside does, and what it does not notice is zero: behind a wall ubar is odd.
-    Books& books = state.books;
-    for (const End end : {x_low, x_high, z_low, z_high}) {
-        const bool along_x = end == x_low || end == x_high;
-        if (w.is(end, "periodic") || w.is(end, "slip") || (!along_x && !plane)) continue;
-        double work = 0;
-        detail::for_each_face_on(grid, end, [&](long inside, long beyond_it, long face) {
-            const double q = along_x ? q_x[face] : q_z[face];
-            const auto a = static_cast<std::size_t>(inside);
-            const double ubar = along_x ? 0.5 * (cells.v[a].x + cells.v_tilde[a].x)
-                                        : 0.5 * (cells.v[a].z + cells.v_tilde[a].z);
-            const double step = along_x ? step_x(inside, beyond_it) : step_z(inside, beyond_it);
-            work += detail::face_pressure(cells, inside, beyond_it, q) * ubar +
-                    filled[inside] * filled[beyond_it] * (p[inside] + q) * step;
-        });
-        const double inward = end == x_low || end == z_low ? 1 : -1;
-        books.energy += inward * dt * (along_x ? A_x : A_z) * work;
+    Budget& budget = state.budget;
+    for (const Side side : all_sides) {
+        const bool along_x = is_x_side(side);
+        if (boundaries.is(side, BoundaryKind::periodic) ||
+            boundaries.is(side, BoundaryKind::slip) || (!along_x && !plane))
+            continue;
+        const double inward = is_low_side(side) ? 1 : -1;
+        const double work =
+            detail::sum_over_faces(grid, cells, side, [&](long inside, long beyond, double q) {
+                const double ubar = along_x ? 0.5 * (v[inside].x + v_tilde[inside].x)
+                                            : 0.5 * (v[inside].z + v_tilde[inside].z);
+                const double step = along_x ? step_x(inside, beyond) : step_z(inside, beyond);
+                return detail::face_pressure(cells, inside, beyond, q) * ubar +
+                       filled[inside] * filled[beyond] * (p[inside] + q) * step;
+            });
+        budget.energy += inward * dt * (along_x ? A_x : A_z) * work;
     }
-    const BodyForce g(w);
-    books.energy += dt * sum_over_rows(grid, cells, [&](long j) {
-                        double sum = 0;
-                        for (long i = 0; i < nx; ++i) {
-                            const auto n = static_cast<std::size_t>(grid.index(i, j));
-                            const CellVelocity &v = cells.v[n], &v_tilde = cells.v_tilde[n];
-                            sum += cells.mass[grid.index(i, j)] * 0.5 *
-                                   (g.x(i) * (v.x + v_tilde.x) + g.z(j) * (v.z + v_tilde.z));
-                        }
-                        return sum;
-                    });
+    const CellAcceleration g(problem);
+    budget.energy +=
+        dt * sum_over_rows(grid, cells, [&](long j) {
+            double sum = 0;
+            for (long i = 0; i < nx; ++i) {
+                const long n = grid.index(i, j);
+                sum += cells.mass[n] * 0.5 *
+                       (g.x(i) * (v[n].x + v_tilde[n].x) + g.z(j) * (v[n].z + v_tilde[n].z));
+            }
+            return sum;
+        });
 }
 
 }  // namespace flip

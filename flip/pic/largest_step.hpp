@@ -1,37 +1,31 @@
-// What the cells of pic know before a step: their pressure, what pulls and resists, and how long the
-// step may be.
+// What the cells of pic know before a step: their pressure, what accelerates and resists, and how
+// long the step may be.
 #pragma once
 
+#include <array>
+#include <span>
+
+#include "common/run/parameters.hpp"
 #include "flip/pic/pic_cells.hpp"
 
 namespace flip {
 
-/// Artificial viscosity on one face between two cells.
-///   q = rho (-du) (linear c + quadratic (-du)) where du = u_right - u_left < 0, else 0
-/// note:   the method's own viscosity, rho |u| dx/2, is missing where the fluid stands still
-struct Viscosity {
-    double linear, quadratic;
-    /// q/(-du)
-    double slope(double rho, double c, double du) const {
-        return rho * (linear * c - quadratic * du);
-    }
-    double operator()(double rho, double c, double du) const {
-        return du < 0 ? -du * slope(rho, c, du) : 0.0;
-    }
-};
-
 /// The acceleration of gravity and of the trap at the center of cell (i, j); in a single row
 /// nothing moves along z.
-struct BodyForce {
+///   a = g + trap (x_middle - x),  linear in i and in j
+struct CellAcceleration {
     double x_first, z_first, x_change, z_change;
-    explicit BodyForce(const Case& w) {
+    explicit CellAcceleration(const Problem& problem) {
+        const Grid& grid = problem.grid;
+        const BodyForce& force = problem.body_force;
         const auto first = [&](const common::Axis& a, double g) {
-            return g + w.trap * 0.5 * (a.length - a.spacing());
+            return g + force.trap * 0.5 * (a.length - a.spacing());
         };
-        x_first = first(w.grid.x, w.gravity_x);
-        x_change = -w.trap * w.grid.x.spacing();
-        z_first = w.plane() ? first(w.grid.z, w.gravity_z) : 0.0;
-        z_change = w.plane() ? -w.trap * w.grid.z.spacing() : 0.0;
+        const bool plane = is_plane(grid);
+        x_first = first(grid.x, force.gravity_x);
+        x_change = -force.trap * grid.x.spacing();
+        z_first = plane ? first(grid.z, force.gravity_z) : 0.0;
+        z_change = plane ? -force.trap * grid.z.spacing() : 0.0;
     }
     double x(long i) const { return x_first + x_change * static_cast<double>(i); }
     double z(long j) const { return z_first + z_change * static_cast<double>(j); }
@@ -46,28 +40,28 @@ struct BodyForce {
 ///   c^2 = 1/(rho compressibility);  of a cell with a free surface, that of the material in it
 /// in:     masses of the cells and what the state knows of them
 /// out:    mass, per_mass, filled, p, c, share, v, with ghosts
-inline void share_pressure(const Case& w, const State& state, PicCells& cells) {
-    const Grid& grid = w.grid;
-    const std::size_t K = cells.materials;
+inline void find_pressure(const Problem& problem, const State& state, PicCells& cells) {
+    const Grid& grid = problem.grid;
+    const std::vector<Material>& materials = problem.materials;
+    const long K = cells.materials;
     const double V = grid.cell_area();
     for_each_row_of_cells(grid, [&](long j) {
         std::array<double, most_materials> U{};
         for (long i = 0; i < grid.x.cells; ++i) {
             const long n = grid.index(i, j);
-            const auto at = static_cast<std::size_t>(n);
-            double* const M = &cells.M[at * K];
-            double* const share = &cells.share[at * K];
+            double* const M = &cells.M[n * K];
+            double* const share = &cells.share[n * K];
             double mass = 0;
-            for (std::size_t k = 0; k < K; ++k) {
+            for (long k = 0; k < K; ++k) {
                 mass += M[k];
                 U[k] = M[k] * state.cells.e[k][n];
             }
-            const CellState cell = share_cell(w.materials, M, U.data(), V, share);
+            const CellState cell = find_equilibrium(materials, M, U.data(), V, share);
             double part = 1;  // of the cell that is not void
             if (cell.surface) {
                 part = 0;
-                for (std::size_t k = 0; k < K; ++k)
-                    part += cell.compressibility * share[k] * stiffness(w.materials[k], cell.p);
+                for (long k = 0; k < K; ++k)
+                    part += cell.compressibility * share[k] * stiffness(materials[k], cell.p);
             }
             cells.mass[n] = mass;
             cells.per_mass[n] = mass > 0 ? 1 / mass : 0.0;
@@ -76,10 +70,10 @@ inline void share_pressure(const Case& w, const State& state, PicCells& cells) {
             cells.c[n] = cell.compressibility > 0
                              ? part * std::sqrt(V / (mass * cell.compressibility))
                              : 0.0;
-            cells.v[at] = {state.cells.vx[n], state.cells.vz[n]};
+            cells.v[n] = {state.cells.vx[n], state.cells.vz[n]};
         }
     });
-    fill_ghosts(w, cells);
+    fill_ghosts(grid, problem.boundaries, cells);
 }
 
 namespace detail {
@@ -90,22 +84,21 @@ double largest_over_cells(const Grid& grid, PicCells& cells, const OfCell& of_ce
     for_each_row_of_cells(grid, [&](long j) {
         double most = 0;
         for (long i = 0; i < grid.x.cells; ++i) most = std::max(most, of_cell(grid.index(i, j)));
-        cells.row[static_cast<std::size_t>(j)] = most;
+        cells.row[j] = most;
     });
     return *std::max_element(cells.row.begin(), cells.row.end());
 }
 
 // Rate at which the fastest signal crosses a cell. The speed of sound counts as no less than
 // sqrt(P/rho), what the pressure P on a face can give to a light cell.
-inline double rate_of_signals(const Case& w, PicCells& cells) {
-    const Grid& grid = w.grid;
-    const bool plane = w.plane();
+inline double rate_of_signals(const Grid& grid, PicCells& cells) {
+    const bool plane = is_plane(grid);
     const double per_dx = 1 / grid.x.spacing(), per_dz = plane ? 1 / grid.z.spacing() : 0.0,
                  both = std::sqrt(per_dx * per_dx + per_dz * per_dz), V = grid.cell_area();
     const long stride = grid.stride();
     const Field &p = cells.p, &c = cells.c, &filled = cells.filled;
     return largest_over_cells(grid, cells, [&](long n) {
-        const CellVelocity& v = cells.v[static_cast<std::size_t>(n)];
+        const CellVelocity& v = cells.v[n];
         double P = 0;
         const auto face = [&](long m) { P = std::max(P, filled[m] * 0.5 * (p[n] + p[m])); };
         face(n - 1), face(n + 1);
@@ -117,13 +110,12 @@ inline double rate_of_signals(const Case& w, PicCells& cells) {
 }
 
 // Rate at which viscosity takes away differences of velocity, all faces of a cell together.
-inline double rate_of_viscosity(const Case& w, PicCells& cells) {
-    const Grid& grid = w.grid;
+inline double rate_of_viscosity(const Grid& grid, const ArtificialViscosity& viscosity,
+                                PicCells& cells) {
     const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing(), V = grid.cell_area();
     const long stride = grid.stride();
-    const Viscosity viscosity{w.q_linear, w.q_quadratic};
     const Field &mass = cells.mass, &per_mass = cells.per_mass, &c = cells.c;
-    const auto v = [&](long m) { return cells.v[static_cast<std::size_t>(m)]; };
+    const std::vector<CellVelocity>& v = cells.v;
     return largest_over_cells(grid, cells, [&](long n) {
         double rate = 0;
         const auto face = [&](long m, double du, double per_distance) {
@@ -132,11 +124,11 @@ inline double rate_of_viscosity(const Case& w, PicCells& cells) {
                 viscosity.slope(0.5 * (mass[n] + mass[m]) / V, 0.5 * (c[n] + c[m]), du);
             rate += cells.filled[m] * slope * V * (per_mass[n] + per_mass[m]) * per_distance;
         };
-        face(n + 1, v(n + 1).x - v(n).x, per_dx);
-        face(n - 1, v(n).x - v(n - 1).x, per_dx);
-        if (w.plane()) {
-            face(n + stride, v(n + stride).z - v(n).z, per_dz);
-            face(n - stride, v(n).z - v(n - stride).z, per_dz);
+        face(n + 1, v[n + 1].x - v[n].x, per_dx);
+        face(n - 1, v[n].x - v[n - 1].x, per_dx);
+        if (is_plane(grid)) {
+            face(n + stride, v[n + stride].z - v[n].z, per_dz);
+            face(n - stride, v[n].z - v[n - stride].z, per_dz);
         }
         return cells.filled[n] * rate;
     });
@@ -147,22 +139,23 @@ inline double rate_of_viscosity(const Case& w, PicCells& cells) {
 /// The next time step.
 ///   dt = cfl / max over cells of [|vx|/dx + |vz|/dz + c sqrt(1/dx^2 + 1/dz^2)]
 /// no longer than it takes viscosity to bring two cells together or gravity to move a body at rest
-/// by cfl^2 dx, or than 1.2 times the last step. A fixed time.dt overrules all of them.
-/// in:     cells after share_pressure(); the step and time of the state
+/// by cfl^2 dx, or than 1.2 times the last step. A fixed limits.dt overrules all of them.
+/// in:     cells after find_pressure(); the step and time of the state
 /// errors: NumericalError when the step gets so short that the run would never end
-inline double largest_step(const Case& w, const State& state, PicCells& cells) {
-    if (w.dt > 0) return w.dt;
+inline double largest_step(const Problem& problem, const State& state, PicCells& cells) {
+    const StepLimits& limits = problem.limits;
+    if (limits.dt > 0) return limits.dt;
 
-    const Grid& grid = w.grid;
+    const Grid& grid = problem.grid;
     const double least_spacing =
-        w.plane() ? std::min(grid.x.spacing(), grid.z.spacing()) : grid.x.spacing();
-    const double falling = std::sqrt(BodyForce(w).largest(grid) / least_spacing),
-                 fastest = std::max(falling, detail::rate_of_signals(w, cells)),
-                 viscous = detail::rate_of_viscosity(w, cells);
-    double dt = fastest > 0 ? w.cfl / fastest : w.end / 100;
+        is_plane(grid) ? std::min(grid.x.spacing(), grid.z.spacing()) : grid.x.spacing();
+    const double falling = std::sqrt(CellAcceleration(problem).largest(grid) / least_spacing),
+                 fastest = std::max(falling, detail::rate_of_signals(grid, cells)),
+                 viscous = detail::rate_of_viscosity(grid, problem.q, cells);
+    double dt = fastest > 0 ? limits.cfl / fastest : limits.end / 100;
     if (viscous > 0) dt = std::min(dt, 1 / viscous);
     if (state.dt > 0) dt = std::min(dt, 1.2 * state.dt);
-    if (!(dt > 1e-10 * w.end)) {
+    if (!(dt > 1e-10 * limits.end)) {
         throw common::NumericalError("the time step has fallen to " + common::format(dt) +
                                      " at t = " + common::format(state.time) +
                                      ": some cell has become very fast, hot or light; use more "

@@ -3,13 +3,15 @@
 //
 //     M, I, u --Lagrangian phase--> u~, I~ --particles move, Eulerian phase--> M, I, u
 //
-// All quantities live at centers of cells; cell (i, j) sits at grid.index(i, j). Behind the ends of
-// the mesh stands one ring of ghost cells.
+//     +-------+-------+      u  cell (i, j): masses M, velocity u, energies I, pressure p, all at its
+//     |       |       |         center; at grid.index(i, j)
+//     |   u   q   u   |      q  face: viscous pressure between two cells, at the index of the cell
+//     |       |       |         to its right, or above it
+//     +-------+-------+      Around the mesh stands one ring of ghost cells.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 #include <vector>
 
 #include "common/parallel.hpp"
@@ -22,57 +24,37 @@ struct CellVelocity {
     double x = 0, z = 0;
 };
 
-/// What particles that enter through an inflow bring with them.
-struct Incoming {
-    double rho = 0, p = 0, c = 0, e = 0;
-    CellVelocity v;
-};
-
 /// The scratch pad. Of several materials, those of one cell lie together: [cell * materials + k].
 struct PicCells {
-    std::size_t materials = 1;
-    std::vector<double> M;        // mass of each material
-    Field mass, per_mass;         // of all; 1/mass, 0 in an empty cell
-    Field filled;                 // 1, or 0 in an empty cell
-    Field p, c;                   // pressure, speed of sound
-    std::vector<double> share;    // of the work of the pressure, that each material takes
-    Field q_x, q_z;               // viscous pressure on the face between cell (i, j) and the one
-                                  // before it along x, along z
-    std::vector<CellVelocity> v;  // u
+    long materials = 1;
+    std::vector<double> M;              // mass of each material
+    Field mass, per_mass;               // of all; 1/mass, 0 in an empty cell
+    Field filled;                       // 1, or 0 in an empty cell
+    Field p, c;                         // pressure, speed of sound
+    std::vector<double> share;          // of the work of the pressure, that each material takes
+    Field q_x, q_z;                     // viscous pressure on the faces before the cell
+    std::vector<CellVelocity> v;        // u
     std::vector<CellVelocity> v_tilde;  // u~
     std::vector<double> e_tilde;        // I~ of each material
 
-    std::vector<int> home;     // of each particle, the cell that it comes from
+    std::vector<int> donor;    // of each particle, the cell that it comes from
     std::vector<double> sums;  // what particles bring to a cell
     std::vector<double> row;   // one number per row of cells
     SortScratch sort;
-    Incoming incoming;
 
-    explicit PicCells(const Case& w) : materials(w.materials.size()) {
-        const auto size = static_cast<std::size_t>(w.grid.size());
-        for (Field* f : {&mass, &per_mass, &filled, &p, &c, &q_x, &q_z})
-            *f = Field::Zero(w.grid.size());
-        for (auto* f : {&M, &share, &e_tilde}) f->assign(size * materials, 0.0);
-        v.assign(size, {});
-        v_tilde.assign(size, {});
-        row.assign(static_cast<std::size_t>(w.grid.z.cells), 0.0);
-        sums.assign(static_cast<std::size_t>(w.grid.x.cells * w.grid.z.cells) * (3 + 2 * materials),
-                    0.0);
-        const int k = material_index(w, w.inflow.material);
-        if (k < 0) return;
-        const Material& a = w.materials[static_cast<std::size_t>(k)];
-        incoming.rho = w.inflow.density;
-        incoming.e = internal_energy(a, incoming.rho, w.inflow.pressure);
-        incoming.p = pressure(a, incoming.rho, incoming.e);
-        incoming.c = std::sqrt(stiffness(a, incoming.p) / incoming.rho);
-        incoming.v = {w.inflow.velocity_x, w.inflow.velocity_z};
+    explicit PicCells(const Problem& problem)
+        : materials(static_cast<long>(problem.materials.size())) {
+        const Grid& grid = problem.grid;
+        for (Field* f : {&mass, &per_mass, &filled, &p, &c, &q_x, &q_z}) f->setZero(grid.size());
+        for (auto* f : {&M, &share, &e_tilde}) f->assign(grid.size() * materials, 0.0);
+        v.assign(grid.size(), {});
+        v_tilde.assign(grid.size(), {});
+        row.assign(grid.z.cells, 0.0);
+        sums.assign(grid.x.cells * grid.z.cells * (3 + 2 * materials), 0.0);
     }
 };
 
-/// The home of particles that have just entered: a corner that is no cell and no ghost.
-inline int outside(const Grid& grid) { return static_cast<int>(grid.size()) - 1; }
-
-/// Calls work(j) for every row of cells.
+/// Calls work(j) for every row of cells, in parallel where that pays.
 template <class Work>
 void for_each_row_of_cells(const Grid& grid, const Work& work) {
     if (grid.x.cells * grid.z.cells < common::parallel_threshold) {
@@ -85,20 +67,19 @@ void for_each_row_of_cells(const Grid& grid, const Work& work) {
 /// Sum over rows of cells, added in the order of the rows.
 template <class SumOfRow>
 double sum_over_rows(const Grid& grid, PicCells& cells, const SumOfRow& sum_of_row) {
-    for_each_row_of_cells(grid,
-                          [&](long j) { cells.row[static_cast<std::size_t>(j)] = sum_of_row(j); });
+    for_each_row_of_cells(grid, [&](long j) { cells.row[j] = sum_of_row(j); });
     double sum = 0;
     for (const double part : cells.row) sum += part;
     return sum;
 }
 
-/// Calls visit(ghost, inside) for every ghost cell behind one end, with the cell whose image it is.
-/// note:   first the ends along x, then those along z, which take the corners with them
+/// Calls visit(ghost, inside) for every ghost cell beyond one side, with the cell whose image it is.
+/// note:   first the sides along x, then those along z, which take the corners with them
 template <class Visit>
-void for_each_ghost(const Grid& grid, End end, const Visit& visit) {
+void for_each_ghost(const Grid& grid, Side side, const Visit& visit) {
     const long nx = grid.x.cells, nz = grid.z.cells;
-    const bool low = end == x_low || end == z_low;
-    if (end == x_low || end == x_high) {
+    const bool low = is_low_side(side);
+    if (is_x_side(side)) {
         const long ghost = low ? -1 : nx, inside = low == grid.x.periodic ? nx - 1 : 0;
         for (long j = 0; j < nz; ++j) visit(grid.index(ghost, j), grid.index(inside, j));
     } else {
@@ -108,45 +89,48 @@ void for_each_ghost(const Grid& grid, End end, const Visit& visit) {
 }
 
 /// Fills the ghosts of a velocity: images around a periodic direction; the mirror image behind a
-/// wall, whose normal component is odd; the same velocity behind an open end; what comes in.
-inline void fill_ghosts(const Case& w, const Incoming& incoming, std::vector<CellVelocity>& v) {
-    for (const End end : {x_low, x_high, z_low, z_high}) {
-        const bool wall = w.is(end, "slip"), along_x = end == x_low || end == x_high;
+/// wall, whose normal component is odd; the same velocity beyond an open boundary; that of an inflow.
+inline void fill_ghosts(const Grid& grid, const Boundaries& boundaries,
+                        std::vector<CellVelocity>& v) {
+    const CellVelocity v_in{boundaries.inflow.vx, boundaries.inflow.vz};
+    for (const Side side : all_sides) {
+        const bool wall = boundaries.is(side, BoundaryKind::slip), along_x = is_x_side(side);
         const double odd_x = wall && along_x ? -1 : 1, odd_z = wall && !along_x ? -1 : 1;
-        const bool comes_in = w.is(end, "inflow");
-        for_each_ghost(w.grid, end, [&](long ghost, long inside) {
-            const CellVelocity a = v[static_cast<std::size_t>(inside)];
-            v[static_cast<std::size_t>(ghost)] =
-                comes_in ? incoming.v : CellVelocity{odd_x * a.x, odd_z * a.z};
+        const bool inflow = boundaries.is(side, BoundaryKind::inflow);
+        for_each_ghost(grid, side, [&](long ghost, long inside) {
+            const CellVelocity a = v[inside];
+            v[ghost] = inflow ? v_in : CellVelocity{odd_x * a.x, odd_z * a.z};
         });
     }
 }
 
-/// Fills the ghosts of what share_pressure() makes.
-/// note:   behind an open end p is such that its mean with the cell inside is the pressure outside
-inline void fill_ghosts(const Case& w, PicCells& cells) {
-    const double V = w.grid.cell_area();
-    for (const End end : {x_low, x_high, z_low, z_high}) {
-        const bool open = w.is(end, "open"), comes_in = w.is(end, "inflow");
-        const double outside_pressure = w.ends[end].pressure;
-        for_each_ghost(w.grid, end, [&](long ghost, long inside) {
+/// Fills the ghosts of what find_pressure() makes.
+/// note:   beyond an open boundary p is such that its mean with the cell inside is the pressure
+///         outside
+inline void fill_ghosts(const Grid& grid, const Boundaries& boundaries, PicCells& cells) {
+    const double V = grid.cell_area();
+    const Inflow& in = boundaries.inflow;
+    for (const Side side : all_sides) {
+        const bool open = boundaries.is(side, BoundaryKind::open),
+                   inflow = boundaries.is(side, BoundaryKind::inflow);
+        const double outside_pressure = boundaries.side[side].pressure;
+        for_each_ghost(grid, side, [&](long ghost, long inside) {
             for (Field* f : {&cells.mass, &cells.per_mass, &cells.filled, &cells.p, &cells.c})
                 (*f)[ghost] = (*f)[inside];
             if (open) cells.p[ghost] = 2 * outside_pressure - cells.p[inside];
-            if (comes_in) {
-                cells.mass[ghost] = cells.incoming.rho * V;
-                cells.per_mass[ghost] = 1 / cells.mass[ghost];
-                cells.filled[ghost] = 1;
-                cells.p[ghost] = cells.incoming.p;
-                cells.c[ghost] = cells.incoming.c;
-            }
+            if (!inflow) return;
+            cells.mass[ghost] = in.rho * V;
+            cells.per_mass[ghost] = 1 / cells.mass[ghost];
+            cells.filled[ghost] = 1;
+            cells.p[ghost] = in.p;
+            cells.c[ghost] = in.c;
         });
     }
-    fill_ghosts(w, cells.incoming, cells.v);
+    fill_ghosts(grid, boundaries, cells.v);
 }
 
-/// Column of cells of a position along x, and of its row along z; the same everywhere, so that a
-/// particle is never counted in one cell and looked for in another.
+/// Column of cells of a position along x; the same everywhere, so that a particle is never counted
+/// in one cell and looked for in another.
 struct Columns {
     double low, per_dx;
     int last;
@@ -157,73 +141,5 @@ struct Columns {
         return i < last ? i : last;
     }
 };
-
-/// Sums over the cells.
-/// in: cells whose mass belongs to the state: after repartition() or weigh_cells()
-inline Totals totals_of(const Case& w, const State& state, PicCells& cells) {
-    const Grid& grid = w.grid;
-    const long nx = grid.x.cells;
-    const std::size_t K = cells.materials;
-    const double x_middle = grid.x.low + 0.5 * grid.x.length,
-                 z_middle = grid.z.low + 0.5 * grid.z.length;
-    const auto sum = [&](const auto& of_cell) {
-        return sum_over_rows(grid, cells, [&](long j) {
-            double part = 0;
-            for (long i = 0; i < nx; ++i) part += of_cell(grid.index(i, j), i, j);
-            return part;
-        });
-    };
-    const Field &M = cells.mass, &vx = state.cells.vx, &vz = state.cells.vz;
-    const double x_first = grid.x.at(0.5) - x_middle, z_first = grid.z.at(0.5) - z_middle,
-                 dx = grid.x.spacing(), dz = grid.z.spacing();
-    Totals t;
-    t.mass = sum([&](long n, long, long) { return M[n]; });
-    t.momentum_x = sum([&](long n, long, long) { return M[n] * vx[n]; });
-    t.momentum_z = sum([&](long n, long, long) { return M[n] * vz[n]; });
-    t.angular_momentum = sum([&](long n, long i, long j) {
-        const double x = x_first + dx * static_cast<double>(i),
-                     z = z_first + dz * static_cast<double>(j);
-        return M[n] * (x * vz[n] - z * vx[n]);
-    });
-    t.kinetic =
-        sum([&](long n, long, long) { return 0.5 * M[n] * (vx[n] * vx[n] + vz[n] * vz[n]); });
-    t.internal = sum([&](long n, long, long) {
-        double U = 0;
-        for (std::size_t k = 0; k < K; ++k)
-            U += cells.M[static_cast<std::size_t>(n) * K + k] * state.cells.e[k][n];
-        return U;
-    });
-    return t;
-}
-
-/// The fluid on the cells.
-/// in:  cells after share_pressure()
-/// out: fields, zero in empty cells; reused from step to step
-inline void fields_of(const Case& w, const State& state, const PicCells& cells,
-                      CellFields& fields) {
-    const Grid& grid = w.grid;
-    const std::size_t K = cells.materials;
-    const double per_V = 1 / grid.cell_area();
-    if (fields.rho.size() != grid.size()) {
-        for (Field* f : {&fields.rho, &fields.vx, &fields.vz, &fields.p, &fields.e})
-            *f = Field::Zero(grid.size());
-        fields.rho_of.assign(K, fields.rho);
-    }
-    for_each_row_of_cells(grid, [&](long j) {
-        for (long n = grid.index(0, j); n < grid.index(grid.x.cells, j); ++n) {
-            fields.rho[n] = cells.mass[n] * per_V;
-            fields.vx[n] = state.cells.vx[n];
-            fields.vz[n] = state.cells.vz[n];
-            fields.p[n] = cells.p[n];
-            double U = 0;
-            for (std::size_t k = 0; k < K; ++k) {
-                const double M = cells.M[static_cast<std::size_t>(n) * K + k];
-                fields.rho_of[k][n] = M * per_V;
-                U += M * state.cells.e[k][n];
-            }
-            fields.e[n] = U * cells.per_mass[n];
-        }
-    });
-}
 
 }  // namespace flip

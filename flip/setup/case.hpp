@@ -8,7 +8,7 @@
 
 #include "common/grid.hpp"
 #include "common/run/parameters.hpp"
-#include "flip/equation_of_state.hpp"
+#include "flip/problem.hpp"
 
 namespace flip {
 
@@ -43,18 +43,17 @@ struct RegionCase {
 };
 
 /// One end of the mesh.
-struct EndCase {
+struct BoundaryCase {
     std::string kind = "periodic";  // or slip, no_slip, open, inflow
     double slide = 0;               // speed of a no-slip wall along itself
     double pressure = 0;            // outside an open end
 };
-enum End : std::size_t { x_low, x_high, z_low, z_high };
-inline constexpr std::array<const char*, 4> end_names{"x_low", "x_high", "z_low", "z_high"};
+inline constexpr std::array<const char*, 4> side_names{"x_low", "x_high", "z_low", "z_high"};
 
 /// A complete input. Any consistent units; per unit length along y.
 struct Case {
     common::Grid grid{{100, 0, 1, true}, {1, 0, 1, true}};
-    std::array<EndCase, 4> ends;
+    std::array<BoundaryCase, 4> boundaries;
     GasCase inflow;
 
     double cfl = 0.3, dt = 0, end = 1;
@@ -100,7 +99,7 @@ struct Case {
     bool heats() const { return deficit_to_heat && mass == "lumped"; }
     bool implicit() const { return pressure == "implicit"; }
     bool plane() const { return grid.z.cells > 1; }
-    bool is(End e, const char* kind) const { return ends[e].kind == kind; }
+    bool is(Side e, const char* kind) const { return boundaries[e].kind == kind; }
 };
 
 }  // namespace flip

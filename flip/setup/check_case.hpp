@@ -20,7 +20,8 @@ inline void refuse_methods(const Case& parameters, const std::string& program) {
         refuse(key.changed && !key.used, key.name, " = ", key.value, " needs ", key.needs);
     }
     for (std::size_t k = 0; k < 4; ++k)
-        refuse(program == "pic" && parameters.ends[k].kind == "no_slip", "boundary.", end_names[k],
+        refuse(program == "pic" && parameters.boundaries[k].kind == "no_slip", "boundary.",
+               side_names[k],
                " = \"no_slip\" needs viscosity: run the case with flip, or take \"slip\"");
     refuse(parameters.mass == "consistent" && parameters.implicit(),
            "flip.mass = \"consistent\" and flip.pressure = \"implicit\" do not go together: the "

@@ -53,9 +53,10 @@ inline void refuse_sizes(const Case& parameters) {
     for (const Material& a : parameters.materials)
         refuse_extreme("material." + a.name + ".p_infinity", a.p_infinity);
     for (std::size_t k = 0; k < 4; ++k) {
-        refuse_extreme("boundary.slide_" + std::string(end_names[k]), parameters.ends[k].slide);
-        refuse_extreme("boundary.pressure_" + std::string(end_names[k]),
-                       parameters.ends[k].pressure);
+        refuse_extreme("boundary.slide_" + std::string(side_names[k]),
+                       parameters.boundaries[k].slide);
+        refuse_extreme("boundary.pressure_" + std::string(side_names[k]),
+                       parameters.boundaries[k].pressure);
     }
     const auto refuse_far = [](const std::string& name, const common::Axis& axis) {
         const double away = std::fabs(axis.low) / axis.spacing();
@@ -69,18 +70,18 @@ inline void refuse_sizes(const Case& parameters) {
 
 /// Refuses boundaries that do not go together, and numbers that none of them uses.
 inline void refuse_boundaries(const Case& parameters) {
-    for (const End low : {x_low, z_low}) {
-        const std::string a = end_names[low], b = end_names[low + 1];
-        refuse((parameters.ends[low].kind == "periodic") !=
-                   (parameters.ends[low + 1].kind == "periodic"),
-               "boundary.", a, " = \"", parameters.ends[low].kind, "\" and boundary.", b, " = \"",
-               parameters.ends[low + 1].kind,
+    for (const Side low : {x_low, z_low}) {
+        const std::string a = side_names[low], b = side_names[low + 1];
+        refuse((parameters.boundaries[low].kind == "periodic") !=
+                   (parameters.boundaries[low + 1].kind == "periodic"),
+               "boundary.", a, " = \"", parameters.boundaries[low].kind, "\" and boundary.", b,
+               " = \"", parameters.boundaries[low + 1].kind,
                "\": a periodic direction has no ends; make both periodic or neither");
     }
     bool has_inflow = false;
     for (std::size_t k = 0; k < 4; ++k) {
-        const EndCase& end = parameters.ends[k];
-        const std::string name = end_names[k];
+        const BoundaryCase& end = parameters.boundaries[k];
+        const std::string name = side_names[k];
         refuse(!parameters.plane() && k >= z_low && end.kind != "periodic" && end.kind != "slip",
                "boundary.", name, " = \"", end.kind,
                "\" needs grid.cells_z of at least 2: a row is periodic in z or slips");
@@ -185,10 +186,11 @@ inline void refuse_tension(const Case& parameters) {
 
 /// Refuses a run without particles, and a time step that is too long.
 inline void refuse_steps(const Case& parameters, const Scales& s) {
-    refuse(s.particles == 0 && !std::any_of(parameters.ends.begin(), parameters.ends.end(),
-                                            [](const EndCase& e) { return e.kind == "inflow"; }),
-           "no region contains a particle, so nothing can happen: put one on the mesh, from x = ",
-           parameters.grid.x.low, " to ", parameters.grid.x.high());
+    refuse(
+        s.particles == 0 && !std::any_of(parameters.boundaries.begin(), parameters.boundaries.end(),
+                                         [](const BoundaryCase& e) { return e.kind == "inflow"; }),
+        "no region contains a particle, so nothing can happen: put one on the mesh, from x = ",
+        parameters.grid.x.low, " to ", parameters.grid.x.high());
     refuse(s.steps > 1e9, "time.end = ", parameters.end, " is ", s.steps, " steps of ", s.dt,
            ", more than 1e9: lower time.end or ",
            (parameters.dt > 0 ? "raise time.dt" : "take larger cells"));

@@ -90,14 +90,14 @@ inline common::ParameterTable describe(Case& parameters) {
 
     table.group("boundaries of the mesh");
     for (std::size_t k = 0; k < 4; ++k) {
-        const std::string end = end_names[k];
-        table.choice("boundary." + end, parameters.ends[k].kind,
+        const std::string end = side_names[k];
+        table.choice("boundary." + end, parameters.boundaries[k].kind,
                      {"periodic", "slip", "no_slip", "open", "inflow"},
                      "open: particles leave, and the pressure outside is given");
-        table.real("boundary.slide_" + end, parameters.ends[k].slide, "velocity", anything(),
+        table.real("boundary.slide_" + end, parameters.boundaries[k].slide, "velocity", anything(),
                    "of a no-slip wall along itself");
-        table.real("boundary.pressure_" + end, parameters.ends[k].pressure, "pressure", at_least(0),
-                   "outside an open end");
+        table.real("boundary.pressure_" + end, parameters.boundaries[k].pressure, "pressure",
+                   at_least(0), "outside an open end");
     }
     detail::describe_gas(table, "inflow", parameters.inflow);
 

@@ -117,7 +117,7 @@ inline Scales scales_of(const Case& parameters, const std::string& program = "fl
         s.speed = std::max(s.speed, r.speed);
         s.mach = std::max(s.mach, r.mach);
     }
-    for (const EndCase& end : parameters.ends) {
+    for (const BoundaryCase& end : parameters.boundaries) {
         s.rate = std::max(s.rate, std::fabs(end.slide) * std::max(per_dx, per_dz));
         if (end.kind == "inflow")
             s.rate = std::max(s.rate, std::fabs(parameters.inflow.velocity_x) * per_dx +
@@ -146,8 +146,9 @@ inline std::string describe_scales(const Case& parameters, const Scales& scales,
         text += sentence("  ", name, space, value..., "\n");
     };
     const Grid& grid = parameters.grid;
-    const auto ends = [&](End low) {
-        const std::string &a = parameters.ends[low].kind, &b = parameters.ends[low + 1].kind;
+    const auto ends = [&](Side low) {
+        const std::string &a = parameters.boundaries[low].kind,
+                          &b = parameters.boundaries[low + 1].kind;
         return a == b ? a : a + " and " + b;
     };
     line("mesh", grid.x.cells, " x ", grid.z.cells, " cells of ", grid.x.spacing(), " x ",

@@ -25,7 +25,7 @@ inline void warn_of_regions(const Case& parameters, const Scales& scales,
             return material_index(parameters, gas.material) == static_cast<int>(k);
         };
         bool used = is_here(parameters.inflow) &&
-                    std::any_of(parameters.ends.begin(), parameters.ends.end(),
+                    std::any_of(parameters.boundaries.begin(), parameters.boundaries.end(),
                                 [](auto& end) { return end.kind == "inflow"; });
         for (const RegionCase& r : parameters.regions) used = used || is_here(r.gas);
         warn(out, !used, "material.", parameters.materials[k].name, " is nowhere");
@@ -77,8 +77,8 @@ inline void warn_of_speeds(const Case& parameters, const Scales& scales, const s
                             "rests: behind a shock at a wall, density scatters by tens of percent"
                           : "without artificial viscosity particles pile up at shocks: set "
                             "viscosity.linear = 0.5 and viscosity.quadratic = 1");
-    const bool held = std::any_of(parameters.ends.begin(), parameters.ends.end(),
-                                  [](const EndCase& end) { return end.kind == "no_slip"; });
+    const bool held = std::any_of(parameters.boundaries.begin(), parameters.boundaries.end(),
+                                  [](const BoundaryCase& end) { return end.kind == "no_slip"; });
     warn(out, held && parameters.viscosity == 0,
          "a no_slip wall holds fluid without viscosity only through the mesh: set flip.viscosity, "
          "or make the wall slip");

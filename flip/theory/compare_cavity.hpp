@@ -12,12 +12,12 @@ inline constexpr const char* cavity_table = "flip/data/ghia_re100.csv";
 
 /// Needs a square with a lid at Reynolds number 100.
 inline void validate_cavity(const Case& parameters, const Refusal& refuse) {
-    for (const EndCase& end : parameters.ends)
+    for (const BoundaryCase& end : parameters.boundaries)
         refuse(end.kind != "no_slip", " needs no_slip walls on all sides");
-    const double U = parameters.ends[z_high].slide;
+    const double U = parameters.boundaries[z_high].slide;
     refuse(!(U > 0), " needs a lid that moves: set boundary.slide_z_high above 0");
-    for (const End end : {x_low, x_high, z_low})
-        refuse(parameters.ends[end].slide != 0, " needs all walls but the lid at rest");
+    for (const Side end : {x_low, x_high, z_low})
+        refuse(parameters.boundaries[end].slide != 0, " needs all walls but the lid at rest");
     refuse(std::fabs(parameters.grid.x.length - parameters.grid.z.length) >
                1e-9 * parameters.grid.x.length,
            " is for a square, and the mesh is ", parameters.grid.x.length, " x ",
@@ -37,7 +37,7 @@ struct Midlines {
 /// Means of the two cells next to the middle, where the number of cells is even.
 inline Midlines midlines(const Case& parameters, const CellFields& cells) {
     const Grid& grid = parameters.grid;
-    const double U = parameters.ends[z_high].slide;
+    const double U = parameters.boundaries[z_high].slide;
     const long i1 = (grid.x.cells - 1) / 2, i2 = grid.x.cells / 2, j1 = (grid.z.cells - 1) / 2,
                j2 = grid.z.cells / 2;
     Midlines lines;
@@ -65,7 +65,7 @@ struct VortexCenter {
 /// The center from the stream function -integral u dz, with a parabola through three nodes.
 inline VortexCenter vortex_center(const Case& parameters, const CellFields& cells) {
     const Grid& grid = parameters.grid;
-    const double U = parameters.ends[z_high].slide, nx = static_cast<double>(grid.x.cells),
+    const double U = parameters.boundaries[z_high].slide, nx = static_cast<double>(grid.x.cells),
                  nz = static_cast<double>(grid.z.cells);
     const auto flux = [&](long i, long j) {
         double sum = 0;

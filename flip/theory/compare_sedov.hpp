@@ -25,11 +25,11 @@ inline const RegionCase& hot_region(const Case& parameters) {
 inline Blast blast_of(const Case& parameters) {
     const RegionCase &hot = hot_region(parameters), &cold = parameters.regions.front();
     double energy = hot.energy / (parameters.plane() ? 1 : parameters.grid.z.length);
-    const auto mirrored = [&](End low, const common::Axis& axis, double center) {
+    const auto mirrored = [&](Side low, const common::Axis& axis, double center) {
         const double near = 0.5 * axis.spacing();
         const bool at_low = parameters.is(low, "slip") && std::fabs(center - axis.low) <= near;
         const bool at_high =
-            parameters.is(End(low + 1), "slip") && std::fabs(center - axis.high()) <= near;
+            parameters.is(Side(low + 1), "slip") && std::fabs(center - axis.high()) <= near;
         return at_low || at_high ? 2.0 : 1.0;
     };
     energy *= mirrored(x_low, parameters.grid.x, hot.center_x);

@@ -28,8 +28,8 @@ inline void validate_wall_shock(const Case& parameters, const Refusal& refuse) {
            " needs a single region, uniform and everywhere");
     refuse(r.gas.velocity_x == 0, " needs gas that runs into a wall: give region.", r.name,
            ".velocity_x");
-    const End wall = r.gas.velocity_x < 0 ? x_low : x_high;
-    const char* name = end_names[wall];
+    const Side wall = r.gas.velocity_x < 0 ? x_low : x_high;
+    const char* name = side_names[wall];
     refuse(!parameters.is(wall, "slip"), ": the gas runs towards ", name,
            ", which is not a wall: set boundary.", name, " = \"slip\"");
     refuse(material_of(parameters, r).gamma == 1, " is for a gas, and gamma = 1 is dust");

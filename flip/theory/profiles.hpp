@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "flip/setup/case.hpp"
 #include "flip/state.hpp"
 
 namespace flip {

@@ -11,8 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "flip/flip/flip_fields.hpp"
 #include "flip/flip/step.hpp"
+#include "flip/output/flip_diagnostics.hpp"
+#include "flip/setup/problem_of_case.hpp"
 #include "tests/support/any_numbers.hpp"
 
 namespace facts {
@@ -30,12 +31,13 @@ struct Random {
 /// The steps of flip, whole and in parts.
 struct FlipRun {
     Case w;
+    Problem problem;
     FlipScratch scratch;
     State state;
     long steps_taken = 0;
 
     FlipRun(const Case& parameters, const Particles& particles)
-        : w(completed(parameters)), scratch(w) {
+        : w(completed(parameters)), problem(problem_of(w)), scratch(problem) {
         state.particles = particles;
         sort();
     }
@@ -49,29 +51,29 @@ struct FlipRun {
 
     void sort() { sort_particles(w.grid, scratch.sort, state.particles); }
     /// particles -> mesh, and the pressure.
-    void deposit() { find_fluid(w, state, scratch.mesh); }
+    void deposit() { find_fluid(problem, state, scratch.mesh); }
     double move_nodes() {
-        const double dt = step_allowed(w, scratch.mesh, state.dt);
-        state.report =
-            move_mesh(w, dt, state.particles, scratch.mass_matrix, scratch.mesh, state.books);
+        const double dt = step_allowed(problem, scratch.mesh, state.dt);
+        state.report = move_mesh(problem, dt, state.particles, scratch.mass_matrix, scratch.mesh,
+                                 state.budget);
         return dt;
     }
     void step() {
         deposit();
-        take_flip_step(w, steps_taken++, scratch, state);
+        take_flip_step(problem, steps_taken++, scratch, state);
     }
     void steps(int count) {
         for (int n = 0; n < count; ++n) step();
     }
-    Totals totals() const { return particle_totals(w, state.particles); }
+    Totals totals() const { return particle_totals(problem.grid, state.particles); }
 };
 
 /// A mesh on (0, 1) in x; a plane of unit height or a row of cells.
 inline Case flip_case(long nx, long nz, const char* ends_x, const char* ends_z) {
     Case w;
     w.grid = {{nx, 0, 1, true}, {nz, 0, nz > 1 ? 1.0 : 1.0 / real(nx), true}};
-    w.ends[x_low].kind = w.ends[x_high].kind = ends_x;
-    w.ends[z_low].kind = w.ends[z_high].kind = ends_z;
+    w.boundaries[x_low].kind = w.boundaries[x_high].kind = ends_x;
+    w.boundaries[z_low].kind = w.boundaries[z_high].kind = ends_z;
     w.per_cell_z = nz > 1 ? 4 : 1;
     w.end = 1e3;
     return w;
@@ -124,16 +126,16 @@ inline Particles any_cloud(const Case& parameters, double speed, std::uint64_t s
 /// Random numbers on the nodes that are not images, images filled.
 inline void stir_nodes(const Grid& grid, Random& random, Field& f) {
     f.setZero(grid.size());
-    for_own_nodes(grid, [&](long n) { f[n] = random(-1, 1); });
+    for_own_nodes(grid, [&](long, long, long n) { f[n] = random(-1, 1); });
     fill_nodes(grid, f.data());
 }
 
-/// How much a step leaves of mass, momentum and energy beside the books, relative.
+/// How much a step leaves of mass, momentum and energy beside the budget, relative.
 struct Leak {
     double mass = 0, momentum = 0, energy = 0;
     double most() const { return worst({mass, momentum, energy}); }
 };
-inline Leak leak(const Totals& a, const Totals& b, const Books& before, const Books& after) {
+inline Leak leak(const Totals& a, const Totals& b, const Budget& before, const Budget& after) {
     const double energy = worst({a.kinetic + a.internal, b.kinetic + b.internal}),
                  mass = worst({a.mass, b.mass}), momentum = std::sqrt(2 * energy * mass);
     Leak l;

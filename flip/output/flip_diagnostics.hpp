@@ -3,24 +3,23 @@
 
 #include <array>
 
-#include "flip/flip/mesh.hpp"
 #include "flip/flip/transfer.hpp"
+#include "flip/state.hpp"
 
 namespace flip {
 
 /// Sums over the particles; with apic the motion within a particle counts.
 /// exact:  added in an order that does not depend on the number of threads
-inline Totals particle_totals(const Case& w, const Particles& p) {
-    const WeightScale scale(w.grid);
-    const double x_mid = w.grid.x.low + 0.5 * w.grid.x.length,
-                 z_mid = w.grid.z.low + 0.5 * w.grid.z.length;
+inline Totals particle_totals(const Grid& grid, const Particles& p) {
+    const WeightScale scale(grid);
+    const double x_mid = grid.x.low + 0.5 * grid.x.length, z_mid = grid.z.low + 0.5 * grid.z.length;
     const bool affine = has(p.Cxx_p);
     std::array<Totals, common::block_count> parts{};
     common::for_each_block(
         p.count(),
         [&](int block, long begin, long end) {
             Totals sum;
-            for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
+            for (long k = begin; k < end; ++k) {
                 const double m = p.m_p[k], vx = p.vx_p[k], vz = p.vz_p[k];
                 sum.mass += m;
                 sum.momentum_x += m * vx;
@@ -31,12 +30,12 @@ inline Totals particle_totals(const Case& w, const Particles& p) {
                 if (!affine) continue;
                 const Weights at = weights_at(scale, p.x_p[k], p.z_p[k]);
                 const double C[4] = {p.Cxx_p[k], p.Cxz_p[k], p.Czx_p[k], p.Czz_p[k]};
-                const double dx = w.grid.x.spacing(), dz = w.grid.z.spacing();
-                sum.kinetic += m * affine_energy(w.grid, at, C);
+                const double dx = grid.x.spacing(), dz = grid.z.spacing();
+                sum.kinetic += m * affine_energy(grid, at, C);
                 sum.angular_momentum += m * (C[2] * at.S_x[0] * at.S_x[1] * dx * dx -
                                              C[1] * at.S_z[0] * at.S_z[1] * dz * dz);
             }
-            parts[static_cast<std::size_t>(block)] = sum;
+            parts[block] = sum;
         },
         p.count());
     Totals all;
@@ -53,21 +52,19 @@ inline Totals particle_totals(const Case& w, const Particles& p) {
 
 /// The fluid on the cells.
 /// in:     deposit_particles() and find_pressure() have been called
-inline CellFields cell_fields(const Case& w, const Mesh& mesh) {
-    const Grid& grid = w.grid;
+inline CellFields cell_fields(const Grid& grid, const Mesh& mesh) {
     const Nodes& g = mesh.nodes;
-    const std::size_t kinds = mesh.materials;
     const double per_V = 1 / grid.cell_area();
     CellFields f;
     for (Field* field : {&f.rho, &f.vx, &f.vz, &f.p, &f.e}) field->setZero(grid.size());
-    f.rho_of.assign(kinds, Field::Zero(grid.size()));
+    f.rho_of.assign(mesh.materials, Field::Zero(grid.size()));
     for_each_cell(grid, [&](long, long, long n) {
         const double M = mesh.cells.M[n];
         if (M <= 0) return;
         const long up = n + grid.stride();
         double U = 0;
-        for (std::size_t k = 0; k < kinds; ++k) {
-            const CellSum& sum = mesh.cells.sum[static_cast<std::size_t>(n) * kinds + k];
+        for (long k = 0; k < mesh.materials; ++k) {
+            const CellSum& sum = mesh.cells.sum[n * mesh.materials + k];
             f.rho_of[k][n] = sum.M * per_V;
             U += sum.U;
         }

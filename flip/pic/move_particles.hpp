@@ -1,0 +1,168 @@
+// Particles move with the fluid to their final position, and cross the boundaries of the mesh.
+// [PIC, particles move to final position]
+//
+//     x_p += dt u~(x_p)                                  u~ area-weighted from the cells around
+//
+// A particle * is a box as large as a cell, and moves with the velocities of the four cells that it
+// overlaps, in proportion to the areas.
+//
+//     +-------+-------+
+//     |   . . | . .   |      here mostly with that of the upper right cell; where empty cells are
+//     |   .   | * .   |      near, they are left out and the rest is scaled to 1
+//     +---.---+---.---+
+//     |   . . | . .   |
+//     +-------+-------+
+#pragma once
+
+#include "flip/boundaries.hpp"
+#include "flip/pic/pic_cells.hpp"
+
+namespace flip {
+
+namespace detail {
+
+inline constexpr long batch_size = 512;
+
+// New positions and donor cells of a batch, the particles [begin, end) of row j.
+// out: how many are beyond a boundary of the mesh
+template <bool plane, bool holes>
+long move_batch(const Grid& grid, double dt, long j, long begin, long end, Particles& particles,
+                PicCells& cells) {
+    double *const x_p = particles.x_p.data(), *const z_p = particles.z_p.data();
+    int* const donor = cells.donor.data();
+    const CellVelocity* const v = cells.v_tilde.data();
+    const double* const filled = cells.filled.data();
+    const Columns column(grid.x);
+    const int stride = static_cast<int>(grid.stride()),
+              first = static_cast<int>(grid.index(0, plane ? j : 0));
+    const double z_low = grid.z.low, per_dz = 1 / grid.z.spacing();
+    const double to_row = static_cast<double>(j);
+#pragma omp simd
+    for (long p = begin; p < end; ++p) {
+        const double s = (x_p[p] - column.low) * column.per_dx;
+        const int i = static_cast<int>(s);
+        const int right = static_cast<int>(s + 0.5);  // of the two columns of cells
+        const double f = s + 0.5 - right;
+        donor[p] = first + (i < column.last ? i : column.last);
+        if constexpr (plane) {
+            const double t = (z_p[p] - z_low) * per_dz + 0.5 - to_row;
+            const int up = t < 1 ? 0 : 1;
+            const double g = t - up;
+            const int n = first + (up - 1) * stride + right - 1;
+            double w00 = (1 - f) * (1 - g), w10 = f * (1 - g), w01 = (1 - f) * g, w11 = f * g;
+            if constexpr (holes) {
+                w00 *= filled[n], w10 *= filled[n + 1];
+                w01 *= filled[n + stride], w11 *= filled[n + stride + 1];
+                const double per_area = 1 / (w00 + w10 + w01 + w11);
+                w00 *= per_area, w10 *= per_area, w01 *= per_area, w11 *= per_area;
+            }
+            x_p[p] += dt * (w00 * v[n].x + w10 * v[n + 1].x + w01 * v[n + stride].x +
+                            w11 * v[n + stride + 1].x);
+            z_p[p] += dt * (w00 * v[n].z + w10 * v[n + 1].z + w01 * v[n + stride].z +
+                            w11 * v[n + stride + 1].z);
+        } else {
+            const int n = first + right - 1;
+            double w0 = 1 - f, w1 = f;
+            if constexpr (holes) {
+                w0 *= filled[n], w1 *= filled[n + 1];
+                const double per_area = 1 / (w0 + w1);
+                w0 *= per_area, w1 *= per_area;
+            }
+            x_p[p] += dt * (w0 * v[n].x + w1 * v[n + 1].x);
+        }
+    }
+
+    const auto count_outside = [&](const common::Axis& axis, double* x) {
+        const double low = axis.low, high = axis.high();
+        for (long p = begin; p < end; ++p) x[p] = wrap(axis, x[p]);
+        long outside = 0;
+        for (long p = begin; p < end; ++p) outside += x[p] >= low && x[p] <= high ? 0 : 1;
+        return outside;
+    };
+    return count_outside(grid.x, x_p) + (plane ? count_outside(grid.z, z_p) : 0);
+}
+
+// Whether an empty cell is among those that particles of row j look at.
+inline bool has_holes(const Grid& grid, const Field& filled, long j) {
+    const long reach = is_plane(grid) ? 1 : 0;
+    double least = 1;
+    for (long b = j - reach; b <= j + reach; ++b) {
+        const double* row = filled.data() + grid.index(-1, b);
+        for (long i = 0; i < grid.x.cells + 2; ++i) least = std::min(least, row[i]);
+    }
+    return least == 0;
+}
+
+}  // namespace detail
+
+/// Harlow's particles know their mass and material, and where they are: clears all other columns.
+inline void clear_motion(Particles& particles) {
+    for (auto* column : {&particles.vx_p, &particles.vz_p, &particles.e_p, &particles.V_p,
+                         &particles.Cxx_p, &particles.Cxz_p, &particles.Czx_p, &particles.Czz_p})
+        column->clear();
+}
+
+/// Particles that have left are removed, and those that have entered are added, out of order.
+/// out:    budget: mass, momentum and energy of what crossed, with u~ and I~ of the donor cell; the
+///         donor of those that enter is a corner of the ghosts, which holds the inflow
+/// errors: NumericalError for a particle beyond a wall
+inline void apply_particle_boundaries(const Problem& problem, double dt, State& state,
+                                      PicCells& cells) {
+    Particles& particles = state.particles;
+    Budget& budget = state.budget;
+    const auto enter = [&](double m, const CellVelocity& v, double e) {
+        budget.mass += m;
+        budget.momentum_x += m * v.x;
+        budget.momentum_z += m * v.z;
+        budget.energy += m * (e + 0.5 * (v.x * v.x + v.z * v.z));
+    };
+    remove_outflow(problem, state.time + dt, particles, [&](long p) {
+        const long A = cells.donor[p];
+        enter(-particles.m_p[p], cells.v_tilde[A],
+              cells.e_tilde[A * cells.materials + particles.material[p]]);
+        cells.donor[p] = -1;
+    });
+    std::erase(cells.donor, -1);
+
+    const long added = add_inflow(problem, state.time, dt, particles);
+    if (added == 0) return;
+    clear_motion(particles);
+    const Inflow& in = problem.boundaries.inflow;
+    const int corner = static_cast<int>(problem.grid.size()) - 1;
+    cells.v_tilde[corner] = {in.vx, in.vz};
+    for (long k = 0; k < cells.materials; ++k) cells.e_tilde[corner * cells.materials + k] = in.e;
+    cells.donor.resize(particles.x_p.size(), corner);
+    for (long p = particles.count() - added; p < particles.count(); ++p)
+        enter(particles.m_p[p], {in.vx, in.vz}, in.e);
+}
+
+/// Particles move with the fluid to their final position; those that leave and enter do so.
+///   x_p += dt u~(x_p)
+/// in:     cells after accelerate_cells(); particles in rows
+/// out:    positions, all on the mesh; donor, the cell that each particle comes from; first_of_row
+///         is void until repartition()
+/// exact:  one velocity everywhere moves every particle by it, also beside empty cells
+/// errors: NumericalError for a particle beyond a wall, or a position that is not finite
+/// note:   in a single row of cells nothing moves along z
+/// source: [PIC, particles move to final position]
+inline void move_particles(const Problem& problem, double dt, State& state, PicCells& cells) {
+    const Grid& grid = problem.grid;
+    Particles& particles = state.particles;
+    cells.donor.resize(particles.x_p.size());
+    const double outside = sum_over_rows(grid, cells, [&](long j) {
+        const bool holes = detail::has_holes(grid, cells.filled, j);
+        const auto move =
+            is_plane(grid)
+                ? (holes ? detail::move_batch<true, true> : detail::move_batch<true, false>)
+                : (holes ? detail::move_batch<false, true> : detail::move_batch<false, false>);
+        const long begin = particles.first_of_row[j], end = particles.first_of_row[j + 1];
+        long count = 0;
+        for (long p = begin; p < end; p += detail::batch_size)
+            count += move(grid, dt, j, p, std::min(end, p + detail::batch_size), particles, cells);
+        return static_cast<double>(count);
+    });
+    if (outside > 0 || problem.boundaries.has(BoundaryKind::inflow))
+        apply_particle_boundaries(problem, dt, state, cells);
+}
+
+}  // namespace flip

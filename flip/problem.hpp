@@ -1,0 +1,118 @@
+// What a step has to know of the run, as plain numbers: the mesh and its boundaries, the materials,
+// the forces and the scheme. Nothing here changes in time.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "common/grid.hpp"
+#include "flip/equation_of_state.hpp"
+
+namespace flip {
+
+using common::Field;
+using common::Grid;
+
+/// The sides of the mesh.
+enum Side : std::size_t { x_low, x_high, z_low, z_high };
+inline constexpr std::array<Side, 4> all_sides{x_low, x_high, z_low, z_high};
+inline bool is_x_side(Side side) { return side == x_low || side == x_high; }
+inline bool is_low_side(Side side) { return side == x_low || side == z_low; }
+
+/// Conditions that a boundary can set.
+enum class BoundaryKind { periodic, slip, no_slip, open, inflow };
+
+/// The boundary condition on one side.
+struct Boundary {
+    BoundaryKind kind = BoundaryKind::periodic;
+    double slide = 0;     // velocity of a no-slip wall along itself
+    double pressure = 0;  // outside of an open boundary
+};
+
+/// The fluid that enters through inflow boundaries.
+struct Inflow {
+    int material = 0;
+    double rho = 0, p = 0, c = 0,
+           e = 0;  // density, pressure, sound speed, specific internal energy
+    double vx = 0, vz = 0;
+};
+
+/// The conditions on all four sides.
+struct Boundaries {
+    std::array<Boundary, 4> side;
+    Inflow inflow;
+
+    bool is(Side s, BoundaryKind kind) const { return side[s].kind == kind; }
+    bool has(BoundaryKind kind) const {
+        return std::any_of(side.begin(), side.end(),
+                           [&](const Boundary& b) { return b.kind == kind; });
+    }
+};
+
+/// Acceleration of the whole fluid: uniform gravity, and a trap towards the middle of the mesh.
+///   a = g + trap (x_middle - x)
+struct BodyForce {
+    double gravity_x = 0, gravity_z = 0;  // [velocity/time]
+    double trap = 0;                      // [1/time^2]
+};
+
+/// Coefficients of the artificial viscosity, which presses where velocities du apart approach.
+///   q = rho (-du) (linear c + quadratic (-du)) where du < 0, else 0
+struct ArtificialViscosity {
+    double linear = 0, quadratic = 0;
+
+    /// q/(-du)
+    double slope(double rho, double c, double du) const {
+        return rho * (linear * c - quadratic * du);
+    }
+    double operator()(double rho, double c, double du) const {
+        return du < 0 ? -du * slope(rho, c, du) : 0.0;
+    }
+};
+
+/// How long a step may be: a part cfl of what the fastest signal allows, or dt where that is not 0;
+/// and the time at which the run ends.
+struct StepLimits {
+    double cfl = 0.3, dt = 0, end = 1;
+};
+
+/// How the velocity of a particle follows the mesh; see transfer.hpp.
+struct Transfer {
+    bool flip = true;        // nothing but the velocity increment of the mesh
+    double part = 0;         // of the velocity of the mesh that replaces the particle's own
+    bool affine = false;     // apic: particles carry the gradient of the velocity
+    bool filtered = false;   // xpic: the velocity of the mesh is filtered
+    long xpic_order = 2;     // of that filter
+    bool dissipates = true;  // kinetic energy that the transfer loses becomes internal energy
+};
+
+/// How `flip` goes about it; `pic` has no choices.
+struct Scheme {
+    Transfer transfer;
+    bool consistent_mass = false;   // mass matrix of the nodes: consistent instead of lumped
+    bool particle_volumes = false;  // density from volumes that particles carry, not from cells
+    bool implicit = false;          // pressure at the level theta
+    double theta = 1, tolerance = 1e-8;
+    long max_iterations = 1000;                  // of the conjugate gradients
+    long rezone_steps = 0;                       // steps between rezonings; 0: never
+    long min_particles = 4, max_particles = 32;  // of one material in a cell
+};
+
+/// All that a step has to know of the run.
+struct Problem {
+    Grid grid;
+    std::vector<Material> materials;
+    Boundaries boundaries;
+    BodyForce body_force;
+    ArtificialViscosity q;
+    double viscosity = 0;  // dynamic viscosity of the fluid [mass/(length time)]
+    StepLimits limits;
+    long per_cell_x = 4, per_cell_z = 4;  // particles of a cell at the start
+    Scheme scheme;
+};
+
+/// Whether there is more than one row of cells; in a single row nothing moves along z.
+inline bool is_plane(const Grid& grid) { return grid.z.cells > 1; }
+
+}  // namespace flip
