@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "common/run/run.hpp"
@@ -17,45 +17,18 @@ namespace mpm {
 
 class Recorder {
    public:
-    /// in: ledger_columns, what the rows of the ledger hold; among them "kinetic", "elastic",
-    ///     "energy", "external" and what is left when all is counted, called `rest`
+    /// in: rest, the column of the energy that is left when all is counted
     Recorder(const Case& parameters, const Scales& scales, const Assembly& all,
-             const std::vector<common::Column>& ledger_columns, const std::string& rest,
-             common::History& history)
+             const std::string& rest)
         : parameters_(parameters),
           scales_(scales),
           subject_(subject_of(parameters, all.grains)),
           rest_(rest) {
-        std::vector<common::Column> columns{{"time", "time"}};
-        columns.insert(columns.end(), ledger_columns.begin(), ledger_columns.end());
-        columns.insert(columns.end(), {{"momentum_x", "momentum"},
-                                       {"momentum_y", "momentum"},
-                                       {"contacts", "1"},
-                                       {"contact_force", "force"}});
-        const auto& grains = all.grains;
-        for (std::size_t g = 0; g < grains.size(); ++g) {
-            if (!grains[g].rigid && free_.size() < most_followed) {
-                free_.push_back(g);
-                columns.push_back({"momentum_x_" + grains[g].name, "momentum"});
-                columns.push_back({"momentum_y_" + grains[g].name, "momentum"});
-            }
-            if (grains[g].rigid && rigid_.size() < most_followed) {
-                rigid_.push_back(g);
-                columns.push_back({"force_x_" + grains[g].name, "force"});
-                columns.push_back({"force_y_" + grains[g].name, "force"});
-                columns.push_back({"travel_x_" + grains[g].name, "length"});
-                columns.push_back({"travel_y_" + grains[g].name, "length"});
-            }
+        std::size_t free = 0, rigid = 0;
+        for (std::size_t g = 0; g < all.grains.size(); ++g) {
+            std::size_t& number = all.grains[g].rigid ? rigid : free;
+            if (number < most_tracked) tracked_.push_back(g), ++number;
         }
-        for (std::size_t b = 0; b < std::min(all.bonds.size(), most_followed); ++b) {
-            const std::string number = std::to_string(b + 1);
-            columns.push_back({"bond_normal_" + number, "stress"});
-            columns.push_back({"bond_shear_" + number, "stress"});
-        }
-        if (!all.bonds.empty()) columns.push_back({"broken_bonds", "1"});
-        for (const common::Column& column : columns_of_comparison(parameters))
-            columns.push_back(column);
-        history.columns(columns);
     }
 
     /// Writes the files that are due at this step, before it.
@@ -71,33 +44,42 @@ class Recorder {
 
     bool row_is_due(long step) const { return step % parameters_.history_steps == 0; }
 
-    /// Writes a row of the history.
-    /// in: time, the ledger and the momenta of every grain then; dt and what contact did, of the step
-    void write_row(double time, double dt, const std::vector<double>& ledger_row,
-                   const std::vector<double>& momentum_x, const std::vector<double>& momentum_y,
-                   const ContactSums& contact, const Assembly& all, common::Run& run) {
-        row_ = {time};
-        row_.insert(row_.end(), ledger_row.begin(), ledger_row.end());
+    /// Adds what every scheme records beside its energies: momenta, contacts, tracked grains, bonds,
+    /// and what the comparison with theory needs.
+    /// in: momentum_x, momentum_y of every grain; what contact did in the step
+    void add_to(common::Row& row, const std::vector<double>& momentum_x,
+                const std::vector<double>& momentum_y, const ContactSums& contact,
+                const Assembly& all) const {
         double sum_x = 0, sum_y = 0;
         for (const double p : momentum_x) sum_x += p;
         for (const double p : momentum_y) sum_y += p;
-        row_.insert(row_.end(), {sum_x, sum_y, contact.nodes, contact.impulse / dt});
-        for (std::size_t g = 0; g < all.grains.size(); ++g) {
-            if (std::find(free_.begin(), free_.end(), g) != free_.end())
-                row_.insert(row_.end(), {momentum_x[g], momentum_y[g]});
-            if (std::find(rigid_.begin(), rigid_.end(), g) != rigid_.end()) {
+        row.add("momentum_x", "momentum", sum_x);
+        row.add("momentum_y", "momentum", sum_y);
+        row.add("contacts", "1", contact.nodes);
+        row.add("contact_force", "force", contact.impulse / scales_.dt);
+        for (const std::size_t g : tracked_) {
+            const std::string& name = all.grains[g].name;
+            if (all.grains[g].rigid) {
                 const RigidMotion& is = all.rigid[g];
-                row_.insert(row_.end(), {is.push_x, is.push_y, is.travel_x, is.travel_y});
+                row.add("force_x_" + name, "force", is.push_x);
+                row.add("force_y_" + name, "force", is.push_y);
+                row.add("travel_x_" + name, "length", is.travel_x);
+                row.add("travel_y_" + name, "length", is.travel_y);
+            } else {
+                row.add("momentum_x_" + name, "momentum", momentum_x[g]);
+                row.add("momentum_y_" + name, "momentum", momentum_y[g]);
             }
         }
         const auto& bonds = all.bonds;
-        for (std::size_t b = 0; b < std::min(bonds.size(), most_followed); ++b)
-            row_.insert(row_.end(), {bonds[b].normal_stress, bonds[b].shear_stress});
-        if (!bonds.empty())
-            row_.push_back(static_cast<double>(std::count_if(
-                bonds.begin(), bonds.end(), [](const Bond& bond) { return bond.broken; })));
-        add_comparison(parameters_, subject_, all, row_);
-        run.history.row(row_);
+        for (std::size_t b = 0; b < std::min(bonds.size(), most_tracked); ++b) {
+            const std::string number = std::to_string(b + 1);
+            row.add("bond_normal_" + number, "stress", bonds[b].normal_stress);
+            row.add("bond_shear_" + number, "stress", bonds[b].shear_stress);
+        }
+        const auto broken =
+            std::count_if(bonds.begin(), bonds.end(), [](const Bond& bond) { return bond.broken; });
+        if (!bonds.empty()) row.add("broken_bonds", "1", static_cast<double>(broken));
+        add_comparison(parameters_, subject_, all, row);
     }
 
     /// Looks at what a step has made.
@@ -112,12 +94,9 @@ class Recorder {
                         const common::History& history) {
         refuse_particles(step, strips, nodes, all);
         // After a restart, what was put in before it counts as well.
-        if (!looked_back_)
-            for (const double before : history.column("external"))
-                largest_load_ = std::max(largest_load_, std::fabs(before));
-        looked_back_ = true;
-        largest_load_ = std::max(largest_load_, std::fabs(external));
-        refuse_energy(step, all, start + largest_load_, now);
+        if (!largest_load_) largest_load_ = history.largest("external");
+        largest_load_ = std::max(*largest_load_, std::fabs(external));
+        refuse_energy(step, all, start + *largest_load_, now);
     }
 
     /// The run after its last step, for comparison with theory.
@@ -129,23 +108,14 @@ class Recorder {
                 materials,   plan_grains(parameters_.problem, materials)};
     }
 
-    /// What was conserved: the budget of the energy, momentum, and residuals of the scheme's own.
-    /// in: residuals, column of the history and name in the summary [energy]
-    void finish_conservation(const std::vector<std::pair<std::string, std::string>>& residuals,
-                             const Assembly& all, common::Run& run) const {
+    /// What was conserved: the budget of the energy, and momentum.
+    void finish_conservation(const Assembly& all, common::Run& run) const {
         const common::History& history = run.history;
         common::Summary& summary = run.summary;
-        const auto largest = [&](const std::string& name) {
-            double most = 0;
-            for (const double value : history.column(name)) most = std::max(most, std::fabs(value));
-            return most;
-        };
-        const double size = largest("kinetic") + largest("elastic");
-        summary.conservation("largest_" + rest_, largest(rest_), "energy");
-        summary.conservation("largest_" + rest_ + "_over_energy",
-                             size > 0 ? largest(rest_) / size : 0, "1");
-        for (const auto& [column, name] : residuals)
-            summary.conservation(name, largest(column), "energy");
+        const double size = history.largest("kinetic") + history.largest("elastic"),
+                     rest = history.largest(rest_);
+        summary.conservation("largest_" + rest_, rest, "energy");
+        summary.conservation("largest_" + rest_ + "_over_energy", size > 0 ? rest / size : 0, "1");
         const auto p_x = history.column("momentum_x"), p_y = history.column("momentum_y");
         summary.conservation("momentum_x_change", p_x.back() - p_x.front(), "momentum");
         summary.conservation("momentum_y_change", p_y.back() - p_y.front(), "momentum");
@@ -239,15 +209,13 @@ class Recorder {
             ": reduce time.alpha, refine the mesh, or allow more with time.energy_limit");
     }
 
-    static constexpr std::size_t most_followed = 16;
+    static constexpr std::size_t most_tracked = 16;  // free grains, rigid ones, bonds
     const Case& parameters_;
     const Scales& scales_;
     Subject subject_;
     std::string rest_;
-    std::vector<std::size_t> free_, rigid_;
-    std::vector<double> row_;
-    double largest_load_ = 0;  // work of the loads so far, where it was largest
-    bool looked_back_ = false;
+    std::vector<std::size_t> tracked_;    // grains
+    std::optional<double> largest_load_;  // largest work of the loads so far
 };
 
 }  // namespace mpm

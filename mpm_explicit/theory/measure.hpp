@@ -59,20 +59,16 @@ inline double front_of(const Assembly& all, double share) {
 
 inline constexpr double share_beyond_front = 0.01;
 
-inline std::vector<common::Column> columns_of_comparison(const Case& w) {
-    if (w.compare == "disk")
-        return {{"center_xx", "stress"}, {"center_yy", "stress"}, {"center_xy", "stress"}};
-    if (w.compare == "collapse") return {{"front", "length"}};
-    return {};
-}
-
+/// Adds the columns of the comparison.
 inline void add_comparison(const Case& w, const Subject& subject, const Assembly& all,
-                           std::vector<double>& row) {
+                           common::Row& row) {
     if (w.compare == "disk") {
         const Stress s = stress_at_center(all, subject.grain, 1.5 * w.problem.mesh().h);
-        row.insert(row.end(), {s.xx, s.yy, s.xy});
+        row.add("center_xx", "stress", s.xx);
+        row.add("center_yy", "stress", s.yy);
+        row.add("center_xy", "stress", s.xy);
     }
-    if (w.compare == "collapse") row.push_back(front_of(all, share_beyond_front));
+    if (w.compare == "collapse") row.add("front", "length", front_of(all, share_beyond_front));
 }
 
 }  // namespace mpm

@@ -4,7 +4,7 @@
 #pragma once
 
 #include <cmath>
-#include <vector>
+#include <utility>
 
 #include "mpm_explicit/output/record_grains.hpp"
 #include "mpm_implicit/state.hpp"
@@ -12,10 +12,26 @@
 
 namespace mpm_implicit {
 
-inline std::vector<common::Column> ledger_columns() {
-    std::vector<common::Column> columns = Ledger::columns();
-    for (const char* name : {"iterations", "loops", "held"}) columns.push_back({name, "1"});
-    return columns;
+/// Adds the terms of the ledger, energies now and work since the start.
+inline void add_ledger(const Ledger& l, common::Row& row) {
+    for (const auto& [name, value] : {std::pair("kinetic", l.kinetic),
+                                      {"elastic", l.elastic},
+                                      {"energy", l.energy()},
+                                      {"theta_velocity", l.theta_velocity},
+                                      {"theta_strain", l.theta_strain},
+                                      {"lumped", l.lumped},
+                                      {"contact", l.contact},
+                                      {"friction", l.friction},
+                                      {"bond", l.bond},
+                                      {"plate", l.plate},
+                                      {"gravity", l.gravity},
+                                      {"external", l.plate + l.gravity},
+                                      {"damping", l.damping},
+                                      {"plastic", l.plastic},
+                                      {"volume", l.volume},
+                                      {"pic", l.pic},
+                                      {"residual", l.residual()}})
+        row.add(name, "energy", value);
 }
 
 class ThetaRecorder {
@@ -25,10 +41,16 @@ class ThetaRecorder {
         : parameters_(parameters),
           scheme_(scheme),
           scales_(scales),
-          recorder_(parameters, scales, state.assembly, ledger_columns(), "residual", history) {}
+          recorder_(parameters, scales, state.assembly, "residual") {
+        Ledger none;
+        none.momentum_x.assign(state.assembly.grains.size(), 0), none.momentum_y = none.momentum_x;
+        history.columns(row(0, none, StepSums{}, state.assembly));
+    }
 
     /// The row of t = 0.
-    void start(const State& state, common::Run& run) { write_row(0, StepSums{}, state, run); }
+    void start(const State& state, common::Run& run) {
+        run.history.row(row(0, state.ledger, StepSums{}, state.assembly));
+    }
 
     /// Writes the files that are due at this step, before it.
     void snapshot(long step, const State& state, const common::Run& run) const {
@@ -44,7 +66,7 @@ class ThetaRecorder {
                    nodes.strips(), sums.strips, sums.nodes, sums.contact, l);
         state.effort.add(sums.solver);
         if (std::isfinite(l.energy()) && recorder_.row_is_due(step + 1))
-            write_row(static_cast<double>(step + 1) * scales_.dt, sums, state, run);
+            run.history.row(row(step + 1, l, sums, state.assembly));
         recorder_.refuse_failure(step, sums.strips, nodes, state.assembly, l.start,
                                  l.plate + l.gravity, l.energy(), run.history);
     }
@@ -55,7 +77,7 @@ class ThetaRecorder {
         const Ledger& l = state.ledger;
         compare_with_theory(recorder_.ended(step, state.assembly, run.history), scheme_, l,
                             run.summary);
-        recorder_.finish_conservation({}, state.assembly, run);
+        recorder_.finish_conservation(state.assembly, run);
         run.summary.conservation("largest_residual_of_a_step", l.largest_residual, "energy");
         const double steps = static_cast<double>(std::max(1L, step));
         const Effort& effort = state.effort;
@@ -67,14 +89,15 @@ class ThetaRecorder {
     }
 
    private:
-    void write_row(double time, const StepSums& sums, const State& state, common::Run& run) {
-        const Ledger& l = state.ledger;
-        std::vector<double> row = l.row();
-        row.insert(row.end(),
-                   {static_cast<double>(sums.solver.iterations),
-                    static_cast<double>(sums.solver.loops), static_cast<double>(sums.solver.held)});
-        recorder_.write_row(time, scales_.dt, row, l.momentum_x, l.momentum_y, sums.contact,
-                            state.assembly, run);
+    common::Row row(long step, const Ledger& l, const StepSums& sums, const Assembly& all) const {
+        common::Row row;
+        row.add("time", "time", static_cast<double>(step) * scales_.dt);
+        add_ledger(l, row);
+        row.add("iterations", "1", static_cast<double>(sums.solver.iterations));
+        row.add("loops", "1", static_cast<double>(sums.solver.loops));
+        row.add("held", "1", static_cast<double>(sums.solver.held));
+        recorder_.add_to(row, l.momentum_x, l.momentum_y, sums.contact, all);
+        return row;
     }
 
     const Case& parameters_;
