@@ -16,6 +16,7 @@
 #include "mpm_explicit/setup/check_case.hpp"
 #include "mpm_explicit/setup/initial_state.hpp"
 #include "mpm_explicit/step.hpp"
+#include "mpm_explicit/theory/compare_with_theory.hpp"
 
 namespace {
 
@@ -73,10 +74,11 @@ int run_case(const Shape& shape, const Case& parameters, const Scales& scales, c
 int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     // 1. The case: defaults, file, command line; refuse, warn, or only describe.
     Case parameters;
-    common::ParameterTable table = describe(parameters);
+    common::ParameterTable table = describe(parameters, theory::names_of(comparisons));
     const common::CommandLine command = common::read_command_line(argc, argv, info, table);
     validate(parameters);
     const Scales scales = scales_of(parameters);
+    theory::validate_comparison({parameters, leapfrog}, scales, comparisons);
     if (!common::start_run(info, command, table,
                            {describe_scales(parameters, scales), warnings_of(parameters, scales),
                             scales.steps, scales.bytes, parameters.checkpoint_steps},

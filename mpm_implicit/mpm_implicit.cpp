@@ -16,6 +16,7 @@
 #include "mpm_implicit/output/record.hpp"
 #include "mpm_implicit/setup/check_case.hpp"
 #include "mpm_implicit/step.hpp"
+#include "mpm_implicit/theory/compare_with_theory.hpp"
 
 namespace {
 
@@ -78,11 +79,12 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     // 1. The case: defaults, file, command line; refuse, warn, or only describe.
     Case parameters;
     ThetaScheme scheme;
-    common::ParameterTable table = describe(parameters, scheme);
+    common::ParameterTable table = describe(parameters, scheme, theory::names_of(comparisons));
     const common::CommandLine command = common::read_command_line(argc, argv, info, table);
     validate(parameters, scheme);
     Scales scales = scales_of(parameters);
     scales.bytes = bytes_of(parameters, scheme, scales);
+    theory::validate_comparison({parameters, facts_of(parameters, scheme)}, scales, comparisons);
     if (!common::start_run(
             info, command, table,
             {describe_scales(parameters, scheme, scales), warnings_of(parameters, scheme, scales),

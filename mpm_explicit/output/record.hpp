@@ -36,7 +36,8 @@ class LeapfrogRecorder {
    public:
     LeapfrogRecorder(const Case& parameters, const Scales& scales, const State& state,
                      common::History& history)
-        : dt_(scales.dt), recorder_(parameters, scales, state.assembly, "budget") {
+        : dt_(scales.dt),
+          recorder_(parameters, leapfrog, scales, state.assembly, comparisons, "budget") {
         Ledger none;
         none.momentum_x.assign(state.assembly.grains.size(), 0), none.momentum_y = none.momentum_x;
         history.columns(row(0, none, {}, state.assembly));
@@ -67,7 +68,7 @@ class LeapfrogRecorder {
     /// The results of the whole run, after its last step.
     void finish(long step, const State& state, common::Run& run) const {
         if (run.history.all().empty()) return;
-        compare_with_theory(recorder_.ended(step, state.assembly, run.history), run.summary);
+        recorder_.compare_with_theory(step, state.assembly, run);
         recorder_.finish_conservation(state.assembly, run);
         run.summary.conservation("largest_remap_error", run.history.largest("remap"), "energy");
     }

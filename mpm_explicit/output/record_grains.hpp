@@ -5,24 +5,27 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "common/run/run.hpp"
 #include "mpm_explicit/contact.hpp"
 #include "mpm_explicit/output/write_output.hpp"
-#include "mpm_explicit/theory/compare_elastic.hpp"
+#include "mpm_explicit/theory/comparison.hpp"
 
 namespace mpm {
 
 class Recorder {
    public:
     /// in: rest, the column of the energy that is left when all is counted
-    Recorder(const Case& parameters, const Scales& scales, const Assembly& all,
+    Recorder(const Case& parameters, const theory::SchemeFacts& scheme, const Scales& scales,
+             const Assembly& all, std::span<const theory::Comparison> comparisons,
              const std::string& rest)
         : parameters_(parameters),
           scales_(scales),
-          subject_(subject_of(parameters, all.grains)),
+          planned_{parameters, scheme},
+          comparison_(theory::comparison_of(parameters, comparisons)),
           rest_(rest) {
         std::size_t free = 0, rigid = 0;
         for (std::size_t g = 0; g < all.grains.size(); ++g) {
@@ -79,7 +82,8 @@ class Recorder {
         const auto broken =
             std::count_if(bonds.begin(), bonds.end(), [](const Bond& bond) { return bond.broken; });
         if (!bonds.empty()) row.add("broken_bonds", "1", static_cast<double>(broken));
-        add_comparison(parameters_, subject_, all, row);
+        if (comparison_ != nullptr && comparison_->columns != nullptr)
+            comparison_->columns(planned_, all, row);
     }
 
     /// Looks at what a step has made.
@@ -99,13 +103,12 @@ class Recorder {
         refuse_energy(step, all, start + *largest_load_, now);
     }
 
-    /// The run after its last step, for comparison with theory.
-    theory::Run ended(long step, const Assembly& all, const common::History& history) const {
-        const std::vector<Material> materials = materials_of(parameters_.problem);
-        return {parameters_, scales_,
-                all,         history,
-                subject_,    static_cast<double>(step) * scales_.dt,
-                materials,   plan_grains(parameters_.problem, materials)};
+    /// The results of the comparison with theory, after the last step.
+    void compare_with_theory(long step, const Assembly& all, common::Run& run) const {
+        if (comparison_ == nullptr || comparison_->result == nullptr) return;
+        comparison_->result(
+            {planned_, scales_, all, run.history, static_cast<double>(step) * scales_.dt},
+            run.summary);
     }
 
     /// What was conserved: the budget of the energy, and momentum.
@@ -212,7 +215,8 @@ class Recorder {
     static constexpr std::size_t most_tracked = 16;  // free grains, rigid ones, bonds
     const Case& parameters_;
     const Scales& scales_;
-    Subject subject_;
+    theory::PlannedCase planned_;
+    const theory::Comparison* comparison_;  // null: none
     std::string rest_;
     std::vector<std::size_t> tracked_;    // grains
     std::optional<double> largest_load_;  // largest work of the loads so far

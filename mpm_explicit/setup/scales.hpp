@@ -51,11 +51,6 @@ inline Scales scales_of(const Case& w) {
         throw common::InputError("the run would take " + common::format(steps) +
                                  " steps, more than 1e9: raise time.alpha or lower time.end");
     s.steps = std::lround(steps);
-    const long rows = s.steps / w.history_steps;
-    if (w.compare != "none" && rows < 10)
-        throw common::InputError("theory.compare = \"" + w.compare + "\" needs at least 10 rows " +
-                                 "of history, and there would be " + std::to_string(rows) +
-                                 ": raise time.end or lower output.history_steps");
     if (!(problem.damping * s.dt < 1))
         throw common::InputError("load.damping = " + common::format(problem.damping) +
                                  " takes all velocity in a step of " + common::format(s.dt) +

@@ -41,7 +41,8 @@ class ThetaRecorder {
         : parameters_(parameters),
           scheme_(scheme),
           scales_(scales),
-          recorder_(parameters, scales, state.assembly, "residual") {
+          recorder_(parameters, facts_of(parameters, scheme), scales, state.assembly, comparisons,
+                    "residual") {
         Ledger none;
         none.momentum_x.assign(state.assembly.grains.size(), 0), none.momentum_y = none.momentum_x;
         history.columns(row(0, none, StepSums{}, state.assembly));
@@ -75,8 +76,8 @@ class ThetaRecorder {
     void finish(long step, const State& state, common::Run& run) const {
         if (run.history.all().empty()) return;
         const Ledger& l = state.ledger;
-        compare_with_theory(recorder_.ended(step, state.assembly, run.history), scheme_, l,
-                            run.summary);
+        compare_energy_theorem(run.history, scheme_, l, run.summary);
+        recorder_.compare_with_theory(step, state.assembly, run);
         recorder_.finish_conservation(state.assembly, run);
         run.summary.conservation("largest_residual_of_a_step", l.largest_residual, "energy");
         const double steps = static_cast<double>(std::max(1L, step));

@@ -2,6 +2,9 @@
 // have in common (mpm_explicit/setup/case_of_grains.hpp), and the theta scheme with its solvers.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "mpm_explicit/setup/case_of_grains.hpp"
 #include "mpm_implicit/theta_scheme.hpp"
 
@@ -10,7 +13,9 @@ namespace mpm_implicit {
 using namespace mpm;
 
 /// The table of all parameters.
-inline common::ParameterTable describe(Case& w, ThetaScheme& scheme) {
+/// in: comparison_names, the choices of theory.compare
+inline common::ParameterTable describe(Case& w, ThetaScheme& scheme,
+                                       const std::vector<std::string>& comparison_names) {
     using common::between;
     common::ParameterTable table;
     describe_problem(table, w.problem);
@@ -34,9 +39,7 @@ inline common::ParameterTable describe(Case& w, ThetaScheme& scheme) {
                 "of a linear system; beyond, the run fails");
     table.whole("solver.max_outer_iterations", scheme.max_outer_iterations, "", between(1, 1000),
                 "guesses of who presses, or Newton steps; beyond, the run fails");
-    describe_comparison(table, w,
-                        {"none", "rebound", "bar", "standing_wave", "oscillator", "block",
-                         "cylinder", "disk", "bond", "yield", "compression", "billet", "energy"});
+    describe_comparison(table, w, comparison_names);
     describe_output(table, w);
     return table;
 }

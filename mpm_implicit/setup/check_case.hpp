@@ -12,58 +12,9 @@
 
 namespace mpm_implicit {
 
-/// The plate that presses a billet: the one that the case names, or the first that moves along y.
-/// out:    its name; empty if there is none
-inline std::string billet_plate(const Case& w, const std::vector<PlannedGrain>& plans,
-                                const std::vector<Material>& materials) {
-    for (const PlannedGrain& plan : plans) {
-        const bool rigid = materials[static_cast<std::size_t>(plan.material)].law == Law::rigid;
-        if (rigid && (w.plate.empty() ? plan.from.velocity_y != 0 : plan.name == w.plate))
-            return plan.name;
-    }
-    return {};
-}
-
-/// What the comparison "billet" asks for.
-/// errors: InputError with what is missing
-inline void refuse_billet(const Case& w) {
-    const std::vector<Material> materials = materials_of(w.problem);
-    const std::vector<PlannedGrain> plans = plan_grains(w.problem, materials);
-    const auto law_of = [&](const PlannedGrain& plan) {
-        return materials[static_cast<std::size_t>(plan.material)].law;
-    };
-    const PlannedGrain* block = nullptr;
-    long blocks = 0;
-    for (const PlannedGrain& plan : plans)
-        if (law_of(plan) != Law::rigid) block = &plan, ++blocks;
-    const bool upright = blocks == 1 && block->from.shape == "box" && block->from.angle == 0;
-    mpm::detail::refuse(!upright || plans.size() != 3 || w.problem.contact.friction != 0 ||
-                            billet_plate(w, plans, materials).empty(),
-                        "theory.compare = \"billet\" needs one upright box between two rigid "
-                        "plates without friction, of which one moves along y");
-    const Material& m = materials[static_cast<std::size_t>(block->material)];
-    mpm::detail::refuse(m.law != Law::elastic && (m.law != Law::j2 || m.hardening != 0),
-                        "theory.compare = \"billet\" knows what is elastic, and what has law = "
-                        "\"j2\" and hardening = 0: change [material." +
-                            m.name + "]");
-    const Bounds box = bounds(block->outline);
-    for (const PlannedGrain& plan : plans) {
-        if (&plan == block) continue;
-        const Bounds plate = bounds(plan.outline);
-        const double gap =
-            std::min(std::fabs(plate.y_low - box.y_high), std::fabs(plate.y_high - box.y_low));
-        mpm::detail::refuse(
-            plate.x_low > box.x_low || plate.x_high < box.x_high || gap > 1e-6 * w.problem.mesh().h,
-            "theory.compare = \"billet\": plate '" + plan.name +
-                "' does not cover a whole side of '" + block->name +
-                "': make it wider, and let them touch");
-    }
-}
-
 /// Refuses combinations that cannot run.
 /// errors: InputError with the cure
 inline void validate(const Case& w, const ThetaScheme& scheme) {
-    using mpm::detail::refuse;
     mpm::validate(w);
     for (const Material& m : materials_of(w.problem))
         refuse(!scheme.newton() && (m.law == Law::j2 || m.law == Law::drucker_prager),
@@ -73,10 +24,6 @@ inline void validate(const Case& w, const ThetaScheme& scheme) {
     refuse(!scheme.newton() && !scheme.keeps_volumes(),
            "method.volumes = \"updated\" makes the step nonlinear: set solver.kind = "
            "\"newton_krylov\"");
-    refuse(w.compare == "bar" && !scheme.consistent(),
-           "theory.compare = \"bar\" knows the damping of the consistent mass matrix only: set "
-           "method.mass = \"consistent\", or compare with \"oscillator\"");
-    if (w.compare == "billet") refuse_billet(w);
 }
 
 /// Warnings with the number and the limit, for choices that run but may mislead.
