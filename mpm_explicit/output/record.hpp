@@ -77,7 +77,7 @@ class LeapfrogRecorder {
     common::Row row(long step, const Ledger& l, const ContactSums& contact,
                     const Assembly& all) const {
         common::Row row;
-        row.add("time", "time", static_cast<double>(step) * dt_);
+        row.add("time", "time", double(step) * dt_);
         add_ledger(l, row);
         recorder_.add_to(row, l.momentum_x, l.momentum_y, contact, all);
         return row;

@@ -63,11 +63,11 @@ class Recorder {
         for (const std::size_t g : tracked_) {
             const std::string& name = all.grains[g].name;
             if (all.grains[g].rigid) {
-                const RigidMotion& is = all.rigid[g];
-                row.add("force_x_" + name, "force", is.push_x);
-                row.add("force_y_" + name, "force", is.push_y);
-                row.add("travel_x_" + name, "length", is.travel_x);
-                row.add("travel_y_" + name, "length", is.travel_y);
+                const RigidMotion& motion = all.rigid[g];
+                row.add("force_x_" + name, "force", motion.push_x);
+                row.add("force_y_" + name, "force", motion.push_y);
+                row.add("travel_x_" + name, "length", motion.travel_x);
+                row.add("travel_y_" + name, "length", motion.travel_y);
             } else {
                 row.add("momentum_x_" + name, "momentum", momentum_x[g]);
                 row.add("momentum_y_" + name, "momentum", momentum_y[g]);
@@ -81,7 +81,7 @@ class Recorder {
         }
         const auto broken =
             std::count_if(bonds.begin(), bonds.end(), [](const Bond& bond) { return bond.broken; });
-        if (!bonds.empty()) row.add("broken_bonds", "1", static_cast<double>(broken));
+        if (!bonds.empty()) row.add("broken_bonds", "1", double(broken));
         if (comparison_ != nullptr && comparison_->columns != nullptr)
             comparison_->columns(planned_, all, row);
     }
@@ -106,9 +106,8 @@ class Recorder {
     /// The results of the comparison with theory, after the last step.
     void compare_with_theory(long step, const Assembly& all, common::Run& run) const {
         if (comparison_ == nullptr || comparison_->result == nullptr) return;
-        comparison_->result(
-            {planned_, scales_, all, run.history, static_cast<double>(step) * scales_.dt},
-            run.summary);
+        comparison_->result({planned_, scales_, all, run.history, double(step) * scales_.dt},
+                            run.summary);
     }
 
     /// What was conserved: the budget of the energy, and momentum.
@@ -122,25 +121,24 @@ class Recorder {
         const auto p_x = history.column("momentum_x"), p_y = history.column("momentum_y");
         summary.conservation("momentum_x_change", p_x.back() - p_x.front(), "momentum");
         summary.conservation("momentum_y_change", p_y.back() - p_y.front(), "momentum");
-        summary.performance("particles", static_cast<double>(all.particles.count()));
-        summary.performance("grains", static_cast<double>(all.grains.size()));
+        summary.performance("particles", double(all.particles.count()));
+        summary.performance("grains", double(all.grains.size()));
     }
 
    private:
     // Whether a multiple of the interval falls on this step.
     bool due(double interval, long step) const {
         if (!(interval > 0)) return false;
-        const double multiple = std::round(static_cast<double>(step) * scales_.dt / interval);
+        const double multiple = std::round(double(step) * scales_.dt / interval);
         return std::lround(multiple * interval / scales_.dt) == step;
     }
 
     std::string when(long step) const {
-        return " at step " + std::to_string(step) +
-               ", t = " + common::format(static_cast<double>(step) * scales_.dt);
+        return " at step " + std::to_string(step) + ", t = " + format(double(step) * scales_.dt);
     }
 
-    static std::string place_of(const Particles& at, std::size_t p) {
-        return " at (" + common::format(at.x_p[p]) + ", " + common::format(at.y_p[p]) + ")";
+    static std::string place_of(const Particles& at, long p) {
+        return " at (" + format(at.x_p[p]) + ", " + format(at.y_p[p]) + ")";
     }
 
     template <class Sums>
@@ -151,41 +149,43 @@ class Recorder {
         // Grains may straddle the ends of a periodic mesh, but no particle is a whole length away.
         const double beyond = mesh.periodic_x ? mesh.length_x() : 0, left = mesh.x_low - beyond,
                      right = mesh.x_high() + beyond;
+        const auto outside = [&](double x_least, double x_most, double y_least, double y_most) {
+            return x_least < left || x_most > right || y_least < mesh.y_low ||
+                   y_most > mesh.y_high();
+        };
         for (std::size_t k = 0; k < strips.size(); ++k) {
             const Sums& s = strips[k];
             const Strip& strip = nodes.strips()[k];
-            const auto g = static_cast<std::size_t>(strip.grain);
-            const Grain& grain = all.grains[g];
-            const RigidMotion& is = all.rigid[g];
-            const bool inside = !(s.x_least < left || s.x_most > right || s.y_least < mesh.y_low ||
-                                  s.y_most > mesh.y_high());
-            const bool finite = std::isfinite(grain.rigid ? is.vx + is.vy : s.kinetic);
-            if (inside && finite && s.least_V > 0) continue;
-            const auto place = [&](const auto& is_bad) {
-                for (long p = strip.begin; p < strip.end; ++p)
-                    if (is_bad(static_cast<std::size_t>(p)))
-                        return place_of(at, static_cast<std::size_t>(p));
-                return " near" + place_of(at, static_cast<std::size_t>(strip.begin)).substr(3);
+            const Grain& grain = all.grains[strip.grain];
+            const RigidMotion& motion = all.rigid[strip.grain];
+            const bool finite = std::isfinite(grain.rigid ? motion.vx + motion.vy : s.kinetic);
+            if (s.least_V > 0 && finite && !outside(s.x_least, s.x_most, s.y_least, s.y_most))
+                continue;
+            const std::string whose = "a particle of grain '" + grain.name + "'";
+            // Shows the first particle of the strip that is bad.
+            const auto fail = [&](const std::string& what, const auto& is_bad,
+                                  const std::string& rest) {
+                long p = strip.begin;
+                while (p < strip.end && !is_bad(p)) ++p;
+                throw common::NumericalError(what + place_of(at, p < strip.end ? p : strip.begin) +
+                                             rest);
             };
             if (!(s.least_V > 0))
-                throw common::NumericalError(
-                    "the volume of a particle of grain '" + grain.name + "'" +
-                    place([&](std::size_t n) { return !(at.V_p[n] > 0); }) + " is inverted" +
-                    when(step) +
-                    ": reduce time.alpha, refine the mesh, or load the grain more slowly");
+                fail(
+                    "the volume of " + whose, [&](long p) { return !(at.V_p[p] > 0); },
+                    " is inverted" + when(step) +
+                        ": reduce time.alpha, refine the mesh, or load the grain more slowly");
             if (!finite)
-                throw common::NumericalError(
-                    "the velocity of a particle of grain '" + grain.name + "'" +
-                    place([&](std::size_t n) { return !std::isfinite(at.vx_p[n] + at.vy_p[n]); }) +
+                fail(
+                    "the velocity of " + whose,
+                    [&](long p) { return !std::isfinite(at.vx_p[p] + at.vy_p[p]); },
                     " is not finite" + when(step + 1) + ": reduce time.alpha");
-            throw common::NumericalError(
-                "a particle of grain '" + grain.name + "' has left the mesh" +
-                place([&](std::size_t n) {
-                    return at.x_p[n] < left || at.x_p[n] > right || at.y_p[n] < mesh.y_low ||
-                           at.y_p[n] > mesh.y_high();
-                }) +
+            fail(
+                whose + " has left the mesh",
+                [&](long p) { return outside(at.x_p[p], at.x_p[p], at.y_p[p], at.y_p[p]); },
                 when(step + 1) +
-                ": widen the mesh, put a wall there, or reduce time.alpha if the grain has burst");
+                    ": widen the mesh, put a wall there, or reduce time.alpha if the grain has "
+                    "burst");
         }
     }
 
@@ -195,19 +195,19 @@ class Recorder {
             return;
         const Particles& at = all.particles;
         // Name the grain that moves fastest.
-        std::size_t fastest = 0, whose = 0;
+        long fastest = 0;
+        std::size_t whose = 0;
         double most = -1;
         for (std::size_t g = 0; g < all.grains.size(); ++g) {
             const Grain& grain = all.grains[g];
             for (long p = grain.begin; p < grain.end && !grain.rigid; ++p) {
-                const auto n = static_cast<std::size_t>(p);
-                const double speed = std::hypot(at.vx_p[n], at.vy_p[n]);
-                if (speed > most) most = speed, fastest = n, whose = g;
+                const double speed = std::hypot(at.vx_p[p], at.vy_p[p]);
+                if (speed > most) most = speed, fastest = p, whose = g;
             }
         }
         throw common::NumericalError(
-            "the energy is " + common::format(now) + ", and " + common::format(put_in) +
-            " was put in," + when(step) + "; fastest is grain '" + all.grains[whose].name + "'" +
+            "the energy is " + format(now) + ", and " + format(put_in) + " was put in," +
+            when(step) + "; fastest is grain '" + all.grains[whose].name + "'" +
             place_of(at, fastest) +
             ": reduce time.alpha, refine the mesh, or allow more with time.energy_limit");
     }

@@ -138,12 +138,11 @@ inline std::vector<PackedGrain> read_pack(const std::string& path) {
         if (words.empty()) continue;
         grains.push_back(detail::read_grain(words, place));
         const auto [earlier, is_new] = places.insert({grains.back().name, std::to_string(number)});
-        detail::require(is_new, place + ": the name " + detail::in_quotes(grains.back().name) +
-                                    " is that of line " + earlier->second +
-                                    " too: give each grain its own");
+        require(is_new, place + ": the name " + detail::in_quotes(grains.back().name) +
+                            " is that of line " + earlier->second +
+                            " too: give each grain its own");
     }
-    detail::require(!grains.empty(),
-                    path + ": holds no grain; write lines like: disk left 0.35 0.3 0.2");
+    require(!grains.empty(), path + ": holds no grain; write lines like: disk left 0.35 0.3 0.2");
     return grains;
 }
 
@@ -151,13 +150,13 @@ inline std::vector<PackedGrain> read_pack(const std::string& path) {
 /// exact:  reading it gives the same numbers, and writing those the same bytes
 /// errors: InputError for names that could not be read again, and where the file cannot be written
 inline void write_pack(const std::string& path, const std::vector<PackedGrain>& grains) {
-    detail::require(!grains.empty(), path + ": there is no grain to write: give one at least");
+    require(!grains.empty(), path + ": there is no grain to write: give one at least");
     std::map<std::string, long> names;
     for (const PackedGrain& grain : grains) {
         detail::require_name(grain.name, path);
-        detail::require(++names[grain.name] == 1, path + ": two grains have the name " +
-                                                      detail::in_quotes(grain.name) +
-                                                      ": give each its own");
+        require(++names[grain.name] == 1, path + ": two grains have the name " +
+                                              detail::in_quotes(grain.name) +
+                                              ": give each its own");
     }
     common::OutputFile file(path);
     file.text("# disk name x y radius | polygon name x1 y1 x2 y2 x3 y3 ...\n");

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "mpm_explicit/setup/fill_grain.hpp"
 #include "mpm_explicit/setup/pack_file.hpp"
 #include "mpm_explicit/setup/packs.hpp"
 #include "mpm_explicit/setup/problem.hpp"
@@ -112,7 +113,7 @@ inline std::vector<PlannedGrain> plan_grains(const Problem& w,
                                              const std::vector<Material>& materials) {
     const auto material_of = [&](const std::string& name, const std::string& whose) {
         for (std::size_t k = 0; k < materials.size(); ++k)
-            if (materials[k].name == name) return static_cast<int>(k);
+            if (materials[k].name == name) return int(k);
         throw common::InputError("[" + whose + "]: there is no [material." + name +
                                  "]; add it, or name another material");
     };

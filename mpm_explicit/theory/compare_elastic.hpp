@@ -42,8 +42,8 @@ inline void need_equal_disks(const PlannedCase& planned) {
     const double touch = (std::hypot(dx, dy) - a.outline.radius - b.outline.radius) /
                          std::hypot(vx, vy),
                  end = planned.parameters.end;
-    planned.refuse(end < 1.05 * touch, ": the disks meet at t = " + common::format(touch) +
-                                           ", and the run ends at " + common::format(end) +
+    planned.refuse(end < 1.05 * touch, ": the disks meet at t = " + format(touch) +
+                                           ", and the run ends at " + format(end) +
                                            ": raise time.end");
 }
 
@@ -104,8 +104,8 @@ inline void need_bar(const PlannedCase& planned) {
                    "\"slip\" or \"stick\"");
     const double low = profile_bounds(planned.plans).x_low;
     planned.refuse(!(std::fabs(low - mesh.x_low) < 1e-6 * mesh.h),
-                   " needs a bar that begins at the wall, at x = " + common::format(mesh.x_low) +
-                       ", not at " + common::format(low));
+                   " needs a bar that begins at the wall, at x = " + format(mesh.x_low) +
+                       ", not at " + format(low));
 }
 
 /// The bar that all grains make together, held at the left end and free at the other.
@@ -115,15 +115,14 @@ inline Bar bar_of(const FinishedRun& run) {
     const bool held = planned.has_wall(y_low, "slip") && planned.has_wall(y_high, "slip");
     const GrainCase& from = planned.plans.front().from;
     return {profile_bounds(planned.plans).length(), m.density,
-            held ? moduli(m).lambda + 2 * moduli(m).G : m.E / (1 - m.nu * m.nu),
-            static_cast<int>(from.mode), from.amplitude};
+            held ? moduli(m).lambda + 2 * moduli(m).G : m.E / (1 - m.nu * m.nu), int(from.mode),
+            from.amplitude};
 }
 
 /// Frequency and growth of the momentum along x.
 inline common::OscillationFit fit_momentum(const FinishedRun& run) {
-    return common::fit_oscillation(
-        run.history.column("momentum_x"),
-        run.scales.dt * static_cast<double>(run.parameters.history_steps));
+    return common::fit_oscillation(run.history.column("momentum_x"),
+                                   run.scales.dt * double(run.parameters.history_steps));
 }
 
 inline void compare_bar(const FinishedRun& run, common::Summary& summary) {
@@ -146,8 +145,8 @@ inline void need_wave(const PlannedCase& planned) {
     const auto same = [&](double a, double b) { return std::fabs(a - b) < 1e-6 * mesh.h; };
     planned.refuse(!same(box.x_low, mesh.x_low) || !same(box.x_high, mesh.x_high()) ||
                        !same(box.y_low, mesh.y_low) || !same(box.y_high, mesh.y_high()),
-                   " needs a box that fills the mesh: make it " + common::format(mesh.length_x()) +
-                       " by " + common::format(mesh.y_high() - mesh.y_low));
+                   " needs a box that fills the mesh: make it " + format(mesh.length_x()) + " by " +
+                       format(mesh.y_high() - mesh.y_low));
 }
 
 /// The one free node between two fixed ends, with frozen particles; each scheme has its own result.
@@ -162,7 +161,7 @@ inline void compare_standing_wave(const FinishedRun& run, common::Summary& summa
     const Problem& problem = run.parameters.problem;
     const Material& m = run.material();
     const GrainCase& from = problem.grains.front();
-    StandingWave wave{problem.length_x, 1, m.density, moduli(m), static_cast<int>(from.mode)};
+    StandingWave wave{problem.length_x, 1, m.density, moduli(m), int(from.mode)};
     wave.amplitude = from.amplitude / wave.frequency();
     const Particles& at = run.all.particles;
     // The wave is compared where the particles started: x_p less the displacement of theory.

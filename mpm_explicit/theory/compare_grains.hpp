@@ -170,8 +170,7 @@ inline void compare_yield(const FinishedRun& run, common::Summary& summary) {
     summary.result_info("plastic_work", last(plastic) / energy.front(), "1",
                         "of the initial energy");
     summary.result_info("largest_plastic_strain", most, "1", "of a particle");
-    summary.result_info("yielded",
-                        yielded / static_cast<double>(run.grain().end - run.grain().begin), "1",
+    summary.result_info("yielded", yielded / double(run.grain().end - run.grain().begin), "1",
                         "share of the particles");
 }
 
@@ -184,8 +183,7 @@ inline double front_of(const Assembly& all, double share) {
         if (!grain.rigid)
             x.insert(x.end(), all.particles.x_p.begin() + grain.begin,
                      all.particles.x_p.begin() + grain.end);
-    const auto at =
-        x.begin() + static_cast<std::ptrdiff_t>((1 - share) * static_cast<double>(x.size() - 1));
+    const auto at = x.begin() + static_cast<std::ptrdiff_t>((1 - share) * double(x.size() - 1));
     std::nth_element(x.begin(), at, x.end());
     return *at;
 }

@@ -16,7 +16,7 @@ using namespace mpm;
 inline void compare_oscillator(const theory::FinishedRun& run, common::Summary& summary) {
     const Problem& problem = run.parameters.problem;
     const double h = problem.mesh().h, c = sound_speed(run.material()), dt = run.scales.dt,
-                 w = node_oscillator_frequency(static_cast<int>(problem.per_side)) * c / h;
+                 w = node_oscillator_frequency(int(problem.per_side)) * c / h;
     summary.result_info("omega_dt", w * dt, "1", "one free node, exact");
     const auto e14 = run.history.column("energy_14"), e15 = run.history.column("energy_15"),
                kinetic = run.history.column("kinetic");

@@ -39,7 +39,7 @@ struct PlannedCase {
     long rigid_grains() const {
         return std::count_if(plans.begin(), plans.end(), [&](auto& p) { return is_rigid(p); });
     }
-    long free_grains() const { return static_cast<long>(plans.size()) - rigid_grains(); }
+    long free_grains() const { return long(plans.size()) - rigid_grains(); }
 
     /// The number of the target grain: theory.grain, or the first that is not rigid.
     std::size_t target() const {

@@ -80,7 +80,7 @@ class ThetaRecorder {
         recorder_.compare_with_theory(step, state.assembly, run);
         recorder_.finish_conservation(state.assembly, run);
         run.summary.conservation("largest_residual_of_a_step", l.largest_residual, "energy");
-        const double steps = static_cast<double>(std::max(1L, step));
+        const double steps = double(std::max(1L, step));
         const Effort& effort = state.effort;
         run.summary.performance("iterations_per_step", effort.iterations / steps);
         run.summary.performance("mass_iterations_per_step", effort.mass_iterations / steps);
@@ -92,11 +92,11 @@ class ThetaRecorder {
    private:
     common::Row row(long step, const Ledger& l, const StepSums& sums, const Assembly& all) const {
         common::Row row;
-        row.add("time", "time", static_cast<double>(step) * scales_.dt);
+        row.add("time", "time", double(step) * scales_.dt);
         add_ledger(l, row);
-        row.add("iterations", "1", static_cast<double>(sums.solver.iterations));
-        row.add("loops", "1", static_cast<double>(sums.solver.loops));
-        row.add("held", "1", static_cast<double>(sums.solver.held));
+        row.add("iterations", "1", double(sums.solver.iterations));
+        row.add("loops", "1", double(sums.solver.loops));
+        row.add("held", "1", double(sums.solver.held));
         recorder_.add_to(row, l.momentum_x, l.momentum_y, sums.contact, all);
         return row;
     }

@@ -1,11 +1,11 @@
 // Everything a case file of mpm_implicit can say: what both programs of the material point method
-// have in common (mpm_explicit/setup/case_of_grains.hpp), and the theta scheme with its solvers.
+// have in common (mpm_explicit/setup/case.hpp), and the theta scheme with its solvers.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "mpm_explicit/setup/case_of_grains.hpp"
+#include "mpm_explicit/setup/case.hpp"
 #include "mpm_implicit/theta_scheme.hpp"
 
 namespace mpm_implicit {
@@ -18,10 +18,8 @@ inline common::ParameterTable describe(Case& w, ThetaScheme& scheme,
                                        const std::vector<std::string>& comparison_names) {
     using common::between;
     common::ParameterTable table;
-    describe_problem(table, w.problem);
     w.alpha = 1;
-    describe_time(table, w);
-    describe_method(table, w);
+    describe_case(table, w);
     table.real("method.theta", scheme.theta, "", between(0.5, 1),
                "level of velocities, stresses and contact: 1/2 keeps energy, 1 damps most");
     table.choice("method.mass", scheme.mass, {"consistent", "lumped"},
@@ -39,8 +37,7 @@ inline common::ParameterTable describe(Case& w, ThetaScheme& scheme,
                 "of a linear system; beyond, the run fails");
     table.whole("solver.max_outer_iterations", scheme.max_outer_iterations, "", between(1, 1000),
                 "guesses of who presses, or Newton steps; beyond, the run fails");
-    describe_comparison(table, w, comparison_names);
-    describe_output(table, w);
+    describe_output(table, w, comparison_names);
     return table;
 }
 

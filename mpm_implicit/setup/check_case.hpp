@@ -1,5 +1,5 @@
 // What is said before a run of mpm_implicit besides what holds for every scheme
-// (mpm_explicit/setup/check_grains.hpp): which solver a case needs, and how far its time step can be trusted.
+// (mpm_explicit/setup/check_case.hpp): which solver a case needs, and how far its time step can be trusted.
 #pragma once
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "mpm_explicit/setup/check_grains.hpp"
+#include "mpm_explicit/setup/check_case.hpp"
 #include "mpm_implicit/setup/case.hpp"
 
 namespace mpm_implicit {
@@ -32,11 +32,11 @@ inline std::vector<std::string> warnings_of(const Case& w, const ThetaScheme& sc
     std::vector<std::string> warnings = resolution_warnings(w, scales);
     const double cells = scales.speed * scales.dt / w.problem.mesh().h;
     if (cells > 0.5 && scales.grains > 1)
-        warnings.push_back("|v| dt/h = " + common::format(cells) +
+        warnings.push_back("|v| dt/h = " + format(cells) +
                            " is above 0.5: grains can pass through each other's surfaces before "
                            "they are seen to touch; reduce time.alpha");
     if (w.flip < 1)
-        warnings.push_back("method.flip = " + common::format(w.flip) +
+        warnings.push_back("method.flip = " + format(w.flip) +
                            " is below 1: [MPM-13] is for FLIP, and the column pic takes the rest");
     if (w.problem.per_side == 1 && scheme.consistent())
         warnings.push_back(
@@ -47,11 +47,10 @@ inline std::vector<std::string> warnings_of(const Case& w, const ThetaScheme& sc
 
 /// Memory of a run [bytes]: besides what every scheme needs, the matrices, their factors, vectors.
 inline double bytes_of(const Case& w, const ThetaScheme& scheme, const Scales& scales) {
-    const double per_cell = static_cast<double>(w.problem.per_side * w.problem.per_side),
-                 slots = 2 * static_cast<double>(scales.particles) / per_cell +
-                         64 * static_cast<double>(scales.grains);
+    const double per_cell = double(w.problem.per_side * w.problem.per_side),
+                 slots = 2 * double(scales.particles) / per_cell + 64 * double(scales.grains);
     const double diagonals = w.shape == "linear" ? 5 : 13,
-                 across = std::sqrt(slots / static_cast<double>(scales.grains)),
+                 across = std::sqrt(slots / double(scales.grains)),
                  reach = w.shape == "linear" ? 1 : 2,
                  factors = (scheme.preconditioner == "grains" ? 4 * across * reach : 0) +
                            (scheme.consistent() ? across * reach : 0),
@@ -62,14 +61,9 @@ inline double bytes_of(const Case& w, const ThetaScheme& scheme, const Scales& s
 /// The resolved scales as text, for --dry-run and the head of a run.
 inline std::string describe_scales(const Case& w, const ThetaScheme& scheme, const Scales& scales) {
     // A step takes about as long as so many of the explicit program.
-    const double explicit_steps = 6 + 6 * std::sqrt(w.alpha), particle_steps_per_second = 15e6;
-    const std::string flip = w.flip == 1 ? "FLIP" : "FLIP fraction " + common::format(w.flip);
+    const double cost = 6 + 6 * std::sqrt(w.alpha);
     return mpm::describe_scales(
-        w, scales,
-        w.shape + " shape functions, " + flip + (w.frozen ? ", frozen particles" : "") +
-            ", theta = " + common::format(scheme.theta) + ", " + scheme.mass + " mass",
-        explicit_steps * static_cast<double>(scales.steps) * static_cast<double>(scales.particles) /
-            particle_steps_per_second);
+        w, scales, ", theta = " + format(scheme.theta) + ", " + scheme.mass + " mass", cost);
 }
 
 }  // namespace mpm_implicit

@@ -91,7 +91,7 @@ inline void compare_bar(const theory::FinishedRun& run, common::Summary& summary
 inline void compare_oscillator(const theory::FinishedRun& run, common::Summary& summary) {
     const theory::SchemeFacts& scheme = run.planned.scheme;
     const Problem& problem = run.parameters.problem;
-    const int per_side = static_cast<int>(problem.per_side);
+    const int per_side = int(problem.per_side);
     const double dt = run.scales.dt, c = sound_speed(run.material()), h = problem.mesh().h,
                  filter = node_filter(per_side), f = scheme.consistent_mass ? 1 : filter,
                  w = c / h * std::sqrt(2 * f / filter);
@@ -109,7 +109,7 @@ inline void compare_oscillator(const theory::FinishedRun& run, common::Summary& 
     }
     const double size = std::abs(std::log(g)) / dt, tolerance = run.parameters.tolerance * size;
     const common::OscillationFit fit =
-        common::fit_oscillation(change, dt * static_cast<double>(run.parameters.history_steps));
+        common::fit_oscillation(change, dt * double(run.parameters.history_steps));
     summary.result("frequency", fit.frequency, "1/time", std::arg(g) / dt, tolerance, source);
     summary.result("damping", -fit.growth, "1/time", -std::log(std::abs(g)) / dt, tolerance,
                    source);
