@@ -57,8 +57,10 @@ int run_case(const Shape& shape, const Case& parameters, const Scales& scales, c
         recorder.snapshot(step, state, run);
         const BodyForce body = drive(parameters.problem, step, dt, rigid);
         take_step(shape, laws, contact, body, parameters.flip, parameters.frozen, dt, nodes, state,
-                  sums);  // [MPM-4, 9 ... 12]
+                  sums);                                  // [MPM-4, 9 ... 12]
+        enter_energies(step, sums.strips, state.ledger);  // [MPM-14, 15]
         recorder.record(step, sums, nodes, state, run);
+        enter_work(nodes.strips(), sums.strips, sums.nodes, sums.contact, state.ledger);
         ++step;
         run.end_of_step(step, scales.steps, static_cast<double>(step) * dt, state);
     }
@@ -76,7 +78,7 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     Case parameters;
     common::ParameterTable table = describe(parameters, theory::names_of(comparisons));
     const common::CommandLine command = common::read_command_line(argc, argv, info, table);
-    validate(parameters);
+    validate(parameters, table);
     const Scales scales = scales_of(parameters);
     theory::validate_comparison({parameters, leapfrog}, scales, comparisons);
     if (!common::start_run(info, command, table,
@@ -84,11 +86,9 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
                             scales.steps, scales.bytes, parameters.checkpoint_steps},
                            holder))
         return 0;
-    common::Run& run = *holder;
-
     int status = 0;
     with_shape(parameters.scheme(),
-               [&](const auto& shape) { status = run_case(shape, parameters, scales, run); });
+               [&](const auto& shape) { status = run_case(shape, parameters, scales, *holder); });
     return status;
 }
 

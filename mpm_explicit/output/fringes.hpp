@@ -40,7 +40,7 @@ struct FringeRaster {
     std::vector<double> coverage;                     // by the grain that is drawn there
     std::vector<int> grain;
 
-    std::size_t pixel(long i, long j) const { return (j * x.count + i); }
+    std::size_t pixel(long i, long j) const { return j * x.count + i; }
 };
 
 namespace detail {

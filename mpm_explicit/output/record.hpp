@@ -32,6 +32,7 @@ inline void add_ledger(const Ledger& l, common::Row& row) {
         row.add(name, "energy", value);
 }
 
+/// Writes rows and files of a run, and its results.
 class LeapfrogRecorder {
    public:
     LeapfrogRecorder(const Case& parameters, const Scales& scales, const State& state,
@@ -48,12 +49,11 @@ class LeapfrogRecorder {
         recorder_.snapshot(step, state.assembly, run);
     }
 
-    /// Enters a step into the ledger and writes its row of the history.
+    /// Writes the row of t^n, when the ledger has the energies of the step and not yet its work.
     /// errors: NumericalError as Recorder::refuse_failure
-    void record(long step, const StepSums& sums, const GrainNodes& nodes, State& state,
+    void record(long step, const StepSums& sums, const GrainNodes& nodes, const State& state,
                 common::Run& run) {
-        Ledger& l = state.ledger;
-        enter_energies(step, sums.strips, l);
+        const Ledger& l = state.ledger;
         const bool finite =
             std::all_of(sums.strips.begin(), sums.strips.end(), [](const StripSums& s) {
                 return std::isfinite(s.kinetic) && std::isfinite(s.product);
@@ -62,7 +62,6 @@ class LeapfrogRecorder {
             run.history.row(row(step, l, sums.contact, state.assembly));
         recorder_.refuse_failure(step, sums.strips, nodes, state.assembly, l.start, l.external,
                                  l.kinetic + l.elastic, run.history);
-        enter_work(nodes.strips(), sums.strips, sums.nodes, sums.contact, l);
     }
 
     /// The results of the whole run, after its last step.

@@ -16,6 +16,7 @@
 
 namespace mpm {
 
+/// The part of a recorder that no scheme changes.
 class Recorder {
    public:
     /// in: rest, the column of the energy that is left when all is counted
@@ -45,6 +46,7 @@ class Recorder {
         if (parameters_.pack && step == 0) write_pack_of(folder, parameters_);
     }
 
+    /// Whether a row of the history belongs to this step.
     bool row_is_due(long step) const { return step % parameters_.history_steps == 0; }
 
     /// Adds what every scheme records beside its energies: momenta, contacts, tracked grains, bonds,

@@ -10,6 +10,7 @@
 
 namespace mpm {
 
+/// All parameters of a case, as the user gives them.
 struct Case {
     Problem problem;
 
@@ -32,6 +33,7 @@ struct Case {
     bool pack = false, vtk = false;
     long checkpoint_steps = 0;
 
+    /// The shape function.
     Scheme scheme() const {
         return {shape == "linear" ? Scheme::linear
                 : shape == "gimp" ? Scheme::gimp
@@ -66,8 +68,7 @@ inline void describe_output(common::ParameterTable& table, Case& w,
     table.group("comparison with theory");
     table.choice("theory.compare", w.compare, comparison_names, "what the run is compared with");
     table.text("theory.grain", w.grain, "the target grain; empty: the first that is not rigid");
-    table.text("theory.plate", w.plate,
-               "the rigid grain whose load counts; empty: the mean of all");
+    table.text("theory.plate", w.plate, "the rigid grain whose load counts; empty: mean of all");
     table.real("theory.tolerance", w.tolerance, "", between(0, 10), "of the result, relative");
 
     table.group("output");

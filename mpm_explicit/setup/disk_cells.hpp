@@ -9,14 +9,15 @@
 
 namespace mpm {
 
+/// A disk by its center and radius [length].
 struct Circle {
     double x, y, radius;
 };
 
-// Rounded in one way only, whatever a compiler makes of sums of products.
+/// Rounded in one way only, whatever a compiler makes of sums of products.
 inline double squared(double dx, double dy) { return std::fma(dx, dx, dy * dy); }
 
-// Placed disks, found by the cell of their center. A cell is at least as wide as the largest disk.
+/// Placed disks, found by the cell of their center. A cell is at least as wide as the largest disk.
 class DiskCells {
    public:
     DiskCells(const Bounds& box, double largest, bool periodic)
@@ -33,7 +34,7 @@ class DiskCells {
         cells_[cell(column(disk.x), row(disk.y))].push_back(long(disks_.size()));
         disks_.push_back(disk);
     }
-    // Visits the disks in the cells around a place, in the image that is nearest.
+    /// Visits the disks in the cells around a place, in the image that is nearest.
     template <class Visit>
     void visit_near(const Circle& place, long cells, const Visit& visit) const {
         const long i = column(place.x), j = row(place.y);
@@ -44,6 +45,7 @@ class DiskCells {
                     visit(k, nearest((*this)[k], place.x));
             }
     }
+    /// The image of a disk nearest to x, and the one inside of the box.
     Circle nearest(Circle disk, double x) const {
         if (period_ > 0) disk.x = std::fma(period_, std::round((x - disk.x) / period_), disk.x);
         return disk;
@@ -53,7 +55,7 @@ class DiskCells {
         if (period_ > 0 && disk.x >= box_.x_high) disk.x -= period_;
         return disk;
     }
-    // Whether a wrapped place is in the box and on no disk.
+    /// Whether a wrapped place is in the box and on no disk.
     bool is_free(const Circle& place) const {
         constexpr double nearly = 1 - 1e-11;
         const double r = place.radius * nearly;
@@ -73,7 +75,7 @@ class DiskCells {
     }
     long column(double x) const { return index((x - box_.x_low) / width_, columns_); }
     long row(double y) const { return index((y - box_.y_low) / height_, rows_); }
-    std::size_t cell(long i, long j) const { return (j * columns_ + i); }
+    std::size_t cell(long i, long j) const { return j * columns_ + i; }
 
     Bounds box_;
     double width_, height_, period_ = 0;

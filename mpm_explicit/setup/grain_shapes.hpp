@@ -25,12 +25,15 @@ struct Outline {
     std::vector<Point> corners;  // of the polygon, counterclockwise; it may be concave
 };
 
+/// Whether a number is finite, and its square too.
 inline bool usable(double value) { return std::isfinite(value) && std::fabs(value) < 1e100; }
 
+/// errors: InputError with the sentence, unless the condition holds
 inline void require(bool condition, const std::string& sentence) {
     if (!condition) throw common::InputError(sentence);
 }
 
+/// errors: InputError for what is no length above 0
 inline void require_length(double value, const std::string& name) {
     require(usable(value) && value > 1e-100,
             name + " = " + common::number_text(value) + " must be a length above 0: give one");
@@ -79,6 +82,8 @@ inline Outline polygon(std::vector<Point> corners) {
     return outline;
 }
 
+/// A disk about (x, y).
+/// errors: InputError for a radius that is no length
 inline Outline disk(double x, double y, double radius) {
     require_length(radius, "the radius of a disk");
     require(usable(x) && usable(y),
@@ -126,17 +131,20 @@ inline bool contains(const Outline& outline, double x, double y) {
     return contains(outline.corners, {x, y});
 }
 
+/// The smallest upright rectangle around an outline.
 inline Bounds bounds(const Outline& outline) {
     if (outline.kind == OutlineKind::polygon) return bounds(outline.corners);
     return {outline.x - outline.radius, outline.x + outline.radius, outline.y - outline.radius,
             outline.y + outline.radius};
 }
 
+/// The area inside of an outline.
 inline double area(const Outline& outline) {
     return outline.kind == OutlineKind::disk ? std::numbers::pi * outline.radius * outline.radius
                                              : area_and_centroid(outline.corners).first;
 }
 
+/// The center of mass of an even plate.
 inline Point centroid(const Outline& outline) { return {outline.x, outline.y}; }
 
 /// The least width: the narrowest gap between two parallel lines that the grain fits through.
@@ -144,6 +152,7 @@ inline double thinnest(const Outline& outline) {
     return outline.kind == OutlineKind::disk ? 2 * outline.radius : width(outline.corners);
 }
 
+/// The outline, moved by (dx, dy).
 inline Outline moved(Outline outline, double dx, double dy) {
     outline.x += dx, outline.y += dy;
     for (Point& p : outline.corners) p.x += dx, p.y += dy;

@@ -41,6 +41,7 @@ inline bool is_utf8(std::string_view text) {
     return true;
 }
 
+// Refuses a line that is too long, not UTF-8, or holds control characters.
 inline void refuse_bad_line(std::string_view line, const std::string& place) {
     require(line.size() <= longest_line, place + ": the line has more than " +
                                              std::to_string(longest_line) +
@@ -59,6 +60,7 @@ inline std::string in_quotes(std::string_view word) {
     return quoted.append(word.substr(0, 40)).append(word.size() > 40 ? "...'" : "'");
 }
 
+// Refuses a name that could not be written and read again.
 inline void require_name(std::string_view name, const std::string& place) {
     const auto fits = [](char c) {
         return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
@@ -69,6 +71,7 @@ inline void require_name(std::string_view name, const std::string& place) {
                 " cannot name a grain: use letters, digits and '_', 40 at most");
 }
 
+// A word as a finite number.
 inline double read_number(std::string_view word, const std::string& place) {
     double value = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
@@ -79,6 +82,7 @@ inline double read_number(std::string_view word, const std::string& place) {
     return value;
 }
 
+// The words of a line, up to its comment.
 inline std::vector<std::string_view> words_of(std::string_view line) {
     std::vector<std::string_view> words;
     line = line.substr(0, line.find('#'));
@@ -91,6 +95,7 @@ inline std::vector<std::string_view> words_of(std::string_view line) {
     }
 }
 
+// A grain from the words of its line.
 inline PackedGrain read_grain(const std::vector<std::string_view>& words,
                               const std::string& place) {
     const std::string_view kind = words[0];

@@ -15,6 +15,7 @@
 
 namespace mpm {
 
+/// A grain of a pack.
 struct PackedGrain {
     std::string name;
     Outline outline;

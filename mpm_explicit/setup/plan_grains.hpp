@@ -43,6 +43,7 @@ inline std::vector<Material> materials_of(const Problem& w) {
 
 namespace detail {
 
+// The corners in a text "x y, x y, ...".
 inline std::vector<Point> vertices_of(const std::string& name, const std::string& text) {
     std::vector<Point> points;
     std::istringstream corners(text);
@@ -58,6 +59,7 @@ inline std::vector<Point> vertices_of(const std::string& name, const std::string
     return points;
 }
 
+// The outline of a named grain.
 inline Outline outline_of(const GrainCase& g) {
     try {
         if (g.shape != "polygon" && !g.vertices.empty())
@@ -72,6 +74,7 @@ inline Outline outline_of(const GrainCase& g) {
     }
 }
 
+// The grains of a pack.
 inline std::vector<PackedGrain> grains_of(const PackCase& p, const Problem& w) {
     try {
         std::vector<PackedGrain> pack;

@@ -9,10 +9,12 @@
 
 namespace mpm {
 
+/// A place in the plane [length].
 struct Point {
     double x = 0, y = 0;
 };
 
+/// An upright rectangle [length].
 struct Bounds {
     double x_low = 0, x_high = 0, y_low = 0, y_high = 0;
 };
@@ -25,6 +27,7 @@ inline double turn(const Point& a, const Point& b, const Point& c) {
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
+/// The distance between two points.
 inline double distance(const Point& a, const Point& b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
 /// Visits the sides of a polygon: visit(from, to).
@@ -45,6 +48,7 @@ inline std::pair<double, Point> area_and_centroid(const std::vector<Point>& corn
     return {area, {o.x + x / area, o.y + y / area}};
 }
 
+/// The smallest upright rectangle around some points.
 inline Bounds bounds(const std::vector<Point>& corners) {
     Bounds box{corners[0].x, corners[0].x, corners[0].y, corners[0].y};
     for (const Point& p : corners) {
@@ -87,6 +91,7 @@ inline double width(const std::vector<Point>& points) {
     return around.size() < 3 ? 0 : least;
 }
 
+/// The distance of a point from the line between a and b.
 inline double distance_to_side(const Point& a, const Point& b, const Point& p) {
     const double dx = b.x - a.x, dy = b.y - a.y,
                  s = ((p.x - a.x) * dx + (p.y - a.y) * dy) / (dx * dx + dy * dy);
@@ -104,6 +109,7 @@ inline bool sides_meet(const Point& a, const Point& b, const Point& c, const Poi
            distance_to_side(c, d, b) <= tolerance;
 }
 
+/// The distance of a point from the nearest side of a polygon.
 inline double distance_to_outline(const std::vector<Point>& corners, const Point& p) {
     double least = std::numeric_limits<double>::infinity();
     for_each_side(corners, [&](const Point& a, const Point& b) {

@@ -12,6 +12,7 @@
 
 namespace mpm {
 
+/// A material by name.
 struct MaterialCase {
     std::string name, law = "elastic";
     Material material;
@@ -50,12 +51,14 @@ struct PackCase {
     double velocity_x = 0, velocity_y = 0, shear_rate = 0;
 };
 
+/// Grains that hold together, by name.
 struct BondCase {
     std::string name;
     std::string a = "*", b = "*";
     double tension = 1e30, shear = 1e30;
 };
 
+/// What is solved; the words are those of the case file.
 struct Problem {
     long cells_x = 48, cells_y = 24;
     double length_x = 1.2, origin_x = 0, origin_y = 0;
@@ -71,6 +74,7 @@ struct Problem {
 
     double gravity_x = 0, gravity_y = 0, damping = 0, rise = 0;
 
+    /// The mesh with its walls.
     Mesh mesh() const {
         Mesh m;
         m.cells_x = cells_x, m.cells_y = cells_y;
@@ -87,6 +91,7 @@ struct Problem {
 
 namespace detail {
 
+// Each of these binds the parameters of one item of a list.
 inline void describe_material(common::ParameterTable& table, const std::string& prefix,
                               MaterialCase& m) {
     using common::above, common::at_least, common::between;
@@ -96,8 +101,7 @@ inline void describe_material(common::ParameterTable& table, const std::string& 
     table.real(at + "E", m.material.E, "stress", above(0), "Young's modulus");
     table.real(at + "nu", m.material.nu, "", between(-0.99, 0.495), "Poisson's ratio");
     table.real(at + "density", m.material.density, "mass/volume", above(0), "at the start");
-    table.real(at + "yield_stress", m.material.yield_stress, "stress", above(0),
-               "j2: in simple tension");
+    table.real(at + "yield_stress", m.material.yield_stress, "stress", above(0), "j2: in tension");
     table.real(at + "hardening", m.material.hardening, "stress", at_least(0),
                "j2: rise of the yield stress per plastic strain");
     table.real(at + "cohesion", m.material.cohesion, "stress", at_least(0), "drucker_prager");
@@ -115,19 +119,15 @@ inline void describe_grain(common::ParameterTable& table, const std::string& pre
     table.choice(at + "shape", g.shape, {"disk", "box", "polygon"}, "outline");
     table.real(at + "x", g.x, "length", anything(), "center");
     table.real(at + "y", g.y, "length", anything(), "center");
-    table.real(at + "radius", g.radius, "length", above(0),
-               "of a disk; of a regular polygon's corners");
+    table.real(at + "radius", g.radius, "length", above(0), "of a disk or a polygon's corners");
     table.real(at + "width", g.width, "length", above(0), "of a box");
     table.real(at + "height", g.height, "length", above(0), "of a box");
     table.real(at + "angle", g.angle, "degree", anything(), "turns a box or a regular polygon");
     table.whole(at + "sides", g.sides, "", between(3, 64), "of a regular polygon");
-    table.text(at + "vertices", g.vertices,
-               "polygon: \"x y, x y, x y ...\" in place of a regular one");
+    table.text(at + "vertices", g.vertices, "polygon: \"x y, x y, x y ...\"; empty: a regular one");
     table.text(at + "material", g.material, "name of its material");
-    table.real(at + "velocity_x", g.velocity_x, "velocity", anything(),
-               "at the start; rigid: always");
-    table.real(at + "velocity_y", g.velocity_y, "velocity", anything(),
-               "at the start; rigid: always");
+    table.real(at + "velocity_x", g.velocity_x, "velocity", anything(), "at start; rigid: always");
+    table.real(at + "velocity_y", g.velocity_y, "velocity", anything(), "at start; rigid: always");
     table.real(at + "spin", g.spin, "1/time", anything(), "about the center, counterclockwise");
     table.choice(at + "profile", g.profile, {"none", "bar", "wave"},
                  "of v_x along its length L: amplitude sin((n - 1/2) pi s/L), sin(n pi s/L)");
@@ -136,8 +136,7 @@ inline void describe_grain(common::ParameterTable& table, const std::string& pre
     table.choice(at + "control", g.control, {"velocity", "force_x", "force_y"},
                  "rigid: prescribed velocity, or force control in one direction");
     table.real(at + "force", g.force, "force", anything(), "force control: on the grain");
-    table.real(at + "damping", g.damping, "force/velocity", at_least(0),
-               "force control: of its velocity");
+    table.real(at + "damping", g.damping, "force/velocity", at_least(0), "force control: dashpot");
 }
 
 inline void describe_pack(common::ParameterTable& table, const std::string& prefix, PackCase& p) {
@@ -146,14 +145,11 @@ inline void describe_pack(common::ParameterTable& table, const std::string& pref
     table.choice(at + "kind", p.kind, {"hexagonal", "random", "loose", "file"},
                  "rows; random sizes, each at rest on others; scattered without touching; a file");
     table.text(at + "file", p.file, "file: of grains, one per line");
-    table.real(at + "x", p.x, "length", anything(),
-               "hexagonal: first center; else left of the region");
-    table.real(at + "y", p.y, "length", anything(),
-               "hexagonal: first center; else floor of the region");
+    table.real(at + "x", p.x, "length", anything(), "hexagonal: first center; else left of region");
+    table.real(at + "y", p.y, "length", anything(), "hexagonal: first center; else its floor");
     table.real(at + "width", p.width, "length", above(0), "of the region");
     table.real(at + "height", p.height, "length", above(0), "of the region");
-    table.whole(at + "columns", p.columns, "", between(1, 10000),
-                "hexagonal: grains in the first row");
+    table.whole(at + "columns", p.columns, "", between(1, 10000), "hexagonal: grains in first row");
     table.whole(at + "rows", p.rows, "", between(1, 10000), "hexagonal");
     table.real(at + "radius", p.radius, "length", above(0), "hexagonal");
     table.real(at + "spacing_x", p.spacing_x, "length", at_least(0), "hexagonal; 0: two radii");
@@ -167,10 +163,8 @@ inline void describe_pack(common::ParameterTable& table, const std::string& pref
     table.whole(at + "seed", p.seed, "", between(0, 1e9), "another number, another pack");
     table.whole(at + "sides", p.sides, "", between(0, 64), "polygons with so many sides; 0: disks");
     table.text(at + "material", p.material, "name of its material");
-    table.real(at + "velocity_x", p.velocity_x, "velocity", anything(),
-               "at the start; rigid: always");
-    table.real(at + "velocity_y", p.velocity_y, "velocity", anything(),
-               "at the start; rigid: always");
+    table.real(at + "velocity_x", p.velocity_x, "velocity", anything(), "at start; rigid: always");
+    table.real(at + "velocity_y", p.velocity_y, "velocity", anything(), "at start; rigid: always");
     table.real(at + "shear_rate", p.shear_rate, "1/time", anything(),
                "adds shear_rate times the height of a grain's center above y to its v_x");
 }
@@ -179,8 +173,7 @@ inline void describe_bond(common::ParameterTable& table, const std::string& pref
     const std::string at = prefix + ".";
     table.text(at + "a", b.a, "name of a grain; *: any that touches");
     table.text(at + "b", b.b, "name of the other; *: any that touches");
-    table.real(at + "tension", b.tension, "stress", common::above(0),
-               "strength against pulling apart");
+    table.real(at + "tension", b.tension, "stress", common::above(0), "strength against opening");
     table.real(at + "shear", b.shear, "stress", common::above(0), "strength against sliding");
 }
 

@@ -1,6 +1,6 @@
 // Random packs of disks without overlap. A deposited pack grows from the floor: each disk comes to
 // rest at the lowest place where it touches two others, or one and the floor or a wall. A loose
-// pack is strewn: each disk takes the first random place that is free.
+// pack is scattered: each disk takes the first random place that is free.
 #pragma once
 
 #include <algorithm>
@@ -39,6 +39,7 @@ namespace detail {
 // Where a disk may come to rest: on a disk, and on another disk or on something else.
 enum class Beside { disk, floor_left, floor_right, wall_low, wall_high, corner_low, corner_high };
 
+// A place between neighbors where disks may rest.
 struct Pocket {
     double lowest;  // center of the smallest disk that can rest here
     Beside beside;
@@ -161,6 +162,7 @@ class Deposit {
 // Draws of one pack.
 constexpr std::uint32_t pack_radii = 0x9a11, pack_places = 0x9a12;
 
+// Refuses a pack that cannot be placed, with the numbers.
 inline void validate(const RandomDisks& pack) {
     const double width = pack.box.x_high - pack.box.x_low,
                  height = pack.box.y_high - pack.box.y_low, least = pack.radius_min,
@@ -191,7 +193,7 @@ inline void validate(const RandomDisks& pack) {
 }
 
 // A disk at the first random place that is free. out: false if none of many is
-inline bool strew(const RandomDisks& pack, const Bounds& box, double r, DiskCells& disks) {
+inline bool scatter(const RandomDisks& pack, const Bounds& box, double r, DiskCells& disks) {
     const auto disk = static_cast<std::uint64_t>(disks.all().size());
     const double margin = pack.periodic_x ? 0 : r;
     for (std::uint32_t attempt = 0; attempt < 10000; ++attempt) {
@@ -223,7 +225,7 @@ inline std::vector<Outline> place_random_disks(const RandomDisks& pack) {
     // Far from the origin a pack is the same.
     const Bounds box{0, pack.box.x_high - pack.box.x_low, 0, pack.box.y_high - pack.box.y_low};
     detail::Deposit deposit(box, pack.radius_min + half_gap, largest, pack.periodic_x);
-    DiskCells strewn(box, largest, pack.periodic_x);
+    DiskCells scattered(box, largest, pack.periodic_x);
     std::vector<Outline> outlines;
     double fraction = 0;
     const bool fill_up = pack.count == 0 && pack.solid_fraction == 0;
@@ -233,13 +235,13 @@ inline std::vector<Outline> place_random_disks(const RandomDisks& pack) {
         if (enough) break;
         const double u = common::uniform(pack.seed, detail::pack_radii, k, 0),
                      r = std::fma(u, pack.radius_max - pack.radius_min, pack.radius_min);
-        const bool placed =
-            pack.loose ? detail::strew(pack, box, r + half_gap, strewn) : deposit.add(r + half_gap);
+        const bool placed = pack.loose ? detail::scatter(pack, box, r + half_gap, scattered)
+                                       : deposit.add(r + half_gap);
         if (!placed && fill_up) break;
         require(placed, "the box is full with " + std::to_string(k) +
                             " disks and a solid fraction of " + format(fraction) +
                             ": ask for fewer, or make the box larger");
-        const Circle& at = (pack.loose ? strewn : deposit.disks()).all().back();
+        const Circle& at = (pack.loose ? scattered : deposit.disks()).all().back();
         outlines.push_back(disk(pack.box.x_low + at.x, pack.box.y_low + at.y, r));
         fraction += area(outlines.back()) / (box.x_high * box.y_high);
     }

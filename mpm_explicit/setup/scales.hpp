@@ -11,6 +11,7 @@
 
 namespace mpm {
 
+/// What follows from a case, in its own units.
 struct Scales {
     double sound_speed = 0, speed = 0;  // largest c_p, largest |v| of a grain
     double dt = 0;
@@ -20,6 +21,9 @@ struct Scales {
     double least_mass = 0;  // of a node that takes part: round-off of the lightest particle's
 };
 
+/// The scales of a case.
+///   dt = alpha h / (c_p + |v|)
+/// errors: InputError for too many steps or particles, or a damping that takes all velocity
 inline Scales scales_of(const Case& w) {
     const std::vector<Material> materials = materials_of(w.problem);
     const std::vector<PlannedGrain> plans = plan_grains(w.problem, materials);

@@ -25,6 +25,7 @@ inline void compare_energy(const FinishedRun& run, double tolerance, common::Sum
 
 // ---- two equal disks that meet head on ----------------------------------------------------------
 
+/// errors: InputError where there are no such disks, or where the run ends before they meet
 inline void need_equal_disks(const PlannedCase& planned) {
     const std::vector<PlannedGrain>& plans = planned.plans;
     const auto is_disk = [](auto& plan) { return plan.outline.kind == OutlineKind::disk; };
@@ -96,6 +97,7 @@ inline void compare_rebound(const FinishedRun& run, common::Summary& summary) {
 
 // ---- a bar that is held at its left end ---------------------------------------------------------
 
+/// errors: InputError where nothing vibrates like this bar
 inline void need_bar(const PlannedCase& planned) {
     const Mesh mesh = planned.parameters.problem.mesh();
     planned.refuse(!planned.has_profile("bar") ||
@@ -125,6 +127,7 @@ inline common::OscillationFit fit_momentum(const FinishedRun& run) {
                                    run.scales.dt * double(run.parameters.history_steps));
 }
 
+/// Its frequency, and the energy it keeps.
 inline void compare_bar(const FinishedRun& run, common::Summary& summary) {
     const double expected = bar_of(run).frequency();
     summary.result("frequency", fit_momentum(run).frequency, "1/time", expected,
@@ -134,6 +137,7 @@ inline void compare_bar(const FinishedRun& run, common::Summary& summary) {
 
 // ---- a compression wave that stands between rollers ---------------------------------------------
 
+/// errors: InputError where the wave does not stand
 inline void need_wave(const PlannedCase& planned) {
     const Mesh mesh = planned.parameters.problem.mesh();
     bool rollers = true;
@@ -157,6 +161,7 @@ inline void need_oscillator(const PlannedCase& planned) {
                    " needs grid.cells_x = 2, method.frozen = true, and linear FLIP");
 }
 
+/// Velocities at the end, particle by particle.
 inline void compare_standing_wave(const FinishedRun& run, common::Summary& summary) {
     const Problem& problem = run.parameters.problem;
     const Material& m = run.material();
@@ -179,6 +184,7 @@ inline void compare_standing_wave(const FinishedRun& run, common::Summary& summa
 
 // ---- two bonded halves of a bar that vibrates ---------------------------------------------------
 
+/// errors: InputError where there is no such bond
 inline void need_bond(const PlannedCase& planned) {
     need_bar(planned);
     planned.refuse(planned.parameters.problem.bonds.empty() || planned.free_grains() != 2,

@@ -13,6 +13,7 @@
 
 namespace mpm::theory {
 
+/// The slope of the line through y(x) by least squares, where x is at least `from`.
 inline double slope(const std::vector<double>& x, const std::vector<double>& y, double from) {
     std::vector<double> u, v;
     for (std::size_t n = 0; n < x.size(); ++n)
@@ -25,6 +26,7 @@ inline double slope(const std::vector<double>& x, const std::vector<double>& y, 
 
 // ---- a block or a cylinder on a rigid plate, gravity inclined -----------------------------------
 
+/// errors: InputError where nothing is inclined
 inline void need_incline(const PlannedCase& planned) {
     const Problem& problem = planned.parameters.problem;
     planned.refuse(
@@ -53,11 +55,13 @@ inline void compare_incline(const FinishedRun& run,
     summary.result_info("speed_at_end", v.back(), "velocity", "along the plate");
 }
 
+/// It slides, or friction holds it.
 inline void compare_block(const FinishedRun& run, common::Summary& summary) {
     compare_incline(run, block_acceleration, "g (sin - mu cos), or 0 where friction holds",
                     summary);
 }
 
+/// It rolls, or slips.
 inline void compare_cylinder(const FinishedRun& run, common::Summary& summary) {
     compare_incline(run, cylinder_acceleration,
                     "(2/3) g sin where it rolls, g (sin - mu cos) where it slips", summary);
@@ -65,6 +69,7 @@ inline void compare_cylinder(const FinishedRun& run, common::Summary& summary) {
 
 // ---- a disk between two plates (Brazilian test) -------------------------------------------------
 
+/// errors: InputError where no plates press a disk
 inline void need_pressed_disk(const PlannedCase& planned) {
     const PlannedGrain& first = planned.plans[0];
     const long plates = planned.rigid_grains();
@@ -90,6 +95,7 @@ inline Stress stress_at_center(const Assembly& all, std::size_t grain, double di
     return {mean.xx / V, mean.yy / V, mean.xy / V, mean.zz / V};
 }
 
+/// Stress at the center, averaged over a circle of one and a half cells.
 inline void center_columns(const PlannedCase& planned, const Assembly& all, common::Row& row) {
     const Stress s =
         stress_at_center(all, planned.target(), 1.5 * planned.parameters.problem.mesh().h);
@@ -98,6 +104,7 @@ inline void center_columns(const PlannedCase& planned, const Assembly& all, comm
     row.add("center_xy", "stress", s.xy);
 }
 
+/// The stress at the center under the mean load of the plates, against the closed form.
 inline void compare_disk(const FinishedRun& run, common::Summary& summary) {
     const auto& grains = run.all.grains;
     const auto times = run.history.column("time");
@@ -133,6 +140,7 @@ inline void compare_disk(const FinishedRun& run, common::Summary& summary) {
 
 // ---- a grain that yields ------------------------------------------------------------------------
 
+/// errors: InputError where nothing can yield or nothing moves
 inline void need_yielding(const PlannedCase& planned) {
     const PlannedGrain& target = planned.plans[planned.target()];
     planned.refuse(planned.material_of(target).law != Law::j2,
@@ -188,11 +196,13 @@ inline double front_of(const Assembly& all, double share) {
     return *at;
 }
 
+/// The front of the grains.
 inline void front_column(const PlannedCase&, const Assembly& all, common::Row& row) {
     constexpr double share_beyond = 0.01;
     row.add("front", "length", front_of(all, share_beyond));
 }
 
+/// The run-out, between two published laws.
 inline void compare_collapse(const FinishedRun& run, common::Summary& summary) {
     const auto front = run.history.column("front");
     double low = 1e300, high = -1e300, top = -1e300;

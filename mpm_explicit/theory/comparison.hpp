@@ -34,6 +34,7 @@ struct PlannedCase {
     std::vector<Material> materials = materials_of(parameters.problem);
     std::vector<PlannedGrain> plans = plan_grains(parameters.problem, materials);
 
+    /// Of a grain; and how many are rigid or free.
     const Material& material_of(const PlannedGrain& plan) const { return materials[plan.material]; }
     bool is_rigid(const PlannedGrain& plan) const { return material_of(plan).law == Law::rigid; }
     long rigid_grains() const {
@@ -55,6 +56,7 @@ struct PlannedCase {
             return plan.from.profile == name && plan.from.amplitude != 0;
         });
     }
+    /// Whether this stands at an end of the mesh.
     bool has_wall(Side side, const char* kind) const {
         return parameters.problem.walls[side] == kind;
     }
@@ -75,6 +77,7 @@ struct FinishedRun {
     double end;  // time
     const Case& parameters = planned.parameters;
 
+    /// The target grain, its material, mass, and momentum along x in every row.
     const Grain& grain() const { return all.grains[planned.target()]; }
     const Material& material() const { return planned.materials[grain().material]; }
     double mass() const {

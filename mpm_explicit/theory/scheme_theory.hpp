@@ -31,6 +31,7 @@ struct LeapfrogState {
     double x_before, v, x_after;
 };
 
+/// One step of the oscillator.
 inline LeapfrogState leapfrog_step(const LeapfrogState& s, double w, double dt) {
     const double v = s.v - w * w * dt * s.x_after;
     return {s.x_after, v, s.x_after + dt * v};

@@ -34,12 +34,12 @@ inline void add_ledger(const Ledger& l, common::Row& row) {
         row.add(name, "energy", value);
 }
 
+/// Writes rows and files of a run, and its results.
 class ThetaRecorder {
    public:
     ThetaRecorder(const Case& parameters, const ThetaScheme& scheme, const Scales& scales,
                   const State& state, common::History& history)
-        : parameters_(parameters),
-          scheme_(scheme),
+        : scheme_(scheme),
           scales_(scales),
           recorder_(parameters, facts_of(parameters, scheme), scales, state.assembly, comparisons,
                     "residual") {
@@ -58,14 +58,11 @@ class ThetaRecorder {
         recorder_.snapshot(step, state.assembly, run);
     }
 
-    /// Enters a step into the ledger and writes the row of its end.                     [MPM-13]
+    /// Writes the row of the end of a step that the ledger holds.
     /// errors: NumericalError as Recorder::refuse_failure
-    void record(long step, const StepSums& sums, const GrainNodes& nodes, State& state,
+    void record(long step, const StepSums& sums, const GrainNodes& nodes, const State& state,
                 common::Run& run) {
-        Ledger& l = state.ledger;
-        enter_step(scheme_.theta, scheme_.consistent(), parameters_.problem.damping, scales_.dt,
-                   nodes.strips(), sums.strips, sums.nodes, sums.contact, l);
-        state.effort.add(sums.solver);
+        const Ledger& l = state.ledger;
         if (std::isfinite(l.energy()) && recorder_.row_is_due(step + 1))
             run.history.row(row(step + 1, l, sums, state.assembly));
         recorder_.refuse_failure(step, sums.strips, nodes, state.assembly, l.start,
@@ -101,7 +98,6 @@ class ThetaRecorder {
         return row;
     }
 
-    const Case& parameters_;
     const ThetaScheme& scheme_;
     const Scales& scales_;
     Recorder recorder_;

@@ -14,8 +14,9 @@ namespace mpm_implicit {
 
 /// Refuses combinations that cannot run.
 /// errors: InputError with the cure
-inline void validate(const Case& w, const ThetaScheme& scheme) {
-    mpm::validate(w);
+inline void validate(const Case& w, const ThetaScheme& scheme,
+                     const common::ParameterTable& table) {
+    mpm::validate(w, table);
     for (const Material& m : materials_of(w.problem))
         refuse(!scheme.newton() && (m.law == Law::j2 || m.law == Law::drucker_prager),
                "[material." + m.name +

@@ -62,6 +62,7 @@ inline void compare_rebound(const theory::FinishedRun& run, common::Summary& sum
     theory::compare_rebound(run, summary);
 }
 
+/// errors: InputError as theory::need_bar, and for lumped mass
 inline void need_bar(const theory::PlannedCase& planned) {
     theory::need_bar(planned);
     planned.refuse(!planned.scheme.consistent_mass,
@@ -126,6 +127,7 @@ inline std::string billet_plate(const theory::PlannedCase& planned) {
     return {};
 }
 
+/// errors: InputError where no plates press an upright block
 inline void need_billet(const theory::PlannedCase& planned) {
     const Problem& problem = planned.parameters.problem;
     const PlannedGrain& block = planned.plans[planned.target()];
@@ -196,6 +198,7 @@ inline void compare_compression(const theory::FinishedRun& run, common::Summary&
                         "of the energy at the end");
 }
 
+/// What a run of mpm_implicit can be compared with.
 inline constexpr theory::Comparison comparisons[] = {
     {"rebound", theory::need_equal_disks, compare_rebound},
     {"bar", need_bar, compare_bar},
