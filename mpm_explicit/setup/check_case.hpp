@@ -14,11 +14,6 @@
 
 namespace mpm {
 
-/// errors: InputError with the sentence
-inline void refuse(bool condition, const std::string& sentence) {
-    if (condition) throw common::InputError(sentence);
-}
-
 namespace detail {
 
 // Beyond these sizes, products of several numbers leave double precision.

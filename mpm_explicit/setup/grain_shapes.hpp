@@ -28,10 +28,11 @@ struct Outline {
 /// Whether a number is finite, and its square too.
 inline bool usable(double value) { return std::isfinite(value) && std::fabs(value) < 1e100; }
 
-/// errors: InputError with the sentence, unless the condition holds
-inline void require(bool condition, const std::string& sentence) {
-    if (!condition) throw common::InputError(sentence);
+/// errors: InputError with the sentence, where the condition holds; require: where it does not
+inline void refuse(bool condition, const std::string& sentence) {
+    if (condition) throw common::InputError(sentence);
 }
+inline void require(bool condition, const std::string& sentence) { refuse(!condition, sentence); }
 
 /// errors: InputError for what is no length above 0
 inline void require_length(double value, const std::string& name) {

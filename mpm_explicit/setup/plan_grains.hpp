@@ -51,9 +51,9 @@ inline std::vector<Point> vertices_of(const std::string& name, const std::string
         std::istringstream numbers(corner);
         Point p{};
         std::string rest;
-        if (!(numbers >> p.x >> p.y) || (numbers >> rest))
-            throw common::InputError("grain." + name + ".vertices: '" + corner +
-                                     "' is not a corner: write \"x y, x y, x y\"");
+        refuse(!(numbers >> p.x >> p.y) || (numbers >> rest),
+               "grain." + name + ".vertices: '" + corner +
+                   "' is not a corner: write \"x y, x y, x y\"");
         points.push_back(p);
     }
     return points;
@@ -62,9 +62,8 @@ inline std::vector<Point> vertices_of(const std::string& name, const std::string
 // The outline of a named grain.
 inline Outline outline_of(const GrainCase& g) {
     try {
-        if (g.shape != "polygon" && !g.vertices.empty())
-            throw common::InputError(
-                "vertices belong to shape = \"polygon\": set it, or take them out");
+        refuse(g.shape != "polygon" && !g.vertices.empty(),
+               "vertices belong to shape = \"polygon\": set it, or take them out");
         if (g.shape == "disk") return disk(g.x, g.y, g.radius);
         if (g.shape == "box") return box(g.x, g.y, g.width, g.height, g.angle);
         if (g.vertices.empty()) return regular_polygon(g.x, g.y, g.radius, g.sides, g.angle);
@@ -78,11 +77,10 @@ inline Outline outline_of(const GrainCase& g) {
 inline std::vector<PackedGrain> grains_of(const PackCase& p, const Problem& w) {
     try {
         std::vector<PackedGrain> pack;
-        if (p.kind != "file" && !p.file.empty())
-            throw common::InputError("file belongs to kind = \"file\": set it, or take file out");
+        refuse(p.kind != "file" && !p.file.empty(),
+               "file belongs to kind = \"file\": set it, or take file out");
         if (p.kind == "file") {
-            if (p.file.empty())
-                throw common::InputError("kind = \"file\" needs the name of a file: set file");
+            refuse(p.file.empty(), "kind = \"file\" needs the name of a file: set file");
             pack = read_pack(p.file);
         } else if (p.kind == "hexagonal") {
             Rows rows;

@@ -88,8 +88,11 @@ inline std::optional<Circle> rest(const DiskCells& disks, const Bounds& box, con
 class Deposit {
    public:
     Deposit(const Bounds& box, double smallest, double largest, bool periodic)
-        : box_(box), smallest_(smallest), largest_(largest), disks_(box, largest, periodic) {
-        periodic_ = periodic;
+        : box_(box),
+          smallest_(smallest),
+          largest_(largest),
+          periodic_(periodic),
+          disks_(box, largest, periodic) {
         offer(Beside::corner_low, 0, 0);
         if (!periodic) offer(Beside::corner_high, 0, 0);
     }
@@ -153,7 +156,7 @@ class Deposit {
 
     Bounds box_;
     double smallest_, largest_;
-    bool periodic_ = false;
+    bool periodic_;
     DiskCells disks_;
     std::set<Pocket> pockets_;
     std::vector<long> waiting_;

@@ -51,17 +51,15 @@ inline Scales scales_of(const Case& w) {
     s.least_mass = (w.shape == "linear" ? 1e-12 : 1e-24) * lightest;
     s.dt = w.alpha * mesh.h / (s.sound_speed + s.speed);
     const double steps = w.end / s.dt;
-    if (!(steps <= 1e9))
-        throw common::InputError("the run would take " + format(steps) +
-                                 " steps, more than 1e9: raise time.alpha or lower time.end");
+    refuse(!(steps <= 1e9), "the run would take " + format(steps) +
+                                " steps, more than 1e9: raise time.alpha or lower time.end");
     s.steps = std::lround(steps);
-    if (!(problem.damping * s.dt < 1))
-        throw common::InputError("load.damping = " + format(problem.damping) +
-                                 " takes all velocity in a step of " + format(s.dt) +
-                                 ": lower it below " + format(1 / s.dt));
-    if (s.particles > 2'000'000'000)
-        throw common::InputError(std::to_string(s.particles) +
-                                 " particles are more than 2e9: lower grid.particles_per_side");
+    refuse(!(problem.damping * s.dt < 1), "load.damping = " + format(problem.damping) +
+                                              " takes all velocity in a step of " + format(s.dt) +
+                                              ": lower it below " + format(1 / s.dt));
+    refuse(s.particles > 2'000'000'000,
+           std::to_string(s.particles) +
+               " particles are more than 2e9: lower grid.particles_per_side");
     // Particles and their copies while they are sorted; the nodes of each grain, with a margin; the
     // table of all nodes.
     const double particles = double(s.particles);

@@ -14,12 +14,10 @@
 
 namespace mpm::theory {
 
-inline double last(const std::vector<double>& values) { return values.back(); }
-
 /// What is left of the energy at the end.
 inline void compare_energy(const FinishedRun& run, double tolerance, common::Summary& summary) {
     const auto energy = run.history.column("energy");
-    summary.result("energy_change", last(energy) / energy.front() - 1, "1", 0, tolerance,
+    summary.result("energy_change", energy.back() / energy.front() - 1, "1", 0, tolerance,
                    "exact: none");
 }
 

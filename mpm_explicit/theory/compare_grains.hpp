@@ -175,7 +175,7 @@ inline void compare_yield(const FinishedRun& run, common::Summary& summary) {
                           "von Mises stress over Y + H ep, at the end");
     summary.result_within("plastic_work_undone", backward, "energy", 0, 1e-12 * energy.front(),
                           "plastic work never comes back");
-    summary.result_info("plastic_work", last(plastic) / energy.front(), "1",
+    summary.result_info("plastic_work", plastic.back() / energy.front(), "1",
                         "of the initial energy");
     summary.result_info("largest_plastic_strain", most, "1", "of a particle");
     summary.result_info("yielded", yielded / double(run.grain().end - run.grain().begin), "1",
@@ -213,13 +213,13 @@ inline void compare_collapse(const FinishedRun& run, common::Summary& summary) {
         top = std::max(top, box.y_high);
     }
     const double width = high - low, a = (top - run.parameters.problem.origin_y) / width,
-                 runout = (last(front) - high) / width;
+                 runout = (front.back() - high) / width;
     summary.result_info("aspect_ratio", a, "1", "height over width of the column");
     summary.result_within("runout", runout, "1", runout_in_experiments(a), runout_of_disks(a),
                           "(L_end - L_0)/L_0, between columns of sand between plates (Lube and "
                           "others 2005) and stiff disks in two dimensions (Staron and Hinch 2005)");
     const double steady = front[front.size() * 9 / 10];
-    summary.result_within("still_moving", (last(front) - steady) / width, "1", -0.05, 0.05,
+    summary.result_within("still_moving", (front.back() - steady) / width, "1", -0.05, 0.05,
                           "what the front gained in the last tenth of the run");
 }
 

@@ -63,8 +63,7 @@ struct PlannedCase {
 
     /// errors: InputError 'theory.compare = "..."' with the sentence, where it is impossible
     void refuse(bool impossible, const std::string& sentence) const {
-        if (impossible)
-            throw common::InputError("theory.compare = \"" + parameters.compare + "\"" + sentence);
+        mpm::refuse(impossible, "theory.compare = \"" + parameters.compare + "\"" + sentence);
     }
 };
 
@@ -123,11 +122,10 @@ inline void validate_comparison(const PlannedCase& planned, const Scales& scales
         const std::string place = std::string(key) + ": ";
         const auto found = std::find_if(planned.plans.begin(), planned.plans.end(),
                                         [&, &n = name](auto& plan) { return plan.name == n; });
-        if (found == planned.plans.end())
-            throw common::InputError(place + "there is no grain '" + name + "'");
-        if (planned.is_rigid(*found) != rigid)
-            throw common::InputError(place + "'" + name + "' is " + (rigid ? "not " : "") +
-                                     "rigid: name another grain");
+        mpm::refuse(found == planned.plans.end(), place + "there is no grain '" + name + "'");
+        mpm::refuse(
+            planned.is_rigid(*found) != rigid,
+            place + "'" + name + "' is " + (rigid ? "not " : "") + "rigid: name another grain");
     }
     if (comparison->needs != nullptr) comparison->needs(planned);
     const long rows = scales.steps / w.history_steps;
