@@ -21,36 +21,20 @@ namespace detail {
 
 constexpr std::size_t longest_line = 100000;  // of a polygon with as many corners as there may be
 
-// Whether bytes are UTF-8 text: no stray, overlong or surrogate sequence.
-inline bool is_utf8(std::string_view text) {
-    for (std::size_t k = 0; k < text.size();) {
-        const auto byte = static_cast<unsigned char>(text[k++]);
-        if (byte < 0x80) continue;
-        const int following = byte >= 0xF0 ? 3 : byte >= 0xE0 ? 2 : 1;
-        if (byte < 0xC2 || byte > 0xF4) return false;
-        unsigned long letter = byte & (0x3FU >> following);
-        for (int m = 0; m < following; ++m) {
-            const unsigned next = k < text.size() ? static_cast<unsigned char>(text[k++]) : 0U;
-            if ((next & 0xC0U) != 0x80U) return false;
-            letter = letter << 6 | (next & 0x3FU);
-        }
-        const unsigned long least = following == 3 ? 0x10000 : following == 2 ? 0x800 : 0x80;
-        if (letter < least || letter > 0x10FFFF || (letter >= 0xD800 && letter < 0xE000))
-            return false;
-    }
-    return true;
-}
-
 // Refuses a line that is too long, not UTF-8, or holds control characters.
 inline void refuse_bad_line(std::string_view line, const std::string& place) {
     require(line.size() <= longest_line, place + ": the line has more than " +
                                              std::to_string(longest_line) +
                                              " letters; this is not a pack of grains");
-    require(is_utf8(line), place + ": not UTF-8 text; save the file as UTF-8");
-    for (const char letter : line) {
-        const auto byte = static_cast<unsigned char>(letter);
-        require((byte >= 0x20 && byte != 0x7F) || byte == '\t',
-                place + ": a control character; this is not a text file, or it is damaged");
+    for (std::size_t k = 0, length = 0; k < line.size(); k += length) {
+        length = common::utf8_length(line, k);
+        const auto byte = static_cast<unsigned char>(line[k]);
+        const bool is_control = (byte < 0x20 && byte != '\t') || byte == 0x7F;
+        if (length > 0 && !is_control) continue;
+        throw common::InputError(
+            place + (length == 0
+                         ? ": not UTF-8 text; save the file as UTF-8"
+                         : ": a control character; this is not a text file, or it is damaged"));
     }
 }
 
