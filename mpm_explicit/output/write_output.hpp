@@ -38,10 +38,10 @@ struct Table {
 /// Writes particles_NNNNNN.dat (and .vtp): all of them, or a random sample of about
 /// most_particles_written.
 /// note:   positions are those inside of a periodic mesh
-inline void write_particles(const std::string& folder, long step, const Case& w,
+inline void write_particles(const std::string& folder, long step, const Case& parameters,
                             const Assembly& all) {
     const Particles& at = all.particles;
-    const Mesh mesh = w.problem.mesh();
+    const Mesh mesh = parameters.problem.mesh();
     const double length = mesh.length_x();
     const long every = (at.count() + most_particles_written - 1) / most_particles_written;
     Table table;
@@ -67,7 +67,7 @@ inline void write_particles(const std::string& folder, long step, const Case& w,
     }
     const auto columns = table.columns();
     common::write_table(folder + common::numbered("particles", step, "dat"), columns);
-    if (w.vtk) {
+    if (parameters.vtk) {
         const std::vector<double> zero(table.values[0].size(), 0.0);
         const auto& data = table.values;
         common::write_vtp(folder + common::numbered("particles", step, "vtp"),
@@ -145,18 +145,19 @@ inline void write_fringes(const std::string& path, const FringeRaster& raster) {
 }
 
 /// Writes fringes_NNNNNN.dat: the principal stress difference of elastic grains on pixels.
-inline void write_fringe_raster(const std::string& folder, long step, const Case& w,
+inline void write_fringe_raster(const std::string& folder, long step, const Case& parameters,
                                 const Assembly& all) {
-    const Mesh mesh = w.problem.mesh();
-    write_fringes(
-        folder + common::numbered("fringes", step, "dat"),
-        draw_fringes(all.particles, all.grains, mesh, whole(mesh), int(w.pixels_per_cell)));
+    const Mesh mesh = parameters.problem.mesh();
+    write_fringes(folder + common::numbered("fringes", step, "dat"),
+                  draw_fringes(all.particles, all.grains, mesh, whole(mesh),
+                               int(parameters.pixels_per_cell)));
 }
 
 /// Writes pack.txt: the grains of the case, to be read again as a pack of kind "file".
-inline void write_pack_of(const std::string& folder, const Case& w) {
+inline void write_pack_of(const std::string& folder, const Case& parameters) {
     std::vector<PackedGrain> grains;
-    for (const PlannedGrain& plan : plan_grains(w.problem, materials_of(w.problem)))
+    for (const PlannedGrain& plan :
+         plan_grains(parameters.problem, materials_of(parameters.problem)))
         grains.push_back({plan.name, plan.outline});
     write_pack(folder + "pack.txt", grains);
 }

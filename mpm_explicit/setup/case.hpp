@@ -43,47 +43,55 @@ struct Case {
 };
 
 /// Adds what every scheme asks for to a program's table: problem, time, method.
-inline void describe_case(common::ParameterTable& table, Case& w) {
+inline void describe_case(common::ParameterTable& table, Case& parameters) {
     using common::above, common::at_least;
-    describe_problem(table, w.problem);
+    describe_problem(table, parameters.problem);
     table.group("time");
-    table.real("time.alpha", w.alpha, "", above(0),
+    table.real("time.alpha", parameters.alpha, "", above(0),
                "CFL number: dt = alpha h/(c_p + |v|), of the fastest sound and the fastest grain");
-    table.real("time.end", w.end, "time", at_least(0), "length of the run");
-    table.real("time.energy_limit", w.energy_limit, "", at_least(0),
+    table.real("time.end", parameters.end, "time", at_least(0), "length of the run");
+    table.real("time.energy_limit", parameters.energy_limit, "", at_least(0),
                "the run fails when the energy is this many times what was put in; 0: never");
 
     table.group("method");
-    table.choice("method.shape", w.shape, {"linear", "gimp", "quadratic"}, "shape function");
-    table.real("method.flip", w.flip, "", common::between(0, 1),
+    table.choice("method.shape", parameters.shape, {"linear", "gimp", "quadratic"},
+                 "shape function");
+    table.real("method.flip", parameters.flip, "", common::between(0, 1),
                "share of FLIP: 1 increments velocities, 0 replaces them (PIC)");
-    table.flag("method.frozen", w.frozen, "particles keep their places: small oscillations");
+    table.flag("method.frozen", parameters.frozen,
+               "particles keep their places: small oscillations");
 }
 
 /// Adds comparison and output, and says what may change on restart, the end of the run included.
 /// in:     comparison_names, the choices of theory.compare
-inline void describe_output(common::ParameterTable& table, Case& w,
+inline void describe_output(common::ParameterTable& table, Case& parameters,
                             const std::vector<std::string>& comparison_names) {
     using common::at_least, common::between;
     table.group("comparison with theory");
-    table.choice("theory.compare", w.compare, comparison_names, "what the run is compared with");
-    table.text("theory.grain", w.grain, "the target grain; empty: the first that is not rigid");
-    table.text("theory.plate", w.plate, "the rigid grain whose load counts; empty: mean of all");
-    table.real("theory.tolerance", w.tolerance, "", between(0, 10), "of the result, relative");
+    table.choice("theory.compare", parameters.compare, comparison_names,
+                 "what the run is compared with");
+    table.text("theory.grain", parameters.grain,
+               "the target grain; empty: the first that is not rigid");
+    table.text("theory.plate", parameters.plate,
+               "the rigid grain whose load counts; empty: mean of all");
+    table.real("theory.tolerance", parameters.tolerance, "", between(0, 10),
+               "of the result, relative");
 
     table.group("output");
-    table.whole("output.history_steps", w.history_steps, "step", between(1, 1e9),
+    table.whole("output.history_steps", parameters.history_steps, "step", between(1, 1e9),
                 "steps between rows of the history");
-    table.real("output.particles_interval", w.particles_interval, "time", at_least(0),
+    table.real("output.particles_interval", parameters.particles_interval, "time", at_least(0),
                "time between particles files; 0: none");
-    table.real("output.fringes_interval", w.fringes_interval, "time", at_least(0),
+    table.real("output.fringes_interval", parameters.fringes_interval, "time", at_least(0),
                "time between rasters of the principal stress difference; 0: none");
-    table.whole("output.pixels_per_cell", w.pixels_per_cell, "", between(1, 64), "of the raster");
-    table.real("output.grains_interval", w.grains_interval, "time", at_least(0),
+    table.whole("output.pixels_per_cell", parameters.pixels_per_cell, "", between(1, 64),
+                "of the raster");
+    table.real("output.grains_interval", parameters.grains_interval, "time", at_least(0),
                "time between files with one line per grain; 0: none");
-    table.flag("output.pack", w.pack, "pack.txt: the grains at the start, to be read again");
-    table.flag("output.vtk", w.vtk, "also write .vtp for ParaView");
-    table.whole("output.checkpoint_steps", w.checkpoint_steps, "", between(0, 1e9),
+    table.flag("output.pack", parameters.pack,
+               "pack.txt: the grains at the start, to be read again");
+    table.flag("output.vtk", parameters.vtk, "also write .vtp for ParaView");
+    table.whole("output.checkpoint_steps", parameters.checkpoint_steps, "", between(0, 1e9),
                 "steps between checkpoints; 0: only when stopped");
 
     table.renamed({{"mesh.origin_x", "grid.low_x"},
@@ -104,10 +112,11 @@ namespace mpm_explicit {
 using namespace mpm;
 
 /// The table of all parameters.
-inline common::ParameterTable describe(Case& w, const std::vector<std::string>& comparison_names) {
+inline common::ParameterTable describe(Case& parameters,
+                                       const std::vector<std::string>& comparison_names) {
     common::ParameterTable table;
-    describe_case(table, w);
-    describe_output(table, w, comparison_names);
+    describe_case(table, parameters);
+    describe_output(table, parameters, comparison_names);
     return table;
 }
 

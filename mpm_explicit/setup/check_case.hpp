@@ -81,8 +81,8 @@ inline void refuse_grain(const PlannedGrain& plan, const Material& material, con
 /// Refuses combinations that cannot run.
 /// in:     table, the parameters of the case by name
 /// errors: InputError with the numbers and the cure
-inline void validate(const Case& w, const common::ParameterTable& table) {
-    const Problem& problem = w.problem;
+inline void validate(const Case& parameters, const common::ParameterTable& table) {
+    const Problem& problem = parameters.problem;
     detail::refuse_extremes(table);
     const Mesh mesh = problem.mesh();
     const double far = std::max(std::fabs(mesh.x_low), std::fabs(mesh.y_low)) / mesh.h;
@@ -110,7 +110,7 @@ inline void validate(const Case& w, const common::ParameterTable& table) {
         const Material& material = materials[plan.material];
         refuse(!names.insert(plan.name).second,
                "two grains are called '" + plan.name + "': rename one of them");
-        refuse(w.pack && plan.name.size() > detail::longest_pack_name,
+        refuse(parameters.pack && plan.name.size() > detail::longest_pack_name,
                "grain '" + plan.name + "' has a name of " + std::to_string(plan.name.size()) +
                    " letters, and pack.txt takes " + std::to_string(detail::longest_pack_name) +
                    ": shorten it, or set output.pack = false");
@@ -127,17 +127,17 @@ inline void validate(const Case& w, const common::ParameterTable& table) {
                                 format(worst.depth) + ", " + format(worst.depth / mesh.h) +
                                 " cells: move them apart or make them smaller");
     (void)bonds_of(problem, plans, materials);
-    const double pixels =
-        double(problem.cells_x * w.pixels_per_cell) * double(problem.cells_y * w.pixels_per_cell);
-    refuse(w.fringes_interval > 0 && pixels > 5e7,
-           "output.pixels_per_cell = " + std::to_string(w.pixels_per_cell) + " makes rasters of " +
-               format(pixels) + " pixels, more than 5e7: take fewer");
+    const double pixels = double(problem.cells_x * parameters.pixels_per_cell) *
+                          double(problem.cells_y * parameters.pixels_per_cell);
+    refuse(parameters.fringes_interval > 0 && pixels > 5e7,
+           "output.pixels_per_cell = " + std::to_string(parameters.pixels_per_cell) +
+               " makes rasters of " + format(pixels) + " pixels, more than 5e7: take fewer");
 }
 
 /// Warnings with the number and the limit, for choices that run but may mislead.
-inline std::vector<std::string> resolution_warnings(const Case& w, const Scales& scales) {
+inline std::vector<std::string> resolution_warnings(const Case& parameters, const Scales& scales) {
     std::vector<std::string> warnings;
-    const Problem& problem = w.problem;
+    const Problem& problem = parameters.problem;
     const Mesh mesh = problem.mesh();
     if (scales.speed > 0.05 * scales.sound_speed && scales.grains > 1)
         warnings.push_back("|v|/c_p = " + format(scales.speed / scales.sound_speed) +
@@ -157,9 +157,9 @@ inline std::vector<std::string> resolution_warnings(const Case& w, const Scales&
         warnings.push_back("contact.separation = 0: grains meet where they share nodes, up to " +
                            format(2 - 1 / double(problem.per_side)) + " cells too early");
     const std::vector<std::pair<const char*, double>> intervals{
-        {"output.particles_interval", w.particles_interval},
-        {"output.fringes_interval", w.fringes_interval},
-        {"output.grains_interval", w.grains_interval}};
+        {"output.particles_interval", parameters.particles_interval},
+        {"output.fringes_interval", parameters.fringes_interval},
+        {"output.grains_interval", parameters.grains_interval}};
     for (const auto& [name, interval] : intervals)
         if (interval > 0 && interval < scales.dt)
             warnings.push_back(std::string(name) + " = " + format(interval) +
@@ -185,11 +185,11 @@ inline std::vector<std::string> resolution_warnings(const Case& w, const Scales&
 namespace mpm_explicit {
 
 /// Warnings with the number and the limit, for choices that run but may mislead.
-inline std::vector<std::string> warnings_of(const Case& w, const Scales& scales) {
-    std::vector<std::string> warnings = resolution_warnings(w, scales);
-    if (w.alpha > 0.7 && !w.frozen)
+inline std::vector<std::string> warnings_of(const Case& parameters, const Scales& scales) {
+    std::vector<std::string> warnings = resolution_warnings(parameters, scales);
+    if (parameters.alpha > 0.7 && !parameters.frozen)
         warnings.insert(warnings.begin(),
-                        "time.alpha = " + format(w.alpha) +
+                        "time.alpha = " + format(parameters.alpha) +
                             " is above 0.7: nothing bounds the energy of explicit solutions, and "
                             "grains that meet will burst");
     return warnings;

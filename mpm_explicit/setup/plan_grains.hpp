@@ -23,9 +23,9 @@ struct PlannedGrain {
 };
 
 /// Materials in the order of the case; with 'default' at the end when grains use it unnamed.
-inline std::vector<Material> materials_of(const Problem& w) {
+inline std::vector<Material> materials_of(const Problem& problem) {
     std::vector<Material> materials;
-    for (const MaterialCase& m : w.materials) {
+    for (const MaterialCase& m : problem.materials) {
         materials.push_back(m.material);
         materials.back().name = m.name;
         materials.back().law = m.law == "j2"               ? Law::j2
@@ -74,7 +74,7 @@ inline Outline outline_of(const GrainCase& g) {
 }
 
 // The grains of a pack.
-inline std::vector<PackedGrain> grains_of(const PackCase& p, const Problem& w) {
+inline std::vector<PackedGrain> grains_of(const PackCase& p, const Problem& problem) {
     try {
         std::vector<PackedGrain> pack;
         refuse(p.kind != "file" && !p.file.empty(),
@@ -93,7 +93,7 @@ inline std::vector<PackedGrain> grains_of(const PackCase& p, const Problem& w) {
         } else {
             RandomDisks disks;
             disks.box = {p.x, p.x + p.width, p.y, p.y + p.height};
-            disks.periodic_x = w.periodic_x;
+            disks.periodic_x = problem.periodic_x;
             disks.radius_min = p.radius_min, disks.radius_max = p.radius_max;
             disks.count = p.count, disks.gap = p.gap, disks.loose = p.kind == "loose";
             disks.seed = static_cast<std::uint64_t>(p.seed);
@@ -110,7 +110,7 @@ inline std::vector<PackedGrain> grains_of(const PackCase& p, const Problem& w) {
 
 /// All grains of a case: the named ones, then those of packs, called <pack>_<name>.
 /// errors: InputError for an unknown material, or an outline or a pack that cannot be
-inline std::vector<PlannedGrain> plan_grains(const Problem& w,
+inline std::vector<PlannedGrain> plan_grains(const Problem& problem,
                                              const std::vector<Material>& materials) {
     const auto material_of = [&](const std::string& name, const std::string& whose) {
         for (std::size_t k = 0; k < materials.size(); ++k)
@@ -119,12 +119,12 @@ inline std::vector<PlannedGrain> plan_grains(const Problem& w,
                                  "]; add it, or name another material");
     };
     std::vector<PlannedGrain> grains;
-    for (const GrainCase& g : w.grains)
+    for (const GrainCase& g : problem.grains)
         grains.push_back(
             {g.name, detail::outline_of(g), material_of(g.material, "grain." + g.name), g});
-    for (const PackCase& p : w.packs) {
+    for (const PackCase& p : problem.packs) {
         const int material = material_of(p.material, "pack." + p.name);
-        for (const PackedGrain& packed : detail::grains_of(p, w)) {
+        for (const PackedGrain& packed : detail::grains_of(p, problem)) {
             GrainCase from;
             from.velocity_x = p.velocity_x + p.shear_rate * (packed.outline.y - p.y);
             from.velocity_y = p.velocity_y;

@@ -180,44 +180,47 @@ inline void describe_bond(common::ParameterTable& table, const std::string& pref
 }  // namespace detail
 
 /// Adds the parameters of the problem to a program's table.
-inline void describe_problem(common::ParameterTable& table, Problem& w) {
+inline void describe_problem(common::ParameterTable& table, Problem& problem) {
     using common::above, common::anything, common::at_least, common::between;
     table.group("mesh: square cells in the plane (x, y), plane strain");
-    table.whole("grid.cells_x", w.cells_x, "", between(2, 16384), "cells along x");
-    table.whole("grid.cells_y", w.cells_y, "", between(2, 16384), "cells along y");
-    table.real("grid.length_x", w.length_x, "length", above(0), "length along x");
-    table.real("grid.low_x", w.origin_x, "length", anything(), "left end");
-    table.real("grid.low_y", w.origin_y, "length", anything(), "lower end");
-    table.flag("grid.periodic_x", w.periodic_x, "the left end is the right one");
-    table.whole("grid.particles_per_side", w.per_side, "", between(1, 16),
+    table.whole("grid.cells_x", problem.cells_x, "", between(2, 16384), "cells along x");
+    table.whole("grid.cells_y", problem.cells_y, "", between(2, 16384), "cells along y");
+    table.real("grid.length_x", problem.length_x, "length", above(0), "length along x");
+    table.real("grid.low_x", problem.origin_x, "length", anything(), "left end");
+    table.real("grid.low_y", problem.origin_y, "length", anything(), "lower end");
+    table.flag("grid.periodic_x", problem.periodic_x, "the left end is the right one");
+    table.whole("grid.particles_per_side", problem.per_side, "", between(1, 16),
                 "particles in a cell at the start, along each side");
 
     table.group("walls, on the outermost lines of nodes");
     const std::array<const char*, 4> ends{"x_low", "x_high", "y_low", "y_high"};
     for (std::size_t k = 0; k < 4; ++k)
-        table.choice("boundary." + std::string(ends[k]), w.walls[k],
+        table.choice("boundary." + std::string(ends[k]), problem.walls[k],
                      {"open", "slip", "stick", "frictional"},
                      "nothing; roller; clamp; pushes back and rubs");
-    table.real("boundary.friction", w.contact.wall_friction, "", at_least(0),
+    table.real("boundary.friction", problem.contact.wall_friction, "", at_least(0),
                "Coulomb's coefficient, of frictional walls");
 
     table.group("contact between grains");
-    table.real("contact.friction", w.contact.friction, "", at_least(0), "Coulomb's coefficient");
-    table.real("contact.separation", w.contact.separation, "h", between(0, 2),
+    table.real("contact.friction", problem.contact.friction, "", at_least(0),
+               "Coulomb's coefficient");
+    table.real("contact.separation", problem.contact.separation, "h", between(0, 2),
                "grains press when their parts around a node are nearer; 0: on approach only");
 
     table.group("loads");
-    table.real("load.gravity_x", w.gravity_x, "acceleration", anything(), "along x");
-    table.real("load.gravity_y", w.gravity_y, "acceleration", anything(), "along y");
-    table.real("load.damping", w.damping, "1/time", at_least(0), "of the velocity of all mass");
-    table.real("load.rise", w.rise, "time", at_least(0),
+    table.real("load.gravity_x", problem.gravity_x, "acceleration", anything(), "along x");
+    table.real("load.gravity_y", problem.gravity_y, "acceleration", anything(), "along y");
+    table.real("load.damping", problem.damping, "1/time", at_least(0),
+               "of the velocity of all mass");
+    table.real("load.rise", problem.rise, "time", at_least(0),
                "gravity and rigid grains reach their full value smoothly in this time");
 
-    table.list("material", w.materials, detail::describe_material,
+    table.list("material", problem.materials, detail::describe_material,
                "a material, [material.<name>]; 'default' is there without being named");
-    table.list("grain", w.grains, detail::describe_grain, "a grain, [grain.<name>]");
-    table.list("pack", w.packs, detail::describe_pack, "many grains, [pack.<name>]");
-    table.list("bond", w.bonds, detail::describe_bond, "grains that hold together, [bond.<name>]");
+    table.list("grain", problem.grains, detail::describe_grain, "a grain, [grain.<name>]");
+    table.list("pack", problem.packs, detail::describe_pack, "many grains, [pack.<name>]");
+    table.list("bond", problem.bonds, detail::describe_bond,
+               "grains that hold together, [bond.<name>]");
 }
 
 }  // namespace mpm

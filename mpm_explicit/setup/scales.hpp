@@ -24,11 +24,11 @@ struct Scales {
 /// The scales of a case.
 ///   dt = alpha h / (c_p + |v|)
 /// errors: InputError for too many steps or particles, or a damping that takes all velocity
-inline Scales scales_of(const Case& w) {
-    const std::vector<Material> materials = materials_of(w.problem);
-    const std::vector<PlannedGrain> plans = plan_grains(w.problem, materials);
+inline Scales scales_of(const Case& parameters) {
+    const std::vector<Material> materials = materials_of(parameters.problem);
+    const std::vector<PlannedGrain> plans = plan_grains(parameters.problem, materials);
     Scales s;
-    const Problem& problem = w.problem;
+    const Problem& problem = parameters.problem;
     const Mesh mesh = problem.mesh();
     const double side = mesh.h / double(problem.per_side);
     double lightest = 1e300, nodes = 0;
@@ -48,9 +48,9 @@ inline Scales scales_of(const Case& w) {
     }
     s.grains = long(plans.size());
     // Where a smooth shape ends, its weight falls as the square of its gradient.
-    s.least_mass = (w.shape == "linear" ? 1e-12 : 1e-24) * lightest;
-    s.dt = w.alpha * mesh.h / (s.sound_speed + s.speed);
-    const double steps = w.end / s.dt;
+    s.least_mass = (parameters.shape == "linear" ? 1e-12 : 1e-24) * lightest;
+    s.dt = parameters.alpha * mesh.h / (s.sound_speed + s.speed);
+    const double steps = parameters.end / s.dt;
     refuse(!(steps <= 1e9), "the run would take " + format(steps) +
                                 " steps, more than 1e9: raise time.alpha or lower time.end");
     s.steps = std::lround(steps);
@@ -71,10 +71,10 @@ inline Scales scales_of(const Case& w) {
 
 /// The resolved scales as text, for --dry-run and the head of a run.
 /// in:     scheme, what is said of the scheme; cost, of a step, over one of leapfrog
-inline std::string describe_scales(const Case& w, const Scales& scales,
+inline std::string describe_scales(const Case& parameters, const Scales& scales,
                                    const std::string& scheme = "", double cost = 1) {
     constexpr double particle_steps_per_second = 15e6;  // of leapfrog, on one core
-    const Problem& problem = w.problem;
+    const Problem& problem = parameters.problem;
     const Mesh mesh = problem.mesh();
     std::string text;
     const auto line = [&](const std::string& name, const std::string& value) {
@@ -85,9 +85,10 @@ inline std::string describe_scales(const Case& w, const Scales& scales,
                      " cells of " + format(mesh.h) + (mesh.periodic_x ? ", periodic in x" : ""));
     line("walls", "x: " + problem.walls[0] + ", " + problem.walls[1] + "; y: " + problem.walls[2] +
                       ", " + problem.walls[3]);
-    const std::string flip = w.flip == 1 ? "FLIP" : "FLIP fraction " + format(w.flip);
-    line("method",
-         w.shape + " shape functions, " + flip + (w.frozen ? ", frozen particles" : "") + scheme);
+    const std::string flip =
+        parameters.flip == 1 ? "FLIP" : "FLIP fraction " + format(parameters.flip);
+    line("method", parameters.shape + " shape functions, " + flip +
+                       (parameters.frozen ? ", frozen particles" : "") + scheme);
     line("grains", std::to_string(scales.grains) + ", the thinnest " +
                        format(scales.thinnest / mesh.h) + " cells");
     line("particles", std::to_string(scales.particles) + ", " + std::to_string(problem.per_side) +
@@ -95,7 +96,7 @@ inline std::string describe_scales(const Case& w, const Scales& scales,
     line("sound",
          "c_p = " + format(scales.sound_speed) + ", largest |v| = " + format(scales.speed));
     line("steps", std::to_string(scales.steps) + " of dt = " + format(scales.dt) +
-                      ", alpha = " + format(w.alpha));
+                      ", alpha = " + format(parameters.alpha));
     line("memory", "about " + format(scales.bytes / 1048576) + " MiB");
     const double seconds =
         cost * double(scales.steps) * double(scales.particles) / particle_steps_per_second;

@@ -153,9 +153,10 @@ inline void need_wave(const PlannedCase& planned) {
 
 /// The one free node between two fixed ends, with frozen particles; each scheme has its own result.
 inline void need_oscillator(const PlannedCase& planned) {
-    const Case& w = planned.parameters;
+    const Case& parameters = planned.parameters;
     need_wave(planned);
-    planned.refuse(w.problem.cells_x != 2 || !w.frozen || w.shape != "linear" || w.flip != 1,
+    planned.refuse(parameters.problem.cells_x != 2 || !parameters.frozen ||
+                       parameters.shape != "linear" || parameters.flip != 1,
                    " needs grid.cells_x = 2, method.frozen = true, and linear FLIP");
 }
 

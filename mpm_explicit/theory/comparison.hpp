@@ -103,9 +103,10 @@ inline std::vector<std::string> names_of(std::span<const Comparison> comparisons
 }
 
 /// The comparison that a case asks for; null for none.
-inline const Comparison* comparison_of(const Case& w, std::span<const Comparison> comparisons) {
+inline const Comparison* comparison_of(const Case& parameters,
+                                       std::span<const Comparison> comparisons) {
     for (const Comparison& comparison : comparisons)
-        if (comparison.name == w.compare) return &comparison;
+        if (comparison.name == parameters.compare) return &comparison;
     return nullptr;
 }
 
@@ -113,11 +114,11 @@ inline const Comparison* comparison_of(const Case& w, std::span<const Comparison
 /// errors: InputError with what is missing
 inline void validate_comparison(const PlannedCase& planned, const Scales& scales,
                                 std::span<const Comparison> comparisons) {
-    const Case& w = planned.parameters;
-    const Comparison* comparison = comparison_of(w, comparisons);
+    const Case& parameters = planned.parameters;
+    const Comparison* comparison = comparison_of(parameters, comparisons);
     if (comparison == nullptr) return;
-    for (const auto& [key, name, rigid] :
-         {std::tuple("theory.grain", w.grain, false), std::tuple("theory.plate", w.plate, true)}) {
+    for (const auto& [key, name, rigid] : {std::tuple("theory.grain", parameters.grain, false),
+                                           std::tuple("theory.plate", parameters.plate, true)}) {
         if (name.empty()) continue;
         const std::string place = std::string(key) + ": ";
         const auto found = std::find_if(planned.plans.begin(), planned.plans.end(),
@@ -128,7 +129,7 @@ inline void validate_comparison(const PlannedCase& planned, const Scales& scales
             place + "'" + name + "' is " + (rigid ? "not " : "") + "rigid: name another grain");
     }
     if (comparison->needs != nullptr) comparison->needs(planned);
-    const long rows = scales.steps / w.history_steps;
+    const long rows = scales.steps / parameters.history_steps;
     planned.refuse(rows < 10, " needs at least 10 rows of history, and there would be " +
                                   std::to_string(rows) +
                                   ": raise time.end or lower output.history_steps");

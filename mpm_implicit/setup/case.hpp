@@ -14,12 +14,12 @@ using namespace mpm;
 
 /// The table of all parameters.
 /// in: comparison_names, the choices of theory.compare
-inline common::ParameterTable describe(Case& w, ThetaScheme& scheme,
+inline common::ParameterTable describe(Case& parameters, ThetaScheme& scheme,
                                        const std::vector<std::string>& comparison_names) {
     using common::between;
     common::ParameterTable table;
-    w.alpha = 1;
-    describe_case(table, w);
+    parameters.alpha = 1;
+    describe_case(table, parameters);
     table.real("method.theta", scheme.theta, "", between(0.5, 1),
                "level of velocities, stresses and contact: 1/2 keeps energy, 1 damps most");
     table.choice("method.mass", scheme.mass, {"consistent", "lumped"},
@@ -37,7 +37,7 @@ inline common::ParameterTable describe(Case& w, ThetaScheme& scheme,
                 "of a linear system; beyond, the run fails");
     table.whole("solver.max_outer_iterations", scheme.max_outer_iterations, "", between(1, 1000),
                 "guesses of who presses, or Newton steps; beyond, the run fails");
-    describe_output(table, w, comparison_names);
+    describe_output(table, parameters, comparison_names);
     return table;
 }
 

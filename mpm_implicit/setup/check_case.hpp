@@ -14,10 +14,10 @@ namespace mpm_implicit {
 
 /// Refuses combinations that cannot run.
 /// errors: InputError with the cure
-inline void validate(const Case& w, const ThetaScheme& scheme,
+inline void validate(const Case& parameters, const ThetaScheme& scheme,
                      const common::ParameterTable& table) {
-    mpm::validate(w, table);
-    for (const Material& m : materials_of(w.problem))
+    mpm::validate(parameters, table);
+    for (const Material& m : materials_of(parameters.problem))
         refuse(!scheme.newton() && (m.law == Law::j2 || m.law == Law::drucker_prager),
                "[material." + m.name +
                    "] can yield, and solver.kind = \"projected_cg\" is for "
@@ -28,18 +28,18 @@ inline void validate(const Case& w, const ThetaScheme& scheme,
 }
 
 /// Warnings with the number and the limit, for choices that run but may mislead.
-inline std::vector<std::string> warnings_of(const Case& w, const ThetaScheme& scheme,
+inline std::vector<std::string> warnings_of(const Case& parameters, const ThetaScheme& scheme,
                                             const Scales& scales) {
-    std::vector<std::string> warnings = resolution_warnings(w, scales);
-    const double cells = scales.speed * scales.dt / w.problem.mesh().h;
+    std::vector<std::string> warnings = resolution_warnings(parameters, scales);
+    const double cells = scales.speed * scales.dt / parameters.problem.mesh().h;
     if (cells > 0.5 && scales.grains > 1)
         warnings.push_back("|v| dt/h = " + format(cells) +
                            " is above 0.5: grains can pass through each other's surfaces before "
                            "they are seen to touch; reduce time.alpha");
-    if (w.flip < 1)
-        warnings.push_back("method.flip = " + format(w.flip) +
+    if (parameters.flip < 1)
+        warnings.push_back("method.flip = " + format(parameters.flip) +
                            " is below 1: [MPM-13] is for FLIP, and the column pic takes the rest");
-    if (w.problem.per_side == 1 && scheme.consistent())
+    if (parameters.problem.per_side == 1 && scheme.consistent())
         warnings.push_back(
             "grid.particles_per_side = 1 with the consistent mass matrix, which is then nearly "
             "singular: take 2, or method.mass = \"lumped\"");
@@ -47,12 +47,12 @@ inline std::vector<std::string> warnings_of(const Case& w, const ThetaScheme& sc
 }
 
 /// Memory of a run [bytes]: besides what every scheme needs, the matrices, their factors, vectors.
-inline double bytes_of(const Case& w, const ThetaScheme& scheme, const Scales& scales) {
-    const double per_cell = double(w.problem.per_side * w.problem.per_side),
+inline double bytes_of(const Case& parameters, const ThetaScheme& scheme, const Scales& scales) {
+    const double per_cell = double(parameters.problem.per_side * parameters.problem.per_side),
                  slots = 2 * double(scales.particles) / per_cell + 64 * double(scales.grains);
-    const double diagonals = w.shape == "linear" ? 5 : 13,
+    const double diagonals = parameters.shape == "linear" ? 5 : 13,
                  across = std::sqrt(slots / double(scales.grains)),
-                 reach = w.shape == "linear" ? 1 : 2,
+                 reach = parameters.shape == "linear" ? 1 : 2,
                  factors = (scheme.preconditioner == "grains" ? 4 * across * reach : 0) +
                            (scheme.consistent() ? across * reach : 0),
                  newton = scheme.newton() ? 2 * (2 * 30 + 16) : 0;
@@ -60,11 +60,13 @@ inline double bytes_of(const Case& w, const ThetaScheme& scheme, const Scales& s
 }
 
 /// The resolved scales as text, for --dry-run and the head of a run.
-inline std::string describe_scales(const Case& w, const ThetaScheme& scheme, const Scales& scales) {
+inline std::string describe_scales(const Case& parameters, const ThetaScheme& scheme,
+                                   const Scales& scales) {
     // A step takes about as long as so many of the explicit program.
-    const double cost = 6 + 6 * std::sqrt(w.alpha);
-    return mpm::describe_scales(
-        w, scales, ", theta = " + format(scheme.theta) + ", " + scheme.mass + " mass", cost);
+    const double cost = 6 + 6 * std::sqrt(parameters.alpha);
+    return mpm::describe_scales(parameters, scales,
+                                ", theta = " + format(scheme.theta) + ", " + scheme.mass + " mass",
+                                cost);
 }
 
 }  // namespace mpm_implicit

@@ -19,14 +19,14 @@
 namespace mpm_implicit {
 
 /// Whether the theorem lets the scheme lose nothing: theta = 1/2, consistent mass, FLIP.
-inline bool keeps_energy(const Case& w, double theta, bool consistent_mass) {
-    return theta == 0.5 && consistent_mass && w.flip == 1;
+inline bool keeps_energy(const Case& parameters, double theta, bool consistent_mass) {
+    return theta == 0.5 && consistent_mass && parameters.flip == 1;
 }
 
 /// What theory has to know of the theta scheme.
-inline theory::SchemeFacts facts_of(const Case& w, const ThetaScheme& scheme) {
-    const bool keeps =
-        keeps_energy(w, scheme.theta, scheme.consistent()) && w.problem.contact.friction == 0;
+inline theory::SchemeFacts facts_of(const Case& parameters, const ThetaScheme& scheme) {
+    const bool keeps = keeps_energy(parameters, scheme.theta, scheme.consistent()) &&
+                       parameters.problem.contact.friction == 0;
     const double tolerance = keeps ? 1e-8 : std::numeric_limits<double>::infinity();
     return {tolerance, tolerance, scheme.theta, scheme.consistent()};
 }
