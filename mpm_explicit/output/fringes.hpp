@@ -45,7 +45,7 @@ struct FringeRaster {
 
 namespace detail {
 
-/// Sums over particles at a node of linear weights V S; then stress, of weight 1 where there is any.
+/// Sums over particles at a node, of weights V S; then the stress, of weight 1 if there is any.
 struct NodeStress {
     double weight = 0, xx = 0, yy = 0, xy = 0, mean = 0;
 

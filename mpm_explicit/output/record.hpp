@@ -1,5 +1,5 @@
-// What a run of mpm_explicit keeps besides what every scheme does (record_grains.hpp): the ledger of
-// the leapfrog.
+// What a run of mpm_explicit keeps besides what every scheme does (record_grains.hpp): the ledger
+// of the leapfrog.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// What a run of any scheme keeps: rows of history, files when they are due, why it failed, and what is
-// conserved. The energies and where they went are the scheme's own ledger.
+// What a run of any scheme keeps: rows of history, files when they are due, why it failed, and what
+// is conserved. The energies and where they went are the scheme's own ledger.
 #pragma once
 
 #include <algorithm>
@@ -49,8 +49,8 @@ class Recorder {
     /// Whether a row of the history belongs to this step.
     bool row_is_due(long step) const { return step % parameters_.history_steps == 0; }
 
-    /// Adds what every scheme records beside its energies: momenta, contacts, tracked grains, bonds,
-    /// and what the comparison with theory needs.
+    /// Adds what every scheme records beside its energies: momenta, contacts, tracked grains,
+    /// bonds, and what the comparison with theory needs.
     /// in: momentum_x, momentum_y of every grain; what contact did in the step
     void add_to(common::Row& row, const std::vector<double>& momentum_x,
                 const std::vector<double>& momentum_y, const ContactSums& contact,
@@ -90,10 +90,10 @@ class Recorder {
 
     /// Looks at what a step has made.
     /// in:     strips, sums over the particles of every strip: their kinetic energy, the smallest
-    ///         ratio of volumes after and before (least_V), and how far they reach; start, the energy
-    ///         at t = 0; external, the work of the loads since; now, the energy
-    /// errors: NumericalError for an energy beyond the limit, an inverted volume, or a particle that
-    ///         has left the mesh, with grain, place and time
+    ///         ratio of volumes after and before (least_V), and how far they reach; start, the
+    ///         energy at t = 0; external, the work of the loads since; now, the energy
+    /// errors: NumericalError for an energy beyond the limit, an inverted volume, or a particle
+    ///         that has left the mesh, with grain, place and time
     template <class Sums>
     void refuse_failure(long step, const std::vector<Sums>& strips, const GrainNodes& nodes,
                         const Assembly& all, double start, double external, double now,

@@ -23,7 +23,7 @@ inline void compare_energy(const FinishedRun& run, double tolerance, common::Sum
 
 // ---- two equal disks that meet head on ----------------------------------------------------------
 
-/// errors: InputError where there are no such disks, or where the run ends before they meet
+/// Needs two equal disks on one line, and a run that lasts until they meet.
 inline void need_equal_disks(const PlannedCase& planned) {
     const std::vector<PlannedGrain>& plans = planned.plans;
     const auto is_disk = [](auto& plan) { return plan.outline.kind == OutlineKind::disk; };
@@ -46,6 +46,7 @@ inline void need_equal_disks(const PlannedCase& planned) {
                                            ": raise time.end");
 }
 
+/// When they meet, how long they touch, and with what they part.
 /// note: where the scheme takes energy, the disks part as they can.
 inline void compare_rebound(const FinishedRun& run, common::Summary& summary) {
     const double energy_tolerance = run.planned.scheme.rebound_tolerance;
@@ -95,7 +96,7 @@ inline void compare_rebound(const FinishedRun& run, common::Summary& summary) {
 
 // ---- a bar that is held at its left end ---------------------------------------------------------
 
-/// errors: InputError where nothing vibrates like this bar
+/// Needs boxes with the profile of a bar, of which the first begins at a wall that holds it.
 inline void need_bar(const PlannedCase& planned) {
     const Mesh mesh = planned.parameters.problem.mesh();
     planned.refuse(!planned.has_profile("bar") ||
@@ -135,7 +136,7 @@ inline void compare_bar(const FinishedRun& run, common::Summary& summary) {
 
 // ---- a compression wave that stands between rollers ---------------------------------------------
 
-/// errors: InputError where the wave does not stand
+/// Needs one box with the profile of a wave, which fills a mesh between rollers.
 inline void need_wave(const PlannedCase& planned) {
     const Mesh mesh = planned.parameters.problem.mesh();
     bool rollers = true;
@@ -183,7 +184,7 @@ inline void compare_standing_wave(const FinishedRun& run, common::Summary& summa
 
 // ---- two bonded halves of a bar that vibrates ---------------------------------------------------
 
-/// errors: InputError where there is no such bond
+/// Needs what a bar needs, and a bond between two boxes.
 inline void need_bond(const PlannedCase& planned) {
     need_bar(planned);
     planned.refuse(planned.parameters.problem.bonds.empty() || planned.free_grains() != 2,

@@ -26,7 +26,7 @@ inline double slope(const std::vector<double>& x, const std::vector<double>& y, 
 
 // ---- a block or a cylinder on a rigid plate, gravity inclined -----------------------------------
 
-/// errors: InputError where nothing is inclined
+/// Needs one grain, a rigid plate, and a gravity that is not perpendicular to it.
 inline void need_incline(const PlannedCase& planned) {
     const Problem& problem = planned.parameters.problem;
     planned.refuse(
@@ -36,7 +36,8 @@ inline void need_incline(const PlannedCase& planned) {
         "load.gravity_y below 0");
 }
 
-/// in: acceleration down the incline by theory, of g, angle and friction
+/// The acceleration of the grain, fitted to its momentum.
+/// in: acceleration by theory, of g, angle and friction
 inline void compare_incline(const FinishedRun& run,
                             double (*acceleration)(double g, double angle, double mu),
                             const std::string& source, common::Summary& summary) {
@@ -55,13 +56,13 @@ inline void compare_incline(const FinishedRun& run,
     summary.result_info("speed_at_end", v.back(), "velocity", "along the plate");
 }
 
-/// It slides, or friction holds it.
+/// A block slides, or friction holds it.
 inline void compare_block(const FinishedRun& run, common::Summary& summary) {
     compare_incline(run, block_acceleration, "g (sin - mu cos), or 0 where friction holds",
                     summary);
 }
 
-/// It rolls, or slips.
+/// A cylinder rolls, or slips.
 inline void compare_cylinder(const FinishedRun& run, common::Summary& summary) {
     compare_incline(run, cylinder_acceleration,
                     "(2/3) g sin where it rolls, g (sin - mu cos) where it slips", summary);
@@ -69,7 +70,7 @@ inline void compare_cylinder(const FinishedRun& run, common::Summary& summary) {
 
 // ---- a disk between two plates (Brazilian test) -------------------------------------------------
 
-/// errors: InputError where no plates press a disk
+/// Needs a disk, first in the case, and rigid plates.
 inline void need_pressed_disk(const PlannedCase& planned) {
     const PlannedGrain& first = planned.plans[0];
     const long plates = planned.rigid_grains();
@@ -140,7 +141,7 @@ inline void compare_disk(const FinishedRun& run, common::Summary& summary) {
 
 // ---- a grain that yields ------------------------------------------------------------------------
 
-/// errors: InputError where nothing can yield or nothing moves
+/// Needs a target grain of von Mises material, and something that moves.
 inline void need_yielding(const PlannedCase& planned) {
     const PlannedGrain& target = planned.plans[planned.target()];
     planned.refuse(planned.material_of(target).law != Law::j2,

@@ -1,9 +1,9 @@
 // What a comparison with theory is, whatever the scheme: one object with its name, what it needs of
 // the case, its results, and the columns it adds to the history. Each program lists its own in its
 // theory/compare_with_theory.hpp; from the list come
-//     before the run:  the choices of theory.compare, and the refusal of a case that cannot be compared
-//     every row:       the columns
-//     after the run:   the results in summary.json
+//     before the run:  the choices of theory.compare; what it needs, or the case is refused
+//     every row:       its columns
+//     after the run:   its results in summary.json
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace mpm::theory {
 
 /// What theory has to know of a scheme.
 struct SchemeFacts {
-    // Relative change of the energy that is round-off or known; infinite: the scheme takes energy.
+    // How far the energy may change, relative; infinite for a scheme that is meant to take energy.
     double rebound_tolerance = 0, bar_tolerance = 0;
     double theta = 0.5;  // level of velocities and stresses in the step
     bool consistent_mass = false;
@@ -34,7 +34,7 @@ struct PlannedCase {
     std::vector<Material> materials = materials_of(parameters.problem);
     std::vector<PlannedGrain> plans = plan_grains(parameters.problem, materials);
 
-    /// Of a grain; and how many are rigid or free.
+    /// What a grain is made of, whether it is rigid, and how many are, or are not.
     const Material& material_of(const PlannedGrain& plan) const { return materials[plan.material]; }
     bool is_rigid(const PlannedGrain& plan) const { return material_of(plan).law == Law::rigid; }
     long rigid_grains() const {

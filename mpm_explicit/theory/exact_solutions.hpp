@@ -1,6 +1,6 @@
 // What is known exactly, or published, about the problems that the material point method is tried
-// on: a disk between two loads, disks that collide, bars and waves, bodies on an incline, and a block
-// that is pressed.
+// on: a disk between two loads, disks that collide, bars and waves, bodies on an incline, and a
+// block that is pressed.
 //
 // Stress is positive in tension. Everything is plane strain and per unit thickness; units are those
 // of the caller: [length], [mass / length^3], [E].

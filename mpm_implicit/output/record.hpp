@@ -1,6 +1,6 @@
 // What a run of mpm_implicit keeps besides what every scheme does
-// (mpm_explicit/output/record_grains.hpp): the energy theorem term by term, and what it took to solve
-// the steps.
+// (mpm_explicit/output/record_grains.hpp): the energy theorem term by term, and what it took to
+// solve the steps.
 #pragma once
 
 #include <cmath>

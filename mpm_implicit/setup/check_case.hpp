@@ -1,5 +1,6 @@
 // What is said before a run of mpm_implicit besides what holds for every scheme
-// (mpm_explicit/setup/check_case.hpp): which solver a case needs, and how far its time step can be trusted.
+// (mpm_explicit/setup/check_case.hpp): which solver a case needs, and how far its time step can be
+// trusted.
 #pragma once
 
 #include <algorithm>

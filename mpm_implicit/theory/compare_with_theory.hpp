@@ -1,6 +1,6 @@
 // The results of a run of mpm_implicit: what any scheme is compared with
-// (mpm_explicit/theory/compare_grains.hpp), the energy theorem in every run, what the theta scheme does to
-// an oscillation, exactly, and what a block bears that is pressed slowly.
+// (mpm_explicit/theory/compare_grains.hpp), the energy theorem in every run, what the theta scheme
+// does to an oscillation, exactly, and what a block bears that is pressed slowly.
 #pragma once
 
 #include <algorithm>
@@ -19,16 +19,17 @@
 namespace mpm_implicit {
 
 /// Whether the theorem lets the scheme lose nothing: theta = 1/2, consistent mass, FLIP.
-inline bool keeps_energy(const Case& parameters, double theta, bool consistent_mass) {
-    return theta == 0.5 && consistent_mass && parameters.flip == 1;
+inline bool keeps_energy(const Case& parameters, const theory::SchemeFacts& scheme) {
+    return scheme.theta == 0.5 && scheme.consistent_mass && parameters.flip == 1;
 }
 
 /// What theory has to know of the theta scheme.
 inline theory::SchemeFacts facts_of(const Case& parameters, const ThetaScheme& scheme) {
-    const bool keeps = keeps_energy(parameters, scheme.theta, scheme.consistent()) &&
-                       parameters.problem.contact.friction == 0;
-    const double tolerance = keeps ? 1e-8 : std::numeric_limits<double>::infinity();
-    return {tolerance, tolerance, scheme.theta, scheme.consistent()};
+    theory::SchemeFacts facts{.theta = scheme.theta, .consistent_mass = scheme.consistent()};
+    const bool keeps = keeps_energy(parameters, facts) && parameters.problem.contact.friction == 0;
+    facts.bar_tolerance = keeps ? 1e-8 : std::numeric_limits<double>::infinity();
+    facts.rebound_tolerance = facts.bar_tolerance;
+    return facts;
 }
 
 /// [MPM-13] in every step, and that nothing but loads gives energy.
@@ -39,7 +40,7 @@ inline void compare_energy_theorem(const common::History& history, const ThetaSc
     double size = std::numeric_limits<double>::min(), growth = 0;
     for (std::size_t n = 0; n < energy.size(); ++n)
         size = std::max({size, energy[n], std::fabs(external[n])});
-    // What plastic flow undoes is the law's affair, not the scheme's.
+    // Energy that plastic flow gives back comes from the law, not from the scheme.
     const auto given = [&](std::size_t n) {
         return energy[n] - external[n] - volume[n] + std::min(plastic[n], 0.0);
     };
@@ -62,7 +63,7 @@ inline void compare_rebound(const theory::FinishedRun& run, common::Summary& sum
     theory::compare_rebound(run, summary);
 }
 
-/// errors: InputError as theory::need_bar, and for lumped mass
+/// Needs what theory::need_bar needs, and the consistent mass matrix.
 inline void need_bar(const theory::PlannedCase& planned) {
     theory::need_bar(planned);
     planned.refuse(!planned.scheme.consistent_mass,
@@ -127,7 +128,7 @@ inline std::string billet_plate(const theory::PlannedCase& planned) {
     return {};
 }
 
-/// errors: InputError where no plates press an upright block
+/// Needs an upright box between two rigid plates without friction, of which one moves along y.
 inline void need_billet(const theory::PlannedCase& planned) {
     const Problem& problem = planned.parameters.problem;
     const PlannedGrain& block = planned.plans[planned.target()];
@@ -182,7 +183,6 @@ inline void compare_billet(const theory::FinishedRun& run, common::Summary& summ
 
 /// Grains that a plate presses: the energy is the work of the plate.
 inline void compare_compression(const theory::FinishedRun& run, common::Summary& summary) {
-    const theory::SchemeFacts& scheme = run.planned.scheme;
     const auto energy = run.history.column("energy"), work = run.history.column("plate"),
                friction = run.history.column("friction");
     const double most =
@@ -190,7 +190,7 @@ inline void compare_compression(const theory::FinishedRun& run, common::Summary&
     double apart = 0;
     for (std::size_t n = 0; n < energy.size(); ++n)
         apart = std::max(apart, std::fabs(energy[n] - energy[0] - work[n] - friction[n]));
-    if (keeps_energy(run.parameters, scheme.theta, scheme.consistent_mass))
+    if (keeps_energy(run.parameters, run.planned.scheme))
         summary.result("energy_less_work", apart / most, "1", 0, 1e-10,
                        "energy less work of plate and friction, over the work");
     summary.result_info("plate_work", work.back(), "energy", "at the end");
