@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <numbers>
 #include <optional>
 #include <set>
 #include <string>
@@ -88,11 +87,8 @@ inline std::optional<Circle> rest(const DiskCells& disks, const Bounds& box, con
 class Deposit {
    public:
     Deposit(const Bounds& box, double smallest, double largest, bool periodic)
-        : box_(box),
-          smallest_(smallest),
-          largest_(largest),
-          periodic_(periodic),
-          disks_(box, largest, periodic) {
+        : box_(box), smallest_(smallest), largest_(largest), disks_(box, largest, periodic) {
+        periodic_ = periodic;
         offer(Beside::corner_low, 0, 0);
         if (!periodic) offer(Beside::corner_high, 0, 0);
     }
@@ -156,7 +152,7 @@ class Deposit {
 
     Bounds box_;
     double smallest_, largest_;
-    bool periodic_;
+    bool periodic_ = false;
     DiskCells disks_;
     std::set<Pocket> pockets_;
     std::vector<long> waiting_;
