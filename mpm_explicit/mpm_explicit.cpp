@@ -16,6 +16,7 @@
 #include "mpm_explicit/setup/check_case.hpp"
 #include "mpm_explicit/setup/initial_state.hpp"
 #include "mpm_explicit/step.hpp"
+#include "mpm_explicit/theory/compare_with_theory.hpp"
 
 namespace {
 
@@ -56,8 +57,10 @@ int run_case(const Shape& shape, const Case& parameters, const Scales& scales, c
         recorder.snapshot(step, state, run);
         const BodyForce body = drive(parameters.problem, step, dt, rigid);
         take_step(shape, laws, contact, body, parameters.flip, parameters.frozen, dt, nodes, state,
-                  sums);  // [MPM-4, 9 ... 12]
+                  sums);                                  // [MPM-4, 9 ... 12]
+        enter_energies(step, sums.strips, state.ledger);  // [MPM-14, 15]
         recorder.record(step, sums, nodes, state, run);
+        enter_work(nodes.strips(), sums.strips, sums.nodes, sums.contact, state.ledger);
         ++step;
         run.end_of_step(step, scales.steps, static_cast<double>(step) * dt, state);
     }
@@ -73,20 +76,19 @@ int run_case(const Shape& shape, const Case& parameters, const Scales& scales, c
 int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     // 1. The case: defaults, file, command line; refuse, warn, or only describe.
     Case parameters;
-    common::ParameterTable table = describe(parameters);
+    common::ParameterTable table = describe(parameters, theory::names_of(comparisons));
     const common::CommandLine command = common::read_command_line(argc, argv, info, table);
-    validate(parameters);
+    validate(parameters, table);
     const Scales scales = scales_of(parameters);
+    theory::validate_comparison({parameters, leapfrog}, scales, comparisons);
     if (!common::start_run(info, command, table,
                            {describe_scales(parameters, scales), warnings_of(parameters, scales),
                             scales.steps, scales.bytes, parameters.checkpoint_steps},
                            holder))
         return 0;
-    common::Run& run = *holder;
-
     int status = 0;
     with_shape(parameters.scheme(),
-               [&](const auto& shape) { status = run_case(shape, parameters, scales, run); });
+               [&](const auto& shape) { status = run_case(shape, parameters, scales, *holder); });
     return status;
 }
 

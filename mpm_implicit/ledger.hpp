@@ -15,7 +15,6 @@
 #include <algorithm>
 #include <vector>
 
-#include "common/run/history.hpp"
 #include "mpm_explicit/assembly.hpp"
 #include "mpm_explicit/contact.hpp"
 #include "mpm_explicit/strain.hpp"
@@ -64,20 +63,6 @@ struct Ledger {
                theta_velocity - theta_strain - lumped;
     }
     double residual() const { return energy() - start - work(); }
-
-    static std::vector<common::Column> columns() {
-        std::vector<common::Column> all;
-        for (const char* name : {"kinetic", "elastic", "energy", "theta_velocity", "theta_strain",
-                                 "lumped", "contact", "friction", "bond", "plate", "gravity",
-                                 "external", "damping", "plastic", "volume", "pic", "residual"})
-            all.push_back({name, "energy"});
-        return all;
-    }
-    std::vector<double> row() const {
-        return {kinetic,  elastic, energy(),  theta_velocity, theta_strain,    lumped,  contact,
-                friction, bond,    plate,     gravity,        plate + gravity, damping, plastic,
-                volume,   pic,     residual()};
-    }
 };
 
 template <class Archive>

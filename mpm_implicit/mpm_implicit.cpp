@@ -6,16 +6,15 @@
 // Run:   build/mpm_implicit mpm_implicit/cases/rebound.toml time.alpha=5
 // Run:   build/mpm_implicit mpm_implicit/cases/rebound.toml method.mass=lumped
 //
-// Reading order: step.hpp; then node_rows.hpp, stencil.hpp, grain_matrix.hpp, contact_set.hpp, constraints.hpp,
-// projected_cg.hpp, grain_factors.hpp, mass_factors.hpp, settle_contact.hpp, solve_nodes.hpp,
-// update_stress.hpp, move_particles.hpp, ledger.hpp; then solve_with_newton.hpp.
-// What both programs share is in mpm_explicit/.
+// Reading order: step.hpp, and from there as mpm_implicit/README.md says. What both programs share is
+// in mpm_explicit/.
 #include <optional>
 
 #include "common/run/start.hpp"
 #include "mpm_implicit/output/record.hpp"
 #include "mpm_implicit/setup/check_case.hpp"
 #include "mpm_implicit/step.hpp"
+#include "mpm_implicit/theory/compare_with_theory.hpp"
 
 namespace {
 
@@ -35,14 +34,11 @@ int run_case(const Shape& shape, const Case& parameters, const ThetaScheme& sche
     state.assembly = assemble(parameters.problem);
     Particles& particles = state.assembly.particles;
     const std::vector<Grain>& grains = state.assembly.grains;
-    std::vector<RigidMotion>& rigid = state.assembly.rigid;
-    std::vector<Bond>& bonds = state.assembly.bonds;
-    const std::vector<AnyLaw> laws = laws_of(parameters.problem);
-    const Contact contact(parameters.problem.contact, grains, bonds);
+    const Contact contact(parameters.problem.contact, grains, state.assembly.bonds);
     const double dt = scales.dt;
     GrainNodes nodes(parameters.problem.mesh(), Shape::width, scales.least_mass);
-    StepScratch<Shape::width - 1> scratch{laws, scheme, contact, parameters.flip, parameters.frozen,
-                                          {},   {}};
+    StepScratch<Shape::width - 1> scratch{
+        laws_of(parameters.problem), scheme, contact, parameters.flip, parameters.frozen, {}, {}};
     ThetaRecorder recorder(parameters, scheme, scales, state, run.history);
     StepSums sums;
     long step = 0;
@@ -51,7 +47,7 @@ int run_case(const Shape& shape, const Case& parameters, const ThetaScheme& sche
         nodes.lay_out(grains, state.frame);
     } else {
         nodes.sort(grains, particles, state.frame);
-        open_ledger(state.assembly, laws, state.ledger);
+        open_ledger(state.assembly, scratch.laws, state.ledger);
         recorder.start(state, run);
     }
 
@@ -59,9 +55,13 @@ int run_case(const Shape& shape, const Case& parameters, const ThetaScheme& sche
     while (run.not_finished(step, scales.steps)) {
         if (nodes.sort_is_due(state.frame)) nodes.sort(grains, particles, state.frame);
         recorder.snapshot(step, state, run);
-        const BodyForce body = drive(parameters.problem, step, dt, rigid, scratch.solver.servos);
+        const BodyForce body =
+            drive(parameters.problem, step, dt, state.assembly.rigid, scratch.solver.servos);
         take_step(shape, body, dt, scratch, nodes, state, sums);  // [MPM-5 ... 8]
-        recorder.record(step, sums, nodes, state, run);           // [MPM-13]
+        enter_step(scheme.theta, scheme.consistent(), body.damping, dt, nodes.strips(), sums.strips,
+                   sums.nodes, sums.contact, state.ledger);  // [MPM-13]
+        state.effort.add(sums.solver);
+        recorder.record(step, sums, nodes, state, run);
         ++step;
         run.end_of_step(step, scales.steps, static_cast<double>(step) * dt, state);
     }
@@ -78,22 +78,21 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     // 1. The case: defaults, file, command line; refuse, warn, or only describe.
     Case parameters;
     ThetaScheme scheme;
-    common::ParameterTable table = describe(parameters, scheme);
+    common::ParameterTable table = describe(parameters, scheme, theory::names_of(comparisons));
     const common::CommandLine command = common::read_command_line(argc, argv, info, table);
-    validate(parameters, scheme);
+    validate(parameters, scheme, table);
     Scales scales = scales_of(parameters);
     scales.bytes = bytes_of(parameters, scheme, scales);
+    theory::validate_comparison({parameters, facts_of(parameters, scheme)}, scales, comparisons);
     if (!common::start_run(
             info, command, table,
             {describe_scales(parameters, scheme, scales), warnings_of(parameters, scheme, scales),
              scales.steps, scales.bytes, parameters.checkpoint_steps},
             holder))
         return 0;
-    common::Run& run = *holder;
-
     int status = 0;
     with_shape(parameters.scheme(), [&](const auto& shape) {
-        status = run_case(shape, parameters, scheme, scales, run);
+        status = run_case(shape, parameters, scheme, scales, *holder);
     });
     return status;
 }

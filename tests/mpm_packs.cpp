@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "mpm_explicit/setup/fill_grain.hpp"
 #include "mpm_explicit/setup/pack_file.hpp"
 #include "mpm_explicit/setup/packs.hpp"
 #include "tests/support/any_numbers.hpp"

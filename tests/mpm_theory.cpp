@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "common/theory/theta_scheme.hpp"
-#include "mpm_explicit/output/fringes.hpp"
+#include "mpm_explicit/output/write_output.hpp"
 #include "mpm_explicit/theory/exact_solutions.hpp"
 #include "mpm_explicit/theory/scheme_theory.hpp"
 #include "tests/support/any_numbers.hpp"

@@ -12,14 +12,7 @@
 
 namespace common {
 
-namespace {
-
-std::string at(const std::string& source, std::size_t line, std::size_t column) {
-    return source + ":" + std::to_string(line) + ":" + std::to_string(column);
-}
-
-// Length of the valid UTF-8 sequence that begins at text[k]; 0 when there is none.
-std::size_t sequence_length(const std::string& text, std::size_t k) {
+std::size_t utf8_length(std::string_view text, std::size_t k) {
     const auto byte = [&](std::size_t n) {
         return n < text.size() ? static_cast<unsigned char>(text[n]) : 0U;
     };
@@ -42,6 +35,12 @@ std::size_t sequence_length(const std::string& text, std::size_t k) {
     return 0;
 }
 
+namespace {
+
+std::string at(const std::string& source, std::size_t line, std::size_t column) {
+    return source + ":" + std::to_string(line) + ":" + std::to_string(column);
+}
+
 // Also bounds how deeply names can be nested: one level takes two letters.
 constexpr std::size_t longest_line = 2000;
 
@@ -51,7 +50,7 @@ void refuse_bad_bytes(const std::string& text, const std::string& source) {
     std::size_t line = 1, column = 1;
     char inside = '\n';  // a string that ends with this quote, a comment, or neither
     for (std::size_t k = 0; k < text.size();) {
-        const std::size_t length = sequence_length(text, k);
+        const std::size_t length = utf8_length(text, k);
         const auto byte = static_cast<unsigned char>(text[k]);
         if (length == 0)
             throw InputError(at(source, line, column) + ": not UTF-8 text; save the file as UTF-8");

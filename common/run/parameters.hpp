@@ -9,6 +9,7 @@
 #include <map>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -179,6 +180,9 @@ CommandLine read_command_line(int argc, char** argv, const ProgramInfo& info,
 /// The settings in the text of a case file, in order.
 /// errors: InputError with source:line:column.
 std::vector<Setting> read_case(const std::string& text, const std::string& source);
+
+/// Length of the valid UTF-8 sequence that begins at text[k]; 0 when there is none.
+std::size_t utf8_length(std::string_view text, std::size_t k);
 
 /// Shortest text that reads back as the same number.
 std::string number_text(double value);

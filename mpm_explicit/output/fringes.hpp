@@ -8,7 +8,6 @@
 #pragma once
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -28,6 +27,7 @@ struct Window {
     double x_low = 0, x_high = 0, y_low = 0, y_high = 0;
 };
 
+/// All of the mesh.
 inline Window whole(const Mesh& mesh) {
     return {mesh.x_low, mesh.x_high(), mesh.y_low, mesh.y_high()};
 }
@@ -40,77 +40,69 @@ struct FringeRaster {
     std::vector<double> coverage;                     // by the grain that is drawn there
     std::vector<int> grain;
 
-    std::size_t pixel(long i, long j) const { return static_cast<std::size_t>(j * x.count + i); }
+    std::size_t pixel(long i, long j) const { return j * x.count + i; }
 };
 
-namespace fringes_detail {
+namespace detail {
+
+/// Sums over particles at a node, of weights V S; then the stress, of weight 1 if there is any.
+struct NodeStress {
+    double weight = 0, xx = 0, yy = 0, xy = 0, mean = 0;
+
+    void add(double part, const NodeStress& s) {
+        weight += part, xx += part * s.xx, yy += part * s.yy, xy += part * s.xy;
+        mean += part * s.mean;
+    }
+};
 
 /// One grain on nodes i_first ... i_first + nodes_x - 1 and the like in y: memory in proportion to
 /// the grain. Nodes may lie outside of a periodic mesh; they belong to no other grain.
 struct Patch {
     long i_first = 0, j_first = 0, nodes_x = 0, nodes_y = 0;
-    double volume = 0;                        // of the grain
-    std::vector<double> coverage;             // covered part of the cell around a node
-    std::vector<double> weight;               // sum V S, then 1 where the node has a stress, else 0
-    std::vector<double> sxx, syy, sxy, mean;  // stress at the nodes
+    double volume = 0;             // of the grain
+    std::vector<double> coverage;  // covered part of the cell around a node
+    std::vector<NodeStress> stress;
 
-    std::size_t node(long i, long j) const {
-        return static_cast<std::size_t>((j - j_first) * nodes_x + i - i_first);
-    }
+    long node(long i, long j) const { return (j - j_first) * nodes_x + i - i_first; }
 };
 
+/// The grain of particles begin ... end - 1 on its nodes.
 ///   sigma_i = sum_p V_p S_ip sigma_p / sum_p V_p S_ip,  S linear
 ///   coverage_i = sum_p V_p S_ip / h^2,                  S quadratic
 inline Patch average_on_nodes(const Particles& particles, long begin, long end, const Mesh& mesh) {
     const double per_h = 1 / mesh.h;
-    const auto cells_x = [&](std::size_t p) { return (particles.x_p[p] - mesh.x_low) * per_h; };
-    const auto cells_y = [&](std::size_t p) { return (particles.y_p[p] - mesh.y_low) * per_h; };
-    const auto first = static_cast<std::size_t>(begin), last = static_cast<std::size_t>(end);
-
-    // Leave two nodes free on all sides.
-    double x_low = cells_x(first), x_high = x_low, y_low = cells_y(first), y_high = y_low;
-    for (std::size_t p = first; p < last; ++p) {
-        x_low = std::min(x_low, cells_x(p)), x_high = std::max(x_high, cells_x(p));
-        y_low = std::min(y_low, cells_y(p)), y_high = std::max(y_high, cells_y(p));
-    }
     Patch patch;
-    patch.i_first = static_cast<long>(std::floor(x_low)) - 2;
-    patch.j_first = static_cast<long>(std::floor(y_low)) - 2;
-    patch.nodes_x = static_cast<long>(std::floor(x_high)) + 4 - patch.i_first;
-    patch.nodes_y = static_cast<long>(std::floor(y_high)) + 4 - patch.j_first;
-    const auto nodes = static_cast<std::size_t>(patch.nodes_x * patch.nodes_y);
-    for (auto* field :
-         {&patch.coverage, &patch.weight, &patch.sxx, &patch.syy, &patch.sxy, &patch.mean})
-        field->assign(nodes, 0.0);
+    // Leave two nodes free on all sides.
+    const auto find_nodes = [&](const std::vector<double>& at, double edge, long& first,
+                                long& nodes) {
+        const auto [low, high] = std::minmax_element(at.begin() + begin, at.begin() + end);
+        first = long(std::floor((*low - edge) * per_h)) - 2;
+        nodes = long(std::floor((*high - edge) * per_h)) + 4 - first;
+    };
+    find_nodes(particles.x_p, mesh.x_low, patch.i_first, patch.nodes_x);
+    find_nodes(particles.y_p, mesh.y_low, patch.j_first, patch.nodes_y);
+    patch.coverage.assign(patch.nodes_x * patch.nodes_y, 0.0);
+    patch.stress.resize(patch.nodes_x * patch.nodes_y);
 
-    for (std::size_t p = first; p < last; ++p) {
-        const double V = particles.V_p[p];
+    for (long p = begin; p < end; ++p) {
+        const double V = particles.V_p[p], x = (particles.x_p[p] - mesh.x_low) * per_h,
+                     y = (particles.y_p[p] - mesh.y_low) * per_h;
         const Stress s = particles.stress(p);
         patch.volume += V;
-        const auto wide_x = QuadraticShape{}(cells_x(p), per_h),
-                   wide_y = QuadraticShape{}(cells_y(p), per_h);
+        const auto wide_x = QuadraticShape{}(x, per_h), wide_y = QuadraticShape{}(y, per_h);
         for (int b = 0; b < 3; ++b)
             for (int a = 0; a < 3; ++a)
                 patch.coverage[patch.node(wide_x.first + a, wide_y.first + b)] +=
                     V * wide_x.S[a] * wide_y.S[b] * per_h * per_h;
-        const auto in_x = LinearShape{}(cells_x(p), per_h), in_y = LinearShape{}(cells_y(p), per_h);
+        const auto in_x = LinearShape{}(x, per_h), in_y = LinearShape{}(y, per_h);
         for (int b = 0; b < 2; ++b)
-            for (int a = 0; a < 2; ++a) {
-                const std::size_t i = patch.node(in_x.first + a, in_y.first + b);
-                const double VS = V * in_x.S[a] * in_y.S[b];
-                patch.weight[i] += VS;
-                patch.sxx[i] += VS * s.xx;
-                patch.syy[i] += VS * s.yy;
-                patch.sxy[i] += VS * s.xy;
-                patch.mean[i] += VS * (s.xx + s.yy + s.zz) / 3;
-            }
+            for (int a = 0; a < 2; ++a)
+                patch.stress[patch.node(in_x.first + a, in_y.first + b)].add(
+                    V * in_x.S[a] * in_y.S[b], {1, s.xx, s.yy, s.xy, (s.xx + s.yy + s.zz) / 3});
     }
-    for (std::size_t i = 0; i < nodes; ++i) {
-        if (!(patch.weight[i] > 0)) continue;
-        for (auto* field : {&patch.sxx, &patch.syy, &patch.sxy, &patch.mean})
-            (*field)[i] /= patch.weight[i];
-        patch.weight[i] = 1;
-    }
+    for (NodeStress& s : patch.stress)
+        if (s.weight > 0)
+            s = {1, s.xx / s.weight, s.yy / s.weight, s.xy / s.weight, s.mean / s.weight};
     return patch;
 }
 
@@ -125,13 +117,12 @@ struct Reach {
 /// in:    nodes of the patch; edge of the window, in cells from node 0 of the mesh
 inline Reach reach_pixels(long node_first, long nodes, double edge, int per_cell) {
     // Take the pixels whose nearest node has both neighbors in the patch.
-    const double low = static_cast<double>(node_first + 1),
-                 high = static_cast<double>(node_first + nodes - 2);
+    const double low = double(node_first + 1), high = double(node_first + nodes - 2);
     Reach reach;
-    reach.first = static_cast<long>(std::ceil((low - edge) * per_cell - 0.5));
-    reach.count = static_cast<long>(std::floor((high - edge) * per_cell - 0.5)) - reach.first + 1;
+    reach.first = long(std::ceil((low - edge) * per_cell - 0.5));
+    reach.count = long(std::floor((high - edge) * per_cell - 0.5)) - reach.first + 1;
     for (long q = reach.first; q < reach.first + reach.count; ++q) {
-        const double at = edge + (static_cast<double>(q) + 0.5) / per_cell;
+        const double at = edge + (double(q) + 0.5) / per_cell;
         reach.linear.push_back(LinearShape{}(at, 1.0));
         reach.quadratic.push_back(QuadraticShape{}(at, 1.0));
     }
@@ -140,8 +131,8 @@ inline Reach reach_pixels(long node_first, long nodes, double edge, int per_cell
 
 /// The covered part of all pixels in reach, row after row.
 inline std::vector<double> cover_pixels(const Patch& patch, const Reach& in_x, const Reach& in_y) {
-    std::vector<double> covered, row(static_cast<std::size_t>(patch.nodes_x));
-    covered.reserve(static_cast<std::size_t>(in_x.count * in_y.count));
+    std::vector<double> covered, row(patch.nodes_x);
+    covered.reserve(in_x.count * in_y.count);
     for (const Weights<3>& y : in_y.quadratic) {
         const std::size_t below = patch.node(patch.i_first, y.first);
         for (std::size_t i = 0; i < row.size(); ++i)
@@ -149,7 +140,7 @@ inline std::vector<double> cover_pixels(const Patch& patch, const Reach& in_x, c
                      y.S[1] * patch.coverage[below + row.size() + i] +
                      y.S[2] * patch.coverage[below + 2 * row.size() + i];
         for (const Weights<3>& x : in_x.quadratic) {
-            const double* at = &row[static_cast<std::size_t>(x.first - patch.i_first)];
+            const double* at = &row[x.first - patch.i_first];
             covered.push_back(x.S[0] * at[0] + x.S[1] * at[1] + x.S[2] * at[2]);
         }
     }
@@ -160,34 +151,24 @@ inline std::vector<double> cover_pixels(const Patch& patch, const Reach& in_x, c
 /// have the area of its particles.
 /// note:  Coverage is smooth over a cell, so that its line of one half lies inside of a small disk.
 inline double outline_level(std::vector<double> covered, double pixels) {
-    const auto parameters = static_cast<std::size_t>(std::max(pixels, 0.0) + 0.5);
-    if (parameters >= covered.size()) return 0;
-    const auto place = covered.begin() + static_cast<std::ptrdiff_t>(parameters);
+    const auto inside = std::size_t(std::max(pixels, 0.0) + 0.5);
+    if (inside >= covered.size()) return 0;
+    const auto place = covered.begin() + long(inside);
     std::nth_element(covered.begin(), place, covered.end(), std::greater<>());
     // Round it, but to no simple fraction, so that pixels of equal coverage are on the same side.
     return (std::floor(*place * 1024) + std::numbers::inv_pi) / 1024;
 }
 
-struct PixelStress {
-    double difference, pressure;
-};
-
-/// in:    weights of the pixel at the four nodes around it
-/// out:   not numbers where no particle is near
-inline PixelStress stress_at(const Patch& patch, const Weights<2>& x, const Weights<2>& y) {
-    double weight = 0, mean = 0;
-    Stress s;
+/// The weighted sum over the four nodes around a pixel.
+/// out:   of weight 0 where no particle is near
+inline NodeStress stress_at(const Patch& patch, const Weights<2>& x, const Weights<2>& y) {
+    NodeStress s;
     for (int b = 0; b < 2; ++b)
         for (int a = 0; a < 2; ++a) {
-            const std::size_t i = patch.node(x.first + a, y.first + b);
-            const double S = x.S[a] * y.S[b] * patch.weight[i];
-            weight += S;
-            s.xx += S * patch.sxx[i];
-            s.yy += S * patch.syy[i];
-            s.xy += S * patch.sxy[i];
-            mean += S * patch.mean[i];
+            const NodeStress& node = patch.stress[patch.node(x.first + a, y.first + b)];
+            s.add(x.S[a] * y.S[b] * node.weight, node);
         }
-    return {std::hypot(s.xx - s.yy, 2 * s.xy) / weight, -mean / weight};
+    return s;
 }
 
 /// Draws one grain. Pixel i of a periodic mesh shows also what is whole periods of pixels away.
@@ -199,12 +180,10 @@ inline void draw_grain(const Patch& patch, int number, const Reach& in_x, const 
         const long j = in_y.first + m;
         if (j < 0 || j >= raster.y.count) continue;
         for (long n = 0; n < in_x.count; ++n) {
-            const double part = covered[static_cast<std::size_t>(m * in_x.count + n)];
+            const double part = covered[m * in_x.count + n];
             if (!(part > level)) continue;
-            const auto [difference, pressure] =
-                stress_at(patch, in_x.linear[static_cast<std::size_t>(n)],
-                          in_y.linear[static_cast<std::size_t>(m)]);
-            if (!std::isfinite(difference)) continue;
+            const NodeStress s = stress_at(patch, in_x.linear[n], in_y.linear[m]);
+            if (!(s.weight > 0)) continue;
             long i = in_x.first + n;
             if (period > 0) i %= period;
             for (; i < raster.x.count; i += period) {
@@ -212,8 +191,8 @@ inline void draw_grain(const Patch& patch, int number, const Reach& in_x, const 
                 if (i >= 0 && part > raster.coverage[pixel]) {
                     raster.coverage[pixel] = part;
                     raster.grain[pixel] = number;
-                    raster.stress_difference[pixel] = difference;
-                    raster.pressure[pixel] = pressure;
+                    raster.stress_difference[pixel] = std::hypot(s.xx - s.yy, 2 * s.xy) / s.weight;
+                    raster.pressure[pixel] = -s.mean / s.weight;
                 }
                 if (period == 0) break;
             }
@@ -221,7 +200,7 @@ inline void draw_grain(const Patch& patch, int number, const Reach& in_x, const 
     }
 }
 
-}  // namespace fringes_detail
+}  // namespace detail
 
 /// Draws the difference of the principal stresses in grains.
 ///   s1 - s2 = [(s_xx - s_yy)^2 + 4 s_xy^2]^1/2
@@ -242,7 +221,7 @@ FringeRaster draw_fringes(const Particles& particles, const std::vector<Range>& 
     raster.x.step = raster.y.step = step;
     raster.x.count = std::max(1l, std::lround((window.x_high - window.x_low) / step));
     raster.y.count = std::max(1l, std::lround((window.y_high - window.y_low) / step));
-    const auto pixels = static_cast<std::size_t>(raster.x.count * raster.y.count);
+    const long pixels = raster.x.count * raster.y.count;
     raster.stress_difference.assign(pixels, std::numeric_limits<double>::quiet_NaN());
     raster.pressure = raster.stress_difference;
     raster.coverage.assign(pixels, 0.0);
@@ -252,52 +231,14 @@ FringeRaster draw_fringes(const Particles& particles, const std::vector<Range>& 
     const double edge_x = (window.x_low - mesh.x_low) / mesh.h,
                  edge_y = (window.y_low - mesh.y_low) / mesh.h;
     for (std::size_t g = 0; g < grains.size(); ++g) {
-        using namespace fringes_detail;
+        using namespace detail;
         if (grains[g].end <= grains[g].begin) continue;
         const Patch patch = average_on_nodes(particles, grains[g].begin, grains[g].end, mesh);
-        draw_grain(patch, static_cast<int>(g),
-                   reach_pixels(patch.i_first, patch.nodes_x, edge_x, pixels_per_cell),
-                   reach_pixels(patch.j_first, patch.nodes_y, edge_y, pixels_per_cell), period,
-                   raster);
+        draw_grain(
+            patch, int(g), reach_pixels(patch.i_first, patch.nodes_x, edge_x, pixels_per_cell),
+            reach_pixels(patch.j_first, patch.nodes_y, edge_y, pixels_per_cell), period, raster);
     }
     return raster;
-}
-
-/// Writes a raster for gnuplot: columns x y stress_difference pressure grain, an empty line after
-/// each row of pixels. Between the grains stand NaN NaN -1: pictures need every pixel, and a script
-/// asks column 5, for an expression of NaN is undefined whatever it says.
-/// exact: places have ten digits and stresses six, enough for a picture; on failure nothing appears
-///        under `path`
-inline void write_fringes(const std::string& path, const FringeRaster& raster) {
-    const auto digits = [](double value, int precision) {
-        char text[32];
-        const auto end =
-            std::to_chars(text, text + sizeof text, value, std::chars_format::general, precision);
-        return std::string(text, end.ptr);
-    };
-    std::vector<std::string> columns;
-    for (long i = 0; i < raster.x.count; ++i) columns.push_back(digits(raster.x.at(i), 10) + " ");
-
-    common::OutputFile file(path);
-    file.text("# 1:x[length] 2:y[length] 3:stress_difference[E] 4:pressure[E] 5:grain[]\n");
-    for (long j = 0; j < raster.y.count; ++j) {
-        const std::string y = digits(raster.y.at(j), 10) + " ";
-        for (long i = 0; i < raster.x.count; ++i) {
-            const std::size_t pixel = raster.pixel(i, j);
-            file.text(columns[static_cast<std::size_t>(i)]);
-            file.text(y);
-            if (raster.grain[pixel] < 0) {
-                file.text("NaN NaN -1\n");
-                continue;
-            }
-            file.text(digits(raster.stress_difference[pixel], 6) + " ");
-            file.text(digits(raster.pressure[pixel], 6) + " ");
-            file.number(static_cast<long>(raster.grain[pixel]));
-            file.text("\n");
-        }
-        file.text("\n");
-    }
-    file.finish();
 }
 
 }  // namespace mpm

@@ -1,10 +1,10 @@
-// What a run of mpm_explicit keeps besides what every scheme does (record_grains.hpp): the ledger of
-// the leapfrog.
+// What a run of mpm_explicit keeps besides what every scheme does (record_grains.hpp): the ledger
+// of the leapfrog.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
+#include <utility>
 
 #include "mpm_explicit/output/record_grains.hpp"
 #include "mpm_explicit/setup/initial_state.hpp"
@@ -12,61 +12,76 @@
 
 namespace mpm_explicit {
 
-inline std::vector<common::Column> ledger_columns() {
-    std::vector<common::Column> columns;
-    for (const char* name :
-         {"kinetic", "elastic", "energy", "energy_14", "energy_15", "external", "contact",
-          "friction", "bond", "damping", "plastic", "volume", "pic", "remap", "budget"})
-        columns.push_back({name, "energy"});
-    return columns;
+/// Adds the terms of the ledger, energies now and work since the start.
+inline void add_ledger(const Ledger& l, common::Row& row) {
+    for (const auto& [name, value] : {std::pair("kinetic", l.kinetic),
+                                      {"elastic", l.elastic},
+                                      {"energy", l.kinetic + l.elastic},
+                                      {"energy_14", l.energy_14},
+                                      {"energy_15", l.energy_15},
+                                      {"external", l.external},
+                                      {"contact", l.contact},
+                                      {"friction", l.friction},
+                                      {"bond", l.bond},
+                                      {"damping", l.damping},
+                                      {"plastic", l.plastic},
+                                      {"volume", l.volume},
+                                      {"pic", l.pic},
+                                      {"remap", l.remap},
+                                      {"budget", l.budget()}})
+        row.add(name, "energy", value);
 }
 
-inline std::vector<double> ledger_row(const Ledger& l) {
-    return {l.kinetic,   l.elastic,   l.kinetic + l.elastic,
-            l.energy_14, l.energy_15, l.external,
-            l.contact,   l.friction,  l.bond,
-            l.damping,   l.plastic,   l.volume,
-            l.pic,       l.remap,     l.budget()};
-}
-
+/// Writes rows and files of a run, and its results.
 class LeapfrogRecorder {
    public:
     LeapfrogRecorder(const Case& parameters, const Scales& scales, const State& state,
                      common::History& history)
         : dt_(scales.dt),
-          recorder_(parameters, scales, state.assembly, ledger_columns(), "budget", history) {}
+          recorder_(parameters, leapfrog, scales, state.assembly, comparisons, "budget") {
+        Ledger none;
+        none.momentum_x.assign(state.assembly.grains.size(), 0), none.momentum_y = none.momentum_x;
+        history.columns(row(0, none, {}, state.assembly));
+    }
 
     /// Writes the files that are due at this step, before it.
     void snapshot(long step, const State& state, const common::Run& run) const {
         recorder_.snapshot(step, state.assembly, run);
     }
 
-    /// Enters a step into the ledger and writes its row of the history.
+    /// Writes the row of t^n, when the ledger has the energies of the step and not yet its work.
     /// errors: NumericalError as Recorder::refuse_failure
-    void record(long step, const StepSums& sums, const GrainNodes& nodes, State& state,
+    void record(long step, const StepSums& sums, const GrainNodes& nodes, const State& state,
                 common::Run& run) {
-        Ledger& l = state.ledger;
-        enter_energies(step, sums.strips, l);
+        const Ledger& l = state.ledger;
         const bool finite =
             std::all_of(sums.strips.begin(), sums.strips.end(), [](const StripSums& s) {
                 return std::isfinite(s.kinetic) && std::isfinite(s.product);
             });
         if (finite && recorder_.row_is_due(step))
-            recorder_.write_row(static_cast<double>(step) * dt_, dt_, ledger_row(l), l.momentum_x,
-                                l.momentum_y, sums.contact, state.assembly, run);
+            run.history.row(row(step, l, sums.contact, state.assembly));
         recorder_.refuse_failure(step, sums.strips, nodes, state.assembly, l.start, l.external,
                                  l.kinetic + l.elastic, run.history);
-        enter_work(nodes.strips(), sums.strips, sums.nodes, sums.contact, l);
     }
 
     /// The results of the whole run, after its last step.
     void finish(long step, const State& state, common::Run& run) const {
         if (run.history.all().empty()) return;
-        compare_with_theory(recorder_.ended(step, state.assembly, run.history), run.summary);
-        recorder_.finish_conservation({{"remap", "largest_remap_error"}}, state.assembly, run);
+        recorder_.compare_with_theory(step, state.assembly, run);
+        recorder_.finish_conservation(state.assembly, run);
+        run.summary.conservation("largest_remap_error", run.history.largest("remap"), "energy");
     }
 
    private:
+    common::Row row(long step, const Ledger& l, const ContactSums& contact,
+                    const Assembly& all) const {
+        common::Row row;
+        row.add("time", "time", double(step) * dt_);
+        add_ledger(l, row);
+        recorder_.add_to(row, l.momentum_x, l.momentum_y, contact, all);
+        return row;
+    }
+
     double dt_;
     Recorder recorder_;
 };

@@ -1,71 +1,75 @@
 // Files for the figures: particles, one line per grain, and the fringes of a polariscope.
 #pragma once
 
-#include <array>
+#include <charconv>
+#include <cmath>
 #include <string>
 #include <vector>
 
 #include "common/random.hpp"
+#include "common/run/history.hpp"
 #include "common/run/writers.hpp"
 #include "mpm_explicit/assembly.hpp"
 #include "mpm_explicit/output/fringes.hpp"
-#include "mpm_explicit/setup/case_of_grains.hpp"
+#include "mpm_explicit/setup/case.hpp"
 
 namespace mpm {
 
-inline constexpr long most_particles_written = 40000;
+inline constexpr long most_particles_written = 40000;  // in a file
 
-namespace detail {
+/// Rows of equal columns, as columns for a file.
+struct Table {
+    std::vector<common::Column> names;
+    std::vector<std::vector<double>> values;
 
-// Positions of a grain that straddles the ends of a periodic mesh, as they are seen.
-inline double seen(const Mesh& mesh, double x) {
-    return mesh.periodic_x ? x - mesh.length_x() * std::floor((x - mesh.x_low) / mesh.length_x())
-                           : x;
-}
-
-}  // namespace detail
+    void add(const common::Row& row) {
+        names = row.columns;
+        values.resize(names.size());
+        for (std::size_t k = 0; k < names.size(); ++k) values[k].push_back(row.values[k]);
+    }
+    std::vector<common::ScalarColumn> columns() const {
+        std::vector<common::ScalarColumn> all;
+        for (std::size_t k = 0; k < names.size(); ++k)
+            all.push_back({names[k].name, names[k].unit, values[k]});
+        return all;
+    }
+};
 
 /// Writes particles_NNNNNN.dat (and .vtp): all of them, or a random sample of about
 /// most_particles_written.
-inline void write_particles(const std::string& folder, long step, const Case& w,
+/// note:   positions are those inside of a periodic mesh
+inline void write_particles(const std::string& folder, long step, const Case& parameters,
                             const Assembly& all) {
     const Particles& at = all.particles;
-    const Mesh mesh = w.problem.mesh();
+    const Mesh mesh = parameters.problem.mesh();
+    const double length = mesh.length_x();
     const long every = (at.count() + most_particles_written - 1) / most_particles_written;
-    std::array<std::vector<double>, 11> data;
+    Table table;
     for (std::size_t g = 0; g < all.grains.size(); ++g) {
-        const Grain& grain = all.grains[g];
-        for (long p = grain.begin; p < grain.end; ++p) {
-            const bool kept =
-                every <= 1 || common::uniform(7, 7, static_cast<std::uint64_t>(p), 0) *
-                                      static_cast<double>(every) <
-                                  1;
-            if (!kept) continue;
-            const auto n = static_cast<std::size_t>(p);
-            const std::array<double, 11> row{detail::seen(mesh, at.x_p[n]),
-                                             at.y_p[n],
-                                             at.vx_p[n],
-                                             at.vy_p[n],
-                                             static_cast<double>(g),
-                                             at.sxx_p[n],
-                                             at.syy_p[n],
-                                             at.sxy_p[n],
-                                             at.szz_p[n],
-                                             at.V_p[n],
-                                             at.yield_p[n]};
-            for (std::size_t a = 0; a < row.size(); ++a) data[a].push_back(row[a]);
+        for (long p = all.grains[g].begin; p < all.grains[g].end; ++p) {
+            if (every > 1 && !(common::uniform(7, 7, p, 0) * double(every) < 1)) continue;
+            const double x = at.x_p[p];
+            const double turns = mesh.periodic_x ? std::floor((x - mesh.x_low) / length) : 0;
+            common::Row row;
+            row.add("x", "length", mesh.periodic_x ? x - length * turns : x);
+            row.add("y", "length", at.y_p[p]);
+            row.add("v_x", "velocity", at.vx_p[p]);
+            row.add("v_y", "velocity", at.vy_p[p]);
+            row.add("grain", "", double(g));
+            row.add("s_xx", "stress", at.sxx_p[p]);
+            row.add("s_yy", "stress", at.syy_p[p]);
+            row.add("s_xy", "stress", at.sxy_p[p]);
+            row.add("s_zz", "stress", at.szz_p[p]);
+            row.add("V", "volume", at.V_p[p]);
+            row.add("plastic_strain", "1", at.yield_p[p]);
+            table.add(row);
         }
     }
-    const std::vector<common::ScalarColumn> columns{
-        {"x", "length", data[0]},         {"y", "length", data[1]},
-        {"v_x", "velocity", data[2]},     {"v_y", "velocity", data[3]},
-        {"grain", "", data[4]},           {"s_xx", "stress", data[5]},
-        {"s_yy", "stress", data[6]},      {"s_xy", "stress", data[7]},
-        {"s_zz", "stress", data[8]},      {"V", "volume", data[9]},
-        {"plastic_strain", "1", data[10]}};
+    const auto columns = table.columns();
     common::write_table(folder + common::numbered("particles", step, "dat"), columns);
-    if (w.vtk) {
-        const std::vector<double> zero(data[0].size(), 0.0);
+    if (parameters.vtk) {
+        const std::vector<double> zero(table.values[0].size(), 0.0);
+        const auto& data = table.values;
         common::write_vtp(folder + common::numbered("particles", step, "vtp"),
                           {"position", "length", data[0], data[1], zero},
                           {columns.begin() + 4, columns.end()},
@@ -77,48 +81,83 @@ inline void write_particles(const std::string& folder, long step, const Case& w,
 /// stress over the grain, whether rigid.
 inline void write_grains(const std::string& folder, long step, const Assembly& all) {
     const Particles& at = all.particles;
-    std::array<std::vector<double>, 10> data;
+    Table table;
     for (std::size_t g = 0; g < all.grains.size(); ++g) {
         const Grain& grain = all.grains[g];
         double m = 0, V = 0, x = 0, y = 0, vx = 0, vy = 0, sxx = 0, syy = 0, sxy = 0;
-        for (long k = grain.begin; k < grain.end; ++k) {
-            const auto p = static_cast<std::size_t>(k);
+        for (long p = grain.begin; p < grain.end; ++p) {
             m += at.m_p[p], x += at.m_p[p] * at.x_p[p], y += at.m_p[p] * at.y_p[p];
             vx += at.m_p[p] * at.vx_p[p], vy += at.m_p[p] * at.vy_p[p];
             V += at.V_p[p], sxx += at.V_p[p] * at.sxx_p[p], syy += at.V_p[p] * at.syy_p[p];
             sxy += at.V_p[p] * at.sxy_p[p];
         }
-        const std::array<double, 10> row{
-            static_cast<double>(g), x / m, y / m, vx / m, vy / m, m, sxx / V, syy / V, sxy / V,
-            grain.rigid ? 1.0 : 0.0};
-        for (std::size_t a = 0; a < row.size(); ++a) data[a].push_back(row[a]);
+        common::Row row;
+        row.add("grain", "", double(g));
+        row.add("x", "length", x / m);
+        row.add("y", "length", y / m);
+        row.add("v_x", "velocity", vx / m);
+        row.add("v_y", "velocity", vy / m);
+        row.add("mass", "mass", m);
+        row.add("s_xx", "stress", sxx / V);
+        row.add("s_yy", "stress", syy / V);
+        row.add("s_xy", "stress", sxy / V);
+        row.add("rigid", "", grain.rigid ? 1 : 0);
+        table.add(row);
     }
-    common::write_table(folder + common::numbered("grains", step, "dat"),
-                        {{"grain", "", data[0]},
-                         {"x", "length", data[1]},
-                         {"y", "length", data[2]},
-                         {"v_x", "velocity", data[3]},
-                         {"v_y", "velocity", data[4]},
-                         {"mass", "mass", data[5]},
-                         {"s_xx", "stress", data[6]},
-                         {"s_yy", "stress", data[7]},
-                         {"s_xy", "stress", data[8]},
-                         {"rigid", "", data[9]}});
+    common::write_table(folder + common::numbered("grains", step, "dat"), table.columns());
+}
+
+/// Writes a raster for gnuplot: columns x y stress_difference pressure grain, an empty line after
+/// each row of pixels. Between the grains stand NaN NaN -1: pictures need every pixel, and a script
+/// asks column 5, for an expression of NaN is undefined whatever it says.
+/// exact: places have ten digits and stresses six, enough for a picture; on failure nothing appears
+///        under `path`
+inline void write_fringes(const std::string& path, const FringeRaster& raster) {
+    const auto digits = [](double value, int precision) {
+        char text[32];
+        const auto end =
+            std::to_chars(text, text + sizeof text, value, std::chars_format::general, precision);
+        return std::string(text, end.ptr);
+    };
+    std::vector<std::string> columns;
+    for (long i = 0; i < raster.x.count; ++i) columns.push_back(digits(raster.x.at(i), 10) + " ");
+
+    common::OutputFile file(path);
+    file.text("# 1:x[length] 2:y[length] 3:stress_difference[E] 4:pressure[E] 5:grain[]\n");
+    for (long j = 0; j < raster.y.count; ++j) {
+        const std::string y = digits(raster.y.at(j), 10) + " ";
+        for (long i = 0; i < raster.x.count; ++i) {
+            const std::size_t pixel = raster.pixel(i, j);
+            file.text(columns[i]);
+            file.text(y);
+            if (raster.grain[pixel] < 0) {
+                file.text("NaN NaN -1\n");
+                continue;
+            }
+            file.text(digits(raster.stress_difference[pixel], 6) + " ");
+            file.text(digits(raster.pressure[pixel], 6) + " ");
+            file.number(long(raster.grain[pixel]));
+            file.text("\n");
+        }
+        file.text("\n");
+    }
+    file.finish();
 }
 
 /// Writes fringes_NNNNNN.dat: the principal stress difference of elastic grains on pixels.
-inline void write_fringe_raster(const std::string& folder, long step, const Case& w,
+inline void write_fringe_raster(const std::string& folder, long step, const Case& parameters,
                                 const Assembly& all) {
-    const Mesh mesh = w.problem.mesh();
+    const Mesh mesh = parameters.problem.mesh();
     write_fringes(folder + common::numbered("fringes", step, "dat"),
                   draw_fringes(all.particles, all.grains, mesh, whole(mesh),
-                               static_cast<int>(w.pixels_per_cell)));
+                               int(parameters.pixels_per_cell)));
 }
 
 /// Writes pack.txt: the grains of the case, to be read again as a pack of kind "file".
-inline void write_pack_of(const std::string& folder, const Case& w) {
+inline void write_pack_of(const std::string& folder, const Case& parameters) {
     std::vector<PackedGrain> grains;
-    for (const PlannedGrain& plan : plan_grains(w.problem, materials_of(w.problem)))
+    for (const PlannedGrain& plan :
+         plan_grains(parameters.problem, materials_of(parameters.problem)))
         grains.push_back({plan.name, plan.outline});
     write_pack(folder + "pack.txt", grains);
 }

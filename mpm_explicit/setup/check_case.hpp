@@ -1,34 +1,198 @@
-// What is said before a run of mpm_explicit besides what holds for every scheme
-// (mpm_explicit/setup/check_grains.hpp): how far its time step can be trusted, and how fast it is.
+// What is refused before a run of mpm_explicit starts, and what is warned of; mpm_implicit
+// adds what only it asks for.
 #pragma once
 
+#include <algorithm>
+#include <set>
 #include <string>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "mpm_explicit/setup/case.hpp"
-#include "mpm_explicit/setup/check_grains.hpp"
+#include "mpm_explicit/setup/scales.hpp"
+
+namespace mpm {
+
+namespace detail {
+
+// Beyond these sizes, products of several numbers leave double precision.
+inline void refuse_extremes(const common::ParameterTable& table) {
+    for (const auto& [name, value, place] : common::read_case(table.effective_case(), "case")) {
+        const double* number = std::get_if<double>(&value);
+        const bool is_compared_only = name.starts_with("output.") || name.starts_with("time.e");
+        if (number == nullptr || *number == 0 || is_compared_only) continue;
+        const double size = std::fabs(*number);
+        refuse(!(size > 1e-40 && size < 1e40),
+               name + " = " + format(*number) +
+                   " is not between 1e-40 and 1e40 in size: choose other units");
+    }
+}
+
+constexpr std::size_t longest_pack_name = 40;  // that write_pack() takes
+
+// Refuses a grain that its mesh cannot carry, or whose parameters contradict each other.
+inline void refuse_grain(const PlannedGrain& plan, const Material& material, const Mesh& mesh,
+                         long per_side) {
+    const std::string grain = "grain '" + plan.name + "'";
+    const double thin = thinnest(plan.outline);
+    refuse(thin < 2 * mesh.h * (1 - 1e-9),
+           grain + " is " + format(thin / mesh.h) +
+               " cells thin, below 2: refine the mesh to cells of at most " + format(0.5 * thin) +
+               ", or take a larger grain");
+    const Bounds box = bounds(plan.outline),
+                 room{mesh.x_low, mesh.x_high(), mesh.y_low, mesh.y_high()};
+    const auto corners = [](const Bounds& at) {
+        return "from (" + format(at.x_low) + ", " + format(at.y_low) + ") to (" +
+               format(at.x_high) + ", " + format(at.y_high) + ")";
+    };
+    const double slack = 1e-9 * mesh.h;
+    refuse(box.y_low < room.y_low - slack || box.y_high > room.y_high + slack ||
+               (!mesh.periodic_x &&
+                (box.x_low < room.x_low - slack || box.x_high > room.x_high + slack)),
+           grain + " reaches " + corners(box) + ", beyond the mesh " + corners(room) +
+               ": move the grain or widen the mesh");
+    const double length = mesh.length_x();
+    refuse(mesh.periodic_x && box.x_high - box.x_low > length + slack,
+           grain + " is longer than the periodic mesh: shorten it to " + format(length));
+    refuse(
+        mesh.periodic_x && (box.x_low < mesh.x_low - length || box.x_high > mesh.x_high() + length),
+        grain + " reaches from x = " + format(box.x_low) + " to " + format(box.x_high) +
+            ", more than its length of " + format(length) +
+            " beyond the periodic mesh: move it by whole lengths");
+    // What is two cells wide may still be a thin angle between the points of the lattice.
+    const double side = mesh.h / double(per_side);
+    refuse(plan.outline.kind == OutlineKind::polygon && area(plan.outline) < 1e4 * side * side &&
+               fill(plan.outline, mesh, per_side).empty(),
+           grain + " is so thin that no particle falls into it: refine the mesh, or make it wider");
+    const bool rigid = material.law == Law::rigid;
+    refuse(!rigid && plan.from.control != "velocity", grain + " has control = \"" +
+                                                          plan.from.control +
+                                                          "\" and is not rigid: give it a "
+                                                          "material with law = \"rigid\"");
+    refuse(rigid && (plan.from.spin != 0 || plan.from.profile != "none"),
+           grain + " is rigid and moves without turning: take out spin and profile");
+    refuse(plan.from.profile != "none" && plan.from.shape != "box",
+           grain + " has a profile of its velocity, which is for boxes: set shape = \"box\"");
+}
+
+}  // namespace detail
+
+/// Refuses combinations that cannot run.
+/// in:     table, the parameters of the case by name
+/// errors: InputError with the numbers and the cure
+inline void validate(const Case& parameters, const common::ParameterTable& table) {
+    const Problem& problem = parameters.problem;
+    detail::refuse_extremes(table);
+    const Mesh mesh = problem.mesh();
+    const double far = std::max(std::fabs(mesh.x_low), std::fabs(mesh.y_low)) / mesh.h;
+    refuse(far > 1e9, "the mesh begins " + format(far) +
+                          " cells from the origin, more than 1e9, where places are lost to "
+                          "round-off: move grid.low_x and low_y nearer to 0");
+    for (const Side side : {x_low, x_high})
+        refuse(problem.periodic_x && problem.walls[side] != "open",
+               "grid.periodic_x = true leaves no walls at the ends of x: set boundary.x_low and "
+               "boundary.x_high to \"open\"");
+    refuse(problem.periodic_x && problem.cells_x < 8,
+           "grid.cells_x = " + std::to_string(problem.cells_x) +
+               " is too few for a periodic mesh: take at least 8");
+    const std::vector<Material> materials = materials_of(problem);
+    const std::vector<PlannedGrain> plans = plan_grains(problem, materials);
+    refuse(plans.empty(), "there is no grain: add a [grain.<name>] or a [pack.<name>]");
+    for (const Material& m : materials)
+        refuse(m.law == Law::drucker_prager && m.dilatancy_angle > m.friction_angle,
+               "[material." + m.name + "]: dilatancy_angle = " + format(m.dilatancy_angle) +
+                   " is above friction_angle = " + format(m.friction_angle) +
+                   ": flow would make energy; take at most the friction angle");
+    std::set<std::string> names;
+    bool moves = false;
+    for (const PlannedGrain& plan : plans) {
+        const Material& material = materials[plan.material];
+        refuse(!names.insert(plan.name).second,
+               "two grains are called '" + plan.name + "': rename one of them");
+        refuse(parameters.pack && plan.name.size() > detail::longest_pack_name,
+               "grain '" + plan.name + "' has a name of " + std::to_string(plan.name.size()) +
+                   " letters, and pack.txt takes " + std::to_string(detail::longest_pack_name) +
+                   ": shorten it, or set output.pack = false");
+        detail::refuse_grain(plan, material, mesh, problem.per_side);
+        moves = moves || material.law != Law::rigid;
+    }
+    refuse(!moves, "all grains are rigid: give one a material that can be strained");
+
+    std::vector<PackedGrain> outlines;
+    for (const PlannedGrain& plan : plans) outlines.push_back({plan.name, plan.outline});
+    const Overlap worst =
+        overlaps(outlines, problem.periodic_x ? mesh.length_x() : 0, 1e-6 * mesh.h);
+    refuse(worst.depth > 0, "grains '" + worst.first + "' and '" + worst.second + "' overlap by " +
+                                format(worst.depth) + ", " + format(worst.depth / mesh.h) +
+                                " cells: move them apart or make them smaller");
+    (void)bonds_of(problem, plans, materials);
+    const double pixels = double(problem.cells_x * parameters.pixels_per_cell) *
+                          double(problem.cells_y * parameters.pixels_per_cell);
+    refuse(parameters.fringes_interval > 0 && pixels > 5e7,
+           "output.pixels_per_cell = " + std::to_string(parameters.pixels_per_cell) +
+               " makes rasters of " + format(pixels) + " pixels, more than 5e7: take fewer");
+}
+
+/// Warnings with the number and the limit, for choices that run but may mislead.
+inline std::vector<std::string> resolution_warnings(const Case& parameters, const Scales& scales) {
+    std::vector<std::string> warnings;
+    const Problem& problem = parameters.problem;
+    const Mesh mesh = problem.mesh();
+    if (scales.speed > 0.05 * scales.sound_speed && scales.grains > 1)
+        warnings.push_back("|v|/c_p = " + format(scales.speed / scales.sound_speed) +
+                           " is above 0.05: an impact strains the grains by more than the small "
+                           "strains of the material laws");
+    const double g = std::hypot(problem.gravity_x, problem.gravity_y);
+    const double height = mesh.y_high() - mesh.y_low,
+                 strain = g * height / (scales.sound_speed * scales.sound_speed);
+    if (strain > 0.05)
+        warnings.push_back("g H/c_p^2 = " + format(strain) +
+                           " is above 0.05: grains at the bottom are crushed by the weight of a "
+                           "full mesh; stiffen the material");
+    if (problem.per_side == 1 && problem.contact.separation > 0 && problem.contact.separation < 1)
+        warnings.push_back("contact.separation = " + format(problem.contact.separation) +
+                           " with one particle per side: grains will meet too late; take 1.07");
+    if (problem.contact.separation == 0)
+        warnings.push_back("contact.separation = 0: grains meet where they share nodes, up to " +
+                           format(2 - 1 / double(problem.per_side)) + " cells too early");
+    const std::vector<std::pair<const char*, double>> intervals{
+        {"output.particles_interval", parameters.particles_interval},
+        {"output.fringes_interval", parameters.fringes_interval},
+        {"output.grains_interval", parameters.grains_interval}};
+    for (const auto& [name, interval] : intervals)
+        if (interval > 0 && interval < scales.dt)
+            warnings.push_back(std::string(name) + " = " + format(interval) +
+                               " is below the time step " + format(scales.dt) +
+                               ": files are written every step");
+    for (const PlannedGrain& plan : plan_grains(problem, materials_of(problem))) {
+        if (plan.from.control == "velocity" && plan.from.force != 0)
+            warnings.push_back("grain '" + plan.name +
+                               "' has a force and control = \"velocity\": the force does nothing");
+        const double unused = plan.from.control == "force_x"   ? plan.from.velocity_x
+                              : plan.from.control == "force_y" ? plan.from.velocity_y
+                                                               : 0;
+        if (unused != 0)
+            warnings.push_back("grain '" + plan.name + "' has control = \"" + plan.from.control +
+                               "\" and a velocity in that direction, " + format(unused) +
+                               ": it does nothing, the grain starts at rest");
+    }
+    return warnings;
+}
+
+}  // namespace mpm
 
 namespace mpm_explicit {
 
 /// Warnings with the number and the limit, for choices that run but may mislead.
-inline std::vector<std::string> warnings_of(const Case& w, const Scales& scales) {
-    std::vector<std::string> warnings = resolution_warnings(w, scales);
-    if (w.alpha > 0.7 && !w.frozen)
+inline std::vector<std::string> warnings_of(const Case& parameters, const Scales& scales) {
+    std::vector<std::string> warnings = resolution_warnings(parameters, scales);
+    if (parameters.alpha > 0.7 && !parameters.frozen)
         warnings.insert(warnings.begin(),
-                        "time.alpha = " + common::format(w.alpha) +
+                        "time.alpha = " + format(parameters.alpha) +
                             " is above 0.7: nothing bounds the energy of explicit solutions, and "
                             "grains that meet will burst");
     return warnings;
-}
-
-/// The resolved scales as text, for --dry-run and the head of a run.
-inline std::string describe_scales(const Case& w, const Scales& scales) {
-    constexpr double particle_steps_per_second = 15e6;
-    const std::string flip = w.flip == 1 ? "FLIP" : "FLIP fraction " + common::format(w.flip);
-    return mpm::describe_scales(
-        w, scales, w.shape + " shape functions, " + flip + (w.frozen ? ", frozen particles" : ""),
-        static_cast<double>(scales.steps) * static_cast<double>(scales.particles) /
-            particle_steps_per_second);
 }
 
 }  // namespace mpm_explicit

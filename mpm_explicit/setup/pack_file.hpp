@@ -21,35 +21,20 @@ namespace detail {
 
 constexpr std::size_t longest_line = 100000;  // of a polygon with as many corners as there may be
 
-// Whether bytes are UTF-8 text: no stray, overlong or surrogate sequence.
-inline bool is_utf8(std::string_view text) {
-    for (std::size_t k = 0; k < text.size();) {
-        const auto byte = static_cast<unsigned char>(text[k++]);
-        if (byte < 0x80) continue;
-        const int following = byte >= 0xF0 ? 3 : byte >= 0xE0 ? 2 : 1;
-        if (byte < 0xC2 || byte > 0xF4) return false;
-        unsigned long letter = byte & (0x3FU >> following);
-        for (int m = 0; m < following; ++m) {
-            const unsigned next = k < text.size() ? static_cast<unsigned char>(text[k++]) : 0U;
-            if ((next & 0xC0U) != 0x80U) return false;
-            letter = letter << 6 | (next & 0x3FU);
-        }
-        const unsigned long least = following == 3 ? 0x10000 : following == 2 ? 0x800 : 0x80;
-        if (letter < least || letter > 0x10FFFF || (letter >= 0xD800 && letter < 0xE000))
-            return false;
-    }
-    return true;
-}
-
+// Refuses a line that is too long, not UTF-8, or holds control characters.
 inline void refuse_bad_line(std::string_view line, const std::string& place) {
     require(line.size() <= longest_line, place + ": the line has more than " +
                                              std::to_string(longest_line) +
                                              " letters; this is not a pack of grains");
-    require(is_utf8(line), place + ": not UTF-8 text; save the file as UTF-8");
-    for (const char letter : line) {
-        const auto byte = static_cast<unsigned char>(letter);
-        require((byte >= 0x20 && byte != 0x7F) || byte == '\t',
-                place + ": a control character; this is not a text file, or it is damaged");
+    for (std::size_t k = 0, length = 0; k < line.size(); k += length) {
+        length = common::utf8_length(line, k);
+        const auto byte = static_cast<unsigned char>(line[k]);
+        const bool is_control = (byte < 0x20 && byte != '\t') || byte == 0x7F;
+        if (length > 0 && !is_control) continue;
+        throw common::InputError(
+            place + (length == 0
+                         ? ": not UTF-8 text; save the file as UTF-8"
+                         : ": a control character; this is not a text file, or it is damaged"));
     }
 }
 
@@ -59,6 +44,7 @@ inline std::string in_quotes(std::string_view word) {
     return quoted.append(word.substr(0, 40)).append(word.size() > 40 ? "...'" : "'");
 }
 
+// Refuses a name that could not be written and read again.
 inline void require_name(std::string_view name, const std::string& place) {
     const auto fits = [](char c) {
         return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
@@ -69,6 +55,7 @@ inline void require_name(std::string_view name, const std::string& place) {
                 " cannot name a grain: use letters, digits and '_', 40 at most");
 }
 
+// A word as a finite number.
 inline double read_number(std::string_view word, const std::string& place) {
     double value = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
@@ -79,6 +66,7 @@ inline double read_number(std::string_view word, const std::string& place) {
     return value;
 }
 
+// The words of a line, up to its comment.
 inline std::vector<std::string_view> words_of(std::string_view line) {
     std::vector<std::string_view> words;
     line = line.substr(0, line.find('#'));
@@ -91,6 +79,7 @@ inline std::vector<std::string_view> words_of(std::string_view line) {
     }
 }
 
+// A grain from the words of its line.
 inline PackedGrain read_grain(const std::vector<std::string_view>& words,
                               const std::string& place) {
     const std::string_view kind = words[0];
@@ -138,12 +127,11 @@ inline std::vector<PackedGrain> read_pack(const std::string& path) {
         if (words.empty()) continue;
         grains.push_back(detail::read_grain(words, place));
         const auto [earlier, is_new] = places.insert({grains.back().name, std::to_string(number)});
-        detail::require(is_new, place + ": the name " + detail::in_quotes(grains.back().name) +
-                                    " is that of line " + earlier->second +
-                                    " too: give each grain its own");
+        require(is_new, place + ": the name " + detail::in_quotes(grains.back().name) +
+                            " is that of line " + earlier->second +
+                            " too: give each grain its own");
     }
-    detail::require(!grains.empty(),
-                    path + ": holds no grain; write lines like: disk left 0.35 0.3 0.2");
+    require(!grains.empty(), path + ": holds no grain; write lines like: disk left 0.35 0.3 0.2");
     return grains;
 }
 
@@ -151,13 +139,13 @@ inline std::vector<PackedGrain> read_pack(const std::string& path) {
 /// exact:  reading it gives the same numbers, and writing those the same bytes
 /// errors: InputError for names that could not be read again, and where the file cannot be written
 inline void write_pack(const std::string& path, const std::vector<PackedGrain>& grains) {
-    detail::require(!grains.empty(), path + ": there is no grain to write: give one at least");
+    require(!grains.empty(), path + ": there is no grain to write: give one at least");
     std::map<std::string, long> names;
     for (const PackedGrain& grain : grains) {
         detail::require_name(grain.name, path);
-        detail::require(++names[grain.name] == 1, path + ": two grains have the name " +
-                                                      detail::in_quotes(grain.name) +
-                                                      ": give each its own");
+        require(++names[grain.name] == 1, path + ": two grains have the name " +
+                                              detail::in_quotes(grain.name) +
+                                              ": give each its own");
     }
     common::OutputFile file(path);
     file.text("# disk name x y radius | polygon name x1 y1 x2 y2 x3 y3 ...\n");

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/random.hpp"
@@ -14,6 +15,7 @@
 
 namespace mpm {
 
+/// A grain of a pack.
 struct PackedGrain {
     std::string name;
     Outline outline;
@@ -54,16 +56,15 @@ inline std::vector<PackedGrain> named(const std::vector<Outline>& outlines) {
 ///     hexagonal: shift = spacing_x / 2
 /// out:    names g0001, g0002, ... in that order
 inline std::vector<PackedGrain> hexagonal_rows(const Rows& rows) {
-    using detail::require, common::format;
-    detail::require_length(rows.radius, "the radius of the disks in rows");
+    require_length(rows.radius, "the radius of the disks in rows");
     require(rows.columns >= (rows.one_less && rows.rows > 1 ? 2 : 1) && rows.rows >= 1 &&
-                static_cast<double>(rows.columns) * static_cast<double>(rows.rows) <= 1e6,
+                double(rows.columns) * double(rows.rows) <= 1e6,
             std::to_string(rows.rows) + " rows of " + std::to_string(rows.columns) +
                 " disks: give at least one disk in each row, and at most 1e6");
     for (const double length : {rows.gap, rows.spacing_x, rows.spacing_y})
-        require(detail::usable(length) && length >= 0,
+        require(usable(length) && length >= 0,
                 "a gap or spacing of rows is " + format(length) + ": give a length, or 0");
-    require(detail::usable(rows.shift), "the shift of rows is no number: give a length, or 0");
+    require(usable(rows.shift), "the shift of rows is no number: give a length, or 0");
     const double apart = 2 * rows.radius + rows.gap,
                  spacing_x = rows.spacing_x > 0 ? rows.spacing_x : apart,
                  beside = std::fabs(std::remainder(rows.shift, spacing_x)),
@@ -76,9 +77,8 @@ inline std::vector<PackedGrain> hexagonal_rows(const Rows& rows) {
     for (long j = 0; j < rows.rows; ++j) {
         const bool odd = j % 2 == 1;
         for (long i = 0; i < rows.columns - (odd && rows.one_less ? 1 : 0); ++i)
-            outlines.push_back(
-                disk(rows.x + static_cast<double>(i) * spacing_x + (odd ? rows.shift : 0),
-                     rows.y + static_cast<double>(j) * spacing_y, rows.radius));
+            outlines.push_back(disk(rows.x + double(i) * spacing_x + (odd ? rows.shift : 0),
+                                    rows.y + double(j) * spacing_y, rows.radius));
     }
     return named(outlines);
 }
@@ -106,8 +106,8 @@ inline std::vector<PackedGrain> regular_polygons(std::vector<PackedGrain> disks,
 /// The two grains of a pack that overlap deepest, of several such the first.
 /// in:     period in x, or 0; tolerance, the depth that is not counted
 /// exact:  as overlap_depth(); a grain longer than the period overlaps itself
-/// note:   the cost is proportional to the grains: they are sorted into square cells as large as
-///         the mean grain, and meet in the cells that both reach.
+/// note:   grains are sorted by their left ends, and each is compared with those that begin before
+///         it ends: in a square pack of n grains, about n^3/2 pairs of boxes
 inline Overlap overlaps(const std::vector<PackedGrain>& grains, double period, double tolerance) {
     struct Placed {
         std::size_t grain;
@@ -116,59 +116,36 @@ inline Overlap overlaps(const std::vector<PackedGrain>& grains, double period, d
         bool repeated;
     };
     std::vector<Placed> placed;
-    Bounds all{1e300, -1e300, 1e300, -1e300};
-    double mean = 0;
-    const auto add = [&](std::size_t k, double shift, Bounds box, bool repeated) {
-        box.x_low += shift, box.x_high += shift;
-        placed.push_back({k, shift, box, repeated});
-        all = {std::min(all.x_low, box.x_low), std::max(all.x_high, box.x_high),
-               std::min(all.y_low, box.y_low), std::max(all.y_high, box.y_high)};
-    };
     for (std::size_t k = 0; k < grains.size(); ++k) {
         const Bounds box = bounds(grains[k].outline);
         // Begin all grains in one period, and repeat in the next those that another may reach.
-        const double shift = period > 0 ? -period * std::floor(box.x_low / period) : 0;
-        add(k, shift, box, false);
-        if (period > 0) add(k, shift + period, box, true);
-        mean += std::max(box.x_high - box.x_low, box.y_high - box.y_low);
+        double shift = period > 0 ? -period * std::floor(box.x_low / period) : 0;
+        for (const bool repeated : {false, true}) {
+            if (repeated && !(period > 0)) break;
+            if (repeated) shift += period;
+            placed.push_back({k,
+                              shift,
+                              {box.x_low + shift, box.x_high + shift, box.y_low, box.y_high},
+                              repeated});
+        }
     }
+    std::sort(placed.begin(), placed.end(),
+              [](const Placed& a, const Placed& b) { return a.box.x_low < b.box.x_low; });
     Overlap worst;
-    if (grains.empty()) return worst;
-    mean /= static_cast<double>(grains.size());
-    const double width = all.x_high - all.x_low, height = all.y_high - all.y_low,
-                 n = static_cast<double>(placed.size()),
-                 side = std::max({mean, std::sqrt(width * height / (4 * n)), width / (4 * n),
-                                  height / (4 * n)});
-    const auto column = [&](double x) { return static_cast<long>((x - all.x_low) / side); };
-    const auto row = [&](double y) { return static_cast<long>((y - all.y_low) / side); };
-    const long columns = column(all.x_high) + 1, rows = row(all.y_high) + 1;
-    std::vector<std::vector<std::size_t>> cells(static_cast<std::size_t>(columns * rows));
-    std::size_t worst_a = 0, worst_b = 0;
-    const auto compare = [&](const Placed& a, const Placed& b) {
-        if (a.repeated && b.repeated) return;
-        const Outline &first = grains[a.grain].outline, &second = grains[b.grain].outline;
-        const double depth = overlap_depth(moved(first, a.shift, 0), moved(second, b.shift, 0));
-        const std::size_t low = std::min(a.grain, b.grain), high = std::max(a.grain, b.grain);
-        const bool earlier = low < worst_a || (low == worst_a && high < worst_b);
-        if (depth <= tolerance || depth < worst.depth || (depth == worst.depth && !earlier)) return;
-        worst = {grains[low].name, grains[high].name, depth}, worst_a = low, worst_b = high;
-    };
-    for (std::size_t k = 0; k < placed.size(); ++k) {
-        const Bounds& box = placed[k].box;
-        for (long j = row(box.y_low); j <= row(box.y_high); ++j)
-            for (long i = column(box.x_low); i <= column(box.x_high); ++i) {
-                auto& cell = cells[static_cast<std::size_t>(j * columns + i)];
-                for (const std::size_t other : cell) {
-                    const Bounds& b = placed[other].box;
-                    const double x = std::max(box.x_low, b.x_low), y = std::max(box.y_low, b.y_low);
-                    // Of the cells that both reach, they meet in the first.
-                    if (x < std::min(box.x_high, b.x_high) && y < std::min(box.y_high, b.y_high) &&
-                        column(x) == i && row(y) == j)
-                        compare(placed[other], placed[k]);
-                }
-                cell.push_back(k);
-            }
-    }
+    std::pair<std::size_t, std::size_t> worst_pair;
+    for (auto a = placed.begin(); a != placed.end(); ++a)
+        for (auto b = a + 1; b != placed.end() && b->box.x_low < a->box.x_high; ++b) {
+            if ((a->repeated && b->repeated) || a->box.y_low >= b->box.y_high ||
+                b->box.y_low >= a->box.y_high)
+                continue;
+            const double depth = overlap_depth(moved(grains[a->grain].outline, a->shift, 0),
+                                               moved(grains[b->grain].outline, b->shift, 0));
+            const std::pair<std::size_t, std::size_t> pair = std::minmax(a->grain, b->grain);
+            if (depth <= tolerance || depth < worst.depth ||
+                (depth == worst.depth && pair >= worst_pair))
+                continue;
+            worst = {grains[pair.first].name, grains[pair.second].name, depth}, worst_pair = pair;
+        }
     return worst;
 }
 

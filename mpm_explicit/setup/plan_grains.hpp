@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "mpm_explicit/setup/fill_grain.hpp"
 #include "mpm_explicit/setup/pack_file.hpp"
 #include "mpm_explicit/setup/packs.hpp"
 #include "mpm_explicit/setup/problem.hpp"
@@ -22,9 +23,9 @@ struct PlannedGrain {
 };
 
 /// Materials in the order of the case; with 'default' at the end when grains use it unnamed.
-inline std::vector<Material> materials_of(const Problem& w) {
+inline std::vector<Material> materials_of(const Problem& problem) {
     std::vector<Material> materials;
-    for (const MaterialCase& m : w.materials) {
+    for (const MaterialCase& m : problem.materials) {
         materials.push_back(m.material);
         materials.back().name = m.name;
         materials.back().law = m.law == "j2"               ? Law::j2
@@ -42,6 +43,7 @@ inline std::vector<Material> materials_of(const Problem& w) {
 
 namespace detail {
 
+// The corners in a text "x y, x y, ...".
 inline std::vector<Point> vertices_of(const std::string& name, const std::string& text) {
     std::vector<Point> points;
     std::istringstream corners(text);
@@ -49,19 +51,19 @@ inline std::vector<Point> vertices_of(const std::string& name, const std::string
         std::istringstream numbers(corner);
         Point p{};
         std::string rest;
-        if (!(numbers >> p.x >> p.y) || (numbers >> rest))
-            throw common::InputError("grain." + name + ".vertices: '" + corner +
-                                     "' is not a corner: write \"x y, x y, x y\"");
+        refuse(!(numbers >> p.x >> p.y) || (numbers >> rest),
+               "grain." + name + ".vertices: '" + corner +
+                   "' is not a corner: write \"x y, x y, x y\"");
         points.push_back(p);
     }
     return points;
 }
 
+// The outline of a named grain.
 inline Outline outline_of(const GrainCase& g) {
     try {
-        if (g.shape != "polygon" && !g.vertices.empty())
-            throw common::InputError(
-                "vertices belong to shape = \"polygon\": set it, or take them out");
+        refuse(g.shape != "polygon" && !g.vertices.empty(),
+               "vertices belong to shape = \"polygon\": set it, or take them out");
         if (g.shape == "disk") return disk(g.x, g.y, g.radius);
         if (g.shape == "box") return box(g.x, g.y, g.width, g.height, g.angle);
         if (g.vertices.empty()) return regular_polygon(g.x, g.y, g.radius, g.sides, g.angle);
@@ -71,14 +73,14 @@ inline Outline outline_of(const GrainCase& g) {
     }
 }
 
-inline std::vector<PackedGrain> grains_of(const PackCase& p, const Problem& w) {
+// The grains of a pack.
+inline std::vector<PackedGrain> grains_of(const PackCase& p, const Problem& problem) {
     try {
         std::vector<PackedGrain> pack;
-        if (p.kind != "file" && !p.file.empty())
-            throw common::InputError("file belongs to kind = \"file\": set it, or take file out");
+        refuse(p.kind != "file" && !p.file.empty(),
+               "file belongs to kind = \"file\": set it, or take file out");
         if (p.kind == "file") {
-            if (p.file.empty())
-                throw common::InputError("kind = \"file\" needs the name of a file: set file");
+            refuse(p.file.empty(), "kind = \"file\" needs the name of a file: set file");
             pack = read_pack(p.file);
         } else if (p.kind == "hexagonal") {
             Rows rows;
@@ -91,7 +93,7 @@ inline std::vector<PackedGrain> grains_of(const PackCase& p, const Problem& w) {
         } else {
             RandomDisks disks;
             disks.box = {p.x, p.x + p.width, p.y, p.y + p.height};
-            disks.periodic_x = w.periodic_x;
+            disks.periodic_x = problem.periodic_x;
             disks.radius_min = p.radius_min, disks.radius_max = p.radius_max;
             disks.count = p.count, disks.gap = p.gap, disks.loose = p.kind == "loose";
             disks.seed = static_cast<std::uint64_t>(p.seed);
@@ -108,21 +110,21 @@ inline std::vector<PackedGrain> grains_of(const PackCase& p, const Problem& w) {
 
 /// All grains of a case: the named ones, then those of packs, called <pack>_<name>.
 /// errors: InputError for an unknown material, or an outline or a pack that cannot be
-inline std::vector<PlannedGrain> plan_grains(const Problem& w,
+inline std::vector<PlannedGrain> plan_grains(const Problem& problem,
                                              const std::vector<Material>& materials) {
     const auto material_of = [&](const std::string& name, const std::string& whose) {
         for (std::size_t k = 0; k < materials.size(); ++k)
-            if (materials[k].name == name) return static_cast<int>(k);
+            if (materials[k].name == name) return int(k);
         throw common::InputError("[" + whose + "]: there is no [material." + name +
                                  "]; add it, or name another material");
     };
     std::vector<PlannedGrain> grains;
-    for (const GrainCase& g : w.grains)
+    for (const GrainCase& g : problem.grains)
         grains.push_back(
             {g.name, detail::outline_of(g), material_of(g.material, "grain." + g.name), g});
-    for (const PackCase& p : w.packs) {
+    for (const PackCase& p : problem.packs) {
         const int material = material_of(p.material, "pack." + p.name);
-        for (const PackedGrain& packed : detail::grains_of(p, w)) {
+        for (const PackedGrain& packed : detail::grains_of(p, problem)) {
             GrainCase from;
             from.velocity_x = p.velocity_x + p.shear_rate * (packed.outline.y - p.y);
             from.velocity_y = p.velocity_y;

@@ -9,34 +9,35 @@
 
 namespace mpm {
 
+/// A place in the plane [length].
 struct Point {
     double x = 0, y = 0;
 };
 
+/// An upright rectangle [length].
 struct Bounds {
     double x_low = 0, x_high = 0, y_low = 0, y_high = 0;
 };
 
-namespace detail {
-
-// Lengths that differ by less than this part of an outline's size are taken as equal.
+/// Lengths that differ by less than this part of an outline's size are taken as equal.
 constexpr double resolution = 1e-9;
 
-// Twice the area of the triangle a, b, c; positive when it runs counterclockwise.
+/// Twice the area of the triangle a, b, c; positive when it runs counterclockwise.
 inline double turn(const Point& a, const Point& b, const Point& c) {
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
+/// The distance between two points.
 inline double distance(const Point& a, const Point& b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
-// Visits the sides of a polygon: visit(from, to).
+/// Visits the sides of a polygon: visit(from, to).
 template <class Visit>
 void for_each_side(const std::vector<Point>& corners, const Visit& visit) {
     for (std::size_t k = 0; k < corners.size(); ++k)
         visit(corners[k], corners[k + 1 < corners.size() ? k + 1 : 0]);
 }
 
-// Area and centroid; measured from the first corner, so that far away is as good as near.
+/// Area and centroid; measured from the first corner, so that far away is as good as near.
 inline std::pair<double, Point> area_and_centroid(const std::vector<Point>& corners) {
     double area = 0, x = 0, y = 0;
     const Point& o = corners[0];
@@ -47,6 +48,7 @@ inline std::pair<double, Point> area_and_centroid(const std::vector<Point>& corn
     return {area, {o.x + x / area, o.y + y / area}};
 }
 
+/// The smallest upright rectangle around some points.
 inline Bounds bounds(const std::vector<Point>& corners) {
     Bounds box{corners[0].x, corners[0].x, corners[0].y, corners[0].y};
     for (const Point& p : corners) {
@@ -56,7 +58,7 @@ inline Bounds bounds(const std::vector<Point>& corners) {
     return box;
 }
 
-// The corners of the convex hull, counterclockwise (monotone chains).
+/// The corners of the convex hull, counterclockwise (monotone chains).
 inline std::vector<Point> hull(std::vector<Point> points) {
     std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) {
         return a.x < b.x || (a.x == b.x && a.y < b.y);
@@ -76,7 +78,7 @@ inline std::vector<Point> hull(std::vector<Point> points) {
     return chain;
 }
 
-// Least distance between two parallel lines that hold all points; one of them lies on a side of
+/// Least distance between two parallel lines that hold all points; one of them lies on a side of
 // the hull.
 inline double width(const std::vector<Point>& points) {
     double least = std::numeric_limits<double>::infinity();
@@ -89,6 +91,7 @@ inline double width(const std::vector<Point>& points) {
     return around.size() < 3 ? 0 : least;
 }
 
+/// The distance of a point from the line between a and b.
 inline double distance_to_side(const Point& a, const Point& b, const Point& p) {
     const double dx = b.x - a.x, dy = b.y - a.y,
                  s = ((p.x - a.x) * dx + (p.y - a.y) * dy) / (dx * dx + dy * dy);
@@ -96,7 +99,7 @@ inline double distance_to_side(const Point& a, const Point& b, const Point& p) {
     return distance({a.x + t * dx, a.y + t * dy}, p);
 }
 
-// Whether two sides come closer than the tolerance.
+/// Whether two sides come closer than the tolerance.
 inline bool sides_meet(const Point& a, const Point& b, const Point& c, const Point& d,
                        double tolerance) {
     const bool cross =
@@ -106,6 +109,7 @@ inline bool sides_meet(const Point& a, const Point& b, const Point& c, const Poi
            distance_to_side(c, d, b) <= tolerance;
 }
 
+/// The distance of a point from the nearest side of a polygon.
 inline double distance_to_outline(const std::vector<Point>& corners, const Point& p) {
     double least = std::numeric_limits<double>::infinity();
     for_each_side(corners, [&](const Point& a, const Point& b) {
@@ -114,7 +118,7 @@ inline double distance_to_outline(const std::vector<Point>& corners, const Point
     return least;
 }
 
-// Whether a point is inside: the sides that a ray to the right meets are odd in number.
+/// Whether a point is inside: the sides that a ray to the right meets are odd in number.
 inline bool contains(const std::vector<Point>& corners, const Point& p) {
     bool inside = false;
     for_each_side(corners, [&](const Point& a, const Point& b) {
@@ -124,7 +128,7 @@ inline bool contains(const std::vector<Point>& corners, const Point& p) {
     return inside;
 }
 
-// The polygon itself when it is convex, otherwise triangles that make it up. A triangle is cut off
+/// The polygon itself when it is convex, otherwise triangles that make it up. A triangle is cut off
 // at a corner that turns left and has no other corner in its triangle; there always is one.
 inline std::vector<std::vector<Point>> convex_pieces(std::vector<Point> corners) {
     const auto turn_at = [&](std::size_t k) {
@@ -162,8 +166,8 @@ inline std::vector<std::vector<Point>> convex_pieces(std::vector<Point> corners)
     return pieces;
 }
 
-// How far one of two convex polygons must move to leave the other; negative when they are apart.
-// The shortest way out is across a side of one of them.
+/// How far one of two convex polygons must move to leave the other; negative when they are apart.
+/// The shortest way out is across a side of one of them.
 inline double convex_overlap(const std::vector<Point>& first, const std::vector<Point>& second) {
     double least = std::numeric_limits<double>::infinity();
     for (const auto& [own, other] : {std::pair{&first, &second}, std::pair{&second, &first}}) {
@@ -175,7 +179,5 @@ inline double convex_overlap(const std::vector<Point>& first, const std::vector<
     }
     return least;
 }
-
-}  // namespace detail
 
 }  // namespace mpm

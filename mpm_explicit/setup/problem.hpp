@@ -12,6 +12,7 @@
 
 namespace mpm {
 
+/// A material by name.
 struct MaterialCase {
     std::string name, law = "elastic";
     Material material;
@@ -50,12 +51,14 @@ struct PackCase {
     double velocity_x = 0, velocity_y = 0, shear_rate = 0;
 };
 
+/// Grains that hold together, by name.
 struct BondCase {
     std::string name;
     std::string a = "*", b = "*";
     double tension = 1e30, shear = 1e30;
 };
 
+/// What is solved; the words are those of the case file.
 struct Problem {
     long cells_x = 48, cells_y = 24;
     double length_x = 1.2, origin_x = 0, origin_y = 0;
@@ -71,10 +74,11 @@ struct Problem {
 
     double gravity_x = 0, gravity_y = 0, damping = 0, rise = 0;
 
+    /// The mesh with its walls.
     Mesh mesh() const {
         Mesh m;
         m.cells_x = cells_x, m.cells_y = cells_y;
-        m.h = length_x / static_cast<double>(cells_x);
+        m.h = length_x / double(cells_x);
         m.x_low = origin_x, m.y_low = origin_y, m.periodic_x = periodic_x;
         for (std::size_t k = 0; k < 4; ++k)
             m.boundary[k] = walls[k] == "slip"         ? Boundary::slip
@@ -87,153 +91,136 @@ struct Problem {
 
 namespace detail {
 
-/// Binds the parameters of one item of a list.
-struct ItemTable {
-    common::ParameterTable& table;
-    std::string prefix;
-
-    void real(const char* name, double& value, const char* unit, common::Range allowed,
-              const char* meaning) const {
-        table.real(prefix + "." + name, value, unit, allowed, meaning);
-    }
-    void whole(const char* name, long& value, common::Range allowed, const char* meaning) const {
-        table.whole(prefix + "." + name, value, "", allowed, meaning);
-    }
-    void choice(const char* name, std::string& value, const std::vector<std::string>& choices,
-                const char* meaning) const {
-        table.choice(prefix + "." + name, value, choices, meaning);
-    }
-    void text(const char* name, std::string& value, const char* meaning) const {
-        table.text(prefix + "." + name, value, meaning);
-    }
-};
-
+// Each of these binds the parameters of one item of a list.
 inline void describe_material(common::ParameterTable& table, const std::string& prefix,
                               MaterialCase& m) {
     using common::above, common::at_least, common::between;
-    const ItemTable item{table, prefix};
-    item.choice("law", m.law, {"elastic", "j2", "drucker_prager", "rigid"},
-                "how stress answers strain; rigid: not at all, the grain moves as it is told");
-    item.real("E", m.material.E, "stress", above(0), "Young's modulus");
-    item.real("nu", m.material.nu, "", between(-0.99, 0.495), "Poisson's ratio");
-    item.real("density", m.material.density, "mass/volume", above(0), "at the start");
-    item.real("yield_stress", m.material.yield_stress, "stress", above(0), "j2: in simple tension");
-    item.real("hardening", m.material.hardening, "stress", at_least(0),
-              "j2: rise of the yield stress per plastic strain");
-    item.real("cohesion", m.material.cohesion, "stress", at_least(0), "drucker_prager");
-    item.real("friction_angle", m.material.friction_angle, "degree", between(0, 60),
-              "drucker_prager: of the Mohr-Coulomb law it matches in plane strain");
-    item.real("dilatancy_angle", m.material.dilatancy_angle, "degree", between(0, 60),
-              "drucker_prager: 0 keeps the volume when it flows");
-    item.real("tension", m.material.tension, "stress", at_least(0),
-              "drucker_prager: largest mean stress");
+    const std::string at = prefix + ".";
+    table.choice(at + "law", m.law, {"elastic", "j2", "drucker_prager", "rigid"},
+                 "how stress answers strain; rigid: not at all, the grain moves as it is told");
+    table.real(at + "E", m.material.E, "stress", above(0), "Young's modulus");
+    table.real(at + "nu", m.material.nu, "", between(-0.99, 0.495), "Poisson's ratio");
+    table.real(at + "density", m.material.density, "mass/volume", above(0), "at the start");
+    table.real(at + "yield_stress", m.material.yield_stress, "stress", above(0), "j2: in tension");
+    table.real(at + "hardening", m.material.hardening, "stress", at_least(0),
+               "j2: rise of the yield stress per plastic strain");
+    table.real(at + "cohesion", m.material.cohesion, "stress", at_least(0), "drucker_prager");
+    table.real(at + "friction_angle", m.material.friction_angle, "degree", between(0, 60),
+               "drucker_prager: of the Mohr-Coulomb law it matches in plane strain");
+    table.real(at + "dilatancy_angle", m.material.dilatancy_angle, "degree", between(0, 60),
+               "drucker_prager: 0 keeps the volume when it flows");
+    table.real(at + "tension", m.material.tension, "stress", at_least(0),
+               "drucker_prager: largest mean stress");
 }
 
 inline void describe_grain(common::ParameterTable& table, const std::string& prefix, GrainCase& g) {
     using common::above, common::anything, common::at_least, common::between;
-    const ItemTable item{table, prefix};
-    item.choice("shape", g.shape, {"disk", "box", "polygon"}, "outline");
-    item.real("x", g.x, "length", anything(), "center");
-    item.real("y", g.y, "length", anything(), "center");
-    item.real("radius", g.radius, "length", above(0), "of a disk; of a regular polygon's corners");
-    item.real("width", g.width, "length", above(0), "of a box");
-    item.real("height", g.height, "length", above(0), "of a box");
-    item.real("angle", g.angle, "degree", anything(), "turns a box or a regular polygon");
-    item.whole("sides", g.sides, between(3, 64), "of a regular polygon");
-    item.text("vertices", g.vertices, "polygon: \"x y, x y, x y ...\" in place of a regular one");
-    item.text("material", g.material, "name of its material");
-    item.real("velocity_x", g.velocity_x, "velocity", anything(), "at the start; rigid: always");
-    item.real("velocity_y", g.velocity_y, "velocity", anything(), "at the start; rigid: always");
-    item.real("spin", g.spin, "1/time", anything(), "about the center, counterclockwise");
-    item.choice("profile", g.profile, {"none", "bar", "wave"},
-                "of v_x along its length L: amplitude sin((n - 1/2) pi s/L), sin(n pi s/L)");
-    item.real("amplitude", g.amplitude, "velocity", anything(), "of the profile");
-    item.whole("mode", g.mode, between(1, 1000), "n of the profile");
-    item.choice("control", g.control, {"velocity", "force_x", "force_y"},
-                "rigid: driven by velocity, or in one direction by a force (servo)");
-    item.real("force", g.force, "force", anything(), "servo: that drives the grain");
-    item.real("damping", g.damping, "force/velocity", at_least(0), "servo: of its velocity");
+    const std::string at = prefix + ".";
+    table.choice(at + "shape", g.shape, {"disk", "box", "polygon"}, "outline");
+    table.real(at + "x", g.x, "length", anything(), "center");
+    table.real(at + "y", g.y, "length", anything(), "center");
+    table.real(at + "radius", g.radius, "length", above(0), "of a disk or a polygon's corners");
+    table.real(at + "width", g.width, "length", above(0), "of a box");
+    table.real(at + "height", g.height, "length", above(0), "of a box");
+    table.real(at + "angle", g.angle, "degree", anything(), "turns a box or a regular polygon");
+    table.whole(at + "sides", g.sides, "", between(3, 64), "of a regular polygon");
+    table.text(at + "vertices", g.vertices, "polygon: \"x y, x y, x y ...\"; empty: a regular one");
+    table.text(at + "material", g.material, "name of its material");
+    table.real(at + "velocity_x", g.velocity_x, "velocity", anything(), "at start; rigid: always");
+    table.real(at + "velocity_y", g.velocity_y, "velocity", anything(), "at start; rigid: always");
+    table.real(at + "spin", g.spin, "1/time", anything(), "about the center, counterclockwise");
+    table.choice(at + "profile", g.profile, {"none", "bar", "wave"},
+                 "of v_x along its length L: amplitude sin((n - 1/2) pi s/L), sin(n pi s/L)");
+    table.real(at + "amplitude", g.amplitude, "velocity", anything(), "of the profile");
+    table.whole(at + "mode", g.mode, "", between(1, 1000), "n of the profile");
+    table.choice(at + "control", g.control, {"velocity", "force_x", "force_y"},
+                 "rigid: prescribed velocity, or force control in one direction");
+    table.real(at + "force", g.force, "force", anything(), "force control: on the grain");
+    table.real(at + "damping", g.damping, "force/velocity", at_least(0), "force control: dashpot");
 }
 
 inline void describe_pack(common::ParameterTable& table, const std::string& prefix, PackCase& p) {
     using common::above, common::anything, common::at_least, common::between;
-    const ItemTable item{table, prefix};
-    item.choice("kind", p.kind, {"hexagonal", "random", "loose", "file"},
-                "rows; random sizes, each at rest on others; scattered without touching; a file");
-    item.text("file", p.file, "file: of grains, one per line");
-    item.real("x", p.x, "length", anything(), "hexagonal: first center; else left of the region");
-    item.real("y", p.y, "length", anything(), "hexagonal: first center; else floor of the region");
-    item.real("width", p.width, "length", above(0), "of the region");
-    item.real("height", p.height, "length", above(0), "of the region");
-    item.whole("columns", p.columns, between(1, 10000), "hexagonal: grains in the first row");
-    item.whole("rows", p.rows, between(1, 10000), "hexagonal");
-    item.real("radius", p.radius, "length", above(0), "hexagonal");
-    item.real("spacing_x", p.spacing_x, "length", at_least(0), "hexagonal; 0: two radii");
-    item.real("spacing_y", p.spacing_y, "length", at_least(0), "of rows; 0: they touch");
-    table.flag(prefix + ".shorter_rows", p.shorter_rows,
+    const std::string at = prefix + ".";
+    table.choice(at + "kind", p.kind, {"hexagonal", "random", "loose", "file"},
+                 "rows; random sizes, each at rest on others; scattered without touching; a file");
+    table.text(at + "file", p.file, "file: of grains, one per line");
+    table.real(at + "x", p.x, "length", anything(), "hexagonal: first center; else left of region");
+    table.real(at + "y", p.y, "length", anything(), "hexagonal: first center; else its floor");
+    table.real(at + "width", p.width, "length", above(0), "of the region");
+    table.real(at + "height", p.height, "length", above(0), "of the region");
+    table.whole(at + "columns", p.columns, "", between(1, 10000), "hexagonal: grains in first row");
+    table.whole(at + "rows", p.rows, "", between(1, 10000), "hexagonal");
+    table.real(at + "radius", p.radius, "length", above(0), "hexagonal");
+    table.real(at + "spacing_x", p.spacing_x, "length", at_least(0), "hexagonal; 0: two radii");
+    table.real(at + "spacing_y", p.spacing_y, "length", at_least(0), "of rows; 0: they touch");
+    table.flag(at + "shorter_rows", p.shorter_rows,
                "hexagonal: every other row has one grain less; else it is shifted");
-    item.whole("count", p.count, between(1, 100000), "random, loose: grains");
-    item.real("radius_min", p.radius_min, "length", above(0), "random, loose");
-    item.real("radius_max", p.radius_max, "length", above(0), "random, loose");
-    item.real("gap", p.gap, "length", at_least(0), "random, loose: kept between grains");
-    item.whole("seed", p.seed, between(0, 1e9), "another number, another pack");
-    item.whole("sides", p.sides, between(0, 64), "polygons with so many sides; 0: disks");
-    item.text("material", p.material, "name of its material");
-    item.real("velocity_x", p.velocity_x, "velocity", anything(), "at the start; rigid: always");
-    item.real("velocity_y", p.velocity_y, "velocity", anything(), "at the start; rigid: always");
-    item.real("shear_rate", p.shear_rate, "1/time", anything(),
-              "adds shear_rate times the height of a grain's center above y to its v_x");
+    table.whole(at + "count", p.count, "", between(1, 100000), "random, loose: grains");
+    table.real(at + "radius_min", p.radius_min, "length", above(0), "random, loose");
+    table.real(at + "radius_max", p.radius_max, "length", above(0), "random, loose");
+    table.real(at + "gap", p.gap, "length", at_least(0), "random, loose: kept between grains");
+    table.whole(at + "seed", p.seed, "", between(0, 1e9), "another number, another pack");
+    table.whole(at + "sides", p.sides, "", between(0, 64), "polygons with so many sides; 0: disks");
+    table.text(at + "material", p.material, "name of its material");
+    table.real(at + "velocity_x", p.velocity_x, "velocity", anything(), "at start; rigid: always");
+    table.real(at + "velocity_y", p.velocity_y, "velocity", anything(), "at start; rigid: always");
+    table.real(at + "shear_rate", p.shear_rate, "1/time", anything(),
+               "adds shear_rate times the height of a grain's center above y to its v_x");
 }
 
 inline void describe_bond(common::ParameterTable& table, const std::string& prefix, BondCase& b) {
-    const ItemTable item{table, prefix};
-    item.text("a", b.a, "name of a grain; *: any that touches");
-    item.text("b", b.b, "name of the other; *: any that touches");
-    item.real("tension", b.tension, "stress", common::above(0), "strength against pulling apart");
-    item.real("shear", b.shear, "stress", common::above(0), "strength against sliding");
+    const std::string at = prefix + ".";
+    table.text(at + "a", b.a, "name of a grain; *: any that touches");
+    table.text(at + "b", b.b, "name of the other; *: any that touches");
+    table.real(at + "tension", b.tension, "stress", common::above(0), "strength against opening");
+    table.real(at + "shear", b.shear, "stress", common::above(0), "strength against sliding");
 }
 
 }  // namespace detail
 
 /// Adds the parameters of the problem to a program's table.
-inline void describe_problem(common::ParameterTable& table, Problem& w) {
+inline void describe_problem(common::ParameterTable& table, Problem& problem) {
     using common::above, common::anything, common::at_least, common::between;
     table.group("mesh: square cells in the plane (x, y), plane strain");
-    table.whole("grid.cells_x", w.cells_x, "", between(2, 16384), "cells along x");
-    table.whole("grid.cells_y", w.cells_y, "", between(2, 16384), "cells along y");
-    table.real("grid.length_x", w.length_x, "length", above(0), "length along x");
-    table.real("grid.low_x", w.origin_x, "length", anything(), "left end");
-    table.real("grid.low_y", w.origin_y, "length", anything(), "lower end");
-    table.flag("grid.periodic_x", w.periodic_x, "the left end is the right one");
-    table.whole("grid.particles_per_side", w.per_side, "", between(1, 16),
+    table.whole("grid.cells_x", problem.cells_x, "", between(2, 16384), "cells along x");
+    table.whole("grid.cells_y", problem.cells_y, "", between(2, 16384), "cells along y");
+    table.real("grid.length_x", problem.length_x, "length", above(0), "length along x");
+    table.real("grid.low_x", problem.origin_x, "length", anything(), "left end");
+    table.real("grid.low_y", problem.origin_y, "length", anything(), "lower end");
+    table.flag("grid.periodic_x", problem.periodic_x, "the left end is the right one");
+    table.whole("grid.particles_per_side", problem.per_side, "", between(1, 16),
                 "particles in a cell at the start, along each side");
 
     table.group("walls, on the outermost lines of nodes");
     const std::array<const char*, 4> ends{"x_low", "x_high", "y_low", "y_high"};
     for (std::size_t k = 0; k < 4; ++k)
-        table.choice("boundary." + std::string(ends[k]), w.walls[k],
+        table.choice("boundary." + std::string(ends[k]), problem.walls[k],
                      {"open", "slip", "stick", "frictional"},
                      "nothing; roller; clamp; pushes back and rubs");
-    table.real("boundary.friction", w.contact.wall_friction, "", at_least(0),
+    table.real("boundary.friction", problem.contact.wall_friction, "", at_least(0),
                "Coulomb's coefficient, of frictional walls");
 
     table.group("contact between grains");
-    table.real("contact.friction", w.contact.friction, "", at_least(0), "Coulomb's coefficient");
-    table.real("contact.separation", w.contact.separation, "h", between(0, 2),
+    table.real("contact.friction", problem.contact.friction, "", at_least(0),
+               "Coulomb's coefficient");
+    table.real("contact.separation", problem.contact.separation, "h", between(0, 2),
                "grains press when their parts around a node are nearer; 0: on approach only");
 
     table.group("loads");
-    table.real("load.gravity_x", w.gravity_x, "acceleration", anything(), "along x");
-    table.real("load.gravity_y", w.gravity_y, "acceleration", anything(), "along y");
-    table.real("load.damping", w.damping, "1/time", at_least(0), "of the velocity of all mass");
-    table.real("load.rise", w.rise, "time", at_least(0),
+    table.real("load.gravity_x", problem.gravity_x, "acceleration", anything(), "along x");
+    table.real("load.gravity_y", problem.gravity_y, "acceleration", anything(), "along y");
+    table.real("load.damping", problem.damping, "1/time", at_least(0),
+               "of the velocity of all mass");
+    table.real("load.rise", problem.rise, "time", at_least(0),
                "gravity and rigid grains reach their full value smoothly in this time");
 
-    table.list("material", w.materials, detail::describe_material,
+    table.list("material", problem.materials, detail::describe_material,
                "a material, [material.<name>]; 'default' is there without being named");
-    table.list("grain", w.grains, detail::describe_grain, "a grain, [grain.<name>]");
-    table.list("pack", w.packs, detail::describe_pack, "many grains, [pack.<name>]");
-    table.list("bond", w.bonds, detail::describe_bond, "grains that hold together, [bond.<name>]");
+    table.list("grain", problem.grains, detail::describe_grain, "a grain, [grain.<name>]");
+    table.list("pack", problem.packs, detail::describe_pack, "many grains, [pack.<name>]");
+    table.list("bond", problem.bonds, detail::describe_bond,
+               "grains that hold together, [bond.<name>]");
 }
 
 }  // namespace mpm

@@ -1,12 +1,11 @@
 // Random packs of disks without overlap. A deposited pack grows from the floor: each disk comes to
 // rest at the lowest place where it touches two others, or one and the floor or a wall. A loose
-// pack is strewn: each disk takes the first random place that is free.
+// pack is scattered: each disk takes the first random place that is free.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <numbers>
 #include <optional>
 #include <set>
 #include <string>
@@ -39,6 +38,7 @@ namespace detail {
 // Where a disk may come to rest: on a disk, and on another disk or on something else.
 enum class Beside { disk, floor_left, floor_right, wall_low, wall_high, corner_low, corner_high };
 
+// A place between neighbors where disks may rest.
 struct Pocket {
     double lowest;  // center of the smallest disk that can rest here
     Beside beside;
@@ -51,12 +51,12 @@ struct Pocket {
 
 // The place of a disk that rests in a pocket; none where it would roll out or fall through. Sums of
 // products are rounded as in squared(), so that every machine makes the same pack.
-inline std::optional<Round> rest(const DiskCells& disks, const Bounds& box, const Pocket& pocket,
-                                 double r) {
+inline std::optional<Circle> rest(const DiskCells& disks, const Bounds& box, const Pocket& pocket,
+                                  double r) {
     const Beside beside = pocket.beside;
-    if (beside == Beside::corner_low) return Round{box.x_low + r, box.y_low + r, r};
-    if (beside == Beside::corner_high) return Round{box.x_high - r, box.y_low + r, r};
-    Round a = disks[pocket.first];
+    if (beside == Beside::corner_low) return Circle{box.x_low + r, box.y_low + r, r};
+    if (beside == Beside::corner_high) return Circle{box.x_high - r, box.y_low + r, r};
+    Circle a = disks[pocket.first];
     const double reach = a.radius + r;
     if (beside != Beside::disk) {
         const bool on_floor = beside == Beside::floor_left || beside == Beside::floor_right,
@@ -66,10 +66,10 @@ inline std::optional<Round> rest(const DiskCells& disks, const Bounds& box, cons
                      squared_rest = std::fma(-away, away, reach * reach);
         if (!(squared_rest >= 0) || (!on_floor && (to_left ? away > 0 : away < 0))) return {};
         const double rest_of_it = std::sqrt(squared_rest);
-        if (!on_floor) return Round{x, a.y + rest_of_it, r};
+        if (!on_floor) return Circle{x, a.y + rest_of_it, r};
         return disks.wrapped({to_left ? a.x - rest_of_it : a.x + rest_of_it, y, r});
     }
-    Round b = disks.nearest(disks[pocket.second], a.x);
+    Circle b = disks.nearest(disks[pocket.second], a.x);
     if (a.x > b.x) std::swap(a, b);
     // Two circles about the centers meet at a part `along` of the way and `up` to its left.
     const double dx = b.x - a.x, dy = b.y - a.y, square = squared(dx, dy),
@@ -96,18 +96,18 @@ class Deposit {
 
     // Puts a disk at the lowest place, of several the one farthest left. out: false if none is
     bool add(double r) {
-        std::optional<Round> best;
+        std::optional<Circle> best;
         for (auto pocket = pockets_.begin(); pocket != pockets_.end();) {
             if (best && pocket->lowest > best->y) break;
-            const std::optional<Round> place = free_place(*pocket, r);
+            const std::optional<Circle> place = free_place(*pocket, r);
             if (place && (!best || std::tie(place->y, place->x) < std::tie(best->y, best->x)))
                 best = place;
             const bool given_up = !place && !is_of_use(*pocket);
             pocket = given_up ? pockets_.erase(pocket) : std::next(pocket);
         }
         if (!best) return false;
-        const auto added = static_cast<long>(disks_.all().size());
-        disks_.visit_near(*best, 2, [&](long k, const Round& other) {
+        const auto added = long(disks_.all().size());
+        disks_.visit_near(*best, 2, [&](long k, const Circle& other) {
             const double reach = best->radius + other.radius + 2 * largest_;
             if (squared(best->x - other.x, best->y - other.y) < reach * reach)
                 waiting_.push_back(k);
@@ -123,8 +123,8 @@ class Deposit {
     }
 
    private:
-    std::optional<Round> free_place(const Pocket& pocket, double r) const {
-        const std::optional<Round> place = rest(disks_, box_, pocket, r);
+    std::optional<Circle> free_place(const Pocket& pocket, double r) const {
+        const std::optional<Circle> place = rest(disks_, box_, pocket, r);
         return place && disks_.is_free(*place) ? place : std::nullopt;
     }
     // Whether some disk fits into a pocket, by trying some.
@@ -161,8 +161,8 @@ class Deposit {
 // Draws of one pack.
 constexpr std::uint32_t pack_radii = 0x9a11, pack_places = 0x9a12;
 
+// Refuses a pack that cannot be placed, with the numbers.
 inline void validate(const RandomDisks& pack) {
-    using common::format;
     const double width = pack.box.x_high - pack.box.x_low,
                  height = pack.box.y_high - pack.box.y_low, least = pack.radius_min,
                  largest = 2 * pack.radius_max + pack.gap, least_widths = pack.periodic_x ? 5 : 1;
@@ -186,14 +186,13 @@ inline void validate(const RandomDisks& pack) {
                 (!pack.loose || pack.count > 0 || pack.solid_fraction > 0),
             "a pack of " + std::to_string(pack.count) + " disks and a solid fraction of " +
                 format(pack.solid_fraction) + ": give one of the two");
-    const double most =
-        pack.count > 0 ? static_cast<double>(pack.count) : width * height / (4 * least * least);
+    const double most = pack.count > 0 ? double(pack.count) : width * height / (4 * least * least);
     require(most <= 1e6, "a pack of up to " + format(most) +
                              " disks: give larger radii or a smaller box, for at most 1e6");
 }
 
 // A disk at the first random place that is free. out: false if none of many is
-inline bool strew(const RandomDisks& pack, const Bounds& box, double r, DiskCells& disks) {
+inline bool scatter(const RandomDisks& pack, const Bounds& box, double r, DiskCells& disks) {
     const auto disk = static_cast<std::uint64_t>(disks.all().size());
     const double margin = pack.periodic_x ? 0 : r;
     for (std::uint32_t attempt = 0; attempt < 10000; ++attempt) {
@@ -201,8 +200,8 @@ inline bool strew(const RandomDisks& pack, const Bounds& box, double r, DiskCell
                      v = common::uniform(pack.seed, pack_places, disk, 2 * attempt + 1),
                      width = box.x_high - box.x_low - 2 * margin,
                      height = box.y_high - box.y_low - 2 * r;
-        const Round place{std::fma(u, width, box.x_low + margin),
-                          std::fma(v, height, box.y_low + r), r};
+        const Circle place{std::fma(u, width, box.x_low + margin),
+                           std::fma(v, height, box.y_low + r), r};
         if (!disks.is_free(place)) continue;
         disks.add(place);
         return true;
@@ -225,7 +224,7 @@ inline std::vector<Outline> place_random_disks(const RandomDisks& pack) {
     // Far from the origin a pack is the same.
     const Bounds box{0, pack.box.x_high - pack.box.x_low, 0, pack.box.y_high - pack.box.y_low};
     detail::Deposit deposit(box, pack.radius_min + half_gap, largest, pack.periodic_x);
-    detail::DiskCells strewn(box, largest, pack.periodic_x);
+    DiskCells scattered(box, largest, pack.periodic_x);
     std::vector<Outline> outlines;
     double fraction = 0;
     const bool fill_up = pack.count == 0 && pack.solid_fraction == 0;
@@ -235,13 +234,13 @@ inline std::vector<Outline> place_random_disks(const RandomDisks& pack) {
         if (enough) break;
         const double u = common::uniform(pack.seed, detail::pack_radii, k, 0),
                      r = std::fma(u, pack.radius_max - pack.radius_min, pack.radius_min);
-        const bool placed =
-            pack.loose ? detail::strew(pack, box, r + half_gap, strewn) : deposit.add(r + half_gap);
+        const bool placed = pack.loose ? detail::scatter(pack, box, r + half_gap, scattered)
+                                       : deposit.add(r + half_gap);
         if (!placed && fill_up) break;
-        detail::require(placed, "the box is full with " + std::to_string(k) +
-                                    " disks and a solid fraction of " + common::format(fraction) +
-                                    ": ask for fewer, or make the box larger");
-        const detail::Round& at = (pack.loose ? strewn : deposit.disks()).all().back();
+        require(placed, "the box is full with " + std::to_string(k) +
+                            " disks and a solid fraction of " + format(fraction) +
+                            ": ask for fewer, or make the box larger");
+        const Circle& at = (pack.loose ? scattered : deposit.disks()).all().back();
         outlines.push_back(disk(pack.box.x_low + at.x, pack.box.y_low + at.y, r));
         fraction += area(outlines.back()) / (box.x_high * box.y_high);
     }

@@ -1,4 +1,4 @@
-// What follows from a case before it runs: sound, time step, particles, memory; and what to warn of.
+// What follows from a case before it runs: sound, time step, particles, memory.
 #pragma once
 
 #include <algorithm>
@@ -7,10 +7,11 @@
 #include <vector>
 
 #include "mpm_explicit/assembly.hpp"
-#include "mpm_explicit/setup/case_of_grains.hpp"
+#include "mpm_explicit/setup/case.hpp"
 
 namespace mpm {
 
+/// What follows from a case, in its own units.
 struct Scales {
     double sound_speed = 0, speed = 0;  // largest c_p, largest |v| of a grain
     double dt = 0;
@@ -20,17 +21,20 @@ struct Scales {
     double least_mass = 0;  // of a node that takes part: round-off of the lightest particle's
 };
 
-inline Scales scales_of(const Case& w) {
-    const std::vector<Material> materials = materials_of(w.problem);
-    const std::vector<PlannedGrain> plans = plan_grains(w.problem, materials);
+/// The scales of a case.
+///   dt = alpha h / (c_p + |v|)
+/// errors: InputError for too many steps or particles, or a damping that takes all velocity
+inline Scales scales_of(const Case& parameters) {
+    const std::vector<Material> materials = materials_of(parameters.problem);
+    const std::vector<PlannedGrain> plans = plan_grains(parameters.problem, materials);
     Scales s;
-    const Problem& problem = w.problem;
+    const Problem& problem = parameters.problem;
     const Mesh mesh = problem.mesh();
-    const double side = mesh.h / static_cast<double>(problem.per_side);
+    const double side = mesh.h / double(problem.per_side);
     double lightest = 1e300, nodes = 0;
     s.thinnest = 1e300;
     for (const PlannedGrain& plan : plans) {
-        const Material& material = materials[static_cast<std::size_t>(plan.material)];
+        const Material& material = materials[plan.material];
         const GrainCase& from = plan.from;
         s.sound_speed = std::max(s.sound_speed, sound_speed(material));
         s.speed = std::max(s.speed, std::hypot(from.velocity_x, from.velocity_y) +
@@ -42,34 +46,62 @@ inline Scales scales_of(const Case& w) {
         const Bounds box = bounds(plan.outline);
         nodes += ((box.x_high - box.x_low) / mesh.h + 5) * ((box.y_high - box.y_low) / mesh.h + 5);
     }
-    s.grains = static_cast<long>(plans.size());
+    s.grains = long(plans.size());
     // Where a smooth shape ends, its weight falls as the square of its gradient.
-    s.least_mass = (w.shape == "linear" ? 1e-12 : 1e-24) * lightest;
-    s.dt = w.alpha * mesh.h / (s.sound_speed + s.speed);
-    const double steps = w.end / s.dt;
-    if (!(steps <= 1e9))
-        throw common::InputError("the run would take " + common::format(steps) +
-                                 " steps, more than 1e9: raise time.alpha or lower time.end");
+    s.least_mass = (parameters.shape == "linear" ? 1e-12 : 1e-24) * lightest;
+    s.dt = parameters.alpha * mesh.h / (s.sound_speed + s.speed);
+    const double steps = parameters.end / s.dt;
+    refuse(!(steps <= 1e9), "the run would take " + format(steps) +
+                                " steps, more than 1e9: raise time.alpha or lower time.end");
     s.steps = std::lround(steps);
-    const long rows = s.steps / w.history_steps;
-    if (w.compare != "none" && rows < 10)
-        throw common::InputError("theory.compare = \"" + w.compare + "\" needs at least 10 rows " +
-                                 "of history, and there would be " + std::to_string(rows) +
-                                 ": raise time.end or lower output.history_steps");
-    if (!(problem.damping * s.dt < 1))
-        throw common::InputError("load.damping = " + common::format(problem.damping) +
-                                 " takes all velocity in a step of " + common::format(s.dt) +
-                                 ": lower it below " + common::format(1 / s.dt));
-    if (s.particles > 2'000'000'000)
-        throw common::InputError(std::to_string(s.particles) +
-                                 " particles are more than 2e9: lower grid.particles_per_side");
+    refuse(!(problem.damping * s.dt < 1), "load.damping = " + format(problem.damping) +
+                                              " takes all velocity in a step of " + format(s.dt) +
+                                              ": lower it below " + format(1 / s.dt));
+    refuse(s.particles > 2'000'000'000,
+           std::to_string(s.particles) +
+               " particles are more than 2e9: lower grid.particles_per_side");
     // Particles and their copies while they are sorted; the nodes of each grain, with a margin; the
     // table of all nodes.
-    const double particles = static_cast<double>(s.particles);
+    const double particles = double(s.particles);
     s.bytes = particles * (12 * sizeof(double) + 2 * sizeof(int)) +
               nodes * (sizeof(NodeSums) + sizeof(NodeMotion) + sizeof(NodeForce) + 1) +
-              sizeof(int) * static_cast<double>((mesh.cells_x + 8) * (mesh.cells_y + 8));
+              sizeof(int) * double((mesh.cells_x + 8) * (mesh.cells_y + 8));
     return s;
+}
+
+/// The resolved scales as text, for --dry-run and the head of a run.
+/// in:     scheme, what is said of the scheme; cost, of a step, over one of leapfrog
+inline std::string describe_scales(const Case& parameters, const Scales& scales,
+                                   const std::string& scheme = "", double cost = 1) {
+    constexpr double particle_steps_per_second = 15e6;  // of leapfrog, on one core
+    const Problem& problem = parameters.problem;
+    const Mesh mesh = problem.mesh();
+    std::string text;
+    const auto line = [&](const std::string& name, const std::string& value) {
+        text +=
+            "  " + name + std::string(name.size() < 22 ? 22 - name.size() : 1, ' ') + value + "\n";
+    };
+    line("mesh", std::to_string(mesh.cells_x) + " x " + std::to_string(mesh.cells_y) +
+                     " cells of " + format(mesh.h) + (mesh.periodic_x ? ", periodic in x" : ""));
+    line("walls", "x: " + problem.walls[0] + ", " + problem.walls[1] + "; y: " + problem.walls[2] +
+                      ", " + problem.walls[3]);
+    const std::string flip =
+        parameters.flip == 1 ? "FLIP" : "FLIP fraction " + format(parameters.flip);
+    line("method", parameters.shape + " shape functions, " + flip +
+                       (parameters.frozen ? ", frozen particles" : "") + scheme);
+    line("grains", std::to_string(scales.grains) + ", the thinnest " +
+                       format(scales.thinnest / mesh.h) + " cells");
+    line("particles", std::to_string(scales.particles) + ", " + std::to_string(problem.per_side) +
+                          " x " + std::to_string(problem.per_side) + " per cell");
+    line("sound",
+         "c_p = " + format(scales.sound_speed) + ", largest |v| = " + format(scales.speed));
+    line("steps", std::to_string(scales.steps) + " of dt = " + format(scales.dt) +
+                      ", alpha = " + format(parameters.alpha));
+    line("memory", "about " + format(scales.bytes / 1048576) + " MiB");
+    const double seconds =
+        cost * double(scales.steps) * double(scales.particles) / particle_steps_per_second;
+    line("time", "about " + format(seconds) + " s on one core");
+    return text;
 }
 
 }  // namespace mpm

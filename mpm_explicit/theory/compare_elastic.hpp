@@ -8,51 +8,50 @@
 #include <string>
 #include <vector>
 
-#include "common/run/summary.hpp"
 #include "common/theory/fit_oscillation.hpp"
-#include "mpm_explicit/setup/scales.hpp"
+#include "mpm_explicit/theory/comparison.hpp"
 #include "mpm_explicit/theory/exact_solutions.hpp"
-#include "mpm_explicit/theory/measure.hpp"
 
 namespace mpm::theory {
 
-/// A run that has ended, for its comparison.
-struct Run {
-    const Case& parameters;
-    const Scales& scales;
-    const Assembly& all;
-    const common::History& history;
-    Subject subject;
-    double end;  // time
-    std::vector<Material> materials;
-    std::vector<PlannedGrain> plans;
-
-    const Grain& grain() const { return all.grains[subject.grain]; }
-    Material material() const { return materials[static_cast<std::size_t>(grain().material)]; }
-    double mass() const {
-        double m = 0;
-        for (long p = grain().begin; p < grain().end; ++p)
-            m += all.particles.m_p[static_cast<std::size_t>(p)];
-        return m;
-    }
-    std::vector<double> momentum_x() const { return history.column("momentum_x_" + grain().name); }
-};
-
-inline double last(const std::vector<double>& values) { return values.back(); }
-
 /// What is left of the energy at the end.
-inline void compare_energy(const Run& run, double tolerance, common::Summary& summary) {
+inline void compare_energy(const FinishedRun& run, double tolerance, common::Summary& summary) {
     const auto energy = run.history.column("energy");
-    summary.result("energy_change", last(energy) / energy.front() - 1, "1", 0, tolerance,
+    summary.result("energy_change", energy.back() / energy.front() - 1, "1", 0, tolerance,
                    "exact: none");
 }
 
-/// Two equal disks that meet head on.
-/// in: energy_tolerance, what the scheme may change of the energy; infinite for one that is meant to
-///     lose it, whose disks part as they can
-inline void compare_rebound(const Run& run, double energy_tolerance, common::Summary& summary) {
+// ---- two equal disks that meet head on ----------------------------------------------------------
+
+/// Needs two equal disks on one line, and a run that lasts until they meet.
+inline void need_equal_disks(const PlannedCase& planned) {
+    const std::vector<PlannedGrain>& plans = planned.plans;
+    const auto is_disk = [](auto& plan) { return plan.outline.kind == OutlineKind::disk; };
+    const std::string sentence = " needs two equal disks that meet head on";
+    planned.refuse(planned.free_grains() != 2 || planned.rigid_grains() != 0 ||
+                       !std::all_of(plans.begin(), plans.end(), is_disk),
+                   sentence);
+    const PlannedGrain &a = plans[0], &b = plans[1];
+    const double dx = b.outline.x - a.outline.x, dy = b.outline.y - a.outline.y,
+                 vx = a.from.velocity_x - b.from.velocity_x,
+                 vy = a.from.velocity_y - b.from.velocity_y, approach = dx * vx + dy * vy;
+    planned.refuse(a.outline.radius != b.outline.radius || a.material != b.material ||
+                       !(approach > 0 && std::fabs(dx * vy - dy * vx) < 1e-9 * approach),
+                   sentence);
+    const double touch = (std::hypot(dx, dy) - a.outline.radius - b.outline.radius) /
+                         std::hypot(vx, vy),
+                 end = planned.parameters.end;
+    planned.refuse(end < 1.05 * touch, ": the disks meet at t = " + format(touch) +
+                                           ", and the run ends at " + format(end) +
+                                           ": raise time.end");
+}
+
+/// When they meet, how long they touch, and with what they part.
+/// note: where the scheme takes energy, the disks part as they can.
+inline void compare_rebound(const FinishedRun& run, common::Summary& summary) {
+    const double energy_tolerance = run.planned.scheme.rebound_tolerance;
     const bool keeps_energy = std::isfinite(energy_tolerance);
-    const PlannedGrain &a = run.plans[0], &b = run.plans[1];
+    const PlannedGrain &a = run.planned.plans[0], &b = run.planned.plans[1];
     const double dx = b.outline.x - a.outline.x, dy = b.outline.y - a.outline.y,
                  apart = std::hypot(dx, dy), nx = dx / apart, ny = dy / apart;
     const auto times = run.history.column("time"), force = run.history.column("contact_force"),
@@ -69,7 +68,7 @@ inline void compare_rebound(const Run& run, double energy_tolerance, common::Sum
     const double closing = (a.from.velocity_x - b.from.velocity_x) * nx +
                            (a.from.velocity_y - b.from.velocity_y) * ny,
                  touch = (apart - a.outline.radius - b.outline.radius) / closing;
-    const Material material = run.material();
+    const Material& material = run.material();
     const Impact impact = quasi_static_impact(
         {a.outline.radius, material.density, material.E, material.nu}, 0.5 * closing);
     summary.result("contact_begins", begin, "time", touch, 0.04 * touch + run.scales.dt,
@@ -95,37 +94,79 @@ inline void compare_rebound(const Run& run, double energy_tolerance, common::Sum
                               "since the last contact");
 }
 
+// ---- a bar that is held at its left end ---------------------------------------------------------
+
+/// Needs boxes with the profile of a bar, of which the first begins at a wall that holds it.
+inline void need_bar(const PlannedCase& planned) {
+    const Mesh mesh = planned.parameters.problem.mesh();
+    planned.refuse(!planned.has_profile("bar") ||
+                       !(planned.has_wall(x_low, "slip") || planned.has_wall(x_low, "stick")),
+                   " needs boxes with profile = \"bar\", an amplitude, and boundary.x_low = "
+                   "\"slip\" or \"stick\"");
+    const double low = profile_bounds(planned.plans).x_low;
+    planned.refuse(!(std::fabs(low - mesh.x_low) < 1e-6 * mesh.h),
+                   " needs a bar that begins at the wall, at x = " + format(mesh.x_low) +
+                       ", not at " + format(low));
+}
+
 /// The bar that all grains make together, held at the left end and free at the other.
-inline Bar bar_of(const Run& run) {
+inline Bar bar_of(const FinishedRun& run) {
+    const PlannedCase& planned = run.planned;
+    const Material& m = run.material();
+    const bool held = planned.has_wall(y_low, "slip") && planned.has_wall(y_high, "slip");
+    const GrainCase& from = planned.plans.front().from;
+    return {profile_bounds(planned.plans).length(), m.density,
+            held ? moduli(m).lambda + 2 * moduli(m).G : m.E / (1 - m.nu * m.nu), int(from.mode),
+            from.amplitude};
+}
+
+/// Frequency and growth of the momentum along x.
+inline common::OscillationFit fit_momentum(const FinishedRun& run) {
+    return common::fit_oscillation(run.history.column("momentum_x"),
+                                   run.scales.dt * double(run.parameters.history_steps));
+}
+
+/// Its frequency, and the energy it keeps.
+inline void compare_bar(const FinishedRun& run, common::Summary& summary) {
+    const double expected = bar_of(run).frequency();
+    summary.result("frequency", fit_momentum(run).frequency, "1/time", expected,
+                   run.parameters.tolerance * expected, "bar with a fixed and a free end");
+    compare_energy(run, run.planned.scheme.bar_tolerance, summary);
+}
+
+// ---- a compression wave that stands between rollers ---------------------------------------------
+
+/// Needs one box with the profile of a wave, which fills a mesh between rollers.
+inline void need_wave(const PlannedCase& planned) {
+    const Mesh mesh = planned.parameters.problem.mesh();
+    bool rollers = true;
+    for (const Side side : {x_low, x_high, y_low, y_high})
+        rollers = rollers && planned.has_wall(side, "slip");
+    planned.refuse(!planned.has_profile("wave") || planned.free_grains() != 1 || !rollers,
+                   " needs one box with profile = \"wave\", an amplitude, and all walls \"slip\"");
+    const Bounds box = bounds(planned.plans[0].outline);
+    const auto same = [&](double a, double b) { return std::fabs(a - b) < 1e-6 * mesh.h; };
+    planned.refuse(!same(box.x_low, mesh.x_low) || !same(box.x_high, mesh.x_high()) ||
+                       !same(box.y_low, mesh.y_low) || !same(box.y_high, mesh.y_high()),
+                   " needs a box that fills the mesh: make it " + format(mesh.length_x()) + " by " +
+                       format(mesh.y_high() - mesh.y_low));
+}
+
+/// The one free node between two fixed ends, with frozen particles; each scheme has its own result.
+inline void need_oscillator(const PlannedCase& planned) {
+    const Case& parameters = planned.parameters;
+    need_wave(planned);
+    planned.refuse(parameters.problem.cells_x != 2 || !parameters.frozen ||
+                       parameters.shape != "linear" || parameters.flip != 1,
+                   " needs grid.cells_x = 2, method.frozen = true, and linear FLIP");
+}
+
+/// Velocities at the end, particle by particle.
+inline void compare_standing_wave(const FinishedRun& run, common::Summary& summary) {
     const Problem& problem = run.parameters.problem;
-    const Material m = run.material();
-    const bool held = problem.walls[y_low] == "slip" && problem.walls[y_high] == "slip";
-    const GrainCase& from = run.plans.front().from;
-    return {profile_bounds(run.plans).length(), m.density,
-            held ? moduli(m).lambda + 2 * moduli(m).G : m.E / (1 - m.nu * m.nu),
-            static_cast<int>(from.mode), from.amplitude};
-}
-
-inline void compare_frequency(const Run& run, double expected, const std::string& source,
-                              common::Summary& summary) {
-    const common::OscillationFit fit =
-        common::fit_oscillation(run.history.column("momentum_x"),
-                                run.scales.dt * static_cast<double>(run.parameters.history_steps));
-    summary.result("frequency", fit.frequency, "1/time", expected,
-                   run.parameters.tolerance * expected, source);
-}
-
-inline void compare_bar(const Run& run, double energy_tolerance, common::Summary& summary) {
-    compare_frequency(run, bar_of(run).frequency(), "bar with a fixed and a free end", summary);
-    compare_energy(run, energy_tolerance, summary);
-}
-
-/// A compression wave that stands between rollers.
-inline void compare_standing_wave(const Run& run, common::Summary& summary) {
-    const Problem& problem = run.parameters.problem;
-    const Material m = run.material();
+    const Material& m = run.material();
     const GrainCase& from = problem.grains.front();
-    StandingWave wave{problem.length_x, 1, m.density, moduli(m), static_cast<int>(from.mode)};
+    StandingWave wave{problem.length_x, 1, m.density, moduli(m), int(from.mode)};
     wave.amplitude = from.amplitude / wave.frequency();
     const Particles& at = run.all.particles;
     // The wave is compared where the particles started: x_p less the displacement of theory.
@@ -141,12 +182,22 @@ inline void compare_standing_wave(const Run& run, common::Summary& summary) {
                    "rms over particles at the end, of the wave's own rms; exact for small strain");
 }
 
-/// Two halves of a bar that vibrates: one bar as long as the bond holds, and when it breaks.
-inline void compare_bond(const Run& run, double energy_tolerance, common::Summary& summary) {
+// ---- two bonded halves of a bar that vibrates ---------------------------------------------------
+
+/// Needs what a bar needs, and a bond between two boxes.
+inline void need_bond(const PlannedCase& planned) {
+    need_bar(planned);
+    planned.refuse(planned.parameters.problem.bonds.empty() || planned.free_grains() != 2,
+                   " needs two boxes and a [bond.<name>] between them");
+}
+
+/// One bar as long as the bond holds, and when it breaks.
+inline void compare_bond(const FinishedRun& run, common::Summary& summary) {
     const Bar bar = bar_of(run);
     const auto times = run.history.column("time"), broken = run.history.column("broken_bonds"),
                normal = run.history.column("bond_normal_1");
-    const double joint = bounds(run.plans.front().outline).x_high - profile_bounds(run.plans).x_low,
+    const double joint = bounds(run.planned.plans.front().outline).x_high -
+                         profile_bounds(run.planned.plans).x_low,
                  strength = run.all.bonds.front().tension,
                  expected = bar_breaking_time(bar, joint, strength);
     if (std::isfinite(expected)) {
@@ -156,7 +207,7 @@ inline void compare_bond(const Run& run, double energy_tolerance, common::Summar
                        run.parameters.tolerance * expected,
                        holds ? "it held to the end" : "stress of the bar at the joint");
     } else {
-        compare_bar(run, energy_tolerance, summary);
+        compare_bar(run, summary);
         const double peak = bar_stress(bar, joint, 0.5 * std::numbers::pi / bar.frequency());
         summary.result("largest_bond_stress", *std::max_element(normal.begin(), normal.end()),
                        "stress", peak, run.parameters.tolerance * peak,

@@ -1,4 +1,4 @@
-// The results of grains under load, whatever the scheme, and which comparison a case asks for.
+// The results of grains under load, whatever the scheme.
 #pragma once
 
 #include <gsl/gsl_fit.h>
@@ -11,10 +11,9 @@
 #include "mpm_explicit/theory/compare_elastic.hpp"
 #include "mpm_explicit/theory/scheme_theory.hpp"
 
-namespace mpm {
+namespace mpm::theory {
 
-namespace theory {
-
+/// The slope of the line through y(x) by least squares, where x is at least `from`.
 inline double slope(const std::vector<double>& x, const std::vector<double>& y, double from) {
     std::vector<double> u, v;
     for (std::size_t n = 0; n < x.size(); ++n)
@@ -25,31 +24,89 @@ inline double slope(const std::vector<double>& x, const std::vector<double>& y, 
     return c1;
 }
 
-/// A block or a cylinder on a rigid plate, gravity inclined.
-inline void compare_incline(const Run& run, common::Summary& summary) {
+// ---- a block or a cylinder on a rigid plate, gravity inclined -----------------------------------
+
+/// Needs one grain, a rigid plate, and a gravity that is not perpendicular to it.
+inline void need_incline(const PlannedCase& planned) {
+    const Problem& problem = planned.parameters.problem;
+    planned.refuse(
+        planned.free_grains() != 1 || planned.rigid_grains() < 1 || problem.gravity_x == 0 ||
+            !(problem.gravity_y < 0),
+        " needs one grain, a rigid plate, and an inclined gravity: load.gravity_x not 0, "
+        "load.gravity_y below 0");
+}
+
+/// The acceleration of the grain, fitted to its momentum.
+/// in: acceleration by theory, of g, angle and friction
+inline void compare_incline(const FinishedRun& run,
+                            double (*acceleration)(double g, double angle, double mu),
+                            const std::string& source, common::Summary& summary) {
     const Problem& problem = run.parameters.problem;
     const double g = std::hypot(problem.gravity_x, problem.gravity_y),
                  angle = std::atan2(std::fabs(problem.gravity_x), -problem.gravity_y),
-                 mu = problem.contact.friction;
-    const bool block = run.parameters.compare == "block";
-    const double exact =
-        block ? block_acceleration(g, angle, mu) : cylinder_acceleration(g, angle, mu);
+                 exact = acceleration(g, angle, problem.contact.friction);
     auto v = run.momentum_x();
     const double m = run.mass();
     for (double& value : v) value /= std::copysign(m, problem.gravity_x);
     const auto times = run.history.column("time");
     const double measured = slope(times, v, std::max(problem.rise, 0.25 * run.end));
-    const std::string source = block
-                                   ? "g (sin - mu cos), or 0 where friction holds"
-                                   : "(2/3) g sin where it rolls, g (sin - mu cos) where it slips";
     summary.result("acceleration", measured, "acceleration", exact,
                    exact > 0 ? run.parameters.tolerance * exact : 0.01 * g * std::sin(angle),
                    source);
     summary.result_info("speed_at_end", v.back(), "velocity", "along the plate");
 }
 
-/// A disk between two plates (Brazilian test).
-inline void compare_disk(const Run& run, common::Summary& summary) {
+/// A block slides, or friction holds it.
+inline void compare_block(const FinishedRun& run, common::Summary& summary) {
+    compare_incline(run, block_acceleration, "g (sin - mu cos), or 0 where friction holds",
+                    summary);
+}
+
+/// A cylinder rolls, or slips.
+inline void compare_cylinder(const FinishedRun& run, common::Summary& summary) {
+    compare_incline(run, cylinder_acceleration,
+                    "(2/3) g sin where it rolls, g (sin - mu cos) where it slips", summary);
+}
+
+// ---- a disk between two plates (Brazilian test) -------------------------------------------------
+
+/// Needs a disk, first in the case, and rigid plates.
+inline void need_pressed_disk(const PlannedCase& planned) {
+    const PlannedGrain& first = planned.plans[0];
+    const long plates = planned.rigid_grains();
+    planned.refuse(planned.free_grains() != 1 || plates < 1 || plates > 16 ||
+                       first.outline.kind != OutlineKind::disk || planned.is_rigid(first),
+                   " needs a disk, first in the case, and rigid plates, at most 16");
+}
+
+/// Mean stress of the particles within a distance of the center of a grain.
+inline Stress stress_at_center(const Assembly& all, std::size_t grain, double distance) {
+    const Particles& at = all.particles;
+    const long begin = all.grains[grain].begin, end = all.grains[grain].end;
+    double x = 0, y = 0, m = 0, V = 0;
+    for (long p = begin; p < end; ++p)
+        x += at.m_p[p] * at.x_p[p], y += at.m_p[p] * at.y_p[p], m += at.m_p[p];
+    x /= m, y /= m;
+    Stress mean;
+    for (long p = begin; p < end; ++p) {
+        if (std::hypot(at.x_p[p] - x, at.y_p[p] - y) > distance) continue;
+        V += at.V_p[p], mean.xx += at.V_p[p] * at.sxx_p[p], mean.yy += at.V_p[p] * at.syy_p[p];
+        mean.xy += at.V_p[p] * at.sxy_p[p], mean.zz += at.V_p[p] * at.szz_p[p];
+    }
+    return {mean.xx / V, mean.yy / V, mean.xy / V, mean.zz / V};
+}
+
+/// Stress at the center, averaged over a circle of one and a half cells.
+inline void center_columns(const PlannedCase& planned, const Assembly& all, common::Row& row) {
+    const Stress s =
+        stress_at_center(all, planned.target(), 1.5 * planned.parameters.problem.mesh().h);
+    row.add("center_xx", "stress", s.xx);
+    row.add("center_yy", "stress", s.yy);
+    row.add("center_xy", "stress", s.xy);
+}
+
+/// The stress at the center under the mean load of the plates, against the closed form.
+inline void compare_disk(const FinishedRun& run, common::Summary& summary) {
     const auto& grains = run.all.grains;
     const auto times = run.history.column("time");
     const auto mean_late = [&](const std::string& name) {
@@ -64,7 +121,7 @@ inline void compare_disk(const Run& run, common::Summary& summary) {
         if (grain.rigid && (run.parameters.plate.empty() || grain.name == run.parameters.plate))
             P += std::fabs(mean_late("force_y_" + grain.name)), plates += 1;
     P /= plates;
-    const double R = run.plans[run.subject.grain].outline.radius;
+    const double R = run.planned.plans[run.planned.target()].outline.radius;
     const double xx = mean_late("center_xx"), yy = mean_late("center_yy"),
                  xy = mean_late("center_xy"), exact = disk_center_difference(P, R);
     const Stress center = disk_stress(P, R, 0, 0);
@@ -77,18 +134,35 @@ inline void compare_disk(const Run& run, common::Summary& summary) {
                    source + ", over 2P/(pi D)");
     summary.result("center_yy", yy / center.yy, "1", 1, run.parameters.tolerance,
                    source + ", over -6P/(pi D)");
-    const Material m = run.material();
+    const Material& m = run.material();
     const double b = contact_half_width({R, m.density, m.E, m.nu}, P);
     summary.result_info("contact_half_width", b / R, "R", "line contact; the loads are no points");
 }
 
+// ---- a grain that yields ------------------------------------------------------------------------
+
+/// Needs a target grain of von Mises material, and something that moves.
+inline void need_yielding(const PlannedCase& planned) {
+    const PlannedGrain& target = planned.plans[planned.target()];
+    planned.refuse(planned.material_of(target).law != Law::j2,
+                   " needs a grain of a material with law = \"j2\", and '" + target.name +
+                       "' is of another: set theory.grain");
+    const auto is_at_rest = [](const PlannedGrain& plan) {
+        const GrainCase& from = plan.from;
+        return from.velocity_x == 0 && from.velocity_y == 0 && from.spin == 0 &&
+               from.amplitude == 0;
+    };
+    planned.refuse(std::all_of(planned.plans.begin(), planned.plans.end(), is_at_rest),
+                   " measures shares of the energy at the start, and nothing moves then: give a "
+                   "grain a velocity");
+}
+
 /// What yields stays on its yield surface and only ever takes energy.
-inline void compare_yield(const Run& run, common::Summary& summary) {
-    const Material m = run.material();
+inline void compare_yield(const FinishedRun& run, common::Summary& summary) {
+    const Material& m = run.material();
     const Particles& at = run.all.particles;
     double worst = 0, most = 0, yielded = 0;
-    for (long k = run.grain().begin; k < run.grain().end; ++k) {
-        const auto p = static_cast<std::size_t>(k);
+    for (long p = run.grain().begin; p < run.grain().end; ++p) {
         worst = std::max(worst,
                          von_mises(at.stress(p)) / (m.yield_stress + m.hardening * at.yield_p[p]));
         most = std::max(most, at.yield_p[p]);
@@ -102,55 +176,52 @@ inline void compare_yield(const Run& run, common::Summary& summary) {
                           "von Mises stress over Y + H ep, at the end");
     summary.result_within("plastic_work_undone", backward, "energy", 0, 1e-12 * energy.front(),
                           "plastic work never comes back");
-    summary.result_info("plastic_work", last(plastic) / energy.front(), "1",
+    summary.result_info("plastic_work", plastic.back() / energy.front(), "1",
                         "of the initial energy");
     summary.result_info("largest_plastic_strain", most, "1", "of a particle");
-    summary.result_info("yielded",
-                        yielded / static_cast<double>(run.grain().end - run.grain().begin), "1",
+    summary.result_info("yielded", yielded / double(run.grain().end - run.grain().begin), "1",
                         "share of the particles");
 }
 
-/// A column of grains that collapses to one side.
-inline void compare_collapse(const Run& run, common::Summary& summary) {
+// ---- a column of grains that collapses to one side ----------------------------------------------
+
+/// The place beyond which a share of all mass that is not rigid lies, along x.
+inline double front_of(const Assembly& all, double share) {
+    std::vector<double> x;
+    for (const Grain& grain : all.grains)
+        if (!grain.rigid)
+            x.insert(x.end(), all.particles.x_p.begin() + grain.begin,
+                     all.particles.x_p.begin() + grain.end);
+    const auto at = x.begin() + static_cast<std::ptrdiff_t>((1 - share) * double(x.size() - 1));
+    std::nth_element(x.begin(), at, x.end());
+    return *at;
+}
+
+/// The front of the grains.
+inline void front_column(const PlannedCase&, const Assembly& all, common::Row& row) {
+    constexpr double share_beyond = 0.01;
+    row.add("front", "length", front_of(all, share_beyond));
+}
+
+/// The run-out, between two published laws.
+inline void compare_collapse(const FinishedRun& run, common::Summary& summary) {
     const auto front = run.history.column("front");
     double low = 1e300, high = -1e300, top = -1e300;
-    for (const PlannedGrain& plan : run.plans) {
-        if (run.materials[static_cast<std::size_t>(plan.material)].law == Law::rigid) continue;
+    for (const PlannedGrain& plan : run.planned.plans) {
+        if (run.planned.is_rigid(plan)) continue;
         const Bounds box = bounds(plan.outline);
         low = std::min(low, box.x_low), high = std::max(high, box.x_high);
         top = std::max(top, box.y_high);
     }
     const double width = high - low, a = (top - run.parameters.problem.origin_y) / width,
-                 runout = (last(front) - high) / width;
+                 runout = (front.back() - high) / width;
     summary.result_info("aspect_ratio", a, "1", "height over width of the column");
     summary.result_within("runout", runout, "1", runout_in_experiments(a), runout_of_disks(a),
                           "(L_end - L_0)/L_0, between columns of sand between plates (Lube and "
                           "others 2005) and stiff disks in two dimensions (Staron and Hinch 2005)");
     const double steady = front[front.size() * 9 / 10];
-    summary.result_within("still_moving", (last(front) - steady) / width, "1", -0.05, 0.05,
+    summary.result_within("still_moving", (front.back() - steady) / width, "1", -0.05, 0.05,
                           "what the front gained in the last tenth of the run");
 }
 
-/// What a scheme may change of the energy.
-struct EnergyTolerance {
-    double rebound = 0, bar = 0;
-};
-
-}  // namespace theory
-
-/// The comparison that the case asks for, where it holds for any scheme.
-inline void compare_with_theory(const theory::Run& run, const theory::EnergyTolerance& tolerance,
-                                common::Summary& summary) {
-    using namespace theory;
-    const std::string& compare = run.parameters.compare;
-    if (compare == "rebound") compare_rebound(run, tolerance.rebound, summary);
-    if (compare == "bar") compare_bar(run, tolerance.bar, summary);
-    if (compare == "standing_wave") compare_standing_wave(run, summary);
-    if (compare == "block" || compare == "cylinder") compare_incline(run, summary);
-    if (compare == "disk") compare_disk(run, summary);
-    if (compare == "bond") compare_bond(run, tolerance.bar, summary);
-    if (compare == "yield") compare_yield(run, summary);
-    if (compare == "collapse") compare_collapse(run, summary);
-}
-
-}  // namespace mpm
+}  // namespace mpm::theory

@@ -13,10 +13,10 @@ namespace mpm_explicit {
 using namespace mpm;
 
 /// The one free node between two fixed ends, with frozen particles.
-inline void compare_oscillator(const theory::Run& run, common::Summary& summary) {
+inline void compare_oscillator(const theory::FinishedRun& run, common::Summary& summary) {
     const Problem& problem = run.parameters.problem;
     const double h = problem.mesh().h, c = sound_speed(run.material()), dt = run.scales.dt,
-                 w = node_oscillator_frequency(static_cast<int>(problem.per_side)) * c / h;
+                 w = node_oscillator_frequency(int(problem.per_side)) * c / h;
     summary.result_info("omega_dt", w * dt, "1", "one free node, exact");
     const auto e14 = run.history.column("energy_14"), e15 = run.history.column("energy_15"),
                kinetic = run.history.column("kinetic");
@@ -45,9 +45,20 @@ inline void compare_oscillator(const theory::Run& run, common::Summary& summary)
     }
 }
 
-inline void compare_with_theory(const theory::Run& run, common::Summary& summary) {
-    if (run.parameters.compare == "oscillator") compare_oscillator(run, summary);
-    mpm::compare_with_theory(run, {.rebound = 0.03, .bar = 0.01}, summary);
-}
+/// What theory has to know of the leapfrog: how far its energy goes astray at alpha = 1/4.
+inline constexpr theory::SchemeFacts leapfrog{.rebound_tolerance = 0.03, .bar_tolerance = 0.01};
+
+/// What a run of mpm_explicit can be compared with.
+inline constexpr theory::Comparison comparisons[] = {
+    {"rebound", theory::need_equal_disks, theory::compare_rebound},
+    {"bar", theory::need_bar, theory::compare_bar},
+    {"standing_wave", theory::need_wave, theory::compare_standing_wave},
+    {"oscillator", theory::need_oscillator, compare_oscillator},
+    {"block", theory::need_incline, theory::compare_block},
+    {"cylinder", theory::need_incline, theory::compare_cylinder},
+    {"disk", theory::need_pressed_disk, theory::compare_disk, theory::center_columns},
+    {"bond", theory::need_bond, theory::compare_bond},
+    {"yield", theory::need_yielding, theory::compare_yield},
+    {"collapse", nullptr, theory::compare_collapse, theory::front_column}};
 
 }  // namespace mpm_explicit

@@ -1,6 +1,6 @@
 // What is known exactly, or published, about the problems that the material point method is tried
-// on: a disk between two loads, disks that collide, bars and waves, bodies on an incline, and a block
-// that is pressed.
+// on: a disk between two loads, disks that collide, bars and waves, bodies on an incline, and a
+// block that is pressed.
 //
 // Stress is positive in tension. Everything is plane strain and per unit thickness; units are those
 // of the caller: [length], [mass / length^3], [E].
@@ -50,6 +50,7 @@ inline double disk_center_difference(double P, double R) {
 
 // ---- two equal disks in contact -----------------------------------------------------------------
 
+/// An elastic disk.
 struct Disk {
     double R, density, E, nu;
 
@@ -85,6 +86,7 @@ inline double contact_energy(const Disk& disk, double P) {
     return 0.5 * P * P / pi_E * (std::log(8 * disk.R * pi_E / P) - 1.5);
 }
 
+/// What two disks do when they meet.
 struct Impact {
     double duration, peak_force, peak_half_width, peak_approach;
 };

@@ -31,6 +31,7 @@ struct LeapfrogState {
     double x_before, v, x_after;
 };
 
+/// One step of the oscillator.
 inline LeapfrogState leapfrog_step(const LeapfrogState& s, double w, double dt) {
     const double v = s.v - w * w * dt * s.x_after;
     return {s.x_after, v, s.x_after + dt * v};
@@ -87,8 +88,8 @@ inline double node_filter(int per_side) { return 2.0 / 3 - 1.0 / (6.0 * per_side
 ///   determinant - (trace/2)^2 = (z / D)^2 [f - (1 - f)^2 theta^2 z^2 / 4]
 /// in:    theta; z = w dt; f: 1 for the consistent mass, then w^2 = k / M_11, and node_filter() for
 ///        the lumped mass, then w^2 = k / m
-/// out:   g with positive frequency; from theta z = 2 f^1/2 / (1 - f) on nothing oscillates, and g is
-///        that of two real factors with the larger size
+/// out:   g with positive frequency; from theta z = 2 f^1/2 / (1 - f) on nothing oscillates, and g
+///        is that of two real factors with the larger size
 /// exact: f = 1 makes it [1 + i (1 - theta) z] / (1 - i theta z), of size 1 for theta = 1/2;
 ///        |g|^2 = 1 - [theta - f (1 - theta)] z^2 / D where it oscillates, never above 1
 inline std::complex<double> theta_node_oscillation(double theta, double z, double f) {

@@ -1,10 +1,10 @@
 // What a run of mpm_implicit keeps besides what every scheme does
-// (mpm_explicit/output/record_grains.hpp): the energy theorem term by term, and what it took to solve
-// the steps.
+// (mpm_explicit/output/record_grains.hpp): the energy theorem term by term, and what it took to
+// solve the steps.
 #pragma once
 
 #include <cmath>
-#include <vector>
+#include <utility>
 
 #include "mpm_explicit/output/record_grains.hpp"
 #include "mpm_implicit/state.hpp"
@@ -12,39 +12,59 @@
 
 namespace mpm_implicit {
 
-inline std::vector<common::Column> ledger_columns() {
-    std::vector<common::Column> columns = Ledger::columns();
-    for (const char* name : {"iterations", "loops", "held"}) columns.push_back({name, "1"});
-    return columns;
+/// Adds the terms of the ledger, energies now and work since the start.
+inline void add_ledger(const Ledger& l, common::Row& row) {
+    for (const auto& [name, value] : {std::pair("kinetic", l.kinetic),
+                                      {"elastic", l.elastic},
+                                      {"energy", l.energy()},
+                                      {"theta_velocity", l.theta_velocity},
+                                      {"theta_strain", l.theta_strain},
+                                      {"lumped", l.lumped},
+                                      {"contact", l.contact},
+                                      {"friction", l.friction},
+                                      {"bond", l.bond},
+                                      {"plate", l.plate},
+                                      {"gravity", l.gravity},
+                                      {"external", l.plate + l.gravity},
+                                      {"damping", l.damping},
+                                      {"plastic", l.plastic},
+                                      {"volume", l.volume},
+                                      {"pic", l.pic},
+                                      {"residual", l.residual()}})
+        row.add(name, "energy", value);
 }
 
+/// Writes rows and files of a run, and its results.
 class ThetaRecorder {
    public:
     ThetaRecorder(const Case& parameters, const ThetaScheme& scheme, const Scales& scales,
                   const State& state, common::History& history)
-        : parameters_(parameters),
-          scheme_(scheme),
+        : scheme_(scheme),
           scales_(scales),
-          recorder_(parameters, scales, state.assembly, ledger_columns(), "residual", history) {}
+          recorder_(parameters, facts_of(parameters, scheme), scales, state.assembly, comparisons,
+                    "residual") {
+        Ledger none;
+        none.momentum_x.assign(state.assembly.grains.size(), 0), none.momentum_y = none.momentum_x;
+        history.columns(row(0, none, StepSums{}, state.assembly));
+    }
 
     /// The row of t = 0.
-    void start(const State& state, common::Run& run) { write_row(0, StepSums{}, state, run); }
+    void start(const State& state, common::Run& run) {
+        run.history.row(row(0, state.ledger, StepSums{}, state.assembly));
+    }
 
     /// Writes the files that are due at this step, before it.
     void snapshot(long step, const State& state, const common::Run& run) const {
         recorder_.snapshot(step, state.assembly, run);
     }
 
-    /// Enters a step into the ledger and writes the row of its end.                     [MPM-13]
+    /// Writes the row of the end of a step that the ledger holds.
     /// errors: NumericalError as Recorder::refuse_failure
-    void record(long step, const StepSums& sums, const GrainNodes& nodes, State& state,
+    void record(long step, const StepSums& sums, const GrainNodes& nodes, const State& state,
                 common::Run& run) {
-        Ledger& l = state.ledger;
-        enter_step(scheme_.theta, scheme_.consistent(), parameters_.problem.damping, scales_.dt,
-                   nodes.strips(), sums.strips, sums.nodes, sums.contact, l);
-        state.effort.add(sums.solver);
+        const Ledger& l = state.ledger;
         if (std::isfinite(l.energy()) && recorder_.row_is_due(step + 1))
-            write_row(static_cast<double>(step + 1) * scales_.dt, sums, state, run);
+            run.history.row(row(step + 1, l, sums, state.assembly));
         recorder_.refuse_failure(step, sums.strips, nodes, state.assembly, l.start,
                                  l.plate + l.gravity, l.energy(), run.history);
     }
@@ -53,11 +73,11 @@ class ThetaRecorder {
     void finish(long step, const State& state, common::Run& run) const {
         if (run.history.all().empty()) return;
         const Ledger& l = state.ledger;
-        compare_with_theory(recorder_.ended(step, state.assembly, run.history), scheme_, l,
-                            run.summary);
-        recorder_.finish_conservation({}, state.assembly, run);
+        compare_energy_theorem(run.history, scheme_, l, run.summary);
+        recorder_.compare_with_theory(step, state.assembly, run);
+        recorder_.finish_conservation(state.assembly, run);
         run.summary.conservation("largest_residual_of_a_step", l.largest_residual, "energy");
-        const double steps = static_cast<double>(std::max(1L, step));
+        const double steps = double(std::max(1L, step));
         const Effort& effort = state.effort;
         run.summary.performance("iterations_per_step", effort.iterations / steps);
         run.summary.performance("mass_iterations_per_step", effort.mass_iterations / steps);
@@ -67,17 +87,17 @@ class ThetaRecorder {
     }
 
    private:
-    void write_row(double time, const StepSums& sums, const State& state, common::Run& run) {
-        const Ledger& l = state.ledger;
-        std::vector<double> row = l.row();
-        row.insert(row.end(),
-                   {static_cast<double>(sums.solver.iterations),
-                    static_cast<double>(sums.solver.loops), static_cast<double>(sums.solver.held)});
-        recorder_.write_row(time, scales_.dt, row, l.momentum_x, l.momentum_y, sums.contact,
-                            state.assembly, run);
+    common::Row row(long step, const Ledger& l, const StepSums& sums, const Assembly& all) const {
+        common::Row row;
+        row.add("time", "time", double(step) * scales_.dt);
+        add_ledger(l, row);
+        row.add("iterations", "1", double(sums.solver.iterations));
+        row.add("loops", "1", double(sums.solver.loops));
+        row.add("held", "1", double(sums.solver.held));
+        recorder_.add_to(row, l.momentum_x, l.momentum_y, sums.contact, all);
+        return row;
     }
 
-    const Case& parameters_;
     const ThetaScheme& scheme_;
     const Scales& scales_;
     Recorder recorder_;

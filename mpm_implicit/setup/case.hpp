@@ -1,8 +1,11 @@
 // Everything a case file of mpm_implicit can say: what both programs of the material point method
-// have in common (mpm_explicit/setup/case_of_grains.hpp), and the theta scheme with its solvers.
+// have in common (mpm_explicit/setup/case.hpp), and the theta scheme with its solvers.
 #pragma once
 
-#include "mpm_explicit/setup/case_of_grains.hpp"
+#include <string>
+#include <vector>
+
+#include "mpm_explicit/setup/case.hpp"
 #include "mpm_implicit/theta_scheme.hpp"
 
 namespace mpm_implicit {
@@ -10,13 +13,13 @@ namespace mpm_implicit {
 using namespace mpm;
 
 /// The table of all parameters.
-inline common::ParameterTable describe(Case& w, ThetaScheme& scheme) {
+/// in: comparison_names, the choices of theory.compare
+inline common::ParameterTable describe(Case& parameters, ThetaScheme& scheme,
+                                       const std::vector<std::string>& comparison_names) {
     using common::between;
     common::ParameterTable table;
-    describe_problem(table, w.problem);
-    w.alpha = 1;
-    describe_time(table, w);
-    describe_method(table, w);
+    parameters.alpha = 1;
+    describe_case(table, parameters);
     table.real("method.theta", scheme.theta, "", between(0.5, 1),
                "level of velocities, stresses and contact: 1/2 keeps energy, 1 damps most");
     table.choice("method.mass", scheme.mass, {"consistent", "lumped"},
@@ -34,10 +37,7 @@ inline common::ParameterTable describe(Case& w, ThetaScheme& scheme) {
                 "of a linear system; beyond, the run fails");
     table.whole("solver.max_outer_iterations", scheme.max_outer_iterations, "", between(1, 1000),
                 "guesses of who presses, or Newton steps; beyond, the run fails");
-    describe_comparison(table, w,
-                        {"none", "rebound", "bar", "standing_wave", "oscillator", "block",
-                         "cylinder", "disk", "bond", "yield", "compression", "billet", "energy"});
-    describe_output(table, w);
+    describe_output(table, parameters, comparison_names);
     return table;
 }
 

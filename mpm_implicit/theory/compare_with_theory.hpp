@@ -1,6 +1,6 @@
 // The results of a run of mpm_implicit: what any scheme is compared with
-// (mpm_explicit/theory/compare_grains.hpp), the energy theorem in every run, what the theta scheme does to
-// an oscillation, exactly, and what a block bears that is pressed slowly.
+// (mpm_explicit/theory/compare_grains.hpp), the energy theorem in every run, what the theta scheme
+// does to an oscillation, exactly, and what a block bears that is pressed slowly.
 #pragma once
 
 #include <algorithm>
@@ -14,24 +14,33 @@
 #include "mpm_explicit/theory/compare_grains.hpp"
 #include "mpm_explicit/theory/scheme_theory.hpp"
 #include "mpm_implicit/ledger.hpp"
-#include "mpm_implicit/setup/check_case.hpp"
+#include "mpm_implicit/theta_scheme.hpp"
 
 namespace mpm_implicit {
 
 /// Whether the theorem lets the scheme lose nothing: theta = 1/2, consistent mass, FLIP.
-inline bool keeps_energy(const Case& w, const ThetaScheme& scheme) {
-    return scheme.theta == 0.5 && scheme.consistent() && w.flip == 1;
+inline bool keeps_energy(const Case& parameters, const theory::SchemeFacts& scheme) {
+    return scheme.theta == 0.5 && scheme.consistent_mass && parameters.flip == 1;
+}
+
+/// What theory has to know of the theta scheme.
+inline theory::SchemeFacts facts_of(const Case& parameters, const ThetaScheme& scheme) {
+    theory::SchemeFacts facts{.theta = scheme.theta, .consistent_mass = scheme.consistent()};
+    const bool keeps = keeps_energy(parameters, facts) && parameters.problem.contact.friction == 0;
+    facts.bar_tolerance = keeps ? 1e-8 : std::numeric_limits<double>::infinity();
+    facts.rebound_tolerance = facts.bar_tolerance;
+    return facts;
 }
 
 /// [MPM-13] in every step, and that nothing but loads gives energy.
-inline void compare_energy_theorem(const theory::Run& run, const ThetaScheme& scheme,
+inline void compare_energy_theorem(const common::History& history, const ThetaScheme& scheme,
                                    const Ledger& l, common::Summary& summary) {
-    const auto energy = run.history.column("energy"), external = run.history.column("external"),
-               volume = run.history.column("volume"), plastic = run.history.column("plastic");
+    const auto energy = history.column("energy"), external = history.column("external"),
+               volume = history.column("volume"), plastic = history.column("plastic");
     double size = std::numeric_limits<double>::min(), growth = 0;
     for (std::size_t n = 0; n < energy.size(); ++n)
         size = std::max({size, energy[n], std::fabs(external[n])});
-    // What plastic flow undoes is the law's affair, not the scheme's.
+    // Energy that plastic flow gives back comes from the law, not from the scheme.
     const auto given = [&](std::size_t n) {
         return energy[n] - external[n] - volume[n] + std::min(plastic[n], 0.0);
     };
@@ -44,14 +53,31 @@ inline void compare_energy_theorem(const theory::Run& run, const ThetaScheme& sc
                               "between rows, beyond the work of the loads, over the energy");
 }
 
-/// What the theta scheme makes of an oscillation of frequency w: its frequency and damping.
-inline void compare_oscillation(const theory::Run& run, double w, double theta,
-                                common::Summary& summary) {
-    const double dt = run.scales.dt, rows = static_cast<double>(run.parameters.history_steps);
-    const std::complex<double> g = common::theta_light_wave(theta, w * dt);
+/// Two disks that meet: their momentum, besides what any scheme is compared with.
+inline void compare_rebound(const theory::FinishedRun& run, common::Summary& summary) {
+    const auto total = run.history.column("momentum_x"), one = run.momentum_x();
+    double change = 0;
+    for (const double p : total) change = std::max(change, std::fabs(p - total.front()));
+    summary.result("momentum_change", change / std::fabs(one.front()), "1", 0, 1e-10,
+                   "of both grains, over that of one");
+    theory::compare_rebound(run, summary);
+}
+
+/// Needs what theory::need_bar needs, and the consistent mass matrix.
+inline void need_bar(const theory::PlannedCase& planned) {
+    theory::need_bar(planned);
+    planned.refuse(!planned.scheme.consistent_mass,
+                   " knows the damping of the consistent mass matrix only: set method.mass = "
+                   "\"consistent\", or compare with \"oscillator\"");
+}
+
+/// What the theta scheme makes of the vibration of a bar: its frequency and damping.
+inline void compare_bar(const theory::FinishedRun& run, common::Summary& summary) {
+    const double dt = run.scales.dt, theta = run.planned.scheme.theta;
+    const std::complex<double> g =
+        common::theta_light_wave(theta, theory::bar_of(run).frequency() * dt);
     const double frequency = std::arg(g) / dt, damping = -std::log(std::abs(g)) / dt;
-    const common::OscillationFit fit =
-        common::fit_oscillation(run.history.column("momentum_x"), dt * rows);
+    const common::OscillationFit fit = theory::fit_momentum(run);
     summary.result("frequency", fit.frequency, "1/time", frequency,
                    run.parameters.tolerance * frequency,
                    "the theta scheme's, for the exact frequency of the body");
@@ -64,12 +90,12 @@ inline void compare_oscillation(const theory::Run& run, double w, double theta,
 }
 
 /// The one free node between two fixed ends, with frozen particles.
-inline void compare_oscillator(const theory::Run& run, const ThetaScheme& scheme,
-                               common::Summary& summary) {
+inline void compare_oscillator(const theory::FinishedRun& run, common::Summary& summary) {
+    const theory::SchemeFacts& scheme = run.planned.scheme;
     const Problem& problem = run.parameters.problem;
-    const int per_side = static_cast<int>(problem.per_side);
+    const int per_side = int(problem.per_side);
     const double dt = run.scales.dt, c = sound_speed(run.material()), h = problem.mesh().h,
-                 filter = node_filter(per_side), f = scheme.consistent() ? 1 : filter,
+                 filter = node_filter(per_side), f = scheme.consistent_mass ? 1 : filter,
                  w = c / h * std::sqrt(2 * f / filter);
     const std::complex<double> g = theta_node_oscillation(scheme.theta, w * dt, f);
     summary.result_info("omega_dt", w * dt, "1", "one free node, exact in space");
@@ -77,30 +103,68 @@ inline void compare_oscillator(const theory::Run& run, const ThetaScheme& scheme
     auto change = run.momentum_x();
     for (std::size_t n = 0; n + 1 < change.size(); ++n) change[n] = change[n + 1] - change[n];
     change.pop_back();
-    const std::string source = "exact factor of a step, theta scheme with " + scheme.mass + " mass";
+    const std::string source = std::string("exact factor of a step, theta scheme with ") +
+                               (scheme.consistent_mass ? "consistent" : "lumped") + " mass";
     if (std::imag(g) == 0) {
         summary.result_info("overdamped", std::real(g), "1", "nothing oscillates; " + source);
         return;
     }
     const double size = std::abs(std::log(g)) / dt, tolerance = run.parameters.tolerance * size;
     const common::OscillationFit fit =
-        common::fit_oscillation(change, dt * static_cast<double>(run.parameters.history_steps));
+        common::fit_oscillation(change, dt * double(run.parameters.history_steps));
     summary.result("frequency", fit.frequency, "1/time", std::arg(g) / dt, tolerance, source);
     summary.result("damping", -fit.growth, "1/time", -std::log(std::abs(g)) / dt, tolerance,
                    source);
 }
 
+/// The plate that presses a billet: theory.plate, or the first that moves along y.
+/// out:    its name; empty if there is none
+inline std::string billet_plate(const theory::PlannedCase& planned) {
+    const std::string& name = planned.parameters.plate;
+    for (const PlannedGrain& plan : planned.plans)
+        if (planned.is_rigid(plan) &&
+            (name.empty() ? plan.from.velocity_y != 0 : plan.name == name))
+            return plan.name;
+    return {};
+}
+
+/// Needs an upright box between two rigid plates without friction, of which one moves along y.
+inline void need_billet(const theory::PlannedCase& planned) {
+    const Problem& problem = planned.parameters.problem;
+    const PlannedGrain& block = planned.plans[planned.target()];
+    planned.refuse(planned.free_grains() != 1 || planned.plans.size() != 3 ||
+                       block.from.shape != "box" || block.from.angle != 0 ||
+                       problem.contact.friction != 0 || billet_plate(planned).empty(),
+                   " needs one upright box between two rigid plates without friction, of which one "
+                   "moves along y");
+    const Material& m = planned.material_of(block);
+    planned.refuse(m.law != Law::elastic && (m.law != Law::j2 || m.hardening != 0),
+                   " knows what is elastic, and what has law = \"j2\" and hardening = 0: change "
+                   "[material." +
+                       m.name + "]");
+    const Bounds box = bounds(block.outline);
+    for (const PlannedGrain& plan : planned.plans) {
+        if (&plan == &block) continue;
+        const Bounds plate = bounds(plan.outline);
+        const double gap =
+            std::min(std::fabs(plate.y_low - box.y_high), std::fabs(plate.y_high - box.y_low));
+        planned.refuse(
+            plate.x_low > box.x_low || plate.x_high < box.x_high || gap > 1e-6 * problem.mesh().h,
+            ": plate '" + plan.name + "' does not cover a whole side of '" + block.name +
+                "': make it wider, and let them touch");
+    }
+}
+
 /// A block that one plate presses against another, slowly: its modulus while it is elastic, and the
 /// most that it bears when it can yield but not harden.
-inline void compare_billet(const theory::Run& run, common::Summary& summary) {
-    const Outline& block = run.plans[run.subject.grain].outline;
-    const Bounds box = bounds(block);
-    const std::string plate = billet_plate(run.parameters, run.plans, run.materials);
+inline void compare_billet(const theory::FinishedRun& run, common::Summary& summary) {
+    const Bounds box = bounds(run.planned.plans[run.planned.target()].outline);
+    const std::string plate = billet_plate(run.planned);
     const auto force = run.history.column("force_y_" + plate),
                way = run.history.column("travel_y_" + plate);
     const double width = box.x_high - box.x_low, height = box.y_high - box.y_low,
                  press = std::fabs(force.back()) / width;
-    const Material m = run.material();
+    const Material& m = run.material();
     summary.result_info("strain", std::fabs(way.back()) / height, "1", "at the end");
     if (m.law == Law::j2) {
         const double limit = plane_strain_strength(m.yield_stress);
@@ -118,8 +182,7 @@ inline void compare_billet(const theory::Run& run, common::Summary& summary) {
 }
 
 /// Grains that a plate presses: the energy is the work of the plate.
-inline void compare_compression(const theory::Run& run, const ThetaScheme& scheme,
-                                common::Summary& summary) {
+inline void compare_compression(const theory::FinishedRun& run, common::Summary& summary) {
     const auto energy = run.history.column("energy"), work = run.history.column("plate"),
                friction = run.history.column("friction");
     const double most =
@@ -127,7 +190,7 @@ inline void compare_compression(const theory::Run& run, const ThetaScheme& schem
     double apart = 0;
     for (std::size_t n = 0; n < energy.size(); ++n)
         apart = std::max(apart, std::fabs(energy[n] - energy[0] - work[n] - friction[n]));
-    if (keeps_energy(run.parameters, scheme))
+    if (keeps_energy(run.parameters, run.planned.scheme))
         summary.result("energy_less_work", apart / most, "1", 0, 1e-10,
                        "energy less work of plate and friction, over the work");
     summary.result_info("plate_work", work.back(), "energy", "at the end");
@@ -135,29 +198,19 @@ inline void compare_compression(const theory::Run& run, const ThetaScheme& schem
                         "of the energy at the end");
 }
 
-inline void compare_with_theory(const theory::Run& run, const ThetaScheme& scheme, const Ledger& l,
-                                common::Summary& summary) {
-    const Case& w = run.parameters;
-    compare_energy_theorem(run, scheme, l, summary);
-    const double none = std::numeric_limits<double>::infinity();
-    const bool keeps = keeps_energy(w, scheme) && w.problem.contact.friction == 0;
-    if (w.compare == "bar") {
-        if (scheme.consistent())
-            compare_oscillation(run, theory::bar_of(run).frequency(), scheme.theta, summary);
-        return;
-    }
-    if (w.compare == "oscillator") compare_oscillator(run, scheme, summary);
-    if (w.compare == "billet") compare_billet(run, summary);
-    if (w.compare == "compression") compare_compression(run, scheme, summary);
-    if (w.compare == "rebound") {
-        const auto total = run.history.column("momentum_x"), one = run.momentum_x();
-        double change = 0;
-        for (const double p : total) change = std::max(change, std::fabs(p - total.front()));
-        summary.result("momentum_change", change / std::fabs(one.front()), "1", 0, 1e-10,
-                       "of both grains, over that of one");
-    }
-    mpm::compare_with_theory(run, {.rebound = keeps ? 1e-8 : none, .bar = keeps ? 1e-8 : none},
-                             summary);
-}
+/// What a run of mpm_implicit can be compared with.
+inline constexpr theory::Comparison comparisons[] = {
+    {"rebound", theory::need_equal_disks, compare_rebound},
+    {"bar", need_bar, compare_bar},
+    {"standing_wave", theory::need_wave, theory::compare_standing_wave},
+    {"oscillator", theory::need_oscillator, compare_oscillator},
+    {"block", theory::need_incline, theory::compare_block},
+    {"cylinder", theory::need_incline, theory::compare_cylinder},
+    {"disk", theory::need_pressed_disk, theory::compare_disk, theory::center_columns},
+    {"bond", theory::need_bond, theory::compare_bond},
+    {"yield", theory::need_yielding, theory::compare_yield},
+    {"compression", nullptr, compare_compression},
+    {"billet", need_billet, compare_billet},
+    {"energy"}};  // the energy theorem, which is tried in every run
 
 }  // namespace mpm_implicit

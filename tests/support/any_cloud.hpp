@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "mpm_explicit/setup/case_of_grains.hpp"
+#include "mpm_explicit/setup/case.hpp"
 #include "mpm_explicit/transfer.hpp"
 #include "tests/support/any_numbers.hpp"
 

@@ -1,0 +1,138 @@
+// What a comparison with theory is, whatever the scheme: one object with its name, what it needs of
+// the case, its results, and the columns it adds to the history. Each program lists its own in its
+// theory/compare_with_theory.hpp; from the list come
+//     before the run:  the choices of theory.compare; what it needs, or the case is refused
+//     every row:       its columns
+//     after the run:   its results in summary.json
+#pragma once
+
+#include <algorithm>
+#include <span>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "common/run/history.hpp"
+#include "common/run/summary.hpp"
+#include "mpm_explicit/assembly.hpp"
+#include "mpm_explicit/setup/scales.hpp"
+
+namespace mpm::theory {
+
+/// What theory has to know of a scheme.
+struct SchemeFacts {
+    // How far the energy may change, relative; infinite for a scheme that is meant to take energy.
+    double rebound_tolerance = 0, bar_tolerance = 0;
+    double theta = 0.5;  // level of velocities and stresses in the step
+    bool consistent_mass = false;
+};
+
+/// A case with the outlines and materials of its grains.
+struct PlannedCase {
+    const Case& parameters;
+    SchemeFacts scheme;
+    std::vector<Material> materials = materials_of(parameters.problem);
+    std::vector<PlannedGrain> plans = plan_grains(parameters.problem, materials);
+
+    /// What a grain is made of, whether it is rigid, and how many are, or are not.
+    const Material& material_of(const PlannedGrain& plan) const { return materials[plan.material]; }
+    bool is_rigid(const PlannedGrain& plan) const { return material_of(plan).law == Law::rigid; }
+    long rigid_grains() const {
+        return std::count_if(plans.begin(), plans.end(), [&](auto& p) { return is_rigid(p); });
+    }
+    long free_grains() const { return long(plans.size()) - rigid_grains(); }
+
+    /// The number of the target grain: theory.grain, or the first that is not rigid.
+    std::size_t target() const {
+        const auto found = std::find_if(plans.begin(), plans.end(), [&](auto& plan) {
+            return parameters.grain.empty() ? !is_rigid(plan) : plan.name == parameters.grain;
+        });
+        return found == plans.end() ? 0 : found - plans.begin();
+    }
+
+    /// Whether every grain has this profile of its velocity.
+    bool has_profile(const char* name) const {
+        return std::all_of(plans.begin(), plans.end(), [&](const PlannedGrain& plan) {
+            return plan.from.profile == name && plan.from.amplitude != 0;
+        });
+    }
+    /// Whether this stands at an end of the mesh.
+    bool has_wall(Side side, const char* kind) const {
+        return parameters.problem.walls[side] == kind;
+    }
+
+    /// errors: InputError 'theory.compare = "..."' with the sentence, where it is impossible
+    void refuse(bool impossible, const std::string& sentence) const {
+        mpm::refuse(impossible, "theory.compare = \"" + parameters.compare + "\"" + sentence);
+    }
+};
+
+/// A run that has ended.
+struct FinishedRun {
+    const PlannedCase& planned;
+    const Scales& scales;
+    const Assembly& all;
+    const common::History& history;
+    double end;  // time
+    const Case& parameters = planned.parameters;
+
+    /// The target grain, its material, mass, and momentum along x in every row.
+    const Grain& grain() const { return all.grains[planned.target()]; }
+    const Material& material() const { return planned.materials[grain().material]; }
+    double mass() const {
+        double m = 0;
+        for (long p = grain().begin; p < grain().end; ++p) m += all.particles.m_p[p];
+        return m;
+    }
+    std::vector<double> momentum_x() const { return history.column("momentum_x_" + grain().name); }
+};
+
+/// One comparison. What it does not have is null.
+struct Comparison {
+    const char* name;
+    void (*needs)(const PlannedCase&) = nullptr;  // refuses a case that it cannot be made for
+    void (*result)(const FinishedRun&, common::Summary&) = nullptr;
+    void (*columns)(const PlannedCase&, const Assembly&, common::Row&) = nullptr;
+};
+
+/// The choices of theory.compare.
+inline std::vector<std::string> names_of(std::span<const Comparison> comparisons) {
+    std::vector<std::string> names{"none"};
+    for (const Comparison& comparison : comparisons) names.emplace_back(comparison.name);
+    return names;
+}
+
+/// The comparison that a case asks for; null for none.
+inline const Comparison* comparison_of(const Case& parameters,
+                                       std::span<const Comparison> comparisons) {
+    for (const Comparison& comparison : comparisons)
+        if (comparison.name == parameters.compare) return &comparison;
+    return nullptr;
+}
+
+/// Refuses a case that cannot be compared as it asks.
+/// errors: InputError with what is missing
+inline void validate_comparison(const PlannedCase& planned, const Scales& scales,
+                                std::span<const Comparison> comparisons) {
+    const Case& parameters = planned.parameters;
+    const Comparison* comparison = comparison_of(parameters, comparisons);
+    if (comparison == nullptr) return;
+    for (const auto& [key, name, rigid] : {std::tuple("theory.grain", parameters.grain, false),
+                                           std::tuple("theory.plate", parameters.plate, true)}) {
+        if (name.empty()) continue;
+        const std::string place = std::string(key) + ": ";
+        const auto found = std::find_if(planned.plans.begin(), planned.plans.end(),
+                                        [&, &n = name](auto& plan) { return plan.name == n; });
+        mpm::refuse(found == planned.plans.end(), place + "there is no grain '" + name + "'");
+        mpm::refuse(
+            planned.is_rigid(*found) != rigid,
+            place + "'" + name + "' is " + (rigid ? "not " : "") + "rigid: name another grain");
+    }
+    if (comparison->needs != nullptr) comparison->needs(planned);
+    const long rows = scales.steps / parameters.history_steps;
+    planned.refuse(rows < 10, " needs at least 10 rows of history, and there would be " +
+                                  std::to_string(rows) +
+                                  ": raise time.end or lower output.history_steps");
+}
+
+}  // namespace mpm::theory
