@@ -192,8 +192,8 @@ inline Assembly assemble(const Problem& w) {
 
         RigidMotion motion;
         motion.prescribed_vx = plan.from.velocity_x, motion.prescribed_vy = plan.from.velocity_y;
-        motion.servo_x = plan.from.control == "force_x";
-        motion.servo_y = plan.from.control == "force_y";
+        motion.force_control_x = plan.from.control == "force_x";
+        motion.force_control_y = plan.from.control == "force_y";
         motion.force = plan.from.force, motion.damping = plan.from.damping;
         motion.mass = material.density * area(plan.outline);
         all.rigid.push_back(motion);

@@ -60,11 +60,11 @@ class Contact {
             detail::solve(node);
             for (std::size_t k = 0; k < node.parties; ++k) {
                 if (node.party[k].is_fixed()) continue;
-                NodeMotion& v = nodes.motion[static_cast<std::size_t>(node.party[k].slot)];
+                NodeMotion& v = nodes.motion[static_cast<std::size_t>(node.party[k].dof)];
                 v.vx_0 = node.party[k].vx, v.vy_0 = node.party[k].vy;
             }
         });
-        spread_velocity(nodes);
+        fill_ghost_velocity(nodes);
     }
 
     /// Corrects v_i^1 at the shared nodes, once per step.
@@ -108,7 +108,7 @@ class Contact {
             }
             for (std::size_t k = 0; k < node.parties; ++k) {
                 if (node.party[k].is_fixed()) continue;
-                NodeMotion& v = nodes.motion[static_cast<std::size_t>(node.party[k].slot)];
+                NodeMotion& v = nodes.motion[static_cast<std::size_t>(node.party[k].dof)];
                 v.vx_1 = node.party[k].vx, v.vy_1 = node.party[k].vy;
             }
         });
@@ -125,7 +125,7 @@ class Contact {
             for (const detail::BondLoad& load : block.loads)
                 total[static_cast<std::size_t>(load.bond)] += load;
         for (std::size_t k = 0; k < bonds.size(); ++k) detail::take_load(total[k], dt, bonds[k]);
-        spread_velocity(nodes);
+        fill_ghost_velocity(nodes);
         return sums;
     }
 

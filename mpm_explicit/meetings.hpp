@@ -79,7 +79,7 @@ class Meetings {
         fetch_ahead(begin, end, nodes);
         for (long l = begin; l < end; ++l)
             present += members[l].is_wall() ||
-                       nodes.sums[static_cast<std::size_t>(members[l].slot)].m > nodes.least_mass();
+                       nodes.sums[static_cast<std::size_t>(members[l].dof)].m > nodes.least_mass();
         if (present < 2) return false;
         double node_x = 0, node_y = 0;
         for (long l = begin; l < end; ++l) {
@@ -89,16 +89,16 @@ class Meetings {
             if (member.is_wall()) {
                 if (node.parties == 0) return false;
                 party = {};
-                party.slot = -1, party.grain = member.grain, party.wall = true;
+                party.dof = -1, party.grain = member.grain, party.wall = true;
                 party.x = member.x - node_x, party.y = member.y - node_y;
                 ++node.parties;
                 continue;
             }
-            const auto slot = static_cast<std::size_t>(member.slot);
-            const NodeSums& sum = nodes.sums[slot];
+            const auto dof = static_cast<std::size_t>(member.dof);
+            const NodeSums& sum = nodes.sums[dof];
             if (!(sum.m > nodes.least_mass())) continue;
             const double per_m = 1 / sum.m;
-            party.slot = member.slot, party.grain = member.grain, party.wall = false;
+            party.dof = member.dof, party.grain = member.grain, party.wall = false;
             party.rigid = is_rigid_[static_cast<std::size_t>(member.grain)];
             party.m = sum.m, party.per_mx = party.per_my = party.rigid ? 0 : per_m;
             party.x = sum.mx * per_m - member.x, party.y = sum.my * per_m - member.y;
@@ -123,8 +123,8 @@ class Meetings {
         for (long l = begin + ahead; l < std::min(end + ahead, all); ++l) {
             const Member& member = nodes.members()[static_cast<std::size_t>(l)];
             if (member.is_wall()) continue;
-            __builtin_prefetch(&nodes.sums[static_cast<std::size_t>(member.slot)]);
-            __builtin_prefetch(&nodes.motion[static_cast<std::size_t>(member.slot)], 1);
+            __builtin_prefetch(&nodes.sums[static_cast<std::size_t>(member.dof)]);
+            __builtin_prefetch(&nodes.motion[static_cast<std::size_t>(member.dof)], 1);
         }
     }
 
@@ -134,11 +134,11 @@ class Meetings {
         for (std::size_t k = 0; k < node.parties; ++k) {
             detail::Party& party = node.party[k];
             if (party.wall) continue;
-            const NodeMotion& v = nodes.motion[static_cast<std::size_t>(party.slot)];
+            const NodeMotion& v = nodes.motion[static_cast<std::size_t>(party.dof)];
             party.vx_0 = v.vx_0, party.vy_0 = v.vy_0, party.vx = v.vx_1, party.vy = v.vy_1;
             if (party.rigid) continue;
-            if (nodes.is_fixed_x(party.slot)) party.per_mx = 0, node.isotropic = false;
-            if (nodes.is_fixed_y(party.slot)) party.per_my = 0, node.isotropic = false;
+            if (nodes.is_fixed_x(party.dof)) party.per_mx = 0, node.isotropic = false;
+            if (nodes.is_fixed_y(party.dof)) party.per_my = 0, node.isotropic = false;
         }
         detail::weigh_pairs(node);
     }

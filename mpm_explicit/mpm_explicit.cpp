@@ -8,7 +8,7 @@
 // Run:   build/mpm_explicit mpm_explicit/cases/rebound.toml contact.separation=0
 //
 // Reading order: step.hpp; then particles.hpp, shapes.hpp, grain_nodes.hpp, transfer.hpp, strain.hpp,
-// update_stress.hpp, accelerate_nodes.hpp, contact.hpp, move_particles.hpp, ledger.hpp.
+// update_stress.hpp, accelerate_nodes.hpp, contact.hpp, move_particles.hpp, budget.hpp.
 #include <optional>
 
 #include "common/run/start.hpp"
@@ -44,17 +44,17 @@ int run_case(const Shape& shape, const Case& parameters, const Scales& scales, c
     long step = 0;
     if (run.restarting()) {
         run.restore(state, step);
-        nodes.lay_out(grains, state.frame);
+        nodes.lay_out(grains, state.layout);
     } else {
-        nodes.sort(grains, particles, state.frame);
+        nodes.sort(grains, particles, state.layout);
         start_leapfrog(shape, laws, contact, parameters.frozen, dt, nodes, state);
     }
 
     // 3. The loop of the slide.
     while (run.not_finished(step, scales.steps)) {
-        if (nodes.sort_is_due(state.frame)) nodes.sort(grains, particles, state.frame);
+        if (nodes.sort_is_due(state.layout)) nodes.sort(grains, particles, state.layout);
         recorder.snapshot(step, state, run);
-        const BodyForce body = drive(parameters.problem, step, dt, rigid);
+        const BodyForce body = apply_loads(parameters.problem, step, dt, rigid);
         take_step(shape, laws, contact, body, parameters.flip, parameters.frozen, dt, nodes, state,
                   sums);  // [MPM-4, 9 ... 12]
         recorder.record(step, sums, nodes, state, run);

@@ -12,7 +12,7 @@ namespace detail {
 
 /// Who is at a node, with mass.
 struct Party {
-    long slot;
+    long dof;
     int grain;  // of a wall: its side
     bool wall, rigid;
     double per_mx, per_my;  // 1/m_i; 0 where nothing changes the velocity

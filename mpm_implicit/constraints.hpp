@@ -6,7 +6,7 @@
 //     y <- y - sum_k q_k (q_k . y - g_k)
 // g_k comes from those whose velocity is given. A plate that a force drives has a velocity of its
 // own, V: then g_k = g_k^0 + g_k^V V, and the space is spanned by one more vector per plate, e_V.
-// Different nodes share no slot, so that projection is exact whatever the number of pairs.
+// Different nodes share no dof, so that projection is exact whatever the number of pairs.
 #pragma once
 
 #include "mpm_implicit/contact_set.hpp"
@@ -17,11 +17,11 @@ namespace mpm_implicit {
 class Constraints {
    public:
     /// Takes the rows of all closed pairs.
-    /// in:     scale, D^{-1/2} of every slot, 0 where the velocity cannot change; only_bonds: leave
+    /// in:     scale, D^{-1/2} of every dof, 0 where the velocity cannot change; only_bonds: leave
     ///         out those who merely press
-    void build(const ContactSet& set, const Vector& scale, long size, std::size_t servos,
+    void build(const ContactSet& set, const Vector& scale, long size, std::size_t force_controls,
                bool only_bonds) {
-        set_ = &set, scale_ = &scale, size_ = size, rights_ = servos + 1;
+        set_ = &set, scale_ = &scale, size_ = size, rights_ = force_controls + 1;
         rows_.clear(), basis_.clear(), right_.clear(), factor_.clear(), blocks_.clear();
         for (std::size_t n = 0; n < set.nodes.size(); ++n) {
             Block block{n, rows_.size(), 0, basis_.size(), right_.size(), factor_.size()};
@@ -50,7 +50,7 @@ class Constraints {
 
     /// Changes v as little as possible, in the measure of D, so that it obeys all closed pairs.
     /// in:     V, velocities of the plates that forces drive
-    void obey(const std::vector<double>& V, Vector& v) const {
+    void enforce(const std::vector<double>& V, Vector& v) const {
         for_each(true, v, [&](const double* q, const double* g, double* local, std::size_t width) {
             double size = dot(q, local, width) - g[0];
             for (std::size_t s = 0; s < V.size(); ++s) size -= g[1 + s] * V[s];
@@ -59,7 +59,7 @@ class Constraints {
     }
 
     /// v += V e_V: what the plates' velocities add.
-    void add_plates(const double* V, Vector& v) const {
+    void add_controlled_motion(const double* V, Vector& v) const {
         if (rights_ == 1) return;
         for_each(true, v, [&](const double* q, const double* g, double* local, std::size_t width) {
             double size = 0;
@@ -69,7 +69,7 @@ class Constraints {
     }
 
     /// e_V . r of every plate, and e_V . D e_V.
-    void plates_feel(const Vector& r, double* sums) const {
+    void controlled_force(const Vector& r, double* sums) const {
         std::fill_n(sums, rights_ - 1, 0.0);
         if (rights_ == 1) return;
         Local local{};
@@ -81,7 +81,7 @@ class Constraints {
             }
         }
     }
-    void plates_weigh(double* sums) const {
+    void controlled_diagonal(double* sums) const {
         std::fill_n(sums, rights_ - 1, 0.0);
         for (const Block& block : blocks_)
             for (std::size_t k = 0; k < block.rank; ++k)
@@ -122,7 +122,7 @@ class Constraints {
     };
 
     bool driven(const MeetingNode& node, std::size_t who) const {
-        return set_->meeters[node.meeter_begin + who].servo >= 0;
+        return set_->meeters[node.meeter_begin + who].force_control >= 0;
     }
     const MeetingNode& node_of(const Block& block) const { return set_->nodes[block.node]; }
     std::size_t width(const Block& block) const {
@@ -150,14 +150,16 @@ class Constraints {
         for (const auto& [who, sign] : {std::pair(pair.a, -1.0), std::pair(pair.b, 1.0)}) {
             const Meeter& is = set_->meeters[node.meeter_begin + who];
             if (is.fixed) {
-                const bool drive_x = is.servo >= 0 && is.servo_along_x,
-                           drive_y = is.servo >= 0 && !is.servo_along_x;
+                const bool drive_x = is.force_control >= 0 && is.control_along_x,
+                           drive_y = is.force_control >= 0 && !is.control_along_x;
                 right[0] -= sign * ((drive_x ? 0 : is.vx) * x + (drive_y ? 0 : is.vy) * y);
-                if (is.servo >= 0 && static_cast<std::size_t>(1 + is.servo) < rights_)
-                    right[static_cast<std::size_t>(1 + is.servo)] -= sign * (drive_x ? x : y);
+                if (is.force_control >= 0 &&
+                    static_cast<std::size_t>(1 + is.force_control) < rights_)
+                    right[static_cast<std::size_t>(1 + is.force_control)] -=
+                        sign * (drive_x ? x : y);
             } else {
-                row[2 * who] = sign * x * (*scale_)[is.slot];
-                row[2 * who + 1] = sign * y * (*scale_)[size_ + is.slot];
+                row[2 * who] = sign * x * (*scale_)[is.dof];
+                row[2 * who + 1] = sign * y * (*scale_)[size_ + is.dof];
             }
         }
         const double size = std::sqrt(dot(row.data(), row.data(), wide));
@@ -191,13 +193,9 @@ class Constraints {
             const std::size_t i = 2 * (m - node.meeter_begin);
             local[i] = local[i + 1] = 0;
             if (is.fixed) continue;
-            for (const auto& [at, slot] :
-                 {std::pair(i, is.slot), std::pair(i + 1, size_ + is.slot)}) {
-                const double s = (*scale_)[slot];
-                local[at] = power == 0  ? v[slot]
-                            : power > 0 ? s * v[slot]
-                            : s > 0     ? v[slot] / s
-                                        : 0;
+            for (const auto& [at, dof] : {std::pair(i, is.dof), std::pair(i + 1, size_ + is.dof)}) {
+                const double s = (*scale_)[dof];
+                local[at] = power == 0 ? v[dof] : power > 0 ? s * v[dof] : s > 0 ? v[dof] / s : 0;
             }
         }
     }
@@ -207,13 +205,12 @@ class Constraints {
             const Meeter& is = set_->meeters[m];
             const std::size_t i = 2 * (m - node.meeter_begin);
             if (is.fixed) continue;
-            for (const auto& [at, slot] :
-                 {std::pair(i, is.slot), std::pair(i + 1, size_ + is.slot)}) {
-                const double s = (*scale_)[slot];
+            for (const auto& [at, dof] : {std::pair(i, is.dof), std::pair(i + 1, size_ + is.dof)}) {
+                const double s = (*scale_)[dof];
                 if (power == 0)
-                    v[slot] = local[at];
+                    v[dof] = local[at];
                 else if (s > 0)
-                    v[slot] = local[at] * s;
+                    v[dof] = local[at] * s;
             }
         }
     }

@@ -28,12 +28,12 @@ enum class Hold : int { open, slip, stick };
 
 /// One grain, rigid grain or wall at a node where grains meet.
 struct Meeter {
-    long slot;                   // -1: a wall
-    int grain;                   // a wall: -1 - its side
-    bool fixed;                  // its velocity is given
-    double vx, vy;               // then: the velocity
-    int servo = -1;              // a rigid grain that a force drives: its number ...
-    bool servo_along_x = false;  // ... and direction; the velocity in that direction is not given
+    long dof;                      // -1: a wall
+    int grain;                     // a wall: -1 - its side
+    bool fixed;                    // its velocity is given
+    double vx, vy;                 // then: the velocity
+    int force_control = -1;        // a rigid grain that a force drives: its number ...
+    bool control_along_x = false;  // ... and direction; the velocity in that direction is not given
 };
 
 /// Grains have numbers from 0, walls from -1 down.
@@ -74,7 +74,8 @@ class ContactSet {
     /// who approach.
     /// in:     where, with v_0 to judge approach by; memory, sorted
     void find(const Contact& contact, const GrainNodes& where, const std::vector<Bond>& bonds,
-              const std::vector<RigidMotion>& rigid, const std::vector<Servo>& servos,
+              const std::vector<RigidMotion>& rigid,
+              const std::vector<ForceControl>& force_controls,
               const std::vector<PairMemory>& memory) {
         struct Block {
             std::vector<MeetingNode> nodes;
@@ -87,14 +88,14 @@ class ContactSet {
             MeetingNode here{block.meeters.size(), 0, block.pairs.size(), 0, node.key};
             for (std::size_t k = 0; k < node.parties; ++k) {
                 const detail::Party& party = node.party[k];
-                Meeter meeter{party.slot, number_of(party), party.is_fixed(), 0, 0};
+                Meeter meeter{party.dof, number_of(party), party.is_fixed(), 0, 0};
                 if (party.rigid) {
                     const auto g = static_cast<std::size_t>(party.grain);
                     meeter.vx = rigid[g].vx, meeter.vy = rigid[g].vy;
-                    for (std::size_t s = 0; s < servos.size(); ++s) {
-                        if (servos[s].grain != g) continue;
-                        meeter.servo = static_cast<int>(s);
-                        meeter.servo_along_x = servos[s].along_x;
+                    for (std::size_t s = 0; s < force_controls.size(); ++s) {
+                        if (force_controls[s].grain != g) continue;
+                        meeter.force_control = static_cast<int>(s);
+                        meeter.control_along_x = force_controls[s].along_x;
                     }
                 }
                 block.meeters.push_back(meeter);
@@ -160,7 +161,7 @@ class ContactSet {
             if (pair < node.pair_begin || pair >= node.pair_end) continue;
             const auto name = [&](std::size_t k) {
                 const Meeter& is = meeters[node.meeter_begin + k];
-                return is.slot < 0
+                return is.dof < 0
                            ? std::string("a wall")
                            : "grain '" + grains[static_cast<std::size_t>(is.grain)].name + "'";
             };

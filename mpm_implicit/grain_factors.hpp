@@ -18,12 +18,12 @@ class GrainFactors {
     void factorize(const GrainMatrix<reach>& matrix, const Vector& scale,
                    const std::vector<Grain>& grains, const GrainNodes& nodes) {
         size_ = nodes.size();
-        const Homes homes(nodes);
+        const MasterDofs masters(nodes);
         number_.assign(static_cast<std::size_t>(size_), -1);
         factors_.resize(grains.size());
         common::for_each_row(static_cast<long>(grains.size()), [&](long g) {
             if (!grains[static_cast<std::size_t>(g)].rigid)
-                factorize(matrix, scale, nodes, homes, static_cast<int>(g));
+                factorize(matrix, scale, nodes, masters, static_cast<int>(g));
         });
     }
 
@@ -37,8 +37,8 @@ class GrainFactors {
             double* y = x.data();
             for (long i = 0; i < n; ++i) {
                 const float *L_0 = f.row(i, 0), *L_1 = f.row(i, 1);
-                double sum_0 = f.moves(i, 0) ? r[f.slot(i)] : 0,
-                       sum_1 = f.moves(i, 1) ? r[size_ + f.slot(i)] : 0;
+                double sum_0 = f.moves(i, 0) ? r[f.dof(i)] : 0,
+                       sum_1 = f.moves(i, 1) ? r[size_ + f.dof(i)] : 0;
 #pragma omp simd reduction(- : sum_0, sum_1)
                 for (long j = 2 * f.first_of(i); j < 2 * i; ++j)
                     sum_0 -= L_0[j] * y[j], sum_1 -= L_1[j] * y[j];
@@ -52,8 +52,8 @@ class GrainFactors {
 #pragma omp simd
                 for (long j = 2 * f.first_of(i); j < 2 * i; ++j)
                     y[j] -= value_0 * L_0[j] + value_1 * L_1[j];
-                if (f.moves(i, 0)) z[f.slot(i)] = value_0;
-                if (f.moves(i, 1)) z[size_ + f.slot(i)] = value_1;
+                if (f.moves(i, 0)) z[f.dof(i)] = value_0;
+                if (f.moves(i, 1)) z[size_ + f.dof(i)] = value_1;
             }
         });
     }
@@ -62,7 +62,7 @@ class GrainFactors {
     // Rows 2 i and 2 i + 1 are the velocities of node i along x and y; what cannot move has a one on
     // the diagonal and nothing else.
     struct Factor {
-        std::vector<long> slots;              // of the nodes
+        std::vector<long> dofs;               // of the nodes
         std::vector<unsigned char> can_move;  // 1 for x, 2 for y
         std::vector<long> first;              // of each node, the first one its rows reach back to
         std::vector<long> begin;              // of each row, where column 0 would be
@@ -72,8 +72,8 @@ class GrainFactors {
         static std::size_t at(long i, int component) {
             return static_cast<std::size_t>(2 * i + component);
         }
-        long size() const { return static_cast<long>(slots.size()); }
-        long slot(long i) const { return slots[static_cast<std::size_t>(i)]; }
+        long size() const { return static_cast<long>(dofs.size()); }
+        long dof(long i) const { return dofs[static_cast<std::size_t>(i)]; }
         long first_of(long i) const { return first[static_cast<std::size_t>(i)]; }
         bool moves(long i, int component) const {
             return (can_move[static_cast<std::size_t>(i)] >> component & 1) != 0;
@@ -85,24 +85,24 @@ class GrainFactors {
 
     template <int reach>
     void factorize(const GrainMatrix<reach>& matrix, const Vector& scale, const GrainNodes& nodes,
-                   const Homes& homes, int grain) {
+                   const MasterDofs& masters, int grain) {
         Factor& f = factors_[static_cast<std::size_t>(grain)];
-        f.slots.clear(), f.can_move.clear();
-        matrix.for_each_node_of(grain, nodes, [&](long slot) {
-            const int moves = (scale[slot] > 0 ? 1 : 0) + (scale[size_ + slot] > 0 ? 2 : 0);
+        f.dofs.clear(), f.can_move.clear();
+        matrix.for_each_node_of(grain, nodes, [&](long dof) {
+            const int moves = (scale[dof] > 0 ? 1 : 0) + (scale[size_ + dof] > 0 ? 2 : 0);
             if (moves == 0) return;
-            number_[static_cast<std::size_t>(slot)] = f.size();
-            f.slots.push_back(slot), f.can_move.push_back(static_cast<unsigned char>(moves));
+            number_[static_cast<std::size_t>(dof)] = f.size();
+            f.dofs.push_back(dof), f.can_move.push_back(static_cast<unsigned char>(moves));
         });
         const long n = f.size();
         // The envelope, then its entries.
-        f.first.resize(f.slots.size());
+        f.first.resize(f.dofs.size());
         for (long i = 0; i < n; ++i) f.first[static_cast<std::size_t>(i)] = i;
-        for_each_entry(matrix, grain, nodes, homes, f, [&](long i, int, long j, int, double) {
+        for_each_entry(matrix, grain, nodes, masters, f, [&](long i, int, long j, int, double) {
             long& first = f.first[static_cast<std::size_t>(std::max(i, j))];
             first = std::min({first, i, j});
         });
-        f.begin.resize(2 * f.slots.size());
+        f.begin.resize(2 * f.dofs.size());
         long length = 0;
         for (long i = 0; i < n; ++i) {
             for (const int component : {0, 1}) {
@@ -114,8 +114,8 @@ class GrainFactors {
         const auto row = [&](long i, int component) {
             return entries.data() + f.begin_of(i, component);
         };
-        f.pivots.resize(2 * f.slots.size());
-        for_each_entry(matrix, grain, nodes, homes, f,
+        f.pivots.resize(2 * f.dofs.size());
+        for_each_entry(matrix, grain, nodes, masters, f,
                        [&](long i, int a, long j, int b, double value) {
                            if (i > j || (i == j && a >= b))
                                row(i, a)[2 * j + b] += value;
@@ -167,22 +167,25 @@ class GrainFactors {
     // both can move, of each pair of entries one.
     template <int reach, class Work>
     void for_each_entry(const GrainMatrix<reach>& matrix, int grain, const GrainNodes& nodes,
-                        const Homes& homes, const Factor& f, const Work& work) const {
+                        const MasterDofs& masters, const Factor& f, const Work& work) const {
         matrix.for_each_block_of(
             grain, nodes, [&](long one, long two, double xx, double xy, double yx, double yy) {
                 const auto a = static_cast<std::size_t>(one), b = static_cast<std::size_t>(two);
-                const long i = number_[static_cast<std::size_t>(homes.slot[a])],
-                           j = number_[static_cast<std::size_t>(homes.slot[b])];
+                const long i = number_[static_cast<std::size_t>(masters.dof[a])],
+                           j = number_[static_cast<std::size_t>(masters.dof[b])];
                 if (i < 0 || j < 0) return;
                 const bool same = one == two;
-                // Two slots that stand for one: the entry and its transpose meet on the diagonal.
+                // Two dofs that stand for one: the entry and its transpose meet on the diagonal.
                 const double twice = i == j && !same ? 2 : 1;
                 const bool i_x = f.moves(i, 0), i_y = f.moves(i, 1), j_x = f.moves(j, 0),
                            j_y = f.moves(j, 1);
-                if (i_x && j_x) work(i, 0, j, 0, twice * homes.sign_x[a] * homes.sign_x[b] * xx);
-                if (i_y && j_y) work(i, 1, j, 1, twice * homes.sign_y[a] * homes.sign_y[b] * yy);
-                if (i_x && j_y) work(i, 0, j, 1, homes.sign_x[a] * homes.sign_y[b] * xy);
-                if (!same && i_y && j_x) work(i, 1, j, 0, homes.sign_y[a] * homes.sign_x[b] * yx);
+                if (i_x && j_x)
+                    work(i, 0, j, 0, twice * masters.sign_x[a] * masters.sign_x[b] * xx);
+                if (i_y && j_y)
+                    work(i, 1, j, 1, twice * masters.sign_y[a] * masters.sign_y[b] * yy);
+                if (i_x && j_y) work(i, 0, j, 1, masters.sign_x[a] * masters.sign_y[b] * xy);
+                if (!same && i_y && j_x)
+                    work(i, 1, j, 0, masters.sign_y[a] * masters.sign_x[b] * yx);
             });
     }
 

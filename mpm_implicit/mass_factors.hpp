@@ -2,7 +2,7 @@
 //
 // It makes v^0 cheap, and it tells which nodes the particles cannot tell apart: where the motion of a
 // node is, at all particles, nearly that of nodes before it, its pivot is nearly zero, and v^0 there
-// would be anything. Such nodes are tied to a neighbor. Ties that are made afterwards, the signs of walls,
+// would be anything. Such nodes are constrained to a neighbor. Constraints made afterwards, the signs of walls,
 // and single precision make it a preconditioner.
 #pragma once
 
@@ -18,16 +18,17 @@ class MassFactors {
     template <int reach>
     std::vector<long> factorize(const GrainMatrix<reach>& matrix, const std::vector<Grain>& grains,
                                 const GrainNodes& nodes) {
-        const Homes homes(nodes);
+        const MasterDofs masters(nodes);
         size_ = nodes.size();
         number_.assign(static_cast<std::size_t>(size_), -1);
         factors_.resize(grains.size());
         common::for_each_row(static_cast<long>(grains.size()), [&](long g) {
             if (!grains[static_cast<std::size_t>(g)].rigid)
-                factorize(matrix, nodes, homes, static_cast<int>(g));
+                factorize(matrix, nodes, masters, static_cast<int>(g));
         });
         std::vector<long> all;
-        for (const Factor& f : factors_) all.insert(all.end(), f.blind.begin(), f.blind.end());
+        for (const Factor& f : factors_)
+            all.insert(all.end(), f.rank_deficient.begin(), f.rank_deficient.end());
         return all;
     }
 
@@ -36,12 +37,12 @@ class MassFactors {
         z.setZero();
         common::for_each_row(static_cast<long>(factors_.size()), [&](long g) {
             const Factor& f = factors_[static_cast<std::size_t>(g)];
-            const long n = static_cast<long>(f.slots.size());
+            const long n = static_cast<long>(f.dofs.size());
             std::vector<double> both(static_cast<std::size_t>(2 * n));
             double *x = both.data(), *y = x + n;
             for (long i = 0; i < n; ++i) {
                 const float* L = f.row(i);
-                double sum_x = r[f.slot(i)], sum_y = r[size_ + f.slot(i)];
+                double sum_x = r[f.dof(i)], sum_y = r[size_ + f.dof(i)];
 #pragma omp simd reduction(- : sum_x, sum_y)
                 for (long j = f.first_of(i); j < i; ++j) sum_x -= L[j] * x[j], sum_y -= L[j] * y[j];
                 x[i] = sum_x * f.per_pivot(i), y[i] = sum_y * f.per_pivot(i);
@@ -52,8 +53,8 @@ class MassFactors {
 #pragma omp simd
                 for (long j = f.first_of(i); j < i; ++j) x[j] -= v_x * L[j], y[j] -= v_y * L[j];
                 const double alone = f.alone[static_cast<std::size_t>(i)];
-                z[f.slot(i)] = v_x + alone * r[f.slot(i)];
-                z[size_ + f.slot(i)] = v_y + alone * r[size_ + f.slot(i)];
+                z[f.dof(i)] = v_x + alone * r[f.dof(i)];
+                z[size_ + f.dof(i)] = v_y + alone * r[size_ + f.dof(i)];
             }
         });
     }
@@ -62,42 +63,42 @@ class MassFactors {
     static constexpr double least_pivot = 1e-3;  // of the diagonal
 
     struct Factor {
-        std::vector<long> slots, blind;
+        std::vector<long> dofs, rank_deficient;
         std::vector<long> first, begin;  // of each row: first column; where column 0 would be
         std::vector<float> L;
         std::vector<double> pivots;  // reciprocals of the diagonal of L; 0 for a node left out
         std::vector<double>
-            alone;  // 1/M_ii of a node left out, which may have no one to be tied to
+            alone;  // 1/M_ii of a node left out, which may have no neighbor to be constrained to
 
-        long slot(long i) const { return slots[static_cast<std::size_t>(i)]; }
+        long dof(long i) const { return dofs[static_cast<std::size_t>(i)]; }
         long first_of(long i) const { return first[static_cast<std::size_t>(i)]; }
         double per_pivot(long i) const { return pivots[static_cast<std::size_t>(i)]; }
         const float* row(long i) const { return L.data() + begin[static_cast<std::size_t>(i)]; }
     };
 
     template <int reach>
-    void factorize(const GrainMatrix<reach>& matrix, const GrainNodes& nodes, const Homes& homes,
-                   int grain) {
+    void factorize(const GrainMatrix<reach>& matrix, const GrainNodes& nodes,
+                   const MasterDofs& masters, int grain) {
         Factor& f = factors_[static_cast<std::size_t>(grain)];
-        f.slots.clear(), f.blind.clear();
-        matrix.for_each_node_of(grain, nodes, [&](long slot) {
-            if (!(nodes.sums[static_cast<std::size_t>(slot)].m > nodes.least_mass())) return;
-            number_[static_cast<std::size_t>(slot)] = static_cast<long>(f.slots.size());
-            f.slots.push_back(slot);
+        f.dofs.clear(), f.rank_deficient.clear();
+        matrix.for_each_node_of(grain, nodes, [&](long dof) {
+            if (!(nodes.sums[static_cast<std::size_t>(dof)].m > nodes.least_mass())) return;
+            number_[static_cast<std::size_t>(dof)] = static_cast<long>(f.dofs.size());
+            f.dofs.push_back(dof);
         });
         const auto for_each_entry = [&](const auto& work) {
             matrix.for_each_mass_of(grain, nodes, [&](long one, long two, double m) {
                 const long i = number_[static_cast<std::size_t>(
-                               homes.slot[static_cast<std::size_t>(one)])],
+                               masters.dof[static_cast<std::size_t>(one)])],
                            j = number_[static_cast<std::size_t>(
-                               homes.slot[static_cast<std::size_t>(two)])];
+                               masters.dof[static_cast<std::size_t>(two)])];
                 if (i >= 0 && j >= 0)
                     work(std::max(i, j), std::min(i, j), i == j && one != two ? 2 * m : m);
             });
         };
-        const long n = static_cast<long>(f.slots.size());
-        f.first.resize(f.slots.size()), f.begin.resize(f.slots.size());
-        f.pivots.resize(f.slots.size()), f.alone.assign(f.slots.size(), 0);
+        const long n = static_cast<long>(f.dofs.size());
+        f.first.resize(f.dofs.size()), f.begin.resize(f.dofs.size());
+        f.pivots.resize(f.dofs.size()), f.alone.assign(f.dofs.size(), 0);
         for (long i = 0; i < n; ++i) f.first[static_cast<std::size_t>(i)] = i;
         for_each_entry([&](long high, long low, double) {
             long& first = f.first[static_cast<std::size_t>(high)];
@@ -130,7 +131,7 @@ class MassFactors {
             const bool seen = pivot > least_pivot * L_i[i];
             f.pivots[static_cast<std::size_t>(i)] = seen ? 1 / std::sqrt(pivot) : 0;
             if (seen) continue;
-            f.blind.push_back(f.slot(i));
+            f.rank_deficient.push_back(f.dof(i));
             f.alone[static_cast<std::size_t>(i)] = 1 / L_i[i];
             std::fill(L_i + f.first_of(i), L_i + i, 0.0);
         }

@@ -6,10 +6,7 @@
 // Run:   build/mpm_implicit mpm_implicit/cases/rebound.toml time.alpha=5
 // Run:   build/mpm_implicit mpm_implicit/cases/rebound.toml method.mass=lumped
 //
-// Reading order: step.hpp; then node_rows.hpp, stencil.hpp, grain_matrix.hpp, contact_set.hpp, constraints.hpp,
-// projected_cg.hpp, grain_factors.hpp, mass_factors.hpp, settle_contact.hpp, solve_nodes.hpp,
-// update_stress.hpp, move_particles.hpp, ledger.hpp; then solve_with_newton.hpp.
-// What both programs share is in mpm_explicit/.
+// Reading order: step.hpp; then as the README says. What both programs share is in mpm_explicit/.
 #include <optional>
 
 #include "common/run/start.hpp"
@@ -33,12 +30,9 @@ int run_case(const Shape& shape, const Case& parameters, const ThetaScheme& sche
     // 2. Particles at t = 0.
     State state;
     state.assembly = assemble(parameters.problem);
-    Particles& particles = state.assembly.particles;
-    const std::vector<Grain>& grains = state.assembly.grains;
-    std::vector<RigidMotion>& rigid = state.assembly.rigid;
-    std::vector<Bond>& bonds = state.assembly.bonds;
+    Assembly& all = state.assembly;
     const std::vector<AnyLaw> laws = laws_of(parameters.problem);
-    const Contact contact(parameters.problem.contact, grains, bonds);
+    const Contact contact(parameters.problem.contact, all.grains, all.bonds);
     const double dt = scales.dt;
     GrainNodes nodes(parameters.problem.mesh(), Shape::width, scales.least_mass);
     StepScratch<Shape::width - 1> scratch{laws, scheme, contact, parameters.flip, parameters.frozen,
@@ -48,18 +42,19 @@ int run_case(const Shape& shape, const Case& parameters, const ThetaScheme& sche
     long step = 0;
     if (run.restarting()) {
         run.restore(state, step);
-        nodes.lay_out(grains, state.frame);
+        nodes.lay_out(all.grains, state.layout);
     } else {
-        nodes.sort(grains, particles, state.frame);
-        open_ledger(state.assembly, laws, state.ledger);
+        nodes.sort(all.grains, all.particles, state.layout);
+        start_budget(all, laws, state.budget);
         recorder.start(state, run);
     }
 
     // 3. The loop of the slide.
     while (run.not_finished(step, scales.steps)) {
-        if (nodes.sort_is_due(state.frame)) nodes.sort(grains, particles, state.frame);
+        if (nodes.sort_is_due(state.layout)) nodes.sort(all.grains, all.particles, state.layout);
         recorder.snapshot(step, state, run);
-        const BodyForce body = drive(parameters.problem, step, dt, rigid, scratch.solver.servos);
+        const BodyForce body =
+            apply_loads(parameters.problem, step, dt, all.rigid, scratch.solver.force_controls);
         take_step(shape, body, dt, scratch, nodes, state, sums);  // [MPM-5 ... 8]
         recorder.record(step, sums, nodes, state, run);           // [MPM-13]
         ++step;
@@ -71,7 +66,7 @@ int run_case(const Shape& shape, const Case& parameters, const ThetaScheme& sche
         recorder.snapshot(step, state, run);
         recorder.finish(step, state, run);
     }
-    return run.finish(step, static_cast<double>(particles.count()));
+    return run.finish(step, static_cast<double>(all.particles.count()));
 }
 
 int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
@@ -89,11 +84,9 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
              scales.steps, scales.bytes, parameters.checkpoint_steps},
             holder))
         return 0;
-    common::Run& run = *holder;
-
     int status = 0;
     with_shape(parameters.scheme(), [&](const auto& shape) {
-        status = run_case(shape, parameters, scheme, scales, run);
+        status = run_case(shape, parameters, scheme, scales, *holder);
     });
     return status;
 }

@@ -28,7 +28,7 @@ struct CgWorkspace {
 };
 
 /// What the plates add to the system: diagonal theta (m + dt c), right-hand side, velocities.
-struct PlateSystem {
+struct ControlledGrains {
     std::vector<double> diagonal, b, V;
 };
 
@@ -50,19 +50,19 @@ inline double dot(const Vector& a, const Vector& b) {
 ///         built with scale = D^{-1/2}; b; tolerance on |D^{-1/2} (b - A v)| without what the pairs
 ///         forbid, over |D^{-1/2} b| or, if that is more, what it was with v as given and with the
 ///         impulses of the pairs
-/// in/out: v and plates.V, which obey the constraints
+/// in/out: v and controlled.V, which obey the constraints
 /// out:    work.r = b - A v, which is -H^T lambda when converged
 /// exact:  converged means the residual is that small, or as small as round-off of A v
 template <class Multiply, class Precondition>
 CgResult projected_cg(const Multiply& multiply, const Precondition& precondition,
                       const Constraints& constraints, const Vector& scale, const Vector& b,
-                      double tolerance, long max_iterations, Vector& v, PlateSystem& plates,
-                      CgWorkspace& work) {
-    const std::size_t count = plates.V.size();
+                      double tolerance, long max_iterations, Vector& v,
+                      ControlledGrains& controlled, CgWorkspace& work) {
+    const std::size_t count = controlled.V.size();
     const long n = v.size();
     std::vector<double> r_V(count), p_V(count), q_V(count), d_V(count);
-    constraints.plates_weigh(d_V.data());
-    for (std::size_t s = 0; s < count; ++s) d_V[s] += plates.diagonal[s];
+    constraints.controlled_diagonal(d_V.data());
+    for (std::size_t s = 0; s < count; ++s) d_V[s] += controlled.diagonal[s];
     Vector &p = work.p, &full = work.full;
     double *r = work.r.data(), *t = work.t.data();
     const double *q = work.q.data(), *s_D = scale.data();
@@ -80,9 +80,9 @@ CgResult projected_cg(const Multiply& multiply, const Precondition& precondition
             n);
         size_r = dot(work.t, work.t);
         constraints.project(work.t);
-        constraints.plates_feel(work.r, r_V.data());
+        constraints.controlled_force(work.r, r_V.data());
         for (std::size_t s = 0; s < count; ++s)
-            r_V[s] += plates.b[s] - plates.diagonal[s] * plates.V[s];
+            r_V[s] += controlled.b[s] - controlled.diagonal[s] * controlled.V[s];
     };
     const auto size_of = [&] {  // squared, in the measure of 1/D
         double sum = dot(work.t, work.t);
@@ -91,7 +91,7 @@ CgResult projected_cg(const Multiply& multiply, const Precondition& precondition
     };
 
     double size_b = 0, size_v = 0;
-    for (std::size_t s = 0; s < count; ++s) size_b += plates.b[s] * plates.b[s] / d_V[s];
+    for (std::size_t s = 0; s < count; ++s) size_b += controlled.b[s] * controlled.b[s] / d_V[s];
     size_b += common::sum_over_blocks(n, [&](long begin, long end) {
         double sum = 0;
         for (long i = begin; i < end; ++i) sum += s_D[i] * b[i] * (s_D[i] * b[i]);
@@ -138,19 +138,19 @@ CgResult projected_cg(const Multiply& multiply, const Precondition& precondition
                     for (long i = begin; i < end; ++i) to[i] = s_D[i] * z[i] + beta * to[i];
                 },
                 n);
-            if (count > 0) full = p, constraints.add_plates(p_V.data(), full);
+            if (count > 0) full = p, constraints.add_controlled_motion(p_V.data(), full);
             Vector& direction = count > 0 ? full : p;
             multiply(direction, work.q);
-            constraints.plates_feel(work.q, q_V.data());
+            constraints.controlled_force(work.q, q_V.data());
             double curvature = dot(p, work.q);
             for (std::size_t s = 0; s < count; ++s) {
-                q_V[s] += plates.diagonal[s] * p_V[s];
+                q_V[s] += controlled.diagonal[s] * p_V[s];
                 curvature += p_V[s] * q_V[s];
             }
             if (!(curvature > 0)) break;
             const double alpha = along / curvature;
             for (std::size_t s = 0; s < count; ++s)
-                plates.V[s] += alpha * p_V[s], r_V[s] -= alpha * q_V[s];
+                controlled.V[s] += alpha * p_V[s], r_V[s] -= alpha * q_V[s];
             const double* d = direction.data();
             double* v_now = v.data();
             common::for_each_block(

@@ -48,9 +48,9 @@ inline Change correct(const Vector& v, const std::vector<double>& V, const Grain
     for (const MeetingPair& pair : set.pairs)
         largest = std::max({largest, std::fabs(pair.lambda_n), std::fabs(pair.lambda_t)});
     const auto velocity = [&](const Meeter& is, double& x, double& y) {
-        x = is.fixed ? is.vx : v[is.slot], y = is.fixed ? is.vy : v[size + is.slot];
-        if (is.servo < 0) return;
-        (is.servo_along_x ? x : y) = V[static_cast<std::size_t>(is.servo)];
+        x = is.fixed ? is.vx : v[is.dof], y = is.fixed ? is.vy : v[size + is.dof];
+        if (is.force_control < 0) return;
+        (is.control_along_x ? x : y) = V[static_cast<std::size_t>(is.force_control)];
     };
     for (const Meeter& is : set.meeters) {
         double x, y;
@@ -59,7 +59,7 @@ inline Change correct(const Vector& v, const std::vector<double>& V, const Grain
         // Impulses far below the momentum of a node are round-off.
         if (!is.fixed)
             largest = std::max(
-                largest, 1e-4 * nodes.sums[static_cast<std::size_t>(is.slot)].m * std::hypot(x, y));
+                largest, 1e-4 * nodes.sums[static_cast<std::size_t>(is.dof)].m * std::hypot(x, y));
     }
     Change change;
     for (const MeetingNode& node : set.nodes) {

@@ -25,22 +25,22 @@ class NodeSolver {
     GrainMatrix<reach> matrix;
     ContactSet set;
     Constraints constraints;
-    std::vector<Servo> servos;
+    std::vector<ForceControl> force_controls;
 
     /// M and A of the step.
     /// in:     nodes.sums
-    /// out:    matrix; nodes that are hardly touched, or that particles cannot tell apart, are tied to
+    /// out:    matrix; small-mass and rank-deficient nodes are constrained to
     ///         others
     template <class Shape>
     void assemble(const Shape& shape, const std::vector<AnyLaw>& laws, const ThetaScheme& scheme,
                   const BodyForce& body, double dt, const State& state, GrainNodes& nodes) {
         const Assembly& all = state.assembly;
-        const std::vector<NodeRow> rows = rows_of(all.grains, nodes, state.frame);
-        tie_light_nodes(rows, nodes);
+        const std::vector<GridRow> rows = grid_rows(all.grains, nodes, state.layout);
+        constrain_small_mass_nodes(rows, nodes);
         const double theta_dt = scheme.theta * dt;
         matrix.assemble(shape, laws, all.grains, all.particles, nodes, rows,
                         1 + theta_dt * body.damping, theta_dt * theta_dt, scheme.consistent());
-        if (scheme.consistent()) tie_blind_nodes(rows, all.grains, nodes);
+        if (scheme.consistent()) constrain_rank_deficient_nodes(rows, all.grains, nodes);
     }
 
     /// M v^0 = P, and bonded grains have one velocity.
@@ -53,40 +53,40 @@ class NodeSolver {
         report = {};
         size_ = nodes.size();
         resize();
-        velocity_of_nodes(all.grains, all.rigid, nodes);
+        nodal_velocity(all.grains, all.rigid, nodes);
         contact.join_bonds(all.bonds, nodes);
-        set.find(contact, nodes, all.bonds, all.rigid, servos, state.pressed);
+        set.find(contact, nodes, all.bonds, all.rigid, force_controls, state.pressed);
         matrix.diagonal_mass(scale_);
         invert_diagonal(nodes);
-        for_each_slot([&](long i, std::size_t n) {
+        for_each_dof([&](long i, std::size_t n) {
             const NodeSums& sum = nodes.sums[n];
             b_[i] = sum.px, b_[size_ + i] = sum.py;
             v_0_[i] = scale_[i] > 0 ? nodes.motion[n].vx_0 : 0;
             v_0_[size_ + i] = scale_[size_ + i] > 0 ? nodes.motion[n].vy_0 : 0;
         });
         constraints.build(set, scale_, size_, 0, true);
-        constraints.obey({}, v_0_);
-        PlateSystem none;
+        constraints.enforce({}, v_0_);
+        ControlledGrains none;
         const auto multiply = [&](Vector& x, Vector& y) { matrix.multiply_mass(x, y); };
         const CgResult cg =
             projected_cg(multiply, mass_preconditioner(scheme), constraints, scale_, b_,
                          scheme.tolerance, scheme.max_iterations, v_0_, none, work_);
         report.mass_iterations = cg.iterations;
         if (!cg.converged) fail("the nodes before the step", cg, scheme);
-        for_each_slot([&](long i, std::size_t n) {
+        for_each_dof([&](long i, std::size_t n) {
             if (nodes.is_free()[n] == 0) return;
             nodes.motion[n].vx_0 = v_0_[i], nodes.motion[n].vy_0 = v_0_[size_ + i];
         });
-        spread_velocity(nodes);
+        fill_ghost_velocity(nodes);
     }
 
     /// The right-hand side and the diagonal of a step.
     /// in:     nodes with v_0 and, for projected_cg, the force of the old stress; else none
     void prepare(const ThetaScheme& scheme, const BodyForce& body, double dt, GrainNodes& nodes) {
         const double theta_dt = scheme.theta * dt;
-        fold_force(nodes);
+        reduce_ghost_force(nodes);
         matrix.multiply_mass(v_0_, b_);
-        for_each_slot([&](long i, std::size_t n) {
+        for_each_dof([&](long i, std::size_t n) {
             const double m = nodes.sums[n].m;
             b_[i] += theta_dt * (nodes.force[n].x + m * body.gravity_x);
             b_[size_ + i] += theta_dt * (nodes.force[n].y + m * body.gravity_y);
@@ -106,14 +106,14 @@ class NodeSolver {
                       SolveReport& report) {
         const std::vector<Grain>& grains = state.assembly.grains;
         std::vector<RigidMotion>& rigid = state.assembly.rigid;
-        for_each_chunk(grains, nodes, [&](Chunk& chunk) {
-            add_internal_force(shape, state.assembly.particles, chunk, nodes);
+        for_each_batch(grains, nodes, [&](ParticleBatch& batch) {
+            add_internal_force(shape, state.assembly.particles, batch, nodes);
         });
         prepare(scheme, body, dt, nodes);
-        PlateSystem plates;
-        for (const Servo& servo : servos) {
-            plates.diagonal.push_back(scheme.theta * (servo.mass + dt * servo.damping));
-            plates.V.push_back(servo.velocity);
+        ControlledGrains controlled;
+        for (const ForceControl& control : force_controls) {
+            controlled.diagonal.push_back(scheme.theta * (control.mass + dt * control.damping));
+            controlled.V.push_back(control.velocity);
         }
         v_ = v_0_;
         use_preconditioner(scheme, grains, nodes);
@@ -122,16 +122,16 @@ class NodeSolver {
         constexpr double rough = 1e-7;
         double tolerance = std::max(scheme.tolerance, rough);
         for (report.loops = 1;; ++report.loops) {
-            add_friction(scheme.theta, dt, plates);
-            constraints.build(set, scale_, size_, servos.size(), false);
-            constraints.obey(plates.V, v_);
+            add_friction(scheme.theta, dt, controlled);
+            constraints.build(set, scale_, size_, force_controls.size(), false);
+            constraints.enforce(controlled.V, v_);
             const CgResult cg =
                 projected_cg(multiply, preconditioner(constraints), constraints, scale_, right_,
-                             tolerance, scheme.max_iterations, v_, plates, work_);
+                             tolerance, scheme.max_iterations, v_, controlled, work_);
             report.iterations += cg.iterations;
             if (!cg.converged) fail("the nodes", cg, scheme);
             constraints.find_impulses(work_.r, set);
-            const Change change = correct(v_, plates.V, nodes, tolerance, set);
+            const Change change = correct(v_, controlled.V, nodes, tolerance, set);
             report.held = change.held;
             if (change.settled) {
                 if (tolerance == scheme.tolerance) break;
@@ -143,16 +143,16 @@ class NodeSolver {
             if (report.loops == scheme.max_outer_iterations)
                 fail_to_settle(change, set, grains, scheme.max_outer_iterations);
         }
-        for (std::size_t s = 0; s < servos.size(); ++s) {
-            RigidMotion& is = rigid[servos[s].grain];
-            (servos[s].along_x ? is.vx : is.vy) = plates.V[s];
-            (servos[s].along_x ? is.travel_x : is.travel_y) += dt * plates.V[s];
+        for (std::size_t s = 0; s < force_controls.size(); ++s) {
+            RigidMotion& is = rigid[force_controls[s].grain];
+            (force_controls[s].along_x ? is.vx : is.vy) = controlled.V[s];
+            (force_controls[s].along_x ? is.travel_x : is.travel_y) += dt * controlled.V[s];
         }
-        for_each_slot([&](long i, std::size_t n) {
+        for_each_dof([&](long i, std::size_t n) {
             nodes.motion[n].vx_1 = v_[i], nodes.motion[n].vy_1 = v_[size_ + i];
         });
-        drive_rigid(grains, rigid, nodes);
-        spread_velocity(nodes);
+        prescribe_rigid_velocity(grains, rigid, nodes);
+        fill_ghost_velocity(nodes);
         state.pressed = set.memory();
         return set.account(contact, scheme.theta, dt, nodes, state.assembly.bonds, rigid);
     }
@@ -179,18 +179,18 @@ class NodeSolver {
 
    private:
     // Nodes that the particles cannot tell from others move as their heaviest neighbor does.
-    void tie_blind_nodes(const std::vector<NodeRow>& rows, const std::vector<Grain>& grains,
-                         GrainNodes& nodes) {
-        std::vector<Tie> ties;
-        for (const long slot : mass_factors_.factorize(matrix, grains, nodes)) {
-            const auto row = std::partition_point(rows.begin(), rows.end(), [&](const NodeRow& r) {
-                return r.origin + r.end <= slot;
+    void constrain_rank_deficient_nodes(const std::vector<GridRow>& rows,
+                                        const std::vector<Grain>& grains, GrainNodes& nodes) {
+        std::vector<DofConstraint> rank_deficient;
+        for (const long dof : mass_factors_.factorize(matrix, grains, nodes)) {
+            const auto row = std::partition_point(rows.begin(), rows.end(), [&](const GridRow& r) {
+                return r.origin + r.end <= dof;
             });
             const long heaviest =
-                heaviest_neighbor(rows, row - rows.begin(), slot - row->origin, nodes);
-            if (heaviest != slot) ties.push_back({slot, heaviest});
+                heaviest_neighbor(rows, row - rows.begin(), dof - row->origin, nodes);
+            if (heaviest != dof) rank_deficient.push_back({dof, heaviest});
         }
-        tie_nodes(ties, nodes);
+        constrain_nodes(rank_deficient, nodes);
     }
 
     // z = P D^{1/2} F^-1 D^{1/2} P t with factors F.
@@ -199,9 +199,9 @@ class NodeSolver {
                                CgWorkspace& work) const {
         const double *s = scale_.data(), *from = t.data();
         double *r = work.s.data(), *z = work.z.data();
-        for_each_dof([&](long i) { r[i] = s[i] > 0 ? from[i] / s[i] : 0; });
+        for_each_component([&](long i) { r[i] = s[i] > 0 ? from[i] / s[i] : 0; });
         factors.solve(work.s, work.z);
-        for_each_dof([&](long i) { z[i] = s[i] > 0 ? z[i] / s[i] : 0; });
+        for_each_component([&](long i) { z[i] = s[i] > 0 ? z[i] / s[i] : 0; });
         allowed.project(work.z);
         return work.z;
     }
@@ -220,14 +220,14 @@ class NodeSolver {
     }
 
     template <class Work>
-    void for_each_slot(const Work& work) const {
+    void for_each_dof(const Work& work) const {
         common::for_each_block(size_, [&](int, long begin, long end) {
             for (long i = begin; i < end; ++i) work(i, static_cast<std::size_t>(i));
         });
     }
 
     template <class Work>
-    void for_each_dof(const Work& work) const {
+    void for_each_component(const Work& work) const {
         common::for_each_block(2 * size_, [&](int, long begin, long end) {
             for (long i = begin; i < end; ++i) work(i);
         });
@@ -235,7 +235,7 @@ class NodeSolver {
 
     // D^{-1/2} where a velocity can change: of free grains, with mass, and not held by a wall.
     void invert_diagonal(const GrainNodes& nodes) {
-        for_each_slot([&](long i, std::size_t n) {
+        for_each_dof([&](long i, std::size_t n) {
             const bool moves = nodes.is_free()[n] != 0 && nodes.sums[n].m > nodes.least_mass();
             for (const auto& [at, fixed] :
                  {std::pair(i, nodes.is_fixed_x(i)), std::pair(size_ + i, nodes.is_fixed_y(i))})
@@ -244,11 +244,11 @@ class NodeSolver {
     }
 
     // What slips rubs with a known impulse.
-    void add_friction(double theta, double dt, PlateSystem& plates) {
+    void add_friction(double theta, double dt, ControlledGrains& controlled) {
         right_ = b_;
-        plates.b.clear();
-        for (const Servo& servo : servos)
-            plates.b.push_back(theta * (servo.mass * servo.velocity + dt * servo.force));
+        controlled.b.clear();
+        for (const ForceControl& control : force_controls)
+            controlled.b.push_back(theta * (control.mass * control.velocity + dt * control.force));
         for (const MeetingNode& node : set.nodes) {
             for (std::size_t k = node.pair_begin; k < node.pair_end; ++k) {
                 MeetingPair& pair = set.pairs[k];
@@ -259,9 +259,10 @@ class NodeSolver {
                     const Meeter& is = set.meeters[node.meeter_begin + who];
                     const double jx = sign * pair.lambda_t * pair.tx(),
                                  jy = sign * pair.lambda_t * pair.ty();
-                    if (!is.fixed) right_[is.slot] += jx, right_[size_ + is.slot] += jy;
-                    if (is.servo >= 0)
-                        plates.b[static_cast<std::size_t>(is.servo)] += is.servo_along_x ? jx : jy;
+                    if (!is.fixed) right_[is.dof] += jx, right_[size_ + is.dof] += jy;
+                    if (is.force_control >= 0)
+                        controlled.b[static_cast<std::size_t>(is.force_control)] +=
+                            is.control_along_x ? jx : jy;
                 }
             }
         }

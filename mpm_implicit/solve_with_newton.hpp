@@ -82,7 +82,7 @@ class NewtonSolver {
     };
 
     template <class Work>
-    static void for_each_slot(long n, const Work& work) {
+    static void for_each_dof(long n, const Work& work) {
         common::for_each_block(n, [&](int, long begin, long end) {
             for (long i = begin; i < end; ++i) work(i, static_cast<std::size_t>(i));
         });
@@ -90,19 +90,20 @@ class NewtonSolver {
 
     // The guess v^0, as x = D^{1/2} v where velocities can change; then V m^{1/2} of driven plates.
     void begin(const Step& step) {
-        const long n = step.nodes.size(), count = static_cast<long>(step.solver.servos.size());
+        const long n = step.nodes.size(),
+                   count = static_cast<long>(step.solver.force_controls.size());
         for (Vector* v : {&root_, &v_, &Mv_, &part_, &rest_})
             if (v->size() != 2 * n) *v = Vector::Zero(2 * n);
         for (Vector* v : {&x_, &F_}) *v = Vector::Zero(2 * n + count);
         cg_.resize(n);
         const Vector& scale = step.scale();
-        for_each_slot(2 * n, [&](long at, std::size_t) {
+        for_each_dof(2 * n, [&](long at, std::size_t) {
             root_[at] = scale[at] > 0 ? 1 / scale[at] : 0;
             x_[at] = root_[at] * step.solver.old_velocities()[at];
         });
         for (long s = 0; s < count; ++s) {
-            const Servo& servo = step.solver.servos[static_cast<std::size_t>(s)];
-            x_[2 * n + s] = std::sqrt(servo.mass) * servo.velocity;
+            const ForceControl& control = step.solver.force_controls[static_cast<std::size_t>(s)];
+            x_[2 * n + s] = std::sqrt(control.mass) * control.velocity;
         }
     }
 
@@ -112,25 +113,25 @@ class NewtonSolver {
         GrainNodes& nodes = step.nodes;
         const Vector &scale = step.scale(), &b = step.solver.right_hand_side();
         const long n = nodes.size();
-        for (std::size_t s = 0; s < step.solver.servos.size(); ++s) {
-            const Servo& servo = step.solver.servos[s];
-            RigidMotion& is = step.all.rigid[servo.grain];
-            (servo.along_x ? is.vx : is.vy) =
-                x[2 * n + static_cast<long>(s)] / std::sqrt(servo.mass);
+        for (std::size_t s = 0; s < step.solver.force_controls.size(); ++s) {
+            const ForceControl& control = step.solver.force_controls[s];
+            RigidMotion& is = step.all.rigid[control.grain];
+            (control.along_x ? is.vx : is.vy) =
+                x[2 * n + static_cast<long>(s)] / std::sqrt(control.mass);
         }
-        drive_rigid(step.all.grains, step.all.rigid, nodes);
-        for_each_slot(n, [&](long i, std::size_t k) {
+        prescribe_rigid_velocity(step.all.grains, step.all.rigid, nodes);
+        for_each_dof(n, [&](long i, std::size_t k) {
             v_[i] = scale[i] * x[i], v_[n + i] = scale[n + i] * x[n + i];
             if (nodes.is_free()[k] != 0)
                 nodes.motion[k].vx_1 = v_[i], nodes.motion[k].vy_1 = v_[n + i];
         });
-        spread_velocity(nodes);
+        fill_ghost_velocity(nodes);
         force_at_theta(shape, step.laws, step.scheme, step.dt, step.all.grains, step.all.particles,
                        nodes);
         step.solver.matrix.multiply_mass(v_, Mv_);
         const double theta_dt = step.scheme.theta * step.dt,
                      factor_M = 1 + theta_dt * step.body.damping;
-        for_each_slot(n, [&](long i, std::size_t k) {
+        for_each_dof(n, [&](long i, std::size_t k) {
             if (nodes.is_free()[k] == 0) return;
             const auto pushed = [&](long at, double force) {
                 const double R = b[at] + theta_dt * force - factor_M * Mv_[at];
@@ -147,8 +148,8 @@ class NewtonSolver {
         for (std::size_t k = 0; k < node.parties; ++k) {
             mpm::detail::Party& party = node.party[k];
             if (party.is_fixed()) continue;
-            party.per_mx = scale[party.slot] * scale[party.slot];
-            party.per_my = scale[n + party.slot] * scale[n + party.slot];
+            party.per_mx = scale[party.dof] * scale[party.dof];
+            party.per_my = scale[n + party.dof] * scale[n + party.dof];
         }
         mpm::detail::weigh_pairs(node);
         mpm::detail::solve(node);
@@ -158,49 +159,49 @@ class NewtonSolver {
     template <class Shape>
     void residual(const Shape& shape, const Vector& x, Step& step, Vector& F) {
         GrainNodes& nodes = step.nodes;
-        const std::vector<Servo>& servos = step.solver.servos;
+        const std::vector<ForceControl>& force_controls = step.solver.force_controls;
         const long n = nodes.size();
         push_by_missing_momentum(shape, x, step);
         std::array<std::vector<double>, common::block_count> impulses;
-        for (auto& block : impulses) block.assign(servos.size(), 0.0);
+        for (auto& block : impulses) block.assign(force_controls.size(), 0.0);
         std::array<std::size_t, common::block_count> next = step.solver.set.first_pair;
         step.contact.meetings().for_each(nodes, step.all.bonds, false, [&](int number, auto& node) {
             const auto block = static_cast<std::size_t>(number);
             correct_node(step.scale(), n, node);
             for (std::size_t k = 0; k < node.pairs; ++k) {
                 if (step.watching) see(node.pair[k], step.solver.set.pairs[next[block]++]);
-                for (std::size_t s = 0; s < servos.size(); ++s)
-                    impulses[block][s] += impulse_on(servos[s], node, node.pair[k]);
+                for (std::size_t s = 0; s < force_controls.size(); ++s)
+                    impulses[block][s] += impulse_on(force_controls[s], node, node.pair[k]);
             }
             for (std::size_t k = 0; k < node.parties; ++k) {
                 if (node.party[k].is_fixed()) continue;
-                NodeMotion& v = nodes.motion[static_cast<std::size_t>(node.party[k].slot)];
+                NodeMotion& v = nodes.motion[static_cast<std::size_t>(node.party[k].dof)];
                 v.vx_1 = node.party[k].vx, v.vy_1 = node.party[k].vy;
             }
         });
-        for_each_slot(n, [&](long i, std::size_t k) {
+        for_each_dof(n, [&](long i, std::size_t k) {
             F[i] = x[i] - root_[i] * nodes.motion[k].vx_1;
             F[n + i] = x[n + i] - root_[n + i] * nodes.motion[k].vy_1;
         });
-        for (std::size_t s = 0; s < servos.size(); ++s) {
-            const Servo& servo = servos[s];
-            double impulse = step.dt * servo.force;
+        for (std::size_t s = 0; s < force_controls.size(); ++s) {
+            const ForceControl& control = force_controls[s];
+            double impulse = step.dt * control.force;
             for (const auto& block : impulses) impulse += block[s] / step.scheme.theta;
-            const double V = (servo.velocity + impulse / servo.mass) /
-                             (1 + step.dt * servo.damping / servo.mass);
+            const double V = (control.velocity + impulse / control.mass) /
+                             (1 + step.dt * control.damping / control.mass);
             const long at = 2 * n + static_cast<long>(s);
-            F[at] = x[at] - std::sqrt(servo.mass) * V;
+            F[at] = x[at] - std::sqrt(control.mass) * V;
         }
     }
 
     // What a pair does to a plate that a force drives, along its way.
-    static double impulse_on(const Servo& servo, const mpm::detail::NodeProblem& node,
+    static double impulse_on(const ForceControl& control, const mpm::detail::NodeProblem& node,
                              const mpm::detail::Pair& pair) {
-        const double along = servo.along_x ? pair.lambda_n * pair.nx - pair.lambda_t * pair.ny
-                                           : pair.lambda_n * pair.ny + pair.lambda_t * pair.nx;
+        const double along = control.along_x ? pair.lambda_n * pair.nx - pair.lambda_t * pair.ny
+                                             : pair.lambda_n * pair.ny + pair.lambda_t * pair.nx;
         const auto is = [&](std::size_t who) {
             const mpm::detail::Party& party = node.party[who];
-            return party.rigid && static_cast<std::size_t>(party.grain) == servo.grain;
+            return party.rigid && static_cast<std::size_t>(party.grain) == control.grain;
         };
         return (is(pair.b) ? along : 0) - (is(pair.a) ? along : 0);
     }
@@ -221,22 +222,22 @@ class NewtonSolver {
         const long n = step.nodes.size();
         part_ = r.head(2 * n);
         allowed_.project(part_);
-        for_each_slot(2 * n, [&](long at, std::size_t) {
+        for_each_dof(2 * n, [&](long at, std::size_t) {
             rest_[at] = scale[at] > 0 ? r[at] - part_[at] : 0;
             v_[at] = scale[at] * rest_[at];
         });
         const auto multiply = [&](Vector& x, Vector& y) { step.solver.matrix.multiply(x, y); };
         multiply(v_, Mv_);
-        for_each_slot(2 * n,
-                      [&](long at, std::size_t) { part_[at] = root_[at] * part_[at] - Mv_[at]; });
+        for_each_dof(2 * n,
+                     [&](long at, std::size_t) { part_[at] = root_[at] * part_[at] - Mv_[at]; });
         v_.setZero();
-        PlateSystem none;
+        ControlledGrains none;
         const CgResult cg =
             projected_cg(multiply, step.solver.preconditioner(allowed_), allowed_, scale, part_,
                          1e-4, step.scheme.max_iterations, v_, none, cg_);
         step.report.iterations += cg.iterations;
         z = r;
-        for_each_slot(2 * n, [&](long at, std::size_t) { z[at] = rest_[at] + root_[at] * v_[at]; });
+        for_each_dof(2 * n, [&](long at, std::size_t) { z[at] = rest_[at] + root_[at] * v_[at]; });
     }
 
     // The books of contact, with the masses it was solved with.
@@ -247,10 +248,10 @@ class NewtonSolver {
         const ContactSums did = step.contact.apply(
             step.dt, step.nodes, step.all.bonds, step.all.rigid, {0, 1 / step.scheme.theta},
             [&](int, auto& node) { correct_node(step.scale(), n, node); });
-        for (const Servo& servo : step.solver.servos) {
-            RigidMotion& is = step.all.rigid[servo.grain];
-            (servo.along_x ? is.travel_x : is.travel_y) +=
-                step.dt * (servo.along_x ? is.vx : is.vy);
+        for (const ForceControl& control : step.solver.force_controls) {
+            RigidMotion& is = step.all.rigid[control.grain];
+            (control.along_x ? is.travel_x : is.travel_y) +=
+                step.dt * (control.along_x ? is.vx : is.vy);
         }
         state.pressed = step.solver.set.memory();
         return did;

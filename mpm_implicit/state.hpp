@@ -1,12 +1,12 @@
-// All that changes in a run of mpm_implicit, what a step sums up for the ledger, and its loads.
+// All that changes in a run of mpm_implicit, what a step sums up for the budget, and its loads.
 #pragma once
 
 #include <tuple>
 #include <vector>
 
+#include "mpm_explicit/apply_loads.hpp"
 #include "mpm_explicit/assembly.hpp"
-#include "mpm_explicit/plates.hpp"
-#include "mpm_implicit/ledger.hpp"
+#include "mpm_implicit/budget.hpp"
 
 namespace mpm_implicit {
 
@@ -31,7 +31,7 @@ struct PairMemory {
 
 /// A rigid grain that a force drives: its velocity in this step is one more unknown V,
 ///   m (V - V_old) = dt (F + push - c V)
-struct Servo {
+struct ForceControl {
     std::size_t grain;
     bool along_x;
     double mass, damping, force;  // force: now
@@ -53,15 +53,15 @@ struct Effort {
 /// All that changes in a run.
 struct State {
     Assembly assembly;
-    Frame frame;
-    Ledger ledger;
+    GridLayout layout;
+    Budget budget;
     std::vector<PairMemory> pressed;  // pairs that were closed in the last step
     Effort effort;
 };
 
 /// What one step has summed up.
 struct StepSums {
-    std::vector<StripSums> strips;
+    std::vector<TileSums> tiles;
     NodeWork nodes;
     ContactSums contact;
     SolveReport solver;
@@ -70,8 +70,8 @@ struct StepSums {
 template <class Archive>
 void archive(Archive& a, State& state) {
     archive(a, state.assembly);
-    mpm::archive(a, state.frame);
-    archive(a, state.ledger);
+    mpm::archive(a, state.layout);
+    archive(a, state.budget);
     Effort& e = state.effort;
     a("iterations", e.iterations), a("mass_iterations", e.mass_iterations);
     a("krylov", e.krylov), a("loops", e.loops), a("held", e.held);
@@ -89,18 +89,19 @@ void archive(Archive& a, State& state) {
 }
 
 /// Loads in the step from t^n: the body force, and velocities of rigid grains.
-/// out:    servos, those that a force drives, whose velocity belongs to the solution
-inline BodyForce drive(const Problem& problem, long step, double dt,
-                       std::vector<RigidMotion>& rigid, std::vector<Servo>& servos) {
+/// out:    force_controls, those that a force drives, whose velocity belongs to the solution
+inline BodyForce apply_loads(const Problem& problem, long step, double dt,
+                             std::vector<RigidMotion>& rigid,
+                             std::vector<ForceControl>& force_controls) {
     const double t = time_of_load(step, dt), share = share_of_load(t, problem.rise);
-    servos.clear();
+    force_controls.clear();
     for (std::size_t g = 0; g < rigid.size(); ++g) {
         RigidMotion& is = rigid[g];
-        if (is.servo_x || is.servo_y)
-            servos.push_back(
-                {g, is.servo_x, is.mass, is.damping, share * is.force, is.servo_x ? is.vx : is.vy});
-        if (!is.servo_x) is.vx = share * is.prescribed_vx, is.travel_x += dt * is.vx;
-        if (!is.servo_y) is.vy = share * is.prescribed_vy, is.travel_y += dt * is.vy;
+        if (is.force_control_x || is.force_control_y)
+            force_controls.push_back({g, is.force_control_x, is.mass, is.damping, share * is.force,
+                                      is.force_control_x ? is.vx : is.vy});
+        if (!is.force_control_x) is.vx = share * is.prescribed_vx, is.travel_x += dt * is.vx;
+        if (!is.force_control_y) is.vy = share * is.prescribed_vy, is.travel_y += dt * is.vy;
     }
     return body_force(problem, t);
 }

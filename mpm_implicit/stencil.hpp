@@ -9,7 +9,7 @@
 //      .   .   .
 #pragma once
 
-#include "mpm_implicit/node_rows.hpp"
+#include "mpm_implicit/constrain_nodes.hpp"
 
 namespace mpm_implicit {
 
@@ -21,17 +21,17 @@ struct Stencil {
     }
 };
 
-/// Calls work(diagonal, slot, other, count, transposed) for stretches of a row's slots and the slots
+/// Calls work(diagonal, dof, other, count, transposed) for stretches of a row's dofs and the dofs
 /// that they are coupled to; transposed: the entry is stored at the other one.
 template <int reach, class Work>
-[[gnu::always_inline]] inline void for_each_link(const std::vector<NodeRow>& rows, long number,
+[[gnu::always_inline]] inline void for_each_link(const std::vector<GridRow>& rows, long number,
                                                  const Work& work) {
-    const NodeRow& row = rows[static_cast<std::size_t>(number)];
+    const GridRow& row = rows[static_cast<std::size_t>(number)];
     for (int b = 0; b <= reach; ++b) {
         for (int a = b == 0 ? 0 : -reach; a <= reach; ++a) {
             const int diagonal = Stencil<reach>::diagonal(a, b);
             const auto link = [&](long to, long shift, bool transposed) {
-                const NodeRow& other = rows[static_cast<std::size_t>(to)];
+                const GridRow& other = rows[static_cast<std::size_t>(to)];
                 const long first = std::max(row.first, other.first - shift),
                            end = std::min(row.end, other.end - shift);
                 if (first < end)

@@ -32,12 +32,12 @@ struct Meeting {
     /// v^1 = v^0 and then what change(grain, motion) makes of it.
     template <class Change>
     void accelerate(const Change& change) {
-        for_each_slot(nodes, cloud.frame, [&](int g, long, long, std::size_t slot) {
-            NodeMotion& v = nodes.motion[slot];
+        for_each_dof(nodes, cloud.layout, [&](int g, long, long, std::size_t dof) {
+            NodeMotion& v = nodes.motion[dof];
             v.vx_1 = v.vx_0, v.vy_1 = v.vy_0;
             if (!cloud.grains[static_cast<std::size_t>(g)].rigid) change(g, v);
-            if (nodes.is_fixed_x(static_cast<long>(slot))) v.vx_1 = 0;
-            if (nodes.is_fixed_y(static_cast<long>(slot))) v.vy_1 = 0;
+            if (nodes.is_fixed_x(static_cast<long>(dof))) v.vx_1 = 0;
+            if (nodes.is_fixed_y(static_cast<long>(dof))) v.vy_1 = 0;
         });
         before = nodes.motion;
     }
@@ -56,14 +56,14 @@ struct Meeting {
         return all;
     }
     const NodeSums& sum(const Member& m) const {
-        return nodes.sums[static_cast<std::size_t>(m.slot)];
+        return nodes.sums[static_cast<std::size_t>(m.dof)];
     }
     double mass(const Member& m) const { return sum(m).m; }
     const NodeMotion& now(const Member& m) const {
-        return nodes.motion[static_cast<std::size_t>(m.slot)];
+        return nodes.motion[static_cast<std::size_t>(m.dof)];
     }
     const NodeMotion& then(const Member& m) const {
-        return before[static_cast<std::size_t>(m.slot)];
+        return before[static_cast<std::size_t>(m.dof)];
     }
     bool is_rigid(const Member& m) const {
         return cloud.grains[static_cast<std::size_t>(m.grain)].rigid;
@@ -115,10 +115,10 @@ Cloud two_particles(double apart, double angle, double m_a = 1, double m_b = 1) 
 
 double kinetic(const Meeting& m, bool new_ones) {
     double sum = 0;
-    for_each_slot(m.nodes, m.cloud.frame, [&](int g, long, long, std::size_t slot) {
+    for_each_dof(m.nodes, m.cloud.layout, [&](int g, long, long, std::size_t dof) {
         if (m.cloud.grains[static_cast<std::size_t>(g)].rigid) return;
-        const NodeMotion& v = new_ones ? m.nodes.motion[slot] : m.before[slot];
-        sum += 0.5 * m.nodes.sums[slot].m * (v.vx_1 * v.vx_1 + v.vy_1 * v.vy_1);
+        const NodeMotion& v = new_ones ? m.nodes.motion[dof] : m.before[dof];
+        sum += 0.5 * m.nodes.sums[dof].m * (v.vx_1 * v.vx_1 + v.vy_1 * v.vy_1);
     });
     return sum;
 }
@@ -287,9 +287,9 @@ TEST_CASE("what rigid grains give is the opposite of their push") {
         const double dt = 0.02;
         m.meet(rule_of(0.3), dt);
         double x = 0, y = 0, size = 0;
-        for_each_slot(m.nodes, m.cloud.frame, [&](int g, long, long, std::size_t slot) {
-            const NodeMotion &v = m.nodes.motion[slot], &u = m.before[slot];
-            const double mass = m.nodes.sums[slot].m;
+        for_each_dof(m.nodes, m.cloud.layout, [&](int g, long, long, std::size_t dof) {
+            const NodeMotion &v = m.nodes.motion[dof], &u = m.before[dof];
+            const double mass = m.nodes.sums[dof].m;
             if (g >= 3) {
                 CHECK((v.vx_1 == u.vx_1 && v.vy_1 == u.vy_1));
                 return;
@@ -353,8 +353,8 @@ TEST_CASE("the order of the grains does not matter without friction") {
             }
             Meeting one(cloud), other(turned);
             one.meet(rule_of(0)), other.meet(rule_of(0));
-            for_each_slot(one.nodes, one.cloud.frame, [&](int g, long i, long j, std::size_t slot) {
-                const NodeMotion& u = one.nodes.motion[slot];
+            for_each_dof(one.nodes, one.cloud.layout, [&](int g, long i, long j, std::size_t dof) {
+                const NodeMotion& u = one.nodes.motion[dof];
                 const NodeMotion& v = other.nodes.motion[static_cast<std::size_t>(
                     other.nodes.origin(grains - 1 - g, j) + i)];
                 most = worst({most, std::fabs(u.vx_1 - v.vx_1), std::fabs(u.vy_1 - v.vy_1)});
@@ -429,10 +429,10 @@ TEST_CASE("work of contact is the change of kinetic energy that it makes") {
             m.bonds = {bond};
             m.meet(rule_of(0.3, 0.8, 0.5));
             double work = 0, size = 0;
-            for_each_slot(m.nodes, m.cloud.frame, [&](int g, long, long, std::size_t slot) {
+            for_each_dof(m.nodes, m.cloud.layout, [&](int g, long, long, std::size_t dof) {
                 if (m.cloud.grains[static_cast<std::size_t>(g)].rigid) return;
-                const NodeMotion &v = m.nodes.motion[slot], &u = m.before[slot];
-                const double mass = m.nodes.sums[slot].m;
+                const NodeMotion &v = m.nodes.motion[dof], &u = m.before[dof];
+                const double mass = m.nodes.sums[dof].m;
                 work +=
                     0.5 * mass *
                     ((v.vx_0 + v.vx_1) * (v.vx_1 - u.vx_1) + (v.vy_0 + v.vy_1) * (v.vy_1 - u.vy_1));
@@ -550,10 +550,10 @@ TEST_CASE("a wall pushes what is nearer than half the separation and never pulls
                     // Friction between grains has nothing to do with it.
                     m.meet(rule_of(7, 0.8, mu));
                     long on_wall = 0;
-                    for_each_slot(
-                        m.nodes, m.cloud.frame, [&](int, long i, long j, std::size_t slot) {
-                            if (!(m.nodes.sums[slot].m > 0)) return;
-                            const NodeMotion& v = m.nodes.motion[slot];
+                    for_each_dof(
+                        m.nodes, m.cloud.layout, [&](int, long i, long j, std::size_t dof) {
+                            if (!(m.nodes.sums[dof].m > 0)) return;
+                            const NodeMotion& v = m.nodes.motion[dof];
                             const double out = v.vx_1 * nx + v.vy_1 * ny,
                                          beside = v.vx_1 * ny + v.vy_1 * nx;
                             const bool at_wall = (nx != 0 ? real(i) : real(j)) == from;
@@ -606,8 +606,8 @@ TEST_CASE("a grain that presses another against a roller moves nothing through i
                 m.meet(rule_of(mu));
                 const auto& fixed = is_x ? m.nodes.fixed_x() : m.nodes.fixed_y();
                 CHECK(!fixed.empty());
-                for (const long slot : fixed) {
-                    const NodeMotion& v = m.nodes.motion[static_cast<std::size_t>(slot)];
+                for (const long dof : fixed) {
+                    const NodeMotion& v = m.nodes.motion[static_cast<std::size_t>(dof)];
                     CHECK((is_x ? v.vx_1 : v.vy_1) == 0);
                 }
                 long pressed = 0;

@@ -1,5 +1,5 @@
 // What a run of any scheme keeps: rows of history, files when they are due, why it failed, and what is
-// conserved. The energies and where they went are the scheme's own ledger.
+// conserved. The energies and where they went are the scheme's own budget.
 #pragma once
 
 #include <algorithm>
@@ -17,17 +17,17 @@ namespace mpm {
 
 class Recorder {
    public:
-    /// in: ledger_columns, what the rows of the ledger hold; among them "kinetic", "elastic",
+    /// in: budget_columns, what the rows of the budget hold; among them "kinetic", "elastic",
     ///     "energy", "external" and what is left when all is counted, called `rest`
     Recorder(const Case& parameters, const Scales& scales, const Assembly& all,
-             const std::vector<common::Column>& ledger_columns, const std::string& rest,
+             const std::vector<common::Column>& budget_columns, const std::string& rest,
              common::History& history)
         : parameters_(parameters),
           scales_(scales),
           subject_(subject_of(parameters, all.grains)),
           rest_(rest) {
         std::vector<common::Column> columns{{"time", "time"}};
-        columns.insert(columns.end(), ledger_columns.begin(), ledger_columns.end());
+        columns.insert(columns.end(), budget_columns.begin(), budget_columns.end());
         columns.insert(columns.end(), {{"momentum_x", "momentum"},
                                        {"momentum_y", "momentum"},
                                        {"contacts", "1"},
@@ -72,12 +72,12 @@ class Recorder {
     bool row_is_due(long step) const { return step % parameters_.history_steps == 0; }
 
     /// Writes a row of the history.
-    /// in: time, the ledger and the momenta of every grain then; dt and what contact did, of the step
-    void write_row(double time, double dt, const std::vector<double>& ledger_row,
+    /// in: time, the budget and the momenta of every grain then; dt and what contact did, of the step
+    void write_row(double time, double dt, const std::vector<double>& budget_row,
                    const std::vector<double>& momentum_x, const std::vector<double>& momentum_y,
                    const ContactSums& contact, const Assembly& all, common::Run& run) {
         row_ = {time};
-        row_.insert(row_.end(), ledger_row.begin(), ledger_row.end());
+        row_.insert(row_.end(), budget_row.begin(), budget_row.end());
         double sum_x = 0, sum_y = 0;
         for (const double p : momentum_x) sum_x += p;
         for (const double p : momentum_y) sum_y += p;
@@ -101,16 +101,16 @@ class Recorder {
     }
 
     /// Looks at what a step has made.
-    /// in:     strips, sums over the particles of every strip: their kinetic energy, the smallest
+    /// in:     tiles, sums over the particles of every tile: their kinetic energy, the smallest
     ///         ratio of volumes after and before (least_V), and how far they reach; start, the energy
     ///         at t = 0; external, the work of the loads since; now, the energy
     /// errors: NumericalError for an energy beyond the limit, an inverted volume, or a particle that
     ///         has left the mesh, with grain, place and time
     template <class Sums>
-    void refuse_failure(long step, const std::vector<Sums>& strips, const GrainNodes& nodes,
+    void refuse_failure(long step, const std::vector<Sums>& tiles, const GrainNodes& nodes,
                         const Assembly& all, double start, double external, double now,
                         const common::History& history) {
-        refuse_particles(step, strips, nodes, all);
+        refuse_particles(step, tiles, nodes, all);
         // After a restart, what was put in before it counts as well.
         if (!looked_back_)
             for (const double before : history.column("external"))
@@ -171,17 +171,17 @@ class Recorder {
     }
 
     template <class Sums>
-    void refuse_particles(long step, const std::vector<Sums>& strips, const GrainNodes& nodes,
+    void refuse_particles(long step, const std::vector<Sums>& tiles, const GrainNodes& nodes,
                           const Assembly& all) const {
         const Mesh& mesh = nodes.mesh();
         const Particles& at = all.particles;
         // Grains may straddle the ends of a periodic mesh, but no particle is a whole length away.
         const double beyond = mesh.periodic_x ? mesh.length_x() : 0, left = mesh.x_low - beyond,
                      right = mesh.x_high() + beyond;
-        for (std::size_t k = 0; k < strips.size(); ++k) {
-            const Sums& s = strips[k];
-            const Strip& strip = nodes.strips()[k];
-            const auto g = static_cast<std::size_t>(strip.grain);
+        for (std::size_t k = 0; k < tiles.size(); ++k) {
+            const Sums& s = tiles[k];
+            const Tile& tile = nodes.tiles()[k];
+            const auto g = static_cast<std::size_t>(tile.grain);
             const Grain& grain = all.grains[g];
             const RigidMotion& is = all.rigid[g];
             const bool inside = !(s.x_least < left || s.x_most > right || s.y_least < mesh.y_low ||
@@ -189,10 +189,10 @@ class Recorder {
             const bool finite = std::isfinite(grain.rigid ? is.vx + is.vy : s.kinetic);
             if (inside && finite && s.least_V > 0) continue;
             const auto place = [&](const auto& is_bad) {
-                for (long p = strip.begin; p < strip.end; ++p)
+                for (long p = tile.begin; p < tile.end; ++p)
                     if (is_bad(static_cast<std::size_t>(p)))
                         return place_of(at, static_cast<std::size_t>(p));
-                return " near" + place_of(at, static_cast<std::size_t>(strip.begin)).substr(3);
+                return " near" + place_of(at, static_cast<std::size_t>(tile.begin)).substr(3);
             };
             if (!(s.least_V > 0))
                 throw common::NumericalError(

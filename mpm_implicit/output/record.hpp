@@ -12,8 +12,8 @@
 
 namespace mpm_implicit {
 
-inline std::vector<common::Column> ledger_columns() {
-    std::vector<common::Column> columns = Ledger::columns();
+inline std::vector<common::Column> budget_columns() {
+    std::vector<common::Column> columns = Budget::columns();
     for (const char* name : {"iterations", "loops", "held"}) columns.push_back({name, "1"});
     return columns;
 }
@@ -25,7 +25,7 @@ class ThetaRecorder {
         : parameters_(parameters),
           scheme_(scheme),
           scales_(scales),
-          recorder_(parameters, scales, state.assembly, ledger_columns(), "residual", history) {}
+          recorder_(parameters, scales, state.assembly, budget_columns(), "residual", history) {}
 
     /// The row of t = 0.
     void start(const State& state, common::Run& run) { write_row(0, StepSums{}, state, run); }
@@ -35,24 +35,24 @@ class ThetaRecorder {
         recorder_.snapshot(step, state.assembly, run);
     }
 
-    /// Enters a step into the ledger and writes the row of its end.                     [MPM-13]
+    /// Enters a step into the budget and writes the row of its end.                     [MPM-13]
     /// errors: NumericalError as Recorder::refuse_failure
     void record(long step, const StepSums& sums, const GrainNodes& nodes, State& state,
                 common::Run& run) {
-        Ledger& l = state.ledger;
-        enter_step(scheme_.theta, scheme_.consistent(), parameters_.problem.damping, scales_.dt,
-                   nodes.strips(), sums.strips, sums.nodes, sums.contact, l);
+        Budget& l = state.budget;
+        add_step(scheme_.theta, scheme_.consistent(), parameters_.problem.damping, scales_.dt,
+                 nodes.tiles(), sums.tiles, sums.nodes, sums.contact, l);
         state.effort.add(sums.solver);
         if (std::isfinite(l.energy()) && recorder_.row_is_due(step + 1))
             write_row(static_cast<double>(step + 1) * scales_.dt, sums, state, run);
-        recorder_.refuse_failure(step, sums.strips, nodes, state.assembly, l.start,
+        recorder_.refuse_failure(step, sums.tiles, nodes, state.assembly, l.start,
                                  l.plate + l.gravity, l.energy(), run.history);
     }
 
     /// The results of the whole run, after its last step.
     void finish(long step, const State& state, common::Run& run) const {
         if (run.history.all().empty()) return;
-        const Ledger& l = state.ledger;
+        const Budget& l = state.budget;
         compare_with_theory(recorder_.ended(step, state.assembly, run.history), scheme_, l,
                             run.summary);
         recorder_.finish_conservation({}, state.assembly, run);
@@ -68,7 +68,7 @@ class ThetaRecorder {
 
    private:
     void write_row(double time, const StepSums& sums, const State& state, common::Run& run) {
-        const Ledger& l = state.ledger;
+        const Budget& l = state.budget;
         std::vector<double> row = l.row();
         row.insert(row.end(),
                    {static_cast<double>(sums.solver.iterations),

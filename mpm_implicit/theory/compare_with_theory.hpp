@@ -13,7 +13,7 @@
 #include "common/theory/theta_scheme.hpp"
 #include "mpm_explicit/theory/compare_grains.hpp"
 #include "mpm_explicit/theory/scheme_theory.hpp"
-#include "mpm_implicit/ledger.hpp"
+#include "mpm_implicit/budget.hpp"
 #include "mpm_implicit/setup/check_case.hpp"
 
 namespace mpm_implicit {
@@ -25,7 +25,7 @@ inline bool keeps_energy(const Case& w, const ThetaScheme& scheme) {
 
 /// [MPM-13] in every step, and that nothing but loads gives energy.
 inline void compare_energy_theorem(const theory::Run& run, const ThetaScheme& scheme,
-                                   const Ledger& l, common::Summary& summary) {
+                                   const Budget& l, common::Summary& summary) {
     const auto energy = run.history.column("energy"), external = run.history.column("external"),
                volume = run.history.column("volume"), plastic = run.history.column("plastic");
     double size = std::numeric_limits<double>::min(), growth = 0;
@@ -135,7 +135,7 @@ inline void compare_compression(const theory::Run& run, const ThetaScheme& schem
                         "of the energy at the end");
 }
 
-inline void compare_with_theory(const theory::Run& run, const ThetaScheme& scheme, const Ledger& l,
+inline void compare_with_theory(const theory::Run& run, const ThetaScheme& scheme, const Budget& l,
                                 common::Summary& summary) {
     const Case& w = run.parameters;
     compare_energy_theorem(run, scheme, l, summary);

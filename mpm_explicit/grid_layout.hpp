@@ -14,19 +14,19 @@ inline long cell_of(double x, double low, double h) {
 
 // A grain beyond the end of a periodic mesh comes back as a whole; one that reaches around it is
 // cut where the mesh ends.
-inline void put_back(const Mesh& mesh, const Grain& grain, int& ring, Particles& particles) {
+inline void wrap(const Mesh& mesh, const Grain& grain, int& wraps, Particles& particles) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (long p = grain.begin; p < grain.end; ++p) {
         const double x = particles.x_p[static_cast<std::size_t>(p)];
         low = std::min(low, x), high = std::max(high, x);
     }
     const double length = mesh.length_x();
-    ring = ring != 0 || high - low > length - 4 * mesh.h;
+    wraps = wraps != 0 || high - low > length - 4 * mesh.h;
     const double center = 0.5 * (low + high) - mesh.x_low;
-    const double shift = ring != 0 ? 0 : -length * std::floor(center / length);
+    const double shift = wraps != 0 ? 0 : -length * std::floor(center / length);
     for (long p = grain.begin; p < grain.end; ++p) {
         double& x = particles.x_p[static_cast<std::size_t>(p)];
-        if (ring != 0) {
+        if (wraps != 0) {
             const double turns = std::floor((x - mesh.x_low) / length);
             if (turns != 0) x -= turns * length;
         } else if (shift != 0) {
@@ -37,16 +37,17 @@ inline void put_back(const Mesh& mesh, const Grain& grain, int& ring, Particles&
 
 }  // namespace detail
 
-inline void GrainNodes::sort(const std::vector<Grain>& grains, Particles& particles, Frame& frame) {
-    frame.ring.resize(grains.size());
+inline void GrainNodes::sort(const std::vector<Grain>& grains, Particles& particles,
+                             GridLayout& layout) {
+    layout.wraps.resize(grains.size());
     if (mesh_.periodic_x)
         for (std::size_t g = 0; g < grains.size(); ++g)
-            detail::put_back(mesh_, grains[g], frame.ring[g], particles);
+            detail::wrap(mesh_, grains[g], layout.wraps[g], particles);
 
-    // Every grain has one strip per row of cells from its lowest to its highest.
+    // Every grain has one tile per row of cells from its lowest to its highest.
     const std::size_t count = grains.size();
-    std::vector<long> low(count), first_strip(count + 1, 0);
-    frame.strips.resize(count);
+    std::vector<long> low(count), first_tile(count + 1, 0);
+    layout.tiles.resize(count);
     for (std::size_t g = 0; g < count; ++g) {
         double least = std::numeric_limits<double>::infinity(), most = -least;
         for (long p = grains[g].begin; p < grains[g].end; ++p) {
@@ -55,27 +56,27 @@ inline void GrainNodes::sort(const std::vector<Grain>& grains, Particles& partic
         }
         low[g] = detail::cell_of(least, mesh_.y_low, mesh_.h);
         const long rows = detail::cell_of(most, mesh_.y_low, mesh_.h) - low[g] + 1;
-        frame.strips[g] = static_cast<int>(rows);
-        first_strip[g + 1] = first_strip[g] + rows;
+        layout.tiles[g] = static_cast<int>(rows);
+        first_tile[g + 1] = first_tile[g] + rows;
     }
     std::vector<int> owner(static_cast<std::size_t>(particles.count()));
     for (std::size_t g = 0; g < count; ++g)
         std::fill(owner.begin() + grains[g].begin, owner.begin() + grains[g].end,
                   static_cast<int>(g));
-    const auto strip_of = [&](long p) {
+    const auto tile_of = [&](long p) {
         const auto n = static_cast<std::size_t>(p);
         const auto g = static_cast<std::size_t>(owner[n]);
         const long row = detail::cell_of(particles.y_p[n], mesh_.y_low, mesh_.h) - low[g];
-        return static_cast<int>(first_strip[g] + row);
+        return static_cast<int>(first_tile[g] + row);
     };
-    common::counting_sort(particles.count(), first_strip[count], strip_of, scratch_,
-                          &frame.strip_begin);
+    common::counting_sort(particles.count(), first_tile[count], tile_of, scratch_,
+                          &layout.tile_begin);
     for (std::vector<double>* quantity : particles.all())
         common::carry_to_place(*quantity, scratch_);
 
-    // Rows of nodes around the strips, wide enough for particles that move by the reach.
-    frame.first_row.resize(count), frame.rows.resize(count);
-    frame.first_column.clear(), frame.end_column.clear();
+    // Rows of nodes around the tiles, wide enough for particles that move by the reach.
+    layout.first_row.resize(count), layout.rows.resize(count);
+    layout.first_column.clear(), layout.end_column.clear();
     const double spare = reach * mesh_.h;
     for (std::size_t g = 0; g < count; ++g) {
         struct Reach {
@@ -84,9 +85,9 @@ inline void GrainNodes::sort(const std::vector<Grain>& grains, Particles& partic
         std::vector<Reach> reaches;
         long first_row = std::numeric_limits<long>::max(),
              end_row = std::numeric_limits<long>::min();
-        for (int s = 0; s < frame.strips[g]; ++s) {
-            const auto k = static_cast<std::size_t>(first_strip[g] + s);
-            const int begin = frame.strip_begin[k], end = frame.strip_begin[k + 1];
+        for (int s = 0; s < layout.tiles[g]; ++s) {
+            const auto k = static_cast<std::size_t>(first_tile[g] + s);
+            const int begin = layout.tile_begin[k], end = layout.tile_begin[k + 1];
             if (begin == end) continue;
             const auto [x_least, x_most] =
                 std::minmax_element(particles.x_p.begin() + begin, particles.x_p.begin() + end);
@@ -100,15 +101,15 @@ inline void GrainNodes::sort(const std::vector<Grain>& grains, Particles& partic
             first_row = std::min(first_row, reaches.back().first_row);
             end_row = std::max(end_row, reaches.back().end_row);
         }
-        const std::size_t table = frame.first_column.size();
-        frame.first_row[g] = static_cast<int>(first_row);
-        frame.rows[g] = static_cast<int>(end_row - first_row);
-        frame.first_column.resize(table + static_cast<std::size_t>(end_row - first_row), 0);
-        frame.end_column.resize(frame.first_column.size(), 0);
+        const std::size_t table = layout.first_column.size();
+        layout.first_row[g] = static_cast<int>(first_row);
+        layout.rows[g] = static_cast<int>(end_row - first_row);
+        layout.first_column.resize(table + static_cast<std::size_t>(end_row - first_row), 0);
+        layout.end_column.resize(layout.first_column.size(), 0);
         for (const Reach& r : reaches) {
             for (long j = r.first_row; j < r.end_row; ++j) {
                 const auto row = table + static_cast<std::size_t>(j - first_row);
-                int &first = frame.first_column[row], &end = frame.end_column[row];
+                int &first = layout.first_column[row], &end = layout.end_column[row];
                 const bool empty = first == end;
                 first = empty ? static_cast<int>(r.first_column)
                               : std::min(first, static_cast<int>(r.first_column));
@@ -117,26 +118,26 @@ inline void GrainNodes::sort(const std::vector<Grain>& grains, Particles& partic
             }
         }
     }
-    frame.moved = 0;
-    lay_out(grains, frame);
+    layout.moved = 0;
+    lay_out(grains, layout);
 }
 
-inline void GrainNodes::lay_out(const std::vector<Grain>& grains, const Frame& frame) {
+inline void GrainNodes::lay_out(const std::vector<Grain>& grains, const GridLayout& layout) {
     const std::size_t count = grains.size();
-    origin_.clear(), strips_.clear();
+    origin_.clear(), tiles_.clear();
     row_begin_.assign(count + 1, 0), first_of_grain_.assign(count, 0);
-    slot_begin_.assign(count + 1, 0);
-    long slots = 0, row = 0;
+    dof_begin_.assign(count + 1, 0);
+    long dofs = 0, row = 0;
     for (std::size_t g = 0; g < count; ++g) {
-        row_begin_[g] = row, first_of_grain_[g] = row - frame.first_row[g], slot_begin_[g] = slots;
-        for (int r = 0; r < frame.rows[g]; ++r, ++row) {
+        row_begin_[g] = row, first_of_grain_[g] = row - layout.first_row[g], dof_begin_[g] = dofs;
+        for (int r = 0; r < layout.rows[g]; ++r, ++row) {
             const auto k = static_cast<std::size_t>(row);
-            origin_.push_back(slots - frame.first_column[k]);
-            slots += frame.end_column[k] - frame.first_column[k];
+            origin_.push_back(dofs - layout.first_column[k]);
+            dofs += layout.end_column[k] - layout.first_column[k];
         }
     }
-    row_begin_[count] = row, slot_begin_[count] = slots;
-    const auto size = static_cast<std::size_t>(slots);
+    row_begin_[count] = row, dof_begin_[count] = dofs;
+    const auto size = static_cast<std::size_t>(dofs);
     sums.resize(size), motion.resize(size), force.resize(size);
 
     // Pieces of work: so many rows that the next but one shares no node.
@@ -145,51 +146,52 @@ inline void GrainNodes::lay_out(const std::vector<Grain>& grains, const Frame& f
     long rows_in_piece = 0, particles_in_piece = 0;
     std::size_t cells = 0;  // rows of cells so far
     for (std::size_t g = 0; g < count; ++g) {
-        for (int r = 0; r < frame.strips[g]; ++r, ++cells) {
-            const long begin = frame.strip_begin[cells], end = frame.strip_begin[cells + 1];
-            const bool new_piece = pieces_.back() == static_cast<long>(strips_.size());
-            if (new_piece || strips_.back().grain != static_cast<int>(g))
-                strips_.push_back({static_cast<int>(g), begin, begin});
-            strips_.back().end = end;
+        for (int r = 0; r < layout.tiles[g]; ++r, ++cells) {
+            const long begin = layout.tile_begin[cells], end = layout.tile_begin[cells + 1];
+            const bool new_piece = pieces_.back() == static_cast<long>(tiles_.size());
+            if (new_piece || tiles_.back().grain != static_cast<int>(g))
+                tiles_.push_back({static_cast<int>(g), begin, begin});
+            tiles_.back().end = end;
             particles_in_piece += end - begin, ++rows_in_piece;
             if (particles_in_piece < particles_per_piece || rows_in_piece < rows_apart_) continue;
-            pieces_.push_back(static_cast<long>(strips_.size()));
+            pieces_.push_back(static_cast<long>(tiles_.size()));
             particles_in_piece = rows_in_piece = 0;
         }
     }
-    if (pieces_.back() < static_cast<long>(strips_.size()))
-        pieces_.push_back(static_cast<long>(strips_.size()));
-    add_walls_and_rings(grains, frame);
-    find_shared_nodes(grains, frame);
+    if (pieces_.back() < static_cast<long>(tiles_.size()))
+        pieces_.push_back(static_cast<long>(tiles_.size()));
+    find_ghost_nodes(grains, layout);
+    find_shared_nodes(grains, layout);
 }
 
-inline void GrainNodes::add_walls_and_rings(const std::vector<Grain>& grains, const Frame& frame) {
-    images_.clear(), fixed_x_.clear(), fixed_y_.clear();
+inline void GrainNodes::find_ghost_nodes(const std::vector<Grain>& grains,
+                                         const GridLayout& layout) {
+    ghosts_.clear(), fixed_x_.clear(), fixed_y_.clear();
     const long nx = mesh_.cells_x, ny = mesh_.cells_y;
-    std::vector<Image> along_y;
+    std::vector<GhostNode> along_y;
     for (std::size_t k = 0; k < grains.size(); ++k) {
         const int g = static_cast<int>(k);
-        for_each_slot(g, frame, [&](long slot, long i, long j) {
-            if (frame.ring[k] != 0 && has_slot(g, frame, i - nx, j))
-                images_.push_back({slot, slot - nx, 1, 1, false, false, mesh_.length_x()});
+        for_each_dof(g, layout, [&](long dof, long i, long j) {
+            if (layout.wraps[k] != 0 && has_dof(g, layout, i - nx, j))
+                ghosts_.push_back({dof, dof - nx, 1, 1, false, false, mesh_.length_x()});
             if (grains[k].rigid) return;
             const auto meet = [&](Side side, long beyond, long mirror, bool is_x) {
                 const Boundary kind = mesh_.boundary[static_cast<std::size_t>(side)];
                 if (beyond < 0 || kind == Boundary::open || kind == Boundary::frictional) return;
                 if (beyond == 0) {
-                    if (is_x || kind == Boundary::stick) fixed_x_.push_back(slot);
-                    if (!is_x || kind == Boundary::stick) fixed_y_.push_back(slot);
+                    if (is_x || kind == Boundary::stick) fixed_x_.push_back(dof);
+                    if (!is_x || kind == Boundary::stick) fixed_y_.push_back(dof);
                     return;
                 }
                 const long i_of = is_x ? mirror : i, j_of = is_x ? j : mirror;
-                if (beyond > 1 || !has_slot(g, frame, i_of, j_of)) return;
+                if (beyond > 1 || !has_dof(g, layout, i_of, j_of)) return;
                 const double tangential = kind == Boundary::stick ? -1 : 1;
                 const double wall = side == x_low    ? mesh_.x_low
                                     : side == x_high ? mesh_.x_high()
                                     : side == y_low  ? mesh_.y_low
                                                      : mesh_.y_high();
-                (is_x ? images_ : along_y)
-                    .push_back({slot, origin(g, j_of) + i_of, is_x ? -1 : tangential,
+                (is_x ? ghosts_ : along_y)
+                    .push_back({dof, origin(g, j_of) + i_of, is_x ? -1 : tangential,
                                 is_x ? tangential : -1, is_x, !is_x, 2 * wall});
             };
             if (!mesh_.periodic_x) {
@@ -200,21 +202,22 @@ inline void GrainNodes::add_walls_and_rings(const std::vector<Grain>& grains, co
             meet(y_high, j - ny, 2 * ny - j, false);
         });
     }
-    images_.insert(images_.end(), along_y.begin(), along_y.end());
-    own_images_ = images_.size();
+    ghosts_.insert(ghosts_.end(), along_y.begin(), along_y.end());
+    boundary_ghosts_ = ghosts_.size();
     free_.assign(sums.size(), 1);
     for (std::size_t g = 0; g < grains.size(); ++g)
         if (grains[g].rigid)
-            std::fill(free_.begin() + slot_begin_[g], free_.begin() + slot_begin_[g + 1],
+            std::fill(free_.begin() + dof_begin_[g], free_.begin() + dof_begin_[g + 1],
                       static_cast<unsigned char>(0));
     fixed_.assign(sums.size(), 0);
-    for (const long slot : fixed_x_) fixed_[static_cast<std::size_t>(slot)] |= 1;
-    for (const long slot : fixed_y_) fixed_[static_cast<std::size_t>(slot)] |= 2;
+    for (const long dof : fixed_x_) fixed_[static_cast<std::size_t>(dof)] |= 1;
+    for (const long dof : fixed_y_) fixed_[static_cast<std::size_t>(dof)] |= 2;
 }
 
-inline void GrainNodes::find_shared_nodes(const std::vector<Grain>& grains, const Frame& frame) {
+inline void GrainNodes::find_shared_nodes(const std::vector<Grain>& grains,
+                                          const GridLayout& layout) {
     members_.clear(), shared_begin_.assign(1, 0);
-    // How many have a slot at each node, and where their list begins.
+    // How many have a dof at each node, and where their list begins.
     const long nx = mesh_.cells_x, ny = mesh_.cells_y, margin = 4, width = nx + 2 * margin,
                height = ny + 2 * margin;
     const long first_i = mesh_.periodic_x ? 0 : -margin,
@@ -230,19 +233,19 @@ inline void GrainNodes::find_shared_nodes(const std::vector<Grain>& grains, cons
     };
     std::vector<int> place(static_cast<std::size_t>(width * height) + 1, 0);
     const auto stands = [&](Side side) { return mesh_.has(side, Boundary::frictional); };
-    // Grains first, in their order, then walls; copies of ring columns and mirrored nodes not.
+    // Grains first, in their order, then walls; copies of wraps columns and mirrored nodes not.
     const auto for_each_member = [&](const auto& visit) {
         for (std::size_t k = 0; k < grains.size(); ++k) {
             const int g = static_cast<int>(k);
-            for_each_slot(g, frame, [&](long slot, long i, long j) {
-                const bool copy = frame.ring[k] != 0 && has_slot(g, frame, i - nx, j);
+            for_each_dof(g, layout, [&](long dof, long i, long j) {
+                const bool copy = layout.wraps[k] != 0 && has_dof(g, layout, i - nx, j);
                 const bool behind_x =
                     !mesh_.periodic_x && ((i < 0 && !stands(x_low)) || (i > nx && !stands(x_high)));
                 const bool behind_y = (j < 0 && !stands(y_low)) || (j > ny && !stands(y_high));
                 const long node = node_of(i, j);
                 if (copy || behind_x || behind_y || node < 0) return;
                 visit(static_cast<std::size_t>(node),
-                      Member{slot, g, mesh_.x_of(static_cast<double>(i)),
+                      Member{dof, g, mesh_.x_of(static_cast<double>(i)),
                              mesh_.y_of(static_cast<double>(j))});
             });
         }

@@ -25,17 +25,19 @@ inline double share_of_load(double t, double rise) {
 }
 
 /// Velocities of rigid grains for the step from t to t + dt.
-///   driven:  v = share(t) wanted
-///   servo:   m dv/dt = share(t) F + push - c v, push the force of the other grains on it
-/// note:    A servo's dashpot c is taken at the new velocity: it never overshoots, however large.
-inline void drive_plates(double t, double dt, double rise, std::vector<RigidMotion>& rigid) {
+///   prescribed:     v = share(t) v_prescribed
+///   force control:  m dv/dt = share(t) F + push - c v, push the force of the other grains on it
+/// note:    The dashpot c is taken at the new velocity: it never overshoots, however large.
+inline void prescribe_motion(double t, double dt, double rise, std::vector<RigidMotion>& rigid) {
     const double share = share_of_load(t, rise);
-    const auto servo = [&](const RigidMotion& is, double v, double force, double push) {
+    const auto driven = [&](const RigidMotion& is, double v, double force, double push) {
         return (v + dt * (share * force + push) / is.mass) / (1 + dt * is.damping / is.mass);
     };
     for (RigidMotion& is : rigid) {
-        is.vx = is.servo_x ? servo(is, is.vx, is.force, is.push_x) : share * is.prescribed_vx;
-        is.vy = is.servo_y ? servo(is, is.vy, is.force, is.push_y) : share * is.prescribed_vy;
+        is.vx =
+            is.force_control_x ? driven(is, is.vx, is.force, is.push_x) : share * is.prescribed_vx;
+        is.vy =
+            is.force_control_y ? driven(is, is.vy, is.force, is.push_y) : share * is.prescribed_vy;
         is.travel_x += dt * is.vx, is.travel_y += dt * is.vy;
     }
 }
@@ -50,10 +52,10 @@ inline BodyForce body_force(const Problem& problem, double t) {
 }
 
 /// Loads in the step from t^n: the body force, and the velocities of rigid grains.
-inline BodyForce drive(const Problem& problem, long step, double dt,
-                       std::vector<RigidMotion>& rigid) {
+inline BodyForce apply_loads(const Problem& problem, long step, double dt,
+                             std::vector<RigidMotion>& rigid) {
     const double t = time_of_load(step, dt);
-    drive_plates(t, dt, problem.rise, rigid);
+    prescribe_motion(t, dt, problem.rise, rigid);
     return body_force(problem, t);
 }
 
