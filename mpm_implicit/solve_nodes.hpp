@@ -14,8 +14,8 @@
 #include "mpm_implicit/grain_factors.hpp"
 #include "mpm_implicit/mass_factors.hpp"
 #include "mpm_implicit/projected_cg.hpp"
-#include "mpm_implicit/settle_contact.hpp"
 #include "mpm_implicit/theta_scheme.hpp"
+#include "mpm_implicit/update_active_set.hpp"
 
 namespace mpm_implicit {
 
@@ -23,7 +23,7 @@ template <int reach>
 class NodeSolver {
    public:
     GrainMatrix<reach> matrix;
-    ContactSet set;
+    ActiveSet set;
     Constraints constraints;
     std::vector<ForceControl> force_controls;
 
@@ -55,7 +55,7 @@ class NodeSolver {
         resize();
         nodal_velocity(all.grains, all.rigid, nodes);
         contact.join_bonds(all.bonds, nodes);
-        set.find(contact, nodes, all.bonds, all.rigid, force_controls, state.pressed);
+        set.find(contact, nodes, all.bonds, force_controls, state.active_pairs);
         matrix.diagonal_mass(scale_);
         invert_diagonal(nodes);
         for_each_dof([&](long i, std::size_t n) {
@@ -131,7 +131,8 @@ class NodeSolver {
             report.iterations += cg.iterations;
             if (!cg.converged) fail("the nodes", cg, scheme);
             constraints.find_impulses(work_.r, set);
-            const Change change = correct(v_, controlled.V, nodes, tolerance, set);
+            const ActiveSetChange change =
+                update_active_set(v_, controlled.V, nodes, tolerance, set);
             report.held = change.held;
             if (change.settled) {
                 if (tolerance == scheme.tolerance) break;
@@ -153,7 +154,7 @@ class NodeSolver {
         });
         prescribe_rigid_velocity(grains, rigid, nodes);
         fill_ghost_velocity(nodes);
-        state.pressed = set.memory();
+        state.active_pairs = set.active_pairs();
         return set.account(contact, scheme.theta, dt, nodes, state.assembly.bonds, rigid);
     }
 
@@ -243,26 +244,26 @@ class NodeSolver {
         });
     }
 
-    // What slips rubs with a known impulse.
+    // The right-hand side with the known friction of slipping pairs.
     void add_friction(double theta, double dt, ControlledGrains& controlled) {
         right_ = b_;
         controlled.b.clear();
         for (const ForceControl& control : force_controls)
             controlled.b.push_back(theta * (control.mass * control.velocity + dt * control.force));
-        for (const MeetingNode& node : set.nodes) {
+        for (const ActiveSet::Node& node : set.nodes) {
             for (std::size_t k = node.pair_begin; k < node.pair_end; ++k) {
-                MeetingPair& pair = set.pairs[k];
-                if (pair.hold != Hold::slip) continue;
-                pair.lambda_t = pair.friction;
+                ContactPair& pair = set.pairs[k];
+                if (pair.state != ContactState::slip) continue;
+                pair.lambda_t = set.updates[k].friction;
                 if (pair.lambda_t == 0) continue;
                 for (const auto& [who, sign] : {std::pair(pair.a, -1.0), std::pair(pair.b, 1.0)}) {
-                    const Meeter& is = set.meeters[node.meeter_begin + who];
+                    const ContactBody& body = set.bodies[node.body_begin + who];
                     const double jx = sign * pair.lambda_t * pair.tx(),
                                  jy = sign * pair.lambda_t * pair.ty();
-                    if (!is.fixed) right_[is.dof] += jx, right_[size_ + is.dof] += jy;
-                    if (is.force_control >= 0)
-                        controlled.b[static_cast<std::size_t>(is.force_control)] +=
-                            is.control_along_x ? jx : jy;
+                    if (!body.is_fixed()) right_[body.dof] += jx, right_[size_ + body.dof] += jy;
+                    if (body.force_control >= 0)
+                        controlled.b[static_cast<std::size_t>(body.force_control)] +=
+                            body.control_along_x ? jx : jy;
                 }
             }
         }

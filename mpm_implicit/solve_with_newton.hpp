@@ -41,9 +41,9 @@ class NewtonSolver {
         common::NewtonResult result;
         // One Newton step at a time, each with the pairs that are closed then.
         for (report.loops = 0; report.loops <= scheme.max_outer_iterations; ++report.loops) {
-            step.watching = true;
+            step.updating = true;
             F_of(x_, F_);
-            step.watching = false;
+            step.updating = false;
             if (report.loops == 0)
                 unit = std::max({common::safe_norm(F_), common::safe_norm(x_),
                                  std::numeric_limits<double>::min()});
@@ -77,7 +77,7 @@ class NewtonSolver {
         NodeSolver<reach>& solver;
         GrainNodes& nodes;
         SolveReport& report;
-        bool watching = false;  // pairs are told what they do
+        bool updating = false;  // the states of pairs are updated
         const Vector& scale() const { return solver.scale(); }
     };
 
@@ -109,7 +109,7 @@ class NewtonSolver {
 
     // Puts v + R(v)/D on the nodes, for contact to correct.
     template <class Shape>
-    void push_by_missing_momentum(const Shape& shape, const Vector& x, Step& step) {
+    void add_missing_momentum(const Shape& shape, const Vector& x, Step& step) {
         GrainNodes& nodes = step.nodes;
         const Vector &scale = step.scale(), &b = step.solver.right_hand_side();
         const long n = nodes.size();
@@ -142,49 +142,45 @@ class NewtonSolver {
         });
     }
 
-    // The operator of the explicit program, with the masses D.
-    static void correct_node(const Vector& scale, long n, mpm::detail::NodeProblem& node) {
+    // The operator C of the explicit program, with the masses D.
+    static void correct_velocities(const Vector& scale, long n, ContactNode& node) {
         node.isotropic = false;
-        for (std::size_t k = 0; k < node.parties; ++k) {
-            mpm::detail::Party& party = node.party[k];
-            if (party.is_fixed()) continue;
-            party.per_mx = scale[party.dof] * scale[party.dof];
-            party.per_my = scale[n + party.dof] * scale[n + party.dof];
+        for (ContactBody& body : node.bodies) {
+            if (body.is_fixed()) continue;
+            body.per_mx = scale[body.dof] * scale[body.dof];
+            body.per_my = scale[n + body.dof] * scale[n + body.dof];
         }
-        mpm::detail::weigh_pairs(node);
-        mpm::detail::solve(node);
+        for (ContactPair& pair : node.pairs) pair.lambda_n = pair.lambda_t = 0;
+        find_effective_masses(node);
+        solve_contact_node(node);
     }
 
-    // F(v) = v - C(v + R(v)/D), and of a plate V - [V_old + (dt F + impulses)/m]/(1 + dt c/m).
+    // F(v) = v - C(v + R(v)/D), and of a grain under force control
+    // V - [V_old + (dt F + impulses)/m]/(1 + dt c/m).
     template <class Shape>
     void residual(const Shape& shape, const Vector& x, Step& step, Vector& F) {
         GrainNodes& nodes = step.nodes;
-        const std::vector<ForceControl>& force_controls = step.solver.force_controls;
+        const std::vector<ForceControl>& controls = step.solver.force_controls;
         const long n = nodes.size();
-        push_by_missing_momentum(shape, x, step);
+        add_missing_momentum(shape, x, step);
         std::array<std::vector<double>, common::block_count> impulses;
-        for (auto& block : impulses) block.assign(force_controls.size(), 0.0);
-        std::array<std::size_t, common::block_count> next = step.solver.set.first_pair;
-        step.contact.meetings().for_each(nodes, step.all.bonds, false, [&](int number, auto& node) {
+        for (auto& block : impulses) block.assign(controls.size(), 0.0);
+        step.solver.set.for_each(nodes, [&](int number, ContactNode& node, std::size_t) {
             const auto block = static_cast<std::size_t>(number);
-            correct_node(step.scale(), n, node);
-            for (std::size_t k = 0; k < node.pairs; ++k) {
-                if (step.watching) see(node.pair[k], step.solver.set.pairs[next[block]++]);
-                for (std::size_t s = 0; s < force_controls.size(); ++s)
-                    impulses[block][s] += impulse_on(force_controls[s], node, node.pair[k]);
+            correct_velocities(step.scale(), n, node);
+            for (ContactPair& pair : node.pairs) {
+                if (step.updating) update_state(pair);
+                for (std::size_t s = 0; s < controls.size(); ++s)
+                    impulses[block][s] += impulse_on(controls[s], node, pair);
             }
-            for (std::size_t k = 0; k < node.parties; ++k) {
-                if (node.party[k].is_fixed()) continue;
-                NodeMotion& v = nodes.motion[static_cast<std::size_t>(node.party[k].dof)];
-                v.vx_1 = node.party[k].vx, v.vy_1 = node.party[k].vy;
-            }
+            store_velocities(node, nodes);
         });
         for_each_dof(n, [&](long i, std::size_t k) {
             F[i] = x[i] - root_[i] * nodes.motion[k].vx_1;
             F[n + i] = x[n + i] - root_[n + i] * nodes.motion[k].vy_1;
         });
-        for (std::size_t s = 0; s < force_controls.size(); ++s) {
-            const ForceControl& control = force_controls[s];
+        for (std::size_t s = 0; s < controls.size(); ++s) {
+            const ForceControl& control = controls[s];
             double impulse = step.dt * control.force;
             for (const auto& block : impulses) impulse += block[s] / step.scheme.theta;
             const double V = (control.velocity + impulse / control.mass) /
@@ -194,25 +190,24 @@ class NewtonSolver {
         }
     }
 
-    // What a pair does to a plate that a force drives, along its way.
-    static double impulse_on(const ForceControl& control, const mpm::detail::NodeProblem& node,
-                             const mpm::detail::Pair& pair) {
-        const double along = control.along_x ? pair.lambda_n * pair.nx - pair.lambda_t * pair.ny
-                                             : pair.lambda_n * pair.ny + pair.lambda_t * pair.nx;
+    // The impulse of a pair on a grain under force control, along its direction.
+    static double impulse_on(const ForceControl& control, const ContactNode& node,
+                             const ContactPair& pair) {
+        const double along = control.along_x ? pair.impulse_x() : pair.impulse_y();
         const auto is = [&](std::size_t who) {
-            const mpm::detail::Party& party = node.party[who];
-            return party.rigid && static_cast<std::size_t>(party.grain) == control.grain;
+            const ContactBody& body = node.bodies[who];
+            return body.rigid && static_cast<std::size_t>(body.grain) == control.grain;
         };
         return (is(pair.b) ? along : 0) - (is(pair.a) ? along : 0);
     }
 
-    // Puts down what a pair does now.
-    static void see(const mpm::detail::Pair& now, MeetingPair& pair) {
-        pair.lambda_n = now.lambda_n, pair.lambda_t = now.lambda_t;
+    // The state of a pair by its impulses.
+    static void update_state(ContactPair& pair) {
         if (pair.bond >= 0) return;
-        pair.hold = !(now.lambda_n > 0)                                         ? Hold::open
-                    : std::fabs(now.lambda_t) < pair.mu * now.lambda_n * 0.9999 ? Hold::stick
-                                                                                : Hold::slip;
+        const bool sticks = std::fabs(pair.lambda_t) < pair.mu * pair.lambda_n * 0.9999;
+        pair.state = !(pair.lambda_n > 0) ? ContactState::open
+                     : sticks             ? ContactState::stick
+                                          : ContactState::slip;
     }
 
     // z = (1 - P) r + (P A P)^-1 [P r - P A (1 - P) r], P the projection to what closed pairs allow;
@@ -240,25 +235,30 @@ class NewtonSolver {
         for_each_dof(2 * n, [&](long at, std::size_t) { z[at] = rest_[at] + root_[at] * v_[at]; });
     }
 
-    // The books of contact, with the masses it was solved with.
+    // What contact has done at the solution, with the masses D.
     template <class Shape>
     ContactSums end(const Shape& shape, Step& step, State& state) {
-        push_by_missing_momentum(shape, x_, step);
+        add_missing_momentum(shape, x_, step);
         const long n = step.nodes.size();
-        const ContactSums did = step.contact.apply(
-            step.dt, step.nodes, step.all.bonds, step.all.rigid, {0, 1 / step.scheme.theta},
-            [&](int, auto& node) { correct_node(step.scale(), n, node); });
+        ContactTally sums = step.contact.tally({0, 1 / step.scheme.theta});
+        step.solver.set.for_each(step.nodes, [&](int block, ContactNode& node, std::size_t) {
+            correct_velocities(step.scale(), n, node);
+            sums.add(block, node);
+            store_velocities(node, step.nodes);
+        });
+        fill_ghost_velocity(step.nodes);
+        const ContactSums did = sums.finish(step.dt, step.all.bonds, step.all.rigid);
         for (const ForceControl& control : step.solver.force_controls) {
             RigidMotion& is = step.all.rigid[control.grain];
             (control.along_x ? is.travel_x : is.travel_y) +=
                 step.dt * (control.along_x ? is.vx : is.vy);
         }
-        state.pressed = step.solver.set.memory();
+        state.active_pairs = step.solver.set.active_pairs();
         return did;
     }
 
     [[noreturn]] static void fail(const common::NewtonResult& result, const ThetaScheme& scheme,
-                                  const std::vector<Grain>& grains, const ContactSet& set) {
+                                  const std::vector<Grain>& grains, const ActiveSet& set) {
         std::size_t hardest = 0;
         for (std::size_t k = 0; k < set.pairs.size(); ++k)
             if (set.pairs[k].lambda_n > set.pairs[hardest].lambda_n) hardest = k;

@@ -14,17 +14,17 @@ namespace mpm_implicit {
 struct SolveReport {
     long iterations = 0;       // conjugate gradients
     long mass_iterations = 0;  // for v^0
-    long loops = 0;            // guesses of who presses, or Newton steps
+    long loops = 0;            // active sets tried, or Newton steps
     long krylov = 0;           // GMRES vectors of Newton's steps
-    long held = 0;             // pairs that the rules against circles have kept as they were
+    long held = 0;             // pairs that the rules against cycles of sets have kept as they were
 };
 
-/// What a pair did in the last step, to begin the next one with.
-struct PairMemory {
+/// A closed pair of the last step, which the next one begins with.
+struct ActivePair {
     long node;
-    int a, b, hold;
+    int a, b, state;  // bodies by ContactBody::id(), ContactState
     double lambda_t;
-    bool operator<(const PairMemory& other) const {
+    bool operator<(const ActivePair& other) const {
         return std::tie(node, a, b) < std::tie(other.node, other.a, other.b);
     }
 };
@@ -55,7 +55,7 @@ struct State {
     Assembly assembly;
     GridLayout layout;
     Budget budget;
-    std::vector<PairMemory> pressed;  // pairs that were closed in the last step
+    std::vector<ActivePair> active_pairs;  // closed in the last step
     Effort effort;
 };
 
@@ -76,16 +76,16 @@ void archive(Archive& a, State& state) {
     a("iterations", e.iterations), a("mass_iterations", e.mass_iterations);
     a("krylov", e.krylov), a("loops", e.loops), a("held", e.held);
     std::vector<double> pairs;
-    for (const PairMemory& pair : state.pressed)
+    for (const ActivePair& pair : state.active_pairs)
         pairs.insert(pairs.end(),
                      {static_cast<double>(pair.node), static_cast<double>(pair.a),
-                      static_cast<double>(pair.b), static_cast<double>(pair.hold), pair.lambda_t});
-    a("pressed", pairs);
-    state.pressed.clear();
+                      static_cast<double>(pair.b), static_cast<double>(pair.state), pair.lambda_t});
+    a("active_pairs", pairs);
+    state.active_pairs.clear();
     for (std::size_t k = 0; k + 4 < pairs.size(); k += 5)
-        state.pressed.push_back({std::lround(pairs[k]), static_cast<int>(pairs[k + 1]),
-                                 static_cast<int>(pairs[k + 2]), static_cast<int>(pairs[k + 3]),
-                                 pairs[k + 4]});
+        state.active_pairs.push_back({std::lround(pairs[k]), static_cast<int>(pairs[k + 1]),
+                                      static_cast<int>(pairs[k + 2]),
+                                      static_cast<int>(pairs[k + 3]), pairs[k + 4]});
 }
 
 /// Loads in the step from t^n: the body force, and velocities of rigid grains.

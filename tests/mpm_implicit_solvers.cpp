@@ -193,8 +193,8 @@ double total_mass(const Particles& p) {
 
 // ---- grains that meet ----------------------------------------------------------------------------
 
-// Boxes around one place, h = 0.1: two to four grains, a rigid one, walls, plates that forces drive.
-std::vector<std::pair<std::string, Case>> meetings(const std::string& shape) {
+// Boxes around one place, h = 0.1: two to four grains, a rigid one, walls, grains under force control.
+std::vector<std::pair<std::string, Case>> contact_cases(const std::string& shape) {
     std::vector<std::pair<std::string, Case>> all;
     const auto add = [&](const std::string& name, double y, std::size_t boxes) -> Problem& {
         Case c = case_on(10, 8, 1);
@@ -232,12 +232,12 @@ std::vector<std::pair<std::string, Case>> meetings(const std::string& shape) {
     return all;
 }
 
-// What closed pairs ask for, in all meetings and with random holds.
+// What closed pairs ask for, in all these cases and with random states.
 template <class Work>
-void for_each_meeting(const Work& work) {
+void for_each_contact_case(const Work& work) {
     long pairs = 0, crowded = 0;
     for (const std::string& shape : {shape_names[0], shape_names[2]}) {
-        for (const auto& meeting : meetings(shape)) {
+        for (const auto& meeting : contact_cases(shape)) {
             for (const std::uint64_t seed : {1, 2, 3}) {
                 const std::string name = meeting.first;
                 CAPTURE(shape);
@@ -252,12 +252,14 @@ void for_each_meeting(const Work& work) {
                 run.with([&](const auto&, auto& solver) {
                     solver.prepare(run.scheme, run.body, run.dt, run.nodes);
                     Random random(seed + 7);
-                    for (MeetingPair& pair : solver.set.pairs) {
+                    for (ContactPair& pair : solver.set.pairs) {
                         const double dice = random();
-                        pair.hold = dice < 0.2 ? Hold::open : dice < 0.5 ? Hold::slip : Hold::stick;
+                        pair.state = dice < 0.2   ? ContactState::open
+                                     : dice < 0.5 ? ContactState::slip
+                                                  : ContactState::stick;
                     }
-                    for (const MeetingNode& node : solver.set.nodes)
-                        crowded += node.meeter_end - node.meeter_begin > 2;
+                    for (const ActiveSet::Node& node : solver.set.nodes)
+                        crowded += node.body_end - node.body_begin > 2;
                     pairs += static_cast<long>(solver.set.pairs.size());
                     solver.constraints.build(solver.set, solver.scale(), run.nodes.size(),
                                              solver.force_controls.size(), false);
@@ -271,48 +273,48 @@ void for_each_meeting(const Work& work) {
 }
 
 // How the members of a pair part and slip: the largest that closed pairs do, though they may not.
-double forbidden(const ContactSet& set, const Vector& v, const std::vector<double>& V) {
+double forbidden(const ActiveSet& set, const Vector& v, const std::vector<double>& V) {
     const long n = v.size() / 2;
     double most = 0;
-    const auto velocity = [&](const Meeter& is) -> std::array<double, 2> {
-        if (!is.fixed) return {v[is.dof], v[n + is.dof]};
+    const auto velocity = [&](const ContactBody& is) -> std::array<double, 2> {
+        if (!is.is_fixed()) return {v[is.dof], v[n + is.dof]};
         std::array<double, 2> given{is.vx, is.vy};
         if (is.force_control >= 0)
             given[is.control_along_x ? 0 : 1] = V[static_cast<std::size_t>(is.force_control)];
         return given;
     };
-    for (const MeetingNode& node : set.nodes) {
+    for (const ActiveSet::Node& node : set.nodes) {
         for (std::size_t k = node.pair_begin; k < node.pair_end; ++k) {
-            const MeetingPair& pair = set.pairs[k];
+            const ContactPair& pair = set.pairs[k];
             if (!pair.closed()) continue;
-            const auto a = velocity(set.meeters[node.meeter_begin + pair.a]),
-                       b = velocity(set.meeters[node.meeter_begin + pair.b]);
+            const auto a = velocity(set.bodies[node.body_begin + pair.a]),
+                       b = velocity(set.bodies[node.body_begin + pair.b]);
             most = worst({most, std::fabs((b[0] - a[0]) * pair.nx + (b[1] - a[1]) * pair.ny)});
-            if (pair.hold == Hold::stick)
+            if (pair.state == ContactState::stick)
                 most = worst({most, std::fabs((b[1] - a[1]) * pair.nx - (b[0] - a[0]) * pair.ny)});
         }
     }
     return most;
 }
 
-// H^T lambda on the dofs that move, and on plates that forces drive.
-Vector impulses_on(const ContactSet& set, const Vector& scale, std::vector<double>& plates) {
+// H^T lambda on the dofs that move, and on grains under force control.
+Vector impulses_on(const ActiveSet& set, const Vector& scale, std::vector<double>& plates) {
     const long n = scale.size() / 2;
     Vector sum = Vector::Zero(2 * n);
     std::fill(plates.begin(), plates.end(), 0.0);
-    for (const MeetingNode& node : set.nodes) {
+    for (const ActiveSet::Node& node : set.nodes) {
         for (std::size_t k = node.pair_begin; k < node.pair_end; ++k) {
-            const MeetingPair& pair = set.pairs[k];
+            const ContactPair& pair = set.pairs[k];
             if (!pair.closed()) continue;
-            const double t = pair.hold == Hold::stick ? pair.lambda_t : 0,
+            const double t = pair.state == ContactState::stick ? pair.lambda_t : 0,
                          jx = pair.lambda_n * pair.nx - t * pair.ny,
                          jy = pair.lambda_n * pair.ny + t * pair.nx;
             for (const auto& [who, sign] : {std::pair(pair.a, -1.0), std::pair(pair.b, 1.0)}) {
-                const Meeter& is = set.meeters[node.meeter_begin + who];
+                const ContactBody& is = set.bodies[node.body_begin + who];
                 if (is.force_control >= 0)
                     plates[static_cast<std::size_t>(is.force_control)] +=
                         sign * (is.control_along_x ? jx : jy);
-                if (is.fixed) continue;
+                if (is.is_fixed()) continue;
                 if (scale[is.dof] > 0) sum[is.dof] += sign * jx;
                 if (scale[n + is.dof] > 0) sum[n + is.dof] += sign * jy;
             }
@@ -371,17 +373,17 @@ Kkt kkt_of(const ThetaRun& run, const Solver& solver, const Vector& b,
     }
     std::vector<Vector> rows;
     std::vector<double> right;
-    for (const MeetingNode& node : solver.set.nodes) {
+    for (const ActiveSet::Node& node : solver.set.nodes) {
         for (std::size_t k = node.pair_begin; k < node.pair_end; ++k) {
-            const MeetingPair& pair = solver.set.pairs[k];
+            const ContactPair& pair = solver.set.pairs[k];
             for (const bool across : {false, true}) {
-                if (!pair.closed() || (across && pair.hold != Hold::stick)) continue;
+                if (!pair.closed() || (across && pair.state != ContactState::stick)) continue;
                 const double nx = across ? -pair.ny : pair.nx, ny = across ? pair.nx : pair.ny;
                 Vector row = Vector::Zero(m + count);
                 double given = 0;
                 for (const auto& [who, sign] : {std::pair(pair.a, -1.0), std::pair(pair.b, 1.0)}) {
-                    const Meeter& is = solver.set.meeters[node.meeter_begin + who];
-                    if (is.fixed) {
+                    const ContactBody& is = solver.set.bodies[node.body_begin + who];
+                    if (is.is_fixed()) {
                         const bool x_is_free = is.force_control >= 0 && is.control_along_x,
                                    y_is_free = is.force_control >= 0 && !is.control_along_x;
                         if (x_is_free) row[m + is.force_control] += sign * nx;
@@ -408,7 +410,7 @@ Kkt kkt_of(const ThetaRun& run, const Solver& solver, const Vector& b,
 }
 
 template <class Solver>
-ControlledGrains plates_of(const ThetaRun& run, const Solver& solver) {
+ControlledGrains controlled_of(const ThetaRun& run, const Solver& solver) {
     ControlledGrains controlled;
     for (const ForceControl& control : solver.force_controls) {
         controlled.diagonal.push_back(run.scheme.theta * (control.mass + run.dt * control.damping));
@@ -607,7 +609,7 @@ TEST_CASE("tying light nodes keeps mass and momentum") {
         const long now = static_cast<long>(run.nodes.ghosts().size() - ghosts);
         if (s.name == "small masses") CHECK(now >= 5);
         constraints += now;
-        // Whoever is tied carries nothing, and has the velocity of another of its grain.
+        // A constrained node carries nothing, and has the velocity of its master.
         for (std::size_t k = ghosts; k < run.nodes.ghosts().size(); ++k)
             CHECK(run.nodes.sums[static_cast<std::size_t>(run.nodes.ghosts()[k].dof)].m == 0);
         for (long i = 0; i < n; ++i) {
@@ -686,7 +688,7 @@ TEST_CASE("the factors of a grain undo its matrix") {
 
 TEST_CASE("the projection is orthogonal and needs to be done once") {
     double again = 0, across = 0, skew = 0;
-    for_each_meeting([&](ThetaRun&, auto& solver, Random& random) {
+    for_each_contact_case([&](ThetaRun&, auto& solver, Random& random) {
         const Constraints& allowed = solver.constraints;
         const Vector x = anything(solver.scale(), random), y = anything(solver.scale(), random);
         Vector Px = x, Py = y;
@@ -698,8 +700,8 @@ TEST_CASE("the projection is orthogonal and needs to be done once") {
         across = worst({across, std::fabs((x - Px).dot(Px)) / x.squaredNorm()});
         skew = worst({skew, std::fabs(x.dot(Py) - y.dot(Px)) / (x.norm() * y.norm())});
         // Velocities that are left take no pair apart; fixed ones would have none.
-        ContactSet at_rest = solver.set;
-        for (Meeter& is : at_rest.meeters) is.vx = is.vy = 0;
+        ActiveSet at_rest = solver.set;
+        for (ContactBody& is : at_rest.bodies) is.vx = is.vy = 0;
         const Vector v = solver.scale().cwiseProduct(Px);
         const std::vector<double> none(solver.force_controls.size(), 0.0);
         across = worst({across, forbidden(at_rest, v, none) / v.cwiseAbs().maxCoeff()});
@@ -709,9 +711,9 @@ TEST_CASE("the projection is orthogonal and needs to be done once") {
     CHECK(skew <= 1e-14);
 }
 
-TEST_CASE("velocities that obey part and slip at no closed pair and change as little as possible") {
+TEST_CASE("enforced velocities part and slip at no closed pair and change as little as possible") {
     double left = 0, more = 0;
-    for_each_meeting([&](ThetaRun&, auto& solver, Random& random) {
+    for_each_contact_case([&](ThetaRun&, auto& solver, Random& random) {
         std::vector<double> V(solver.force_controls.size());
         for (double& one : V) one = random(-1, 1);
         const Vector u = anything(solver.scale(), random);
@@ -738,22 +740,22 @@ TEST_CASE("velocities that obey part and slip at no closed pair and change as li
 TEST_CASE("impulses are found whose sum on every node is what is left of its equation") {
     double off = 0;
     long redundant = 0;
-    for_each_meeting([&](ThetaRun&, auto& solver, Random& random) {
-        ContactSet set = solver.set;
-        for (MeetingPair& pair : set.pairs)
+    for_each_contact_case([&](ThetaRun&, auto& solver, Random& random) {
+        ActiveSet set = solver.set;
+        for (ContactPair& pair : set.pairs)
             pair.lambda_n = random(-1, 1), pair.lambda_t = random(-1, 1);
         std::vector<double> push(solver.force_controls.size());
         const Vector Hl = impulses_on(set, solver.scale(), push);
-        const ContactSet parameters = set;
-        for (MeetingPair& pair : set.pairs) pair.lambda_n = pair.lambda_t = 1e3;
+        const ActiveSet parameters = set;
+        for (ContactPair& pair : set.pairs) pair.lambda_n = pair.lambda_t = 1e3;
         solver.constraints.find_impulses(-Hl, set);
         const Vector found = impulses_on(set, solver.scale(), push);
         off = worst({off, (found - Hl).cwiseAbs().maxCoeff()});
         for (std::size_t k = 0; k < set.pairs.size(); ++k) {
-            const MeetingPair& pair = set.pairs[k];
+            const ContactPair& pair = set.pairs[k];
             if (!pair.closed()) CHECK((pair.lambda_n == 0 && pair.lambda_t == 0));
             // Slip has the friction that it was given.
-            if (pair.hold == Hold::slip) CHECK(pair.lambda_t == 1e3);
+            if (pair.state == ContactState::slip) CHECK(pair.lambda_t == 1e3);
             redundant += std::fabs(pair.lambda_n - parameters.pairs[k].lambda_n) > 1e-6;
         }
     });
@@ -764,7 +766,7 @@ TEST_CASE("impulses are found whose sum on every node is what is left of its equ
 TEST_CASE("a plate that a force drives takes along whom it presses") {
     double off = 0;
     long plates = 0;
-    for_each_meeting([&](ThetaRun&, auto& solver, Random& random) {
+    for_each_contact_case([&](ThetaRun&, auto& solver, Random& random) {
         const std::size_t count = solver.force_controls.size();
         if (count == 0) return;
         const Constraints& allowed = solver.constraints;
@@ -801,17 +803,17 @@ TEST_CASE("a plate that a force drives takes along whom it presses") {
 TEST_CASE("conjugate gradients among closed pairs solve what a dense solver does") {
     double off = 0, apart = 0, left = 0;
     long iterations = 0, with_factors = 0;
-    for_each_meeting([&](ThetaRun& run, auto& solver, Random& random) {
+    for_each_contact_case([&](ThetaRun& run, auto& solver, Random& random) {
         Vector b = solver.right_hand_side();
         const double size = b.norm() / std::sqrt(real(b.size()));
         b += size * anything(solver.scale(), random);
-        ControlledGrains controlled = plates_of(run, solver);
+        ControlledGrains controlled = controlled_of(run, solver);
         Kkt kkt = kkt_of(run, solver, b, controlled);
         const Vector exact = kkt.solve();
         REQUIRE(kkt.off <= 1e-11);
         for (const char* preconditioner : {"diagonal", "grains"}) {
             Vector v = Vector::Zero(b.size());
-            controlled = plates_of(run, solver);
+            controlled = controlled_of(run, solver);
             solver.constraints.enforce(controlled.V, v);
             CgWorkspace work;
             const CgResult cg =
@@ -828,8 +830,8 @@ TEST_CASE("conjugate gradients among closed pairs solve what a dense solver does
                                       fast});
             apart = worst({apart, forbidden(solver.set, v, controlled.V) / fast});
             // Impulses make up for what is left.
-            ContactSet set = solver.set;
-            for (MeetingPair& pair : set.pairs) pair.lambda_t = 0;
+            ActiveSet set = solver.set;
+            for (ContactPair& pair : set.pairs) pair.lambda_t = 0;
             solver.constraints.find_impulses(work.r, set);
             std::vector<double> push(controlled.V.size());
             const Vector Hl = impulses_on(set, solver.scale(), push);
@@ -852,12 +854,12 @@ TEST_CASE("conjugate gradients among closed pairs solve what a dense solver does
 }
 
 TEST_CASE("conjugate gradients know a solution when they see one and say when they have none") {
-    for_each_meeting([&](ThetaRun& run, auto& solver, Random&) {
+    for_each_contact_case([&](ThetaRun& run, auto& solver, Random&) {
         const Vector& b = solver.right_hand_side();
         for (const char* preconditioner : {"diagonal", "grains"}) {
             CgWorkspace work;
             Vector v = Vector::Zero(b.size());
-            ControlledGrains controlled = plates_of(run, solver);
+            ControlledGrains controlled = controlled_of(run, solver);
             solver.constraints.enforce(controlled.V, v);
             // Too few iterations.
             CgResult cg = find(run, solver, preconditioner, b, 1e-13, 1, v, controlled, work);
@@ -877,12 +879,12 @@ TEST_CASE("conjugate gradients know a solution when they see one and say when th
             CHECK(controlled.V == V);
         }
         // Nothing moves where nothing is moved.
-        ContactSet& set = solver.set;
-        for (Meeter& is : set.meeters) is.vx = is.vy = 0;
+        ActiveSet& set = solver.set;
+        for (ContactBody& is : set.bodies) is.vx = is.vy = 0;
         solver.constraints.build(set, solver.scale(), run.nodes.size(),
                                  solver.force_controls.size(), false);
         Vector v = Vector::Zero(b.size());
-        ControlledGrains controlled = plates_of(run, solver);
+        ControlledGrains controlled = controlled_of(run, solver);
         for (double& one : controlled.b) one = 0;
         for (double& one : controlled.V) one = 0;
         CgWorkspace work;

@@ -462,18 +462,18 @@ TEST_CASE("impulses press and gaps stay open and friction is Coulomb's at the so
                     run.begin(), run.solve();
                     held += run.sums.solver.held;
                     if (run.sums.solver.held == 0) {
-                        const ContactSet& set = run.set();
+                        const ActiveSet& set = run.set();
                         double press = 0, speed = 0;
-                        for (const MeetingPair& pair : set.pairs)
+                        for (const ContactPair& pair : set.pairs)
                             press = std::max(press, std::fabs(pair.lambda_n));
                         for (const NodeMotion& v : run.nodes.motion)
                             speed = std::max({speed, std::fabs(v.vx_1), std::fabs(v.vy_1)});
-                        for (const MeetingNode& node : set.nodes) {
+                        for (const ActiveSet::Node& node : set.nodes) {
                             for (std::size_t k = node.pair_begin; k < node.pair_end; ++k) {
-                                const MeetingPair& pair = set.pairs[k];
+                                const ContactPair& pair = set.pairs[k];
                                 const auto of = [&](std::size_t who) -> std::array<double, 2> {
-                                    const Meeter& is = set.meeters[node.meeter_begin + who];
-                                    if (is.fixed) return {is.vx, is.vy};
+                                    const ContactBody& is = set.bodies[node.body_begin + who];
+                                    if (is.is_fixed()) return {is.vx, is.vy};
                                     const NodeMotion& v =
                                         run.nodes.motion[static_cast<std::size_t>(is.dof)];
                                     return {v.vx_1, v.vy_1};

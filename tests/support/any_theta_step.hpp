@@ -94,7 +94,7 @@ struct ThetaRun {
         with_scratch([&](const auto& shape, auto& scratch) { end(shape, scratch); });
     }
     /// The pairs of the last step.
-    const ContactSet& set() const {
+    const ActiveSet& set() const {
         return parameters.shape == "linear" ? narrow_.solver.set : wide_.solver.set;
     }
 
