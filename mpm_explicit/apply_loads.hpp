@@ -1,13 +1,19 @@
-// Loads: gravity, and rigid grains, which are plates and pistons that move as the case says or that
-// a force drives.
+// Loads: gravity, and rigid grains, which are plates and pistons with a prescribed motion or under
+// force control.
 #pragma once
 
 #include <vector>
 
 #include "mpm_explicit/grains.hpp"
-#include "mpm_explicit/setup/problem.hpp"
 
 namespace mpm {
+
+/// The loads of a case at their full value, which they reach smoothly in the time `rise`.
+struct Loads {
+    double gravity_x = 0, gravity_y = 0;  // acceleration
+    double damping = 0;                   // of the velocity of all mass [1/time]
+    double rise = 0;                      // [time]
+};
 
 /// Forces on all mass alike.
 struct BodyForce {
@@ -46,17 +52,17 @@ inline void prescribe_motion(double t, double dt, double rise, std::vector<Rigid
 inline double time_of_load(long step, double dt) { return (static_cast<double>(step) + 0.5) * dt; }
 
 /// The body force at a time.
-inline BodyForce body_force(const Problem& problem, double t) {
-    const double share = share_of_load(t, problem.rise);
-    return {share * problem.gravity_x, share * problem.gravity_y, problem.damping};
+inline BodyForce body_force(const Loads& loads, double t) {
+    const double share = share_of_load(t, loads.rise);
+    return {share * loads.gravity_x, share * loads.gravity_y, loads.damping};
 }
 
 /// Loads in the step from t^n: the body force, and the velocities of rigid grains.
-inline BodyForce apply_loads(const Problem& problem, long step, double dt,
+inline BodyForce apply_loads(const Loads& loads, long step, double dt,
                              std::vector<RigidMotion>& rigid) {
     const double t = time_of_load(step, dt);
-    prescribe_motion(t, dt, problem.rise, rigid);
-    return body_force(problem, t);
+    prescribe_motion(t, dt, loads.rise, rigid);
+    return body_force(loads, t);
 }
 
 }  // namespace mpm

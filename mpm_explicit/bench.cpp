@@ -69,7 +69,7 @@ common::StepClock time_steps(const Case& w, long steps, int threads, long& parti
         // once.
         if (step == steps) nodes.sort(grains, particles, state.layout);
         clock.lap("sort");
-        const BodyForce body = apply_loads(w.problem, step, dt, rigid);
+        const BodyForce body = apply_loads(w.problem.loads(), step, dt, rigid);
         take_step(shape, laws, contact, body, w.flip, w.frozen, dt, nodes, state, sums, clock);
         add_energies(step, sums.tiles, state.budget);
         add_work(nodes.tiles(), sums.tiles, sums.nodes, sums.contact, state.budget);

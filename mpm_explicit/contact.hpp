@@ -48,10 +48,11 @@ class ContactTally {
     }
 
     /// Adds a node, with the velocities after contact and the impulses that made them.
-    /// in: block as in ContactDetection::for_each
-    void add(int number, const ContactNode& node) {
+    /// in:     number of the block, as in ContactDetection::for_each
+    /// in/out: node; its impulses are multiplied by level.per_impulse
+    void add(int number, ContactNode& node) {
         Block& block = blocks_[static_cast<std::size_t>(number)];
-        for (ContactPair pair : node.pairs) {
+        for (ContactPair& pair : node.pairs) {
             pair.lambda_n *= level_.per_impulse, pair.lambda_t *= level_.per_impulse;
             add_work(node, pair, block.sums);
             add_push(node, pair, block.push);

@@ -54,7 +54,7 @@ int run_case(const Shape& shape, const Case& parameters, const Scales& scales, c
     while (run.not_finished(step, scales.steps)) {
         if (nodes.sort_is_due(state.layout)) nodes.sort(grains, particles, state.layout);
         recorder.snapshot(step, state, run);
-        const BodyForce body = apply_loads(parameters.problem, step, dt, rigid);
+        const BodyForce body = apply_loads(parameters.problem.loads(), step, dt, rigid);
         take_step(shape, laws, contact, body, parameters.flip, parameters.frozen, dt, nodes, state,
                   sums);  // [MPM-4, 9 ... 12]
         recorder.record(step, sums, nodes, state, run);

@@ -8,31 +8,12 @@
 #pragma once
 
 #include <algorithm>
-#include <variant>
 #include <vector>
 
-#include "mpm_explicit/materials.hpp"
-#include "mpm_explicit/setup/plan_grains.hpp"
+#include "mpm_explicit/material_laws.hpp"
 #include "mpm_explicit/transfer.hpp"
 
 namespace mpm {
-
-/// The law of a material and its inverse, worked out once.
-struct AnyLaw {
-    std::variant<Elastic, J2, DruckerPrager> law;
-    Compliance compliance;
-};
-
-/// The law of every material.
-inline std::vector<AnyLaw> laws_of(const Problem& problem) {
-    std::vector<AnyLaw> laws;
-    for (const Material& m : materials_of(problem)) {
-        laws.push_back({Elastic(m), Compliance(m)});
-        if (m.law == Law::j2) laws.back().law = J2(m);
-        if (m.law == Law::drucker_prager) laws.back().law = DruckerPrager(m);
-    }
-    return laws;
-}
 
 /// Up to ParticleBatch::size particles of one tile that are worked on together, with their velocity
 /// gradients times dt.

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "mpm_explicit/contact.hpp"
+#include "mpm_implicit/apply_loads.hpp"
 #include "mpm_implicit/state.hpp"
 
 namespace mpm_implicit {
@@ -30,7 +31,7 @@ struct PairUpdate {
     int releases = 0, switches = 0;               // in this step
 };
 
-/// Impulses of the pairs are those on v^theta: theta times what particles feel.
+/// Impulses of the pairs are those on v^theta, theta times what particles feel, until account().
 class ActiveSet {
    public:
     /// The bodies and pairs of one node, a range of those below.

@@ -74,7 +74,7 @@ double explicit_step(Case w, long first, long steps) {
     for (long step = 0; step < first + steps; ++step) {
         if (step == first) clock.restart();
         if (nodes.sort_is_due(state.layout)) nodes.sort(grains, particles, state.layout);
-        const BodyForce body = mpm::apply_loads(w.problem, step, dt, state.assembly.rigid);
+        const BodyForce body = mpm::apply_loads(w.problem.loads(), step, dt, state.assembly.rigid);
         take_step(shape, laws, contact, body, w.flip, w.frozen, dt, nodes, state, sums, clock);
     }
     return clock.total() / static_cast<double>(steps);
@@ -108,8 +108,8 @@ Split implicit_steps(const Case& w, const mpm_implicit::ThetaScheme& scheme, lon
         if (step == first) split = {};
         split.clock.resume();
         if (nodes.sort_is_due(state.layout)) nodes.sort(grains, particles, state.layout);
-        const BodyForce body = mpm_implicit::apply_loads(w.problem, step, dt, state.assembly.rigid,
-                                                         scratch.solver.force_controls);
+        const BodyForce body = mpm_implicit::apply_loads(
+            w.problem.loads(), step, dt, state.assembly.rigid, scratch.solver.force_controls);
         take_step(shape, body, dt, scratch, nodes, state, sums, split.clock);
         add_step(scheme.theta, scheme.consistent(), 0, dt, nodes.tiles(), sums.tiles, sums.nodes,
                  sums.contact, state.budget);

@@ -18,7 +18,8 @@
 #include "common/run/history.hpp"
 #include "mpm_explicit/assembly.hpp"
 #include "mpm_explicit/contact.hpp"
-#include "mpm_explicit/strain.hpp"
+#include "mpm_explicit/grain_nodes.hpp"
+#include "mpm_explicit/material_laws.hpp"
 
 namespace mpm_implicit {
 

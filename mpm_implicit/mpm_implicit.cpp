@@ -53,8 +53,8 @@ int run_case(const Shape& shape, const Case& parameters, const ThetaScheme& sche
     while (run.not_finished(step, scales.steps)) {
         if (nodes.sort_is_due(state.layout)) nodes.sort(all.grains, all.particles, state.layout);
         recorder.snapshot(step, state, run);
-        const BodyForce body =
-            apply_loads(parameters.problem, step, dt, all.rigid, scratch.solver.force_controls);
+        const BodyForce body = apply_loads(parameters.problem.loads(), step, dt, all.rigid,
+                                           scratch.solver.force_controls);
         take_step(shape, body, dt, scratch, nodes, state, sums);  // [MPM-5 ... 8]
         recorder.record(step, sums, nodes, state, run);           // [MPM-13]
         ++step;

@@ -238,6 +238,7 @@ class NewtonSolver {
     // What contact has done at the solution, with the masses D.
     template <class Shape>
     ContactSums end(const Shape& shape, Step& step, State& state) {
+        state.active_pairs = step.solver.set.active_pairs();
         add_missing_momentum(shape, x_, step);
         const long n = step.nodes.size();
         ContactTally sums = step.contact.tally({0, 1 / step.scheme.theta});
@@ -253,7 +254,6 @@ class NewtonSolver {
             (control.along_x ? is.travel_x : is.travel_y) +=
                 step.dt * (control.along_x ? is.vx : is.vy);
         }
-        state.active_pairs = step.solver.set.active_pairs();
         return did;
     }
 

@@ -1,10 +1,9 @@
-// All that changes in a run of mpm_implicit, what a step sums up for the budget, and its loads.
+// All that changes in a run of mpm_implicit, and what a step sums up for the budget.
 #pragma once
 
 #include <tuple>
 #include <vector>
 
-#include "mpm_explicit/apply_loads.hpp"
 #include "mpm_explicit/assembly.hpp"
 #include "mpm_implicit/budget.hpp"
 
@@ -27,15 +26,6 @@ struct ActivePair {
     bool operator<(const ActivePair& other) const {
         return std::tie(node, a, b) < std::tie(other.node, other.a, other.b);
     }
-};
-
-/// A rigid grain that a force drives: its velocity in this step is one more unknown V,
-///   m (V - V_old) = dt (F + push - c V)
-struct ForceControl {
-    std::size_t grain;
-    bool along_x;
-    double mass, damping, force;  // force: now
-    double velocity;              // V_old
 };
 
 /// What the solvers took, summed up over the steps.
@@ -86,24 +76,6 @@ void archive(Archive& a, State& state) {
         state.active_pairs.push_back({std::lround(pairs[k]), static_cast<int>(pairs[k + 1]),
                                       static_cast<int>(pairs[k + 2]),
                                       static_cast<int>(pairs[k + 3]), pairs[k + 4]});
-}
-
-/// Loads in the step from t^n: the body force, and velocities of rigid grains.
-/// out:    force_controls, those that a force drives, whose velocity belongs to the solution
-inline BodyForce apply_loads(const Problem& problem, long step, double dt,
-                             std::vector<RigidMotion>& rigid,
-                             std::vector<ForceControl>& force_controls) {
-    const double t = time_of_load(step, dt), share = share_of_load(t, problem.rise);
-    force_controls.clear();
-    for (std::size_t g = 0; g < rigid.size(); ++g) {
-        RigidMotion& is = rigid[g];
-        if (is.force_control_x || is.force_control_y)
-            force_controls.push_back({g, is.force_control_x, is.mass, is.damping, share * is.force,
-                                      is.force_control_x ? is.vx : is.vy});
-        if (!is.force_control_x) is.vx = share * is.prescribed_vx, is.travel_x += dt * is.vx;
-        if (!is.force_control_y) is.vy = share * is.prescribed_vy, is.travel_y += dt * is.vy;
-    }
-    return body_force(problem, t);
 }
 
 }  // namespace mpm_implicit

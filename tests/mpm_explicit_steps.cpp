@@ -1072,7 +1072,7 @@ TEST_CASE("loads are those of the middle of the step") {
     rigid[0].prescribed_vx = 2;
     for (const long step : {0L, 3L, 40L, 200L}) {
         const double dt = 0.02, share = share_of_load((real(step) + 0.5) * dt, 1);
-        const BodyForce body = apply_loads(c.problem, step, dt, rigid);
+        const BodyForce body = apply_loads(c.problem.loads(), step, dt, rigid);
         CHECK(body.gravity_x == doctest::Approx(3 * share).epsilon(1e-14));
         CHECK(body.gravity_y == doctest::Approx(-4 * share).epsilon(1e-14));
         CHECK(body.damping == 0.7);

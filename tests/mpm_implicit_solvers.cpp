@@ -544,7 +544,7 @@ TEST_CASE("rigid motions meet no stiffness") {
         };
         still([](double, double) { return std::array{1.0, 0.0}; });
         still([](double, double) { return std::array{0.0, 1.0}; });
-        // What is tied cannot turn.
+        // What is constrained cannot turn.
         if (!s.turns || !run.nodes.ghosts().empty()) return;
         still([](double x, double y) { return std::array{-(y - 5.6), x - 0.2}; });
         ++turned;

@@ -10,6 +10,7 @@
 #include "mpm_explicit/assembly.hpp"
 #include "mpm_explicit/output/fringes.hpp"
 #include "mpm_explicit/setup/case_of_grains.hpp"
+#include "mpm_explicit/setup/plan_grains.hpp"
 
 namespace mpm {
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "mpm_explicit/material_laws.hpp"
 #include "mpm_explicit/setup/pack_file.hpp"
 #include "mpm_explicit/setup/packs.hpp"
 #include "mpm_explicit/setup/problem.hpp"
@@ -39,6 +40,9 @@ inline std::vector<Material> materials_of(const Problem& w) {
     }
     return materials;
 }
+
+/// The law of every material.
+inline std::vector<AnyLaw> laws_of(const Problem& w) { return laws_of(materials_of(w)); }
 
 namespace detail {
 

@@ -76,7 +76,7 @@ struct Run {
         const std::vector<Grain>& grains = state.assembly.grains;
         std::vector<RigidMotion>& rigid = state.assembly.rigid;
         if (nodes.sort_is_due(state.layout)) nodes.sort(grains, at, state.layout);
-        const BodyForce body = apply_loads(parameters.problem, step, dt, rigid);
+        const BodyForce body = apply_loads(parameters.problem.loads(), step, dt, rigid);
         take_step(shape, laws, contact, body, parameters.flip, parameters.frozen, dt, nodes, state,
                   sums);
 

@@ -118,7 +118,7 @@ struct ThetaRun {
         // What a test has changed since the last step.
         scratch.laws = laws, scratch.scheme = scheme, scratch.flip = parameters.flip,
         scratch.frozen = parameters.frozen;
-        body = apply_loads(parameters.problem, step, dt, state.assembly.rigid,
+        body = apply_loads(parameters.problem.loads(), step, dt, state.assembly.rigid,
                            scratch.solver.force_controls);
         find_matrices(shape, body, dt, scratch, nodes, state, sums);
     }
