@@ -32,8 +32,8 @@ inline void accelerate_nodes(const BodyForce& body, const std::vector<Grain>& gr
         }
     });
     prescribe_rigid_velocity(grains, rigid, nodes);
-    for (const long i : nodes.fixed_x()) nodes.motion[static_cast<std::size_t>(i)].vx_1 = 0;
-    for (const long i : nodes.fixed_y()) nodes.motion[static_cast<std::size_t>(i)].vy_1 = 0;
+    for (const long i : nodes.fixed_x()) nodes.motion[i].vx_1 = 0;
+    for (const long i : nodes.fixed_y()) nodes.motion[i].vy_1 = 0;
     fill_ghost_velocity(nodes);
 }
 
@@ -57,9 +57,8 @@ inline NodeWork work_on_nodes(const BodyForce& body, double dt, const GrainNodes
             const double squared = v.vx_1 * v.vx_1 + v.vy_1 * v.vy_1;
             speed = squared > speed ? squared : speed;
         }
-        part[static_cast<std::size_t>(block)] = {0.5 * dt * internal_work, 0.5 * kinetic_increment,
-                                                 dt * gravity, dt * body.damping * damping,
-                                                 std::sqrt(speed)};
+        part[block] = {0.5 * dt * internal_work, 0.5 * kinetic_increment, dt * gravity,
+                       dt * body.damping * damping, std::sqrt(speed)};
     });
     NodeWork total;
     for (const NodeWork& one : part) total += one;

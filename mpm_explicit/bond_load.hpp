@@ -18,7 +18,8 @@ struct BondLoad {
     }
 };
 
-/// A node's share of the load: gradients of volume sum up to the surface, wherever on the mesh it is.
+/// A node's share of the load: gradients of volume sum up to the surface, wherever on the mesh it
+/// is.
 ///   A n = 1/2 sum_i (g_a - g_b)
 /// exact:  for particles on a lattice and an interface along it
 /// note:   The usual sum over nodes of sqrt(2 min(V_a, V_b) (V_a + V_b)) / h is up to 30 % short

@@ -4,8 +4,9 @@
 //     E^n = 1/2 sum_p m_p v_p^2 + 1/2 sum_p V_p sigma_p^{n-1/2} : T^-1 : sigma_p^{n+1/2}
 // Everything that changes it is counted where it happens, so that the rest, `budget`, is round-off:
 //     d E = external + contact + friction + bond + damping - plastic + volume + pic + remap
-// remap is what moving particles from cell to cell costs: the strain that the new nodes see less the
-// strain that the old ones old_stress_work, and the kinetic energy that lumping the mass takes.
+// remap is what moving particles from cell to cell costs: the work of the old stress on the strain
+// of the new nodes minus that on the strain of the old ones, and the kinetic energy that lumping the
+// mass takes.
 #pragma once
 
 #include <algorithm>

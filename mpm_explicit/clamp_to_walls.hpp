@@ -7,8 +7,8 @@
 
 namespace mpm {
 
-/// Frictional walls, which stop a particle that the nodes would carry through: of a grain in contact
-/// they hold the nodes, and single particles may still be faster than those.
+/// Frictional walls, which stop a particle that the nodes would carry through: of a grain in
+/// contact they hold the nodes, and single particles may still be faster than those.
 struct ClampToWalls {
     double x_least, x_most, y_least, y_most;
 

@@ -1,11 +1,11 @@
 // Contact of grains at the nodes they share: impulses that press and rub.                  [MPM-4]
 //
-// Two grains a and b that are close enough (detect_contact.hpp), with the normal n from a to b, press
-// when they approach, (v_a - v_b).n > 0. An impulse lambda n, equal and opposite, takes the approach
-// away, and friction takes the slip away as far as Coulomb allows:
+// Two grains a and b that are close enough (detect_contact.hpp), with the normal n from a to b,
+// press when they approach, (v_a - v_b).n > 0. An impulse lambda n, equal and opposite, takes the
+// approach away, and friction takes the slip away as far as Coulomb allows:
 //     lambda >= 0,   |lambda_t| <= mu lambda
-// With more than two at a node (grains, rigid ones, walls) the pairs are solved in turn until nothing
-// changes (solve_contact_node.hpp). Bonded grains do not part and do not slip.
+// With more than two at a node (grains, rigid ones, walls) the pairs are solved in turn until
+// nothing changes (solve_contact_node.hpp). Bonded grains do not part and do not slip.
 #pragma once
 
 #include <algorithm>
@@ -50,8 +50,8 @@ class ContactTally {
     /// Adds a node, with the velocities after contact and the impulses that made them.
     /// in:     number of the block, as in ContactDetection::for_each
     /// in/out: node; its impulses are multiplied by level.per_impulse
-    void add(int number, ContactNode& node) {
-        Block& block = blocks_[static_cast<std::size_t>(number)];
+    [[gnu::always_inline]] void add(int number, ContactNode& node) {
+        Block& block = blocks_[number];
         for (ContactPair& pair : node.pairs) {
             pair.lambda_n *= level_.per_impulse, pair.lambda_t *= level_.per_impulse;
             add_work(node, pair, block.sums);
@@ -72,8 +72,7 @@ class ContactTally {
         }
         std::vector<BondLoad> total(bonds.size());
         for (const Block& block : blocks_)
-            for (const BondLoad& load : block.loads)
-                total[static_cast<std::size_t>(load.bond)] += load;
+            for (const BondLoad& load : block.loads) total[load.bond] += load;
         for (std::size_t k = 0; k < bonds.size(); ++k) update_bond(total[k], dt, bonds[k]);
         return sums;
     }
@@ -116,7 +115,7 @@ class ContactTally {
             if (!body.rigid) continue;
             const auto grain = static_cast<std::size_t>(body.grain);
             const auto at = std::lower_bound(rigid_grains_.begin(), rigid_grains_.end(), grain);
-            auto& sum = push[static_cast<std::size_t>(at - rigid_grains_.begin())];
+            auto& sum = push[at - rigid_grains_.begin()];
             sum[0] += sign * pair.impulse_x(), sum[1] += sign * pair.impulse_y();
         }
     }
@@ -148,7 +147,7 @@ class Contact {
             solve_contact_node(node);
             for (const ContactBody& body : node.bodies) {
                 if (body.is_fixed()) continue;
-                NodeMotion& v = nodes.motion[static_cast<std::size_t>(body.dof)];
+                NodeMotion& v = nodes.motion[body.dof];
                 v.vx_0 = body.vx, v.vy_0 = body.vy;
             }
         });

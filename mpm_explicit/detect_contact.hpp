@@ -1,7 +1,7 @@
 // Contact detection: the bodies that meet at a grid node, and which pairs of them are in contact. [MPM-4]
 //
-// Every grain has a velocity of its own at a node. Two grains a and b, with the normal n from a to b,
-// are in contact when they are close enough: fields share nodes already when more than a cell of
+// Every grain has a velocity of its own at a node. Two grains a and b, with the normal n from a to
+// b, are in contact when they are close enough: fields share nodes already when more than a cell of
 // nothing lies between the surfaces.
 #pragma once
 
@@ -31,7 +31,7 @@ inline void load_velocities(const GrainNodes& nodes, ContactNode& node) {
     node.isotropic = true;
     for (ContactBody& body : node.bodies) {
         if (body.wall) continue;
-        const NodeMotion& v = nodes.motion[static_cast<std::size_t>(body.dof)];
+        const NodeMotion& v = nodes.motion[body.dof];
         body.vx_0 = v.vx_0, body.vy_0 = v.vy_0, body.vx = v.vx_1, body.vy = v.vy_1;
         if (body.rigid) continue;
         if (nodes.is_fixed_x(body.dof)) body.per_mx = 0, node.isotropic = false;
@@ -44,10 +44,16 @@ inline void load_velocities(const GrainNodes& nodes, ContactNode& node) {
 inline void store_velocities(const ContactNode& node, GrainNodes& nodes) {
     for (const ContactBody& body : node.bodies) {
         if (body.is_fixed()) continue;
-        NodeMotion& v = nodes.motion[static_cast<std::size_t>(body.dof)];
+        NodeMotion& v = nodes.motion[body.dof];
         v.vx_1 = body.vx, v.vy_1 = body.vy;
     }
 }
+
+/// Room for the bodies and pairs of one node.
+struct ContactStorage {
+    std::array<ContactBody, ContactNode::max_bodies> bodies;
+    std::array<ContactPair, ContactNode::max_pairs> pairs;
+};
 
 class ContactDetection {
    public:
@@ -56,27 +62,27 @@ class ContactDetection {
         : rule_(rule), bonds_of_(grains.size()) {
         for (std::size_t k = 0; k < bonds.size(); ++k) {
             const auto [low, high] = std::minmax(bonds[k].a, bonds[k].b);
-            bonds_of_[static_cast<std::size_t>(low)].push_back({high, static_cast<int>(k)});
+            bonds_of_[low].push_back({high, static_cast<int>(k)});
         }
         for (const Grain& grain : grains) is_rigid_.push_back(grain.rigid);
     }
 
     /// Calls visit(block, node) for every shared node where a pair is in contact or bonded; or only
     /// where one is bonded, with the bonded pairs alone.
-    /// in:     block below common::block_count: several threads visit, but one block is one thread's
-    ///         and in order; node, with the velocities of nodes.motion, for visit to change
+    /// in:     block below common::block_count: several threads visit, but one block is one
+    ///         thread's and in order; node, with the velocities of nodes.motion, for visit to
+    ///         change
     /// errors: NumericalError when too many bodies are at a node; not for only the bonded ones
     template <class Visit>
     void for_each(const GrainNodes& nodes, const std::vector<Bond>& bonds, bool only_bonded,
                   const Visit& visit) const {
         std::array<bool, common::block_count> crowded{};
         common::for_each_block(nodes.shared_count(), [&](int block, long begin, long end) {
-            Storage storage;
+            ContactStorage storage;
             for (long n = begin; n < end; ++n) {
                 ContactNode node;
                 if (!gather_bodies(n, nodes, storage, node)) continue;
-                if (node.bodies.size() == ContactNode::max_bodies)
-                    crowded[static_cast<std::size_t>(block)] = true;
+                if (node.bodies.size() == ContactNode::max_bodies) crowded[block] = true;
                 find_pairs(nodes.mesh().h, bonds, only_bonded, storage, node);
                 if (node.pairs.empty()) continue;
                 load_velocities(nodes, node);
@@ -93,13 +99,9 @@ class ContactDetection {
    private:
     static constexpr long mesh_margin = 4;  // nodes beyond the mesh that grains may touch
 
-    struct Storage {
-        std::array<ContactBody, ContactNode::max_bodies> bodies;
-        std::array<ContactPair, ContactNode::max_pairs> pairs;
-    };
-
     // All bodies with mass at shared node n. out: whether there are at least two
-    bool gather_bodies(long n, const GrainNodes& nodes, Storage& storage, ContactNode& node) const {
+    bool gather_bodies(long n, const GrainNodes& nodes, ContactStorage& storage,
+                       ContactNode& node) const {
         const auto k = static_cast<std::size_t>(n);
         // Most shared nodes have mass of one grain only.
         const Member* const members = nodes.members().data();
@@ -107,8 +109,7 @@ class ContactDetection {
         int present = 0;
         fetch_ahead(begin, end, nodes);
         for (long l = begin; l < end; ++l)
-            present += members[l].is_wall() ||
-                       nodes.sums[static_cast<std::size_t>(members[l].dof)].m > nodes.least_mass();
+            present += members[l].is_wall() || nodes.sums[members[l].dof].m > nodes.least_mass();
         if (present < 2) return false;
         double node_x = 0, node_y = 0;
         std::size_t count = 0;
@@ -123,11 +124,11 @@ class ContactDetection {
                 ++count;
                 continue;
             }
-            const NodeSums& sum = nodes.sums[static_cast<std::size_t>(member.dof)];
+            const NodeSums& sum = nodes.sums[member.dof];
             if (!(sum.m > nodes.least_mass())) continue;
             const double per_m = 1 / sum.m;
             body.dof = member.dof, body.grain = member.grain, body.wall = false;
-            body.rigid = is_rigid_[static_cast<std::size_t>(member.grain)];
+            body.rigid = is_rigid_[member.grain];
             body.m = sum.m, body.per_mx = body.per_my = body.rigid ? 0 : per_m;
             body.x = sum.mx * per_m - member.x, body.y = sum.my * per_m - member.y;
             body.gx = sum.gx, body.gy = sum.gy;
@@ -150,16 +151,16 @@ class ContactDetection {
         constexpr long ahead = 32;
         const long all = static_cast<long>(nodes.members().size());
         for (long l = begin + ahead; l < std::min(end + ahead, all); ++l) {
-            const Member& member = nodes.members()[static_cast<std::size_t>(l)];
+            const Member& member = nodes.members()[l];
             if (member.is_wall()) continue;
-            __builtin_prefetch(&nodes.sums[static_cast<std::size_t>(member.dof)]);
-            __builtin_prefetch(&nodes.motion[static_cast<std::size_t>(member.dof)], 1);
+            __builtin_prefetch(&nodes.sums[member.dof]);
+            __builtin_prefetch(&nodes.motion[member.dof], 1);
         }
     }
 
     // The pairs that are in contact, or only those that are bonded.
-    void find_pairs(double h, const std::vector<Bond>& bonds, bool only_bonded, Storage& storage,
-                    ContactNode& node) const {
+    void find_pairs(double h, const std::vector<Bond>& bonds, bool only_bonded,
+                    ContactStorage& storage, ContactNode& node) const {
         std::size_t count = 0;
         for (std::size_t b = 1; b < node.bodies.size(); ++b) {
             for (std::size_t a = 0; a < b; ++a) {
@@ -204,9 +205,8 @@ class ContactDetection {
 
     int bond_of(const std::vector<Bond>& bonds, const ContactBody& one,
                 const ContactBody& two) const {
-        for (const auto& [other, number] : bonds_of_[static_cast<std::size_t>(one.grain)])
-            if (other == two.grain && !bonds[static_cast<std::size_t>(number)].broken)
-                return number;
+        for (const auto& [other, number] : bonds_of_[one.grain])
+            if (other == two.grain && !bonds[number].broken) return number;
         return -1;
     }
 

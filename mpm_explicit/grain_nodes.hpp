@@ -1,9 +1,9 @@
-// One field per grain, on the nodes that the grain touches and nowhere else.
+// One field per grain, on the nodes that the grain touches and nowhere else: a sparse grid.
 //
-// A grain's nodes are stored row by row. A row is a stretch of columns, and the node in column i has
-// the dof origin[row] + i; so a particle finds its nodes with one look at a small table, and memory
-// is proportional to the area that the grains cover. Two grains that touch the same node have two
-// dofs there: what they do to each other is the business of contact.hpp.
+// A grain's nodes are stored row by row. A row is a stretch of columns, and the node in column i
+// has the dof index origin[row] + i; so a particle finds its nodes with one look at a small table,
+// and memory is proportional to the area that the grains cover. Two grains that touch the same node
+// have two dofs there: what they do to each other is the business of contact.hpp.
 //
 //      o   o---o---o---o   o        a grain's rows: every row as long as it needs to be, and half
 //    o---o---o---o---o---o---o      a cell wider than the grain, so that the table stays good until
@@ -11,8 +11,8 @@
 //      o   o---o---o---o   o
 //
 // Columns are counted on without end: a grain that straddles the ends of a periodic mesh keeps its
-// particles together, at positions beyond the end. Only a grain that reaches all around has
-// its particles put back into the box, and two copies of the columns where its ends meet.
+// particles together, at positions beyond the end. Only a grain that wraps around the whole mesh
+// has its particles put back into the box, and two copies of the columns where its ends meet.
 #pragma once
 
 #include <algorithm>
@@ -53,8 +53,8 @@ struct Tile {
     long begin, end;
 };
 
-/// A ghost node, whose values are those of its master: behind a wall (mirrored), at the other end of a
-/// grain that wraps around a periodic mesh, or constrained.
+/// A ghost node, whose values are those of its master: behind a wall (mirrored), at the other end
+/// of a grain that wraps around a periodic mesh, or constrained.
 struct GhostNode {
     long dof, master;
     double sign_x, sign_y;  // of velocity, momentum and force
@@ -99,15 +99,10 @@ class GrainNodes {
     std::vector<NodeMotion> motion;
     std::vector<NodeForce> force;
 
-    /// Slot of the node in column 0 of a grain's row j; column i is that plus i.
-    long origin(int grain, long j) const {
-        return origin_[static_cast<std::size_t>(first_of_grain_[static_cast<std::size_t>(grain)] +
-                                                j)];
-    }
+    /// Dof of the node in column 0 of a grain's row j; column i is that plus i.
+    long origin(int grain, long j) const { return origin_[first_of_grain_[grain] + j]; }
     /// The same for consecutive rows: origins(grain)[j].
-    const long* origins(int grain) const {
-        return origin_.data() + first_of_grain_[static_cast<std::size_t>(grain)];
-    }
+    const long* origins(int grain) const { return origin_.data() + first_of_grain_[grain]; }
     long size() const { return static_cast<long>(sums.size()); }
 
     const std::vector<Tile>& tiles() const { return tiles_; }
@@ -119,16 +114,16 @@ class GrainNodes {
     void drop_constraints() { ghosts_.resize(boundary_ghosts_); }
     const std::vector<long>& fixed_x() const { return fixed_x_; }
     const std::vector<long>& fixed_y() const { return fixed_y_; }
-    bool is_fixed_x(long dof) const { return (fixed_[static_cast<std::size_t>(dof)] & 1) != 0; }
-    bool is_fixed_y(long dof) const { return (fixed_[static_cast<std::size_t>(dof)] & 2) != 0; }
+    bool is_fixed_x(long dof) const { return (fixed_[dof] & 1) != 0; }
+    bool is_fixed_y(long dof) const { return (fixed_[dof] & 2) != 0; }
     /// 1 for a node that forces can move, 0 for one of a rigid grain.
     const std::vector<unsigned char>& is_free() const { return free_; }
     const std::vector<Member>& members() const { return members_; }
     /// Shared node n has the members shared_begin()[n] ... shared_begin()[n + 1].
     const std::vector<long>& shared_begin() const { return shared_begin_; }
     long shared_count() const { return static_cast<long>(shared_begin_.size()) - 1; }
-    /// Slots of a grain are consecutive.
-    long dof_begin(int grain) const { return dof_begin_[static_cast<std::size_t>(grain)]; }
+    /// Dofs of a grain are consecutive.
+    long dof_begin(int grain) const { return dof_begin_[grain]; }
     long dof_end(int grain) const { return dof_begin_[static_cast<std::size_t>(grain) + 1]; }
 
     /// Whether particles may have left the nodes of their grain before the next step.
@@ -150,7 +145,7 @@ class GrainNodes {
         common::for_each_row_two_colors(static_cast<long>(pieces_.size()) - 1, [&](long piece) {
             const auto k = static_cast<std::size_t>(piece);
             for (long s = pieces_[k]; s < pieces_[k + 1]; ++s)
-                work(tiles_[static_cast<std::size_t>(s)], static_cast<std::size_t>(s));
+                work(tiles_[s], static_cast<std::size_t>(s));
         });
     }
 
@@ -206,4 +201,7 @@ void archive(Archive& a, GridLayout& layout) {
 
 }  // namespace mpm
 
-#include "mpm_explicit/grid_layout.hpp"  // how sort() and lay_out() work
+// The members of GrainNodes that a sort calls.
+#include "mpm_explicit/ghost_nodes.hpp"
+#include "mpm_explicit/grid_layout.hpp"
+#include "mpm_explicit/shared_nodes.hpp"

@@ -1,5 +1,17 @@
-// How a grain's nodes are laid out around its particles, what walls and rings make of them, and which
-// nodes several grains share: the members of GrainNodes that a sort calls.
+// The layout of the sparse grid: which nodes every grain gets, when its particles are sorted.
+//
+// The particles of a grain are sorted by row of cells; each row is a tile. Around each tile a block
+// of nodes is wide enough for particles that move by half a cell; a row of nodes reaches from the
+// first to the last column of all blocks that touch it:
+//
+//     row 2        o---o---o           first_column[2] = 2, end_column[2] = 5
+//                    x | x             a tile: the particles x between rows 1 and 2
+//     row 1    o---o---o---o---o       first_column[1] = 1, end_column[1] = 6
+//                x | x | x | x         another tile
+//     row 0    o---o---o---o---o       dof of node (i, j) = origin[j] + i
+//
+// The dofs of a row, of a grain, and of all grains are consecutive; origin[j] is where column 0
+// would be.
 #pragma once
 
 #include "mpm_explicit/grain_nodes.hpp"
@@ -17,7 +29,7 @@ inline long cell_of(double x, double low, double h) {
 inline void wrap(const Mesh& mesh, const Grain& grain, int& wraps, Particles& particles) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (long p = grain.begin; p < grain.end; ++p) {
-        const double x = particles.x_p[static_cast<std::size_t>(p)];
+        const double x = particles.x_p[p];
         low = std::min(low, x), high = std::max(high, x);
     }
     const double length = mesh.length_x();
@@ -25,7 +37,7 @@ inline void wrap(const Mesh& mesh, const Grain& grain, int& wraps, Particles& pa
     const double center = 0.5 * (low + high) - mesh.x_low;
     const double shift = wraps != 0 ? 0 : -length * std::floor(center / length);
     for (long p = grain.begin; p < grain.end; ++p) {
-        double& x = particles.x_p[static_cast<std::size_t>(p)];
+        double& x = particles.x_p[p];
         if (wraps != 0) {
             const double turns = std::floor((x - mesh.x_low) / length);
             if (turns != 0) x -= turns * length;
@@ -51,7 +63,7 @@ inline void GrainNodes::sort(const std::vector<Grain>& grains, Particles& partic
     for (std::size_t g = 0; g < count; ++g) {
         double least = std::numeric_limits<double>::infinity(), most = -least;
         for (long p = grains[g].begin; p < grains[g].end; ++p) {
-            const double y = particles.y_p[static_cast<std::size_t>(p)];
+            const double y = particles.y_p[p];
             least = std::min(least, y), most = std::max(most, y);
         }
         low[g] = detail::cell_of(least, mesh_.y_low, mesh_.h);
@@ -162,122 +174,6 @@ inline void GrainNodes::lay_out(const std::vector<Grain>& grains, const GridLayo
         pieces_.push_back(static_cast<long>(tiles_.size()));
     find_ghost_nodes(grains, layout);
     find_shared_nodes(grains, layout);
-}
-
-inline void GrainNodes::find_ghost_nodes(const std::vector<Grain>& grains,
-                                         const GridLayout& layout) {
-    ghosts_.clear(), fixed_x_.clear(), fixed_y_.clear();
-    const long nx = mesh_.cells_x, ny = mesh_.cells_y;
-    std::vector<GhostNode> along_y;
-    for (std::size_t k = 0; k < grains.size(); ++k) {
-        const int g = static_cast<int>(k);
-        for_each_dof(g, layout, [&](long dof, long i, long j) {
-            if (layout.wraps[k] != 0 && has_dof(g, layout, i - nx, j))
-                ghosts_.push_back({dof, dof - nx, 1, 1, false, false, mesh_.length_x()});
-            if (grains[k].rigid) return;
-            const auto meet = [&](Side side, long beyond, long mirror, bool is_x) {
-                const Boundary kind = mesh_.boundary[static_cast<std::size_t>(side)];
-                if (beyond < 0 || kind == Boundary::open || kind == Boundary::frictional) return;
-                if (beyond == 0) {
-                    if (is_x || kind == Boundary::stick) fixed_x_.push_back(dof);
-                    if (!is_x || kind == Boundary::stick) fixed_y_.push_back(dof);
-                    return;
-                }
-                const long i_of = is_x ? mirror : i, j_of = is_x ? j : mirror;
-                if (beyond > 1 || !has_dof(g, layout, i_of, j_of)) return;
-                const double tangential = kind == Boundary::stick ? -1 : 1;
-                const double wall = side == x_low    ? mesh_.x_low
-                                    : side == x_high ? mesh_.x_high()
-                                    : side == y_low  ? mesh_.y_low
-                                                     : mesh_.y_high();
-                (is_x ? ghosts_ : along_y)
-                    .push_back({dof, origin(g, j_of) + i_of, is_x ? -1 : tangential,
-                                is_x ? tangential : -1, is_x, !is_x, 2 * wall});
-            };
-            if (!mesh_.periodic_x) {
-                meet(x_low, -i, -i, true);
-                meet(x_high, i - nx, 2 * nx - i, true);
-            }
-            meet(y_low, -j, -j, false);
-            meet(y_high, j - ny, 2 * ny - j, false);
-        });
-    }
-    ghosts_.insert(ghosts_.end(), along_y.begin(), along_y.end());
-    boundary_ghosts_ = ghosts_.size();
-    free_.assign(sums.size(), 1);
-    for (std::size_t g = 0; g < grains.size(); ++g)
-        if (grains[g].rigid)
-            std::fill(free_.begin() + dof_begin_[g], free_.begin() + dof_begin_[g + 1],
-                      static_cast<unsigned char>(0));
-    fixed_.assign(sums.size(), 0);
-    for (const long dof : fixed_x_) fixed_[static_cast<std::size_t>(dof)] |= 1;
-    for (const long dof : fixed_y_) fixed_[static_cast<std::size_t>(dof)] |= 2;
-}
-
-inline void GrainNodes::find_shared_nodes(const std::vector<Grain>& grains,
-                                          const GridLayout& layout) {
-    members_.clear(), shared_begin_.assign(1, 0);
-    // How many have a dof at each node, and where their list begins.
-    const long nx = mesh_.cells_x, ny = mesh_.cells_y, margin = 4, width = nx + 2 * margin,
-               height = ny + 2 * margin;
-    const long first_i = mesh_.periodic_x ? 0 : -margin,
-               end_i = mesh_.periodic_x ? nx : nx + margin;
-    const auto wall = [&](Side side) {
-        return Member{-1, static_cast<int>(side), side == x_low ? mesh_.x_low : mesh_.x_high(),
-                      side == y_low ? mesh_.y_low : mesh_.y_high()};
-    };
-    const auto node_of = [&](long i, long j) -> long {
-        const long column = mesh_.periodic_x ? ((i % nx) + nx) % nx : i;
-        const long a = column + margin, b = j + margin;
-        return a < 0 || a >= width || b < 0 || b >= height ? -1 : b * width + a;
-    };
-    std::vector<int> place(static_cast<std::size_t>(width * height) + 1, 0);
-    const auto stands = [&](Side side) { return mesh_.has(side, Boundary::frictional); };
-    // Grains first, in their order, then walls; copies of wraps columns and mirrored nodes not.
-    const auto for_each_member = [&](const auto& visit) {
-        for (std::size_t k = 0; k < grains.size(); ++k) {
-            const int g = static_cast<int>(k);
-            for_each_dof(g, layout, [&](long dof, long i, long j) {
-                const bool copy = layout.wraps[k] != 0 && has_dof(g, layout, i - nx, j);
-                const bool behind_x =
-                    !mesh_.periodic_x && ((i < 0 && !stands(x_low)) || (i > nx && !stands(x_high)));
-                const bool behind_y = (j < 0 && !stands(y_low)) || (j > ny && !stands(y_high));
-                const long node = node_of(i, j);
-                if (copy || behind_x || behind_y || node < 0) return;
-                visit(static_cast<std::size_t>(node),
-                      Member{dof, g, mesh_.x_of(static_cast<double>(i)),
-                             mesh_.y_of(static_cast<double>(j))});
-            });
-        }
-        for (long deep = 0; deep < margin; ++deep) {
-            for (long j = -margin; j < ny + margin && !mesh_.periodic_x; ++j) {
-                if (stands(x_low)) visit(static_cast<std::size_t>(node_of(-deep, j)), wall(x_low));
-                if (stands(x_high))
-                    visit(static_cast<std::size_t>(node_of(nx + deep, j)), wall(x_high));
-            }
-            for (long i = first_i; i < end_i; ++i) {
-                if (stands(y_low)) visit(static_cast<std::size_t>(node_of(i, -deep)), wall(y_low));
-                if (stands(y_high))
-                    visit(static_cast<std::size_t>(node_of(i, ny + deep)), wall(y_high));
-            }
-        }
-    };
-    for_each_member([&](std::size_t node, const Member&) { ++place[node]; });
-    // Shared nodes in the order in which their first grain has them, for the sake of the cache; a
-    // node that has begun keeps -1 - (where its next member goes).
-    int next = 0;
-    for_each_member([&](std::size_t node, const Member& member) {
-        int& at = place[node];
-        if (at == 1) return;
-        if (at > 1) {
-            const int begin = next;
-            next += at, at = -1 - begin;
-            shared_begin_.push_back(next);
-            members_.resize(static_cast<std::size_t>(next));
-        }
-        members_[static_cast<std::size_t>(-1 - at)] = member;
-        --at;
-    });
 }
 
 }  // namespace mpm

@@ -1,4 +1,5 @@
-// Tile by tile, particles move: those of rigid grains as they are told, the others as a scheme says.
+// Tile by tile, particles move: those of rigid grains as they are told, the others as a scheme
+// says.
 #pragma once
 
 #include <algorithm>
@@ -30,11 +31,11 @@ void move_tiles(const std::vector<Grain>& grains, const std::vector<RigidMotion>
     double *x_p = particles.x_p.data(), *y_p = particles.y_p.data(), *vx_p = particles.vx_p.data(),
            *vy_p = particles.vy_p.data();
     const auto move_one = [&](long number) {
-        const Tile& tile = nodes.tiles()[static_cast<std::size_t>(number)];
-        Sums sum = sums[static_cast<std::size_t>(number)];
+        const Tile& tile = nodes.tiles()[number];
+        Sums sum = sums[number];
         Extremes reach;
-        if (grains[static_cast<std::size_t>(tile.grain)].rigid) {
-            const RigidMotion& is = rigid[static_cast<std::size_t>(tile.grain)];
+        if (grains[tile.grain].rigid) {
+            const RigidMotion& is = rigid[tile.grain];
             for (long p = tile.begin; p < tile.end; ++p) {
                 x_p[p] += dt_move * is.vx, y_p[p] += dt_move * is.vy;
                 vx_p[p] = is.vx, vy_p[p] = is.vy;
@@ -45,7 +46,7 @@ void move_tiles(const std::vector<Grain>& grains, const std::vector<RigidMotion>
         }
         sum.x_least = reach.x_least, sum.x_most = reach.x_most;
         sum.y_least = reach.y_least, sum.y_most = reach.y_most;
-        sums[static_cast<std::size_t>(number)] = sum;
+        sums[number] = sum;
     };
     const long tiles = static_cast<long>(nodes.tiles().size());
     common::for_each_row((tiles + 15) / 16, [&](long sixteen) {

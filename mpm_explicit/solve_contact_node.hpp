@@ -1,11 +1,12 @@
-// The contact problem of one grid node: the bodies with mass there, the pairs of them in contact, and
-// the impulses that end approach and slip.                                                [MPM-4]
+// The contact problem of one grid node: the bodies with mass there, the pairs of them in contact,
+// and the impulses that end approach and slip.                                                [MPM-4]
 //
 //         a  |  b         Every body has a velocity of its own at the node. A pair exchanges the impulse
 //      ------o------>     J = lambda_n n + lambda_t t:  J on b, -J on a,
 //            |  n         with n from a to b and t = (-n_y, n_x).
 //
-// Unknowns: two impulses per pair, at most 16 bodies and 120 pairs. With v* the velocities without contact,
+// Unknowns: two impulses per pair, at most 16 bodies and 120 pairs. With v* the velocities without
+// contact,
 //     v_a = v_a* - sum J/m_a,   v_b = v_b* + sum J/m_b
 //     lambda_n >= 0,  (v_b - v_a).n >= 0,  lambda_n (v_b - v_a).n = 0           (Signorini)
 //     |lambda_t| <= mu lambda_n,  against the slip (v_b - v_a).t where it is equal   (Coulomb)
@@ -74,11 +75,12 @@ inline void find_effective_masses(ContactNode& node) {
     }
 }
 
-/// Impulses and velocities of a node by projected Gauss-Seidel: pair after pair, until a sweep changes no
-/// velocity by more than round-off. A bonded pair neither parts nor slips, whatever the signs.
+/// Impulses and velocities of a node by projected Gauss-Seidel: pair after pair, until a sweep
+/// changes no velocity by more than round-off. A bonded pair neither parts nor slips, whatever the
+/// signs.
 /// in/out: velocities of the bodies; impulses of the pairs, from a guess
-/// exact:  momentum of the bodies that are not fixed and of the impulses on the fixed ones; one pair is
-///         solved in one sweep
+/// exact:  momentum of the bodies that are not fixed and of the impulses on the fixed ones; one
+///         pair is solved in one sweep
 inline void solve_contact_node(ContactNode& node) {
     double size = 0;
     for (const ContactBody& body : node.bodies)

@@ -29,7 +29,7 @@ struct ParticleBatch {
 template <class Work>
 void for_each_batch(const std::vector<Grain>& grains, const GrainNodes& nodes, const Work& work) {
     nodes.for_each_tile([&](const Tile& tile, std::size_t number) {
-        if (grains[static_cast<std::size_t>(tile.grain)].rigid) return;
+        if (grains[tile.grain].rigid) return;
         ParticleBatch batch;
         batch.grain = tile.grain, batch.tile = number;
         for (batch.begin = tile.begin; batch.begin < tile.end; batch.begin += ParticleBatch::size) {

@@ -76,8 +76,8 @@ namespace detail {
 /// exact:  totals of mass and volume stay; a wall sees the body and its mirror image
 inline void reduce_ghost_sums(GrainNodes& nodes) {
     for (const GhostNode& ghost : nodes.ghosts()) {
-        NodeSums& from = nodes.sums[static_cast<std::size_t>(ghost.dof)];
-        NodeSums& to = nodes.sums[static_cast<std::size_t>(ghost.master)];
+        NodeSums& from = nodes.sums[ghost.dof];
+        NodeSums& to = nodes.sums[ghost.master];
         const double flip_x = ghost.mirror_x ? -1 : 1, flip_y = ghost.mirror_y ? -1 : 1;
         const bool wraps = !ghost.mirror_x && !ghost.mirror_y;
         to.m += from.m, to.V += from.V;
@@ -91,8 +91,8 @@ inline void reduce_ghost_sums(GrainNodes& nodes) {
 }
 inline void reduce_ghost_force(GrainNodes& nodes) {
     for (const GhostNode& ghost : nodes.ghosts()) {
-        NodeForce& from = nodes.force[static_cast<std::size_t>(ghost.dof)];
-        NodeForce& to = nodes.force[static_cast<std::size_t>(ghost.master)];
+        NodeForce& from = nodes.force[ghost.dof];
+        NodeForce& to = nodes.force[ghost.master];
         to.x += ghost.sign_x * from.x, to.y += ghost.sign_y * from.y;
         from = {};
     }
@@ -102,10 +102,9 @@ inline void reduce_ghost_force(GrainNodes& nodes) {
 inline void fill_ghost_velocity(GrainNodes& nodes) {
     const auto& ghosts = nodes.ghosts();
     for (auto ghost = ghosts.rbegin(); ghost != ghosts.rend(); ++ghost) {
-        const NodeMotion& from = nodes.motion[static_cast<std::size_t>(ghost->master)];
-        nodes.motion[static_cast<std::size_t>(ghost->dof)] = {
-            ghost->sign_x * from.vx_0, ghost->sign_y * from.vy_0, ghost->sign_x * from.vx_1,
-            ghost->sign_y * from.vy_1};
+        const NodeMotion& from = nodes.motion[ghost->master];
+        nodes.motion[ghost->dof] = {ghost->sign_x * from.vx_0, ghost->sign_y * from.vy_0,
+                                    ghost->sign_x * from.vx_1, ghost->sign_y * from.vy_1};
     }
 }
 
@@ -147,7 +146,7 @@ inline void prescribe_rigid_velocity(const std::vector<Grain>& grains,
         const int k = static_cast<int>(g);
         const RigidMotion& is = rigid[g];
         for (long i = nodes.dof_begin(k); i < nodes.dof_end(k); ++i)
-            nodes.motion[static_cast<std::size_t>(i)] = {is.vx, is.vy, is.vx, is.vy};
+            nodes.motion[i] = {is.vx, is.vy, is.vx, is.vy};
     }
 }
 
@@ -164,8 +163,8 @@ inline void nodal_velocity(const std::vector<Grain>& grains, const std::vector<R
         }
     });
     prescribe_rigid_velocity(grains, rigid, nodes);
-    for (const long i : nodes.fixed_x()) nodes.motion[static_cast<std::size_t>(i)].vx_0 = 0;
-    for (const long i : nodes.fixed_y()) nodes.motion[static_cast<std::size_t>(i)].vy_0 = 0;
+    for (const long i : nodes.fixed_x()) nodes.motion[i].vx_0 = 0;
+    for (const long i : nodes.fixed_y()) nodes.motion[i].vy_0 = 0;
     fill_ghost_velocity(nodes);
 }
 

@@ -1,5 +1,5 @@
-// What stress answers to the strain of a step, between the motion of the nodes and the force on them
-// (mpm_explicit/strain.hpp).
+// What stress answers to the strain of a step, between the motion of the nodes and the force on
+// them (mpm_explicit/strain.hpp).
 //
 //     V_p^{1/2} - V_p^{-1/2} = + V_p^{-1/2} sum_i grad S_ip . v_i^0 dt                 [MPM-9]
 //     sigma^{1/2} - sigma^{-1/2} = T : (e^{1/2} - e^{-1/2})                             [MPM-10]
@@ -65,8 +65,7 @@ void update_stress(const LawOf& law, const Compliance& compliance, bool frozen,
 inline void update_stress(const std::vector<AnyLaw>& laws, bool frozen, const ParticleBatch& batch,
                           const std::vector<Grain>& grains, Particles& particles,
                           std::vector<TileSums>& sums) {
-    const AnyLaw& law =
-        laws[static_cast<std::size_t>(grains[static_cast<std::size_t>(batch.grain)].material)];
+    const AnyLaw& law = laws[grains[batch.grain].material];
     std::visit(
         [&](const auto& one) {
             detail::update_stress(one, law.compliance, frozen, batch, particles, sums[batch.tile]);

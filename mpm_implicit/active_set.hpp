@@ -1,12 +1,13 @@
 // The active set of the contact problem: which pairs of bodies press, stick or slip at which nodes.
 //
-// Contact acts on v^theta, as the slide's f_i^theta asks. A pair a, b with the normal n from a to b is
+// Contact acts on v^theta, as the slide's f_i^theta asks. A pair a, b with the normal n from a to b
+// is
 //     open    no impulse;                      asked for:  (v_b - v_a).n >= 0
 //     slip    (v_b - v_a).n = 0;               asked for:  lambda >= 0, |lambda_t| = mu lambda
 //             against the motion
 //     stick   v_a = v_b;                       asked for:  lambda >= 0, |lambda_t| <= mu lambda
-// With a set chosen, v^theta follows from a linear system; where it does not give what is asked for,
-// update_active_set.hpp changes the set, and the system is solved again.
+// With a set chosen, v^theta follows from a linear system; where it does not give what is asked
+// for, update_active_set.hpp changes the set, and the system is solved again.
 #pragma once
 
 #include <algorithm>
@@ -31,7 +32,7 @@ struct PairUpdate {
     int releases = 0, switches = 0;               // in this step
 };
 
-/// Impulses of the pairs are those on v^theta, theta times what particles feel, until account().
+/// Impulses of the pairs are those on v^theta: theta times what particles feel.
 class ActiveSet {
    public:
     /// The bodies and pairs of one node, a range of those below.
@@ -46,7 +47,8 @@ class ActiveSet {
     bool same_before = false;         // the last two solutions had the same set
 
     /// Detects contact, and guesses the set: the states of the last step, and pairs that approach.
-    /// in:     where, with v_0 to judge approach by; last, the closed pairs of the last step, sorted
+    /// in:     where, with v_0 to judge approach by; last, the closed pairs of the last step,
+    ///         sorted
     void find(const Contact& contact, const GrainNodes& where, const std::vector<Bond>& bonds,
               const std::vector<ForceControl>& controls, const std::vector<ActivePair>& last) {
         struct Block {
@@ -57,7 +59,7 @@ class ActiveSet {
         };
         std::array<Block, common::block_count> blocks;
         contact.detection().for_each(where, bonds, false, [&](int number, ContactNode& node) {
-            Block& block = blocks[static_cast<std::size_t>(number)];
+            Block& block = blocks[number];
             for (ContactPair& pair : node.pairs)
                 block.updates.push_back(guess_state(node, last, pair));
             const std::size_t body = block.bodies.size(), pair = block.pairs.size();
@@ -89,16 +91,21 @@ class ActiveSet {
         }
     }
 
-    /// Calls visit(block, node, first) for every node, with the velocities of nodes.motion; first is the
-    /// number of its first pair, block as in ContactDetection::for_each.
+    /// Calls visit(block, node, first) for a copy of every node, with the velocities of
+    /// nodes.motion; first is the number of its first pair, block as in ContactDetection::for_each.
     template <class Visit>
-    void for_each(const GrainNodes& where, const Visit& visit) {
+    void for_each(const GrainNodes& where, const Visit& visit) const {
         common::for_each_row(common::block_count, [&](long number) {
-            const auto k = static_cast<std::size_t>(number);
-            for (std::size_t n = k == 0 ? 0 : end_of_block_[k - 1]; n < end_of_block_[k]; ++n) {
+            ContactStorage storage;
+            for (std::size_t n = number == 0 ? 0 : end_of_block_[number - 1];
+                 n < end_of_block_[number]; ++n) {
                 const Node& range = nodes[n];
-                ContactNode node{{&bodies[range.body_begin], range.body_end - range.body_begin},
-                                 {&pairs[range.pair_begin], range.pair_end - range.pair_begin},
+                std::copy(bodies.begin() + range.body_begin, bodies.begin() + range.body_end,
+                          storage.bodies.begin());
+                std::copy(pairs.begin() + range.pair_begin, pairs.begin() + range.pair_end,
+                          storage.pairs.begin());
+                ContactNode node{{storage.bodies.data(), range.body_end - range.body_begin},
+                                 {storage.pairs.data(), range.pair_end - range.pair_begin},
                                  range.key};
                 load_velocities(where, node);
                 visit(static_cast<int>(number), node, range.pair_begin);
@@ -110,7 +117,7 @@ class ActiveSet {
     /// in:     nodes.motion, v^theta in the place of v_1
     /// out:    bonds, their stresses and whether they break; rigid, the force on each rigid grain
     ContactSums account(const Contact& contact, double theta, double dt, const GrainNodes& where,
-                        std::vector<Bond>& bonds, std::vector<RigidMotion>& rigid) {
+                        std::vector<Bond>& bonds, std::vector<RigidMotion>& rigid) const {
         ContactTally sums = contact.tally({0, 1 / theta});
         for_each(where, [&](int block, ContactNode& node, std::size_t) { sums.add(block, node); });
         return sums.finish(dt, bonds, rigid);
@@ -122,9 +129,8 @@ class ActiveSet {
             if (pair < node.pair_begin || pair >= node.pair_end) continue;
             const auto name = [&](std::size_t k) {
                 const ContactBody& body = bodies[node.body_begin + k];
-                return body.wall
-                           ? std::string("a wall")
-                           : "grain '" + grains[static_cast<std::size_t>(body.grain)].name + "'";
+                return body.wall ? std::string("a wall")
+                                 : "grain '" + grains[body.grain].name + "'";
             };
             return name(pairs[pair].a) + " and " + name(pairs[pair].b);
         }

@@ -1,5 +1,5 @@
-// Loads of a step of the theta scheme: as in mpm_explicit/apply_loads.hpp, but the velocity of a grain
-// under force control is found together with those of the nodes.
+// Loads of a step of the theta scheme: as in mpm_explicit/apply_loads.hpp, but the velocity of a
+// grain under force control is found together with those of the nodes.
 #pragma once
 
 #include "mpm_explicit/apply_loads.hpp"

@@ -101,7 +101,7 @@ inline void start_budget(const Assembly& all, const std::vector<AnyLaw>& laws, B
     const Particles& at = all.particles;
     for (std::size_t g = 0; g < all.grains.size(); ++g) {
         if (all.grains[g].rigid) continue;
-        const Compliance& C = laws[static_cast<std::size_t>(all.grains[g].material)].compliance;
+        const Compliance& C = laws[all.grains[g].material].compliance;
         for (long k = all.grains[g].begin; k < all.grains[g].end; ++k) {
             const auto p = static_cast<std::size_t>(k);
             l.momentum_x[g] += at.m_p[p] * at.vx_p[p];

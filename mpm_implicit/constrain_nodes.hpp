@@ -1,38 +1,14 @@
-// The rows of the grid of each grain, and constraints for nodes of small mass.
+// Constraints: nodes of small mass, and nodes where the mass matrix is rank-deficient, take the
+// velocity of a neighbor, their master.
 #pragma once
 
 #include <algorithm>
 #include <utility>
 #include <vector>
 
-#include "mpm_explicit/grain_nodes.hpp"
+#include "mpm_implicit/stencil.hpp"
 
 namespace mpm_implicit {
-
-using namespace mpm;
-
-/// A row of dofs of one grain, and its rows below and above.
-struct GridRow {
-    long origin;         // dof of column i: origin + i
-    long first, end;     // columns
-    long lowest, above;  // rows of the same grain: from the lowest to below `above`
-};
-
-/// The rows of all grains that are not rigid.
-inline std::vector<GridRow> grid_rows(const std::vector<Grain>& grains, const GrainNodes& nodes,
-                                      const GridLayout& layout) {
-    std::vector<GridRow> rows;
-    std::size_t at = 0;
-    for (std::size_t g = 0; g < grains.size(); ++g) {
-        const long lowest = static_cast<long>(rows.size());
-        for (int r = 0; r < layout.rows[g]; ++r, ++at)
-            if (!grains[g].rigid)
-                rows.push_back({nodes.origin(static_cast<int>(g), layout.first_row[g] + r),
-                                layout.first_column[at], layout.end_column[at], lowest,
-                                lowest + layout.rows[g]});
-    }
-    return rows;
-}
 
 /// The master of every dof, through ghosts of ghosts, and the signs of its velocity components.
 struct MasterDofs {
@@ -56,12 +32,12 @@ struct MasterDofs {
 /// the dof itself.
 inline long heaviest_neighbor(const std::vector<GridRow>& rows, long r, long i,
                               const GrainNodes& nodes) {
-    const auto mass = [&](long dof) { return nodes.sums[static_cast<std::size_t>(dof)].m; };
-    const GridRow& row = rows[static_cast<std::size_t>(r)];
+    const auto mass = [&](long dof) { return nodes.sums[dof].m; };
+    const GridRow& row = rows[r];
     const long dof = row.origin + i;
     long heaviest = dof;
     for (long q = std::max(row.lowest, r - 1); q < std::min(row.above, r + 2); ++q) {
-        const GridRow& other = rows[static_cast<std::size_t>(q)];
+        const GridRow& other = rows[q];
         for (long j = std::max(i - 1, other.first); j < std::min(i + 2, other.end); ++j) {
             const long neighbor = other.origin + j;
             if (mass(neighbor) > mass(heaviest) &&
@@ -82,13 +58,12 @@ struct DofConstraint {
 /// in/out: nodes.sums, which move along; nodes.ghosts()
 /// exact:  total mass and momentum of a grain stay
 inline void constrain_nodes(std::vector<DofConstraint>& constraints, GrainNodes& nodes) {
-    const auto mass = [&](long dof) { return nodes.sums[static_cast<std::size_t>(dof)].m; };
+    const auto mass = [&](long dof) { return nodes.sums[dof].m; };
     std::stable_sort(
         constraints.begin(), constraints.end(),
         [&](const DofConstraint& a, const DofConstraint& b) { return mass(a.dof) < mass(b.dof); });
     for (const DofConstraint& one : constraints) {
-        NodeSums &from = nodes.sums[static_cast<std::size_t>(one.dof)],
-                 &to = nodes.sums[static_cast<std::size_t>(one.master)];
+        NodeSums &from = nodes.sums[one.dof], &to = nodes.sums[one.master];
         to.m += from.m, to.V += from.V, to.px += from.px, to.py += from.py;
         to.mx += from.mx, to.my += from.my, to.gx += from.gx, to.gy += from.gy;
         from = {};
@@ -96,14 +71,15 @@ inline void constrain_nodes(std::vector<DofConstraint>& constraints, GrainNodes&
     }
 }
 
-/// Constrains nodes of small mass to their heaviest neighbor under the same wall conditions, so that
-/// both have one velocity.
-/// A particle that has come a small way d into a cell sees the nodes behind it with weights of d and
-/// gradients that some of their motions feel with d only: stress would drive those with 1/d, and
-/// round-off with them. The theorem holds with any constraints: they make a smaller space of velocities.
+/// Constrains nodes of small mass to their heaviest neighbor under the same wall conditions, so
+/// that both have one velocity.
+/// A particle that has come a small way d into a cell sees the nodes behind it with weights of d
+/// and gradients that some of their motions feel with d only: stress would drive those with 1/d,
+/// and round-off with them. The theorem holds with any constraints: they make a smaller space of
+/// velocities.
 inline void constrain_small_mass_nodes(const std::vector<GridRow>& rows, GrainNodes& nodes) {
     constexpr double light = 1e-2;  // of the mass of the neighbor
-    const auto mass = [&](long dof) { return nodes.sums[static_cast<std::size_t>(dof)].m; };
+    const auto mass = [&](long dof) { return nodes.sums[dof].m; };
     std::vector<DofConstraint> constraints;
     for (std::size_t r = 0; r < rows.size(); ++r) {
         const GridRow& row = rows[r];
@@ -113,6 +89,20 @@ inline void constrain_small_mass_nodes(const std::vector<GridRow>& rows, GrainNo
             const long heaviest = heaviest_neighbor(rows, static_cast<long>(r), i, nodes);
             if (mass(dof) < light * mass(heaviest)) constraints.push_back({dof, heaviest});
         }
+    }
+    constrain_nodes(constraints, nodes);
+}
+
+/// Constrains rank-deficient nodes, whose motion is at all particles nearly that of other nodes, to
+/// their heaviest neighbor. in: dofs, as MassFactors::factorize finds them
+inline void constrain_rank_deficient_nodes(const std::vector<long>& dofs,
+                                           const std::vector<GridRow>& rows, GrainNodes& nodes) {
+    std::vector<DofConstraint> constraints;
+    for (const long dof : dofs) {
+        const auto row = std::partition_point(
+            rows.begin(), rows.end(), [&](const GridRow& r) { return r.origin + r.end <= dof; });
+        const long heaviest = heaviest_neighbor(rows, row - rows.begin(), dof - row->origin, nodes);
+        if (heaviest != dof) constraints.push_back({dof, heaviest});
     }
     constrain_nodes(constraints, nodes);
 }

@@ -1,12 +1,13 @@
-// Velocities that the closed pairs allow: the space in which v^theta is sought, and projection to it.
+// Constraints of the closed pairs: the velocities that they allow, and projection on them.
 //
-// A closed pair asks for (v_b - v_a).n = 0, one that sticks for the same across. With D the diagonal
-// of the matrix and y = D^{1/2} v, the rows of all pairs of one node are made orthonormal, q_k, so
-// that projection takes a few products per node, whoever meets there:
+// A closed pair asks for (v_b - v_a).n = 0, one that sticks for the same across. With D the
+// diagonal of the matrix and y = D^{1/2} v, the rows of all pairs of one node are made orthonormal,
+// q_k, so that projection on their null space takes a few products per node, however many bodies
+// meet there:
 //     y <- y - sum_k q_k (q_k . y - g_k)
-// g_k comes from those whose velocity is given. A plate that a force drives has a velocity of its
-// own, V: then g_k = g_k^0 + g_k^V V, and the space is spanned by one more vector per plate, e_V.
-// Different nodes share no dof, so that projection is exact whatever the number of pairs.
+// g_k comes from bodies whose velocity is given. A grain under force control has a velocity of its
+// own, V: then g_k = g_k^0 + g_k^V V, and the space is spanned by one more vector per such grain,
+// e_V. Different nodes share no dof, so that projection is exact whatever the number of pairs.
 #pragma once
 
 #include "mpm_implicit/active_set.hpp"
@@ -18,7 +19,7 @@ class Constraints {
    public:
     /// Takes the rows of all closed pairs.
     /// in:     scale, D^{-1/2} of every dof, 0 where the velocity cannot change; only_bonds: leave
-    ///         out those who merely press
+    ///         out pairs that merely press
     void build(const ActiveSet& set, const Vector& scale, long size, std::size_t force_controls,
                bool only_bonds) {
         set_ = &set, scale_ = &scale, size_ = size, rights_ = force_controls + 1;
@@ -31,7 +32,7 @@ class Constraints {
                 for (std::size_t k = node.pair_begin; k < node.pair_end; ++k) {
                     const ContactPair& pair = set.pairs[k];
                     if (!pair.closed() || (only_bonds && pair.bond < 0)) continue;
-                    // Before the step, a plate that a force drives holds nobody.
+                    // A grain under force control holds none before the step.
                     if (only_bonds && (driven(node, pair.a) || driven(node, pair.b))) continue;
                     if (!across || pair.state == ContactState::stick)
                         add_row(node, k, across, block);
@@ -41,7 +42,7 @@ class Constraints {
         }
     }
 
-    /// Takes out of y what the pairs forbid.
+    /// Projects y on the null space of the constraints.
     void project(Vector& y) const {
         for_each(false, y, [&](const double* q, const double*, double* local, std::size_t width) {
             const double size = dot(q, local, width);
@@ -49,8 +50,8 @@ class Constraints {
         });
     }
 
-    /// Changes v as little as possible, in the measure of D, so that it obeys all closed pairs.
-    /// in:     V, velocities of the plates that forces drive
+    /// Enforces the constraints by the smallest change of v, in the measure of D.
+    /// in:     V, velocities of the grains under force control
     void enforce(const std::vector<double>& V, Vector& v) const {
         for_each(true, v, [&](const double* q, const double* g, double* local, std::size_t width) {
             double size = dot(q, local, width) - g[0];
@@ -59,7 +60,7 @@ class Constraints {
         });
     }
 
-    /// v += V e_V: what the plates' velocities add.
+    /// v += V e_V: the motion that the grains under force control impose.
     void add_controlled_motion(const double* V, Vector& v) const {
         if (rights_ == 1) return;
         for_each(true, v, [&](const double* q, const double* g, double* local, std::size_t width) {
@@ -69,7 +70,7 @@ class Constraints {
         });
     }
 
-    /// e_V . r of every plate, and e_V . D e_V.
+    /// e_V . r of every grain under force control.
     void controlled_force(const Vector& r, double* sums) const {
         std::fill_n(sums, rights_ - 1, 0.0);
         if (rights_ == 1) return;
@@ -82,6 +83,7 @@ class Constraints {
             }
         }
     }
+    /// e_V . D e_V.
     void controlled_diagonal(double* sums) const {
         std::fill_n(sums, rights_ - 1, 0.0);
         for (const Block& block : blocks_)
@@ -156,8 +158,7 @@ class Constraints {
                 right[0] -= sign * ((drive_x ? 0 : body.vx) * x + (drive_y ? 0 : body.vy) * y);
                 if (body.force_control >= 0 &&
                     static_cast<std::size_t>(1 + body.force_control) < rights_)
-                    right[static_cast<std::size_t>(1 + body.force_control)] -=
-                        sign * (drive_x ? x : y);
+                    right[1 + body.force_control] -= sign * (drive_x ? x : y);
             } else {
                 row[2 * who] = sign * x * (*scale_)[body.dof];
                 row[2 * who + 1] = sign * y * (*scale_)[size_ + body.dof];
@@ -227,7 +228,7 @@ class Constraints {
             [&](int, long begin, long end) {
                 Local local{};
                 for (long n = begin; n < end; ++n) {
-                    const Block& block = blocks_[static_cast<std::size_t>(n)];
+                    const Block& block = blocks_[n];
                     load(block, v, scaled ? -1 : 0, local);
                     for (std::size_t k = 0; k < block.rank; ++k)
                         work(q(block, k), g(block, k), local.data(), width(block));

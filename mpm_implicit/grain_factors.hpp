@@ -2,10 +2,18 @@
 //     A_g = L L^T
 // so that what is left to conjugate gradients is how grains press on each other. Nodes are numbered
 // along the shorter side of the grain; then L fills no more than the envelope of A, from the first
-// entry of each row to the diagonal, and its rows are products of contiguous numbers. It is kept in
-// single precision, as it is read more often than anything else; L L^T stays positive.
+// entry of each row to the diagonal, and its rows are products of contiguous numbers:
+//
+//     1 . . . .      a row of L is stored from its first entry on, two rows (x, y) per node
+//     x 1 . . .      and the zeros before it are not
+//       x 1 . .
+//       x x 1 .
+//         x x 1
+// It is kept in single precision, as it is read more often than anything else; L L^T stays
+// positive.
 #pragma once
 
+#include "mpm_implicit/constrain_nodes.hpp"
 #include "mpm_implicit/grain_matrix.hpp"
 
 namespace mpm_implicit {
@@ -22,8 +30,7 @@ class GrainFactors {
         number_.assign(static_cast<std::size_t>(size_), -1);
         factors_.resize(grains.size());
         common::for_each_row(static_cast<long>(grains.size()), [&](long g) {
-            if (!grains[static_cast<std::size_t>(g)].rigid)
-                factorize(matrix, scale, nodes, masters, static_cast<int>(g));
+            if (!grains[g].rigid) factorize(matrix, scale, nodes, masters, static_cast<int>(g));
         });
     }
 
@@ -31,7 +38,7 @@ class GrainFactors {
     void solve(const Vector& r, Vector& z) const {
         z.setZero();
         common::for_each_row(static_cast<long>(factors_.size()), [&](long g) {
-            const Factor& f = factors_[static_cast<std::size_t>(g)];
+            const Factor& f = factors_[g];
             const long n = f.size();
             std::vector<double> x(static_cast<std::size_t>(2 * n));
             double* y = x.data();
@@ -59,8 +66,8 @@ class GrainFactors {
     }
 
    private:
-    // Rows 2 i and 2 i + 1 are the velocities of node i along x and y; what cannot move has a one on
-    // the diagonal and nothing else.
+    // Rows 2 i and 2 i + 1 are the velocities of node i along x and y; what cannot move has a one
+    // on the diagonal and nothing else.
     struct Factor {
         std::vector<long> dofs;               // of the nodes
         std::vector<unsigned char> can_move;  // 1 for x, 2 for y
@@ -73,11 +80,9 @@ class GrainFactors {
             return static_cast<std::size_t>(2 * i + component);
         }
         long size() const { return static_cast<long>(dofs.size()); }
-        long dof(long i) const { return dofs[static_cast<std::size_t>(i)]; }
-        long first_of(long i) const { return first[static_cast<std::size_t>(i)]; }
-        bool moves(long i, int component) const {
-            return (can_move[static_cast<std::size_t>(i)] >> component & 1) != 0;
-        }
+        long dof(long i) const { return dofs[i]; }
+        long first_of(long i) const { return first[i]; }
+        bool moves(long i, int component) const { return (can_move[i] >> component & 1) != 0; }
         double per_pivot(long i, int component) const { return pivots[at(i, component)]; }
         const float* row(long i, int component) const { return L.data() + begin[at(i, component)]; }
         long begin_of(long i, int component) const { return begin[at(i, component)]; }
@@ -86,20 +91,20 @@ class GrainFactors {
     template <int reach>
     void factorize(const GrainMatrix<reach>& matrix, const Vector& scale, const GrainNodes& nodes,
                    const MasterDofs& masters, int grain) {
-        Factor& f = factors_[static_cast<std::size_t>(grain)];
+        Factor& f = factors_[grain];
         f.dofs.clear(), f.can_move.clear();
-        matrix.for_each_node_of(grain, nodes, [&](long dof) {
+        for_each_dof_of(matrix.rows(), grain, nodes, [&](long dof) {
             const int moves = (scale[dof] > 0 ? 1 : 0) + (scale[size_ + dof] > 0 ? 2 : 0);
             if (moves == 0) return;
-            number_[static_cast<std::size_t>(dof)] = f.size();
+            number_[dof] = f.size();
             f.dofs.push_back(dof), f.can_move.push_back(static_cast<unsigned char>(moves));
         });
         const long n = f.size();
         // The envelope, then its entries.
         f.first.resize(f.dofs.size());
-        for (long i = 0; i < n; ++i) f.first[static_cast<std::size_t>(i)] = i;
+        for (long i = 0; i < n; ++i) f.first[i] = i;
         for_each_entry(matrix, grain, nodes, masters, f, [&](long i, int, long j, int, double) {
-            long& first = f.first[static_cast<std::size_t>(std::max(i, j))];
+            long& first = f.first[std::max(i, j)];
             first = std::min({first, i, j});
         });
         f.begin.resize(2 * f.dofs.size());
@@ -171,8 +176,7 @@ class GrainFactors {
         matrix.for_each_block_of(
             grain, nodes, [&](long one, long two, double xx, double xy, double yx, double yy) {
                 const auto a = static_cast<std::size_t>(one), b = static_cast<std::size_t>(two);
-                const long i = number_[static_cast<std::size_t>(masters.dof[a])],
-                           j = number_[static_cast<std::size_t>(masters.dof[b])];
+                const long i = number_[masters.dof[a]], j = number_[masters.dof[b]];
                 if (i < 0 || j < 0) return;
                 const bool same = one == two;
                 // Two dofs that stand for one: the entry and its transpose meet on the diagonal.

@@ -3,11 +3,15 @@
 //     M_ij = sum_p m_p S_ip S_jp                                   consistent mass
 //     K_ij = sum_p V_p grad S_ip . T . grad S_jp                   stiffness, 2 x 2
 //     A    = (1 + theta dt c) M + theta^2 dt^2 K           what v^theta is solved from  [MPM-8]
-// No entry couples two grains: that is the business of contact.
+// M and A are symmetric, of order 2 n for n dofs, and stored by diagonals of a stencil. No entry
+// couples two grains (contact does):
+//
+//     | A_1          |  v_1: v_x of all dofs, then v_y
+//     |     A_2      |  v_2
+//     |         ...  |  ...
 #pragma once
 
 #include <Eigen/Dense>
-#include <limits>
 #include <variant>
 #include <vector>
 
@@ -42,10 +46,10 @@ class GrainMatrix {
         if (consistent) M_.clear(nodes.size());
         const Locator at(nodes.mesh());
         nodes.for_each_tile([&](const Tile& tile, std::size_t) {
-            const Grain& grain = grains[static_cast<std::size_t>(tile.grain)];
+            const Grain& grain = grains[tile.grain];
             if (grain.rigid) return;
             const Moduli T = std::visit([](const auto& law) { return moduli_of(law); },
-                                        laws[static_cast<std::size_t>(grain.material)].law);
+                                        laws[grain.material].law);
             const long* origin = nodes.origins(tile.grain);
             for (long k = tile.begin; k < tile.end; ++k) {
                 const auto p = static_cast<std::size_t>(k);
@@ -59,65 +63,44 @@ class GrainMatrix {
     }
 
     bool consistent() const { return consistent_; }
+    const std::vector<GridRow>& rows() const { return rows_; }
 
-    /// y = A x, both with their ghosts: what x has at dofs that stand for others is set from them,
-    /// and what y would have there is theirs.
+    /// y = A x, with ghosts: those of x are filled, and those of y reduced.
     void multiply(Vector& x, Vector& y) const {
         const long n = A_.size();
-        fill_ghosts(x);
-        for_each_row([&](long number) {
-            const GridRow& row = rows_[static_cast<std::size_t>(number)];
-            std::fill_n(y.data() + row.origin + row.first, row.end - row.first, 0.0);
-            std::fill_n(y.data() + n + row.origin + row.first, row.end - row.first, 0.0);
-            for_each_link<reach>(
-                rows_, number,
-                [&](int diagonal, long dof, long other, long count, bool transposed) {
-                    const long from = transposed ? other : dof;
-                    const double *Axx = A_.field(diagonal, xx) + from,
-                                 *Axy = A_.field(diagonal, transposed ? yx : xy) + from,
-                                 *Ayx = A_.field(diagonal, transposed ? xy : yx) + from,
-                                 *Ayy = A_.field(diagonal, yy) + from;
-                    const double *x_x = x.data() + other, *x_y = x_x + n;
-                    double *y_x = y.data() + dof, *y_y = y_x + n;
+        multiply_rows(x, y, [&](int diagonal, long dof, long other, long count, bool transposed) {
+            const long from = transposed ? other : dof;
+            const double *Axx = A_.field(diagonal, xx) + from,
+                         *Axy = A_.field(diagonal, transposed ? yx : xy) + from,
+                         *Ayx = A_.field(diagonal, transposed ? xy : yx) + from,
+                         *Ayy = A_.field(diagonal, yy) + from;
+            const double *x_x = x.data() + other, *x_y = x_x + n;
+            double *y_x = y.data() + dof, *y_y = y_x + n;
 #pragma omp simd
-                    for (long i = 0; i < count; ++i) {
-                        y_x[i] += Axx[i] * x_x[i] + Axy[i] * x_y[i];
-                        y_y[i] += Ayx[i] * x_x[i] + Ayy[i] * x_y[i];
-                    }
-                });
+            for (long i = 0; i < count; ++i) {
+                y_x[i] += Axx[i] * x_x[i] + Axy[i] * x_y[i];
+                y_y[i] += Ayx[i] * x_x[i] + Ayy[i] * x_y[i];
+            }
         });
-        reduce_ghosts(y);
     }
 
     /// y = M x, as A uses it.
     void multiply_mass(Vector& x, Vector& y) const {
         const long n = A_.size();
         if (!consistent_) {
-            common::for_each_block(n, [&](int, long begin, long end) {
-                for (long i = begin; i < end; ++i) {
-                    const double m = nodes_->sums[static_cast<std::size_t>(i)].m;
-                    y[i] = m * x[i], y[n + i] = m * x[n + i];
-                }
+            for_each_dof(n, [&](long i) {
+                const double m = nodes_->sums[i].m;
+                y[i] = m * x[i], y[n + i] = m * x[n + i];
             });
             return;
         }
-        fill_ghosts(x);
-        for_each_row([&](long number) {
-            const GridRow& row = rows_[static_cast<std::size_t>(number)];
-            std::fill_n(y.data() + row.origin + row.first, row.end - row.first, 0.0);
-            std::fill_n(y.data() + n + row.origin + row.first, row.end - row.first, 0.0);
-            for_each_link<reach>(
-                rows_, number,
-                [&](int diagonal, long dof, long other, long count, bool transposed) {
-                    const double* M = M_.field(diagonal, 0) + (transposed ? other : dof);
-                    const double *x_x = x.data() + other, *x_y = x_x + n;
-                    double *y_x = y.data() + dof, *y_y = y_x + n;
+        multiply_rows(x, y, [&](int diagonal, long dof, long other, long count, bool transposed) {
+            const double* M = M_.field(diagonal, 0) + (transposed ? other : dof);
+            const double *x_x = x.data() + other, *x_y = x_x + n;
+            double *y_x = y.data() + dof, *y_y = y_x + n;
 #pragma omp simd
-                    for (long i = 0; i < count; ++i)
-                        y_x[i] += M[i] * x_x[i], y_y[i] += M[i] * x_y[i];
-                });
+            for (long i = 0; i < count; ++i) y_x[i] += M[i] * x_x[i], y_y[i] += M[i] * x_y[i];
         });
-        reduce_ghosts(y);
     }
 
     /// The diagonals of A and of M, ghosts added to what they stand for.
@@ -132,42 +115,16 @@ class GrainMatrix {
         if (consistent_) {
             std::copy_n(M_.field(0, 0), n, d.data());
         } else {
-            for (long i = 0; i < n; ++i) d[i] = nodes_->sums[static_cast<std::size_t>(i)].m;
+            for (long i = 0; i < n; ++i) d[i] = nodes_->sums[i].m;
         }
         std::copy_n(d.data(), n, d.data() + n);
         if (consistent_) reduce_ghost_diagonal(d);
     }
 
-    /// Calls work(dof) for the dofs of a grain, row by row or column by column: along its shorter
-    /// side.
-    template <class Work>
-    void for_each_node_of(int grain, const GrainNodes& nodes, const Work& work) const {
-        const auto [low, above] = rows_of_grain(grain, nodes);
-        long first = std::numeric_limits<long>::max(), end = -first;
-        for (long r = low; r < above; ++r) {
-            const GridRow& row = rows_[static_cast<std::size_t>(r)];
-            if (row.first < row.end)
-                first = std::min(first, row.first), end = std::max(end, row.end);
-        }
-        if (end - first <= above - low) {
-            for (long r = low; r < above; ++r) {
-                const GridRow& row = rows_[static_cast<std::size_t>(r)];
-                for (long i = row.first; i < row.end; ++i) work(row.origin + i);
-            }
-        } else {
-            for (long i = first; i < end; ++i) {
-                for (long r = low; r < above; ++r) {
-                    const GridRow& row = rows_[static_cast<std::size_t>(r)];
-                    if (i >= row.first && i < row.end) work(row.origin + i);
-                }
-            }
-        }
-    }
-
     /// Calls work(dof, other, xx, xy, yx, yy) for the stored blocks of a grain.
     template <class Work>
     void for_each_block_of(int grain, const GrainNodes& nodes, const Work& work) const {
-        const auto [low, above] = rows_of_grain(grain, nodes);
+        const auto [low, above] = rows_of_grain(rows_, grain, nodes);
         for (long r = low; r < above; ++r) {
             for_each_link<reach>(
                 rows_, r, [&](int diagonal, long dof, long other, long count, bool transposed) {
@@ -183,7 +140,7 @@ class GrainMatrix {
     /// Calls work(dof, other, m) for the stored entries of a grain's consistent mass matrix.
     template <class Work>
     void for_each_mass_of(int grain, const GrainNodes& nodes, const Work& work) const {
-        const auto [low, above] = rows_of_grain(grain, nodes);
+        const auto [low, above] = rows_of_grain(rows_, grain, nodes);
         for (long r = low; r < above; ++r) {
             for_each_link<reach>(
                 rows_, r, [&](int diagonal, long dof, long other, long count, bool transposed) {
@@ -212,16 +169,6 @@ class GrainMatrix {
     }
 
    private:
-    std::pair<long, long> rows_of_grain(int grain, const GrainNodes& nodes) const {
-        const long begin = nodes.dof_begin(grain), end = nodes.dof_end(grain);
-        const auto dof_of = [](const GridRow& row) { return row.origin + row.first; };
-        const auto first = std::partition_point(
-            rows_.begin(), rows_.end(), [&](const GridRow& row) { return dof_of(row) < begin; });
-        const auto last = std::partition_point(
-            first, rows_.end(), [&](const GridRow& row) { return dof_of(row) < end; });
-        return {first - rows_.begin(), last - rows_.begin()};
-    }
-
     static const Moduli& moduli_of(const Elastic& law) { return law.T; }
     template <class Law>
     static const Moduli& moduli_of(const Law& law) {
@@ -262,31 +209,35 @@ class GrainMatrix {
 
     void add_lumped(double factor_M) {
         double *Axx = A_.field(0, xx), *Ayy = A_.field(0, yy);
-        common::for_each_block(A_.size(), [&](int, long begin, long end) {
-            for (long i = begin; i < end; ++i) {
-                const auto n = static_cast<std::size_t>(i);
-                const double mass = nodes_->is_free()[n] * factor_M * nodes_->sums[n].m;
-                Axx[i] += mass, Ayy[i] += mass;
-            }
+        for_each_dof(A_.size(), [&](long i) {
+            const double mass = nodes_->is_free()[i] * factor_M * nodes_->sums[i].m;
+            Axx[i] += mass, Ayy[i] += mass;
         });
     }
 
     void reduce_ghost_diagonal(Vector& d) const {
-        const long n = A_.size();
-        for (const GhostNode& ghost : nodes_->ghosts()) {
-            d[ghost.master] += d[ghost.dof], d[n + ghost.master] += d[n + ghost.dof];
-            d[ghost.dof] = d[n + ghost.dof] = 0;
-        }
+        for (const GhostNode& ghost : nodes_->ghosts())
+            for (const long at : {0L, A_.size()})
+                d[at + ghost.master] += d[at + ghost.dof], d[at + ghost.dof] = 0;
     }
 
-    template <class Work>
-    void for_each_row(const Work& work) const {
+    // y = sum of link(...) over the stretches of every row, from zero.
+    template <class Link>
+    void multiply_rows(Vector& x, Vector& y, const Link& link) const {
+        const long n = A_.size();
+        fill_ghosts(x);
         common::for_each_block(
             static_cast<long>(rows_.size()),
             [&](int, long begin, long end) {
-                for (long row = begin; row < end; ++row) work(row);
+                for (long number = begin; number < end; ++number) {
+                    const GridRow& row = rows_[number];
+                    for (double* part : {y.data(), y.data() + n})
+                        std::fill_n(part + row.origin + row.first, row.end - row.first, 0.0);
+                    for_each_link<reach>(rows_, number, link);
+                }
             },
-            A_.size());
+            n);
+        reduce_ghosts(y);
     }
 
     bool consistent_ = true;

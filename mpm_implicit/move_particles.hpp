@@ -2,8 +2,8 @@
 //
 //     v_p^1 = v_p^0 + sum_i S_ip (v_i^1 - v_i^0),  v_i^1 - v_i^0 = (v_i^theta - v_i^0)/theta
 //     x_p^1 = x_p^0 + dt sum_i S_ip v_i^theta
-// Positions and strains go with the same velocity: then the work of gravity is exact, too (but for gimp
-// and quadratic in the cell next to slip and stick walls, where weight is that of m_i).
+// Positions and strains go with the same velocity: then the work of gravity is exact, too (but for
+// gimp and quadratic in the cell next to slip and stick walls, where weight is that of m_i).
 #pragma once
 
 #include "mpm_explicit/apply_loads.hpp"
@@ -14,7 +14,8 @@
 
 namespace mpm_implicit {
 
-/// in:     nodes.motion, v^0 and v^theta; flip, the FLIP fraction; frozen particles keep their places
+/// in:     nodes.motion, v^0 and v^theta; flip, the FLIP fraction; frozen particles keep their
+///         places
 /// in/out: particles; sums of their tiles
 /// exact:  the momentum of the particles changes by that of the nodes, to round-off
 template <class Shape>
@@ -85,8 +86,8 @@ inline NodeWork work_on_nodes(const BodyForce& body, double theta, double dt,
             gravity += m * (body.gravity_x * v.vx_1 + body.gravity_y * v.vy_1);
             speed = squared > speed ? squared : speed;
         }
-        part[static_cast<std::size_t>(block)] = {
-            twice_increment / (theta * theta), twice_kinetic_theta, dt * gravity, std::sqrt(speed)};
+        part[block] = {twice_increment / (theta * theta), twice_kinetic_theta, dt * gravity,
+                       std::sqrt(speed)};
     });
     NodeWork total;
     for (const NodeWork& one : part) {

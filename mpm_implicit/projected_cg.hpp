@@ -1,9 +1,15 @@
-// Conjugate gradients in the space of velocities that the closed pairs allow.
+// Projected conjugate gradients: a linear system whose solution satisfies the closed pairs.
 //
-// It solves  A v = b + H^T lambda,  H v = h  for v, and for the velocities V of plates that forces
-// drive; H are the rows of constraints.hpp. Residual and direction are projected, so that every
-// iterate obeys the pairs; lambda never appears. In y = D^{1/2} v, no preconditioner at all is that of
-// the diagonal D of A.
+//     | A  -H^T | | v      |   | b |       A: grain_matrix.hpp, order 2 n for n dofs
+//     | H    0  | | lambda | = | h |       H: one row per closed pair and direction, constraints.hpp
+//
+// Unknowns: v of all nodes, and the velocities V of the grains under force control, which enter as
+// v -> v + E V with a diagonal of their own. Residual and direction are projected on the null space of H
+// (in y = D^{1/2} v: P = 1 - sum_k q_k q_k^T), so that every iterate satisfies the pairs; lambda
+// never appears, and is read off at the end, H^T lambda = A v - b. Without a preconditioner this is
+// preconditioning with the diagonal D of A.
+//     r = P D^{-1/2} (b - A v),  z = F^{-1} r,  p = z + beta p,
+//     alpha = (r.z)/(p.A p),  v += alpha p,  r -= alpha P A p,  beta = (r.z)_new/(r.z)_old
 #pragma once
 
 #include <limits>
@@ -27,7 +33,8 @@ struct CgWorkspace {
     }
 };
 
-/// What the plates add to the system: diagonal theta (m + dt c), right-hand side, velocities.
+/// What the grains under force control add to the system: diagonal theta (m + dt c), right-hand
+/// side, velocities.
 struct ControlledGrains {
     std::vector<double> diagonal, b, V;
 };
@@ -46,9 +53,9 @@ inline double dot(const Vector& a, const Vector& b) {
 }
 
 /// Solves for v.
-/// in:     multiply(x, y): y = A x, symmetric; precondition(t, work): z from t, both in y; constraints,
-///         built with scale = D^{-1/2}; b; tolerance on |D^{-1/2} (b - A v)| without what the pairs
-///         forbid, over |D^{-1/2} b| or, if that is more, what it was with v as given and with the
+/// in:     multiply(x, y): y = A x, symmetric; precondition(t, work): z from t, both in y;
+///         constraints, built with scale = D^{-1/2}; b; tolerance on |D^{-1/2} (b - A v)| projected on the null
+///         space of the constraints, over |D^{-1/2} b| or, if that is more, what it was with v as given and with the
 ///         impulses of the pairs
 /// in/out: v and controlled.V, which obey the constraints
 /// out:    work.r = b - A v, which is -H^T lambda when converged

@@ -1,14 +1,17 @@
-// on the grid: the velocities v^theta of all nodes at once, with the forces and contacts of the same
-// level.
+// on the grid: the velocities v^theta of all nodes at once, with the forces and contacts of the
+// same level.
 //
 //     m_i (v_i^1 - v_i^0)/dt = - sum_p V_p sigma_p^theta . grad S_ip + m_i f_i^theta     [MPM-8]
 // sigma^theta = sigma^0 + theta T : de, de = dt sym grad v^theta [MPM-5, 7] and
 // v^theta = v^0 + theta (v^1 - v^0), put in, give a symmetric system for v^theta:
 //     A v^theta = M v^0 + theta dt (f^0 + m g) + H^T lambda,   A = (1 + theta dt c) M + theta^2 dt^2 K
-// with f^0 the force of the old stress, c the damping of a case, and impulses lambda of the pairs that
-// press, which are found together with v^theta: for a guess of who presses, conjugate gradients; then
-// the guess is corrected where an impulse pulls, a gap closes, or friction is more or less than
-// Coulomb's.
+// with f^0 the force of the old stress, c the damping of a case, and impulses lambda of the closed
+// pairs, which are found together with v^theta:
+//
+//     active set (open, slip, stick) -> projected conjugate gradients -> v^theta, lambda
+//           ^                                                               |
+//           +---- update where an impulse pulls, a gap closes, or ----------+--> done when no state changes
+//                 friction is not Coulomb's
 #pragma once
 
 #include "mpm_implicit/grain_factors.hpp"
@@ -40,12 +43,14 @@ class NodeSolver {
         const double theta_dt = scheme.theta * dt;
         matrix.assemble(shape, laws, all.grains, all.particles, nodes, rows,
                         1 + theta_dt * body.damping, theta_dt * theta_dt, scheme.consistent());
-        if (scheme.consistent()) constrain_rank_deficient_nodes(rows, all.grains, nodes);
+        if (scheme.consistent())
+            constrain_rank_deficient_nodes(mass_factors_.factorize(matrix, all.grains, nodes), rows,
+                                           nodes);
     }
 
     /// M v^0 = P, and bonded grains have one velocity.
     /// in:     nodes.sums
-    /// out:    nodes.motion, v_0; who meets, in `set`
+    /// out:    nodes.motion, v_0; set, the bodies and pairs at every node
     /// errors: NumericalError when the mass matrix cannot be solved
     void find_old_velocities(const ThetaScheme& scheme, const Contact& contact, const State& state,
                              GrainNodes& nodes, SolveReport& report) {
@@ -58,11 +63,11 @@ class NodeSolver {
         set.find(contact, nodes, all.bonds, force_controls, state.active_pairs);
         matrix.diagonal_mass(scale_);
         invert_diagonal(nodes);
-        for_each_dof([&](long i, std::size_t n) {
-            const NodeSums& sum = nodes.sums[n];
+        for_each_dof(size_, [&](long i) {
+            const NodeSums& sum = nodes.sums[i];
             b_[i] = sum.px, b_[size_ + i] = sum.py;
-            v_0_[i] = scale_[i] > 0 ? nodes.motion[n].vx_0 : 0;
-            v_0_[size_ + i] = scale_[size_ + i] > 0 ? nodes.motion[n].vy_0 : 0;
+            v_0_[i] = scale_[i] > 0 ? nodes.motion[i].vx_0 : 0;
+            v_0_[size_ + i] = scale_[size_ + i] > 0 ? nodes.motion[i].vy_0 : 0;
         });
         constraints.build(set, scale_, size_, 0, true);
         constraints.enforce({}, v_0_);
@@ -73,9 +78,9 @@ class NodeSolver {
                          scheme.tolerance, scheme.max_iterations, v_0_, none, work_);
         report.mass_iterations = cg.iterations;
         if (!cg.converged) fail("the nodes before the step", cg, scheme);
-        for_each_dof([&](long i, std::size_t n) {
-            if (nodes.is_free()[n] == 0) return;
-            nodes.motion[n].vx_0 = v_0_[i], nodes.motion[n].vy_0 = v_0_[size_ + i];
+        for_each_dof(size_, [&](long i) {
+            if (nodes.is_free()[i] == 0) return;
+            nodes.motion[i].vx_0 = v_0_[i], nodes.motion[i].vy_0 = v_0_[size_ + i];
         });
         fill_ghost_velocity(nodes);
     }
@@ -86,18 +91,18 @@ class NodeSolver {
         const double theta_dt = scheme.theta * dt;
         reduce_ghost_force(nodes);
         matrix.multiply_mass(v_0_, b_);
-        for_each_dof([&](long i, std::size_t n) {
-            const double m = nodes.sums[n].m;
-            b_[i] += theta_dt * (nodes.force[n].x + m * body.gravity_x);
-            b_[size_ + i] += theta_dt * (nodes.force[n].y + m * body.gravity_y);
+        for_each_dof(size_, [&](long i) {
+            const double m = nodes.sums[i].m;
+            b_[i] += theta_dt * (nodes.force[i].x + m * body.gravity_x);
+            b_[size_ + i] += theta_dt * (nodes.force[i].y + m * body.gravity_y);
         });
         matrix.diagonal(scale_);
         invert_diagonal(nodes);
     }
 
     /// v^theta and the impulses of contact, by conjugate gradients with an active set.
-    /// in/out: state: velocities of plates that forces drive, forces on rigid grains, bonds, who
-    ///         pressed
+    /// in/out: state: velocities of grains under force control, forces on rigid grains, bonds,
+    ///         active pairs
     /// out:    nodes.motion, v^theta in the place of v_1; what contact did
     /// errors: NumericalError when the iteration or the active set does not settle, with the pair
     template <class Shape>
@@ -118,11 +123,11 @@ class NodeSolver {
         v_ = v_0_;
         use_preconditioner(scheme, grains, nodes);
         const auto multiply = [&](Vector& x, Vector& y) { matrix.multiply(x, y); };
-        // Guesses are good enough long before velocities are.
+        // Active sets settle long before velocities do.
         constexpr double rough = 1e-7;
         double tolerance = std::max(scheme.tolerance, rough);
         for (report.loops = 1;; ++report.loops) {
-            add_friction(scheme.theta, dt, controlled);
+            set_right_hand_side(scheme.theta, dt, controlled);
             constraints.build(set, scale_, size_, force_controls.size(), false);
             constraints.enforce(controlled.V, v_);
             const CgResult cg =
@@ -136,7 +141,7 @@ class NodeSolver {
             report.held = change.held;
             if (change.settled) {
                 if (tolerance == scheme.tolerance) break;
-                // The same guess, to the end.
+                // The same set, to the end.
                 tolerance = scheme.tolerance;
                 --report.loops;
                 continue;
@@ -149,8 +154,8 @@ class NodeSolver {
             (force_controls[s].along_x ? is.vx : is.vy) = controlled.V[s];
             (force_controls[s].along_x ? is.travel_x : is.travel_y) += dt * controlled.V[s];
         }
-        for_each_dof([&](long i, std::size_t n) {
-            nodes.motion[n].vx_1 = v_[i], nodes.motion[n].vy_1 = v_[size_ + i];
+        for_each_dof(size_, [&](long i) {
+            nodes.motion[i].vx_1 = v_[i], nodes.motion[i].vy_1 = v_[size_ + i];
         });
         prescribe_rigid_velocity(grains, rigid, nodes);
         fill_ghost_velocity(nodes);
@@ -179,30 +184,15 @@ class NodeSolver {
     const Vector& scale() const { return scale_; }
 
    private:
-    // Nodes that the particles cannot tell from others move as their heaviest neighbor does.
-    void constrain_rank_deficient_nodes(const std::vector<GridRow>& rows,
-                                        const std::vector<Grain>& grains, GrainNodes& nodes) {
-        std::vector<DofConstraint> rank_deficient;
-        for (const long dof : mass_factors_.factorize(matrix, grains, nodes)) {
-            const auto row = std::partition_point(rows.begin(), rows.end(), [&](const GridRow& r) {
-                return r.origin + r.end <= dof;
-            });
-            const long heaviest =
-                heaviest_neighbor(rows, row - rows.begin(), dof - row->origin, nodes);
-            if (heaviest != dof) rank_deficient.push_back({dof, heaviest});
-        }
-        constrain_nodes(rank_deficient, nodes);
-    }
-
     // z = P D^{1/2} F^-1 D^{1/2} P t with factors F.
     template <class Factors>
     const Vector& precondition(const Factors& factors, const Constraints& allowed, const Vector& t,
                                CgWorkspace& work) const {
         const double *s = scale_.data(), *from = t.data();
         double *r = work.s.data(), *z = work.z.data();
-        for_each_component([&](long i) { r[i] = s[i] > 0 ? from[i] / s[i] : 0; });
+        for_each_dof(2 * size_, [&](long i) { r[i] = s[i] > 0 ? from[i] / s[i] : 0; });
         factors.solve(work.s, work.z);
-        for_each_component([&](long i) { z[i] = s[i] > 0 ? z[i] / s[i] : 0; });
+        for_each_dof(2 * size_, [&](long i) { z[i] = s[i] > 0 ? z[i] / s[i] : 0; });
         allowed.project(work.z);
         return work.z;
     }
@@ -220,53 +210,23 @@ class NodeSolver {
             if (v->size() != 2 * size_) *v = Vector::Zero(2 * size_);
     }
 
-    template <class Work>
-    void for_each_dof(const Work& work) const {
-        common::for_each_block(size_, [&](int, long begin, long end) {
-            for (long i = begin; i < end; ++i) work(i, static_cast<std::size_t>(i));
-        });
-    }
-
-    template <class Work>
-    void for_each_component(const Work& work) const {
-        common::for_each_block(2 * size_, [&](int, long begin, long end) {
-            for (long i = begin; i < end; ++i) work(i);
-        });
-    }
-
     // D^{-1/2} where a velocity can change: of free grains, with mass, and not held by a wall.
     void invert_diagonal(const GrainNodes& nodes) {
-        for_each_dof([&](long i, std::size_t n) {
-            const bool moves = nodes.is_free()[n] != 0 && nodes.sums[n].m > nodes.least_mass();
+        for_each_dof(size_, [&](long i) {
+            const bool moves = nodes.is_free()[i] != 0 && nodes.sums[i].m > nodes.least_mass();
             for (const auto& [at, fixed] :
                  {std::pair(i, nodes.is_fixed_x(i)), std::pair(size_ + i, nodes.is_fixed_y(i))})
                 scale_[at] = moves && !fixed && scale_[at] > 0 ? 1 / std::sqrt(scale_[at]) : 0;
         });
     }
 
-    // The right-hand side with the known friction of slipping pairs.
-    void add_friction(double theta, double dt, ControlledGrains& controlled) {
+    // The right-hand side of the step, with the known friction of slipping pairs.
+    void set_right_hand_side(double theta, double dt, ControlledGrains& controlled) {
         right_ = b_;
         controlled.b.clear();
         for (const ForceControl& control : force_controls)
             controlled.b.push_back(theta * (control.mass * control.velocity + dt * control.force));
-        for (const ActiveSet::Node& node : set.nodes) {
-            for (std::size_t k = node.pair_begin; k < node.pair_end; ++k) {
-                ContactPair& pair = set.pairs[k];
-                if (pair.state != ContactState::slip) continue;
-                pair.lambda_t = set.updates[k].friction;
-                if (pair.lambda_t == 0) continue;
-                for (const auto& [who, sign] : {std::pair(pair.a, -1.0), std::pair(pair.b, 1.0)}) {
-                    const ContactBody& body = set.bodies[node.body_begin + who];
-                    const double jx = sign * pair.lambda_t * pair.tx(),
-                                 jy = sign * pair.lambda_t * pair.ty();
-                    if (!body.is_fixed()) right_[body.dof] += jx, right_[size_ + body.dof] += jy;
-                    if (body.force_control >= 0)
-                        controlled.b[static_cast<std::size_t>(body.force_control)] +=
-                            body.control_along_x ? jx : jy;
-                }
-            }
-        }
+        add_friction(size_, set, right_, controlled.b);
     }
 
     [[noreturn]] void fail(const char* what, const CgResult& cg, const ThetaScheme& scheme) const {

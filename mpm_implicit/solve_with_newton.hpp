@@ -1,14 +1,14 @@
-// The same step by Newton and Krylov, as the talk's abstract has it for fields: nothing is linearized
-// by hand, so plastic grains and growing volumes are as good as elastic ones; and contact is the
-// operator of the explicit program, put on v^theta.
+// The same step by Newton and Krylov, as the talk's abstract has it for fields: nothing is
+// linearized by hand, so plastic grains and growing volumes are as good as elastic ones.
 //
-// With R the momentum that is missing, and C the operator that ends approach and slip at the nodes,
+// Unknowns: x = D^{1/2} v^theta of all dofs (2 n numbers), and m^{1/2} V of grains under force
+// control. With R the missing momentum, and C the contact operator of the explicit program,
 //     F(v) = v - C(v + R(v)/D),
 //     R(v) = M (v^0 - v) + theta dt [f(sigma^theta(v)) + m g - c M v]
-// is zero exactly where R is made up by impulses that press and rub as they should, whatever the
-// masses D are that C works with: here the diagonal of A, with which v + R/D never goes far. Newton's
-// linear systems are solved by GMRES with differences of F, preconditioned by conjugate gradients for
-// the elastic grains with the pairs that are closed now.
+// is zero where impulses of contact make up for R, whatever the masses D of C: here diag A.
+//     Newton           x <- x + s,  J s = -F,  J = dF/dx
+//     GMRES            for s, with J s by differences of F
+//     preconditioner   projected conjugate gradients for the elastic A and the pairs closed now
 #pragma once
 
 #include "common/newton_krylov.hpp"
@@ -81,14 +81,7 @@ class NewtonSolver {
         const Vector& scale() const { return solver.scale(); }
     };
 
-    template <class Work>
-    static void for_each_dof(long n, const Work& work) {
-        common::for_each_block(n, [&](int, long begin, long end) {
-            for (long i = begin; i < end; ++i) work(i, static_cast<std::size_t>(i));
-        });
-    }
-
-    // The guess v^0, as x = D^{1/2} v where velocities can change; then V m^{1/2} of driven plates.
+    // The guess v^0, as x = D^{1/2} v where velocities can change; then V m^{1/2}.
     void begin(const Step& step) {
         const long n = step.nodes.size(),
                    count = static_cast<long>(step.solver.force_controls.size());
@@ -97,12 +90,12 @@ class NewtonSolver {
         for (Vector* v : {&x_, &F_}) *v = Vector::Zero(2 * n + count);
         cg_.resize(n);
         const Vector& scale = step.scale();
-        for_each_dof(2 * n, [&](long at, std::size_t) {
+        for_each_dof(2 * n, [&](long at) {
             root_[at] = scale[at] > 0 ? 1 / scale[at] : 0;
             x_[at] = root_[at] * step.solver.old_velocities()[at];
         });
         for (long s = 0; s < count; ++s) {
-            const ForceControl& control = step.solver.force_controls[static_cast<std::size_t>(s)];
+            const ForceControl& control = step.solver.force_controls[s];
             x_[2 * n + s] = std::sqrt(control.mass) * control.velocity;
         }
     }
@@ -120,10 +113,10 @@ class NewtonSolver {
                 x[2 * n + static_cast<long>(s)] / std::sqrt(control.mass);
         }
         prescribe_rigid_velocity(step.all.grains, step.all.rigid, nodes);
-        for_each_dof(n, [&](long i, std::size_t k) {
+        for_each_dof(n, [&](long i) {
             v_[i] = scale[i] * x[i], v_[n + i] = scale[n + i] * x[n + i];
-            if (nodes.is_free()[k] != 0)
-                nodes.motion[k].vx_1 = v_[i], nodes.motion[k].vy_1 = v_[n + i];
+            if (nodes.is_free()[i] != 0)
+                nodes.motion[i].vx_1 = v_[i], nodes.motion[i].vy_1 = v_[n + i];
         });
         fill_ghost_velocity(nodes);
         force_at_theta(shape, step.laws, step.scheme, step.dt, step.all.grains, step.all.particles,
@@ -131,14 +124,14 @@ class NewtonSolver {
         step.solver.matrix.multiply_mass(v_, Mv_);
         const double theta_dt = step.scheme.theta * step.dt,
                      factor_M = 1 + theta_dt * step.body.damping;
-        for_each_dof(n, [&](long i, std::size_t k) {
-            if (nodes.is_free()[k] == 0) return;
+        for_each_dof(n, [&](long i) {
+            if (nodes.is_free()[i] == 0) return;
             const auto pushed = [&](long at, double force) {
                 const double R = b[at] + theta_dt * force - factor_M * Mv_[at];
                 return scale[at] > 0 ? v_[at] + R * scale[at] * scale[at] : 0.0;
             };
-            nodes.motion[k].vx_1 = pushed(i, nodes.force[k].x);
-            nodes.motion[k].vy_1 = pushed(n + i, nodes.force[k].y);
+            nodes.motion[i].vx_1 = pushed(i, nodes.force[i].x);
+            nodes.motion[i].vy_1 = pushed(n + i, nodes.force[i].y);
         });
     }
 
@@ -165,19 +158,19 @@ class NewtonSolver {
         add_missing_momentum(shape, x, step);
         std::array<std::vector<double>, common::block_count> impulses;
         for (auto& block : impulses) block.assign(controls.size(), 0.0);
-        step.solver.set.for_each(nodes, [&](int number, ContactNode& node, std::size_t) {
+        step.solver.set.for_each(nodes, [&](int number, ContactNode& node, std::size_t first) {
             const auto block = static_cast<std::size_t>(number);
             correct_velocities(step.scale(), n, node);
-            for (ContactPair& pair : node.pairs) {
-                if (step.updating) update_state(pair);
+            for (const ContactPair& pair : node.pairs) {
+                if (step.updating) update_state(pair, step.solver.set.pairs[first++]);
                 for (std::size_t s = 0; s < controls.size(); ++s)
                     impulses[block][s] += impulse_on(controls[s], node, pair);
             }
             store_velocities(node, nodes);
         });
-        for_each_dof(n, [&](long i, std::size_t k) {
-            F[i] = x[i] - root_[i] * nodes.motion[k].vx_1;
-            F[n + i] = x[n + i] - root_[n + i] * nodes.motion[k].vy_1;
+        for_each_dof(n, [&](long i) {
+            F[i] = x[i] - root_[i] * nodes.motion[i].vx_1;
+            F[n + i] = x[n + i] - root_[n + i] * nodes.motion[i].vy_1;
         });
         for (std::size_t s = 0; s < controls.size(); ++s) {
             const ForceControl& control = controls[s];
@@ -190,41 +183,19 @@ class NewtonSolver {
         }
     }
 
-    // The impulse of a pair on a grain under force control, along its direction.
-    static double impulse_on(const ForceControl& control, const ContactNode& node,
-                             const ContactPair& pair) {
-        const double along = control.along_x ? pair.impulse_x() : pair.impulse_y();
-        const auto is = [&](std::size_t who) {
-            const ContactBody& body = node.bodies[who];
-            return body.rigid && static_cast<std::size_t>(body.grain) == control.grain;
-        };
-        return (is(pair.b) ? along : 0) - (is(pair.a) ? along : 0);
-    }
-
-    // The state of a pair by its impulses.
-    static void update_state(ContactPair& pair) {
-        if (pair.bond >= 0) return;
-        const bool sticks = std::fabs(pair.lambda_t) < pair.mu * pair.lambda_n * 0.9999;
-        pair.state = !(pair.lambda_n > 0) ? ContactState::open
-                     : sticks             ? ContactState::stick
-                                          : ContactState::slip;
-    }
-
-    // z = (1 - P) r + (P A P)^-1 [P r - P A (1 - P) r], P the projection to what closed pairs allow;
-    // of plates, z = r.
+    // z = (1 - P) r + (P A P)^-1 [P r - P A (1 - P) r] with Constraints::project; z = r for V.
     void precondition(const Vector& r, Step& step, Vector& z) {
         const Vector& scale = step.scale();
         const long n = step.nodes.size();
         part_ = r.head(2 * n);
         allowed_.project(part_);
-        for_each_dof(2 * n, [&](long at, std::size_t) {
+        for_each_dof(2 * n, [&](long at) {
             rest_[at] = scale[at] > 0 ? r[at] - part_[at] : 0;
             v_[at] = scale[at] * rest_[at];
         });
         const auto multiply = [&](Vector& x, Vector& y) { step.solver.matrix.multiply(x, y); };
         multiply(v_, Mv_);
-        for_each_dof(2 * n,
-                     [&](long at, std::size_t) { part_[at] = root_[at] * part_[at] - Mv_[at]; });
+        for_each_dof(2 * n, [&](long at) { part_[at] = root_[at] * part_[at] - Mv_[at]; });
         v_.setZero();
         ControlledGrains none;
         const CgResult cg =
@@ -232,7 +203,7 @@ class NewtonSolver {
                          1e-4, step.scheme.max_iterations, v_, none, cg_);
         step.report.iterations += cg.iterations;
         z = r;
-        for_each_dof(2 * n, [&](long at, std::size_t) { z[at] = rest_[at] + root_[at] * v_[at]; });
+        for_each_dof(2 * n, [&](long at) { z[at] = rest_[at] + root_[at] * v_[at]; });
     }
 
     // What contact has done at the solution, with the masses D.
@@ -251,8 +222,8 @@ class NewtonSolver {
         const ContactSums did = sums.finish(step.dt, step.all.bonds, step.all.rigid);
         for (const ForceControl& control : step.solver.force_controls) {
             RigidMotion& is = step.all.rigid[control.grain];
-            (control.along_x ? is.travel_x : is.travel_y) +=
-                step.dt * (control.along_x ? is.vx : is.vy);
+            const double V = control.along_x ? is.vx : is.vy;
+            (control.along_x ? is.travel_x : is.travel_y) += step.dt * V;
         }
         return did;
     }

@@ -1,4 +1,5 @@
-// The step of mpm_implicit: the slide, call by call, in three parts, of which take_step() is the whole.
+// The step of mpm_implicit: the slide, call by call, in three parts, of which take_step() is the
+// whole.
 #pragma once
 
 #include <vector>

@@ -4,8 +4,9 @@
 //     closed  -> open    where the impulse pulls: lambda < 0
 //     stick   -> slip    where |lambda_t| > mu lambda, or where not all can stick and the pair slides
 //     slip    -> stick   where friction drives: lambda_t (v_b - v_a).t > 0
-// Two rules end cycles of sets: a pair that comes back only slips, and in a step a pair may open twice
-// and change between stick and slip three times. What may change no more stays as it is, and is counted.
+// Two rules end cycles of sets: a pair that comes back only slips, and in a step a pair may open
+// twice and change between stick and slip three times. What may change no more stays as it is, and
+// is counted.
 #pragma once
 
 #include <cmath>
@@ -24,8 +25,8 @@ struct ActiveSetChange {
 };
 
 /// The friction x of slipping pairs that the next solution is to have. Friction makes pressure, and
-/// pressure the friction g(x) that ought to be; where two solutions in turn have the same set, the next x
-/// is taken where a secant through both says g(x) = x.
+/// pressure the friction g(x) that ought to be; where two solutions in turn have the same set, the
+/// next x is taken where a secant through both says g(x) = x.
 ///   x_2 = g_1 - s (g_1 - g_0),  s = f_1 . (f_1 - f_0)/|f_1 - f_0|^2,  f = g - x
 /// in:     same, the set of the solution just made is that of the next
 /// source: Anderson, J. ACM 12, 547 (1965), with one step back.
@@ -50,7 +51,8 @@ inline void extrapolate_friction(bool same, ActiveSet& set) {
 }
 
 /// Changes the states of pairs that do not do what is asked of them.
-/// in:     v, all velocities; V, of the grains under force control; accuracy, that v has been solved to
+/// in:     v, all velocities; V, of the grains under force control; accuracy, that v has been
+///         solved to
 /// in/out: set, with the impulses that belong to v
 inline ActiveSetChange update_active_set(const Vector& v, const std::vector<double>& V,
                                          const GrainNodes& nodes, double accuracy, ActiveSet& set) {
@@ -64,7 +66,7 @@ inline ActiveSetChange update_active_set(const Vector& v, const std::vector<doub
         const bool fixed = body.is_fixed();
         x = fixed ? body.vx : v[body.dof], y = fixed ? body.vy : v[size + body.dof];
         if (body.force_control < 0) return;
-        (body.control_along_x ? x : y) = V[static_cast<std::size_t>(body.force_control)];
+        (body.control_along_x ? x : y) = V[body.force_control];
     };
     for (const ContactBody& body : set.bodies) {
         double x, y;
@@ -72,8 +74,7 @@ inline ActiveSetChange update_active_set(const Vector& v, const std::vector<doub
         fastest = std::max({fastest, std::fabs(x), std::fabs(y)});
         // Impulses far below the momentum of a node are round-off.
         if (!body.is_fixed())
-            largest = std::max(largest, 1e-4 * nodes.sums[static_cast<std::size_t>(body.dof)].m *
-                                            std::hypot(x, y));
+            largest = std::max(largest, 1e-4 * nodes.sums[body.dof].m * std::hypot(x, y));
     }
     ActiveSetChange change;
     for (const ActiveSet::Node& node : set.nodes) {
@@ -130,6 +131,51 @@ inline ActiveSetChange update_active_set(const Vector& v, const std::vector<doub
     extrapolate_friction(change.settled, set);
     if (change.friction > friction_error) change.settled = false;
     return change;
+}
+
+/// The impulses of a pair, and the state that follows from them alone, for Newton's method.
+inline void update_state(const ContactPair& now, ContactPair& pair) {
+    pair.lambda_n = now.lambda_n, pair.lambda_t = now.lambda_t;
+    if (pair.bond >= 0) return;
+    const bool sticks = std::fabs(pair.lambda_t) < pair.mu * pair.lambda_n * 0.9999;
+    pair.state = !(pair.lambda_n > 0) ? ContactState::open
+                 : sticks             ? ContactState::stick
+                                      : ContactState::slip;
+}
+
+/// Adds the known friction of slipping pairs to right-hand sides.
+/// in:     size, number of dofs
+/// in/out: set, whose slipping pairs get it as lambda_t; right, of the nodes; controlled, of the
+///         grains under force control
+inline void add_friction(long size, ActiveSet& set, Vector& right,
+                         std::vector<double>& controlled) {
+    for (const ActiveSet::Node& node : set.nodes) {
+        for (std::size_t k = node.pair_begin; k < node.pair_end; ++k) {
+            ContactPair& pair = set.pairs[k];
+            if (pair.state != ContactState::slip) continue;
+            pair.lambda_t = set.updates[k].friction;
+            if (pair.lambda_t == 0) continue;
+            for (const auto& [who, sign] : {std::pair(pair.a, -1.0), std::pair(pair.b, 1.0)}) {
+                const ContactBody& body = set.bodies[node.body_begin + who];
+                const double jx = sign * pair.lambda_t * pair.tx(),
+                             jy = sign * pair.lambda_t * pair.ty();
+                if (!body.is_fixed()) right[body.dof] += jx, right[size + body.dof] += jy;
+                if (body.force_control >= 0)
+                    controlled[body.force_control] += body.control_along_x ? jx : jy;
+            }
+        }
+    }
+}
+
+/// The impulse of a pair on a grain under force control, along its direction.
+inline double impulse_on(const ForceControl& control, const ContactNode& node,
+                         const ContactPair& pair) {
+    const double along = control.along_x ? pair.impulse_x() : pair.impulse_y();
+    const auto is = [&](std::size_t who) {
+        const ContactBody& body = node.bodies[who];
+        return body.rigid && static_cast<std::size_t>(body.grain) == control.grain;
+    };
+    return (is(pair.b) ? along : 0) - (is(pair.a) ? along : 0);
 }
 
 /// errors: NumericalError, with who changed last

@@ -83,8 +83,7 @@ void stress_at_theta(const LawOf& law, double theta, bool grows, const ParticleB
 inline void update_stress(const std::vector<AnyLaw>& laws, const ThetaScheme& scheme,
                           const ParticleBatch& batch, const std::vector<Grain>& grains,
                           Particles& particles, std::vector<TileSums>& sums) {
-    const AnyLaw& law =
-        laws[static_cast<std::size_t>(grains[static_cast<std::size_t>(batch.grain)].material)];
+    const AnyLaw& law = laws[grains[batch.grain].material];
     std::visit(
         [&](const auto& one) {
             detail::update_stress(one, law.compliance, scheme.theta, !scheme.keeps_volumes(), batch,
@@ -108,8 +107,7 @@ void force_at_theta(const Shape& shape, const std::vector<AnyLaw>& laws, const T
     for_each_batch(grains, nodes, [&](ParticleBatch& batch) {
         velocity_gradient(shape, particles, nodes, NewVelocity{}, dt, batch);
         double xx[ParticleBatch::size], yy[ParticleBatch::size], xy[ParticleBatch::size];
-        const AnyLaw& law =
-            laws[static_cast<std::size_t>(grains[static_cast<std::size_t>(batch.grain)].material)];
+        const AnyLaw& law = laws[grains[batch.grain].material];
         std::visit(
             [&](const auto& one) {
                 detail::stress_at_theta(one, scheme.theta, !scheme.keeps_volumes(), batch,
@@ -120,11 +118,11 @@ void force_at_theta(const Shape& shape, const std::vector<AnyLaw>& laws, const T
         const double *x_p = particles.x_p.data() + batch.begin,
                      *y_p = particles.y_p.data() + batch.begin;
         for (long k = 0; k < batch.count; ++k)
-            for_each_node(
-                shape, at, origin, x_p[k], y_p[k], [&](long dof, double, double Gx, double Gy) {
-                    nodes.force[static_cast<std::size_t>(dof)].x -= xx[k] * Gx + xy[k] * Gy;
-                    nodes.force[static_cast<std::size_t>(dof)].y -= xy[k] * Gx + yy[k] * Gy;
-                });
+            for_each_node(shape, at, origin, x_p[k], y_p[k],
+                          [&](long dof, double, double Gx, double Gy) {
+                              nodes.force[dof].x -= xx[k] * Gx + xy[k] * Gy;
+                              nodes.force[dof].y -= xy[k] * Gx + yy[k] * Gy;
+                          });
     });
     reduce_ghost_force(nodes);
 }

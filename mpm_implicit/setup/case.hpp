@@ -33,7 +33,7 @@ inline common::ParameterTable describe(Case& w, ThetaScheme& scheme) {
     table.whole("solver.max_iterations", scheme.max_iterations, "", between(1, 1e6),
                 "of a linear system; beyond, the run fails");
     table.whole("solver.max_outer_iterations", scheme.max_outer_iterations, "", between(1, 1000),
-                "guesses of who presses, or Newton steps; beyond, the run fails");
+                "active sets tried, or Newton steps; beyond, the run fails");
     describe_comparison(table, w,
                         {"none", "rebound", "bar", "standing_wave", "oscillator", "block",
                          "cylinder", "disk", "bond", "yield", "compression", "billet", "energy"});
