@@ -5,8 +5,8 @@
 // summed up in mpm_explicit/strain.hpp.
 #pragma once
 
-#include "mpm_explicit/ledger.hpp"
-#include "mpm_explicit/plates.hpp"
+#include "mpm_explicit/apply_loads.hpp"
+#include "mpm_explicit/budget.hpp"
 #include "mpm_explicit/transfer.hpp"
 
 namespace mpm_explicit {
@@ -18,7 +18,7 @@ using namespace mpm;
 inline void accelerate_nodes(const BodyForce& body, const std::vector<Grain>& grains,
                              const std::vector<RigidMotion>& rigid, double dt, GrainNodes& nodes) {
     const double least_mass = nodes.least_mass();
-    fold_force(nodes);
+    reduce_ghost_force(nodes);
     common::for_each_block(nodes.size(), [&](int, long begin, long end) {
         for (long i = begin; i < end; ++i) {
             const auto n = static_cast<std::size_t>(i);
@@ -31,34 +31,34 @@ inline void accelerate_nodes(const BodyForce& body, const std::vector<Grain>& gr
                      dt_body * (body.gravity_y - body.damping * v.vy_0);
         }
     });
-    drive_rigid(grains, rigid, nodes);
-    for (const long i : nodes.fixed_x()) nodes.motion[static_cast<std::size_t>(i)].vx_1 = 0;
-    for (const long i : nodes.fixed_y()) nodes.motion[static_cast<std::size_t>(i)].vy_1 = 0;
-    spread_velocity(nodes);
+    prescribe_rigid_velocity(grains, rigid, nodes);
+    for (const long i : nodes.fixed_x()) nodes.motion[i].vx_1 = 0;
+    for (const long i : nodes.fixed_y()) nodes.motion[i].vy_1 = 0;
+    fill_ghost_velocity(nodes);
 }
 
 /// Work on the nodes in this step, and their largest speed; after contact.
 inline NodeWork work_on_nodes(const BodyForce& body, double dt, const GrainNodes& nodes) {
     std::array<NodeWork, common::block_count> part;
     common::for_each_block(nodes.size(), [&](int block, long begin, long end) {
-        double old_stress = 0, jump = 0, gravity = 0, damping = 0, speed = 0;
+        double internal_work = 0, kinetic_increment = 0, gravity = 0, damping = 0, speed = 0;
         const unsigned char* is_free = nodes.is_free().data();
-#pragma omp simd reduction(+ : old_stress, jump, gravity, damping) reduction(max : speed)
+#pragma omp simd reduction(+ : internal_work, kinetic_increment, gravity, damping) reduction(max : speed)
         for (long i = begin; i < end; ++i) {
             const auto n = static_cast<std::size_t>(i);
             const NodeMotion& v = nodes.motion[n];
             const double m = is_free[n] * nodes.sums[n].m, dx = v.vx_1 - v.vx_0,
                          dy = v.vy_1 - v.vy_0, mean_x = 0.5 * (v.vx_0 + v.vx_1),
                          mean_y = 0.5 * (v.vy_0 + v.vy_1);
-            old_stress += nodes.force[n].x * v.vx_1 + nodes.force[n].y * v.vy_1;
-            jump += m * (dx * dx + dy * dy);
+            internal_work += nodes.force[n].x * v.vx_1 + nodes.force[n].y * v.vy_1;
+            kinetic_increment += m * (dx * dx + dy * dy);
             gravity += m * (body.gravity_x * mean_x + body.gravity_y * mean_y);
             damping -= m * (v.vx_0 * mean_x + v.vy_0 * mean_y);
             const double squared = v.vx_1 * v.vx_1 + v.vy_1 * v.vy_1;
             speed = squared > speed ? squared : speed;
         }
-        part[static_cast<std::size_t>(block)] = {0.5 * dt * old_stress, 0.5 * jump, dt * gravity,
-                                                 dt * body.damping * damping, std::sqrt(speed)};
+        part[block] = {0.5 * dt * internal_work, 0.5 * kinetic_increment, dt * gravity,
+                       dt * body.damping * damping, std::sqrt(speed)};
     });
     NodeWork total;
     for (const NodeWork& one : part) total += one;

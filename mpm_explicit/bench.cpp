@@ -58,7 +58,7 @@ common::StepClock time_steps(const Case& w, long steps, int threads, long& parti
     const std::vector<AnyLaw> laws = laws_of(w.problem);
     const Contact contact(w.problem.contact, grains, state.assembly.bonds);
     GrainNodes nodes(w.problem.mesh(), LinearShape::width, scales.least_mass);
-    nodes.sort(grains, particles, state.frame);
+    nodes.sort(grains, particles, state.layout);
     start_leapfrog(shape, laws, contact, false, dt, nodes, state);
     StepSums sums;
 
@@ -67,12 +67,12 @@ common::StepClock time_steps(const Case& w, long steps, int threads, long& parti
         if (step == 1) clock.restart();  // the first step meets empty caches
         // A sort as often as a grain that moves with the plate needs it is rare; here it is counted
         // once.
-        if (step == steps) nodes.sort(grains, particles, state.frame);
+        if (step == steps) nodes.sort(grains, particles, state.layout);
         clock.lap("sort");
-        const BodyForce body = drive(w.problem, step, dt, rigid);
+        const BodyForce body = apply_loads(w.problem.loads(), step, dt, rigid);
         take_step(shape, laws, contact, body, w.flip, w.frozen, dt, nodes, state, sums, clock);
-        enter_energies(step, sums.strips, state.ledger);
-        enter_work(nodes.strips(), sums.strips, sums.nodes, sums.contact, state.ledger);
+        add_energies(step, sums.tiles, state.budget);
+        add_work(nodes.tiles(), sums.tiles, sums.nodes, sums.contact, state.budget);
         clock.lap("move");
     }
     return clock;

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "mpm_explicit/grains.hpp"
-#include "mpm_explicit/node_problem.hpp"
+#include "mpm_explicit/solve_contact_node.hpp"
 
-namespace mpm::detail {
+namespace mpm {
 
 /// The load of one bond, at one node or summed over its nodes.
 struct BondLoad {
@@ -18,21 +18,21 @@ struct BondLoad {
     }
 };
 
-/// A node's share: gradients of a volume sum up to its surface, wherever on the mesh that is.
+/// A node's share of the load: gradients of volume sum up to the surface, wherever on the mesh it
+/// is.
 ///   A n = 1/2 sum_i (g_a - g_b)
 /// exact:  for particles on a lattice and an interface along it
 /// note:   The usual sum over nodes of sqrt(2 min(V_a, V_b) (V_a + V_b)) / h is up to 30 % short
 ///         where the interface is not on a line of nodes.
-inline BondLoad load_of(const NodeProblem& node, const Pair& pair) {
-    const Party &a = node.party[pair.a], &b = node.party[pair.b];
-    return {pair.bond, pair.lambda_n * pair.nx - pair.lambda_t * pair.ny,
-            pair.lambda_n * pair.ny + pair.lambda_t * pair.nx, 0.5 * (a.gx - b.gx),
+inline BondLoad bond_load(const ContactNode& node, const ContactPair& pair) {
+    const ContactBody &a = node.bodies[pair.a], &b = node.bodies[pair.b];
+    return {pair.bond, pair.impulse_x(), pair.impulse_y(), 0.5 * (a.gx - b.gx),
             0.5 * (a.gy - b.gy)};
 }
 
 /// Mean stress on the interface in this step, and whether the bond breaks.
 ///   (shear/S)^2 + (max(0, tension)/N)^2 >= 1
-inline void take_load(const BondLoad& load, double dt, Bond& bond) {
+inline void update_bond(const BondLoad& load, double dt, Bond& bond) {
     bond.area = std::hypot(load.ax, load.ay);
     if (bond.broken || !(bond.area > 0)) {
         bond.normal_stress = bond.shear_stress = 0;
@@ -47,4 +47,4 @@ inline void take_load(const BondLoad& load, double dt, Bond& bond) {
     bond.broken = pull * pull + shear * shear >= 1;
 }
 
-}  // namespace mpm::detail
+}  // namespace mpm

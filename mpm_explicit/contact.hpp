@@ -1,11 +1,11 @@
-// Grains meet at the nodes they share: what one presses or rubs on the other there.       [MPM-4]
+// Contact of grains at the nodes they share: impulses that press and rub.                  [MPM-4]
 //
-// Two grains a and b that are close enough (meetings.hpp), with the normal n from a to b, press when
-// they approach, (v_a - v_b).n > 0. An impulse lambda n, equal and opposite, takes the approach away,
-// and friction takes the slip away as far as Coulomb allows:
+// Two grains a and b that are close enough (detect_contact.hpp), with the normal n from a to b,
+// press when they approach, (v_a - v_b).n > 0. An impulse lambda n, equal and opposite, takes the
+// approach away, and friction takes the slip away as far as Coulomb allows:
 //     lambda >= 0,   |lambda_t| <= mu lambda
-// With more than two at a node (grains, rigid ones, walls) the pairs are solved in turn until nothing
-// changes (projected Gauss-Seidel). Bonded grains do not part and do not slip.
+// With more than two at a node (grains, rigid ones, walls) the pairs are solved in turn until
+// nothing changes (solve_contact_node.hpp). Bonded grains do not part and do not slip.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "mpm_explicit/bond_load.hpp"
-#include "mpm_explicit/meetings.hpp"
+#include "mpm_explicit/detect_contact.hpp"
 #include "mpm_explicit/transfer.hpp"
 
 namespace mpm {
@@ -38,103 +38,56 @@ struct ContactLevel {
     double per_impulse = 1;  // what is reported, over the impulse that changes v_i^1
 };
 
-class Contact {
+/// Work, forces on rigid grains and loads of bonds, summed over nodes in a fixed order.
+class ContactTally {
    public:
-    Contact(const ContactRule& rule, const std::vector<Grain>& grains,
-            const std::vector<Bond>& bonds)
-        : meetings_(rule, grains, bonds) {
-        for (std::size_t g = 0; g < grains.size(); ++g)
-            if (grains[g].rigid) rigid_grains_.push_back(g);
+    /// in: rigid_grains, their numbers, rising
+    ContactTally(const std::vector<std::size_t>& rigid_grains, const ContactLevel& level)
+        : rigid_grains_(rigid_grains), level_(level) {
+        for (Block& block : blocks_) block.push.assign(rigid_grains_.size(), {0, 0});
     }
 
-    const Meetings& meetings() const { return meetings_; }
-
-    /// Gives bonded grains one velocity v_i^0 at every node they share, so that strain does not see
-    /// the joint.
-    /// exact:  grains bonded at all their common nodes move as one grain
-    void join_bonds(const std::vector<Bond>& bonds, GrainNodes& nodes) const {
-        if (bonds.empty()) return;
-        meetings_.for_each(nodes, bonds, true, [&](int, detail::NodeProblem& node) {
-            for (std::size_t k = 0; k < node.parties; ++k)
-                node.party[k].vx = node.party[k].vx_0, node.party[k].vy = node.party[k].vy_0;
-            detail::solve(node);
-            for (std::size_t k = 0; k < node.parties; ++k) {
-                if (node.party[k].is_fixed()) continue;
-                NodeMotion& v = nodes.motion[static_cast<std::size_t>(node.party[k].slot)];
-                v.vx_0 = node.party[k].vx, v.vy_0 = node.party[k].vy;
-            }
-        });
-        spread_velocity(nodes);
+    /// Adds a node, with the velocities after contact and the impulses that made them.
+    /// in:     number of the block, as in ContactDetection::for_each
+    /// in/out: node; its impulses are multiplied by level.per_impulse
+    [[gnu::always_inline]] void add(int number, ContactNode& node) {
+        Block& block = blocks_[number];
+        for (ContactPair& pair : node.pairs) {
+            pair.lambda_n *= level_.per_impulse, pair.lambda_t *= level_.per_impulse;
+            add_work(node, pair, block.sums);
+            add_push(node, pair, block.push);
+            if (pair.bond >= 0) block.loads.push_back(bond_load(node, pair));
+        }
     }
 
-    /// Corrects v_i^1 at the shared nodes, once per step.
-    /// in:     level, what the scheme counts
-    /// in/out: nodes.motion; bonds, their stresses and whether they break; rigid, the force on each
-    ///         rigid grain
-    /// out:    what it did
-    /// exact:  momentum of the grains at a node, to round-off; afterwards none of them approach,
-    ///         and none slip where friction can hold. Where four or more grains jam at one node, a
-    ///         thousandth of the approach may be left.
-    /// errors: NumericalError when too many grains are at a node
-    ContactSums apply(double dt, GrainNodes& nodes, std::vector<Bond>& bonds,
-                      std::vector<RigidMotion>& rigid, const ContactLevel& level = {}) const {
-        return apply(dt, nodes, bonds, rigid, level,
-                     [](int, detail::NodeProblem& node) { detail::solve(node); });
-    }
-
-    /// The same with impulses that are found elsewhere.
-    /// in:     settle(block, node), which sets impulses and velocities of a node; block as in
-    ///         Meetings::for_each
-    template <class Settle>
-    ContactSums apply(double dt, GrainNodes& nodes, std::vector<Bond>& bonds,
-                      std::vector<RigidMotion>& rigid, const ContactLevel& level,
-                      const Settle& settle) const {
-        struct Block {
-            ContactSums sums;
-            std::vector<std::array<double, 2>> push;  // impulses on rigid grains
-            std::vector<detail::BondLoad> loads;
-        };
-        std::array<Block, common::block_count> blocks;
-        for (Block& block : blocks) block.push.assign(rigid_grains_.size(), {0, 0});
-        meetings_.for_each(nodes, bonds, false, [&](int number, detail::NodeProblem& node) {
-            Block& block = blocks[static_cast<std::size_t>(number)];
-            settle(number, node);
-            for (std::size_t k = 0; k < node.pairs; ++k) {
-                detail::Pair& pair = node.pair[k];
-                pair.lambda_n *= level.per_impulse, pair.lambda_t *= level.per_impulse;
-                add_work(node, pair, level.old_share, block.sums);
-                add_push(node, pair, block.push);
-                if (pair.bond >= 0) block.loads.push_back(detail::load_of(node, pair));
-            }
-            for (std::size_t k = 0; k < node.parties; ++k) {
-                if (node.party[k].is_fixed()) continue;
-                NodeMotion& v = nodes.motion[static_cast<std::size_t>(node.party[k].slot)];
-                v.vx_1 = node.party[k].vx, v.vy_1 = node.party[k].vy;
-            }
-        });
+    /// out: bonds, their stresses and whether they break; rigid, the force on each rigid grain
+    ContactSums finish(double dt, std::vector<Bond>& bonds, std::vector<RigidMotion>& rigid) const {
         ContactSums sums;
-        for (const Block& block : blocks) sums += block.sums;
+        for (const Block& block : blocks_) sums += block.sums;
         for (std::size_t k = 0; k < rigid_grains_.size(); ++k) {
             RigidMotion& motion = rigid[rigid_grains_[k]];
             motion.push_x = motion.push_y = 0;
-            for (const Block& block : blocks)
+            for (const Block& block : blocks_)
                 motion.push_x += block.push[k][0] / dt, motion.push_y += block.push[k][1] / dt;
         }
-        std::vector<detail::BondLoad> total(bonds.size());
-        for (const Block& block : blocks)
-            for (const detail::BondLoad& load : block.loads)
-                total[static_cast<std::size_t>(load.bond)] += load;
-        for (std::size_t k = 0; k < bonds.size(); ++k) detail::take_load(total[k], dt, bonds[k]);
-        spread_velocity(nodes);
+        std::vector<BondLoad> total(bonds.size());
+        for (const Block& block : blocks_)
+            for (const BondLoad& load : block.loads) total[load.bond] += load;
+        for (std::size_t k = 0; k < bonds.size(); ++k) update_bond(total[k], dt, bonds[k]);
         return sums;
     }
 
    private:
-    static void add_work(const detail::NodeProblem& node, const detail::Pair& pair,
-                         double old_share, ContactSums& sums) {
-        const detail::Party &a = node.party[pair.a], &b = node.party[pair.b];
-        const double tx = -pair.ny, ty = pair.nx;
-        const auto mean = [&](const detail::Party& p, double& x, double& y) {
+    struct Block {
+        ContactSums sums;
+        std::vector<std::array<double, 2>> push;  // impulses on rigid grains
+        std::vector<BondLoad> loads;
+    };
+
+    void add_work(const ContactNode& node, const ContactPair& pair, ContactSums& sums) const {
+        const ContactBody &a = node.bodies[pair.a], &b = node.bodies[pair.b];
+        const double tx = -pair.ny, ty = pair.nx, old_share = level_.old_share;
+        const auto mean = [&](const ContactBody& p, double& x, double& y) {
             x = p.is_fixed() ? p.vx : old_share * p.vx_0 + (1 - old_share) * p.vx;
             y = p.is_fixed() ? p.vy : old_share * p.vy_0 + (1 - old_share) * p.vy;
         };
@@ -148,27 +101,82 @@ class Contact {
             sums.normal += normal, sums.friction += friction;
             if (pair.lambda_n > 0) sums.impulse += pair.lambda_n, sums.nodes += 1;
         }
-        // A fixed one takes or gives the rest.
+        // A fixed body takes or gives the rest.
         const double jx = pair.lambda_n * pair.nx + pair.lambda_t * tx,
                      jy = pair.lambda_n * pair.ny + pair.lambda_t * ty;
         if (a.is_fixed()) sums.rigid += jx * ax + jy * ay;
         if (b.is_fixed()) sums.rigid -= jx * bx + jy * by;
     }
 
-    void add_push(const detail::NodeProblem& node, const detail::Pair& pair,
+    void add_push(const ContactNode& node, const ContactPair& pair,
                   std::vector<std::array<double, 2>>& push) const {
         for (const auto& [who, sign] : {std::pair(pair.a, -1.0), std::pair(pair.b, 1.0)}) {
-            const detail::Party& party = node.party[who];
-            if (!party.rigid) continue;
-            const auto grain = static_cast<std::size_t>(party.grain);
+            const ContactBody& body = node.bodies[who];
+            if (!body.rigid) continue;
+            const auto grain = static_cast<std::size_t>(body.grain);
             const auto at = std::lower_bound(rigid_grains_.begin(), rigid_grains_.end(), grain);
-            auto& sum = push[static_cast<std::size_t>(at - rigid_grains_.begin())];
-            sum[0] += sign * (pair.lambda_n * pair.nx - pair.lambda_t * pair.ny);
-            sum[1] += sign * (pair.lambda_n * pair.ny + pair.lambda_t * pair.nx);
+            auto& sum = push[at - rigid_grains_.begin()];
+            sum[0] += sign * pair.impulse_x(), sum[1] += sign * pair.impulse_y();
         }
     }
 
-    Meetings meetings_;
+    const std::vector<std::size_t>& rigid_grains_;
+    ContactLevel level_;
+    std::array<Block, common::block_count> blocks_;
+};
+
+class Contact {
+   public:
+    Contact(const ContactRule& rule, const std::vector<Grain>& grains,
+            const std::vector<Bond>& bonds)
+        : detection_(rule, grains, bonds) {
+        for (std::size_t g = 0; g < grains.size(); ++g)
+            if (grains[g].rigid) rigid_grains_.push_back(g);
+    }
+
+    const ContactDetection& detection() const { return detection_; }
+    ContactTally tally(const ContactLevel& level) const { return {rigid_grains_, level}; }
+
+    /// Gives bonded grains one velocity v_i^0 at every node they share, so that strain does not see
+    /// the joint.
+    /// exact:  grains bonded at all their common nodes move as one grain
+    void join_bonds(const std::vector<Bond>& bonds, GrainNodes& nodes) const {
+        if (bonds.empty()) return;
+        detection_.for_each(nodes, bonds, true, [&](int, ContactNode& node) {
+            for (ContactBody& body : node.bodies) body.vx = body.vx_0, body.vy = body.vy_0;
+            solve_contact_node(node);
+            for (const ContactBody& body : node.bodies) {
+                if (body.is_fixed()) continue;
+                NodeMotion& v = nodes.motion[body.dof];
+                v.vx_0 = body.vx, v.vy_0 = body.vy;
+            }
+        });
+        fill_ghost_velocity(nodes);
+    }
+
+    /// Corrects v_i^1 at the shared nodes, once per step.
+    /// in:     level, what the scheme counts
+    /// in/out: nodes.motion; bonds, their stresses and whether they break; rigid, the force on each
+    ///         rigid grain
+    /// out:    what it did
+    /// exact:  momentum of the grains at a node, to round-off; afterwards none of them approach,
+    ///         and none slip where friction can hold. Where four or more grains jam at one node, a
+    ///         thousandth of the approach may be left.
+    /// errors: NumericalError when too many grains are at a node
+    ContactSums apply(double dt, GrainNodes& nodes, std::vector<Bond>& bonds,
+                      std::vector<RigidMotion>& rigid, const ContactLevel& level = {}) const {
+        ContactTally sums = tally(level);
+        detection_.for_each(nodes, bonds, false, [&](int block, ContactNode& node) {
+            solve_contact_node(node);
+            sums.add(block, node);
+            store_velocities(node, nodes);
+        });
+        fill_ghost_velocity(nodes);
+        return sums.finish(dt, bonds, rigid);
+    }
+
+   private:
+    ContactDetection detection_;
     std::vector<std::size_t> rigid_grains_;
 };
 

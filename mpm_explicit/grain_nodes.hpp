@@ -1,9 +1,9 @@
-// One field per grain, on the nodes that the grain touches and nowhere else.
+// One field per grain, on the nodes that the grain touches and nowhere else: a sparse grid.
 //
-// A grain's nodes are stored row by row. A row is a stretch of columns, and the node in column i has
-// the slot origin[row] + i; so a particle finds its nodes with one look at a small table, and memory
-// is proportional to the area that the grains cover. Two grains that touch the same node have two
-// slots there: what they do to each other is the business of contact.hpp.
+// A grain's nodes are stored row by row. A row is a stretch of columns, and the node in column i
+// has the dof index origin[row] + i; so a particle finds its nodes with one look at a small table,
+// and memory is proportional to the area that the grains cover. Two grains that touch the same node
+// have two dofs there: what they do to each other is the business of contact.hpp.
 //
 //      o   o---o---o---o   o        a grain's rows: every row as long as it needs to be, and half
 //    o---o---o---o---o---o---o      a cell wider than the grain, so that the table stays good until
@@ -11,8 +11,8 @@
 //      o   o---o---o---o   o
 //
 // Columns are counted on without end: a grain that straddles the ends of a periodic mesh keeps its
-// particles together, at positions beyond the end. Only a grain that reaches all around (a ring) has
-// its particles put back into the box, and two copies of the columns where its ends meet.
+// particles together, at positions beyond the end. Only a grain that wraps around the whole mesh
+// has its particles put back into the box, and two copies of the columns where its ends meet.
 #pragma once
 
 #include <algorithm>
@@ -48,35 +48,36 @@ struct NodeForce {
 };
 
 /// Particles of one grain that are worked on together: one or more rows of cells.
-struct Strip {
+struct Tile {
     int grain;
     long begin, end;
 };
 
-/// A node that stands for another one: behind a wall (mirrored), or at the other end of a ring.
-struct Image {
-    long slot, of;
+/// A ghost node, whose values are those of its master: behind a wall (mirrored), at the other end
+/// of a grain that wraps around a periodic mesh, or constrained.
+struct GhostNode {
+    long dof, master;
     double sign_x, sign_y;  // of velocity, momentum and force
     bool mirror_x, mirror_y;
-    double info;  // mirror: twice the coordinate of the wall; ring: the length of the mesh
+    double offset;  // mirror: twice the coordinate of the wall; wrap: the length of the mesh
 };
 
 /// A grain's field at a node that others may touch, too; or a frictional wall that the node is on
 /// or behind.
 struct Member {
-    long slot;    // -1: a wall
+    long dof;     // -1: a wall
     int grain;    // or the side that the wall is on
     double x, y;  // of the node, as this grain counts columns
-    bool is_wall() const { return slot < 0; }
+    bool is_wall() const { return dof < 0; }
 };
 
 /// What a sort fixes, and a checkpoint must keep: everything else follows from it.
-struct Frame {
+struct GridLayout {
     std::vector<int> first_row, rows;           // per grain: its rows of nodes
     std::vector<int> first_column, end_column;  // per row
-    std::vector<int> strip_begin;               // per strip: its first particle
-    std::vector<int> strips;                    // per grain: how many
-    std::vector<int> ring;                      // per grain: it reaches around a periodic mesh
+    std::vector<int> tile_begin;                // per tile: its first particle
+    std::vector<int> tiles;                     // per grain: how many
+    std::vector<int> wraps;                     // per grain: it reaches around a periodic mesh
     double moved = 0;  // how far a particle can have come since the sort [length]
 };
 
@@ -98,93 +99,92 @@ class GrainNodes {
     std::vector<NodeMotion> motion;
     std::vector<NodeForce> force;
 
-    /// Slot of the node in column 0 of a grain's row j; column i is that plus i.
-    long origin(int grain, long j) const {
-        return origin_[static_cast<std::size_t>(first_of_grain_[static_cast<std::size_t>(grain)] +
-                                                j)];
-    }
+    /// Dof of the node in column 0 of a grain's row j; column i is that plus i.
+    long origin(int grain, long j) const { return origin_[first_of_grain_[grain] + j]; }
     /// The same for consecutive rows: origins(grain)[j].
-    const long* origins(int grain) const {
-        return origin_.data() + first_of_grain_[static_cast<std::size_t>(grain)];
-    }
+    const long* origins(int grain) const { return origin_.data() + first_of_grain_[grain]; }
     long size() const { return static_cast<long>(sums.size()); }
 
-    const std::vector<Strip>& strips() const { return strips_; }
-    const std::vector<Image>& images() const { return images_; }
-    /// Until particles are put on nodes again, a slot moves as another one of its grain does.
-    void tie(long slot, long of) { images_.push_back({slot, of, 1, 1, false, false, 0}); }
-    void untie() { images_.resize(own_images_); }
+    const std::vector<Tile>& tiles() const { return tiles_; }
+    const std::vector<GhostNode>& ghosts() const { return ghosts_; }
+    /// Until particles_to_grid() is called again, a dof has the velocity of its master.
+    void constrain(long dof, long master) {
+        ghosts_.push_back({dof, master, 1, 1, false, false, 0});
+    }
+    void drop_constraints() { ghosts_.resize(boundary_ghosts_); }
     const std::vector<long>& fixed_x() const { return fixed_x_; }
     const std::vector<long>& fixed_y() const { return fixed_y_; }
-    bool is_fixed_x(long slot) const { return (fixed_[static_cast<std::size_t>(slot)] & 1) != 0; }
-    bool is_fixed_y(long slot) const { return (fixed_[static_cast<std::size_t>(slot)] & 2) != 0; }
+    bool is_fixed_x(long dof) const { return (fixed_[dof] & 1) != 0; }
+    bool is_fixed_y(long dof) const { return (fixed_[dof] & 2) != 0; }
     /// 1 for a node that forces can move, 0 for one of a rigid grain.
     const std::vector<unsigned char>& is_free() const { return free_; }
     const std::vector<Member>& members() const { return members_; }
     /// Shared node n has the members shared_begin()[n] ... shared_begin()[n + 1].
     const std::vector<long>& shared_begin() const { return shared_begin_; }
     long shared_count() const { return static_cast<long>(shared_begin_.size()) - 1; }
-    /// Slots of a grain are consecutive.
-    long slot_begin(int grain) const { return slot_begin_[static_cast<std::size_t>(grain)]; }
-    long slot_end(int grain) const { return slot_begin_[static_cast<std::size_t>(grain) + 1]; }
+    /// Dofs of a grain are consecutive.
+    long dof_begin(int grain) const { return dof_begin_[grain]; }
+    long dof_end(int grain) const { return dof_begin_[static_cast<std::size_t>(grain) + 1]; }
 
     /// Whether particles may have left the nodes of their grain before the next step.
-    bool sort_is_due(const Frame& frame) const { return frame.moved > 0.99 * reach * mesh_.h; }
+    bool sort_is_due(const GridLayout& layout) const {
+        return layout.moved > 0.99 * reach * mesh_.h;
+    }
 
     /// Sorts the particles by grain and row of cells, and lays out the nodes around them.
     /// in/out: particles, of each grain together; grains' ranges stay as they are
-    void sort(const std::vector<Grain>& grains, Particles& particles, Frame& frame);
+    void sort(const std::vector<Grain>& grains, Particles& particles, GridLayout& layout);
 
-    /// Lays out the nodes of a frame that a checkpoint has kept.
-    void lay_out(const std::vector<Grain>& grains, const Frame& frame);
+    /// Lays out the nodes of a layout that a checkpoint has kept.
+    void lay_out(const std::vector<Grain>& grains, const GridLayout& layout);
 
-    /// Calls work(strip, number) for every strip; those at work at the same time share no node, and
+    /// Calls work(tile, number) for every tile; those at work at the same time share no node, and
     /// sums on nodes are added in the same order whatever the number of threads.
     template <class Work>
-    void for_each_strip(const Work& work) const {
+    void for_each_tile(const Work& work) const {
         common::for_each_row_two_colors(static_cast<long>(pieces_.size()) - 1, [&](long piece) {
             const auto k = static_cast<std::size_t>(piece);
             for (long s = pieces_[k]; s < pieces_[k + 1]; ++s)
-                work(strips_[static_cast<std::size_t>(s)], static_cast<std::size_t>(s));
+                work(tiles_[s], static_cast<std::size_t>(s));
         });
     }
 
    private:
     static constexpr double reach = 0.5;  // how far particles may move between sorts, in cells
 
-    void add_walls_and_rings(const std::vector<Grain>& grains, const Frame& frame);
-    void find_shared_nodes(const std::vector<Grain>& grains, const Frame& frame);
+    void find_ghost_nodes(const std::vector<Grain>& grains, const GridLayout& layout);
+    void find_shared_nodes(const std::vector<Grain>& grains, const GridLayout& layout);
 
-    // Visits all slots of a grain that are not images: visit(slot, column, row).
+    // Visits all dofs of a grain that are not ghosts: visit(dof, column, row).
     template <class Visit>
-    void for_each_slot(int grain, const Frame& frame, const Visit& visit) const {
+    void for_each_dof(int grain, const GridLayout& layout, const Visit& visit) const {
         const auto g = static_cast<std::size_t>(grain);
         const long table = row_begin_[g];
-        for (long r = 0; r < frame.rows[g]; ++r) {
+        for (long r = 0; r < layout.rows[g]; ++r) {
             const auto row = static_cast<std::size_t>(table + r);
-            for (long i = frame.first_column[row]; i < frame.end_column[row]; ++i)
-                visit(origin_[row] + i, i, frame.first_row[g] + r);
+            for (long i = layout.first_column[row]; i < layout.end_column[row]; ++i)
+                visit(origin_[row] + i, i, layout.first_row[g] + r);
         }
     }
-    bool has_slot(int grain, const Frame& frame, long i, long j) const {
+    bool has_dof(int grain, const GridLayout& layout, long i, long j) const {
         const auto g = static_cast<std::size_t>(grain);
-        const long r = j - frame.first_row[g];
-        if (r < 0 || r >= frame.rows[g]) return false;
+        const long r = j - layout.first_row[g];
+        if (r < 0 || r >= layout.rows[g]) return false;
         const auto row = static_cast<std::size_t>(row_begin_[g] + r);
-        return i >= frame.first_column[row] && i < frame.end_column[row];
+        return i >= layout.first_column[row] && i < layout.end_column[row];
     }
 
     Mesh mesh_;
     double least_mass_;
     long below_, above_;  // rows and columns of nodes that the particles of a cell see around it
     long rows_apart_;
-    std::vector<long> origin_, row_begin_, first_of_grain_, slot_begin_;
-    std::vector<Strip> strips_;
+    std::vector<long> origin_, row_begin_, first_of_grain_, dof_begin_;
+    std::vector<Tile> tiles_;
     std::vector<long> pieces_{0};
-    std::vector<Image> images_;
-    std::size_t own_images_ = 0;  // those of walls and rings come first
+    std::vector<GhostNode> ghosts_;
+    std::size_t boundary_ghosts_ = 0;  // those of walls and periodic ends come first
     std::vector<long> fixed_x_, fixed_y_;
-    std::vector<unsigned char> fixed_;  // per slot: 1 for x, 2 for y
+    std::vector<unsigned char> fixed_;  // per dof: 1 for x, 2 for y
     std::vector<unsigned char> free_;
     std::vector<Member> members_;
     std::vector<long> shared_begin_{0};
@@ -192,13 +192,16 @@ class GrainNodes {
 };
 
 template <class Archive>
-void archive(Archive& a, Frame& frame) {
-    a("first_row", frame.first_row), a("rows", frame.rows);
-    a("first_column", frame.first_column), a("end_column", frame.end_column);
-    a("strip_begin", frame.strip_begin), a("strips", frame.strips), a("ring", frame.ring);
-    a("moved", frame.moved);
+void archive(Archive& a, GridLayout& layout) {
+    a("first_row", layout.first_row), a("rows", layout.rows);
+    a("first_column", layout.first_column), a("end_column", layout.end_column);
+    a("tile_begin", layout.tile_begin), a("tiles", layout.tiles), a("wraps", layout.wraps);
+    a("moved", layout.moved);
 }
 
 }  // namespace mpm
 
-#include "mpm_explicit/lay_out_nodes.hpp"  // how sort() and lay_out() work
+// The members of GrainNodes that a sort calls.
+#include "mpm_explicit/ghost_nodes.hpp"
+#include "mpm_explicit/grid_layout.hpp"
+#include "mpm_explicit/shared_nodes.hpp"

@@ -23,8 +23,8 @@ struct RigidMotion {
     double push_x = 0, push_y = 0;      // force of the other grains on it, in the last step
     double travel_x = 0, travel_y = 0;  // since the start
     double prescribed_vx = 0, prescribed_vy = 0;  // when the load has risen
-    bool servo_x = false, servo_y = false;
-    double force = 0, mass = 1, damping = 0;  // servo
+    bool force_control_x = false, force_control_y = false;
+    double force = 0, mass = 1, damping = 0;  // of the force control
 };
 
 /// Two grains that hold together at the nodes they share, until the stress on their interface

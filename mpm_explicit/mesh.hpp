@@ -34,7 +34,7 @@ struct Mesh {
     double y_of(double j) const { return y_low + j * h; }
 
     bool has(Side side, Boundary kind) const {
-        return boundary[static_cast<std::size_t>(side)] == kind &&
+        return boundary[side] == kind &&
                !(periodic_x && (side == Side::x_low || side == Side::x_high));
     }
 };

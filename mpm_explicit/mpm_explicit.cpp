@@ -8,7 +8,7 @@
 // Run:   build/mpm_explicit mpm_explicit/cases/rebound.toml contact.separation=0
 //
 // Reading order: step.hpp; then particles.hpp, shapes.hpp, grain_nodes.hpp, transfer.hpp, strain.hpp,
-// update_stress.hpp, accelerate_nodes.hpp, contact.hpp, move_particles.hpp, ledger.hpp.
+// update_stress.hpp, accelerate_nodes.hpp, contact.hpp, move_particles.hpp, budget.hpp.
 #include <optional>
 
 #include "common/run/start.hpp"
@@ -45,22 +45,22 @@ int run_case(const Shape& shape, const Case& parameters, const Scales& scales, c
     long step = 0;
     if (run.restarting()) {
         run.restore(state, step);
-        nodes.lay_out(grains, state.frame);
+        nodes.lay_out(grains, state.layout);
     } else {
-        nodes.sort(grains, particles, state.frame);
+        nodes.sort(grains, particles, state.layout);
         start_leapfrog(shape, laws, contact, parameters.frozen, dt, nodes, state);
     }
 
     // 3. The loop of the slide.
     while (run.not_finished(step, scales.steps)) {
-        if (nodes.sort_is_due(state.frame)) nodes.sort(grains, particles, state.frame);
+        if (nodes.sort_is_due(state.layout)) nodes.sort(grains, particles, state.layout);
         recorder.snapshot(step, state, run);
-        const BodyForce body = drive(parameters.problem, step, dt, rigid);
+        const BodyForce body = apply_loads(parameters.problem.loads(), step, dt, rigid);
         take_step(shape, laws, contact, body, parameters.flip, parameters.frozen, dt, nodes, state,
-                  sums);                                  // [MPM-4, 9 ... 12]
-        enter_energies(step, sums.strips, state.ledger);  // [MPM-14, 15]
+                  sums);                               // [MPM-4, 9 ... 12]
+        add_energies(step, sums.tiles, state.budget);  // [MPM-14, 15]
         recorder.record(step, sums, nodes, state, run);
-        enter_work(nodes.strips(), sums.strips, sums.nodes, sums.contact, state.ledger);
+        add_work(nodes.tiles(), sums.tiles, sums.nodes, sums.contact, state.budget);
         ++step;
         run.end_of_step(step, scales.steps, static_cast<double>(step) * dt, state);
     }
@@ -86,10 +86,9 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
                             scales.steps, scales.bytes, parameters.checkpoint_steps},
                            holder))
         return 0;
-    int status = 0;
-    with_shape(parameters.scheme(),
-               [&](const auto& shape) { status = run_case(shape, parameters, scales, *holder); });
-    return status;
+    return with_shape(parameters.scheme(), [&](const auto& shape) {
+        return run_case(shape, parameters, scales, *holder);
+    });
 }
 
 }  // namespace

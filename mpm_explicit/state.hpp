@@ -1,30 +1,30 @@
-// All that changes in a run of mpm_explicit, and what a step sums up for the ledger.
+// All that changes in a run of mpm_explicit, and what a step sums up for the budget.
 #pragma once
 
 #include <vector>
 
 #include "mpm_explicit/assembly.hpp"
-#include "mpm_explicit/ledger.hpp"
+#include "mpm_explicit/budget.hpp"
 
 namespace mpm_explicit {
 
 /// All that changes in a run.
 struct State {
     Assembly assembly;
-    Frame frame;
-    Ledger ledger;
+    GridLayout layout;
+    Budget budget;
 };
 
 template <class Archive>
 void archive(Archive& a, State& state) {
     archive(a, state.assembly);
-    mpm::archive(a, state.frame);
-    archive(a, state.ledger);
+    mpm::archive(a, state.layout);
+    archive(a, state.budget);
 }
 
 /// What one step has summed up.
 struct StepSums {
-    std::vector<StripSums> strips;
+    std::vector<TileSums> tiles;
     NodeWork nodes;
     ContactSums contact;
 };

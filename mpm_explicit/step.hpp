@@ -18,8 +18,8 @@ namespace mpm_explicit {
 /// From t^n to t^{n+1}; stresses from half a step before t^n to half a step after it.
 /// in:     body, forces on all mass; flip, the part of FLIP in the velocity of particles; frozen:
 ///         particles keep their places
-/// in/out: nodes, sorted for where the particles are; state but the ledger
-/// out:    sums, which the ledger takes
+/// in/out: nodes, sorted for where the particles are; state but the budget
+/// out:    sums, which the budget takes
 template <class Shape, class Clock = common::NoClock>
 void take_step(const Shape& shape, const std::vector<AnyLaw>& laws, const Contact& contact,
                const BodyForce& body, double flip, bool frozen, double dt, GrainNodes& nodes,
@@ -29,16 +29,16 @@ void take_step(const Shape& shape, const std::vector<AnyLaw>& laws, const Contac
     std::vector<RigidMotion>& rigid = state.assembly.rigid;
     std::vector<Bond>& bonds = state.assembly.bonds;
     // [step]
-    put_on_nodes(shape, particles, nodes);  // particles -> grid
+    particles_to_grid(shape, particles, nodes);  // particles -> grid
     clock.lap("put");
-    velocity_of_nodes(grains, rigid, nodes);  // v_i^0
+    nodal_velocity(grains, rigid, nodes);  // v_i^0
     contact.join_bonds(bonds, nodes);
     clock.lap("nodes");
-    for_each_chunk(grains, nodes, sums.strips, [&](Chunk& chunk) {
-        velocity_gradient(shape, particles, nodes, OldVelocity{}, dt, chunk);  // [MPM-11]
-        update_stress(laws, frozen, chunk, grains, particles, sums.strips);    // [MPM-9, 10]
-        add_internal_force(shape, particles, chunk, nodes);                    // [MPM-12]
-        if (!frozen) turn_stress(chunk, particles);
+    for_each_batch(grains, nodes, sums.tiles, [&](ParticleBatch& batch) {
+        velocity_gradient(shape, particles, nodes, OldVelocity{}, dt, batch);  // [MPM-11]
+        update_stress(laws, frozen, batch, grains, particles, sums.tiles);     // [MPM-9, 10]
+        add_internal_force(shape, particles, batch, nodes);                    // [MPM-12]
+        if (!frozen) rotate_stress(batch, particles);
     });
     clock.lap("stress");
     accelerate_nodes(body, grains, rigid, dt, nodes);  // v_i^1  [MPM-12]
@@ -48,8 +48,8 @@ void take_step(const Shape& shape, const std::vector<AnyLaw>& laws, const Contac
     sums.nodes = work_on_nodes(body, dt, nodes);
     clock.lap("nodes");
     move_particles(shape, grains, rigid, nodes, flip, frozen, dt, particles,
-                   sums.strips);  // grid -> particles
-    state.frame.moved += frozen ? 0 : dt * sums.nodes.largest_speed;
+                   sums.tiles);  // grid -> particles
+    state.layout.moved += frozen ? 0 : dt * sums.nodes.largest_speed;
     clock.lap("move");
     // [/step]
 }

@@ -16,12 +16,12 @@ struct Scheme {
     int width() const { return shape == linear ? 2 : 3; }
 };
 
-/// Calls work(shape) with the shape function of the scheme.
+/// Returns work(shape) with the shape function of the scheme.
 template <class Work>
-void with_shape(const Scheme& scheme, const Work& work) {
-    if (scheme.shape == Scheme::linear) work(LinearShape{});
-    if (scheme.shape == Scheme::gimp) work(GimpShape{scheme.half});
-    if (scheme.shape == Scheme::quadratic) work(QuadraticShape{});
+auto with_shape(const Scheme& scheme, const Work& work) {
+    if (scheme.shape == Scheme::linear) return work(LinearShape{});
+    if (scheme.shape == Scheme::gimp) return work(GimpShape{scheme.half});
+    return work(QuadraticShape{});
 }
 
 /// Which velocity of a node is meant: before the step, or after it.
@@ -40,7 +40,7 @@ struct Locator {
     explicit Locator(const Mesh& mesh) : x_low(mesh.x_low), y_low(mesh.y_low), per_h(1 / mesh.h) {}
 };
 
-/// Calls work(slot, S_ip, dS_ip/dx, dS_ip/dy) for the nodes around a particle of one grain.
+/// Calls work(dof, S_ip, dS_ip/dx, dS_ip/dy) for the nodes around a particle of one grain.
 /// in: origin, GrainNodes::origins of the grain
 template <class Shape, class Work>
 [[gnu::always_inline]] inline void for_each_node(const Shape& shape, const Locator& at,
@@ -50,10 +50,10 @@ template <class Shape, class Work>
     const auto w_y = shape((y - at.y_low) * at.per_h, at.per_h);
 #pragma GCC unroll 3
     for (int b = 0; b < Shape::width; ++b) {
-        const long slot = origin[w_y.first + b] + w_x.first;
+        const long dof = origin[w_y.first + b] + w_x.first;
 #pragma GCC unroll 3
         for (int a = 0; a < Shape::width; ++a)
-            work(slot + a, w_x.S[a] * w_y.S[b], w_x.G[a] * w_y.S[b], w_x.S[a] * w_y.G[b]);
+            work(dof + a, w_x.S[a] * w_y.S[b], w_x.G[a] * w_y.S[b], w_x.S[a] * w_y.G[b]);
     }
 }
 
@@ -72,40 +72,39 @@ namespace detail {
 
 }  // namespace detail
 
-/// Moves what was put on nodes that stand for others to those, and leaves nothing behind.
+/// Adds the sums on ghost nodes to their masters, and clears the ghosts.
 /// exact:  totals of mass and volume stay; a wall sees the body and its mirror image
-inline void fold_sums(GrainNodes& nodes) {
-    for (const Image& image : nodes.images()) {
-        NodeSums& from = nodes.sums[static_cast<std::size_t>(image.slot)];
-        NodeSums& to = nodes.sums[static_cast<std::size_t>(image.of)];
-        const double flip_x = image.mirror_x ? -1 : 1, flip_y = image.mirror_y ? -1 : 1;
-        const bool ring = !image.mirror_x && !image.mirror_y;
+inline void reduce_ghost_sums(GrainNodes& nodes) {
+    for (const GhostNode& ghost : nodes.ghosts()) {
+        NodeSums& from = nodes.sums[ghost.dof];
+        NodeSums& to = nodes.sums[ghost.master];
+        const double flip_x = ghost.mirror_x ? -1 : 1, flip_y = ghost.mirror_y ? -1 : 1;
+        const bool wraps = !ghost.mirror_x && !ghost.mirror_y;
         to.m += from.m, to.V += from.V;
-        to.px += image.sign_x * from.px, to.py += image.sign_y * from.py;
+        to.px += ghost.sign_x * from.px, to.py += ghost.sign_y * from.py;
         to.gx += flip_x * from.gx, to.gy += flip_y * from.gy;
-        to.mx += image.mirror_x ? image.info * from.m - from.mx
-                                : from.mx - (ring ? image.info * from.m : 0);
-        to.my += image.mirror_y ? image.info * from.m - from.my : from.my;
+        to.mx += ghost.mirror_x ? ghost.offset * from.m - from.mx
+                                : from.mx - (wraps ? ghost.offset * from.m : 0);
+        to.my += ghost.mirror_y ? ghost.offset * from.m - from.my : from.my;
         from = {};
     }
 }
-inline void fold_force(GrainNodes& nodes) {
-    for (const Image& image : nodes.images()) {
-        NodeForce& from = nodes.force[static_cast<std::size_t>(image.slot)];
-        NodeForce& to = nodes.force[static_cast<std::size_t>(image.of)];
-        to.x += image.sign_x * from.x, to.y += image.sign_y * from.y;
+inline void reduce_ghost_force(GrainNodes& nodes) {
+    for (const GhostNode& ghost : nodes.ghosts()) {
+        NodeForce& from = nodes.force[ghost.dof];
+        NodeForce& to = nodes.force[ghost.master];
+        to.x += ghost.sign_x * from.x, to.y += ghost.sign_y * from.y;
         from = {};
     }
 }
 
-/// Gives nodes that stand for others their velocities: the transpose of folding.
-inline void spread_velocity(GrainNodes& nodes) {
-    const auto& images = nodes.images();
-    for (auto image = images.rbegin(); image != images.rend(); ++image) {
-        const NodeMotion& from = nodes.motion[static_cast<std::size_t>(image->of)];
-        nodes.motion[static_cast<std::size_t>(image->slot)] = {
-            image->sign_x * from.vx_0, image->sign_y * from.vy_0, image->sign_x * from.vx_1,
-            image->sign_y * from.vy_1};
+/// Fills the velocities of ghost nodes from their masters: the transpose of the reduction.
+inline void fill_ghost_velocity(GrainNodes& nodes) {
+    const auto& ghosts = nodes.ghosts();
+    for (auto ghost = ghosts.rbegin(); ghost != ghosts.rend(); ++ghost) {
+        const NodeMotion& from = nodes.motion[ghost->master];
+        nodes.motion[ghost->dof] = {ghost->sign_x * from.vx_0, ghost->sign_y * from.vy_0,
+                                    ghost->sign_x * from.vx_1, ghost->sign_y * from.vy_1};
     }
 }
 
@@ -114,8 +113,8 @@ inline void spread_velocity(GrainNodes& nodes) {
 /// out:    nodes.sums
 /// exact:  sum_i m_i = sum_p m_p and sum_i P_i = sum_p m_p v_p, to round-off
 template <class Shape>
-void put_on_nodes(const Shape& shape, const Particles& particles, GrainNodes& nodes) {
-    nodes.untie();
+void particles_to_grid(const Shape& shape, const Particles& particles, GrainNodes& nodes) {
+    nodes.drop_constraints();
     common::for_each_block(nodes.size(), [&](int, long begin, long end) {
         std::fill(nodes.sums.begin() + begin, nodes.sums.begin() + end, NodeSums{});
         std::fill(nodes.force.begin() + begin, nodes.force.begin() + end, NodeForce{});
@@ -124,36 +123,36 @@ void put_on_nodes(const Shape& shape, const Particles& particles, GrainNodes& no
     const double *x_p = particles.x_p.data(), *y_p = particles.y_p.data(),
                  *vx_p = particles.vx_p.data(), *vy_p = particles.vy_p.data(),
                  *m_p = particles.m_p.data(), *V_p = particles.V_p.data();
-    nodes.for_each_strip([&](const Strip& strip, std::size_t) {
-        const long* origin = nodes.origins(strip.grain);
+    nodes.for_each_tile([&](const Tile& tile, std::size_t) {
+        const long* origin = nodes.origins(tile.grain);
         NodeSums* sums = nodes.sums.data();
-        for (long p = strip.begin; p < strip.end; ++p) {
+        for (long p = tile.begin; p < tile.end; ++p) {
             const double x = x_p[p], y = y_p[p], m = m_p[p], V = V_p[p];
             const common::SimdVector carried{m, m * vx_p[p], m * vy_p[p], m * x, m * y, 0, 0, V},
                 along_x{0, 0, 0, 0, 0, V, 0, 0}, along_y{0, 0, 0, 0, 0, 0, V, 0};
-            for_each_node(shape, at, origin, x, y, [&](long slot, double S, double Gx, double Gy) {
-                detail::add(sums[slot], S, Gx, Gy, carried, along_x, along_y);
+            for_each_node(shape, at, origin, x, y, [&](long dof, double S, double Gx, double Gy) {
+                detail::add(sums[dof], S, Gx, Gy, carried, along_x, along_y);
             });
         }
     });
-    fold_sums(nodes);
+    reduce_ghost_sums(nodes);
 }
 
 /// Rigid grains give their nodes their velocity, before and after the step.
-inline void drive_rigid(const std::vector<Grain>& grains, const std::vector<RigidMotion>& rigid,
-                        GrainNodes& nodes) {
+inline void prescribe_rigid_velocity(const std::vector<Grain>& grains,
+                                     const std::vector<RigidMotion>& rigid, GrainNodes& nodes) {
     for (std::size_t g = 0; g < grains.size(); ++g) {
         if (!grains[g].rigid) continue;
         const int k = static_cast<int>(g);
         const RigidMotion& is = rigid[g];
-        for (long i = nodes.slot_begin(k); i < nodes.slot_end(k); ++i)
-            nodes.motion[static_cast<std::size_t>(i)] = {is.vx, is.vy, is.vx, is.vy};
+        for (long i = nodes.dof_begin(k); i < nodes.dof_end(k); ++i)
+            nodes.motion[i] = {is.vx, is.vy, is.vx, is.vy};
     }
 }
 
 /// v_i^0 = P_i/m_i, on walls without what they forbid; rigid grains move as they are told.
-inline void velocity_of_nodes(const std::vector<Grain>& grains,
-                              const std::vector<RigidMotion>& rigid, GrainNodes& nodes) {
+inline void nodal_velocity(const std::vector<Grain>& grains, const std::vector<RigidMotion>& rigid,
+                           GrainNodes& nodes) {
     const double least_mass = nodes.least_mass();
     common::for_each_block(nodes.size(), [&](int, long begin, long end) {
         for (long i = begin; i < end; ++i) {
@@ -163,10 +162,10 @@ inline void velocity_of_nodes(const std::vector<Grain>& grains,
             nodes.motion[n] = {sum.px * per_m, sum.py * per_m, 0, 0};
         }
     });
-    drive_rigid(grains, rigid, nodes);
-    for (const long i : nodes.fixed_x()) nodes.motion[static_cast<std::size_t>(i)].vx_0 = 0;
-    for (const long i : nodes.fixed_y()) nodes.motion[static_cast<std::size_t>(i)].vy_0 = 0;
-    spread_velocity(nodes);
+    prescribe_rigid_velocity(grains, rigid, nodes);
+    for (const long i : nodes.fixed_x()) nodes.motion[i].vx_0 = 0;
+    for (const long i : nodes.fixed_y()) nodes.motion[i].vy_0 = 0;
+    fill_ghost_velocity(nodes);
 }
 
 }  // namespace mpm

@@ -67,14 +67,14 @@ double explicit_step(Case w, long first, long steps) {
     const std::vector<AnyLaw> laws = laws_of(w.problem);
     const Contact contact(w.problem.contact, grains, state.assembly.bonds);
     GrainNodes nodes(w.problem.mesh(), LinearShape::width, scales.least_mass);
-    nodes.sort(grains, particles, state.frame);
+    nodes.sort(grains, particles, state.layout);
     start_leapfrog(shape, laws, contact, false, dt, nodes, state);
     StepSums sums;
     common::StepClock clock;
     for (long step = 0; step < first + steps; ++step) {
         if (step == first) clock.restart();
-        if (nodes.sort_is_due(state.frame)) nodes.sort(grains, particles, state.frame);
-        const BodyForce body = mpm::drive(w.problem, step, dt, state.assembly.rigid);
+        if (nodes.sort_is_due(state.layout)) nodes.sort(grains, particles, state.layout);
+        const BodyForce body = mpm::apply_loads(w.problem.loads(), step, dt, state.assembly.rigid);
         take_step(shape, laws, contact, body, w.flip, w.frozen, dt, nodes, state, sums, clock);
     }
     return clock.total() / static_cast<double>(steps);
@@ -99,20 +99,20 @@ Split implicit_steps(const Case& w, const mpm_implicit::ThetaScheme& scheme, lon
     const std::vector<AnyLaw> laws = laws_of(w.problem);
     const Contact contact(w.problem.contact, grains, state.assembly.bonds);
     GrainNodes nodes(w.problem.mesh(), LinearShape::width, scales.least_mass);
-    nodes.sort(grains, particles, state.frame);
-    mpm_implicit::open_ledger(state.assembly, laws, state.ledger);
+    nodes.sort(grains, particles, state.layout);
+    mpm_implicit::start_budget(state.assembly, laws, state.budget);
     StepScratch<1> scratch{laws, scheme, contact, w.flip, w.frozen, {}, {}};
     mpm_implicit::StepSums sums;
     Split split;
     for (long step = 0; step < (steps > 0 ? first + steps : scales.steps); ++step) {
         if (step == first) split = {};
         split.clock.resume();
-        if (nodes.sort_is_due(state.frame)) nodes.sort(grains, particles, state.frame);
-        const BodyForce body =
-            mpm_implicit::drive(w.problem, step, dt, state.assembly.rigid, scratch.solver.servos);
+        if (nodes.sort_is_due(state.layout)) nodes.sort(grains, particles, state.layout);
+        const BodyForce body = mpm_implicit::apply_loads(
+            w.problem.loads(), step, dt, state.assembly.rigid, scratch.solver.force_controls);
         take_step(shape, body, dt, scratch, nodes, state, sums, split.clock);
-        enter_step(scheme.theta, scheme.consistent(), 0, dt, nodes.strips(), sums.strips,
-                   sums.nodes, sums.contact, state.ledger);
+        add_step(scheme.theta, scheme.consistent(), 0, dt, nodes.tiles(), sums.tiles, sums.nodes,
+                 sums.contact, state.budget);
         split.clock.lap("particles");
         const SolveReport& report = sums.solver;
         ++split.steps, split.iterations += report.iterations, split.loops += report.loops;

@@ -1,15 +1,16 @@
-// Velocities that the closed pairs allow: the space in which v^theta is sought, and projection to it.
+// Constraints of the closed pairs: the velocities that they allow, and projection on them.
 //
-// A closed pair asks for (v_b - v_a).n = 0, one that sticks for the same across. With D the diagonal
-// of the matrix and y = D^{1/2} v, the rows of all pairs of one node are made orthonormal, q_k, so
-// that projection takes a few products per node, whoever meets there:
+// A closed pair asks for (v_b - v_a).n = 0, one that sticks for the same across. With D the
+// diagonal of the matrix and y = D^{1/2} v, the rows of all pairs of one node are made orthonormal,
+// q_k, so that projection on their null space takes a few products per node, however many bodies
+// meet there:
 //     y <- y - sum_k q_k (q_k . y - g_k)
-// g_k comes from those whose velocity is given. A plate that a force drives has a velocity of its
-// own, V: then g_k = g_k^0 + g_k^V V, and the space is spanned by one more vector per plate, e_V.
-// Different nodes share no slot, so that projection is exact whatever the number of pairs.
+// g_k comes from bodies whose velocity is given. A grain under force control has a velocity of its
+// own, V: then g_k = g_k^0 + g_k^V V, and the space is spanned by one more vector per such grain,
+// e_V. Different nodes share no dof, so that projection is exact whatever the number of pairs.
 #pragma once
 
-#include "mpm_implicit/contact_set.hpp"
+#include "mpm_implicit/active_set.hpp"
 #include "mpm_implicit/grain_matrix.hpp"
 
 namespace mpm_implicit {
@@ -17,30 +18,31 @@ namespace mpm_implicit {
 class Constraints {
    public:
     /// Takes the rows of all closed pairs.
-    /// in:     scale, D^{-1/2} of every slot, 0 where the velocity cannot change; only_bonds: leave
-    ///         out those who merely press
-    void build(const ContactSet& set, const Vector& scale, long size, std::size_t servos,
+    /// in:     scale, D^{-1/2} of every dof, 0 where the velocity cannot change; only_bonds: leave
+    ///         out pairs that merely press
+    void build(const ActiveSet& set, const Vector& scale, long size, std::size_t force_controls,
                bool only_bonds) {
-        set_ = &set, scale_ = &scale, size_ = size, rights_ = servos + 1;
+        set_ = &set, scale_ = &scale, size_ = size, rights_ = force_controls + 1;
         rows_.clear(), basis_.clear(), right_.clear(), factor_.clear(), blocks_.clear();
         for (std::size_t n = 0; n < set.nodes.size(); ++n) {
             Block block{n, rows_.size(), 0, basis_.size(), right_.size(), factor_.size()};
-            const MeetingNode& node = set.nodes[n];
+            const ActiveSet::Node& node = set.nodes[n];
             // Normals first: where not all can hold, it is friction that gives way.
             for (const bool across : {false, true}) {
                 for (std::size_t k = node.pair_begin; k < node.pair_end; ++k) {
-                    const MeetingPair& pair = set.pairs[k];
+                    const ContactPair& pair = set.pairs[k];
                     if (!pair.closed() || (only_bonds && pair.bond < 0)) continue;
-                    // Before the step, a plate that a force drives holds nobody.
+                    // A grain under force control holds none before the step.
                     if (only_bonds && (driven(node, pair.a) || driven(node, pair.b))) continue;
-                    if (!across || pair.hold == Hold::stick) add_row(node, k, across, block);
+                    if (!across || pair.state == ContactState::stick)
+                        add_row(node, k, across, block);
                 }
             }
             if (block.rank > 0) blocks_.push_back(block);
         }
     }
 
-    /// Takes out of y what the pairs forbid.
+    /// Projects y on the null space of the constraints.
     void project(Vector& y) const {
         for_each(false, y, [&](const double* q, const double*, double* local, std::size_t width) {
             const double size = dot(q, local, width);
@@ -48,9 +50,9 @@ class Constraints {
         });
     }
 
-    /// Changes v as little as possible, in the measure of D, so that it obeys all closed pairs.
-    /// in:     V, velocities of the plates that forces drive
-    void obey(const std::vector<double>& V, Vector& v) const {
+    /// Enforces the constraints by the smallest change of v, in the measure of D.
+    /// in:     V, velocities of the grains under force control
+    void enforce(const std::vector<double>& V, Vector& v) const {
         for_each(true, v, [&](const double* q, const double* g, double* local, std::size_t width) {
             double size = dot(q, local, width) - g[0];
             for (std::size_t s = 0; s < V.size(); ++s) size -= g[1 + s] * V[s];
@@ -58,8 +60,8 @@ class Constraints {
         });
     }
 
-    /// v += V e_V: what the plates' velocities add.
-    void add_plates(const double* V, Vector& v) const {
+    /// v += V e_V: the motion that the grains under force control impose.
+    void add_controlled_motion(const double* V, Vector& v) const {
         if (rights_ == 1) return;
         for_each(true, v, [&](const double* q, const double* g, double* local, std::size_t width) {
             double size = 0;
@@ -68,8 +70,8 @@ class Constraints {
         });
     }
 
-    /// e_V . r of every plate, and e_V . D e_V.
-    void plates_feel(const Vector& r, double* sums) const {
+    /// e_V . r of every grain under force control.
+    void controlled_force(const Vector& r, double* sums) const {
         std::fill_n(sums, rights_ - 1, 0.0);
         if (rights_ == 1) return;
         Local local{};
@@ -81,7 +83,8 @@ class Constraints {
             }
         }
     }
-    void plates_weigh(double* sums) const {
+    /// e_V . D e_V.
+    void controlled_diagonal(double* sums) const {
         std::fill_n(sums, rights_ - 1, 0.0);
         for (const Block& block : blocks_)
             for (std::size_t k = 0; k < block.rank; ++k)
@@ -90,10 +93,10 @@ class Constraints {
     }
 
     /// Impulses of the closed pairs, from what is left of the equation: H^T lambda = A v - b = -r.
-    void find_impulses(const Vector& r, ContactSet& set) const {
-        for (MeetingPair& pair : set.pairs) {
+    void find_impulses(const Vector& r, ActiveSet& set) const {
+        for (ContactPair& pair : set.pairs) {
             pair.lambda_n = 0;
-            if (pair.hold != Hold::slip) pair.lambda_t = 0;
+            if (pair.state != ContactState::slip) pair.lambda_t = 0;
         }
         Local local{};
         for (const Block& block : blocks_) {
@@ -105,14 +108,14 @@ class Constraints {
                     c -= factor_[block.factor + i * most_rows + k] * lambda[i];
                 lambda[k] = c / factor_[block.factor + k * most_rows + k];
                 const Row& row = rows_[block.row + k];
-                MeetingPair& pair = set.pairs[row.pair];
+                ContactPair& pair = set.pairs[row.pair];
                 (row.across ? pair.lambda_t : pair.lambda_n) = lambda[k];
             }
         }
     }
 
    private:
-    static constexpr std::size_t most_rows = 2 * detail::NodeProblem::most_parties;
+    static constexpr std::size_t most_rows = 2 * ContactNode::max_bodies;
     struct Row {
         std::size_t pair;
         bool across;
@@ -121,12 +124,12 @@ class Constraints {
         std::size_t node, row, rank, basis, right, factor;
     };
 
-    bool driven(const MeetingNode& node, std::size_t who) const {
-        return set_->meeters[node.meeter_begin + who].servo >= 0;
+    bool driven(const ActiveSet::Node& node, std::size_t who) const {
+        return set_->bodies[node.body_begin + who].force_control >= 0;
     }
-    const MeetingNode& node_of(const Block& block) const { return set_->nodes[block.node]; }
+    const ActiveSet::Node& node_of(const Block& block) const { return set_->nodes[block.node]; }
     std::size_t width(const Block& block) const {
-        return 2 * (node_of(block).meeter_end - node_of(block).meeter_begin);
+        return 2 * (node_of(block).body_end - node_of(block).body_begin);
     }
     const double* q(const Block& block, std::size_t k) const {
         return basis_.data() + block.basis + k * width(block);
@@ -142,22 +145,23 @@ class Constraints {
 
     // Gram and Schmidt, twice for the sake of round-off; a row that others already ask for is left
     // out.
-    void add_row(const MeetingNode& node, std::size_t k, bool across, Block& block) {
-        const MeetingPair& pair = set_->pairs[k];
+    void add_row(const ActiveSet::Node& node, std::size_t k, bool across, Block& block) {
+        const ContactPair& pair = set_->pairs[k];
         const double x = across ? pair.tx() : pair.nx, y = across ? pair.ty() : pair.ny;
-        const std::size_t wide = 2 * (node.meeter_end - node.meeter_begin);
+        const std::size_t wide = 2 * (node.body_end - node.body_begin);
         std::vector<double> row(wide, 0.0), right(rights_, 0.0);
         for (const auto& [who, sign] : {std::pair(pair.a, -1.0), std::pair(pair.b, 1.0)}) {
-            const Meeter& is = set_->meeters[node.meeter_begin + who];
-            if (is.fixed) {
-                const bool drive_x = is.servo >= 0 && is.servo_along_x,
-                           drive_y = is.servo >= 0 && !is.servo_along_x;
-                right[0] -= sign * ((drive_x ? 0 : is.vx) * x + (drive_y ? 0 : is.vy) * y);
-                if (is.servo >= 0 && static_cast<std::size_t>(1 + is.servo) < rights_)
-                    right[static_cast<std::size_t>(1 + is.servo)] -= sign * (drive_x ? x : y);
+            const ContactBody& body = set_->bodies[node.body_begin + who];
+            if (body.is_fixed()) {
+                const bool drive_x = body.force_control >= 0 && body.control_along_x,
+                           drive_y = body.force_control >= 0 && !body.control_along_x;
+                right[0] -= sign * ((drive_x ? 0 : body.vx) * x + (drive_y ? 0 : body.vy) * y);
+                if (body.force_control >= 0 &&
+                    static_cast<std::size_t>(1 + body.force_control) < rights_)
+                    right[1 + body.force_control] -= sign * (drive_x ? x : y);
             } else {
-                row[2 * who] = sign * x * (*scale_)[is.slot];
-                row[2 * who + 1] = sign * y * (*scale_)[size_ + is.slot];
+                row[2 * who] = sign * x * (*scale_)[body.dof];
+                row[2 * who + 1] = sign * y * (*scale_)[size_ + body.dof];
             }
         }
         const double size = std::sqrt(dot(row.data(), row.data(), wide));
@@ -185,35 +189,32 @@ class Constraints {
 
     // The node's part of v, each number times D^{-1/2} to a power.
     void load(const Block& block, const Vector& v, int power, Local& local) const {
-        const MeetingNode& node = node_of(block);
-        for (std::size_t m = node.meeter_begin; m < node.meeter_end; ++m) {
-            const Meeter& is = set_->meeters[m];
-            const std::size_t i = 2 * (m - node.meeter_begin);
+        const ActiveSet::Node& node = node_of(block);
+        for (std::size_t m = node.body_begin; m < node.body_end; ++m) {
+            const ContactBody& body = set_->bodies[m];
+            const std::size_t i = 2 * (m - node.body_begin);
             local[i] = local[i + 1] = 0;
-            if (is.fixed) continue;
-            for (const auto& [at, slot] :
-                 {std::pair(i, is.slot), std::pair(i + 1, size_ + is.slot)}) {
-                const double s = (*scale_)[slot];
-                local[at] = power == 0  ? v[slot]
-                            : power > 0 ? s * v[slot]
-                            : s > 0     ? v[slot] / s
-                                        : 0;
+            if (body.is_fixed()) continue;
+            for (const auto& [at, dof] :
+                 {std::pair(i, body.dof), std::pair(i + 1, size_ + body.dof)}) {
+                const double s = (*scale_)[dof];
+                local[at] = power == 0 ? v[dof] : power > 0 ? s * v[dof] : s > 0 ? v[dof] / s : 0;
             }
         }
     }
     void store(const Block& block, int power, const Local& local, Vector& v) const {
-        const MeetingNode& node = node_of(block);
-        for (std::size_t m = node.meeter_begin; m < node.meeter_end; ++m) {
-            const Meeter& is = set_->meeters[m];
-            const std::size_t i = 2 * (m - node.meeter_begin);
-            if (is.fixed) continue;
-            for (const auto& [at, slot] :
-                 {std::pair(i, is.slot), std::pair(i + 1, size_ + is.slot)}) {
-                const double s = (*scale_)[slot];
+        const ActiveSet::Node& node = node_of(block);
+        for (std::size_t m = node.body_begin; m < node.body_end; ++m) {
+            const ContactBody& body = set_->bodies[m];
+            const std::size_t i = 2 * (m - node.body_begin);
+            if (body.is_fixed()) continue;
+            for (const auto& [at, dof] :
+                 {std::pair(i, body.dof), std::pair(i + 1, size_ + body.dof)}) {
+                const double s = (*scale_)[dof];
                 if (power == 0)
-                    v[slot] = local[at];
+                    v[dof] = local[at];
                 else if (s > 0)
-                    v[slot] = local[at] * s;
+                    v[dof] = local[at] * s;
             }
         }
     }
@@ -227,7 +228,7 @@ class Constraints {
             [&](int, long begin, long end) {
                 Local local{};
                 for (long n = begin; n < end; ++n) {
-                    const Block& block = blocks_[static_cast<std::size_t>(n)];
+                    const Block& block = blocks_[n];
                     load(block, v, scaled ? -1 : 0, local);
                     for (std::size_t k = 0; k < block.rank; ++k)
                         work(q(block, k), g(block, k), local.data(), width(block));
@@ -237,7 +238,7 @@ class Constraints {
             64 * count);
     }
 
-    const ContactSet* set_ = nullptr;
+    const ActiveSet* set_ = nullptr;
     const Vector* scale_ = nullptr;
     long size_ = 0;
     std::size_t rights_ = 1;

@@ -2,10 +2,18 @@
 //     A_g = L L^T
 // so that what is left to conjugate gradients is how grains press on each other. Nodes are numbered
 // along the shorter side of the grain; then L fills no more than the envelope of A, from the first
-// entry of each row to the diagonal, and its rows are products of contiguous numbers. It is kept in
-// single precision, as it is read more often than anything else; L L^T stays positive.
+// entry of each row to the diagonal, and its rows are products of contiguous numbers:
+//
+//     1 . . . .      a row of L is stored from its first entry on, two rows (x, y) per node
+//     x 1 . . .      and the zeros before it are not
+//       x 1 . .
+//       x x 1 .
+//         x x 1
+// It is kept in single precision, as it is read more often than anything else; L L^T stays
+// positive.
 #pragma once
 
+#include "mpm_implicit/constrain_nodes.hpp"
 #include "mpm_implicit/grain_matrix.hpp"
 
 namespace mpm_implicit {
@@ -18,12 +26,11 @@ class GrainFactors {
     void factorize(const GrainMatrix<reach>& matrix, const Vector& scale,
                    const std::vector<Grain>& grains, const GrainNodes& nodes) {
         size_ = nodes.size();
-        const Homes homes(nodes);
+        const MasterDofs masters(nodes);
         number_.assign(static_cast<std::size_t>(size_), -1);
         factors_.resize(grains.size());
         common::for_each_row(static_cast<long>(grains.size()), [&](long g) {
-            if (!grains[static_cast<std::size_t>(g)].rigid)
-                factorize(matrix, scale, nodes, homes, static_cast<int>(g));
+            if (!grains[g].rigid) factorize(matrix, scale, nodes, masters, static_cast<int>(g));
         });
     }
 
@@ -31,14 +38,14 @@ class GrainFactors {
     void solve(const Vector& r, Vector& z) const {
         z.setZero();
         common::for_each_row(static_cast<long>(factors_.size()), [&](long g) {
-            const Factor& f = factors_[static_cast<std::size_t>(g)];
+            const Factor& f = factors_[g];
             const long n = f.size();
             std::vector<double> x(static_cast<std::size_t>(2 * n));
             double* y = x.data();
             for (long i = 0; i < n; ++i) {
                 const float *L_0 = f.row(i, 0), *L_1 = f.row(i, 1);
-                double sum_0 = f.moves(i, 0) ? r[f.slot(i)] : 0,
-                       sum_1 = f.moves(i, 1) ? r[size_ + f.slot(i)] : 0;
+                double sum_0 = f.moves(i, 0) ? r[f.dof(i)] : 0,
+                       sum_1 = f.moves(i, 1) ? r[size_ + f.dof(i)] : 0;
 #pragma omp simd reduction(- : sum_0, sum_1)
                 for (long j = 2 * f.first_of(i); j < 2 * i; ++j)
                     sum_0 -= L_0[j] * y[j], sum_1 -= L_1[j] * y[j];
@@ -52,17 +59,17 @@ class GrainFactors {
 #pragma omp simd
                 for (long j = 2 * f.first_of(i); j < 2 * i; ++j)
                     y[j] -= value_0 * L_0[j] + value_1 * L_1[j];
-                if (f.moves(i, 0)) z[f.slot(i)] = value_0;
-                if (f.moves(i, 1)) z[size_ + f.slot(i)] = value_1;
+                if (f.moves(i, 0)) z[f.dof(i)] = value_0;
+                if (f.moves(i, 1)) z[size_ + f.dof(i)] = value_1;
             }
         });
     }
 
    private:
-    // Rows 2 i and 2 i + 1 are the velocities of node i along x and y; what cannot move has a one on
-    // the diagonal and nothing else.
+    // Rows 2 i and 2 i + 1 are the velocities of node i along x and y; what cannot move has a one
+    // on the diagonal and nothing else.
     struct Factor {
-        std::vector<long> slots;              // of the nodes
+        std::vector<long> dofs;               // of the nodes
         std::vector<unsigned char> can_move;  // 1 for x, 2 for y
         std::vector<long> first;              // of each node, the first one its rows reach back to
         std::vector<long> begin;              // of each row, where column 0 would be
@@ -72,12 +79,10 @@ class GrainFactors {
         static std::size_t at(long i, int component) {
             return static_cast<std::size_t>(2 * i + component);
         }
-        long size() const { return static_cast<long>(slots.size()); }
-        long slot(long i) const { return slots[static_cast<std::size_t>(i)]; }
-        long first_of(long i) const { return first[static_cast<std::size_t>(i)]; }
-        bool moves(long i, int component) const {
-            return (can_move[static_cast<std::size_t>(i)] >> component & 1) != 0;
-        }
+        long size() const { return static_cast<long>(dofs.size()); }
+        long dof(long i) const { return dofs[i]; }
+        long first_of(long i) const { return first[i]; }
+        bool moves(long i, int component) const { return (can_move[i] >> component & 1) != 0; }
         double per_pivot(long i, int component) const { return pivots[at(i, component)]; }
         const float* row(long i, int component) const { return L.data() + begin[at(i, component)]; }
         long begin_of(long i, int component) const { return begin[at(i, component)]; }
@@ -85,24 +90,24 @@ class GrainFactors {
 
     template <int reach>
     void factorize(const GrainMatrix<reach>& matrix, const Vector& scale, const GrainNodes& nodes,
-                   const Homes& homes, int grain) {
-        Factor& f = factors_[static_cast<std::size_t>(grain)];
-        f.slots.clear(), f.can_move.clear();
-        matrix.for_each_node_of(grain, nodes, [&](long slot) {
-            const int moves = (scale[slot] > 0 ? 1 : 0) + (scale[size_ + slot] > 0 ? 2 : 0);
+                   const MasterDofs& masters, int grain) {
+        Factor& f = factors_[grain];
+        f.dofs.clear(), f.can_move.clear();
+        for_each_dof_of(matrix.rows(), grain, nodes, [&](long dof) {
+            const int moves = (scale[dof] > 0 ? 1 : 0) + (scale[size_ + dof] > 0 ? 2 : 0);
             if (moves == 0) return;
-            number_[static_cast<std::size_t>(slot)] = f.size();
-            f.slots.push_back(slot), f.can_move.push_back(static_cast<unsigned char>(moves));
+            number_[dof] = f.size();
+            f.dofs.push_back(dof), f.can_move.push_back(static_cast<unsigned char>(moves));
         });
         const long n = f.size();
         // The envelope, then its entries.
-        f.first.resize(f.slots.size());
-        for (long i = 0; i < n; ++i) f.first[static_cast<std::size_t>(i)] = i;
-        for_each_entry(matrix, grain, nodes, homes, f, [&](long i, int, long j, int, double) {
-            long& first = f.first[static_cast<std::size_t>(std::max(i, j))];
+        f.first.resize(f.dofs.size());
+        for (long i = 0; i < n; ++i) f.first[i] = i;
+        for_each_entry(matrix, grain, nodes, masters, f, [&](long i, int, long j, int, double) {
+            long& first = f.first[std::max(i, j)];
             first = std::min({first, i, j});
         });
-        f.begin.resize(2 * f.slots.size());
+        f.begin.resize(2 * f.dofs.size());
         long length = 0;
         for (long i = 0; i < n; ++i) {
             for (const int component : {0, 1}) {
@@ -114,8 +119,8 @@ class GrainFactors {
         const auto row = [&](long i, int component) {
             return entries.data() + f.begin_of(i, component);
         };
-        f.pivots.resize(2 * f.slots.size());
-        for_each_entry(matrix, grain, nodes, homes, f,
+        f.pivots.resize(2 * f.dofs.size());
+        for_each_entry(matrix, grain, nodes, masters, f,
                        [&](long i, int a, long j, int b, double value) {
                            if (i > j || (i == j && a >= b))
                                row(i, a)[2 * j + b] += value;
@@ -167,22 +172,24 @@ class GrainFactors {
     // both can move, of each pair of entries one.
     template <int reach, class Work>
     void for_each_entry(const GrainMatrix<reach>& matrix, int grain, const GrainNodes& nodes,
-                        const Homes& homes, const Factor& f, const Work& work) const {
+                        const MasterDofs& masters, const Factor& f, const Work& work) const {
         matrix.for_each_block_of(
             grain, nodes, [&](long one, long two, double xx, double xy, double yx, double yy) {
                 const auto a = static_cast<std::size_t>(one), b = static_cast<std::size_t>(two);
-                const long i = number_[static_cast<std::size_t>(homes.slot[a])],
-                           j = number_[static_cast<std::size_t>(homes.slot[b])];
+                const long i = number_[masters.dof[a]], j = number_[masters.dof[b]];
                 if (i < 0 || j < 0) return;
                 const bool same = one == two;
-                // Two slots that stand for one: the entry and its transpose meet on the diagonal.
+                // Two dofs that stand for one: the entry and its transpose meet on the diagonal.
                 const double twice = i == j && !same ? 2 : 1;
                 const bool i_x = f.moves(i, 0), i_y = f.moves(i, 1), j_x = f.moves(j, 0),
                            j_y = f.moves(j, 1);
-                if (i_x && j_x) work(i, 0, j, 0, twice * homes.sign_x[a] * homes.sign_x[b] * xx);
-                if (i_y && j_y) work(i, 1, j, 1, twice * homes.sign_y[a] * homes.sign_y[b] * yy);
-                if (i_x && j_y) work(i, 0, j, 1, homes.sign_x[a] * homes.sign_y[b] * xy);
-                if (!same && i_y && j_x) work(i, 1, j, 0, homes.sign_y[a] * homes.sign_x[b] * yx);
+                if (i_x && j_x)
+                    work(i, 0, j, 0, twice * masters.sign_x[a] * masters.sign_x[b] * xx);
+                if (i_y && j_y)
+                    work(i, 1, j, 1, twice * masters.sign_y[a] * masters.sign_y[b] * yy);
+                if (i_x && j_y) work(i, 0, j, 1, masters.sign_x[a] * masters.sign_y[b] * xy);
+                if (!same && i_y && j_x)
+                    work(i, 1, j, 0, masters.sign_y[a] * masters.sign_x[b] * yx);
             });
     }
 

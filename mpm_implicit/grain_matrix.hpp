@@ -3,11 +3,15 @@
 //     M_ij = sum_p m_p S_ip S_jp                                   consistent mass
 //     K_ij = sum_p V_p grad S_ip . T . grad S_jp                   stiffness, 2 x 2
 //     A    = (1 + theta dt c) M + theta^2 dt^2 K           what v^theta is solved from  [MPM-8]
-// No entry couples two grains: that is the business of contact.
+// M and A are symmetric, of order 2 n for n dofs, and stored by diagonals of a stencil. No entry
+// couples two grains (contact does):
+//
+//     | A_1          |  v_1: v_x of all dofs, then v_y
+//     |     A_2      |  v_2
+//     |         ...  |  ...
 #pragma once
 
 #include <Eigen/Dense>
-#include <limits>
 #include <variant>
 #include <vector>
 
@@ -16,7 +20,7 @@
 
 namespace mpm_implicit {
 
-/// Velocities, momenta or impulses at all slots: x at slot i in [i], y in [size + i].
+/// Velocities, momenta or impulses at all dofs: x at dof i in [i], y in [size + i].
 using Vector = Eigen::VectorXd;
 
 /// Components of a block: how the force along the first answers to velocity along the second.
@@ -32,7 +36,7 @@ class GrainMatrix {
     template <class Shape>
     void assemble(const Shape& shape, const std::vector<AnyLaw>& laws,
                   const std::vector<Grain>& grains, const Particles& particles,
-                  const GrainNodes& nodes, const std::vector<NodeRow>& rows, double factor_M,
+                  const GrainNodes& nodes, const std::vector<GridRow>& rows, double factor_M,
                   double factor_K, bool consistent) {
         static_assert(Shape::width == reach + 1);
         consistent_ = consistent;
@@ -41,13 +45,13 @@ class GrainMatrix {
         A_.clear(nodes.size());
         if (consistent) M_.clear(nodes.size());
         const Locator at(nodes.mesh());
-        nodes.for_each_strip([&](const Strip& strip, std::size_t) {
-            const Grain& grain = grains[static_cast<std::size_t>(strip.grain)];
+        nodes.for_each_tile([&](const Tile& tile, std::size_t) {
+            const Grain& grain = grains[tile.grain];
             if (grain.rigid) return;
             const Moduli T = std::visit([](const auto& law) { return moduli_of(law); },
-                                        laws[static_cast<std::size_t>(grain.material)].law);
-            const long* origin = nodes.origins(strip.grain);
-            for (long k = strip.begin; k < strip.end; ++k) {
+                                        laws[grain.material].law);
+            const long* origin = nodes.origins(tile.grain);
+            for (long k = tile.begin; k < tile.end; ++k) {
                 const auto p = static_cast<std::size_t>(k);
                 add_particle(shape((particles.x_p[p] - at.x_low) * at.per_h, at.per_h),
                              shape((particles.y_p[p] - at.y_low) * at.per_h, at.per_h), origin,
@@ -59,169 +63,112 @@ class GrainMatrix {
     }
 
     bool consistent() const { return consistent_; }
+    const std::vector<GridRow>& rows() const { return rows_; }
 
-    /// y = A x, both with their images: what x has at slots that stand for others is set from them,
-    /// and what y would have there is theirs.
+    /// y = A x, with ghosts: those of x are filled, and those of y reduced.
     void multiply(Vector& x, Vector& y) const {
         const long n = A_.size();
-        spread(x);
-        for_each_row([&](long number) {
-            const NodeRow& row = rows_[static_cast<std::size_t>(number)];
-            std::fill_n(y.data() + row.origin + row.first, row.end - row.first, 0.0);
-            std::fill_n(y.data() + n + row.origin + row.first, row.end - row.first, 0.0);
-            for_each_link<reach>(
-                rows_, number,
-                [&](int diagonal, long slot, long other, long count, bool transposed) {
-                    const long from = transposed ? other : slot;
-                    const double *Axx = A_.field(diagonal, xx) + from,
-                                 *Axy = A_.field(diagonal, transposed ? yx : xy) + from,
-                                 *Ayx = A_.field(diagonal, transposed ? xy : yx) + from,
-                                 *Ayy = A_.field(diagonal, yy) + from;
-                    const double *x_x = x.data() + other, *x_y = x_x + n;
-                    double *y_x = y.data() + slot, *y_y = y_x + n;
+        multiply_rows(x, y, [&](int diagonal, long dof, long other, long count, bool transposed) {
+            const long from = transposed ? other : dof;
+            const double *Axx = A_.field(diagonal, xx) + from,
+                         *Axy = A_.field(diagonal, transposed ? yx : xy) + from,
+                         *Ayx = A_.field(diagonal, transposed ? xy : yx) + from,
+                         *Ayy = A_.field(diagonal, yy) + from;
+            const double *x_x = x.data() + other, *x_y = x_x + n;
+            double *y_x = y.data() + dof, *y_y = y_x + n;
 #pragma omp simd
-                    for (long i = 0; i < count; ++i) {
-                        y_x[i] += Axx[i] * x_x[i] + Axy[i] * x_y[i];
-                        y_y[i] += Ayx[i] * x_x[i] + Ayy[i] * x_y[i];
-                    }
-                });
+            for (long i = 0; i < count; ++i) {
+                y_x[i] += Axx[i] * x_x[i] + Axy[i] * x_y[i];
+                y_y[i] += Ayx[i] * x_x[i] + Ayy[i] * x_y[i];
+            }
         });
-        fold(y);
     }
 
     /// y = M x, as A uses it.
     void multiply_mass(Vector& x, Vector& y) const {
         const long n = A_.size();
         if (!consistent_) {
-            common::for_each_block(n, [&](int, long begin, long end) {
-                for (long i = begin; i < end; ++i) {
-                    const double m = nodes_->sums[static_cast<std::size_t>(i)].m;
-                    y[i] = m * x[i], y[n + i] = m * x[n + i];
-                }
+            for_each_dof(n, [&](long i) {
+                const double m = nodes_->sums[i].m;
+                y[i] = m * x[i], y[n + i] = m * x[n + i];
             });
             return;
         }
-        spread(x);
-        for_each_row([&](long number) {
-            const NodeRow& row = rows_[static_cast<std::size_t>(number)];
-            std::fill_n(y.data() + row.origin + row.first, row.end - row.first, 0.0);
-            std::fill_n(y.data() + n + row.origin + row.first, row.end - row.first, 0.0);
-            for_each_link<reach>(
-                rows_, number,
-                [&](int diagonal, long slot, long other, long count, bool transposed) {
-                    const double* M = M_.field(diagonal, 0) + (transposed ? other : slot);
-                    const double *x_x = x.data() + other, *x_y = x_x + n;
-                    double *y_x = y.data() + slot, *y_y = y_x + n;
+        multiply_rows(x, y, [&](int diagonal, long dof, long other, long count, bool transposed) {
+            const double* M = M_.field(diagonal, 0) + (transposed ? other : dof);
+            const double *x_x = x.data() + other, *x_y = x_x + n;
+            double *y_x = y.data() + dof, *y_y = y_x + n;
 #pragma omp simd
-                    for (long i = 0; i < count; ++i)
-                        y_x[i] += M[i] * x_x[i], y_y[i] += M[i] * x_y[i];
-                });
+            for (long i = 0; i < count; ++i) y_x[i] += M[i] * x_x[i], y_y[i] += M[i] * x_y[i];
         });
-        fold(y);
     }
 
-    /// The diagonals of A and of M, images added to what they stand for.
+    /// The diagonals of A and of M, ghosts added to what they stand for.
     void diagonal(Vector& d) const {
         const long n = A_.size();
         std::copy_n(A_.field(0, xx), n, d.data());
         std::copy_n(A_.field(0, yy), n, d.data() + n);
-        add_images(d);
+        reduce_ghost_diagonal(d);
     }
     void diagonal_mass(Vector& d) const {
         const long n = A_.size();
         if (consistent_) {
             std::copy_n(M_.field(0, 0), n, d.data());
         } else {
-            for (long i = 0; i < n; ++i) d[i] = nodes_->sums[static_cast<std::size_t>(i)].m;
+            for (long i = 0; i < n; ++i) d[i] = nodes_->sums[i].m;
         }
         std::copy_n(d.data(), n, d.data() + n);
-        if (consistent_) add_images(d);
+        if (consistent_) reduce_ghost_diagonal(d);
     }
 
-    /// Calls work(slot) for the slots of a grain, row by row or column by column: along its shorter
-    /// side.
-    template <class Work>
-    void for_each_node_of(int grain, const GrainNodes& nodes, const Work& work) const {
-        const auto [low, above] = rows_of_grain(grain, nodes);
-        long first = std::numeric_limits<long>::max(), end = -first;
-        for (long r = low; r < above; ++r) {
-            const NodeRow& row = rows_[static_cast<std::size_t>(r)];
-            if (row.first < row.end)
-                first = std::min(first, row.first), end = std::max(end, row.end);
-        }
-        if (end - first <= above - low) {
-            for (long r = low; r < above; ++r) {
-                const NodeRow& row = rows_[static_cast<std::size_t>(r)];
-                for (long i = row.first; i < row.end; ++i) work(row.origin + i);
-            }
-        } else {
-            for (long i = first; i < end; ++i) {
-                for (long r = low; r < above; ++r) {
-                    const NodeRow& row = rows_[static_cast<std::size_t>(r)];
-                    if (i >= row.first && i < row.end) work(row.origin + i);
-                }
-            }
-        }
-    }
-
-    /// Calls work(slot, other, xx, xy, yx, yy) for the stored blocks of a grain.
+    /// Calls work(dof, other, xx, xy, yx, yy) for the stored blocks of a grain.
     template <class Work>
     void for_each_block_of(int grain, const GrainNodes& nodes, const Work& work) const {
-        const auto [low, above] = rows_of_grain(grain, nodes);
+        const auto [low, above] = rows_of_grain(rows_, grain, nodes);
         for (long r = low; r < above; ++r) {
             for_each_link<reach>(
-                rows_, r, [&](int diagonal, long slot, long other, long count, bool transposed) {
+                rows_, r, [&](int diagonal, long dof, long other, long count, bool transposed) {
                     if (transposed) return;
                     for (long i = 0; i < count; ++i)
-                        work(slot + i, other + i, A_.field(diagonal, xx)[slot + i],
-                             A_.field(diagonal, xy)[slot + i], A_.field(diagonal, yx)[slot + i],
-                             A_.field(diagonal, yy)[slot + i]);
+                        work(dof + i, other + i, A_.field(diagonal, xx)[dof + i],
+                             A_.field(diagonal, xy)[dof + i], A_.field(diagonal, yx)[dof + i],
+                             A_.field(diagonal, yy)[dof + i]);
                 });
         }
     }
 
-    /// Calls work(slot, other, m) for the stored entries of a grain's consistent mass matrix.
+    /// Calls work(dof, other, m) for the stored entries of a grain's consistent mass matrix.
     template <class Work>
     void for_each_mass_of(int grain, const GrainNodes& nodes, const Work& work) const {
-        const auto [low, above] = rows_of_grain(grain, nodes);
+        const auto [low, above] = rows_of_grain(rows_, grain, nodes);
         for (long r = low; r < above; ++r) {
             for_each_link<reach>(
-                rows_, r, [&](int diagonal, long slot, long other, long count, bool transposed) {
-                    const double* M = M_.field(diagonal, 0) + slot;
-                    for (long i = 0; i < count && !transposed; ++i) work(slot + i, other + i, M[i]);
+                rows_, r, [&](int diagonal, long dof, long other, long count, bool transposed) {
+                    const double* M = M_.field(diagonal, 0) + dof;
+                    for (long i = 0; i < count && !transposed; ++i) work(dof + i, other + i, M[i]);
                 });
         }
     }
 
-    /// Images take their values from the slots they stand for; and the transpose.
-    void spread(Vector& x) const {
+    /// Images take their values from the dofs they stand for; and the transpose.
+    void fill_ghosts(Vector& x) const {
         const long n = A_.size();
-        const auto& images = nodes_->images();
-        for (auto image = images.rbegin(); image != images.rend(); ++image) {
-            x[image->slot] = image->sign_x * x[image->of];
-            x[n + image->slot] = image->sign_y * x[n + image->of];
+        const auto& ghosts = nodes_->ghosts();
+        for (auto ghost = ghosts.rbegin(); ghost != ghosts.rend(); ++ghost) {
+            x[ghost->dof] = ghost->sign_x * x[ghost->master];
+            x[n + ghost->dof] = ghost->sign_y * x[n + ghost->master];
         }
     }
-    void fold(Vector& y) const {
+    void reduce_ghosts(Vector& y) const {
         const long n = A_.size();
-        for (const Image& image : nodes_->images()) {
-            y[image.of] += image.sign_x * y[image.slot];
-            y[n + image.of] += image.sign_y * y[n + image.slot];
-            y[image.slot] = y[n + image.slot] = 0;
+        for (const GhostNode& ghost : nodes_->ghosts()) {
+            y[ghost.master] += ghost.sign_x * y[ghost.dof];
+            y[n + ghost.master] += ghost.sign_y * y[n + ghost.dof];
+            y[ghost.dof] = y[n + ghost.dof] = 0;
         }
     }
 
    private:
-    std::pair<long, long> rows_of_grain(int grain, const GrainNodes& nodes) const {
-        const long begin = nodes.slot_begin(grain), end = nodes.slot_end(grain);
-        const auto slot_of = [](const NodeRow& row) { return row.origin + row.first; };
-        const auto first = std::partition_point(
-            rows_.begin(), rows_.end(), [&](const NodeRow& row) { return slot_of(row) < begin; });
-        const auto last = std::partition_point(
-            first, rows_.end(), [&](const NodeRow& row) { return slot_of(row) < end; });
-        return {first - rows_.begin(), last - rows_.begin()};
-    }
-
     static const Moduli& moduli_of(const Elastic& law) { return law.T; }
     template <class Law>
     static const Moduli& moduli_of(const Law& law) {
@@ -235,13 +182,13 @@ class GrainMatrix {
                                              double factor_M) {
         constexpr int width = reach + 1;
         double S[width * width], Gx[width * width], Gy[width * width];
-        long slot[width * width];
+        long dof[width * width];
         for (int b = 0; b < width; ++b) {
             for (int a = 0; a < width; ++a) {
                 const int i = b * width + a;
                 S[i] = w_x.S[a] * w_y.S[b];
                 Gx[i] = w_x.G[a] * w_y.S[b], Gy[i] = w_x.S[a] * w_y.G[b];
-                slot[i] = origin[w_y.first + b] + w_x.first + a;
+                dof[i] = origin[w_y.first + b] + w_x.first + a;
             }
         }
         const double P = V * (lambda + 2 * G), L = V * lambda, G_V = V * G;
@@ -251,47 +198,51 @@ class GrainMatrix {
                 const int diagonal =
                     Stencil<reach>::diagonal(j % width - i % width, j / width - i / width);
                 const double M = S[i] * S[j], mass = m_A * M;
-                A_.field(diagonal, xx)[slot[i]] += P * Gx[i] * Gx[j] + G_V * Gy[i] * Gy[j] + mass;
-                A_.field(diagonal, xy)[slot[i]] += L * Gx[i] * Gy[j] + G_V * Gy[i] * Gx[j];
-                A_.field(diagonal, yx)[slot[i]] += L * Gy[i] * Gx[j] + G_V * Gx[i] * Gy[j];
-                A_.field(diagonal, yy)[slot[i]] += P * Gy[i] * Gy[j] + G_V * Gx[i] * Gx[j] + mass;
-                if (consistent_) M_.field(diagonal, 0)[slot[i]] += m * M;
+                A_.field(diagonal, xx)[dof[i]] += P * Gx[i] * Gx[j] + G_V * Gy[i] * Gy[j] + mass;
+                A_.field(diagonal, xy)[dof[i]] += L * Gx[i] * Gy[j] + G_V * Gy[i] * Gx[j];
+                A_.field(diagonal, yx)[dof[i]] += L * Gy[i] * Gx[j] + G_V * Gx[i] * Gy[j];
+                A_.field(diagonal, yy)[dof[i]] += P * Gy[i] * Gy[j] + G_V * Gx[i] * Gx[j] + mass;
+                if (consistent_) M_.field(diagonal, 0)[dof[i]] += m * M;
             }
         }
     }
 
     void add_lumped(double factor_M) {
         double *Axx = A_.field(0, xx), *Ayy = A_.field(0, yy);
-        common::for_each_block(A_.size(), [&](int, long begin, long end) {
-            for (long i = begin; i < end; ++i) {
-                const auto n = static_cast<std::size_t>(i);
-                const double mass = nodes_->is_free()[n] * factor_M * nodes_->sums[n].m;
-                Axx[i] += mass, Ayy[i] += mass;
-            }
+        for_each_dof(A_.size(), [&](long i) {
+            const double mass = nodes_->is_free()[i] * factor_M * nodes_->sums[i].m;
+            Axx[i] += mass, Ayy[i] += mass;
         });
     }
 
-    void add_images(Vector& d) const {
-        const long n = A_.size();
-        for (const Image& image : nodes_->images()) {
-            d[image.of] += d[image.slot], d[n + image.of] += d[n + image.slot];
-            d[image.slot] = d[n + image.slot] = 0;
-        }
+    void reduce_ghost_diagonal(Vector& d) const {
+        for (const GhostNode& ghost : nodes_->ghosts())
+            for (const long at : {0L, A_.size()})
+                d[at + ghost.master] += d[at + ghost.dof], d[at + ghost.dof] = 0;
     }
 
-    template <class Work>
-    void for_each_row(const Work& work) const {
+    // y = sum of link(...) over the stretches of every row, from zero.
+    template <class Link>
+    void multiply_rows(Vector& x, Vector& y, const Link& link) const {
+        const long n = A_.size();
+        fill_ghosts(x);
         common::for_each_block(
             static_cast<long>(rows_.size()),
             [&](int, long begin, long end) {
-                for (long row = begin; row < end; ++row) work(row);
+                for (long number = begin; number < end; ++number) {
+                    const GridRow& row = rows_[number];
+                    for (double* part : {y.data(), y.data() + n})
+                        std::fill_n(part + row.origin + row.first, row.end - row.first, 0.0);
+                    for_each_link<reach>(rows_, number, link);
+                }
             },
-            A_.size());
+            n);
+        reduce_ghosts(y);
     }
 
     bool consistent_ = true;
     const GrainNodes* nodes_ = nullptr;
-    std::vector<NodeRow> rows_;
+    std::vector<GridRow> rows_;
     SymmetricStencil<reach, 4> A_;
     SymmetricStencil<reach, 1> M_;
 };

@@ -1,11 +1,12 @@
 // The consistent mass matrix of every grain, factorized by itself,  M_g = L L^T.
 //
-// It makes v^0 cheap, and it tells which nodes the particles cannot tell apart: where the motion of a
-// node is, at all particles, nearly that of nodes before it, its pivot is nearly zero, and v^0 there
-// would be anything. Such nodes are tied to a neighbor. Ties that are made afterwards, the signs of walls,
-// and single precision make it a preconditioner.
+// It makes v^0 cheap, and it tells which nodes the particles cannot tell apart: where the motion of
+// a node is, at all particles, nearly that of nodes before it, its pivot is nearly zero, and v^0
+// there would be anything. Such nodes are constrained to a neighbor. Constraints made afterwards,
+// the signs of walls, and single precision make it a preconditioner.
 #pragma once
 
+#include "mpm_implicit/constrain_nodes.hpp"
 #include "mpm_implicit/grain_matrix.hpp"
 
 namespace mpm_implicit {
@@ -18,16 +19,16 @@ class MassFactors {
     template <int reach>
     std::vector<long> factorize(const GrainMatrix<reach>& matrix, const std::vector<Grain>& grains,
                                 const GrainNodes& nodes) {
-        const Homes homes(nodes);
+        const MasterDofs masters(nodes);
         size_ = nodes.size();
         number_.assign(static_cast<std::size_t>(size_), -1);
         factors_.resize(grains.size());
         common::for_each_row(static_cast<long>(grains.size()), [&](long g) {
-            if (!grains[static_cast<std::size_t>(g)].rigid)
-                factorize(matrix, nodes, homes, static_cast<int>(g));
+            if (!grains[g].rigid) factorize(matrix, nodes, masters, static_cast<int>(g));
         });
         std::vector<long> all;
-        for (const Factor& f : factors_) all.insert(all.end(), f.blind.begin(), f.blind.end());
+        for (const Factor& f : factors_)
+            all.insert(all.end(), f.rank_deficient.begin(), f.rank_deficient.end());
         return all;
     }
 
@@ -35,13 +36,13 @@ class MassFactors {
     void solve(const Vector& r, Vector& z) const {
         z.setZero();
         common::for_each_row(static_cast<long>(factors_.size()), [&](long g) {
-            const Factor& f = factors_[static_cast<std::size_t>(g)];
-            const long n = static_cast<long>(f.slots.size());
+            const Factor& f = factors_[g];
+            const long n = static_cast<long>(f.dofs.size());
             std::vector<double> both(static_cast<std::size_t>(2 * n));
             double *x = both.data(), *y = x + n;
             for (long i = 0; i < n; ++i) {
                 const float* L = f.row(i);
-                double sum_x = r[f.slot(i)], sum_y = r[size_ + f.slot(i)];
+                double sum_x = r[f.dof(i)], sum_y = r[size_ + f.dof(i)];
 #pragma omp simd reduction(- : sum_x, sum_y)
                 for (long j = f.first_of(i); j < i; ++j) sum_x -= L[j] * x[j], sum_y -= L[j] * y[j];
                 x[i] = sum_x * f.per_pivot(i), y[i] = sum_y * f.per_pivot(i);
@@ -51,9 +52,9 @@ class MassFactors {
                 const double v_x = x[i] * f.per_pivot(i), v_y = y[i] * f.per_pivot(i);
 #pragma omp simd
                 for (long j = f.first_of(i); j < i; ++j) x[j] -= v_x * L[j], y[j] -= v_y * L[j];
-                const double alone = f.alone[static_cast<std::size_t>(i)];
-                z[f.slot(i)] = v_x + alone * r[f.slot(i)];
-                z[size_ + f.slot(i)] = v_y + alone * r[size_ + f.slot(i)];
+                const double alone = f.alone[i];
+                z[f.dof(i)] = v_x + alone * r[f.dof(i)];
+                z[size_ + f.dof(i)] = v_y + alone * r[size_ + f.dof(i)];
             }
         });
     }
@@ -62,56 +63,51 @@ class MassFactors {
     static constexpr double least_pivot = 1e-3;  // of the diagonal
 
     struct Factor {
-        std::vector<long> slots, blind;
+        std::vector<long> dofs, rank_deficient;
         std::vector<long> first, begin;  // of each row: first column; where column 0 would be
         std::vector<float> L;
         std::vector<double> pivots;  // reciprocals of the diagonal of L; 0 for a node left out
         std::vector<double>
-            alone;  // 1/M_ii of a node left out, which may have no one to be tied to
+            alone;  // 1/M_ii of a node left out, which may have no neighbor to be constrained to
 
-        long slot(long i) const { return slots[static_cast<std::size_t>(i)]; }
-        long first_of(long i) const { return first[static_cast<std::size_t>(i)]; }
-        double per_pivot(long i) const { return pivots[static_cast<std::size_t>(i)]; }
-        const float* row(long i) const { return L.data() + begin[static_cast<std::size_t>(i)]; }
+        long dof(long i) const { return dofs[i]; }
+        long first_of(long i) const { return first[i]; }
+        double per_pivot(long i) const { return pivots[i]; }
+        const float* row(long i) const { return L.data() + begin[i]; }
     };
 
     template <int reach>
-    void factorize(const GrainMatrix<reach>& matrix, const GrainNodes& nodes, const Homes& homes,
-                   int grain) {
-        Factor& f = factors_[static_cast<std::size_t>(grain)];
-        f.slots.clear(), f.blind.clear();
-        matrix.for_each_node_of(grain, nodes, [&](long slot) {
-            if (!(nodes.sums[static_cast<std::size_t>(slot)].m > nodes.least_mass())) return;
-            number_[static_cast<std::size_t>(slot)] = static_cast<long>(f.slots.size());
-            f.slots.push_back(slot);
+    void factorize(const GrainMatrix<reach>& matrix, const GrainNodes& nodes,
+                   const MasterDofs& masters, int grain) {
+        Factor& f = factors_[grain];
+        f.dofs.clear(), f.rank_deficient.clear();
+        for_each_dof_of(matrix.rows(), grain, nodes, [&](long dof) {
+            if (!(nodes.sums[dof].m > nodes.least_mass())) return;
+            number_[dof] = static_cast<long>(f.dofs.size());
+            f.dofs.push_back(dof);
         });
         const auto for_each_entry = [&](const auto& work) {
             matrix.for_each_mass_of(grain, nodes, [&](long one, long two, double m) {
-                const long i = number_[static_cast<std::size_t>(
-                               homes.slot[static_cast<std::size_t>(one)])],
-                           j = number_[static_cast<std::size_t>(
-                               homes.slot[static_cast<std::size_t>(two)])];
+                const long i = number_[masters.dof[one]], j = number_[masters.dof[two]];
                 if (i >= 0 && j >= 0)
                     work(std::max(i, j), std::min(i, j), i == j && one != two ? 2 * m : m);
             });
         };
-        const long n = static_cast<long>(f.slots.size());
-        f.first.resize(f.slots.size()), f.begin.resize(f.slots.size());
-        f.pivots.resize(f.slots.size()), f.alone.assign(f.slots.size(), 0);
-        for (long i = 0; i < n; ++i) f.first[static_cast<std::size_t>(i)] = i;
+        const long n = static_cast<long>(f.dofs.size());
+        f.first.resize(f.dofs.size()), f.begin.resize(f.dofs.size());
+        f.pivots.resize(f.dofs.size()), f.alone.assign(f.dofs.size(), 0);
+        for (long i = 0; i < n; ++i) f.first[i] = i;
         for_each_entry([&](long high, long low, double) {
-            long& first = f.first[static_cast<std::size_t>(high)];
+            long& first = f.first[high];
             first = std::min(first, low);
         });
         long length = 0;
         for (long i = 0; i < n; ++i) {
-            f.begin[static_cast<std::size_t>(i)] = length - f.first_of(i);
+            f.begin[i] = length - f.first_of(i);
             length += i - f.first_of(i) + 1;
         }
         std::vector<double> entries(static_cast<std::size_t>(length), 0.0);
-        const auto row = [&](long i) {
-            return entries.data() + f.begin[static_cast<std::size_t>(i)];
-        };
+        const auto row = [&](long i) { return entries.data() + f.begin[i]; };
         for_each_entry([&](long high, long low, double m) { row(high)[low] += m; });
         // L_ij = (M_ij - sum_k L_ik L_jk) / L_jj
         for (long i = 0; i < n; ++i) {
@@ -128,10 +124,10 @@ class MassFactors {
             }
             const double pivot = L_i[i] - squares;
             const bool seen = pivot > least_pivot * L_i[i];
-            f.pivots[static_cast<std::size_t>(i)] = seen ? 1 / std::sqrt(pivot) : 0;
+            f.pivots[i] = seen ? 1 / std::sqrt(pivot) : 0;
             if (seen) continue;
-            f.blind.push_back(f.slot(i));
-            f.alone[static_cast<std::size_t>(i)] = 1 / L_i[i];
+            f.rank_deficient.push_back(f.dof(i));
+            f.alone[i] = 1 / L_i[i];
             std::fill(L_i + f.first_of(i), L_i + i, 0.0);
         }
         f.L.assign(entries.begin(), entries.end());

@@ -2,42 +2,44 @@
 //
 //     v_p^1 = v_p^0 + sum_i S_ip (v_i^1 - v_i^0),  v_i^1 - v_i^0 = (v_i^theta - v_i^0)/theta
 //     x_p^1 = x_p^0 + dt sum_i S_ip v_i^theta
-// Positions and strains go with the same velocity: then the work of gravity is exact, too (but for gimp
-// and quadratic in the cell next to slip and stick walls, where weight is that of m_i).
+// Positions and strains go with the same velocity: then the work of gravity is exact, too (but for
+// gimp and quadratic in the cell next to slip and stick walls, where weight is that of m_i).
 #pragma once
 
-#include "mpm_explicit/move_strips.hpp"
-#include "mpm_explicit/plates.hpp"
-#include "mpm_explicit/stop.hpp"
+#include "mpm_explicit/apply_loads.hpp"
+#include "mpm_explicit/clamp_to_walls.hpp"
+#include "mpm_explicit/move_tiles.hpp"
 #include "mpm_explicit/transfer.hpp"
-#include "mpm_implicit/ledger.hpp"
+#include "mpm_implicit/budget.hpp"
 
 namespace mpm_implicit {
 
-/// in:     nodes.motion, v^0 and v^theta; flip, the FLIP fraction; frozen particles keep their places
-/// in/out: particles; sums of their strips
+/// in:     nodes.motion, v^0 and v^theta; flip, the FLIP fraction; frozen particles keep their
+///         places
+/// in/out: particles; sums of their tiles
 /// exact:  the momentum of the particles changes by that of the nodes, to round-off
 template <class Shape>
 void move_particles(const Shape& shape, const std::vector<Grain>& grains,
                     const std::vector<RigidMotion>& rigid, const GrainNodes& nodes, double theta,
                     double flip, bool frozen, double dt, Particles& particles,
-                    std::vector<StripSums>& sums) {
+                    std::vector<TileSums>& sums) {
     const Locator at(nodes.mesh());
     double *x_p = particles.x_p.data(), *y_p = particles.y_p.data(), *vx_p = particles.vx_p.data(),
            *vy_p = particles.vy_p.data();
     const double* m_p = particles.m_p.data();
     const NodeMotion* motion = nodes.motion.data();
     const double dt_move = frozen ? 0 : dt, pic = 1 - flip, per_theta = 1 / theta;
-    const Stop stop(nodes.mesh());
-    const auto move = [&](const Strip& strip, StripSums& sum, Extremes& reach) {
-        const long* origin = nodes.origins(strip.grain);
-        double kinetic = 0, jump = 0, drag = 0, lost = 0, momentum_x = 0, momentum_y = 0;
+    const ClampToWalls clamp(nodes.mesh());
+    const auto move = [&](const Tile& tile, TileSums& sum, Extremes& reach) {
+        const long* origin = nodes.origins(tile.grain);
+        double kinetic = 0, twice_increment = 0, twice_kinetic_theta = 0, lost = 0, momentum_x = 0,
+               momentum_y = 0;
         Extremes seen;
-        for (long p = strip.begin; p < strip.end; ++p) {
+        for (long p = tile.begin; p < tile.end; ++p) {
             double ux = 0, uy = 0, wx = 0, wy = 0;  // v^0 and v^theta of the nodes here
             for_each_node(shape, at, origin, x_p[p], y_p[p],
-                          [&](long slot, double S, double, double) {
-                              const NodeMotion& v = motion[slot];
+                          [&](long dof, double S, double, double) {
+                              const NodeMotion& v = motion[dof];
                               ux += S * v.vx_0, uy += S * v.vy_0;
                               wx += S * v.vx_1, wy += S * v.vy_1;
                           });
@@ -46,22 +48,23 @@ void move_particles(const Shape& shape, const std::vector<Grain>& grains,
             const double new_x = flip_x + pic * (ux + ax - flip_x),
                          new_y = flip_y + pic * (uy + ay - flip_y);
             vx_p[p] = new_x, vy_p[p] = new_y;
-            const double x = stop.x(x_p[p] + dt_move * wx),
-                         y = stop.y(y_p[p] + dt_move * wy);  // [FLIP-7]
+            const double x = clamp.x(x_p[p] + dt_move * wx),
+                         y = clamp.y(y_p[p] + dt_move * wy);  // [FLIP-7]
             x_p[p] = x, y_p[p] = y;
 
             const double now = new_x * new_x + new_y * new_y;
-            kinetic += m * now, jump += m * (ax * ax + ay * ay);
-            drag += m * (wx * wx + wy * wy);
+            kinetic += m * now, twice_increment += m * (ax * ax + ay * ay);
+            twice_kinetic_theta += m * (wx * wx + wy * wy);
             lost += m * (now - flip_x * flip_x - flip_y * flip_y);
             momentum_x += m * new_x, momentum_y += m * new_y;
             seen.see(x, y);
         }
-        sum.kinetic = 0.5 * kinetic, sum.jump = jump, sum.drag = drag, sum.pic = 0.5 * lost;
+        sum.kinetic = 0.5 * kinetic, sum.twice_increment = twice_increment,
+        sum.twice_kinetic_theta = twice_kinetic_theta, sum.pic = 0.5 * lost;
         sum.momentum_x = momentum_x, sum.momentum_y = momentum_y;
         reach = seen;
     };
-    move_strips(grains, rigid, nodes, dt_move, particles, sums, move);
+    move_tiles(grains, rigid, nodes, dt_move, particles, sums, move);
 }
 
 /// Work on the nodes in this step, and their largest speed.
@@ -69,26 +72,27 @@ inline NodeWork work_on_nodes(const BodyForce& body, double theta, double dt,
                               const GrainNodes& nodes) {
     std::array<NodeWork, common::block_count> part;
     common::for_each_block(nodes.size(), [&](int block, long begin, long end) {
-        double jump = 0, drag = 0, gravity = 0, speed = 0;
+        double twice_increment = 0, twice_kinetic_theta = 0, gravity = 0, speed = 0;
         const unsigned char* is_free = nodes.is_free().data();
-#pragma omp simd reduction(+ : jump, drag, gravity) reduction(max : speed)
+#pragma omp simd reduction(+ : twice_increment, twice_kinetic_theta, gravity) reduction(max : speed)
         for (long i = begin; i < end; ++i) {
             const auto n = static_cast<std::size_t>(i);
             const NodeMotion& v = nodes.motion[n];
             const double m = is_free[n] * nodes.sums[n].m, dx = v.vx_1 - v.vx_0,
                          dy = v.vy_1 - v.vy_0;
-            jump += m * (dx * dx + dy * dy);
+            twice_increment += m * (dx * dx + dy * dy);
             const double squared = v.vx_1 * v.vx_1 + v.vy_1 * v.vy_1;
-            drag += m * squared;
+            twice_kinetic_theta += m * squared;
             gravity += m * (body.gravity_x * v.vx_1 + body.gravity_y * v.vy_1);
             speed = squared > speed ? squared : speed;
         }
-        part[static_cast<std::size_t>(block)] = {jump / (theta * theta), drag, dt * gravity,
-                                                 std::sqrt(speed)};
+        part[block] = {twice_increment / (theta * theta), twice_kinetic_theta, dt * gravity,
+                       std::sqrt(speed)};
     });
     NodeWork total;
     for (const NodeWork& one : part) {
-        total.jump += one.jump, total.drag += one.drag, total.gravity += one.gravity;
+        total.twice_increment += one.twice_increment,
+            total.twice_kinetic_theta += one.twice_kinetic_theta, total.gravity += one.gravity;
         total.largest_speed = std::max(total.largest_speed, one.largest_speed);
     }
     return total;

@@ -6,8 +6,7 @@
 // Run:   build/mpm_implicit mpm_implicit/cases/rebound.toml time.alpha=5
 // Run:   build/mpm_implicit mpm_implicit/cases/rebound.toml method.mass=lumped
 //
-// Reading order: step.hpp, and from there as mpm_implicit/README.md says. What both programs share is
-// in mpm_explicit/.
+// Reading order: step.hpp; then as the README says. What both programs share is in mpm_explicit/.
 #include <optional>
 
 #include "common/run/start.hpp"
@@ -22,8 +21,7 @@ using namespace mpm_implicit;
 
 const common::ProgramInfo info{
     "mpm_implicit", PROGRAM_VERSION,
-    "the implicit material point method for grains in contact; the default "
-    "case is two elastic disks that rebound",
+    "the implicit material point method for grains; the default case is two disks that rebound",
     "mpm_implicit/cases/rebound.toml"};
 
 template <class Shape>
@@ -32,9 +30,8 @@ int run_case(const Shape& shape, const Case& parameters, const ThetaScheme& sche
     // 2. Particles at t = 0.
     State state;
     state.assembly = assemble(parameters.problem);
-    Particles& particles = state.assembly.particles;
-    const std::vector<Grain>& grains = state.assembly.grains;
-    const Contact contact(parameters.problem.contact, grains, state.assembly.bonds);
+    Assembly& all = state.assembly;
+    const Contact contact(parameters.problem.contact, all.grains, all.bonds);
     const double dt = scales.dt;
     GrainNodes nodes(parameters.problem.mesh(), Shape::width, scales.least_mass);
     StepScratch<Shape::width - 1> scratch{
@@ -44,22 +41,22 @@ int run_case(const Shape& shape, const Case& parameters, const ThetaScheme& sche
     long step = 0;
     if (run.restarting()) {
         run.restore(state, step);
-        nodes.lay_out(grains, state.frame);
+        nodes.lay_out(all.grains, state.layout);
     } else {
-        nodes.sort(grains, particles, state.frame);
-        open_ledger(state.assembly, scratch.laws, state.ledger);
+        nodes.sort(all.grains, all.particles, state.layout);
+        start_budget(all, scratch.laws, state.budget);
         recorder.start(state, run);
     }
 
     // 3. The loop of the slide.
     while (run.not_finished(step, scales.steps)) {
-        if (nodes.sort_is_due(state.frame)) nodes.sort(grains, particles, state.frame);
+        if (nodes.sort_is_due(state.layout)) nodes.sort(all.grains, all.particles, state.layout);
         recorder.snapshot(step, state, run);
-        const BodyForce body =
-            drive(parameters.problem, step, dt, state.assembly.rigid, scratch.solver.servos);
+        const BodyForce body = apply_loads(parameters.problem.loads(), step, dt, all.rigid,
+                                           scratch.solver.force_controls);
         take_step(shape, body, dt, scratch, nodes, state, sums);  // [MPM-5 ... 8]
-        enter_step(scheme.theta, scheme.consistent(), body.damping, dt, nodes.strips(), sums.strips,
-                   sums.nodes, sums.contact, state.ledger);  // [MPM-13]
+        add_step(scheme.theta, scheme.consistent(), body.damping, dt, nodes.tiles(), sums.tiles,
+                 sums.nodes, sums.contact, state.budget);  // [MPM-13]
         state.effort.add(sums.solver);
         recorder.record(step, sums, nodes, state, run);
         ++step;
@@ -71,7 +68,7 @@ int run_case(const Shape& shape, const Case& parameters, const ThetaScheme& sche
         recorder.snapshot(step, state, run);
         recorder.finish(step, state, run);
     }
-    return run.finish(step, static_cast<double>(particles.count()));
+    return run.finish(step, static_cast<double>(all.particles.count()));
 }
 
 int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
@@ -90,11 +87,9 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
              scales.steps, scales.bytes, parameters.checkpoint_steps},
             holder))
         return 0;
-    int status = 0;
-    with_shape(parameters.scheme(), [&](const auto& shape) {
-        status = run_case(shape, parameters, scheme, scales, *holder);
+    return with_shape(parameters.scheme(), [&](const auto& shape) {
+        return run_case(shape, parameters, scheme, scales, *holder);
     });
-    return status;
 }
 
 }  // namespace

@@ -1,9 +1,15 @@
-// Conjugate gradients in the space of velocities that the closed pairs allow.
+// Projected conjugate gradients: a linear system whose solution satisfies the closed pairs.
 //
-// It solves  A v = b + H^T lambda,  H v = h  for v, and for the velocities V of plates that forces
-// drive; H are the rows of constraints.hpp. Residual and direction are projected, so that every
-// iterate obeys the pairs; lambda never appears. In y = D^{1/2} v, no preconditioner at all is that of
-// the diagonal D of A.
+//     | A  -H^T | | v      |   | b |       A: grain_matrix.hpp, order 2 n for n dofs
+//     | H    0  | | lambda | = | h |       H: one row per closed pair and direction, constraints.hpp
+//
+// Unknowns: v of all nodes, and the velocities V of the grains under force control, which enter as
+// v -> v + E V with a diagonal of their own. Residual and direction are projected on the null space of H
+// (in y = D^{1/2} v: P = 1 - sum_k q_k q_k^T), so that every iterate satisfies the pairs; lambda
+// never appears, and is read off at the end, H^T lambda = A v - b. Without a preconditioner this is
+// preconditioning with the diagonal D of A.
+//     r = P D^{-1/2} (b - A v),  z = F^{-1} r,  p = z + beta p,
+//     alpha = (r.z)/(p.A p),  v += alpha p,  r -= alpha P A p,  beta = (r.z)_new/(r.z)_old
 #pragma once
 
 #include <limits>
@@ -27,8 +33,9 @@ struct CgWorkspace {
     }
 };
 
-/// What the plates add to the system: diagonal theta (m + dt c), right-hand side, velocities.
-struct PlateSystem {
+/// What the grains under force control add to the system: diagonal theta (m + dt c), right-hand
+/// side, velocities.
+struct ControlledGrains {
     std::vector<double> diagonal, b, V;
 };
 
@@ -46,23 +53,23 @@ inline double dot(const Vector& a, const Vector& b) {
 }
 
 /// Solves for v.
-/// in:     multiply(x, y): y = A x, symmetric; precondition(t, work): z from t, both in y; constraints,
-///         built with scale = D^{-1/2}; b; tolerance on |D^{-1/2} (b - A v)| without what the pairs
-///         forbid, over |D^{-1/2} b| or, if that is more, what it was with v as given and with the
+/// in:     multiply(x, y): y = A x, symmetric; precondition(t, work): z from t, both in y;
+///         constraints, built with scale = D^{-1/2}; b; tolerance on |D^{-1/2} (b - A v)| projected on the null
+///         space of the constraints, over |D^{-1/2} b| or, if that is more, what it was with v as given and with the
 ///         impulses of the pairs
-/// in/out: v and plates.V, which obey the constraints
+/// in/out: v and controlled.V, which obey the constraints
 /// out:    work.r = b - A v, which is -H^T lambda when converged
 /// exact:  converged means the residual is that small, or as small as round-off of A v
 template <class Multiply, class Precondition>
 CgResult projected_cg(const Multiply& multiply, const Precondition& precondition,
                       const Constraints& constraints, const Vector& scale, const Vector& b,
-                      double tolerance, long max_iterations, Vector& v, PlateSystem& plates,
-                      CgWorkspace& work) {
-    const std::size_t count = plates.V.size();
+                      double tolerance, long max_iterations, Vector& v,
+                      ControlledGrains& controlled, CgWorkspace& work) {
+    const std::size_t count = controlled.V.size();
     const long n = v.size();
     std::vector<double> r_V(count), p_V(count), q_V(count), d_V(count);
-    constraints.plates_weigh(d_V.data());
-    for (std::size_t s = 0; s < count; ++s) d_V[s] += plates.diagonal[s];
+    constraints.controlled_diagonal(d_V.data());
+    for (std::size_t s = 0; s < count; ++s) d_V[s] += controlled.diagonal[s];
     Vector &p = work.p, &full = work.full;
     double *r = work.r.data(), *t = work.t.data();
     const double *q = work.q.data(), *s_D = scale.data();
@@ -80,9 +87,9 @@ CgResult projected_cg(const Multiply& multiply, const Precondition& precondition
             n);
         size_r = dot(work.t, work.t);
         constraints.project(work.t);
-        constraints.plates_feel(work.r, r_V.data());
+        constraints.controlled_force(work.r, r_V.data());
         for (std::size_t s = 0; s < count; ++s)
-            r_V[s] += plates.b[s] - plates.diagonal[s] * plates.V[s];
+            r_V[s] += controlled.b[s] - controlled.diagonal[s] * controlled.V[s];
     };
     const auto size_of = [&] {  // squared, in the measure of 1/D
         double sum = dot(work.t, work.t);
@@ -91,7 +98,7 @@ CgResult projected_cg(const Multiply& multiply, const Precondition& precondition
     };
 
     double size_b = 0, size_v = 0;
-    for (std::size_t s = 0; s < count; ++s) size_b += plates.b[s] * plates.b[s] / d_V[s];
+    for (std::size_t s = 0; s < count; ++s) size_b += controlled.b[s] * controlled.b[s] / d_V[s];
     size_b += common::sum_over_blocks(n, [&](long begin, long end) {
         double sum = 0;
         for (long i = begin; i < end; ++i) sum += s_D[i] * b[i] * (s_D[i] * b[i]);
@@ -138,19 +145,19 @@ CgResult projected_cg(const Multiply& multiply, const Precondition& precondition
                     for (long i = begin; i < end; ++i) to[i] = s_D[i] * z[i] + beta * to[i];
                 },
                 n);
-            if (count > 0) full = p, constraints.add_plates(p_V.data(), full);
+            if (count > 0) full = p, constraints.add_controlled_motion(p_V.data(), full);
             Vector& direction = count > 0 ? full : p;
             multiply(direction, work.q);
-            constraints.plates_feel(work.q, q_V.data());
+            constraints.controlled_force(work.q, q_V.data());
             double curvature = dot(p, work.q);
             for (std::size_t s = 0; s < count; ++s) {
-                q_V[s] += plates.diagonal[s] * p_V[s];
+                q_V[s] += controlled.diagonal[s] * p_V[s];
                 curvature += p_V[s] * q_V[s];
             }
             if (!(curvature > 0)) break;
             const double alpha = along / curvature;
             for (std::size_t s = 0; s < count; ++s)
-                plates.V[s] += alpha * p_V[s], r_V[s] -= alpha * q_V[s];
+                controlled.V[s] += alpha * p_V[s], r_V[s] -= alpha * q_V[s];
             const double* d = direction.data();
             double* v_now = v.data();
             common::for_each_block(

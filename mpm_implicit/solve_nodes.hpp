@@ -1,21 +1,24 @@
-// on the grid: the velocities v^theta of all nodes at once, with the forces and contacts of the same
-// level.
+// on the grid: the velocities v^theta of all nodes at once, with the forces and contacts of the
+// same level.
 //
 //     m_i (v_i^1 - v_i^0)/dt = - sum_p V_p sigma_p^theta . grad S_ip + m_i f_i^theta     [MPM-8]
 // sigma^theta = sigma^0 + theta T : de, de = dt sym grad v^theta [MPM-5, 7] and
 // v^theta = v^0 + theta (v^1 - v^0), put in, give a symmetric system for v^theta:
 //     A v^theta = M v^0 + theta dt (f^0 + m g) + H^T lambda,   A = (1 + theta dt c) M + theta^2 dt^2 K
-// with f^0 the force of the old stress, c the damping of a case, and impulses lambda of the pairs that
-// press, which are found together with v^theta: for a guess of who presses, conjugate gradients; then
-// the guess is corrected where an impulse pulls, a gap closes, or friction is more or less than
-// Coulomb's.
+// with f^0 the force of the old stress, c the damping of a case, and impulses lambda of the closed
+// pairs, which are found together with v^theta:
+//
+//     active set (open, slip, stick) -> projected conjugate gradients -> v^theta, lambda
+//           ^                                                               |
+//           +---- update where an impulse pulls, a gap closes, or ----------+--> done when no state changes
+//                 friction is not Coulomb's
 #pragma once
 
 #include "mpm_implicit/grain_factors.hpp"
 #include "mpm_implicit/mass_factors.hpp"
 #include "mpm_implicit/projected_cg.hpp"
-#include "mpm_implicit/settle_contact.hpp"
 #include "mpm_implicit/theta_scheme.hpp"
+#include "mpm_implicit/update_active_set.hpp"
 
 namespace mpm_implicit {
 
@@ -23,29 +26,31 @@ template <int reach>
 class NodeSolver {
    public:
     GrainMatrix<reach> matrix;
-    ContactSet set;
+    ActiveSet set;
     Constraints constraints;
-    std::vector<Servo> servos;
+    std::vector<ForceControl> force_controls;
 
     /// M and A of the step.
     /// in:     nodes.sums
-    /// out:    matrix; nodes that are hardly touched, or that particles cannot tell apart, are tied to
+    /// out:    matrix; small-mass and rank-deficient nodes are constrained to
     ///         others
     template <class Shape>
     void assemble(const Shape& shape, const std::vector<AnyLaw>& laws, const ThetaScheme& scheme,
                   const BodyForce& body, double dt, const State& state, GrainNodes& nodes) {
         const Assembly& all = state.assembly;
-        const std::vector<NodeRow> rows = rows_of(all.grains, nodes, state.frame);
-        tie_light_nodes(rows, nodes);
+        const std::vector<GridRow> rows = grid_rows(all.grains, nodes, state.layout);
+        constrain_small_mass_nodes(rows, nodes);
         const double theta_dt = scheme.theta * dt;
         matrix.assemble(shape, laws, all.grains, all.particles, nodes, rows,
                         1 + theta_dt * body.damping, theta_dt * theta_dt, scheme.consistent());
-        if (scheme.consistent()) tie_blind_nodes(rows, all.grains, nodes);
+        if (scheme.consistent())
+            constrain_rank_deficient_nodes(mass_factors_.factorize(matrix, all.grains, nodes), rows,
+                                           nodes);
     }
 
     /// M v^0 = P, and bonded grains have one velocity.
     /// in:     nodes.sums
-    /// out:    nodes.motion, v_0; who meets, in `set`
+    /// out:    nodes.motion, v_0; set, the bodies and pairs at every node
     /// errors: NumericalError when the mass matrix cannot be solved
     void find_old_velocities(const ThetaScheme& scheme, const Contact& contact, const State& state,
                              GrainNodes& nodes, SolveReport& report) {
@@ -53,51 +58,51 @@ class NodeSolver {
         report = {};
         size_ = nodes.size();
         resize();
-        velocity_of_nodes(all.grains, all.rigid, nodes);
+        nodal_velocity(all.grains, all.rigid, nodes);
         contact.join_bonds(all.bonds, nodes);
-        set.find(contact, nodes, all.bonds, all.rigid, servos, state.pressed);
+        set.find(contact, nodes, all.bonds, force_controls, state.active_pairs);
         matrix.diagonal_mass(scale_);
         invert_diagonal(nodes);
-        for_each_slot([&](long i, std::size_t n) {
-            const NodeSums& sum = nodes.sums[n];
+        for_each_dof(size_, [&](long i) {
+            const NodeSums& sum = nodes.sums[i];
             b_[i] = sum.px, b_[size_ + i] = sum.py;
-            v_0_[i] = scale_[i] > 0 ? nodes.motion[n].vx_0 : 0;
-            v_0_[size_ + i] = scale_[size_ + i] > 0 ? nodes.motion[n].vy_0 : 0;
+            v_0_[i] = scale_[i] > 0 ? nodes.motion[i].vx_0 : 0;
+            v_0_[size_ + i] = scale_[size_ + i] > 0 ? nodes.motion[i].vy_0 : 0;
         });
         constraints.build(set, scale_, size_, 0, true);
-        constraints.obey({}, v_0_);
-        PlateSystem none;
+        constraints.enforce({}, v_0_);
+        ControlledGrains none;
         const auto multiply = [&](Vector& x, Vector& y) { matrix.multiply_mass(x, y); };
         const CgResult cg =
             projected_cg(multiply, mass_preconditioner(scheme), constraints, scale_, b_,
                          scheme.tolerance, scheme.max_iterations, v_0_, none, work_);
         report.mass_iterations = cg.iterations;
         if (!cg.converged) fail("the nodes before the step", cg, scheme);
-        for_each_slot([&](long i, std::size_t n) {
-            if (nodes.is_free()[n] == 0) return;
-            nodes.motion[n].vx_0 = v_0_[i], nodes.motion[n].vy_0 = v_0_[size_ + i];
+        for_each_dof(size_, [&](long i) {
+            if (nodes.is_free()[i] == 0) return;
+            nodes.motion[i].vx_0 = v_0_[i], nodes.motion[i].vy_0 = v_0_[size_ + i];
         });
-        spread_velocity(nodes);
+        fill_ghost_velocity(nodes);
     }
 
     /// The right-hand side and the diagonal of a step.
     /// in:     nodes with v_0 and, for projected_cg, the force of the old stress; else none
     void prepare(const ThetaScheme& scheme, const BodyForce& body, double dt, GrainNodes& nodes) {
         const double theta_dt = scheme.theta * dt;
-        fold_force(nodes);
+        reduce_ghost_force(nodes);
         matrix.multiply_mass(v_0_, b_);
-        for_each_slot([&](long i, std::size_t n) {
-            const double m = nodes.sums[n].m;
-            b_[i] += theta_dt * (nodes.force[n].x + m * body.gravity_x);
-            b_[size_ + i] += theta_dt * (nodes.force[n].y + m * body.gravity_y);
+        for_each_dof(size_, [&](long i) {
+            const double m = nodes.sums[i].m;
+            b_[i] += theta_dt * (nodes.force[i].x + m * body.gravity_x);
+            b_[size_ + i] += theta_dt * (nodes.force[i].y + m * body.gravity_y);
         });
         matrix.diagonal(scale_);
         invert_diagonal(nodes);
     }
 
     /// v^theta and the impulses of contact, by conjugate gradients with an active set.
-    /// in/out: state: velocities of plates that forces drive, forces on rigid grains, bonds, who
-    ///         pressed
+    /// in/out: state: velocities of grains under force control, forces on rigid grains, bonds,
+    ///         active pairs
     /// out:    nodes.motion, v^theta in the place of v_1; what contact did
     /// errors: NumericalError when the iteration or the active set does not settle, with the pair
     template <class Shape>
@@ -106,36 +111,37 @@ class NodeSolver {
                       SolveReport& report) {
         const std::vector<Grain>& grains = state.assembly.grains;
         std::vector<RigidMotion>& rigid = state.assembly.rigid;
-        for_each_chunk(grains, nodes, [&](Chunk& chunk) {
-            add_internal_force(shape, state.assembly.particles, chunk, nodes);
+        for_each_batch(grains, nodes, [&](ParticleBatch& batch) {
+            add_internal_force(shape, state.assembly.particles, batch, nodes);
         });
         prepare(scheme, body, dt, nodes);
-        PlateSystem plates;
-        for (const Servo& servo : servos) {
-            plates.diagonal.push_back(scheme.theta * (servo.mass + dt * servo.damping));
-            plates.V.push_back(servo.velocity);
+        ControlledGrains controlled;
+        for (const ForceControl& control : force_controls) {
+            controlled.diagonal.push_back(scheme.theta * (control.mass + dt * control.damping));
+            controlled.V.push_back(control.velocity);
         }
         v_ = v_0_;
         use_preconditioner(scheme, grains, nodes);
         const auto multiply = [&](Vector& x, Vector& y) { matrix.multiply(x, y); };
-        // Guesses are good enough long before velocities are.
+        // Active sets settle long before velocities do.
         constexpr double rough = 1e-7;
         double tolerance = std::max(scheme.tolerance, rough);
         for (report.loops = 1;; ++report.loops) {
-            add_friction(scheme.theta, dt, plates);
-            constraints.build(set, scale_, size_, servos.size(), false);
-            constraints.obey(plates.V, v_);
+            set_right_hand_side(scheme.theta, dt, controlled);
+            constraints.build(set, scale_, size_, force_controls.size(), false);
+            constraints.enforce(controlled.V, v_);
             const CgResult cg =
                 projected_cg(multiply, preconditioner(constraints), constraints, scale_, right_,
-                             tolerance, scheme.max_iterations, v_, plates, work_);
+                             tolerance, scheme.max_iterations, v_, controlled, work_);
             report.iterations += cg.iterations;
             if (!cg.converged) fail("the nodes", cg, scheme);
             constraints.find_impulses(work_.r, set);
-            const Change change = correct(v_, plates.V, nodes, tolerance, set);
+            const ActiveSetChange change =
+                update_active_set(v_, controlled.V, nodes, tolerance, set);
             report.held = change.held;
             if (change.settled) {
                 if (tolerance == scheme.tolerance) break;
-                // The same guess, to the end.
+                // The same set, to the end.
                 tolerance = scheme.tolerance;
                 --report.loops;
                 continue;
@@ -143,17 +149,17 @@ class NodeSolver {
             if (report.loops == scheme.max_outer_iterations)
                 fail_to_settle(change, set, grains, scheme.max_outer_iterations);
         }
-        for (std::size_t s = 0; s < servos.size(); ++s) {
-            RigidMotion& is = rigid[servos[s].grain];
-            (servos[s].along_x ? is.vx : is.vy) = plates.V[s];
-            (servos[s].along_x ? is.travel_x : is.travel_y) += dt * plates.V[s];
+        for (std::size_t s = 0; s < force_controls.size(); ++s) {
+            RigidMotion& is = rigid[force_controls[s].grain];
+            (force_controls[s].along_x ? is.vx : is.vy) = controlled.V[s];
+            (force_controls[s].along_x ? is.travel_x : is.travel_y) += dt * controlled.V[s];
         }
-        for_each_slot([&](long i, std::size_t n) {
-            nodes.motion[n].vx_1 = v_[i], nodes.motion[n].vy_1 = v_[size_ + i];
+        for_each_dof(size_, [&](long i) {
+            nodes.motion[i].vx_1 = v_[i], nodes.motion[i].vy_1 = v_[size_ + i];
         });
-        drive_rigid(grains, rigid, nodes);
-        spread_velocity(nodes);
-        state.pressed = set.memory();
+        prescribe_rigid_velocity(grains, rigid, nodes);
+        fill_ghost_velocity(nodes);
+        state.active_pairs = set.active_pairs();
         return set.account(contact, scheme.theta, dt, nodes, state.assembly.bonds, rigid);
     }
 
@@ -178,30 +184,15 @@ class NodeSolver {
     const Vector& scale() const { return scale_; }
 
    private:
-    // Nodes that the particles cannot tell from others move as their heaviest neighbor does.
-    void tie_blind_nodes(const std::vector<NodeRow>& rows, const std::vector<Grain>& grains,
-                         GrainNodes& nodes) {
-        std::vector<Tie> ties;
-        for (const long slot : mass_factors_.factorize(matrix, grains, nodes)) {
-            const auto row = std::partition_point(rows.begin(), rows.end(), [&](const NodeRow& r) {
-                return r.origin + r.end <= slot;
-            });
-            const long heaviest =
-                heaviest_neighbor(rows, row - rows.begin(), slot - row->origin, nodes);
-            if (heaviest != slot) ties.push_back({slot, heaviest});
-        }
-        tie_nodes(ties, nodes);
-    }
-
     // z = P D^{1/2} F^-1 D^{1/2} P t with factors F.
     template <class Factors>
     const Vector& precondition(const Factors& factors, const Constraints& allowed, const Vector& t,
                                CgWorkspace& work) const {
         const double *s = scale_.data(), *from = t.data();
         double *r = work.s.data(), *z = work.z.data();
-        for_each_dof([&](long i) { r[i] = s[i] > 0 ? from[i] / s[i] : 0; });
+        for_each_dof(2 * size_, [&](long i) { r[i] = s[i] > 0 ? from[i] / s[i] : 0; });
         factors.solve(work.s, work.z);
-        for_each_dof([&](long i) { z[i] = s[i] > 0 ? z[i] / s[i] : 0; });
+        for_each_dof(2 * size_, [&](long i) { z[i] = s[i] > 0 ? z[i] / s[i] : 0; });
         allowed.project(work.z);
         return work.z;
     }
@@ -219,52 +210,23 @@ class NodeSolver {
             if (v->size() != 2 * size_) *v = Vector::Zero(2 * size_);
     }
 
-    template <class Work>
-    void for_each_slot(const Work& work) const {
-        common::for_each_block(size_, [&](int, long begin, long end) {
-            for (long i = begin; i < end; ++i) work(i, static_cast<std::size_t>(i));
-        });
-    }
-
-    template <class Work>
-    void for_each_dof(const Work& work) const {
-        common::for_each_block(2 * size_, [&](int, long begin, long end) {
-            for (long i = begin; i < end; ++i) work(i);
-        });
-    }
-
     // D^{-1/2} where a velocity can change: of free grains, with mass, and not held by a wall.
     void invert_diagonal(const GrainNodes& nodes) {
-        for_each_slot([&](long i, std::size_t n) {
-            const bool moves = nodes.is_free()[n] != 0 && nodes.sums[n].m > nodes.least_mass();
+        for_each_dof(size_, [&](long i) {
+            const bool moves = nodes.is_free()[i] != 0 && nodes.sums[i].m > nodes.least_mass();
             for (const auto& [at, fixed] :
                  {std::pair(i, nodes.is_fixed_x(i)), std::pair(size_ + i, nodes.is_fixed_y(i))})
                 scale_[at] = moves && !fixed && scale_[at] > 0 ? 1 / std::sqrt(scale_[at]) : 0;
         });
     }
 
-    // What slips rubs with a known impulse.
-    void add_friction(double theta, double dt, PlateSystem& plates) {
+    // The right-hand side of the step, with the known friction of slipping pairs.
+    void set_right_hand_side(double theta, double dt, ControlledGrains& controlled) {
         right_ = b_;
-        plates.b.clear();
-        for (const Servo& servo : servos)
-            plates.b.push_back(theta * (servo.mass * servo.velocity + dt * servo.force));
-        for (const MeetingNode& node : set.nodes) {
-            for (std::size_t k = node.pair_begin; k < node.pair_end; ++k) {
-                MeetingPair& pair = set.pairs[k];
-                if (pair.hold != Hold::slip) continue;
-                pair.lambda_t = pair.friction;
-                if (pair.lambda_t == 0) continue;
-                for (const auto& [who, sign] : {std::pair(pair.a, -1.0), std::pair(pair.b, 1.0)}) {
-                    const Meeter& is = set.meeters[node.meeter_begin + who];
-                    const double jx = sign * pair.lambda_t * pair.tx(),
-                                 jy = sign * pair.lambda_t * pair.ty();
-                    if (!is.fixed) right_[is.slot] += jx, right_[size_ + is.slot] += jy;
-                    if (is.servo >= 0)
-                        plates.b[static_cast<std::size_t>(is.servo)] += is.servo_along_x ? jx : jy;
-                }
-            }
-        }
+        controlled.b.clear();
+        for (const ForceControl& control : force_controls)
+            controlled.b.push_back(theta * (control.mass * control.velocity + dt * control.force));
+        add_friction(size_, set, right_, controlled.b);
     }
 
     [[noreturn]] void fail(const char* what, const CgResult& cg, const ThetaScheme& scheme) const {

@@ -1,14 +1,14 @@
-// The same step by Newton and Krylov, as the talk's abstract has it for fields: nothing is linearized
-// by hand, so plastic grains and growing volumes are as good as elastic ones; and contact is the
-// operator of the explicit program, put on v^theta.
+// The same step by Newton and Krylov, as the talk's abstract has it for fields: nothing is
+// linearized by hand, so plastic grains and growing volumes are as good as elastic ones.
 //
-// With R the momentum that is missing, and C the operator that ends approach and slip at the nodes,
+// Unknowns: x = D^{1/2} v^theta of all dofs (2 n numbers), and m^{1/2} V of grains under force
+// control. With R the missing momentum, and C the contact operator of the explicit program,
 //     F(v) = v - C(v + R(v)/D),
 //     R(v) = M (v^0 - v) + theta dt [f(sigma^theta(v)) + m g - c M v]
-// is zero exactly where R is made up by impulses that press and rub as they should, whatever the
-// masses D are that C works with: here the diagonal of A, with which v + R/D never goes far. Newton's
-// linear systems are solved by GMRES with differences of F, preconditioned by conjugate gradients for
-// the elastic grains with the pairs that are closed now.
+// is zero where impulses of contact make up for R, whatever the masses D of C: here diag A.
+//     Newton           x <- x + s,  J s = -F,  J = dF/dx
+//     GMRES            for s, with J s by differences of F
+//     preconditioner   projected conjugate gradients for the elastic A and the pairs closed now
 #pragma once
 
 #include "common/newton_krylov.hpp"
@@ -41,9 +41,9 @@ class NewtonSolver {
         common::NewtonResult result;
         // One Newton step at a time, each with the pairs that are closed then.
         for (report.loops = 0; report.loops <= scheme.max_outer_iterations; ++report.loops) {
-            step.watching = true;
+            step.updating = true;
             F_of(x_, F_);
-            step.watching = false;
+            step.updating = false;
             if (report.loops == 0)
                 unit = std::max({common::safe_norm(F_), common::safe_norm(x_),
                                  std::numeric_limits<double>::min()});
@@ -77,187 +77,159 @@ class NewtonSolver {
         NodeSolver<reach>& solver;
         GrainNodes& nodes;
         SolveReport& report;
-        bool watching = false;  // pairs are told what they do
+        bool updating = false;  // the states of pairs are updated
         const Vector& scale() const { return solver.scale(); }
     };
 
-    template <class Work>
-    static void for_each_slot(long n, const Work& work) {
-        common::for_each_block(n, [&](int, long begin, long end) {
-            for (long i = begin; i < end; ++i) work(i, static_cast<std::size_t>(i));
-        });
-    }
-
-    // The guess v^0, as x = D^{1/2} v where velocities can change; then V m^{1/2} of driven plates.
+    // The guess v^0, as x = D^{1/2} v where velocities can change; then V m^{1/2}.
     void begin(const Step& step) {
-        const long n = step.nodes.size(), count = static_cast<long>(step.solver.servos.size());
+        const long n = step.nodes.size(),
+                   count = static_cast<long>(step.solver.force_controls.size());
         for (Vector* v : {&root_, &v_, &Mv_, &part_, &rest_})
             if (v->size() != 2 * n) *v = Vector::Zero(2 * n);
         for (Vector* v : {&x_, &F_}) *v = Vector::Zero(2 * n + count);
         cg_.resize(n);
         const Vector& scale = step.scale();
-        for_each_slot(2 * n, [&](long at, std::size_t) {
+        for_each_dof(2 * n, [&](long at) {
             root_[at] = scale[at] > 0 ? 1 / scale[at] : 0;
             x_[at] = root_[at] * step.solver.old_velocities()[at];
         });
         for (long s = 0; s < count; ++s) {
-            const Servo& servo = step.solver.servos[static_cast<std::size_t>(s)];
-            x_[2 * n + s] = std::sqrt(servo.mass) * servo.velocity;
+            const ForceControl& control = step.solver.force_controls[s];
+            x_[2 * n + s] = std::sqrt(control.mass) * control.velocity;
         }
     }
 
     // Puts v + R(v)/D on the nodes, for contact to correct.
     template <class Shape>
-    void push_by_missing_momentum(const Shape& shape, const Vector& x, Step& step) {
+    void add_missing_momentum(const Shape& shape, const Vector& x, Step& step) {
         GrainNodes& nodes = step.nodes;
         const Vector &scale = step.scale(), &b = step.solver.right_hand_side();
         const long n = nodes.size();
-        for (std::size_t s = 0; s < step.solver.servos.size(); ++s) {
-            const Servo& servo = step.solver.servos[s];
-            RigidMotion& is = step.all.rigid[servo.grain];
-            (servo.along_x ? is.vx : is.vy) =
-                x[2 * n + static_cast<long>(s)] / std::sqrt(servo.mass);
+        for (std::size_t s = 0; s < step.solver.force_controls.size(); ++s) {
+            const ForceControl& control = step.solver.force_controls[s];
+            RigidMotion& is = step.all.rigid[control.grain];
+            (control.along_x ? is.vx : is.vy) =
+                x[2 * n + static_cast<long>(s)] / std::sqrt(control.mass);
         }
-        drive_rigid(step.all.grains, step.all.rigid, nodes);
-        for_each_slot(n, [&](long i, std::size_t k) {
+        prescribe_rigid_velocity(step.all.grains, step.all.rigid, nodes);
+        for_each_dof(n, [&](long i) {
             v_[i] = scale[i] * x[i], v_[n + i] = scale[n + i] * x[n + i];
-            if (nodes.is_free()[k] != 0)
-                nodes.motion[k].vx_1 = v_[i], nodes.motion[k].vy_1 = v_[n + i];
+            if (nodes.is_free()[i] != 0)
+                nodes.motion[i].vx_1 = v_[i], nodes.motion[i].vy_1 = v_[n + i];
         });
-        spread_velocity(nodes);
+        fill_ghost_velocity(nodes);
         force_at_theta(shape, step.laws, step.scheme, step.dt, step.all.grains, step.all.particles,
                        nodes);
         step.solver.matrix.multiply_mass(v_, Mv_);
         const double theta_dt = step.scheme.theta * step.dt,
                      factor_M = 1 + theta_dt * step.body.damping;
-        for_each_slot(n, [&](long i, std::size_t k) {
-            if (nodes.is_free()[k] == 0) return;
+        for_each_dof(n, [&](long i) {
+            if (nodes.is_free()[i] == 0) return;
             const auto pushed = [&](long at, double force) {
                 const double R = b[at] + theta_dt * force - factor_M * Mv_[at];
                 return scale[at] > 0 ? v_[at] + R * scale[at] * scale[at] : 0.0;
             };
-            nodes.motion[k].vx_1 = pushed(i, nodes.force[k].x);
-            nodes.motion[k].vy_1 = pushed(n + i, nodes.force[k].y);
+            nodes.motion[i].vx_1 = pushed(i, nodes.force[i].x);
+            nodes.motion[i].vy_1 = pushed(n + i, nodes.force[i].y);
         });
     }
 
-    // The operator of the explicit program, with the masses D.
-    static void correct_node(const Vector& scale, long n, mpm::detail::NodeProblem& node) {
+    // The operator C of the explicit program, with the masses D.
+    static void correct_velocities(const Vector& scale, long n, ContactNode& node) {
         node.isotropic = false;
-        for (std::size_t k = 0; k < node.parties; ++k) {
-            mpm::detail::Party& party = node.party[k];
-            if (party.is_fixed()) continue;
-            party.per_mx = scale[party.slot] * scale[party.slot];
-            party.per_my = scale[n + party.slot] * scale[n + party.slot];
+        for (ContactBody& body : node.bodies) {
+            if (body.is_fixed()) continue;
+            body.per_mx = scale[body.dof] * scale[body.dof];
+            body.per_my = scale[n + body.dof] * scale[n + body.dof];
         }
-        mpm::detail::weigh_pairs(node);
-        mpm::detail::solve(node);
+        for (ContactPair& pair : node.pairs) pair.lambda_n = pair.lambda_t = 0;
+        find_effective_masses(node);
+        solve_contact_node(node);
     }
 
-    // F(v) = v - C(v + R(v)/D), and of a plate V - [V_old + (dt F + impulses)/m]/(1 + dt c/m).
+    // F(v) = v - C(v + R(v)/D), and of a grain under force control
+    // V - [V_old + (dt F + impulses)/m]/(1 + dt c/m).
     template <class Shape>
     void residual(const Shape& shape, const Vector& x, Step& step, Vector& F) {
         GrainNodes& nodes = step.nodes;
-        const std::vector<Servo>& servos = step.solver.servos;
+        const std::vector<ForceControl>& controls = step.solver.force_controls;
         const long n = nodes.size();
-        push_by_missing_momentum(shape, x, step);
+        add_missing_momentum(shape, x, step);
         std::array<std::vector<double>, common::block_count> impulses;
-        for (auto& block : impulses) block.assign(servos.size(), 0.0);
-        std::array<std::size_t, common::block_count> next = step.solver.set.first_pair;
-        step.contact.meetings().for_each(nodes, step.all.bonds, false, [&](int number, auto& node) {
+        for (auto& block : impulses) block.assign(controls.size(), 0.0);
+        step.solver.set.for_each(nodes, [&](int number, ContactNode& node, std::size_t first) {
             const auto block = static_cast<std::size_t>(number);
-            correct_node(step.scale(), n, node);
-            for (std::size_t k = 0; k < node.pairs; ++k) {
-                if (step.watching) see(node.pair[k], step.solver.set.pairs[next[block]++]);
-                for (std::size_t s = 0; s < servos.size(); ++s)
-                    impulses[block][s] += impulse_on(servos[s], node, node.pair[k]);
+            correct_velocities(step.scale(), n, node);
+            for (const ContactPair& pair : node.pairs) {
+                if (step.updating) update_state(pair, step.solver.set.pairs[first++]);
+                for (std::size_t s = 0; s < controls.size(); ++s)
+                    impulses[block][s] += impulse_on(controls[s], node, pair);
             }
-            for (std::size_t k = 0; k < node.parties; ++k) {
-                if (node.party[k].is_fixed()) continue;
-                NodeMotion& v = nodes.motion[static_cast<std::size_t>(node.party[k].slot)];
-                v.vx_1 = node.party[k].vx, v.vy_1 = node.party[k].vy;
-            }
+            store_velocities(node, nodes);
         });
-        for_each_slot(n, [&](long i, std::size_t k) {
-            F[i] = x[i] - root_[i] * nodes.motion[k].vx_1;
-            F[n + i] = x[n + i] - root_[n + i] * nodes.motion[k].vy_1;
+        for_each_dof(n, [&](long i) {
+            F[i] = x[i] - root_[i] * nodes.motion[i].vx_1;
+            F[n + i] = x[n + i] - root_[n + i] * nodes.motion[i].vy_1;
         });
-        for (std::size_t s = 0; s < servos.size(); ++s) {
-            const Servo& servo = servos[s];
-            double impulse = step.dt * servo.force;
+        for (std::size_t s = 0; s < controls.size(); ++s) {
+            const ForceControl& control = controls[s];
+            double impulse = step.dt * control.force;
             for (const auto& block : impulses) impulse += block[s] / step.scheme.theta;
-            const double V = (servo.velocity + impulse / servo.mass) /
-                             (1 + step.dt * servo.damping / servo.mass);
+            const double V = (control.velocity + impulse / control.mass) /
+                             (1 + step.dt * control.damping / control.mass);
             const long at = 2 * n + static_cast<long>(s);
-            F[at] = x[at] - std::sqrt(servo.mass) * V;
+            F[at] = x[at] - std::sqrt(control.mass) * V;
         }
     }
 
-    // What a pair does to a plate that a force drives, along its way.
-    static double impulse_on(const Servo& servo, const mpm::detail::NodeProblem& node,
-                             const mpm::detail::Pair& pair) {
-        const double along = servo.along_x ? pair.lambda_n * pair.nx - pair.lambda_t * pair.ny
-                                           : pair.lambda_n * pair.ny + pair.lambda_t * pair.nx;
-        const auto is = [&](std::size_t who) {
-            const mpm::detail::Party& party = node.party[who];
-            return party.rigid && static_cast<std::size_t>(party.grain) == servo.grain;
-        };
-        return (is(pair.b) ? along : 0) - (is(pair.a) ? along : 0);
-    }
-
-    // Puts down what a pair does now.
-    static void see(const mpm::detail::Pair& now, MeetingPair& pair) {
-        pair.lambda_n = now.lambda_n, pair.lambda_t = now.lambda_t;
-        if (pair.bond >= 0) return;
-        pair.hold = !(now.lambda_n > 0)                                         ? Hold::open
-                    : std::fabs(now.lambda_t) < pair.mu * now.lambda_n * 0.9999 ? Hold::stick
-                                                                                : Hold::slip;
-    }
-
-    // z = (1 - P) r + (P A P)^-1 [P r - P A (1 - P) r], P the projection to what closed pairs allow;
-    // of plates, z = r.
+    // z = (1 - P) r + (P A P)^-1 [P r - P A (1 - P) r] with Constraints::project; z = r for V.
     void precondition(const Vector& r, Step& step, Vector& z) {
         const Vector& scale = step.scale();
         const long n = step.nodes.size();
         part_ = r.head(2 * n);
         allowed_.project(part_);
-        for_each_slot(2 * n, [&](long at, std::size_t) {
+        for_each_dof(2 * n, [&](long at) {
             rest_[at] = scale[at] > 0 ? r[at] - part_[at] : 0;
             v_[at] = scale[at] * rest_[at];
         });
         const auto multiply = [&](Vector& x, Vector& y) { step.solver.matrix.multiply(x, y); };
         multiply(v_, Mv_);
-        for_each_slot(2 * n,
-                      [&](long at, std::size_t) { part_[at] = root_[at] * part_[at] - Mv_[at]; });
+        for_each_dof(2 * n, [&](long at) { part_[at] = root_[at] * part_[at] - Mv_[at]; });
         v_.setZero();
-        PlateSystem none;
+        ControlledGrains none;
         const CgResult cg =
             projected_cg(multiply, step.solver.preconditioner(allowed_), allowed_, scale, part_,
                          1e-4, step.scheme.max_iterations, v_, none, cg_);
         step.report.iterations += cg.iterations;
         z = r;
-        for_each_slot(2 * n, [&](long at, std::size_t) { z[at] = rest_[at] + root_[at] * v_[at]; });
+        for_each_dof(2 * n, [&](long at) { z[at] = rest_[at] + root_[at] * v_[at]; });
     }
 
-    // The books of contact, with the masses it was solved with.
+    // What contact has done at the solution, with the masses D.
     template <class Shape>
     ContactSums end(const Shape& shape, Step& step, State& state) {
-        push_by_missing_momentum(shape, x_, step);
+        state.active_pairs = step.solver.set.active_pairs();
+        add_missing_momentum(shape, x_, step);
         const long n = step.nodes.size();
-        const ContactSums did = step.contact.apply(
-            step.dt, step.nodes, step.all.bonds, step.all.rigid, {0, 1 / step.scheme.theta},
-            [&](int, auto& node) { correct_node(step.scale(), n, node); });
-        for (const Servo& servo : step.solver.servos) {
-            RigidMotion& is = step.all.rigid[servo.grain];
-            (servo.along_x ? is.travel_x : is.travel_y) +=
-                step.dt * (servo.along_x ? is.vx : is.vy);
+        ContactTally sums = step.contact.tally({0, 1 / step.scheme.theta});
+        step.solver.set.for_each(step.nodes, [&](int block, ContactNode& node, std::size_t) {
+            correct_velocities(step.scale(), n, node);
+            sums.add(block, node);
+            store_velocities(node, step.nodes);
+        });
+        fill_ghost_velocity(step.nodes);
+        const ContactSums did = sums.finish(step.dt, step.all.bonds, step.all.rigid);
+        for (const ForceControl& control : step.solver.force_controls) {
+            RigidMotion& is = step.all.rigid[control.grain];
+            const double V = control.along_x ? is.vx : is.vy;
+            (control.along_x ? is.travel_x : is.travel_y) += step.dt * V;
         }
-        state.pressed = step.solver.set.memory();
         return did;
     }
 
     [[noreturn]] static void fail(const common::NewtonResult& result, const ThetaScheme& scheme,
-                                  const std::vector<Grain>& grains, const ContactSet& set) {
+                                  const std::vector<Grain>& grains, const ActiveSet& set) {
         std::size_t hardest = 0;
         for (std::size_t k = 0; k < set.pairs.size(); ++k)
             if (set.pairs[k].lambda_n > set.pairs[hardest].lambda_n) hardest = k;

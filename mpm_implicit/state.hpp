@@ -1,12 +1,11 @@
-// All that changes in a run of mpm_implicit, what a step sums up for the ledger, and its loads.
+// All that changes in a run of mpm_implicit, and what a step sums up for the budget.
 #pragma once
 
 #include <tuple>
 #include <vector>
 
 #include "mpm_explicit/assembly.hpp"
-#include "mpm_explicit/plates.hpp"
-#include "mpm_implicit/ledger.hpp"
+#include "mpm_implicit/budget.hpp"
 
 namespace mpm_implicit {
 
@@ -14,28 +13,19 @@ namespace mpm_implicit {
 struct SolveReport {
     long iterations = 0;       // conjugate gradients
     long mass_iterations = 0;  // for v^0
-    long loops = 0;            // guesses of who presses, or Newton steps
+    long loops = 0;            // active sets tried, or Newton steps
     long krylov = 0;           // GMRES vectors of Newton's steps
-    long held = 0;             // pairs that the rules against circles have kept as they were
+    long held = 0;             // pairs that the rules against cycles of sets have kept as they were
 };
 
-/// What a pair did in the last step, to begin the next one with.
-struct PairMemory {
+/// A closed pair of the last step, which the next one begins with.
+struct ActivePair {
     long node;
-    int a, b, hold;
+    int a, b, state;  // bodies by ContactBody::id(), ContactState
     double lambda_t;
-    bool operator<(const PairMemory& other) const {
+    bool operator<(const ActivePair& other) const {
         return std::tie(node, a, b) < std::tie(other.node, other.a, other.b);
     }
-};
-
-/// A rigid grain that a force drives: its velocity in this step is one more unknown V,
-///   m (V - V_old) = dt (F + push - c V)
-struct Servo {
-    std::size_t grain;
-    bool along_x;
-    double mass, damping, force;  // force: now
-    double velocity;              // V_old
 };
 
 /// What the solvers took, summed up over the steps.
@@ -53,15 +43,15 @@ struct Effort {
 /// All that changes in a run.
 struct State {
     Assembly assembly;
-    Frame frame;
-    Ledger ledger;
-    std::vector<PairMemory> pressed;  // pairs that were closed in the last step
+    GridLayout layout;
+    Budget budget;
+    std::vector<ActivePair> active_pairs;  // closed in the last step
     Effort effort;
 };
 
 /// What one step has summed up.
 struct StepSums {
-    std::vector<StripSums> strips;
+    std::vector<TileSums> tiles;
     NodeWork nodes;
     ContactSums contact;
     SolveReport solver;
@@ -70,39 +60,22 @@ struct StepSums {
 template <class Archive>
 void archive(Archive& a, State& state) {
     archive(a, state.assembly);
-    mpm::archive(a, state.frame);
-    archive(a, state.ledger);
+    mpm::archive(a, state.layout);
+    archive(a, state.budget);
     Effort& e = state.effort;
     a("iterations", e.iterations), a("mass_iterations", e.mass_iterations);
     a("krylov", e.krylov), a("loops", e.loops), a("held", e.held);
     std::vector<double> pairs;
-    for (const PairMemory& pair : state.pressed)
+    for (const ActivePair& pair : state.active_pairs)
         pairs.insert(pairs.end(),
                      {static_cast<double>(pair.node), static_cast<double>(pair.a),
-                      static_cast<double>(pair.b), static_cast<double>(pair.hold), pair.lambda_t});
-    a("pressed", pairs);
-    state.pressed.clear();
+                      static_cast<double>(pair.b), static_cast<double>(pair.state), pair.lambda_t});
+    a("active_pairs", pairs);
+    state.active_pairs.clear();
     for (std::size_t k = 0; k + 4 < pairs.size(); k += 5)
-        state.pressed.push_back({std::lround(pairs[k]), static_cast<int>(pairs[k + 1]),
-                                 static_cast<int>(pairs[k + 2]), static_cast<int>(pairs[k + 3]),
-                                 pairs[k + 4]});
-}
-
-/// Loads in the step from t^n: the body force, and velocities of rigid grains.
-/// out:    servos, those that a force drives, whose velocity belongs to the solution
-inline BodyForce drive(const Problem& problem, long step, double dt,
-                       std::vector<RigidMotion>& rigid, std::vector<Servo>& servos) {
-    const double t = time_of_load(step, dt), share = share_of_load(t, problem.rise);
-    servos.clear();
-    for (std::size_t g = 0; g < rigid.size(); ++g) {
-        RigidMotion& is = rigid[g];
-        if (is.servo_x || is.servo_y)
-            servos.push_back(
-                {g, is.servo_x, is.mass, is.damping, share * is.force, is.servo_x ? is.vx : is.vy});
-        if (!is.servo_x) is.vx = share * is.prescribed_vx, is.travel_x += dt * is.vx;
-        if (!is.servo_y) is.vy = share * is.prescribed_vy, is.travel_y += dt * is.vy;
-    }
-    return body_force(problem, t);
+        state.active_pairs.push_back({std::lround(pairs[k]), static_cast<int>(pairs[k + 1]),
+                                      static_cast<int>(pairs[k + 2]),
+                                      static_cast<int>(pairs[k + 3]), pairs[k + 4]});
 }
 
 }  // namespace mpm_implicit

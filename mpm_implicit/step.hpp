@@ -1,4 +1,5 @@
-// The step of mpm_implicit: the slide, call by call, in three parts, of which take_step() is the whole.
+// The step of mpm_implicit: the slide, call by call, in three parts, of which take_step() is the
+// whole.
 #pragma once
 
 #include <vector>
@@ -34,7 +35,7 @@ void find_matrices(const Shape& shape, const BodyForce& body, double dt,
                    StepScratch<reach>& scratch, GrainNodes& nodes, State& state, StepSums& sums,
                    Clock&& clock = {}) {
     // [matrices]
-    put_on_nodes(shape, state.assembly.particles, nodes);  // particles -> grid
+    particles_to_grid(shape, state.assembly.particles, nodes);  // particles -> grid
     clock.lap("put");
     scratch.solver.assemble(shape, scratch.laws, scratch.scheme, body, dt, state,
                             nodes);  // M, K of  [MPM-5 ... 8]
@@ -64,7 +65,7 @@ void find_theta_velocities(const Shape& shape, const BodyForce& body, double dt,
 }
 
 /// Stresses and particles at t^{n+1}.
-/// out:    sums.strips, sums.nodes
+/// out:    sums.tiles, sums.nodes
 template <class Shape, int reach, class Clock = common::NoClock>
 void move_to_new_level(const Shape& shape, const BodyForce& body, double dt,
                        const StepScratch<reach>& scratch, GrainNodes& nodes, State& state,
@@ -72,23 +73,23 @@ void move_to_new_level(const Shape& shape, const BodyForce& body, double dt,
     Particles& particles = state.assembly.particles;
     const std::vector<Grain>& grains = state.assembly.grains;
     // [particles]
-    for_each_chunk(grains, nodes, sums.strips, [&](Chunk& chunk) {
-        velocity_gradient(shape, particles, nodes, NewVelocity{}, dt, chunk);  // [MPM-5]
-        update_stress(scratch.laws, scratch.scheme, chunk, grains, particles,
-                      sums.strips);  // [MPM-6, 7]
-        if (!scratch.frozen) turn_stress(chunk, particles);
+    for_each_batch(grains, nodes, sums.tiles, [&](ParticleBatch& batch) {
+        velocity_gradient(shape, particles, nodes, NewVelocity{}, dt, batch);  // [MPM-5]
+        update_stress(scratch.laws, scratch.scheme, batch, grains, particles,
+                      sums.tiles);  // [MPM-6, 7]
+        if (!scratch.frozen) rotate_stress(batch, particles);
     });
     sums.nodes = work_on_nodes(body, scratch.scheme.theta, dt, nodes);
     move_particles(shape, grains, state.assembly.rigid, nodes, scratch.scheme.theta, scratch.flip,
-                   scratch.frozen, dt, particles, sums.strips);  // grid -> particles
+                   scratch.frozen, dt, particles, sums.tiles);  // grid -> particles
     // [/particles]
-    state.frame.moved += scratch.frozen ? 0 : dt * sums.nodes.largest_speed;
+    state.layout.moved += scratch.frozen ? 0 : dt * sums.nodes.largest_speed;
     clock.lap("particles");
 }
 
 /// From t^n to t^{n+1}.
-/// in/out: nodes, sorted for where the particles are; state but the ledger
-/// out:    sums, which the ledger takes
+/// in/out: nodes, sorted for where the particles are; state but the budget
+/// out:    sums, which the budget takes
 /// errors: NumericalError as the solvers
 template <class Shape, int reach, class Clock = common::NoClock>
 void take_step(const Shape& shape, const BodyForce& body, double dt, StepScratch<reach>& scratch,

@@ -9,7 +9,7 @@
 #pragma once
 
 #include "mpm_explicit/strain.hpp"
-#include "mpm_implicit/ledger.hpp"
+#include "mpm_implicit/budget.hpp"
 #include "mpm_implicit/theta_scheme.hpp"
 
 namespace mpm_implicit {
@@ -18,18 +18,18 @@ namespace detail {
 
 template <class LawOf>
 void update_stress(const LawOf& law, const Compliance& compliance, double theta, bool grows,
-                   const Chunk& chunk, Particles& particles, StripSums& sums) {
-    double* V_p = particles.V_p.data() + chunk.begin;
-    double *sxx = particles.sxx_p.data() + chunk.begin, *syy = particles.syy_p.data() + chunk.begin,
-           *sxy = particles.sxy_p.data() + chunk.begin, *szz = particles.szz_p.data() + chunk.begin,
-           *yield = particles.yield_p.data() + chunk.begin;
+                   const ParticleBatch& batch, Particles& particles, TileSums& sums) {
+    double* V_p = particles.V_p.data() + batch.begin;
+    double *sxx = particles.sxx_p.data() + batch.begin, *syy = particles.syy_p.data() + batch.begin,
+           *sxy = particles.sxy_p.data() + batch.begin, *szz = particles.szz_p.data() + batch.begin,
+           *yield = particles.yield_p.data() + batch.begin;
     const double growth = grows ? 1 : 0;
     double elastic = 0, theta_strain = 0, plastic = 0, volume = 0, least = 1;
 #pragma omp simd reduction(+ : elastic, theta_strain, plastic, volume) reduction(min : least)
     // [stress]
-    for (long k = 0; k < chunk.count; ++k) {
-        const StrainStep de{chunk.xx[k], chunk.yy[k],
-                            0.5 * (chunk.xy[k] + chunk.yx[k])};  // [MPM-5]
+    for (long k = 0; k < batch.count; ++k) {
+        const StrainStep de{batch.xx[k], batch.yy[k],
+                            0.5 * (batch.xy[k] + batch.yx[k])};  // [MPM-5]
         const Stress old{sxx[k], syy[k], sxy[k], szz[k]};
         Stress s{sxx[k], syy[k], sxy[k], szz[k]};  // a copy of old would not vectorize
         PlasticStep dep{};
@@ -57,15 +57,15 @@ void update_stress(const LawOf& law, const Compliance& compliance, double theta,
 
 // sigma^theta = sigma^0 + theta (sigma^1 - sigma^0) and V^theta, from which the force is made.
 template <class LawOf>
-void stress_at_theta(const LawOf& law, double theta, bool grows, const Chunk& chunk,
+void stress_at_theta(const LawOf& law, double theta, bool grows, const ParticleBatch& batch,
                      const Particles& from, double* V_s_xx, double* V_s_yy, double* V_s_xy) {
-    const double *V_p = from.V_p.data() + chunk.begin, *sxx = from.sxx_p.data() + chunk.begin,
-                 *syy = from.syy_p.data() + chunk.begin, *sxy = from.sxy_p.data() + chunk.begin,
-                 *szz = from.szz_p.data() + chunk.begin, *yield = from.yield_p.data() + chunk.begin;
+    const double *V_p = from.V_p.data() + batch.begin, *sxx = from.sxx_p.data() + batch.begin,
+                 *syy = from.syy_p.data() + batch.begin, *sxy = from.sxy_p.data() + batch.begin,
+                 *szz = from.szz_p.data() + batch.begin, *yield = from.yield_p.data() + batch.begin;
     const double growth = grows ? theta : 0;
 #pragma omp simd
-    for (long k = 0; k < chunk.count; ++k) {
-        const StrainStep de{chunk.xx[k], chunk.yy[k], 0.5 * (chunk.xy[k] + chunk.yx[k])};
+    for (long k = 0; k < batch.count; ++k) {
+        const StrainStep de{batch.xx[k], batch.yy[k], 0.5 * (batch.xy[k] + batch.yx[k])};
         Stress s{sxx[k], syy[k], sxy[k], szz[k]};
         PlasticStep dep{};
         double ep = yield[k];
@@ -79,16 +79,15 @@ void stress_at_theta(const LawOf& law, double theta, bool grows, const Chunk& ch
 
 }  // namespace detail
 
-/// Volumes and stresses of a chunk at the end of the step, and their energies.    [MPM-6, MPM-7]
+/// Volumes and stresses of a batch at the end of the step, and their energies.    [MPM-6, MPM-7]
 inline void update_stress(const std::vector<AnyLaw>& laws, const ThetaScheme& scheme,
-                          const Chunk& chunk, const std::vector<Grain>& grains,
-                          Particles& particles, std::vector<StripSums>& sums) {
-    const AnyLaw& law =
-        laws[static_cast<std::size_t>(grains[static_cast<std::size_t>(chunk.grain)].material)];
+                          const ParticleBatch& batch, const std::vector<Grain>& grains,
+                          Particles& particles, std::vector<TileSums>& sums) {
+    const AnyLaw& law = laws[grains[batch.grain].material];
     std::visit(
         [&](const auto& one) {
-            detail::update_stress(one, law.compliance, scheme.theta, !scheme.keeps_volumes(), chunk,
-                                  particles, sums[chunk.strip]);
+            detail::update_stress(one, law.compliance, scheme.theta, !scheme.keeps_volumes(), batch,
+                                  particles, sums[batch.tile]);
         },
         law.law);
 }
@@ -105,28 +104,27 @@ void force_at_theta(const Shape& shape, const std::vector<AnyLaw>& laws, const T
         std::fill(nodes.force.begin() + begin, nodes.force.begin() + end, NodeForce{});
     });
     const Locator at(nodes.mesh());
-    for_each_chunk(grains, nodes, [&](Chunk& chunk) {
-        velocity_gradient(shape, particles, nodes, NewVelocity{}, dt, chunk);
-        double xx[Chunk::size], yy[Chunk::size], xy[Chunk::size];
-        const AnyLaw& law =
-            laws[static_cast<std::size_t>(grains[static_cast<std::size_t>(chunk.grain)].material)];
+    for_each_batch(grains, nodes, [&](ParticleBatch& batch) {
+        velocity_gradient(shape, particles, nodes, NewVelocity{}, dt, batch);
+        double xx[ParticleBatch::size], yy[ParticleBatch::size], xy[ParticleBatch::size];
+        const AnyLaw& law = laws[grains[batch.grain].material];
         std::visit(
             [&](const auto& one) {
-                detail::stress_at_theta(one, scheme.theta, !scheme.keeps_volumes(), chunk,
+                detail::stress_at_theta(one, scheme.theta, !scheme.keeps_volumes(), batch,
                                         particles, xx, yy, xy);
             },
             law.law);
-        const long* origin = nodes.origins(chunk.grain);
-        const double *x_p = particles.x_p.data() + chunk.begin,
-                     *y_p = particles.y_p.data() + chunk.begin;
-        for (long k = 0; k < chunk.count; ++k)
-            for_each_node(
-                shape, at, origin, x_p[k], y_p[k], [&](long slot, double, double Gx, double Gy) {
-                    nodes.force[static_cast<std::size_t>(slot)].x -= xx[k] * Gx + xy[k] * Gy;
-                    nodes.force[static_cast<std::size_t>(slot)].y -= xy[k] * Gx + yy[k] * Gy;
-                });
+        const long* origin = nodes.origins(batch.grain);
+        const double *x_p = particles.x_p.data() + batch.begin,
+                     *y_p = particles.y_p.data() + batch.begin;
+        for (long k = 0; k < batch.count; ++k)
+            for_each_node(shape, at, origin, x_p[k], y_p[k],
+                          [&](long dof, double, double Gx, double Gy) {
+                              nodes.force[dof].x -= xx[k] * Gx + xy[k] * Gy;
+                              nodes.force[dof].y -= xy[k] * Gx + yy[k] * Gy;
+                          });
     });
-    fold_force(nodes);
+    reduce_ghost_force(nodes);
 }
 
 }  // namespace mpm_implicit

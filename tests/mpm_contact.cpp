@@ -18,26 +18,26 @@ namespace {
 using namespace facts;
 
 // Grains on a mesh of unit cells, the velocities of their nodes, and what contact makes of them.
-struct Meeting {
+struct ContactProblem {
     Cloud cloud;
     GrainNodes nodes;
     std::vector<Bond> bonds;
     std::vector<NodeMotion> before;
     ContactSums sums;
 
-    explicit Meeting(const Cloud& from, double least_mass = 0)
+    explicit ContactProblem(const Cloud& from, double least_mass = 0)
         : cloud(from), nodes(cloud.on_nodes(LinearShape{}, least_mass)) {
         accelerate([](int, NodeMotion&) {});
     }
     /// v^1 = v^0 and then what change(grain, motion) makes of it.
     template <class Change>
     void accelerate(const Change& change) {
-        for_each_slot(nodes, cloud.frame, [&](int g, long, long, std::size_t slot) {
-            NodeMotion& v = nodes.motion[slot];
+        for_each_dof(nodes, cloud.layout, [&](int g, long, long, std::size_t dof) {
+            NodeMotion& v = nodes.motion[dof];
             v.vx_1 = v.vx_0, v.vy_1 = v.vy_0;
             if (!cloud.grains[static_cast<std::size_t>(g)].rigid) change(g, v);
-            if (nodes.is_fixed_x(static_cast<long>(slot))) v.vx_1 = 0;
-            if (nodes.is_fixed_y(static_cast<long>(slot))) v.vy_1 = 0;
+            if (nodes.is_fixed_x(static_cast<long>(dof))) v.vx_1 = 0;
+            if (nodes.is_fixed_y(static_cast<long>(dof))) v.vy_1 = 0;
         });
         before = nodes.motion;
     }
@@ -56,14 +56,14 @@ struct Meeting {
         return all;
     }
     const NodeSums& sum(const Member& m) const {
-        return nodes.sums[static_cast<std::size_t>(m.slot)];
+        return nodes.sums[static_cast<std::size_t>(m.dof)];
     }
     double mass(const Member& m) const { return sum(m).m; }
     const NodeMotion& now(const Member& m) const {
-        return nodes.motion[static_cast<std::size_t>(m.slot)];
+        return nodes.motion[static_cast<std::size_t>(m.dof)];
     }
     const NodeMotion& then(const Member& m) const {
-        return before[static_cast<std::size_t>(m.slot)];
+        return before[static_cast<std::size_t>(m.dof)];
     }
     bool is_rigid(const Member& m) const {
         return cloud.grains[static_cast<std::size_t>(m.grain)].rigid;
@@ -113,12 +113,12 @@ Cloud two_particles(double apart, double angle, double m_a = 1, double m_b = 1) 
     return cloud;
 }
 
-double kinetic(const Meeting& m, bool new_ones) {
+double kinetic(const ContactProblem& m, bool new_ones) {
     double sum = 0;
-    for_each_slot(m.nodes, m.cloud.frame, [&](int g, long, long, std::size_t slot) {
+    for_each_dof(m.nodes, m.cloud.layout, [&](int g, long, long, std::size_t dof) {
         if (m.cloud.grains[static_cast<std::size_t>(g)].rigid) return;
-        const NodeMotion& v = new_ones ? m.nodes.motion[slot] : m.before[slot];
-        sum += 0.5 * m.nodes.sums[slot].m * (v.vx_1 * v.vx_1 + v.vy_1 * v.vy_1);
+        const NodeMotion& v = new_ones ? m.nodes.motion[dof] : m.before[dof];
+        sum += 0.5 * m.nodes.sums[dof].m * (v.vx_1 * v.vx_1 + v.vy_1 * v.vy_1);
     });
     return sum;
 }
@@ -130,7 +130,7 @@ double kinetic(const Meeting& m, bool new_ones) {
 TEST_CASE("two grains that approach get the same normal velocity and keep their tangential ones") {
     long touched = 0, left = 0;
     for (std::uint64_t seed = 1; seed <= 60; ++seed) {
-        Meeting m(crowd(seed, 2));
+        ContactProblem m(crowd(seed, 2));
         Random random(seed);
         m.accelerate([&](int, NodeMotion& v) { v.vx_1 += random(-1, 1), v.vy_1 += random(-1, 1); });
         m.meet(rule_of(0));
@@ -168,7 +168,7 @@ TEST_CASE("friction sticks below Coulomb's limit and slips with exactly mu lambd
     long stuck = 0, slipped = 0;
     for (const double mu : {0.1, 0.5, 1.5}) {
         for (std::uint64_t seed = 1; seed <= 40; ++seed) {
-            Meeting m(crowd(seed, 2));
+            ContactProblem m(crowd(seed, 2));
             m.meet(rule_of(mu));
             for (long n = 0; n < m.nodes.shared_count(); ++n) {
                 const auto who = m.members(n);
@@ -205,7 +205,7 @@ TEST_CASE("grains press only when the centers of their parts are nearer than the
                 CAPTURE(angle);
                 CAPTURE(separation);
                 CAPTURE(apart);
-                Meeting m(two_particles(apart, angle));
+                ContactProblem m(two_particles(apart, angle));
                 m.accelerate([&](int g, NodeMotion& v) {
                     v.vx_1 = (g == 0 ? 1 : -1) * std::cos(angle);
                     v.vy_1 = (g == 0 ? 1 : -1) * std::sin(angle);
@@ -239,8 +239,8 @@ TEST_CASE("a part that is a hundred thousand times lighter is left alone") {
     for (const double ratio : {1e-7, 0.99e-5, 1.01e-5, 1e-3}) {
         for (const bool swapped : {false, true}) {
             CAPTURE(ratio);
-            Meeting m(swapped ? two_particles(0.5, 0, ratio / (1 - ratio), 1)
-                              : two_particles(0.5, 0, 1, ratio / (1 - ratio)));
+            ContactProblem m(swapped ? two_particles(0.5, 0, ratio / (1 - ratio), 1)
+                                     : two_particles(0.5, 0, 1, ratio / (1 - ratio)));
             m.accelerate([](int g, NodeMotion& v) { v.vx_1 = g == 0 ? 1 : -1; });
             m.meet(rule_of(0));
             for (long n = 0; n < m.nodes.shared_count(); ++n) {
@@ -259,7 +259,7 @@ TEST_CASE("contact keeps the momentum at every node whoever meets there") {
     for (const int grains : {2, 3, 5, 8}) {
         for (const double friction : {0.0, 0.3}) {
             for (std::uint64_t seed = 1; seed <= 30; ++seed) {
-                Meeting m(crowd(seed, grains));
+                ContactProblem m(crowd(seed, grains));
                 m.meet(rule_of(friction));
                 for (long n = 0; n < m.nodes.shared_count(); ++n) {
                     double x = 0, y = 0, size = 0;
@@ -282,14 +282,14 @@ TEST_CASE("contact keeps the momentum at every node whoever meets there") {
 
 TEST_CASE("what rigid grains give is the opposite of their push") {
     for (std::uint64_t seed = 1; seed <= 40; ++seed) {
-        Meeting m(crowd(seed, 3, 2));
+        ContactProblem m(crowd(seed, 3, 2));
         m.cloud.rigid[0].push_x = m.cloud.rigid[3].push_x = 77;  // of the step before
         const double dt = 0.02;
         m.meet(rule_of(0.3), dt);
         double x = 0, y = 0, size = 0;
-        for_each_slot(m.nodes, m.cloud.frame, [&](int g, long, long, std::size_t slot) {
-            const NodeMotion &v = m.nodes.motion[slot], &u = m.before[slot];
-            const double mass = m.nodes.sums[slot].m;
+        for_each_dof(m.nodes, m.cloud.layout, [&](int g, long, long, std::size_t dof) {
+            const NodeMotion &v = m.nodes.motion[dof], &u = m.before[dof];
+            const double mass = m.nodes.sums[dof].m;
             if (g >= 3) {
                 CHECK((v.vx_1 == u.vx_1 && v.vy_1 == u.vy_1));
                 return;
@@ -308,7 +308,7 @@ TEST_CASE("no pair that is in contact approaches afterwards and no energy is mad
         double approach = 0, gained = 0;
         long nodes = 0, slow = 0;
         for (std::uint64_t seed = 1; seed <= 100; ++seed) {
-            Meeting m(crowd(seed, grains));
+            ContactProblem m(crowd(seed, grains));
             m.meet(rule_of(0));
             for (long n = 0; n < m.nodes.shared_count(); ++n) {
                 const auto who = m.members(n);
@@ -351,10 +351,10 @@ TEST_CASE("the order of the grains does not matter without friction") {
                     turned.add(c.x_p[k], c.y_p[k], c.m_p[k], c.vx_p[k], c.vy_p[k], c.V_p[k]);
                 }
             }
-            Meeting one(cloud), other(turned);
+            ContactProblem one(cloud), other(turned);
             one.meet(rule_of(0)), other.meet(rule_of(0));
-            for_each_slot(one.nodes, one.cloud.frame, [&](int g, long i, long j, std::size_t slot) {
-                const NodeMotion& u = one.nodes.motion[slot];
+            for_each_dof(one.nodes, one.cloud.layout, [&](int g, long i, long j, std::size_t dof) {
+                const NodeMotion& u = one.nodes.motion[dof];
                 const NodeMotion& v = other.nodes.motion[static_cast<std::size_t>(
                     other.nodes.origin(grains - 1 - g, j) + i)];
                 most = worst({most, std::fabs(u.vx_1 - v.vx_1), std::fabs(u.vy_1 - v.vy_1)});
@@ -375,7 +375,7 @@ TEST_CASE("three grains in a row share what they have along the row") {
         }
         return cloud;
     };
-    const auto at_node = [](const Meeting& m) {
+    const auto at_node = [](const ContactProblem& m) {
         std::array<double, 3> v{};
         for (long n = 0; n < m.nodes.shared_count(); ++n)
             for (const Member& one : m.members(n))
@@ -384,17 +384,17 @@ TEST_CASE("three grains in a row share what they have along the row") {
         return v;
     };
     // Both outer ones come in: the middle stays where it is.
-    Meeting in(row(3));
+    ContactProblem in(row(3));
     in.accelerate([](int g, NodeMotion& v) { v.vx_1 = g == 0 ? 1 : g == 2 ? -1 : 0; });
     in.meet(rule_of(0.4));
     for (const double v : at_node(in)) CHECK(std::fabs(v) <= 1e-14);
     // One comes in and the others rest: the momentum is shared, 0.75 of 0.75 + 2 + 0.75.
-    Meeting hit(row(2));
+    ContactProblem hit(row(2));
     hit.accelerate([](int g, NodeMotion& v) { v.vx_1 = g == 0 ? 1 : 0; });
     hit.meet(rule_of(0));
     for (const double v : at_node(hit)) CHECK(v == doctest::Approx(0.75 / 3.5).epsilon(1e-13));
     // The outer ones leave: nothing happens.
-    Meeting out(row(2));
+    ContactProblem out(row(2));
     out.accelerate([](int g, NodeMotion& v) { v.vx_1 = g == 0 ? -1 : g == 2 ? 1 : 0; });
     out.meet(rule_of(0.4));
     CHECK(at_node(out) == std::array<double, 3>{-1, 0, 1});
@@ -403,10 +403,10 @@ TEST_CASE("three grains in a row share what they have along the row") {
 TEST_CASE("more grains at a node than there is room for end the run") {
     Cloud cloud(mesh_of(12, 12, 1));
     for (int g = 0; g < 15; ++g) cloud.begin_grain(), cloud.add(5.6 + 0.05 * g, 6.1, 1, 0, 0, 0.25);
-    Meeting fits(cloud);
+    ContactProblem fits(cloud);
     CHECK_NOTHROW(fits.meet(rule_of(0)));
     cloud.begin_grain(), cloud.add(6.35, 6.1, 1, 0, 0, 0.25);
-    Meeting crowded(cloud);
+    ContactProblem crowded(cloud);
     CHECK_THROWS_AS(crowded.meet(rule_of(0)), common::NumericalError);
 }
 
@@ -420,7 +420,7 @@ TEST_CASE("work of contact is the change of kinetic energy that it makes") {
                                    Boundary::open};
             cloud.mesh.y_low = 5, cloud.mesh.cells_y = 7;
             for (double& y : cloud.particles.y_p) y = std::max(y, 5.01);
-            Meeting m(cloud);
+            ContactProblem m(cloud);
             Random random(seed);
             m.accelerate(
                 [&](int, NodeMotion& v) { v.vx_1 += random(-1, 1), v.vy_1 += random(-1, 1); });
@@ -429,10 +429,10 @@ TEST_CASE("work of contact is the change of kinetic energy that it makes") {
             m.bonds = {bond};
             m.meet(rule_of(0.3, 0.8, 0.5));
             double work = 0, size = 0;
-            for_each_slot(m.nodes, m.cloud.frame, [&](int g, long, long, std::size_t slot) {
+            for_each_dof(m.nodes, m.cloud.layout, [&](int g, long, long, std::size_t dof) {
                 if (m.cloud.grains[static_cast<std::size_t>(g)].rigid) return;
-                const NodeMotion &v = m.nodes.motion[slot], &u = m.before[slot];
-                const double mass = m.nodes.sums[slot].m;
+                const NodeMotion &v = m.nodes.motion[dof], &u = m.before[dof];
+                const double mass = m.nodes.sums[dof].m;
                 work +=
                     0.5 * mass *
                     ((v.vx_0 + v.vx_1) * (v.vx_1 - u.vx_1) + (v.vy_0 + v.vy_1) * (v.vy_1 - u.vy_1));
@@ -450,7 +450,7 @@ TEST_CASE("work of contact is the change of kinetic energy that it makes") {
 TEST_CASE("a scheme that counts contact at another level of time gets the same motion") {
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
         const auto met = [&](const ContactLevel& level) {
-            Meeting m(crowd(seed, 4, 2));
+            ContactProblem m(crowd(seed, 4, 2));
             Random random(seed);
             m.accelerate(
                 [&](int, NodeMotion& v) { v.vx_1 += random(-1, 1), v.vy_1 += random(-1, 1); });
@@ -460,7 +460,7 @@ TEST_CASE("a scheme that counts contact at another level of time gets the same m
             m.meet(rule_of(0.3), 0.01, level);
             return m;
         };
-        const Meeting usual = met({}), old = met({1, 1}), twice = met({0.25, 2});
+        const ContactProblem usual = met({}), old = met({1, 1}), twice = met({0.25, 2});
         for (std::size_t i = 0; i < usual.nodes.motion.size(); ++i) {
             CHECK(twice.nodes.motion[i].vx_1 == usual.nodes.motion[i].vx_1);
             CHECK(twice.nodes.motion[i].vy_1 == usual.nodes.motion[i].vy_1);
@@ -490,7 +490,7 @@ TEST_CASE("grains that only coast into each other lose energy by pressing and by
     // than the slip there is.
     for (const int grains : {2, 4}) {
         for (std::uint64_t seed = 1; seed <= 40; ++seed) {
-            Meeting m(crowd(seed, grains));
+            ContactProblem m(crowd(seed, grains));
             m.meet(rule_of(0.3));
             const double lost = kinetic(m, true) - kinetic(m, false);
             CHECK(lost <= 0);
@@ -507,7 +507,7 @@ TEST_CASE("grains that only coast into each other lose energy by pressing and by
 TEST_CASE("a rigid grain gives the normal and a free one takes the velocity along it") {
     long touched = 0;
     for (std::uint64_t seed = 1; seed <= 40; ++seed) {
-        Meeting m(crowd(seed, 1, 1));
+        ContactProblem m(crowd(seed, 1, 1));
         m.meet(rule_of(0));
         for (long n = 0; n < m.nodes.shared_count(); ++n) {
             const auto who = m.members(n);
@@ -542,7 +542,7 @@ TEST_CASE("a wall pushes what is nearer than half the separation and never pulls
                     const double x = nx != 0 ? from + nx * distance : 6.2,
                                  y = ny != 0 ? from + ny * distance : 6.2;
                     cloud.begin_grain(), cloud.add(x, y, 1, 0, 0, 0.25);
-                    Meeting m(cloud);
+                    ContactProblem m(cloud);
                     const double along = 0.6;
                     m.accelerate([&](int, NodeMotion& v) {
                         v.vx_1 = normal * nx + along * ny, v.vy_1 = normal * ny + along * nx;
@@ -550,10 +550,10 @@ TEST_CASE("a wall pushes what is nearer than half the separation and never pulls
                     // Friction between grains has nothing to do with it.
                     m.meet(rule_of(7, 0.8, mu));
                     long on_wall = 0;
-                    for_each_slot(
-                        m.nodes, m.cloud.frame, [&](int, long i, long j, std::size_t slot) {
-                            if (!(m.nodes.sums[slot].m > 0)) return;
-                            const NodeMotion& v = m.nodes.motion[slot];
+                    for_each_dof(
+                        m.nodes, m.cloud.layout, [&](int, long i, long j, std::size_t dof) {
+                            if (!(m.nodes.sums[dof].m > 0)) return;
+                            const NodeMotion& v = m.nodes.motion[dof];
                             const double out = v.vx_1 * nx + v.vy_1 * ny,
                                          beside = v.vx_1 * ny + v.vy_1 * nx;
                             const bool at_wall = (nx != 0 ? real(i) : real(j)) == from;
@@ -576,7 +576,7 @@ TEST_CASE("a grain in the corner of two frictional walls stays in") {
         cloud.mesh.boundary = {Boundary::frictional, Boundary::open, Boundary::frictional,
                                Boundary::open};
         cloud.begin_grain(), cloud.add(0.3, 0.2, 1, 0, 0, 0.25);
-        Meeting m(cloud);
+        ContactProblem m(cloud);
         m.accelerate([](int, NodeMotion& v) { v.vx_1 = -1, v.vy_1 = -2; });
         m.meet(rule_of(0, 0.8, mu));
         const NodeMotion& v = m.nodes.motion[static_cast<std::size_t>(m.nodes.origin(0, 0))];
@@ -598,7 +598,7 @@ TEST_CASE("a grain that presses another against a roller moves nothing through i
                     cloud.add(is_x ? y : x, is_x ? x : y, m, 0, 0, 0.25);
                 };
                 add(6.2, 0.1, 1), add(6.2 + beside, 0.5, 2);
-                Meeting m(cloud);
+                ContactProblem m(cloud);
                 m.accelerate([&](int g, NodeMotion& v) {
                     (is_x ? v.vy_1 : v.vx_1) = g == 1 ? -0.5 : 1;
                     (is_x ? v.vx_1 : v.vy_1) = g == 1 ? -3 : 0;
@@ -606,8 +606,8 @@ TEST_CASE("a grain that presses another against a roller moves nothing through i
                 m.meet(rule_of(mu));
                 const auto& fixed = is_x ? m.nodes.fixed_x() : m.nodes.fixed_y();
                 CHECK(!fixed.empty());
-                for (const long slot : fixed) {
-                    const NodeMotion& v = m.nodes.motion[static_cast<std::size_t>(slot)];
+                for (const long dof : fixed) {
+                    const NodeMotion& v = m.nodes.motion[static_cast<std::size_t>(dof)];
                     CHECK((is_x ? v.vx_1 : v.vy_1) == 0);
                 }
                 long pressed = 0;
@@ -732,14 +732,14 @@ TEST_CASE(
                     cloud.add(3.35 + 3 * half + 0.5 * k, 4.35 + 0.5 * l, half == 0 ? 1 : 2, 0, 0,
                               0.25);
         }
-        Meeting m(cloud);
+        ContactProblem m(cloud);
         Bond bond;
         bond.a = 0, bond.b = 1, bond.tension = tension, bond.shear = shear;
         m.bonds = {bond};
         return m;
     };
     const double dt = 0.01;
-    const auto pull = [&](Meeting& m, double to_x, double to_y) {
+    const auto pull = [&](ContactProblem& m, double to_x, double to_y) {
         m.accelerate([&](int g, NodeMotion& v) {
             if (g == 1) v.vx_1 = to_x, v.vy_1 = to_y;
         });
@@ -747,7 +747,7 @@ TEST_CASE(
     };
     for (const auto& [vx, vy] :
          {std::pair(0.1, 0.0), {0.0, 0.1}, {0.0, -0.2}, {0.3, 0.1}, {0.1, -0.4}, {-0.3, 0.2}}) {
-        Meeting held = meeting(1e30, 1e30);
+        ContactProblem held = meeting(1e30, 1e30);
         pull(held, vx, vy);
         const Bond measured = held.bonds[0];
         CHECK(measured.area == doctest::Approx(4).epsilon(1e-13));
@@ -775,7 +775,7 @@ TEST_CASE(
             const double N = used > 0 ? tension / std::sqrt(used) : 1e-30,
                          S = used < 1 ? shear / std::sqrt(1 - used) : 1e30;
             for (const double wider : {1 + 1e-9, 1 - 1e-9}) {
-                Meeting m = meeting(N * wider, S * wider);
+                ContactProblem m = meeting(N * wider, S * wider);
                 pull(m, vx, vy);
                 CHECK(m.bonds[0].broken == (wider < 1));
                 CHECK(m.bonds[0].normal_stress == measured.normal_stress);
@@ -793,7 +793,7 @@ TEST_CASE(
         }
     }
     // However hard they are pressed, compression breaks nothing.
-    Meeting pressed = meeting(1e-9, 1e-3);
+    ContactProblem pressed = meeting(1e-9, 1e-3);
     pull(pressed, -1e3, 0);
     CHECK(pressed.bonds[0].normal_stress < -1e3);
     CHECK(!pressed.bonds[0].broken);

@@ -22,7 +22,7 @@ Run run(const std::string& name, const std::string& file, const std::string& ove
 
 void check_results(const Run& run, int at_least) { facts::check_results(run.summary, at_least); }
 
-// The ledger closes to round-off: every joule that comes or goes is counted where it happens.
+// The budget closes to round-off: every joule that comes or goes is counted where it happens.
 void check_budget(const Run& r) {
     const double size =
         largest(r.column("kinetic")) + largest(r.column("elastic")) + largest(r.column("external"));
@@ -56,7 +56,7 @@ TEST_CASE("beyond the limit the energy passes twice the initial before t 2" *
     const auto& energy = r.column("energy");
     CHECK(*std::max_element(energy.begin(), energy.end()) >= 2 * energy.front());
     CHECK(r.column("time").back() < 2);
-    // The ledger knows where it came from.
+    // The budget knows where it came from.
     check_budget(r);
     CHECK(r.column("remap").back() > energy.front());
     // In between, energy grows with alpha.
@@ -167,7 +167,7 @@ TEST_CASE("a disk between plates has the fringes of the closed form" *
           doctest::description("physics")) {
     const Run r = run("disk", "diametral_disk", "");
     check_results(r, 3);
-    // The servo holds the load.
+    // The force control holds the load.
     CHECK(std::fabs(r.value("load") / 237.5 - 1) <= 0.01);
     // And each plate by itself, as one bears what the other gives.
     const Run top = run("disk_top", "diametral_disk", "theory.plate=top");
@@ -194,7 +194,7 @@ TEST_CASE("a bond breaks when the bar pulls with its strength" * doctest::descri
     }
 }
 
-TEST_CASE("a disk that yields leaves slowly and its ledger closes" *
+TEST_CASE("a disk that yields leaves slowly and its budget closes" *
           doctest::description("physics")) {
     const Run r = run("yield", "yielding_disk", "");
     check_results(r, 2);

@@ -39,22 +39,22 @@ void add_random_stress(Particles& p, Random& random) {
 // One step of strain and stress with the velocities that the nodes have; the force on the nodes.
 template <class Shape>
 void strain(const Shape& shape, double dt, Cloud& cloud, GrainNodes& nodes,
-            std::vector<StripSums>& sums) {
+            std::vector<TileSums>& sums) {
     const std::vector<AnyLaw> laws{{Elastic(standard), Compliance(standard)}};
-    for_each_chunk(cloud.grains, nodes, sums, [&](Chunk& chunk) {
-        velocity_gradient(shape, cloud.particles, nodes, OldVelocity{}, dt, chunk);
-        update_stress(laws, false, chunk, cloud.grains, cloud.particles, sums);
-        add_internal_force(shape, cloud.particles, chunk, nodes);
-        turn_stress(chunk, cloud.particles);
+    for_each_batch(cloud.grains, nodes, sums, [&](ParticleBatch& batch) {
+        velocity_gradient(shape, cloud.particles, nodes, OldVelocity{}, dt, batch);
+        update_stress(laws, false, batch, cloud.grains, cloud.particles, sums);
+        add_internal_force(shape, cloud.particles, batch, nodes);
+        rotate_stress(batch, cloud.particles);
     });
 }
 
 // v = (a + b x + c y, d + e x + f y) on all nodes.
 void set_linear(const std::array<double, 6>& v, const Cloud& cloud, GrainNodes& nodes) {
-    for_each_slot(nodes, cloud.frame, [&](int, long i, long j, std::size_t slot) {
+    for_each_dof(nodes, cloud.layout, [&](int, long i, long j, std::size_t dof) {
         const double x = cloud.mesh.x_of(real(i)), y = cloud.mesh.y_of(real(j));
         const double vx = v[0] + v[1] * x + v[2] * y, vy = v[3] + v[4] * x + v[5] * y;
-        nodes.motion[slot] = {vx, vy, vx, vy};
+        nodes.motion[dof] = {vx, vy, vx, vy};
     });
 }
 
@@ -140,16 +140,16 @@ TEST_CASE("a translation or a rotation of the nodes strains nothing") {
             GrainNodes nodes = cloud.on_nodes(shape);
             set_linear({u, 0, -omega, -2 * u, omega, 0}, cloud, nodes);
             const double size = 10 * (std::fabs(u) + 10 * std::fabs(omega));
-            std::vector<StripSums> sums;
+            std::vector<TileSums> sums;
             const std::vector<double> V = cloud.particles.V_p;
             const double dt = 0.01;
-            for_each_chunk(cloud.grains, nodes, sums, [&, omega = omega](Chunk& chunk) {
-                velocity_gradient(shape, cloud.particles, nodes, OldVelocity{}, dt, chunk);
-                for (long k = 0; k < chunk.count; ++k) {
-                    CHECK(std::fabs(chunk.xx[k]) <= 1e-15 * size);
-                    CHECK(std::fabs(chunk.yy[k]) <= 1e-15 * size);
-                    CHECK(std::fabs(chunk.xy[k] + chunk.yx[k]) <= 1e-15 * size);
-                    CHECK(std::fabs(0.5 * (chunk.yx[k] - chunk.xy[k]) - omega * dt) <=
+            for_each_batch(cloud.grains, nodes, sums, [&, omega = omega](ParticleBatch& batch) {
+                velocity_gradient(shape, cloud.particles, nodes, OldVelocity{}, dt, batch);
+                for (long k = 0; k < batch.count; ++k) {
+                    CHECK(std::fabs(batch.xx[k]) <= 1e-15 * size);
+                    CHECK(std::fabs(batch.yy[k]) <= 1e-15 * size);
+                    CHECK(std::fabs(batch.xy[k] + batch.yx[k]) <= 1e-15 * size);
+                    CHECK(std::fabs(0.5 * (batch.yx[k] - batch.xy[k]) - omega * dt) <=
                           1e-15 * size);
                 }
             });
@@ -168,7 +168,7 @@ TEST_CASE("a linear velocity strains every particle alike by the law of the mate
         GrainNodes nodes = cloud.on_nodes(shape);
         const double dt = 0.01, xx = 0.3, xy = -0.2, yx = 0.5, yy = -0.7;
         set_linear({1, xx, xy, 2, yx, yy}, cloud, nodes);
-        std::vector<StripSums> sums;
+        std::vector<TileSums> sums;
         strain(shape, dt, cloud, nodes, sums);
         const double G = 0.5e4 / 1.3, lambda = 2 * G * 0.3 / 0.4, trace = (xx + yy) * dt;
         const double V = 0.125 * 0.125;
@@ -190,7 +190,7 @@ TEST_CASE("a linear velocity strains every particle alike by the law of the mate
         }
         CHECK(most <= 1e-10);
         double least = 1, elastic = 0;
-        for (const StripSums& s : sums) least = std::min(least, s.least_V), elastic += s.elastic;
+        for (const TileSums& s : sums) least = std::min(least, s.least_V), elastic += s.elastic;
         CHECK(least == doctest::Approx(1 + trace).epsilon(1e-13));
         // Elastic energy, of plane strain.
         const double energy = 0.5 * real(cloud.particles.count()) * V * (1 + trace) *
@@ -211,9 +211,9 @@ TEST_CASE("a free disk that spins takes its stress along to round-off") {
         GrainNodes nodes(cloud.mesh, shape.width, 0);
         const double dt = 0.02, omega = 0.9;
         const int steps = 200;
-        std::vector<StripSums> sums;
+        std::vector<TileSums> sums;
         for (int step = 0; step < steps; ++step) {
-            nodes.sort(cloud.grains, cloud.particles, cloud.frame);
+            nodes.sort(cloud.grains, cloud.particles, cloud.layout);
             set_linear({0, 0, -omega, 0, omega, 0}, cloud, nodes);
             strain(shape, dt, cloud, nodes, sums);
             move_particles(shape, cloud.grains, cloud.rigid, nodes, 0.0, false, dt, cloud.particles,
@@ -251,11 +251,11 @@ TEST_CASE("internal forces exert no force and no torque in all") {
         add_random_stress(cloud.particles, random);
         GrainNodes nodes = cloud.on_nodes(shape);
         set_linear({0, 0, 0, 0, 0, 0}, cloud, nodes);
-        std::vector<StripSums> sums;
+        std::vector<TileSums> sums;
         strain(shape, 0.01, cloud, nodes, sums);
         double fx = 0, fy = 0, torque = 0, size = 0, virial = 0;
-        for_each_slot(nodes, cloud.frame, [&](int, long i, long j, std::size_t slot) {
-            const NodeForce& f = nodes.force[slot];
+        for_each_dof(nodes, cloud.layout, [&](int, long i, long j, std::size_t dof) {
+            const NodeForce& f = nodes.force[dof];
             const double x = cloud.mesh.x_of(real(i)), y = cloud.mesh.y_of(real(j));
             fx += f.x, fy += f.y, torque += x * f.y - y * f.x;
             size += std::fabs(f.x) + std::fabs(f.y), virial += x * f.x + y * f.y;
@@ -289,12 +289,12 @@ TEST_CASE(
                 cloud.particles.set_stress(p, {2, -3, 0.5, 0.1});
             GrainNodes nodes = cloud.on_nodes(shape);
             set_linear({0, 0, 0, 0, 0, 0}, cloud, nodes);
-            std::vector<StripSums> sums;
+            std::vector<TileSums> sums;
             strain(shape, 0.01, cloud, nodes, sums);
             long inner = 0;
             double right_x = 0, right_y = 0, top_x = 0, top_y = 0;
-            for_each_slot(nodes, cloud.frame, [&](int, long i, long j, std::size_t slot) {
-                const NodeForce& f = nodes.force[slot];
+            for_each_dof(nodes, cloud.layout, [&](int, long i, long j, std::size_t dof) {
+                const NodeForce& f = nodes.force[dof];
                 const double x = cloud.mesh.x_of(real(i)) - shift - 1,
                              y = cloud.mesh.y_of(real(j)) - shift - 1;
                 if (x > 1) right_x += f.x, right_y += f.y;
@@ -302,7 +302,7 @@ TEST_CASE(
                 if (x < 0.45 || x > 1.55 || y < 0.45 || y > 1.05) return;
                 CHECK(std::fabs(f.x) <= 1e-14);
                 CHECK(std::fabs(f.y) <= 1e-14);
-                CHECK(nodes.sums[slot].m == doctest::Approx(62.5).epsilon(1e-13));
+                CHECK(nodes.sums[dof].m == doctest::Approx(62.5).epsilon(1e-13));
                 ++inner;
             });
             CHECK(inner >= 6);
@@ -324,16 +324,16 @@ TEST_CASE("internal forces are what the change of elastic energy calls for") {
         add_random_stress(cloud.particles, random);
         GrainNodes nodes = cloud.on_nodes(shape);
         for (NodeMotion& v : nodes.motion) v = {random(-1, 1), random(-1, 1), 0, 0};
-        std::vector<StripSums> sums;
+        std::vector<TileSums> sums;
         double work = 0, power = 0, size = 0;
         const Particles& p = cloud.particles;
-        for_each_chunk(cloud.grains, nodes, sums, [&](Chunk& chunk) {
-            velocity_gradient(shape, p, nodes, OldVelocity{}, 0.1, chunk);
-            add_internal_force(shape, p, chunk, nodes);
-            for (long k = 0; k < chunk.count; ++k) {
-                const auto n = static_cast<std::size_t>(chunk.begin + k);
-                work += p.V_p[n] * (p.sxx_p[n] * chunk.xx[k] + p.syy_p[n] * chunk.yy[k] +
-                                    p.sxy_p[n] * (chunk.xy[k] + chunk.yx[k]));
+        for_each_batch(cloud.grains, nodes, sums, [&](ParticleBatch& batch) {
+            velocity_gradient(shape, p, nodes, OldVelocity{}, 0.1, batch);
+            add_internal_force(shape, p, batch, nodes);
+            for (long k = 0; k < batch.count; ++k) {
+                const auto n = static_cast<std::size_t>(batch.begin + k);
+                work += p.V_p[n] * (p.sxx_p[n] * batch.xx[k] + p.syy_p[n] * batch.yy[k] +
+                                    p.sxy_p[n] * (batch.xy[k] + batch.yx[k]));
             }
         });
         for (std::size_t n = 0; n < nodes.force.size(); ++n) {
@@ -393,7 +393,7 @@ TEST_CASE("damping takes the same part of a free velocity in every step") {
         CHECK(run.particles().vx_p[k] == doctest::Approx(0.3 * left).epsilon(1e-11));
         CHECK(run.particles().vy_p[k] == doctest::Approx(-0.4 * left).epsilon(1e-11));
     }
-    CHECK(run.ledger().damping < 0);
+    CHECK(run.budget().damping < 0);
     CHECK(run.largest_budget <= 1e-12 * run.largest_energy);
 }
 
@@ -425,7 +425,7 @@ TEST_CASE("a grain without stress flies through a thousand steps and keeps its f
         }
         CHECK(most <= 1e-10);
         CHECK(largest_stress(run.particles()) <= 1e-7);
-        CHECK(std::fabs(run.ledger().energy_14 / run.ledger().start - 1) <= 1e-11);
+        CHECK(std::fabs(run.budget().energy_14 / run.budget().start - 1) <= 1e-11);
     }
 }
 
@@ -469,7 +469,7 @@ TEST_CASE("with frozen particles the energies of MPM-14 and MPM-15 stay to round
             double most = 0, first_14 = 0, first_15 = 0, elastic = 0;
             for (int step = 0; step < 300; ++step) {
                 run.advance();
-                const Ledger& l = run.ledger();
+                const Budget& l = run.budget();
                 if (step == 0) first_14 = l.energy_14, first_15 = l.energy_15;
                 most = worst({most, std::fabs(l.energy_14 / first_14 - 1),
                               std::fabs(l.energy_15 / first_15 - 1)});
@@ -511,7 +511,7 @@ TEST_CASE("energies of a time are those of the particles between the stresses of
         for (int step = 0; step < 40; ++step) {
             const double before = elastic(), now = kinetic();
             run.advance();
-            const Ledger& l = run.ledger();
+            const Budget& l = run.budget();
             CHECK(l.elastic == doctest::Approx(0.5 * (before + elastic())).epsilon(1e-13));
             CHECK(l.kinetic == doctest::Approx(now).epsilon(1e-13));
             // Leapfrog's energy takes the product of both stresses: less by a part (dt/T)^2.
@@ -542,9 +542,9 @@ TEST_CASE("every grain keeps its momentum without contact") {
                 const double exact = (flip == 1 ? 1e-13 : 1e-10) * size;
                 CHECK(std::fabs(now[0] - start[g][0]) <= exact);
                 CHECK(std::fabs(now[1] - start[g][1]) <= exact);
-                CHECK(run.state.ledger.momentum_x_next[g] ==
+                CHECK(run.state.budget.momentum_x_next[g] ==
                       doctest::Approx(now[0]).epsilon(1e-12));
-                CHECK(run.state.ledger.momentum_y_next[g] ==
+                CHECK(run.state.budget.momentum_y_next[g] ==
                       doctest::Approx(now[1]).epsilon(1e-12));
             }
         }
@@ -563,7 +563,7 @@ TEST_CASE("PIC gives particles the velocity of the nodes and FLIP their change")
                 v.vx_1 = v.vx_0 + random(-1, 1), v.vy_1 = v.vy_0 + random(-1, 1);
             const Particles before = cloud.particles;
             const double dt = 0.01;
-            std::vector<StripSums> sums(nodes.strips().size());
+            std::vector<TileSums> sums(nodes.tiles().size());
             move_particles(shape, cloud.grains, cloud.rigid, nodes, flip, false, dt,
                            cloud.particles, sums);
             double most = 0, kinetic = 0;
@@ -571,9 +571,8 @@ TEST_CASE("PIC gives particles the velocity of the nodes and FLIP their change")
             for (std::size_t k = 0; k < before.x_p.size(); ++k) {
                 double u = 0, w = 0, du = 0, dw = 0;
                 for_each_node(shape, at, nodes.origins(0), before.x_p[k], before.y_p[k],
-                              [&](long slot, double S, double, double) {
-                                  const NodeMotion& v =
-                                      nodes.motion[static_cast<std::size_t>(slot)];
+                              [&](long dof, double S, double, double) {
+                                  const NodeMotion& v = nodes.motion[static_cast<std::size_t>(dof)];
                                   u += S * v.vx_1, w += S * v.vy_1;
                                   du += S * (v.vx_1 - v.vx_0), dw += S * (v.vy_1 - v.vy_0);
                               });
@@ -587,7 +586,7 @@ TEST_CASE("PIC gives particles the velocity of the nodes and FLIP their change")
             }
             CHECK(most <= 1e-14);
             double summed = 0, x_least = 1e9, x_most = -1e9, y_least = 1e9, y_most = -1e9;
-            for (const StripSums& s : sums) {
+            for (const TileSums& s : sums) {
                 summed += s.kinetic;
                 x_least = std::min(x_least, s.x_least), x_most = std::max(x_most, s.x_most);
                 y_least = std::min(y_least, s.y_least), y_most = std::max(y_most, s.y_most);
@@ -633,47 +632,47 @@ std::vector<Menu> menu() {
              hit(c), c.frozen = true;
              c.problem.grains[1].x = 0.88;
          }),
-         100, [](const Run& r) { return r.ledger().contact != 0 && r.ledger().friction != 0; }},
+         100, [](const Run& r) { return r.budget().contact != 0 && r.budget().friction != 0; }},
         {"a collision with friction", with(hit), 150,
          [](const Run& r) {
-             return r.ledger().contact != 0 && r.ledger().friction < 0 && r.ledger().remap != 0 &&
-                    r.ledger().volume != 0;
+             return r.budget().contact != 0 && r.budget().friction < 0 && r.budget().remap != 0 &&
+                    r.budget().volume != 0;
          }},
         {"less than all FLIP", with([=](Case& c) { hit(c), c.flip = 0.95; }), 150,
-         [](const Run& r) { return r.ledger().pic < 0; }},
+         [](const Run& r) { return r.budget().pic < 0; }},
         {"gravity and damping on slip walls", with([](Case& c) {
              c.problem.walls = {"slip", "slip", "slip", "open"};
              c.problem.gravity_x = 2, c.problem.gravity_y = -5, c.problem.damping = 3;
              c.problem.grains = {box_at("a", 1.3, 0.2, 0.4, 0.4), disk_at("b", 0.5, 0.21, 0.2)};
          }),
-         200, [](const Run& r) { return r.ledger().external > 0 && r.ledger().damping < 0; }},
+         200, [](const Run& r) { return r.budget().external > 0 && r.budget().damping < 0; }},
         {"a clamp under gravity that rises", with([](Case& c) {
              c.problem.walls = {"stick", "open", "stick", "open"};
              c.problem.gravity_y = -20, c.problem.rise = 0.1;
              c.problem.grains = {box_at("a", 0.4, 0.2, 0.8, 0.4), disk_at("b", 0.5, 0.65, 0.2)};
          }),
-         200, [](const Run& r) { return r.ledger().contact != 0; }},
+         200, [](const Run& r) { return r.budget().contact != 0; }},
         {"walls that rub", with([](Case& c) {
              c.problem.walls = {"frictional", "frictional", "frictional", "frictional"};
              c.problem.gravity_y = -5, c.problem.gravity_x = 3;
              c.problem.grains = {disk_at("a", 1.2, 0.3, 0.26, 0.5, -1),
                                  disk_at("b", 0.4, 0.3, 0.26, -0.5, -1)};
          }),
-         200, [](const Run& r) { return r.ledger().contact != 0 && r.ledger().friction < 0; }},
+         200, [](const Run& r) { return r.budget().contact != 0 && r.budget().friction < 0; }},
         {"metal that yields", with([=](Case& c) {
              Material m;
              m.yield_stress = 100, m.hardening = 500;
              add_material(c, "default", "j2", m);
              hit(c);
          }),
-         150, [](const Run& r) { return r.ledger().plastic > 0; }},
+         150, [](const Run& r) { return r.budget().plastic > 0; }},
         {"sand that yields", with([=](Case& c) {
              Material m;
              m.cohesion = 30, m.friction_angle = 30, m.dilatancy_angle = 10, m.tension = 5;
              add_material(c, "default", "drucker_prager", m);
              hit(c);
          }),
-         150, [](const Run& r) { return r.ledger().plastic > 0; }},
+         150, [](const Run& r) { return r.budget().plastic > 0; }},
         {"bonds that break", with([](Case& c) {
              GrainCase left = box_at("a", 0.5, 0.6, 0.3, 0.3, -0.3),
                        right = box_at("b", 0.8, 0.6, 0.3, 0.3, 0.3, 0.2);
@@ -682,7 +681,7 @@ std::vector<Menu> menu() {
              c.problem.grains = {left, right}, c.problem.bonds = {bond};
          }),
          100,
-         [](const Run& r) { return r.ledger().bond != 0 && r.state.assembly.bonds[0].broken; }},
+         [](const Run& r) { return r.budget().bond != 0 && r.state.assembly.bonds[0].broken; }},
         {"rigid plates that press and a force that drives one", with([](Case& c) {
              add_material(c, "steel", "rigid", Material{});
              GrainCase below = box_at("below", 0.75, 0.2, 1.2, 0.2, 0.2), above = below;
@@ -693,7 +692,7 @@ std::vector<Menu> menu() {
              c.problem.grains = {disk_at("a", 0.5, 0.6, 0.29), below, disk_at("b", 1.09, 0.6, 0.29),
                                  above};
          }),
-         250, [](const Run& r) { return r.ledger().external > 0 && r.ledger().friction != 0; }},
+         250, [](const Run& r) { return r.budget().external > 0 && r.budget().friction != 0; }},
         {"a ring that is sheared", with([](Case& c) {
              c.problem.periodic_x = true;
              c.problem.walls = {"open", "open", "stick", "open"};
@@ -704,7 +703,7 @@ std::vector<Menu> menu() {
              c.problem.grains = {ring, disk_at("a", 0.1, 0.7, 0.2), disk_at("b", 0.9, 0.7, 0.2),
                                  belt};
          }),
-         200, [](const Run& r) { return r.ledger().external != 0 && r.ledger().friction != 0; }},
+         200, [](const Run& r) { return r.budget().external != 0 && r.budget().friction != 0; }},
     };
 }
 
@@ -720,7 +719,7 @@ TEST_CASE("the budget of the energy closes to round-off whatever is at work" *
             c.shape = shape;
             Run run(c);
             run.advance(dish.steps);
-            const Ledger& l = run.ledger();
+            const Budget& l = run.budget();
             CHECK(dish.at_work(run));
             CHECK(run.least_V > 0.5);
             const double put_in = worst({run.largest_energy, std::fabs(l.external)});
@@ -743,7 +742,7 @@ TEST_CASE("remapping is the only thing that changes the energy of a free elastic
                 all.particles.vy_p[k] = -0.05 * (all.particles.y_p[k] - 0.75);
         });
         run.advance(400);
-        const Ledger& l = run.ledger();
+        const Budget& l = run.budget();
         CHECK(run.largest_budget <= 1e-12 * l.start);
         for (const double none : {l.external, l.contact, l.friction, l.bond, l.damping, l.plastic})
             CHECK(none == 0);
@@ -783,12 +782,12 @@ TEST_CASE("two disks that collide mirror each other") {
             speed = std::max(speed, p.vx_p[a]);
         }
         CHECK(most <= 1e-10);
-        CHECK(run.ledger().contact != 0);
+        CHECK(run.budget().contact != 0);
         const double momentum_of_one = run.scales.speed * 1000 * std::numbers::pi * 0.04;
-        CHECK(std::fabs(run.ledger().momentum_x[0] + run.ledger().momentum_x[1]) <=
+        CHECK(std::fabs(run.budget().momentum_x[0] + run.budget().momentum_x[1]) <=
               1e-12 * momentum_of_one);
-        CHECK(std::fabs(run.ledger().momentum_y[0]) <= 1e-12 * momentum_of_one);
-        CHECK(run.ledger().momentum_x[0] < 0);  // it has turned back
+        CHECK(std::fabs(run.budget().momentum_y[0]) <= 1e-12 * momentum_of_one);
+        CHECK(run.budget().momentum_x[0] < 0);  // it has turned back
     }
 }
 
@@ -822,7 +821,7 @@ TEST_CASE("four disks that meet in a point keep both axes of symmetry") {
                                       place(x, 1.6 - y)});
             }
             run.advance(150);
-            CHECK(run.ledger().contact != 0);
+            CHECK(run.budget().contact != 0);
             const auto at = run.by_number();
             const Particles& p = run.particles();
             double most = 0;
@@ -850,7 +849,7 @@ TEST_CASE("moving everything by whole cells changes nothing but the places") {
         for (GrainCase& g : moved.problem.grains) g.x += 0.025 * 9, g.y += 0.025 * 13;
         Run one(c), other(moved);
         one.advance(200), other.advance(200);
-        CHECK(one.ledger().friction != 0);
+        CHECK(one.budget().friction != 0);
         CHECK(difference(one, other, 0.4, [](std::array<double, 4> s) {
                   s[0] += 0.225, s[1] += 0.325;
                   return s;
@@ -889,7 +888,7 @@ TEST_CASE("turning everything by a right angle turns the motion") {
             }
         });
         one.advance(200), other.advance(200);
-        CHECK(one.ledger().friction != 0);
+        CHECK(one.budget().friction != 0);
         CHECK(difference(one, other, 0.4, [](const std::array<double, 4>& s) {
                   return std::array<double, 4>{1 - s[1], s[0], -s[3], s[2]};
               }) <= 1e-9);
@@ -926,15 +925,15 @@ TEST_CASE("a velocity of one cell per step changes nothing but any other does") 
         };
         Run still = faster(0), one = faster(1), part = faster(0.2);
         still.advance(steps), one.advance(steps), part.advance(steps);
-        CHECK(still.ledger().friction != 0);
+        CHECK(still.budget().friction != 0);
         CHECK(apart(still, one, 1) <= 1e-9);
         const double broken = apart(still, part, 0.2);
         CHECK(broken >= 1e-4);
         CHECK(broken <= 2);
         // Much of the momentum that is passed on is the same.
-        const double passed = still.ledger().momentum_x[0] - 0.4 * 1000 * std::numbers::pi * 0.0144;
+        const double passed = still.budget().momentum_x[0] - 0.4 * 1000 * std::numbers::pi * 0.0144;
         const double mass = 1000 * std::numbers::pi * 0.0144, u = 0.2 * 0.025 / like.dt;
-        CHECK(std::fabs(part.ledger().momentum_x[0] - u * mass - still.ledger().momentum_x[0]) <=
+        CHECK(std::fabs(part.budget().momentum_x[0] - u * mass - still.budget().momentum_x[0]) <=
               0.5 * std::fabs(passed));
     }
 }
@@ -1057,7 +1056,7 @@ TEST_CASE("a plate that is told a velocity rises to it and counts its way") {
     double way = 0;
     for (int step = 0; step < 100; ++step) {
         const double t = (step + 0.5) * dt;
-        drive_plates(t, dt, 0.5, rigid);
+        prescribe_motion(t, dt, 0.5, rigid);
         CHECK(rigid[0].vx == doctest::Approx(2 * share_of_load(t, 0.5)).epsilon(1e-15));
         CHECK(rigid[0].vy == doctest::Approx(-share_of_load(t, 0.5)).epsilon(1e-15));
         way += dt * rigid[0].vx;
@@ -1073,7 +1072,7 @@ TEST_CASE("loads are those of the middle of the step") {
     rigid[0].prescribed_vx = 2;
     for (const long step : {0L, 3L, 40L, 200L}) {
         const double dt = 0.02, share = share_of_load((real(step) + 0.5) * dt, 1);
-        const BodyForce body = drive(c.problem, step, dt, rigid);
+        const BodyForce body = apply_loads(c.problem.loads(), step, dt, rigid);
         CHECK(body.gravity_x == doctest::Approx(3 * share).epsilon(1e-14));
         CHECK(body.gravity_y == doctest::Approx(-4 * share).epsilon(1e-14));
         CHECK(body.damping == 0.7);
@@ -1081,21 +1080,22 @@ TEST_CASE("loads are those of the middle of the step") {
     }
 }
 
-TEST_CASE("a servo reaches its force and never overshoots when it is overdamped") {
+TEST_CASE(
+    "a grain under force control reaches its force and never overshoots when it is overdamped") {
     // Against a spring k: m dv/dt = F - k x - c v, overdamped where c^2 >= 4 k m.
     for (const double c : {25.0, 1e2, 1e3}) {
         for (const bool along_y : {false, true}) {
             CAPTURE(c);
             std::vector<RigidMotion> rigid(1);
             RigidMotion& is = rigid[0];
-            (along_y ? is.servo_y : is.servo_x) = true;
+            (along_y ? is.force_control_y : is.force_control_x) = true;
             is.force = -3, is.mass = 2, is.damping = c;
             is.prescribed_vx = is.prescribed_vy = 0;
             const double k = 50, dt = 0.01;
             double last = 0;
             bool back = false, beyond = false;
             for (int step = 0; step < 50000; ++step) {
-                drive_plates((step + 0.5) * dt, dt, 0, rigid);
+                prescribe_motion((step + 0.5) * dt, dt, 0, rigid);
                 const double travel = along_y ? is.travel_y : is.travel_x;
                 back = back || travel > last + 1e-15, beyond = beyond || travel < -3 / k - 1e-12;
                 last = travel;
@@ -1110,18 +1110,18 @@ TEST_CASE("a servo reaches its force and never overshoots when it is overdamped"
     }
     // However large the damping, the velocity goes straight to F/c.
     std::vector<RigidMotion> rigid(1);
-    rigid[0].servo_x = true, rigid[0].force = 5, rigid[0].mass = 1, rigid[0].damping = 1e6;
+    rigid[0].force_control_x = true, rigid[0].force = 5, rigid[0].mass = 1, rigid[0].damping = 1e6;
     double last = 0;
     for (int step = 0; step < 20; ++step) {
-        drive_plates(1, 0.1, 0, rigid);
+        prescribe_motion(1, 0.1, 0, rigid);
         CHECK(rigid[0].vx >= last);
         CHECK(rigid[0].vx <= 5e-6);
         last = rigid[0].vx;
     }
     CHECK(last == doctest::Approx(5e-6).epsilon(1e-12));
     // Without damping and push: v = F t/m.
-    rigid[0] = {}, rigid[0].servo_x = true, rigid[0].force = 5, rigid[0].mass = 2;
-    for (int step = 0; step < 10; ++step) drive_plates(1, 0.1, 0, rigid);
+    rigid[0] = {}, rigid[0].force_control_x = true, rigid[0].force = 5, rigid[0].mass = 2;
+    for (int step = 0; step < 10; ++step) prescribe_motion(1, 0.1, 0, rigid);
     CHECK(rigid[0].vx == doctest::Approx(2.5).epsilon(1e-14));
 }
 
@@ -1180,5 +1180,5 @@ TEST_CASE("a plate that a force drives comes to rest where the block bears it" *
         mean += p.V_p[n] * p.syy_p[n], V += p.V_p[n];
     }
     CHECK(mean / V == doctest::Approx(-100).epsilon(0.02));
-    CHECK(run.largest_budget <= 1e-11 * run.ledger().external);
+    CHECK(run.largest_budget <= 1e-11 * run.budget().external);
 }

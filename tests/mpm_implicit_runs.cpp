@@ -233,7 +233,7 @@ TEST_CASE("a disk between plates has the stress of the closed form" *
     const Run r = run("disk", "diametral_disk", "");
     check_results(r, 5);
     check_theorem(r);
-    // The servo holds the load.
+    // The force control holds the load.
     CHECK(std::fabs(r.value("load") / 237.5 - 1) <= 0.01);
     check_results(run("disk_gimp", "diametral_disk",
                       "method.shape=gimp grid.particles_per_side=3 time.alpha=8"),
@@ -331,7 +331,7 @@ TEST_CASE("a bond breaks when the bar pulls with its strength by the theta schem
     CHECK(largest(holds.column("broken_bonds")) == 0);
 }
 
-TEST_CASE("a disk that yields keeps to its yield surface and its ledger closes" *
+TEST_CASE("a disk that yields keeps to its yield surface and its budget closes" *
           doctest::description("physics")) {
     const Run r = run("yield", "yielding_disk", "");
     check_results(r, 4);

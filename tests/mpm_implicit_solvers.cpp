@@ -53,7 +53,7 @@ std::vector<Situation> situations(const std::string& shape) {
     add("ring", false, 0.04, {box_at("a", 0.6, 0.3, 1.2, 0.4)}).periodic_x = true;
     add("over the ends", true, 0.04, {disk_at("a", 0.05, 0.4, 0.25)}).periodic_x = true;
     const double hardly = shape == "linear" ? 0.251 : shape == "gimp" ? 0.03 : -0.22;
-    add("ties", false, hardly, {box_at("a", 0.6, 0.4, 0.6, 0.4)});
+    add("small masses", false, hardly, {box_at("a", 0.6, 0.4, 0.6, 0.4)});
     return all;
 }
 
@@ -66,7 +66,7 @@ ThetaRun start(const Situation& s, const ThetaScheme& scheme) {
         Random random(5);
         for (std::size_t k = 0; k < all.particles.x_p.size(); ++k) {
             all.particles.x_p[k] += 0.1 * s.shift, all.particles.y_p[k] += 0.1 * s.shift;
-            if (walls || s.name == "ties") continue;
+            if (walls || s.name == "small masses") continue;
             all.particles.x_p[k] += 0.004 * random(-1, 1);
             all.particles.y_p[k] += 0.004 * random(-1, 1);
         }
@@ -93,20 +93,20 @@ void for_each_start(const Work& work) {
     }
 }
 
-// B, which gives all slots their velocities: images take those of whom they stand for.
+// B, which gives all dofs their velocities: ghosts take those of whom they stand for.
 Sparse spreading(const GrainNodes& nodes) {
     const long n = nodes.size();
     Dense B = Dense::Identity(2 * n, 2 * n);
-    const auto& images = nodes.images();
-    for (auto image = images.rbegin(); image != images.rend(); ++image) {
-        B.row(image->slot) = image->sign_x * B.row(image->of);
-        B.row(n + image->slot) = image->sign_y * B.row(n + image->of);
+    const auto& ghosts = nodes.ghosts();
+    for (auto ghost = ghosts.rbegin(); ghost != ghosts.rend(); ++ghost) {
+        B.row(ghost->dof) = ghost->sign_x * B.row(ghost->master);
+        B.row(n + ghost->dof) = ghost->sign_y * B.row(n + ghost->master);
     }
     return B.sparseView();
 }
 
 struct ParticleSums {
-    Sparse M, K;  // of all slots, images by themselves
+    Sparse M, K;  // of all dofs, ghosts by themselves
 };
 
 // M and K particle by particle, K = V B^T D B with the rows of B those of strain.
@@ -126,22 +126,22 @@ ParticleSums particle_sums(const Shape& shape, ThetaRun& run) {
         D << P, law.T.lambda, 0, law.T.lambda, P, 0, 0, 0, law.T.G;
         for (long k = grain.begin; k < grain.end; ++k) {
             const auto q = static_cast<std::size_t>(k);
-            std::vector<long> slot;
+            std::vector<long> dof;
             std::vector<double> S, Gx, Gy;
             for_each_node(shape, at, run.nodes.origins(static_cast<int>(g)), p.x_p[q], p.y_p[q],
                           [&](long s, double w, double x, double y) {
-                              slot.push_back(s), S.push_back(w), Gx.push_back(x), Gy.push_back(y);
+                              dof.push_back(s), S.push_back(w), Gx.push_back(x), Gy.push_back(y);
                           });
-            for (std::size_t i = 0; i < slot.size(); ++i) {
+            for (std::size_t i = 0; i < dof.size(); ++i) {
                 Eigen::Matrix<double, 3, 2> B_i, B_j;
                 B_i << Gx[i], 0, 0, Gy[i], Gy[i], Gx[i];
-                for (std::size_t j = 0; j < slot.size(); ++j) {
+                for (std::size_t j = 0; j < dof.size(); ++j) {
                     B_j << Gx[j], 0, 0, Gy[j], Gy[j], Gx[j];
                     const Eigen::Matrix2d k_ij = p.V_p[q] * B_i.transpose() * D * B_j;
                     for (const long a : {0L, 1L}) {
-                        M.emplace_back(a * n + slot[i], a * n + slot[j], p.m_p[q] * S[i] * S[j]);
+                        M.emplace_back(a * n + dof[i], a * n + dof[j], p.m_p[q] * S[i] * S[j]);
                         for (const long b : {0L, 1L})
-                            K.emplace_back(a * n + slot[i], b * n + slot[j], k_ij(a, b));
+                            K.emplace_back(a * n + dof[i], b * n + dof[j], k_ij(a, b));
                     }
                 }
             }
@@ -177,9 +177,9 @@ Vector on_nodes(const ThetaRun& run, const Field& field) {
     const long n = run.nodes.size();
     Vector v = Vector::Zero(2 * n);
     const Mesh& mesh = run.nodes.mesh();
-    for_each_slot(run.nodes, run.state.frame, [&](int, long i, long j, std::size_t slot) {
+    for_each_dof(run.nodes, run.state.layout, [&](int, long i, long j, std::size_t dof) {
         const auto [x, y] = field(mesh.x_of(real(i)), mesh.y_of(real(j)));
-        const long s = static_cast<long>(slot);
+        const long s = static_cast<long>(dof);
         v[s] = x, v[n + s] = y;
     });
     return v;
@@ -193,8 +193,8 @@ double total_mass(const Particles& p) {
 
 // ---- grains that meet ----------------------------------------------------------------------------
 
-// Boxes around one place, h = 0.1: two to four grains, a rigid one, walls, plates that forces drive.
-std::vector<std::pair<std::string, Case>> meetings(const std::string& shape) {
+// Boxes around one place, h = 0.1: two to four grains, a rigid one, walls, grains under force control.
+std::vector<std::pair<std::string, Case>> contact_cases(const std::string& shape) {
     std::vector<std::pair<std::string, Case>> all;
     const auto add = [&](const std::string& name, double y, std::size_t boxes) -> Problem& {
         Case c = case_on(10, 8, 1);
@@ -219,25 +219,25 @@ std::vector<std::pair<std::string, Case>> meetings(const std::string& shape) {
     Problem& walls = add("walls", 0.1, 3);
     walls.walls = {"slip", "open", "frictional", "open"}, walls.contact.wall_friction = 0.3;
     walls.origin_x = 0.15;
-    Problem& servo = add("servo", 0.1, 2);
-    servo.walls = {"open", "open", "frictional", "open"}, servo.contact.wall_friction = 0.3;
-    servo.grains.push_back(plate(0.45, 0.3, 0.8, 0.2));
-    servo.grains.back().control = "force_y", servo.grains.back().force = -3;
-    servo.grains.back().damping = 10;
-    Problem& servos = add("two servos", 0.3, 2);
-    servos.grains.push_back(plate(0.25, 0.5, 0.2, 0.2));
-    servos.grains.back().control = "force_y", servos.grains.back().force = -3;
-    servos.grains.push_back(plate(0.85, 0.3, 0.2, 0.2));
-    servos.grains.back().control = "force_x", servos.grains.back().force = -5;
+    Problem& control = add("force control", 0.1, 2);
+    control.walls = {"open", "open", "frictional", "open"}, control.contact.wall_friction = 0.3;
+    control.grains.push_back(plate(0.45, 0.3, 0.8, 0.2));
+    control.grains.back().control = "force_y", control.grains.back().force = -3;
+    control.grains.back().damping = 10;
+    Problem& controls = add("two force controls", 0.3, 2);
+    controls.grains.push_back(plate(0.25, 0.5, 0.2, 0.2));
+    controls.grains.back().control = "force_y", controls.grains.back().force = -3;
+    controls.grains.push_back(plate(0.85, 0.3, 0.2, 0.2));
+    controls.grains.back().control = "force_x", controls.grains.back().force = -5;
     return all;
 }
 
-// What closed pairs ask for, in all meetings and with random holds.
+// What closed pairs ask for, in all these cases and with random states.
 template <class Work>
-void for_each_meeting(const Work& work) {
+void for_each_contact_case(const Work& work) {
     long pairs = 0, crowded = 0;
     for (const std::string& shape : {shape_names[0], shape_names[2]}) {
-        for (const auto& meeting : meetings(shape)) {
+        for (const auto& meeting : contact_cases(shape)) {
             for (const std::uint64_t seed : {1, 2, 3}) {
                 const std::string name = meeting.first;
                 CAPTURE(shape);
@@ -252,15 +252,17 @@ void for_each_meeting(const Work& work) {
                 run.with([&](const auto&, auto& solver) {
                     solver.prepare(run.scheme, run.body, run.dt, run.nodes);
                     Random random(seed + 7);
-                    for (MeetingPair& pair : solver.set.pairs) {
+                    for (ContactPair& pair : solver.set.pairs) {
                         const double dice = random();
-                        pair.hold = dice < 0.2 ? Hold::open : dice < 0.5 ? Hold::slip : Hold::stick;
+                        pair.state = dice < 0.2   ? ContactState::open
+                                     : dice < 0.5 ? ContactState::slip
+                                                  : ContactState::stick;
                     }
-                    for (const MeetingNode& node : solver.set.nodes)
-                        crowded += node.meeter_end - node.meeter_begin > 2;
+                    for (const ActiveSet::Node& node : solver.set.nodes)
+                        crowded += node.body_end - node.body_begin > 2;
                     pairs += static_cast<long>(solver.set.pairs.size());
                     solver.constraints.build(solver.set, solver.scale(), run.nodes.size(),
-                                             solver.servos.size(), false);
+                                             solver.force_controls.size(), false);
                     work(run, solver, random);
                 });
             }
@@ -271,49 +273,50 @@ void for_each_meeting(const Work& work) {
 }
 
 // How the members of a pair part and slip: the largest that closed pairs do, though they may not.
-double forbidden(const ContactSet& set, const Vector& v, const std::vector<double>& V) {
+double forbidden(const ActiveSet& set, const Vector& v, const std::vector<double>& V) {
     const long n = v.size() / 2;
     double most = 0;
-    const auto velocity = [&](const Meeter& is) -> std::array<double, 2> {
-        if (!is.fixed) return {v[is.slot], v[n + is.slot]};
+    const auto velocity = [&](const ContactBody& is) -> std::array<double, 2> {
+        if (!is.is_fixed()) return {v[is.dof], v[n + is.dof]};
         std::array<double, 2> given{is.vx, is.vy};
-        if (is.servo >= 0) given[is.servo_along_x ? 0 : 1] = V[static_cast<std::size_t>(is.servo)];
+        if (is.force_control >= 0)
+            given[is.control_along_x ? 0 : 1] = V[static_cast<std::size_t>(is.force_control)];
         return given;
     };
-    for (const MeetingNode& node : set.nodes) {
+    for (const ActiveSet::Node& node : set.nodes) {
         for (std::size_t k = node.pair_begin; k < node.pair_end; ++k) {
-            const MeetingPair& pair = set.pairs[k];
+            const ContactPair& pair = set.pairs[k];
             if (!pair.closed()) continue;
-            const auto a = velocity(set.meeters[node.meeter_begin + pair.a]),
-                       b = velocity(set.meeters[node.meeter_begin + pair.b]);
+            const auto a = velocity(set.bodies[node.body_begin + pair.a]),
+                       b = velocity(set.bodies[node.body_begin + pair.b]);
             most = worst({most, std::fabs((b[0] - a[0]) * pair.nx + (b[1] - a[1]) * pair.ny)});
-            if (pair.hold == Hold::stick)
+            if (pair.state == ContactState::stick)
                 most = worst({most, std::fabs((b[1] - a[1]) * pair.nx - (b[0] - a[0]) * pair.ny)});
         }
     }
     return most;
 }
 
-// H^T lambda on the slots that move, and on plates that forces drive.
-Vector impulses_on(const ContactSet& set, const Vector& scale, std::vector<double>& plates) {
+// H^T lambda on the dofs that move, and on grains under force control.
+Vector impulses_on(const ActiveSet& set, const Vector& scale, std::vector<double>& plates) {
     const long n = scale.size() / 2;
     Vector sum = Vector::Zero(2 * n);
     std::fill(plates.begin(), plates.end(), 0.0);
-    for (const MeetingNode& node : set.nodes) {
+    for (const ActiveSet::Node& node : set.nodes) {
         for (std::size_t k = node.pair_begin; k < node.pair_end; ++k) {
-            const MeetingPair& pair = set.pairs[k];
+            const ContactPair& pair = set.pairs[k];
             if (!pair.closed()) continue;
-            const double t = pair.hold == Hold::stick ? pair.lambda_t : 0,
+            const double t = pair.state == ContactState::stick ? pair.lambda_t : 0,
                          jx = pair.lambda_n * pair.nx - t * pair.ny,
                          jy = pair.lambda_n * pair.ny + t * pair.nx;
             for (const auto& [who, sign] : {std::pair(pair.a, -1.0), std::pair(pair.b, 1.0)}) {
-                const Meeter& is = set.meeters[node.meeter_begin + who];
-                if (is.servo >= 0)
-                    plates[static_cast<std::size_t>(is.servo)] +=
-                        sign * (is.servo_along_x ? jx : jy);
-                if (is.fixed) continue;
-                if (scale[is.slot] > 0) sum[is.slot] += sign * jx;
-                if (scale[n + is.slot] > 0) sum[n + is.slot] += sign * jy;
+                const ContactBody& is = set.bodies[node.body_begin + who];
+                if (is.force_control >= 0)
+                    plates[static_cast<std::size_t>(is.force_control)] +=
+                        sign * (is.control_along_x ? jx : jy);
+                if (is.is_fixed()) continue;
+                if (scale[is.dof] > 0) sum[is.dof] += sign * jx;
+                if (scale[n + is.dof] > 0) sum[n + is.dof] += sign * jy;
             }
         }
     }
@@ -344,10 +347,11 @@ struct Kkt {
 };
 
 template <class Solver>
-Kkt kkt_of(const ThetaRun& run, const Solver& solver, const Vector& b, const PlateSystem& plates) {
+Kkt kkt_of(const ThetaRun& run, const Solver& solver, const Vector& b,
+           const ControlledGrains& controlled) {
     Kkt kkt;
     const long n = run.nodes.size();
-    const auto count = static_cast<long>(plates.V.size());
+    const auto count = static_cast<long>(controlled.V.size());
     std::vector<long> number(static_cast<std::size_t>(2 * n), -1);
     for (long i = 0; i < 2 * n; ++i)
         if (solver.scale()[i] > 0) {
@@ -364,32 +368,32 @@ Kkt kkt_of(const ThetaRun& run, const Solver& solver, const Vector& b, const Pla
         kkt.b[j] = b[kkt.dofs[static_cast<std::size_t>(j)]];
     }
     for (long s = 0; s < count; ++s) {
-        kkt.A(m + s, m + s) = plates.diagonal[static_cast<std::size_t>(s)];
-        kkt.b[m + s] = plates.b[static_cast<std::size_t>(s)];
+        kkt.A(m + s, m + s) = controlled.diagonal[static_cast<std::size_t>(s)];
+        kkt.b[m + s] = controlled.b[static_cast<std::size_t>(s)];
     }
     std::vector<Vector> rows;
     std::vector<double> right;
-    for (const MeetingNode& node : solver.set.nodes) {
+    for (const ActiveSet::Node& node : solver.set.nodes) {
         for (std::size_t k = node.pair_begin; k < node.pair_end; ++k) {
-            const MeetingPair& pair = solver.set.pairs[k];
+            const ContactPair& pair = solver.set.pairs[k];
             for (const bool across : {false, true}) {
-                if (!pair.closed() || (across && pair.hold != Hold::stick)) continue;
+                if (!pair.closed() || (across && pair.state != ContactState::stick)) continue;
                 const double nx = across ? -pair.ny : pair.nx, ny = across ? pair.nx : pair.ny;
                 Vector row = Vector::Zero(m + count);
                 double given = 0;
                 for (const auto& [who, sign] : {std::pair(pair.a, -1.0), std::pair(pair.b, 1.0)}) {
-                    const Meeter& is = solver.set.meeters[node.meeter_begin + who];
-                    if (is.fixed) {
-                        const bool x_is_free = is.servo >= 0 && is.servo_along_x,
-                                   y_is_free = is.servo >= 0 && !is.servo_along_x;
-                        if (x_is_free) row[m + is.servo] += sign * nx;
-                        if (y_is_free) row[m + is.servo] += sign * ny;
+                    const ContactBody& is = solver.set.bodies[node.body_begin + who];
+                    if (is.is_fixed()) {
+                        const bool x_is_free = is.force_control >= 0 && is.control_along_x,
+                                   y_is_free = is.force_control >= 0 && !is.control_along_x;
+                        if (x_is_free) row[m + is.force_control] += sign * nx;
+                        if (y_is_free) row[m + is.force_control] += sign * ny;
                         given +=
                             sign * ((x_is_free ? 0 : is.vx * nx) + (y_is_free ? 0 : is.vy * ny));
                         continue;
                     }
-                    const long at_x = number[static_cast<std::size_t>(is.slot)],
-                               at_y = number[static_cast<std::size_t>(n + is.slot)];
+                    const long at_x = number[static_cast<std::size_t>(is.dof)],
+                               at_y = number[static_cast<std::size_t>(n + is.dof)];
                     if (at_x >= 0) row[at_x] += sign * nx;
                     if (at_y >= 0) row[at_y] += sign * ny;
                 }
@@ -406,27 +410,29 @@ Kkt kkt_of(const ThetaRun& run, const Solver& solver, const Vector& b, const Pla
 }
 
 template <class Solver>
-PlateSystem plates_of(const ThetaRun& run, const Solver& solver) {
-    PlateSystem plates;
-    for (const Servo& servo : solver.servos) {
-        plates.diagonal.push_back(run.scheme.theta * (servo.mass + run.dt * servo.damping));
-        plates.b.push_back(run.scheme.theta * (servo.mass * servo.velocity + run.dt * servo.force));
-        plates.V.push_back(0.3);
+ControlledGrains controlled_of(const ThetaRun& run, const Solver& solver) {
+    ControlledGrains controlled;
+    for (const ForceControl& control : solver.force_controls) {
+        controlled.diagonal.push_back(run.scheme.theta * (control.mass + run.dt * control.damping));
+        controlled.b.push_back(run.scheme.theta *
+                               (control.mass * control.velocity + run.dt * control.force));
+        controlled.V.push_back(0.3);
     }
-    return plates;
+    return controlled;
 }
 
 // Conjugate gradients from a guess, with or without the factors of grains.
 template <class Solver>
 CgResult find(ThetaRun& run, Solver& solver, const char* preconditioner, const Vector& b,
-              double tolerance, long most, Vector& v, PlateSystem& plates, CgWorkspace& work) {
+              double tolerance, long most, Vector& v, ControlledGrains& controlled,
+              CgWorkspace& work) {
     ThetaScheme scheme = run.scheme;
     scheme.preconditioner = preconditioner;
     solver.use_preconditioner(scheme, run.grains(), run.nodes);
     const auto multiply = [&](Vector& x, Vector& y) { solver.matrix.multiply(x, y); };
     work.resize(run.nodes.size());
     return projected_cg(multiply, solver.preconditioner(solver.constraints), solver.constraints,
-                        solver.scale(), b, tolerance, most, v, plates, work);
+                        solver.scale(), b, tolerance, most, v, controlled, work);
 }
 
 }  // namespace
@@ -459,7 +465,7 @@ TEST_CASE("the product with a stencil is the sum over particles") {
             solver.matrix.multiply_mass(x, y);
             worst_M = worst({worst_M, (y - Mx).norm() / Mx.norm()});
         }
-        // The diagonals of all slots that stand for one, together.
+        // The diagonals of all dofs that stand for one, together.
         Vector d = Vector::Zero(2 * n), whole = Vector::Zero(2 * n);
         solver.matrix.diagonal(d);
         const bool consistent = run.scheme.consistent();
@@ -538,8 +544,8 @@ TEST_CASE("rigid motions meet no stiffness") {
         };
         still([](double, double) { return std::array{1.0, 0.0}; });
         still([](double, double) { return std::array{0.0, 1.0}; });
-        // What is tied cannot turn.
-        if (!s.turns || !run.nodes.images().empty()) return;
+        // What is constrained cannot turn.
+        if (!s.turns || !run.nodes.ghosts().empty()) return;
         still([](double x, double y) { return std::array{-(y - 5.6), x - 0.2}; });
         ++turned;
     });
@@ -555,7 +561,7 @@ TEST_CASE("the force at the level theta of an elastic grain is f_0 less theta dt
         const Vector v = anything(solver.scale(), random);
         const auto force = [&](const Vector& at) {
             Vector all = at;
-            solver.matrix.spread(all);
+            solver.matrix.fill_ghosts(all);
             for (long i = 0; i < n; ++i) {
                 NodeMotion& motion = run.nodes.motion[static_cast<std::size_t>(i)];
                 motion.vx_1 = all[i], motion.vy_1 = all[n + i];
@@ -578,10 +584,10 @@ TEST_CASE("the force at the level theta of an elastic grain is f_0 less theta dt
 }
 
 TEST_CASE("tying light nodes keeps mass and momentum") {
-    long ties = 0;
+    long constraints = 0;
     for_each_start([&](const Situation& s, const auto& shape, ThetaRun& run, auto&) {
         const long n = run.nodes.size();
-        put_on_nodes(shape, run.particles(), run.nodes);
+        particles_to_grid(shape, run.particles(), run.nodes);
         const auto total = [&] {
             NodeSums sum{};
             for (const NodeSums& one : run.nodes.sums)
@@ -591,8 +597,8 @@ TEST_CASE("tying light nodes keeps mass and momentum") {
         };
         const NodeSums before = total();
         double least = 1e300, most = 0;
-        const std::size_t images = run.nodes.images().size();
-        tie_light_nodes(rows_of(run.grains(), run.nodes, run.state.frame), run.nodes);
+        const std::size_t ghosts = run.nodes.ghosts().size();
+        constrain_small_mass_nodes(grid_rows(run.grains(), run.nodes, run.state.layout), run.nodes);
         const NodeSums after = total();
         const double m = before.m;
         CHECK(worst({std::fabs(after.m - m), std::fabs(after.px - before.px),
@@ -600,20 +606,20 @@ TEST_CASE("tying light nodes keeps mass and momentum") {
                      std::fabs(after.my - before.my) / 5}) <= 1e-13 * m);
         CHECK(worst({std::fabs(after.V - before.V), 0.01 * std::fabs(after.gx - before.gx),
                      0.01 * std::fabs(after.gy - before.gy)}) <= 1e-14);
-        const long now = static_cast<long>(run.nodes.images().size() - images);
-        if (s.name == "ties") CHECK(now >= 5);
-        ties += now;
-        // Whoever is tied carries nothing, and has the velocity of another of its grain.
-        for (std::size_t k = images; k < run.nodes.images().size(); ++k)
-            CHECK(run.nodes.sums[static_cast<std::size_t>(run.nodes.images()[k].slot)].m == 0);
+        const long now = static_cast<long>(run.nodes.ghosts().size() - ghosts);
+        if (s.name == "small masses") CHECK(now >= 5);
+        constraints += now;
+        // A constrained node carries nothing, and has the velocity of its master.
+        for (std::size_t k = ghosts; k < run.nodes.ghosts().size(); ++k)
+            CHECK(run.nodes.sums[static_cast<std::size_t>(run.nodes.ghosts()[k].dof)].m == 0);
         for (long i = 0; i < n; ++i) {
             const double mass = run.nodes.sums[static_cast<std::size_t>(i)].m;
             if (mass > run.nodes.least_mass())
                 least = std::min(least, mass), most = std::max(most, mass);
         }
-        if (s.name == "ties") CHECK(least >= 1e-4 * most);
+        if (s.name == "small masses") CHECK(least >= 1e-4 * most);
     });
-    CHECK(ties >= 50);
+    CHECK(constraints >= 50);
 }
 
 TEST_CASE("a grain that moves along takes the same step") {
@@ -682,7 +688,7 @@ TEST_CASE("the factors of a grain undo its matrix") {
 
 TEST_CASE("the projection is orthogonal and needs to be done once") {
     double again = 0, across = 0, skew = 0;
-    for_each_meeting([&](ThetaRun&, auto& solver, Random& random) {
+    for_each_contact_case([&](ThetaRun&, auto& solver, Random& random) {
         const Constraints& allowed = solver.constraints;
         const Vector x = anything(solver.scale(), random), y = anything(solver.scale(), random);
         Vector Px = x, Py = y;
@@ -694,10 +700,10 @@ TEST_CASE("the projection is orthogonal and needs to be done once") {
         across = worst({across, std::fabs((x - Px).dot(Px)) / x.squaredNorm()});
         skew = worst({skew, std::fabs(x.dot(Py) - y.dot(Px)) / (x.norm() * y.norm())});
         // Velocities that are left take no pair apart; fixed ones would have none.
-        ContactSet at_rest = solver.set;
-        for (Meeter& is : at_rest.meeters) is.vx = is.vy = 0;
+        ActiveSet at_rest = solver.set;
+        for (ContactBody& is : at_rest.bodies) is.vx = is.vy = 0;
         const Vector v = solver.scale().cwiseProduct(Px);
-        const std::vector<double> none(solver.servos.size(), 0.0);
+        const std::vector<double> none(solver.force_controls.size(), 0.0);
         across = worst({across, forbidden(at_rest, v, none) / v.cwiseAbs().maxCoeff()});
     });
     CHECK(again <= 1e-14);
@@ -705,15 +711,15 @@ TEST_CASE("the projection is orthogonal and needs to be done once") {
     CHECK(skew <= 1e-14);
 }
 
-TEST_CASE("velocities that obey part and slip at no closed pair and change as little as possible") {
+TEST_CASE("enforced velocities part and slip at no closed pair and change as little as possible") {
     double left = 0, more = 0;
-    for_each_meeting([&](ThetaRun&, auto& solver, Random& random) {
-        std::vector<double> V(solver.servos.size());
+    for_each_contact_case([&](ThetaRun&, auto& solver, Random& random) {
+        std::vector<double> V(solver.force_controls.size());
         for (double& one : V) one = random(-1, 1);
         const Vector u = anything(solver.scale(), random);
         Vector v = u;
         CHECK(forbidden(solver.set, v, V) > 0.1);
-        solver.constraints.obey(V, v);
+        solver.constraints.enforce(V, v);
         left = worst({left, forbidden(solver.set, v, V)});
         // (v - u) . D w = 0 for every w that the pairs allow.
         Vector y = anything(solver.scale(), random);
@@ -734,22 +740,22 @@ TEST_CASE("velocities that obey part and slip at no closed pair and change as li
 TEST_CASE("impulses are found whose sum on every node is what is left of its equation") {
     double off = 0;
     long redundant = 0;
-    for_each_meeting([&](ThetaRun&, auto& solver, Random& random) {
-        ContactSet set = solver.set;
-        for (MeetingPair& pair : set.pairs)
+    for_each_contact_case([&](ThetaRun&, auto& solver, Random& random) {
+        ActiveSet set = solver.set;
+        for (ContactPair& pair : set.pairs)
             pair.lambda_n = random(-1, 1), pair.lambda_t = random(-1, 1);
-        std::vector<double> push(solver.servos.size());
+        std::vector<double> push(solver.force_controls.size());
         const Vector Hl = impulses_on(set, solver.scale(), push);
-        const ContactSet parameters = set;
-        for (MeetingPair& pair : set.pairs) pair.lambda_n = pair.lambda_t = 1e3;
+        const ActiveSet parameters = set;
+        for (ContactPair& pair : set.pairs) pair.lambda_n = pair.lambda_t = 1e3;
         solver.constraints.find_impulses(-Hl, set);
         const Vector found = impulses_on(set, solver.scale(), push);
         off = worst({off, (found - Hl).cwiseAbs().maxCoeff()});
         for (std::size_t k = 0; k < set.pairs.size(); ++k) {
-            const MeetingPair& pair = set.pairs[k];
+            const ContactPair& pair = set.pairs[k];
             if (!pair.closed()) CHECK((pair.lambda_n == 0 && pair.lambda_t == 0));
             // Slip has the friction that it was given.
-            if (pair.hold == Hold::slip) CHECK(pair.lambda_t == 1e3);
+            if (pair.state == ContactState::slip) CHECK(pair.lambda_t == 1e3);
             redundant += std::fabs(pair.lambda_n - parameters.pairs[k].lambda_n) > 1e-6;
         }
     });
@@ -760,25 +766,25 @@ TEST_CASE("impulses are found whose sum on every node is what is left of its equ
 TEST_CASE("a plate that a force drives takes along whom it presses") {
     double off = 0;
     long plates = 0;
-    for_each_meeting([&](ThetaRun&, auto& solver, Random& random) {
-        const std::size_t count = solver.servos.size();
+    for_each_contact_case([&](ThetaRun&, auto& solver, Random& random) {
+        const std::size_t count = solver.force_controls.size();
         if (count == 0) return;
         const Constraints& allowed = solver.constraints;
         const Vector u = anything(solver.scale(), random);
         std::vector<double> V(count), none(count, 0.0), felt(count), weight(count);
         for (double& one : V) one = random(-1, 1);
         Vector with = u, without = u, added = Vector::Zero(u.size());
-        allowed.obey(V, with), allowed.obey(none, without);
-        allowed.add_plates(V.data(), added);
+        allowed.enforce(V, with), allowed.enforce(none, without);
+        allowed.add_controlled_motion(V.data(), added);
         off = worst({off, (with - without - added).cwiseAbs().maxCoeff()});
-        allowed.plates_weigh(weight.data());
+        allowed.controlled_diagonal(weight.data());
         const Vector r = anything(solver.scale(), random);
-        allowed.plates_feel(r, felt.data());
+        allowed.controlled_force(r, felt.data());
         for (std::size_t s = 0; s < count; ++s) {
             std::vector<double> one(count, 0.0);
             one[s] = 1;
             Vector e = Vector::Zero(u.size());
-            allowed.add_plates(one.data(), e);
+            allowed.add_controlled_motion(one.data(), e);
             double square = 0;
             for (long i = 0; i < e.size(); ++i)
                 if (solver.scale()[i] > 0) square += std::pow(e[i] / solver.scale()[i], 2);
@@ -797,36 +803,37 @@ TEST_CASE("a plate that a force drives takes along whom it presses") {
 TEST_CASE("conjugate gradients among closed pairs solve what a dense solver does") {
     double off = 0, apart = 0, left = 0;
     long iterations = 0, with_factors = 0;
-    for_each_meeting([&](ThetaRun& run, auto& solver, Random& random) {
+    for_each_contact_case([&](ThetaRun& run, auto& solver, Random& random) {
         Vector b = solver.right_hand_side();
         const double size = b.norm() / std::sqrt(real(b.size()));
         b += size * anything(solver.scale(), random);
-        PlateSystem plates = plates_of(run, solver);
-        Kkt kkt = kkt_of(run, solver, b, plates);
+        ControlledGrains controlled = controlled_of(run, solver);
+        Kkt kkt = kkt_of(run, solver, b, controlled);
         const Vector exact = kkt.solve();
         REQUIRE(kkt.off <= 1e-11);
         for (const char* preconditioner : {"diagonal", "grains"}) {
             Vector v = Vector::Zero(b.size());
-            plates = plates_of(run, solver);
-            solver.constraints.obey(plates.V, v);
+            controlled = controlled_of(run, solver);
+            solver.constraints.enforce(controlled.V, v);
             CgWorkspace work;
-            const CgResult cg = find(run, solver, preconditioner, b, 1e-13, 5000, v, plates, work);
+            const CgResult cg =
+                find(run, solver, preconditioner, b, 1e-13, 5000, v, controlled, work);
             CHECK(cg.converged);
             CHECK(cg.iterations > 0);
             (std::string(preconditioner) == "grains" ? with_factors : iterations) += cg.iterations;
             const double fast = exact.cwiseAbs().maxCoeff();
             for (std::size_t k = 0; k < kkt.dofs.size(); ++k)
                 off = worst({off, std::fabs(v[kkt.dofs[k]] - exact[static_cast<long>(k)]) / fast});
-            for (std::size_t s = 0; s < plates.V.size(); ++s)
-                off = worst(
-                    {off, std::fabs(plates.V[s] - exact[static_cast<long>(kkt.dofs.size() + s)]) /
-                              fast});
-            apart = worst({apart, forbidden(solver.set, v, plates.V) / fast});
+            for (std::size_t s = 0; s < controlled.V.size(); ++s)
+                off = worst({off, std::fabs(controlled.V[s] -
+                                            exact[static_cast<long>(kkt.dofs.size() + s)]) /
+                                      fast});
+            apart = worst({apart, forbidden(solver.set, v, controlled.V) / fast});
             // Impulses make up for what is left.
-            ContactSet set = solver.set;
-            for (MeetingPair& pair : set.pairs) pair.lambda_t = 0;
+            ActiveSet set = solver.set;
+            for (ContactPair& pair : set.pairs) pair.lambda_t = 0;
             solver.constraints.find_impulses(work.r, set);
-            std::vector<double> push(plates.V.size());
+            std::vector<double> push(controlled.V.size());
             const Vector Hl = impulses_on(set, solver.scale(), push);
             Vector y = Vector::Zero(b.size()), copy = v;
             solver.matrix.multiply(copy, y);
@@ -835,9 +842,9 @@ TEST_CASE("conjugate gradients among closed pairs solve what a dense solver does
                     left = worst({left, std::fabs(y[i] - b[i] - Hl[i]) * solver.scale()[i] /
                                             solver.scale().cwiseProduct(b).norm()});
             for (std::size_t s = 0; s < push.size(); ++s)
-                left = worst(
-                    {left, std::fabs(plates.diagonal[s] * plates.V[s] - plates.b[s] - push[s]) /
-                               (std::fabs(plates.b[s]) + std::fabs(push[s]))});
+                left = worst({left, std::fabs(controlled.diagonal[s] * controlled.V[s] -
+                                              controlled.b[s] - push[s]) /
+                                        (std::fabs(controlled.b[s]) + std::fabs(push[s]))});
         }
     });
     CHECK(off <= 1e-11);
@@ -847,42 +854,42 @@ TEST_CASE("conjugate gradients among closed pairs solve what a dense solver does
 }
 
 TEST_CASE("conjugate gradients know a solution when they see one and say when they have none") {
-    for_each_meeting([&](ThetaRun& run, auto& solver, Random&) {
+    for_each_contact_case([&](ThetaRun& run, auto& solver, Random&) {
         const Vector& b = solver.right_hand_side();
         for (const char* preconditioner : {"diagonal", "grains"}) {
             CgWorkspace work;
             Vector v = Vector::Zero(b.size());
-            PlateSystem plates = plates_of(run, solver);
-            solver.constraints.obey(plates.V, v);
+            ControlledGrains controlled = controlled_of(run, solver);
+            solver.constraints.enforce(controlled.V, v);
             // Too few iterations.
-            CgResult cg = find(run, solver, preconditioner, b, 1e-13, 1, v, plates, work);
+            CgResult cg = find(run, solver, preconditioner, b, 1e-13, 1, v, controlled, work);
             CHECK(!cg.converged);
             CHECK(cg.iterations == 1);
             CHECK(cg.residual > 1e-13);
-            cg = find(run, solver, preconditioner, b, 1e-13, 5000, v, plates, work);
+            cg = find(run, solver, preconditioner, b, 1e-13, 5000, v, controlled, work);
             CHECK(cg.converged);
             CHECK(cg.residual <= 1e-12);
             // From the solution.
             const Vector found = v;
-            const std::vector<double> V = plates.V;
-            cg = find(run, solver, preconditioner, b, 1e-12, 5000, v, plates, work);
+            const std::vector<double> V = controlled.V;
+            cg = find(run, solver, preconditioner, b, 1e-12, 5000, v, controlled, work);
             CHECK(cg.converged);
             CHECK(cg.iterations == 0);
             CHECK((v - found).norm() == 0);
-            CHECK(plates.V == V);
+            CHECK(controlled.V == V);
         }
         // Nothing moves where nothing is moved.
-        ContactSet& set = solver.set;
-        for (Meeter& is : set.meeters) is.vx = is.vy = 0;
-        solver.constraints.build(set, solver.scale(), run.nodes.size(), solver.servos.size(),
-                                 false);
+        ActiveSet& set = solver.set;
+        for (ContactBody& is : set.bodies) is.vx = is.vy = 0;
+        solver.constraints.build(set, solver.scale(), run.nodes.size(),
+                                 solver.force_controls.size(), false);
         Vector v = Vector::Zero(b.size());
-        PlateSystem plates = plates_of(run, solver);
-        for (double& one : plates.b) one = 0;
-        for (double& one : plates.V) one = 0;
+        ControlledGrains controlled = controlled_of(run, solver);
+        for (double& one : controlled.b) one = 0;
+        for (double& one : controlled.V) one = 0;
         CgWorkspace work;
         const CgResult cg =
-            find(run, solver, "grains", Vector::Zero(b.size()), 1e-13, 50, v, plates, work);
+            find(run, solver, "grains", Vector::Zero(b.size()), 1e-13, 50, v, controlled, work);
         CHECK(cg.converged);
         CHECK(cg.iterations == 0);
         CHECK(v.norm() == 0);

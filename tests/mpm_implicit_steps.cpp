@@ -69,9 +69,9 @@ std::vector<std::pair<std::string, Case>> everything() {
     pressed.problem.grains = {box_at("block", 0.16, 0.3, 0.3, 0.4), plate(0.37, 0.3, 0.1, 0.5)};
     pressed.problem.grains[1].velocity_x = -0.1, pressed.problem.grains[1].velocity_y = 0.05;
     add("moving plate", pressed);
-    Problem& servo = add("servo", pressed);
-    servo.grains[1].control = "force_x", servo.grains[1].force = -8;
-    servo.grains[1].damping = 20;
+    Problem& control = add("force control", pressed);
+    control.grains[1].control = "force_x", control.grains[1].force = -8;
+    control.grains[1].damping = 20;
 
     Case ring = collision(0.3);
     ring.problem.periodic_x = true;
@@ -126,7 +126,7 @@ double difference_of_nodes(const ThetaRun& one, const ThetaRun& two) {
     return off / size;
 }
 
-// Calls visit(shape, p, slot, S, Gx, Gy) for the nodes that particle p sees.
+// Calls visit(shape, p, dof, S, Gx, Gy) for the nodes that particle p sees.
 template <class Visit>
 void for_each_weight(ThetaRun& run, const Visit& visit) {
     run.with([&](const auto& shape, auto&) {
@@ -136,8 +136,8 @@ void for_each_weight(ThetaRun& run, const Visit& visit) {
             for (long k = run.grains()[g].begin; k < run.grains()[g].end; ++k) {
                 const auto n = static_cast<std::size_t>(k);
                 for_each_node(shape, at, run.nodes.origins(static_cast<int>(g)), p.x_p[n], p.y_p[n],
-                              [&](long slot, double S, double Gx, double Gy) {
-                                  visit(n, run.nodes.motion[static_cast<std::size_t>(slot)], S, Gx,
+                              [&](long dof, double S, double Gx, double Gy) {
+                                  visit(n, run.nodes.motion[static_cast<std::size_t>(dof)], S, Gx,
                                         Gy);
                               });
             }
@@ -170,11 +170,11 @@ TEST_CASE("the energy theorem holds in every step whatever it holds" *
                 CAPTURE(s.solver);
                 CAPTURE(c.shape);
                 ThetaRun run = follow(c, s, 1 + number);
-                const Ledger& l = run.ledger();
+                const Budget& l = run.budget();
                 CHECK(run.identity() <= 1e-12);
                 // The energy is that of the particles.
-                Ledger now;
-                open_ledger(run.state.assembly, run.laws, now);
+                Budget now;
+                start_budget(run.state.assembly, run.laws, now);
                 counted = worst({counted, std::fabs(now.energy() - l.energy()) / run.size});
                 // What the scheme takes is not negative; contact does no work.
                 if (theta == 0.5) CHECK((l.theta_velocity == 0 && l.theta_strain == 0));
@@ -192,7 +192,7 @@ TEST_CASE("the energy theorem holds in every step whatever it holds" *
         }
         CHECK((pressed > 0) == !bonded);
         CHECK((friction > 0) == (name != "contact" && !bonded));
-        CHECK((plate > 0) == (name == "moving plate" || name == "servo"));
+        CHECK((plate > 0) == (name == "moving plate" || name == "force control"));
         CHECK((gravity != 0) == (name == "gravity and damping"));
         CHECK((damping > 0) == (name == "gravity and damping"));
         CHECK((pic > 1e-6) == (name == "pic"));
@@ -226,7 +226,7 @@ TEST_CASE("the energy theorem holds for grains that yield and volumes that chang
                 CAPTURE(s.volumes);
                 CAPTURE(c.shape);
                 ThetaRun run = follow(c, s, number, sand ? 0.15 : 0.02);
-                const Ledger& l = run.ledger();
+                const Budget& l = run.budget();
                 CHECK(run.identity() <= 1e-12);
                 CHECK((std::fabs(l.plastic) > 1e-3 * run.size) == (which != "elastic"));
                 if (which == "j2") CHECK(l.plastic > 0);
@@ -246,15 +246,15 @@ TEST_CASE("theta one half with the consistent mass keeps the energy of grains th
                 c.shape = shape, c.alpha = alpha;
                 ThetaRun run(c, theta_scheme(0.5, "consistent", solver),
                              [](Assembly& all) { shake(0.05, 3, all); });
-                const double before = run.ledger().energy();
+                const double before = run.budget().energy();
                 double pressed = 0;
                 for (int k = 0; k < 20; ++k) {
                     run.advance();
                     pressed += run.sums.contact.nodes;
                 }
                 CHECK(pressed > 10);
-                CHECK(run.ledger().elastic > 1e-3 * before);
-                CHECK(std::fabs(run.ledger().energy() / before - 1) <= 1e-11);
+                CHECK(run.budget().elastic > 1e-3 * before);
+                CHECK(std::fabs(run.budget().energy() / before - 1) <= 1e-11);
             }
         }
     }
@@ -322,10 +322,10 @@ TEST_CASE("gravity does exactly the work of the way that grains fall") {
             CHECK(std::fabs(after - before - 0.2 * t + 2 * far) <= 1e-13);
             CHECK(std::fabs(x_after - x_before - 0.1 * t - 0.4 * far) <= 1e-13);
             const double work = m * (0.4 * (x_after - x_before) - 2 * (after - before));
-            CHECK(std::fabs(run.ledger().gravity - work) <= 1e-12 * work);
-            CHECK(run.ledger().elastic <= 1e-20 * work);
+            CHECK(std::fabs(run.budget().gravity - work) <= 1e-12 * work);
+            CHECK(run.budget().elastic <= 1e-20 * work);
             if (theta == 0.5)
-                CHECK(std::fabs(run.ledger().energy() - run.ledger().start - work) <= 1e-12 * work);
+                CHECK(std::fabs(run.budget().energy() - run.budget().start - work) <= 1e-12 * work);
         }
     }
 }
@@ -352,7 +352,7 @@ TEST_CASE("the momentum of all grains stays with contact and friction and bonds"
                 const auto after = total_momentum(run.state.assembly);
                 off = worst({off, std::fabs(after[0] - before[0]) / before[2],
                              std::fabs(after[1] - before[1]) / before[2]});
-                const Ledger& l = run.ledger();
+                const Budget& l = run.budget();
                 double x = 0, y = 0;
                 for (std::size_t g = 0; g < 4; ++g) x += l.momentum_x[g], y += l.momentum_y[g];
                 CHECK(std::fabs(x - after[0]) <= 1e-13 * before[2]);
@@ -388,7 +388,7 @@ TEST_CASE("a plate gives what grains get and obeys its own law of motion") {
                                  std::fabs(after[1] - before[1] + run.dt * is.push_y) / size});
                     travel += run.dt * is.vx;
                     CHECK(std::fabs(is.travel_x - travel) <= 1e-15);
-                    if (!is.servo_x) continue;
+                    if (!is.force_control_x) continue;
                     // m (V - V_old) = dt (F + push - c V)
                     const double F = share_of_load(t, 0.05) * is.force;
                     off = worst({off, std::fabs(is.mass * (is.vx - V) -
@@ -436,7 +436,7 @@ TEST_CASE("boxes that are bonded move as one box does") {
                                    1e-4 * std::fabs(p.sxx_p[k] - q.sxx_p[j])}));
                     off = worst({off, nearest});
                 }
-                CHECK(std::fabs(one.ledger().energy() - two.ledger().energy()) <= 1e-10 * one.size);
+                CHECK(std::fabs(one.budget().energy() - two.budget().energy()) <= 1e-10 * one.size);
             }
         }
     }
@@ -463,20 +463,20 @@ TEST_CASE("impulses press and gaps stay open and friction is Coulomb's at the so
                     run.begin(), run.solve();
                     held += run.sums.solver.held;
                     if (run.sums.solver.held == 0) {
-                        const ContactSet& set = run.set();
+                        const ActiveSet& set = run.set();
                         double press = 0, speed = 0;
-                        for (const MeetingPair& pair : set.pairs)
+                        for (const ContactPair& pair : set.pairs)
                             press = std::max(press, std::fabs(pair.lambda_n));
                         for (const NodeMotion& v : run.nodes.motion)
                             speed = std::max({speed, std::fabs(v.vx_1), std::fabs(v.vy_1)});
-                        for (const MeetingNode& node : set.nodes) {
+                        for (const ActiveSet::Node& node : set.nodes) {
                             for (std::size_t k = node.pair_begin; k < node.pair_end; ++k) {
-                                const MeetingPair& pair = set.pairs[k];
+                                const ContactPair& pair = set.pairs[k];
                                 const auto of = [&](std::size_t who) -> std::array<double, 2> {
-                                    const Meeter& is = set.meeters[node.meeter_begin + who];
-                                    if (is.fixed) return {is.vx, is.vy};
+                                    const ContactBody& is = set.bodies[node.body_begin + who];
+                                    if (is.is_fixed()) return {is.vx, is.vy};
                                     const NodeMotion& v =
-                                        run.nodes.motion[static_cast<std::size_t>(is.slot)];
+                                        run.nodes.motion[static_cast<std::size_t>(is.dof)];
                                     return {v.vx_1, v.vy_1};
                                 };
                                 const auto a = of(pair.a), b = of(pair.b);
@@ -692,7 +692,7 @@ TEST_CASE("any number of threads takes the same bits through contact") {
             c.problem.walls = {"frictional", "slip", "frictional", "open"};
             c.problem.bonds.push_back({"glue", "a", "b"});
             std::vector<Particles> results;
-            std::vector<Ledger> ledgers;
+            std::vector<Budget> budgets;
             for (const int threads : {1, 2, 3}) {
                 common::set_thread_count(threads);
                 ThetaRun run(c, theta_scheme(0.6, "consistent", solver), [](Assembly& all) {
@@ -701,14 +701,14 @@ TEST_CASE("any number of threads takes the same bits through contact") {
                 });
                 run.advance(5);
                 CHECK(run.sums.contact.nodes > 0);
-                results.push_back(run.particles()), ledgers.push_back(run.ledger());
+                results.push_back(run.particles()), budgets.push_back(run.budget());
             }
             for (const std::size_t k : {std::size_t{1}, std::size_t{2}}) {
                 const auto one = results[0].all(), other = results[k].all();
                 for (std::size_t q = 0; q < one.size(); ++q) CHECK(*one[q] == *other[q]);
                 common::Row row, other_row;
-                mpm_implicit::add_ledger(ledgers[0], row);
-                mpm_implicit::add_ledger(ledgers[k], other_row);
+                mpm_implicit::add_budget(budgets[0], row);
+                mpm_implicit::add_budget(budgets[k], other_row);
                 CHECK(row.values == other_row.values);
             }
         }

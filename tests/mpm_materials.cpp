@@ -10,7 +10,7 @@
 #include <random>
 #include <vector>
 
-#include "mpm_explicit/materials.hpp"
+#include "mpm_explicit/material_laws.hpp"
 #include "tests/support/any_numbers.hpp"
 
 namespace {

@@ -63,10 +63,10 @@ NodeSums totals(const GrainNodes& nodes) {
 }
 
 using Key = std::tuple<int, long, long>;
-std::map<Key, NodeSums> by_node(const GrainNodes& nodes, const Frame& frame) {
+std::map<Key, NodeSums> by_node(const GrainNodes& nodes, const GridLayout& layout) {
     std::map<Key, NodeSums> all;
-    for_each_slot(nodes, frame, [&](int g, long i, long j, std::size_t slot) {
-        all[{g, i, j}] = nodes.sums[slot];
+    for_each_dof(nodes, layout, [&](int g, long i, long j, std::size_t dof) {
+        all[{g, i, j}] = nodes.sums[dof];
     });
     return all;
 }
@@ -112,11 +112,11 @@ Cloud odd_grains(std::uint64_t seed) {
 // Moves every particle by up to the distance after which a sort is due, many of them straight up,
 // down, left, right or along a diagonal.
 void move_until_sort(Cloud& cloud, const GrainNodes& nodes, Random& random) {
-    Frame frame;
+    GridLayout layout;
     double far = 0;
     for (double part = cloud.mesh.h; part > 1e-9; part *= 0.5) {
-        frame.moved = far + part;
-        if (!nodes.sort_is_due(frame)) far += part;
+        layout.moved = far + part;
+        if (!nodes.sort_is_due(layout)) far += part;
     }
     CHECK(far >= 0.25 * cloud.mesh.h);
     for (std::size_t p = 0; p < cloud.particles.x_p.size(); ++p) {
@@ -143,7 +143,7 @@ TEST_CASE("weights sum to one and reproduce the place of the particle everywhere
             Random random(1);
             const Mesh mesh = mesh_of(30, 30, h, low, low - 1);
             const Locator at(mesh);
-            // Rows of 100 columns; slot s stands for the node in column s % 100, row s / 100.
+            // Rows of 100 columns; dof s stands for the node in column s % 100, row s / 100.
             std::array<long, 40> origin{};
             for (long j = 0; j < 40; ++j) origin[static_cast<std::size_t>(j)] = 100 * (j - 2) + 5;
             double S = 0, xS = 0, G = 0, xG = 0, least = 0;
@@ -155,8 +155,8 @@ TEST_CASE("weights sum to one and reproduce the place of the particle everywhere
                     std::array<double, 2> g{};
                     std::array<double, 4> gradient{};
                     for_each_node(shape, at, origin.data() + 2, x, y,
-                                  [&](long slot, double weight, double Gx, double Gy) {
-                                      const long j = (slot + 195) / 100 - 2, i = slot - 100 * j - 5;
+                                  [&](long dof, double weight, double Gx, double Gy) {
+                                      const long j = (dof + 195) / 100 - 2, i = dof - 100 * j - 5;
                                       const double dx = mesh.x_of(real(i)) - x,
                                                    dy = mesh.y_of(real(j)) - y;
                                       s += weight, sx += weight * dx, sy += weight * dy;
@@ -275,8 +275,8 @@ TEST_CASE("the mean place of what is on a node lies within the reach of the node
         Cloud cloud = odd_grains(6);
         const GrainNodes nodes = cloud.on_nodes(shape);
         const Mesh& mesh = cloud.mesh;
-        for_each_slot(nodes, cloud.frame, [&](int, long i, long j, std::size_t slot) {
-            const NodeSums& s = nodes.sums[slot];
+        for_each_dof(nodes, cloud.layout, [&](int, long i, long j, std::size_t dof) {
+            const NodeSums& s = nodes.sums[dof];
             if (!(s.m > 1e-9)) return;
             CHECK(std::fabs(s.mx / s.m - mesh.x_of(real(i))) <= 1.5 * mesh.h);
             CHECK(std::fabs(s.my / s.m - mesh.y_of(real(j))) <= 1.5 * mesh.h);
@@ -295,7 +295,7 @@ TEST_CASE("every particle is kept by a stable sort into rows of cells with all i
         Particles before = p;
         GrainNodes nodes(cloud.mesh, 2, 0);
         for (int round = 0; round < 2; ++round) {  // of sorted particles, too
-            nodes.sort(cloud.grains, p, cloud.frame);
+            nodes.sort(cloud.grains, p, cloud.layout);
             std::vector<int> seen(before.x_p.size(), 0);
             for (std::size_t k = 0; k < p.x_p.size(); ++k) {
                 const auto was = static_cast<std::size_t>(p.yield_p[k]);
@@ -308,11 +308,11 @@ TEST_CASE("every particle is kept by a stable sort into rows of cells with all i
             std::size_t row = 0;
             for (std::size_t g = 0; g < cloud.grains.size(); ++g) {
                 const auto at = [&](std::size_t k) {
-                    return static_cast<std::size_t>(cloud.frame.strip_begin[k]);
+                    return static_cast<std::size_t>(cloud.layout.tile_begin[k]);
                 };
                 CHECK(at(row) == static_cast<std::size_t>(cloud.grains[g].begin));
                 double last = -1e9;
-                for (int r = 0; r < cloud.frame.strips[g]; ++r, ++row) {
+                for (int r = 0; r < cloud.layout.tiles[g]; ++r, ++row) {
                     const auto cell = [&](std::size_t k) {
                         return std::floor((p.y_p[k] - cloud.mesh.y_low) / cloud.mesh.h);
                     };
@@ -325,11 +325,11 @@ TEST_CASE("every particle is kept by a stable sort into rows of cells with all i
                 }
             }
             long next = 0;
-            for (const Strip& strip : nodes.strips()) {
-                const Grain& grain = cloud.grains[static_cast<std::size_t>(strip.grain)];
-                CHECK(strip.begin == next);
-                CHECK((strip.begin >= grain.begin && strip.end <= grain.end));
-                next = strip.end;
+            for (const Tile& tile : nodes.tiles()) {
+                const Grain& grain = cloud.grains[static_cast<std::size_t>(tile.grain)];
+                CHECK(tile.begin == next);
+                CHECK((tile.begin >= grain.begin && tile.end <= grain.end));
+                next = tile.end;
             }
             CHECK(next == p.count());
         }
@@ -347,11 +347,11 @@ TEST_CASE(
         for (std::uint64_t seed = 1; seed <= 30; ++seed) {
             Cloud cloud = odd_grains(seed);
             GrainNodes nodes(cloud.mesh, Shape::width, 0);
-            nodes.sort(cloud.grains, cloud.particles, cloud.frame);
-            const Frame& frame = cloud.frame;
-            std::vector<std::size_t> first_of(frame.rows.size(), 0);
+            nodes.sort(cloud.grains, cloud.particles, cloud.layout);
+            const GridLayout& layout = cloud.layout;
+            std::vector<std::size_t> first_of(layout.rows.size(), 0);
             for (std::size_t g = 1; g < first_of.size(); ++g)
-                first_of[g] = first_of[g - 1] + static_cast<std::size_t>(frame.rows[g - 1]);
+                first_of[g] = first_of[g - 1] + static_cast<std::size_t>(layout.rows[g - 1]);
             move_until_sort(cloud, nodes, random);
             const Locator at(cloud.mesh);
             for (std::size_t g = 0; g < cloud.grains.size(); ++g) {
@@ -360,11 +360,11 @@ TEST_CASE(
                     const auto w_x = shape((cloud.particles.x_p[n] - at.x_low) * at.per_h, 1),
                                w_y = shape((cloud.particles.y_p[n] - at.y_low) * at.per_h, 1);
                     for (int b = 0; b < Shape::width; ++b) {
-                        const long row = w_y.first + b - frame.first_row[g];
-                        const bool known = row >= 0 && row < frame.rows[g];
+                        const long row = w_y.first + b - layout.first_row[g];
+                        const bool known = row >= 0 && row < layout.rows[g];
                         const std::size_t r = first_of[g] + static_cast<std::size_t>(row);
-                        if (known && w_x.first >= frame.first_column[r] &&
-                            w_x.first + Shape::width <= frame.end_column[r])
+                        if (known && w_x.first >= layout.first_column[r] &&
+                            w_x.first + Shape::width <= layout.end_column[r])
                             ++inside;
                         else
                             ++outside;
@@ -386,29 +386,29 @@ TEST_CASE("sums on nodes do not depend on whether particles were sorted since th
             cloud.mesh.periodic_x = periodic;
             GrainNodes nodes = cloud.on_nodes(shape);
             move_until_sort(cloud, nodes, random);
-            put_on_nodes(shape, cloud.particles, nodes);
-            const auto before = by_node(nodes, cloud.frame);
-            nodes.sort(cloud.grains, cloud.particles, cloud.frame);
-            put_on_nodes(shape, cloud.particles, nodes);
-            CHECK(difference(before, by_node(nodes, cloud.frame)) <= 1e-12);
+            particles_to_grid(shape, cloud.particles, nodes);
+            const auto before = by_node(nodes, cloud.layout);
+            nodes.sort(cloud.grains, cloud.particles, cloud.layout);
+            particles_to_grid(shape, cloud.particles, nodes);
+            CHECK(difference(before, by_node(nodes, cloud.layout)) <= 1e-12);
         }
     });
 }
 
-TEST_CASE("a frame laid out again gives the same nodes") {
+TEST_CASE("a grid layout that was kept gives the same nodes") {
     Cloud cloud = odd_grains(10);
     cloud.mesh.boundary = {Boundary::slip, Boundary::frictional, Boundary::stick, Boundary::slip};
     const GrainNodes nodes = cloud.on_nodes(QuadraticShape{});
     GrainNodes again(cloud.mesh, 3, 0);
-    again.lay_out(cloud.grains, cloud.frame);
-    put_on_nodes(QuadraticShape{}, cloud.particles, again);
+    again.lay_out(cloud.grains, cloud.layout);
+    particles_to_grid(QuadraticShape{}, cloud.particles, again);
     CHECK(again.size() == nodes.size());
     CHECK(std::memcmp(again.sums.data(), nodes.sums.data(),
                       sizeof(NodeSums) * static_cast<std::size_t>(nodes.size())) == 0);
     CHECK(again.members().size() == nodes.members().size());
 }
 
-TEST_CASE("slots are proportional to the area of the grains") {
+TEST_CASE("nodes stored are proportional to the area of the grains") {
     // 2000 grains of five cells, scattered over a mesh of a quarter of a million.
     Random random(11);
     Cloud pack(mesh_of(500, 500, 1));
@@ -430,15 +430,15 @@ TEST_CASE("slots are proportional to the area of the grains") {
         const double a = random(0, 200), b = random(-1, 1), half = std::sqrt(0.5);
         bar.add(20 + (a - b) * half, 20 + (a + b) * half);
     }
-    // In a row: the bar's width across, 2 * 2^1/2; its way in the strips that reach a node, one per
-    // strip; and the margins.
+    // In a row: the bar's width across, 2 * 2^1/2; its way in the tiles that reach a node, one per
+    // tile; and the margins.
     const GrainNodes linear = bar.on_nodes(LinearShape{});
-    CHECK(linear.size() <= bar.frame.rows[0] * (3 + 4 + 5));
-    CHECK(linear.size() >= 8 * bar.frame.rows[0]);
-    CHECK(bar.on_nodes(QuadraticShape{}).size() <= bar.frame.rows[0] * (3 + 6 + 7));
+    CHECK(linear.size() <= bar.layout.rows[0] * (3 + 4 + 5));
+    CHECK(linear.size() >= 8 * bar.layout.rows[0]);
+    CHECK(bar.on_nodes(QuadraticShape{}).size() <= bar.layout.rows[0] * (3 + 6 + 7));
 }
 
-TEST_CASE("strips that are worked on at the same time share no node") {
+TEST_CASE("tiles that are worked on at the same time share no node") {
     for_each_shape([&](const auto& shape, const std::string& name) {
         CAPTURE(name);
         Random random(12);
@@ -460,7 +460,7 @@ TEST_CASE("strips that are worked on at the same time share no node") {
         std::vector<std::vector<std::vector<std::size_t>>> colors(1);
         std::size_t last = 0;
         bool first = true;
-        nodes.for_each_strip([&](const Strip&, std::size_t number) {
+        nodes.for_each_tile([&](const Tile&, std::size_t number) {
             if (!first && number < last) colors.emplace_back();
             if (first || number != last + 1) colors.back().emplace_back();
             colors.back().back().push_back(number);
@@ -468,21 +468,21 @@ TEST_CASE("strips that are worked on at the same time share no node") {
         });
         common::set_thread_count(2);
         CHECK(colors.size() == 2);
-        long pieces = 0, shared = 0, strips = 0;
+        long pieces = 0, shared = 0, tiles = 0;
         const Locator at(cloud.mesh);
         for (const auto& color : colors) {
             std::vector<long> owner(static_cast<std::size_t>(nodes.size()), -1);
             for (const auto& piece : color) {
                 ++pieces;
                 for (const std::size_t s : piece) {
-                    ++strips;
-                    const Strip& strip = nodes.strips()[s];
-                    for (long p = strip.begin; p < strip.end; ++p) {
+                    ++tiles;
+                    const Tile& tile = nodes.tiles()[s];
+                    for (long p = tile.begin; p < tile.end; ++p) {
                         const auto n = static_cast<std::size_t>(p);
-                        for_each_node(shape, at, nodes.origins(strip.grain), cloud.particles.x_p[n],
+                        for_each_node(shape, at, nodes.origins(tile.grain), cloud.particles.x_p[n],
                                       cloud.particles.y_p[n],
-                                      [&](long slot, double, double, double) {
-                                          long& by = owner[static_cast<std::size_t>(slot)];
+                                      [&](long dof, double, double, double) {
+                                          long& by = owner[static_cast<std::size_t>(dof)];
                                           if (by >= 0 && by != pieces) ++shared;
                                           by = pieces;
                                       });
@@ -490,7 +490,7 @@ TEST_CASE("strips that are worked on at the same time share no node") {
                 }
             }
         }
-        CHECK(strips == static_cast<long>(nodes.strips().size()));
+        CHECK(tiles == static_cast<long>(nodes.tiles().size()));
         CHECK(pieces >= 10);
         CHECK(shared == 0);
     });
@@ -530,10 +530,10 @@ TEST_CASE("sums and steps have the same bits for one thread and two and three") 
             std::vector<std::vector<double>> all;
             for (const std::vector<double>* quantity : run.particles().all())
                 all.push_back(*quantity);
-            if (threads == 1) reference = all, energy = run.ledger().energy_14;
+            if (threads == 1) reference = all, energy = run.budget().energy_14;
             CHECK(run.sums.contact.nodes > 0);
             CHECK(all == reference);
-            CHECK(run.ledger().energy_14 == energy);
+            CHECK(run.budget().energy_14 == energy);
         }
     }
     common::set_thread_count(2);
@@ -568,7 +568,7 @@ TEST_CASE("a grain across the seam of a periodic mesh is the same grain in the m
             }
             // By place relative to the shift; how far the grain came back is in its first column.
             std::map<Key, NodeSums> all;
-            for (const auto& [key, sums] : by_node(nodes, cloud.frame)) {
+            for (const auto& [key, sums] : by_node(nodes, cloud.layout)) {
                 const auto& [g, i, j] = key;
                 NodeSums s = sums;
                 s.mx -= s.m * mesh.x_of(real(i)), s.my = 0;
@@ -606,16 +606,16 @@ TEST_CASE("a grain that reaches all around has the same node at both ends") {
                     ring.add(0.5 + 0.125 * (k + 0.5) + shift, -1 + 0.5 + 0.125 * (l + 0.5), 2, 0.3,
                              0, 0.015625);
             GrainNodes nodes = ring.on_nodes(shape);
-            CHECK(ring.frame.ring[0] == 1);
+            CHECK(ring.layout.wraps[0] == 1);
             const auto uniform = [&] {
                 std::map<long, std::set<long>> columns;
                 double most = 0;
                 std::map<long, double> mass;
-                for_each_slot(nodes, ring.frame, [&](int, long i, long j, std::size_t slot) {
-                    const NodeSums& s = nodes.sums[slot];
+                for_each_dof(nodes, ring.layout, [&](int, long i, long j, std::size_t dof) {
+                    const NodeSums& s = nodes.sums[dof];
                     // The velocity is there at every copy of a node.
                     const bool touched = j >= 2 && j <= 6;
-                    if (touched && std::fabs(nodes.motion[slot].vx_0 - 0.3) > 1e-13) most = 1;
+                    if (touched && std::fabs(nodes.motion[dof].vx_0 - 0.3) > 1e-13) most = 1;
                     if (!(s.m > 0)) return;
                     CHECK(columns[j].insert((i + 24) % 12).second);
                     const auto [at, first] = mass.insert({j, s.m});
@@ -630,16 +630,16 @@ TEST_CASE("a grain that reaches all around has the same node at both ends") {
             CHECK(uniform() <= 1e-12);
             // Particles that have gone on without a sort are beyond the end, and still there.
             for (double& x : ring.particles.x_p) x += 0.45 * mesh.h;
-            put_on_nodes(shape, ring.particles, nodes);
-            velocity_of_nodes(ring.grains, ring.rigid, nodes);
+            particles_to_grid(shape, ring.particles, nodes);
+            nodal_velocity(ring.grains, ring.rigid, nodes);
             CHECK(uniform() <= 1e-12);
             for (double& x : ring.particles.x_p) x -= 0.9 * mesh.h;
-            put_on_nodes(shape, ring.particles, nodes);
-            velocity_of_nodes(ring.grains, ring.rigid, nodes);
+            particles_to_grid(shape, ring.particles, nodes);
+            nodal_velocity(ring.grains, ring.rigid, nodes);
             CHECK(uniform() <= 1e-12);
             // A ring stays one, and its particles come back into the box.
-            nodes.sort(ring.grains, ring.particles, ring.frame);
-            CHECK(ring.frame.ring[0] == 1);
+            nodes.sort(ring.grains, ring.particles, ring.layout);
+            CHECK(ring.layout.wraps[0] == 1);
             for (const double x : ring.particles.x_p) CHECK((x >= 0.5 && x < 3.5));
         }
     });
@@ -665,20 +665,20 @@ TEST_CASE("spreading velocities is the transpose of folding sums and forces") {
                 v = {random(-1, 1), random(-1, 1), random(-1, 1), random(-1, 1)};
             for (const long i : nodes.fixed_x()) nodes.motion[static_cast<std::size_t>(i)].vx_0 = 0;
             for (const long i : nodes.fixed_y()) nodes.motion[static_cast<std::size_t>(i)].vy_0 = 0;
-            spread_velocity(nodes);
+            fill_ghost_velocity(nodes);
             const Particles& p = cloud.particles;
             double on_particles = 0, on_nodes = 0, by_force = 0;
             std::fill(nodes.force.begin(), nodes.force.end(), NodeForce{});
             for (std::size_t k = 0; k < p.x_p.size(); ++k)
-                for_each_node(
-                    shape, Locator(cloud.mesh), nodes.origins(0), p.x_p[k], p.y_p[k],
-                    [&](long slot, double S, double, double) {
-                        const NodeMotion& u = nodes.motion[static_cast<std::size_t>(slot)];
-                        NodeForce& f = nodes.force[static_cast<std::size_t>(slot)];
-                        f.x += p.m_p[k] * p.vx_p[k] * S, f.y += p.m_p[k] * p.vy_p[k] * S;
-                        on_particles += p.m_p[k] * S * (p.vx_p[k] * u.vx_0 + p.vy_p[k] * u.vy_0);
-                    });
-            fold_force(nodes);
+                for_each_node(shape, Locator(cloud.mesh), nodes.origins(0), p.x_p[k], p.y_p[k],
+                              [&](long dof, double S, double, double) {
+                                  const NodeMotion& u = nodes.motion[static_cast<std::size_t>(dof)];
+                                  NodeForce& f = nodes.force[static_cast<std::size_t>(dof)];
+                                  f.x += p.m_p[k] * p.vx_p[k] * S, f.y += p.m_p[k] * p.vy_p[k] * S;
+                                  on_particles +=
+                                      p.m_p[k] * S * (p.vx_p[k] * u.vx_0 + p.vy_p[k] * u.vy_0);
+                              });
+            reduce_ghost_force(nodes);
             for (std::size_t n = 0; n < nodes.sums.size(); ++n) {
                 const NodeMotion& u = nodes.motion[n];
                 on_nodes += nodes.sums[n].px * u.vx_0 + nodes.sums[n].py * u.vy_0;
@@ -688,9 +688,9 @@ TEST_CASE("spreading velocities is the transpose of folding sums and forces") {
             CHECK(std::fabs(on_particles - on_nodes) <= 1e-12);
             CHECK(std::fabs(on_particles - by_force) <= 1e-12);
             // Images keep nothing.
-            for (const Image& image : nodes.images()) {
-                CHECK(nodes.sums[static_cast<std::size_t>(image.slot)].m == 0);
-                CHECK(nodes.force[static_cast<std::size_t>(image.slot)].x == 0);
+            for (const GhostNode& ghost : nodes.ghosts()) {
+                CHECK(nodes.sums[static_cast<std::size_t>(ghost.dof)].m == 0);
+                CHECK(nodes.force[static_cast<std::size_t>(ghost.dof)].x == 0);
             }
         }
     });
@@ -729,7 +729,7 @@ TEST_CASE("nodes at a wall see the body and its mirror image") {
         CAPTURE(name);
         for (const bool clamp : {false, true}) {
             CAPTURE(clamp);
-            // Particles in a corner of the mesh; and, on a wider one, they and their three images.
+            // Particles in a corner of the mesh; and, on a wider one, they and their three ghosts.
             Random random(17);
             const Boundary kind = clamp ? Boundary::stick : Boundary::slip;
             Cloud corner(mesh_of(8, 8, 0.5)), whole(mesh_of(16, 16, 0.5, -4, -4));
@@ -745,19 +745,19 @@ TEST_CASE("nodes at a wall see the body and its mirror image") {
                     whole.add(-x, -y, m, -along * vx, -along * vy);
             }
             const GrainNodes one = corner.on_nodes(shape), four = whole.on_nodes(shape);
-            auto all = by_node(four, whole.frame);
+            auto all = by_node(four, whole.layout);
             double most = 0;
             long compared = 0;
-            for_each_slot(one, corner.frame, [&](int, long i, long j, std::size_t slot) {
+            for_each_dof(one, corner.layout, [&](int, long i, long j, std::size_t dof) {
                 if (i < 0 || j < 0) {
-                    CHECK(one.sums[slot].m == 0);
+                    CHECK(one.sums[dof].m == 0);
                     return;
                 }
                 // On a wall there is only the body's half.
                 const double share = (i == 0 ? 0.5 : 1) * (j == 0 ? 0.5 : 1);
-                const NodeSums &a = one.sums[slot], &b = all[{0, i + 8, j + 8}];
+                const NodeSums &a = one.sums[dof], &b = all[{0, i + 8, j + 8}];
                 most = worst({most, std::fabs(a.m - share * b.m), std::fabs(a.V - share * b.V)});
-                const NodeMotion& v = one.motion[slot];
+                const NodeMotion& v = one.motion[dof];
                 if (i == 0) CHECK(v.vx_0 == 0);
                 if (j == 0) CHECK(v.vy_0 == 0);
                 if (clamp && (i == 0 || j == 0)) CHECK((v.vx_0 == 0 && v.vy_0 == 0));
@@ -788,11 +788,11 @@ TEST_CASE("particles that move alike give their velocity to every node with mass
         cloud.grains[3].rigid = true;
         cloud.rigid[3].vx = 5, cloud.rigid[3].vy = 6;
         const GrainNodes nodes = cloud.on_nodes(shape, 1e-9);
-        for_each_slot(nodes, cloud.frame, [&](int g, long, long, std::size_t slot) {
-            const bool rigid = g == 3, empty = !rigid && !(nodes.sums[slot].m > 1e-9);
+        for_each_dof(nodes, cloud.layout, [&](int g, long, long, std::size_t dof) {
+            const bool rigid = g == 3, empty = !rigid && !(nodes.sums[dof].m > 1e-9);
             const double x = rigid ? 5 : empty ? 0 : 0.7, y = rigid ? 6 : empty ? 0 : -0.2;
-            CHECK(std::fabs(nodes.motion[slot].vx_0 - x) <= 1e-14);
-            CHECK(std::fabs(nodes.motion[slot].vy_0 - y) <= 1e-14);
+            CHECK(std::fabs(nodes.motion[dof].vx_0 - x) <= 1e-14);
+            CHECK(std::fabs(nodes.motion[dof].vy_0 - y) <= 1e-14);
         });
     });
 }
@@ -808,13 +808,13 @@ TEST_CASE("nodes that several grains touch are listed once with all of them") {
         for (int p = 0; p < 40; ++p) cloud.add(0.1 + 0.1 * p, 11.15);
         const GrainNodes nodes = cloud.on_nodes(LinearShape{});
         std::map<std::pair<long, long>, std::set<long>> expected;
-        for_each_slot(nodes, cloud.frame, [&](int, long i, long j, std::size_t slot) {
-            expected[{periodic ? (i + 60) % 60 : i, j}].insert(static_cast<long>(slot));
+        for_each_dof(nodes, cloud.layout, [&](int, long i, long j, std::size_t dof) {
+            expected[{periodic ? (i + 60) % 60 : i, j}].insert(static_cast<long>(dof));
         });
         std::size_t shared = 0, on_wall = 0;
-        for (const auto& [node, slots] : expected) {
+        for (const auto& [node, dofs] : expected) {
             const bool wall = node.second <= 0 && node.second > -4;
-            if (slots.size() + (wall ? 1 : 0) > 1) ++shared;
+            if (dofs.size() + (wall ? 1 : 0) > 1) ++shared;
             if (wall) ++on_wall;
         }
         // Columns of the wall that no grain touches are not in the lists.
@@ -823,7 +823,7 @@ TEST_CASE("nodes that several grains touch are listed once with all of them") {
         for (long n = 0; n < nodes.shared_count(); ++n) {
             const auto begin = nodes.shared_begin()[static_cast<std::size_t>(n)],
                        end = nodes.shared_begin()[static_cast<std::size_t>(n) + 1];
-            std::set<long> slots;
+            std::set<long> dofs;
             int last = -1;
             std::pair<long, long> where{};
             for (long l = begin; l < end; ++l) {
@@ -835,12 +835,12 @@ TEST_CASE("nodes that several grains touch are listed once with all of them") {
                 }
                 CHECK(member.grain >= last);  // grains in their order
                 last = member.grain;
-                slots.insert(member.slot);
+                dofs.insert(member.dof);
                 const long i = std::lround((member.x - cloud.mesh.x_low) / cloud.mesh.h),
                            j = std::lround((member.y - cloud.mesh.y_low) / cloud.mesh.h);
                 where = {periodic ? (i + 60) % 60 : i, j};
             }
-            CHECK(slots == expected[where]);
+            CHECK(dofs == expected[where]);
         }
     }
 }

@@ -1,4 +1,4 @@
-// What a run of mpm_explicit keeps besides what every scheme does (record_grains.hpp): the ledger
+// What a run of mpm_explicit keeps besides what every scheme does (record_grains.hpp): the budget
 // of the leapfrog.
 #pragma once
 
@@ -12,8 +12,8 @@
 
 namespace mpm_explicit {
 
-/// Adds the terms of the ledger, energies now and work since the start.
-inline void add_ledger(const Ledger& l, common::Row& row) {
+/// Adds the terms of the budget, energies now and work since the start.
+inline void add_budget(const Budget& l, common::Row& row) {
     for (const auto& [name, value] : {std::pair("kinetic", l.kinetic),
                                       {"elastic", l.elastic},
                                       {"energy", l.kinetic + l.elastic},
@@ -28,7 +28,7 @@ inline void add_ledger(const Ledger& l, common::Row& row) {
                                       {"volume", l.volume},
                                       {"pic", l.pic},
                                       {"remap", l.remap},
-                                      {"budget", l.budget()}})
+                                      {"budget", l.residual()}})
         row.add(name, "energy", value);
 }
 
@@ -39,7 +39,7 @@ class LeapfrogRecorder {
                      common::History& history)
         : dt_(scales.dt),
           recorder_(parameters, leapfrog, scales, state.assembly, comparisons, "budget") {
-        Ledger none;
+        Budget none;
         none.momentum_x.assign(state.assembly.grains.size(), 0), none.momentum_y = none.momentum_x;
         history.columns(row(0, none, {}, state.assembly));
     }
@@ -49,18 +49,18 @@ class LeapfrogRecorder {
         recorder_.snapshot(step, state.assembly, run);
     }
 
-    /// Writes the row of t^n, when the ledger has the energies of the step and not yet its work.
+    /// Writes the row of t^n, when the budget has the energies of the step and not yet its work.
     /// errors: NumericalError as Recorder::refuse_failure
     void record(long step, const StepSums& sums, const GrainNodes& nodes, const State& state,
                 common::Run& run) {
-        const Ledger& l = state.ledger;
+        const Budget& l = state.budget;
         const bool finite =
-            std::all_of(sums.strips.begin(), sums.strips.end(), [](const StripSums& s) {
-                return std::isfinite(s.kinetic) && std::isfinite(s.product);
+            std::all_of(sums.tiles.begin(), sums.tiles.end(), [](const TileSums& s) {
+                return std::isfinite(s.kinetic) && std::isfinite(s.kinetic_leapfrog);
             });
         if (finite && recorder_.row_is_due(step))
             run.history.row(row(step, l, sums.contact, state.assembly));
-        recorder_.refuse_failure(step, sums.strips, nodes, state.assembly, l.start, l.external,
+        recorder_.refuse_failure(step, sums.tiles, nodes, state.assembly, l.start, l.external,
                                  l.kinetic + l.elastic, run.history);
     }
 
@@ -73,11 +73,11 @@ class LeapfrogRecorder {
     }
 
    private:
-    common::Row row(long step, const Ledger& l, const ContactSums& contact,
+    common::Row row(long step, const Budget& l, const ContactSums& contact,
                     const Assembly& all) const {
         common::Row row;
         row.add("time", "time", double(step) * dt_);
-        add_ledger(l, row);
+        add_budget(l, row);
         recorder_.add_to(row, l.momentum_x, l.momentum_y, contact, all);
         return row;
     }

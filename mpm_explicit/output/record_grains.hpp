@@ -1,5 +1,5 @@
 // What a run of any scheme keeps: rows of history, files when they are due, why it failed, and what
-// is conserved. The energies and where they went are the scheme's own ledger.
+// is conserved. The energies and where they went are the scheme's own budget.
 #pragma once
 
 #include <algorithm>
@@ -89,16 +89,16 @@ class Recorder {
     }
 
     /// Looks at what a step has made.
-    /// in:     strips, sums over the particles of every strip: their kinetic energy, the smallest
+    /// in:     tiles, sums over the particles of every tile: their kinetic energy, the smallest
     ///         ratio of volumes after and before (least_V), and how far they reach; start, the
     ///         energy at t = 0; external, the work of the loads since; now, the energy
     /// errors: NumericalError for an energy beyond the limit, an inverted volume, or a particle
     ///         that has left the mesh, with grain, place and time
     template <class Sums>
-    void refuse_failure(long step, const std::vector<Sums>& strips, const GrainNodes& nodes,
+    void refuse_failure(long step, const std::vector<Sums>& tiles, const GrainNodes& nodes,
                         const Assembly& all, double start, double external, double now,
                         const common::History& history) {
-        refuse_particles(step, strips, nodes, all);
+        refuse_particles(step, tiles, nodes, all);
         // After a restart, what was put in before it counts as well.
         if (!largest_load_) largest_load_ = history.largest("external");
         largest_load_ = std::max(*largest_load_, std::fabs(external));
@@ -144,7 +144,7 @@ class Recorder {
     }
 
     template <class Sums>
-    void refuse_particles(long step, const std::vector<Sums>& strips, const GrainNodes& nodes,
+    void refuse_particles(long step, const std::vector<Sums>& tiles, const GrainNodes& nodes,
                           const Assembly& all) const {
         const Mesh& mesh = nodes.mesh();
         const Particles& at = all.particles;
@@ -155,21 +155,21 @@ class Recorder {
             return x_least < left || x_most > right || y_least < mesh.y_low ||
                    y_most > mesh.y_high();
         };
-        for (std::size_t k = 0; k < strips.size(); ++k) {
-            const Sums& s = strips[k];
-            const Strip& strip = nodes.strips()[k];
-            const Grain& grain = all.grains[strip.grain];
-            const RigidMotion& motion = all.rigid[strip.grain];
+        for (std::size_t k = 0; k < tiles.size(); ++k) {
+            const Sums& s = tiles[k];
+            const Tile& tile = nodes.tiles()[k];
+            const Grain& grain = all.grains[tile.grain];
+            const RigidMotion& motion = all.rigid[tile.grain];
             const bool finite = std::isfinite(grain.rigid ? motion.vx + motion.vy : s.kinetic);
             if (s.least_V > 0 && finite && !outside(s.x_least, s.x_most, s.y_least, s.y_most))
                 continue;
             const std::string whose = "a particle of grain '" + grain.name + "'";
-            // Shows the first particle of the strip that is bad.
+            // Shows the first particle of the tile that is bad.
             const auto fail = [&](const std::string& what, const auto& is_bad,
                                   const std::string& rest) {
-                long p = strip.begin;
-                while (p < strip.end && !is_bad(p)) ++p;
-                throw common::NumericalError(what + place_of(at, p < strip.end ? p : strip.begin) +
+                long p = tile.begin;
+                while (p < tile.end && !is_bad(p)) ++p;
+                throw common::NumericalError(what + place_of(at, p < tile.end ? p : tile.begin) +
                                              rest);
             };
             if (!(s.least_V > 0))

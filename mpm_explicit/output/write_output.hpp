@@ -12,6 +12,7 @@
 #include "mpm_explicit/assembly.hpp"
 #include "mpm_explicit/output/fringes.hpp"
 #include "mpm_explicit/setup/case.hpp"
+#include "mpm_explicit/setup/plan_grains.hpp"
 
 namespace mpm {
 

@@ -16,15 +16,15 @@ template <class Shape>
 void start_leapfrog(const Shape& shape, const std::vector<AnyLaw>& laws, const Contact& contact,
                     bool frozen, double dt, GrainNodes& nodes, State& state) {
     Assembly& all = state.assembly;
-    put_on_nodes(shape, all.particles, nodes);
-    velocity_of_nodes(all.grains, all.rigid, nodes);
+    particles_to_grid(shape, all.particles, nodes);
+    nodal_velocity(all.grains, all.rigid, nodes);
     contact.join_bonds(all.bonds, nodes);
-    std::vector<StripSums> sums;
-    for_each_chunk(all.grains, nodes, sums, [&](Chunk& chunk) {
-        velocity_gradient(shape, all.particles, nodes, OldVelocity{}, -0.5 * dt, chunk);
-        update_stress(laws, frozen, chunk, all.grains, all.particles, sums);
+    std::vector<TileSums> sums;
+    for_each_batch(all.grains, nodes, sums, [&](ParticleBatch& batch) {
+        velocity_gradient(shape, all.particles, nodes, OldVelocity{}, -0.5 * dt, batch);
+        update_stress(laws, frozen, batch, all.grains, all.particles, sums);
     });
-    open_ledger(all, state.ledger);
+    start_budget(all, state.budget);
 }
 
 }  // namespace mpm_explicit

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "mpm_explicit/material_laws.hpp"
 #include "mpm_explicit/setup/fill_grain.hpp"
 #include "mpm_explicit/setup/pack_file.hpp"
 #include "mpm_explicit/setup/packs.hpp"
@@ -40,6 +41,9 @@ inline std::vector<Material> materials_of(const Problem& problem) {
     }
     return materials;
 }
+
+/// The law of every material.
+inline std::vector<AnyLaw> laws_of(const Problem& w) { return laws_of(materials_of(w)); }
 
 namespace detail {
 

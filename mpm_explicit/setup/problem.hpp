@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "common/run/parameters.hpp"
-#include "mpm_explicit/contact.hpp"
+#include "mpm_explicit/apply_loads.hpp"
+#include "mpm_explicit/detect_contact.hpp"
 #include "mpm_explicit/materials.hpp"
 #include "mpm_explicit/mesh.hpp"
 
@@ -74,6 +75,8 @@ struct Problem {
 
     double gravity_x = 0, gravity_y = 0, damping = 0, rise = 0;
 
+    /// What acts on every grain and plate.
+    Loads loads() const { return {gravity_x, gravity_y, damping, rise}; }
     /// The mesh with its walls.
     Mesh mesh() const {
         Mesh m;

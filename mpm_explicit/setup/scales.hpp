@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "mpm_explicit/assembly.hpp"
+#include "mpm_explicit/setup/assemble.hpp"
 #include "mpm_explicit/setup/case.hpp"
 
 namespace mpm {

@@ -12,8 +12,8 @@
 
 namespace mpm_implicit {
 
-/// Adds the terms of the ledger, energies now and work since the start.
-inline void add_ledger(const Ledger& l, common::Row& row) {
+/// Adds the terms of the budget, energies now and work since the start.
+inline void add_budget(const Budget& l, common::Row& row) {
     for (const auto& [name, value] : {std::pair("kinetic", l.kinetic),
                                       {"elastic", l.elastic},
                                       {"energy", l.energy()},
@@ -43,14 +43,14 @@ class ThetaRecorder {
           scales_(scales),
           recorder_(parameters, facts_of(parameters, scheme), scales, state.assembly, comparisons,
                     "residual") {
-        Ledger none;
+        Budget none;
         none.momentum_x.assign(state.assembly.grains.size(), 0), none.momentum_y = none.momentum_x;
         history.columns(row(0, none, StepSums{}, state.assembly));
     }
 
     /// The row of t = 0.
     void start(const State& state, common::Run& run) {
-        run.history.row(row(0, state.ledger, StepSums{}, state.assembly));
+        run.history.row(row(0, state.budget, StepSums{}, state.assembly));
     }
 
     /// Writes the files that are due at this step, before it.
@@ -58,21 +58,21 @@ class ThetaRecorder {
         recorder_.snapshot(step, state.assembly, run);
     }
 
-    /// Writes the row of the end of a step that the ledger holds.
+    /// Writes the row of the end of a step that the budget holds.
     /// errors: NumericalError as Recorder::refuse_failure
     void record(long step, const StepSums& sums, const GrainNodes& nodes, const State& state,
                 common::Run& run) {
-        const Ledger& l = state.ledger;
+        const Budget& l = state.budget;
         if (std::isfinite(l.energy()) && recorder_.row_is_due(step + 1))
             run.history.row(row(step + 1, l, sums, state.assembly));
-        recorder_.refuse_failure(step, sums.strips, nodes, state.assembly, l.start,
+        recorder_.refuse_failure(step, sums.tiles, nodes, state.assembly, l.start,
                                  l.plate + l.gravity, l.energy(), run.history);
     }
 
     /// The results of the whole run, after its last step.
     void finish(long step, const State& state, common::Run& run) const {
         if (run.history.all().empty()) return;
-        const Ledger& l = state.ledger;
+        const Budget& l = state.budget;
         compare_energy_theorem(run.history, scheme_, l, run.summary);
         recorder_.compare_with_theory(step, state.assembly, run);
         recorder_.finish_conservation(state.assembly, run);
@@ -87,10 +87,10 @@ class ThetaRecorder {
     }
 
    private:
-    common::Row row(long step, const Ledger& l, const StepSums& sums, const Assembly& all) const {
+    common::Row row(long step, const Budget& l, const StepSums& sums, const Assembly& all) const {
         common::Row row;
         row.add("time", "time", double(step) * scales_.dt);
-        add_ledger(l, row);
+        add_budget(l, row);
         row.add("iterations", "1", double(sums.solver.iterations));
         row.add("loops", "1", double(sums.solver.loops));
         row.add("held", "1", double(sums.solver.held));

@@ -36,7 +36,7 @@ inline common::ParameterTable describe(Case& parameters, ThetaScheme& scheme,
     table.whole("solver.max_iterations", scheme.max_iterations, "", between(1, 1e6),
                 "of a linear system; beyond, the run fails");
     table.whole("solver.max_outer_iterations", scheme.max_outer_iterations, "", between(1, 1000),
-                "guesses of who presses, or Newton steps; beyond, the run fails");
+                "active sets tried, or Newton steps; beyond, the run fails");
     describe_output(table, parameters, comparison_names);
     return table;
 }

@@ -50,14 +50,14 @@ inline std::vector<std::string> warnings_of(const Case& parameters, const ThetaS
 /// Memory of a run [bytes]: besides what every scheme needs, the matrices, their factors, vectors.
 inline double bytes_of(const Case& parameters, const ThetaScheme& scheme, const Scales& scales) {
     const double per_cell = double(parameters.problem.per_side * parameters.problem.per_side),
-                 slots = 2 * double(scales.particles) / per_cell + 64 * double(scales.grains);
+                 dofs = 2 * double(scales.particles) / per_cell + 64 * double(scales.grains);
     const double diagonals = parameters.shape == "linear" ? 5 : 13,
-                 across = std::sqrt(slots / double(scales.grains)),
+                 across = std::sqrt(dofs / double(scales.grains)),
                  reach = parameters.shape == "linear" ? 1 : 2,
                  factors = (scheme.preconditioner == "grains" ? 4 * across * reach : 0) +
                            (scheme.consistent() ? across * reach : 0),
                  newton = scheme.newton() ? 2 * (2 * 30 + 16) : 0;
-    return scales.bytes + 8 * slots * (5 * diagonals + 2 * 14 + factors + newton);
+    return scales.bytes + 8 * dofs * (5 * diagonals + 2 * 14 + factors + newton);
 }
 
 /// The resolved scales as text, for --dry-run and the head of a run.

@@ -13,7 +13,7 @@
 #include "common/theory/theta_scheme.hpp"
 #include "mpm_explicit/theory/compare_grains.hpp"
 #include "mpm_explicit/theory/scheme_theory.hpp"
-#include "mpm_implicit/ledger.hpp"
+#include "mpm_implicit/budget.hpp"
 #include "mpm_implicit/theta_scheme.hpp"
 
 namespace mpm_implicit {
@@ -34,7 +34,7 @@ inline theory::SchemeFacts facts_of(const Case& parameters, const ThetaScheme& s
 
 /// [MPM-13] in every step, and that nothing but loads gives energy.
 inline void compare_energy_theorem(const common::History& history, const ThetaScheme& scheme,
-                                   const Ledger& l, common::Summary& summary) {
+                                   const Budget& l, common::Summary& summary) {
     const auto energy = history.column("energy"), external = history.column("external"),
                volume = history.column("volume"), plastic = history.column("plastic");
     double size = std::numeric_limits<double>::min(), growth = 0;

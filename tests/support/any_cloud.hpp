@@ -41,7 +41,7 @@ struct Cloud {
     Particles particles;
     std::vector<Grain> grains;
     std::vector<RigidMotion> rigid;
-    Frame frame;
+    GridLayout layout;
 
     explicit Cloud(const Mesh& where) : mesh(where) {}
 
@@ -75,9 +75,9 @@ struct Cloud {
     template <class Shape>
     GrainNodes on_nodes(const Shape& shape, double least_mass = 0) {
         GrainNodes nodes(mesh, Shape::width, least_mass);
-        nodes.sort(grains, particles, frame);
-        put_on_nodes(shape, particles, nodes);
-        velocity_of_nodes(grains, rigid, nodes);
+        nodes.sort(grains, particles, layout);
+        particles_to_grid(shape, particles, nodes);
+        nodal_velocity(grains, rigid, nodes);
         return nodes;
     }
 };
@@ -89,14 +89,14 @@ inline Mesh mesh_of(long cells_x, long cells_y, double h, double x_low = 0, doub
     return mesh;
 }
 
-/// Calls visit(grain, i, j, slot) for all nodes of all grains.
+/// Calls visit(grain, i, j, dof) for all nodes of all grains.
 template <class Visit>
-void for_each_slot(const GrainNodes& nodes, const Frame& frame, const Visit& visit) {
+void for_each_dof(const GrainNodes& nodes, const GridLayout& layout, const Visit& visit) {
     std::size_t row = 0;
-    for (std::size_t g = 0; g < frame.rows.size(); ++g)
-        for (int r = 0; r < frame.rows[g]; ++r, ++row)
-            for (long i = frame.first_column[row]; i < frame.end_column[row]; ++i) {
-                const long j = frame.first_row[g] + r;
+    for (std::size_t g = 0; g < layout.rows.size(); ++g)
+        for (int r = 0; r < layout.rows[g]; ++r, ++row)
+            for (long i = layout.first_column[row]; i < layout.end_column[row]; ++i) {
+                const long j = layout.first_row[g] + r;
                 visit(static_cast<int>(g), i, j,
                       static_cast<std::size_t>(nodes.origin(static_cast<int>(g), j) + i));
             }

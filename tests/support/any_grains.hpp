@@ -14,7 +14,7 @@ namespace facts {
 
 using namespace mpm_explicit;
 
-/// The steps of mpm_explicit in the order of its main, with the ledger and without files.
+/// The steps of mpm_explicit in the order of its main, with the budget and without files.
 struct Run {
     Case parameters;
     Scales scales;
@@ -45,7 +45,7 @@ struct Run {
         for (std::size_t k = 0; k < p.yield_p.size(); ++k)
             p.yield_p[k] = yields ? 0 : static_cast<double>(k);
         prepare(state.assembly);
-        nodes.sort(state.assembly.grains, p, state.frame);
+        nodes.sort(state.assembly.grains, p, state.layout);
         with_shape(c.scheme(), [&](const auto& shape) {
             start_leapfrog(shape, laws, contact, parameters.frozen, dt, nodes, state);
         });
@@ -53,7 +53,7 @@ struct Run {
     explicit Run(const Case& c) : Run(c, [](Assembly&) {}) {}
 
     Particles& particles() { return state.assembly.particles; }
-    const Ledger& ledger() const { return state.ledger; }
+    const Budget& budget() const { return state.budget; }
 
     void advance(long steps = 1) {
         with_shape(parameters.scheme(), [&](const auto& shape) {
@@ -75,18 +75,18 @@ struct Run {
         Particles& at = particles();
         const std::vector<Grain>& grains = state.assembly.grains;
         std::vector<RigidMotion>& rigid = state.assembly.rigid;
-        if (nodes.sort_is_due(state.frame)) nodes.sort(grains, at, state.frame);
-        const BodyForce body = drive(parameters.problem, step, dt, rigid);
+        if (nodes.sort_is_due(state.layout)) nodes.sort(grains, at, state.layout);
+        const BodyForce body = apply_loads(parameters.problem.loads(), step, dt, rigid);
         take_step(shape, laws, contact, body, parameters.flip, parameters.frozen, dt, nodes, state,
                   sums);
 
-        Ledger& l = state.ledger;
-        enter_energies(step, sums.strips, l);
-        largest_budget = worst({largest_budget, std::fabs(l.budget())});
+        Budget& l = state.budget;
+        add_energies(step, sums.tiles, l);
+        largest_budget = worst({largest_budget, std::fabs(l.residual())});
         largest_remap = worst({largest_remap, std::fabs(l.remap)});
         largest_energy = worst({largest_energy, l.kinetic + l.elastic});
-        for (const StripSums& s : sums.strips) least_V = std::min(least_V, s.least_V);
-        enter_work(nodes.strips(), sums.strips, sums.nodes, sums.contact, l);
+        for (const TileSums& s : sums.tiles) least_V = std::min(least_V, s.least_V);
+        add_work(nodes.tiles(), sums.tiles, sums.nodes, sums.contact, l);
         ++step;
     }
 };

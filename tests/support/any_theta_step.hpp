@@ -18,7 +18,7 @@ namespace facts {
 
 using namespace mpm_implicit;
 
-/// The steps of mpm_implicit in the order of its main, with the ledger and without files.
+/// The steps of mpm_implicit in the order of its main, with the budget and without files.
 struct ThetaRun {
     Case parameters;
     ThetaScheme scheme;
@@ -55,17 +55,17 @@ struct ThetaRun {
         for (std::size_t k = 0; k < p.yield_p.size(); ++k)
             p.yield_p[k] = yields ? 0 : static_cast<double>(k);
         prepare(state.assembly);
-        nodes.sort(state.assembly.grains, p, state.frame);
-        open_ledger(state.assembly, laws, state.ledger);
-        size = ledger().energy();
+        nodes.sort(state.assembly.grains, p, state.layout);
+        start_budget(state.assembly, laws, state.budget);
+        size = budget().energy();
     }
     ThetaRun(const Case& c, const ThetaScheme& s) : ThetaRun(c, s, [](Assembly&) {}) {}
 
     Particles& particles() { return state.assembly.particles; }
-    const Ledger& ledger() const { return state.ledger; }
+    const Budget& budget() const { return state.budget; }
     std::vector<Grain>& grains() { return state.assembly.grains; }
     /// Largest residual of a step, over the energy.
-    double identity() const { return ledger().largest_residual / size; }
+    double identity() const { return budget().largest_residual / size; }
 
     /// Calls work(shape, solver), the solver as wide as the shape.
     template <class Work>
@@ -94,7 +94,7 @@ struct ThetaRun {
         with_scratch([&](const auto& shape, auto& scratch) { end(shape, scratch); });
     }
     /// The pairs of the last step.
-    const ContactSet& set() const {
+    const ActiveSet& set() const {
         return parameters.shape == "linear" ? narrow_.solver.set : wide_.solver.set;
     }
 
@@ -114,11 +114,12 @@ struct ThetaRun {
     }
     template <class Shape, int reach>
     void begin(const Shape& shape, StepScratch<reach>& scratch) {
-        if (nodes.sort_is_due(state.frame)) nodes.sort(grains(), particles(), state.frame);
+        if (nodes.sort_is_due(state.layout)) nodes.sort(grains(), particles(), state.layout);
         // What a test has changed since the last step.
         scratch.laws = laws, scratch.scheme = scheme, scratch.flip = parameters.flip,
         scratch.frozen = parameters.frozen;
-        body = drive(parameters.problem, step, dt, state.assembly.rigid, scratch.solver.servos);
+        body = apply_loads(parameters.problem.loads(), step, dt, state.assembly.rigid,
+                           scratch.solver.force_controls);
         find_matrices(shape, body, dt, scratch, nodes, state, sums);
     }
     template <class Shape, int reach>
@@ -129,16 +130,16 @@ struct ThetaRun {
     void end(const Shape& shape, StepScratch<reach>& scratch) {
         move_to_new_level(shape, body, dt, scratch, nodes, state, sums);
 
-        Ledger& l = state.ledger;
+        Budget& l = state.budget;
         const auto given = [&] {
             return l.energy() - l.plate - l.gravity - l.volume + std::min(l.plastic, 0.0);
         };
         const double before = given();
-        enter_step(scheme.theta, scheme.consistent(), parameters.problem.damping, dt,
-                   nodes.strips(), sums.strips, sums.nodes, sums.contact, l);
+        add_step(scheme.theta, scheme.consistent(), parameters.problem.damping, dt, nodes.tiles(),
+                 sums.tiles, sums.nodes, sums.contact, l);
         growth = std::max(growth, given() - before);
         size = worst({size, l.energy(), std::fabs(l.plate + l.gravity)});
-        for (const StripSums& s : sums.strips) least_V = std::min(least_V, s.least_V);
+        for (const TileSums& s : sums.tiles) least_V = std::min(least_V, s.least_V);
         held += sums.solver.held, loops += sums.solver.loops;
         ++step;
     }

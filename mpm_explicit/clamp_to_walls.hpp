@@ -7,12 +7,12 @@
 
 namespace mpm {
 
-/// Frictional walls, which stop a particle that the nodes would carry through: of a grain in contact
-/// they hold the nodes, and single particles may still be faster than those.
-struct Stop {
+/// Frictional walls, which stop a particle that the nodes would carry through: of a grain in
+/// contact they hold the nodes, and single particles may still be faster than those.
+struct ClampToWalls {
     double x_least, x_most, y_least, y_most;
 
-    explicit Stop(const Mesh& mesh) {
+    explicit ClampToWalls(const Mesh& mesh) {
         constexpr double far = std::numeric_limits<double>::infinity();
         x_least = mesh.has(x_low, Boundary::frictional) ? mesh.x_low : -far;
         x_most = mesh.has(x_high, Boundary::frictional) ? mesh.x_high() : far;

@@ -1,11 +1,12 @@
-// Where the energy goes: sums of one step, strip by strip, and the ledger they add up to.
+// Where the energy goes: sums of one step, tile by tile, and the budget they add up to.
 //
 // Leapfrog keeps the energy of [MPM-14] as long as particles stand still:
 //     E^n = 1/2 sum_p m_p v_p^2 + 1/2 sum_p V_p sigma_p^{n-1/2} : T^-1 : sigma_p^{n+1/2}
 // Everything that changes it is counted where it happens, so that the rest, `budget`, is round-off:
 //     d E = external + contact + friction + bond + damping - plastic + volume + pic + remap
-// remap is what moving particles from cell to cell costs: the strain that the new nodes see less the
-// strain that the old ones announced, and the kinetic energy that lumping the mass takes.
+// remap is what moving particles from cell to cell costs: the work of the old stress on the strain
+// of the new nodes minus that on the strain of the old ones, and the kinetic energy that lumping the
+// mass takes.
 #pragma once
 
 #include <algorithm>
@@ -16,41 +17,41 @@
 
 namespace mpm_explicit {
 
-/// Sums over the particles of one strip.
-struct StripSums {
+/// Sums over the particles of one tile.
+struct TileSums {
     // after the stress of the step
-    double elastic = 0;      // 1/2 V sigma^{n+1/2} : T^-1 : sigma^{n+1/2}
-    double leapfrog = 0;     // 1/2 V sigma^{n-1/2} : T^-1 : sigma^{n+1/2}
-    double announced = 0;    // 1/2 V sigma^{n-1/2} : de, with the volume of the step before
-    double plastic_old = 0;  // 1/2 V^{n-1/2} sigma^{n-1/2} : de^p
-    double plastic_new = 0;  // 1/2 V^{n+1/2} sigma^{n+1/2} : de^p
-    double volume = 0;       // 1/2 (V^{n+1/2} - V^{n-1/2}) sigma^{n-1/2} : T^-1 : sigma^{n+1/2}
-    double least_V = 0;      // smallest V^{n+1/2}/V^{n-1/2}
+    double elastic = 0;          // 1/2 V sigma^{n+1/2} : T^-1 : sigma^{n+1/2}
+    double leapfrog = 0;         // 1/2 V sigma^{n-1/2} : T^-1 : sigma^{n+1/2}
+    double old_stress_work = 0;  // 1/2 V sigma^{n-1/2} : de, with the volume of the step before
+    double plastic_old = 0;      // 1/2 V^{n-1/2} sigma^{n-1/2} : de^p
+    double plastic_new = 0;      // 1/2 V^{n+1/2} sigma^{n+1/2} : de^p
+    double volume = 0;           // 1/2 (V^{n+1/2} - V^{n-1/2}) sigma^{n-1/2} : T^-1 : sigma^{n+1/2}
+    double least_V = 0;          // smallest V^{n+1/2}/V^{n-1/2}
     // after particles have moved
-    double kinetic = 0;  // 1/2 m v^{n+1} v^{n+1}
-    double product = 0;  // 1/2 m v^n v^{n+1}
-    double jump = 0;     // 1/2 m (S_ip (v_i^1 - v_i^0))^2
-    double pic = 0;      // what a FLIP fraction below one takes
+    double kinetic = 0;            // 1/2 m v^{n+1} v^{n+1}
+    double kinetic_leapfrog = 0;   // 1/2 m v^n v^{n+1}
+    double kinetic_increment = 0;  // 1/2 m (S_ip (v_i^1 - v_i^0))^2
+    double pic = 0;                // what a FLIP fraction below one takes
     double momentum_x = 0, momentum_y = 0;
     double x_least = 0, x_most = 0, y_least = 0, y_most = 0;
 };
 
 /// Sums over nodes, after contact.
 struct NodeWork {
-    double old_stress = 0;  // 1/2 dt f_i v_i^1
-    double jump = 0;        // 1/2 m_i (v_i^1 - v_i^0)^2
+    double internal_work = 0;      // 1/2 dt f_i v_i^1
+    double kinetic_increment = 0;  // 1/2 m_i (v_i^1 - v_i^0)^2
     double gravity = 0, damping = 0;
     double largest_speed = 0;
 
     void operator+=(const NodeWork& other) {
-        old_stress += other.old_stress, jump += other.jump;
+        internal_work += other.internal_work, kinetic_increment += other.kinetic_increment;
         gravity += other.gravity, damping += other.damping;
         largest_speed = std::max(largest_speed, other.largest_speed);
     }
 };
 
 /// Energies now, and work since the start.
-struct Ledger {
+struct Budget {
     double kinetic = 0, elastic = 0;      // of t^n
     double energy_14 = 0, energy_15 = 0;  // [MPM-14] of t^n, [MPM-15] of t^{n+1/2}
     double external = 0, contact = 0, friction = 0, bond = 0, damping = 0, plastic = 0, volume = 0,
@@ -64,24 +65,24 @@ struct Ledger {
     double work() const {
         return external + contact + friction + bond + damping - plastic + volume + pic + remap;
     }
-    double budget() const { return energy_14 - start - work(); }
+    double residual() const { return energy_14 - start - work(); }
 };
 
 template <class Archive>
-void archive(Archive& a, Ledger& l) {
+void archive(Archive& a, Budget& l) {
     std::vector<double*> numbers{&l.kinetic,  &l.elastic, &l.energy_14,      &l.energy_15,
                                  &l.external, &l.contact, &l.friction,       &l.bond,
                                  &l.damping,  &l.plastic, &l.volume,         &l.pic,
                                  &l.remap,    &l.start,   &l.elastic_before, &l.kinetic_next};
     std::vector<double> values;
     for (const double* number : numbers) values.push_back(*number);
-    a("ledger", values);
+    a("budget", values);
     for (std::size_t k = 0; k < numbers.size(); ++k) *numbers[k] = values[k];
     a("momentum_x", l.momentum_x_next), a("momentum_y", l.momentum_y_next);
 }
 
 /// Kinetic energy and momenta at the start.
-inline void open_ledger(const mpm::Assembly& all, Ledger& l) {
+inline void start_budget(const mpm::Assembly& all, Budget& l) {
     l.kinetic_next = 0;
     l.momentum_x_next.assign(all.grains.size(), 0), l.momentum_y_next = l.momentum_x_next;
     const mpm::Particles& at = all.particles;
@@ -97,44 +98,46 @@ inline void open_ledger(const mpm::Assembly& all, Ledger& l) {
 }
 
 /// The energies of t^n, [MPM-14] and [MPM-15], when all of its step has been summed up.
-inline void enter_energies(long step, const std::vector<StripSums>& strips, Ledger& l) {
-    StripSums s;
-    for (const StripSums& one : strips) {
-        s.elastic += one.elastic, s.leapfrog += one.leapfrog, s.announced += one.announced;
-        s.plastic_old += one.plastic_old, s.volume += one.volume, s.product += one.product;
+inline void add_energies(long step, const std::vector<TileSums>& tiles, Budget& l) {
+    TileSums s;
+    for (const TileSums& one : tiles) {
+        s.elastic += one.elastic, s.leapfrog += one.leapfrog,
+            s.old_stress_work += one.old_stress_work;
+        s.plastic_old += one.plastic_old, s.volume += one.volume,
+            s.kinetic_leapfrog += one.kinetic_leapfrog;
     }
     l.kinetic = l.kinetic_next;
     l.momentum_x = l.momentum_x_next, l.momentum_y = l.momentum_y_next;
     l.energy_14 = l.kinetic + s.leapfrog;
-    l.energy_15 = s.product + s.elastic;
+    l.energy_15 = s.kinetic_leapfrog + s.elastic;
     if (step == 0) {
         l.start = l.energy_14;
         l.elastic_before = s.leapfrog;
     } else {
-        l.remap += s.announced, l.volume += s.volume, l.plastic += s.plastic_old;
+        l.remap += s.old_stress_work, l.volume += s.volume, l.plastic += s.plastic_old;
     }
     l.elastic = 0.5 * (l.elastic_before + s.elastic);
     l.elastic_before = s.elastic;
 }
 
 /// The work of the step that leads from t^n to t^{n+1}.
-inline void enter_work(const std::vector<mpm::Strip>& where, const std::vector<StripSums>& strips,
-                       const NodeWork& nodes, const mpm::ContactSums& contact, Ledger& l) {
-    StripSums s;
+inline void add_work(const std::vector<mpm::Tile>& where, const std::vector<TileSums>& tiles,
+                     const NodeWork& nodes, const mpm::ContactSums& contact, Budget& l) {
+    TileSums s;
     std::fill(l.momentum_x_next.begin(), l.momentum_x_next.end(), 0.0);
     std::fill(l.momentum_y_next.begin(), l.momentum_y_next.end(), 0.0);
-    for (std::size_t k = 0; k < strips.size(); ++k) {
-        s.plastic_new += strips[k].plastic_new, s.kinetic += strips[k].kinetic;
-        s.jump += strips[k].jump, s.pic += strips[k].pic;
+    for (std::size_t k = 0; k < tiles.size(); ++k) {
+        s.plastic_new += tiles[k].plastic_new, s.kinetic += tiles[k].kinetic;
+        s.kinetic_increment += tiles[k].kinetic_increment, s.pic += tiles[k].pic;
         const auto g = static_cast<std::size_t>(where[k].grain);
-        l.momentum_x_next[g] += strips[k].momentum_x;
-        l.momentum_y_next[g] += strips[k].momentum_y;
+        l.momentum_x_next[g] += tiles[k].momentum_x;
+        l.momentum_y_next[g] += tiles[k].momentum_y;
     }
     l.kinetic_next = s.kinetic;
     l.external += contact.rigid + nodes.gravity;
     l.contact += contact.normal, l.friction += contact.friction, l.bond += contact.bond;
     l.damping += nodes.damping, l.plastic += s.plastic_new, l.pic += s.pic;
-    l.remap += nodes.old_stress - (nodes.jump - s.jump);
+    l.remap += nodes.internal_work - (nodes.kinetic_increment - s.kinetic_increment);
 }
 
 }  // namespace mpm_explicit

@@ -17,38 +17,39 @@
 
 #include "mpm_explicit/assembly.hpp"
 #include "mpm_explicit/contact.hpp"
-#include "mpm_explicit/strain.hpp"
+#include "mpm_explicit/grain_nodes.hpp"
+#include "mpm_explicit/material_laws.hpp"
 
 namespace mpm_implicit {
 
 using namespace mpm;
 
-/// Sums over the particles of one strip.
-struct StripSums {
+/// Sums over the particles of one tile.
+struct TileSums {
     double elastic = 0;       // 1/2 V sigma^1 : T^-1 : sigma^1
     double theta_strain = 0;  // V dsigma : de
     double plastic = 0;       // V 1/2 (sigma^0 + sigma^1) : de^p
     double volume = 0;        // what a change of volumes adds
     double least_V = 0;       // smallest V^1/V^0
     // after particles have moved
-    double kinetic = 0;  // 1/2 m v^1 v^1
-    double jump = 0;     // m dv dv
-    double drag = 0;     // m v_p^theta v_p^theta, v_p^theta = S_ip v_i^theta
-    double pic = 0;      // what a FLIP fraction below one takes
+    double kinetic = 0;              // 1/2 m v^1 v^1
+    double twice_increment = 0;      // m dv dv
+    double twice_kinetic_theta = 0;  // m v_p^theta v_p^theta, v_p^theta = S_ip v_i^theta
+    double pic = 0;                  // what a FLIP fraction below one takes
     double momentum_x = 0, momentum_y = 0;
     double x_least = 0, x_most = 0, y_least = 0, y_most = 0;
 };
 
 /// Sums over nodes.
 struct NodeWork {
-    double jump = 0;     // m_i dv_i dv_i
-    double drag = 0;     // m_i v_i^theta v_i^theta
-    double gravity = 0;  // dt m_i g v_i^theta
+    double twice_increment = 0;      // m_i dv_i dv_i
+    double twice_kinetic_theta = 0;  // m_i v_i^theta v_i^theta
+    double gravity = 0;              // dt m_i g v_i^theta
     double largest_speed = 0;
 };
 
 /// Energies now, and what has been taken and given since the start.
-struct Ledger {
+struct Budget {
     double kinetic = 0, elastic = 0;
     double theta_velocity = 0, theta_strain = 0, lumped = 0;
     double contact = 0, friction = 0, bond = 0, plate = 0, gravity = 0, damping = 0, plastic = 0,
@@ -66,26 +67,26 @@ struct Ledger {
 };
 
 template <class Archive>
-void archive(Archive& a, Ledger& l) {
+void archive(Archive& a, Budget& l) {
     std::vector<double*> numbers{&l.kinetic, &l.elastic, &l.theta_velocity, &l.theta_strain,
                                  &l.lumped,  &l.contact, &l.friction,       &l.bond,
                                  &l.plate,   &l.gravity, &l.damping,        &l.plastic,
                                  &l.volume,  &l.pic,     &l.start,          &l.largest_residual};
     std::vector<double> values;
     for (const double* number : numbers) values.push_back(*number);
-    a("ledger", values);
+    a("budget", values);
     for (std::size_t k = 0; k < numbers.size(); ++k) *numbers[k] = values[k];
     a("momentum_x", l.momentum_x), a("momentum_y", l.momentum_y);
 }
 
 /// Energies and momenta at the start.
-inline void open_ledger(const Assembly& all, const std::vector<AnyLaw>& laws, Ledger& l) {
+inline void start_budget(const Assembly& all, const std::vector<AnyLaw>& laws, Budget& l) {
     l = {};
     l.momentum_x.assign(all.grains.size(), 0), l.momentum_y = l.momentum_x;
     const Particles& at = all.particles;
     for (std::size_t g = 0; g < all.grains.size(); ++g) {
         if (all.grains[g].rigid) continue;
-        const Compliance& C = laws[static_cast<std::size_t>(all.grains[g].material)].compliance;
+        const Compliance& C = laws[all.grains[g].material].compliance;
         for (long k = all.grains[g].begin; k < all.grains[g].end; ++k) {
             const auto p = static_cast<std::size_t>(k);
             l.momentum_x[g] += at.m_p[p] * at.vx_p[p];
@@ -98,27 +99,28 @@ inline void open_ledger(const Assembly& all, const std::vector<AnyLaw>& laws, Le
 }
 
 /// Enters a step.                                                                        [MPM-13]
-inline void enter_step(double theta, bool consistent, double damping, double dt,
-                       const std::vector<Strip>& where, const std::vector<StripSums>& strips,
-                       const NodeWork& nodes, const ContactSums& contact, Ledger& l) {
+inline void add_step(double theta, bool consistent, double damping, double dt,
+                     const std::vector<Tile>& where, const std::vector<TileSums>& tiles,
+                     const NodeWork& nodes, const ContactSums& contact, Budget& l) {
     const double energy_before = l.energy(), work_before = l.work();
-    StripSums s;
+    TileSums s;
     std::fill(l.momentum_x.begin(), l.momentum_x.end(), 0.0);
     std::fill(l.momentum_y.begin(), l.momentum_y.end(), 0.0);
-    for (std::size_t k = 0; k < strips.size(); ++k) {
-        const StripSums& one = strips[k];
+    for (std::size_t k = 0; k < tiles.size(); ++k) {
+        const TileSums& one = tiles[k];
         s.elastic += one.elastic, s.theta_strain += one.theta_strain, s.plastic += one.plastic;
-        s.volume += one.volume, s.kinetic += one.kinetic, s.jump += one.jump;
-        s.drag += one.drag, s.pic += one.pic;
+        s.volume += one.volume, s.kinetic += one.kinetic, s.twice_increment += one.twice_increment;
+        s.twice_kinetic_theta += one.twice_kinetic_theta, s.pic += one.pic;
         const auto g = static_cast<std::size_t>(where[k].grain);
         l.momentum_x[g] += one.momentum_x, l.momentum_y[g] += one.momentum_y;
     }
     l.kinetic = s.kinetic, l.elastic = s.elastic;
-    l.theta_velocity += (theta - 0.5) * s.jump, l.theta_strain += (theta - 0.5) * s.theta_strain;
-    if (!consistent) l.lumped += theta * (nodes.jump - s.jump);
+    l.theta_velocity += (theta - 0.5) * s.twice_increment,
+        l.theta_strain += (theta - 0.5) * s.theta_strain;
+    if (!consistent) l.lumped += theta * (nodes.twice_increment - s.twice_increment);
     l.contact += contact.normal, l.friction += contact.friction, l.bond += contact.bond;
     l.plate += contact.rigid, l.gravity += nodes.gravity;
-    l.damping -= dt * damping * (consistent ? s.drag : nodes.drag);
+    l.damping -= dt * damping * (consistent ? s.twice_kinetic_theta : nodes.twice_kinetic_theta);
     l.plastic += s.plastic, l.volume += s.volume, l.pic += s.pic;
     const double residual = (l.energy() - energy_before) - (l.work() - work_before);
     l.largest_residual = std::max(l.largest_residual, std::fabs(residual));

@@ -1,0 +1,118 @@
+// The contact problem of one grid node: the bodies with mass there, the pairs of them in contact,
+// and the impulses that end approach and slip.                                                [MPM-4]
+//
+//         a  |  b         Every body has a velocity of its own at the node. A pair exchanges the impulse
+//      ------o------>     J = lambda_n n + lambda_t t:  J on b, -J on a,
+//            |  n         with n from a to b and t = (-n_y, n_x).
+//
+// Unknowns: two impulses per pair, at most 16 bodies and 120 pairs. With v* the velocities without
+// contact,
+//     v_a = v_a* - sum J/m_a,   v_b = v_b* + sum J/m_b
+//     lambda_n >= 0,  (v_b - v_a).n >= 0,  lambda_n (v_b - v_a).n = 0           (Signorini)
+//     |lambda_t| <= mu lambda_n,  against the slip (v_b - v_a).t where it is equal   (Coulomb)
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+
+namespace mpm {
+
+/// What a pair does: nothing, press and slide, or press without sliding.
+enum class ContactState : int { open, slip, stick };
+
+/// A grain, a rigid grain or a wall at a grid node.
+struct ContactBody {
+    long dof;   // the body's node; -1: a wall
+    int grain;  // of a wall: its side
+    bool wall, rigid;
+    double per_mx, per_my;  // 1/m_i; 0 where nothing changes the velocity
+    double m;
+    double vx_0, vy_0;             // before the step
+    double vx, vy;                 // after it, being corrected
+    double x, y;                   // center of the body's mass around the node, from the node
+    double gx, gy;                 // sum_p V_p grad S_ip, out of the body
+    int force_control = -1;        // theta scheme: the force control that moves a rigid grain ...
+    bool control_along_x = false;  // ... and its direction; the velocity along it is an unknown
+    bool is_fixed() const { return wall || rigid; }
+    /// Grains have numbers from 0, walls from -1 down.
+    int id() const { return wall ? -1 - grain : grain; }
+};
+
+/// Two bodies of a node in contact or bonded.
+struct ContactPair {
+    std::size_t a, b;  // of the node's bodies
+    int bond;          // number of the bond, or -1
+    ContactState state = ContactState::open;
+    double nx, ny;  // normal, from a to b
+    double mu;
+    double mass_n, mass_t;      // effective mass along the normal and across
+    double lambda_n, lambda_t;  // impulse on b, along (nx, ny) and (-ny, nx)
+    bool closed() const { return state != ContactState::open; }
+    double tx() const { return -ny; }
+    double ty() const { return nx; }
+    double impulse_x() const { return lambda_n * nx - lambda_t * ny; }
+    double impulse_y() const { return lambda_n * ny + lambda_t * nx; }
+};
+
+struct ContactNode {
+    static constexpr std::size_t max_bodies = 16, max_pairs = max_bodies * (max_bodies - 1) / 2;
+    std::span<ContactBody> bodies;
+    std::span<ContactPair> pairs;
+    long key = 0;           // number of the node on the mesh
+    bool isotropic = true;  // 1/m_i is the same in both directions
+};
+
+/// Effective masses of all pairs: 1/m = n.(1/m_a + 1/m_b) n, and the same for t.
+inline void find_effective_masses(ContactNode& node) {
+    for (ContactPair& pair : node.pairs) {
+        const ContactBody &one = node.bodies[pair.a], &two = node.bodies[pair.b];
+        const double per_x = one.per_mx + two.per_mx, per_y = one.per_my + two.per_my,
+                     nn = pair.nx * pair.nx, tt = pair.ny * pair.ny,
+                     per_n = per_x * nn + per_y * tt, per_t = per_x * tt + per_y * nn;
+        pair.mass_n = per_n > 0 ? 1 / per_n : 0, pair.mass_t = per_t > 0 ? 1 / per_t : 0;
+    }
+}
+
+/// Impulses and velocities of a node by projected Gauss-Seidel: pair after pair, until a sweep
+/// changes no velocity by more than round-off. A bonded pair neither parts nor slips, whatever the
+/// signs.
+/// in/out: velocities of the bodies; impulses of the pairs, from a guess
+/// exact:  momentum of the bodies that are not fixed and of the impulses on the fixed ones; one
+///         pair is solved in one sweep
+inline void solve_contact_node(ContactNode& node) {
+    double size = 0;
+    for (const ContactBody& body : node.bodies)
+        size = std::max({size, std::fabs(body.vx), std::fabs(body.vy)});
+    constexpr int max_sweeps = 500;
+    for (int sweep = 0; sweep < max_sweeps; ++sweep) {
+        double change = 0;
+        for (ContactPair& pair : node.pairs) {
+            ContactBody &a = node.bodies[pair.a], &b = node.bodies[pair.b];
+            // [impulse]
+            const auto exchange = [&](double jx, double jy) {
+                a.vx -= jx * a.per_mx, a.vy -= jy * a.per_my;
+                b.vx += jx * b.per_mx, b.vy += jy * b.per_my;
+                change = std::max({change, std::fabs(jx) * std::max(a.per_mx, b.per_mx),
+                                   std::fabs(jy) * std::max(a.per_my, b.per_my)});
+            };
+            const double approach = (a.vx - b.vx) * pair.nx + (a.vy - b.vy) * pair.ny;
+            double n = pair.lambda_n + pair.mass_n * approach;
+            if (pair.bond < 0) n = std::max(0.0, n);
+            exchange((n - pair.lambda_n) * pair.nx, (n - pair.lambda_n) * pair.ny);
+            pair.lambda_n = n;
+
+            const double slip = (b.vx - a.vx) * pair.ny - (b.vy - a.vy) * pair.nx;
+            double t = pair.lambda_t + pair.mass_t * slip;
+            if (pair.bond < 0) t = std::clamp(t, -pair.mu * n, pair.mu * n);
+            exchange((pair.lambda_t - t) * pair.ny, (t - pair.lambda_t) * pair.nx);
+            pair.lambda_t = t;
+            // [/impulse]
+        }
+        const bool exact = node.pairs.size() == 1 && node.isotropic;
+        if (exact || !(change > 1e-15 * size)) return;
+    }
+}
+
+}  // namespace mpm

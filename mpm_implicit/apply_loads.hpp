@@ -1,0 +1,38 @@
+// Loads of a step of the theta scheme: as in mpm_explicit/apply_loads.hpp, but the velocity of a
+// grain under force control is found together with those of the nodes.
+#pragma once
+
+#include "mpm_explicit/apply_loads.hpp"
+
+namespace mpm_implicit {
+
+using namespace mpm;
+
+/// A rigid grain under force control: its velocity in this step is one more unknown V,
+///   m (V - V_old) = dt (F + push - c V)
+struct ForceControl {
+    std::size_t grain;
+    bool along_x;
+    double mass, damping, force;  // force: now
+    double velocity;              // V_old
+};
+
+/// Loads in the step from t^n: the body force, and velocities of rigid grains.
+/// out:    force_controls, the grains whose velocity belongs to the solution
+inline BodyForce apply_loads(const Loads& loads, long step, double dt,
+                             std::vector<RigidMotion>& rigid,
+                             std::vector<ForceControl>& force_controls) {
+    const double t = time_of_load(step, dt), share = share_of_load(t, loads.rise);
+    force_controls.clear();
+    for (std::size_t g = 0; g < rigid.size(); ++g) {
+        RigidMotion& is = rigid[g];
+        if (is.force_control_x || is.force_control_y)
+            force_controls.push_back({g, is.force_control_x, is.mass, is.damping, share * is.force,
+                                      is.force_control_x ? is.vx : is.vy});
+        if (!is.force_control_x) is.vx = share * is.prescribed_vx, is.travel_x += dt * is.vx;
+        if (!is.force_control_y) is.vy = share * is.prescribed_vy, is.travel_y += dt * is.vy;
+    }
+    return body_force(loads, t);
+}
+
+}  // namespace mpm_implicit

@@ -1,0 +1,191 @@
+// Active-set update: the states of the pairs after a solution, from its velocities and impulses.
+//
+//     open    -> slip    where the bodies approach
+//     closed  -> open    where the impulse pulls: lambda < 0
+//     stick   -> slip    where |lambda_t| > mu lambda, or where not all can stick and the pair slides
+//     slip    -> stick   where friction drives: lambda_t (v_b - v_a).t > 0
+// Two rules end cycles of sets: a pair that comes back only slips, and in a step a pair may open
+// twice and change between stick and slip three times. What may change no more stays as it is, and
+// is counted.
+#pragma once
+
+#include <cmath>
+
+#include "mpm_implicit/active_set.hpp"
+#include "mpm_implicit/grain_matrix.hpp"
+
+namespace mpm_implicit {
+
+/// What an update has changed.
+struct ActiveSetChange {
+    bool settled = true;
+    std::size_t pair = 0;  // that changed last, or whose friction changed most
+    double friction = 0;   // its change, of the largest impulse
+    long held = 0;         // pairs that ought to change, and may not any more
+};
+
+/// The friction x of slipping pairs that the next solution is to have. Friction makes pressure, and
+/// pressure the friction g(x) that ought to be; where two solutions in turn have the same set, the
+/// next x is taken where a secant through both says g(x) = x.
+///   x_2 = g_1 - s (g_1 - g_0),  s = f_1 . (f_1 - f_0)/|f_1 - f_0|^2,  f = g - x
+/// in:     same, the set of the solution just made is that of the next
+/// source: Anderson, J. ACM 12, 547 (1965), with one step back.
+inline void extrapolate_friction(bool same, ActiveSet& set) {
+    const auto for_each_slipping = [&](const auto& work) {
+        for (std::size_t k = 0; k < set.pairs.size(); ++k)
+            if (set.pairs[k].state == ContactState::slip) work(set.pairs[k], set.updates[k]);
+    };
+    double along = 0, squared = 0;
+    for_each_slipping([&](const ContactPair& pair, const PairUpdate& update) {
+        const double f_1 = update.target - pair.lambda_t,
+                     f_0 = update.target_before - update.lambda_before;
+        along += f_1 * (f_1 - f_0), squared += (f_1 - f_0) * (f_1 - f_0);
+    });
+    const double s = same && set.same_before && squared > 0 ? along / squared : 0;
+    for_each_slipping([&](const ContactPair& pair, PairUpdate& update) {
+        const double next = update.target - s * (update.target - update.target_before);
+        if (same && next * update.target > 0) update.friction = next;
+        update.lambda_before = pair.lambda_t, update.target_before = update.target;
+    });
+    set.same_before = same;
+}
+
+/// Changes the states of pairs that do not do what is asked of them.
+/// in:     v, all velocities; V, of the grains under force control; accuracy, that v has been
+///         solved to
+/// in/out: set, with the impulses that belong to v
+inline ActiveSetChange update_active_set(const Vector& v, const std::vector<double>& V,
+                                         const GrainNodes& nodes, double accuracy, ActiveSet& set) {
+    const long size = nodes.size();
+    const double nearly = 1e3 * accuracy, friction_error = 1e5 * accuracy;
+    constexpr int max_releases = 2, max_switches = 3;
+    double largest = 0, fastest = 0;
+    for (const ContactPair& pair : set.pairs)
+        largest = std::max({largest, std::fabs(pair.lambda_n), std::fabs(pair.lambda_t)});
+    const auto velocity = [&](const ContactBody& body, double& x, double& y) {
+        const bool fixed = body.is_fixed();
+        x = fixed ? body.vx : v[body.dof], y = fixed ? body.vy : v[size + body.dof];
+        if (body.force_control < 0) return;
+        (body.control_along_x ? x : y) = V[body.force_control];
+    };
+    for (const ContactBody& body : set.bodies) {
+        double x, y;
+        velocity(body, x, y);
+        fastest = std::max({fastest, std::fabs(x), std::fabs(y)});
+        // Impulses far below the momentum of a node are round-off.
+        if (!body.is_fixed())
+            largest = std::max(largest, 1e-4 * nodes.sums[body.dof].m * std::hypot(x, y));
+    }
+    ActiveSetChange change;
+    for (const ActiveSet::Node& node : set.nodes) {
+        for (std::size_t k = node.pair_begin; k < node.pair_end; ++k) {
+            ContactPair& pair = set.pairs[k];
+            PairUpdate& update = set.updates[k];
+            if (pair.bond >= 0) continue;
+            double ax, ay, bx, by;
+            velocity(set.bodies[node.body_begin + pair.a], ax, ay);
+            velocity(set.bodies[node.body_begin + pair.b], bx, by);
+            const double parting = (bx - ax) * pair.nx + (by - ay) * pair.ny,
+                         slip = (bx - ax) * pair.tx() + (by - ay) * pair.ty();
+            const ContactState before = pair.state;
+            if (!pair.closed()) {
+                if (parting < -nearly * fastest) {
+                    pair.state = ContactState::slip;
+                    update.friction = 0;
+                }
+            } else if (pair.lambda_n < -nearly * largest) {
+                if (update.releases < max_releases)
+                    pair.state = ContactState::open, ++update.releases;
+                else
+                    ++change.held;
+            } else if (pair.mu > 0) {
+                const double most = pair.mu * std::max(0.0, pair.lambda_n);
+                // Where a grain cannot stick to all who hold it, a pair slips all the same.
+                const bool slips = std::fabs(slip) > nearly * fastest;
+                if (pair.state == ContactState::stick &&
+                    (slips || std::fabs(pair.lambda_t) > most * (1 + nearly))) {
+                    if (update.switches < max_switches) {
+                        pair.state = ContactState::slip, ++update.switches;
+                        update.friction = std::copysign(most, slips ? -slip : pair.lambda_t);
+                    } else {
+                        ++change.held;
+                    }
+                } else if (pair.state == ContactState::slip) {
+                    const bool drives = pair.lambda_t * slip > nearly * largest * fastest;
+                    if (drives && update.switches < max_switches) {
+                        pair.state = ContactState::stick, ++update.switches;
+                    } else {
+                        change.held += drives ? 1 : 0;
+                        const double now =
+                            std::copysign(most, pair.lambda_t == 0 ? -slip : pair.lambda_t);
+                        const double by_now = std::fabs(now - pair.lambda_t);
+                        if (by_now > change.friction * largest && change.settled) change.pair = k;
+                        change.friction = std::max(change.friction, by_now / largest);
+                        update.friction = update.target = now;
+                    }
+                }
+            }
+            if (pair.state != before) change.settled = false, change.pair = k;
+        }
+    }
+    extrapolate_friction(change.settled, set);
+    if (change.friction > friction_error) change.settled = false;
+    return change;
+}
+
+/// The impulses of a pair, and the state that follows from them alone, for Newton's method.
+inline void update_state(const ContactPair& now, ContactPair& pair) {
+    pair.lambda_n = now.lambda_n, pair.lambda_t = now.lambda_t;
+    if (pair.bond >= 0) return;
+    const bool sticks = std::fabs(pair.lambda_t) < pair.mu * pair.lambda_n * 0.9999;
+    pair.state = !(pair.lambda_n > 0) ? ContactState::open
+                 : sticks             ? ContactState::stick
+                                      : ContactState::slip;
+}
+
+/// Adds the known friction of slipping pairs to right-hand sides.
+/// in:     size, number of dofs
+/// in/out: set, whose slipping pairs get it as lambda_t; right, of the nodes; controlled, of the
+///         grains under force control
+inline void add_friction(long size, ActiveSet& set, Vector& right,
+                         std::vector<double>& controlled) {
+    for (const ActiveSet::Node& node : set.nodes) {
+        for (std::size_t k = node.pair_begin; k < node.pair_end; ++k) {
+            ContactPair& pair = set.pairs[k];
+            if (pair.state != ContactState::slip) continue;
+            pair.lambda_t = set.updates[k].friction;
+            if (pair.lambda_t == 0) continue;
+            for (const auto& [who, sign] : {std::pair(pair.a, -1.0), std::pair(pair.b, 1.0)}) {
+                const ContactBody& body = set.bodies[node.body_begin + who];
+                const double jx = sign * pair.lambda_t * pair.tx(),
+                             jy = sign * pair.lambda_t * pair.ty();
+                if (!body.is_fixed()) right[body.dof] += jx, right[size + body.dof] += jy;
+                if (body.force_control >= 0)
+                    controlled[body.force_control] += body.control_along_x ? jx : jy;
+            }
+        }
+    }
+}
+
+/// The impulse of a pair on a grain under force control, along its direction.
+inline double impulse_on(const ForceControl& control, const ContactNode& node,
+                         const ContactPair& pair) {
+    const double along = control.along_x ? pair.impulse_x() : pair.impulse_y();
+    const auto is = [&](std::size_t who) {
+        const ContactBody& body = node.bodies[who];
+        return body.rigid && static_cast<std::size_t>(body.grain) == control.grain;
+    };
+    return (is(pair.b) ? along : 0) - (is(pair.a) ? along : 0);
+}
+
+/// errors: NumericalError, with who changed last
+[[noreturn]] inline void fail_to_settle(const ActiveSetChange& change, const ActiveSet& set,
+                                        const std::vector<Grain>& grains, long loops) {
+    throw common::NumericalError("contact did not settle in " + std::to_string(loops) +
+                                 " loops: " + set.names(change.pair, grains) +
+                                 " changed last, friction by " + common::format(change.friction) +
+                                 " of the largest impulse; reduce time.alpha, or raise "
+                                 "solver.max_outer_iterations");
+}
+
+}  // namespace mpm_implicit
