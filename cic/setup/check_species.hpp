@@ -144,7 +144,7 @@ inline void refuse_species(const Case& w, const SpeciesCase& s) {
     refuse(s.emission > 0 && !(w.boundary_x == "wall" && w.walls[x_low].particles == "source"),
            name +
                ".emission needs boundary.particles_x_low = \"source\" and grid.boundary_x = "
-               "\"walls\"");
+               "\"wall\"");
     if (w.walls[x_low].particles != "source") return;
     const double fastest = detail::fastest_emitted * std::sqrt(s.emission_temperature / s.mass);
     refuse(fastest * w.dt > w.grid.x.length,
