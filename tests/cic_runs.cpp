@@ -15,33 +15,14 @@
 
 namespace {
 
-using facts::Run;
-
-std::string text(double number) {
-    char words[32];
-    std::snprintf(words, sizeof words, "%.17g", number);
-    return words;
-}
+using facts::check_results, facts::largest, facts::Run, facts::text;
 
 // Runs a case in a folder of the test's own, without files for figures.
 Run run(const std::string& name, const std::string& file, const std::string& overrides) {
-    const std::string folder = facts::folder_of_test() + "/cic_" + name;
-    const std::string command =
-        std::string(BUILD_FOLDER) + "/cic cic/cases/" + file + ".toml " + overrides +
-        " output.phase_interval=0 output.particles_interval=0 output.fields_interval=0 --out " +
-        folder + " --force --quiet 2> /dev/null";
-    CAPTURE(command);
-    REQUIRE(std::system(command.c_str()) == 0);
-    return facts::finished_run(folder);
-}
-
-void check_results(const Run& run, int at_least) { facts::check_results(run.summary, at_least); }
-
-double largest(const std::vector<double>& values) {
-    double most = 0;
-    for (const double v : values)
-        most = most >= std::fabs(v) || std::isnan(most) ? most : std::fabs(v);
-    return most;
+    return facts::run_into("cic_" + name, "cic",
+                           "cic/cases/" + file + ".toml " + overrides +
+                               " output.phase_interval=0 output.particles_interval=0 "
+                               "output.fields_interval=0");
 }
 
 const double pi = std::acos(-1.0);

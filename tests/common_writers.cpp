@@ -1,4 +1,4 @@
-// Facts about the files that gnuplot and ParaView read.
+// Facts about the files that gnuplot and ParaView read, and about checkpoints, histories and summaries.
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 #include <sys/resource.h>
@@ -11,11 +11,15 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "common/random.hpp"
+#include "common/run/checkpoint.hpp"
+#include "common/run/history.hpp"
+#include "common/run/summary.hpp"
 #include "common/run/writers.hpp"
 
 namespace {
@@ -248,4 +252,45 @@ TEST_CASE("a full disk is reported with the path and leaves nothing behind") {
     CHECK(message.find(path + ": cannot be written") == 0);
     CHECK_FALSE(fs::exists(path));
     CHECK_FALSE(fs::exists(path + ".partial"));
+}
+
+TEST_CASE("a checkpoint replaces regular files only and leaves no half of one") {
+    const Folder folder;
+    common::CheckpointWriter writer({"implicit_moment", "1", "", ""}, "");
+    const std::string target = folder.file("checkpoint");
+    fs::create_symlink("elsewhere", target);
+    CHECK_THROWS_AS(writer.write(target), common::InputError);
+    fs::remove(target);
+    fs::create_directory(target);
+    CHECK_THROWS_AS(writer.write(target), common::InputError);
+    fs::remove(target);
+    writer.write(target);
+    CHECK(fs::is_regular_file(target));
+    CHECK(!fs::exists(target + ".partial"));
+}
+
+TEST_CASE("a number that is not finite is never hidden") {
+    const Folder folder;
+    common::Summary numbers;
+    numbers.result("good", 1, "m", 1, 0.1, "exact");
+    CHECK(numbers.is_finite());
+    numbers.result("bad", std::nan(""), "m", 1, 0.1, "exact");
+    CHECK(!numbers.is_finite());
+    const std::string path = folder.file("numbers.json");
+    numbers.write(path, {"p", "1", "", ""}, "c", 3, "m");
+    const auto results = nlohmann::json::parse(read_all(path))["results"];
+    CHECK(results["bad"]["pass"] == false);
+    CHECK(results["bad"]["finite"] == false);
+    CHECK(results["good"]["pass"] == true);
+
+    common::History history(folder.file("history.dat"));
+    history.columns({{"time", "s"}, {"x", "m"}});
+    const std::vector<double> fine{0, 1}, broken{1, std::nan("")}, more{1, 2, 3};
+    history.row(fine);
+    CHECK_THROWS_AS(history.row(broken), common::NumericalError);
+    CHECK_THROWS(history.row(more));
+    history.flush();
+    CHECK(read_all(folder.file("history.dat")) == "# 1:time[s] 2:x[m]\n0 1\n");
+    CHECK(history.column("x") == std::vector<double>{1});
+    CHECK_THROWS(history.column("y"));
 }

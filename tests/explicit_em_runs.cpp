@@ -1,4 +1,4 @@
-// Whole runs of explicit_em against exact and published values, and what every run of it keeps.
+// Whole runs of explicit_em against exact and published values.
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
@@ -9,11 +9,13 @@
 #include "tests/support/any_run.hpp"
 #include "tests/support/any_summary.hpp"
 
-const std::string facts::program_name = "explicit_em";
-
 namespace {
 
 using namespace facts;
+
+int run(const std::string& arguments, const std::string& out) {
+    return facts::run("explicit_em", arguments, out);
+}
 
 const std::string cases = " implicit_moment/cases/explicit_";
 // A small reconnecting sheet.
@@ -104,36 +106,6 @@ TEST_CASE("a sheet with a larger island reaches unit flux and keeps its profile"
     CHECK(unit > 0);
     CHECK(unit < time.back());
     CHECK(fs::file_size(out + "/profile.dat") > 1000);
-}
-
-TEST_CASE("one and two and three threads write the same history" * doctest::description("robust")) {
-    for (const std::string& arguments :
-         {sheet(6000) + "time.end=6",
-          sheet(6000) + "time.end=6 particles.order=2 field.smoothing_passes=2",
-          cases + "two_stream.toml uniform.particles_per_cell=16 time.end=2"}) {
-        check_threads(arguments);
-    }
-}
-
-TEST_CASE("the effective case runs again to the same bytes" * doctest::description("robust")) {
-    for (const std::string& arguments :
-         {sheet(6000) + "time.end=3 output.fields_interval=2 output.particles_interval=2",
-          cases + "two_stream.toml uniform.particles_per_cell=4 time.end=1"}) {
-        CHECK(check_runs_again(arguments) >= 2);
-    }
-}
-
-// Checkpoints also fall between two rows of the history.
-TEST_CASE("a restart goes on with the same bits" * doctest::description("robust")) {
-    for (const std::string& arguments :
-         {sheet(6000) + "time.end=4",
-          sheet(6000) + "time.end=4 particles.order=2 plasma.loading=random",
-          cases + "two_stream.toml uniform.particles_per_cell=16 time.end=0.4 "
-                  "output.history_steps=3",
-          cases + "weibel.toml uniform.particles_per_cell=16 time.end=0.8 particles.order=2 "
-                  "grid.boundary_z=wall uniform.wave_B_z=0 uniform.B_x=0.1 theory.wave=none"}) {
-        check_restart(arguments, 5);
-    }
 }
 
 TEST_CASE("rows and snapshots of a sparse history are those of a dense one" *

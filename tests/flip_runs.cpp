@@ -18,15 +18,9 @@
 
 namespace {
 
-using facts::Run, facts::worst;
+using facts::check_results, facts::largest, facts::Run, facts::text, facts::worst;
 
 const std::vector<std::string> transfers{"flip", "pic", "blend", "apic", "xpic"};
-
-std::string text(double number) {
-    char words[32];
-    std::snprintf(words, sizeof words, "%.17g", number);
-    return words;
-}
 
 std::string folder_of(const std::string& name) {
     return facts::folder_of_test() + "/fluid_" + name;
@@ -35,21 +29,10 @@ std::string folder_of(const std::string& name) {
 // Runs a case in a folder of the test's own, without files for figures.
 Run run(const std::string& program, const std::string& name, const std::string& file,
         const std::string& overrides = "", int status = 0) {
-    const std::string command = std::string(BUILD_FOLDER) + "/" + program + " flip/cases/" + file +
-                                ".toml " + overrides +
-                                " output.particles_interval=0 output.fields_interval=0 --out " +
-                                folder_of(name) + " --force --quiet 2> /dev/null";
-    CAPTURE(command);
-    REQUIRE(std::system(command.c_str()) == 256 * status);
-    return facts::finished_run(folder_of(name));
-}
-
-void check_results(const Run& run, int at_least) { facts::check_results(run.summary, at_least); }
-
-double largest(const std::vector<double>& values) {
-    double most = 0;
-    for (const double v : values) most = worst({most, std::fabs(v)});
-    return most;
+    return facts::run_into("fluid_" + name, program,
+                           "flip/cases/" + file + ".toml " + overrides +
+                               " output.particles_interval=0 output.fields_interval=0",
+                           status);
 }
 
 // Mass, momentum and energy are what they were, with what has come in since.
@@ -62,26 +45,9 @@ void check_conserved(const Run& r, double tolerance = 1e-12) {
     }
 }
 
-// A table of the last run of that name: columns by name.
-std::map<std::string, std::vector<double>> profile(const std::string& name) {
-    std::ifstream file(folder_of(name) + "/profile.dat");
-    std::string line, word;
-    std::getline(file, line);
-    std::istringstream head(line.substr(1));
-    std::vector<std::string> names;
-    while (head >> word) {
-        const std::size_t colon = word.find(':') + 1;
-        names.push_back(word.substr(colon, word.find('[') - colon));
-    }
-    std::map<std::string, std::vector<double>> columns;
-    while (std::getline(file, line)) {
-        std::istringstream row(line);
-        for (const std::string& column : names) {
-            double number = 0;
-            row >> number;
-            columns[column].push_back(number);
-        }
-    }
+// The profile that the last run of that name has left.
+facts::Columns profile(const std::string& name) {
+    facts::Columns columns = facts::columns_of(folder_of(name) + "/profile.dat");
     REQUIRE(columns["x"].size() > 1);
     return columns;
 }

@@ -15,8 +15,6 @@
 #include "tests/support/any_run.hpp"
 #include "tests/support/any_summary.hpp"
 
-const std::string facts::program_name = "implicit_moment";
-
 namespace {
 
 using namespace facts;
@@ -38,6 +36,9 @@ std::vector<Moments> any_moments(Random& random) {
 // A short run of a sheet whose flux from the start is 0.8 or 1.2.
 const std::string sheet =
     " implicit_moment/cases/gem.toml harris.particles=4000 grid.cells_x=16 grid.cells_z=16 ";
+int run(const std::string& arguments, const std::string& out) {
+    return facts::run("implicit_moment", arguments, out);
+}
 const std::string below = sheet + "harris.perturbation=0.4 ",
                   above = sheet + "harris.perturbation=0.6 ";
 
@@ -192,8 +193,9 @@ TEST_CASE("a profile is the mean of the snapshots of its time" * doctest::descri
 TEST_CASE("a restart within the averaging time ends with the same profile" *
           doctest::description("robust")) {
     const std::string whole = room() + "/whole", rest = room() + "/rest";
-    check_restart(above + "time.end=15", 20);  // from step 40 of 50; the average has 41
-    check_restart(above + "time.end=12", 15);  // from step 30 of 40
+    // From step 40 of 50, where the average has 41; and from step 30 of 40.
+    check_restart("implicit_moment", above + "time.end=15 output.checkpoint_steps=20");
+    check_restart("implicit_moment", above + "time.end=12 output.checkpoint_steps=15");
     CHECK(table(rest + "/profile.dat").size() == 16);
     CHECK(read_all(rest + "/profile.dat") == read_all(whole + "/profile.dat"));
 }
@@ -245,17 +247,16 @@ TEST_CASE("a sheet with a guide field is in equilibrium" * doctest::description(
 
 TEST_CASE("a guide field is described and warned of and refused where it is no number" *
           doctest::description("robust")) {
-    check_refused({
-        {"guide field nan", "[harris]\nguide_field = nan\n", "",
-         "case.toml:2:15: 'harris.guide_field' must be finite, not nan"},
-        {"guide field as text", "[harris]\nguide_field = \"y\"\n", "",
-         "case.toml:2:15: 'harris.guide_field' takes a number, not text"},
-        {"guide field misspelled", "[harris]\nguide_feild = 1\n", "",
-         "did you mean 'harris.guide_field'?"},
-    });
+    check_refused(R"(
+implicit_moment harris.guide_field=nan -> 'harris.guide_field' must be finite, not nan
+implicit_moment harris.guide_field='"y"' -> 'harris.guide_field' takes a number, not text
+implicit_moment harris.guide_feild=1 -> did you mean 'harris.guide_field'?
+)");
     // |B| is largest at the walls.
-    const Outcome outcome = check_described("guide field", "[harris]\nguide_field = 0.75\n", "");
-    check_lines(outcome.out, {R"(  magnetic field +0\.0625 m_i c omega_pi/e, Omega_ci dt = .*)"});
-    check_warnings("large guide field", "[harris]\nguide_field = 20\n", "",
-                   {"electrons: Omega_c dt = 7.509"});
+    check_descriptions(R"(
+implicit_moment harris.guide_field=0.75
+    magnetic field +0\.0625 m_i c omega_pi/e, Omega_ci dt = .*
+)");
+    check_warnings(
+        "implicit_moment harris.guide_field=20 -> warning: electrons: Omega_c dt = 7.509");
 }

@@ -17,18 +17,12 @@
 
 namespace {
 
-using facts::check_results, facts::value;
+using facts::check_results, facts::text, facts::value;
 using Json = nlohmann::json;
 
 // Runs the program in a folder of the test's own and returns its summary.
 Json run(const std::string& name, const std::string& arguments) {
-    const std::string folder = facts::folder_of_test() + "/" + name;
-    const std::string command = std::string(BUILD_FOLDER) + "/implicit_moment " + arguments +
-                                " --out " + folder + " --force --quiet";
-    REQUIRE(std::system(command.c_str()) == 0);
-    std::ifstream file(folder + "/summary.json");
-    REQUIRE(file.good());
-    return Json::parse(file);
+    return facts::run_into(name, "implicit_moment", arguments).summary;
 }
 
 void check_gem(const std::string& seed) {
@@ -65,12 +59,6 @@ std::vector<std::vector<double>> rows(const std::string& name) {
     return all;
 }
 std::vector<double> last_row(const std::string& name) { return rows(name).back(); }
-
-std::string text(double number) {
-    char words[32];
-    std::snprintf(words, sizeof words, "%.17g", number);
-    return words;
-}
 
 // A cold wave at the four time steps and three theta of the tables.
 void check_wave(const std::string& name, const std::string& file, double angle_per_dt) {

@@ -56,11 +56,7 @@ std::string room(const std::string& name) {
 }
 
 Run run(const std::string& name, const std::string& arguments) {
-    const std::string folder = room(name);
-    REQUIRE(std::system((std::string(BUILD_FOLDER) + "/implicit_moment " + arguments + " --out " +
-                         folder + " --force --quiet")
-                            .c_str()) == 0);
-    return finished_run(folder);
+    return run_into(name, "implicit_moment", arguments);
 }
 
 }  // namespace

@@ -20,8 +20,6 @@ Run run(const std::string& name, const std::string& file, const std::string& ove
                           status);
 }
 
-void check_results(const Run& run, int at_least) { facts::check_results(run.summary, at_least); }
-
 // The budget closes to round-off: every joule that comes or goes is counted where it happens.
 void check_budget(const Run& r) {
     const double size =

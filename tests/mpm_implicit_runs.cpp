@@ -30,8 +30,6 @@ const std::string oblique =
     "mpm_implicit/cases/rebound.toml grid.cells_x=24 grid.cells_y=12 grain.left.x=0.39 "
     "grain.right.x=0.81 grain.left.y=0.35 theory.compare=none";
 
-void check_results(const Run& run, int at_least) { facts::check_results(run.summary, at_least); }
-
 // [MPM-13] with all other work, step by step.
 void check_theorem(const Run& r) {
     const double size = std::max(largest(r.column("energy")), largest(r.column("external")));

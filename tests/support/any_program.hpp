@@ -16,23 +16,16 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/every_program.hpp"
 #include "tests/support/folder_of_test.hpp"
 
 namespace facts {
 
 namespace fs = std::filesystem;
 
-/// The program that a test starts; every test says which one that is.
-extern const std::string program_name;
-
-inline fs::path program() { return fs::absolute(BUILD_FOLDER) / program_name; }
-
-struct Row {
-    std::string label;
-    std::optional<std::string> bytes;  // of case.toml, if there is one
-    std::string arguments;             // as a shell reads them
-    std::string message;
-};
+inline fs::path path_of(const Program& program) {
+    return fs::absolute(BUILD_FOLDER) / program.name;
+}
 
 using Files = std::map<std::string, std::string>;  // bytes by name
 
@@ -68,10 +61,25 @@ inline int shell(const std::string& command) {
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-/// A folder of its own for each row, with what the rows refer to.
-inline fs::path fresh_folder(const std::string& name) {
-    const fs::path folder = fs::absolute(facts::folder_of_test()) / (program_name + "_input") /
-                            std::regex_replace(name, std::regex("[^A-Za-z0-9]+"), "_");
+/// The case file and the arguments that the words of a command stand for, as a shell reads them.
+/// note:   a command that names no case file starts from an empty one, which is written here
+inline std::string arguments_of(const Command& command) {
+    Arguments found;
+    expand(command.words, *command.program, found);
+    fs::path file = fs::absolute(folder_of_test()) / "empty.toml";
+    if (found.file.empty())
+        write_all(file, "");
+    else
+        file = fs::absolute(found.file);
+    std::string arguments = "'";
+    arguments += file.string() + "'";
+    for (const auto& [key, value] : found.overrides) arguments += " " + key + "=" + value;
+    return arguments + found.options;
+}
+
+/// A folder of its own for each start, with what the rows refer to.
+inline fs::path fresh_folder(const Program& program, const std::string& name = "here") {
+    const fs::path folder = fs::absolute(folder_of_test()) / program.name / name;
     fs::remove_all(folder);
     write_all(folder / "a_file", "not a case\n");
     write_all(folder / "foreign/notes.txt", "notes\n");
@@ -79,6 +87,8 @@ inline fs::path fresh_folder(const std::string& name) {
     write_all(folder / "earlier/summary.json", "{}\n");
     write_all(folder / "other.toml", "time.end = 3\n");
     fs::create_symlink("nowhere", folder / "dangling");
+    // The published tables that a comparison reads.
+    fs::create_directory_symlink(fs::absolute(program.method), folder / program.method);
     return folder;
 }
 
@@ -91,15 +101,15 @@ inline Files content(const fs::path& folder) {
     return found;
 }
 
-/// Starts the program in a folder; what it prints is kept beside that folder. A hang is status 124.
+/// Starts a program in a folder; what it prints is kept beside that folder. A hang is status 124.
 /// in: before, a command that starts the program.
-inline Outcome start(const fs::path& folder, const std::string& arguments,
+inline Outcome start(const Program& program, const fs::path& folder, const std::string& arguments,
                      const std::string& before = "") {
     const std::string out = folder.string() + ".stdout", err = folder.string() + ".stderr";
     Outcome outcome;
-    outcome.status =
-        shell("cd '" + folder.string() + "' && exec timeout 20 " + before + " '" +
-              program().string() + "' " + arguments + " </dev/null >'" + out + "' 2>'" + err + "'");
+    outcome.status = shell("cd '" + folder.string() + "' && exec timeout 60 " + before + " '" +
+                           path_of(program).string() + "' " + arguments + " </dev/null >'" + out +
+                           "' 2>'" + err + "'");
     outcome.out = read_all(out);
     outcome.err = read_all(err);
     std::istringstream lines(outcome.err);
@@ -110,79 +120,131 @@ inline Outcome start(const fs::path& folder, const std::string& arguments,
 }
 
 /// Status 2, one clean sentence that holds the message, and the folder as it was.
-inline void check_refusal(const fs::path& folder, const Row& row, const std::string& before = "") {
+inline void check_refusal(const Program& program, const fs::path& folder,
+                          const std::string& arguments, const std::string& message,
+                          const std::string& before = "") {
     const Files there = content(folder);
-    const Outcome outcome = start(folder, (row.bytes ? "case.toml " : "") + row.arguments, before);
+    const Outcome outcome = start(program, folder, arguments, before);
     const auto is_control = [](unsigned char c) { return (c < 0x20 && c != '\n') || c == 0x7f; };
-    INFO(row.label << ": " << outcome.err);
+    INFO(program.name << " " << arguments << ": " << outcome.err);
     CHECK(outcome.status == 2);
-    CHECK(holds(outcome.err, row.message));
+    INFO("expected: " << message);
+    CHECK(holds(outcome.err, message));
     CHECK(outcome.sentences.size() == 1);
     CHECK(std::none_of(outcome.err.begin(), outcome.err.end(), is_control));
     CHECK(content(folder) == there);
 }
 
-inline void check_refused(const std::vector<Row>& rows, const Files& files = {}) {
+/// A command and the sentence that refuses it.
+inline void check_refusal(const Command& command, const std::string& sentence) {
+    const Program& program = *command.program;
+    check_refusal(program, fresh_folder(program), arguments_of(command), sentence);
+}
+
+/// Commands, each with the sentence that refuses it.
+inline void check_refused(const std::string& table) {
+    for (const Command& command : commands(table)) {
+        REQUIRE(!command.expected.empty());
+        check_refusal(command, joined(command.expected));
+    }
+}
+
+struct Row {
+    std::string label;
+    std::optional<std::string> bytes;  // of case.toml, if there is one
+    std::string arguments;             // as a shell reads them
+    std::string message;
+};
+
+inline void check_refused(const Program& program, const std::vector<Row>& rows,
+                          const Files& files = {}) {
     for (const Row& row : rows) {
-        const fs::path folder = fresh_folder(row.label);
+        INFO(row.label);
+        const fs::path folder = fresh_folder(program);
         for (const auto& [name, bytes] : files) write_all(folder / name, bytes);
         if (row.bytes) write_all(folder / "case.toml", *row.bytes);
-        check_refusal(folder, row);
+        check_refusal(program, folder, (row.bytes ? "case.toml " : "") + row.arguments,
+                      row.message);
     }
 }
 
 /// Status 0, no sentence on stderr, and nothing written. out: what it prints.
-inline Outcome check_described(const std::string& label, const std::string& bytes,
-                               const std::string& arguments, const std::string& before = "") {
-    const fs::path folder = fresh_folder(label);
+inline Outcome check_described(const Program& program, const std::string& arguments,
+                               const std::string& before = "", const std::string& bytes = "") {
+    const fs::path folder = fresh_folder(program);
     write_all(folder / "case.toml", bytes);
     const Files there = content(folder);
-    const Outcome outcome = start(folder, "case.toml --dry-run " + arguments, before);
-    INFO(label << ": " << outcome.err);
+    const Outcome outcome = start(program, folder, arguments + " --dry-run", before);
+    INFO(program.name << " " << arguments << ": " << outcome.err);
     CHECK(outcome.status == 0);
     CHECK(outcome.sentences.empty());
     CHECK(content(folder) == there);
     return outcome;
 }
-
-/// A dry run with these warnings and no other.
-inline void check_warnings(const std::string& label, const std::string& bytes,
-                           const std::string& arguments, const std::vector<std::string>& warnings) {
-    const Outcome outcome = check_described(label, bytes, arguments);
-    INFO(label << ": " << outcome.err);
-    CHECK(std::count(outcome.err.begin(), outcome.err.end(), '\n') ==
-          static_cast<long>(warnings.size()));
-    for (const std::string& warning : warnings) CHECK(holds(outcome.err, warning));
+inline Outcome check_described(const Command& command) {
+    return check_described(*command.program, arguments_of(command));
 }
 
-/// Lines of what a dry run prints, each a regular expression that one line matches.
-inline void check_lines(const std::string& out, const std::vector<std::string>& expected) {
-    for (const std::string& line : expected) {
-        INFO(line);
-        std::istringstream lines(out);
-        int found = 0;
-        for (std::string text; std::getline(lines, text);)
-            found += std::regex_match(text, std::regex(line)) ? 1 : 0;
-        CHECK(found == 1);
+/// The text of a case is understood; out: what a dry run of it prints.
+inline std::string description(const Program& program, const std::string& bytes,
+                               const std::string& arguments = "") {
+    return check_described(program, "case.toml " + arguments, "", bytes).out;
+}
+
+/// Dry runs, each with its warnings, which begin with that word, and no other.
+inline void check_warnings(const std::string& table) {
+    for (const Command& command : commands(table)) {
+        std::vector<std::string> warnings;
+        for (const std::string& line : command.expected) {
+            if (line == "no warning") continue;
+            if (line.starts_with("warning: "))
+                warnings.push_back(line);
+            else
+                warnings.back() += " " + line;
+        }
+        REQUIRE(!command.expected.empty());
+        const Outcome outcome = check_described(command);
+        INFO(command.words << ": " << outcome.err);
+        CHECK(std::count(outcome.err.begin(), outcome.err.end(), '\n') ==
+              static_cast<long>(warnings.size()));
+        for (const std::string& warning : warnings) {
+            INFO(warning);
+            CHECK(holds(outcome.err, warning));
+        }
     }
 }
 
-/// Every case that is shipped passes a dry run. out: how many there are.
-template <class Mine>
-int check_shipped_cases(const std::string& method, const Mine& mine) {
-    int cases = 0;
-    for (const auto& entry : fs::directory_iterator(method + "/cases")) {
-        const std::string name = entry.path().stem();
-        if (!mine(name)) continue;
-        // Memory that nobody has set is no longer zero by chance.
-        check_described(name, read_all(entry.path()), "", "env MALLOC_PERTURB_=85");
-        check_described(name + " twice", read_all(entry.path()), "--quiet");
-        ++cases;
+/// Dry runs, each with lines of what it prints: regular expressions that one line matches.
+inline void check_descriptions(const std::string& table) {
+    for (const Command& command : commands(table)) {
+        const std::string out = check_described(command).out;
+        REQUIRE(!command.expected.empty());
+        CHECK(!holds(out, "nan"));
+        for (const std::string& expected : command.expected) {
+            INFO(expected << " in: " << out);
+            std::istringstream lines(out);
+            int found = 0;
+            for (std::string line; std::getline(lines, line);)
+                found += std::regex_match(line, std::regex(" *" + expected)) ? 1 : 0;
+            CHECK(found == 1);
+        }
     }
-    return cases;
 }
-inline int check_shipped_cases() {
-    return check_shipped_cases(program_name, [](const std::string&) { return true; });
+
+/// Runs that end with status 0, without a sentence, and with numbers only.
+inline void check_accepted(const std::string& table) {
+    for (const Command& command : commands(table)) {
+        REQUIRE(command.expected.empty());
+        const fs::path folder = fresh_folder(*command.program);
+        write_all(folder / "a pack's file.txt", "disk a 0.3 0.3 0.1");
+        const Outcome outcome =
+            start(*command.program, folder, arguments_of(command) + " --quiet --out run");
+        INFO(command.program->name << " " << command.words << ": " << outcome.err);
+        CHECK(outcome.status == 0);
+        CHECK(outcome.sentences.empty());
+        CHECK(fs::exists(folder / "run/summary.json"));
+        CHECK(!holds(read_all(folder / "run/history.dat"), "nan"));
+    }
 }
 
 struct Parameter {
@@ -207,30 +269,6 @@ inline std::vector<Parameter> listed_in(const std::string& help) {
     return parameters;
 }
 
-/// A value outside of every range that --help lists is refused with that range. out: how many.
-inline int check_ranges() {
-    const std::regex above(R"((>=?) (\S+))"), between(R"((\S+) \.\.\. (\S+))");
-    int enforced = 0;
-    const std::string help = start(fresh_folder("list of ranges"), "--help").out;
-    for (const Parameter& parameter : listed_in(help)) {
-        const std::string name = std::regex_replace(parameter.name, std::regex("<name>"), "beam");
-        std::vector<double> outside;
-        std::smatch ends;
-        if (std::regex_match(parameter.range, ends, above)) {
-            outside = {std::stod(ends[2]) - (ends[1] == ">" ? 0 : 1)};
-        } else if (std::regex_match(parameter.range, ends, between)) {
-            outside = {std::stod(ends[1]) - 1, 2 * std::stod(ends[2]) + 1};
-        }
-        for (const double value : outside) {
-            const std::string wrong = name + "=" + std::to_string(value);
-            check_refused({{"range of " + wrong, std::nullopt, wrong,
-                            " is out of range; allowed: " + parameter.range}});
-            ++enforced;
-        }
-    }
-    return enforced;
-}
-
 /// The parameters that the text of a case sets.
 inline std::set<std::string> keys_in(const std::string& text) {
     std::set<std::string> keys;
@@ -242,57 +280,6 @@ inline std::set<std::string> keys_in(const std::string& text) {
         if (std::regex_match(line, match, key)) keys.insert(prefix + match.str(1));
     }
     return keys;
-}
-
-/// --help lists the options and all parameters; those are also the ones of the case that a run
-/// writes, and their defaults, given as overrides, make the same case.
-/// in:     text of a short case; overrides that make it one with a single species, "beam"
-/// out:    the units of the parameters
-inline std::map<std::string, std::string> check_help(const std::string& short_case,
-                                                     const std::string& beam) {
-    const fs::path folder = fresh_folder("help");
-    const Outcome help = start(folder, "--help --out nowhere");
-    CHECK(help.status == 0);
-    CHECK(help.err.empty());
-    CHECK(!fs::exists(folder / "nowhere"));
-    for (const char* option : {"--out DIR", "--force", "--restart FILE", "--threads N", "--dry-run",
-                               "--quiet", "--help", "--version"})
-        CHECK(holds(help.out, option));
-    CHECK(start(folder, "-h").out == help.out);
-
-    // All parameters are in the case that a run writes, and nothing else is in the list.
-    const std::vector<Parameter> parameters = listed_in(help.out);
-    write_all(folder / "case.toml", short_case);
-    REQUIRE(start(folder, "case.toml --quiet --out defaults").status == 0);
-    REQUIRE(start(folder, "case.toml --quiet --out beam " + beam).status == 0);
-    std::set<std::string> listed;
-    for (const Parameter& p : parameters)
-        listed.insert(std::regex_replace(p.name, std::regex("<name>"), "beam"));
-    const std::set<std::string> written = keys_in(read_all(folder / "beam/case.toml"));
-    CHECK(listed.size() == parameters.size());
-    CHECK(listed == written);
-
-    // The defaults, given as overrides of what the short case leaves to them, make the same case.
-    const std::set<std::string> shortened = keys_in(short_case);
-    std::string overrides;
-    std::map<std::string, std::string> units;
-    for (const Parameter& p : parameters) {
-        INFO(p.name);
-        CHECK(!p.range.empty());
-        units[p.name] = p.unit;
-        if (!holds(p.name, "<name>") && !shortened.contains(p.name))
-            overrides += "'" + p.name + "=" + p.initial + "' ";
-    }
-    REQUIRE(start(folder, "case.toml --quiet --out again " + overrides).status == 0);
-    CHECK(read_all(folder / "again/case.toml") == read_all(folder / "defaults/case.toml"));
-    return units;
-}
-
-inline void check_version() {
-    const Outcome version = start(fresh_folder("version"), "--version");
-    CHECK(version.status == 0);
-    CHECK(version.out == program_name + " " PROGRAM_VERSION "\n");
-    CHECK(version.err.empty());
 }
 
 }  // namespace facts

@@ -1,14 +1,20 @@
-// What tests of whole runs ask of summary.json and history.dat.
+// Whole runs without files for figures, and what tests ask of their summary.json and history.dat.
 #pragma once
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
+
+#include "tests/support/any_numbers.hpp"
+#include "tests/support/folder_of_test.hpp"
 
 namespace facts {
 
@@ -30,10 +36,34 @@ inline void check_results(const nlohmann::json& summary, int at_least) {
     CHECK(compared >= at_least);
 }
 
+/// The columns of a table by their names, which its first line holds as "# 1:name[unit] 2:...".
+using Columns = std::map<std::string, std::vector<double>>;
+inline Columns columns_of(const std::string& path) {
+    Columns columns;
+    std::ifstream file(path);
+    std::string line;
+    std::getline(file, line);
+    std::vector<std::string> names;
+    std::istringstream head(line.substr(std::min<std::size_t>(1, line.size())));
+    for (std::string word; head >> word;) {
+        const std::size_t colon = word.find(':') + 1;
+        names.push_back(word.substr(colon, word.find('[') - colon));
+    }
+    while (std::getline(file, line)) {
+        std::istringstream row(line);
+        for (const std::string& column : names) {
+            double number = 0;
+            row >> number;
+            columns[column].push_back(number);
+        }
+    }
+    return columns;
+}
+
 // A finished run: its summary, and the columns of its history by name.
 struct Run {
     nlohmann::json summary;
-    std::map<std::string, std::vector<double>> columns;
+    Columns columns;
 
     double value(const std::string& result) const { return facts::value(summary, result); }
     double conservation(const std::string& name) const {
@@ -45,29 +75,36 @@ struct Run {
         return columns.at(name);
     }
 };
+inline void check_results(const Run& run, int at_least) { check_results(run.summary, at_least); }
 
 inline Run finished_run(const std::string& folder) {
-    Run result;
     std::ifstream summary(folder + "/summary.json");
-    result.summary = nlohmann::json::parse(summary);
-    std::ifstream history(folder + "/history.dat");
-    std::string line;
-    std::getline(history, line);
-    std::vector<std::string> names;
-    std::istringstream head(line.substr(1));
-    for (std::string word; head >> word;) {
-        const std::size_t colon = word.find(':') + 1;
-        names.push_back(word.substr(colon, word.find('[') - colon));
-    }
-    while (std::getline(history, line)) {
-        std::istringstream row(line);
-        for (const std::string& column : names) {
-            double number = 0;
-            row >> number;
-            result.columns[column].push_back(number);
-        }
-    }
-    return result;
+    return {nlohmann::json::parse(summary), columns_of(folder + "/history.dat")};
+}
+
+/// Runs a program into a folder of the test's own. out: what it has left there.
+/// in: name, of the folder; arguments, a case file and overrides; the exit status that is expected
+inline Run run_into(const std::string& name, const std::string& program,
+                    const std::string& arguments, int status = 0) {
+    const std::string folder = folder_of_test() + "/" + name,
+                      command = std::string(BUILD_FOLDER) + "/" + program + " " + arguments +
+                                " --out " + folder + " --force --quiet 2> /dev/null";
+    CAPTURE(command);
+    REQUIRE(std::system(command.c_str()) == 256 * status);
+    return finished_run(folder);
+}
+
+/// A number with all its digits.
+inline std::string text(double number) {
+    char words[32];
+    std::snprintf(words, sizeof words, "%.17g", number);
+    return words;
+}
+
+inline double largest(const std::vector<double>& values) {
+    double most = 0;
+    for (const double v : values) most = worst({most, std::fabs(v)});
+    return most;
 }
 
 }  // namespace facts

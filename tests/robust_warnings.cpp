@@ -1,0 +1,381 @@
+// What a dry run says of a case and warns of, and cases at the edge of what each program takes.
+#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#include <doctest/doctest.h>
+
+#include <string>
+
+#include "tests/support/any_program.hpp"
+
+using namespace facts;
+
+TEST_CASE("what may mislead in cic is a warning with the number and the limit" *
+          doctest::description("robust")) {
+    check_warnings(R"(
+cic line -> no warning
+cic line time.dt=1
+    warning: omega_p dt = 1 is above 0.5: frequencies are 4.72 % too high; at 2 the leapfrog
+    blows up
+cic line species.electrons.temperature_x=0.01
+    warning: the Debye length is 0.2667 cells, below 0.3183 for cic: the mesh will heat the
+    plasma; refine it to cells of 0.3142
+cic line method.weighting=ngp species.electrons.temperature_x=0.01
+    warning: the Debye length is 0.2667 cells, below 0.6 for ngp
+cic line method.weighting=tsc species.electrons.temperature_x=0.01 -> no warning
+cic line method.scheme=energy species.electrons.temperature_x=0.01 -> no warning
+cic plane grid.length_z=60 species.electrons.temperature_x=0.01
+    warning: the Debye length is 0.01333 cells, below 0.3183 for cic
+cic line method.scheme=energy species.electrons.drift_x=0.1
+    warning: electrons: a cold beam at 0.2667 omega_p dx is below 0.2887, where the
+    energy-conserving mesh stops it; refine the mesh
+cic line species.electrons.drift_x=10
+    warning: electrons: particles move 2.667 cells in a step; below 2 they see the field they
+    cross
+cic line plasma.B_y=20
+    warning: electrons: Omega_c dt = 2 is above 1: gyration is slowed by the time step to 0.7854
+    of its frequency; drifts stay right
+cic line grid.cells_x=2063
+    warning: grid.cells_x = 2063 has the prime factor 2063, above 200: its Fourier transforms
+    take about 103 times as long as those of a product of 2, 3 and 5
+cic plane grid.cells_z=422 -> warning: grid.cells_z = 422 has the prime factor 211, above 200
+cic line output.spectrum=true output.modes=1 time.end=21.1
+    warning: output.spectrum: time.end / time.dt = 211 has the prime factor 211
+cic line output.fields_interval=0.01 output.particles_interval=1 output.phase_interval=0.05
+    warning: output.fields_interval = 0.01 is below time.dt = 0.1: files are written every step
+    warning: output.phase_interval = 0.05 is below time.dt = 0.1
+cic between_walls boundary.particles_x_low=source
+    warning: boundary.particles_x_low = "source", and every emission is 0: the wall only gives
+    back what reaches it, with emission_temperature
+cic line wave species.electrons.amplitude=0.01
+    warning: the wave of theory has the period 6.283, longer than time.end = 2: its frequency
+    cannot be measured well
+cic line wave time.end=10 species.electrons.mode_x=2
+    warning: no species is perturbed in the followed mode (1, 0): only noise can start the wave
+)");
+}
+
+TEST_CASE("what may mislead in a fluid is a warning with the number and the limit" *
+          doctest::description("robust")) {
+    check_warnings(R"(
+flip tube
+fluids sod -> no warning
+pic tube -> warning: the flow has Mach 0, below 0.05: cells feel a particle only when it enters them
+flip tube region.gas.velocity_x=0.12
+    warning: region.gas flows over the mesh at Mach 0.1014, between 0.07 and 0.19, where
+    explicit FLIP rings
+flip sod viscosity.linear=0 viscosity.quadratic=0
+    warning: without artificial viscosity particles pile up at shocks
+pic sod viscosity.linear=0 viscosity.quadratic=0
+    warning: without artificial viscosity the method has none where the fluid rests
+flip tube flip.pressure=implicit region.gas.velocity_x=1
+    warning: the flow has Mach 0.8452, above 0.5, and time.cfl with implicit pressure
+flip tube boundary.x_low=no_slip
+    warning: a no_slip wall holds fluid without viscosity only through the mesh
+flip tube particles.per_cell_x=2 particles.per_cell_z=1
+    warning: 2 particles per cell are fewer than 4: a particle that leaves a cell takes 50 % of
+    its density along
+flip tube rezone.steps=5 rezone.max_particles=12
+    warning: rezone.max_particles = 12 is below the 16 particles per cell of the start
+flip tube region.drop.shape=disk region.drop.radius=1e-6
+    warning: region.drop contains no particle
+flip tube material.a.gamma=1.4 material.b.gamma=1.4 -> warning: material.b is nowhere
+flip tube output.fields_interval=1e-6 output.particles_interval=1
+    warning: output.fields_interval = 1e-06 is below the first time step, 0.002535: files are
+    written every step
+flip sod theory.compare=riemann time.end=0.4
+    warning: at time.end the waves are at x = 0.02671 and 1.201, beyond the ends
+flip around theory.compare=wave sound
+    warning: the wave has the period 0.8452, longer than time.end = 0.1
+pic tube region.gas.velocity_x=0.5 flip.transfer=apic
+    warning: flip.transfer = "apic" means nothing to pic, whose particles are mass alone
+pic tube region.gas.velocity_x=0.5 flip.mass=consistent
+    warning: flip.mass = "consistent" means nothing to pic, whose particles are mass alone
+pic tube region.gas.velocity_x=0.5 flip.deficit_to_heat=false
+    warning: flip.deficit_to_heat = false means nothing to pic, whose particles are mass alone
+pic tube region.gas.velocity_x=0.5 flip.density=particles
+    warning: flip.density = "particles" means nothing to pic, whose particles are mass alone
+pic tube region.gas.velocity_x=0.5 rezone.steps=5
+    warning: rezone.steps = 5 means nothing to pic, whose particles are mass alone
+)");
+}
+
+TEST_CASE("what may mislead in grains is a warning with the number and the limit" *
+          doctest::description("robust")) {
+    check_warnings(R"(
+mpm_explicit disks -> no warning
+mpm_explicit disks time.alpha=0.8
+    warning: time.alpha = 0.8 is above 0.7: nothing bounds the energy of explicit solutions, and
+    grains that meet will burst
+mpm_explicit disks time.alpha=0.8 method.frozen=true -> no warning
+mpm_explicit disks grain.left.velocity_x=0.3669
+    warning: |v|/c_p = 0.1 is above 0.05: an impact strains the grains by more than the small
+    strains of the material laws
+mpm_explicit mesh end left grain.left.velocity_x=0.3669 -> no warning
+mpm_explicit disks load.gravity_y=-2.25
+    warning: g H/c_p^2 = 0.1003 is above 0.05: grains at the bottom are crushed by the weight of
+    a full mesh; stiffen the material
+mpm_explicit disks contact.separation=0
+    warning: contact.separation = 0: grains meet where they share nodes, up to 1.5 cells too
+    early
+mpm_explicit disks grid.particles_per_side=1
+    warning: contact.separation = 0.8 with one particle per side: grains will meet too late;
+    take 1.07
+mpm_explicit disks grid.particles_per_side=1 contact.separation=1.07 -> no warning
+mpm_explicit disks output.particles_interval=1e-3 output.fringes_interval=1 \
+    output.grains_interval=1e-4
+    warning: output.particles_interval = 0.001 is below the time step 0.003317: files are
+    written every step
+    warning: output.grains_interval = 0.0001 is below the time step 0.003317
+mpm_explicit plates grain.bottom.force=2
+    warning: grain 'bottom' has a force and control = "velocity": the force does nothing
+mpm_explicit plates grain.top.velocity_y=-0.1
+    warning: grain 'top' has control = "force_y" and a velocity in that direction, -0.1: it does
+    nothing, the grain starts at rest
+mpm_explicit plates grain.top.velocity_x=-0.1 -> no warning
+mpm_implicit rebound.toml -> no warning
+mpm_implicit rebound.toml time.alpha=15 time.end=6 -> no warning
+mpm_implicit rebound.toml time.alpha=25 time.end=10 output.particles_interval=0
+    warning: |v| dt/h = 0.6633 is above 0.5: grains can pass through each other's surfaces
+    before they are seen to touch; reduce time.alpha
+mpm_implicit vibrating_bar.toml time.alpha=60 time.end=2000 output.particles_interval=0
+    no warning
+mpm_implicit rebound.toml method.flip=0.9
+    warning: method.flip = 0.9 is below 1: [MPM-13] is for FLIP, and the column pic takes the
+    rest
+mpm_implicit rebound.toml grid.particles_per_side=1 contact.separation=1.07
+    warning: grid.particles_per_side = 1 with the consistent mass matrix, which is then nearly
+    singular: take 2, or method.mass = "lumped"
+mpm_implicit rebound.toml grid.particles_per_side=1 contact.separation=1.07 method.mass=lumped
+    no warning
+)");
+}
+
+TEST_CASE("what may mislead is a warning with the number and the limit" *
+          doctest::description("robust")) {
+    // In implicit_moment, v_e = (25/6 B0^2/2)^(1/2) = 0.0722 and dz = 0.2. The default of explicit_em
+    // resolves 0.29 of a cell per Debye length: v_e/omega_pe = 0.0722/5 = 0.01443 d_i; and
+    // Omega_ce dt = 25 * 1.0 * 0.03.
+    check_warnings(R"(
+implicit_moment -> no warning
+implicit_moment time.dt=3
+    warning: electrons: v_th dt/dx = 1.083 is above 1, where the moment closure fails [IMM-13]:
+    lower time.dt to 2.771
+implicit_moment time.dt=30
+    warning: ions: v_th dt/dx = 4.841 is above 1, where the moment closure fails [IMM-13]: lower
+    time.dt to 6.197
+    warning: electrons: v_th dt/dx = 10.83 is above 1
+    warning: electrons: Omega_c dt = 37.5 is above 2 pi, gyration is not followed
+implicit_moment few
+    warning: electrons: v_th dt/dx = 0.006766 is below 0.05 and the Debye length is 0.004511
+    cells: finite-grid heating is possible, watch the energy
+explicit_em -> no warning
+explicit_em grid.cells_x=256 grid.cells_z=128
+    warning: electrons: the Debye length is 0.1443 cells, below 0.2: where the plasma drifts the
+    mesh may heat it, watch the energy
+explicit_em time.dt=0.3 grid.cells_x=48 grid.cells_z=24
+    warning: omega_p dt = 1.676 is above 1.62, where oscillations of a warm plasma may grow:
+    lower time.dt to 0.2685
+    warning: ions: the Debye length is
+    warning: electrons: the Debye length
+explicit_em harris.light_over_alfven=10 harris.guide_field=10
+    warning: electrons: Omega_c dt = 0.7537 is above 0.5, gyration is too slow by more than 2 %:
+    lower time.dt to 0.0199
+explicit_em beam particles.relativistic=false species.beam.temperature_x=0.09 grid.cells_x=512
+    warning: beam: four thermal speeds are 1.2 c, and the push is not relativistic
+)");
+}
+
+TEST_CASE("a dry run shows scales and theory and memory and time" *
+          doctest::description("robust")) {
+    // In rebound, c_p^2 = 1.346 E/density, dt = 0.25 h/(c_p + |v|), and 0.4^2 pi/4 (2/h)^2 particles
+    // are in each disk. In the hot disk of a fluid, c^2 = gamma (gamma - 1) E/m = 0.56/(524/16384).
+    check_descriptions(R"(
+cic two_stream.toml --threads 2 --out run
+    mesh +128 cells of 0\.08016, periodic in x
+    method +cic weighting, momentum-conserving
+    steps +1600 of 0\.05
+    particles +65536
+    all mobile species together +omega_p = 1, omega_p dt = 0\.05, cold
+    right +32768 particles, omega_p = 0\.7071, v_th = 0, drift = 1
+    theory +mode \(1, 0\): omega = 0, growth = 0\.3536 omega_p; .*
+    onset +about t = .*
+    memory +about [0-9.e+]+ [KMG]iB.*
+    time +about [0-9.e+-]+ .*
+cic diocotron.toml -> .*128 x 128 cells of 0\.125 x 0\.125, periodic in x, wall in z.*
+cic misprint.toml -> .*div E = -rho as the slide prints it.*
+flip sod theory.compare=riemann boundary.x_high=open
+    mesh                100 x 1 cells of 0\.01 x 1, slip and open in x, periodic in z
+    method              flip transfer, lumped mass, density of cells, explicit pressure
+    left                about 800 particles, sound speed 1\.183, speed up to 0
+    right               about 800 particles, sound speed 1\.058, speed up to 0
+    particles           about 1600
+    steps               about 40; the first of 0\.0025.*
+    theory              pressure 0\.3031 and velocity 0\.9275 at the contact
+    memory              about .*
+    time                about .*
+pic tube theory.compare=wall_shock region.gas.velocity_x=-1 time.dt=1e-3
+    .*velocity and energy on the cells
+    steps               100 of 0\.001
+    .*density 2\..*
+flip box region.hot.shape=disk region.hot.radius=0.1 region.hot.center_x=0.5 \
+    region.hot.center_z=0.5 region.hot.energy=1 region.hot.pressure=0
+    .*particles, sound speed 4\.18.*
+mpm_explicit rebound.toml --threads 2 --out run
+    mesh +48 x 24 cells of 0\.025
+    walls +x: open, open; y: .*
+    method +linear shape functions, FLIP
+    grains +2, the thinnest 16 cells
+    particles +1608, 2 x 2 per cell
+    sound +c_p = 3\.669, largest \|v\| = 0\.1
+    steps +1206 of dt = 0\.001658, alpha = 0\.25
+    memory +about [0-9.e+-]+ MiB
+    time +about [0-9.e+-]+ s on.*
+mpm_explicit shear.toml -> .*50 x 46 cells of 0\.02, periodic in x.*
+mpm_explicit disks method.shape=gimp method.flip=0.9 method.frozen=true boundary.y_low=stick
+    .*gimp shape functions, FLIP fraction 0\.9, frozen particles
+    .*y: stick, open
+mpm_implicit rebound.toml --threads 2
+    mesh +48 x 24 cells of 0\.025
+    method +linear shape functions, FLIP, theta = 0\.5, consistent mass
+    particles +1608, 2 x 2 per cell
+    sound +c_p = 3\.669, largest \|v\| = 0\.1
+    steps +302 of dt = 0\.006633, alpha = 1
+    memory +about [0-9.e+-]+ MiB
+    time +about [0-9.e+-]+ s on.*
+implicit_moment --threads 2 --out run
+    mesh +64 x 64 cells of 0\.4 x 0\.2 d_i, periodic in x, wall in z
+    steps +2667 of 0\.3 / omega_pi, c dt/dx = 0\.75, c dt/dz = 1\.5
+    particles +200000, 48\.83 per cell
+    magnetic field +0\.05 m_i c omega_pi/e, Omega_ci dt = 0\.015
+    ions +omega_p dt = 0\.3, Omega_c dt = 0\.015, v_th = 0\.03227 c, .*
+    electrons +omega_p dt = 1\.5, Omega_c dt = 0\.375, v_th = 0\.07217 c, .*
+    memory +about [0-9.e+]+ [KMG]iB.*
+    time +about [0-9.e+-]+ .*
+)");
+}
+
+TEST_CASE("a case at the edge of what is taken is described without a number that is none" *
+          doctest::description("robust")) {
+    check_descriptions(R"(
+fluids tube time.end=0
+fluids tube grid.cells_x=2
+fluids box grid.cells_x=2 grid.cells_z=300
+fluids tube particles.per_cell_x=1 particles.per_cell_z=1
+fluids tube dust
+fluids tube dust region.gas.pressure=0
+fluids box region.gas.pressure=0
+fluids box grid.cells_x=8192 grid.cells_z=8192
+fluids box boundary.x_low=inflow inflow.velocity_x=1 disk region.gas.radius=1e-9
+fluids box water region.gas.pressure=0
+fluids sod left.velocity=-20 right.velocity=20 theory.compare=riemann
+fluids tube material.a.gamma=1.4 material.b.gamma=1.4 material.c.gamma=1.4 \
+    material.d.gamma=1.4 material.e.gamma=1.4 material.f.gamma=1.4 material.g.gamma=1.4 \
+    material.h.gamma=1.4
+flip tube grid.length_x=1e-20 grid.length_z=1e-20 time.end=1e-21
+flip walls_z tube
+flip box flip.transfer=flip
+flip box flip.transfer=pic
+flip box flip.transfer=blend
+flip box flip.transfer=apic
+flip box flip.transfer=xpic
+# Bonds across the seam of a periodic mesh, within a quarter of a cell; the other disk yields.
+mpm_explicit disks periodic grain.left.x=0.2 grain.right.x=0.99 joint
+mpm_explicit disks theory.compare=yield material.soft.law=j2 grain.right.material=soft \
+    theory.grain=right
+# Hardening that elastic grains ignore.
+mpm_implicit billet.toml material.default.hardening=1
+mpm_implicit rebound.toml material.default.law=j2 newton
+mpm_implicit rebound.toml method.volumes=updated newton
+    mesh .*
+    method .*
+    particles .*
+    steps .*
+    memory .*
+)");
+}
+
+TEST_CASE("a case at the edge of what cic takes ends with status 0" *
+          doctest::description("robust")) {
+    // Like charges attract, and particles cross so many boxes in a step that round-off loses them;
+    // the last of the electrons is absorbed before new ones come; in a corner a particle meets the
+    // source and another wall in the same step.
+    check_accepted(R"(
+cic line time.end=0 output.fields_interval=1
+cic line time.end=1e-300
+cic line time.end=0.1
+cic line output.fields_interval=1e300 output.particles_interval=1e300
+cic line grid.cells_x=2 species.electrons.particles_per_cell=1
+cic line species.electrons.amplitude=-0.9 species.electrons.mode_x=-8
+cic line no_charge time.dt=1e20 time.end=1e21
+cic line grid.length_x=1e-20
+cic line wave gauss.sign=-1 species.electrons.temperature_x=4 species.electrons.amplitude=0.01
+cic line gauss.sign=-1 time.energy_limit=0 time.dt=1e10 time.end=1e12 \
+    species.electrons.amplitude=0.1
+cic between_walls boundary.x_low=floating boundary.x_high=floating
+cic between_walls grid.cells_x=2 boundary.potential_x_high=100 boundary.x_low=floating
+cic plane grid.boundary_x=wall boundary.particles_x_low=source boundary.potential_x_low=-1e6 \
+    species.electrons.emission=0.5 plasma.B_y=0.1
+cic plane box boundary.particles_x_low=source time.dt=0.4 time.end=20 \
+    species.electrons.emission=1 species.electrons.temperature_x=30 \
+    species.electrons.temperature_z=30
+cic plane points_at_ends
+cic plane points_at_ends box
+)");
+    for (const std::string weighting : {"ngp", "cic", "tsc"})
+        for (const std::string scheme : {"momentum", "energy"})
+            for (const std::string ends :
+                 {"", " grid.boundary_x=wall", " grid.boundary_z=wall", " box"}) {
+                if (weighting == "ngp" && scheme == "energy") continue;
+                check_accepted(
+                    "cic plane grid.cells_x=3 grid.cells_z=3 method.stencil=nine_point "
+                    "time.end=10 species.electrons.temperature_x=1 "
+                    "species.electrons.temperature_z=1 method.weighting=" +
+                    weighting + " method.scheme=" + scheme + ends);
+            }
+}
+
+TEST_CASE("a case at the edge of what the grains take ends with status 0" *
+          doctest::description("robust")) {
+    check_accepted(R"(
+mpm_explicit disks time.end=0 output.fringes_interval=1 output.grains_interval=1
+mpm_explicit disks time.end=1e-300 output.pack=true
+mpm_explicit disks time.alpha=1e30
+mpm_explicit disks output.particles_interval=1e300 output.grains_interval=1e300
+mpm_explicit disks grid.particles_per_side=16 time.end=0.01
+mpm_explicit disks grid.low_x=-1000 grain.left.x=-999.65 grain.right.x=-999.15
+mpm_explicit disks grain.left.velocity_x=0 grain.right.velocity_x=0 output.vtk=true \
+    output.particles_interval=0.05
+# A ring around the shortest periodic mesh, and grains that straddle its ends.
+mpm_explicit body periodic grain.body.velocity_x=0.3 grain.body.height=0.3
+mpm_explicit body periodic grain.body.x=0.7 grain.body.width=0.6 grain.body.height=0.3 \
+    method.shape=quadratic
+mpm_explicit disks periodic grain.left.x=1.25 grain.right.x=-0.45
+mpm_explicit plates grain.top.force=-1e-3 grain.top.damping=1e30
+mpm_explicit plates grain.bottom.velocity_x=0.1 load.rise=1e30
+mpm_explicit mesh end pack.p.kind=file pack.p.file='"a pack'"'"'s file.txt"'
+mpm_explicit mesh end one_disk pack.p.columns=3 pack.p.sides=5
+)");
+    for (const std::string solver : {"", " newton"}) {
+        for (const std::string arguments :
+             {"time.end=0", "time.alpha=1e30 time.end=2", "grid.particles_per_side=1",
+              "grid.particles_per_side=8 method.shape=quadratic",
+              "grain.left.velocity_x=0 grain.right.velocity_x=0"})
+            check_accepted("mpm_implicit disks " + arguments + solver);
+    }
+    // The smallest mesh, full, with every kind of wall.
+    for (const std::string shape : {"linear", "gimp", "quadratic"})
+        for (const std::string wall : {"slip", "stick", "rub"})
+            for (const std::string program :
+                 {"mpm_explicit small ", "mpm_implicit small ", "mpm_implicit small newton "})
+                check_accepted(program + wall + " method.shape=" + shape);
+}
+
+TEST_CASE("a plasma without any energy runs or is refused" * doctest::description("robust")) {
+    for (const Command& command : commands("plasmas beam few species.ions.charge=1 time.end=3")) {
+        const fs::path folder = fresh_folder(*command.program);
+        const Outcome outcome =
+            start(*command.program, folder, arguments_of(command) + " --out run");
+        INFO(command.program->name << ": " << outcome.err);
+        CHECK((outcome.status == 0 || outcome.status == 2));
+        CHECK(fs::exists(folder / "run") == (outcome.status == 0));
+    }
+}
