@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "implicit_moment/explicit_em/leapfrog_state.hpp"
+#include "implicit_moment/explicit_em/setup/leapfrog_state.hpp"
 #include "implicit_moment/explicit_em/step.hpp"
 #include "implicit_moment/setup/initial_state.hpp"
 #include "implicit_moment/step.hpp"
@@ -35,7 +35,7 @@ Split time_steps(const Case& parameters, long steps, int threads, long& particle
     for (long step = 0; step < steps; ++step) {
         find_moments(grid, parameters.dt, particles, state.field, scratch, split.clock);
         const FieldReport report =
-            take_step(grid, parameters.dt, parameters.mover, charge_over_mass, run, particles,
+            take_step(grid, parameters.dt, parameters.mover, charge_over_mass, scratch, particles,
                       state.field, split.clock);
         split.iterations += report.iterations;
     }
@@ -62,13 +62,14 @@ void time_explicit(long steps) {
     for (const int threads : {1, 2}) {
         common::set_thread_count(threads);
         State state = leapfrog_state(parameters);
-        Leapfrog run(parameters);
+        LeapfrogScratch scratch(grid);
         std::vector<Particles>& particles = state.plasma.species;
         count = static_cast<double>(state.plasma.count());
         common::StepClock clock;
         for (long step = 0; step < steps; ++step) {
-            pack_push_field(run, state.field, clock);
-            take_step(run, state.field, particles, clock);
+            interleave_field(grid, parameters.field.smoothing, state.field, scratch, clock);
+            take_step(grid, parameters.dt, parameters.leapfrog, parameters.field.smoothing, scratch,
+                      particles, state.field, clock);
         }
         const double total = clock.total(), rate = count * static_cast<double>(steps) / total;
         if (threads == 1) one_thread = rate;

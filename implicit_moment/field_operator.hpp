@@ -7,6 +7,7 @@
 
 #include "common/gmres.hpp"
 #include "common/newton_krylov.hpp"
+#include "implicit_moment/field_state.hpp"
 #include "implicit_moment/mesh_modes.hpp"
 #include "implicit_moment/predict_current.hpp"
 
@@ -20,25 +21,20 @@ struct FieldSettings {
     SmoothingSettings smoothing;
 };
 
-struct FieldState {
-    VectorField E, B;     // at t^n, ghosts filled
-    VectorField E_theta;  // E^{n+theta} of the last step
-    explicit FieldState(const Grid& grid) : E(grid), B(grid), E_theta(grid) {}
-};
-
 /// The inverse of the uniform field operator for every mode: 2 x 2 in the plane, one number for y.
 struct ModeInverse {
     Eigen::ArrayXXf xx, xz, zz, yy;
 };
 
-/// Everything the solver keeps between steps; nothing of it is state.
+/// The room in which the field equations are solved, kept between steps: nothing of it is state, and
+/// nothing of it is read before it is written in the same step.
 struct FieldSolver {
     Grid grid;
     FieldSettings settings;
     MeshModes modes;
     PlasmaResponse response;
     Field gauss, scratch;
-    VectorField source, ghosted, turned, B_theta;
+    VectorField source, ghosted, curl_E, chi_E;
     std::array<Eigen::MatrixXf, 3> amplitude, unknowns;
     std::array<Eigen::MatrixXf, 6> half_way;
     Eigen::MatrixXf U_x, V_x, U_z, V_z;        // the modes again, for the preconditioner
@@ -57,8 +53,8 @@ struct FieldSolver {
           scratch(Field::Zero(g.size())),
           source(g),
           ghosted(g),
-          turned(g),
-          B_theta(g) {
+          curl_E(g),
+          chi_E(g) {
         const auto factors = [&](const AxisModes& axis) {
             return axis.angle.unaryExpr(
                 [&](double angle) { return smoothing_factor(s.smoothing, angle); });
@@ -78,18 +74,18 @@ inline void apply_field_operator(FieldSolver& solver, double a, const Eigen::Vec
                                  Eigen::VectorXd& out) {
     const Grid& grid = solver.grid;
     const SmoothingSettings& smoothing = solver.settings.smoothing;
-    VectorField &ghosted = solver.ghosted, &turned = solver.turned;
+    VectorField &ghosted = solver.ghosted, &curl_E = solver.curl_E, &chi_E = solver.chi_E;
     ghosted.all = E;
     fill_ghosts(grid, electric, ghosted);
-    curl_of_electric(grid, ghosted.all.data(), turned.all.data());
-    fill_ghosts(grid, magnetic, turned);
-    curl_of_magnetic(grid, turned.all.data(), out.data());
+    curl_of_electric(grid, ghosted.all.data(), curl_E.all.data());
+    fill_ghosts(grid, magnetic, curl_E);
+    curl_of_magnetic(grid, curl_E.all.data(), out.data());
     smooth(grid, electric, smoothing, ghosted.all.data(), solver.scratch);
     apply_tensor(grid, solver.response.chi, ghosted.all.data(), false, solver.response.scratch,
-                 turned.all.data());
-    fill_ghosts(grid, electric, turned);
-    smooth(grid, electric, smoothing, turned.all.data(), solver.scratch);
-    out = E + turned.all + a * a * out;
+                 chi_E.all.data());
+    fill_ghosts(grid, electric, chi_E);
+    smooth(grid, electric, smoothing, chi_E.all.data(), solver.scratch);
+    out = E + chi_E.all + a * a * out;
     keep_unknowns(grid, out.data());
 }
 
@@ -100,7 +96,7 @@ inline void prepare_preconditioner(FieldSolver& solver, double a) {
     const Grid& grid = solver.grid;
     std::array<double, 3> chi_0{};
     for (std::size_t k = 0; k < 3; ++k) {
-        chi_0[k] = detail::interior(grid, solver.response.chi.entry[4 * k].data()).mean();
+        chi_0[k] = interior(grid, solver.response.chi.entry[4 * k].data()).mean();
     }
     ModeInverse& inverse = solver.inverse;
     for (Eigen::ArrayXXf* f : {&inverse.xx, &inverse.xz, &inverse.zz, &inverse.yy}) {
@@ -137,8 +133,7 @@ inline void precondition_field(FieldSolver& solver, const Eigen::VectorXd& r,
     const std::array<const Eigen::MatrixXf*, 3> Z{&solver.V_z, &solver.V_z, &solver.U_z};
     const long nx = grid.x.cells, nz = grid.z.cells;
     for (std::size_t k = 0; k < 3; ++k) {
-        solver.unknowns[k] =
-            detail::interior(grid, r.data() + static_cast<long>(k) * m).cast<float>();
+        solver.unknowns[k] = interior(grid, r.data() + static_cast<long>(k) * m).cast<float>();
         solver.amplitude[k].resize(nx, nz);
     }
     common::for_each_row(6, [&](long task) {
@@ -167,8 +162,7 @@ inline void precondition_field(FieldSolver& solver, const Eigen::VectorXd& r,
         solver.unknowns[k].middleCols(first, columns).noalias() = *X[k] * solver.half_way[t];
     });
     for (std::size_t k = 0; k < 3; ++k) {
-        detail::interior(grid, out.data() + static_cast<long>(k) * m) =
-            solver.unknowns[k].cast<double>();
+        interior(grid, out.data() + static_cast<long>(k) * m) = solver.unknowns[k].cast<double>();
     }
     keep_unknowns(grid, out.data());
 }

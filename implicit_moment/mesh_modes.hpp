@@ -65,25 +65,10 @@ struct MeshModes {
     explicit MeshModes(const Grid& grid) : x(axis_modes(grid.x)), z(axis_modes(grid.z)) {}
 };
 
-namespace detail {
-
-using Block = Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
-using ConstBlock = Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
-
-// The unknowns of one component as a matrix (x, z), without ghosts.
-inline Block interior(const Grid& grid, double* f) {
-    return {f + grid.index(0, 0), grid.x.cells, grid.z.cells, Eigen::OuterStride<>(grid.stride())};
-}
-inline ConstBlock interior(const Grid& grid, const double* f) {
-    return {f + grid.index(0, 0), grid.x.cells, grid.z.cells, Eigen::OuterStride<>(grid.stride())};
-}
-
-}  // namespace detail
-
 // f becomes the function whose modes are those of f times factor(k^2); nodes, zero on walls.
 template <class Factor>
 inline void scale_modes(const Grid& grid, const MeshModes& modes, const Factor& factor, Field& f) {
-    auto values = detail::interior(grid, f.data());
+    auto values = interior(grid, f.data());
     Eigen::MatrixXd half = modes.x.V.transpose() * values;
     Eigen::MatrixXd amplitude = half * modes.z.V;
     for (long l = 0; l < grid.z.cells; ++l) {

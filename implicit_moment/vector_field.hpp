@@ -55,6 +55,16 @@ inline void fill_ghosts(const Grid& grid, const VectorKind& kind, VectorField& f
     fill_ghosts(grid, kind, f.all.data());
 }
 
+/// The unknowns of one component as a matrix (x, z), without ghosts.
+using Block = Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
+using ConstBlock = Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
+inline Block interior(const Grid& grid, double* f) {
+    return {f + grid.index(0, 0), grid.x.cells, grid.z.cells, Eigen::OuterStride<>(grid.stride())};
+}
+inline ConstBlock interior(const Grid& grid, const double* f) {
+    return {f + grid.index(0, 0), grid.x.cells, grid.z.cells, Eigen::OuterStride<>(grid.stride())};
+}
+
 /// Calls work(n) for the storage index n of rows and columns 0..N, of all points whose neighbors
 /// are stored.
 template <class Work>

@@ -217,9 +217,9 @@ TEST_CASE("a guide field is uniform and leaves the plane and the particles alone
         const Particles &p = state.plasma.species[k], &q = plain.plasma.species[k];
         CHECK(p.x_p == q.x_p);
         CHECK(p.z_p == q.z_p);
-        CHECK(p.vx_p == q.vx_p);
-        CHECK(p.vy_p == q.vy_p);
-        CHECK(p.vz_p == q.vz_p);
+        CHECK(p.ux_p == q.ux_p);
+        CHECK(p.uy_p == q.uy_p);
+        CHECK(p.uz_p == q.uz_p);
     }
     // The field has no part in the flux, nor in the quadrupole.
     CHECK(middle_row(grid, B).flux == middle_row(grid, plain_B).flux);

@@ -18,7 +18,7 @@ namespace implicit_moment {
 inline double field_energy(const Grid& grid, const VectorField& f) {
     double sum = 0;
     for (long a = 0; a < 3; ++a) {
-        sum += detail::interior(grid, f.all.data() + a * grid.size()).squaredNorm();
+        sum += interior(grid, f.all.data() + a * grid.size()).squaredNorm();
     }
     return sum * grid.cell_area() / (8 * pi);
 }
@@ -27,12 +27,12 @@ inline double field_energy(const Grid& grid, const VectorField& f) {
 inline double largest_divergence(const Grid& grid, const VectorField& B, Field& scratch) {
     scratch.setZero(grid.size());
     divergence_of_magnetic(grid, B.all.data(), scratch);
-    return detail::interior(grid, scratch.data()).cwiseAbs().maxCoeff();
+    return interior(grid, scratch.data()).cwiseAbs().maxCoeff();
 }
 
 /// Root mean square of div E - 4 pi rho on the nodes inside, in units of 4 pi e n0 = 1.
 inline double gauss_error(const Grid& grid, const Field& gauss) {
-    const auto inside = detail::interior(grid, gauss.data());
+    const auto inside = interior(grid, gauss.data());
     return std::sqrt(inside.squaredNorm() / static_cast<double>(inside.size()));
 }
 

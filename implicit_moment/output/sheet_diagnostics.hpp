@@ -32,7 +32,7 @@ class RowModes {
     /// out:    (mode, row), rows 0 .. N-1.
     /// exact:  for f = sum_m |a_m| cos(k_m x + arg a_m)
     Eigen::MatrixXcd operator()(const Grid& grid, const double* f) const {
-        return waves_ * detail::interior(grid, f);
+        return waves_ * interior(grid, f);
     }
     /// The amplitudes of one function of x alone.
     Eigen::VectorXcd operator()(const Eigen::VectorXd& f) const { return waves_ * f; }

@@ -96,7 +96,7 @@ inline void write_particles(const std::string& folder, long step, const Plasma& 
         for (long n = 0; n < p.count(); n += every) {
             const auto i = static_cast<std::size_t>(n);
             const std::array<double, 6> row{
-                static_cast<double>(k), p.x_p[i], p.z_p[i], p.vx_p[i], p.vy_p[i], p.vz_p[i]};
+                static_cast<double>(k), p.x_p[i], p.z_p[i], p.ux_p[i], p.uy_p[i], p.uz_p[i]};
             for (std::size_t a = 0; a < 6; ++a) data[a].push_back(row[a]);
         }
     }

@@ -126,9 +126,9 @@ void archive(Archive& a, State& state) {
     for (Particles& s : state.plasma.species) {
         a(s.name + ".x_p", s.x_p);
         a(s.name + ".z_p", s.z_p);
-        a(s.name + ".vx_p", s.vx_p);
-        a(s.name + ".vy_p", s.vy_p);
-        a(s.name + ".vz_p", s.vz_p);
+        a(s.name + ".ux_p", s.ux_p);
+        a(s.name + ".uy_p", s.uy_p);
+        a(s.name + ".uz_p", s.uz_p);
         a(s.name + ".first_of_node", s.first_of_node);
     }
     a("E", state.field.E.all);

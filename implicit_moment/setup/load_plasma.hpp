@@ -52,7 +52,7 @@ namespace detail {
 
 inline void resize(Particles& particles, long count) {
     for (auto* f :
-         {&particles.x_p, &particles.z_p, &particles.vx_p, &particles.vy_p, &particles.vz_p}) {
+         {&particles.x_p, &particles.z_p, &particles.ux_p, &particles.uy_p, &particles.uz_p}) {
         f->resize(static_cast<std::size_t>(count));
     }
 }
@@ -99,12 +99,12 @@ inline Plasma load_harris(const Case& parameters) {
             ions.x_p[k] = electrons.x_p[k] =
                 grid.x.at(0) + grid.x.length * load.uniform(part, 2, index);
             ions.z_p[k] = electrons.z_p[k] = z_middle + z;
-            ions.vx_p[k] = sheet.v_i * load.gaussian(part, 5, index) + (along_x ? u_i : 0);
-            ions.vy_p[k] = sheet.v_i * load.gaussian(part, 7, index) + (along_x ? 0 : u_i);
-            ions.vz_p[k] = sheet.v_i * load.gaussian(part, 11, index);
-            electrons.vx_p[k] = sheet.v_e * load.gaussian(part, 13, index) + (along_x ? u_e : 0);
-            electrons.vy_p[k] = sheet.v_e * load.gaussian(part, 17, index) + (along_x ? 0 : u_e);
-            electrons.vz_p[k] = sheet.v_e * load.gaussian(part, 19, index);
+            ions.ux_p[k] = sheet.v_i * load.gaussian(part, 5, index) + (along_x ? u_i : 0);
+            ions.uy_p[k] = sheet.v_i * load.gaussian(part, 7, index) + (along_x ? 0 : u_i);
+            ions.uz_p[k] = sheet.v_i * load.gaussian(part, 11, index);
+            electrons.ux_p[k] = sheet.v_e * load.gaussian(part, 13, index) + (along_x ? u_e : 0);
+            electrons.uy_p[k] = sheet.v_e * load.gaussian(part, 17, index) + (along_x ? 0 : u_e);
+            electrons.uz_p[k] = sheet.v_e * load.gaussian(part, 19, index);
         }
     });
     return plasma;
@@ -150,12 +150,12 @@ inline Plasma load_uniform(const Case& parameters) {
                 const double phase = mode_phase(parameters, x, z);
                 particles.x_p[k] = x;
                 particles.z_p[k] = z;
-                particles.vx_p[k] = s.drift_x + s.wave_x * std::cos(phase + s.phase_x * degree);
-                particles.vy_p[k] = s.drift_y + s.wave_y * std::cos(phase + s.phase_y * degree);
-                particles.vz_p[k] = s.drift_z + s.wave_z * std::cos(phase + s.phase_z * degree);
-                if (v_x > 0) particles.vx_p[k] += v_x * load.gaussian(purpose, 5, p);
-                if (v_y > 0) particles.vy_p[k] += v_y * load.gaussian(purpose, 7, p);
-                if (v_z > 0) particles.vz_p[k] += v_z * load.gaussian(purpose, 11, p);
+                particles.ux_p[k] = s.drift_x + s.wave_x * std::cos(phase + s.phase_x * degree);
+                particles.uy_p[k] = s.drift_y + s.wave_y * std::cos(phase + s.phase_y * degree);
+                particles.uz_p[k] = s.drift_z + s.wave_z * std::cos(phase + s.phase_z * degree);
+                if (v_x > 0) particles.ux_p[k] += v_x * load.gaussian(purpose, 5, p);
+                if (v_y > 0) particles.uy_p[k] += v_y * load.gaussian(purpose, 7, p);
+                if (v_z > 0) particles.uz_p[k] += v_z * load.gaussian(purpose, 11, p);
             }
         });
     }
