@@ -24,6 +24,7 @@
 #pragma once
 
 #include <array>
+#include <iterator>
 
 #include "common/splines.hpp"
 #include "implicit_moment/moments.hpp"
@@ -39,7 +40,7 @@ struct NodeSums {
     SimdVector J_x[3][2]{}, P_xy[3][2]{};
     SimdVector J_z[2][3]{}, P_yz[2][3]{};
     SimdVector P_xz[2][2]{};
-    SimdVector P_xx[3]{}, P_zz[3]{};
+    SimdVector P_xx[3][1]{}, P_zz[1][3]{};
 
     // Adds eight particles of velocity v with the splines S; present is 0 for lanes that hold none.
     void add(const common::QuadraticWeights<SimdVector>& S_x,
@@ -48,7 +49,7 @@ struct NodeSums {
         // [splines]
         for (int j = 0; j < 3; ++j) {
             const SimdVector S = S_z.quadratic[j] * present;
-            P_xx[j] += S * v_x * v_x;
+            P_xx[j][0] += S * v_x * v_x;
             for (int i = 0; i < 3; ++i) {
                 const SimdVector w = S_x.quadratic[i] * S;
                 rho[j][i] += w;
@@ -70,7 +71,7 @@ struct NodeSums {
             for (int i = 0; i < 2; ++i) P_xz[j][i] += S_x.linear[i] * S_v * v_x;
         }
         const SimdVector zz = present * v_z * v_z;
-        for (int i = 0; i < 3; ++i) P_zz[i] += S_x.quadratic[i] * zz;
+        for (int i = 0; i < 3; ++i) P_zz[0][i] += S_x.quadratic[i] * zz;
         // [/splines]
     }
 };
@@ -117,17 +118,17 @@ inline void deposit(const Particles& particles, const Grid& grid, const Rotation
     const double q = particles.q_p / grid.cell_area();
     const long columns = nodes_x(grid), stride = grid.stride();
     // Per row of nodes: sums of v_x, v_y, v_z and v^2.
-    std::vector<std::array<double, 4>> sums_of_row(static_cast<std::size_t>(nodes_z(grid)));
+    std::vector<std::array<double, 4>> sums_of_row(nodes_z(grid));
 
     common::for_each_row_three_colors(nodes_z(grid), [&](long row) {
-        const double z_node = grid.z.at(static_cast<double>(row));
+        const double z_node = grid.z.at(double(row));
         SimdVector total_x{}, total_y{}, total_z{}, total_squared{};
         for (long column = 0; column < columns; ++column) {
-            const std::size_t node = static_cast<std::size_t>(row * columns + column);
+            const long node = row * columns + column;
             const long begin = particles.first_of_node[node],
                        end = particles.first_of_node[node + 1];
             if (begin == end) continue;
-            const double x_node = grid.x.at(static_cast<double>(column));
+            const double x_node = grid.x.at(double(column));
             const long corner = grid.index(column - 1, row - 1);  // the node down left of this one
 
             NodeSums sums;
@@ -150,35 +151,21 @@ inline void deposit(const Particles& particles, const Grid& grid, const Rotation
                 sums.add(S_x, S_z, v.x, v.y, v.z, present);
             }
 
-            // Add the sums to the mesh.
-            const auto add = [&](Field& f, long i, long j, const SimdVector& sum) {
-                f[corner + j * stride + i] += q * common::simd_sum(sum);
+            // Add the sums to the mesh, from the point (i, j) of the stencil on.
+            const auto add = [&](Field& f, const auto& sum, long i = 0, long j = 0) {
+                for (long m = 0; m < std::ssize(sum); ++m) {
+                    for (long l = 0; l < std::ssize(sum[0]); ++l)
+                        f[corner + (j + m) * stride + i + l] += q * common::simd_sum(sum[m][l]);
+                }
             };
-            for (long j = 0; j < 3; ++j) {
-                add(moments.P_xx, 1, j, sums.P_xx[j]);
-                for (long i = 0; i < 3; ++i) {
-                    add(moments.rho, i, j, sums.rho[j][i]);
-                    add(moments.J_y, i, j, sums.J_y[j][i]);
-                }
-                for (long i = 0; i < 2; ++i) {
-                    add(moments.J_x, i, j, sums.J_x[j][i]);
-                    add(moments.P_xy, i, j, sums.P_xy[j][i]);
-                }
-            }
-            for (long i = 0; i < 3; ++i) {
-                add(moments.P_zz, i, 1, sums.P_zz[i]);
-                for (long j = 0; j < 2; ++j) {
-                    add(moments.J_z, i, j, sums.J_z[j][i]);
-                    add(moments.P_yz, i, j, sums.P_yz[j][i]);
-                }
-            }
-            for (long j = 0; j < 2; ++j) {
-                for (long i = 0; i < 2; ++i) add(moments.P_xz, i, j, sums.P_xz[j][i]);
-            }
+            add(moments.rho, sums.rho);
+            add(moments.J_x, sums.J_x), add(moments.J_y, sums.J_y), add(moments.J_z, sums.J_z);
+            add(moments.P_xx, sums.P_xx, 1, 0), add(moments.P_zz, sums.P_zz, 0, 1);
+            add(moments.P_xz, sums.P_xz), add(moments.P_xy, sums.P_xy);
+            add(moments.P_yz, sums.P_yz);
         }
-        sums_of_row[static_cast<std::size_t>(row)] = {
-            common::simd_sum(total_x), common::simd_sum(total_y), common::simd_sum(total_z),
-            common::simd_sum(total_squared)};
+        sums_of_row[row] = {common::simd_sum(total_x), common::simd_sum(total_y),
+                            common::simd_sum(total_z), common::simd_sum(total_squared)};
     });
 
     moments.kinetic_energy = 0;

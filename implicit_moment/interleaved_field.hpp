@@ -47,14 +47,13 @@ inline void interleave_field(const Grid& grid, const SmoothingSettings& smoothin
         smooth(grid, electric, smoothing, scratch.smoothed.all.data(), scratch.pass);
     }
     const VectorField& E = smooth_it ? scratch.smoothed : E_mesh;
-    interleaved.resize(static_cast<std::size_t>(grid.size()));
+    interleaved.resize(grid.size());
     const double *E_x = E.x(), *E_y = E.y(), *E_z = E.z(), *B_x = B.x(), *B_y = B.y(), *B_z = B.z();
     common::for_each_block(
         grid.size(),
         [&](int, long begin, long end) {
             for (long n = begin; n < end; ++n) {
-                interleaved[static_cast<std::size_t>(n)] = {E_x[n], E_y[n], E_z[n],
-                                                            B_x[n], B_y[n], B_z[n]};
+                interleaved[n] = {E_x[n], E_y[n], E_z[n], B_x[n], B_y[n], B_z[n]};
             }
         },
         grid.size());

@@ -25,8 +25,7 @@ struct Moments {
     }
 };
 
-inline constexpr common::Place on_nodes = common::on_nodes, on_x_edges = common::on_x_edges,
-                               on_z_edges = common::on_z_edges, on_faces = common::on_faces;
+using common::on_faces, common::on_nodes, common::on_x_edges, common::on_z_edges;
 
 /// What stands behind a wall: the plasma's own mirror image, or the image charges of a conductor.
 enum class Images { plasma, conductor };

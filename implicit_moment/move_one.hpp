@@ -10,6 +10,7 @@
 
 namespace implicit_moment {
 
+/// How well the implicit midpoint is found.
 struct MoverSettings {
     double tolerance = 1e-4;   // a midpoint is found when an iteration moves it by less [cells]
     long max_iterations = 20;  // before the step is halved
@@ -61,10 +62,9 @@ inline bool find_mean_velocity(const Grid& grid, const InterleavedField& field,
             return false;
         const double s = (seen_at(grid.x, x + h * vbar.x) - grid.x.low) * per_dx;
         const double t = (seen_at(grid.z, z + h * vbar.z) - grid.z.low) * per_dz;
-        const long i = static_cast<long>(s + 0.5), j = static_cast<long>(t + 0.5);
-        const auto at =
-            gather_field(&field[static_cast<std::size_t>(grid.index(i - 1, j - 1))], grid.stride(),
-                         s - static_cast<double>(i), t - static_cast<double>(j));
+        const long i = long(s + 0.5), j = long(t + 0.5);
+        const auto at = gather_field(&field[grid.index(i - 1, j - 1)], grid.stride(), s - double(i),
+                                     t - double(j));
         const Velocity<double> next = mean_velocity(v, at, charge_over_mass * h);
         const double change =
             h * std::max(std::fabs(next.x - vbar.x) * per_dx, std::fabs(next.z - vbar.z) * per_dz);
@@ -147,7 +147,7 @@ inline bool move_one(const Grid& grid, const InterleavedField& field, const Move
             if (!step(left)) return false;
             const double to_x = detail::part_to_wall(grid.x, x, left * vbar.x);
             const double to_z = detail::part_to_wall(grid.z, z, left * vbar.z);
-            // A particle that is pressed against the wall bounces ever lower: let it slide.
+            // A force towards the wall makes the bounces shorter and shorter: let the particle slide.
             const bool slides = bounce == most_bounces;
             double time = slides ? left : left * std::min(to_x, to_z);
             if (time < left) {

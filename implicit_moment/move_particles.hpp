@@ -20,6 +20,7 @@
 
 namespace implicit_moment {
 
+/// What a move of one species needed.
 struct MoverReport {
     long one_by_one = 0;   // particles moved one by one
     long sub_stepped = 0;  // particles that needed more than one sub-step
@@ -60,20 +61,19 @@ inline MoverReport move_particles(const InterleavedField& field, const Grid& gri
     const double charge_over_mass = particles.q_p / particles.m_p;
     const double half_kick = charge_over_mass * h;
     const long columns = nodes_x(grid);
-    std::vector<MoverReport> report_of_row(static_cast<std::size_t>(nodes_z(grid)));
+    std::vector<MoverReport> report_of_row(nodes_z(grid));
 
     common::for_each_row(nodes_z(grid), [&](long row) {
-        MoverReport& report = report_of_row[static_cast<std::size_t>(row)];
-        const double z_node = grid.z.at(static_cast<double>(row));
+        MoverReport& report = report_of_row[row];
+        const double z_node = grid.z.at(double(row));
         const detail::Cell cell_z(grid.z, row);
         for (long column = 0; column < columns; ++column) {
-            const std::size_t node = static_cast<std::size_t>(row * columns + column);
+            const long node = row * columns + column;
             const long begin = particles.first_of_node[node],
                        end = particles.first_of_node[node + 1];
-            const double x_node = grid.x.at(static_cast<double>(column));
+            const double x_node = grid.x.at(double(column));
             const detail::Cell cell_x(grid.x, column);
-            const NodeField* corner =
-                &field[static_cast<std::size_t>(grid.index(column - 1, row - 1))];
+            const NodeField* corner = &field[grid.index(column - 1, row - 1)];
 
             for (long p = begin; p < end; p += common::simd_width) {
                 const long count = std::min<long>(end - p, common::simd_width);
@@ -108,7 +108,7 @@ inline MoverReport move_particles(const InterleavedField& field, const Grid& gri
                 outside =
                     common::larger(outside, detail::behind_wall(grid.z, z + dt * vbar.z, per_dz));
 
-                // The rest, one by one.
+                // Move the others one by one.
                 for (long l = 0; l < count; ++l) {
                     if (outside[l] <= 0 && change[l] <= settings.tolerance) continue;
                     const double start_x = x[l], start_z = z[l];
@@ -127,8 +127,8 @@ inline MoverReport move_particles(const InterleavedField& field, const Grid& gri
                     }
                     ++report.one_by_one;
                     if (parts > 1) ++report.sub_stepped;
-                    // Hand the finished particle to the eight, such that the update below leaves
-                    // it where it is.
+                    // Put the moved particle back among the eight, such that the update below
+                    // leaves it where it is.
                     x[l] = x_1, z[l] = z_1;
                     vbar.x[l] = vbar.y[l] = vbar.z[l] = 0;
                     v.x[l] = -v_1.x, v.y[l] = -v_1.y, v.z[l] = -v_1.z;

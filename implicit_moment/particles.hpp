@@ -27,7 +27,7 @@ struct Particles {
     std::vector<double> ux_p, uy_p, uz_p;  // v or gamma v [c]
     std::vector<int> first_of_node;        // node n has [first_of_node[n], first_of_node[n + 1])
 
-    long count() const { return static_cast<long>(x_p.size()); }
+    long count() const { return long(x_p.size()); }
     std::array<std::vector<double>*, 5> all() { return {&x_p, &z_p, &ux_p, &uy_p, &uz_p}; }
 };
 

@@ -59,21 +59,40 @@ inline void apply_tensor(const Grid& grid, const Tensor& T, const double* v, boo
     });
 }
 
-/// The rotation R of one species on nodes.
+namespace detail {
+
+// O = q dt B / (2 m c) of one species, averaged to the nodes.
+struct RotationOnNodes {
+    const double *B_x, *B_y, *B_z;
+    long s;    // between rows
+    double k;  // q dt / 2mc
+
+    RotationOnNodes(const Grid& grid, const double* B, double half_kick)
+        : B_x(B),
+          B_y(B + grid.size()),
+          B_z(B + 2 * grid.size()),
+          s(grid.stride()),
+          k(half_kick / c) {}
+    double x(long n) const { return 0.5 * k * (B_x[n] + B_x[n - s]); }
+    double y(long n) const {
+        return 0.25 * k * (B_y[n] + B_y[n - 1] + B_y[n - s] + B_y[n - 1 - s]);
+    }
+    double z(long n) const { return 0.5 * k * (B_z[n] + B_z[n - 1]); }
+};
+
+}  // namespace detail
+
+/// The magnetic rotation R of one species on nodes.
 /// in:     B, ghosts filled; half_kick = q dt / 2m.
 /// out:    rows and columns 0..N.
 /// exact:  R v - (R v) x O = v, and v . R v >= 0.
 /// source: [IMM-12]
 inline void rotation_tensor(const Grid& grid, const double* B, double half_kick, Tensor& R) {
-    const long s = grid.stride(), m = grid.size();
-    const double *B_x = B, *B_y = B + m, *B_z = B + 2 * m;
-    const double k = half_kick / c;
+    const detail::RotationOnNodes O(grid, B, half_kick);
     std::array<double*, 9> r{};
     for (std::size_t a = 0; a < 9; ++a) r[a] = R.entry[a].data();
     for_each_point(grid, [=](long n) {
-        const double x = 0.5 * k * (B_x[n] + B_x[n - s]);
-        const double y = 0.25 * k * (B_y[n] + B_y[n - 1] + B_y[n - s] + B_y[n - 1 - s]);
-        const double z = 0.5 * k * (B_z[n] + B_z[n - 1]);
+        const double x = O.x(n), y = O.y(n), z = O.z(n);
         const double scale = 1 / (1 + x * x + y * y + z * z);
         r[0][n] = scale * (1 + x * x);
         r[1][n] = scale * (x * y + z);
@@ -92,15 +111,11 @@ inline void rotation_tensor(const Grid& grid, const double* B, double half_kick,
 /// exact:  in the B of R itself this leaves the unit tensor.
 inline void multiply_by_inverse_rotation(const Grid& grid, const double* B, double half_kick,
                                          Tensor& R) {
-    const long s = grid.stride(), m = grid.size();
-    const double *B_x = B, *B_y = B + m, *B_z = B + 2 * m;
-    const double k = half_kick / c;
+    const detail::RotationOnNodes O(grid, B, half_kick);
     for (std::size_t a = 0; a < 9; a += 3) {
         double *r_x = R.entry[a].data(), *r_y = R.entry[a + 1].data(), *r_z = R.entry[a + 2].data();
         for_each_point(grid, [=](long n) {
-            const double x = 0.5 * k * (B_x[n] + B_x[n - s]);
-            const double y = 0.25 * k * (B_y[n] + B_y[n - 1] + B_y[n - s] + B_y[n - 1 - s]);
-            const double z = 0.5 * k * (B_z[n] + B_z[n - 1]);
+            const double x = O.x(n), y = O.y(n), z = O.z(n);
             const double old_x = r_x[n], old_y = r_y[n], old_z = r_z[n];
             r_x[n] = old_x + old_y * z - old_z * y;
             r_y[n] = old_y + old_z * x - old_x * z;

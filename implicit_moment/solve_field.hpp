@@ -27,9 +27,10 @@
 
 namespace implicit_moment {
 
+/// How the solver ended.
 struct FieldReport {
-    int iterations = 0;
-    double residual = 0;
+    int iterations = 0;   // of GMRES, over all Newton steps
+    double residual = 0;  // over the right-hand side
 };
 
 /// div E - 4 pi rho on nodes, zero on walls. in: E at t^n with ghosts, rho smoothed.
@@ -94,6 +95,11 @@ inline FieldReport solve_field(FieldSolver& solver, const std::vector<Moments>& 
     const auto precondition = [&](const Eigen::VectorXd& r, Eigen::VectorXd& out) {
         precondition_field(solver, r, out);
     };
+    const auto refuse = [](const std::string& which, const auto& result) {
+        throw common::NumericalError("the " + which + " did not converge: " + result.reason +
+                                     " (relative residual " + std::to_string(result.residual) +
+                                     "); reduce time.dt or raise field.max_iterations");
+    };
     Eigen::VectorXd& E = field.E_theta.all;
     keep_unknowns(grid, E.data());
     FieldReport report;
@@ -106,13 +112,8 @@ inline FieldReport solve_field(FieldSolver& solver, const std::vector<Moments>& 
         };
         const auto result =
             common::gmres(apply, precondition, solver.source.all, E, settings.tolerance,
-                          static_cast<int>(settings.max_iterations), 40, solver.krylov);
-        if (!result.converged) {
-            throw common::NumericalError(
-                "the field equations did not converge: " + result.reason + " (relative residual " +
-                std::to_string(result.residual) + " after " + std::to_string(result.iterations) +
-                " iterations); reduce time.dt or raise field.max_iterations");
-        }
+                          int(settings.max_iterations), 40, solver.krylov);
+        if (!result.converged) refuse("field equations", result);
         report = {result.iterations, result.residual};
     } else {
         const auto residual = [&](const Eigen::VectorXd& v, Eigen::VectorXd& F) {
@@ -131,19 +132,13 @@ inline FieldReport solve_field(FieldSolver& solver, const std::vector<Moments>& 
         };
         const double scale = std::max(common::safe_norm(solver.source.all),
                                       by_J * common::safe_norm(response.J_hat.all));
-        if (!std::isfinite(scale)) {
+        if (!std::isfinite(scale))
             throw common::NumericalError("the source of the field equations is not finite");
-        }
         if (scale > 0) {
             const auto result =
                 common::newton_krylov(residual, precondition, E, scale, settings.tolerance, 30,
-                                      static_cast<int>(settings.max_iterations), solver.newton);
-            if (!result.converged) {
-                throw common::NumericalError(
-                    "the nonlinear field equations did not converge: " + result.reason +
-                    " (relative residual " + std::to_string(result.residual) +
-                    "); reduce time.dt or raise field.max_iterations");
-            }
+                                      int(settings.max_iterations), solver.newton);
+            if (!result.converged) refuse("nonlinear field equations", result);
             report = {result.linear_iterations, result.residual};
         } else {
             E.setZero();

@@ -27,11 +27,11 @@ inline void sort_by_key(long keys, const Key& key, SortScratch& scratch, Particl
 inline void sort_particles(const Grid& grid, SortScratch& scratch, Particles& particles) {
     const double x_low = grid.x.low, z_low = grid.z.low;
     const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing();
-    const int row_length = static_cast<int>(nodes_x(grid));
+    const int row_length = int(nodes_x(grid));
     const double *x_p = particles.x_p.data(), *z_p = particles.z_p.data();
     const auto nearest_node = [=](long p) {
-        const int i = static_cast<int>((x_p[p] - x_low) * per_dx + 0.5);
-        const int j = static_cast<int>((z_p[p] - z_low) * per_dz + 0.5);
+        const int i = int((x_p[p] - x_low) * per_dx + 0.5);
+        const int j = int((z_p[p] - z_low) * per_dz + 0.5);
         return j * row_length + i;
     };
     sort_by_key(nodes_x(grid) * nodes_z(grid), nearest_node, scratch, particles);

@@ -41,7 +41,7 @@ void find_moments(const Grid& grid, double dt, const std::vector<Particles>& par
 /// From t^n to t^{n+1}.
 /// in:     scratch.moments of t^n; q/m of each species
 /// in/out: particles and field
-/// out:    iterations of the field, and why it ended
+/// out:    iterations and residual of the field solve
 /// errors: NumericalError when the field does not converge or a particle is lost
 template <class Clock = common::NoClock>
 FieldReport take_step(const Grid& grid, double dt, const MoverSettings& mover,

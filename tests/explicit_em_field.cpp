@@ -9,7 +9,7 @@
 #include "implicit_moment/explicit_em/setup/check_leapfrog.hpp"
 #include "implicit_moment/explicit_em/setup/leapfrog_state.hpp"
 #include "implicit_moment/explicit_em/step.hpp"
-#include "implicit_moment/theory/compare_with_theory.hpp"
+#include "implicit_moment/output/diagnostics.hpp"
 #include "tests/support/any_leapfrog.hpp"
 
 namespace {

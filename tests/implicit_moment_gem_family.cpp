@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "implicit_moment/output/diagnostics.hpp"
+#include "implicit_moment/output/unit_flux_profile.hpp"
 #include "tests/support/any_fields.hpp"
 #include "tests/support/any_run.hpp"
 #include "tests/support/any_summary.hpp"
@@ -89,7 +90,7 @@ TEST_CASE("a profile averages from the first step of unit flux over its time and
         const VectorField B = random.field(small, magnetic);
         const std::vector<Moments> moments = any_moments(random);
         const int before = taken;
-        watch(profile, step.time, step.flux, small, B, [&] { return ++taken, moments; });
+        record_profile(profile, step.time, step.flux, small, B, [&] { return ++taken, moments; });
         CHECK(taken - before == (step.counted ? 1 : 0));
         if (!step.counted) continue;
         for (long i = 0; i < 12; ++i) {
@@ -141,7 +142,7 @@ TEST_CASE("a profile is centered on the X-line and its B_z integrates to the flu
         moments[k].J_x.setConstant((k == 0 ? 1 : -1) * 0.3 * n0 * (k == 0 ? 0.7 : -2.5) * B0);
     }
     UnitFluxProfile profile;
-    watch(profile, 0, 1, grid, moved, [&] { return moments; });
+    record_profile(profile, 0, 1, grid, moved, [&] { return moments; });
     const ProfileColumns columns = profile_columns(profile, grid, B0);
     CHECK(std::fabs(columns.X_line - 9 * grid.x.spacing()) <= 16 * eps);
     CHECK(std::fabs(columns.flux - 1) <= 64 * eps);

@@ -8,6 +8,16 @@
 
 namespace implicit_moment {
 
+/// How explicit_em takes a step; implicit_moment does not read it.
+struct LeapfrogSettings {
+    bool chosen = false;  // the run is explicit_em's
+    long order = 1;       // of the spline of the charge: 1 linear, 2 quadratic
+    bool relativistic = true;
+
+    /// 1/c^2, or 0 for a push that is not relativistic.
+    double per_c_squared() const { return relativistic ? 1 / (c * c) : 0; }
+};
+
 /// gamma^2 = 1 + u^2/c^2. in: per_c_squared = 1/c^2, or 0, which makes gamma = 1.
 template <class Real>
 inline Real gamma_squared(const Velocity<Real>& u, double per_c_squared) {

@@ -20,24 +20,23 @@ inline void deposit_charge_and_current(const InterleavedField& field, const Grid
     const double half_kick = 0.5 * dt * particles.q_p / particles.m_p;
     const double per_c2 = settings.per_c_squared(), q = particles.q_p / grid.cell_area();
     const long columns = Stencil<l>::cells(grid.x), rows = Stencil<l>::cells(grid.z);
-    std::vector<std::array<double, 4>> sums_of_row(static_cast<std::size_t>(rows));
+    std::vector<std::array<double, 4>> sums_of_row(rows);
 
     common::for_each_row_three_colors(rows, [&](long row) {
-        std::array<double, 4>& sums = sums_of_row[static_cast<std::size_t>(row)];
-        const double z_anchor = grid.z.at(static_cast<double>(row));
+        std::array<double, 4>& sums = sums_of_row[row];
+        const double z_anchor = grid.z.at(double(row));
         for (long column = 0; column < columns; ++column) {
-            const std::size_t cell = static_cast<std::size_t>(row * columns + column);
-            const double x_anchor = grid.x.at(static_cast<double>(column));
+            const long cell = row * columns + column;
+            const double x_anchor = grid.x.at(double(column));
             const long corner = grid.index(column + Stencil<l>::first, row + Stencil<l>::first);
             for (long k = particles.first_of_node[cell]; k < particles.first_of_node[cell + 1];
                  ++k) {
-                const auto p = static_cast<std::size_t>(k);
+                const long p = k;
                 const double d_x = (particles.x_p[p] - x_anchor) * per_dx,
                              d_z = (particles.z_p[p] - z_anchor) * per_dz;
                 Velocity<double> u{particles.ux_p[p], particles.uy_p[p], particles.uz_p[p]};
                 half_step<double>(u,
-                                  gather_field<l, double>(&field[static_cast<std::size_t>(corner)],
-                                                          grid.stride(), d_x, d_z),
+                                  gather_field<l, double>(&field[corner], grid.stride(), d_x, d_z),
                                   half_kick, per_c2);
                 const double square = u.x * u.x + u.y * u.y + u.z * u.z,
                              per_gamma = inverse_gamma(u, per_c2);
@@ -100,14 +99,13 @@ inline void half_step_back(const InterleavedField& field, const Grid& grid, doub
     const double half_kick = 0.5 * dt * particles.q_p / particles.m_p;
     common::for_each_block(particles.count(), [&](int, long begin, long end) {
         for (long k = begin; k < end; ++k) {
-            const auto p = static_cast<std::size_t>(k);
+            const long p = k;
             const double s = (particles.x_p[p] - grid.x.low) * per_dx,
                          t = (particles.z_p[p] - grid.z.low) * per_dz;
             const long i = Stencil<l>::cell_of(grid.x, s), j = Stencil<l>::cell_of(grid.z, t);
             const auto at = gather_field<l, double>(
-                &field[static_cast<std::size_t>(
-                    grid.index(i + Stencil<l>::first, j + Stencil<l>::first))],
-                grid.stride(), s - static_cast<double>(i), t - static_cast<double>(j));
+                &field[grid.index(i + Stencil<l>::first, j + Stencil<l>::first)], grid.stride(),
+                s - double(i), t - double(j));
             Velocity<double> u{particles.ux_p[p], particles.uy_p[p], particles.uz_p[p]};
             half_step_back(u, at, half_kick, per_c_squared);
             particles.ux_p[p] = u.x, particles.uy_p[p] = u.y, particles.uz_p[p] = u.z;

@@ -16,6 +16,7 @@
 #pragma once
 
 #include <cmath>
+#include <iterator>
 #include <vector>
 
 #include "implicit_moment/explicit_em/stencil.hpp"
@@ -68,7 +69,7 @@ struct CurrentTile {
     void clear(const Grid& grid, long first, long last) {
         first_row = first - margin, rows = last - first + 2 * margin;
         columns = grid.x.cells + 1 + 2 * margin;
-        for (auto* J : {&J_x, &J_y, &J_z}) J->assign(static_cast<std::size_t>(rows * columns), 0.0);
+        for (auto* J : {&J_x, &J_y, &J_z}) J->assign(rows * columns, 0.0);
     }
     long index(long i, long j) const { return (j - first_row) * columns + i + margin; }
 
@@ -76,16 +77,13 @@ struct CurrentTile {
     template <int l, class Real, class Sum>
     void add(long cell_x, long cell_z, const CurrentSums<l, Real>& sums, const Sum& sum) {
         const long corner = index(cell_x + Stencil<l>::first, cell_z + Stencil<l>::first);
-        double *x = &J_x[static_cast<std::size_t>(corner)],
-               *y = &J_y[static_cast<std::size_t>(corner)],
-               *z = &J_z[static_cast<std::size_t>(corner)];
-        for (long j = 0; j <= l; ++j) {
-            for (long i = 0; i < l; ++i) x[j * columns + i] += sum(sums.J_x[j][i]);
-            for (long i = 0; i <= l; ++i) y[j * columns + i] += sum(sums.J_y[j][i]);
-        }
-        for (long j = 0; j < l; ++j) {
-            for (long i = 0; i <= l; ++i) z[j * columns + i] += sum(sums.J_z[j][i]);
-        }
+        const auto add_to = [&](std::vector<double>& J, const auto& of_cell) {
+            for (long j = 0; j < std::ssize(of_cell); ++j) {
+                for (long i = 0; i < std::ssize(of_cell[0]); ++i)
+                    J[corner + j * columns + i] += sum(of_cell[j][i]);
+            }
+        };
+        add_to(J_x, sums.J_x), add_to(J_y, sums.J_y), add_to(J_z, sums.J_z);
     }
 
     /// Adds the tile to the mesh, with the factors of J; what lies beyond the ghosts of a periodic
@@ -100,7 +98,7 @@ struct CurrentTile {
             const long j = image(grid.z, row);
             for (long column = -margin; column < columns - margin; ++column) {
                 const long to = grid.index(image(grid.x, column), j);
-                const auto from = static_cast<std::size_t>(index(column, row));
+                const long from = index(column, row);
                 J.x()[to] += per_x * J_x[from];
                 J.y()[to] += per_y * J_y[from];
                 J.z()[to] += per_z * J_z[from];
@@ -142,7 +140,7 @@ struct Trajectory {
 
     /// Where it ends: the periodic image, or a point not behind a wall.
     double end(const common::Axis& axis) const {
-        double x = axis.at(static_cast<double>(cell) + d);
+        double x = axis.at(double(cell) + d);
         if (!axis.periodic) return std::clamp(x, axis.low, axis.high());
         if (x < axis.low) x += axis.length;
         return x >= axis.high() ? x - axis.length : x;

@@ -15,8 +15,7 @@
 #include "implicit_moment/explicit_em/setup/leapfrog_state.hpp"
 #include "implicit_moment/explicit_em/step.hpp"
 #include "implicit_moment/output/record.hpp"
-#include "implicit_moment/output/write_output.hpp"
-#include "implicit_moment/theory/compare_with_theory.hpp"
+#include "implicit_moment/setup/describe_case.hpp"
 
 namespace {
 
@@ -35,7 +34,6 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     const common::CommandLine command = common::read_command_line(argc, argv, info, table);
     validate(parameters);
     refuse_unstable(parameters);
-    if (parameters.wave != "none") theory_of_mode(parameters);
     const Scales scales = scales_of(parameters);
     if (!common::start_run(
             info, command, table,
@@ -61,7 +59,8 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     // 3. The loop.
     const long steps = scales.steps;
     long step = 0;
-    if (run.restarting()) run.restore(state, step);
+    Checkpoint checkpoint{state, recorder.profile};
+    if (run.restarting()) run.restore(checkpoint, step);
     while (run.not_finished(step, steps)) {
         interleave_field(grid, parameters.field.smoothing, state.field, scratch);  // E^n, B^n
         if (step % parameters.history_steps == 0)                                  // the row of t^n
@@ -69,7 +68,7 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
         take_step(grid, dt, settings, parameters.field.smoothing, scratch, particles,
                   state.field);  // u, J^{n+1/2}; x, E, B^{n+1}
         ++step;
-        run.end_of_step(step, steps, static_cast<double>(step) * dt, state);
+        run.end_of_step(step, steps, double(step) * dt, checkpoint);
     }
 
     // 4. The last row, the results against theory, summary.json.
@@ -78,7 +77,7 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
         recorder.record(step, state, moments_with(Images::conductor), run);
         recorder.finish(state, run);
     }
-    return run.finish(step, static_cast<double>(state.plasma.count()));
+    return run.finish(step, double(state.plasma.count()));
 }
 
 }  // namespace

@@ -17,7 +17,6 @@
 #include "common/run/parameters.hpp"
 #include "implicit_moment/explicit_em/boris_push.hpp"
 #include "implicit_moment/explicit_em/deposit_current.hpp"
-#include "implicit_moment/explicit_em/leapfrog_settings.hpp"
 #include "implicit_moment/smooth.hpp"
 
 namespace implicit_moment {
@@ -69,32 +68,32 @@ inline long move_particles(const InterleavedField& field, const Grid& grid, doub
     const double per_c_squared = settings.per_c_squared();
     const long columns = Stencil<l>::cells(grid.x), rows = Stencil<l>::cells(grid.z);
     const long tiles = (rows + rows_of_tile - 1) / rows_of_tile;
-    std::vector<long> lost(static_cast<std::size_t>(tiles), 0);
-    scratch.tiles.resize(static_cast<std::size_t>(tiles));
+    std::vector<long> lost(tiles, 0);
+    scratch.tiles.resize(tiles);
 
     common::for_each_row(tiles, [&](long part) {
-        CurrentTile& tile = scratch.tiles[static_cast<std::size_t>(part)];
+        CurrentTile& tile = scratch.tiles[part];
         const long first_row = part * rows_of_tile,
                    last_row = std::min(rows, first_row + rows_of_tile);
         tile.clear(grid, first_row, last_row);
         std::vector<long> leaving;
         for (long row = first_row; row < last_row; ++row) {
-            const double z_anchor = grid.z.at(static_cast<double>(row));
+            const double z_anchor = grid.z.at(double(row));
             const double low_z = Stencil<l>::low_of(grid.z, row),
                          high_z = Stencil<l>::high_of(grid.z, row);
             const bool wraps_z = grid.z.periodic && (row == 0 || row == rows - 1);
             for (long column = 0; column < columns; ++column) {
-                const std::size_t cell = static_cast<std::size_t>(row * columns + column);
+                const long cell = row * columns + column;
                 const long begin = particles.first_of_node[cell],
                            end = particles.first_of_node[cell + 1];
                 if (begin == end) continue;
-                const double x_anchor = grid.x.at(static_cast<double>(column));
+                const double x_anchor = grid.x.at(double(column));
                 const double low_x = Stencil<l>::low_of(grid.x, column),
                              high_x = Stencil<l>::high_of(grid.x, column);
                 const bool wraps_x = grid.x.periodic && (column == 0 || column == columns - 1);
-                const NodeField* corner = &field[static_cast<std::size_t>(
-                    grid.index(column + Stencil<l>::first, row + Stencil<l>::first))];
-                leaving.resize(static_cast<std::size_t>(end - begin + common::simd_width));
+                const NodeField* corner =
+                    &field[grid.index(column + Stencil<l>::first, row + Stencil<l>::first)];
+                leaving.resize(end - begin + common::simd_width);
                 long leaving_count = 0;
 
                 CurrentSums<l, SimdVector> sums;
@@ -125,7 +124,7 @@ inline long move_particles(const InterleavedField& field, const Grid& grid, doub
                     if (wraps_x) wrap(grid.x, x);
                     if (wraps_z) wrap(grid.z, z);
                     for (int k = 0; k < common::simd_width; ++k) {
-                        leaving[static_cast<std::size_t>(leaving_count)] = p + k;
+                        leaving[leaving_count] = p + k;
                         leaving_count += k < count && stays[k] == 0.0;
                     }
                     common::store_simd(x, &particles.x_p[p], count);
@@ -139,7 +138,7 @@ inline long move_particles(const InterleavedField& field, const Grid& grid, doub
 
                 // Cut the trajectories of the others where they cross from cell to cell.
                 for (long k = 0; k < leaving_count; ++k) {
-                    const auto p = static_cast<std::size_t>(leaving[static_cast<std::size_t>(k)]);
+                    const long p = leaving[k];
                     const Velocity<double> u{particles.ux_p[p], particles.uy_p[p],
                                              particles.uz_p[p]};
                     const double way = dt * inverse_gamma(u, per_c_squared);
@@ -147,7 +146,7 @@ inline long move_particles(const InterleavedField& field, const Grid& grid, doub
                                  way * u.x * per_dx};
                     Trajectory z{row, (particles.z_p[p] - z_anchor) * per_dz, way * u.z * per_dz};
                     if (!(std::fabs(x.D) <= 1 && std::fabs(z.D) <= 1)) {
-                        ++lost[static_cast<std::size_t>(part)];
+                        ++lost[part];
                         continue;
                     }
                     deposit_current<l>(grid, way * u.y / dt, x, z, tile);
@@ -185,7 +184,7 @@ inline void move_particles(const InterleavedField& field, const Grid& grid, doub
     }
     for (std::size_t a = 0; a < 3; ++a) {
         common::fold_ghosts(grid, electric.place[a], electric.parity[a],
-                            J.all.data() + static_cast<long>(a) * grid.size());
+                            J.all.data() + a * grid.size());
     }
     smooth(grid, electric, smoothing, J.all.data(), scratch.smoothed);
 }

@@ -15,14 +15,11 @@ template <int l>
 inline void sort_by_cell(const Grid& grid, SortScratch& scratch, Particles& particles) {
     const double x_low = grid.x.low, z_low = grid.z.low;
     const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing();
-    const int columns = static_cast<int>(Stencil<l>::cells(grid.x)),
-              rows = static_cast<int>(Stencil<l>::cells(grid.z));
+    const int columns = int(Stencil<l>::cells(grid.x)), rows = int(Stencil<l>::cells(grid.z));
     const double *x_p = particles.x_p.data(), *z_p = particles.z_p.data();
     const auto cell = [=](long p) {
-        const int i =
-            std::min(static_cast<int>((x_p[p] - x_low) * per_dx - Stencil<l>::low), columns - 1);
-        const int j =
-            std::min(static_cast<int>((z_p[p] - z_low) * per_dz - Stencil<l>::low), rows - 1);
+        const int i = std::min(int((x_p[p] - x_low) * per_dx - Stencil<l>::low), columns - 1);
+        const int j = std::min(int((z_p[p] - z_low) * per_dz - Stencil<l>::low), rows - 1);
         return j * columns + i;
     };
     sort_by_key(long{columns} * rows, cell, scratch, particles);

@@ -60,7 +60,7 @@ struct Stencil {
 
     /// The cell of a position. in: s, in cells from node 0, within [0, N].
     static long cell_of(const common::Axis& axis, double s) {
-        return l == 1 ? std::min(static_cast<long>(s), axis.cells - 1) : static_cast<long>(s + 0.5);
+        return l == 1 ? std::min(long(s), axis.cells - 1) : long(s + 0.5);
     }
 
     /// The borders of a cell within the mesh: nothing is behind a wall.
