@@ -15,7 +15,7 @@
 //
 // In a magnetic field what counts is the mean velocity of the coming step, which the mover will
 // find as vbar = R v with the rotation R of [IMM-12]. So for the field equations the particles
-// are turned one by one before they are counted: J and P are then sums of vbar and vbar vbar, and
+// are rotated one by one before they are deposited: J and P are then sums of vbar and vbar vbar, and
 //
 //     J^{n+1/2} = J - dt/2 div P + (answer to E)
 //
@@ -24,36 +24,13 @@
 #pragma once
 
 #include <array>
+#include <iterator>
 
-#include "common/simd.hpp"
 #include "common/splines.hpp"
+#include "implicit_moment/moments.hpp"
 #include "implicit_moment/move_one.hpp"
-#include "implicit_moment/particles.hpp"
-#include "implicit_moment/vector_field.hpp"
 
 namespace implicit_moment {
-
-using common::SimdVector;
-
-/// The moments of one species, per unit area of the mesh. P carries the charge, as J does: it is
-/// the sum of q v v S. Times m/q that is the slide's P, a flux of momentum; less n m u u, a
-/// pressure.
-struct Moments {
-    Field rho, J_x, J_y, J_z, P_xx, P_zz, P_xz, P_xy, P_yz;
-    Field density;                     // charge density of the plasma itself, up to the walls
-    double kinetic_energy = 0;         // sum of m v^2 / 2 over the particles
-    std::array<double, 3> momentum{};  // sum of m v
-
-    explicit Moments(const Grid& grid) {
-        for (Field* f : all()) f->setZero(grid.size());
-    }
-    std::array<Field*, 9> all() {
-        return {&rho, &J_x, &J_y, &J_z, &P_xx, &P_zz, &P_xz, &P_xy, &P_yz};
-    }
-};
-
-inline constexpr common::Place on_nodes = common::on_nodes, on_x_edges = common::on_x_edges,
-                               on_z_edges = common::on_z_edges, on_faces = common::on_faces;
 
 namespace detail {
 
@@ -63,7 +40,7 @@ struct NodeSums {
     SimdVector J_x[3][2]{}, P_xy[3][2]{};
     SimdVector J_z[2][3]{}, P_yz[2][3]{};
     SimdVector P_xz[2][2]{};
-    SimdVector P_xx[3]{}, P_zz[3]{};
+    SimdVector P_xx[3][1]{}, P_zz[1][3]{};
 
     // Adds eight particles of velocity v with the splines S; present is 0 for lanes that hold none.
     void add(const common::QuadraticWeights<SimdVector>& S_x,
@@ -72,7 +49,7 @@ struct NodeSums {
         // [splines]
         for (int j = 0; j < 3; ++j) {
             const SimdVector S = S_z.quadratic[j] * present;
-            P_xx[j] += S * v_x * v_x;
+            P_xx[j][0] += S * v_x * v_x;
             for (int i = 0; i < 3; ++i) {
                 const SimdVector w = S_x.quadratic[i] * S;
                 rho[j][i] += w;
@@ -94,17 +71,14 @@ struct NodeSums {
             for (int i = 0; i < 2; ++i) P_xz[j][i] += S_x.linear[i] * S_v * v_x;
         }
         const SimdVector zz = present * v_z * v_z;
-        for (int i = 0; i < 3; ++i) P_zz[i] += S_x.quadratic[i] * zz;
+        for (int i = 0; i < 3; ++i) P_zz[0][i] += S_x.quadratic[i] * zz;
         // [/splines]
     }
 };
 
-// What stands behind a wall: the plasma's own mirror image, or the image charges of a conductor.
-enum class Images { plasma, conductor };
-
-// B as the deposit reads it: the three components at the stencil's corner, q dt / 2mc, and the
-// distance between rows.
-struct Turn {
+// The magnetic rotation R of [IMM-12] with B as the deposit reads it: the three components on the
+// mesh, k = q dt / 2mc, and the distance between rows.
+struct MagneticRotation {
     const double *B_x, *B_y, *B_z;
     double k;
     long stride;
@@ -130,30 +104,31 @@ struct Turn {
     }
 };
 
-struct NoTurn {
+// The moments of the slide itself: R = 1.
+struct NoRotation {
     void operator()(long, const common::QuadraticWeights<SimdVector>&,
                     const common::QuadraticWeights<SimdVector>&, Velocity<SimdVector>&) const {}
 };
 
-template <class TurnOrNot>
-inline void deposit(const Particles& particles, const Grid& grid, const TurnOrNot& turn,
+template <class Rotation>
+inline void deposit(const Particles& particles, const Grid& grid, const Rotation& rotation,
                     Images images, Moments& moments) {
     for (Field* f : moments.all()) f->setZero();
     const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing();
     const double q = particles.q_p / grid.cell_area();
     const long columns = nodes_x(grid), stride = grid.stride();
     // Per row of nodes: sums of v_x, v_y, v_z and v^2.
-    std::vector<std::array<double, 4>> sums_of_row(static_cast<std::size_t>(nodes_z(grid)));
+    std::vector<std::array<double, 4>> sums_of_row(nodes_z(grid));
 
     common::for_each_row_three_colors(nodes_z(grid), [&](long row) {
-        const double z_node = grid.z.at(static_cast<double>(row));
+        const double z_node = grid.z.at(double(row));
         SimdVector total_x{}, total_y{}, total_z{}, total_squared{};
         for (long column = 0; column < columns; ++column) {
-            const std::size_t node = static_cast<std::size_t>(row * columns + column);
+            const long node = row * columns + column;
             const long begin = particles.first_of_node[node],
                        end = particles.first_of_node[node + 1];
             if (begin == end) continue;
-            const double x_node = grid.x.at(static_cast<double>(column));
+            const double x_node = grid.x.at(double(column));
             const long corner = grid.index(column - 1, row - 1);  // the node down left of this one
 
             NodeSums sums;
@@ -165,46 +140,32 @@ inline void deposit(const Particles& particles, const Grid& grid, const TurnOrNo
                 const SimdVector d_z =
                     (common::load_simd(&particles.z_p[p], count) - z_node) * per_dz;
                 const common::QuadraticWeights<SimdVector> S_x(d_x), S_z(d_z);
-                Velocity<SimdVector> v{common::load_simd(&particles.vx_p[p], count),
-                                       common::load_simd(&particles.vy_p[p], count),
-                                       common::load_simd(&particles.vz_p[p], count)};
+                Velocity<SimdVector> v{common::load_simd(&particles.ux_p[p], count),
+                                       common::load_simd(&particles.uy_p[p], count),
+                                       common::load_simd(&particles.uz_p[p], count)};
                 total_x += present * v.x;
                 total_y += present * v.y;
                 total_z += present * v.z;
                 total_squared += present * (v.x * v.x + v.y * v.y + v.z * v.z);
-                turn(corner, S_x, S_z, v);
+                rotation(corner, S_x, S_z, v);
                 sums.add(S_x, S_z, v.x, v.y, v.z, present);
             }
 
-            // Hand the sums to the mesh.
-            const auto give = [&](Field& f, long i, long j, const SimdVector& sum) {
-                f[corner + j * stride + i] += q * common::simd_sum(sum);
+            // Add the sums to the mesh, from the point (i, j) of the stencil on.
+            const auto add = [&](Field& f, const auto& sum, long i = 0, long j = 0) {
+                for (long m = 0; m < std::ssize(sum); ++m) {
+                    for (long l = 0; l < std::ssize(sum[0]); ++l)
+                        f[corner + (j + m) * stride + i + l] += q * common::simd_sum(sum[m][l]);
+                }
             };
-            for (long j = 0; j < 3; ++j) {
-                give(moments.P_xx, 1, j, sums.P_xx[j]);
-                for (long i = 0; i < 3; ++i) {
-                    give(moments.rho, i, j, sums.rho[j][i]);
-                    give(moments.J_y, i, j, sums.J_y[j][i]);
-                }
-                for (long i = 0; i < 2; ++i) {
-                    give(moments.J_x, i, j, sums.J_x[j][i]);
-                    give(moments.P_xy, i, j, sums.P_xy[j][i]);
-                }
-            }
-            for (long i = 0; i < 3; ++i) {
-                give(moments.P_zz, i, 1, sums.P_zz[i]);
-                for (long j = 0; j < 2; ++j) {
-                    give(moments.J_z, i, j, sums.J_z[j][i]);
-                    give(moments.P_yz, i, j, sums.P_yz[j][i]);
-                }
-            }
-            for (long j = 0; j < 2; ++j) {
-                for (long i = 0; i < 2; ++i) give(moments.P_xz, i, j, sums.P_xz[j][i]);
-            }
+            add(moments.rho, sums.rho);
+            add(moments.J_x, sums.J_x), add(moments.J_y, sums.J_y), add(moments.J_z, sums.J_z);
+            add(moments.P_xx, sums.P_xx, 1, 0), add(moments.P_zz, sums.P_zz, 0, 1);
+            add(moments.P_xz, sums.P_xz), add(moments.P_xy, sums.P_xy);
+            add(moments.P_yz, sums.P_yz);
         }
-        sums_of_row[static_cast<std::size_t>(row)] = {
-            common::simd_sum(total_x), common::simd_sum(total_y), common::simd_sum(total_z),
-            common::simd_sum(total_squared)};
+        sums_of_row[row] = {common::simd_sum(total_x), common::simd_sum(total_y),
+                            common::simd_sum(total_z), common::simd_sum(total_squared)};
     });
 
     moments.kinetic_energy = 0;
@@ -215,19 +176,10 @@ inline void deposit(const Particles& particles, const Grid& grid, const TurnOrNo
     }
 
     // The density that answers to a field is that of the plasma and its mirror image.
-    moments.density = moments.rho;
-    common::fold_ghosts(grid, on_nodes, {+1, +1}, moments.density.data());
-    const int w = images == Images::plasma ? +1 : -1;
-    common::fold_ghosts(grid, on_nodes, {w, w}, moments.rho.data());
-    common::fold_ghosts(grid, on_x_edges, {-w, w}, moments.J_x.data());
-    common::fold_ghosts(grid, on_nodes, {w, w}, moments.J_y.data());
-    common::fold_ghosts(grid, on_z_edges, {w, -w}, moments.J_z.data());
-    // P_nn on the wall is the push of the wall on the particles that it reflects.
-    common::fold_ghosts(grid, on_nodes, {+1, w}, moments.P_xx.data());
-    common::fold_ghosts(grid, on_nodes, {w, +1}, moments.P_zz.data());
-    common::fold_ghosts(grid, on_faces, {-w, -w}, moments.P_xz.data());
-    common::fold_ghosts(grid, on_x_edges, {-w, w}, moments.P_xy.data());
-    common::fold_ghosts(grid, on_z_edges, {w, -w}, moments.P_yz.data());
+    moments.plasma_density = moments.rho;
+    common::fold_ghosts(grid, on_nodes, {+1, +1}, moments.plasma_density.data());
+    fold_charge_and_current(grid, images, moments);
+    fold_stress(grid, images, moments);
 }
 
 }  // namespace detail
@@ -244,7 +196,7 @@ inline void deposit(const Particles& particles, const Grid& grid, const TurnOrNo
 ///         velocity, so J_n is odd and vanishes on the wall, and a node on the wall counts its half
 ///         cell twice.
 inline void deposit_moments(const Particles& particles, const Grid& grid, Moments& moments) {
-    detail::deposit(particles, grid, detail::NoTurn{}, detail::Images::plasma, moments);
+    detail::deposit(particles, grid, detail::NoRotation{}, Images::plasma, moments);
 }
 
 /// Deposits the moments of one species with the mean velocities vbar = R v of the coming step in
@@ -257,17 +209,18 @@ inline void deposit_moments(const Particles& particles, const Grid& grid, Moment
 /// note:   behind a wall stand the image charges of the conductor: opposite charge, opposite normal
 ///         velocity. rho and J then have the parities of E, the gather is the transpose of the
 ///         deposit, and a charge that touches the wall makes no field.
-/// note:   the slide turns the sums instead, R [J - dt/2 div P]. For a pressure that is not
-///         isotropic the two differ as soon as Omega dt is not small, and the sum turned on the
-///         mesh feeds an instability (see the notes, "Turn the particles").
+/// note:   the slide rotates the sums instead, R [J - dt/2 div P]. For a pressure that is not
+///         isotropic the two differ as soon as Omega dt is not small, and the sum rotated on the
+///         mesh feeds an instability (see the notes, "Rotate the particles").
 inline void deposit_moments(const Particles& particles, const Grid& grid, const VectorField& B,
                             double dt, Moments& moments) {
     const double k = 0.5 * dt * particles.q_p / (particles.m_p * c);
-    detail::deposit(particles, grid, detail::Turn{B.x(), B.y(), B.z(), k, grid.stride()},
-                    detail::Images::conductor, moments);
+    detail::deposit(particles, grid,
+                    detail::MagneticRotation{B.x(), B.y(), B.z(), k, grid.stride()},
+                    Images::conductor, moments);
 }
 
-/// The moments of all species, turned.
+/// Deposits all species with their mean velocities, for the field equations.
 inline void deposit_moments(const std::vector<Particles>& species, const Grid& grid,
                             const VectorField& B, double dt, std::vector<Moments>& moments) {
     for (std::size_t k = 0; k < species.size(); ++k) {

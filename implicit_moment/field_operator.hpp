@@ -1,5 +1,22 @@
-// The operator of the field equations, (1 + chi) E + a^2 curl curl E, and its inverse for a uniform
-// plasma, which preconditions GMRES.   [IMM-10]
+// The operator of the field equations, A E = (1 + S chi S) E + a^2 curl curl E, and its inverse for a
+// uniform plasma, which preconditions GMRES.   [IMM-10]
+//
+// Applied, E visits the places of the mesh:
+//
+//     E  edges, nodes --curl--> B  z-edges, faces, x-edges --curl--> edges, nodes   times a^2
+//     E  --smooth S--> as particles feel it --chi--> their current --smooth S--> as the field sees it
+//
+// chi is a 3 x 3 tensor on nodes (predict_current.hpp), S the smoothing; walls enter through the
+// ghosts. A is never built as a matrix.
+//
+// For a uniform chi_0 without magnetization the operator falls apart. In the modes of mesh_modes.hpp
+// E_x has U_k(x) V_l(z), E_y has V_k V_l, E_z has V_k U_l; curl curl and S act on each mode alone:
+//
+//     | 1 + w^2 chi_x + k_z^2      - k_x k_z        |  e_x
+//     |     - k_x k_z          1 + w^2 chi_z + k_x^2 |  e_z       (1 + w^2 chi_y + k_x^2 + k_z^2) e_y
+//
+// with k = a sigma and w the smoothing factor of the mode. So the inverse is: to modes by four small
+// matrix products, 2 x 2 and 1 x 1 solves, and back.
 #pragma once
 
 #include <array>
@@ -12,18 +29,13 @@
 
 namespace implicit_moment {
 
+/// How the field equations are solved.
 struct FieldSettings {
-    std::string solver = "gmres";
-    double theta = 0.5;
-    double tolerance = 1e-8;
+    std::string solver = "gmres";  // or "newton_krylov"
+    double theta = 0.5;            // time level of E
+    double tolerance = 1e-8;       // residual over right-hand side
     long max_iterations = 200;
     SmoothingSettings smoothing;
-};
-
-struct FieldState {
-    VectorField E, B;     // at t^n, ghosts filled
-    VectorField E_theta;  // E^{n+theta} of the last step
-    explicit FieldState(const Grid& grid) : E(grid), B(grid), E_theta(grid) {}
 };
 
 /// The inverse of the uniform field operator for every mode: 2 x 2 in the plane, one number for y.
@@ -31,20 +43,21 @@ struct ModeInverse {
     Eigen::ArrayXXf xx, xz, zz, yy;
 };
 
-/// Everything the solver keeps between steps; nothing of it is state.
+/// The room in which the field equations are solved, kept between steps: nothing of it is state, and
+/// nothing of it is read before it is written in the same step.
 struct FieldSolver {
     Grid grid;
     FieldSettings settings;
     MeshModes modes;
     PlasmaResponse response;
     Field gauss, scratch;
-    VectorField source, ghosted, turned, B_theta;
+    VectorField source, ghosted, curl_E, chi_E;
     std::array<Eigen::MatrixXf, 3> amplitude, unknowns;
     std::array<Eigen::MatrixXf, 6> half_way;
     Eigen::MatrixXf U_x, V_x, U_z, V_z;        // the modes again, for the preconditioner
     Eigen::VectorXd smoothing_x, smoothing_z;  // what smoothing does to each mode
     ModeInverse inverse;
-    Eigen::ArrayXXf rotated;
+    Eigen::ArrayXXf solved_x;
     common::GmresWorkspace krylov;
     common::NewtonWorkspace newton;
 
@@ -57,8 +70,8 @@ struct FieldSolver {
           scratch(Field::Zero(g.size())),
           source(g),
           ghosted(g),
-          turned(g),
-          B_theta(g) {
+          curl_E(g),
+          chi_E(g) {
         const auto factors = [&](const AxisModes& axis) {
             return axis.angle.unaryExpr(
                 [&](double angle) { return smoothing_factor(s.smoothing, angle); });
@@ -70,42 +83,41 @@ struct FieldSolver {
     }
 };
 
-/// out = (1 + chi) E + a^2 curl curl E on the unknowns of E, zero elsewhere, with chi between two
-/// smoothings: S chi S.
+/// out = (1 + S chi S) E + a^2 curl curl E on the unknowns of E, zero elsewhere.
+/// in:     a = c theta dt; E, any values where no unknowns are; solver.response.chi.
 /// note:   particles feel the smoothed field and their current is smoothed; with chi between the
 ///         same two smoothings the predicted current does the work that the particles receive.
 inline void apply_field_operator(FieldSolver& solver, double a, const Eigen::VectorXd& E,
                                  Eigen::VectorXd& out) {
     const Grid& grid = solver.grid;
     const SmoothingSettings& smoothing = solver.settings.smoothing;
-    VectorField &ghosted = solver.ghosted, &turned = solver.turned;
+    VectorField &ghosted = solver.ghosted, &curl_E = solver.curl_E, &chi_E = solver.chi_E;
     ghosted.all = E;
     fill_ghosts(grid, electric, ghosted);
-    curl_of_electric(grid, ghosted.all.data(), turned.all.data());
-    fill_ghosts(grid, magnetic, turned);
-    curl_of_magnetic(grid, turned.all.data(), out.data());
+    curl_of_electric(grid, ghosted.all.data(), curl_E.all.data());
+    fill_ghosts(grid, magnetic, curl_E);
+    curl_of_magnetic(grid, curl_E.all.data(), out.data());
     smooth(grid, electric, smoothing, ghosted.all.data(), solver.scratch);
     apply_tensor(grid, solver.response.chi, ghosted.all.data(), false, solver.response.scratch,
-                 turned.all.data());
-    fill_ghosts(grid, electric, turned);
-    smooth(grid, electric, smoothing, turned.all.data(), solver.scratch);
-    out = E + turned.all + a * a * out;
+                 chi_E.all.data());
+    fill_ghosts(grid, electric, chi_E);
+    smooth(grid, electric, smoothing, chi_E.all.data(), solver.scratch);
+    out = E + chi_E.all + a * a * out;
     keep_unknowns(grid, out.data());
 }
 
-/// Inverts the operator with a uniform diagonal chi_0, the mean of chi, mode by mode.
+/// Finds the inverse of the header's matrices for the mean chi_0 of the diagonal of chi.
+/// out:    solver.inverse, for precondition_field.
 /// note:   the number of iterations then does not grow with omega_p dt in a uniform plasma, and is
 ///         bounded by the contrasts of density and magnetization otherwise.
 inline void prepare_preconditioner(FieldSolver& solver, double a) {
     const Grid& grid = solver.grid;
     std::array<double, 3> chi_0{};
-    for (std::size_t k = 0; k < 3; ++k) {
-        chi_0[k] = detail::interior(grid, solver.response.chi.entry[4 * k].data()).mean();
-    }
+    for (std::size_t k = 0; k < 3; ++k)
+        chi_0[k] = interior(grid, solver.response.chi.entry[4 * k].data()).mean();
     ModeInverse& inverse = solver.inverse;
-    for (Eigen::ArrayXXf* f : {&inverse.xx, &inverse.xz, &inverse.zz, &inverse.yy}) {
+    for (Eigen::ArrayXXf* f : {&inverse.xx, &inverse.xz, &inverse.zz, &inverse.yy})
         f->resize(grid.x.cells, grid.z.cells);
-    }
     for (long l = 0; l < grid.z.cells; ++l) {
         const double k_z = a * solver.modes.z.sigma[l];
         for (long k = 0; k < grid.x.cells; ++k) {
@@ -115,61 +127,60 @@ inline void prepare_preconditioner(FieldSolver& solver, double a) {
             const double zz = 1 + w * w * chi_0[2] + k_x * k_x;
             const double yy = 1 + w * w * chi_0[1] + k_x * k_x + k_z * k_z;
             const double determinant = xx * zz - k_x * k_x * k_z * k_z;
-            inverse.xx(k, l) = static_cast<float>(zz / determinant);
-            inverse.xz(k, l) = static_cast<float>(k_x * k_z / determinant);
-            inverse.zz(k, l) = static_cast<float>(xx / determinant);
-            inverse.yy(k, l) = static_cast<float>(1 / yy);
+            inverse.xx(k, l) = float(zz / determinant);
+            inverse.xz(k, l) = float(k_x * k_z / determinant);
+            inverse.zz(k, l) = float(xx / determinant);
+            inverse.yy(k, l) = float(1 / yy);
         }
     }
 }
 
-/// out = [ 1 + w^2 chi_0 + a^2 curl curl ]^{-1} r for a uniform diagonal chi_0, w the smoothing
-/// factor of each mode.
+/// out = the inverse of the operator with uniform chi_0, applied to r: the preconditioner.
+/// in:     solver.inverse, of prepare_preconditioner; r on the unknowns of E.
 /// exact:  to single precision, which flexible GMRES takes without losing the double one of its
 ///         solution.
-/// in:     what prepare_preconditioner has prepared.
+/// note:   each of the three components goes in two halves, so that two threads have work.
 inline void precondition_field(FieldSolver& solver, const Eigen::VectorXd& r,
                                Eigen::VectorXd& out) {
     const Grid& grid = solver.grid;
-    const long m = grid.size();
+    const long m = grid.size(), nx = grid.x.cells, nz = grid.z.cells;
     // The modes of each component, along x and along z, by its place on the mesh.
     const std::array<const Eigen::MatrixXf*, 3> X{&solver.U_x, &solver.V_x, &solver.V_x};
     const std::array<const Eigen::MatrixXf*, 3> Z{&solver.V_z, &solver.V_z, &solver.U_z};
-    const long nx = grid.x.cells, nz = grid.z.cells;
+    // Calls work(component, half, first, columns) for both halves of every component.
+    const auto for_each_half = [&](const auto& work) {
+        common::for_each_row(6, [&](long task) {
+            const long first = task % 2 * (nz / 2), columns = task % 2 == 0 ? nz / 2 : nz - nz / 2;
+            work(task / 2, task, first, columns);
+        });
+    };
     for (std::size_t k = 0; k < 3; ++k) {
-        solver.unknowns[k] =
-            detail::interior(grid, r.data() + static_cast<long>(k) * m).cast<float>();
+        solver.unknowns[k] = interior(grid, r.data() + k * m).cast<float>();
         solver.amplitude[k].resize(nx, nz);
     }
-    common::for_each_row(6, [&](long task) {
-        const auto k = static_cast<std::size_t>(task / 2), t = static_cast<std::size_t>(task);
-        const long first = task % 2 * (nz / 2), columns = task % 2 == 0 ? nz / 2 : nz - nz / 2;
-        solver.half_way[t].noalias() = solver.unknowns[k] * Z[k]->middleCols(first, columns);
+    for_each_half([&](long k, long half, long first, long columns) {
+        solver.half_way[half].noalias() = solver.unknowns[k] * Z[k]->middleCols(first, columns);
         solver.amplitude[k].middleCols(first, columns).noalias() =
-            X[k]->transpose() * solver.half_way[t];
+            X[k]->transpose() * solver.half_way[half];
     });
 
-    // Every mode alone.
+    // Solve every mode alone.
     auto &e_x = solver.amplitude[0], &e_y = solver.amplitude[1], &e_z = solver.amplitude[2];
     const ModeInverse& inverse = solver.inverse;
     e_y.array() *= inverse.yy;
-    solver.rotated = inverse.xx * e_x.array() + inverse.xz * e_z.array();
+    solver.solved_x = inverse.xx * e_x.array() + inverse.xz * e_z.array();
     e_z.array() = inverse.xz * e_x.array() + inverse.zz * e_z.array();
-    e_x.array() = solver.rotated;
+    e_x.array() = solver.solved_x;
 
-    // Back to the mesh.
+    // Go back to the mesh.
     out.resize(r.size());
-    common::for_each_row(6, [&](long task) {
-        const auto k = static_cast<std::size_t>(task / 2), t = static_cast<std::size_t>(task);
-        const long first = task % 2 * (nz / 2), columns = task % 2 == 0 ? nz / 2 : nz - nz / 2;
-        solver.half_way[t].noalias() =
+    for_each_half([&](long k, long half, long first, long columns) {
+        solver.half_way[half].noalias() =
             solver.amplitude[k] * Z[k]->middleRows(first, columns).transpose();
-        solver.unknowns[k].middleCols(first, columns).noalias() = *X[k] * solver.half_way[t];
+        solver.unknowns[k].middleCols(first, columns).noalias() = *X[k] * solver.half_way[half];
     });
-    for (std::size_t k = 0; k < 3; ++k) {
-        detail::interior(grid, out.data() + static_cast<long>(k) * m) =
-            solver.unknowns[k].cast<double>();
-    }
+    for (std::size_t k = 0; k < 3; ++k)
+        interior(grid, out.data() + k * m) = solver.unknowns[k].cast<double>();
     keep_unknowns(grid, out.data());
 }
 

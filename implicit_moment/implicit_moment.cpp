@@ -13,10 +13,10 @@
 
 #include "common/run/start.hpp"
 #include "implicit_moment/output/record.hpp"
-#include "implicit_moment/output/write_output.hpp"
+#include "implicit_moment/setup/check_case.hpp"
+#include "implicit_moment/setup/describe_case.hpp"
 #include "implicit_moment/setup/initial_state.hpp"
 #include "implicit_moment/step.hpp"
-#include "implicit_moment/theory/compare_with_theory.hpp"
 
 namespace {
 
@@ -33,7 +33,6 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     common::ParameterTable table = describe(parameters);
     const common::CommandLine command = common::read_command_line(argc, argv, info, table);
     validate(parameters);
-    if (parameters.wave != "none") theory_of_mode(parameters);
     const Scales scales = scales_of(parameters);
     // Where the closure of the moments does not hold is a warning.                [IMM-13]
     if (!common::start_run(
@@ -57,13 +56,14 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     const double dt = parameters.dt;
     const long steps = scales.steps;
     long step = 0;
-    if (run.restarting()) run.restore(state, step);
+    Checkpoint checkpoint{state, recorder.profile};
+    if (run.restarting()) run.restore(checkpoint, step);
     while (run.not_finished(step, steps)) {
         find_moments(grid, dt, particles, state.field, scratch);  // particles -> grid  [IMM-9]
         recorder.record(step, state, scratch.moments, run);       // the row of t^n
         take_step(grid, dt, parameters.mover, charge_over_mass, scratch, particles, state.field);
         ++step;
-        run.end_of_step(step, steps, static_cast<double>(step) * dt, state);
+        run.end_of_step(step, steps, double(step) * dt, checkpoint);
     }
 
     // 4. The last row, the results against theory, summary.json.
@@ -72,7 +72,7 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
         recorder.record(step, state, scratch.moments, run);
         recorder.finish(state, run);
     }
-    return run.finish(step, static_cast<double>(state.plasma.count()));
+    return run.finish(step, double(state.plasma.count()));
 }
 
 }  // namespace

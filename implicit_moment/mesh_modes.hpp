@@ -28,23 +28,22 @@ struct AxisModes {
 /// note:   at a wall, mode 0 of V is the node on the wall itself, where nothing is unknown.
 inline AxisModes axis_modes(const common::Axis& axis) {
     const long n = axis.cells;
-    const double count = static_cast<double>(n);
+    const double count = double(n);
     AxisModes modes{Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(n, n),
                     Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
     for (long m = 0; m < n; ++m) {
         // Periodic: modes 0, 1, 1, 2, 2, ... as cosine and sine; with an even number of cells the
         // last is the alternating one.
         const bool cosine = axis.periodic && m % 2 == 1;
-        const double wave =
-            axis.periodic ? static_cast<double>((m + 1) / 2) : static_cast<double>(m);
+        const double wave = axis.periodic ? double((m + 1) / 2) : double(m);
         const double angle = (axis.periodic ? 2 : 1) * pi * wave / count;
         const bool alternating = axis.periodic && 2 * ((m + 1) / 2) == n;
         const double norm = std::sqrt((m == 0 || alternating ? 1.0 : 2.0) / count);
         modes.angle[m] = angle;
         modes.sigma[m] = 2 / axis.spacing() * std::sin(0.5 * angle);
         for (long i = 0; i < n; ++i) {
-            const double node = angle * static_cast<double>(i);
-            const double mid = angle * (static_cast<double>(i) + 0.5);
+            const double node = angle * double(i);
+            const double mid = angle * (double(i) + 0.5);
             if (m == 0) {
                 modes.V(i, m) = axis.periodic ? norm : (i == 0 ? 1.0 : 0.0);
                 modes.U(i, m) = norm;
@@ -60,30 +59,17 @@ inline AxisModes axis_modes(const common::Axis& axis) {
     return modes;
 }
 
+/// The modes of both directions.
 struct MeshModes {
     AxisModes x, z;
     explicit MeshModes(const Grid& grid) : x(axis_modes(grid.x)), z(axis_modes(grid.z)) {}
 };
 
-namespace detail {
-
-using Block = Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
-using ConstBlock = Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
-
-// The unknowns of one component as a matrix (x, z), without ghosts.
-inline Block interior(const Grid& grid, double* f) {
-    return {f + grid.index(0, 0), grid.x.cells, grid.z.cells, Eigen::OuterStride<>(grid.stride())};
-}
-inline ConstBlock interior(const Grid& grid, const double* f) {
-    return {f + grid.index(0, 0), grid.x.cells, grid.z.cells, Eigen::OuterStride<>(grid.stride())};
-}
-
-}  // namespace detail
-
-// f becomes the function whose modes are those of f times factor(k^2); nodes, zero on walls.
+/// f becomes the function whose modes are those of f times factor(k^2), k^2 of the Laplacian.
+/// in/out: f on nodes, zero on walls; ghosts filled afterwards.
 template <class Factor>
 inline void scale_modes(const Grid& grid, const MeshModes& modes, const Factor& factor, Field& f) {
-    auto values = detail::interior(grid, f.data());
+    auto values = interior(grid, f.data());
     Eigen::MatrixXd half = modes.x.V.transpose() * values;
     Eigen::MatrixXd amplitude = half * modes.z.V;
     for (long l = 0; l < grid.z.cells; ++l) {

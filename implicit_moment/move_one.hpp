@@ -5,22 +5,18 @@
 #include <algorithm>
 #include <cmath>
 
-#include "implicit_moment/push_field.hpp"
+#include "implicit_moment/interleaved_field.hpp"
 #include "implicit_moment/units.hpp"
 
 namespace implicit_moment {
 
+/// How well the implicit midpoint is found.
 struct MoverSettings {
     double tolerance = 1e-4;   // a midpoint is found when an iteration moves it by less [cells]
     long max_iterations = 20;  // before the step is halved
 };
 
 inline constexpr int most_bounces = 50;  // of one particle in one sub-step
-
-template <class Real>
-struct Velocity {
-    Real x, y, z;
-};
 
 /// Mean velocity of a step: vbar = v_t + (v_t x O) + ... solved for vbar = v_t + vbar x O.
 ///     vbar = [ v_t + v_t x O + (v_t . O) O ] / (1 + O^2)
@@ -54,24 +50,25 @@ inline double seen_at(const common::Axis& axis, double x) {
 }
 
 // Mean velocity of a step of length 2h; false when the iteration does not converge.
-inline bool find_mean_velocity(const Grid& grid, const PushField& field,
+inline bool find_mean_velocity(const Grid& grid, const InterleavedField& field,
                                const MoverSettings& settings, double charge_over_mass, double h,
-                               double x, double z, const Velocity<double>& v, Velocity<double>& u) {
+                               double x, double z, const Velocity<double>& v,
+                               Velocity<double>& vbar) {
     const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing();
-    u = v;
+    vbar = v;
     for (long iteration = 0; iteration < settings.max_iterations; ++iteration) {
         // Too far for this step, or not a number: the caller halves it.
-        if (!(h * std::fabs(u.x) * per_dx <= 1 && h * std::fabs(u.z) * per_dz <= 1)) return false;
-        const double s = (seen_at(grid.x, x + h * u.x) - grid.x.low) * per_dx;
-        const double t = (seen_at(grid.z, z + h * u.z) - grid.z.low) * per_dz;
-        const long i = static_cast<long>(s + 0.5), j = static_cast<long>(t + 0.5);
-        const auto at =
-            gather_field(&field[static_cast<std::size_t>(grid.index(i - 1, j - 1))], grid.stride(),
-                         s - static_cast<double>(i), t - static_cast<double>(j));
+        if (!(h * std::fabs(vbar.x) * per_dx <= 1 && h * std::fabs(vbar.z) * per_dz <= 1))
+            return false;
+        const double s = (seen_at(grid.x, x + h * vbar.x) - grid.x.low) * per_dx;
+        const double t = (seen_at(grid.z, z + h * vbar.z) - grid.z.low) * per_dz;
+        const long i = long(s + 0.5), j = long(t + 0.5);
+        const auto at = gather_field(&field[grid.index(i - 1, j - 1)], grid.stride(), s - double(i),
+                                     t - double(j));
         const Velocity<double> next = mean_velocity(v, at, charge_over_mass * h);
         const double change =
-            h * std::max(std::fabs(next.x - u.x) * per_dx, std::fabs(next.z - u.z) * per_dz);
-        u = next;
+            h * std::max(std::fabs(next.x - vbar.x) * per_dx, std::fabs(next.z - vbar.z) * per_dz);
+        vbar = next;
         if (change <= settings.tolerance && iteration > 0) return true;
     }
     return false;
@@ -87,20 +84,20 @@ inline double part_to_wall(const common::Axis& axis, double x, double displaceme
 }
 
 // The time after which a path stands on the wall that it is behind after `late`. The mean velocity
-// u_n depends on the time, so that a time in proportion would miss the wall, and putting the
+// vbar_n depends on the time, so that a time in proportion would miss the wall, and putting the
 // particle there would change its canonical momentum: false position between a path that ends
 // inside and one that ends behind.
-// in: step(time) finds u_n anew. out: NaN when a step fails.
+// in: step(time) finds vbar_n anew. out: NaN when a step fails.
 template <class Step>
-inline double time_to_wall(const common::Axis& axis, double from, const double& u_n, double late,
+inline double time_to_wall(const common::Axis& axis, double from, const double& vbar_n, double late,
                            const Step& step) {
-    const double outward = u_n < 0 ? -1 : 1, wall = u_n < 0 ? axis.low : axis.high();
+    const double outward = vbar_n < 0 ? -1 : 1, wall = vbar_n < 0 ? axis.low : axis.high();
     double early = 0, inside = outward * (wall - from);
-    double behind = outward * (from + late * u_n - wall), time = late;
+    double behind = outward * (from + late * vbar_n - wall), time = late;
     for (int k = 0; k < 50; ++k) {
         time = early + (late - early) * inside / (inside + behind);
         if (!step(time)) return std::nan("");
-        const double gap = outward * (wall - from - time * u_n);
+        const double gap = outward * (wall - from - time * vbar_n);
         if (std::fabs(gap) <= 1e-13 * axis.spacing()) break;
         if (gap > 0) {
             early = time, inside = gap, behind *= 0.5;
@@ -131,36 +128,37 @@ inline void arrive(const common::Axis& axis, bool at_wall, double& x, double& v)
 /// where it meets the wall, the particle is reflected there, and goes on with the rest.
 /// out:    false when a sub-step crosses more than a cell or does not converge; the particle is
 ///         then not to be used.
-/// note:   a reflection at the end of the step instead would turn the velocity in the wrong sense
+/// note:   a reflection at the end of the step instead would rotate the velocity in the wrong sense
 ///         for the rest of the step, and drive a current along magnetized walls.
-inline bool move_one(const Grid& grid, const PushField& field, const MoverSettings& settings,
+inline bool move_one(const Grid& grid, const InterleavedField& field, const MoverSettings& settings,
                      double charge_over_mass, double dt, int parts, double& x, double& z,
                      Velocity<double>& v) {
     const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing();
     for (int part = 0; part < parts; ++part) {
         double left = dt / parts;
         for (int bounce = 0; left > 0; ++bounce) {
-            Velocity<double> u;
+            Velocity<double> vbar;
             const auto step = [&](double time) {
                 return detail::find_mean_velocity(grid, field, settings, charge_over_mass,
-                                                  0.5 * time, x, z, v, u) &&
-                       time * std::fabs(u.x) * per_dx <= 1 && time * std::fabs(u.z) * per_dz <= 1;
+                                                  0.5 * time, x, z, v, vbar) &&
+                       time * std::fabs(vbar.x) * per_dx <= 1 &&
+                       time * std::fabs(vbar.z) * per_dz <= 1;
             };
             if (!step(left)) return false;
-            const double to_x = detail::part_to_wall(grid.x, x, left * u.x);
-            const double to_z = detail::part_to_wall(grid.z, z, left * u.z);
-            // A particle that is pressed against the wall bounces ever lower: let it slide.
+            const double to_x = detail::part_to_wall(grid.x, x, left * vbar.x);
+            const double to_z = detail::part_to_wall(grid.z, z, left * vbar.z);
+            // A force towards the wall makes the bounces shorter and shorter: let the particle slide.
             const bool slides = bounce == most_bounces;
             double time = slides ? left : left * std::min(to_x, to_z);
             if (time < left) {
                 const bool along_x = to_x <= to_z;
-                time = along_x ? detail::time_to_wall(grid.x, x, u.x, left, step)
-                               : detail::time_to_wall(grid.z, z, u.z, left, step);
+                time = along_x ? detail::time_to_wall(grid.x, x, vbar.x, left, step)
+                               : detail::time_to_wall(grid.z, z, vbar.z, left, step);
                 if (std::isnan(time)) return false;
             }
-            x += time * u.x;
-            z += time * u.z;
-            v = {2 * u.x - v.x, 2 * u.y - v.y, 2 * u.z - v.z};
+            x += time * vbar.x;
+            z += time * vbar.z;
+            v = {2 * vbar.x - v.x, 2 * vbar.y - v.y, 2 * vbar.z - v.z};
             detail::arrive(grid.x, to_x < 1 && to_x <= to_z, x, v.x);
             detail::arrive(grid.z, to_z < 1 && to_z <= to_x, z, v.z);
             left -= time;

@@ -16,13 +16,11 @@
 
 #include "common/parallel.hpp"
 #include "common/run/parameters.hpp"
-#include "common/simd.hpp"
 #include "implicit_moment/move_one.hpp"
 
 namespace implicit_moment {
 
-using common::SimdVector;
-
+/// What a move of one species needed.
 struct MoverReport {
     long one_by_one = 0;   // particles moved one by one
     long sub_stepped = 0;  // particles that needed more than one sub-step
@@ -47,12 +45,6 @@ inline SimdVector behind_wall(const common::Axis& axis, const SimdVector& x, dou
     return common::larger(axis.low - x, x - axis.high()) * per_dx;
 }
 
-inline void wrap(const common::Axis& axis, SimdVector& x) {
-    if (!axis.periodic) return;
-    x = x < axis.low ? x + axis.length : x;
-    x = x >= axis.high() ? x - axis.length : x;
-}
-
 }  // namespace detail
 
 /// Moves every particle of one species from t^n to t^{n+1}.
@@ -63,61 +55,60 @@ inline void wrap(const common::Axis& axis, SimdVector& x) {
 /// note:   a particle whose midpoint leaves the node's cell and that would cross more than a cell
 ///         is moved in as many sub-steps as keep it within one, each with the field of the cell it
 ///         is in; with the field of one point it would run away.
-inline MoverReport move_particles(const PushField& field, const Grid& grid, double dt,
+inline MoverReport move_particles(const InterleavedField& field, const Grid& grid, double dt,
                                   const MoverSettings& settings, Particles& particles) {
     const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing(), h = 0.5 * dt;
     const double charge_over_mass = particles.q_p / particles.m_p;
     const double half_kick = charge_over_mass * h;
     const long columns = nodes_x(grid);
-    std::vector<MoverReport> report_of_row(static_cast<std::size_t>(nodes_z(grid)));
+    std::vector<MoverReport> report_of_row(nodes_z(grid));
 
     common::for_each_row(nodes_z(grid), [&](long row) {
-        MoverReport& report = report_of_row[static_cast<std::size_t>(row)];
-        const double z_node = grid.z.at(static_cast<double>(row));
+        MoverReport& report = report_of_row[row];
+        const double z_node = grid.z.at(double(row));
         const detail::Cell cell_z(grid.z, row);
         for (long column = 0; column < columns; ++column) {
-            const std::size_t node = static_cast<std::size_t>(row * columns + column);
+            const long node = row * columns + column;
             const long begin = particles.first_of_node[node],
                        end = particles.first_of_node[node + 1];
-            const double x_node = grid.x.at(static_cast<double>(column));
+            const double x_node = grid.x.at(double(column));
             const detail::Cell cell_x(grid.x, column);
-            const NodeField* corner =
-                &field[static_cast<std::size_t>(grid.index(column - 1, row - 1))];
+            const NodeField* corner = &field[grid.index(column - 1, row - 1)];
 
             for (long p = begin; p < end; p += common::simd_width) {
                 const long count = std::min<long>(end - p, common::simd_width);
                 SimdVector x = common::load_simd(&particles.x_p[p], count);
                 SimdVector z = common::load_simd(&particles.z_p[p], count);
-                Velocity<SimdVector> v{common::load_simd(&particles.vx_p[p], count),
-                                       common::load_simd(&particles.vy_p[p], count),
-                                       common::load_simd(&particles.vz_p[p], count)};
+                Velocity<SimdVector> v{common::load_simd(&particles.ux_p[p], count),
+                                       common::load_simd(&particles.uy_p[p], count),
+                                       common::load_simd(&particles.uz_p[p], count)};
                 const SimdVector from_x = (x - x_node) * per_dx, from_z = (z - z_node) * per_dz;
 
                 // Iterate all eight midpoints; note how far each strays beyond the node's cell.
-                Velocity<SimdVector> u = v;
+                Velocity<SimdVector> vbar = v;
                 SimdVector outside{}, change{};
                 for (long iteration = 0; iteration < settings.max_iterations; ++iteration) {
-                    const SimdVector d_x = from_x + (h * per_dx) * u.x,
-                                     d_z = from_z + (h * per_dz) * u.z;
+                    const SimdVector d_x = from_x + (h * per_dx) * vbar.x,
+                                     d_z = from_z + (h * per_dz) * vbar.z;
                     outside = common::larger(
                         outside,
                         common::larger(common::magnitude(d_x - cell_x.center) - cell_x.half,
                                        common::magnitude(d_z - cell_z.center) - cell_z.half));
                     const auto at = gather_field<SimdVector>(corner, grid.stride(), d_x, d_z);
                     const Velocity<SimdVector> next = mean_velocity<SimdVector>(v, at, half_kick);
-                    change = common::larger(common::magnitude(next.x - u.x) * (h * per_dx),
-                                            common::magnitude(next.z - u.z) * (h * per_dz));
+                    change = common::larger(common::magnitude(next.x - vbar.x) * (h * per_dx),
+                                            common::magnitude(next.z - vbar.z) * (h * per_dz));
                     change = outside > 0.0 ? 0.0 * change : change;
-                    u = next;
+                    vbar = next;
                     if (iteration > 0 && common::simd_max(change) <= settings.tolerance) break;
                 }
 
                 outside =
-                    common::larger(outside, detail::behind_wall(grid.x, x + dt * u.x, per_dx));
+                    common::larger(outside, detail::behind_wall(grid.x, x + dt * vbar.x, per_dx));
                 outside =
-                    common::larger(outside, detail::behind_wall(grid.z, z + dt * u.z, per_dz));
+                    common::larger(outside, detail::behind_wall(grid.z, z + dt * vbar.z, per_dz));
 
-                // The rest, one by one.
+                // Move the others one by one.
                 for (long l = 0; l < count; ++l) {
                     if (outside[l] <= 0 && change[l] <= settings.tolerance) continue;
                     const double start_x = x[l], start_z = z[l];
@@ -136,23 +127,23 @@ inline MoverReport move_particles(const PushField& field, const Grid& grid, doub
                     }
                     ++report.one_by_one;
                     if (parts > 1) ++report.sub_stepped;
-                    // Hand the finished particle to the eight, such that the update below leaves
-                    // it where it is.
+                    // Put the moved particle back among the eight, such that the update below
+                    // leaves it where it is.
                     x[l] = x_1, z[l] = z_1;
-                    u.x[l] = u.y[l] = u.z[l] = 0;
+                    vbar.x[l] = vbar.y[l] = vbar.z[l] = 0;
                     v.x[l] = -v_1.x, v.y[l] = -v_1.y, v.z[l] = -v_1.z;
                 }
 
-                x += dt * u.x;
-                z += dt * u.z;
-                v = {2.0 * u.x - v.x, 2.0 * u.y - v.y, 2.0 * u.z - v.z};
-                detail::wrap(grid.x, x);
-                detail::wrap(grid.z, z);
+                x += dt * vbar.x;
+                z += dt * vbar.z;
+                v = {2.0 * vbar.x - v.x, 2.0 * vbar.y - v.y, 2.0 * vbar.z - v.z};
+                wrap(grid.x, x);
+                wrap(grid.z, z);
                 common::store_simd(x, &particles.x_p[p], count);
                 common::store_simd(z, &particles.z_p[p], count);
-                common::store_simd(v.x, &particles.vx_p[p], count);
-                common::store_simd(v.y, &particles.vy_p[p], count);
-                common::store_simd(v.z, &particles.vz_p[p], count);
+                common::store_simd(v.x, &particles.ux_p[p], count);
+                common::store_simd(v.y, &particles.uy_p[p], count);
+                common::store_simd(v.z, &particles.uz_p[p], count);
             }
         }
     });
@@ -168,7 +159,7 @@ inline MoverReport move_particles(const PushField& field, const Grid& grid, doub
 
 /// Moves all species. errors: NumericalError when a particle cannot be followed even in 1024
 /// sub-steps.
-inline void move_particles(const PushField& field, const Grid& grid, double dt,
+inline void move_particles(const InterleavedField& field, const Grid& grid, double dt,
                            const MoverSettings& settings, std::vector<Particles>& species) {
     for (Particles& particles : species) {
         const MoverReport report = move_particles(field, grid, dt, settings, particles);

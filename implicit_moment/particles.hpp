@@ -2,32 +2,51 @@
 // Nothing of it is replaced by the mesh.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
 #include "common/grid.hpp"
 #include "common/parallel.hpp"
+#include "common/simd.hpp"
 
 namespace implicit_moment {
 
 using common::Field;
 using common::Grid;
+using common::SimdVector;
 
 /// One species, structure of arrays, kept sorted by nearest node (see sort_particles).
+/// note:   u_p is the letter of the slide: the velocity v in implicit_moment, and in explicit_em
+///         gamma v, the momentum per mass.
 struct Particles {
     std::string name;
     double q_p = 0;                        // charge of one simulation particle
     double m_p = 0;                        // its mass
     std::vector<double> x_p, z_p;          // position [d_i]
-    std::vector<double> vx_p, vy_p, vz_p;  // velocity [c]
+    std::vector<double> ux_p, uy_p, uz_p;  // v or gamma v [c]
     std::vector<int> first_of_node;        // node n has [first_of_node[n], first_of_node[n + 1])
 
-    long count() const { return static_cast<long>(x_p.size()); }
+    long count() const { return long(x_p.size()); }
+    std::array<std::vector<double>*, 5> all() { return {&x_p, &z_p, &ux_p, &uy_p, &uz_p}; }
+};
+
+/// The velocity, or u, of one particle (Real = double) or of eight (SimdVector).
+template <class Real>
+struct Velocity {
+    Real x, y, z;
 };
 
 /// The (nodes_x, nodes_z) table that first_of_node refers to: both end nodes are counted, also in
 /// a periodic direction, where the images 0 and N hold half a cell each.
 inline long nodes_x(const Grid& grid) { return grid.x.cells + 1; }
 inline long nodes_z(const Grid& grid) { return grid.z.cells + 1; }
+
+/// Brings eight coordinates that have left a periodic direction back to their images.
+inline void wrap(const common::Axis& axis, SimdVector& x) {
+    if (!axis.periodic) return;
+    x = x < axis.low ? x + axis.length : x;
+    x = x >= axis.high() ? x - axis.length : x;
+}
 
 }  // namespace implicit_moment

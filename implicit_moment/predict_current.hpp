@@ -12,7 +12,7 @@
 //
 //     chi = sum_s theta/2 (omega_ps dt)^2 R_s,      omega_ps^2 = 4 pi rho_s q_s/m_s.
 //
-// The part without E, J_hat, has been turned by the particles themselves (deposit_moments.hpp).
+// In the part without E, J_hat, every particle has been rotated by itself (deposit_moments.hpp).
 #pragma once
 
 #include <vector>
@@ -37,7 +37,7 @@ struct Tensor {
 /// in:     v, ghosts filled; scratch, room.
 /// out:    values on rows and columns 0..N, added to what is there when `add` is set.
 /// exact:  (T v) . v >= sum over nodes of (T v') . v' with v' the averaged v. A magnetic rotation
-///         thus stays one on the mesh: its skew part does no work, however fast it turns.
+///         thus stays one on the mesh: its skew part does no work, however fast the rotation.
 inline void apply_tensor(const Grid& grid, const Tensor& T, const double* v, bool add,
                          VectorField& scratch, double* out) {
     const long s = grid.stride(), m = grid.size();
@@ -59,21 +59,40 @@ inline void apply_tensor(const Grid& grid, const Tensor& T, const double* v, boo
     });
 }
 
-/// The rotation R of one species on nodes.
+namespace detail {
+
+// O = q dt B / (2 m c) of one species, averaged to the nodes.
+struct RotationOnNodes {
+    const double *B_x, *B_y, *B_z;
+    long s;    // between rows
+    double k;  // q dt / 2mc
+
+    RotationOnNodes(const Grid& grid, const double* B, double half_kick)
+        : B_x(B),
+          B_y(B + grid.size()),
+          B_z(B + 2 * grid.size()),
+          s(grid.stride()),
+          k(half_kick / c) {}
+    double x(long n) const { return 0.5 * k * (B_x[n] + B_x[n - s]); }
+    double y(long n) const {
+        return 0.25 * k * (B_y[n] + B_y[n - 1] + B_y[n - s] + B_y[n - 1 - s]);
+    }
+    double z(long n) const { return 0.5 * k * (B_z[n] + B_z[n - 1]); }
+};
+
+}  // namespace detail
+
+/// The magnetic rotation R of one species on nodes.
 /// in:     B, ghosts filled; half_kick = q dt / 2m.
 /// out:    rows and columns 0..N.
 /// exact:  R v - (R v) x O = v, and v . R v >= 0.
 /// source: [IMM-12]
 inline void rotation_tensor(const Grid& grid, const double* B, double half_kick, Tensor& R) {
-    const long s = grid.stride(), m = grid.size();
-    const double *B_x = B, *B_y = B + m, *B_z = B + 2 * m;
-    const double k = half_kick / c;
+    const detail::RotationOnNodes O(grid, B, half_kick);
     std::array<double*, 9> r{};
     for (std::size_t a = 0; a < 9; ++a) r[a] = R.entry[a].data();
     for_each_point(grid, [=](long n) {
-        const double x = 0.5 * k * (B_x[n] + B_x[n - s]);
-        const double y = 0.25 * k * (B_y[n] + B_y[n - 1] + B_y[n - s] + B_y[n - 1 - s]);
-        const double z = 0.5 * k * (B_z[n] + B_z[n - 1]);
+        const double x = O.x(n), y = O.y(n), z = O.z(n);
         const double scale = 1 / (1 + x * x + y * y + z * z);
         r[0][n] = scale * (1 + x * x);
         r[1][n] = scale * (x * y + z);
@@ -87,19 +106,16 @@ inline void rotation_tensor(const Grid& grid, const double* B, double half_kick,
     });
 }
 
-/// Takes the turn in another B out of R: R becomes R A with A v = v - v x O, the inverse of
+/// Takes the rotation in another B out of R: R becomes R A with A v = v - v x O, the inverse of
 /// [IMM-12] in that B.
 /// exact:  in the B of R itself this leaves the unit tensor.
-inline void undo_rotation(const Grid& grid, const double* B, double half_kick, Tensor& R) {
-    const long s = grid.stride(), m = grid.size();
-    const double *B_x = B, *B_y = B + m, *B_z = B + 2 * m;
-    const double k = half_kick / c;
+inline void multiply_by_inverse_rotation(const Grid& grid, const double* B, double half_kick,
+                                         Tensor& R) {
+    const detail::RotationOnNodes O(grid, B, half_kick);
     for (std::size_t a = 0; a < 9; a += 3) {
         double *r_x = R.entry[a].data(), *r_y = R.entry[a + 1].data(), *r_z = R.entry[a + 2].data();
         for_each_point(grid, [=](long n) {
-            const double x = 0.5 * k * (B_x[n] + B_x[n - s]);
-            const double y = 0.25 * k * (B_y[n] + B_y[n - 1] + B_y[n - s] + B_y[n - 1 - s]);
-            const double z = 0.5 * k * (B_z[n] + B_z[n - 1]);
+            const double x = O.x(n), y = O.y(n), z = O.z(n);
             const double old_x = r_x[n], old_y = r_y[n], old_z = r_z[n];
             r_x[n] = old_x + old_y * z - old_z * y;
             r_y[n] = old_y + old_z * x - old_x * z;
@@ -108,11 +124,11 @@ inline void undo_rotation(const Grid& grid, const double* B, double half_kick, T
     }
 }
 
-/// J - dt/2 div P of one species on the places of E, ghosts filled: the current half a step later
-/// without E.
+/// The hatted current of one species, J - dt/2 div P on the places of E, ghosts filled: its current
+/// half a step later without E.
 /// exact:  d rho/dt = -div of it to second order in dt for particles in free flight.
 /// source: [IMM-11, IMM-12]
-inline void free_current(const Grid& grid, const Moments& moments, double dt, VectorField& J) {
+inline void hatted_current(const Grid& grid, const Moments& moments, double dt, VectorField& J) {
     const long s = grid.stride();
     const double by_dx = 0.5 * dt / grid.x.spacing(), by_dz = 0.5 * dt / grid.z.spacing();
     const double *J_x = moments.J_x.data(), *J_y = moments.J_y.data(), *J_z = moments.J_z.data();
@@ -130,15 +146,15 @@ inline void free_current(const Grid& grid, const Moments& moments, double dt, Ve
 
 /// What the field equations need from the plasma.
 struct PlasmaResponse {
-    Field rho;           // charge density
-    VectorField J_free;  // of one species
-    VectorField J_hat;   // current without E
-    Tensor R, chi;       // rotation of one species; susceptibility of all
+    Field rho;                     // charge density
+    VectorField J_hat_of_species;  // the hatted current of one species
+    VectorField J_hat;             // of all: the current without E
+    Tensor R, chi;                 // rotation of one species; susceptibility of all
     VectorField scratch;
 
     explicit PlasmaResponse(const Grid& grid)
         : rho(Field::Zero(grid.size())),
-          J_free(grid),
+          J_hat_of_species(grid),
           J_hat(grid),
           R(grid),
           chi(grid),
@@ -146,7 +162,7 @@ struct PlasmaResponse {
 };
 
 /// The charge, J_hat and chi of all species, with the magnetic rotation in B_theta.
-/// in:     moments and q/m of each species; B, in which the moments were turned, and B_theta, the
+/// in:     moments and q/m of each species; B, in which the moments were rotated, and B_theta, the
 ///         same field or another one; ghosts filled.
 /// out:    response, nothing of it smoothed.
 /// note:   chi is the diagonal form of the exact response, in which a place also answers for the
@@ -162,19 +178,19 @@ inline void predict_current(const Grid& grid, const std::vector<Moments>& moment
     for (std::size_t k = 0; k < moments.size(); ++k) {
         const double half_kick = 0.5 * dt * charge_over_mass[k];
         response.rho += moments[k].rho;
-        free_current(grid, moments[k], dt, response.J_free);
+        hatted_current(grid, moments[k], dt, response.J_hat_of_species);
         if (B_theta == B) {
-            response.J_hat.all += response.J_free.all;
+            response.J_hat.all += response.J_hat_of_species.all;
         } else {
             rotation_tensor(grid, B_theta, half_kick, response.R);
-            undo_rotation(grid, B, half_kick, response.R);
-            apply_tensor(grid, response.R, response.J_free.all.data(), true, response.scratch,
-                         response.J_hat.all.data());
+            multiply_by_inverse_rotation(grid, B, half_kick, response.R);
+            apply_tensor(grid, response.R, response.J_hat_of_species.all.data(), true,
+                         response.scratch, response.J_hat.all.data());
         }
 
         rotation_tensor(grid, B_theta, half_kick, response.R);
         const double by_rho = 4 * pi * theta * dt * half_kick;
-        const double* rho = moments[k].density.data();
+        const double* rho = moments[k].plasma_density.data();
         for (std::size_t a = 0; a < 9; ++a) {
             const double* R = response.R.entry[a].data();
             double* chi = response.chi.entry[a].data();

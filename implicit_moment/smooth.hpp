@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
@@ -12,6 +11,7 @@
 
 namespace implicit_moment {
 
+/// How often a quantity is smoothed, and whether the last pass restores long waves.
 struct SmoothingSettings {
     long passes = 4;
     bool compensate = true;
@@ -19,40 +19,41 @@ struct SmoothingSettings {
 
 namespace detail {
 
-// One pass of (side, middle, side) in both directions, out of place: across the rows into
+// One pass of (side, middle, side) in both directions, out of place: across the rows into the row
 // `across`, then along them.
 inline void stencil_rows(const Grid& grid, double side, double middle, const double* f,
-                         double* out) {
+                         double* across, double* out) {
     const long s = grid.stride(), points = grid.x.cells + 1;
-    std::array<double, 4099> across;
+    const double* a = across + 1;
     for (long j = 0; j <= grid.z.cells; ++j) {
         const double* row = f + grid.index(-1, j);
         double* target = out + grid.index(0, j);
-        for (long i = 0; i < points + 2; ++i) {
-            across[static_cast<std::size_t>(i)] =
-                middle * row[i] + side * (row[i - s] + row[i + s]);
-        }
-        const double* a = across.data() + 1;
+#pragma omp simd
+        for (long i = 0; i < points + 2; ++i)
+            across[i] = middle * row[i] + side * (row[i - s] + row[i + s]);
+#pragma omp simd
         for (long i = 0; i < points; ++i) target[i] = middle * a[i] + side * (a[i - 1] + a[i + 1]);
     }
 }
 
 // All passes over several quantities that are stored one behind the other, each on one thread: a
-// quantity stays in its cache, and nobody waits between passes.
+// quantity stays in its cache, and no thread waits between passes. scratch holds a copy and a row of
+// each quantity.
 inline void smooth_all(const Grid& grid, long count, const Place* place, const Parity* parity,
                        const SmoothingSettings& settings, double* f, Field& scratch) {
     if (settings.passes == 0) return;
-    const long size = grid.size();
-    if (scratch.size() < count * size) scratch.setZero(count * size);
+    const long size = grid.size(), row = grid.stride();
+    if (scratch.size() < count * (size + row)) scratch.setZero(count * (size + row));
     common::for_each_row(count, [&](long k) {
-        double *from = f + k * size, *to = scratch.data() + k * size;
+        double *from = f + k * size, *to = scratch.data() + k * size,
+               *across = scratch.data() + count * size + k * row;
         const auto pass = [&](double side, double middle) {
-            stencil_rows(grid, side, middle, from, to);
+            stencil_rows(grid, side, middle, from, across, to);
             common::fill_ghosts(grid, place[k], parity[k], to);
             std::swap(from, to);
         };
         for (long n = 0; n < settings.passes; ++n) pass(0.25, 0.5);
-        const double a = 0.25 * static_cast<double>(settings.passes);
+        const double a = 0.25 * double(settings.passes);
         if (settings.compensate) pass(-a, 1 + 2 * a);
         if (from != f + k * size) std::copy_n(from, size, f + k * size);
     });
@@ -83,9 +84,8 @@ inline void smooth(const Grid& grid, const VectorKind& kind, const SmoothingSett
 inline double smoothing_factor(const SmoothingSettings& settings, double angle) {
     if (settings.passes == 0) return 1;
     const double half = std::cos(0.5 * angle) * std::cos(0.5 * angle);
-    const double a = 0.25 * static_cast<double>(settings.passes);
-    return std::pow(half, static_cast<double>(settings.passes)) *
-           (settings.compensate ? 1 + 4 * a * (1 - half) : 1.0);
+    const double passes = double(settings.passes);
+    return std::pow(half, passes) * (settings.compensate ? 1 + passes * (1 - half) : 1.0);
 }
 
 }  // namespace implicit_moment

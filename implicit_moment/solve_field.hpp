@@ -24,13 +24,13 @@
 
 #include "common/run/parameters.hpp"
 #include "implicit_moment/field_operator.hpp"
-#include "implicit_moment/push_field.hpp"
 
 namespace implicit_moment {
 
+/// How the solver ended.
 struct FieldReport {
-    int iterations = 0;
-    double residual = 0;
+    int iterations = 0;   // of GMRES, over all Newton steps
+    double residual = 0;  // over the right-hand side
 };
 
 /// div E - 4 pi rho on nodes, zero on walls. in: E at t^n with ghosts, rho smoothed.
@@ -39,7 +39,7 @@ inline void gauss_residual(const Grid& grid, const VectorField& E, const Field& 
     G -= 4 * pi * rho;
     if (grid.x.periodic && grid.z.periodic) {
         // Nothing but a uniform background can hold a net charge in a periodic box.
-        G.array() -= detail::interior(grid, G.data()).mean();
+        G.array() -= interior(grid, G.data()).mean();
     }
     common::fill_ghosts(grid, common::on_nodes, {-1, -1}, G.data());
 }
@@ -67,20 +67,22 @@ inline void maxwell_source(FieldSolver& solver, const FieldState& field, double 
 
 /// Solves for E^{n+theta}.
 /// in:     moments of all species at t^n, E and B at t^n.
-/// out:    field.E_theta, ghosts filled; solver.gauss, the Gauss residual at t^n.
+/// out:    field.E_theta, ghosts filled; B_push, the B in which the current is rotated, for the mover;
+///         solver.gauss, the Gauss residual at t^n.
 /// exact:  |residual| <= tolerance |source|; on periodic meshes and inside walls the Gauss residual
 ///         obeys (ii) to that tolerance.
 /// errors: NumericalError when the solver does not converge; the field is then not used.
 /// source: [IMM-10..12]
-/// note:   "gmres" turns the current in B^n, as the slide does; "newton_krylov" turns it in
+/// note:   "gmres" rotates the current in B^n, as the slide does; "newton_krylov" rotates it in
 ///         B^{n+theta} = B^n - a curl E^{n+theta}, which makes the equations nonlinear.
 inline FieldReport solve_field(FieldSolver& solver, const std::vector<Moments>& moments,
                                const std::vector<double>& charge_over_mass, double dt,
-                               FieldState& field) {
+                               FieldState& field, VectorField& B_push) {
     const Grid& grid = solver.grid;
     const FieldSettings& settings = solver.settings;
     const double a = c * settings.theta * dt, by_J = 4 * pi * settings.theta * dt;
     PlasmaResponse& response = solver.response;
+    B_push.all = field.B.all;
 
     predict_current(grid, moments, charge_over_mass, field.B.all.data(), field.B.all.data(), dt,
                     settings.theta, response);
@@ -92,6 +94,11 @@ inline FieldReport solve_field(FieldSolver& solver, const std::vector<Moments>& 
 
     const auto precondition = [&](const Eigen::VectorXd& r, Eigen::VectorXd& out) {
         precondition_field(solver, r, out);
+    };
+    const auto refuse = [](const std::string& which, const auto& result) {
+        throw common::NumericalError("the " + which + " did not converge: " + result.reason +
+                                     " (relative residual " + std::to_string(result.residual) +
+                                     "); reduce time.dt or raise field.max_iterations");
     };
     Eigen::VectorXd& E = field.E_theta.all;
     keep_unknowns(grid, E.data());
@@ -105,24 +112,19 @@ inline FieldReport solve_field(FieldSolver& solver, const std::vector<Moments>& 
         };
         const auto result =
             common::gmres(apply, precondition, solver.source.all, E, settings.tolerance,
-                          static_cast<int>(settings.max_iterations), 40, solver.krylov);
-        if (!result.converged) {
-            throw common::NumericalError(
-                "the field equations did not converge: " + result.reason + " (relative residual " +
-                std::to_string(result.residual) + " after " + std::to_string(result.iterations) +
-                " iterations); reduce time.dt or raise field.max_iterations");
-        }
+                          int(settings.max_iterations), 40, solver.krylov);
+        if (!result.converged) refuse("field equations", result);
         report = {result.iterations, result.residual};
     } else {
         const auto residual = [&](const Eigen::VectorXd& v, Eigen::VectorXd& F) {
             F.resize(v.size());
             solver.ghosted.all = v;
             fill_ghosts(grid, electric, solver.ghosted);
-            curl_of_electric(grid, solver.ghosted.all.data(), solver.B_theta.all.data());
-            solver.B_theta.all = field.B.all - a * solver.B_theta.all;
-            fill_ghosts(grid, magnetic, solver.B_theta);
-            predict_current(grid, moments, charge_over_mass, field.B.all.data(),
-                            solver.B_theta.all.data(), dt, settings.theta, response);
+            curl_of_electric(grid, solver.ghosted.all.data(), B_push.all.data());
+            B_push.all = field.B.all - a * B_push.all;
+            fill_ghosts(grid, magnetic, B_push);
+            predict_current(grid, moments, charge_over_mass, field.B.all.data(), B_push.all.data(),
+                            dt, settings.theta, response);
             smooth(grid, electric, settings.smoothing, response.J_hat.all.data(), solver.scratch);
             apply_field_operator(solver, a, v, F);
             F += by_J * response.J_hat.all - solver.source.all;
@@ -130,19 +132,13 @@ inline FieldReport solve_field(FieldSolver& solver, const std::vector<Moments>& 
         };
         const double scale = std::max(common::safe_norm(solver.source.all),
                                       by_J * common::safe_norm(response.J_hat.all));
-        if (!std::isfinite(scale)) {
+        if (!std::isfinite(scale))
             throw common::NumericalError("the source of the field equations is not finite");
-        }
         if (scale > 0) {
             const auto result =
                 common::newton_krylov(residual, precondition, E, scale, settings.tolerance, 30,
-                                      static_cast<int>(settings.max_iterations), solver.newton);
-            if (!result.converged) {
-                throw common::NumericalError(
-                    "the nonlinear field equations did not converge: " + result.reason +
-                    " (relative residual " + std::to_string(result.residual) +
-                    "); reduce time.dt or raise field.max_iterations");
-            }
+                                      int(settings.max_iterations), solver.newton);
+            if (!result.converged) refuse("nonlinear field equations", result);
             report = {result.linear_iterations, result.residual};
         } else {
             E.setZero();
@@ -159,28 +155,11 @@ inline FieldReport solve_field(FieldSolver& solver, const std::vector<Moments>& 
 inline void advance_field(FieldSolver& solver, double dt, FieldState& field) {
     const Grid& grid = solver.grid;
     const double theta = solver.settings.theta;
-    curl_of_electric(grid, field.E_theta.all.data(), solver.turned.all.data());
-    field.B.all -= c * dt * solver.turned.all;
+    curl_of_electric(grid, field.E_theta.all.data(), solver.curl_E.all.data());
+    field.B.all -= c * dt * solver.curl_E.all;
     field.E.all = (field.E_theta.all - (1 - theta) * field.E.all) / theta;
     fill_ghosts(grid, electric, field.E);
     fill_ghosts(grid, magnetic, field.B);
-}
-
-/// Packs what pushes particles: a smoothed copy of E^{n+theta}, and the B in which the solver
-/// rotated the current.
-inline void pack_push_field(FieldSolver& solver, const FieldState& field, PushField& push) {
-    const Grid& grid = solver.grid;
-    const VectorField& B = solver.settings.solver == "gmres" ? field.B : solver.B_theta;
-    solver.ghosted.all = field.E_theta.all;
-    smooth(grid, electric, solver.settings.smoothing, solver.ghosted.all.data(), solver.scratch);
-    const VectorField& E = solver.ghosted;
-    push.resize(static_cast<std::size_t>(grid.size()));
-    common::for_each_row(grid.z.cells + 3, [&](long row) {
-        for (long n = row * grid.stride(); n < (row + 1) * grid.stride(); ++n) {
-            push[static_cast<std::size_t>(n)] = {E.x()[n], E.y()[n], E.z()[n],
-                                                 B.x()[n], B.y()[n], B.z()[n]};
-        }
-    });
 }
 
 }  // namespace implicit_moment

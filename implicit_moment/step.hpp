@@ -6,8 +6,8 @@
 
 #include "common/step_clock.hpp"
 #include "implicit_moment/deposit_moments.hpp"
+#include "implicit_moment/interleaved_field.hpp"
 #include "implicit_moment/move_particles.hpp"
-#include "implicit_moment/push_field.hpp"
 #include "implicit_moment/solve_field.hpp"
 #include "implicit_moment/sort_particles.hpp"
 
@@ -17,11 +17,13 @@ namespace implicit_moment {
 struct StepScratch {
     std::vector<Moments> moments;  // of each species
     FieldSolver solver;
-    PushField push;
+    VectorField B_push;      // the B in which currents and particles are rotated
+    InterleavedField field;  // smoothed E^{n+theta} and B_push, where particles feel them
+    InterleaveScratch interleave;
     SortScratch sort;
 
-    StepScratch(const Grid& grid, const FieldSettings& field, std::size_t species)
-        : moments(species, Moments(grid)), solver(grid, field) {}
+    StepScratch(const Grid& grid, const FieldSettings& settings, std::size_t species)
+        : moments(species, Moments(grid)), solver(grid, settings), B_push(grid), interleave(grid) {}
 };
 
 /// The moments of t^n.
@@ -39,7 +41,7 @@ void find_moments(const Grid& grid, double dt, const std::vector<Particles>& par
 /// From t^n to t^{n+1}.
 /// in:     scratch.moments of t^n; q/m of each species
 /// in/out: particles and field
-/// out:    iterations of the field, and why it ended
+/// out:    iterations and residual of the field solve
 /// errors: NumericalError when the field does not converge or a particle is lost
 template <class Clock = common::NoClock>
 FieldReport take_step(const Grid& grid, double dt, const MoverSettings& mover,
@@ -47,10 +49,11 @@ FieldReport take_step(const Grid& grid, double dt, const MoverSettings& mover,
                       std::vector<Particles>& particles, FieldState& field, Clock&& clock = {}) {
     // [step]
     const FieldReport solved = solve_field(scratch.solver, scratch.moments, charge_over_mass, dt,
-                                           field);         // [IMM-10, 11, 12]
-    pack_push_field(scratch.solver, field, scratch.push);  // grid -> particles
+                                           field, scratch.B_push);  // [IMM-10, 11, 12]
+    interleave_field(grid, scratch.solver.settings.smoothing, field.E_theta, scratch.B_push,
+                     scratch.interleave, scratch.field);  // grid -> particles
     clock.lap("field");
-    move_particles(scratch.push, grid, dt, mover, particles);  // particles move
+    move_particles(scratch.field, grid, dt, mover, particles);  // particles move
     clock.lap("mover");
     advance_field(scratch.solver, dt, field);  // [IMM-10]
     clock.lap("field");

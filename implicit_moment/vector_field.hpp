@@ -1,8 +1,14 @@
-// E, B and J on the staggered mesh, and the differences between them.
+// E, B and J on the staggered mesh, and the differences between them. common/grid.hpp draws the mesh;
+// of the cell between node (i, j) and node (i+1, j+1) are stored at index(i, j):
 //
-// With forward differences from nodes to midpoints and backward differences from midpoints to
-// nodes, curl takes E to the places of B and back, and div curl = 0, curl grad = 0 hold to
-// round-off. No operator averages, so none has a checkerboard null space.
+//     z  ^   E_z,J_z,B_x ---- B_y             node    E_y, J_y, rho
+//        |      |              |              x-edge  E_x, J_x, B_z
+//        |   E_y,J_y,rho -- E_x,J_x,B_z       z-edge  E_z, J_z, B_x
+//        +-----------------------> x          face    B_y
+//
+// Forward differences lead from nodes to midpoints and backward ones from midpoints to nodes; so curl
+// takes E to the places of B and back, and div curl = 0, curl grad = 0 hold to round-off. No
+// operator averages, so none has a checkerboard null space.
 #pragma once
 
 #include <array>
@@ -30,6 +36,13 @@ struct VectorField {
     const double* z() const { return all.data() + 2 * size(); }
 };
 
+/// The electromagnetic field of a run: E and B at t^n, ghosts filled, and E^{n+theta} of the last
+/// step, where the solver starts; explicit_em does not use that one.
+struct FieldState {
+    VectorField E, B, E_theta;
+    explicit FieldState(const Grid& grid) : E(grid), B(grid), E_theta(grid) {}
+};
+
 /// Places and wall parities of a vector's three components.
 struct VectorKind {
     std::array<Place, 3> place;
@@ -45,14 +58,23 @@ inline constexpr VectorKind magnetic{{common::on_z_edges, common::on_faces, comm
 inline constexpr VectorKind current{{common::on_x_edges, common::on_nodes, common::on_z_edges},
                                     {{{-1, +1}, {+1, +1}, {+1, -1}}}};
 
+/// Fills the ghosts of all three components. in: kind, of the vector
 inline void fill_ghosts(const Grid& grid, const VectorKind& kind, double* all) {
-    for (long a = 0; a < 3; ++a) {
-        const auto k = static_cast<std::size_t>(a);
-        common::fill_ghosts(grid, kind.place[k], kind.parity[k], all + a * grid.size());
-    }
+    for (std::size_t a = 0; a < 3; ++a)
+        common::fill_ghosts(grid, kind.place[a], kind.parity[a], all + a * grid.size());
 }
 inline void fill_ghosts(const Grid& grid, const VectorKind& kind, VectorField& f) {
     fill_ghosts(grid, kind, f.all.data());
+}
+
+/// The unknowns of one component as a matrix (x, z), without ghosts.
+using Block = Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
+using ConstBlock = Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
+inline Block interior(const Grid& grid, double* f) {
+    return {f + grid.index(0, 0), grid.x.cells, grid.z.cells, Eigen::OuterStride<>(grid.stride())};
+}
+inline ConstBlock interior(const Grid& grid, const double* f) {
+    return {f + grid.index(0, 0), grid.x.cells, grid.z.cells, Eigen::OuterStride<>(grid.stride())};
 }
 
 /// Calls work(n) for the storage index n of rows and columns 0..N, of all points whose neighbors
@@ -124,7 +146,7 @@ inline void divergence_of_magnetic(const Grid& grid, const double* B, Field& div
 inline void keep_unknowns(const Grid& grid, double* E) {
     const long nx = grid.x.cells, nz = grid.z.cells;
     for (std::size_t a = 0; a < 3; ++a) {
-        double* f = E + static_cast<long>(a) * grid.size();
+        double* f = E + a * grid.size();
         const bool wall_x = !grid.x.periodic && !electric.place[a].half_x;
         const bool wall_z = !grid.z.periodic && !electric.place[a].half_z;
         for (long j = -1; j <= nz + 1; ++j) {

@@ -493,7 +493,7 @@ TEST_CASE("smoothing multiplies every wave with its smoothing factor") {
             for_each_distinct(grid, on_faces, [&](long l, long m, long) {
                 if ((l == 0 && parity.x < 0) || (m == 0 && parity.z < 0)) return;
                 Field f = Field::Zero(grid.size());
-                detail::interior(grid, f.data()) = X.col(l) * Z.col(m).transpose();
+                interior(grid, f.data()) = X.col(l) * Z.col(m).transpose();
                 common::fill_ghosts(grid, place, parity, f.data());
                 for (const SmoothingSettings& settings : smoothings) {
                     const Field expected = smoothing_factor(settings, modes.x.angle[l]) *
@@ -594,9 +594,9 @@ TEST_CASE("the sort is stable and puts every particle at its nearest node for an
     for (int p = 0; p < 5000; ++p) {
         start.x_p.push_back(place(grid.x, p % 20));
         start.z_p.push_back(place(grid.z, p % 30));
-        start.vx_p.push_back(p);
-        start.vy_p.push_back(random());
-        start.vz_p.push_back(random());
+        start.ux_p.push_back(p);
+        start.uy_p.push_back(random());
+        start.uz_p.push_back(random());
     }
     std::vector<Particles> sorted;
     for (const int threads : {1, 2, 3}) {
@@ -604,7 +604,7 @@ TEST_CASE("the sort is stable and puts every particle at its nearest node for an
         SortScratch scratch;
         sort_particles(grid, scratch, sorted.emplace_back(start));
         CHECK(sorted.back().first_of_node == sorted[0].first_of_node);
-        CHECK(sorted.back().vx_p == sorted[0].vx_p);
+        CHECK(sorted.back().ux_p == sorted[0].ux_p);
     }
     const Particles& s = sorted[0];
     const auto nodes = static_cast<std::size_t>(nodes_x(grid) * nodes_z(grid));
@@ -618,12 +618,12 @@ TEST_CASE("the sort is stable and puts every particle at its nearest node for an
         const auto first = static_cast<std::size_t>(s.first_of_node[node]),
                    end = static_cast<std::size_t>(s.first_of_node[node + 1]);
         for (std::size_t p = first; p < end; ++p) {
-            const auto from = static_cast<std::size_t>(s.vx_p[p]);
+            const auto from = static_cast<std::size_t>(s.ux_p[p]);
             far += !(std::fabs(s.x_p[p] - grid.x.at(i)) <= (0.5 + 4 * eps) * grid.x.spacing() &&
                      std::fabs(s.z_p[p] - grid.z.at(j)) <= (0.5 + 4 * eps) * grid.z.spacing());
-            unordered += p > first && !(s.vx_p[p - 1] < s.vx_p[p]);
+            unordered += p > first && !(s.ux_p[p - 1] < s.ux_p[p]);
             torn += !(s.x_p[p] == start.x_p[from] && s.z_p[p] == start.z_p[from] &&
-                      s.vy_p[p] == start.vy_p[from] && s.vz_p[p] == start.vz_p[from]);
+                      s.uy_p[p] == start.uy_p[from] && s.uz_p[p] == start.uz_p[from]);
         }
     }
     CHECK(far == 0);

@@ -256,15 +256,17 @@ TEST_CASE("a full disk is reported with the path and leaves nothing behind") {
 
 TEST_CASE("a checkpoint replaces regular files only and leaves no half of one") {
     const Folder folder;
-    common::CheckpointWriter writer({"implicit_moment", "1", "", ""}, "");
     const std::string target = folder.file("checkpoint");
+    const auto write = [&] {
+        common::CheckpointWriter({"implicit_moment", "1", "", ""}, target, "", "").finish();
+    };
     fs::create_symlink("elsewhere", target);
-    CHECK_THROWS_AS(writer.write(target), common::InputError);
+    CHECK_THROWS_AS(write(), common::InputError);
     fs::remove(target);
     fs::create_directory(target);
-    CHECK_THROWS_AS(writer.write(target), common::InputError);
+    CHECK_THROWS_AS(write(), common::InputError);
     fs::remove(target);
-    writer.write(target);
+    write();
     CHECK(fs::is_regular_file(target));
     CHECK(!fs::exists(target + ".partial"));
 }

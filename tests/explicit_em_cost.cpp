@@ -7,6 +7,7 @@
 #include "implicit_moment/explicit_em/yee_field.hpp"
 #include "implicit_moment/setup/check_case.hpp"
 #include "implicit_moment/setup/cost.hpp"
+#include "implicit_moment/setup/describe_case.hpp"
 
 namespace {
 

@@ -6,16 +6,16 @@
 #include <utility>
 #include <vector>
 
-#include "implicit_moment/explicit_em/leapfrog_state.hpp"
 #include "implicit_moment/explicit_em/setup/check_leapfrog.hpp"
+#include "implicit_moment/explicit_em/setup/leapfrog_state.hpp"
 #include "implicit_moment/explicit_em/step.hpp"
-#include "implicit_moment/theory/compare_with_theory.hpp"
+#include "implicit_moment/output/diagnostics.hpp"
 #include "tests/support/any_leapfrog.hpp"
 
 namespace {
 
 using namespace facts;
-using implicit_moment::detail::interior;
+using implicit_moment::interior;
 
 // Sum of squares of all unknowns.
 double squares(const Grid& grid, const VectorField& f) {
@@ -35,31 +35,35 @@ double wave_number(const common::Axis& axis, long number) {
 struct Loop {
     Case parameters;
     State state;
-    Leapfrog run;
+    LeapfrogScratch scratch;
 
     explicit Loop(const Case& w)
-        : parameters(w), state(leapfrog_state(parameters)), run(parameters) {}
+        : parameters(w), state(leapfrog_state(parameters)), scratch(parameters.grid) {}
+    void interleave() {
+        interleave_field(parameters.grid, parameters.field.smoothing, state.field, scratch);
+    }
     void step() {
-        pack_push_field(run, state.field);
-        take_step(run, state.field, state.plasma.species);
+        interleave();
+        take_step(parameters.grid, parameters.dt, parameters.leapfrog, parameters.field.smoothing,
+                  scratch, state.plasma.species, state.field);
     }
     // div E - 4 pi rho, rho by definition; its mean in a periodic box has no field.
     Field gauss() const {
-        Field rho = Field::Zero(parameters.grid.size()), scratch, G = rho;
+        Field rho = Field::Zero(parameters.grid.size()), pass, G = rho;
         for (const Particles& particles : state.plasma.species)
             rho += charge(parameters.grid, parameters.leapfrog.order, -1, particles);
         const common::Axis &x = parameters.grid.x, &z = parameters.grid.z;
         if (x.periodic && z.periodic)
             rho.array() -= total(parameters.grid, on_nodes, rho) / (x.length * z.length);
         common::fill_ghosts(parameters.grid, on_nodes, {-1, -1}, rho.data());
-        smooth(parameters.grid, on_nodes, {-1, -1}, parameters.field.smoothing, rho.data(),
-               scratch);
+        smooth(parameters.grid, on_nodes, {-1, -1}, parameters.field.smoothing, rho.data(), pass);
         divergence_of_electric(parameters.grid, state.field.E.all.data(), G);
         return G - 4 * pi * rho;
     }
-    const std::vector<Moments>& moments() {
-        pack_push_field(run, state.field);
-        return moments_now(run, state);
+    std::vector<Moments> moments() {
+        interleave();
+        return find_moments(parameters.grid, parameters.dt, parameters.leapfrog,
+                            state.plasma.species, Images::conductor, scratch);
     }
     double energy() {
         double sum = field_energy(parameters.grid, state.field.E) +
@@ -214,13 +218,14 @@ TEST_CASE("particles are pushed by the smoothed E and by B itself") {
         field.E = random.field(grid, electric), field.B = random.field(grid, magnetic);
         for (const SmoothingSettings smoothing :
              {SmoothingSettings{0, true}, {1, false}, {3, true}}) {
-            VectorField E = field.E, scratch(grid);
+            VectorField E = field.E;
+            InterleaveScratch scratch(grid);
             Field room;
             const FieldState before = field;
             smooth(grid, electric, smoothing, E.all.data(), room);
-            PushField push;
-            pack_push_field(grid, smoothing, field, scratch, room, push);
-            const PushField expected = pack(grid, E, field.B);
+            InterleavedField push;
+            interleave_field(grid, smoothing, field.E, field.B, scratch, push);
+            const InterleavedField expected = pack(grid, E, field.B);
             REQUIRE(push.size() == expected.size());
             long wrong = 0;
             for (std::size_t n = 0; n < push.size(); ++n) {
@@ -272,7 +277,7 @@ TEST_CASE("at the start velocities are half a step back and moments bring them f
             const Case parameters = hot_plasma(grid, order, passes);
             Loop loop(parameters);
             const State loaded = loaded_state(parameters);
-            const std::vector<Moments>& moments = loop.moments();
+            const std::vector<Moments> moments = loop.moments();
             CHECK(largest(loop.state.field.E.all) >= 0.01);
             for (std::size_t s = 0; s < 2; ++s) {
                 const Particles& particles = loaded.plasma.species[s];
@@ -293,7 +298,7 @@ TEST_CASE("at the start velocities are half a step back and moments bring them f
 }
 
 // As many particles in every cell at the same places: then the sums over them are exact, for as
-// long as none leaves its home.
+// long as none leaves its cell.
 TEST_CASE("cold plasma oscillates with the frequency of the leapfrog and above its limit grows") {
     for (const long order : {1, 2}) {
         for (const long in_cell : {4L, 400L}) {
@@ -316,11 +321,12 @@ TEST_CASE("cold plasma oscillates with the frequency of the leapfrog and above i
                     }
                     sort(w.grid, order, electrons);
                     FieldState field(w.grid);
-                    Leapfrog run(w);
+                    LeapfrogScratch scratch(w.grid);
                     std::vector<double> E;
                     for (int step = 0; step < 8; ++step) {
-                        pack_push_field(run, field);
-                        take_step(run, field, species);
+                        interleave_field(w.grid, w.field.smoothing, field, scratch);
+                        take_step(w.grid, w.dt, w.leapfrog, w.field.smoothing, scratch, species,
+                                  field);
                         E.push_back(mode_amplitude(w.grid, field, "E_x", k, 0).real());
                     }
                     // Quadratic splines see a field that varies within a cell.
@@ -372,20 +378,20 @@ TEST_CASE("a plasma at rest is hardly heated by cells of ten Debye lengths" *
             });
             fill_ghosts(grid, electric, on_x);
             fill_ghosts(grid, electric, on_z);
-            const PushField push_x = pack(grid, on_x, B), push_z = pack(grid, on_z, B);
+            const InterleavedField push_x = pack(grid, on_x, B), push_z = pack(grid, on_z, B);
             Particles& particles = momentum.state.plasma.species[0];
             const double kick = w.dt * particles.q_p / particles.m_p;
             for (std::size_t p = 0; p < particles.x_p.size(); ++p) {
                 const double s = in_cells(grid.x, particles.x_p[p]),
                              t = in_cells(grid.z, particles.z_p[p]);
-                particles.vx_p[p] += kick * felt(grid, push_x, order, s, t).E_y;
-                particles.vz_p[p] += kick * felt(grid, push_z, order, s, t).E_y;
+                particles.ux_p[p] += kick * felt(grid, push_x, order, s, t).E_y;
+                particles.uz_p[p] += kick * felt(grid, push_z, order, s, t).E_y;
             }
             CurrentScratch scratch;
             move_particles(pack(grid, VectorField(grid), B), grid, w.dt, w.leapfrog,
                            w.field.smoothing, momentum.state.plasma.species, scratch,
-                           momentum.run.J);
-            advance_field(grid, w.dt, momentum.run.J, momentum.state.field);
+                           momentum.scratch.J);
+            advance_field(grid, w.dt, momentum.scratch.J, momentum.state.field);
             sort(grid, order, particles);
         }
         const double heated = conserving.energy() / start - 1,

@@ -17,7 +17,7 @@ using namespace facts;
 
 constexpr double dt = 1;  // no speed is beyond that of light when a particle crosses a cell
 
-PushField nothing(const Grid& grid) { return uniform(grid, {0, 0, 0}, {0, 0, 0}); }
+InterleavedField nothing(const Grid& grid) { return uniform(grid, {0, 0, 0}, {0, 0, 0}); }
 
 // Calls work(grid, order, relativistic) for all of them.
 template <class Work>
@@ -34,27 +34,28 @@ Vector magnetic_part(const Local& at) { return {at.B_x, at.B_y, at.B_z}; }
 
 }  // namespace
 
-// ---- homes --------------------------------------------------------------------------------------
+// ---- cells --------------------------------------------------------------------------------------
 
-TEST_CASE("the weights of a home are splines whose slopes are differences of the next lower ones") {
+TEST_CASE("the weights of a cell are splines whose slopes are differences of the next lower ones") {
     const auto check = []<int l>(std::integral_constant<int, l>) {
         Random random;
         const double h = 0.01;
         for (int sample = 0; sample < 100; ++sample) {
-            const double middle = 0.5 * (Homes<l>::low + Homes<l>::high),
+            const double middle = 0.5 * (Stencil<l>::low + Stencil<l>::high),
                          d = middle + 0.49 * random();
-            const HomeWeights<l, double> S(d), before(d - h), after(d + h);
+            const StencilWeights<l, double> S(d), before(d - h), after(d + h);
             double sum = 0;
             for (int k = 0; k <= l; ++k) {
-                const double below = k > 0 ? S.half[k - 1] : 0, above = k < l ? S.half[k] : 0;
-                sum += S.node[k];
-                CHECK(std::fabs(S.node[k] - common::spline(l, d - k - Homes<l>::first)) <= 2 * eps);
-                CHECK(std::fabs((after.node[k] - before.node[k]) / (2 * h) - (below - above)) <=
+                const double below = k > 0 ? S.half(k - 1) : 0, above = k < l ? S.half(k) : 0;
+                sum += S.node(k);
+                CHECK(std::fabs(S.node(k) - common::spline(l, d - k - Stencil<l>::first)) <=
+                      2 * eps);
+                CHECK(std::fabs((after.node(k) - before.node(k)) / (2 * h) - (below - above)) <=
                       2 * eps / h);
             }
             for (int k = 0; k < l; ++k) {
-                const double at = d - k - Homes<l>::first - 0.5;
-                CHECK(std::fabs(S.half[k] - common::spline(l - 1, at)) <= 2 * eps);
+                const double at = d - k - Stencil<l>::first - 0.5;
+                CHECK(std::fabs(S.half(k) - common::spline(l - 1, at)) <= 2 * eps);
             }
             CHECK(std::fabs(sum - 1) <= 2 * eps);
         }
@@ -63,37 +64,38 @@ TEST_CASE("the weights of a home are splines whose slopes are differences of the
     check(std::integral_constant<int, 2>{});
 }
 
-TEST_CASE("sorted particles lie between the borders of their homes in their old order") {
+TEST_CASE("sorted particles lie between the borders of their cells in their old order") {
     Random random;
     for (const Grid& grid : meshes()) {
         const auto check = [&]<int l>(std::integral_constant<int, l>) {
             Particles particles = travelers(grid, 2000, dt, 0.9, false, random);
-            for (std::size_t p = 0; p < 2000; ++p) particles.vy_p[p] = real(static_cast<long>(p));
+            for (std::size_t p = 0; p < 2000; ++p) particles.uy_p[p] = real(static_cast<long>(p));
             const Particles start = particles;
             sort(grid, l, particles);
-            const long columns = Homes<l>::count(grid.x), rows = Homes<l>::count(grid.z);
+            const long columns = Stencil<l>::cells(grid.x), rows = Stencil<l>::cells(grid.z);
             REQUIRE(particles.first_of_node.size() == index(columns * rows + 1));
             CHECK(particles.first_of_node.front() == 0);
             CHECK(particles.first_of_node.back() == 2000);
             double outside = 0;
             long wrong = 0;
-            for (long home = 0; home < columns * rows; ++home) {
-                const long i = home % columns, j = home / columns;
-                for (int k = particles.first_of_node[index(home)];
-                     k < particles.first_of_node[index(home + 1)]; ++k) {
+            for (long cell = 0; cell < columns * rows; ++cell) {
+                const long i = cell % columns, j = cell / columns;
+                for (int k = particles.first_of_node[index(cell)];
+                     k < particles.first_of_node[index(cell + 1)]; ++k) {
                     const auto p = static_cast<std::size_t>(k),
-                               from = static_cast<std::size_t>(particles.vy_p[p]);
+                               from = static_cast<std::size_t>(particles.uy_p[p]);
                     wrong += particles.x_p[p] != start.x_p[from] ||
                              particles.z_p[p] != start.z_p[from] ||
-                             particles.vx_p[p] != start.vx_p[from] ||
-                             particles.vz_p[p] != start.vz_p[from];
-                    wrong += k > particles.first_of_node[index(home)] &&
-                             particles.vy_p[p] <= particles.vy_p[p - 1];
+                             particles.ux_p[p] != start.ux_p[from] ||
+                             particles.uz_p[p] != start.uz_p[from];
+                    wrong += k > particles.first_of_node[index(cell)] &&
+                             particles.uy_p[p] <= particles.uy_p[p - 1];
                     const double d_x = (particles.x_p[p] - grid.x.low) / grid.x.spacing() - real(i),
                                  d_z = (particles.z_p[p] - grid.z.low) / grid.z.spacing() - real(j);
                     for (const double beyond :
-                         {Homes<l>::low_of(grid.x, i) - d_x, d_x - Homes<l>::high_of(grid.x, i),
-                          Homes<l>::low_of(grid.z, j) - d_z, d_z - Homes<l>::high_of(grid.z, j)})
+                         {Stencil<l>::low_of(grid.x, i) - d_x, d_x - Stencil<l>::high_of(grid.x, i),
+                          Stencil<l>::low_of(grid.z, j) - d_z,
+                          d_z - Stencil<l>::high_of(grid.z, j)})
                         outside = std::max(outside, beyond);
                 }
             }
@@ -235,14 +237,14 @@ TEST_CASE("a path cut in pieces gives the sum of their currents and ends at the 
         CHECK(largest(grid, electric, J) <= 400 * eps);
         // Each carries its name.
         for (auto* particles : {&at_once, &cut}) {
-            particles->vx_p = particles->vz_p = std::vector<double>(200, 0.0);
+            particles->ux_p = particles->uz_p = std::vector<double>(200, 0.0);
         }
         const auto ordered = [&](const Particles& moved) {
             Particles all = no_particles();
-            std::vector<std::size_t> names(moved.vy_p.size());
+            std::vector<std::size_t> names(moved.uy_p.size());
             for (std::size_t p = 0; p < names.size(); ++p) names[p] = p;
             std::sort(names.begin(), names.end(),
-                      [&](std::size_t a, std::size_t b) { return moved.vy_p[a] < moved.vy_p[b]; });
+                      [&](std::size_t a, std::size_t b) { return moved.uy_p[a] < moved.uy_p[b]; });
             for (const std::size_t p : names) add(all, moved.x_p[p], moved.z_p[p], {0, 0, 0});
             return all;
         };
@@ -255,10 +257,10 @@ TEST_CASE("free particles end where the images of their straight flights do") {
     for_each_setting([&](const Grid& grid, long order, bool relativistic) {
         Particles particles = travelers(grid, 400, dt, 0.8, relativistic, random);
         for (std::size_t p = 0; p < 400; ++p) {
-            particles.vy_p[p] = 1e-3 * real(static_cast<long>(p));  // a name that stays
+            particles.uy_p[p] = 1e-3 * real(static_cast<long>(p));  // a name that stays
             if (p % 16 == 0) particles.z_p[p] = grid.z.low, particles.x_p[p] = grid.x.low;
-            if (p % 9 == 0) particles.vx_p[p] = 0;
-            if (p % 16 == 8) particles.vz_p[p] = 0;
+            if (p % 9 == 0) particles.ux_p[p] = 0;
+            if (p % 16 == 8) particles.uz_p[p] = 0;
         }
         const Particles start = particles;
         double error = 0;
@@ -266,7 +268,7 @@ TEST_CASE("free particles end where the images of their straight flights do") {
         for (int step = 1; step <= 30; ++step) {
             current_of_step(grid, nothing(grid), dt, order, relativistic, electric, particles);
             for (std::size_t p = 0; p < 400; ++p) {
-                const auto s = static_cast<std::size_t>(std::lround(1e3 * particles.vy_p[p]));
+                const auto s = static_cast<std::size_t>(std::lround(1e3 * particles.uy_p[p]));
                 const Vector v = true_velocity(start, s, relativistic);
                 const auto check = [&](const common::Axis& axis, double from, double v_0,
                                        double u_0, double x, double u) {
@@ -278,10 +280,10 @@ TEST_CASE("free particles end where the images of their straight flights do") {
                     wrong += std::fabs(u) != std::fabs(u_0);
                     wrong += (axis.periodic || at_wall > 1e-12) && u != seen.sign * u_0;
                 };
-                check(grid.x, start.x_p[s], v[0], start.vx_p[s], particles.x_p[p],
-                      particles.vx_p[p]);
-                check(grid.z, start.z_p[s], v[2], start.vz_p[s], particles.z_p[p],
-                      particles.vz_p[p]);
+                check(grid.x, start.x_p[s], v[0], start.ux_p[s], particles.x_p[p],
+                      particles.ux_p[p]);
+                check(grid.z, start.z_p[s], v[2], start.uz_p[s], particles.z_p[p],
+                      particles.uz_p[p]);
             }
         }
         CHECK(wrong == 0);
@@ -293,14 +295,14 @@ TEST_CASE("a particle moves the same in any crowd and the currents of a crowd ad
     Random random;
     for (const Grid& grid : meshes()) {
         for (const long order : {1, 2}) {
-            const PushField push = random_push(grid, 0.05, 0.5, random);
+            const InterleavedField push = random_push(grid, 0.05, 0.5, random);
             for (int count = 1; count <= 17; ++count) {
                 Particles crowd = no_particles();
                 for (int p = 0; p < count; ++p) {
                     add(crowd, grid.x.at(3.25 + 0.2 * random()), grid.z.at(2.25 + 0.2 * random()),
                         0.15 * random.vector());
                 }
-                sort(grid, order, crowd);  // all share a home and keep their order
+                sort(grid, order, crowd);  // all share a cell and keep their order
                 const Particles start = crowd;
                 VectorField J = current_of_step(grid, push, dt, order, true, electric, crowd);
                 long differ = 0;
@@ -323,7 +325,7 @@ TEST_CASE("all species together give the sum of their currents smoothed and with
     for (const Grid& grid : meshes()) {
         for (const long order : {1, 2}) {
             for (const SmoothingSettings smoothing : {SmoothingSettings{0, true}, {2, true}}) {
-                const PushField push = random_push(grid, 0.01, 0.1, random);
+                const InterleavedField push = random_push(grid, 0.01, 0.1, random);
                 std::vector<Particles> species;
                 VectorField expected(grid), J(grid);
                 for (const double q : {0.7, -0.4}) {
@@ -402,7 +404,7 @@ TEST_CASE("one and two and three threads give the same particles and currents to
             for (const int threads : {1, 2, 3}) {
                 common::set_thread_count(threads);
                 Random random;
-                const PushField push = random_push(grid, 0.02, 0.5, random);
+                const InterleavedField push = random_push(grid, 0.02, 0.5, random);
                 moved.push_back(travelers(grid, 20000, dt, 0.45, true, random));
                 for (int step = 0; step < 2; ++step) {
                     currents.push_back(
@@ -410,8 +412,8 @@ TEST_CASE("one and two and three threads give the same particles and currents to
                 }
                 sort(grid, order, moved.back());
                 std::vector<Moments> moments(1, Moments(grid));
-                count_moments(push, grid, dt, {true, order, true}, {moved.back()},
-                              implicit_moment::detail::Images::plasma, moments);
+                deposit_charge_and_current(push, grid, dt, {true, order, true}, {moved.back()},
+                                           Images::plasma, moments);
                 counted.push_back(moments[0]);
                 CHECK(identical(moved.back(), moved[0]));
                 CHECK(currents[currents.size() - 2].all == currents[0].all);
@@ -440,25 +442,25 @@ U pushed(const Vector& u, const Vector& E, const Vector& B, double half_kick, do
 
 }  // namespace
 
-TEST_CASE("a magnetic field turns u by twice the arc tangent of its angle and keeps its length") {
+TEST_CASE("a magnetic field rotates u by twice the arc tangent of its angle and keeps its length") {
     Random random;
     for (const bool relativistic : {false, true}) {
         for (int sample = 0; sample < 300; ++sample) {
             const Vector u = 3 * random.vector(), B = 2 * random.vector();
             const double k = 1.5 * random(), per_c2 = per_c_squared(relativistic),
                          gamma = std::sqrt(1 + per_c2 * u.squaredNorm());
-            const Vector turned = vector(pushed(u, {0, 0, 0}, B, k, per_c2));
+            const Vector rotated = vector(pushed(u, {0, 0, 0}, B, k, per_c2));
             const Eigen::AngleAxisd turn(-2 * std::atan(k * B.norm() / (c * gamma)),
                                          B.normalized());
-            CHECK((turned - turn * u).norm() <= 8 * eps * u.norm());
-            CHECK(std::fabs(turned.norm() / u.norm() - 1) <= 4 * eps);
-            CHECK((vector(pushed(turned, {0, 0, 0}, B, -k, per_c2)) - u).norm() <=
+            CHECK((rotated - turn * u).norm() <= 8 * eps * u.norm());
+            CHECK(std::fabs(rotated.norm() / u.norm() - 1) <= 4 * eps);
+            CHECK((vector(pushed(rotated, {0, 0, 0}, B, -k, per_c2)) - u).norm() <=
                   8 * eps * u.norm());
         }
     }
 }
 
-TEST_CASE("in crossed fields a slow particle turns exactly about the E x B drift") {
+TEST_CASE("in crossed fields a slow particle rotates exactly about the E x B drift") {
     Random random;
     for (int sample = 0; sample < 300; ++sample) {
         const Vector B = random.vector() + Vector(0, 2, 0), u = random.vector(),
@@ -487,7 +489,7 @@ TEST_CASE("a constant electric field accelerates u at a constant rate at any spe
 TEST_CASE("particles are pushed by the field where they are and then moved with the new velocity") {
     Random random;
     for_each_setting([&](const Grid& grid, long order, bool relativistic) {
-        const PushField push = random_push(grid, 0.02, 0.4, random);
+        const InterleavedField push = random_push(grid, 0.02, 0.4, random);
         Particles particles = travelers(grid, 500, dt, 0.5, relativistic, random);
         sort(grid, order, particles);
         const Particles start = particles;
@@ -508,8 +510,8 @@ TEST_CASE("particles are pushed by the field where they are and then moved with 
             };
             error = worst({error, apart(grid.x, particles.x_p[p], grid.x.at(x.s)),
                            apart(grid.z, particles.z_p[p], grid.z.at(z.s)),
-                           std::fabs(particles.vy_p[p] - u[1]), flips(particles.vx_p[p], u[0]),
-                           flips(particles.vz_p[p], u[2])});
+                           std::fabs(particles.uy_p[p] - u[1]), flips(particles.ux_p[p], u[0]),
+                           flips(particles.uz_p[p], u[2])});
         }
         CHECK(error <= 32 * eps);
     });
@@ -522,7 +524,7 @@ TEST_CASE("linear fields are gathered exactly where the splines are linear") {
     const Grid grid = meshes()[3];
     const Vector E_0 = random.vector(), E_1 = random.vector(), E_2 = random.vector();
     const Vector B_0 = random.vector(), B_1 = random.vector(), B_2 = random.vector();
-    PushField push(index(grid.size()));
+    InterleavedField push(index(grid.size()));
     for (long j = -1; j <= grid.z.cells + 1; ++j) {
         for (long i = -1; i <= grid.x.cells + 1; ++i) {
             const auto at = [&](const Vector& a, const Vector& b, const Vector& d, long n,
@@ -559,7 +561,7 @@ TEST_CASE("linear fields are gathered exactly where the splines are linear") {
     }
 }
 
-// Within a home the gathered field is at most quadratic, so that central differences are exact.
+// Within a cell the gathered field is at most quadratic, so that central differences are exact.
 TEST_CASE("the gathered gradient is the gradient of the gathered potential and div B is zero") {
     Random random;
     for (const Grid& grid : meshes()) {
@@ -574,7 +576,7 @@ TEST_CASE("the gathered gradient is the gradient of the gathered potential and d
         curl_of_electric(grid, A.all.data(), B.all.data());
         fill_ghosts(grid, electric, E);
         fill_ghosts(grid, magnetic, B);
-        const PushField push = pack(grid, E, B);
+        const InterleavedField push = pack(grid, E, B);
         for (const long order : {1, 2}) {
             for (int sample = 0; sample < 300; ++sample) {
                 const double middle = order == 1 ? 0.5 : 0;
@@ -598,7 +600,7 @@ TEST_CASE("the work of the current is that of the field gathered along the paths
     for_each_setting([&](const Grid& grid, long order, bool relativistic) {
         const Particles start = travelers(grid, 300, dt, 0.999, relativistic, random);
         const VectorField E = random.field(grid, electric, 1);
-        const PushField push = pack(grid, E, VectorField(grid));
+        const InterleavedField push = pack(grid, E, VectorField(grid));
         Particles particles = start;
         const VectorField J =
             current_of_step(grid, nothing(grid), dt, order, relativistic, electric, particles);
@@ -641,7 +643,7 @@ TEST_CASE("kicks do the work of the current in a uniform field and within cells 
                 }
             }
             fill_ghosts(grid, electric, E);
-            const PushField push = pack(grid, E, VectorField(grid));
+            const InterleavedField push = pack(grid, E, VectorField(grid));
             Particles particles = no_particles();
             for (int p = 0; p < 500; ++p) {
                 const double x = wave ? std::floor(4 * (1 + random())) + 0.5 + 0.3 * random()
@@ -695,7 +697,7 @@ TEST_CASE("half a step and half a step back undo each other and turn by half the
             const Eigen::AngleAxisd turn(-2 * std::atan(0.5 * k * B.norm() / (c * gamma)),
                                          B.normalized());
             CHECK((vector(now) - turn * kicked).norm() <= 16 * eps);
-            back_half_step(now, at, k, per_c2);
+            half_step_back(now, at, k, per_c2);
             CHECK((vector(now) - u).norm() <= 16 * eps);
         }
     }
@@ -705,14 +707,12 @@ TEST_CASE("moments are the sums over particles and images with the velocities of
     Random random;
     for_each_setting([&](const Grid& grid, long order, bool relativistic) {
         for (const int sign : {+1, -1}) {
-            const PushField push = random_push(grid, 0.1, 0.5, random);
+            const InterleavedField push = random_push(grid, 0.1, 0.5, random);
             Particles particles = travelers(grid, 300, dt, 0.9, relativistic, random);
             sort(grid, order, particles);
             std::vector<Moments> moments(1, Moments(grid));
-            count_moments(push, grid, dt, {true, order, relativistic}, {particles},
-                          sign > 0 ? implicit_moment::detail::Images::plasma
-                                   : implicit_moment::detail::Images::conductor,
-                          moments);
+            deposit_charge_and_current(push, grid, dt, {true, order, relativistic}, {particles},
+                                       sign > 0 ? Images::plasma : Images::conductor, moments);
             const double half_kick = 0.5 * dt * particles.q_p / particles.m_p,
                          per_c2 = per_c_squared(relativistic);
             VectorField J(grid);
@@ -721,7 +721,7 @@ TEST_CASE("moments are the sums over particles and images with the velocities of
             for (std::size_t p = 0; p < particles.x_p.size(); ++p) {
                 const double s = in_cells(grid.x, particles.x_p[p]),
                              t = in_cells(grid.z, particles.z_p[p]);
-                U now{particles.vx_p[p], particles.vy_p[p], particles.vz_p[p]};
+                U now{particles.ux_p[p], particles.uy_p[p], particles.uz_p[p]};
                 half_step(now, felt(grid, push, order, s, t), half_kick, per_c2);
                 const Vector u = vector(now);
                 const double gamma = std::sqrt(1 + per_c2 * u.squaredNorm());
@@ -731,11 +731,11 @@ TEST_CASE("moments are the sums over particles and images with the velocities of
                 const double q = particles.q_p / grid.cell_area() / gamma;
                 const auto node_x = spline_and_images(grid.x, order, false, sign, s),
                            node_z = spline_and_images(grid.z, order, false, sign, t);
-                // Linear splines put a particle on a border into the home above it.
+                // Linear splines put a particle on a border into the cell above it.
                 const auto half = [&](const common::Axis& axis, double at) {
-                    const long home = order == 1 ? Homes<1>::of(axis, at) : 0;
+                    const long cell = order == 1 ? Stencil<1>::cell_of(axis, at) : 0;
                     const double inside =
-                        order == 1 ? std::clamp(at, real(home) + 1e-9, real(home) + 1 - 1e-9) : at;
+                        order == 1 ? std::clamp(at, real(cell) + 1e-9, real(cell) + 1 - 1e-9) : at;
                     return spline_and_images(axis, order - 1, true, -sign, inside);
                 };
                 add_product(grid, q * u[0], half(grid.x, s), node_z, J.x());
@@ -769,8 +769,8 @@ TEST_CASE("the energy of a slow particle has no error of cancellation") {
         add(particle, grid.x.at(2.3), grid.z.at(3.1), {u, 0, 0});
         sort(grid, 2, particle);
         std::vector<Moments> moments(1, Moments(grid));
-        count_moments(nothing(grid), grid, dt, {true, 2, true}, {particle},
-                      implicit_moment::detail::Images::plasma, moments);
+        deposit_charge_and_current(nothing(grid), grid, dt, {true, 2, true}, {particle},
+                                   Images::plasma, moments);
         const double expected = 0.5 * particle.m_p * u * u * (1 - 0.25 * u * u);
         CHECK(std::fabs(moments[0].kinetic_energy / expected - 1) <= 1e-12);
     }

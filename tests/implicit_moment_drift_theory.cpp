@@ -11,26 +11,38 @@
 #include <utility>
 #include <vector>
 
-#include "implicit_moment/setup/shear_layer.hpp"
 #include "implicit_moment/theory/drift_dispersion.hpp"
+#include "tests/support/shear_layer.hpp"
 
 namespace {
 
 using common::Complex;
+using facts::shear_layer_growth;
 using implicit_moment::CurrentSheet;
 using implicit_moment::drift_dispersion;
-using implicit_moment::fastest_local_wave;
-using implicit_moment::fastest_over_k;
 using implicit_moment::fastest_over_z;
+using implicit_moment::fastest_wave;
 using implicit_moment::local_root;
 using implicit_moment::LocalPlasma;
 using implicit_moment::LocalWave;
 using implicit_moment::lower_hybrid_frequency;
 using implicit_moment::plasma_at;
-using implicit_moment::shear_layer_growth;
 
 const double pi = std::numbers::pi;
 const Complex i(0.0, 1.0);
+
+// The fastest growing local wave at height z, of any wave number.
+LocalWave fastest_over_k(const CurrentSheet& sheet, double z) {
+    const LocalPlasma plasma = plasma_at(sheet, z);
+    const double unit = lower_hybrid_frequency(plasma) / plasma.v_i;
+    return fastest_wave([&](double k) { return local_root(sheet, z, k); }, 0.05 * unit, 4 * unit);
+}
+
+// The fastest growing local wave of the sheet.
+LocalWave fastest_local_wave(const CurrentSheet& sheet) {
+    return fastest_wave([&](double z) { return fastest_over_k(sheet, z); },
+                        implicit_moment::lowest_z, implicit_moment::highest_z);
+}
 
 // The sheet of the talk, with T_i / T_e.
 CurrentSheet thin_sheet(double temperature_ratio, double background = 0) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "implicit_moment/output/diagnostics.hpp"
+#include "implicit_moment/output/unit_flux_profile.hpp"
 #include "tests/support/any_fields.hpp"
 #include "tests/support/any_run.hpp"
 #include "tests/support/any_summary.hpp"
@@ -90,7 +91,7 @@ TEST_CASE("a profile averages from the first step of unit flux over its time and
         const VectorField B = random.field(small, magnetic);
         const std::vector<Moments> moments = any_moments(random);
         const int before = taken;
-        watch(profile, step.time, step.flux, small, B, [&] { return ++taken, moments; });
+        record_profile(profile, step.time, step.flux, small, B, [&] { return ++taken, moments; });
         CHECK(taken - before == (step.counted ? 1 : 0));
         if (!step.counted) continue;
         for (long i = 0; i < 12; ++i) {
@@ -142,7 +143,7 @@ TEST_CASE("a profile is centered on the X-line and its B_z integrates to the flu
         moments[k].J_x.setConstant((k == 0 ? 1 : -1) * 0.3 * n0 * (k == 0 ? 0.7 : -2.5) * B0);
     }
     UnitFluxProfile profile;
-    watch(profile, 0, 1, grid, moved, [&] { return moments; });
+    record_profile(profile, 0, 1, grid, moved, [&] { return moments; });
     const ProfileColumns columns = profile_columns(profile, grid, B0);
     CHECK(std::fabs(columns.X_line - 9 * grid.x.spacing()) <= 16 * eps);
     CHECK(std::fabs(columns.flux - 1) <= 64 * eps);
@@ -219,9 +220,9 @@ TEST_CASE("a guide field is uniform and leaves the plane and the particles alone
         const Particles &p = state.plasma.species[k], &q = plain.plasma.species[k];
         CHECK(p.x_p == q.x_p);
         CHECK(p.z_p == q.z_p);
-        CHECK(p.vx_p == q.vx_p);
-        CHECK(p.vy_p == q.vy_p);
-        CHECK(p.vz_p == q.vz_p);
+        CHECK(p.ux_p == q.ux_p);
+        CHECK(p.uy_p == q.uy_p);
+        CHECK(p.uz_p == q.uz_p);
     }
     // The field has no part in the flux, nor in the quadrupole.
     CHECK(middle_row(grid, B).flux == middle_row(grid, plain_B).flux);

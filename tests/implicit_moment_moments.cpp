@@ -148,8 +148,8 @@ TEST_CASE("continuity of charge and of momentum is exact in continuous time") {
         const auto flown = [&](double t) {
             Particles particles = start;
             for (std::size_t p = 0; p < particles.x_p.size(); ++p) {
-                particles.x_p[p] += t * particles.vx_p[p];
-                particles.z_p[p] += t * particles.vz_p[p];
+                particles.x_p[p] += t * particles.ux_p[p];
+                particles.z_p[p] += t * particles.uz_p[p];
             }
             sort(grid, particles);
             return particles;
@@ -216,7 +216,7 @@ TEST_CASE("the work done on particles is the work of the deposited current also 
             // of the field equations.
             const VectorKind& kind = conductor ? electric : current;
             const VectorField E = random.field(grid, kind, 1);
-            const PushField push = pack(grid, E, VectorField(grid));
+            const InterleavedField push = pack(grid, E, VectorField(grid));
             Moments moments(grid);
             if (conductor) {
                 deposit_moments(particles, grid, VectorField(grid), 0.1, moments);
@@ -253,7 +253,7 @@ TEST_CASE("the gathered gradient is the gradient of the gathered potential and d
         curl_of_electric(grid, A.all.data(), B.all.data());
         fill_ghosts(grid, electric, E);
         fill_ghosts(grid, magnetic, B);
-        const PushField push = pack(grid, E, B);
+        const InterleavedField push = pack(grid, E, B);
         const double tolerance = 2 * eps / h / dz / dz;
         for (int sample = 0; sample < 300; ++sample) {
             const long i = std::lround(4 * (1 + random())), j = std::lround(3.5 * (1 + random()));

@@ -17,19 +17,19 @@ namespace {
 using namespace facts;
 
 // Moves with at least as many sub-steps as given.
-Particles one_by_one(const Grid& grid, const PushField& push, double dt, int at_least,
+Particles one_by_one(const Grid& grid, const InterleavedField& push, double dt, int at_least,
                      const Particles& start) {
     Particles moved = start;
     for (std::size_t p = 0; p < start.x_p.size(); ++p) {
         Velocity<double> v{};
         for (int parts = at_least; parts <= 1024; parts *= 2) {
             moved.x_p[p] = start.x_p[p], moved.z_p[p] = start.z_p[p];
-            v = {start.vx_p[p], start.vy_p[p], start.vz_p[p]};
+            v = {start.ux_p[p], start.uy_p[p], start.uz_p[p]};
             if (move_one(grid, push, tight, start.q_p / start.m_p, dt, parts, moved.x_p[p],
                          moved.z_p[p], v))
                 break;
         }
-        moved.vx_p[p] = v.x, moved.vy_p[p] = v.y, moved.vz_p[p] = v.z;
+        moved.ux_p[p] = v.x, moved.uy_p[p] = v.y, moved.uz_p[p] = v.z;
     }
     return moved;
 }
@@ -41,7 +41,7 @@ Particles one_by_one(const Grid& grid, const PushField& push, double dt, int at_
 TEST_CASE("moved particles satisfy the midpoint rule to the tolerance of the mover") {
     Random random;
     const Grid grid = meshes()[0];
-    const PushField push = random_push(grid, 0.3, 0.5, random);
+    const InterleavedField push = random_push(grid, 0.3, 0.5, random);
     for (const double tolerance : {1e-4, 1e-14}) {
         const Particles start = anywhere(grid, 3000, 0.5, random);
         Particles particles = start;
@@ -70,7 +70,7 @@ TEST_CASE("moved particles satisfy the midpoint rule to the tolerance of the mov
 TEST_CASE("eight at once and one by one find the same step also at walls") {
     Random random;
     for (const Grid& grid : meshes()) {
-        const PushField push = random_push(grid, 0.2, 0.5, random);
+        const InterleavedField push = random_push(grid, 0.2, 0.5, random);
         const Particles start = anywhere(grid, 3000, 0.5, random);
         Particles particles = start;
         const MoverReport report = move_particles(push, grid, 0.4, tight, particles);
@@ -88,7 +88,7 @@ TEST_CASE("eight at once and one by one find the same step also at walls") {
 TEST_CASE("a magnetic field does no work") {
     Random random;
     for (const Grid& grid : meshes()) {
-        const PushField push = random_push(grid, 0, 2, random);
+        const InterleavedField push = random_push(grid, 0, 2, random);
         for (int sample = 0; sample < 5; ++sample) {
             const Particles start = anywhere(grid, 2000, 0.5, random);
             Particles particles = start;
@@ -107,7 +107,7 @@ TEST_CASE("in uniform fields a step is the E x B drift and a turn by twice the a
     Random random;
     const Grid grid = meshes()[0];
     const Vector B(0.3, -0.5, 0.4), E(0.02, 0.03, 0.05), b = B.normalized();
-    const PushField push = uniform(grid, E, B);
+    const InterleavedField push = uniform(grid, E, B);
     for (const double dt : {0.01, 0.3, 1.5}) {
         const Particles start = anywhere(grid, 500, 0.1, random);
         Particles particles = start;
@@ -130,16 +130,16 @@ TEST_CASE("steps are undone by steps with velocity and magnetic field reversed")
     const VectorField E = random.field(grid, electric, 0.3);
     VectorField B = random.field(grid, magnetic, 0.5), reversed = B;
     reversed.all = -B.all;
-    const PushField forward = pack(grid, E, B), backward = pack(grid, E, reversed);
+    const InterleavedField forward = pack(grid, E, B), backward = pack(grid, E, reversed);
     for (int sample = 0; sample < 200; ++sample) {
         const Particles start = anywhere(grid, 1, 0.5, random);
         Particles particle = start;
-        for (const PushField* push : {&forward, &backward}) {
+        for (const InterleavedField* push : {&forward, &backward}) {
             for (int step = 0; step < 4; ++step) {
                 move_particles(*push, grid, 0.3, tight, particle);
                 sort(grid, particle);
             }
-            for (auto* v : {&particle.vx_p, &particle.vy_p, &particle.vz_p}) v->front() *= -1;
+            for (auto* v : {&particle.ux_p, &particle.uy_p, &particle.uz_p}) v->front() *= -1;
         }
         CHECK(difference(grid, start, particle) <= 2e-14);
     }
@@ -158,12 +158,12 @@ TEST_CASE("a particle that would cross several cells in a step is followed in su
             B.y()[grid.index(i, j)] = 0.3 * std::sin(x + z);
         }
     }
-    const PushField push = pack(grid, E, B);
+    const InterleavedField push = pack(grid, E, B);
     for (const double cells : {2.5, 4.0, 8.0}) {
         Particles particles = anywhere(grid, 50, 0, random);
         for (std::size_t p = 0; p < 50; ++p) {
             const double angle = pi * random(), v = cells * grid.x.spacing();
-            particles.vx_p[p] = v * std::cos(angle), particles.vz_p[p] = v * std::sin(angle);
+            particles.ux_p[p] = v * std::cos(angle), particles.uz_p[p] = v * std::sin(angle);
         }
         const Particles start = particles;
         const MoverReport report = move_particles(push, grid, 1, MoverSettings{}, particles);
@@ -182,7 +182,7 @@ TEST_CASE("a field that is not a number is reported as lost particles") {
         for (const Vector& E : {Vector(bad, bad, bad), Vector(0, bad, 0)}) {
             std::vector<Particles> species{anywhere(grid, 100, 0.1, random)};
             Particles same = species[0];
-            const PushField push = uniform(grid, E, {0, 0.1, 0});
+            const InterleavedField push = uniform(grid, E, {0, 0.1, 0});
             CHECK(move_particles(push, grid, 0.3, MoverSettings{}, same).lost == 100);
             CHECK_THROWS_AS(move_particles(push, grid, 0.3, MoverSettings{}, species),
                             common::NumericalError);
@@ -196,7 +196,7 @@ TEST_CASE("a field that overwhelms everything is reported as lost particles") {
     for (const Grid& grid : meshes()) {
         for (const double huge : {1e12, 1e18, 1e30, 1e200}) {
             Particles particles = anywhere(grid, 100, 0.1, random);
-            const PushField push = uniform(grid, {huge, huge, huge}, {0, 0, 0});
+            const InterleavedField push = uniform(grid, {huge, huge, huge}, {0, 0, 0});
             CHECK(move_particles(push, grid, 0.3, MoverSettings{}, particles).lost == 100);
         }
     }
@@ -207,12 +207,12 @@ TEST_CASE("a field that overwhelms everything is reported as lost particles") {
 TEST_CASE("without fields particles bounce between walls like light between mirrors") {
     Random random;
     for (const Grid& grid : meshes()) {
-        const PushField push = uniform(grid, {0, 0, 0}, {0, 0, 0});
+        const InterleavedField push = uniform(grid, {0, 0, 0}, {0, 0, 0});
         Particles particles = anywhere(grid, 400, 0.9, random);
         for (std::size_t p = 0; p < 400; ++p) {  // some in corners, some along walls
             if (p % 16 == 0) particles.z_p[p] = grid.z.low, particles.x_p[p] = grid.x.high();
-            if (p % 9 == 0) particles.vx_p[p] = 0;
-            particles.vy_p[p] = static_cast<double>(p);  // a name that stays
+            if (p % 9 == 0) particles.ux_p[p] = 0;
+            particles.uy_p[p] = static_cast<double>(p);  // a name that stays
         }
         const Particles start = particles;
         double error = 0;
@@ -229,9 +229,9 @@ TEST_CASE("without fields particles bounce between walls like light between mirr
                 wrong += !(x >= axis.low && x <= axis.high() && std::fabs(v) == std::fabs(v_0));
             };
             for (std::size_t p = 0; p < 400; ++p) {
-                const auto s = static_cast<std::size_t>(particles.vy_p[p]);
-                check(grid.x, start.x_p[s], start.vx_p[s], particles.x_p[p], particles.vx_p[p]);
-                check(grid.z, start.z_p[s], start.vz_p[s], particles.z_p[p], particles.vz_p[p]);
+                const auto s = static_cast<std::size_t>(particles.uy_p[p]);
+                check(grid.x, start.x_p[s], start.ux_p[s], particles.x_p[p], particles.ux_p[p]);
+                check(grid.z, start.z_p[s], start.uz_p[s], particles.z_p[p], particles.uz_p[p]);
             }
         }
         CHECK(wrong == 0);
@@ -246,7 +246,7 @@ TEST_CASE("a particle that lies on a wall and is pressed against it stays there"
             Particles particle = no_particles();
             add(particle, grid.x.at(2.3), grid.z.low + depth, {0.1, 0.2, 0});
             sort(grid, particle);
-            const PushField push = uniform(grid, {0, 0, -E}, {0, 0, 0});
+            const InterleavedField push = uniform(grid, {0, 0, -E}, {0, 0, 0});
             CHECK(move_particles(push, grid, 0.3, tight, particle).lost == 0);
             CHECK(particle.z_p[0] >= grid.z.low);
             CHECK(particle.z_p[0] <= grid.z.low + depth + 1e-6);
@@ -271,7 +271,7 @@ TEST_CASE("gyration at a reflecting wall drives no current and keeps the density
                 add(particles, 4 * common::radical_inverse(p, 2), 8 * common::radical_inverse(p, 3),
                     thermal * Vector(normal(5), normal(7), normal(11)));
             }
-            const PushField push =
+            const InterleavedField push =
                 uniform(grid, {0, 0, 0}, {along_x ? turn : 0, along_x ? 0 : turn, 0});
             double density = 0, flow = 0;
             for (int step = 0; step < 600; ++step) {
@@ -293,7 +293,7 @@ TEST_CASE("gyration at a reflecting wall drives no current and keeps the density
 
 TEST_CASE("particles cross the periodic seam and stay inside the mesh") {
     const Grid grid = meshes()[0];
-    const PushField push = uniform(grid, {0, 0, 0}, {0, 0, 0});
+    const InterleavedField push = uniform(grid, {0, 0, 0}, {0, 0, 0});
     for (const double x : {grid.x.low, grid.x.high(), std::nextafter(grid.x.high(), 0.0)}) {
         for (const double v : {0.0, 1e-300, -1e-300, 1e-17, -1e-17, 0.5, -0.5, 9.0, -9.0}) {
             Particles particle = no_particles();
@@ -304,7 +304,7 @@ TEST_CASE("particles cross the periodic seam and stay inside the mesh") {
             CHECK(particle.x_p[0] < grid.x.high());
             CHECK(apart(grid.x, particle.x_p[0], x + v * 0.3) <= 4 * eps);
             CHECK(apart(grid.z, particle.z_p[0], grid.z.at(2) + v * 0.3) <= 8 * eps);
-            CHECK(particle.vx_p[0] == v);
+            CHECK(particle.ux_p[0] == v);
         }
     }
 }
@@ -316,7 +316,7 @@ TEST_CASE("one and two and three threads give the same particles and moments to 
         for (const int threads : {1, 2, 3}) {
             common::set_thread_count(threads);
             Random random;
-            const PushField push = random_push(grid, 0.2, 0.5, random);
+            const InterleavedField push = random_push(grid, 0.2, 0.5, random);
             Particles& particles = moved.emplace_back(anywhere(grid, 5000, 0.5, random));
             for (int step = 0; step < 3; ++step) {
                 move_particles(push, grid, 0.4, MoverSettings{}, particles);

@@ -194,9 +194,9 @@ TEST_CASE("Newton and GMRES agree on the reconnected flux" * doctest::descriptio
     CHECK(summary["conservation"]["largest_energy_drift"]["value"].get<double>() <= 0.003);
 }
 
-TEST_CASE("a warm magnetized plasma keeps its energy however fast it turns" *
+TEST_CASE("a warm magnetized plasma keeps its energy however fast it rotates" *
           doctest::description("physics")) {
-    // Electrons of the true mass at Debye lengths far below a cell. With the current turned on the
+    // Electrons of the true mass at Debye lengths far below a cell. With the current rotated on the
     // mesh instead of particle by particle the plasma with B_x = 0.01 has three times its energy at
     // the end.
     const std::string warm =

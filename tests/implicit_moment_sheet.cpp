@@ -210,7 +210,9 @@ TEST_CASE("growth rate and frequency and mode are read off a history that has th
     const std::string folder = room("sheet_history");
     common::History history(folder + "/history.dat");
     std::vector<common::Column> columns{{"time_Omega_ci", "1/Omega_ci"}};
-    for (const common::Column& column : SheetDiagnostics::columns()) columns.push_back(column);
+    common::Row sheet;
+    SheetDiagnostics(parameters).add(FieldState(parameters.grid), sheet);
+    for (const common::Column& column : sheet.columns) columns.push_back(column);
     history.columns(columns);
     const double gamma = 1.7, omega = 6.5;
     for (int n = 0; n <= 800; ++n) {

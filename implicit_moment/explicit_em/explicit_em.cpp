@@ -6,17 +6,16 @@
 // Run:   build/explicit_em
 // Run:   build/explicit_em implicit_moment/cases/explicit_two_stream.toml particles.order=2
 //
-// Reading order: step.hpp; then home_weights.hpp, push_particles.hpp, follow_path.hpp, yee_field.hpp. What it
+// Reading order: step.hpp; then home_weights.hpp, push_particles.hpp, deposit_current.hpp, yee_field.hpp. What it
 // shares with implicit_moment.cpp: plasma, set-ups, walls, records; `diff` shows the rest.
 #include <optional>
 
 #include "common/run/start.hpp"
-#include "implicit_moment/explicit_em/leapfrog_state.hpp"
 #include "implicit_moment/explicit_em/setup/check_leapfrog.hpp"
+#include "implicit_moment/explicit_em/setup/leapfrog_state.hpp"
 #include "implicit_moment/explicit_em/step.hpp"
 #include "implicit_moment/output/record.hpp"
-#include "implicit_moment/output/write_output.hpp"
-#include "implicit_moment/theory/compare_with_theory.hpp"
+#include "implicit_moment/setup/describe_case.hpp"
 
 namespace {
 
@@ -35,7 +34,6 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     const common::CommandLine command = common::read_command_line(argc, argv, info, table);
     validate(parameters);
     refuse_unstable(parameters);
-    if (parameters.wave != "none") theory_of_mode(parameters);
     const Scales scales = scales_of(parameters);
     if (!common::start_run(
             info, command, table,
@@ -46,35 +44,40 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     common::Run& run = *holder;
 
     // 2. Particles and fields at t = 0.
+    const Grid& grid = parameters.grid;
+    const LeapfrogSettings& settings = parameters.leapfrog;
+    const double dt = parameters.dt;
     State state = leapfrog_state(parameters);
-    Leapfrog leapfrog(parameters);
-    const auto plasma_moments = [&](const State& now) {
-        return moments_now(leapfrog, now, detail::Images::plasma);
+    std::vector<Particles>& particles = state.plasma.species;
+    LeapfrogScratch scratch(grid);
+    const auto moments_with = [&](Images images) {
+        return find_moments(grid, dt, settings, particles, images, scratch);
     };
-    Recorder recorder(parameters, state, plasma_moments, run.history);
+    Recorder recorder(
+        parameters, state, [&](const State&) { return moments_with(Images::plasma); }, run.history);
 
     // 3. The loop.
-    const double dt = parameters.dt;
     const long steps = scales.steps;
     long step = 0;
-    if (run.restarting()) run.restore(state, step);
-    std::vector<Particles>& particles = state.plasma.species;
+    Checkpoint checkpoint{state, recorder.profile};
+    if (run.restarting()) run.restore(checkpoint, step);
     while (run.not_finished(step, steps)) {
-        pack_push_field(leapfrog, state.field);    // E^n, B^n
-        if (step % parameters.history_steps == 0)  // the row of t^n
-            recorder.record(step, state, moments_now(leapfrog, state), run);
-        take_step(leapfrog, state.field, particles);  // u, J^{n+1/2}; x, E, B^{n+1}
+        interleave_field(grid, parameters.field.smoothing, state.field, scratch);  // E^n, B^n
+        if (step % parameters.history_steps == 0)                                  // the row of t^n
+            recorder.record(step, state, moments_with(Images::conductor), run);
+        take_step(grid, dt, settings, parameters.field.smoothing, scratch, particles,
+                  state.field);  // u, J^{n+1/2}; x, E, B^{n+1}
         ++step;
-        run.end_of_step(step, steps, static_cast<double>(step) * dt, state);
+        run.end_of_step(step, steps, double(step) * dt, checkpoint);
     }
 
     // 4. The last row, the results against theory, summary.json.
     if (step == steps) {
-        pack_push_field(leapfrog, state.field);
-        recorder.record(step, state, moments_now(leapfrog, state), run);
+        interleave_field(grid, parameters.field.smoothing, state.field, scratch);
+        recorder.record(step, state, moments_with(Images::conductor), run);
         recorder.finish(state, run);
     }
-    return run.finish(step, static_cast<double>(state.plasma.count()));
+    return run.finish(step, double(state.plasma.count()));
 }
 
 }  // namespace

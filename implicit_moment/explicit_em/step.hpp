@@ -1,66 +1,63 @@
-// The step of explicit_em, call by call, and what it keeps between steps besides its state. The row of
-// t^n belongs between packing the field and moving the particles.
+// The step of explicit_em, call by call. The row of t^n belongs between interleaving the field and
+// moving the particles.
 #pragma once
 
 #include <vector>
 
 #include "common/step_clock.hpp"
-#include "implicit_moment/explicit_em/count_moments.hpp"
-#include "implicit_moment/explicit_em/sort_by_home.hpp"
+#include "implicit_moment/explicit_em/deposit_charge_and_current.hpp"
+#include "implicit_moment/explicit_em/sort_by_cell.hpp"
 #include "implicit_moment/explicit_em/yee_field.hpp"
-#include "implicit_moment/setup/initial_state.hpp"
 
 namespace implicit_moment {
 
-/// Nothing of it is state: all is made anew in every step.
-struct Leapfrog {
-    const Case& parameters;
-    PushField push;           // E^n and B^n, where particles feel them
-    VectorField J, smoothed;  // J^{n+1/2}; E^n smoothed as J is
-    Field scratch;
+/// What a run keeps between steps besides its state; all is made anew in every step.
+struct LeapfrogScratch {
+    InterleavedField field;  // E^n and B^n, where particles feel them
+    InterleaveScratch interleave;
+    VectorField J;  // J^{n+1/2}
     CurrentScratch current;
     SortScratch sort;
-    std::vector<Moments> now;
 
-    explicit Leapfrog(const Case& w) : parameters(w), J(w.grid), smoothed(w.grid) {}
+    explicit LeapfrogScratch(const Grid& grid) : interleave(grid), J(grid) {}
 };
 
-/// Packs E^n and B^n for the particles.
+/// Interleaves E^n and B^n for the particles. out: scratch.field
 template <class Clock = common::NoClock>
-void pack_push_field(Leapfrog& run, const FieldState& field, Clock&& clock = {}) {
-    pack_push_field(run.parameters.grid, run.parameters.field.smoothing, field, run.smoothed,
-                    run.scratch, run.push);
+void interleave_field(const Grid& grid, const SmoothingSettings& smoothing, const FieldState& field,
+                      LeapfrogScratch& scratch, Clock&& clock = {}) {
+    interleave_field(grid, smoothing, field.E, field.B, scratch.interleave, scratch.field);
     clock.lap("field");
 }
 
 /// From t^n to t^{n+1}.
-/// in:     run.push of t^n
-/// in/out: field and particles
+/// in:     scratch.field of t^n
+/// in/out: particles and field
 /// errors: NumericalError when a particle crosses more than a cell
 template <class Clock = common::NoClock>
-void take_step(Leapfrog& run, FieldState& field, std::vector<Particles>& species,
-               Clock&& clock = {}) {
-    const Case& w = run.parameters;
+void take_step(const Grid& grid, double dt, const LeapfrogSettings& settings,
+               const SmoothingSettings& smoothing, LeapfrogScratch& scratch,
+               std::vector<Particles>& particles, FieldState& field, Clock&& clock = {}) {
     // [step]
-    move_particles(run.push, w.grid, w.dt, w.leapfrog, w.field.smoothing, species, run.current,
-                   run.J);  // u^{n+1/2}, x^{n+1}, J^{n+1/2}
+    move_particles(scratch.field, grid, dt, settings, smoothing, particles, scratch.current,
+                   scratch.J);  // u^{n+1/2}, x^{n+1}, J^{n+1/2}
     clock.lap("push");
-    advance_field(w.grid, w.dt, run.J, field);  // E^{n+1}, B^{n+1}
+    advance_field(grid, dt, scratch.J, field);  // E^{n+1}, B^{n+1}
     clock.lap("field");
-    sort_by_home(w.grid, w.leapfrog.order, run.sort, species);
+    sort_by_cell(grid, settings.order, scratch.sort, particles);
     clock.lap("sort");
     // [/step]
 }
 
-/// The moments of t^n. in: run.push of t^n; what is behind a wall.
-inline const std::vector<Moments>& moments_now(Leapfrog& run, const State& state,
-                                               detail::Images images = detail::Images::conductor) {
-    const std::vector<Particles>& species = state.plasma.species;
-    if (run.now.size() != species.size())
-        run.now.assign(species.size(), Moments(run.parameters.grid));
-    count_moments(run.push, run.parameters.grid, run.parameters.dt, run.parameters.leapfrog,
-                  species, images, run.now);
-    return run.now;
+/// The moments of each species at t^n, for output.
+/// in:     scratch.field of t^n; images, what is behind a wall
+inline std::vector<Moments> find_moments(const Grid& grid, double dt,
+                                         const LeapfrogSettings& settings,
+                                         const std::vector<Particles>& particles, Images images,
+                                         const LeapfrogScratch& scratch) {
+    std::vector<Moments> moments(particles.size(), Moments(grid));
+    deposit_charge_and_current(scratch.field, grid, dt, settings, particles, images, moments);
+    return moments;
 }
 
 }  // namespace implicit_moment

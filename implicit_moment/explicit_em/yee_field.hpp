@@ -4,9 +4,8 @@
 #include <cmath>
 
 #include "common/parallel.hpp"
-#include "implicit_moment/field_operator.hpp"
-#include "implicit_moment/push_field.hpp"
-#include "implicit_moment/smooth.hpp"
+#include "implicit_moment/units.hpp"
+#include "implicit_moment/vector_field.hpp"
 
 namespace implicit_moment {
 
@@ -31,54 +30,48 @@ inline double leapfrog_frequency(double omega_p, double dt) {
 
 namespace detail {
 
-// Calls work(begin, end) for the points of rows 0..N, block by block.
+// Calls work(n) for the points of rows 0..N, block by block of rows.
 template <class Work>
-inline void for_each_stretch(const Grid& grid, const Work& work) {
+inline void for_each_point_in_blocks(const Grid& grid, const Work& work) {
     common::for_each_block(
         grid.z.cells + 1,
         [&](int, long first, long last) {
             for (long j = first; j < last; ++j) {
-                const long begin = grid.index(0, j);
-                work(begin, begin + grid.x.cells + 1);
+                const long begin = grid.index(0, j), end = begin + grid.x.cells + 1;
+#pragma omp simd
+                for (long n = begin; n < end; ++n) work(n);
             }
         },
         grid.size());
 }
 
 // B -= c dt curl E
-inline void turn_magnetic(const Grid& grid, double dt, const VectorField& E, VectorField& B) {
+inline void advance_magnetic(const Grid& grid, double dt, const VectorField& E, VectorField& B) {
     const long s = grid.stride();
     const double per_x = c * dt / grid.x.spacing(), per_z = c * dt / grid.z.spacing();
     const double *E_x = E.x(), *E_y = E.y(), *E_z = E.z();
     double *B_x = B.x(), *B_y = B.y(), *B_z = B.z();
-    for_each_stretch(grid, [=](long begin, long end) {
-#pragma omp simd
-        for (long n = begin; n < end; ++n) {
-            B_x[n] += per_z * (E_y[n + s] - E_y[n]);
-            B_y[n] -= per_z * (E_x[n + s] - E_x[n]) - per_x * (E_z[n + 1] - E_z[n]);
-            B_z[n] -= per_x * (E_y[n + 1] - E_y[n]);
-        }
+    for_each_point_in_blocks(grid, [=](long n) {
+        B_x[n] += per_z * (E_y[n + s] - E_y[n]);
+        B_y[n] -= per_z * (E_x[n + s] - E_x[n]) - per_x * (E_z[n + 1] - E_z[n]);
+        B_z[n] -= per_x * (E_y[n + 1] - E_y[n]);
     });
     fill_ghosts(grid, magnetic, B);
 }
 
 // E += c dt curl B - 4 pi dt J
-inline void turn_electric(const Grid& grid, double dt, const VectorField& B, const VectorField& J,
-                          VectorField& E) {
+inline void advance_electric(const Grid& grid, double dt, const VectorField& B,
+                             const VectorField& J, VectorField& E) {
     const long s = grid.stride();
     const double per_x = c * dt / grid.x.spacing(), per_z = c * dt / grid.z.spacing();
     const double per_J = 4 * pi * dt;
     const double *B_x = B.x(), *B_y = B.y(), *B_z = B.z();
     const double *J_x = J.x(), *J_y = J.y(), *J_z = J.z();
     double *E_x = E.x(), *E_y = E.y(), *E_z = E.z();
-    for_each_stretch(grid, [=](long begin, long end) {
-#pragma omp simd
-        for (long n = begin; n < end; ++n) {
-            E_x[n] -= per_z * (B_y[n] - B_y[n - s]) + per_J * J_x[n];
-            E_y[n] +=
-                per_z * (B_x[n] - B_x[n - s]) - per_x * (B_z[n] - B_z[n - 1]) - per_J * J_y[n];
-            E_z[n] += per_x * (B_y[n] - B_y[n - 1]) - per_J * J_z[n];
-        }
+    for_each_point_in_blocks(grid, [=](long n) {
+        E_x[n] -= per_z * (B_y[n] - B_y[n - s]) + per_J * J_x[n];
+        E_y[n] += per_z * (B_x[n] - B_x[n - s]) - per_x * (B_z[n] - B_z[n - 1]) - per_J * J_y[n];
+        E_z[n] += per_x * (B_y[n] - B_y[n - 1]) - per_J * J_z[n];
     });
     fill_ghosts(grid, electric, E);
 }
@@ -94,32 +87,9 @@ inline void turn_electric(const Grid& grid, double dt, const VectorField& B, con
 /// exact:  div B is unchanged to round-off, and with a J that conserves charge so is
 ///         div E - 4 pi rho; waves in vacuum have yee_frequency and are not damped.
 inline void advance_field(const Grid& grid, double dt, const VectorField& J, FieldState& field) {
-    detail::turn_magnetic(grid, 0.5 * dt, field.E, field.B);
-    detail::turn_electric(grid, dt, field.B, J, field.E);
-    detail::turn_magnetic(grid, 0.5 * dt, field.E, field.B);
-}
-
-/// Packs what pushes particles: B^n, and E^n smoothed as J is.
-inline void pack_push_field(const Grid& grid, const SmoothingSettings& smoothing,
-                            const FieldState& field, VectorField& smoothed, Field& scratch,
-                            PushField& push) {
-    const bool smooth_it = smoothing.passes > 0;
-    if (smooth_it) {
-        smoothed.all = field.E.all;
-        smooth(grid, electric, smoothing, smoothed.all.data(), scratch);
-    }
-    const VectorField &E = smooth_it ? smoothed : field.E, &B = field.B;
-    push.resize(static_cast<std::size_t>(grid.size()));
-    const double *E_x = E.x(), *E_y = E.y(), *E_z = E.z(), *B_x = B.x(), *B_y = B.y(), *B_z = B.z();
-    common::for_each_block(
-        grid.size(),
-        [&](int, long begin, long end) {
-            for (long n = begin; n < end; ++n) {
-                push[static_cast<std::size_t>(n)] = {E_x[n], E_y[n], E_z[n],
-                                                     B_x[n], B_y[n], B_z[n]};
-            }
-        },
-        grid.size());
+    detail::advance_magnetic(grid, 0.5 * dt, field.E, field.B);
+    detail::advance_electric(grid, dt, field.B, J, field.E);
+    detail::advance_magnetic(grid, 0.5 * dt, field.E, field.B);
 }
 
 }  // namespace implicit_moment

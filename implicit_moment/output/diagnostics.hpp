@@ -18,7 +18,7 @@ namespace implicit_moment {
 inline double field_energy(const Grid& grid, const VectorField& f) {
     double sum = 0;
     for (long a = 0; a < 3; ++a) {
-        sum += detail::interior(grid, f.all.data() + a * grid.size()).squaredNorm();
+        sum += interior(grid, f.all.data() + a * grid.size()).squaredNorm();
     }
     return sum * grid.cell_area() / (8 * pi);
 }
@@ -27,13 +27,13 @@ inline double field_energy(const Grid& grid, const VectorField& f) {
 inline double largest_divergence(const Grid& grid, const VectorField& B, Field& scratch) {
     scratch.setZero(grid.size());
     divergence_of_magnetic(grid, B.all.data(), scratch);
-    return detail::interior(grid, scratch.data()).cwiseAbs().maxCoeff();
+    return interior(grid, scratch.data()).cwiseAbs().maxCoeff();
 }
 
 /// Root mean square of div E - 4 pi rho on the nodes inside, in units of 4 pi e n0 = 1.
 inline double gauss_error(const Grid& grid, const Field& gauss) {
-    const auto inside = detail::interior(grid, gauss.data());
-    return std::sqrt(inside.squaredNorm() / static_cast<double>(inside.size()));
+    const auto inside = interior(grid, gauss.data());
+    return std::sqrt(inside.squaredNorm() / double(inside.size()));
 }
 
 /// A_y on nodes from B, zero at node (0, 0):  B_z = dA_y/dx,  B_x = -dA_y/dz. Its contours are
@@ -96,7 +96,7 @@ inline double quadrupole(const Grid& grid, const VectorField& B, long X_point) {
             sum += above[right] - above[left] - below[right] + below[left];
         }
     }
-    return sum / (4.0 * static_cast<double>(reach_x * reach_z));
+    return sum / (4.0 * double(reach_x * reach_z));
 }
 
 /// Complex amplitude of the wave exp(i k x) in one field component, (2/N) sum f exp(-i k x), at
@@ -105,20 +105,20 @@ inline double quadrupole(const Grid& grid, const VectorField& B, long X_point) {
 inline std::complex<double> mode_amplitude(const Grid& grid, const FieldState& field,
                                            const std::string& name, long mode_x, long mode_z) {
     const bool is_B = name[0] == 'B';
-    const auto a = static_cast<std::size_t>(name[2] - 'x');
+    const long a = name[2] - 'x';
     const Place place = (is_B ? magnetic : electric).place[a];
-    const double* f = (is_B ? field.B : field.E).all.data() + static_cast<long>(a) * grid.size();
-    const double k_x = 2 * pi * static_cast<double>(mode_x) / static_cast<double>(grid.x.cells);
-    const double k_z = 2 * pi * static_cast<double>(mode_z) / static_cast<double>(grid.z.cells);
+    const double* f = (is_B ? field.B : field.E).all.data() + a * grid.size();
+    const double k_x = 2 * pi * double(mode_x) / double(grid.x.cells);
+    const double k_z = 2 * pi * double(mode_z) / double(grid.z.cells);
     std::complex<double> sum = 0;
     for (long j = 0; j < grid.z.cells; ++j) {
         for (long i = 0; i < grid.x.cells; ++i) {
-            const double x = static_cast<double>(i) + (place.half_x ? 0.5 : 0.0);
-            const double z = static_cast<double>(j) + (place.half_z ? 0.5 : 0.0);
+            const double x = double(i) + (place.half_x ? 0.5 : 0.0);
+            const double z = double(j) + (place.half_z ? 0.5 : 0.0);
             sum += f[grid.index(i, j)] * std::polar(1.0, -k_x * x - k_z * z);
         }
     }
-    return sum * (2.0 / static_cast<double>(grid.x.cells * grid.z.cells));
+    return sum * (2.0 / double(grid.x.cells * grid.z.cells));
 }
 
 }  // namespace implicit_moment

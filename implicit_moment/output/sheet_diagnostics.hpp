@@ -19,11 +19,10 @@ namespace implicit_moment {
 class RowModes {
    public:
     explicit RowModes(const Grid& grid) : waves_(sheet_modes, grid.x.cells) {
-        const double cells = static_cast<double>(grid.x.cells);
+        const double cells = double(grid.x.cells);
         for (long i = 0; i < grid.x.cells; ++i) {
             for (long m = 1; m <= sheet_modes; ++m) {
-                const double turns =
-                    static_cast<double>(m) * (static_cast<double>(i) + 0.5) / cells;
+                const double turns = double(m) * (double(i) + 0.5) / cells;
                 waves_(m - 1, i) = std::polar(2 / cells, -2 * pi * turns);
             }
         }
@@ -32,7 +31,7 @@ class RowModes {
     /// out:    (mode, row), rows 0 .. N-1.
     /// exact:  for f = sum_m |a_m| cos(k_m x + arg a_m)
     Eigen::MatrixXcd operator()(const Grid& grid, const double* f) const {
-        return waves_ * detail::interior(grid, f);
+        return waves_ * interior(grid, f);
     }
     /// The amplitudes of one function of x alone.
     Eigen::VectorXcd operator()(const Eigen::VectorXd& f) const { return waves_ * f; }
@@ -43,7 +42,7 @@ class RowModes {
 
 /// Root mean square over z of the amplitude of every mode.
 inline Eigen::VectorXd rms_over_rows(const Eigen::MatrixXcd& amplitude) {
-    return (amplitude.rowwise().squaredNorm() / static_cast<double>(amplitude.cols())).cwiseSqrt();
+    return (amplitude.rowwise().squaredNorm() / double(amplitude.cols())).cwiseSqrt();
 }
 
 /// How far the sheet has moved along z, column by column: the height of the part where B_y > 0,
@@ -89,38 +88,27 @@ class SheetDiagnostics {
         rows_ = row(0.75) - edge_ + 1;
     }
 
-    static std::vector<common::Column> columns() {
-        std::vector<common::Column> all;
-        const auto add = [&](const std::string& name, const std::string& unit, long count) {
-            for (long m = 1; m <= count; ++m) all.push_back({name + std::to_string(m), unit});
-        };
-        add("E_", "B0*v_A/c", sheet_modes);
-        add("B_", "B0", sheet_modes);
-        add("displacement_", "L", displacement_modes);
-        for (const std::string row : {"upper_", "lower_"}) {
-            for (long m = 1; m <= sheet_modes; ++m) {
-                for (const char* part : {"_re", "_im"})
-                    all.push_back({row + std::to_string(m) + part, "B0*v_A/c"});
-            }
-        }
-        return all;
-    }
-
-    /// Appends one row's numbers.
-    void measure(const FieldState& field, std::vector<double>& row) const {
+    /// Adds the columns and their values.
+    void add(const FieldState& field, common::Row& row) const {
+        const std::string E_unit = "B0*v_A/c";
         const Eigen::MatrixXcd E = modes_(grid_, field.E.x()) / (B0_ * B0_ / c);
         const Eigen::MatrixXcd B = modes_(grid_, field.B.y()) / B0_;
-        for (const double rms : rms_over_rows(E)) row.push_back(rms);
-        for (const double rms : rms_over_rows(B)) row.push_back(rms);
+        const Eigen::VectorXd E_rms = rms_over_rows(E), B_rms = rms_over_rows(B);
         const Eigen::VectorXcd moved = modes_(displacement(grid_, field.B.y())) / L_;
-        for (long m = 0; m < displacement_modes; ++m) row.push_back(std::abs(moved[m]));
-        for (const long j : {grid_.z.cells - edge_ - rows_ + 1, edge_}) {
-            const Eigen::VectorXcd mean = E.middleCols(j, rows_).rowwise().mean();
-            for (const std::complex<double>& a : mean) {
-                row.push_back(a.real());
-                row.push_back(a.imag());
+        const auto mode = [](const char* name, long m) { return name + std::to_string(m + 1); };
+        for (long m = 0; m < sheet_modes; ++m) row.add(mode("E_", m), E_unit, E_rms[m]);
+        for (long m = 0; m < sheet_modes; ++m) row.add(mode("B_", m), "B0", B_rms[m]);
+        for (long m = 0; m < displacement_modes; ++m)
+            row.add(mode("displacement_", m), "L", std::abs(moved[m]));
+        const auto add_edge = [&](const char* name, long first) {
+            const Eigen::VectorXcd mean = E.middleCols(first, rows_).rowwise().mean();
+            for (long m = 0; m < sheet_modes; ++m) {
+                row.add(mode(name, m) + "_re", E_unit, mean[m].real());
+                row.add(mode(name, m) + "_im", E_unit, mean[m].imag());
             }
-        }
+        };
+        add_edge("upper_", grid_.z.cells - edge_ - rows_ + 1);
+        add_edge("lower_", edge_);
     }
 
    private:
@@ -138,8 +126,8 @@ inline void write_profile(const std::string& folder, long step, const Case& para
     const HarrisCase h = harris_of(parameters);
     const HarrisSheet sheet = harris_sheet(h);
     const double J0 = c * sheet.B0 / (4 * pi * h.thickness);
-    const double v_i = std::sqrt(2 * sheet.T_i), rows = static_cast<double>(nodes_z(grid));
-    const double time = static_cast<double>(step) * parameters.dt * sheet.Omega_ci;
+    const double v_i = std::sqrt(2 * sheet.T_i), rows = double(nodes_z(grid));
+    const double time = double(step) * parameters.dt * sheet.Omega_ci;
     const Moments &ions = moments[0], &electrons = moments[1];
     std::array<std::vector<double>, 8> data;
     for (long j = 0; j < nodes_z(grid); ++j) {
@@ -151,7 +139,7 @@ inline void write_profile(const std::string& folder, long step, const Case& para
         const double B_y = 0.5 * (mean(field.B.y()) + mean(field.B.y() - grid.stride())) / sheet.B0;
         const std::array<double, 8> row{
             time,
-            (grid.z.at(static_cast<double>(j)) - grid.z.at(0.5 * (rows - 1))) / h.thickness,
+            (grid.z.at(double(j)) - grid.z.at(0.5 * (rows - 1))) / h.thickness,
             B_y,
             (J_i + J_e) / J0,
             n_i / n0,

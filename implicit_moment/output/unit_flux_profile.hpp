@@ -1,9 +1,9 @@
 // Figure 10 of the talk: the plasma along the middle row z = 0 when the reconnected flux is one
 // B0 d_i.
 //
-// A run watches its flux. At the first step of unit flux it keeps B_z, and from there on it adds up
-// charge and current of both species, to divide by the number of steps at the end: an average over
-// particle noise. The sums are part of the state of a run and go into its checkpoints.
+// The recorder watches the flux. At the first step of unit flux it keeps B_z, and from there on it
+// adds up charge and current of both species, to divide by the number of steps at the end: an average
+// over particle noise. The sums belong to the recorder and go into the checkpoints beside the state.
 #pragma once
 
 #include <algorithm>
@@ -11,10 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "common/run/summary.hpp"
 #include "common/run/writers.hpp"
-#include "implicit_moment/deposit_moments.hpp"
-#include "implicit_moment/setup/load_plasma.hpp"
+#include "implicit_moment/moments.hpp"
+#include "implicit_moment/units.hpp"
 
 namespace implicit_moment {
 
@@ -43,19 +42,18 @@ void archive(Archive& a, UnitFluxProfile& profile) {
     a("profile.B_z", profile.B_z);
 }
 
-/// Looks at one step: begins at the first one of unit flux, adds the steps of the averaging time.
+/// Records one step: begins at the first one of unit flux, adds the steps of the averaging time.
 /// in:     time [1/Omega_ci], flux [B0 d_i] and B of the step; an even number of cells in z;
 ///         take_moments(), called only when they are needed, gives rho and J of ions and electrons
 ///         at the time of the step, ghosts filled.
 /// note:   rho lives on nodes and is brought to the x-edges, where J_x and B_z live.
 template <class TakeMoments>
-void watch(UnitFluxProfile& profile, double time, double flux, const Grid& grid,
-           const VectorField& B, const TakeMoments& take_moments) {
+void record_profile(UnitFluxProfile& profile, double time, double flux, const Grid& grid,
+                    const VectorField& B, const TakeMoments& take_moments) {
     const bool over = time > profile.begin + profile_averaging_time * (1 + 1e-9);
     if (profile.steps == 0 ? !(flux >= 1) : over) return;
 
-    const auto count = static_cast<std::size_t>(grid.x.cells);
-    const long row = grid.index(0, grid.z.cells / 2);
+    const long count = grid.x.cells, row = grid.index(0, grid.z.cells / 2);
     if (profile.steps == 0) {
         profile.begin = time;
         profile.B_z.assign(B.z() + row, B.z() + row + grid.x.cells);
@@ -66,8 +64,8 @@ void watch(UnitFluxProfile& profile, double time, double flux, const Grid& grid,
     }
     const std::vector<Moments> moments = take_moments();
     const Moments &ions = moments.at(0), &electrons = moments.at(1);
-    for (std::size_t i = 0; i < count; ++i) {
-        const long n = row + static_cast<long>(i);
+    for (long i = 0; i < count; ++i) {
+        const long n = row + i;
         profile.rho_ions[i] += 0.5 * (ions.rho[n] + ions.rho[n + 1]);
         profile.rho_electrons[i] += 0.5 * (electrons.rho[n] + electrons.rho[n + 1]);
         profile.J_x_ions[i] += ions.J_x[n];
@@ -99,18 +97,18 @@ inline ProfileColumns profile_columns(const UnitFluxProfile& profile, const Grid
     for (long i = 0; i < count; ++i) {
         if (A_y < low) low = A_y, X_point = i;
         high = std::max(high, A_y);
-        A_y += profile.B_z[static_cast<std::size_t>(i)] / B0 * grid.x.spacing();
+        A_y += profile.B_z[i] / B0 * grid.x.spacing();
     }
-    columns.X_line = grid.x.at(static_cast<double>(X_point));
+    columns.X_line = grid.x.at(double(X_point));
     columns.flux = high - low;
 
     const double v_A = B0 * c;
     for (long k = 0; k < count; ++k) {
         const long from_X = k - count / 2;
-        const auto i = static_cast<std::size_t>((X_point + from_X + count) % count);
-        columns.x.push_back((static_cast<double>(from_X) + 0.5) * grid.x.spacing());
+        const long i = (X_point + from_X + count) % count;
+        columns.x.push_back((double(from_X) + 0.5) * grid.x.spacing());
         columns.v_x_electrons.push_back(profile.J_x_electrons[i] / profile.rho_electrons[i] / v_A);
-        columns.rho_ions.push_back(profile.rho_ions[i] / static_cast<double>(profile.steps) / n0);
+        columns.rho_ions.push_back(profile.rho_ions[i] / double(profile.steps) / n0);
         columns.v_x_ions.push_back(profile.J_x_ions[i] / profile.rho_ions[i] / v_A);
         columns.B_z.push_back(profile.B_z[i] / B0);
     }
@@ -127,39 +125,6 @@ inline void write_profile(const std::string& path, const UnitFluxProfile& profil
                                {"rho_ions", "e*n0", columns.rho_ions},
                                {"v_x_ions", "v_A", columns.v_x_ions},
                                {"B_z", "B0", columns.B_z}});
-}
-
-/// The profile of the GEM challenge against what bounds it. B_z: its integral from X to O is the
-/// flux, which is one. Outflow: electrons below their own Alfven speed, ions below that of the
-/// plasma upstream, and slower. Density: the sheet has left the X-line.
-/// in:     mass ratio and background of the sheet.
-/// note:   the flux of the first step is above one by what a step adds; a cell holds more.
-inline void compare_profile(const UnitFluxProfile& profile, const Grid& grid,
-                            const HarrisCase& sheet, common::Summary& summary) {
-    if (profile.steps == 0) return;
-    const ProfileColumns columns = profile_columns(profile, grid, harris_sheet(sheet).B0);
-    const auto largest = [](const std::vector<double>& values) {
-        double most = 0;
-        for (const double value : values) most = std::max(most, std::fabs(value));
-        return most;
-    };
-    const double electrons = largest(columns.v_x_electrons), ions = largest(columns.v_x_ions);
-    const auto right = static_cast<std::size_t>(grid.x.cells / 2);
-    const double density = 0.5 * (columns.rho_ions[right - 1] + columns.rho_ions[right]);
-
-    summary.result_info("profile_begin", profile.begin, "1/Omega_ci", "first step of unit flux");
-    summary.result_info("profile_end", profile.end, "1/Omega_ci", "last step of the averages");
-    summary.result_info("X_line", columns.X_line, "d_i", "measured");
-    summary.result("B_z_integral", columns.flux, "B0 d_i", 1, 2 / static_cast<double>(grid.x.cells),
-                   "exact: from X-line to O-line");
-    summary.result_within("electron_outflow", electrons, "v_A", 0, std::sqrt(sheet.mass_ratio),
-                          "Alfven speed of the electrons");
-    summary.result_within("ion_outflow", ions, "v_A", 0, 1 / std::sqrt(sheet.background),
-                          "Alfven speed upstream");
-    summary.result_within("ion_over_electron_outflow", ions / electrons, "", 0, 1,
-                          "electrons leave first");
-    summary.result_within("density_at_X_line", density, "e n0", 0, 1 + sheet.background,
-                          "initial density of the sheet");
 }
 
 }  // namespace implicit_moment

@@ -46,7 +46,7 @@ inline void write_fields(const std::string& folder, long step, const Grid& grid,
     add("A_y", "B*d_i", on_all_nodes(grid, on_nodes, A_y.data()));
     for (std::size_t a = 0; a < 3; ++a) {
         const std::string letter(1, "xyz"[a]);
-        const long offset = static_cast<long>(a) * grid.size();
+        const long offset = a * grid.size();
         add("E_" + letter, "m_i*c*omega_pi/e",
             on_all_nodes(grid, electric.place[a], field.E.all.data() + offset));
         add("B_" + letter, "m_i*c*omega_pi/e",
@@ -87,31 +87,34 @@ inline void write_fields(const std::string& folder, long step, const Grid& grid,
 }
 
 /// Writes particles_NNNNNN.dat (and .vtp): every n-th particle of each species, at most
-/// most_particles_written in all.
-inline void write_particles(const std::string& folder, long step, const Plasma& plasma, bool vtk) {
+/// most_particles_written in all; v of implicit_moment, u = gamma v of explicit_em.
+inline void write_particles(const std::string& folder, long step, const Plasma& plasma,
+                            const Case& parameters) {
     const long every = (plasma.count() + most_particles_written - 1) / most_particles_written;
     std::array<std::vector<double>, 6> data;
     for (std::size_t k = 0; k < plasma.species.size(); ++k) {
         const Particles& p = plasma.species[k];
         for (long n = 0; n < p.count(); n += every) {
-            const auto i = static_cast<std::size_t>(n);
-            const std::array<double, 6> row{
-                static_cast<double>(k), p.x_p[i], p.z_p[i], p.vx_p[i], p.vy_p[i], p.vz_p[i]};
+            const std::array<double, 6> row{double(k), p.x_p[n],  p.z_p[n],
+                                            p.ux_p[n], p.uy_p[n], p.uz_p[n]};
             for (std::size_t a = 0; a < 6; ++a) data[a].push_back(row[a]);
         }
     }
+    const bool is_u = parameters.leapfrog.chosen && parameters.leapfrog.relativistic;
+    const std::string v = is_u ? "u_" : "v_";
     common::write_table(folder + "/" + numbered("particles", step, "dat"),
                         {{"species", "", data[0]},
                          {"x", "d_i", data[1]},
                          {"z", "d_i", data[2]},
-                         {"v_x", "c", data[3]},
-                         {"v_y", "c", data[4]},
-                         {"v_z", "c", data[5]}});
-    if (vtk) {
+                         {v + "x", "c", data[3]},
+                         {v + "y", "c", data[4]},
+                         {v + "z", "c", data[5]}});
+    if (parameters.vtk) {
         const std::vector<double> zero(data[0].size(), 0.0);
-        common::write_vtp(folder + "/" + numbered("particles", step, "vtp"),
-                          {"position", "d_i", data[1], zero, data[2]}, {{"species", "", data[0]}},
-                          {{"velocity", "c", data[3], data[4], data[5]}});
+        common::write_vtp(
+            folder + "/" + numbered("particles", step, "vtp"),
+            {"position", "d_i", data[1], zero, data[2]}, {{"species", "", data[0]}},
+            {{is_u ? "momentum_per_mass" : "velocity", "c", data[3], data[4], data[5]}});
     }
 }
 

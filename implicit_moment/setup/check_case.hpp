@@ -3,13 +3,15 @@
 #pragma once
 
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <vector>
 
 #include "implicit_moment/setup/case.hpp"
 #include "implicit_moment/setup/cost.hpp"
 #include "implicit_moment/setup/initial_state.hpp"
+#include "implicit_moment/theory/compare_current_sheet.hpp"
+#include "implicit_moment/theory/compare_reconnection.hpp"
+#include "implicit_moment/theory/compare_wave.hpp"
 
 namespace implicit_moment {
 
@@ -17,11 +19,12 @@ namespace implicit_moment {
 struct SpeciesScales {
     std::string name;
     double thermal_speed = 0;  // sqrt(T/m), the largest direction [c]
-    double omega_p_dt = 0;
-    double Omega_c_dt = 0;    // at the largest B
-    double debye_length = 0;  // [d_i]
+    double omega_p_dt = 0;     // plasma frequency
+    double Omega_c_dt = 0;     // gyrofrequency at the largest B
+    double debye_length = 0;   // [d_i]
 };
 
+/// What a case comes to: scales of its species, and the size of the run.
 struct Scales {
     std::vector<SpeciesScales> species;
     double B = 0;  // largest B at the start
@@ -31,6 +34,7 @@ struct Scales {
 
 using common::format;
 
+/// The scales of a case, with densities in the middle of a sheet.
 inline Scales scales_of(const Case& w) {
     Scales s;
     const auto add = [&](const std::string& name, double density, double charge, double mass,
@@ -44,7 +48,7 @@ inline Scales scales_of(const Case& w) {
         scale.debye_length = omega_p > 0 ? scale.thermal_speed / omega_p : 0;
         s.species.push_back(scale);
     };
-    if (w.setup != "uniform") {
+    if (!w.is_uniform()) {
         const HarrisCase h = harris_of(w);
         const HarrisSheet sheet = harris_sheet(h);
         s.B = std::hypot(sheet.B0, h.guide_field * sheet.B0);
@@ -58,70 +62,51 @@ inline Scales scales_of(const Case& w) {
             add(k.name, k.density, k.charge, k.mass,
                 std::max({k.temperature_x, k.temperature_y, k.temperature_z}));
         }
-        s.particles = static_cast<long>(u.species.size()) * u.particles_per_cell * w.grid.x.cells *
-                      w.grid.z.cells;
+        s.particles =
+            long(u.species.size()) * u.particles_per_cell * w.grid.x.cells * w.grid.z.cells;
     }
     s.steps = std::lround(w.end / w.dt);
     const double krylov = 45 * 3 * 8, tensors = 40 * 8, moments = 40 * 8;
-    s.bytes = 60.0 * static_cast<double>(s.particles) +
-              static_cast<double>(w.grid.size()) * (w.leapfrog.chosen ? moments : krylov + tensors);
+    s.bytes = 60.0 * double(s.particles) +
+              double(w.grid.size()) * (w.leapfrog.chosen ? moments : krylov + tensors);
     return s;
 }
 
-/// Refuses what cannot run. errors: InputError, one sentence with the numbers and the cure.
-inline void validate(Case& w) {
-    const auto refuse = [](bool bad, const std::string& sentence) {
-        if (bad) throw common::InputError(sentence);
-    };
-    w.grid.x.periodic = w.boundary_x == "periodic";
-    w.grid.z.periodic = w.boundary_z == "periodic";
-    if (w.setup == "current_sheet") fit_mesh_to_sheet(w);
-    w.grid.x.low = -0.5 * w.grid.x.length;
-    w.grid.z.low = -0.5 * w.grid.z.length;
-    refuse(w.end / w.dt > 1e9, "time.end / time.dt is " + format(w.end / w.dt) +
-                                   " steps, more than 1e9: raise time.dt or lower time.end");
+namespace detail {
 
-    if (w.setup != "uniform") {
-        const HarrisCase h = harris_of(w);
-        const bool along = w.setup == "current_sheet";
-        refuse(
-            w.boundary_x != "periodic" || w.boundary_z != "wall",
-            "the Harris sheet needs grid.boundary_x = \"periodic\" and grid.boundary_z = \"wall\"");
-        refuse(along && w.grid.x.cells <= 2 * sheet_modes,
-               "grid.cells_x = " + std::to_string(w.grid.x.cells) + ": the first " +
-                   std::to_string(sheet_modes) + " modes along the current are followed, so take " +
-                   std::to_string(2 * sheet_modes + 1) + " or more");
-        refuse(!along && w.grid.z.cells % 2 != 0,
-               "grid.cells_z = " + std::to_string(w.grid.z.cells) +
-                   " is odd: the flux is measured on the row z = 0, so make it even");
-        refuse(h.thickness > 0.25 * w.grid.z.length,
-               "harris.thickness = " + format(h.thickness) + " d_i does not fit between walls " +
-                   format(w.grid.z.length) + " d_i apart: at most a quarter of grid.length_z");
-        const HarrisSheet sheet = harris_sheet(h);
-        const double fastest =
-            std::max({sheet.u_i, std::fabs(sheet.u_e), 3 * sheet.v_e, 3 * sheet.v_i});
-        refuse(fastest > 1,
-               "the sheet has speeds of " + format(fastest) +
-                   " c (drift or three thermal speeds), and the mover is not relativistic: raise " +
-                   w.setup + ".light_over_alfven above " + format(h.light_over_alfven * fastest));
-        if (!w.uniform.species.empty()) {
-            refuse(true, "[species." + w.uniform.species.front().name +
-                             "] belongs to plasma.setup = \"uniform\"; the Harris sheet makes its "
-                             "own ions and electrons");
-        }
-        refuse(w.wave != "none",
-               "theory.wave = \"" + w.wave + "\" needs plasma.setup = \"uniform\"");
-        // Pressure and current balance hold by construction; a wrong edit of harris_sheet ends
-        // here.
-        const double pressure = n0 * (sheet.T_i + sheet.T_e) / (sheet.B0 * sheet.B0 / (8 * pi));
-        const double current_balance =
-            n0 * (sheet.u_i - sheet.u_e) / (c * sheet.B0 / (4 * pi * h.thickness));
-        refuse(!(std::fabs(pressure - 1) < 1e-12 && std::fabs(current_balance - 1) < 1e-12),
-               "the Harris sheet is out of balance: pressure " + format(pressure) + ", current " +
-                   format(current_balance));
-        return;
+inline void validate_sheet(const Case& w) {
+    const HarrisCase h = harris_of(w);
+    refuse(w.boundary_x != "periodic" || w.boundary_z != "wall",
+           "the Harris sheet needs grid.boundary_x = \"periodic\" and grid.boundary_z = \"wall\"");
+    w.is_along_current() ? refuse_current_sheet(w) : refuse_reconnection(w);
+    refuse(h.thickness > 0.25 * w.grid.z.length,
+           "harris.thickness = " + format(h.thickness) + " d_i does not fit between walls " +
+               format(w.grid.z.length) + " d_i apart: at most a quarter of grid.length_z");
+    const HarrisSheet sheet = harris_sheet(h);
+    const double fastest =
+        std::max({sheet.u_i, std::fabs(sheet.u_e), 3 * sheet.v_e, 3 * sheet.v_i});
+    refuse(fastest > 1,
+           "the sheet has speeds of " + format(fastest) +
+               " c (drift or three thermal speeds), and the mover is not relativistic: raise " +
+               w.setup + ".light_over_alfven above " + format(h.light_over_alfven * fastest));
+    if (!w.uniform.species.empty()) {
+        refuse(true, "[species." + w.uniform.species.front().name +
+                         "] belongs to plasma.setup = \"uniform\"; the Harris sheet makes its "
+                         "own ions and electrons");
     }
+    refuse(wave_of(w) != nullptr,
+           "theory.wave = \"" + w.wave + "\" needs plasma.setup = \"uniform\"");
+    // Pressure and current balance hold by construction; a wrong edit of harris_sheet ends
+    // here.
+    const double pressure = n0 * (sheet.T_i + sheet.T_e) / (sheet.B0 * sheet.B0 / (8 * pi));
+    const double current_balance =
+        n0 * (sheet.u_i - sheet.u_e) / (c * sheet.B0 / (4 * pi * h.thickness));
+    refuse(!(std::fabs(pressure - 1) < 1e-12 && std::fabs(current_balance - 1) < 1e-12),
+           "the Harris sheet is out of balance: pressure " + format(pressure) + ", current " +
+               format(current_balance));
+}
 
+inline void validate_uniform(const Case& w) {
     const UniformCase& u = w.uniform;
     const bool seeded = u.wave_B_x != 0 || u.wave_B_y != 0 || u.wave_B_z != 0 || u.wave_E_x != 0 ||
                         u.wave_E_y != 0 || u.wave_E_z != 0;
@@ -135,8 +120,7 @@ inline void validate(Case& w) {
     refuse(w.boundary_z == "wall" && u.B_z != 0,
            "uniform.B_z = " + format(u.B_z) +
                " would cross the conducting walls normal to z: make it 0");
-    const double k_x = static_cast<double>(u.mode_x) / w.grid.x.length,
-                 k_z = static_cast<double>(u.mode_z) / w.grid.z.length;
+    const double k_x = double(u.mode_x) / w.grid.x.length, k_z = double(u.mode_z) / w.grid.z.length;
     refuse(u.mode_x == 0 && u.mode_z == 0,
            "uniform.mode_x and uniform.mode_z are both 0: a mode needs a wave number");
     refuse(2 * std::labs(u.mode_x) > w.grid.x.cells || 2 * std::labs(u.mode_z) > w.grid.z.cells,
@@ -160,34 +144,22 @@ inline void validate(Case& w) {
     }
     refuse(u.species.empty() && !seeded,
            "an empty uniform plasma: add a [species.<name>] or seed a field with uniform.wave_E_y");
-    refuse(w.wave != "none" && w.end < 10 * w.dt,
-           "theory.wave needs at least 10 steps to measure: raise time.end above " +
-               format(10 * w.dt));
-    refuse(
-        w.wave != "none" && (u.mode_x != 0) == (u.mode_z != 0),
-        "theory.wave needs a mode along x or along z: set uniform.mode_x or uniform.mode_z to 0");
-    refuse(w.wave == "light" && !u.species.empty(),
-           "theory.wave = \"light\" is a wave in vacuum: take out the species or choose "
-           "\"transverse\"");
-    refuse(w.wave != "light" && w.wave != "none" && u.species.empty(),
-           "theory.wave = \"" + w.wave + "\" needs a [species.<name>]");
-    if (w.wave == "langmuir") {
-        refuse(std::all_of(u.species.begin(), u.species.end(),
-                           [](const SpeciesCase& s) { return s.charge == 0; }),
-               "theory.wave = \"langmuir\" needs charges: give a species a charge");
-        for (const SpeciesCase& s : u.species) {
-            refuse(s.temperature_x > 0 || s.temperature_y > 0 || s.temperature_z > 0 ||
-                       s.drift_x != 0 || s.drift_z != 0,
-                   "theory.wave = \"langmuir\" is exact for a cold plasma at rest, and species '" +
-                       s.name + "' is warm or drifts: choose \"longitudinal\"");
-        }
-    }
-    if (w.wave != "none" && w.wave != "light") {
-        const bool across = u.mode_x != 0 ? u.B_y != 0 || u.B_z != 0 : u.B_x != 0 || u.B_y != 0;
-        refuse(across,
-               "the dispersion relation is solved for B along k or zero: take out the part of "
-               "uniform.B across the mode, or theory.wave");
-    }
+    refuse_wave(w);
+}
+
+}  // namespace detail
+
+/// Refuses what cannot run. errors: InputError, one sentence with the numbers and the cure.
+inline void validate(Case& w) {
+    w.grid.x.periodic = w.boundary_x == "periodic";
+    w.grid.z.periodic = w.boundary_z == "periodic";
+    if (w.is_along_current()) fit_mesh_to_sheet(w);
+    w.grid.x.low = -0.5 * w.grid.x.length;
+    w.grid.z.low = -0.5 * w.grid.z.length;
+    refuse(w.end / w.dt > 1e9, "time.end / time.dt is " + format(w.end / w.dt) +
+                                   " steps, more than 1e9: raise time.dt or lower time.end");
+
+    w.is_uniform() ? detail::validate_uniform(w) : detail::validate_sheet(w);
 }
 
 /// Warnings with the number and the limit, for choices that run but may mislead.
@@ -215,16 +187,13 @@ inline std::vector<std::string> closure_warnings(const Case& w, const Scales& sc
                                " cells: finite-grid heating is possible, watch the energy");
         }
     }
-    if (w.setup == "current_sheet") {
+    if (w.is_along_current()) {
         for (const std::string& warning : sheet_warnings(w)) warnings.push_back(warning);
     }
-    const double largest = scales.species.empty() ? 0 : scales.B;
-    if (largest > 0) {
-        for (const SpeciesScales& s : scales.species) {
-            if (s.Omega_c_dt > 2 * pi) {
-                warnings.push_back(s.name + ": Omega_c dt = " + format(s.Omega_c_dt) +
-                                   " is above 2 pi, gyration is not followed");
-            }
+    for (const SpeciesScales& s : scales.species) {
+        if (s.Omega_c_dt > 2 * pi) {
+            warnings.push_back(s.name + ": Omega_c dt = " + format(s.Omega_c_dt) +
+                               " is above 2 pi, gyration is not followed");
         }
     }
     return warnings;
@@ -243,10 +212,10 @@ inline std::string describe_scales(const Case& w, const Scales& scales) {
                      " in x, " + w.boundary_z + " in z");
     line("steps", std::to_string(scales.steps) + " of " + format(w.dt) + " / omega_pi, c dt/dx = " +
                       format(c * w.dt / dx) + ", c dt/dz = " + format(c * w.dt / dz));
-    line("particles", std::to_string(scales.particles) + ", " +
-                          format(static_cast<double>(scales.particles) /
-                                 static_cast<double>(w.grid.x.cells * w.grid.z.cells)) +
-                          " per cell");
+    line("particles",
+         std::to_string(scales.particles) + ", " +
+             format(double(scales.particles) / double(w.grid.x.cells * w.grid.z.cells)) +
+             " per cell");
     if (scales.B > 0)
         line("magnetic field",
              format(scales.B) + " m_i c omega_pi/e, Omega_ci dt = " + format(scales.B * w.dt));
@@ -257,14 +226,13 @@ inline std::string describe_scales(const Case& w, const Scales& scales) {
                          format(s.thermal_speed * w.dt / dz) +
                          ", Debye length = " + format(s.debye_length) + " d_i");
     }
-    if (w.setup != "uniform" && !w.leapfrog.chosen) {
+    if (!w.is_uniform() && !w.leapfrog.chosen) {
         line("explicit instead", "about " + format(cost_ratio(harris_of(w).mass_ratio, 2)) +
                                      " times the time, by the slide's formula [COST]");
     }
     line("memory", "about " + format(scales.bytes / 1048576) + " MiB");
     const double work =
-        static_cast<double>(scales.steps) *
-        (static_cast<double>(scales.particles) + 10.0 * static_cast<double>(w.grid.size()));
+        double(scales.steps) * (double(scales.particles) + 10.0 * double(w.grid.size()));
     const double per_second = w.leapfrog.chosen ? 40e6 : 15e6;
     line("time", "about " + format(work / per_second) + " s on one core");
     return text;

@@ -38,8 +38,7 @@ inline HarrisCase harris_of(const CurrentSheetCase& s) {
 
 /// The Harris sheet of a case, across its current or along it.
 inline HarrisCase harris_of(const Case& parameters) {
-    return parameters.setup == "current_sheet" ? harris_of(parameters.current_sheet)
-                                               : parameters.harris;
+    return parameters.is_along_current() ? harris_of(parameters.current_sheet) : parameters.harris;
 }
 
 /// Sets the lengths of the mesh, which a current sheet gives in units of L.
@@ -68,7 +67,7 @@ inline std::vector<std::string> sheet_warnings(const Case& parameters) {
     const CurrentSheetCase& s = parameters.current_sheet;
     std::vector<std::string> warnings;
     const double wavelength = 2 * pi / 12.5;  // [L]
-    const double cells = wavelength * static_cast<double>(parameters.grid.x.cells) / s.length_x;
+    const double cells = wavelength * double(parameters.grid.x.cells) / s.length_x;
     if (cells < least_cells_in_wave) {
         warnings.push_back(
             "the waves of the talk, k L = 12.5, are " + common::format(cells) +
@@ -77,8 +76,8 @@ inline std::vector<std::string> sheet_warnings(const Case& parameters) {
             common::format(std::ceil(least_cells_in_wave / wavelength * s.length_x)));
     }
     const double area = s.length_x * (2 + s.background * s.length_z);  // at density n0 [L^2]
-    const double in_cell = 0.5 * static_cast<double>(s.particles) / area * s.length_x * s.length_z /
-                           static_cast<double>(parameters.grid.x.cells * parameters.grid.z.cells);
+    const double in_cell = 0.5 * double(s.particles) / area * s.length_x * s.length_z /
+                           double(parameters.grid.x.cells * parameters.grid.z.cells);
     if (in_cell < least_particles_in_cell) {
         warnings.push_back("there are " + common::format(in_cell) +
                            " particles of a species in a cell in the middle of the sheet, and "

@@ -4,7 +4,8 @@
 
 #include <cmath>
 
-#include "implicit_moment/output/unit_flux_profile.hpp"
+#include "implicit_moment/deposit_moments.hpp"
+#include "implicit_moment/mesh_modes.hpp"
 #include "implicit_moment/setup/load_plasma.hpp"
 #include "implicit_moment/sort_particles.hpp"
 
@@ -21,10 +22,10 @@ inline void harris_field(const Case& parameters, FieldState& field) {
     const double x_middle = grid.x.low + 0.5 * grid.x.length;
     Field A_y = Field::Zero(grid.size());
     for (long j = -1; j <= grid.z.cells + 1; ++j) {
-        const double z = grid.z.at(static_cast<double>(j)) - z_middle;
+        const double z = grid.z.at(double(j)) - z_middle;
         const bool wall = j == 0 || j == grid.z.cells;
         for (long i = -1; i <= grid.x.cells + 1; ++i) {
-            const double x = grid.x.at(static_cast<double>(i)) - x_middle;
+            const double x = grid.x.at(double(i)) - x_middle;
             const double island = wall
                                       ? 0
                                       : h.perturbation * B0 * std::cos(2 * pi * x / grid.x.length) *
@@ -45,7 +46,7 @@ inline void current_sheet_field(const Case& parameters, FieldState& field) {
     const Grid& grid = parameters.grid;
     const HarrisCase h = harris_of(parameters);
     const auto potential = [&](long j) {
-        const double z = grid.z.at(static_cast<double>(j)) - (grid.z.low + 0.5 * grid.z.length);
+        const double z = grid.z.at(double(j)) - (grid.z.low + 0.5 * grid.z.length);
         return -harris_sheet(h).B0 * h.thickness * std::log(std::cosh(z / h.thickness));
     };
     for (long j = 0; j < grid.z.cells; ++j) {
@@ -61,8 +62,8 @@ inline void uniform_field(const Case& parameters, FieldState& field) {
     const UniformCase& u = parameters.uniform;
     const Grid& grid = parameters.grid;
     const double degree = pi / 180;
-    const double k_x = 2 * pi * static_cast<double>(u.mode_x) / grid.x.length;
-    const double k_z = 2 * pi * static_cast<double>(u.mode_z) / grid.z.length;
+    const double k_x = 2 * pi * double(u.mode_x) / grid.x.length;
+    const double k_z = 2 * pi * double(u.mode_z) / grid.z.length;
     const bool from_z = u.mode_x != 0;
     const double A = from_z ? u.wave_B_z / k_x : (u.mode_z != 0 ? -u.wave_B_x / k_z : 0.0);
     const double A_phase = (from_z ? u.phase_B_z : u.phase_B_x) * degree;
@@ -75,7 +76,7 @@ inline void uniform_field(const Case& parameters, FieldState& field) {
     for (long m = -1; m <= grid.z.cells + 1; ++m) {
         for (long l = -1; l <= grid.x.cells + 1; ++l) {
             const long n = grid.index(l, m);
-            const double i = static_cast<double>(l), j = static_cast<double>(m);
+            const double i = double(l), j = double(m);
             potential.y()[n] =
                 A * std::sin(mode_phase(parameters, grid.x.at(i), grid.z.at(j)) + A_phase);
             field.E.x()[n] = mode(i + 0.5, j, u.wave_E_x, u.phase_E_x);
@@ -88,8 +89,8 @@ inline void uniform_field(const Case& parameters, FieldState& field) {
         for (long l = -1; l <= grid.x.cells + 1; ++l) {
             const long n = grid.index(l, m);
             field.B.x()[n] += u.B_x;
-            field.B.y()[n] += u.B_y + mode(static_cast<double>(l) + 0.5,
-                                           static_cast<double>(m) + 0.5, u.wave_B_y, u.phase_B_y);
+            field.B.y()[n] +=
+                u.B_y + mode(double(l) + 0.5, double(m) + 0.5, u.wave_B_y, u.phase_B_y);
             field.B.z()[n] += u.B_z;
         }
     }
@@ -113,11 +114,10 @@ inline void add_electrostatic_field(const Grid& grid, const MeshModes& modes, co
     fill_ghosts(grid, electric, field.E);
 }
 
-/// All that a run is, at one time: what a checkpoint holds.
+/// All that a run is, at one time.
 struct State {
     Plasma plasma;
     FieldState field;
-    UnitFluxProfile profile;  // of a Harris sheet
 };
 
 /// Names every number of the state, for writing and for reading alike.
@@ -126,25 +126,23 @@ void archive(Archive& a, State& state) {
     for (Particles& s : state.plasma.species) {
         a(s.name + ".x_p", s.x_p);
         a(s.name + ".z_p", s.z_p);
-        a(s.name + ".vx_p", s.vx_p);
-        a(s.name + ".vy_p", s.vy_p);
-        a(s.name + ".vz_p", s.vz_p);
+        a(s.name + ".ux_p", s.ux_p);
+        a(s.name + ".uy_p", s.uy_p);
+        a(s.name + ".uz_p", s.uz_p);
         a(s.name + ".first_of_node", s.first_of_node);
     }
     a("E", state.field.E.all);
     a("B", state.field.B.all);
     a("E_theta", state.field.E_theta.all);
-    archive(a, state.profile);
 }
 
 /// Particles and fields of the set-up, before E has its part that follows from the charge.
 inline State loaded_state(const Case& parameters) {
-    State state{parameters.setup == "uniform" ? load_uniform(parameters) : load_harris(parameters),
-                FieldState(parameters.grid),
-                {}};
-    if (parameters.setup == "harris") harris_field(parameters, state.field);
-    if (parameters.setup == "current_sheet") current_sheet_field(parameters, state.field);
-    if (parameters.setup == "uniform") uniform_field(parameters, state.field);
+    State state{parameters.is_uniform() ? load_uniform(parameters) : load_harris(parameters),
+                FieldState(parameters.grid)};
+    if (parameters.is_across_current()) harris_field(parameters, state.field);
+    if (parameters.is_along_current()) current_sheet_field(parameters, state.field);
+    if (parameters.is_uniform()) uniform_field(parameters, state.field);
     return state;
 }
 

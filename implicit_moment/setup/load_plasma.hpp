@@ -1,6 +1,7 @@
 // Particles at t = 0: of a Harris sheet, or of a uniform plasma with one seeded mode.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -33,6 +34,7 @@ inline HarrisSheet harris_sheet(const HarrisCase& parameters) {
     return sheet;
 }
 
+/// All species of a run.
 struct Plasma {
     std::vector<Particles> species;
 
@@ -50,11 +52,11 @@ struct Plasma {
 
 namespace detail {
 
-inline void resize(Particles& particles, long count) {
-    for (auto* f :
-         {&particles.x_p, &particles.z_p, &particles.vx_p, &particles.vy_p, &particles.vz_p}) {
-        f->resize(static_cast<std::size_t>(count));
-    }
+inline Particles make_particles(const std::string& name, double q_p, double m_p, long count) {
+    Particles particles;
+    particles.name = name, particles.q_p = q_p, particles.m_p = m_p;
+    for (auto* quantity : particles.all()) quantity->resize(count);
+    return particles;
 }
 
 }  // namespace detail
@@ -66,45 +68,39 @@ inline Plasma load_harris(const Case& parameters) {
     const HarrisCase h = harris_of(parameters);
     const Grid& grid = parameters.grid;
     const HarrisSheet sheet = harris_sheet(h);
-    const bool along_x = parameters.setup == "current_sheet";
+    const bool along_x = parameters.is_along_current();
     const double reach = std::tanh(0.5 * grid.z.length / h.thickness);
     const double in_sheet = n0 * grid.x.length * 2 * h.thickness * reach;
     const double in_background = n0 * h.background * grid.x.length * grid.z.length;
     const long pairs = h.particles / 2;
-    const long sheet_pairs =
-        std::lround(static_cast<double>(pairs) * in_sheet / (in_sheet + in_background));
-    const double weight = (in_sheet + in_background) / static_cast<double>(pairs);
+    const long sheet_pairs = std::lround(double(pairs) * in_sheet / (in_sheet + in_background));
+    const double weight = (in_sheet + in_background) / double(pairs);
     const double z_middle = grid.z.low + 0.5 * grid.z.length;
 
-    Plasma plasma;
-    plasma.species.resize(2);
+    Plasma plasma{{detail::make_particles("ions", weight, weight, pairs),
+                   detail::make_particles("electrons", -weight, weight / h.mass_ratio, pairs)}};
     Particles &ions = plasma.species[0], &electrons = plasma.species[1];
-    ions.name = "ions", ions.q_p = weight, ions.m_p = weight;
-    electrons.name = "electrons", electrons.q_p = -weight, electrons.m_p = weight / h.mass_ratio;
-    detail::resize(ions, pairs);
-    detail::resize(electrons, pairs);
-
     const common::LoadingNumbers load{parameters.loading == "quiet",
                                       static_cast<std::uint64_t>(parameters.seed)};
     common::for_each_block(pairs, [&](int, long begin, long end) {
         for (long p = begin; p < end; ++p) {
-            const auto k = static_cast<std::size_t>(p);
             const bool drifting = p < sheet_pairs;
-            const double u_i = drifting ? sheet.u_i : 0, u_e = drifting ? sheet.u_e : 0;
             const std::uint32_t part = drifting ? 1 : 2;
             const long index = drifting ? p : p - sheet_pairs;
             const double u = 2 * load.uniform(part, 3, index) - 1;
             const double z =
                 drifting ? h.thickness * std::atanh(u * reach) : 0.5 * u * grid.z.length;
-            ions.x_p[k] = electrons.x_p[k] =
+            ions.x_p[p] = electrons.x_p[p] =
                 grid.x.at(0) + grid.x.length * load.uniform(part, 2, index);
-            ions.z_p[k] = electrons.z_p[k] = z_middle + z;
-            ions.vx_p[k] = sheet.v_i * load.gaussian(part, 5, index) + (along_x ? u_i : 0);
-            ions.vy_p[k] = sheet.v_i * load.gaussian(part, 7, index) + (along_x ? 0 : u_i);
-            ions.vz_p[k] = sheet.v_i * load.gaussian(part, 11, index);
-            electrons.vx_p[k] = sheet.v_e * load.gaussian(part, 13, index) + (along_x ? u_e : 0);
-            electrons.vy_p[k] = sheet.v_e * load.gaussian(part, 17, index) + (along_x ? 0 : u_e);
-            electrons.vz_p[k] = sheet.v_e * load.gaussian(part, 19, index);
+            ions.z_p[p] = electrons.z_p[p] = z_middle + z;
+            const auto set_u = [&](Particles& s, double v, double u_s,
+                                   std::array<unsigned, 3> primes) {
+                s.ux_p[p] = v * load.gaussian(part, primes[0], index) + (along_x ? u_s : 0);
+                s.uy_p[p] = v * load.gaussian(part, primes[1], index) + (along_x ? 0 : u_s);
+                s.uz_p[p] = v * load.gaussian(part, primes[2], index);
+            };
+            set_u(ions, sheet.v_i, drifting ? sheet.u_i : 0, {5, 7, 11});
+            set_u(electrons, sheet.v_e, drifting ? sheet.u_e : 0, {13, 17, 19});
         }
     });
     return plasma;
@@ -114,8 +110,8 @@ inline Plasma load_harris(const Case& parameters) {
 inline double mode_phase(const Case& parameters, double x, double z) {
     const Grid& grid = parameters.grid;
     return 2 * pi *
-           (static_cast<double>(parameters.uniform.mode_x) * (x - grid.x.low) / grid.x.length +
-            static_cast<double>(parameters.uniform.mode_z) * (z - grid.z.low) / grid.z.length);
+           (double(parameters.uniform.mode_x) * (x - grid.x.low) / grid.x.length +
+            double(parameters.uniform.mode_z) * (z - grid.z.low) / grid.z.length);
 }
 
 /// Loads the species of a uniform plasma; all have the same number of particles at the same
@@ -131,31 +127,26 @@ inline Plasma load_uniform(const Case& parameters) {
 
     Plasma plasma;
     for (const SpeciesCase& s : u.species) {
-        plasma.species.emplace_back();
-        Particles& particles = plasma.species.back();
-        const double weight = n0 * s.density * area / static_cast<double>(count);
-        particles.name = s.name;
-        particles.q_p = weight * s.charge;
-        particles.m_p = weight * s.mass;
-        detail::resize(particles, count);
+        const double weight = n0 * s.density * area / double(count);
+        Particles& particles = plasma.species.emplace_back(
+            detail::make_particles(s.name, weight * s.charge, weight * s.mass, count));
         const auto purpose = static_cast<std::uint32_t>(plasma.species.size());
         const double v_x = std::sqrt(s.temperature_x / s.mass),
                      v_y = std::sqrt(s.temperature_y / s.mass),
                      v_z = std::sqrt(s.temperature_z / s.mass), degree = pi / 180;
         common::for_each_block(count, [&](int, long begin, long end) {
             for (long p = begin; p < end; ++p) {
-                const auto k = static_cast<std::size_t>(p);
                 const double x = grid.x.low + grid.x.length * load.uniform(0, 2, p);
                 const double z = grid.z.low + grid.z.length * load.uniform(0, 3, p);
                 const double phase = mode_phase(parameters, x, z);
-                particles.x_p[k] = x;
-                particles.z_p[k] = z;
-                particles.vx_p[k] = s.drift_x + s.wave_x * std::cos(phase + s.phase_x * degree);
-                particles.vy_p[k] = s.drift_y + s.wave_y * std::cos(phase + s.phase_y * degree);
-                particles.vz_p[k] = s.drift_z + s.wave_z * std::cos(phase + s.phase_z * degree);
-                if (v_x > 0) particles.vx_p[k] += v_x * load.gaussian(purpose, 5, p);
-                if (v_y > 0) particles.vy_p[k] += v_y * load.gaussian(purpose, 7, p);
-                if (v_z > 0) particles.vz_p[k] += v_z * load.gaussian(purpose, 11, p);
+                particles.x_p[p] = x;
+                particles.z_p[p] = z;
+                particles.ux_p[p] = s.drift_x + s.wave_x * std::cos(phase + s.phase_x * degree);
+                particles.uy_p[p] = s.drift_y + s.wave_y * std::cos(phase + s.phase_y * degree);
+                particles.uz_p[p] = s.drift_z + s.wave_z * std::cos(phase + s.phase_z * degree);
+                if (v_x > 0) particles.ux_p[p] += v_x * load.gaussian(purpose, 5, p);
+                if (v_y > 0) particles.uy_p[p] += v_y * load.gaussian(purpose, 7, p);
+                if (v_z > 0) particles.uz_p[p] += v_z * load.gaussian(purpose, 11, p);
             }
         });
     }

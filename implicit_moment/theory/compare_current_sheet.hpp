@@ -15,6 +15,14 @@
 
 namespace implicit_moment {
 
+/// Refuses a mesh on which the modes along the current do not fit. errors: InputError with the cure.
+inline void refuse_current_sheet(const Case& w) {
+    refuse(w.grid.x.cells <= 2 * sheet_modes,
+           "grid.cells_x = " + std::to_string(w.grid.x.cells) + ": the first " +
+               std::to_string(sheet_modes) + " modes along the current are followed, so take " +
+               std::to_string(2 * sheet_modes + 1) + " or more");
+}
+
 /// The sheet as local theory wants it: lengths in L, times in 1/Omega_ci; guiding centers drift in
 /// grad B.
 ///     omega_pe/Omega_ce = (c/v_A) (m_e/m_i)^(1/2)
@@ -44,7 +52,7 @@ struct EdgeWave {
     }
 };
 
-/// Frequency of a wave exp(i k x - i omega t) between two rows, from its turn in `lag` rows.
+/// Frequency of a wave exp(i k x - i omega t) between two rows, from the change of its phase in `lag` rows.
 ///     omega = -arg sum conj(z_n) z_{n+lag} / (lag dt), both edges in one sum
 /// exact:  without noise, for |omega| lag dt < pi
 inline double edge_frequency(const EdgeWave& wave, std::size_t begin, std::size_t end,
@@ -54,7 +62,7 @@ inline double edge_frequency(const EdgeWave& wave, std::size_t begin, std::size_
         sum += std::conj(wave.upper[n]) * wave.upper[n + lag];
         sum += std::conj(wave.lower[n]) * wave.lower[n + lag];
     }
-    return -std::arg(sum) / (static_cast<double>(lag) * dt);
+    return -std::arg(sum) / (double(lag) * dt);
 }
 
 /// Mode, growth rate and frequency of the largest wave beside the fastest growing local wave of
@@ -75,21 +83,19 @@ inline void compare_current_sheet(const Case& w, const common::History& history,
     const double dt = times[1] - times[0];
 
     // Find the mode that is largest while the instability saturates.
-    const auto last = static_cast<std::size_t>(
-        std::upper_bound(times.begin(), times.end(), 7 * (1 + 1e-9)) - times.begin());
+    const long last = std::upper_bound(times.begin(), times.end(), 7 * (1 + 1e-9)) - times.begin();
     long dominant = 1;
     double largest = -1;
     std::size_t top = 0;
     for (long m = 1; m <= sheet_modes; ++m) {
         const auto a = EdgeWave(history, m).amplitude;
-        const auto at = std::max_element(a.begin(), a.begin() + static_cast<long>(last));
+        const auto at = std::max_element(a.begin(), a.begin() + long(last));
         if (*at <= largest) continue;
-        largest = *at, dominant = m, top = static_cast<std::size_t>(at - a.begin());
+        largest = *at, dominant = m, top = at - a.begin();
     }
-    const double k = 2 * pi * static_cast<double>(dominant) / w.current_sheet.length_x;
+    const double k = 2 * pi * double(dominant) / w.current_sheet.length_x;
     const double all = w.current_sheet.length_x / 4;  // figure 12 has 4 L
-    summary.result_within("dominant_mode", static_cast<double>(dominant), "", 7 * all, 11 * all,
-                          talk);
+    summary.result_within("dominant_mode", double(dominant), "", 7 * all, 11 * all, talk);
     summary.result_info("dominant_k_L", k, "1/L", "measured");
     summary.result_info("time_of_saturation", times[top], "1/Omega_ci", "measured");
 
@@ -101,12 +107,12 @@ inline void compare_current_sheet(const Case& w, const common::History& history,
     const EdgeWave wave(history, dominant);
     const common::GrowthFit fit = common::fit_growth(
         {times.data(), top + 1}, {wave.amplitude.data(), top + 1}, {2.0, 0.7, 0.1, 0.6});
-    // What grows for less than a growth time of theory is a whim of the noise.
+    // A mode that grows for less than a growth time of theory cannot be told from noise.
     if (!fit.found || (fit.end - fit.begin) * theory.gamma < 1) return;
     const std::string window = local + "; fitted from t Omega_ci = " + common::format(fit.begin) +
                                " to " + common::format(fit.end);
     summary.result_within("growth_over_theory", fit.rate / theory.gamma, "", 0.6, 1.1, window);
-    const auto row = [&](double t) { return static_cast<std::size_t>(std::lround(t / dt)); };
+    const auto row = [&](double t) { return std::lround(t / dt); };
     const std::size_t lag = std::max<std::size_t>(1, row(0.1));
     const double omega = edge_frequency(wave, row(fit.begin), row(fit.end), lag, dt);
     summary.result_within("omega_over_theory", omega / theory.omega, "", 0.8, 1.2, window);

@@ -41,8 +41,8 @@ inline double level_after(std::span<const double> times, std::span<const double>
 /// with which that phase begins and 0.7 times the maximum.
 /// exact:  for an exponential in the second phase, whatever was before
 inline common::GrowthFit second_growth(std::span<const double> times, std::span<const double> a) {
-    const auto first = static_cast<std::size_t>(
-        std::lower_bound(times.begin(), times.end(), second_phase * (1 - 1e-9)) - times.begin());
+    const long first =
+        std::lower_bound(times.begin(), times.end(), second_phase * (1 - 1e-9)) - times.begin();
     return common::fit_growth(times.subspan(first), a.subspan(first), {1.5, 0.7, 0.05, 0.9});
 }
 

@@ -94,11 +94,11 @@ namespace detail {
 
 // J_0(x), the mean of cos(x sin theta).
 inline common::Complex bessel_J0(common::Complex x) {
-    const int points = 16 + static_cast<int>(std::abs(x));
+    const int points = 16 + int(std::abs(x));
     common::Complex sum = 0;
     for (int n = 0; n < points; ++n)
         sum += std::cos(x * std::sin((n + 0.5) * std::numbers::pi / points));
-    return sum / static_cast<double>(points);
+    return sum / double(points);
 }
 
 }  // namespace detail
@@ -116,7 +116,7 @@ inline GuidingCenters guiding_centers(const LocalPlasma& plasma, double k) {
     const common::Complex ray = std::polar(1.0, -std::numbers::pi / 8);
     GuidingCenters centers;
     for (long n = std::lround(first / dt); n <= std::lround(last / dt); ++n) {
-        const double t = static_cast<double>(n) * dt;
+        const double t = double(n) * dt;
         const common::Complex s = std::exp(t - std::exp(-t)) * ray;
         const common::Complex J = detail::bessel_J0(k_rho * std::sqrt(s));
         centers.frequency.push_back(k * plasma.v_B * s);
@@ -170,12 +170,10 @@ inline LocalWave local_root(const CurrentSheet& sheet, double z, double k) {
     return {z, k, root.omega.real(), root.omega.imag(), root.found};
 }
 
-namespace detail {
-
-// The wave of largest growth rate among wave(s), low <= s <= high: the best of a scan, then golden
-// sections between its neighbors.
-template <class Wave>
-LocalWave fastest(const Wave& wave, double low, double high) {
+/// The wave of largest growth rate among wave(s), low <= s <= high: the best of a scan, then golden
+/// sections between its neighbors.
+template <class Waves>
+LocalWave fastest_wave(const Waves& wave, double low, double high) {
     constexpr int intervals = 24, sections = 12;
     const double step = (high - low) / intervals;
     LocalWave best;
@@ -198,27 +196,12 @@ LocalWave fastest(const Wave& wave, double low, double high) {
     return best;
 }
 
-}  // namespace detail
-
-/// Bounds of the searches: heights in L, and wave numbers in units of omega_lh / v_i at z.
-inline constexpr double lowest_z = 0.2, highest_z = 4.0, lowest_k = 0.05, highest_k = 4.0;
+/// Bounds of the search for the height [L].
+inline constexpr double lowest_z = 0.2, highest_z = 4.0;
 
 /// The fastest growing local wave of wave number k, wherever it is.
 inline LocalWave fastest_over_z(const CurrentSheet& sheet, double k) {
-    return detail::fastest([&](double z) { return local_root(sheet, z, k); }, lowest_z, highest_z);
-}
-
-/// The fastest growing local wave at height z, of any wave number.
-inline LocalWave fastest_over_k(const CurrentSheet& sheet, double z) {
-    const LocalPlasma plasma = plasma_at(sheet, z);
-    const double unit = lower_hybrid_frequency(plasma) / plasma.v_i;
-    return detail::fastest([&](double k) { return local_root(sheet, z, k); }, lowest_k * unit,
-                           highest_k * unit);
-}
-
-/// The fastest growing local wave of the sheet.
-inline LocalWave fastest_local_wave(const CurrentSheet& sheet) {
-    return detail::fastest([&](double z) { return fastest_over_k(sheet, z); }, lowest_z, highest_z);
+    return fastest_wave([&](double z) { return local_root(sheet, z, k); }, lowest_z, highest_z);
 }
 
 }  // namespace implicit_moment

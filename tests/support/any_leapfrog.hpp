@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "implicit_moment/explicit_em/count_moments.hpp"
+#include "implicit_moment/explicit_em/deposit_charge_and_current.hpp"
 #include "implicit_moment/explicit_em/push_particles.hpp"
-#include "implicit_moment/explicit_em/sort_by_home.hpp"
+#include "implicit_moment/explicit_em/sort_by_cell.hpp"
 #include "implicit_moment/explicit_em/yee_field.hpp"
 #include "tests/support/any_particles.hpp"
 
@@ -18,11 +18,11 @@ namespace facts {
 
 inline void sort(const Grid& grid, long order, Particles& particles) {
     SortScratch scratch;
-    order == 1 ? sort_by_home<1>(grid, scratch, particles)
-               : sort_by_home<2>(grid, scratch, particles);
+    order == 1 ? sort_by_cell<1>(grid, scratch, particles)
+               : sort_by_cell<2>(grid, scratch, particles);
 }
 
-// Position in cells, rounded as the sort by homes rounds it.
+// Position in cells, rounded as the sort by cells rounds it.
 inline double in_cells(const common::Axis& axis, double x) {
     return (x - axis.low) * (1 / axis.spacing());
 }
@@ -43,7 +43,7 @@ inline double round_off(const Grid& grid, long order, std::size_t count, double 
     return n * (n + real(std::max(grid.x.cells, grid.z.cells))) * eps * each;
 }
 
-// Particles on the ends of the mesh, on borders of homes, in corners and anywhere else, that go up
+// Particles on the ends of the mesh, on borders of cells, in corners and anywhere else, that go up
 // to so many cells per step in both directions.
 inline Particles travelers(const Grid& grid, int count, double dt, double cells, bool relativistic,
                            Random& random) {
@@ -66,8 +66,8 @@ inline Particles travelers(const Grid& grid, int count, double dt, double cells,
 }
 
 // One step of one species; J as deposited, folded with the images of the given kind.
-inline VectorField current_of_step(const Grid& grid, const PushField& push, double dt, long order,
-                                   bool relativistic, const VectorKind& kind,
+inline VectorField current_of_step(const Grid& grid, const InterleavedField& push, double dt,
+                                   long order, bool relativistic, const VectorKind& kind,
                                    Particles& particles) {
     const LeapfrogSettings settings{true, order, relativistic};
     CurrentScratch scratch;
@@ -92,12 +92,12 @@ inline double largest(const Grid& grid, const VectorKind& kind, const VectorFiel
     return most;
 }
 
-// The fields at a point, whatever its home.
-inline Local felt(const Grid& grid, const PushField& push, long order, double s, double t) {
+// The fields at a point, whatever its cell.
+inline Local felt(const Grid& grid, const InterleavedField& push, long order, double s, double t) {
     const auto at = [&]<int l>(std::integral_constant<int, l>) {
-        const long i = Homes<l>::of(grid.x, s), j = Homes<l>::of(grid.z, t);
-        return gather_at_home<l, double>(
-            &push[index(grid.index(i + Homes<l>::first, j + Homes<l>::first))], grid.stride(),
+        const long i = Stencil<l>::cell_of(grid.x, s), j = Stencil<l>::cell_of(grid.z, t);
+        return gather_field<l, double>(
+            &push[index(grid.index(i + Stencil<l>::first, j + Stencil<l>::first))], grid.stride(),
             s - real(i), t - real(j));
     };
     return order == 1 ? at(std::integral_constant<int, 1>{}) : at(std::integral_constant<int, 2>{});
@@ -156,7 +156,7 @@ struct Seen {
 };
 
 // Calls visit(part of the step, x, z) at the points of Gauss's rule on each piece of a flight in
-// one home. With as many points as the order that is the rule of the scheme, which is exact for J_x
+// one cell. With as many points as the order that is the rule of the scheme, which is exact for J_x
 // and J_z; with three it is exact for J_y, too.
 template <class Visit>
 void along_path(const Grid& grid, long order, long rule, double s, double t, double D_x, double D_z,

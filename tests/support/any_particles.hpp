@@ -33,10 +33,10 @@ inline Particles no_particles() {
 }
 inline void add(Particles& particles, double x, double z, const Vector& v) {
     particles.x_p.push_back(x), particles.z_p.push_back(z);
-    particles.vx_p.push_back(v[0]), particles.vy_p.push_back(v[1]), particles.vz_p.push_back(v[2]);
+    particles.ux_p.push_back(v[0]), particles.uy_p.push_back(v[1]), particles.uz_p.push_back(v[2]);
 }
 inline Vector velocity(const Particles& particles, std::size_t p) {
-    return {particles.vx_p[p], particles.vy_p[p], particles.vz_p[p]};
+    return {particles.ux_p[p], particles.uy_p[p], particles.uz_p[p]};
 }
 inline void sort(const Grid& grid, Particles& particles) {
     SortScratch scratch;
@@ -73,8 +73,8 @@ inline double difference(const Grid& grid, const Particles& a, const Particles& 
     return largest;
 }
 inline bool identical(const Particles& a, const Particles& b) {
-    return a.x_p == b.x_p && a.z_p == b.z_p && a.vx_p == b.vx_p && a.vy_p == b.vy_p &&
-           a.vz_p == b.vz_p;
+    return a.x_p == b.x_p && a.z_p == b.z_p && a.ux_p == b.ux_p && a.uy_p == b.uy_p &&
+           a.uz_p == b.uz_p;
 }
 
 inline double largest(const Grid& grid, Place place, const Field& f) {
@@ -97,27 +97,27 @@ inline Moments deposited(const Grid& grid, const Particles& particles) {
     return moments;
 }
 
-inline PushField pack(const Grid& grid, const VectorField& E, const VectorField& B) {
-    PushField push;
+inline InterleavedField pack(const Grid& grid, const VectorField& E, const VectorField& B) {
+    InterleavedField push;
     for (long n = 0; n < grid.size(); ++n) {
         push.push_back({E.x()[n], E.y()[n], E.z()[n], B.x()[n], B.y()[n], B.z()[n]});
     }
     return push;
 }
-inline PushField uniform(const Grid& grid, const Vector& E, const Vector& B) {
-    return PushField(index(grid.size()), NodeField{E[0], E[1], E[2], B[0], B[1], B[2]});
+inline InterleavedField uniform(const Grid& grid, const Vector& E, const Vector& B) {
+    return InterleavedField(index(grid.size()), NodeField{E[0], E[1], E[2], B[0], B[1], B[2]});
 }
-inline PushField random_push(const Grid& grid, double E, double B, Random& random) {
+inline InterleavedField random_push(const Grid& grid, double E, double B, Random& random) {
     return pack(grid, random.field(grid, current, E), random.field(grid, magnetic, B));
 }
 
 // The fields d cells from node (i, j), and at a point.
 using Local = LocalField<double>;
-inline Local gathered(const Grid& grid, const PushField& push, long i, long j, double d_x,
+inline Local gathered(const Grid& grid, const InterleavedField& push, long i, long j, double d_x,
                       double d_z) {
     return gather_field(&push[index(grid.index(i - 1, j - 1))], grid.stride(), d_x, d_z);
 }
-inline Local gathered(const Grid& grid, const PushField& push, double x, double z) {
+inline Local gathered(const Grid& grid, const InterleavedField& push, double x, double z) {
     const double s = (x - grid.x.low) / grid.x.spacing(), t = (z - grid.z.low) / grid.z.spacing();
     const long i = std::lround(s), j = std::lround(t);
     return gathered(grid, push, i, j, s - real(i), t - real(j));

@@ -5,19 +5,12 @@ export LC_ALL=C.UTF-8
 status=0
 complain() { echo "$*" >&2; status=1; }
 
-# A step knows numbers, not where they come from or where they go. These few still take the case or
-# build a state from it; no other may.
-know_the_case='implicit_moment/explicit_em/leapfrog_state.hpp implicit_moment/explicit_em/step.hpp'
+# A step knows numbers, not where they come from or where they go.
 for header in cic/*.hpp flip/*.hpp flip/flip/*.hpp flip/pic/*.hpp implicit_moment/*.hpp \
     implicit_moment/explicit_em/*.hpp mpm_explicit/*.hpp mpm_implicit/*.hpp; do
-    grep -qE '^#include "[a-z_/]*(theory|output)/' "$header" &&
-        complain "$header is a step and includes theory or output"
-    if grep -qE '^#include "[a-z_/]*setup/' "$header"; then
-        case " $(echo $know_the_case) " in
-            *" $header "*) ;;
-            *) complain "$header is a step and includes setup" ;;
-        esac
-    fi
+    grep -qE '^#include "[a-z_/]*(setup|theory|output)/' "$header" &&
+        complain "$header is a step and includes setup, theory or output"
+    [ "$(wc -l < "$header")" -le 250 ] || complain "$header is longer than 250 lines"
 done
 
 # The slide is in the include list of its program.

@@ -16,7 +16,7 @@ namespace detail {
 inline double omega_p_dt(const Case& w, const Scales& scales) {
     double squared = 0;
     for (const SpeciesScales& s : scales.species) squared += s.omega_p_dt * s.omega_p_dt;
-    return std::sqrt(squared * (w.setup == "uniform" ? 1 : 1 + harris_of(w).background));
+    return std::sqrt(squared * (w.is_uniform() ? 1 : 1 + harris_of(w).background));
 }
 
 }  // namespace detail

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <complex>
 
-namespace implicit_moment {
+namespace facts {
 
 namespace detail {
 
@@ -50,4 +50,4 @@ inline double shear_layer_growth(double ka) {
     return ka * 0.5 * (low + high);
 }
 
-}  // namespace implicit_moment
+}  // namespace facts

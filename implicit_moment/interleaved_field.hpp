@@ -1,11 +1,16 @@
-// The fields that push particles, packed for the gather: one node's six components share one
-// cache line.
+// The fields that push particles, interleaved for the gather: the six components of one node share
+// one cache line.
+//
+//     E_x E_x E_x ...   E_y E_y E_y ...   ->   E_x E_y E_z B_x B_y B_z - -   E_x E_y ...
+//     one component of all nodes               all components of one node
 #pragma once
 
 #include <vector>
 
+#include "common/parallel.hpp"
 #include "common/splines.hpp"
 #include "implicit_moment/particles.hpp"
+#include "implicit_moment/smooth.hpp"
 
 namespace implicit_moment {
 
@@ -15,12 +20,44 @@ struct alignas(64) NodeField {
 };
 
 /// grid.size() records, ghosts included.
-using PushField = std::vector<NodeField>;
+using InterleavedField = std::vector<NodeField>;
 
+/// The six components at one particle (Real = double) or at eight (SimdVector).
 template <class Real>
 struct LocalField {
     Real E_x, E_y, E_z, B_x, B_y, B_z;
 };
+
+/// What interleave_field works in, kept between steps.
+struct InterleaveScratch {
+    VectorField smoothed;
+    Field pass;
+    explicit InterleaveScratch(const Grid& grid) : smoothed(grid) {}
+};
+
+/// Interleaves what pushes particles: a smoothed copy of E, and B itself.
+/// in:     E and B, ghosts filled.
+/// note:   E is smoothed as the current is; then E does on particles the work that J takes.
+inline void interleave_field(const Grid& grid, const SmoothingSettings& smoothing,
+                             const VectorField& E_mesh, const VectorField& B,
+                             InterleaveScratch& scratch, InterleavedField& interleaved) {
+    const bool smooth_it = smoothing.passes > 0;
+    if (smooth_it) {
+        scratch.smoothed.all = E_mesh.all;
+        smooth(grid, electric, smoothing, scratch.smoothed.all.data(), scratch.pass);
+    }
+    const VectorField& E = smooth_it ? scratch.smoothed : E_mesh;
+    interleaved.resize(grid.size());
+    const double *E_x = E.x(), *E_y = E.y(), *E_z = E.z(), *B_x = B.x(), *B_y = B.y(), *B_z = B.z();
+    common::for_each_block(
+        grid.size(),
+        [&](int, long begin, long end) {
+            for (long n = begin; n < end; ++n) {
+                interleaved[n] = {E_x[n], E_y[n], E_z[n], B_x[n], B_y[n], B_z[n]};
+            }
+        },
+        grid.size());
+}
 
 /// Fields at a particle that lies (d_x, d_z) cells from its nearest node, |d| <= 1/2.
 ///     E_x(x_p) = sum_g E_x,g S1(x) S2(z),  B_z alike;   E_z, B_x with S2 S1;   E_y with S2 S2;

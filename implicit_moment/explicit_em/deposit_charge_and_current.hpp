@@ -1,0 +1,116 @@
+// What explicit_em shows of its particles: charge, current and energy at t^n, where positions are,
+// with u, which is half a step behind, brought there.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "implicit_moment/explicit_em/push_particles.hpp"
+#include "implicit_moment/moments.hpp"
+
+namespace implicit_moment {
+
+/// rho and J of one species at t^n, energy and momentum; see the function for all species.
+template <int l>
+inline void deposit_charge_and_current(const InterleavedField& field, const Grid& grid, double dt,
+                                       const LeapfrogSettings& settings, const Particles& particles,
+                                       Images images, Moments& moments) {
+    for (Field* f : moments.all()) f->setZero();
+    const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing();
+    const double half_kick = 0.5 * dt * particles.q_p / particles.m_p;
+    const double per_c2 = settings.per_c_squared(), q = particles.q_p / grid.cell_area();
+    const long columns = Stencil<l>::cells(grid.x), rows = Stencil<l>::cells(grid.z);
+    std::vector<std::array<double, 4>> sums_of_row(rows);
+
+    common::for_each_row_three_colors(rows, [&](long row) {
+        std::array<double, 4>& sums = sums_of_row[row];
+        const double z_anchor = grid.z.at(double(row));
+        for (long column = 0; column < columns; ++column) {
+            const long cell = row * columns + column;
+            const double x_anchor = grid.x.at(double(column));
+            const long corner = grid.index(column + Stencil<l>::first, row + Stencil<l>::first);
+            for (long k = particles.first_of_node[cell]; k < particles.first_of_node[cell + 1];
+                 ++k) {
+                const long p = k;
+                const double d_x = (particles.x_p[p] - x_anchor) * per_dx,
+                             d_z = (particles.z_p[p] - z_anchor) * per_dz;
+                Velocity<double> u{particles.ux_p[p], particles.uy_p[p], particles.uz_p[p]};
+                half_step<double>(u,
+                                  gather_field<l, double>(&field[corner], grid.stride(), d_x, d_z),
+                                  half_kick, per_c2);
+                const double square = u.x * u.x + u.y * u.y + u.z * u.z,
+                             per_gamma = inverse_gamma(u, per_c2);
+                sums[0] += u.x, sums[1] += u.y, sums[2] += u.z;
+                sums[3] += square / (1 + 1 / per_gamma);  // gamma - 1, without cancellation
+
+                const StencilWeights<l, double> S_x(d_x), S_z(d_z);
+                const double v_x = q * per_gamma * u.x, v_y = q * per_gamma * u.y,
+                             v_z = q * per_gamma * u.z;
+                for (int j = 0; j <= l; ++j) {
+                    const long n = corner + j * grid.stride();
+                    for (int i = 0; i <= l; ++i) {
+                        const double S = S_x.node(i) * S_z.node(j);
+                        moments.rho[n + i] += q * S;
+                        moments.J_y[n + i] += v_y * S;
+                    }
+                    for (int i = 0; i < l; ++i)
+                        moments.J_x[n + i] += v_x * (S_x.half(i) * S_z.node(j));
+                }
+                for (int j = 0; j < l; ++j) {
+                    for (int i = 0; i <= l; ++i) {
+                        moments.J_z[corner + j * grid.stride() + i] +=
+                            v_z * (S_x.node(i) * S_z.half(j));
+                    }
+                }
+            }
+        }
+    });
+
+    moments.kinetic_energy = 0;
+    moments.momentum = {};
+    for (const auto& sums : sums_of_row) {
+        for (std::size_t a = 0; a < 3; ++a) moments.momentum[a] += particles.m_p * sums[a];
+        moments.kinetic_energy += particles.m_p * sums[3];
+    }
+    fold_charge_and_current(grid, images, moments);
+}
+
+/// The moments of all species at t^n, with the splines of move_particles.
+/// in:     field, E^n and B^n; particles sorted by cell, u of t^{n-1/2}; images, what is behind a
+///         wall: a conductor's for Gauss's law, the plasma's own for what is shown.
+/// out:    rho, J, kinetic energy m c^2 (gamma - 1) and momentum m u; no stress.
+inline void deposit_charge_and_current(const InterleavedField& field, const Grid& grid, double dt,
+                                       const LeapfrogSettings& settings,
+                                       const std::vector<Particles>& species, Images images,
+                                       std::vector<Moments>& moments) {
+    for (std::size_t k = 0; k < species.size(); ++k) {
+        settings.order == 1 ? deposit_charge_and_current<1>(field, grid, dt, settings, species[k],
+                                                            images, moments[k])
+                            : deposit_charge_and_current<2>(field, grid, dt, settings, species[k],
+                                                            images, moments[k]);
+    }
+}
+
+/// u of one species from t^0 to t^{-1/2}. in: field, E^0 and B^0.
+template <int l>
+inline void half_step_back(const InterleavedField& field, const Grid& grid, double dt,
+                           double per_c_squared, Particles& particles) {
+    const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing();
+    const double half_kick = 0.5 * dt * particles.q_p / particles.m_p;
+    common::for_each_block(particles.count(), [&](int, long begin, long end) {
+        for (long k = begin; k < end; ++k) {
+            const long p = k;
+            const double s = (particles.x_p[p] - grid.x.low) * per_dx,
+                         t = (particles.z_p[p] - grid.z.low) * per_dz;
+            const long i = Stencil<l>::cell_of(grid.x, s), j = Stencil<l>::cell_of(grid.z, t);
+            const auto at = gather_field<l, double>(
+                &field[grid.index(i + Stencil<l>::first, j + Stencil<l>::first)], grid.stride(),
+                s - double(i), t - double(j));
+            Velocity<double> u{particles.ux_p[p], particles.uy_p[p], particles.uz_p[p]};
+            half_step_back(u, at, half_kick, per_c_squared);
+            particles.ux_p[p] = u.x, particles.uy_p[p] = u.y, particles.uz_p[p] = u.z;
+        }
+    });
+}
+
+}  // namespace implicit_moment

@@ -1,0 +1,263 @@
+// The seeded mode of a uniform plasma beside theory: frequency and damping of a wave, growth rate of
+// an instability. Each wave that theory.wave can name is one object: its name, what it needs, and
+// what theory expects of it.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <string>
+#include <vector>
+
+#include "common/run/run.hpp"
+#include "common/theory/fit_growth.hpp"
+#include "common/theory/fit_oscillation.hpp"
+#include "common/theory/kinetic_dispersion.hpp"
+#include "common/theory/theta_scheme.hpp"
+#include "implicit_moment/explicit_em/yee_field.hpp"
+#include "implicit_moment/output/diagnostics.hpp"
+#include "implicit_moment/setup/case.hpp"
+
+namespace implicit_moment {
+
+/// What theory says about the seeded mode: complex frequency omega + i gamma, and where it comes
+/// from.
+struct Theory {
+    std::complex<double> omega;
+    std::string source;
+    bool of_scheme = false;  // exact for the scheme at this dt, not for dt -> 0
+};
+
+/// A wave of theory.wave.
+struct Wave {
+    std::string name;
+    void (*refuse)(const Case&, const std::string& name);  // what it needs; throws InputError
+    Theory (*expect)(const Case&);
+};
+
+namespace detail {
+
+// The seeded mode: the axis that it lies along, and its wave number.
+inline bool along_x(const Case& w) { return w.uniform.mode_x != 0; }
+inline const common::Axis& axis_of_mode(const Case& w) { return along_x(w) ? w.grid.x : w.grid.z; }
+inline double wave_number(const Case& w) {
+    return 2 * pi * double(along_x(w) ? w.uniform.mode_x : w.uniform.mode_z) /
+           axis_of_mode(w).length;
+}
+
+// The species of a uniform case as the dispersion relation wants them, with k along the mode.
+inline std::vector<common::PlasmaSpecies> theory_species(const Case& w) {
+    const UniformCase& u = w.uniform;
+    const bool x = along_x(w);
+    const bool across_is_y = w.component == "E_y" || w.component == (x ? "B_z" : "B_x");
+    std::vector<common::PlasmaSpecies> plasma;
+    for (const SpeciesCase& s : u.species) {
+        common::PlasmaSpecies p;
+        p.density = n0 * s.density, p.charge = s.charge, p.mass = s.mass;
+        p.drift = x ? s.drift_x : s.drift_z;
+        p.temperature_along = x ? s.temperature_x : s.temperature_z;
+        const double T_plane = x ? s.temperature_z : s.temperature_x;
+        const double u_plane = x ? s.drift_z : s.drift_x;
+        p.temperature_across = across_is_y ? s.temperature_y + s.mass * s.drift_y * s.drift_y
+                                           : T_plane + s.mass * u_plane * u_plane;
+        p.gyrofrequency = s.charge * (x ? u.B_x : u.B_z) / (s.mass * c);
+        plasma.push_back(p);
+    }
+    return plasma;
+}
+
+// Of the theta scheme: omega from the complex factor of one step.
+inline Theory of_factor(const Case& w, std::complex<double> g) {
+    return {std::complex<double>(std::fabs(std::arg(g)), std::log(std::abs(g))) / w.dt,
+            "exact factor per step of the theta scheme", true};
+}
+
+inline void refuse_light(const Case& w, const std::string& name) {
+    refuse(!w.uniform.species.empty(),
+           "theory.wave = \"" + name +
+               "\" is a wave in vacuum: take out the species or choose \"transverse\"");
+}
+inline Theory expect_light(const Case& w) {
+    const double k = wave_number(w), dx = axis_of_mode(w).spacing();
+    if (w.leapfrog.chosen)
+        return {yee_frequency(w.grid, w.dt, along_x(w) ? k : 0, along_x(w) ? 0 : k),
+                "exact dispersion on Yee's mesh", true};
+    const double K = 2 / dx * std::sin(0.5 * k * dx);
+    return of_factor(w, common::theta_light_wave(w.field.theta, c * w.dt * K));
+}
+
+inline void refuse_kinetic(const Case& w, const std::string& name) {
+    const UniformCase& u = w.uniform;
+    refuse(u.species.empty(), "theory.wave = \"" + name + "\" needs a [species.<name>]");
+    refuse(along_x(w) ? u.B_y != 0 || u.B_z != 0 : u.B_x != 0 || u.B_y != 0,
+           "the dispersion relation is solved for B along k or zero: take out the part of "
+           "uniform.B across the mode, or theory.wave");
+}
+
+inline void refuse_langmuir(const Case& w, const std::string& name) {
+    const auto& species = w.uniform.species;
+    const std::string wave = "theory.wave = \"" + name + "\" ";
+    refuse(!species.empty() && std::all_of(species.begin(), species.end(),
+                                           [](const SpeciesCase& s) { return s.charge == 0; }),
+           wave + "needs charges: give a species a charge");
+    for (const SpeciesCase& s : species) {
+        refuse(s.temperature_x > 0 || s.temperature_y > 0 || s.temperature_z > 0 ||
+                   s.drift_x != 0 || s.drift_z != 0,
+               wave + "is exact for a cold plasma at rest, and species '" + s.name +
+                   "' is warm or drifts: choose \"longitudinal\"");
+    }
+    refuse_kinetic(w, name);
+}
+inline Theory expect_langmuir(const Case& w) {
+    double omega_squared = 0;
+    for (const auto& s : theory_species(w)) omega_squared += s.frequency_squared();
+    if (!w.leapfrog.chosen)
+        return of_factor(
+            w, common::theta_langmuir_wave(w.field.theta, std::sqrt(omega_squared) * w.dt));
+    // Quadratic splines see a field that varies within a cell; linear ones do not.
+    const double k_dx = wave_number(w) * axis_of_mode(w).spacing();
+    const double seen = w.leapfrog.order == 1 ? 1 : (2 + std::cos(k_dx)) / 3;
+    return {leapfrog_frequency(std::sqrt(omega_squared * seen), w.dt),
+            "leapfrog, exact: sin(omega dt/2) = omega_p dt/2", true};
+}
+
+// errors: InputError when no root was found.
+inline Theory kinetic(const Case& w, const common::DispersionRoot& root) {
+    refuse(!root.found, "no root of the " + w.wave + " dispersion relation was found" +
+                            (w.near != 0 ? " near " + common::format(w.near) : std::string()) +
+                            ": change theory.near, or set theory.wave = \"none\"");
+    return {root.omega, "root of the kinetic dispersion relation"};
+}
+inline Theory expect_longitudinal(const Case& w) {
+    const auto plasma = theory_species(w);
+    const double k = wave_number(w);
+    const auto D = [&](common::Complex omega) {
+        return common::longitudinal_dispersion(plasma, k, omega);
+    };
+    return kinetic(w, w.near != 0 ? common::root_near(D, w.near)
+                                  : common::fastest_growing_longitudinal(plasma, k));
+}
+inline Theory expect_transverse(const Case& w) {
+    const auto plasma = theory_species(w);
+    const double k = wave_number(w);
+    common::DispersionRoot root;
+    for (const int sense : {+1, -1}) {
+        const auto D = [&](common::Complex omega) {
+            return common::transverse_dispersion(plasma, k, c, sense, omega);
+        };
+        const auto found = w.near != 0 ? common::root_near(D, w.near)
+                                       : common::fastest_growing_transverse(plasma, k, c, sense);
+        const bool better = w.near != 0
+                                ? std::abs(found.omega - w.near) < std::abs(root.omega - w.near)
+                                : found.omega.imag() > root.omega.imag() + 1e-12;
+        if (found.found && (!root.found || better)) root = found;
+    }
+    return kinetic(w, root);
+}
+
+// These need a root, too.
+inline void refuse_longitudinal(const Case& w, const std::string& name) {
+    refuse_kinetic(w, name);
+    expect_longitudinal(w);
+}
+inline void refuse_transverse(const Case& w, const std::string& name) {
+    refuse_kinetic(w, name);
+    expect_transverse(w);
+}
+
+}  // namespace detail
+
+/// All that theory.wave can name, beside "none".
+inline const std::array<Wave, 4>& waves() {
+    static const std::array<Wave, 4> all{
+        {{"light", detail::refuse_light, detail::expect_light},
+         {"langmuir", detail::refuse_langmuir, detail::expect_langmuir},
+         {"longitudinal", detail::refuse_longitudinal, detail::expect_longitudinal},
+         {"transverse", detail::refuse_transverse, detail::expect_transverse}}};
+    return all;
+}
+
+/// The wave that a case is compared with, or none. in: parameters of a case
+inline const Wave* wave_of(const Case& w) {
+    const auto& all = waves();
+    const auto* wave =
+        std::find_if(all.begin(), all.end(), [&](const Wave& one) { return one.name == w.wave; });
+    return wave == all.end() ? nullptr : wave;
+}
+
+/// Refuses a case that the wave it names cannot be compared with.
+/// errors: InputError with the cure, also where its dispersion relation has no root.
+inline void refuse_wave(const Case& w) {
+    const Wave* wave = wave_of(w);
+    if (wave == nullptr) return;
+    refuse(w.end < 10 * w.dt,
+           "theory.wave needs at least 10 steps to measure: raise time.end above " +
+               common::format(10 * w.dt));
+    refuse(
+        (w.uniform.mode_x != 0) == (w.uniform.mode_z != 0),
+        "theory.wave needs a mode along x or along z: set uniform.mode_x or uniform.mode_z to 0");
+    wave->refuse(w, wave->name);
+}
+
+/// The columns of a uniform plasma: the complex amplitude of the seeded mode in one component.
+inline void add_mode(const Case& w, const FieldState& field, common::Row& row) {
+    const auto mode =
+        mode_amplitude(w.grid, field, w.component, w.uniform.mode_x, w.uniform.mode_z);
+    row.add("mode_re", w.component, mode.real());
+    row.add("mode_im", w.component, mode.imag());
+}
+
+/// The seeded mode against theory: frequency and damping of a wave, growth rate of an instability.
+inline void compare_wave(const Case& w, const common::History& history, common::Summary& summary) {
+    const Wave* wave = wave_of(w);
+    if (wave == nullptr) return;
+    const Theory theory = wave->expect(w);
+    const double tolerance = theory.of_scheme ? 0.005 : 0.03;
+    const double dt = w.dt * double(w.history_steps);  // from row to row
+    const auto times = history.column("time"), re = history.column("mode_re"),
+               im = history.column("mode_im");
+    const double growth = theory.omega.imag(), frequency = std::fabs(theory.omega.real());
+    summary.result_info("theory_omega", frequency, "omega_pi", theory.source);
+    summary.result_info("theory_growth", growth, "omega_pi", theory.source);
+
+    std::vector<double> amplitude;
+    for (std::size_t n = 0; n < re.size(); ++n) amplitude.push_back(std::hypot(re[n], im[n]));
+    if (!theory.of_scheme && growth > 0.05 * std::abs(theory.omega)) {
+        const common::GrowthFit fit = common::fit_growth(times, amplitude, {3.0, 0.1});
+        summary.result("growth_over_theory", fit.rate / growth, "", 1, tolerance,
+                       theory.source + "; fitted from t = " + common::format(fit.begin) + " to " +
+                           common::format(fit.end));
+        return;
+    }
+
+    // A standing wave keeps its phase, a traveling wave does not.
+    const auto largest = std::max_element(amplitude.begin(), amplitude.end()) - amplitude.begin();
+    const std::complex<double> direction = std::polar(1.0, -std::atan2(im[largest], re[largest]));
+    std::vector<std::complex<double>> mode;
+    std::vector<double> standing;
+    double quadrature = 0;
+    for (std::size_t n = 0; n < re.size(); ++n) {
+        mode.push_back(direction * std::complex<double>(re[n], im[n]));
+        standing.push_back(mode.back().real());
+        quadrature = std::max(quadrature, std::fabs(mode.back().imag()));
+    }
+    double omega = 0, gamma = 0;
+    if (quadrature < 0.1 * std::abs(mode[largest])) {
+        const common::OscillationFit fit = common::fit_oscillation(standing, dt);
+        omega = fit.frequency, gamma = fit.growth;
+    } else {
+        const common::RotationFit fit = common::fit_rotation(mode, dt);
+        omega = std::fabs(fit.frequency), gamma = fit.growth;
+    }
+    summary.result("omega_over_theory", omega / frequency, "", 1, tolerance, theory.source);
+    if (std::fabs(growth) > 1e-6 * frequency && theory.of_scheme) {
+        summary.result("damping_over_theory", gamma / growth, "", 1, tolerance, theory.source);
+    } else if (theory.of_scheme) {
+        summary.result("damping", -gamma, "omega_pi", 0, 1e-3 * frequency, theory.source);
+    } else {
+        summary.result_info("damping", -gamma, "omega_pi", theory.source);
+    }
+}
+
+}  // namespace implicit_moment
