@@ -8,9 +8,9 @@
 #include <limits>
 #include <unsupported/Eigen/IterativeSolvers>
 
-#include "common/conjugate_gradients.hpp"
 #include "common/gmres.hpp"
 #include "common/newton_krylov.hpp"
+#include "flip/conjugate_gradients.hpp"
 #include "tests/support/any_numbers.hpp"
 
 namespace {
@@ -398,7 +398,7 @@ TEST_CASE("conjugate gradients agree with Cholesky and with those of Eigen") {
         const MatrixXd A = definite_matrix(60, seed, 100);
         const VectorXd b = VectorXd::Random(60), exact = A.llt().solve(b);
         VectorXd x = VectorXd::Zero(60);
-        const auto result = common::conjugate_gradients(times(A), b, x, 1e-12, 400);
+        const auto result = flip::conjugate_gradients(times(A), b, x, 1e-12, 400);
         CHECK(result.converged);
         CHECK((x - exact).norm() <= 1e-10 * exact.norm());
         CHECK(std::abs(result.residual - true_residual(A, x, b)) <= 1e-14);
@@ -417,14 +417,14 @@ TEST_CASE("conjugate gradients end within as many iterations as there are distin
     for (int i = 0; i < 60; ++i) d[i] = 1.0 + i % 4;
     const MatrixXd A = d.asDiagonal();
     VectorXd x = VectorXd::Zero(60);
-    const auto result = common::conjugate_gradients(times(A), VectorXd::Ones(60), x, 1e-13, 100);
+    const auto result = flip::conjugate_gradients(times(A), VectorXd::Ones(60), x, 1e-13, 100);
     CHECK(result.converged);
     CHECK(result.iterations == 4);
 
     const auto exact = [&](const VectorXd& v, VectorXd& w) { w = v.cwiseQuotient(d); };
     VectorXd y = VectorXd::Zero(60);
     const auto once =
-        common::conjugate_gradients(times(A), exact, VectorXd::Random(60), y, 1e-13, 100);
+        flip::conjugate_gradients(times(A), exact, VectorXd::Random(60), y, 1e-13, 100);
     CHECK(once.converged);
     CHECK(once.iterations == 1);
 }
@@ -432,13 +432,13 @@ TEST_CASE("conjugate gradients end within as many iterations as there are distin
 TEST_CASE("conjugate gradients return zero for a zero right-hand side whatever the guess") {
     const MatrixXd A = definite_matrix(20, 1, 10);
     VectorXd x = VectorXd::Random(20);
-    const auto result = common::conjugate_gradients(times(A), VectorXd::Zero(20), x, 1e-10, 100);
+    const auto result = flip::conjugate_gradients(times(A), VectorXd::Zero(20), x, 1e-10, 100);
     CHECK(result.converged);
     CHECK(result.iterations == 0);
     CHECK(result.residual == 0.0);
     CHECK(x.cwiseAbs().maxCoeff() == 0.0);
     VectorXd none;
-    CHECK(common::conjugate_gradients(times(A), VectorXd(), none, 1e-10, 100).converged);
+    CHECK(flip::conjugate_gradients(times(A), VectorXd(), none, 1e-10, 100).converged);
 }
 
 TEST_CASE("conjugate gradients leave a good enough guess untouched") {
@@ -446,22 +446,21 @@ TEST_CASE("conjugate gradients leave a good enough guess untouched") {
     const VectorXd b = VectorXd::Random(40);
     VectorXd x = A.llt().solve(b);
     const VectorXd guess = x;
-    const auto result = common::conjugate_gradients(times(A), b, x, 1e-10, 100);
+    const auto result = flip::conjugate_gradients(times(A), b, x, 1e-10, 100);
     CHECK(result.converged);
     CHECK(result.iterations == 0);
     CHECK((x.array() == guess.array()).all());
     // The exact one: every residual is zero, and no tolerance is too small.
     const MatrixXd one = MatrixXd::Identity(40, 40);
     VectorXd same = b;
-    CHECK(common::conjugate_gradients(times(one), b, same, 0, 100).iterations == 0);
+    CHECK(flip::conjugate_gradients(times(one), b, same, 0, 100).iterations == 0);
     CHECK((same.array() == b.array()).all());
 }
 
 TEST_CASE("conjugate gradients report what round-off does not let them reach") {
     const MatrixXd A = definite_matrix(50, 4, 1e12);
     VectorXd x = VectorXd::Zero(50);
-    const auto result =
-        common::conjugate_gradients(times(A), VectorXd::Random(50), x, 1e-16, 100000);
+    const auto result = flip::conjugate_gradients(times(A), VectorXd::Random(50), x, 1e-16, 100000);
     CHECK_FALSE(result.converged);
     CHECK(x.allFinite());
     CHECK(result.iterations < 100000);
@@ -480,7 +479,7 @@ TEST_CASE("conjugate gradients report an operator or preconditioner that is not 
         d[11] = row.last;
         const MatrixXd A = d.asDiagonal();
         VectorXd x = VectorXd::Zero(12);
-        const auto result = common::conjugate_gradients(times(A), b, x, 1e-10, 100);
+        const auto result = flip::conjugate_gradients(times(A), b, x, 1e-10, 100);
         CHECK_FALSE(result.converged);
         CHECK(result.reason == row.reason);
         CHECK(x.allFinite());
@@ -489,12 +488,12 @@ TEST_CASE("conjugate gradients report an operator or preconditioner that is not 
     }
     const MatrixXd zero = MatrixXd::Zero(12, 12), one = MatrixXd::Identity(12, 12);
     VectorXd x = VectorXd::Zero(12);
-    auto result = common::conjugate_gradients(times(zero), b, x, 1e-10, 100);
+    auto result = flip::conjugate_gradients(times(zero), b, x, 1e-10, 100);
     CHECK(result.reason == "the operator is not positive definite");
     CHECK(x.cwiseAbs().maxCoeff() == 0.0);
     for (const double factor : {0.0, -1.0}) {
         const auto wrong = [&](const VectorXd& v, VectorXd& w) { w = factor * v; };
-        result = common::conjugate_gradients(times(one), wrong, b, x, 1e-10, 100);
+        result = flip::conjugate_gradients(times(one), wrong, b, x, 1e-10, 100);
         CHECK(result.reason == "the preconditioner is not positive definite");
         CHECK(x.cwiseAbs().maxCoeff() == 0.0);
     }
@@ -505,7 +504,7 @@ TEST_CASE("conjugate gradients solve a singular system whose right-hand side can
     d[4] = b[4] = 0;
     const MatrixXd A = d.asDiagonal();
     VectorXd x = VectorXd::Zero(12);
-    CHECK(common::conjugate_gradients(times(A), b, x, 1e-13, 100).converged);
+    CHECK(flip::conjugate_gradients(times(A), b, x, 1e-13, 100).converged);
     CHECK((A * x - b).norm() <= 1e-13 * b.norm());
 }
 
@@ -515,11 +514,11 @@ TEST_CASE("conjugate gradients stop where a number is not finite") {
     for (const double bad : {not_a_number, infinity}) {
         VectorXd b = VectorXd::Ones(15), x = VectorXd::Zero(15);
         b[7] = bad;
-        auto result = common::conjugate_gradients(times(A), b, x, 1e-10, 100);
+        auto result = flip::conjugate_gradients(times(A), b, x, 1e-10, 100);
         CHECK_FALSE(result.converged);
         CHECK(result.reason == "the right-hand side is not finite");
         b[7] = 1, x[3] = bad;
-        result = common::conjugate_gradients(times(A), b, x, 1e-10, 100);
+        result = flip::conjugate_gradients(times(A), b, x, 1e-10, 100);
         CHECK(result.reason == "the initial guess is not finite");
         CHECK(x.cwiseAbs().maxCoeff() == 0.0);
         for (const int sound_calls : {0, 1, 4}) {
@@ -529,13 +528,13 @@ TEST_CASE("conjugate gradients stop where a number is not finite") {
                 if (calls++ >= sound_calls) w[2] = bad;
             };
             x = VectorXd::Zero(15);
-            result = common::conjugate_gradients(breaks, b, x, 1e-10, 100);
+            result = flip::conjugate_gradients(breaks, b, x, 1e-10, 100);
             CHECK_FALSE(result.converged);
             CHECK(result.reason == "the operator is not finite");
             CHECK(result.iterations <= sound_calls + 1);
             CHECK(x.allFinite());
             calls = 0, x = VectorXd::Zero(15);
-            result = common::conjugate_gradients(times(A), breaks, b, x, 1e-10, 100);
+            result = flip::conjugate_gradients(times(A), breaks, b, x, 1e-10, 100);
             CHECK_FALSE(result.converged);
             CHECK(result.reason == "the preconditioner is not finite");
             CHECK(x.allFinite());
@@ -547,11 +546,11 @@ TEST_CASE("conjugate gradients do not notice the size of the right-hand side") {
     const MatrixXd A = definite_matrix(25, 5, 50);
     const VectorXd b = VectorXd::Random(25);
     VectorXd x = VectorXd::Zero(25);
-    common::conjugate_gradients(times(A), b, x, 1e-12, 200);
+    flip::conjugate_gradients(times(A), b, x, 1e-12, 200);
     for (const int power : {-900, -500, 500, 900}) {
         const double factor = std::ldexp(1.0, power);
         VectorXd y = VectorXd::Zero(25);
-        const auto result = common::conjugate_gradients(times(A), factor * b, y, 1e-12, 200);
+        const auto result = flip::conjugate_gradients(times(A), factor * b, y, 1e-12, 200);
         CHECK(result.converged);
         CHECK((y.array() / factor == x.array()).all());
     }
@@ -561,7 +560,7 @@ TEST_CASE("conjugate gradients without convergence return the true residual") {
     const MatrixXd A = definite_matrix(80, 6, 1e4);
     const VectorXd b = VectorXd::Random(80);
     VectorXd x = VectorXd::Zero(80);
-    const auto result = common::conjugate_gradients(times(A), b, x, 1e-12, 40);
+    const auto result = flip::conjugate_gradients(times(A), b, x, 1e-12, 40);
     CHECK_FALSE(result.converged);
     CHECK(result.iterations == 40);
     CHECK(result.reason == "the limit of iterations is reached");

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -121,6 +123,25 @@ double kinetic(const ContactProblem& m, bool new_ones) {
         sum += 0.5 * m.nodes.sums[dof].m * (v.vx_1 * v.vx_1 + v.vy_1 * v.vy_1);
     });
     return sum;
+}
+
+// An approach beyond this shows that the sweeps at a node came to their limit.
+constexpr double jammed = 1e-11;
+
+// The largest velocity at which two grains in contact at a shared node approach.
+double approach_at(const ContactProblem& m, long n) {
+    const auto who = m.members(n);
+    double approach = 0;
+    for (std::size_t b = 1; b < who.size(); ++b) {
+        for (std::size_t a = 0; a < b; ++a) {
+            const double ma = m.mass(who[a]), mb = m.mass(who[b]);
+            const auto [nx, ny, apart] = m.normal(who[a], who[b]);
+            if (apart > 0.8 || std::min(ma, mb) < 2e-5 * (ma + mb)) continue;
+            const NodeMotion &u = m.now(who[a]), &w = m.now(who[b]);
+            approach = worst({approach, (u.vx_1 - w.vx_1) * nx + (u.vy_1 - w.vy_1) * ny});
+        }
+    }
+    return approach;
 }
 
 }  // namespace
@@ -271,8 +292,11 @@ TEST_CASE("contact keeps the momentum at every node whoever meets there") {
                         moved += m.has_changed(one);
                     }
                     if (moved >= 3) ++crowded;
-                    CHECK(std::fabs(x) <= 1e-14 * size);
-                    CHECK(std::fabs(y) <= 1e-14 * size);
+                    // In every sweep every pair rounds once.
+                    const double round_off = std::numeric_limits<double>::epsilon() *
+                                             std::sqrt(500.0 * 0.5 * grains * (grains - 1)) * size;
+                    CHECK(std::fabs(x) <= round_off);
+                    CHECK(std::fabs(y) <= round_off);
                 }
             }
         }
@@ -311,19 +335,8 @@ TEST_CASE("no pair that is in contact approaches afterwards and no energy is mad
             ContactProblem m(crowd(seed, grains));
             m.meet(rule_of(0));
             for (long n = 0; n < m.nodes.shared_count(); ++n) {
-                const auto who = m.members(n);
-                double here = 0;
-                for (std::size_t b = 1; b < who.size(); ++b) {
-                    for (std::size_t a = 0; a < b; ++a) {
-                        const double ma = m.mass(who[a]), mb = m.mass(who[b]);
-                        const auto [nx, ny, apart] = m.normal(who[a], who[b]);
-                        if (apart > 0.8 || std::min(ma, mb) < 2e-5 * (ma + mb)) continue;
-                        const NodeMotion &u = m.now(who[a]), &w = m.now(who[b]);
-                        here = worst(
-                            {here, std::max(0.0, (u.vx_1 - w.vx_1) * nx + (u.vy_1 - w.vy_1) * ny)});
-                    }
-                }
-                ++nodes, slow += here > 1e-11 ? 1 : 0;
+                const double here = approach_at(m, n);
+                ++nodes, slow += here > jammed ? 1 : 0;
                 approach = worst({approach, here});
             }
             gained = std::max(gained, kinetic(m, true) - kinetic(m, false));
@@ -332,14 +345,15 @@ TEST_CASE("no pair that is in contact approaches afterwards and no energy is mad
         // end before they have taken away the last part in a hundred of the approach.
         CHECK(nodes >= 1000);
         CHECK(slow <= (grains == 3 ? 0 : nodes / 200));
-        CHECK(approach <= (grains == 3 ? 1e-11 : 1e-2));
+        CHECK(approach <= (grains == 3 ? jammed : 1e-2));
         CHECK(gained <= 0);
     }
 }
 
 TEST_CASE("the order of the grains does not matter without friction") {
     for (const int grains : {2, 3, 5}) {
-        double most = 0;
+        double most = 0, most_jammed = 0;
+        long nodes = 0, slow = 0;
         for (std::uint64_t seed = 1; seed <= 30; ++seed) {
             const Cloud cloud = crowd(seed, grains);
             Cloud turned(cloud.mesh);
@@ -353,13 +367,25 @@ TEST_CASE("the order of the grains does not matter without friction") {
             }
             ContactProblem one(cloud), other(turned);
             one.meet(rule_of(0)), other.meet(rule_of(0));
+            std::set<std::pair<long, long>> left_early;
+            for (const ContactProblem* m : {&one, &other})
+                for (long n = 0; n < m->nodes.shared_count(); ++n, ++nodes) {
+                    const Member& who = m->members(n).front();
+                    if (approach_at(*m, n) > jammed) left_early.insert({who.x, who.y}), ++slow;
+                }
             for_each_dof(one.nodes, one.cloud.layout, [&](int g, long i, long j, std::size_t dof) {
                 const NodeMotion& u = one.nodes.motion[dof];
                 const NodeMotion& v = other.nodes.motion[static_cast<std::size_t>(
                     other.nodes.origin(grains - 1 - g, j) + i)];
-                most = worst({most, std::fabs(u.vx_1 - v.vx_1), std::fabs(u.vy_1 - v.vy_1)});
+                double& difference = left_early.count({i, j}) > 0 ? most_jammed : most;
+                difference =
+                    worst({difference, std::fabs(u.vx_1 - v.vx_1), std::fabs(u.vy_1 - v.vy_1)});
             });
         }
+        // Which nodes are jammed is a matter of round-off; there the order shows as far as the
+        // sweeps are from their end.
+        CHECK(slow <= (grains < 5 ? 0 : nodes / 200));
+        CHECK(most_jammed <= 1e-2);
         CHECK(most <= 1e-10);
     }
 }

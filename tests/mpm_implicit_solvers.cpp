@@ -30,7 +30,7 @@ struct Situation {
 };
 
 // One or two grains on a mesh of h = 0.1: free, at walls, around a periodic mesh, over its ends, and
-// with nodes that are hardly touched.
+// with nodes of small mass.
 std::vector<Situation> situations(const std::string& shape) {
     std::vector<Situation> all;
     const auto add = [&](const std::string& name, bool turns, double shift,

@@ -32,7 +32,8 @@ double smallest_limit(const Limit& limit) {
     for (std::string line; std::getline(groups, line);) {
         if (line.rfind("0::/", 0) != 0) continue;
         fs::path group = "/sys/fs/cgroup";
-        for (const fs::path& part : fs::path("." + line.substr(3)))
+        smallest = std::min(smallest, limit(group));
+        for (const fs::path& part : fs::path(line.substr(4)))
             smallest = std::min(smallest, limit(group /= part));
     }
     return smallest;

@@ -14,7 +14,7 @@
 
 #include <array>
 
-#include "common/conjugate_gradients.hpp"
+#include "flip/conjugate_gradients.hpp"
 #include "flip/flip/accelerate_nodes.hpp"
 
 namespace flip {
@@ -131,7 +131,7 @@ inline void solve_mass(const Grid& grid, const MassMatrix& M, const Field& m,
     const double size_load = common::safe_norm(load),
                  tolerance = size_load > 0 ? std::min(1.0, 1e-13 * std::sqrt(size) / size_load) : 0;
     const common::KrylovResult solved =
-        common::conjugate_gradients(multiply_free, load, y, tolerance, 2000);
+        conjugate_gradients(multiply_free, load, y, tolerance, 2000);
     if (!solved.converged)
         throw common::NumericalError(
             "the consistent mass matrix cannot be solved with: " + solved.reason +

@@ -21,7 +21,7 @@
 #include <limits>
 #include <vector>
 
-#include "common/conjugate_gradients.hpp"
+#include "flip/conjugate_gradients.hpp"
 #include "flip/flip/accelerate_nodes.hpp"
 #include "flip/state.hpp"
 
@@ -190,8 +190,8 @@ inline StepReport solve_pressure(const Problem& problem, double dt, Mesh& mesh) 
     };
     const double tolerance = std::min(1.0, scheme.tolerance * scale / load.norm());
     Eigen::VectorXd change = Eigen::VectorXd::Zero(count);
-    const common::KrylovResult solved = common::conjugate_gradients(
-        multiply, precondition, load, change, tolerance, scheme.max_iterations);
+    const common::KrylovResult solved =
+        conjugate_gradients(multiply, precondition, load, change, tolerance, scheme.max_iterations);
     if (!solved.converged)
         throw common::NumericalError(
             "the implicit pressure has not converged: " + solved.reason + "; after " +

@@ -13,6 +13,11 @@ for header in cic/*.hpp flip/*.hpp flip/flip/*.hpp flip/pic/*.hpp implicit_momen
     [ "$(wc -l < "$header")" -le 250 ] || complain "$header is longer than 250 lines"
 done
 
+# Names that hid what the field calls otherwise.
+banished='put_on_nodes|velocity_of_nodes|fold_sums|spread_velocity|lay_out_nodes|NodeRow|StripCurrent|tie_light_nodes|untie|Homes|gather_at_home|sort_by_home|follow_path|PathSums|part_to_border|count_moments|start_back|NoTurn|undo_rotation|PushField|push_field|meet_walls|cross_ends|Meetings|MeetingPair|Meeter|weigh_pairs|settle_contact|turn_stress|put_back|drive_rigid|Servo|old_stress|Session|guarded|keep_going|Lanes|worth_sharing|three_apart|refuse_idle|refuse_impossible|add_followed|StripSums|Chunk|Books|Ledger'
+found=$(grep -rnwE "$banished" --include='*.hpp' --include='*.cpp' cic flip mpm_explicit mpm_implicit \
+    implicit_moment common tests) && complain "names that were banished: $found"
+
 # The slide is in the include list of its program.
 for program in cic/cic.cpp flip/pic/pic.cpp flip/flip/flip.cpp mpm_explicit/mpm_explicit.cpp \
     mpm_implicit/mpm_implicit.cpp implicit_moment/implicit_moment.cpp \
@@ -23,5 +28,5 @@ for program in cic/cic.cpp flip/pic/pic.cpp flip/flip/flip.cpp mpm_explicit/mpm_
 done
 
 lines=$(cat common/*.hpp common/*/*.hpp common/*/*.cpp | wc -l)
-[ "$lines" -le 4500 ] || complain "common/ has $lines lines, more than 4500"
+[ "$lines" -le 4750 ] || complain "common/ has $lines lines, more than 4750"
 exit $status

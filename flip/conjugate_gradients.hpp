@@ -16,7 +16,7 @@
 
 #include "common/gmres.hpp"
 
-namespace common {
+namespace flip {
 
 /// Solves A x = b.
 /// in:    apply(v, w): w = A v, and precondition(v, w): w = M^-1 v, both symmetric positive definite,
@@ -35,22 +35,22 @@ namespace common {
 /// note:   the residual of the recurrence drifts from b - A x by round-off; when it is small enough,
 ///         b - A x is computed, and if that is not, the iteration starts again from x.
 template <class Operator, class Preconditioner>
-KrylovResult conjugate_gradients(const Operator& apply, const Preconditioner& precondition,
-                                 const Eigen::VectorXd& b, Eigen::VectorXd& x, double tolerance,
-                                 long max_iterations) {
+common::KrylovResult conjugate_gradients(const Operator& apply, const Preconditioner& precondition,
+                                         const Eigen::VectorXd& b, Eigen::VectorXd& x,
+                                         double tolerance, long max_iterations) {
     constexpr double unknown = std::numeric_limits<double>::infinity();
     // The residual grows by at most the root of the condition number; beyond this, A is singular.
     constexpr double too_far = 1e12;
     if (x.size() != b.size())
         throw std::invalid_argument(
             "conjugate_gradients: the guess must be as long as the right-hand side");
-    const double size_b = safe_norm(b);
+    const double size_b = common::safe_norm(b);
     if (!std::isfinite(size_b)) return {0, unknown, false, "the right-hand side is not finite"};
     if (size_b == 0.0) {
         x.setZero();
         return {0, 0.0, true, "the right-hand side is zero"};
     }
-    const double size_x = safe_norm(x);
+    const double size_x = common::safe_norm(x);
     if (!std::isfinite(size_x)) {
         x.setZero();
         return {0, unknown, false, "the initial guess is not finite"};
@@ -64,10 +64,10 @@ KrylovResult conjugate_gradients(const Operator& apply, const Preconditioner& pr
         apply(x_1, Ap);
         r -= Ap;
     }
-    double size_r = safe_norm(r);
+    double size_r = common::safe_norm(r);
     if (!std::isfinite(size_r)) return {0, unknown, false, "the operator is not finite"};
 
-    KrylovResult result{0, size_r * (unit / size_b), size_r <= goal, "converged"};
+    common::KrylovResult result{0, size_r * (unit / size_b), size_r <= goal, "converged"};
     while (!result.converged && result.reason == "converged") {
         // Follow the recurrence until its residual is small enough, or something is wrong.
         double along = 0.0, followed = size_r;
@@ -97,7 +97,7 @@ KrylovResult conjugate_gradients(const Operator& apply, const Preconditioner& pr
             }
             x_1 += alpha * p;
             r -= alpha * Ap;
-            followed = safe_norm(r);
+            followed = common::safe_norm(r);
             ++result.iterations;
             if (!(followed < too_far * size_r)) {
                 result.reason = std::isfinite(followed) ? "the operator is singular"
@@ -108,7 +108,7 @@ KrylovResult conjugate_gradients(const Operator& apply, const Preconditioner& pr
         // What the residual really is.
         apply(x_1, Ap);
         r = b_1 - Ap;
-        const double size_before = size_r, size_now = safe_norm(r);
+        const double size_before = size_r, size_now = common::safe_norm(r);
         if (size_now < size_before) {
             best = x_1;
             size_r = size_now;
@@ -125,10 +125,11 @@ KrylovResult conjugate_gradients(const Operator& apply, const Preconditioner& pr
 
 /// The same without a preconditioner.
 template <class Operator>
-KrylovResult conjugate_gradients(const Operator& apply, const Eigen::VectorXd& b,
-                                 Eigen::VectorXd& x, double tolerance, long max_iterations) {
+common::KrylovResult conjugate_gradients(const Operator& apply, const Eigen::VectorXd& b,
+                                         Eigen::VectorXd& x, double tolerance,
+                                         long max_iterations) {
     const auto leave = [](const Eigen::VectorXd& v, Eigen::VectorXd& w) { w = v; };
     return conjugate_gradients(apply, leave, b, x, tolerance, max_iterations);
 }
 
-}  // namespace common
+}  // namespace flip
