@@ -135,7 +135,7 @@ TEST_CASE("a signal at any moment leaves nothing or a checkpoint and the command
     }
 }
 
-TEST_CASE("a run that is resumed after a signal gives the same bytes, and a complete one is left" *
+TEST_CASE("a run that is resumed after a signal gives the same bytes and a complete one is left" *
           doctest::description("robust")) {
     const Room room;
     const std::string whole = room.path("whole"), parts = room.path("parts");
@@ -201,7 +201,7 @@ TEST_CASE("a second run in the same folder is refused while the first one writes
     CHECK(room.run(short_run(out, 5) + "--quiet --force").status == 0);
 }
 
-TEST_CASE("nothing is written through a link, on a full disk nothing is left half" *
+TEST_CASE("nothing is written through a link and on a full disk nothing is left half" *
           doctest::description("robust")) {
     const Room room;
     const std::string out = room.path("run"), victim = room.path("victim");
@@ -223,7 +223,7 @@ TEST_CASE("nothing is written through a link, on a full disk nothing is left hal
         CHECK(entry.path().extension() != ".partial");
 }
 
-TEST_CASE("a result that fell short is said even with --quiet, and is status 1 with --strict" *
+TEST_CASE("a result that fell short is said even with --quiet and is status 1 with --strict" *
           doctest::description("robust")) {
     const Room room;
     // The waves have no time to grow.
@@ -236,7 +236,7 @@ TEST_CASE("a result that fell short is said even with --quiet, and is status 1 w
     CHECK(holds(read_all(room.path("run/summary.json")), "\"status\": 1"));
 }
 
-TEST_CASE("the peak of memory is the program's, not that of what started it" *
+TEST_CASE("the peak of memory belongs to the program and not to what started it" *
           doctest::description("robust")) {
     const Room room;
     const std::string large(200 << 20, 'x');
@@ -265,7 +265,7 @@ TEST_CASE("a slip in a case or on the command line is answered with what was mea
     CHECK(holds(answer("[specie.x]\n", ""), "did you mean [species.x]?"));
     CHECK(holds(answer("[specie.x]\ndensity = 1\n", ""), "did you mean 'species.x.density'?"));
     CHECK(holds(answer("[time]\nend = 1é\n", ""), "slip.toml:2:8: 'é' may stand in text"));
-    CHECK(holds(answer("[time]\nx = \"é \\\\\" é\n", ""), "slip.toml:2:11: 'é' may stand in text"));
+    CHECK(holds(answer("[time]\nx = \"é \\\\\" é\n", ""), "slip.toml:2:12: 'é' may stand in text"));
     CHECK(holds(answer("# é\n[time]\né = 1\n", ""), "slip.toml:3:1: 'é' may stand in text"));
     CHECK(room.run(program("cic") + " species.right.drift_x=-.5 --dry-run").status == 0);
 }

@@ -112,15 +112,6 @@ void check_bad_checkpoint(const Program& program, const std::string& bytes,
     CHECK(!fs::exists(out));
 }
 
-// Whether a process still listens to a signal.
-bool listens(pid_t process, int signal) {
-    std::ifstream file("/proc/" + std::to_string(process) + "/status");
-    for (std::string line; std::getline(file, line);)
-        if (line.rfind("SigCgt:", 0) == 0)
-            return ((std::stoull(line.substr(7), nullptr, 16) >> (signal - 1)) & 1U) != 0;
-    return false;
-}
-
 // A disk that is full after 64 blocks: a limit on the size of files.
 std::string on_a_full_disk(const Command& command, const std::string& out) {
     return "trap '' XFSZ; ulimit -f 64; exec " +
@@ -236,7 +227,10 @@ explicit_em streams -> 2 or more
         const std::string first = folder("first"), again = folder("again");
         INFO(command.program->name << " " << command.words);
         REQUIRE(run(command, first) == 0);
-        REQUIRE(run(command.program->name, first + "/case.toml", again) == 0);
+        // A checkpoint holds the name of its case, too.
+        const std::string name = summary(first)["case"], same = room() + "/" + name + ".toml";
+        fs::copy_file(first + "/case.toml", same, fs::copy_options::overwrite_existing);
+        REQUIRE(run(command.program->name, same, again) == 0);
         const int files = check_same_files(first, again);
         CHECK(check_same_files(again, first) == files);
         const int expected = std::stoi(command.expected[0]);
@@ -365,13 +359,20 @@ TEST_CASE("a second signal ends a run at once" * doctest::description("robust"))
     const std::string out = folder("killed");
     const Command command = commands(
         "mpm_explicit bar_wave grid.cells_x=800 grid.cells_y=200 time.end=100 --threads 1")[0];
-    const pid_t child = started(command_line("mpm_explicit", arguments_of(command)), out);
-    wait_for([&] { return fs::exists(out + "/history.dat"); });
-    kill(child, SIGINT);
-    wait_for([&] { return !listens(child, SIGINT); });
-    kill(child, SIGINT);
+    // The step may end before the program is held, so there is more than one try.
     int status = 0;
-    waitpid(child, &status, 0);
+    for (int attempt = 0; attempt < 5 && !WIFSIGNALED(status); ++attempt) {
+        fs::remove_all(out);
+        const pid_t child = started(command_line("mpm_explicit", arguments_of(command)), out);
+        wait_for([&] { return fs::exists(out + "/history.dat"); });
+        kill(child, SIGINT);
+        usleep(5000);
+        kill(child, SIGSTOP);
+        usleep(400000);
+        kill(child, SIGINT);
+        kill(child, SIGCONT);
+        waitpid(child, &status, 0);
+    }
     CHECK(WIFSIGNALED(status));
     CHECK(WTERMSIG(status) == SIGINT);
     CHECK(!fs::exists(out + "/summary.json"));
@@ -388,18 +389,17 @@ TEST_CASE("damaged and cut and foreign checkpoints are refused and nothing is wr
                                         good.size() / 2, good.size() - 9, good.size() - 1}) {
             std::string flipped = good;
             flipped[place] = static_cast<char>(flipped[place] ^ 0x10);
-            check_bad_checkpoint(*program, flipped,
-                                 "the checkpoint is damaged (its checksum is wrong); use an "
-                                 "earlier one");
+            check_bad_checkpoint(*program, flipped, "the checkpoint is damaged");
         }
         for (const std::string& length :
-             {good.substr(0, 24), good.substr(0, 100), good.substr(0, good.size() - 1), good + "x"})
+             {good.substr(0, 10), good.substr(0, 24), good.substr(0, 100),
+              good.substr(0, good.size() - 1), good + "x"})
             check_bad_checkpoint(*program, length,
                                  "the checkpoint is cut off or too long; use an earlier one");
         std::string foreign = good;
         foreign[0] ^= 1;
         for (const std::string& other :
-             {std::string("nothing"), good.substr(0, 10), foreign, std::string(1000, 'x')})
+             {std::string("nothing"), good.substr(0, 5), foreign, std::string(1000, 'x')})
             check_bad_checkpoint(*program, other, "bad.bin: is not a checkpoint");
 
         // Another program's; another version's; one without anything in it.

@@ -711,9 +711,16 @@ grains plates theory.compare=disk grain.disk.shape=box
 grains disks theory.compare=yield
     theory.compare = "yield" needs a grain of a material with law = "j2", and 'left' is of another:
     set theory.grain
-grains disks theory.compare=yield material.soft.law=j2 grain.right.material=soft
+mpm_explicit disks theory.compare=yield material.soft.law=j2 grain.right.material=soft
     needs a grain of a material with law = "j2", and 'left' is of another
-grains mesh end left theory.compare=yield material.default.law=j2 grain.left.velocity_x=0
+mpm_implicit disks theory.compare=yield material.soft.law=j2 grain.right.material=soft \
+    solver.kind=newton_krylov
+    needs a grain of a material with law = "j2", and 'left' is of another
+mpm_implicit mesh end left theory.compare=yield material.default.law=j2 grain.left.velocity_x=0 \
+    solver.kind=newton_krylov
+    theory.compare = "yield" measures shares of the energy at the start, and nothing moves then: \
+    give a grain a velocity
+mpm_explicit mesh end left theory.compare=yield material.default.law=j2 grain.left.velocity_x=0
     theory.compare = "yield" measures shares of the energy at the start, and nothing moves then:
     give a grain a velocity
 grains plates theory.compare=disk theory.grain=nobody -> theory.grain: there is no grain 'nobody'

@@ -200,7 +200,7 @@ cic two_stream.toml --threads 2 --out run
     onset +about t = .*
     memory +about [0-9.e+]+ [KMG]iB.*
     time +about [0-9.e+-]+ .*
-cic diocotron.toml -> .*128 x 128 cells of 0\.125 x 0\.125, periodic in x, wall in z.*
+cic diocotron.toml -> .*128 x 128 cells of 0\.125 x 0\.125, periodic in x, walls in z.*
 cic misprint.toml -> .*div E = -rho as the slide prints it.*
 flip sod theory.compare=riemann boundary.x_high=open
     mesh                100 x 1 cells of 0\.01 x 1, slip and open in x, periodic in z

@@ -64,7 +64,8 @@ void refuse_bad_bytes(const std::string& text, const std::string& source) {
             throw InputError(at(source, line, column) + ": the line has more than " +
                              std::to_string(longest_line) + " letters; this is not a case file");
         }
-        if (byte >= 0x80 && inside == '\n') {
+        const bool is_mark = k == 0 && text.compare(0, 3, "\xEF\xBB\xBF") == 0;  // of UTF-8
+        if (byte >= 0x80 && inside == '\n' && !is_mark) {
             throw InputError(at(source, line, column) + ": '" + text.substr(k, length) +
                              "' may stand in text and comments only; use letters without accents");
         }

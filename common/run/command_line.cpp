@@ -64,7 +64,7 @@ std::string list_cases(const ProgramInfo& info, const std::string& wrong) {
     return list.empty() ? "" : "; in " + folder.string() + "/ there are: " + list;
 }
 
-// errors: InputError where a case lies in the folder of another method
+// For a case that cannot be read. errors: InputError where it lies in the folder of another method
 void refuse_case_of_another_method(const ProgramInfo& info, const std::string& path) {
     const fs::path folder = fs::weakly_canonical(path).parent_path();
     const std::string method = folder.parent_path().filename().string();
@@ -315,10 +315,14 @@ CommandLine read_command_line(int argc, char** argv, const ProgramInfo& info,
             throw InputError(command.case_path + ": there is no such file" +
                              list_cases(info, command.case_path));
         }
-        refuse_case_of_another_method(info, command.case_path);
         command.case_name = fs::path(command.case_path).stem().string();
-        for (const Setting& setting : read_case(read_file(command.case_path), command.case_path))
-            table.set(setting);
+        try {
+            for (const Setting& one : read_case(read_file(command.case_path), command.case_path))
+                table.set(one);
+        } catch (const InputError&) {
+            refuse_case_of_another_method(info, command.case_path);
+            throw;
+        }
         if (command.out_dir.empty())
             command.out_dir = "out/" + info.program + "/" + command.case_name;
     }

@@ -172,10 +172,12 @@ bool ParameterTable::takes_text(const std::string& name) {
 
 // The name with the word before its first dot spelled like a list; "" where none is near.
 std::string ParameterTable::in_nearest_list(const std::string& name) const {
-    const std::size_t dot = std::min(name.find('.'), name.size());
+    const std::string section = name.substr(0, name.find('.'));
+    for (const Entry& entry : entries_)
+        if (entry.name.compare(0, section.size() + 1, section + ".") == 0) return "";
     for (const List& list : lists_) {
-        const std::size_t distance = edit_distance(name.substr(0, dot), list.name);
-        if (distance > 0 && distance <= 2) return list.name + name.substr(dot);
+        const std::size_t distance = edit_distance(section, list.name);
+        if (distance > 0 && distance <= 2) return list.name + name.substr(section.size());
     }
     return "";
 }

@@ -46,7 +46,7 @@ extern "C" void ask_to_stop(int signal) {
     if (stop_signal != 0) {
         const double later = static_cast<double>(now.tv_sec - first_signal.tv_sec) +
                              1e-9 * static_cast<double>(now.tv_nsec - first_signal.tv_nsec);
-        if (later < 0.3) return;
+        if (later < 0.1) return;
         std::signal(signal, SIG_DFL);
         raise(signal);
     }
@@ -179,6 +179,7 @@ Run::Run(const ProgramInfo& info, const CommandLine& command, const ParameterTab
 
 Run::~Run() {
     if (line_open_) std::fputs("\n", stderr);
+    if (lock_ != nullptr) unlink(path(lock_name).c_str());
 }
 
 void Run::prepare_folder() {
@@ -192,8 +193,6 @@ void Run::prepare_folder() {
     if (error)
         throw InputError(command_.out_dir + ": cannot be created: " + error.message() +
                          "; choose another --out");
-    lock_folder();
-
     std::vector<fs::path> ours;
     bool foreign = false;
     const fs::directory_iterator entries(folder, error);
@@ -208,14 +207,16 @@ void Run::prepare_folder() {
     const bool own_restart =
         restarting() &&
         fs::equivalent(folder, fs::absolute(command_.restart_path).parent_path(), error);
-    if (own_restart || (ours.empty() && !foreign)) return;
-    if (!command_.force) {
+    const bool as_it_is = own_restart || (ours.empty() && !foreign);
+    if (!as_it_is && !command_.force) {
         throw InputError(
             command_.out_dir + (ours.empty() ? ": is not empty" : ": holds an earlier run") +
             "; --force replaces it, --out DIR puts the results elsewhere" +
             (ours.empty() ? ""
                           : ", --restart " + command_.out_dir + "/checkpoint_... continues it"));
     }
+    lock_folder();
+    if (as_it_is) return;
     // A checkpoint that we are about to read stays.
     for (const fs::path& file : ours) {
         if (!restarting() || !fs::equivalent(file, command_.restart_path, error))
@@ -223,16 +224,16 @@ void Run::prepare_folder() {
     }
 }
 
-// The lock is held until the program ends, however it ends; it lies in a file that stays.
+// The lock is held until the program ends, however it ends.
 void Run::lock_folder() {
     const std::string name = path(lock_name);
     for (;;) {
         refuse_special_file(name);
         const int file = open(name.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
-        lock_.reset(file < 0 ? nullptr : fdopen(file, "r+"), [](std::FILE* lock) {
-            if (lock != nullptr) std::fclose(lock);
+        std::shared_ptr<std::FILE> lock(file < 0 ? nullptr : fdopen(file, "r+"), [](std::FILE* f) {
+            if (f != nullptr) std::fclose(f);
         });
-        if (lock_ == nullptr)
+        if (lock == nullptr)
             throw InputError(command_.out_dir + ": cannot be written to: " + std::strerror(errno) +
                              "; choose another --out");
         if (flock(file, LOCK_EX | LOCK_NB) != 0) {
@@ -244,7 +245,10 @@ void Run::lock_folder() {
         }
         // The run before may have taken its file away between these two calls.
         struct stat status {};
-        if (fstat(file, &status) == 0 && status.st_nlink > 0) return;
+        if (fstat(file, &status) == 0 && status.st_nlink > 0) {
+            lock_ = lock;
+            return;
+        }
     }
 }
 

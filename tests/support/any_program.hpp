@@ -32,7 +32,7 @@ using Files = std::map<std::string, std::string>;  // bytes by name
 struct Outcome {
     int status = -1;
     std::string out, err;
-    std::vector<std::string> sentences;  // lines of err that are no warnings
+    std::vector<std::string> sentences;  // lines of err that are no warnings and no verdicts
 };
 
 inline std::string read_all(const fs::path& path) {
@@ -114,7 +114,8 @@ inline Outcome start(const Program& program, const fs::path& folder, const std::
     outcome.err = read_all(err);
     std::istringstream lines(outcome.err);
     for (std::string line; std::getline(lines, line);) {
-        if (!line.starts_with("warning: ")) outcome.sentences.push_back(line);
+        if (!line.starts_with("warning: ") && !holds(line, ": FAIL "))
+            outcome.sentences.push_back(line);
     }
     return outcome;
 }
