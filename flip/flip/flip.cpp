@@ -61,11 +61,10 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
 
     // 3. The loop of the slide.
     while (run.not_finished(step, state.time, parameters.end)) {
-        find_fluid(problem, state, scratch.mesh);  // particles -> mesh: v_g, p_c          [FLIP-8]
+        find_fluid(problem, state, scratch.mesh);  // particles -> mesh: v_g, p_c      [FLIP-8]
         recorder.record(step, state, particle_totals(problem.grid, particles),
                         cell_fields(problem.grid, mesh), run);
-        take_flip_step(problem, step, scratch,
-                       state);  // mesh -> particles: v_p, x_p     [FLIP-6, 7]
+        take_flip_step(problem, step, scratch, state);  // mesh -> particles: v_p, x_p [FLIP-6, 7]
         ++step;
         run.end_of_step(step, state.time, parameters.end, state);
     }
