@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // How often a waiting thread of libgomp looks for work before it sleeps: some microseconds.
-constexpr const char* short_spin = "1000";
+constexpr const char* short_spin = "2000";
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
