@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -50,10 +51,10 @@ struct Room {
     // in: command, as a shell reads it, in the root of the project
     Outcome run(const std::string& command) const {
         const std::string out = folder / "stdout", err = folder / "stderr";
-        const int status =
-            std::system(("env -u OMP_WAIT_POLICY -u GOMP_SPINCOUNT -u OMP_NUM_THREADS sh -c '" +
-                         command + "' </dev/null >" + out + " 2>" + err)
-                            .c_str());
+        const int status = std::system(("env -u OMP_WAIT_POLICY -u GOMP_SPINCOUNT -u KMP_BLOCKTIME "
+                                        "-u OMP_NUM_THREADS sh -c '" +
+                                        command + "' </dev/null >" + out + " 2>" + err)
+                                           .c_str());
         return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), read_all(out),
                 read_all(err)};
     }
@@ -95,7 +96,11 @@ TEST_CASE("beside busy work a program is as fast as with threads that sleep whil
         if (child == 0) execlp("sh", "sh", "-c", "while :; do :; done", nullptr);
         busy.push_back(child);
     }
-    const double passive = seconds("OMP_WAIT_POLICY=passive "), own = seconds("");
+    double passive = 1e9, own = 1e9;
+    for (int k = 0; k < 3; ++k) {
+        passive = std::min(passive, seconds("OMP_WAIT_POLICY=passive "));
+        own = std::min(own, seconds(""));
+    }
     for (const pid_t child : busy) {
         kill(child, SIGKILL);
         waitpid(child, nullptr, 0);
@@ -215,9 +220,9 @@ TEST_CASE("nothing is written through a link and on a full disk nothing is left 
     CHECK(holds(linked.err, "history.dat: is not a regular file"));
     CHECK(read_all(victim) == "mine\n");
 
-    // No file may be longer than a block of 512 bytes.
+    // No file may be longer than eight blocks of 512 bytes.
     const std::string small = room.path("small");
-    const Outcome full = room.run("ulimit -f 1; " + short_run(small, 400) + "--quiet");
+    const Outcome full = room.run("ulimit -f 8; " + short_run(small, 400) + "--quiet");
     CHECK(full.status == 2);
     for (const auto& entry : fs::directory_iterator(small))
         CHECK(entry.path().extension() != ".partial");

@@ -370,8 +370,10 @@ TEST_CASE("the order of the grains does not matter without friction") {
             std::set<std::pair<long, long>> left_early;
             for (const ContactProblem* m : {&one, &other})
                 for (long n = 0; n < m->nodes.shared_count(); ++n, ++nodes) {
-                    const Member& who = m->members(n).front();
-                    if (approach_at(*m, n) > jammed) left_early.insert({who.x, who.y}), ++slow;
+                    if (!(approach_at(*m, n) > jammed)) continue;
+                    const std::vector<Member> who = m->members(n);
+                    left_early.insert({who.front().x, who.front().y});
+                    ++slow;
                 }
             for_each_dof(one.nodes, one.cloud.layout, [&](int g, long i, long j, std::size_t dof) {
                 const NodeMotion& u = one.nodes.motion[dof];

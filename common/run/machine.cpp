@@ -50,13 +50,14 @@ void open_standard_descriptors() {
 }
 
 void share_cores(char** argv) {
-    if (std::getenv("OMP_WAIT_POLICY") != nullptr || std::getenv("GOMP_SPINCOUNT") != nullptr)
-        return;
+    for (const char* name : {"OMP_WAIT_POLICY", "GOMP_SPINCOUNT", "KMP_BLOCKTIME"})
+        if (std::getenv(name) != nullptr) return;
     std::error_code error;
     const fs::path program = fs::read_symlink("/proc/self/exe", error);
     if (error) return;
     setenv("GOMP_SPINCOUNT", short_spin, 1);
-    execv(program.c_str(), argv);  // returns where it fails; then it goes on as it is
+    setenv("KMP_BLOCKTIME", "0", 1);  // the same for clang's library, in milliseconds
+    execv(program.c_str(), argv);     // returns where it fails; then it goes on as it is
 }
 
 int free_cores() {

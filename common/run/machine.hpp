@@ -13,7 +13,7 @@ void open_standard_descriptors();
 /// libgomp reads this from the environment when it is loaded, and by default its threads spin for
 /// milliseconds, each of them on a core that other work could use, the thread waited for included.
 /// in:   argv of main
-/// note: does nothing where OMP_WAIT_POLICY or GOMP_SPINCOUNT is set.
+/// note: does nothing where OMP_WAIT_POLICY, GOMP_SPINCOUNT or KMP_BLOCKTIME is set.
 void share_cores(char** argv);
 
 /// Cores that this process may use: those of its affinity, and not more than the quota of its
