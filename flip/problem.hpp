@@ -1,4 +1,4 @@
-// What a step has to know of the run, as plain numbers: the mesh and its boundaries, the materials,
+// The numbers of a run that the steps use: the mesh and its boundaries, the materials,
 // the forces and the scheme. Nothing here changes in time.
 #pragma once
 
@@ -99,7 +99,7 @@ struct Scheme {
     long min_particles = 4, max_particles = 32;  // of one material in a cell
 };
 
-/// All that a step has to know of the run.
+/// The input of the steps: mesh, boundaries, materials and scheme of one run.
 struct Problem {
     Grid grid;
     std::vector<Material> materials;

@@ -239,6 +239,13 @@ TEST_CASE("a result that fell short is said even with --quiet and is status 1 wi
     CHECK(holds(quiet.err, "cic: FAIL growth_over_theory = "));
     CHECK(strict.status == 1);
     CHECK(holds(read_all(room.path("run/summary.json")), "\"status\": 1"));
+
+    // A complete run that is left as it is keeps its verdict.
+    CHECK(room.run(early).status == 0);
+    const Outcome left = room.run(early + "--resume");
+    CHECK(left.status == 0);
+    CHECK(holds(left.err, "cic: FAIL, a result fell short"));
+    CHECK(room.run(early + "--resume --strict").status == 1);
 }
 
 TEST_CASE("the peak of memory belongs to the program and not to what started it" *
@@ -271,6 +278,9 @@ TEST_CASE("a slip in a case or on the command line is answered with what was mea
     CHECK(holds(answer("[specie.x]\ndensity = 1\n", ""), "did you mean 'species.x.density'?"));
     CHECK(holds(answer("[time]\nend = 1é\n", ""), "slip.toml:2:8: 'é' may stand in text"));
     CHECK(holds(answer("[time]\nx = \"é \\\\\" é\n", ""), "slip.toml:2:12: 'é' may stand in text"));
+    for (const std::string quotes : {"\"\"\"", "\x27\x27\x27"})
+        CHECK(holds(answer("x = " + quotes + "a\nb" + quotes + " é\n", ""),
+                    "slip.toml:1:5: write text between single quotes, on one line"));
     CHECK(holds(answer("# é\n[time]\né = 1\n", ""), "slip.toml:3:1: 'é' may stand in text"));
     CHECK(room.run(program("cic") + " species.right.drift_x=-.5 --dry-run").status == 0);
 }

@@ -69,6 +69,10 @@ void refuse_bad_bytes(const std::string& text, const std::string& source) {
             throw InputError(at(source, line, column) + ": '" + text.substr(k, length) +
                              "' may stand in text and comments only; use letters without accents");
         }
+        // Three quotes begin text of several lines, which no parameter takes.
+        if (inside == '\n' && (text.compare(k, 3, "\"\"\"") == 0 || text.compare(k, 3, "'''") == 0))
+            throw InputError(at(source, line, column) +
+                             ": write text between single quotes, on one line");
         const bool escaped = inside == '"' && byte == '\\' && k + 1 < text.size();
         if (byte == '\n' || (byte == inside && inside != '#'))
             inside = '\n';

@@ -119,12 +119,16 @@ CheckpointReader::CheckpointReader(const ProgramInfo& info, const std::string& p
     effective_case_ = text("case");
 }
 
-void CheckpointReader::read(void* to, std::size_t bytes) {
+void CheckpointReader::read_plain(void* to, std::size_t bytes) {
     if (bytes > left_)
         throw InputError(path_ + ": the checkpoint is cut off or too long; use an earlier one");
     if (bytes > 0 && std::fread(to, 1, bytes, file_.get()) != bytes)
         throw InputError(path_ + ": cannot be read: " + std::strerror(errno));
     left_ -= bytes;
+}
+
+void CheckpointReader::read(void* to, std::size_t bytes) {
+    read_plain(to, bytes);
     checksum_ = XXH3_64bits_withSeed(to, bytes, checksum_);
 }
 
@@ -205,7 +209,7 @@ long CheckpointReader::verify() {
         XXH3_64bits_reset_withSeed(&state, checksum_);
         for (std::uint64_t bytes = header.count * sizes[kind]; bytes > 0;) {
             const std::size_t part = std::min<std::uint64_t>(bytes, piece.size());
-            read(piece.data(), part);
+            read_plain(piece.data(), part);
             XXH3_64bits_update(&state, piece.data(), part);
             bytes -= part;
         }

@@ -7,7 +7,6 @@
 // or put elsewhere. Blocks go to the disk and come from it one by one: no copy of the state is made.
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <cstdio>
 #include <memory>
@@ -40,21 +39,13 @@ class CheckpointWriter {
 
     /// Adds one number.
     template <class Number>
-    void operator()(const std::string& name, const Number& value) {
-        block(name, &value, 1);
-    }
-    /// Adds a list of numbers.
-    template <class Number>
-    void operator()(const std::string& name, const std::vector<Number>& values) {
-        block(name, values.data(), values.size());
-    }
-    /// Adds a list of numbers.
-    void operator()(const std::string& name, const Eigen::VectorXd& values) {
+    requires std::is_arithmetic_v<Number>
+    void operator()(const std::string& name, const Number& value) { block(name, &value, 1); }
+    /// Adds a text or a list of numbers: std::vector or a dense vector of Eigen.
+    template <class Numbers>
+    requires(!std::is_arithmetic_v<Numbers>) void operator()(const std::string& name,
+                                                             const Numbers& values) {
         block(name, values.data(), static_cast<std::size_t>(values.size()));
-    }
-    /// Adds a text.
-    void operator()(const std::string& name, const std::string& text) {
-        block(name, text.data(), text.size());
     }
 
     /// Ends the file, flushes it to the disk and renames it: `path` is the old file or the whole new
@@ -94,17 +85,18 @@ class CheckpointReader {
 
     /// Reads one number.
     template <class Number>
-    void operator()(const std::string& name, Number& value) {
-        block(name, &value, 1);
-    }
+    requires std::is_arithmetic_v<Number>
+    void operator()(const std::string& name, Number& value) { block(name, &value, 1); }
     /// Reads a list of numbers of any length.
     template <class Number>
     void operator()(const std::string& name, std::vector<Number>& values) {
         values.resize(begin_block(name, letter_of<Number>(), sizeof(Number)));
         end_block(values.data(), values.size() * sizeof(Number));
     }
-    /// Reads a list of numbers whose length is known.
-    void operator()(const std::string& name, Eigen::VectorXd& values) {
+    /// Reads a list of numbers whose length is known: a dense vector of Eigen.
+    template <class Numbers>
+    requires(!std::is_arithmetic_v<Numbers>) void operator()(const std::string& name,
+                                                             Numbers& values) {
         block(name, values.data(), static_cast<std::size_t>(values.size()));
     }
 
@@ -131,6 +123,7 @@ class CheckpointReader {
     void require_length(const std::string& name, std::size_t found, std::size_t wanted) const;
     std::string text(const std::string& name);
     void read(void* to, std::size_t bytes);
+    void read_plain(void* to, std::size_t bytes);
 
     std::shared_ptr<std::FILE> file_;
     std::string path_, effective_case_, case_name_;

@@ -17,6 +17,7 @@ namespace common {
 /// A column of the history: its name and the unit it is given in ("1" for a pure number).
 struct Column {
     std::string name, unit;
+    bool operator==(const Column&) const = default;
 };
 
 /// One row of the history: each quantity's name, unit and value in one place.
@@ -70,7 +71,10 @@ class History {
     }
 
     /// The same from a row that also names its quantities.
-    void row(const Row& row) { this->row(row.values); }
+    void row(const Row& row) {
+        if (row.columns != columns_) throw std::logic_error("history: a row of other columns");
+        this->row(row.values);
+    }
 
     /// The first value of a column. errors: logic_error for a name that is not a column, or no row.
     double first(const std::string& name) const {

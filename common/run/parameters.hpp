@@ -166,8 +166,9 @@ struct CommandLine {
     long restart_step = 0;             // the step of that checkpoint
     int threads = 0;                   // 0: as many as there are cores to use
     bool dry_run = false, quiet = false, force = false, strict = false;
-    bool resume = false;    // go on with the run in the folder, if it is of this case
-    bool complete = false;  // and that run has nothing left to do
+    bool resume = false;      // go on with the run in the folder, if it is of this case
+    bool complete = false;    // and that run has nothing left to do
+    bool fell_short = false;  // and one of its results is a FAIL
 };
 
 /// Reads case file and overrides into the table. --help and --version print and end the program.

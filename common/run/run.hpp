@@ -49,9 +49,9 @@ class Run {
         first_step_ = step;
     }
 
-    /// False at the end of the run, or after the step in which a signal asked to stop. Steps may all be equal and
-    /// known in number, or as long as the flow allows until a time is reached; the last of those may
-    /// end later, so that a run does not depend on where it was meant to end.
+    /// False at the end of the run, or after the step in which a signal asked to stop. Steps may
+    /// all be equal and known in number, or as long as the flow allows until a time is reached; the
+    /// last of those may end later, so that a run does not depend on where it was meant to end.
     bool not_finished(long step, long steps);
     bool not_finished(long step, double time, double end);
     /// Whether a time is the end, but for the round-off of a sum of steps.
@@ -128,9 +128,10 @@ class Run {
 /// the machine's memory. in: steps of the whole run; bytes it will take.
 void refuse_before_start(const CommandLine& command, long steps, double bytes);
 
-/// Prepares the machine, runs a program and turns errors into one sentence on stderr and the exit status: 2 bad input,
-/// 3 numerical failure.
-/// in: argv of main; program(run) builds the run in place, so that a failed run still leaves its summary.
+/// Prepares the machine, runs a program and turns errors into one sentence on stderr and the exit
+/// status: 2 bad input, 3 numerical failure.
+/// in: argv of main; program(run) builds the run in place, so that a failed run still leaves its
+///     summary
 int run_and_report_errors(const ProgramInfo& info, char** argv,
                           const std::function<int(std::optional<Run>&)>& program);
 

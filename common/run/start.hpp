@@ -38,6 +38,9 @@ inline bool start_run(const ProgramInfo& info, const CommandLine& command,
         if (!command.quiet)
             std::printf("%s: %s holds this run, complete\n", info.program.c_str(),
                         command.out_dir.c_str());
+        if (command.fell_short)
+            std::fprintf(stderr, "%s: FAIL, a result fell short; see %s/summary.json\n",
+                         info.program.c_str(), command.out_dir.c_str());
         return false;
     }
     refuse_before_start(command, prepared.steps, prepared.bytes);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "common/run/output_file.hpp"
@@ -81,12 +80,6 @@ std::vector<std::string> Summary::shortfalls() const {
                             " is expected (" + entry.source + ")");
     }
     return sentences;
-}
-
-bool is_summary_of_complete_run(const std::string& path) {
-    std::ifstream file(path);
-    const Json json = Json::parse(file, nullptr, false);
-    return json.is_object() && json.contains("status") && json["status"] == 0;
 }
 
 std::string Summary::table() const {

@@ -63,7 +63,4 @@ class Summary {
     std::vector<std::string> warnings_;
 };
 
-/// Whether a file is the summary of a run that ended with status 0.
-bool is_summary_of_complete_run(const std::string& path);
-
 }  // namespace common

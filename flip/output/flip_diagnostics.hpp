@@ -1,4 +1,4 @@
-// What the recorder wants to know of flip: sums over the particles, and the fluid on the cells.
+// Diagnostics of flip: sums over the particles, and the fluid on the cells.
 #pragma once
 
 #include <array>

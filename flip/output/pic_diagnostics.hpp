@@ -1,4 +1,4 @@
-// What the recorder wants to know of pic: sums over the cells, and the fluid on them.
+// Diagnostics of pic: sums over the cells, and the fluid on the cells.
 #pragma once
 
 #include "flip/pic/pic_cells.hpp"

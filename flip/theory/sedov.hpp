@@ -24,7 +24,7 @@ struct BlastPoint {
     double pressure;  // p / (rho_0 D^2)
 };
 
-/// What all radii need to know of a blast.
+/// The quantities of a blast that do not depend on the radius.
 struct BlastWave {
     double gamma;
     int dimension;  // 1 plane, 2 cylinder, 3 sphere

@@ -45,7 +45,7 @@ inline void compare_oscillator(const theory::FinishedRun& run, common::Summary& 
     }
 }
 
-/// What theory has to know of the leapfrog: how far its energy goes astray at alpha = 1/4.
+/// The properties of the leapfrog that comparisons use: how far its energy strays at alpha = 1/4.
 inline constexpr theory::SchemeFacts leapfrog{.rebound_tolerance = 0.03, .bar_tolerance = 0.01};
 
 /// What a run of mpm_explicit can be compared with.

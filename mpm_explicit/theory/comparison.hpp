@@ -20,7 +20,7 @@
 
 namespace mpm::theory {
 
-/// What theory has to know of a scheme.
+/// The properties of a scheme that comparisons use.
 struct SchemeFacts {
     // How far the energy may change, relative; infinite for a scheme that is meant to take energy.
     double rebound_tolerance = 0, bar_tolerance = 0;

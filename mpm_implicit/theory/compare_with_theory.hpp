@@ -23,7 +23,7 @@ inline bool keeps_energy(const Case& parameters, const theory::SchemeFacts& sche
     return scheme.theta == 0.5 && scheme.consistent_mass && parameters.flip == 1;
 }
 
-/// What theory has to know of the theta scheme.
+/// The properties of the theta scheme that comparisons use.
 inline theory::SchemeFacts facts_of(const Case& parameters, const ThetaScheme& scheme) {
     theory::SchemeFacts facts{.theta = scheme.theta, .consistent_mass = scheme.consistent()};
     const bool keeps = keeps_energy(parameters, facts) && parameters.problem.contact.friction == 0;

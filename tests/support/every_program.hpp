@@ -11,7 +11,7 @@
 
 namespace facts {
 
-/// What the tests of every program need to know of one.
+/// One program as the tests of all programs see it.
 struct Program {
     std::string name;
     std::string method;      // the folder of its cases
