@@ -50,6 +50,15 @@ cic line wave species.electrons.amplitude=0.01
     cannot be measured well
 cic line wave time.end=10 species.electrons.mode_x=2
     warning: no species is perturbed in the followed mode (1, 0): only noise can start the wave
+cic line time.end=0.04 -> warning: time.end = 0.04 is below half of time.dt = 0.1: no step is taken
+    warning: omega_p time.end = 0.04 is below 0.1
+cic line time.dt=1.7e-7 time.end=1.7e-4
+    warning: omega_p time.end = 0.00017 is below 0.1: particles fly straight on
+cic line species.electrons.temperature_x=1 grid.length_x=4e-4 time.dt=1e-5
+    warning: the box has 0.0004 Debye lengths, below 1: particles cross it before their field can act
+cic line time.dt=1.7e-7 time.end=1.7e-4 plasma.B_y=1e4 -> no warning
+cic line time.dt=1.7e-7 time.end=1.7e-4 grid.boundary_x=wall boundary.potential_x_high=1 -> no warning
+cic line time.end=0 -> no warning
 )");
 }
 
@@ -83,6 +92,14 @@ flip tube output.fields_interval=1e-6 output.particles_interval=1
     written every step
 flip sod theory.compare=riemann time.end=0.4
     warning: at time.end the waves are at x = 0.02671 and 1.201, beyond the ends
+fluids around region.gas.velocity_x=1 time.end=1e-6
+    warning: until time.end = 1e-06 sound or the flow crosses 8.555e-05 cells, below 0.1: the run is
+    over before anything happens; raise time.end
+flip around region.gas.velocity_x=1 time.end=1e-6 implicit
+    warning: until time.end = 1e-06 sound or the flow crosses 6.986e-05 cells, below 0.1
+    warning: the flow has Mach
+flip around region.gas.velocity_x=1 time.end=1e-6 region.gas.pressure=1e10
+    no warning
 flip around theory.compare=wave sound
     warning: the wave has the period 0.8452, longer than time.end = 0.1
 pic tube region.gas.velocity_x=0.5 flip.transfer=apic
@@ -102,6 +119,12 @@ TEST_CASE("what may mislead in grains is a warning with the number and the limit
           doctest::description("robust")) {
     check_warnings(R"(
 mpm_explicit disks -> no warning
+grains disks time.end=1e-3
+    warning: until time.end = 0.001 sound crosses 0.07538 cells, below 0.1: the run is over before
+    anything happens; raise time.end
+mpm_implicit disks time.end=2e-3 time.alpha=0.1 -> no warning
+mpm_implicit disks time.end=2e-3
+    warning: time.end = 0.002 is below half of the time step 0.01327: no step is taken
 mpm_explicit disks time.alpha=0.8
     warning: time.alpha = 0.8 is above 0.7: nothing bounds the energy of explicit solutions, and
     grains that meet will burst
@@ -168,6 +191,15 @@ implicit_moment few
     warning: electrons: v_th dt/dx = 0.006766 is below 0.05 and the Debye length is 0.004511
     cells: finite-grid heating is possible, watch the energy
 explicit_em -> no warning
+plasmas time.dt=1e-9 time.end=1e-6
+    warning: omega_p time.end = 5.099e-06 and Omega_c time.end = 1.25e-06 are below 0.1: fields have
+    no time to act; raise time.end, which is in units of 1/omega_pi
+plasmas electrons species.electrons.temperature_x=0.01 grid.length_x=0.001 grid.length_z=0.001 \
+    time.dt=1e-6 time.end=1
+    warning: the box has 0.01 Debye lengths, below 1: particles cross it before their field can act
+plasmas electrons time.dt=1e-4 time.end=0.01
+    warning: omega_p time.end = 0.01 and Omega_c time.end = 0 are below 0.1
+plasmas electrons time.dt=1e-4 time.end=0.01 grid.length_x=0.1 wave_E_y -> no warning
 explicit_em grid.cells_x=256 grid.cells_z=128
     warning: electrons: the Debye length is 0.1443 cells, below 0.2: where the plasma drifts the
     mesh may heat it, watch the energy

@@ -53,9 +53,16 @@ inline Scales scales_of(const Case& parameters) {
     }
     s.debye_length = inverse_debye2 > 0 ? 1 / std::sqrt(inverse_debye2) : 0;
     s.steps = std::lround(parameters.end / parameters.dt);
-    const double per_particle = double(components + 1) * sizeof(Real) + sizeof(int);
-    s.bytes = per_particle * double(s.particles) +
-              double(parameters.grid.size()) * (common::block_count + 8) * sizeof(double);
+    // Species are sorted one after the other.
+    long sorted = 0;
+    if (parameters.dimensions == 2 && parameters.sort_interval > 0)
+        for (const SpeciesScales& one : s.species) sorted = std::max(sorted, one.particles);
+    // The density of every species is deposited once more where fields are written.
+    const double meshes =
+        (common::block_count + 8) + (parameters.fields_interval > 0 ? common::block_count + 6 : 0);
+    s.bytes = double(components * s.particles) * sizeof(Real) +
+              double(sorted) * (sizeof(Real) + sizeof(int)) +
+              double(parameters.grid.size()) * meshes * sizeof(double);
     // The factors of the matrix of a box.
     if (parameters.is_box()) {
         const double points = double(parameters.grid.size());
@@ -73,12 +80,47 @@ inline long largest_prime_factor(long number) {
     return std::max(largest, number);
 }
 
+// Runs in which particles fly straight on: no field acts on them for long enough, or none that they
+// make together.
+inline void warn_of_idleness(const Case& parameters, const Scales& scales,
+                             std::vector<std::string>& warnings) {
+    if (parameters.end == 0) return;
+    double omega_p = 0, Omega_c = 0;
+    bool cold = false, driven = false;  // from outside
+    for (const SpeciesScales& s : scales.species) {
+        omega_p = std::hypot(omega_p, s.omega_p);
+        Omega_c = std::max(Omega_c, s.Omega_c);
+        cold = cold || (s.omega_p > 0 && s.debye_length == 0);
+    }
+    for (const SpeciesCase& s : parameters.species) driven = driven || s.emission > 0;
+    for (const WallCase& wall : parameters.walls) driven = driven || wall.potential != 0;
+    if (scales.steps == 0)
+        warnings.push_back(sentence("time.end = ", parameters.end, " is below half of time.dt = ",
+                                    parameters.dt, ": no step is taken"));
+    if (omega_p == 0 || driven || Omega_c * parameters.end > 0.1) return;
+    if (omega_p * parameters.end < 0.1)
+        warnings.push_back(
+            sentence("omega_p time.end = ", omega_p * parameters.end,
+                     " is below 0.1: particles fly straight on, their field has no time to act; "
+                     "raise time.end, which is in units of 1/omega_p of density 1, charge 1, "
+                     "mass 1"));
+    const Grid& grid = parameters.grid;
+    const double box =
+        parameters.dimensions == 2 ? std::max(grid.x.length, grid.z.length) : grid.x.length;
+    if (!cold && box < scales.debye_length)
+        warnings.push_back(sentence("the box has ", box / scales.debye_length,
+                                    " Debye lengths, below 1: particles cross it before their "
+                                    "field can act; make it longer than ",
+                                    scales.debye_length));
+}
+
 }  // namespace detail
 
 /// Warnings with the number and the limit, for choices that run but may mislead.
 inline std::vector<std::string> resolution_warnings(const Case& parameters, const Scales& scales) {
     std::vector<std::string> warnings;
     const auto warn = [&](const auto&... pieces) { warnings.push_back(sentence(pieces...)); };
+    detail::warn_of_idleness(parameters, scales, warnings);
     const Grid& grid = parameters.grid;
     const double dx = parameters.dimensions == 2 ? std::max(grid.x.spacing(), grid.z.spacing())
                                                  : grid.x.spacing();

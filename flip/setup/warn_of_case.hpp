@@ -89,6 +89,21 @@ inline void warn_of_speeds(const Case& parameters, const Scales& scales, const s
          "damped");
 }
 
+// Runs that are over before anything crosses a cell: sound, the flow or a wall that slides, a fluid
+// that falls, momentum that diffuses.
+inline void warn_of_idleness(const Case& parameters, const Scales& scales,
+                             std::vector<std::string>& out) {
+    const auto &x = parameters.grid.x, &z = parameters.grid.z;
+    const double dx = parameters.plane() ? std::min(x.spacing(), z.spacing()) : x.spacing(),
+                 t = parameters.end, falls = std::hypot(parameters.gravity_x, parameters.gravity_z),
+                 sound = parameters.implicit() ? scales.sound_speed / dx : 0,
+                 crossed = std::max({(scales.rate + sound) * t, falls * t * t / dx,
+                                     std::sqrt(parameters.trap) * t,
+                                     parameters.viscosity * t / (dx * dx)});
+    warn(out, t > 0 && crossed < 0.1, "until time.end = ", t, " sound or the flow crosses ",
+         crossed, " cells, below 0.1: the run is over before anything happens; raise time.end");
+}
+
 }  // namespace detail
 
 /// Warnings about a completed case that validate has let through.
@@ -98,6 +113,7 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
     for (const FlipKey& key : keys_of_flip(parameters))
         warn(warnings, program == "pic" && key.changed, key.name, " = ", key.value,
              " means nothing to pic, whose particles are mass alone");
+    detail::warn_of_idleness(parameters, scales, warnings);
     detail::warn_of_regions(parameters, scales, warnings);
     detail::warn_of_speeds(parameters, scales, program, warnings);
     const Comparison& comparison = comparison_of(parameters);

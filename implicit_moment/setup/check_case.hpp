@@ -162,6 +162,41 @@ inline void validate(Case& w) {
     w.is_uniform() ? detail::validate_uniform(w) : detail::validate_sheet(w);
 }
 
+/// Warnings of runs in which particles fly straight on: no field acts on them for long enough, or
+/// none that they make together; and no wave of light is followed instead.
+inline std::vector<std::string> idleness_warnings(const Case& w, const Scales& scales) {
+    std::vector<std::string> warnings;
+    if (w.end == 0) return warnings;
+    double omega_p = 0, Omega_c = 0, inverse_debye = 0;
+    for (const SpeciesScales& s : scales.species) {
+        omega_p = std::hypot(omega_p, s.omega_p_dt / w.dt);
+        Omega_c = std::max(Omega_c, s.Omega_c_dt / w.dt);
+        if (s.omega_p_dt > 0) inverse_debye = std::hypot(inverse_debye, 1 / s.debye_length);
+    }
+    const UniformCase& u = w.uniform;
+    const double k = std::hypot(2 * pi * double(u.mode_x) / w.grid.x.length,
+                                2 * pi * double(u.mode_z) / w.grid.z.length),
+                 field = std::hypot(std::hypot(u.wave_B_x, u.wave_B_y, u.wave_B_z),
+                                    std::hypot(u.wave_E_x, u.wave_E_y, u.wave_E_z)),
+                 light = w.is_uniform() && field > 0 ? c * k : 0;
+    if (scales.steps == 0)
+        warnings.push_back("time.end = " + format(w.end) +
+                           " is below half of time.dt = " + format(w.dt) + ": no step is taken");
+    if (std::max(Omega_c, light) * w.end > 0.1) return warnings;
+    if (omega_p * w.end < 0.1)
+        warnings.push_back("omega_p time.end = " + format(omega_p * w.end) +
+                           " and Omega_c time.end = " + format(Omega_c * w.end) +
+                           " are below 0.1: fields have no time to act; raise time.end, which is "
+                           "in units of 1/omega_pi");
+    const double box = std::max(w.grid.x.length, w.grid.z.length) * inverse_debye;
+    if (inverse_debye > 0 && box < 1)
+        warnings.push_back("the box has " + format(box) +
+                           " Debye lengths, below 1: particles cross it before their field can "
+                           "act; make it longer than " +
+                           format(1 / inverse_debye));
+    return warnings;
+}
+
 /// Warnings with the number and the limit, for choices that run but may mislead.
 /// source: [IMM-13] and its lower bound.
 /// note:   the slide asks for v_th dt/dx < 1, so that a particle stays within what the fluid
@@ -169,7 +204,7 @@ inline void validate(Case& w) {
 ///         not resolved, the mesh does not damp what it cannot resolve, and the finite-grid
 ///         instability of all momentum-conserving methods may heat the plasma.
 inline std::vector<std::string> closure_warnings(const Case& w, const Scales& scales) {
-    std::vector<std::string> warnings;
+    std::vector<std::string> warnings = idleness_warnings(w, scales);
     const double dx = w.grid.x.spacing(), dz = w.grid.z.spacing();
     for (const SpeciesScales& s : scales.species) {
         const double most = s.thermal_speed * w.dt / std::min(dx, dz);

@@ -139,11 +139,19 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
     std::vector<std::string> warnings;
     const Problem& problem = parameters.problem;
     const Mesh mesh = problem.mesh();
+    const double g = std::hypot(problem.gravity_x, problem.gravity_y), t = parameters.end,
+                 crossed = std::max((scales.sound_speed + scales.speed) * t, g * t * t) / mesh.h;
+    if (t > 0 && crossed < 0.1)
+        warnings.push_back("until time.end = " + format(t) + " sound crosses " + format(crossed) +
+                           " cells, below 0.1: the run is over before anything happens; raise "
+                           "time.end");
+    else if (t > 0 && scales.steps == 0)
+        warnings.push_back("time.end = " + format(t) + " is below half of the time step " +
+                           format(scales.dt) + ": no step is taken");
     if (scales.speed > 0.05 * scales.sound_speed && scales.grains > 1)
         warnings.push_back("|v|/c_p = " + format(scales.speed / scales.sound_speed) +
                            " is above 0.05: an impact strains the grains by more than the small "
                            "strains of the material laws");
-    const double g = std::hypot(problem.gravity_x, problem.gravity_y);
     const double height = mesh.y_high() - mesh.y_low,
                  strain = g * height / (scales.sound_speed * scales.sound_speed);
     if (strain > 0.05)

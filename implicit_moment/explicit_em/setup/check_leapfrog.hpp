@@ -45,7 +45,7 @@ inline void refuse_unstable(const Case& w) {
 /// Warnings with the number and the limit, for choices that run but may mislead.
 /// source: Birdsall and Langdon (1985), chapters 8, 9 and 15.
 inline std::vector<std::string> leapfrog_warnings(const Case& w, const Scales& scales) {
-    std::vector<std::string> warnings;
+    std::vector<std::string> warnings = idleness_warnings(w, scales);
     const double cell = std::min(w.grid.x.spacing(), w.grid.z.spacing());
     const double omega_p_dt = detail::omega_p_dt(w, scales);
     if (omega_p_dt > 1.62) {
