@@ -124,7 +124,7 @@ deps:
 	@CXX='$(CXX)' EIGEN='$(EIGEN)' sh common/packages.sh
 
 deps-dev: | $(filter deps,$(MAKECMDGOALS))
-	@sh common/packages.sh clang-format
+	@sh common/packages.sh clang-format locales
 
 # ---- programs ------------------------------------------------------------------------------------
 

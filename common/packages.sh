@@ -15,11 +15,12 @@ nlohmann-json3-dev     header  nlohmann/json.hpp JSON for Modern C++
 librandom123-dev       header  Random123/philox.h Random123
 doctest-dev            header  doctest/doctest.h doctest 2.4
 libxxhash-dev          header  xxhash.h          xxHash 0.8
-clang-format           command clang-format      clang-format 14'
+clang-format           command clang-format      clang-format 14
+locales                command localedef         sources of locales (glibc)'
 
 CXX=${CXX:-g++}
 EIGEN=${EIGEN:-/usr/include/eigen3}
-wanted=${*:-$(echo "$needed" | sed -e '/^clang-format/d' -e 's/ .*//')}
+wanted=${*:-$(echo "$needed" | sed -e '/^clang-format/d' -e '/^locales/d' -e 's/ .*//')}
 
 installed() {  # is the package with this name, proof and kind there?
     if [ "$2" = command ]; then

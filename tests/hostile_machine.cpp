@@ -248,6 +248,44 @@ TEST_CASE("a result that fell short is said even with --quiet and is status 1 wi
     CHECK(room.run(early + "--resume --strict").status == 1);
 }
 
+TEST_CASE("a figure has the same numbers where numbers are written with a comma" *
+          doctest::description("robust")) {
+    const Room room;
+    if (room.run("localedef -f UTF-8 -i de_DE " + room.path("de_DE.UTF-8")).status != 0) {
+        MESSAGE("skipped: there is no locale de_DE to be made; make deps-dev installs its sources");
+        return;
+    }
+    const std::string german =
+                          "env LANG=de_DE.UTF-8 LC_ALL=de_DE.UTF-8 LOCPATH=" + room.path("") + " ",
+                      english = "env LANG=C LC_ALL=C ";
+    REQUIRE(room.run(german + "awk \"BEGIN { print 1 / 2 }\"").out == "0,5\n");
+    // make with a folder out/ of its own; programs are as they are.
+    const auto draw = [&](const std::string& name, const std::string& locale) {
+        const fs::path root = room.path(name);
+        fs::create_directories(root);
+        for (const auto& entry : fs::directory_iterator("."))
+            if (entry.path().filename() != "out")
+                fs::create_symlink(fs::absolute(entry.path()), root / entry.path().filename());
+        const std::string build = BUILD_FOLDER, by = build + "/mpm_explicit";
+        const Outcome made = room.run("cd " + root.string() + " && " + locale +
+                                      "env -u MAKEFLAGS -u MAKELEVEL make BUILD=" + build + " -o " +
+                                      by + " mpm_explicit_oscillator");
+        INFO(made.err);
+        REQUIRE(made.status == 0);
+        return root / "out";
+    };
+    const fs::path here = draw("english", english), there = draw("german", german);
+    int compared = 0;
+    for (const auto& entry : fs::recursive_directory_iterator(here)) {
+        const std::string name = fs::relative(entry.path(), here);
+        if (!entry.is_regular_file() || name.ends_with("summary.json")) continue;
+        CAPTURE(name);
+        CHECK(read_all(there / name) == read_all(entry.path()));
+        ++compared;
+    }
+    CHECK(compared >= 8);
+}
+
 TEST_CASE("the peak of memory belongs to the program and not to what started it" *
           doctest::description("robust")) {
     const Room room;
