@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <functional>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -721,6 +722,44 @@ TEST_CASE("the summary holds what the contract names" * doctest::description("ro
             CAPTURE(key);
             CHECK(json["results"]["flux_initial"].contains(key));
         }
+    }
+}
+
+TEST_CASE("a dry run tells the memory that the run takes and a checkpoint takes no more" *
+          doctest::description("robust")) {
+    if (holds(BUILD_FOLDER, "sanitize")) return;  // whose own memory is larger
+    constexpr double start_up = 6;                // of every process [MiB]
+    for (const Command& command : commands(R"(
+cic two_stream.toml theory.compare=none grid.cells_x=4096 time.end=0.3
+cic two_stream_2d.toml theory.compare=none grid.cells_x=256 grid.cells_z=256 time.end=0.6 \
+    method.sort_interval=2
+fluids sod.toml grid.cells_x=400 grid.cells_z=200 grid.length_z=0.5 particles.per_cell_x=4 \
+    particles.per_cell_z=4 theory.compare=none time.end=2e-3
+flip gresho.toml theory.compare=none grid.cells_x=192 grid.cells_z=192 time.end=0.002
+mpm_explicit rebound.toml theory.compare=none grid.cells_x=768 grid.cells_y=384 time.end=6e-4
+mpm_explicit shear.toml grid.cells_x=200 grid.cells_y=184 time.end=3e-3
+mpm_implicit rebound.toml theory.compare=none grid.cells_x=288 grid.cells_y=144 time.end=4e-3
+implicit_moment gem.toml grid.cells_x=128 grid.cells_z=128 harris.particles=800000 time.end=0.9
+explicit_em gem_explicit.toml harris.particles=1500000 time.end=0.18
+)")) {
+        const std::string out = folder("memory"), text = check_described(command).out;
+        INFO(command.program->name << " " << command.words << ": " << text);
+        std::smatch memory;
+        REQUIRE(std::regex_search(text, memory, std::regex("memory +about ([0-9.e+]+) MiB")));
+        double peak[2] = {0, 0};
+        for (const int with : {0, 1}) {
+            const std::string steps = std::to_string(2 * with), into = out + steps;
+            fs::remove_all(into);
+            REQUIRE(run(command, into, "output.checkpoint_steps=" + steps) == 0);
+            CHECK(checkpoints(into).empty() == (with == 0));
+            peak[with] = summary(into)["performance"]["peak_memory_bytes"].get<double>() / 1048576;
+            fs::remove_all(into);
+        }
+        CAPTURE(peak[0]);
+        CHECK(peak[0] > 30);
+        CHECK(std::stod(memory[1]) >= 0.8 * (peak[0] - start_up));
+        CHECK(std::stod(memory[1]) <= 1.3 * (peak[0] - start_up));
+        CHECK(peak[1] <= 1.1 * peak[0]);
     }
 }
 

@@ -65,9 +65,9 @@ void for_each_place(const Case& parameters, const Visit& visit) {
 
 /// Memory of particles and fields [byte].
 inline double bytes_of(const Case& parameters, const std::string& program, double particles) {
-    double per_particle = 3 * sizeof(double) + 2 * sizeof(int) + sizeof(double);  // and a sort
+    // Also in pic, particles are loaded with velocity and energy and the number of their region.
+    double per_particle = 7 * sizeof(double) + 2 * sizeof(int);
     if (program == "flip") {
-        per_particle += 3 * sizeof(double);
         if (parameters.density == "particles") per_particle += sizeof(double);
         if (parameters.transfer == "apic") per_particle += 4 * sizeof(double);
     }

@@ -66,8 +66,8 @@ inline Scales scales_of(const Case& w) {
             long(u.species.size()) * u.particles_per_cell * w.grid.x.cells * w.grid.z.cells;
     }
     s.steps = std::lround(w.end / w.dt);
-    const double krylov = 45 * 3 * 8, tensors = 40 * 8, moments = 40 * 8;
-    s.bytes = 60.0 * double(s.particles) +
+    const double krylov = 45 * 3 * 8, tensors = 40 * 8, moments = 85 * 8;
+    s.bytes = (w.leapfrog.chosen ? 46.0 : 60.0) * double(s.particles) +
               double(w.grid.size()) * (w.leapfrog.chosen ? moments : krylov + tensors);
     return s;
 }

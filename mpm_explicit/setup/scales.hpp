@@ -62,9 +62,15 @@ inline Scales scales_of(const Case& parameters) {
                " particles are more than 2e9: lower grid.particles_per_side");
     // Particles and their copies while they are sorted; the nodes of each grain, with a margin; the
     // table of all nodes.
-    const double particles = double(s.particles);
+    // The raster of fringes.
+    const double particles = double(s.particles),
+                 pixels = parameters.fringes_interval > 0
+                              ? double(mesh.cells_x * mesh.cells_y) *
+                                    std::pow(double(parameters.pixels_per_cell), 2)
+                              : 0;
     s.bytes = particles * (12 * sizeof(double) + 2 * sizeof(int)) +
               nodes * (sizeof(NodeSums) + sizeof(NodeMotion) + sizeof(NodeForce) + 1) +
+              pixels * (3 * sizeof(double) + sizeof(int)) +
               sizeof(int) * double((mesh.cells_x + 8) * (mesh.cells_y + 8));
     return s;
 }

@@ -51,12 +51,15 @@ inline std::vector<std::string> warnings_of(const Case& parameters, const ThetaS
 inline double bytes_of(const Case& parameters, const ThetaScheme& scheme, const Scales& scales) {
     const double per_cell = double(parameters.problem.per_side * parameters.problem.per_side),
                  dofs = 2 * double(scales.particles) / per_cell + 64 * double(scales.grains);
+    // The envelope of a factor, in single precision; and in double precision that of a grain on each
+    // of one or two threads, while it is factorized.
     const double diagonals = parameters.shape == "linear" ? 5 : 13,
                  across = std::sqrt(dofs / double(scales.grains)),
                  reach = parameters.shape == "linear" ? 1 : 2,
-                 factors = (scheme.preconditioner == "grains" ? 4 * across * reach : 0) +
-                           (scheme.consistent() ? across * reach : 0),
-                 newton = scheme.newton() ? 2 * (2 * 30 + 16) : 0;
+                 envelope = (scheme.preconditioner == "grains" ? 0.68 * across * reach : 0) +
+                            (scheme.consistent() ? 0.17 * across * reach : 0),
+                 factors = envelope * (1 + std::min(2.0, 3 / double(scales.grains))),
+                 newton = scheme.newton() ? 2 * 30 + 16 : 0;
     return scales.bytes + 8 * dofs * (5 * diagonals + 2 * 14 + factors + newton);
 }
 
