@@ -55,9 +55,12 @@ cic line time.end=0.04 -> warning: time.end = 0.04 is below half of time.dt = 0.
 cic line time.dt=1.7e-7 time.end=1.7e-4
     warning: omega_p time.end = 0.00017 is below 0.1: particles fly straight on
 cic line species.electrons.temperature_x=1 grid.length_x=4e-4 time.dt=1e-5
-    warning: the box has 0.0004 Debye lengths, below 1: particles cross it before their field can act
+    warning: the box has 0.0004 Debye lengths, below 1: particles cross it before their
+    field can act
 cic line time.dt=1.7e-7 time.end=1.7e-4 plasma.B_y=1e4 -> no warning
-cic line time.dt=1.7e-7 time.end=1.7e-4 grid.boundary_x=wall boundary.potential_x_high=1 -> no warning
+cic line time.dt=1.7e-7 time.end=1.7e-4 grid.boundary_x=wall \
+    boundary.potential_x_high=1
+    no warning
 cic line time.end=0 -> no warning
 )");
 }

@@ -51,8 +51,8 @@ inline std::vector<std::string> warnings_of(const Case& parameters, const ThetaS
 inline double bytes_of(const Case& parameters, const ThetaScheme& scheme, const Scales& scales) {
     const double per_cell = double(parameters.problem.per_side * parameters.problem.per_side),
                  dofs = 2 * double(scales.particles) / per_cell + 64 * double(scales.grains);
-    // The envelope of a factor, in single precision; and in double precision that of a grain on each
-    // of one or two threads, while it is factorized.
+    // The envelope of a factor, in single precision; and in double precision that of a grain on one
+    // or two threads, while it is factorized.
     const double diagonals = parameters.shape == "linear" ? 5 : 13,
                  across = std::sqrt(dofs / double(scales.grains)),
                  reach = parameters.shape == "linear" ? 1 : 2,
