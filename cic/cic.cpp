@@ -15,6 +15,7 @@
 #include "cic/apply_particle_boundaries.hpp"
 #include "cic/output/record.hpp"
 #include "cic/setup/check_case.hpp"
+#include "cic/setup/check_state.hpp"
 #include "cic/setup/describe_case.hpp"
 #include "cic/setup/initial_state.hpp"
 #include "cic/sort_particles.hpp"
@@ -63,7 +64,8 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     // 3. The loop of the slide.
     const long steps = scales.steps;
     long step = 0;
-    if (run.restarting()) run.restore(state, step);
+    if (run.restarting())
+        run.restore(state, step, [&] { validate_state(parameters, step, state); });
     while (run.not_finished(step, steps)) {
         field.walls = state.walls;
         find_field(particles, grid, scheme, background, deposit_scratch, solver, rho_g,

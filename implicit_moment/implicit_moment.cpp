@@ -14,6 +14,7 @@
 #include "common/run/start.hpp"
 #include "implicit_moment/output/record.hpp"
 #include "implicit_moment/setup/check_case.hpp"
+#include "implicit_moment/setup/check_state.hpp"
 #include "implicit_moment/setup/describe_case.hpp"
 #include "implicit_moment/setup/initial_state.hpp"
 #include "implicit_moment/step.hpp"
@@ -57,7 +58,9 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     const long steps = scales.steps;
     long step = 0;
     Checkpoint checkpoint{state, recorder.profile};
-    if (run.restarting()) run.restore(checkpoint, step);
+    const auto sort = [&](std::vector<Particles>& all) { sort_particles(grid, scratch.sort, all); };
+    if (run.restarting())
+        run.restore(checkpoint, step, [&] { validate_state(parameters, step, sort, checkpoint); });
     while (run.not_finished(step, steps)) {
         find_moments(grid, dt, particles, state.field, scratch);  // particles -> grid  [IMM-9]
         recorder.record(step, state, scratch.moments, run);       // the row of t^n

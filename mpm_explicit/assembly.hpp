@@ -1,6 +1,7 @@
 // All particles in their grains, with the rigid motions and the bonds.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "common/run/parameters.hpp"
@@ -31,7 +32,8 @@ void archive(Archive& a, Assembly& assembly) {
     for (Bond& bond : assembly.bonds)
         bonds.insert(bonds.end(),
                      {bond.broken ? 1.0 : 0.0, bond.normal_stress, bond.shear_stress, bond.area});
-    a("rigid_motion", motion), a("bonds", bonds);
+    std::span all_motion(motion);  // of this length
+    a("rigid_motion", all_motion), a("bonds", bonds);
     if (ends != expected || bonds.size() != 4 * assembly.bonds.size())
         throw common::InputError(
             "the checkpoint holds other grains or bonds than its case makes: put the files of "

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <algorithm>
+#include <span>
 #include <vector>
 
 #include "mpm_explicit/assembly.hpp"
@@ -76,7 +77,8 @@ void archive(Archive& a, Budget& l) {
                                  &l.remap,    &l.start,   &l.elastic_before, &l.kinetic_next};
     std::vector<double> values;
     for (const double* number : numbers) values.push_back(*number);
-    a("budget", values);
+    std::span all(values);  // of this length
+    a("budget", all);
     for (std::size_t k = 0; k < numbers.size(); ++k) *numbers[k] = values[k];
     a("momentum_x", l.momentum_x_next), a("momentum_y", l.momentum_y_next);
 }

@@ -127,9 +127,9 @@ class GrainNodes {
     long dof_end(int grain) const { return dof_begin_[static_cast<std::size_t>(grain) + 1]; }
 
     /// Whether particles may have left the nodes of their grain before the next step.
-    bool sort_is_due(const GridLayout& layout) const {
-        return layout.moved > 0.99 * reach * mesh_.h;
-    }
+    bool sort_is_due(const GridLayout& layout) const { return layout.moved > sorted_within(mesh_); }
+    /// How far a particle may come before it is sorted again.
+    static double sorted_within(const Mesh& mesh) { return 0.99 * reach * mesh.h; }
 
     /// Sorts the particles by grain and row of cells, and lays out the nodes around them.
     /// in/out: particles, of each grain together; grains' ranges stay as they are

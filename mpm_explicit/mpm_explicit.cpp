@@ -44,7 +44,7 @@ int run_case(const Shape& shape, const Case& parameters, const Scales& scales, c
     StepSums sums;
     long step = 0;
     if (run.restarting()) {
-        run.restore(state, step);
+        run.restore(state, step, [&] { validate_state(nodes.mesh(), Shape::width, state); });
         nodes.lay_out(grains, state.layout);
     } else {
         nodes.sort(grains, particles, state.layout);

@@ -13,6 +13,7 @@
 #pragma once
 
 #include <algorithm>
+#include <span>
 #include <vector>
 
 #include "mpm_explicit/assembly.hpp"
@@ -74,7 +75,8 @@ void archive(Archive& a, Budget& l) {
                                  &l.volume,  &l.pic,     &l.start,          &l.largest_residual};
     std::vector<double> values;
     for (const double* number : numbers) values.push_back(*number);
-    a("budget", values);
+    std::span all(values);  // of this length
+    a("budget", all);
     for (std::size_t k = 0; k < numbers.size(); ++k) *numbers[k] = values[k];
     a("momentum_x", l.momentum_x), a("momentum_y", l.momentum_y);
 }

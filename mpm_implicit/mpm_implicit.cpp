@@ -12,6 +12,7 @@
 #include "common/run/start.hpp"
 #include "mpm_implicit/output/record.hpp"
 #include "mpm_implicit/setup/check_case.hpp"
+#include "mpm_implicit/setup/check_state.hpp"
 #include "mpm_implicit/step.hpp"
 #include "mpm_implicit/theory/compare_with_theory.hpp"
 
@@ -29,8 +30,7 @@ int run_case(const Shape& shape, const Case& parameters, const ThetaScheme& sche
              const Scales& scales, common::Run& run) {
     // 2. Particles at t = 0.
     State state;
-    state.assembly = assemble(parameters.problem);
-    Assembly& all = state.assembly;
+    Assembly& all = state.assembly = assemble(parameters.problem);
     const Contact contact(parameters.problem.contact, all.grains, all.bonds);
     const double dt = scales.dt;
     GrainNodes nodes(parameters.problem.mesh(), Shape::width, scales.least_mass);
@@ -40,7 +40,7 @@ int run_case(const Shape& shape, const Case& parameters, const ThetaScheme& sche
     StepSums sums;
     long step = 0;
     if (run.restarting()) {
-        run.restore(state, step);
+        run.restore(state, step, [&] { validate_state(nodes.mesh(), Shape::width, state); });
         nodes.lay_out(all.grains, state.layout);
     } else {
         nodes.sort(all.grains, all.particles, state.layout);

@@ -1,6 +1,7 @@
 // All that changes in a run of mpm_implicit, and what a step sums up for the budget.
 #pragma once
 
+#include <cmath>
 #include <tuple>
 #include <vector>
 
@@ -71,6 +72,10 @@ void archive(Archive& a, State& state) {
                      {static_cast<double>(pair.node), static_cast<double>(pair.a),
                       static_cast<double>(pair.b), static_cast<double>(pair.state), pair.lambda_t});
     a("active_pairs", pairs);
+    if (pairs.size() % 5 != 0) throw common::InputError("the checkpoint holds a part of a pair");
+    for (std::size_t k = 0; k < pairs.size(); ++k)
+        if (k % 5 < 4 && !(std::fabs(pairs[k]) < 2e9))
+            throw common::InputError("the checkpoint holds a pair that cannot be");
     state.active_pairs.clear();
     for (std::size_t k = 0; k + 4 < pairs.size(); k += 5)
         state.active_pairs.push_back({std::lround(pairs[k]), static_cast<int>(pairs[k + 1]),

@@ -128,8 +128,9 @@ inline void write_phase_space(const std::string& folder, long step, const Case& 
         for (std::size_t n = 0; n < s.x_p.size(); ++n) {
             const long i = std::min(
                 nx - 1, static_cast<long>((double(s.x_p[n]) - parameters.grid.x.low) / dx));
-            const long l = static_cast<long>(std::floor((double(s.vx_p[n]) + v_max) / dv));
-            if (l < 0 || l >= nv) continue;
+            const double bin = std::floor((double(s.vx_p[n]) + v_max) / dv);
+            if (!(bin >= 0 && bin < double(nv))) continue;
+            const long l = static_cast<long>(bin);
             f.back()[static_cast<std::size_t>(l * nx + i)] += weight;
             f_v.back()[l] += weight / double(nx);
         }

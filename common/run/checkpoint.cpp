@@ -119,9 +119,12 @@ CheckpointReader::CheckpointReader(const ProgramInfo& info, const std::string& p
     effective_case_ = text("case");
 }
 
+void CheckpointReader::refuse(const std::string& why) const {
+    throw InputError(path_ + ": the checkpoint " + why + "; use an earlier one");
+}
+
 void CheckpointReader::read_plain(void* to, std::size_t bytes) {
-    if (bytes > left_)
-        throw InputError(path_ + ": the checkpoint is cut off or too long; use an earlier one");
+    if (bytes > left_) refuse("is cut off or too long");
     if (bytes > 0 && std::fread(to, 1, bytes, file_.get()) != bytes)
         throw InputError(path_ + ": cannot be read: " + std::strerror(errno));
     left_ -= bytes;
@@ -137,8 +140,7 @@ CheckpointReader::Header CheckpointReader::read_header() {
     std::uint64_t letters = 0, count = 0;
     char type = 0;
     read(&letters, sizeof letters);
-    if (letters > longest_name)
-        throw InputError(path_ + ": the checkpoint is damaged; use an earlier one");
+    if (letters > longest_name) refuse("is damaged");
     std::string name(letters, '\0');
     read(name.data(), name.size());
     read(&type, 1);
@@ -150,28 +152,18 @@ void CheckpointReader::check_sum() {
     const std::uint64_t expected = checksum_;
     std::uint64_t found = 0;
     read(&found, sizeof found);
-    if (found != expected) {
-        throw InputError(path_ +
-                         ": the checkpoint is damaged (its checksum is wrong); use an earlier one");
-    }
+    if (found != expected) refuse("is damaged (its checksum is wrong)");
 }
 
 std::size_t CheckpointReader::begin_block(const std::string& name, char type, std::size_t size) {
     const Header header = read_header();
-    if (header.name == end_of_file && name != end_of_file)
-        throw InputError(path_ + ": the checkpoint ends too early; use an earlier one");
+    if (header.name == end_of_file && name != end_of_file) refuse("ends too early");
     if (header.name != name || header.type != type) {
         throw InputError(path_ + ": holds '" + header.name + "' where '" + name +
                          "' is expected; it belongs to another case");
     }
-    if (header.count > left_ / size)
-        throw InputError(path_ + ": the checkpoint is cut off or too long; use an earlier one");
+    if (header.count > left_ / size) refuse("is cut off or too long");
     return header.count;
-}
-
-void CheckpointReader::end_block(void* to, std::size_t bytes) {
-    read(to, bytes);
-    check_sum();
 }
 
 void CheckpointReader::require_length(const std::string& name, std::size_t found,
@@ -183,14 +175,13 @@ void CheckpointReader::require_length(const std::string& name, std::size_t found
 
 std::string CheckpointReader::text(const std::string& name) {
     std::string text(begin_block(name, 'c', 1), '\0');
-    end_block(text.data(), text.size());
+    end_block(name, text.data(), text.size());
     return text;
 }
 
 void CheckpointReader::finish() {
     text(end_of_file);
-    if (left_ > 0)
-        throw InputError(path_ + ": the checkpoint is cut off or too long; use an earlier one");
+    if (left_ > 0) refuse("is cut off or too long");
 }
 
 long CheckpointReader::verify() {
@@ -202,8 +193,7 @@ long CheckpointReader::verify() {
         const Header header = read_header();
         const std::string types = "dflic";
         const std::size_t sizes[] = {8, 4, 8, 4, 1}, kind = types.find(header.type);
-        if (kind == std::string::npos || header.count > left_ / sizes[kind])
-            throw InputError(path_ + ": the checkpoint is damaged; use an earlier one");
+        if (kind == std::string::npos || header.count > left_ / sizes[kind]) refuse("is damaged");
         // The checksum of a block is that of its numbers in one piece.
         XXH3_state_t state;
         XXH3_64bits_reset_withSeed(&state, checksum_);
@@ -217,8 +207,7 @@ long CheckpointReader::verify() {
         check_sum();
         more = header.name != end_of_file;
     }
-    if (left_ > 0)
-        throw InputError(path_ + ": the checkpoint is cut off or too long; use an earlier one");
+    if (left_ > 0) refuse("is cut off or too long");
     if (std::fseek(file_.get(), begin, SEEK_SET) != 0)
         throw InputError(path_ + ": cannot be read: " + std::strerror(errno));
     left_ = left;

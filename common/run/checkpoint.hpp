@@ -7,6 +7,8 @@
 // or put elsewhere. Blocks go to the disk and come from it one by one: no copy of the state is made.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <memory>
@@ -26,6 +28,13 @@ constexpr char letter_of() {
     if constexpr (std::is_same_v<Number, long>) return 'l';
     if constexpr (std::is_same_v<Number, int>) return 'i';
     if constexpr (std::is_same_v<Number, char>) return 'c';
+}
+
+/// Whether all numbers of a list lie in [low, high]; what is not a number does not.
+template <class Numbers>
+bool all_within(const Numbers& values, double low, double high) {
+    return std::all_of(values.begin(), values.end(),
+                       [=](double x) { return x >= low && x <= high; });
 }
 
 /// An archive that writes named numbers into a file beside `path`; finish() gives it that name.
@@ -70,7 +79,8 @@ class CheckpointWriter {
 
 /// An archive that gives back what a CheckpointWriter wrote, in the same order.
 /// errors: InputError for a file that is damaged, cut off, foreign, or of another program, version
-///         or case. No more memory is taken than the file has bytes.
+///         or case, or with numbers that are not finite. No more memory is taken than the file has
+///         bytes.
 class CheckpointReader {
    public:
     /// Opens the file, reads all of it once to see that it is whole, and what it is a checkpoint of.
@@ -91,7 +101,7 @@ class CheckpointReader {
     template <class Number>
     void operator()(const std::string& name, std::vector<Number>& values) {
         values.resize(begin_block(name, letter_of<Number>(), sizeof(Number)));
-        end_block(values.data(), values.size() * sizeof(Number));
+        end_block(name, values.data(), values.size());
     }
     /// Reads a list of numbers whose length is known: a dense vector of Eigen.
     template <class Numbers>
@@ -107,7 +117,14 @@ class CheckpointReader {
     template <class Number>
     void block(const std::string& name, Number* to, std::size_t length) {
         require_length(name, begin_block(name, letter_of<Number>(), sizeof(Number)), length);
-        end_block(to, length * sizeof(Number));
+        end_block(name, to, length);
+    }
+    template <class Number>
+    void end_block(const std::string& name, Number* to, std::size_t count) {
+        read(to, count * sizeof(Number));
+        check_sum();
+        if (!std::all_of(to, to + count, [](Number x) { return std::isfinite(double(x)); }))
+            refuse("has numbers in '" + name + "' that are not finite");
     }
     struct Header {
         std::string name;
@@ -118,8 +135,8 @@ class CheckpointReader {
     long verify();
     Header read_header();
     std::size_t begin_block(const std::string& name, char type, std::size_t size);
-    void end_block(void* to, std::size_t bytes);
     void check_sum();
+    [[noreturn]] void refuse(const std::string& why) const;
     void require_length(const std::string& name, std::size_t found, std::size_t wanted) const;
     std::string text(const std::string& name);
     void read(void* to, std::size_t bytes);

@@ -307,6 +307,8 @@ CommandLine read_command_line(int argc, char** argv, const ProgramInfo& info,
         checkpoint("step", command.restart_step);
         for (const Setting& setting : read_case(checkpoint.effective_case(), command.restart_path))
             table.set(setting);
+        if (table.effective_case() != checkpoint.effective_case())
+            throw InputError(command.restart_path + ": the case in it is not one that was run");
         command.case_name = checkpoint.case_name();
         if (command.out_dir.empty())
             command.out_dir = fs::path(command.restart_path).parent_path().string();

@@ -37,8 +37,10 @@ class Run {
     bool restarting() const { return !command_.restart_path.empty(); }
 
     /// Reads the checkpoint named by --restart into state, history and step.
-    template <class State>
-    void restore(State& state, long& step) {
+    /// in:     validate(), which refuses a state that no run of the case can have
+    /// errors: InputError for a file that is damaged or forged
+    template <class State, class Validate>
+    void restore(State& state, long& step, const Validate& validate) {
         CheckpointReader reader(info_, command_.restart_path);
         std::vector<double> rows;
         reader("step", step);
@@ -46,6 +48,13 @@ class Run {
         archive(reader, state);
         reader.finish();
         history.restore(rows);
+        try {
+            if (step < 1 || step > 1000000000000) throw InputError("its step cannot be");
+            validate();
+        } catch (const InputError& error) {
+            throw InputError(command_.restart_path + ": the checkpoint is of no run: " +
+                             error.what() + "; use an earlier one");
+        }
         first_step_ = step;
     }
 

@@ -103,6 +103,7 @@ inline double density_of(const Cells& c, double V_c, long n) {
 /// to move, cfl/sqrt(trap), and 1.2 times the last step
 /// in:     find_pressure() has been called; last, the last step, 0 before the first
 /// out:    a fixed limits.dt where there is one
+/// errors: NumericalError when the step gets so short that the run would never end
 /// note:   no sound runs through a cell that is partly void
 inline double step_allowed(const Problem& problem, const Mesh& mesh, double last) {
     const StepLimits& limits = problem.limits;
@@ -148,7 +149,12 @@ inline double step_allowed(const Problem& problem, const Mesh& mesh, double last
     double dt = most > 0 ? 1 / most : limits.end / 100;
     if (gravity > 0) dt = std::min(dt, std::sqrt(limits.cfl * least_spacing / gravity));
     if (force.trap > 0) dt = std::min(dt, limits.cfl / std::sqrt(force.trap));
-    return last > 0 ? std::min(dt, 1.2 * last) : dt;
+    if (last > 0) dt = std::min(dt, 1.2 * last);
+    if (!(dt > 1e-10 * limits.end))
+        throw common::NumericalError("the time step has fallen to " + common::format(dt) +
+                                     ": some cell has become very fast, hot or light; use more "
+                                     "particles per cell or more viscosity");
+    return dt;
 }
 
 }  // namespace flip

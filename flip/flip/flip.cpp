@@ -18,6 +18,7 @@
 #include "flip/output/flip_diagnostics.hpp"
 #include "flip/output/record.hpp"
 #include "flip/setup/check_case.hpp"
+#include "flip/setup/check_state.hpp"
 #include "flip/setup/problem_of_case.hpp"
 #include "flip/setup/warn_of_case.hpp"
 
@@ -56,7 +57,8 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     State state;
     Particles& particles = state.particles = load_particles(parameters);
     long step = 0;
-    if (run.restarting()) run.restore(state, step);
+    if (run.restarting())
+        run.restore(state, step, [&] { validate_state(problem, run.history, state); });
     sort_particles(parameters.grid, scratch.sort, particles);
 
     // 3. The loop of the slide.

@@ -17,6 +17,7 @@
 #include "flip/output/record.hpp"
 #include "flip/pic/step.hpp"
 #include "flip/setup/check_case.hpp"
+#include "flip/setup/check_state.hpp"
 #include "flip/setup/problem_of_case.hpp"
 #include "flip/setup/warn_of_case.hpp"
 
@@ -55,7 +56,7 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     CellFields fields;
     long step = 0;
     if (run.restarting()) {
-        run.restore(state, step);
+        run.restore(state, step, [&] { validate_state(problem, run.history, state); });
         sum_cell_masses(problem.grid, state, cells);
     }
 

@@ -15,6 +15,7 @@
 #include "implicit_moment/explicit_em/setup/leapfrog_state.hpp"
 #include "implicit_moment/explicit_em/step.hpp"
 #include "implicit_moment/output/record.hpp"
+#include "implicit_moment/setup/check_state.hpp"
 #include "implicit_moment/setup/describe_case.hpp"
 
 namespace {
@@ -60,7 +61,11 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     const long steps = scales.steps;
     long step = 0;
     Checkpoint checkpoint{state, recorder.profile};
-    if (run.restarting()) run.restore(checkpoint, step);
+    const auto sort = [&](std::vector<Particles>& all) {
+        sort_by_cell(grid, settings.order, scratch.sort, all);
+    };
+    if (run.restarting())
+        run.restore(checkpoint, step, [&] { validate_state(parameters, step, sort, checkpoint); });
     while (run.not_finished(step, steps)) {
         interleave_field(grid, parameters.field.smoothing, state.field, scratch);  // E^n, B^n
         if (step % parameters.history_steps == 0)                                  // the row of t^n

@@ -1,8 +1,10 @@
-// The state at t = 0: grains filled with particles, and stresses half a step before.
+// The state at t = 0: grains filled with particles, and stresses half a step before. The state of a
+// restart: refused where no run can have it.
 #pragma once
 
 #include "mpm_explicit/accelerate_nodes.hpp"
 #include "mpm_explicit/setup/case.hpp"
+#include "mpm_explicit/setup/check_state.hpp"
 #include "mpm_explicit/setup/scales.hpp"
 #include "mpm_explicit/state.hpp"
 #include "mpm_explicit/update_stress.hpp"
@@ -25,6 +27,14 @@ void start_leapfrog(const Shape& shape, const std::vector<AnyLaw>& laws, const C
         update_stress(laws, frozen, batch, all.grains, all.particles, sums);
     });
     start_budget(all, state.budget);
+}
+
+/// Refuses a state that no run of the case can have.
+/// in:     width of the shape function in nodes
+/// errors: InputError, one sentence
+inline void validate_state(const Mesh& mesh, int width, State& state) {
+    mpm::validate_state(mesh, width, state.assembly, state.layout, state.budget.momentum_x_next,
+                        state.budget.momentum_y_next);
 }
 
 }  // namespace mpm_explicit

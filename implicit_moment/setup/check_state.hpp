@@ -1,0 +1,57 @@
+// What is refused of a state that was read from a file: what no run of the case can have.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/run/checkpoint.hpp"
+#include "implicit_moment/output/record.hpp"
+#include "implicit_moment/setup/check_case.hpp"
+
+namespace implicit_moment {
+
+namespace detail {
+
+// Refuses sums of a profile that are not those of its steps.
+inline void validate_profile(const Case& parameters, long step, const UnitFluxProfile& profile) {
+    const std::size_t count =
+        profile.steps > 0 ? static_cast<std::size_t>(parameters.grid.x.cells) : 0;
+    bool fits = profile.steps >= 0 && profile.steps <= step + 1 && profile.begin >= 0 &&
+                profile.begin <= profile.end;
+    for (const auto* sum : {&profile.rho_ions, &profile.J_x_ions, &profile.rho_electrons,
+                            &profile.J_x_electrons, &profile.B_z})
+        fits = fits && sum->size() == count;
+    refuse(!fits, "the profile at unit flux is not one of its steps");
+}
+
+}  // namespace detail
+
+/// Refuses a state that no run of the case can have after so many steps.
+/// in:     sort(species), as every step ends: it leaves sorted particles as they are
+/// errors: InputError, one sentence
+template <class Sort>
+void validate_state(const Case& parameters, long step, const Sort& sort, Checkpoint& checkpoint) {
+    const Grid& grid = parameters.grid;
+    const auto on_mesh = [](const common::Axis& axis, const std::vector<double>& positions) {
+        return common::all_within(positions, axis.low, axis.high());
+    };
+    Plasma& plasma = checkpoint.state.plasma;
+    const long expected = scales_of(parameters).particles;
+    refuse(plasma.count() != expected, "it has " + std::to_string(plasma.count()) +
+                                           " particles, and the case " + std::to_string(expected));
+    for (Particles& s : plasma.species) {
+        for (const std::vector<double>* column : s.all())
+            refuse(column->size() != s.x_p.size(), s.name + ": its particles lack components");
+        refuse(!on_mesh(grid.x, s.x_p) || !on_mesh(grid.z, s.z_p),
+               s.name + ": a particle is outside of the mesh");
+    }
+    std::vector<std::vector<int>> read;
+    for (const Particles& s : plasma.species) read.push_back(s.first_of_node);
+    sort(plasma.species);
+    for (std::size_t k = 0; k < read.size(); ++k)
+        refuse(plasma.species[k].first_of_node != read[k],
+               plasma.species[k].name + ": its particles are not sorted");
+    detail::validate_profile(parameters, step, checkpoint.profile);
+}
+
+}  // namespace implicit_moment

@@ -1,0 +1,123 @@
+// What is refused of a state that was read from a file: what no run of the case can have.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "common/run/checkpoint.hpp"
+#include "mpm_explicit/assembly.hpp"
+#include "mpm_explicit/grain_nodes.hpp"
+#include "mpm_explicit/setup/grain_shapes.hpp"
+
+namespace mpm {
+
+namespace detail {
+
+// Refuses tables of a layout that do not belong together, or reach farther than the grains.
+inline void validate_layout(const Mesh& mesh, const Assembly& all, const GridLayout& layout) {
+    const std::size_t count = all.grains.size();
+    const auto in_tables = [&](const std::vector<int>& of_grain, int least) {
+        return of_grain.size() == count && common::all_within(of_grain, least, 1e5);
+    };
+    const auto sum = [](const std::vector<int>& all_of) {
+        std::size_t total = 0;
+        for (const int one : all_of) total += static_cast<std::size_t>(one);
+        return total;
+    };
+    bool fits = in_tables(layout.first_row, -100000) && in_tables(layout.rows, 1) &&
+                in_tables(layout.tiles, 1) && in_tables(layout.wraps, 0) &&
+                common::all_within(layout.wraps, 0, mesh.periodic_x ? 1 : 0) &&
+                layout.first_column.size() == sum(layout.rows) &&
+                layout.end_column.size() == sum(layout.rows) &&
+                layout.tile_begin.size() == sum(layout.tiles) + 1 && layout.moved >= 0 &&
+                std::is_sorted(layout.tile_begin.begin(), layout.tile_begin.end());
+    refuse(!fits, "the tables of its nodes do not belong together");
+
+    const Particles& at = all.particles;
+    std::size_t tile = 0, row = 0;
+    for (std::size_t g = 0; g < count; ++g) {
+        const Grain& grain = all.grains[g];
+        const auto [left, right] =
+            std::minmax_element(at.x_p.begin() + grain.begin, at.x_p.begin() + grain.end);
+        const auto [low, high] =
+            std::minmax_element(at.y_p.begin() + grain.begin, at.y_p.begin() + grain.end);
+        // Half a cell has been spared, half a cell may be gone, and a shape reaches two nodes far.
+        const auto before = [&](double x, double from) { return cell_of(x, from, mesh.h) - 4; };
+        const auto behind = [&](double x, double from) { return cell_of(x, from, mesh.h) + 5; };
+        fits = fits && layout.tile_begin[tile] == grain.begin &&
+               layout.first_row[g] >= before(*low, mesh.y_low) &&
+               layout.first_row[g] + layout.rows[g] <= behind(*high, mesh.y_low) + 1;
+        for (const std::size_t end = row + static_cast<std::size_t>(layout.rows[g]); row < end;
+             ++row) {
+            const int first = layout.first_column[row], last = layout.end_column[row];
+            fits = fits && ((first == 0 && last == 0) ||
+                            (first < last && first >= before(*left, mesh.x_low) &&
+                             last <= behind(*right, mesh.x_low) + 1));
+        }
+        tile += static_cast<std::size_t>(layout.tiles[g]);
+        fits = fits && layout.tile_begin[tile] == grain.end;
+    }
+    refuse(!fits, "the tables of its nodes are not those of its grains");
+}
+
+// Refuses particles that may leave the nodes of their grain before they are sorted again.
+inline void validate_tiles(const Mesh& mesh, int width, const Assembly& all,
+                           const GridLayout& layout) {
+    const double spare = GrainNodes::sorted_within(mesh) - layout.moved;
+    if (spare < 0) return;  // they are sorted before the next step
+    const Particles& at = all.particles;
+    const auto first_node = [&](double x, double from) {
+        return width == 2 ? cell_of(x, from, mesh.h) : cell_of(x + 0.5 * mesh.h, from, mesh.h) - 1;
+    };
+    bool fits = true;
+    std::size_t tile = 0, table = 0;
+    for (std::size_t g = 0; g < all.grains.size(); ++g) {
+        for (int s = 0; s < layout.tiles[g]; ++s, ++tile) {
+            for (int k = layout.tile_begin[tile]; k < layout.tile_begin[tile + 1]; ++k) {
+                const auto p = static_cast<std::size_t>(k);
+                const double x = at.x_p[p], y = at.y_p[p];
+                const long first = first_node(y - spare, mesh.y_low) - layout.first_row[g],
+                           last = first_node(y + spare, mesh.y_low) + width - layout.first_row[g],
+                           left = first_node(x - spare, mesh.x_low),
+                           right = first_node(x + spare, mesh.x_low) + width;
+                fits = fits && first >= 0 && last <= layout.rows[g];
+                for (long r = first; fits && r < last; ++r) {
+                    const std::size_t row = table + static_cast<std::size_t>(r);
+                    fits = layout.first_column[row] <= left && layout.end_column[row] >= right;
+                }
+            }
+        }
+        table += static_cast<std::size_t>(layout.rows[g]);
+    }
+    refuse(!fits, "a particle is not where the nodes of its grain are");
+}
+
+}  // namespace detail
+
+/// Refuses particles and nodes that no run on this mesh can have.
+/// in:     width of the shape function in nodes; momentum of each grain, x and y
+/// errors: InputError, one sentence
+inline void validate_state(const Mesh& mesh, int width, Assembly& all, const GridLayout& layout,
+                           const std::vector<double>& momentum_x,
+                           const std::vector<double>& momentum_y) {
+    Particles& p = all.particles;
+    const auto count = static_cast<std::size_t>(all.grains.back().end);
+    for (const std::vector<double>* column : p.all())
+        refuse(column->size() != count, "its particles are not as many as those of the case");
+    refuse(momentum_x.size() != all.grains.size() || momentum_y.size() != all.grains.size(),
+           "its grains are not as many as those of the case");
+    constexpr double least = 1e-300, most = 1e300;
+    refuse(!common::all_within(p.m_p, least, most) || !common::all_within(p.V_p, least, most),
+           "a particle has no mass or no volume");
+    refuse(!common::all_within(p.yield_p, 0, most), "the plastic strain of a particle is negative");
+    const double beyond = mesh.periodic_x ? mesh.length_x() : 0;
+    refuse(!common::all_within(p.x_p, mesh.x_low - beyond, mesh.x_high() + beyond) ||
+               !common::all_within(p.y_p, mesh.y_low, mesh.y_high()),
+           "a particle is outside of the mesh");
+    detail::validate_layout(mesh, all, layout);
+    detail::validate_tiles(mesh, width, all, layout);
+}
+
+}  // namespace mpm
