@@ -43,18 +43,19 @@ inline void validate_layout(const Mesh& mesh, const Assembly& all, const GridLay
             std::minmax_element(at.x_p.begin() + grain.begin, at.x_p.begin() + grain.end);
         const auto [low, high] =
             std::minmax_element(at.y_p.begin() + grain.begin, at.y_p.begin() + grain.end);
-        // Half a cell has been spared, half a cell may be gone, and a shape reaches two nodes far.
-        const auto before = [&](double x, double from) { return cell_of(x, from, mesh.h) - 4; };
-        const auto behind = [&](double x, double from) { return cell_of(x, from, mesh.h) + 5; };
+        // Half a cell was spared, particles may have moved, and a shape reaches two nodes far.
+        const long margin = 4 + static_cast<long>(std::min(layout.moved / mesh.h, 1e5));
+        const auto before = [&](double x, double end) { return cell_of(x, end, mesh.h) - margin; };
+        const auto behind = [&](double x, double end) { return cell_of(x, end, mesh.h) + margin; };
         fits = fits && layout.tile_begin[tile] == grain.begin &&
                layout.first_row[g] >= before(*low, mesh.y_low) &&
-               layout.first_row[g] + layout.rows[g] <= behind(*high, mesh.y_low) + 1;
+               layout.first_row[g] + layout.rows[g] <= behind(*high, mesh.y_low) + 2;
         for (const std::size_t end = row + static_cast<std::size_t>(layout.rows[g]); row < end;
              ++row) {
             const int first = layout.first_column[row], last = layout.end_column[row];
             fits = fits && ((first == 0 && last == 0) ||
                             (first < last && first >= before(*left, mesh.x_low) &&
-                             last <= behind(*right, mesh.x_low) + 1));
+                             last <= behind(*right, mesh.x_low) + 2));
         }
         tile += static_cast<std::size_t>(layout.tiles[g]);
         fits = fits && layout.tile_begin[tile] == grain.end;
@@ -82,7 +83,10 @@ inline void validate_tiles(const Mesh& mesh, int width, const Assembly& all,
                            last = first_node(y + spare, mesh.y_low) + width - layout.first_row[g],
                            left = first_node(x - spare, mesh.x_low),
                            right = first_node(x + spare, mesh.x_low) + width;
-                fits = fits && first >= 0 && last <= layout.rows[g];
+                // The first row of cells is that of the nodes, or one above it.
+                const long above = cell_of(y, mesh.y_low, mesh.h) - layout.first_row[g] - s;
+                fits = fits && above >= width - 3 && above <= width && first >= 0 &&
+                       last <= layout.rows[g];
                 for (long r = first; fits && r < last; ++r) {
                     const std::size_t row = table + static_cast<std::size_t>(r);
                     fits = layout.first_column[row] <= left && layout.end_column[row] >= right;

@@ -1,5 +1,5 @@
-// What is refused of a state that was read from a file: what mpm_explicit refuses, and pairs that no
-// step can have closed.
+// What is refused of a state that was read from a file: what mpm_explicit refuses, and pairs that
+// no step can have closed.
 #pragma once
 
 #include <algorithm>
