@@ -1,0 +1,237 @@
+// Checkpoints whose contents are forged and whose checksums are right: nothing but the validation
+// of what was read stands between them and the steps.
+#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#include <doctest/doctest.h>
+
+#include <climits>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "tests/support/any_run.hpp"
+
+#define XXH_INLINE_ALL 1
+#include <xxhash.h>
+
+namespace {
+
+using namespace facts;
+
+// ---- a file, block by block ---------------------------------------------------------------------
+
+struct Block {
+    std::string name;
+    char type;
+    std::string bytes;
+
+    std::size_t width() const { return type == 'c' ? 1 : type == 'i' || type == 'f' ? 4 : 8; }
+    std::size_t count() const { return bytes.size() / width(); }
+};
+
+constexpr std::size_t magic_size = 8;
+
+template <class Number>
+Number number_at(const std::string& bytes, std::size_t at) {
+    Number value;
+    std::memcpy(&value, bytes.data() + at, sizeof value);
+    return value;
+}
+
+template <class Number>
+std::string bytes_of(Number value) {
+    return {reinterpret_cast<const char*>(&value), sizeof value};
+}
+
+std::vector<Block> blocks_of(const std::string& file) {
+    std::vector<Block> blocks;
+    for (std::size_t at = magic_size; at < file.size();) {
+        const auto letters = number_at<std::uint64_t>(file, at);
+        Block block{file.substr(at + 8, letters), file[at + 8 + letters], ""};
+        at += 9 + letters;
+        const std::size_t size = number_at<std::uint64_t>(file, at) * block.width();
+        block.bytes = file.substr(at + 8, size);
+        at += 16 + size;
+        blocks.push_back(block);
+    }
+    return blocks;
+}
+
+// The file with the checksums that its contents ask for.
+std::string file_of(const std::vector<Block>& blocks, const std::string& magic) {
+    std::string file;
+    std::uint64_t checksum = 0;
+    const auto write = [&](const std::string& bytes) {
+        file += bytes;
+        checksum = XXH3_64bits_withSeed(bytes.data(), bytes.size(), checksum);
+    };
+    write(magic);
+    for (const Block& block : blocks) {
+        write(bytes_of(std::uint64_t{block.name.size()}));
+        write(block.name);
+        write(std::string(1, block.type));
+        write(bytes_of(std::uint64_t{block.count()}));
+        write(block.bytes);
+        write(bytes_of(checksum));
+    }
+    return file;
+}
+
+// ---- what a forger can do to a block ------------------------------------------------------------
+
+struct Forgery {
+    std::size_t block;
+    std::string label, bytes;
+    bool is_impossible;  // no run could have written it
+};
+
+// Values of a type as bytes, with their names, and whether no block may hold them.
+std::vector<std::tuple<std::string, std::string, bool>> strange_values(char type) {
+    const auto wide = [](const char* name, double x, bool impossible = false) {
+        return std::tuple(std::string(name), bytes_of(x), impossible);
+    };
+    if (type == 'd')
+        return {wide("nan", std::nan(""), true),
+                wide("inf", std::numeric_limits<double>::infinity(), true),
+                wide("-1", -1),
+                wide("0", 0),
+                wide("1e300", 1e300),
+                wide("-1e18", -1e18),
+                wide("INT_MAX", INT_MAX)};
+    if (type == 'l')
+        return {{"-1", bytes_of(-1L), false},
+                {"0", bytes_of(0L), false},
+                {"LONG_MIN", bytes_of(LONG_MIN), true},
+                {"LONG_MAX", bytes_of(LONG_MAX), true}};
+    if (type == 'i')
+        return {{"-1", bytes_of(-1), false},
+                {"0", bytes_of(0), false},
+                {"INT_MIN", bytes_of(INT_MIN), true},
+                {"INT_MAX", bytes_of(INT_MAX), true}};
+    return {{"zero byte", std::string(1, '\0'), false}, {"byte 255", "\xff", false}};
+}
+
+std::string swapped(const Block& block, std::size_t a, std::size_t b) {
+    std::string bytes = block.bytes;
+    const std::size_t w = block.width();
+    for (std::size_t k = 0; k < w; ++k) std::swap(bytes[a * w + k], bytes[b * w + k]);
+    return bytes;
+}
+
+std::vector<Forgery> forgeries_of(const std::vector<Block>& blocks) {
+    std::vector<Forgery> all;
+    for (std::size_t k = 0; k < blocks.size(); ++k) {
+        const Block& block = blocks[k];
+        const std::size_t w = block.width(), n = block.count();
+        const auto add = [&](const std::string& label, const std::string& bytes,
+                             bool impossible = false) {
+            if (bytes != block.bytes)
+                all.push_back({k, block.name + ": " + label, bytes, impossible});
+        };
+        const bool is_text = block.type == 'c';
+        for (const auto& [name, value, impossible] : strange_values(block.type)) {
+            std::string everywhere;
+            for (std::size_t p = 0; p < n; ++p) everywhere += value;
+            add("all are " + name, everywhere, impossible);
+            for (const std::size_t p : {std::size_t{0}, n / 2, n - 1}) {
+                if (n == 0 || (n == 1 && p > 0)) continue;
+                std::string bytes = block.bytes;
+                bytes.replace(p * w, w, value);
+                add("number " + std::to_string(p) + " is " + name, bytes, impossible);
+            }
+        }
+        add("one longer", block.bytes + (n > 0 ? block.bytes.substr(0, w) : std::string(w, '\0')),
+            !is_text);
+        add("one shorter", block.bytes.substr(0, n > 0 ? (n - 1) * w : 0), !is_text);
+        // There may have been no contact.
+        add("empty", "", !is_text && block.name != "active_pairs");
+        add("doubled", block.bytes + block.bytes, !is_text);
+        if (n < 2) continue;
+        add("ends swapped", swapped(block, 0, n - 1));
+        add("neighbors swapped", swapped(block, n / 2 - 1, n / 2));
+    }
+    return all;
+}
+
+// ---- runs that are continued from them ----------------------------------------------------------
+
+// Short runs of every program, which end a few steps after their checkpoints.
+const std::string cases = R"(
+cic mirrors time.end=1
+cic floating time.end=4
+cic plane_streams time.end=2
+pic shock_tube time.end=0.05
+pic channel time.end=0.05
+flip rezoned time.end=0.05 shock_tube
+flip falling time.end=0.3 flip.transfer=apic flip.density=particles
+mpm_explicit rebound time.end=0.3
+mpm_explicit bonded time.end=0.5
+mpm_explicit belt time.end=0.02
+mpm_implicit rebound time.end=0.3
+mpm_implicit press time.end=0.1
+implicit_moment sheet time.end=3
+implicit_moment streams time.end=1
+explicit_em sheet time.end=2
+explicit_em streams time.end=1 particles.order=2
+)";
+
+struct Count {
+    long tried = 0, refused = 0, ran = 0, failed = 0;
+};
+
+// in: share, how many of the forgeries of a case are tried, evenly spread; 0: all
+void check_forged(long share) {
+    std::map<std::string, Count> counts;
+    for (const Command& command : commands(cases)) {
+        const std::string program = command.program->name, good = folder("good"),
+                          out = folder("forged"), path = out + ".bin";
+        INFO(program << " " << command.words);
+        REQUIRE(run(command, good, "output.checkpoint_steps=4") == 0);
+        const std::vector<std::string> kept = checkpoints(good);
+        REQUIRE(kept.size() == 2);
+        const std::string file = read_all(kept[0]), magic = file.substr(0, magic_size);
+        const std::vector<Block> blocks = blocks_of(file);
+        REQUIRE(file_of(blocks, magic) == file);
+        const std::vector<Forgery> all = forgeries_of(blocks);
+        const std::string start =
+            "timeout -s KILL 10 " + command_line(program, "--restart " + path) +
+            " --quiet --force --threads 1 --out " + out + " >/dev/null 2> " + out + ".stderr";
+        Count& count = counts[program];
+        const long total = static_cast<long>(all.size()), tried = share > 0 ? share : total;
+        for (long k = 0; k < tried; ++k) {
+            const Forgery& forgery = all[k * total / tried];
+            std::vector<Block> forged = blocks;
+            forged[forgery.block].bytes = forgery.bytes;
+            write_all(path, file_of(forged, magic));
+            const int status = shell(start);
+            const std::string text = said(out);
+            ++count.tried, count.refused += status == 2, count.ran += status == 0;
+            count.failed += status == 3;
+            INFO(forgery.label << ": status " << status << ", " << text);
+            CHECK((status == 2 || status == 0 || status == 3));
+            CHECK((!forgery.is_impossible || status == 2));
+            CHECK(!holds(text, "unexpected"));
+            CHECK(!holds(text, "not enough memory"));
+        }
+    }
+    for (const auto& [program, count] : counts)
+        MESSAGE(program << ": " << count.tried << " forgeries, " << count.refused << " refused, "
+                        << count.ran << " ran, " << count.failed << " failed");
+}
+
+}  // namespace
+
+TEST_CASE("a forged checkpoint is refused or is one that a run could have had" *
+          doctest::description("robust")) {
+    check_forged(30);
+}
+
+TEST_CASE("every forgery of every block is refused or is one that a run could have had" *
+          doctest::description("long")) {
+    check_forged(0);
+}
