@@ -160,8 +160,8 @@ class Contact {
     ///         rigid grain
     /// out:    what it did
     /// exact:  momentum of the grains at a node, to round-off; afterwards none of them approach,
-    ///         and none slip where friction can hold. Where four or more grains jam at one node, a
-    ///         thousandth of the approach may be left.
+    ///         and none slip where friction can hold. Where three or more grains jam at one node
+    ///         with friction, sweeps end early and part of the approach may be left.
     /// errors: NumericalError when too many grains are at a node
     ContactSums apply(double dt, GrainNodes& nodes, std::vector<Bond>& bonds,
                       std::vector<RigidMotion>& rigid, const ContactLevel& level = {}) const {

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -99,9 +98,12 @@ Cloud crowd(std::uint64_t seed, int grains, int rigid = 0) {
                      vy = random(-1, 1);
         cloud.begin_grain(g >= grains);
         cloud.rigid.back().vx = vx, cloud.rigid.back().vy = vy;
-        for (int p = 0; p < 12; ++p)
-            cloud.add(x + random(-0.7, 0.7), y + random(-0.7, 0.7), random(0.5, 1.5), vx, vy,
-                      random(0.1, 0.3));
+        // One number after the other: compilers draw the arguments of a call in any order.
+        for (int p = 0; p < 12; ++p) {
+            const double x_p = x + random(-0.7, 0.7), y_p = y + random(-0.7, 0.7),
+                         m_p = random(0.5, 1.5);
+            cloud.add(x_p, y_p, m_p, vx, vy, random(0.1, 0.3));
+        }
     }
     return cloud;
 }
@@ -124,9 +126,6 @@ double kinetic(const ContactProblem& m, bool new_ones) {
     });
     return sum;
 }
-
-// An approach beyond this shows that the sweeps at a node came to their limit.
-constexpr double jammed = 1e-11;
 
 // The largest velocity at which two grains in contact at a shared node approach.
 double approach_at(const ContactProblem& m, long n) {
@@ -292,9 +291,10 @@ TEST_CASE("contact keeps the momentum at every node whoever meets there") {
                         moved += m.has_changed(one);
                     }
                     if (moved >= 3) ++crowded;
-                    // In every sweep every pair rounds once.
+                    // In every sweep every pair rounds once; without friction there may be more.
+                    const double sweeps = friction > 0 ? 500 : 100000;
                     const double round_off = std::numeric_limits<double>::epsilon() *
-                                             std::sqrt(500.0 * 0.5 * grains * (grains - 1)) * size;
+                                             std::sqrt(sweeps * 0.5 * grains * (grains - 1)) * size;
                     CHECK(std::fabs(x) <= round_off);
                     CHECK(std::fabs(y) <= round_off);
                 }
@@ -330,30 +330,26 @@ TEST_CASE("what rigid grains give is the opposite of their push") {
 TEST_CASE("no pair that is in contact approaches afterwards and no energy is made") {
     for (const int grains : {3, 4, 6}) {
         double approach = 0, gained = 0;
-        long nodes = 0, slow = 0;
+        long nodes = 0;
         for (std::uint64_t seed = 1; seed <= 100; ++seed) {
             ContactProblem m(crowd(seed, grains));
             m.meet(rule_of(0));
-            for (long n = 0; n < m.nodes.shared_count(); ++n) {
-                const double here = approach_at(m, n);
-                ++nodes, slow += here > jammed ? 1 : 0;
-                approach = worst({approach, here});
-            }
+            for (long n = 0; n < m.nodes.shared_count(); ++n, ++nodes)
+                approach = worst({approach, approach_at(m, n)});
             gained = std::max(gained, kinetic(m, true) - kinetic(m, false));
         }
-        // Where many are heaped on each other, one node in some hundreds is jammed, and the sweeps
-        // end before they have taken away the last part in a hundred of the approach.
         CHECK(nodes >= 1000);
-        CHECK(slow <= (grains == 3 ? 0 : nodes / 200));
-        CHECK(approach <= (grains == 3 ? jammed : 1e-2));
+        CHECK(approach <= 1e-11);
         CHECK(gained <= 0);
     }
 }
 
 TEST_CASE("the order of the grains does not matter without friction") {
+    // New velocities are the nearest ones, in the metric of the masses, at which no pair
+    // approaches. Three grains nearly in line (seed 20) may be sent apart either way: there no pair
+    // approaches long before the sweeps are at their end.
     for (const int grains : {2, 3, 5}) {
-        double most = 0, most_jammed = 0;
-        long nodes = 0, slow = 0;
+        double most = 0;
         for (std::uint64_t seed = 1; seed <= 30; ++seed) {
             const Cloud cloud = crowd(seed, grains);
             Cloud turned(cloud.mesh);
@@ -367,27 +363,13 @@ TEST_CASE("the order of the grains does not matter without friction") {
             }
             ContactProblem one(cloud), other(turned);
             one.meet(rule_of(0)), other.meet(rule_of(0));
-            std::set<std::pair<long, long>> left_early;
-            for (const ContactProblem* m : {&one, &other})
-                for (long n = 0; n < m->nodes.shared_count(); ++n, ++nodes) {
-                    if (!(approach_at(*m, n) > jammed)) continue;
-                    const std::vector<Member> who = m->members(n);
-                    left_early.insert({who.front().x, who.front().y});
-                    ++slow;
-                }
             for_each_dof(one.nodes, one.cloud.layout, [&](int g, long i, long j, std::size_t dof) {
                 const NodeMotion& u = one.nodes.motion[dof];
                 const NodeMotion& v = other.nodes.motion[static_cast<std::size_t>(
                     other.nodes.origin(grains - 1 - g, j) + i)];
-                double& difference = left_early.count({i, j}) > 0 ? most_jammed : most;
-                difference =
-                    worst({difference, std::fabs(u.vx_1 - v.vx_1), std::fabs(u.vy_1 - v.vy_1)});
+                most = worst({most, std::fabs(u.vx_1 - v.vx_1), std::fabs(u.vy_1 - v.vy_1)});
             });
         }
-        // Which nodes are jammed is a matter of round-off; there the order shows as far as the
-        // sweeps are from their end.
-        CHECK(slow <= (grains < 5 ? 0 : nodes / 200));
-        CHECK(most_jammed <= 1e-2);
         CHECK(most <= 1e-10);
     }
 }
