@@ -37,6 +37,17 @@ inline void accelerate_nodes(const BodyForce& body, const std::vector<Grain>& gr
     fill_ghost_velocity(nodes);
 }
 
+/// v_i^1 as the stress of the last half step makes it: contact judges by it which pairs press.
+/// out:    nodes.motion, v_1; nodes.force, which is cleared for the stress of this step
+inline void predict_acceleration(const BodyForce& body, const std::vector<Grain>& grains,
+                                 const std::vector<RigidMotion>& rigid, double dt,
+                                 GrainNodes& nodes) {
+    accelerate_nodes(body, grains, rigid, dt, nodes);
+    common::for_each_block(nodes.size(), [&](int, long begin, long end) {
+        std::fill(nodes.force.begin() + begin, nodes.force.begin() + end, NodeForce{});
+    });
+}
+
 /// Work on the nodes in this step, and their largest speed; after contact.
 inline NodeWork work_on_nodes(const BodyForce& body, double dt, const GrainNodes& nodes) {
     std::array<NodeWork, common::block_count> part;

@@ -3,7 +3,7 @@
 // Leapfrog keeps the energy of [MPM-14] as long as particles stand still:
 //     E^n = 1/2 sum_p m_p v_p^2 + 1/2 sum_p V_p sigma_p^{n-1/2} : T^-1 : sigma_p^{n+1/2}
 // Everything that changes it is counted where it happens, so that the rest, `budget`, is round-off:
-//     d E = external + contact + friction + bond + damping - plastic + volume + pic + remap
+//     d E = external + contact + release + friction + bond + damping - plastic + volume + pic + remap
 // remap is what moving particles from cell to cell costs: the work of the old stress on the strain
 // of the new nodes minus that on the strain of the old ones, and the kinetic energy that lumping the
 // mass takes.
@@ -55,8 +55,8 @@ struct NodeWork {
 struct Budget {
     double kinetic = 0, elastic = 0;      // of t^n
     double energy_14 = 0, energy_15 = 0;  // [MPM-14] of t^n, [MPM-15] of t^{n+1/2}
-    double external = 0, contact = 0, friction = 0, bond = 0, damping = 0, plastic = 0, volume = 0,
-           pic = 0, remap = 0;
+    double external = 0, contact = 0, release = 0, friction = 0, bond = 0, damping = 0, plastic = 0,
+           volume = 0, pic = 0, remap = 0;
     double start = 0;                                      // energy_14 at t = 0
     double elastic_before = 0;                             // of t^{n-1/2}
     double kinetic_next = 0;                               // of t^{n+1}
@@ -64,17 +64,18 @@ struct Budget {
     std::vector<double> momentum_x_next, momentum_y_next;  // at t^{n+1}
 
     double work() const {
-        return external + contact + friction + bond + damping - plastic + volume + pic + remap;
+        return external + contact + release + friction + bond + damping - plastic + volume + pic +
+               remap;
     }
     double residual() const { return energy_14 - start - work(); }
 };
 
 template <class Archive>
 void archive(Archive& a, Budget& l) {
-    std::vector<double*> numbers{&l.kinetic,  &l.elastic, &l.energy_14,      &l.energy_15,
-                                 &l.external, &l.contact, &l.friction,       &l.bond,
-                                 &l.damping,  &l.plastic, &l.volume,         &l.pic,
-                                 &l.remap,    &l.start,   &l.elastic_before, &l.kinetic_next};
+    std::vector<double*> numbers{
+        &l.kinetic,  &l.elastic, &l.energy_14,      &l.energy_15,    &l.external, &l.contact,
+        &l.friction, &l.bond,    &l.damping,        &l.plastic,      &l.volume,   &l.pic,
+        &l.remap,    &l.start,   &l.elastic_before, &l.kinetic_next, &l.release};
     std::vector<double> values;
     for (const double* number : numbers) values.push_back(*number);
     std::span all(values);  // of this length
@@ -137,7 +138,8 @@ inline void add_work(const std::vector<mpm::Tile>& where, const std::vector<Tile
     }
     l.kinetic_next = s.kinetic;
     l.external += contact.rigid + nodes.gravity;
-    l.contact += contact.normal, l.friction += contact.friction, l.bond += contact.bond;
+    l.contact += contact.normal, l.release += contact.release;
+    l.friction += contact.friction, l.bond += contact.bond;
     l.damping += nodes.damping, l.plastic += s.plastic_new, l.pic += s.pic;
     l.remap += nodes.internal_work - (nodes.kinetic_increment - s.kinetic_increment);
 }

@@ -14,7 +14,8 @@
 #include <vector>
 
 #include "mpm_explicit/bond_load.hpp"
-#include "mpm_explicit/detect_contact.hpp"
+#include "mpm_explicit/close_contact_node.hpp"
+#include "mpm_explicit/contact_list.hpp"
 #include "mpm_explicit/transfer.hpp"
 
 namespace mpm {
@@ -22,13 +23,15 @@ namespace mpm {
 /// What contact did in one step. Work is impulse times velocity, at the level of the scheme.
 struct ContactSums {
     double normal = 0, friction = 0, bond = 0;  // work within the grains
+    double release = 0;                         // of impulses on v_i^0, where it parts or slips
     double rigid = 0;                           // work of rigid grains on the others
     double impulse = 0;                         // sum of all |lambda|
     double nodes = 0;                           // pairs that press, counted at nodes
 
     void operator+=(const ContactSums& other) {
         normal += other.normal, friction += other.friction, bond += other.bond;
-        rigid += other.rigid, impulse += other.impulse, nodes += other.nodes;
+        release += other.release, rigid += other.rigid;
+        impulse += other.impulse, nodes += other.nodes;
     }
 };
 
@@ -91,7 +94,7 @@ class ContactTally {
             x = p.is_fixed() ? p.vx : old_share * p.vx_0 + (1 - old_share) * p.vx;
             y = p.is_fixed() ? p.vy : old_share * p.vy_0 + (1 - old_share) * p.vy;
         };
-        double ax, ay, bx, by;
+        double ax, ay, bx, by, cax, cay, cbx, cby;
         mean(a, ax, ay), mean(b, bx, by);
         const double normal = pair.lambda_n * ((bx - ax) * pair.nx + (by - ay) * pair.ny),
                      friction = pair.lambda_t * ((bx - ax) * tx + (by - ay) * ty);
@@ -101,6 +104,12 @@ class ContactTally {
             sums.normal += normal, sums.friction += friction;
             if (pair.lambda_n > 0) sums.impulse += pair.lambda_n, sums.nodes += 1;
         }
+        const auto change = [](const ContactBody& p, double& x, double& y) {
+            x = p.is_fixed() ? 0 : p.vx - p.vx_0, y = p.is_fixed() ? 0 : p.vy - p.vy_0;
+        };
+        change(a, cax, cay), change(b, cbx, cby);
+        sums.release -= pair.old_n * ((cbx - cax) * pair.nx + (cby - cay) * pair.ny) +
+                        pair.old_t * ((cbx - cax) * tx + (cby - cay) * ty);
         // A fixed body takes or gives the rest.
         const double jx = pair.lambda_n * pair.nx + pair.lambda_t * tx,
                      jy = pair.lambda_n * pair.ny + pair.lambda_t * ty;
@@ -145,28 +154,39 @@ class Contact {
         detection_.for_each(nodes, bonds, true, [&](int, ContactNode& node) {
             for (ContactBody& body : node.bodies) body.vx = body.vx_0, body.vy = body.vy_0;
             solve_contact_node(node);
-            for (const ContactBody& body : node.bodies) {
-                if (body.is_fixed()) continue;
-                NodeMotion& v = nodes.motion[body.dof];
-                v.vx_0 = body.vx, v.vy_0 = body.vy;
-            }
+            store_old_velocities(node, nodes);
         });
         fill_ghost_velocity(nodes);
     }
 
-    /// Corrects v_i^1 at the shared nodes, once per step.
-    /// in:     level, what the scheme counts
-    /// in/out: nodes.motion; bonds, their stresses and whether they break; rigid, the force on each
-    ///         rigid grain
-    /// out:    what it did
+    /// Contact on v_i^0, of which strain is made (close_contact_node.hpp).
+    /// in/out: nodes.motion, v_0; in v_1, what the stress of the last half step makes of it
+    /// out:    list, the contacts of this step
+    /// errors: NumericalError when too many grains are at a node
+    void apply_to_old(const std::vector<Bond>& bonds, GrainNodes& nodes, ContactList& list) const {
+        const bool both = detection_.rule().levels == 2;
+        if (!both) join_bonds(bonds, nodes);
+        list.find(detection_, nodes, bonds, [&](ContactNode& node) {
+            if (!both) return;
+            close_contact_node(node);
+            store_old_velocities(node, nodes);
+        });
+        fill_ghost_velocity(nodes);
+    }
+
+    /// Contact on v_i^1: the force of constraint.                                        [MPM-12]
+    /// in:     list of this step; level, what the scheme counts
+    /// in/out: nodes.motion, v_1; bonds, their stresses and whether they break; rigid, the force on
+    ///         each rigid grain
+    /// out:    what contact did
     /// exact:  momentum of the grains at a node, to round-off; afterwards none of them approach,
     ///         and none slip where friction can hold. Where three or more grains jam at one node
     ///         with friction, sweeps end early and part of the approach may be left.
-    /// errors: NumericalError when too many grains are at a node
-    ContactSums apply(double dt, GrainNodes& nodes, std::vector<Bond>& bonds,
-                      std::vector<RigidMotion>& rigid, const ContactLevel& level = {}) const {
+    ContactSums apply_to_new(double dt, const ContactList& list, GrainNodes& nodes,
+                             std::vector<Bond>& bonds, std::vector<RigidMotion>& rigid,
+                             const ContactLevel& level = {}) const {
         ContactTally sums = tally(level);
-        detection_.for_each(nodes, bonds, false, [&](int block, ContactNode& node) {
+        list.for_each(nodes, [&](int block, ContactNode& node, std::size_t) {
             solve_contact_node(node);
             sums.add(block, node);
             store_velocities(node, nodes);

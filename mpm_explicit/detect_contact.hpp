@@ -23,6 +23,7 @@ struct ContactRule {
     // Grains press when the centers of their parts around a node are nearer than this, in cells; 0:
     // wherever they approach, which is too early.
     double separation = 0.8;
+    long levels = 2;  // leapfrog: contact acts on v_i^0 and v_i^1; 1: on v_i^1 alone
 };
 
 /// Velocities of the bodies from nodes.motion, no mobility along directions that walls fix, and the
@@ -49,6 +50,15 @@ inline void store_velocities(const ContactNode& node, GrainNodes& nodes) {
     }
 }
 
+/// The same for v_i^0.
+inline void store_old_velocities(const ContactNode& node, GrainNodes& nodes) {
+    for (const ContactBody& body : node.bodies) {
+        if (body.is_fixed()) continue;
+        NodeMotion& v = nodes.motion[body.dof];
+        v.vx_0 = body.vx, v.vy_0 = body.vy;
+    }
+}
+
 /// Room for the bodies and pairs of one node.
 struct ContactStorage {
     std::array<ContactBody, ContactNode::max_bodies> bodies;
@@ -66,6 +76,8 @@ class ContactDetection {
         }
         for (const Grain& grain : grains) is_rigid_.push_back(grain.rigid);
     }
+
+    const ContactRule& rule() const { return rule_; }
 
     /// Calls visit(block, node) for every shared node where a pair is in contact or bonded; or only
     /// where one is bonded, with the bonded pairs alone.
@@ -179,7 +191,8 @@ class ContactDetection {
                 if (bond < 0 && limit > 0 && apart > limit) continue;
                 pair.a = a, pair.b = b, pair.bond = bond;
                 pair.mu = two.wall ? rule_.wall_friction : rule_.friction;
-                pair.lambda_n = pair.lambda_t = 0;
+                pair.lambda_n = pair.lambda_t = pair.old_n = pair.old_t = 0;
+                pair.state = ContactState::open, pair.held_n = pair.held_t = bond >= 0;
                 ++count;
             }
         }

@@ -45,10 +45,12 @@ struct ContactPair {
     std::size_t a, b;  // of the node's bodies
     int bond;          // number of the bond, or -1
     ContactState state = ContactState::open;
-    double nx, ny;  // normal, from a to b
+    bool held_n = false, held_t = false;  // an equality along n, and across, whatever the signs
+    double nx, ny;                        // normal, from a to b
     double mu;
-    double mass_n, mass_t;      // effective mass along the normal and across
-    double lambda_n, lambda_t;  // impulse on b, along (nx, ny) and (-ny, nx)
+    double mass_n, mass_t;        // effective mass along the normal and across
+    double lambda_n, lambda_t;    // impulse on b, along (nx, ny) and (-ny, nx)
+    double old_n = 0, old_t = 0;  // leapfrog: the impulse on v_i^0
     bool closed() const { return state != ContactState::open; }
     double tx() const { return -ny; }
     double ty() const { return nx; }
@@ -76,21 +78,22 @@ inline void find_effective_masses(ContactNode& node) {
 }
 
 /// Impulses and velocities of a node by projected Gauss-Seidel: pair after pair, until a sweep
-/// changes no velocity by more than round-off. A bonded pair neither parts nor slips, whatever the
+/// changes no velocity by more than round-off. A held pair neither parts nor slips, whatever the
 /// signs.
+/// in:     friction, false where only held pairs resist slip
 /// in/out: velocities of the bodies; impulses of the pairs, from a guess
 /// exact:  momentum of the bodies that are not fixed and of the impulses on the fixed ones; one
 ///         pair is solved in one sweep
 /// note:   Where normals are nearly parallel, as of three grains in line, impulses creep, and the
 ///         end may be thousands of sweeps away. Without friction it is unique, and every sweep
 ///         comes nearer to it; with friction sweeps may circle for ever, and 500 have to do.
-inline void solve_contact_node(ContactNode& node) {
+inline void solve_contact_node(ContactNode& node, bool friction = true) {
     double size = 0;
     for (const ContactBody& body : node.bodies)
         size = std::max({size, std::fabs(body.vx), std::fabs(body.vy)});
-    const bool only_presses =
-        std::all_of(node.pairs.begin(), node.pairs.end(),
-                    [](const ContactPair& pair) { return pair.bond < 0 && pair.mu == 0; });
+    const bool only_presses = std::all_of(
+        node.pairs.begin(), node.pairs.end(),
+        [&](const ContactPair& pair) { return !pair.held_t && (pair.mu == 0 || !friction); });
     const int max_sweeps = only_presses ? 100000 : 500;
     for (int sweep = 0; sweep < max_sweeps; ++sweep) {
         double change = 0;
@@ -105,13 +108,14 @@ inline void solve_contact_node(ContactNode& node) {
             };
             const double approach = (a.vx - b.vx) * pair.nx + (a.vy - b.vy) * pair.ny;
             double n = pair.lambda_n + pair.mass_n * approach;
-            if (pair.bond < 0) n = std::max(0.0, n);
+            if (!pair.held_n) n = std::max(0.0, n);
             exchange((n - pair.lambda_n) * pair.nx, (n - pair.lambda_n) * pair.ny);
             pair.lambda_n = n;
 
             const double slip = (b.vx - a.vx) * pair.ny - (b.vy - a.vy) * pair.nx;
             double t = pair.lambda_t + pair.mass_t * slip;
-            if (pair.bond < 0) t = std::clamp(t, -pair.mu * n, pair.mu * n);
+            const double most = friction ? pair.mu * std::max(0.0, n) : 0;
+            if (!pair.held_t) t = std::clamp(t, -most, most);
             exchange((pair.lambda_t - t) * pair.ny, (t - pair.lambda_t) * pair.nx);
             pair.lambda_t = t;
             // [/impulse]

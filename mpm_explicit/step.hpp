@@ -19,21 +19,23 @@ namespace mpm_explicit {
 /// in:     body, forces on all mass; flip, the part of FLIP in the velocity of particles; frozen:
 ///         particles keep their places
 /// in/out: nodes, sorted for where the particles are; state but the budget
-/// out:    sums, which the budget takes
+/// out:    list, the contacts of the step; sums, which the budget takes
 template <class Shape, class Clock = common::NoClock>
 void take_step(const Shape& shape, const std::vector<AnyLaw>& laws, const Contact& contact,
                const BodyForce& body, double flip, bool frozen, double dt, GrainNodes& nodes,
-               State& state, StepSums& sums, Clock&& clock = {}) {
+               ContactList& list, State& state, StepSums& sums, Clock&& clock = {}) {
     Particles& particles = state.assembly.particles;
     const std::vector<Grain>& grains = state.assembly.grains;
     std::vector<RigidMotion>& rigid = state.assembly.rigid;
     std::vector<Bond>& bonds = state.assembly.bonds;
     // [step]
-    particles_to_grid(shape, particles, nodes);  // particles -> grid
+    particles_to_grid<WithForce>(shape, particles, nodes);  // particles -> grid
     clock.lap("put");
-    nodal_velocity(grains, rigid, nodes);  // v_i^0
-    contact.join_bonds(bonds, nodes);
+    nodal_velocity(grains, rigid, nodes);                  // v_i^0
+    predict_acceleration(body, grains, rigid, dt, nodes);  // v_i^1 by sigma^{-1/2}
     clock.lap("nodes");
+    contact.apply_to_old(bonds, nodes, list);  // which press, and v_i^0  [MPM-4]
+    clock.lap("contact");
     for_each_batch(grains, nodes, sums.tiles, [&](ParticleBatch& batch) {
         velocity_gradient(shape, particles, nodes, OldVelocity{}, dt, batch);  // [MPM-11]
         update_stress(laws, frozen, batch, grains, particles, sums.tiles);     // [MPM-9, 10]
@@ -43,7 +45,7 @@ void take_step(const Shape& shape, const std::vector<AnyLaw>& laws, const Contac
     clock.lap("stress");
     accelerate_nodes(body, grains, rigid, dt, nodes);  // v_i^1  [MPM-12]
     clock.lap("nodes");
-    sums.contact = contact.apply(dt, nodes, bonds, rigid);  // f_gg'  [MPM-4]
+    sums.contact = contact.apply_to_new(dt, list, nodes, bonds, rigid);  // f_gg'  [MPM-4]
     clock.lap("contact");
     sums.nodes = work_on_nodes(body, dt, nodes);
     clock.lap("nodes");

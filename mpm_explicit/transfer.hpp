@@ -108,11 +108,19 @@ inline void fill_ghost_velocity(GrainNodes& nodes) {
     }
 }
 
+/// Whether particles also put the force of the stress that they carry on the nodes.
+struct WithForce {
+    static constexpr bool value = true;
+};
+struct WithoutForce {
+    static constexpr bool value = false;
+};
+
 /// m_i, P_i, and what contact needs, from the particles of every grain.
-///   m_i = sum_p m_p S_ip,  P_i = sum_p m_p v_p S_ip
-/// out:    nodes.sums
-/// exact:  sum_i m_i = sum_p m_p and sum_i P_i = sum_p m_p v_p, to round-off
-template <class Shape>
+///   m_i = sum_p m_p S_ip,  P_i = sum_p m_p v_p S_ip,  f_i = - sum_p V_p sigma_p . grad S_ip
+/// out:    nodes.sums; nodes.force, zero without force
+/// exact:  sum_i m_i = sum_p m_p and sum_i P_i = sum_p m_p v_p, to round-off; sum_i f_i = 0
+template <class Force = WithoutForce, class Shape>
 void particles_to_grid(const Shape& shape, const Particles& particles, GrainNodes& nodes) {
     nodes.drop_constraints();
     common::for_each_block(nodes.size(), [&](int, long begin, long end) {
@@ -122,16 +130,23 @@ void particles_to_grid(const Shape& shape, const Particles& particles, GrainNode
     const Locator at(nodes.mesh());
     const double *x_p = particles.x_p.data(), *y_p = particles.y_p.data(),
                  *vx_p = particles.vx_p.data(), *vy_p = particles.vy_p.data(),
-                 *m_p = particles.m_p.data(), *V_p = particles.V_p.data();
+                 *m_p = particles.m_p.data(), *V_p = particles.V_p.data(),
+                 *sxx = particles.sxx_p.data(), *syy = particles.syy_p.data(),
+                 *sxy = particles.sxy_p.data();
     nodes.for_each_tile([&](const Tile& tile, std::size_t) {
         const long* origin = nodes.origins(tile.grain);
         NodeSums* sums = nodes.sums.data();
+        NodeForce* force = nodes.force.data();
         for (long p = tile.begin; p < tile.end; ++p) {
             const double x = x_p[p], y = y_p[p], m = m_p[p], V = V_p[p];
             const common::SimdVector carried{m, m * vx_p[p], m * vy_p[p], m * x, m * y, 0, 0, V},
                 along_x{0, 0, 0, 0, 0, V, 0, 0}, along_y{0, 0, 0, 0, 0, 0, V, 0};
             for_each_node(shape, at, origin, x, y, [&](long dof, double S, double Gx, double Gy) {
                 detail::add(sums[dof], S, Gx, Gy, carried, along_x, along_y);
+                if constexpr (Force::value) {
+                    force[dof].x -= V * (sxx[p] * Gx + sxy[p] * Gy);
+                    force[dof].y -= V * (sxy[p] * Gx + syy[p] * Gy);
+                }
             });
         }
     });

@@ -11,8 +11,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -35,14 +33,7 @@ struct PairUpdate {
 /// Impulses of the pairs are those on v^theta: theta times what particles feel.
 class ActiveSet {
    public:
-    /// The bodies and pairs of one node, a range of those below.
-    struct Node {
-        std::size_t body_begin, body_end, pair_begin, pair_end;
-        long key;  // number of the node on the mesh
-    };
-    std::vector<Node> nodes;
-    std::vector<ContactBody> bodies;
-    std::vector<ContactPair> pairs;
+    ContactList list;
     std::vector<PairUpdate> updates;  // one per pair
     bool same_before = false;         // the last two solutions had the same set
 
@@ -51,37 +42,16 @@ class ActiveSet {
     ///         sorted
     void find(const Contact& contact, const GrainNodes& where, const std::vector<Bond>& bonds,
               const std::vector<ForceControl>& controls, const std::vector<ActivePair>& last) {
-        struct Block {
-            std::vector<Node> nodes;
-            std::vector<ContactBody> bodies;
-            std::vector<ContactPair> pairs;
-            std::vector<PairUpdate> updates;
-        };
-        std::array<Block, common::block_count> blocks;
-        contact.detection().for_each(where, bonds, false, [&](int number, ContactNode& node) {
-            Block& block = blocks[number];
-            for (ContactPair& pair : node.pairs)
-                block.updates.push_back(guess_state(node, last, pair));
-            const std::size_t body = block.bodies.size(), pair = block.pairs.size();
-            block.bodies.insert(block.bodies.end(), node.bodies.begin(), node.bodies.end());
-            block.pairs.insert(block.pairs.end(), node.pairs.begin(), node.pairs.end());
-            block.nodes.push_back({body, block.bodies.size(), pair, block.pairs.size(), node.key});
-        });
+        list.find(contact.detection(), where, bonds, [](ContactNode&) {});
         same_before = false;
-        nodes.clear(), bodies.clear(), pairs.clear(), updates.clear();
-        for (std::size_t k = 0; k < blocks.size(); ++k) {
-            const Block& block = blocks[k];
-            for (Node node : block.nodes) {
-                node.body_begin += bodies.size(), node.body_end += bodies.size();
-                node.pair_begin += pairs.size(), node.pair_end += pairs.size();
-                nodes.push_back(node);
-            }
-            bodies.insert(bodies.end(), block.bodies.begin(), block.bodies.end());
-            pairs.insert(pairs.end(), block.pairs.begin(), block.pairs.end());
-            updates.insert(updates.end(), block.updates.begin(), block.updates.end());
-            end_of_block_[k] = nodes.size();
+        updates.clear();
+        ContactStorage storage;
+        for (const ContactList::Node& range : list.nodes) {
+            const ContactNode node = list.copy(range, storage);
+            for (std::size_t k = range.pair_begin; k < range.pair_end; ++k)
+                updates.push_back(guess_state(node, last, list.pairs[k]));
         }
-        for (ContactBody& body : bodies) {
+        for (ContactBody& body : list.bodies) {
             if (!body.rigid) continue;
             for (std::size_t s = 0; s < controls.size(); ++s) {
                 if (controls[s].grain != static_cast<std::size_t>(body.grain)) continue;
@@ -91,48 +61,27 @@ class ActiveSet {
         }
     }
 
-    /// Calls visit(block, node, first) for a copy of every node, with the velocities of
-    /// nodes.motion; first is the number of its first pair, block as in ContactDetection::for_each.
-    template <class Visit>
-    void for_each(const GrainNodes& where, const Visit& visit) const {
-        common::for_each_row(common::block_count, [&](long number) {
-            ContactStorage storage;
-            for (std::size_t n = number == 0 ? 0 : end_of_block_[number - 1];
-                 n < end_of_block_[number]; ++n) {
-                const Node& range = nodes[n];
-                std::copy(bodies.begin() + range.body_begin, bodies.begin() + range.body_end,
-                          storage.bodies.begin());
-                std::copy(pairs.begin() + range.pair_begin, pairs.begin() + range.pair_end,
-                          storage.pairs.begin());
-                ContactNode node{{storage.bodies.data(), range.body_end - range.body_begin},
-                                 {storage.pairs.data(), range.pair_end - range.pair_begin},
-                                 range.key};
-                load_velocities(where, node);
-                visit(static_cast<int>(number), node, range.pair_begin);
-            }
-        });
-    }
-
     /// What contact has done, by the impulses of the set.
     /// in:     nodes.motion, v^theta in the place of v_1
     /// out:    bonds, their stresses and whether they break; rigid, the force on each rigid grain
     ContactSums account(const Contact& contact, double theta, double dt, const GrainNodes& where,
                         std::vector<Bond>& bonds, std::vector<RigidMotion>& rigid) const {
         ContactTally sums = contact.tally({0, 1 / theta});
-        for_each(where, [&](int block, ContactNode& node, std::size_t) { sums.add(block, node); });
+        list.for_each(where,
+                      [&](int block, ContactNode& node, std::size_t) { sums.add(block, node); });
         return sums.finish(dt, bonds, rigid);
     }
 
     /// The bodies of a pair, for a message.
     std::string names(std::size_t pair, const std::vector<Grain>& grains) const {
-        for (const Node& node : nodes) {
+        for (const ContactList::Node& node : list.nodes) {
             if (pair < node.pair_begin || pair >= node.pair_end) continue;
             const auto name = [&](std::size_t k) {
-                const ContactBody& body = bodies[node.body_begin + k];
+                const ContactBody& body = list.bodies[node.body_begin + k];
                 return body.wall ? std::string("a wall")
                                  : "grain '" + grains[body.grain].name + "'";
             };
-            return name(pairs[pair].a) + " and " + name(pairs[pair].b);
+            return name(list.pairs[pair].a) + " and " + name(list.pairs[pair].b);
         }
         return "no grains";
     }
@@ -140,13 +89,13 @@ class ActiveSet {
     /// The closed pairs, sorted, for the guess of the next step.
     std::vector<ActivePair> active_pairs() const {
         std::vector<ActivePair> kept;
-        for (const Node& node : nodes)
+        for (const ContactList::Node& node : list.nodes)
             for (std::size_t k = node.pair_begin; k < node.pair_end; ++k) {
-                const ContactPair& pair = pairs[k];
+                const ContactPair& pair = list.pairs[k];
                 if (pair.bond >= 0 || !pair.closed()) continue;
-                kept.push_back({node.key, bodies[node.body_begin + pair.a].id(),
-                                bodies[node.body_begin + pair.b].id(), static_cast<int>(pair.state),
-                                pair.lambda_t});
+                kept.push_back({node.key, list.bodies[node.body_begin + pair.a].id(),
+                                list.bodies[node.body_begin + pair.b].id(),
+                                static_cast<int>(pair.state), pair.lambda_t});
             }
         std::sort(kept.begin(), kept.end());
         return kept;
@@ -170,8 +119,6 @@ class ActiveSet {
         }
         return update;
     }
-
-    std::array<std::size_t, common::block_count> end_of_block_{};  // in nodes
 };
 
 }  // namespace mpm_implicit

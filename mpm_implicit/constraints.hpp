@@ -24,13 +24,13 @@ class Constraints {
                bool only_bonds) {
         set_ = &set, scale_ = &scale, size_ = size, rights_ = force_controls + 1;
         rows_.clear(), basis_.clear(), right_.clear(), factor_.clear(), blocks_.clear();
-        for (std::size_t n = 0; n < set.nodes.size(); ++n) {
+        for (std::size_t n = 0; n < set.list.nodes.size(); ++n) {
             Block block{n, rows_.size(), 0, basis_.size(), right_.size(), factor_.size()};
-            const ActiveSet::Node& node = set.nodes[n];
+            const ContactList::Node& node = set.list.nodes[n];
             // Normals first: where not all can hold, it is friction that gives way.
             for (const bool across : {false, true}) {
                 for (std::size_t k = node.pair_begin; k < node.pair_end; ++k) {
-                    const ContactPair& pair = set.pairs[k];
+                    const ContactPair& pair = set.list.pairs[k];
                     if (!pair.closed() || (only_bonds && pair.bond < 0)) continue;
                     // A grain under force control holds none before the step.
                     if (only_bonds && (driven(node, pair.a) || driven(node, pair.b))) continue;
@@ -94,7 +94,7 @@ class Constraints {
 
     /// Impulses of the closed pairs, from what is left of the equation: H^T lambda = A v - b = -r.
     void find_impulses(const Vector& r, ActiveSet& set) const {
-        for (ContactPair& pair : set.pairs) {
+        for (ContactPair& pair : set.list.pairs) {
             pair.lambda_n = 0;
             if (pair.state != ContactState::slip) pair.lambda_t = 0;
         }
@@ -108,7 +108,7 @@ class Constraints {
                     c -= factor_[block.factor + i * most_rows + k] * lambda[i];
                 lambda[k] = c / factor_[block.factor + k * most_rows + k];
                 const Row& row = rows_[block.row + k];
-                ContactPair& pair = set.pairs[row.pair];
+                ContactPair& pair = set.list.pairs[row.pair];
                 (row.across ? pair.lambda_t : pair.lambda_n) = lambda[k];
             }
         }
@@ -124,10 +124,12 @@ class Constraints {
         std::size_t node, row, rank, basis, right, factor;
     };
 
-    bool driven(const ActiveSet::Node& node, std::size_t who) const {
-        return set_->bodies[node.body_begin + who].force_control >= 0;
+    bool driven(const ContactList::Node& node, std::size_t who) const {
+        return set_->list.bodies[node.body_begin + who].force_control >= 0;
     }
-    const ActiveSet::Node& node_of(const Block& block) const { return set_->nodes[block.node]; }
+    const ContactList::Node& node_of(const Block& block) const {
+        return set_->list.nodes[block.node];
+    }
     std::size_t width(const Block& block) const {
         return 2 * (node_of(block).body_end - node_of(block).body_begin);
     }
@@ -145,13 +147,13 @@ class Constraints {
 
     // Gram and Schmidt, twice for the sake of round-off; a row that others already ask for is left
     // out.
-    void add_row(const ActiveSet::Node& node, std::size_t k, bool across, Block& block) {
-        const ContactPair& pair = set_->pairs[k];
+    void add_row(const ContactList::Node& node, std::size_t k, bool across, Block& block) {
+        const ContactPair& pair = set_->list.pairs[k];
         const double x = across ? pair.tx() : pair.nx, y = across ? pair.ty() : pair.ny;
         const std::size_t wide = 2 * (node.body_end - node.body_begin);
         std::vector<double> row(wide, 0.0), right(rights_, 0.0);
         for (const auto& [who, sign] : {std::pair(pair.a, -1.0), std::pair(pair.b, 1.0)}) {
-            const ContactBody& body = set_->bodies[node.body_begin + who];
+            const ContactBody& body = set_->list.bodies[node.body_begin + who];
             if (body.is_fixed()) {
                 const bool drive_x = body.force_control >= 0 && body.control_along_x,
                            drive_y = body.force_control >= 0 && !body.control_along_x;
@@ -189,9 +191,9 @@ class Constraints {
 
     // The node's part of v, each number times D^{-1/2} to a power.
     void load(const Block& block, const Vector& v, int power, Local& local) const {
-        const ActiveSet::Node& node = node_of(block);
+        const ContactList::Node& node = node_of(block);
         for (std::size_t m = node.body_begin; m < node.body_end; ++m) {
-            const ContactBody& body = set_->bodies[m];
+            const ContactBody& body = set_->list.bodies[m];
             const std::size_t i = 2 * (m - node.body_begin);
             local[i] = local[i + 1] = 0;
             if (body.is_fixed()) continue;
@@ -203,9 +205,9 @@ class Constraints {
         }
     }
     void store(const Block& block, int power, const Local& local, Vector& v) const {
-        const ActiveSet::Node& node = node_of(block);
+        const ContactList::Node& node = node_of(block);
         for (std::size_t m = node.body_begin; m < node.body_end; ++m) {
-            const ContactBody& body = set_->bodies[m];
+            const ContactBody& body = set_->list.bodies[m];
             const std::size_t i = 2 * (m - node.body_begin);
             if (body.is_fixed()) continue;
             for (const auto& [at, dof] :

@@ -158,11 +158,11 @@ class NewtonSolver {
         add_missing_momentum(shape, x, step);
         std::array<std::vector<double>, common::block_count> impulses;
         for (auto& block : impulses) block.assign(controls.size(), 0.0);
-        step.solver.set.for_each(nodes, [&](int number, ContactNode& node, std::size_t first) {
+        step.solver.set.list.for_each(nodes, [&](int number, ContactNode& node, std::size_t first) {
             const auto block = static_cast<std::size_t>(number);
             correct_velocities(step.scale(), n, node);
             for (const ContactPair& pair : node.pairs) {
-                if (step.updating) update_state(pair, step.solver.set.pairs[first++]);
+                if (step.updating) update_state(pair, step.solver.set.list.pairs[first++]);
                 for (std::size_t s = 0; s < controls.size(); ++s)
                     impulses[block][s] += impulse_on(controls[s], node, pair);
             }
@@ -213,7 +213,7 @@ class NewtonSolver {
         add_missing_momentum(shape, x_, step);
         const long n = step.nodes.size();
         ContactTally sums = step.contact.tally({0, 1 / step.scheme.theta});
-        step.solver.set.for_each(step.nodes, [&](int block, ContactNode& node, std::size_t) {
+        step.solver.set.list.for_each(step.nodes, [&](int block, ContactNode& node, std::size_t) {
             correct_velocities(step.scale(), n, node);
             sums.add(block, node);
             store_velocities(node, step.nodes);
@@ -231,10 +231,10 @@ class NewtonSolver {
     [[noreturn]] static void fail(const common::NewtonResult& result, const ThetaScheme& scheme,
                                   const std::vector<Grain>& grains, const ActiveSet& set) {
         std::size_t hardest = 0;
-        for (std::size_t k = 0; k < set.pairs.size(); ++k)
-            if (set.pairs[k].lambda_n > set.pairs[hardest].lambda_n) hardest = k;
+        for (std::size_t k = 0; k < set.list.pairs.size(); ++k)
+            if (set.list.pairs[k].lambda_n > set.list.pairs[hardest].lambda_n) hardest = k;
         const std::string who =
-            set.pairs.empty() ? "" : "; hardest pressed are " + set.names(hardest, grains);
+            set.list.pairs.empty() ? "" : "; hardest pressed are " + set.names(hardest, grains);
         throw common::NumericalError("Newton's iteration did not converge: " + result.reason +
                                      "; residual " + common::format(result.residual) +
                                      ", asked for " + common::format(scheme.tolerance) + who +

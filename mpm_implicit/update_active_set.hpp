@@ -32,8 +32,9 @@ struct ActiveSetChange {
 /// source: Anderson, J. ACM 12, 547 (1965), with one step back.
 inline void extrapolate_friction(bool same, ActiveSet& set) {
     const auto for_each_slipping = [&](const auto& work) {
-        for (std::size_t k = 0; k < set.pairs.size(); ++k)
-            if (set.pairs[k].state == ContactState::slip) work(set.pairs[k], set.updates[k]);
+        for (std::size_t k = 0; k < set.list.pairs.size(); ++k)
+            if (set.list.pairs[k].state == ContactState::slip)
+                work(set.list.pairs[k], set.updates[k]);
     };
     double along = 0, squared = 0;
     for_each_slipping([&](const ContactPair& pair, const PairUpdate& update) {
@@ -60,7 +61,7 @@ inline ActiveSetChange update_active_set(const Vector& v, const std::vector<doub
     const double nearly = 1e3 * accuracy, friction_error = 1e5 * accuracy;
     constexpr int max_releases = 2, max_switches = 3;
     double largest = 0, fastest = 0;
-    for (const ContactPair& pair : set.pairs)
+    for (const ContactPair& pair : set.list.pairs)
         largest = std::max({largest, std::fabs(pair.lambda_n), std::fabs(pair.lambda_t)});
     const auto velocity = [&](const ContactBody& body, double& x, double& y) {
         const bool fixed = body.is_fixed();
@@ -68,7 +69,7 @@ inline ActiveSetChange update_active_set(const Vector& v, const std::vector<doub
         if (body.force_control < 0) return;
         (body.control_along_x ? x : y) = V[body.force_control];
     };
-    for (const ContactBody& body : set.bodies) {
+    for (const ContactBody& body : set.list.bodies) {
         double x, y;
         velocity(body, x, y);
         fastest = std::max({fastest, std::fabs(x), std::fabs(y)});
@@ -77,14 +78,14 @@ inline ActiveSetChange update_active_set(const Vector& v, const std::vector<doub
             largest = std::max(largest, 1e-4 * nodes.sums[body.dof].m * std::hypot(x, y));
     }
     ActiveSetChange change;
-    for (const ActiveSet::Node& node : set.nodes) {
+    for (const ContactList::Node& node : set.list.nodes) {
         for (std::size_t k = node.pair_begin; k < node.pair_end; ++k) {
-            ContactPair& pair = set.pairs[k];
+            ContactPair& pair = set.list.pairs[k];
             PairUpdate& update = set.updates[k];
             if (pair.bond >= 0) continue;
             double ax, ay, bx, by;
-            velocity(set.bodies[node.body_begin + pair.a], ax, ay);
-            velocity(set.bodies[node.body_begin + pair.b], bx, by);
+            velocity(set.list.bodies[node.body_begin + pair.a], ax, ay);
+            velocity(set.list.bodies[node.body_begin + pair.b], bx, by);
             const double parting = (bx - ax) * pair.nx + (by - ay) * pair.ny,
                          slip = (bx - ax) * pair.tx() + (by - ay) * pair.ty();
             const ContactState before = pair.state;
@@ -149,14 +150,14 @@ inline void update_state(const ContactPair& now, ContactPair& pair) {
 ///         grains under force control
 inline void add_friction(long size, ActiveSet& set, Vector& right,
                          std::vector<double>& controlled) {
-    for (const ActiveSet::Node& node : set.nodes) {
+    for (const ContactList::Node& node : set.list.nodes) {
         for (std::size_t k = node.pair_begin; k < node.pair_end; ++k) {
-            ContactPair& pair = set.pairs[k];
+            ContactPair& pair = set.list.pairs[k];
             if (pair.state != ContactState::slip) continue;
             pair.lambda_t = set.updates[k].friction;
             if (pair.lambda_t == 0) continue;
             for (const auto& [who, sign] : {std::pair(pair.a, -1.0), std::pair(pair.b, 1.0)}) {
-                const ContactBody& body = set.bodies[node.body_begin + who];
+                const ContactBody& body = set.list.bodies[node.body_begin + who];
                 const double jx = sign * pair.lambda_t * pair.tx(),
                              jy = sign * pair.lambda_t * pair.ty();
                 if (!body.is_fixed()) right[body.dof] += jx, right[size + body.dof] += jy;

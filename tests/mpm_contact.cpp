@@ -44,7 +44,9 @@ struct ContactProblem {
     }
     void meet(const ContactRule& rule, double dt = 0.01, const ContactLevel& level = {}) {
         const Contact contact(rule, cloud.grains, bonds);
-        sums = contact.apply(dt, nodes, bonds, cloud.rigid, level);
+        ContactList list;
+        list.find(contact.detection(), nodes, bonds, [](ContactNode&) {});
+        sums = contact.apply_to_new(dt, list, nodes, bonds, cloud.rigid, level);
     }
     /// Members of shared node n that have mass, and walls.
     std::vector<Member> members(long n) const {
@@ -341,6 +343,45 @@ TEST_CASE("no pair that is in contact approaches afterwards and no energy is mad
         CHECK(nodes >= 1000);
         CHECK(approach <= 1e-11);
         CHECK(gained <= 0);
+    }
+}
+
+TEST_CASE("contact at both levels presses without work and takes energy where pairs part") {
+    for (const long levels : {2L, 1L}) {
+        double works = 0, gives = 0, takes = 0, presses = 0;
+        for (const int grains : {2, 3, 5}) {
+            for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+                ContactProblem m(crowd(seed, grains));
+                ContactRule rule = rule_of(0);
+                rule.levels = levels;
+                const Contact contact(rule, m.cloud.grains, m.bonds);
+                // The stress of the last half step, and then that of this one.
+                Random random(1000 + seed);
+                const auto push = [&](double size) {
+                    m.accelerate([&](int, NodeMotion& v) {
+                        v.vx_1 += size * random(-1, 1), v.vy_1 += size * random(-1, 1);
+                    });
+                };
+                push(0.1);
+                ContactList list;
+                contact.apply_to_old(m.bonds, m.nodes, list);
+                push(0.1);
+                const ContactSums sums =
+                    contact.apply_to_new(0.01, list, m.nodes, m.bonds, m.cloud.rigid);
+                works = worst({works, std::fabs(sums.normal)});
+                gives = worst({gives, sums.release});
+                takes = std::min(takes, sums.release), presses += sums.nodes;
+            }
+        }
+        CHECK(presses >= 400);
+        if (levels == 1) {
+            CHECK(works > 0.01);
+            CHECK(takes == 0);
+            continue;
+        }
+        CHECK(works <= 1e-12);
+        CHECK(gives <= 1e-12);
+        CHECK(takes < -1e-6);
     }
 }
 

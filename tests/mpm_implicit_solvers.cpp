@@ -252,15 +252,15 @@ void for_each_contact_case(const Work& work) {
                 run.with([&](const auto&, auto& solver) {
                     solver.prepare(run.scheme, run.body, run.dt, run.nodes);
                     Random random(seed + 7);
-                    for (ContactPair& pair : solver.set.pairs) {
+                    for (ContactPair& pair : solver.set.list.pairs) {
                         const double dice = random();
                         pair.state = dice < 0.2   ? ContactState::open
                                      : dice < 0.5 ? ContactState::slip
                                                   : ContactState::stick;
                     }
-                    for (const ActiveSet::Node& node : solver.set.nodes)
+                    for (const ContactList::Node& node : solver.set.list.nodes)
                         crowded += node.body_end - node.body_begin > 2;
-                    pairs += static_cast<long>(solver.set.pairs.size());
+                    pairs += static_cast<long>(solver.set.list.pairs.size());
                     solver.constraints.build(solver.set, solver.scale(), run.nodes.size(),
                                              solver.force_controls.size(), false);
                     work(run, solver, random);
@@ -283,12 +283,12 @@ double forbidden(const ActiveSet& set, const Vector& v, const std::vector<double
             given[is.control_along_x ? 0 : 1] = V[static_cast<std::size_t>(is.force_control)];
         return given;
     };
-    for (const ActiveSet::Node& node : set.nodes) {
+    for (const ContactList::Node& node : set.list.nodes) {
         for (std::size_t k = node.pair_begin; k < node.pair_end; ++k) {
-            const ContactPair& pair = set.pairs[k];
+            const ContactPair& pair = set.list.pairs[k];
             if (!pair.closed()) continue;
-            const auto a = velocity(set.bodies[node.body_begin + pair.a]),
-                       b = velocity(set.bodies[node.body_begin + pair.b]);
+            const auto a = velocity(set.list.bodies[node.body_begin + pair.a]),
+                       b = velocity(set.list.bodies[node.body_begin + pair.b]);
             most = worst({most, std::fabs((b[0] - a[0]) * pair.nx + (b[1] - a[1]) * pair.ny)});
             if (pair.state == ContactState::stick)
                 most = worst({most, std::fabs((b[1] - a[1]) * pair.nx - (b[0] - a[0]) * pair.ny)});
@@ -302,15 +302,15 @@ Vector impulses_on(const ActiveSet& set, const Vector& scale, std::vector<double
     const long n = scale.size() / 2;
     Vector sum = Vector::Zero(2 * n);
     std::fill(plates.begin(), plates.end(), 0.0);
-    for (const ActiveSet::Node& node : set.nodes) {
+    for (const ContactList::Node& node : set.list.nodes) {
         for (std::size_t k = node.pair_begin; k < node.pair_end; ++k) {
-            const ContactPair& pair = set.pairs[k];
+            const ContactPair& pair = set.list.pairs[k];
             if (!pair.closed()) continue;
             const double t = pair.state == ContactState::stick ? pair.lambda_t : 0,
                          jx = pair.lambda_n * pair.nx - t * pair.ny,
                          jy = pair.lambda_n * pair.ny + t * pair.nx;
             for (const auto& [who, sign] : {std::pair(pair.a, -1.0), std::pair(pair.b, 1.0)}) {
-                const ContactBody& is = set.bodies[node.body_begin + who];
+                const ContactBody& is = set.list.bodies[node.body_begin + who];
                 if (is.force_control >= 0)
                     plates[static_cast<std::size_t>(is.force_control)] +=
                         sign * (is.control_along_x ? jx : jy);
@@ -373,16 +373,16 @@ Kkt kkt_of(const ThetaRun& run, const Solver& solver, const Vector& b,
     }
     std::vector<Vector> rows;
     std::vector<double> right;
-    for (const ActiveSet::Node& node : solver.set.nodes) {
+    for (const ContactList::Node& node : solver.set.list.nodes) {
         for (std::size_t k = node.pair_begin; k < node.pair_end; ++k) {
-            const ContactPair& pair = solver.set.pairs[k];
+            const ContactPair& pair = solver.set.list.pairs[k];
             for (const bool across : {false, true}) {
                 if (!pair.closed() || (across && pair.state != ContactState::stick)) continue;
                 const double nx = across ? -pair.ny : pair.nx, ny = across ? pair.nx : pair.ny;
                 Vector row = Vector::Zero(m + count);
                 double given = 0;
                 for (const auto& [who, sign] : {std::pair(pair.a, -1.0), std::pair(pair.b, 1.0)}) {
-                    const ContactBody& is = solver.set.bodies[node.body_begin + who];
+                    const ContactBody& is = solver.set.list.bodies[node.body_begin + who];
                     if (is.is_fixed()) {
                         const bool x_is_free = is.force_control >= 0 && is.control_along_x,
                                    y_is_free = is.force_control >= 0 && !is.control_along_x;
@@ -701,7 +701,7 @@ TEST_CASE("the projection is orthogonal and needs to be done once") {
         skew = worst({skew, std::fabs(x.dot(Py) - y.dot(Px)) / (x.norm() * y.norm())});
         // Velocities that are left take no pair apart; fixed ones would have none.
         ActiveSet at_rest = solver.set;
-        for (ContactBody& is : at_rest.bodies) is.vx = is.vy = 0;
+        for (ContactBody& is : at_rest.list.bodies) is.vx = is.vy = 0;
         const Vector v = solver.scale().cwiseProduct(Px);
         const std::vector<double> none(solver.force_controls.size(), 0.0);
         across = worst({across, forbidden(at_rest, v, none) / v.cwiseAbs().maxCoeff()});
@@ -742,21 +742,21 @@ TEST_CASE("impulses are found whose sum on every node is what is left of its equ
     long redundant = 0;
     for_each_contact_case([&](ThetaRun&, auto& solver, Random& random) {
         ActiveSet set = solver.set;
-        for (ContactPair& pair : set.pairs)
+        for (ContactPair& pair : set.list.pairs)
             pair.lambda_n = random(-1, 1), pair.lambda_t = random(-1, 1);
         std::vector<double> push(solver.force_controls.size());
         const Vector Hl = impulses_on(set, solver.scale(), push);
         const ActiveSet parameters = set;
-        for (ContactPair& pair : set.pairs) pair.lambda_n = pair.lambda_t = 1e3;
+        for (ContactPair& pair : set.list.pairs) pair.lambda_n = pair.lambda_t = 1e3;
         solver.constraints.find_impulses(-Hl, set);
         const Vector found = impulses_on(set, solver.scale(), push);
         off = worst({off, (found - Hl).cwiseAbs().maxCoeff()});
-        for (std::size_t k = 0; k < set.pairs.size(); ++k) {
-            const ContactPair& pair = set.pairs[k];
+        for (std::size_t k = 0; k < set.list.pairs.size(); ++k) {
+            const ContactPair& pair = set.list.pairs[k];
             if (!pair.closed()) CHECK((pair.lambda_n == 0 && pair.lambda_t == 0));
             // Slip has the friction that it was given.
             if (pair.state == ContactState::slip) CHECK(pair.lambda_t == 1e3);
-            redundant += std::fabs(pair.lambda_n - parameters.pairs[k].lambda_n) > 1e-6;
+            redundant += std::fabs(pair.lambda_n - parameters.list.pairs[k].lambda_n) > 1e-6;
         }
     });
     CHECK(off <= 1e-11);
@@ -831,7 +831,7 @@ TEST_CASE("conjugate gradients among closed pairs solve what a dense solver does
             apart = worst({apart, forbidden(solver.set, v, controlled.V) / fast});
             // Impulses make up for what is left.
             ActiveSet set = solver.set;
-            for (ContactPair& pair : set.pairs) pair.lambda_t = 0;
+            for (ContactPair& pair : set.list.pairs) pair.lambda_t = 0;
             solver.constraints.find_impulses(work.r, set);
             std::vector<double> push(controlled.V.size());
             const Vector Hl = impulses_on(set, solver.scale(), push);
@@ -880,7 +880,7 @@ TEST_CASE("conjugate gradients know a solution when they see one and say when th
         }
         // Nothing moves where nothing is moved.
         ActiveSet& set = solver.set;
-        for (ContactBody& is : set.bodies) is.vx = is.vy = 0;
+        for (ContactBody& is : set.list.bodies) is.vx = is.vy = 0;
         solver.constraints.build(set, solver.scale(), run.nodes.size(),
                                  solver.force_controls.size(), false);
         Vector v = Vector::Zero(b.size());

@@ -465,15 +465,15 @@ TEST_CASE("impulses press and gaps stay open and friction is Coulomb's at the so
                     if (run.sums.solver.held == 0) {
                         const ActiveSet& set = run.set();
                         double press = 0, speed = 0;
-                        for (const ContactPair& pair : set.pairs)
+                        for (const ContactPair& pair : set.list.pairs)
                             press = std::max(press, std::fabs(pair.lambda_n));
                         for (const NodeMotion& v : run.nodes.motion)
                             speed = std::max({speed, std::fabs(v.vx_1), std::fabs(v.vy_1)});
-                        for (const ActiveSet::Node& node : set.nodes) {
+                        for (const ContactList::Node& node : set.list.nodes) {
                             for (std::size_t k = node.pair_begin; k < node.pair_end; ++k) {
-                                const ContactPair& pair = set.pairs[k];
+                                const ContactPair& pair = set.list.pairs[k];
                                 const auto of = [&](std::size_t who) -> std::array<double, 2> {
-                                    const ContactBody& is = set.bodies[node.body_begin + who];
+                                    const ContactBody& is = set.list.bodies[node.body_begin + who];
                                     if (is.is_fixed()) return {is.vx, is.vy};
                                     const NodeMotion& v =
                                         run.nodes.motion[static_cast<std::size_t>(is.dof)];

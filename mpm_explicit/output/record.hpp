@@ -21,6 +21,7 @@ inline void add_budget(const Budget& l, common::Row& row) {
                                       {"energy_15", l.energy_15},
                                       {"external", l.external},
                                       {"contact", l.contact},
+                                      {"release", l.release},
                                       {"friction", l.friction},
                                       {"bond", l.bond},
                                       {"damping", l.damping},
@@ -38,6 +39,7 @@ class LeapfrogRecorder {
     LeapfrogRecorder(const Case& parameters, const Scales& scales, const State& state,
                      common::History& history)
         : dt_(scales.dt),
+          levels_(parameters.problem.contact.levels),
           recorder_(parameters, leapfrog, scales, state.assembly, comparisons, "budget") {
         Budget none;
         none.momentum_x.assign(state.assembly.grains.size(), 0), none.momentum_y = none.momentum_x;
@@ -60,7 +62,9 @@ class LeapfrogRecorder {
             });
         if (finite && recorder_.row_is_due(step))
             run.history.row(row(step, l, sums.contact, state.assembly));
-        recorder_.refuse_failure(step, sums.tiles, nodes, state.assembly, l.start, l.external,
+        // Elastic energy is that of t^{n-1/2} and t^{n+1/2}: what this step puts in counts.
+        const double external = l.external + sums.contact.rigid + sums.nodes.gravity;
+        recorder_.refuse_failure(step, sums.tiles, nodes, state.assembly, l.start, external,
                                  l.kinetic + l.elastic, run.history);
     }
 
@@ -68,6 +72,7 @@ class LeapfrogRecorder {
     void finish(long step, const State& state, common::Run& run) const {
         if (run.history.all().empty()) return;
         recorder_.compare_with_theory(step, state.assembly, run);
+        if (levels_ == 2) check_contact(run);
         recorder_.finish_conservation(state.assembly, run);
         run.summary.conservation("largest_remap_error", run.history.largest("remap"), "energy");
     }
@@ -82,7 +87,24 @@ class LeapfrogRecorder {
         return row;
     }
 
+    // Contact presses without work, and all it does together takes energy.
+    void check_contact(common::Run& run) const {
+        const auto contact = run.history.column("contact"), release = run.history.column("release"),
+                   friction = run.history.column("friction");
+        const double size = run.history.largest("kinetic") + run.history.largest("elastic");
+        double works = 0, gives = 0;
+        for (std::size_t n = 0; n < contact.size() && size > 0; ++n) {
+            works = std::max(works, std::fabs(contact[n]) / size);
+            gives = std::max(gives, (contact[n] + release[n] + friction[n]) / size);
+        }
+        run.summary.result("contact_works", works, "1", 0, 1e-10,
+                           "of pairs that press, over the energy: exact");
+        run.summary.result_within("contact_gives", gives, "1", 0, 1e-10,
+                                  "with release and friction, over the energy: it takes");
+    }
+
     double dt_;
+    long levels_;
     Recorder recorder_;
 };
 

@@ -116,6 +116,9 @@ inline common::ParameterTable describe(Case& parameters,
                                        const std::vector<std::string>& comparison_names) {
     common::ParameterTable table;
     describe_case(table, parameters);
+    table.whole(
+        "contact.levels", parameters.problem.contact.levels, "", common::between(1, 2),
+        "2: contact acts on v_i^0 and v_i^1; 1: on v_i^1 alone, which bursts grains at rest");
     describe_output(table, parameters, comparison_names);
     return table;
 }

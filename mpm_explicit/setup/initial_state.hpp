@@ -20,7 +20,9 @@ void start_leapfrog(const Shape& shape, const std::vector<AnyLaw>& laws, const C
     Assembly& all = state.assembly;
     particles_to_grid(shape, all.particles, nodes);
     nodal_velocity(all.grains, all.rigid, nodes);
-    contact.join_bonds(all.bonds, nodes);
+    predict_acceleration({}, all.grains, all.rigid, 0, nodes);
+    ContactList list;
+    contact.apply_to_old(all.bonds, nodes, list);
     std::vector<TileSums> sums;
     for_each_batch(all.grains, nodes, sums, [&](ParticleBatch& batch) {
         velocity_gradient(shape, all.particles, nodes, OldVelocity{}, -0.5 * dt, batch);

@@ -68,6 +68,36 @@ inline void compare_cylinder(const FinishedRun& run, common::Summary& summary) {
                     "(2/3) g sin where it rolls, g (sin - mu cos) where it slips", summary);
 }
 
+// ---- a grain at rest on a rigid plate -----------------------------------------------------------
+
+/// Needs one grain, a rigid plate, and gravity towards it.
+inline void need_rest(const PlannedCase& planned) {
+    const Problem& problem = planned.parameters.problem;
+    planned.refuse(planned.free_grains() != 1 || planned.rigid_grains() < 1 ||
+                       problem.gravity_x != 0 || !(problem.gravity_y < 0),
+                   " needs one grain, a rigid plate, and load.gravity_y below 0 alone");
+}
+
+/// The largest kinetic energy in the second half of the run, over m g h with the height h of the
+/// grain; and how much of it is new in the last quarter.
+inline void compare_rest(const FinishedRun& run, common::Summary& summary) {
+    const Particles& at = run.all.particles;
+    const auto [low, high] =
+        std::minmax_element(at.y_p.begin() + run.grain().begin, at.y_p.begin() + run.grain().end);
+    const double weight = -run.mass() * run.parameters.problem.gravity_y * (*high - *low);
+    const auto times = run.history.column("time"), kinetic = run.history.column("kinetic");
+    double third = 0, last = 0;
+    for (std::size_t n = 0; n < times.size(); ++n) {
+        if (times[n] < 0.5 * run.end) continue;
+        double& quarter = times[n] < 0.75 * run.end ? third : last;
+        quarter = std::max(quarter, kinetic[n]);
+    }
+    summary.result_within("kinetic_over_weight", std::max(third, last) / weight, "1", 0, 1e-6,
+                          "at rest, over m g h, in the second half of the run");
+    summary.result_within("kinetic_grows", (last - third) / weight, "1", -1, 1e-8,
+                          "the last quarter less the third, over m g h");
+}
+
 // ---- a disk between two plates (Brazilian test) -------------------------------------------------
 
 /// Needs a disk, first in the case, and rigid plates.

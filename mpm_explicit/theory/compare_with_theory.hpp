@@ -55,6 +55,7 @@ inline constexpr theory::Comparison comparisons[] = {
     {"standing_wave", theory::need_wave, theory::compare_standing_wave},
     {"oscillator", theory::need_oscillator, compare_oscillator},
     {"block", theory::need_incline, theory::compare_block},
+    {"rest", theory::need_rest, theory::compare_rest},
     {"cylinder", theory::need_incline, theory::compare_cylinder},
     {"disk", theory::need_pressed_disk, theory::compare_disk, theory::center_columns},
     {"bond", theory::need_bond, theory::compare_bond},
