@@ -28,6 +28,8 @@ std::FILE* open_for_writing(const std::string& path) {
     if (stream == nullptr) {
         const std::string reason = std::strerror(errno);
         if (file >= 0) close(file);
+        // What has just been made for nothing goes.
+        if (S_ISREG(status.st_mode) && status.st_size == 0) unlink(path.c_str());
         throw InputError(path + ": cannot be opened for writing (" + reason + ")");
     }
     return stream;
