@@ -71,8 +71,8 @@ one_at_a_time = $(if $(shell command -v flock),flock out)
 .SUFFIXES:
 .DELETE_ON_ERROR:
 .SECONDEXPANSION:
-.PRECIOUS: $(objects)/%.o out/%/.complete
-.PHONY: menu deps deps-dev all figures cost explicit_gem test tests test-long bench notes format \
+.PRECIOUS: $(objects)/%.o $(objects)/fuzz/%.o out/%/.complete
+.PHONY: menu deps deps-dev all figures cost explicit_gem test tests test-long torture fuzzers bench notes format \
         clean FORCE $(programs)
 
 # ---- the menu ------------------------------------------------------------------------------------
@@ -103,6 +103,7 @@ The particle-in-cell family in running code
   make explicit_gem      the full explicit run of that slide, an hour; resumable
   make test              the facts, at most ten minutes   (make test ARGS='-R gmres': some of them)
   make test-long         every figure at full length, its numbers checked
+  make torture           half an hour of kills, failing disks, forged files and fuzzing; resumable
   make bench             particle-steps per second on 1 and 2 threads, and where the time goes
   make notes             refresh the code and the numbers in the lecture notes
   make format            clang-format all sources
@@ -124,7 +125,7 @@ deps:
 	@CXX='$(CXX)' EIGEN='$(EIGEN)' sh common/packages.sh
 
 deps-dev: | $(filter deps,$(MAKECMDGOALS))
-	@sh common/packages.sh clang-format locales
+	@sh common/packages.sh clang-format locales clang libclang-rt-dev libomp-dev llvm strace
 
 # ---- programs ------------------------------------------------------------------------------------
 
@@ -390,6 +391,26 @@ quoted := out/implicit_moment/gem_1836/.complete $(patsubst %,out/cic/%/.complet
 test-long: all tests figures $(quoted) $(BUILD)/CTestTestfile.cmake | $(packages_first)
 	$(call need,ctest)
 	$(ctest) -L long
+
+# ---- the laboratory ------------------------------------------------------------------------------
+
+# Half an hour of bad luck and bad will, with compilers and tools of `make deps-dev`; it can be stopped and goes on.
+MINUTES ?= 30
+torture: all
+	@MINUTES=$(MINUTES) JOBS=$(JOBS) BUILD=$(BUILD) MAKE='$(MAKE)' sh tests/torture/torture.sh
+
+# Built by it, with clang: each program with all inputs that libFuzzer thinks of, and a race that must be found.
+fuzzers: $(programs:%=$(BUILD)/fuzz/%)
+$(objects)/fuzz/%.o: $$(call folder_of,$$*)/$$*.cpp $(BUILD)/flags
+	@mkdir -p $(@D)
+	$(CXX) $(flags) $(defines) -Dmain=program_main $(include_paths) -MMD -MP -c -o $@ $<
+$(BUILD)/fuzz/%: $(objects)/fuzz/%.o $(objects)/tests/torture/fuzz.o $(filter-out %/run.o,$(shared)) $(BUILD)/flags
+	@mkdir -p $(@D)
+	$(CXX) $(flags) -fsanitize=fuzzer -Wl,--wrap=exit,--wrap=getrlimit,--wrap=_ZNSt6chrono3_V212steady_clock3nowEv \
+	    -o $@ $(filter %.o,$^) $(libraries)
+$(BUILD)/planted_race: $(objects)/tests/torture/planted_race.o $(BUILD)/flags
+	$(link)
+-include $(programs:%=$(objects)/fuzz/%.d) $(wildcard $(objects)/tests/torture/*.d)
 
 # ---- speed ---------------------------------------------------------------------------------------
 

@@ -16,11 +16,16 @@ librandom123-dev       header  Random123/philox.h Random123
 doctest-dev            header  doctest/doctest.h doctest 2.4
 libxxhash-dev          header  xxhash.h          xxHash 0.8
 clang-format           command clang-format      clang-format 14
-locales                command localedef         sources of locales (glibc)'
+locales                command localedef         sources of locales (glibc)
+clang                  command clang++           clang 14, with libFuzzer and its sanitizers
+libclang-rt-dev        header  clang_rt          the sanitizers of clang and libFuzzer
+libomp-dev             header  omp-tools.h       the OpenMP of clang, with archer
+llvm                   command llvm-symbolizer   llvm, which names the lines of a report
+strace                 command strace            strace 5, which can inject errors'
 
 CXX=${CXX:-g++}
 EIGEN=${EIGEN:-/usr/include/eigen3}
-wanted=${*:-$(echo "$needed" | sed -e '/^clang-format/d' -e '/^locales/d' -e 's/ .*//')}
+wanted=${*:-$(echo "$needed" | sed -e '/^clang-format/,$d' -e 's/ .*//')}
 
 installed() {  # is the package with this name, proof and kind there?
     if [ "$2" = command ]; then
