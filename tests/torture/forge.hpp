@@ -2,7 +2,7 @@
 // are right, so that only what is read can give the change away. Its format stands in
 // common/run/checkpoint.hpp.
 //
-//   number BLOCK K VALUE    the K-th number of a block      length BLOCK COUNT   more or fewer of them
+//   number BLOCK K VALUE    the K-th number of a block      length BLOCK COUNT   more or fewer
 //   case K VALUE            the value in the K-th line of the case
 //   name BLOCK WORD         type BLOCK LETTER               remove BLOCK         repeat BLOCK
 //   byte K VALUE            cut LENGTH                      these leave the checksums as they were

@@ -1,14 +1,14 @@
-// One of the seven programs, started many thousand times a second with whatever libFuzzer thinks of,
+// One of the seven programs, started some hundred times a second with whatever libFuzzer thinks of,
 // inside one process, under the sanitizers. An input is text:
 //
 //   words of the command line           or  forge NAME
 //   lines of a case file, if any            lines that change a checkpoint, as in forge.hpp
 //
-// NAME is a run of tests/support/every_program.hpp. A run ends after some steps as if by SIGTERM, and
-// its memory is limited, so that each is short. What ends with a status outside the contract, or as
-// an error that nobody expected, aborts; so does whatever a sanitizer finds.
+// NAME is a run of tests/support/every_program.hpp. A run ends after some steps as if by SIGTERM,
+// and its memory is limited, so that each is short. What ends with a status outside the contract, or
+// as an error that nobody expected, aborts; so does whatever a sanitizer finds.
 //
-// Build: make fuzzers    Run: sh tests/torture/fuzz.sh PROGRAM SECONDS FOLDER
+// Run: sh tests/torture/inputs.sh PROGRAM FOLDER SECONDS
 #define DOCTEST_CONFIG_DISABLE
 #include <sys/mman.h>
 #include <sys/resource.h>

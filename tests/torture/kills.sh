@@ -2,7 +2,8 @@
 . tests/torture/lab.sh
 whole
 strace -f -qq -c -o "$folder/calls" $run "$folder/counted" > /dev/null 2>&1
-kinds='write openat close rename fsync ftruncate unlink newfstatat getdents64 fcntl mmap brk read mkdir exit_group'
+kinds='write openat close rename fsync ftruncate unlink newfstatat getdents64 fcntl mmap brk read
+    mkdir exit_group'
 for call in $kinds; do
     count=$(awk -v call="$call" '$NF == call { print $4 }' "$folder/calls")
     most=4

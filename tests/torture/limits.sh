@@ -1,5 +1,5 @@
-# limits.sh: little memory, short files, few and closed descriptors, folders that nobody may write to,
-# a language with decimal commas. The status is one of the contract and what is complete is right.
+# limits.sh: little memory, short files, few and closed descriptors, a folder that nobody may write
+# to, a language with decimal commas. The status is one of the contract and what is complete is right.
 . tests/torture/lab.sh
 whole
 under() {  # under STATUSES COMMAND: a run in a shell that has done this
@@ -17,17 +17,20 @@ under() {  # under STATUSES COMMAND: a run in a shell that has done this
 for kilobytes in 12000 16000 20000 24000 28000 32000 40000 60000 100000 400000; do
     under '0 2' "ulimit -v $kilobytes; exec \"\$@\""
 done
-for kilobytes in 100 200 400 800 1600 6400; do under '0 2' "ulimit -d $kilobytes; exec \"\$@\""; done
+for kilobytes in 100 200 400 800 1600 6400; do
+    under '0 2' "ulimit -d $kilobytes; exec \"\$@\""
+done
 for blocks in 0 1 2 4 8 16 64 256; do under '0 2' "ulimit -f $blocks; exec \"\$@\""; done
 for files in 3 4 5 6 7 8; do under '0 2' "ulimit -n $files; exec \"\$@\""; done
 under '0 2' 'ulimit -s 128; exec "$@"'
-for closed in '<&-' '>&-' '2>&-' '<&- >&-' '<&- 2>&-' '>&- 2>&-' '<&- >&- 2>&-' '>/dev/full' '2>/dev/full' '>/dev/full 2>&1'; do
+for closed in '<&-' '>&-' '2>&-' '<&- >&-' '<&- 2>&-' '>&- 2>&-' '<&- >&- 2>&-' '>/dev/full' \
+    '2>/dev/full' '>/dev/full 2>&1'; do
     under 0 "exec \"\$@\" $closed"
 done
 
 mkdir -p "$folder/locale"
 if localedef -i de_DE -f UTF-8 "$folder/locale/de_DE.UTF-8" > /dev/null 2>&1; then
-    under 0 "LOCPATH=$PWD/$folder/locale LC_ALL=de_DE.UTF-8 LANG=de_DE.UTF-8; export LOCPATH LC_ALL LANG; exec \"\$@\""
+    under 0 "exec env LOCPATH=$PWD/$folder/locale LANG=de_DE.UTF-8 LC_ALL=de_DE.UTF-8 \"\$@\""
 else
     echo "$program: skipped: no de_DE here (package locales)"
 fi
