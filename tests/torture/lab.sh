@@ -34,7 +34,7 @@ say() { echo "$tried $failed"; }
 made() {
     mkdir -p "$BUILD/torture"
     flock "$BUILD/torture/lock" $MAKE -s BUILD="$BUILD/torture/$1" CXX=clang++ SANITIZE="$2" \
-        OPTIMIZE="-O1 -gline-tables-only $3" $4 > "$folder/built" 2>&1 ||
+        OPTIMIZE="-O1 -gline-tables-only${3:+ $3}" $4 > "$folder/built" 2>&1 ||
         fell "is not built: $(tail -1 "$folder/built")"
 }
 whole() { $run "$folder/whole" > /dev/null 2>&1; }  # the run that nobody disturbs

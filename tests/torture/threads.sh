@@ -8,7 +8,7 @@ cic) words='cic/cases/two_stream_2d.toml time.end=1 theory.compare=none' ;;
 pic | flip) words='flip/cases/rayleigh_taylor.toml time.end=0.02' ;;
 mpm_explicit) words='mpm_explicit/cases/compressed.toml time.end=0.05 theory.compare=none' ;;
 mpm_implicit) words='mpm_implicit/cases/compressed.toml time.end=0.1 theory.compare=none' ;;
-implicit_moment) words='implicit_moment/cases/gem.toml harris.particles=20000 time.end=1' ;;
+implicit_moment) words='implicit_moment/cases/gem.toml harris.particles=20000 time.end=4' ;;
 explicit_em) words='implicit_moment/cases/gem_explicit.toml harris.particles=40000 time.end=1' ;;
 esac
 fixed=  # addresses that are not drawn by lot, where that may be asked for
