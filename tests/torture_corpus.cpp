@@ -34,8 +34,7 @@ TEST_CASE("every forged checkpoint of the corpus is refused" * doctest::descript
         const std::size_t space = line.find(' '), bar = line.find(" | ");
         REQUIRE(bar != std::string::npos);
         std::string edits = line.substr(bar + 3);
-        for (std::size_t at; (at = edits.find(" | ")) != std::string::npos;)
-            edits.replace(at, 3, "\n");
+        std::replace(edits.begin(), edits.end(), '|', '\n');
         for (const Program* program : programs_called(line.substr(0, space))) {
             const std::string whole = checkpoint_of(*program, line.substr(space, bar - space));
             REQUIRE(!whole.empty());

@@ -6,7 +6,7 @@ made fuzz fuzzer-no-link,address,undefined -fno-sanitize-coverage=trace-cmp fuzz
 fuzzer=$BUILD/torture/fuzz/fuzz/$program
 [ -w /dev/shm ] && export TMPDIR=/dev/shm
 export ASAN_OPTIONS=detect_leaks=0:malloc_context_size=4:quarantine_size_mb=8
-export ASAN_OPTIONS=$ASAN_OPTIONS:allocator_may_return_null=1
+export ASAN_OPTIONS=$ASAN_OPTIONS:allocator_may_return_null=1:intercept_memcmp=0
 export UBSAN_OPTIONS=print_stacktrace=1 OMP_THREAD_LIMIT=1 FUZZ_COUNT="$folder/count"
 mkdir -p "$folder/corpus" "$folder/found"
 # Forged checkpoints of the corpus: libFuzzer begins with those that are refused, and those that fell

@@ -1,4 +1,4 @@
-# torture.sh: the laboratory; MINUTES, JOBS, BUILD and MAKE come from `make torture`. Each experiment
+# torture.sh: the laboratory; MINUTES, JOBS, BUILD and MAKE are those of make. Each experiment
 # is made with each program; what has ended is not made again until all have. EXPERIMENTS and
 # PROGRAMS choose some of them.
 set -u
@@ -45,7 +45,12 @@ if grep -q 'not yet' out/torture/table.txt; then
     echo "not finished; 'make torture' goes on" >&2
     exit 1
 fi
-rm -rf "$room"
+for experiment in $experiments; do
+    for program in $programs; do
+        rm "$room/$experiment.$program"
+        cat "out/torture/$experiment.$program/failures" 2> /dev/null
+    done
+done > out/torture/failures.txt
 awk '$3 == 0 || $4 != 0 { bad = 1 } END { exit bad }' out/torture/table.txt && exit 0
-cat out/torture/*/failures >&2
+echo "what failed: out/torture/failures.txt" >&2
 exit 1
