@@ -9,7 +9,7 @@ export ASAN_OPTIONS=detect_leaks=0:malloc_context_size=4:quarantine_size_mb=8
 export ASAN_OPTIONS=$ASAN_OPTIONS:allocator_may_return_null=1:intercept_memcmp=0
 export UBSAN_OPTIONS=print_stacktrace=1 OMP_THREAD_LIMIT=1 FUZZ_COUNT="$folder/count"
 mkdir -p "$folder/corpus" "$folder/found"
-# Forged checkpoints of the corpus: libFuzzer begins with those that are refused, and those that fell
+# Of the forged checkpoints of the corpus libFuzzer begins with the refused ones; those that fell
 # are tried again.
 if [ -n "${FUZZ_ONLY:-}" ]; then
     for list in refused fallen; do
@@ -33,7 +33,7 @@ look_at_found() {
 look_at_found
 end=$(($(date +%s) + seconds)) start=1
 while left=$((end - $(date +%s))) && [ $left -gt 0 ] && [ $failed -lt 50 ]; do
-    "$fuzzer" $silent -seed=$start -timeout=10 -entropic=0 -rss_limit_mb=3000 \
+    "$fuzzer" $silent -seed=$start -timeout=5 -entropic=0 -rss_limit_mb=3000 \
         -max_len=20000 -artifact_prefix="$folder/found/" -max_total_time=$left \
         "$folder/corpus" > "$folder/said.$start" 2>&1
     tried=$((tried + $(od -A n -t d8 "$folder/count")))

@@ -1,5 +1,5 @@
 # limits.sh: little memory, short files, few and closed descriptors, a folder that nobody may write
-# to, a language with decimal commas. The status is one of the contract and what is complete is right.
+# to, a language with decimal commas. The status is one of the contract, what is complete is right.
 . tests/torture/lab.sh
 whole
 under() {  # under STATUSES COMMAND: a run in a shell that has done this
