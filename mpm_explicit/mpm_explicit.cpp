@@ -41,7 +41,6 @@ int run_case(const Shape& shape, const Case& parameters, const Scales& scales, c
     const double dt = scales.dt;
     GrainNodes nodes(parameters.problem.mesh(), Shape::width, scales.least_mass);
     LeapfrogRecorder recorder(parameters, scales, state, run.history);
-    ContactList list;
     StepSums sums;
     long step = 0;
     if (run.restarting()) {
@@ -57,8 +56,7 @@ int run_case(const Shape& shape, const Case& parameters, const Scales& scales, c
         if (nodes.sort_is_due(state.layout)) nodes.sort(grains, particles, state.layout);
         recorder.snapshot(step, state, run);
         const BodyForce body = apply_loads(parameters.problem.loads(), step, dt, rigid);
-        take_step(shape, laws, contact, body, parameters.flip, parameters.frozen, dt, nodes, list,
-                  state,
+        take_step(shape, laws, contact, body, parameters.flip, parameters.frozen, dt, nodes, state,
                   sums);                               // [MPM-4, 9 ... 12]
         add_energies(step, sums.tiles, state.budget);  // [MPM-14, 15]
         recorder.record(step, sums, nodes, state, run);

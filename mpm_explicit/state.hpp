@@ -22,8 +22,9 @@ void archive(Archive& a, State& state) {
     archive(a, state.budget);
 }
 
-/// What one step has summed up.
+/// The contacts of one step, and what it has summed up.
 struct StepSums {
+    ContactList contacts;
     std::vector<TileSums> tiles;
     NodeWork nodes;
     ContactSums contact;

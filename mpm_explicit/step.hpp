@@ -19,11 +19,11 @@ namespace mpm_explicit {
 /// in:     body, forces on all mass; flip, the part of FLIP in the velocity of particles; frozen:
 ///         particles keep their places
 /// in/out: nodes, sorted for where the particles are; state but the budget
-/// out:    list, the contacts of the step; sums, which the budget takes
+/// out:    sums, which the budget takes
 template <class Shape, class Clock = common::NoClock>
 void take_step(const Shape& shape, const std::vector<AnyLaw>& laws, const Contact& contact,
                const BodyForce& body, double flip, bool frozen, double dt, GrainNodes& nodes,
-               ContactList& list, State& state, StepSums& sums, Clock&& clock = {}) {
+               State& state, StepSums& sums, Clock&& clock = {}) {
     Particles& particles = state.assembly.particles;
     const std::vector<Grain>& grains = state.assembly.grains;
     std::vector<RigidMotion>& rigid = state.assembly.rigid;
@@ -34,7 +34,7 @@ void take_step(const Shape& shape, const std::vector<AnyLaw>& laws, const Contac
     nodal_velocity(grains, rigid, nodes);                  // v_i^0
     predict_acceleration(body, grains, rigid, dt, nodes);  // v_i^1 by sigma^{-1/2}
     clock.lap("nodes");
-    contact.apply_to_old(bonds, nodes, list);  // which press, and v_i^0  [MPM-4]
+    contact.apply_to_old(bonds, nodes, sums.contacts);  // which press, and v_i^0  [MPM-4]
     clock.lap("contact");
     for_each_batch(grains, nodes, sums.tiles, [&](ParticleBatch& batch) {
         velocity_gradient(shape, particles, nodes, OldVelocity{}, dt, batch);  // [MPM-11]
@@ -45,7 +45,7 @@ void take_step(const Shape& shape, const std::vector<AnyLaw>& laws, const Contac
     clock.lap("stress");
     accelerate_nodes(body, grains, rigid, dt, nodes);  // v_i^1  [MPM-12]
     clock.lap("nodes");
-    sums.contact = contact.apply_to_new(dt, list, nodes, bonds, rigid);  // f_gg'  [MPM-4]
+    sums.contact = contact.apply_to_new(dt, sums.contacts, nodes, bonds, rigid);  // f_gg'  [MPM-4]
     clock.lap("contact");
     sums.nodes = work_on_nodes(body, dt, nodes);
     clock.lap("nodes");

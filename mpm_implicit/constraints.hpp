@@ -22,7 +22,7 @@ class Constraints {
     ///         out pairs that merely press
     void build(const ActiveSet& set, const Vector& scale, long size, std::size_t force_controls,
                bool only_bonds) {
-        set_ = &set, scale_ = &scale, size_ = size, rights_ = force_controls + 1;
+        contacts_ = &set.list, scale_ = &scale, size_ = size, rights_ = force_controls + 1;
         rows_.clear(), basis_.clear(), right_.clear(), factor_.clear(), blocks_.clear();
         for (std::size_t n = 0; n < set.list.nodes.size(); ++n) {
             Block block{n, rows_.size(), 0, basis_.size(), right_.size(), factor_.size()};
@@ -125,11 +125,9 @@ class Constraints {
     };
 
     bool driven(const ContactList::Node& node, std::size_t who) const {
-        return set_->list.bodies[node.body_begin + who].force_control >= 0;
+        return contacts_->bodies[node.body_begin + who].force_control >= 0;
     }
-    const ContactList::Node& node_of(const Block& block) const {
-        return set_->list.nodes[block.node];
-    }
+    const auto& node_of(const Block& block) const { return contacts_->nodes[block.node]; }
     std::size_t width(const Block& block) const {
         return 2 * (node_of(block).body_end - node_of(block).body_begin);
     }
@@ -148,12 +146,12 @@ class Constraints {
     // Gram and Schmidt, twice for the sake of round-off; a row that others already ask for is left
     // out.
     void add_row(const ContactList::Node& node, std::size_t k, bool across, Block& block) {
-        const ContactPair& pair = set_->list.pairs[k];
+        const ContactPair& pair = contacts_->pairs[k];
         const double x = across ? pair.tx() : pair.nx, y = across ? pair.ty() : pair.ny;
         const std::size_t wide = 2 * (node.body_end - node.body_begin);
         std::vector<double> row(wide, 0.0), right(rights_, 0.0);
         for (const auto& [who, sign] : {std::pair(pair.a, -1.0), std::pair(pair.b, 1.0)}) {
-            const ContactBody& body = set_->list.bodies[node.body_begin + who];
+            const ContactBody& body = contacts_->bodies[node.body_begin + who];
             if (body.is_fixed()) {
                 const bool drive_x = body.force_control >= 0 && body.control_along_x,
                            drive_y = body.force_control >= 0 && !body.control_along_x;
@@ -193,7 +191,7 @@ class Constraints {
     void load(const Block& block, const Vector& v, int power, Local& local) const {
         const ContactList::Node& node = node_of(block);
         for (std::size_t m = node.body_begin; m < node.body_end; ++m) {
-            const ContactBody& body = set_->list.bodies[m];
+            const ContactBody& body = contacts_->bodies[m];
             const std::size_t i = 2 * (m - node.body_begin);
             local[i] = local[i + 1] = 0;
             if (body.is_fixed()) continue;
@@ -207,7 +205,7 @@ class Constraints {
     void store(const Block& block, int power, const Local& local, Vector& v) const {
         const ContactList::Node& node = node_of(block);
         for (std::size_t m = node.body_begin; m < node.body_end; ++m) {
-            const ContactBody& body = set_->list.bodies[m];
+            const ContactBody& body = contacts_->bodies[m];
             const std::size_t i = 2 * (m - node.body_begin);
             if (body.is_fixed()) continue;
             for (const auto& [at, dof] :
@@ -240,7 +238,7 @@ class Constraints {
             64 * count);
     }
 
-    const ActiveSet* set_ = nullptr;
+    const ContactList* contacts_ = nullptr;
     const Vector* scale_ = nullptr;
     long size_ = 0;
     std::size_t rights_ = 1;

@@ -5,8 +5,6 @@
 
 #include <climits>
 #include <cmath>
-#include <cstdint>
-#include <cstring>
 #include <limits>
 #include <map>
 #include <string>
@@ -15,71 +13,17 @@
 #include <vector>
 
 #include "tests/support/any_run.hpp"
-
-#define XXH_INLINE_ALL 1
-#include <xxhash.h>
+#include "tests/torture/forge.hpp"
 
 namespace {
 
 using namespace facts;
 
-// ---- a file, block by block ---------------------------------------------------------------------
-
-struct Block {
-    std::string name;
-    char type;
-    std::string bytes;
-
-    std::size_t width() const { return type == 'c' ? 1 : type == 'i' || type == 'f' ? 4 : 8; }
-    std::size_t count() const { return bytes.size() / width(); }
-};
-
-constexpr std::size_t magic_size = 8;
-
-template <class Number>
-Number number_at(const std::string& bytes, std::size_t at) {
-    Number value;
-    std::memcpy(&value, bytes.data() + at, sizeof value);
-    return value;
-}
+using torture::Block, torture::blocks_of, torture::file_of;
 
 template <class Number>
 std::string bytes_of(Number value) {
     return {reinterpret_cast<const char*>(&value), sizeof value};
-}
-
-std::vector<Block> blocks_of(const std::string& file) {
-    std::vector<Block> blocks;
-    for (std::size_t at = magic_size; at < file.size();) {
-        const auto letters = number_at<std::uint64_t>(file, at);
-        Block block{file.substr(at + 8, letters), file[at + 8 + letters], ""};
-        at += 9 + letters;
-        const std::size_t size = number_at<std::uint64_t>(file, at) * block.width();
-        block.bytes = file.substr(at + 8, size);
-        at += 16 + size;
-        blocks.push_back(block);
-    }
-    return blocks;
-}
-
-// The file with the checksums that its contents ask for.
-std::string file_of(const std::vector<Block>& blocks, const std::string& magic) {
-    std::string file;
-    std::uint64_t checksum = 0;
-    const auto write = [&](const std::string& bytes) {
-        file += bytes;
-        checksum = XXH3_64bits_withSeed(bytes.data(), bytes.size(), checksum);
-    };
-    write(magic);
-    for (const Block& block : blocks) {
-        write(bytes_of(std::uint64_t{block.name.size()}));
-        write(block.name);
-        write(std::string(1, block.type));
-        write(bytes_of(std::uint64_t{block.count()}));
-        write(block.bytes);
-        write(bytes_of(checksum));
-    }
-    return file;
 }
 
 // ---- what a forger can do to a block ------------------------------------------------------------
@@ -118,7 +62,7 @@ std::vector<std::tuple<std::string, std::string, bool>> strange_values(char type
 
 std::string swapped(const Block& block, std::size_t a, std::size_t b) {
     std::string bytes = block.bytes;
-    const std::size_t w = block.width();
+    const std::size_t w = torture::size_of(block.type);
     for (std::size_t k = 0; k < w; ++k) std::swap(bytes[a * w + k], bytes[b * w + k]);
     return bytes;
 }
@@ -127,7 +71,7 @@ std::vector<Forgery> forgeries_of(const std::vector<Block>& blocks) {
     std::vector<Forgery> all;
     for (std::size_t k = 0; k < blocks.size(); ++k) {
         const Block& block = blocks[k];
-        const std::size_t w = block.width(), n = block.count();
+        const std::size_t w = torture::size_of(block.type), n = block.bytes.size() / w;
         const auto add = [&](const std::string& label, const std::string& bytes,
                              bool impossible = false) {
             if (bytes != block.bytes)
@@ -194,9 +138,9 @@ void check_forged(long share) {
         REQUIRE(run(command, good, "output.checkpoint_steps=4") == 0);
         const std::vector<std::string> kept = checkpoints(good);
         REQUIRE(kept.size() == 2);
-        const std::string file = read_all(kept[0]), magic = file.substr(0, magic_size);
+        const std::string file = read_all(kept[0]);
         const std::vector<Block> blocks = blocks_of(file);
-        REQUIRE(file_of(blocks, magic) == file);
+        REQUIRE(file_of(blocks) == file);
         const std::vector<Forgery> all = forgeries_of(blocks);
         const std::string start =
             "timeout -s KILL 10 " + command_line(program, "--restart " + path) +
@@ -207,7 +151,7 @@ void check_forged(long share) {
             const Forgery& forgery = all[k * total / tried];
             std::vector<Block> forged = blocks;
             forged[forgery.block].bytes = forgery.bytes;
-            write_all(path, file_of(forged, magic));
+            write_all(path, file_of(forged));
             const int status = shell(start);
             const std::string text = said(out);
             ++count.tried, count.refused += status == 2, count.ran += status == 0;

@@ -25,7 +25,6 @@ struct Run {
     GrainNodes nodes;
     long step = 0;
 
-    ContactList list;
     StepSums sums;
     double largest_budget = 0, largest_remap = 0, largest_energy = 0, least_V = 1;  // so far
 
@@ -78,8 +77,8 @@ struct Run {
         std::vector<RigidMotion>& rigid = state.assembly.rigid;
         if (nodes.sort_is_due(state.layout)) nodes.sort(grains, at, state.layout);
         const BodyForce body = apply_loads(parameters.problem.loads(), step, dt, rigid);
-        take_step(shape, laws, contact, body, parameters.flip, parameters.frozen, dt, nodes, list,
-                  state, sums);
+        take_step(shape, laws, contact, body, parameters.flip, parameters.frozen, dt, nodes, state,
+                  sums);
 
         Budget& l = state.budget;
         add_energies(step, sums.tiles, l);
