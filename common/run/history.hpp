@@ -114,21 +114,16 @@ class History {
 
     /// All rows, for a checkpoint.
     const std::vector<double>& all() const { return values_; }
-    /// Takes the rows of a checkpoint and writes the file anew with the same bytes.
+    /// Takes the rows of a checkpoint.
     /// errors: InputError where they are no rows of these columns with rising times
     void restore(const std::vector<double>& values) {
         bool rows = !columns_.empty() && !values.empty() && values.size() % columns_.size() == 0;
         for (std::size_t n = columns_.size(); rows && n < values.size(); n += columns_.size())
             rows = values[n] > values[n - columns_.size()];
         if (!rows) throw InputError("the history in the checkpoint belongs to another case");
-        open();
         values_ = values;
-        for (std::size_t n = 0; n < values_.size(); n += columns_.size())
-            write(std::span(values_).subspan(n, columns_.size()));
-        flush();
     }
-
-   private:
+    /// Writes the file anew with all rows so far: the same bytes, for rows that were restored.
     void open() {
         file_ = open_for_writing(path_);
         std::string line = "#";
@@ -137,9 +132,12 @@ class History {
             line.append(columns_[k].name).append("[").append(columns_[k].unit).append("]");
         }
         std::fputs((line + "\n").c_str(), file_);
+        for (std::size_t n = 0; n < values_.size(); n += columns_.size())
+            write(std::span(values_).subspan(n, columns_.size()));
         flush();
     }
 
+   private:
     void write(std::span<const double> values) {
         std::string line;
         for (const double value : values)

@@ -47,6 +47,7 @@ class Run {
         reader("history", rows);
         archive(reader, state);
         reader.finish();
+        history.restore(rows);
         try {
             if (step < 1 || step > 1000000000000) throw InputError("its step cannot be");
             validate();
@@ -54,7 +55,7 @@ class Run {
             throw InputError(command_.restart_path + ": the checkpoint is of no run: " +
                              error.what() + "; use an earlier one");
         }
-        history.restore(rows);  // last: what was recorded stays where the state is refused
+        history.open();  // last: what was recorded stays where the state is refused
         first_step_ = step;
     }
 
