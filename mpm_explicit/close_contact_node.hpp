@@ -12,7 +12,8 @@
 // and v the relative velocity after contact, of b to a, contact does the work
 //     J^1.(v^0 + v^1)/2 - J^0.(v^1 - v^0)
 // on them. Without friction both terms are zero while a pair presses, v^0.n = v^1.n = 0. Where it
-// parts, J^1 = 0 and J^0.n >= 0: the second term takes energy and never gives any.
+// parts, J^1 = 0 and J^0.n >= 0: the second term takes energy and never gives any. With friction it
+// may have either sign, where a pair that was held across slips; J^1.(v^0 + v^1)/2 takes more.
 #pragma once
 
 #include <algorithm>

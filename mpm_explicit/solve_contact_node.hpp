@@ -86,7 +86,8 @@ inline void find_effective_masses(ContactNode& node) {
 ///         pair is solved in one sweep
 /// note:   Where normals are nearly parallel, as of three grains in line, impulses creep, and the
 ///         end may be thousands of sweeps away. Without friction it is unique, and every sweep
-///         comes nearer to it; with friction sweeps may circle for ever, and 500 have to do.
+///         comes nearer to it; with friction, or between two bodies that are told how to move,
+///         there may be no end, and 500 have to do.
 inline void solve_contact_node(ContactNode& node, bool friction = true) {
     double size = 0;
     for (const ContactBody& body : node.bodies)
@@ -94,7 +95,9 @@ inline void solve_contact_node(ContactNode& node, bool friction = true) {
     const bool only_presses = std::all_of(
         node.pairs.begin(), node.pairs.end(),
         [&](const ContactPair& pair) { return !pair.held_t && (pair.mu == 0 || !friction); });
-    const int max_sweeps = only_presses ? 100000 : 500;
+    const auto fixed = std::count_if(node.bodies.begin(), node.bodies.end(),
+                                     [](const ContactBody& body) { return body.is_fixed(); });
+    const int max_sweeps = only_presses && fixed < 2 ? 100000 : 500;
     for (int sweep = 0; sweep < max_sweeps; ++sweep) {
         double change = 0;
         for (ContactPair& pair : node.pairs) {
