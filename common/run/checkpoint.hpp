@@ -105,9 +105,8 @@ class CheckpointReader {
     }
     /// Reads a list of numbers whose length is known: a dense vector of Eigen.
     template <class Numbers>
-    requires(!std::is_arithmetic_v<Numbers>) void operator()(const std::string& name,
-                                                             Numbers& values) {
-        block(name, values.data(), static_cast<std::size_t>(values.size()));
+    requires(!std::is_arithmetic_v<Numbers>) void operator()(const std::string& name, Numbers& v) {
+        block(name, v.data(), static_cast<std::size_t>(v.size()));
     }
 
     /// Nothing may follow. errors: InputError where something does.

@@ -112,10 +112,10 @@ class History {
         flushed_ = std::chrono::steady_clock::now();
     }
 
+    long rows() const { return static_cast<long>(values_.size() / columns_.size()); }
     /// All rows, for a checkpoint.
     const std::vector<double>& all() const { return values_; }
-    /// Takes the rows of a checkpoint.
-    /// errors: InputError where they are no rows of these columns with rising times
+    /// Takes the rows of a checkpoint. errors: InputError for other columns or times that fall
     void restore(const std::vector<double>& values) {
         bool rows = !columns_.empty() && !values.empty() && values.size() % columns_.size() == 0;
         for (std::size_t n = columns_.size(); rows && n < values.size(); n += columns_.size())

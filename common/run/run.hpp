@@ -32,6 +32,7 @@ class Run {
     History history;
     Summary summary;
     long checkpoint_steps = 0;  // steps between checkpoints; 0: only when a signal stops the run
+    long history_steps = 0;     // steps between rows of the history; 0: unknown
 
     /// Whether the run continues from a checkpoint.
     bool restarting() const { return !command_.restart_path.empty(); }
@@ -43,13 +44,14 @@ class Run {
     void restore(State& state, long& step, const Validate& validate) {
         CheckpointReader reader(info_, command_.restart_path);
         std::vector<double> rows;
-        reader("step", step);
-        reader("history", rows);
+        reader("step", step), reader("history", rows);
         archive(reader, state);
         reader.finish();
-        history.restore(rows);
         try {
+            history.restore(rows);
             if (step < 1 || step > 1000000000000) throw InputError("its step cannot be");
+            if (history_steps > 0 && history.rows() != (step - 1) / history_steps + 1)
+                throw InputError("its history lacks rows, or has too many");
             validate();
         } catch (const InputError& error) {
             throw InputError(command_.restart_path + ": the checkpoint is of no run: " +

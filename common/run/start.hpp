@@ -20,6 +20,7 @@ struct Preparation {
     long steps = 0;    // to be run; a run until a time does not know them
     double bytes = 0;  // of memory
     long checkpoint_steps = 0;
+    long history_steps = 0;  // rows at every so many steps, from 0 on; 0: not so
 };
 
 /// Says what the case is and what may mislead in it, and opens the run.
@@ -49,7 +50,7 @@ inline bool start_run(const ProgramInfo& info, const CommandLine& command,
     set_thread_count(unsaid ? free_cores() : command.threads);
     Run& run = holder.emplace(info, command, table);
     for (const std::string& warning : prepared.warnings) run.summary.warning(warning);
-    run.checkpoint_steps = prepared.checkpoint_steps;
+    run.checkpoint_steps = prepared.checkpoint_steps, run.history_steps = prepared.history_steps;
     return true;
 }
 

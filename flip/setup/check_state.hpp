@@ -27,7 +27,8 @@ inline void validate_state(const Problem& problem, const common::History& histor
     refuse(!equal, "its particles lack columns or have others than those of the case");
 
     const auto on_mesh = [](const common::Axis& axis, const std::vector<double>& positions) {
-        return common::all_within(positions, axis.low, axis.high());
+        const double round_off = 1e-12 * axis.length;  // of one that has just come in
+        return common::all_within(positions, axis.low - round_off, axis.high() + round_off);
     };
     refuse(!on_mesh(problem.grid.x, p.x_p) || !on_mesh(problem.grid.z, p.z_p),
            "a particle is outside of the mesh");

@@ -33,6 +33,8 @@ inline void validate_layout(const Mesh& mesh, const Assembly& all, const GridLay
                 layout.end_column.size() == sum(layout.rows) &&
                 layout.tile_begin.size() == sum(layout.tiles) + 1 && layout.moved >= 0 &&
                 std::is_sorted(layout.tile_begin.begin(), layout.tile_begin.end());
+    // A sort comes before a particle has crossed the mesh.
+    fits = fits && layout.moved <= mesh.length_x() + mesh.y_high() - mesh.y_low;
     refuse(!fits, "the tables of its nodes do not belong together");
 
     const Particles& at = all.particles;
