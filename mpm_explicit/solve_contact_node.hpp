@@ -92,9 +92,9 @@ inline void solve_contact_node(ContactNode& node, bool friction = true) {
     double size = 0;
     for (const ContactBody& body : node.bodies)
         size = std::max({size, std::fabs(body.vx), std::fabs(body.vy)});
-    const bool only_presses = std::all_of(
-        node.pairs.begin(), node.pairs.end(),
-        [&](const ContactPair& pair) { return !pair.held_t && (pair.mu == 0 || !friction); });
+    const bool only_presses =
+        std::all_of(node.pairs.begin(), node.pairs.end(),
+                    [](const ContactPair& pair) { return !pair.held_t && pair.mu == 0; });
     const auto fixed = std::count_if(node.bodies.begin(), node.bodies.end(),
                                      [](const ContactBody& body) { return body.is_fixed(); });
     const int max_sweeps = only_presses && fixed < 2 ? 100000 : 500;
