@@ -84,7 +84,7 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     if (!common::start_run(
             info, command, table,
             {describe_scales(parameters, scheme, scales), warnings_of(parameters, scheme, scales),
-             scales.steps, scales.bytes, parameters.checkpoint_steps, parameters.history_steps},
+             scales.steps, scales.bytes, parameters.checkpoint_steps},
             holder))
         return 0;
     return with_shape(parameters.scheme(), [&](const auto& shape) {

@@ -20,7 +20,7 @@ struct Preparation {
     long steps = 0;    // to be run; a run until a time does not know them
     double bytes = 0;  // of memory
     long checkpoint_steps = 0;
-    long history_steps = 0;  // rows at every so many steps, from 0 on; 0: not so
+    long history_steps = 0;  // of rows that are written before the step; 0: they are not
 };
 
 /// Says what the case is and what may mislead in it, and opens the run.

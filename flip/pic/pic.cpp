@@ -43,7 +43,7 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     if (!common::start_run(info, command, table,
                            {describe_scales(parameters, scales, info.program),
                             resolution_warnings(parameters, scales, info.program), LONG_MAX,
-                            scales.bytes, parameters.checkpoint_steps},
+                            scales.bytes, parameters.checkpoint_steps, 1},  // a row at every step
                            holder))
         return 0;
     common::Run& run = *holder;
