@@ -139,13 +139,14 @@ void particles_to_grid(const Shape& shape, const Particles& particles, GrainNode
         NodeForce* force = nodes.force.data();
         for (long p = tile.begin; p < tile.end; ++p) {
             const double x = x_p[p], y = y_p[p], m = m_p[p], V = V_p[p];
+            const double Vxx = V * sxx[p], Vxy = V * sxy[p], Vyy = V * syy[p];
             const common::SimdVector carried{m, m * vx_p[p], m * vy_p[p], m * x, m * y, 0, 0, V},
                 along_x{0, 0, 0, 0, 0, V, 0, 0}, along_y{0, 0, 0, 0, 0, 0, V, 0};
             for_each_node(shape, at, origin, x, y, [&](long dof, double S, double Gx, double Gy) {
                 detail::add(sums[dof], S, Gx, Gy, carried, along_x, along_y);
                 if constexpr (Force::value) {
-                    force[dof].x -= V * (sxx[p] * Gx + sxy[p] * Gy);
-                    force[dof].y -= V * (sxy[p] * Gx + syy[p] * Gy);
+                    force[dof].x -= Vxx * Gx + Vxy * Gy;
+                    force[dof].y -= Vxy * Gx + Vyy * Gy;
                 }
             });
         }
