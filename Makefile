@@ -343,6 +343,8 @@ $(3)/.complete: mpm_implicit/figures/$(1).sh $(BUILD)/mpm_implicit $(BUILD)/mpm_
 	@touch $$@
 endef
 $(eval $(call both_series,mpm_implicit_energy_bound,energy_bound,out/mpm_implicit/bounces))
+$(eval $(call both_series,mpm_spin,spinning_disk,out/mpm_implicit/spins))
+out/mpm_implicit/spins/.complete: mpm_explicit/cases/spinning_disk.toml
 $(eval $(call both_series,mpm_implicit_billet,billet,out/mpm_implicit/billets))
 # Figures that look into runs of the explicit program, too.
 out/figures/fig03.png: out/mpm_explicit/rebounds/.complete

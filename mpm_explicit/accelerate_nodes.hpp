@@ -61,14 +61,14 @@ inline NodeWork work_on_nodes(const BodyForce& body, double dt, const GrainNodes
             const double m = is_free[n] * nodes.sums[n].m, dx = v.vx_1 - v.vx_0,
                          dy = v.vy_1 - v.vy_0, mean_x = 0.5 * (v.vx_0 + v.vx_1),
                          mean_y = 0.5 * (v.vy_0 + v.vy_1);
-            internal_work += nodes.force[n].x * v.vx_1 + nodes.force[n].y * v.vy_1;
+            internal_work += nodes.force[n].x * mean_x + nodes.force[n].y * mean_y;
             kinetic_increment += m * (dx * dx + dy * dy);
             gravity += m * (body.gravity_x * mean_x + body.gravity_y * mean_y);
             damping -= m * (v.vx_0 * mean_x + v.vy_0 * mean_y);
             const double squared = v.vx_1 * v.vx_1 + v.vy_1 * v.vy_1;
             speed = squared > speed ? squared : speed;
         }
-        part[block] = {0.5 * dt * internal_work, 0.5 * kinetic_increment, dt * gravity,
+        part[block] = {dt * internal_work, 0.5 * kinetic_increment, dt * gravity,
                        dt * body.damping * damping, std::sqrt(speed)};
     });
     NodeWork total;

@@ -17,6 +17,40 @@ struct Assembly {
     std::vector<Bond> bonds;
 };
 
+/// What a grain has of momentum, and of angular momentum about the origin of the mesh, as if it had
+/// not come around the ends of a periodic one.
+struct Momenta {
+    double x = 0, y = 0, angular = 0;
+};
+
+/// Momenta of every grain; rigid ones have none of their own.
+///   sum_p m_p v_p,  sum_p m_p x_p x v_p
+inline std::vector<Momenta> momenta_of(const Assembly& all) {
+    std::vector<Momenta> of(all.grains.size());
+    const Particles& at = all.particles;
+    for (std::size_t g = 0; g < all.grains.size(); ++g) {
+        const Grain& grain = all.grains[g];
+        for (long k = grain.begin; k < grain.end && !grain.rigid; ++k) {
+            const auto p = static_cast<std::size_t>(k);
+            of[g].x += at.m_p[p] * at.vx_p[p], of[g].y += at.m_p[p] * at.vy_p[p];
+            of[g].angular += at.m_p[p] * (at.x_p[p] * at.vy_p[p] - at.y_p[p] * at.vx_p[p]);
+        }
+    }
+    return of;
+}
+
+/// errors: InputError for the momenta of other grains
+template <class Archive>
+void archive_momenta(Archive& a, std::vector<Momenta>& of) {
+    std::vector<double> x, y, angular;
+    for (const Momenta& one : of)
+        x.push_back(one.x), y.push_back(one.y), angular.push_back(one.angular);
+    a("momentum_x", x), a("momentum_y", y), a("angular_momentum", angular);
+    of.resize(x.size());
+    for (std::size_t g = 0; g < of.size(); ++g)
+        of[g] = {x[g], y[g], angular.size() > g ? angular[g] : 0};
+}
+
 /// errors: InputError for a checkpoint whose grains or bonds are not those of the case
 template <class Archive>
 void archive(Archive& a, Assembly& assembly) {

@@ -59,7 +59,7 @@ common::StepClock time_steps(const Case& w, long steps, int threads, long& parti
     const Contact contact(w.problem.contact, grains, state.assembly.bonds);
     GrainNodes nodes(w.problem.mesh(), LinearShape::width, scales.least_mass);
     nodes.sort(grains, particles, state.layout);
-    start_leapfrog(shape, laws, contact, false, dt, nodes, state);
+    start_leapfrog(shape, laws, contact, Transfer::none, false, dt, nodes, state);
     StepSums sums;
 
     common::StepClock clock;
@@ -70,7 +70,8 @@ common::StepClock time_steps(const Case& w, long steps, int threads, long& parti
         if (step == steps) nodes.sort(grains, particles, state.layout);
         clock.lap("sort");
         const BodyForce body = apply_loads(w.problem.loads(), step, dt, rigid);
-        take_step(shape, laws, contact, body, w.flip, w.frozen, dt, nodes, state, sums, clock);
+        take_step(shape, laws, contact, body, w.transfers(), w.frozen, dt, nodes, state, sums,
+                  clock);
         add_energies(step, sums.tiles, state.budget);
         add_work(nodes.tiles(), sums.tiles, sums.nodes, sums.contact, state.budget);
         clock.lap("move");

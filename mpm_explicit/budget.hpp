@@ -4,9 +4,9 @@
 //     E^n = 1/2 sum_p m_p v_p^2 + 1/2 sum_p V_p sigma_p^{n-1/2} : T^-1 : sigma_p^{n+1/2}
 // Everything that changes it is counted where it happens, so that the rest, `budget`, is round-off:
 //     d E = external + contact + release + friction + bond + damping - plastic + volume + pic + remap
-// remap is what moving particles from cell to cell costs: the work of the old stress on the strain
-// of the new nodes minus that on the strain of the old ones, and the kinetic energy that lumping the
-// mass takes.
+// remap is what moving particles from cell to cell costs: the work that the nodes get from the force
+// of stress, less what stress has given for it in the steps before and after, with the second order
+// of a turn; and the kinetic energy that lumping the mass takes.
 #pragma once
 
 #include <algorithm>
@@ -23,6 +23,7 @@ struct TileSums {
     // after the stress of the step
     double elastic = 0;          // 1/2 V sigma^{n+1/2} : T^-1 : sigma^{n+1/2}
     double leapfrog = 0;         // 1/2 V sigma^{n-1/2} : T^-1 : sigma^{n+1/2}
+    double stress_work = 0;      // 1/2 V sigma^{n+1/2} : de
     double old_stress_work = 0;  // 1/2 V sigma^{n-1/2} : de, with the volume of the step before
     double plastic_old = 0;      // 1/2 V^{n-1/2} sigma^{n-1/2} : de^p
     double plastic_new = 0;      // 1/2 V^{n+1/2} sigma^{n+1/2} : de^p
@@ -33,13 +34,14 @@ struct TileSums {
     double kinetic_leapfrog = 0;   // 1/2 m v^n v^{n+1}
     double kinetic_increment = 0;  // 1/2 m (S_ip (v_i^1 - v_i^0))^2
     double pic = 0;                // what a FLIP fraction below one takes
-    double momentum_x = 0, momentum_y = 0;
+    double affine = 0;             // the work of affine motion
+    double momentum_x = 0, momentum_y = 0, angular = 0, spin = 0;  // spin: of affine motion
     double x_least = 0, x_most = 0, y_least = 0, y_most = 0;
 };
 
 /// Sums over nodes, after contact.
 struct NodeWork {
-    double internal_work = 0;      // 1/2 dt f_i v_i^1
+    double internal_work = 0;      // dt f_i 1/2 (v_i^0 + v_i^1)
     double kinetic_increment = 0;  // 1/2 m_i (v_i^1 - v_i^0)^2
     double gravity = 0, damping = 0;
     double largest_speed = 0;
@@ -57,11 +59,10 @@ struct Budget {
     double energy_14 = 0, energy_15 = 0;  // [MPM-14] of t^n, [MPM-15] of t^{n+1/2}
     double external = 0, contact = 0, release = 0, friction = 0, bond = 0, damping = 0, plastic = 0,
            volume = 0, pic = 0, remap = 0;
-    double start = 0;                                      // energy_14 at t = 0
-    double elastic_before = 0;                             // of t^{n-1/2}
-    double kinetic_next = 0;                               // of t^{n+1}
-    std::vector<double> momentum_x, momentum_y;            // of each grain at t^n
-    std::vector<double> momentum_x_next, momentum_y_next;  // at t^{n+1}
+    double start = 0;                                 // energy_14 at t = 0
+    double elastic_before = 0;                        // of t^{n-1/2}
+    double kinetic_next = 0;                          // of t^{n+1}
+    std::vector<mpm::Momenta> momenta, momenta_next;  // of each grain, at t^n and t^{n+1}
 
     double work() const {
         return external + contact + release + friction + bond + damping - plastic + volume + pic +
@@ -81,23 +82,23 @@ void archive(Archive& a, Budget& l) {
     std::span all(values);  // of this length
     a("budget", all);
     for (std::size_t k = 0; k < numbers.size(); ++k) *numbers[k] = values[k];
-    a("momentum_x", l.momentum_x_next), a("momentum_y", l.momentum_y_next);
+    archive_momenta(a, l.momenta_next);
 }
 
 /// Kinetic energy and momenta at the start.
-inline void start_budget(const mpm::Assembly& all, Budget& l) {
-    l.kinetic_next = 0;
-    l.momentum_x_next.assign(all.grains.size(), 0), l.momentum_y_next = l.momentum_x_next;
+/// in: sums of every tile, the angular momentum of affine motion
+inline void start_budget(const mpm::Assembly& all, const std::vector<mpm::Tile>& where,
+                         const std::vector<TileSums>& sums, Budget& l) {
+    l.momenta_next = mpm::momenta_of(all);
+    for (std::size_t k = 0; k < sums.size(); ++k)
+        l.momenta_next[static_cast<std::size_t>(where[k].grain)].angular += sums[k].spin;
     const mpm::Particles& at = all.particles;
-    for (std::size_t g = 0; g < all.grains.size(); ++g) {
-        if (all.grains[g].rigid) continue;
-        for (long k = all.grains[g].begin; k < all.grains[g].end; ++k) {
+    l.kinetic_next = 0;
+    for (const mpm::Grain& grain : all.grains)
+        for (long k = grain.begin; k < grain.end && !grain.rigid; ++k) {
             const auto p = static_cast<std::size_t>(k);
-            l.momentum_x_next[g] += at.m_p[p] * at.vx_p[p];
-            l.momentum_y_next[g] += at.m_p[p] * at.vy_p[p];
             l.kinetic_next += 0.5 * at.m_p[p] * (at.vx_p[p] * at.vx_p[p] + at.vy_p[p] * at.vy_p[p]);
         }
-    }
 }
 
 /// The energies of t^n, [MPM-14] and [MPM-15], when all of its step has been summed up.
@@ -110,7 +111,7 @@ inline void add_energies(long step, const std::vector<TileSums>& tiles, Budget& 
             s.kinetic_leapfrog += one.kinetic_leapfrog;
     }
     l.kinetic = l.kinetic_next;
-    l.momentum_x = l.momentum_x_next, l.momentum_y = l.momentum_y_next;
+    l.momenta = l.momenta_next;
     l.energy_14 = l.kinetic + s.leapfrog;
     l.energy_15 = s.kinetic_leapfrog + s.elastic;
     if (step == 0) {
@@ -127,21 +128,23 @@ inline void add_energies(long step, const std::vector<TileSums>& tiles, Budget& 
 inline void add_work(const std::vector<mpm::Tile>& where, const std::vector<TileSums>& tiles,
                      const NodeWork& nodes, const mpm::ContactSums& contact, Budget& l) {
     TileSums s;
-    std::fill(l.momentum_x_next.begin(), l.momentum_x_next.end(), 0.0);
-    std::fill(l.momentum_y_next.begin(), l.momentum_y_next.end(), 0.0);
+    std::fill(l.momenta_next.begin(), l.momenta_next.end(), mpm::Momenta{});
     for (std::size_t k = 0; k < tiles.size(); ++k) {
         s.plastic_new += tiles[k].plastic_new, s.kinetic += tiles[k].kinetic;
         s.kinetic_increment += tiles[k].kinetic_increment, s.pic += tiles[k].pic;
-        const auto g = static_cast<std::size_t>(where[k].grain);
-        l.momentum_x_next[g] += tiles[k].momentum_x;
-        l.momentum_y_next[g] += tiles[k].momentum_y;
+        s.affine += tiles[k].affine, s.stress_work += tiles[k].stress_work;
+        mpm::Momenta& grain = l.momenta_next[static_cast<std::size_t>(where[k].grain)];
+        grain.x += tiles[k].momentum_x, grain.y += tiles[k].momentum_y;
+        grain.angular += tiles[k].angular + tiles[k].spin;
     }
     l.kinetic_next = s.kinetic;
     l.external += contact.rigid + nodes.gravity;
     l.contact += contact.normal, l.release += contact.release;
     l.friction += contact.friction, l.bond += contact.bond;
-    l.damping += nodes.damping, l.plastic += s.plastic_new, l.pic += s.pic;
-    l.remap += nodes.internal_work - (nodes.kinetic_increment - s.kinetic_increment);
+    l.damping += nodes.damping, l.plastic += s.plastic_new;
+    l.pic += s.pic - s.affine;
+    l.remap +=
+        nodes.internal_work + s.stress_work - (nodes.kinetic_increment - s.kinetic_increment);
 }
 
 }  // namespace mpm_explicit

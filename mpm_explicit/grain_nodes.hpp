@@ -57,9 +57,12 @@ struct Tile {
 /// of a grain that wraps around a periodic mesh, or constrained.
 struct GhostNode {
     long dof, master;
-    double sign_x, sign_y;  // of velocity, momentum and force
+    double part_x, part_y;  // of the master's velocity, momentum and force: -1 across a wall
     bool mirror_x, mirror_y;
     double offset;  // mirror: twice the coordinate of the wall; wrap: the length of the mesh
+    // The node beyond the master, for a velocity on the line through both, v = 2 v_master - v_beyond;
+    // or -1.
+    long beyond = -1;
 };
 
 /// A grain's field at a node that others may touch, too; or a frictional wall that the node is on
@@ -107,9 +110,11 @@ class GrainNodes {
 
     const std::vector<Tile>& tiles() const { return tiles_; }
     const std::vector<GhostNode>& ghosts() const { return ghosts_; }
-    /// Until particles_to_grid() is called again, a dof has the velocity of its master.
-    void constrain(long dof, long master) {
-        ghosts_.push_back({dof, master, 1, 1, false, false, 0});
+    /// Until particles_to_grid() is called again, a dof has the velocity of its master, or that of
+    /// the line through master and beyond.
+    void constrain(long dof, long master, long beyond) {
+        const double part = beyond < 0 ? 1 : 2;
+        ghosts_.push_back({dof, master, part, part, false, false, 0, beyond});
     }
     void drop_constraints() { ghosts_.resize(boundary_ghosts_); }
     const std::vector<long>& fixed_x() const { return fixed_x_; }

@@ -85,6 +85,10 @@ inline void GrainNodes::sort(const std::vector<Grain>& grains, Particles& partic
                           &layout.tile_begin);
     for (std::vector<double>* quantity : particles.all())
         common::carry_to_place(*quantity, scratch_);
+    if (!particles.turn_p.empty()) common::carry_to_place(particles.turn_p, scratch_);
+    if (particles.has_affine())
+        for (std::vector<double>* quantity : particles.affine())
+            common::carry_to_place(*quantity, scratch_);
 
     // Rows of nodes around the tiles, wide enough for particles that move by the reach.
     layout.first_row.resize(count), layout.rows.resize(count);

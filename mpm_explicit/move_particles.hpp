@@ -31,7 +31,7 @@ void move_particles(const Shape& shape, const std::vector<Grain>& grains,
     const auto move = [&](const Tile& tile, TileSums& sum, Extremes& reach) {
         const long* origin = nodes.origins(tile.grain);
         double kinetic = 0, kinetic_leapfrog = 0, kinetic_increment = 0, lost = 0, momentum_x = 0,
-               momentum_y = 0;
+               momentum_y = 0, angular = 0;
         Extremes seen;
         for (long p = tile.begin; p < tile.end; ++p) {
             double ax = 0, ay = 0, ux = 0, uy = 0;
@@ -53,12 +53,14 @@ void move_particles(const Shape& shape, const std::vector<Grain>& grains,
             kinetic += m * now, kinetic_leapfrog += m * (vx * new_x + vy * new_y);
             kinetic_increment += m * (ax * ax + ay * ay);
             lost += m * (now - flip_x * flip_x - flip_y * flip_y);
-            momentum_x += m * new_x, momentum_y += m * new_y;
+            momentum_x += m * new_x, momentum_y += m * new_y,
+                angular += m * (x * new_y - y * new_x);
             seen.see(x, y);
         }
         sum.kinetic = 0.5 * kinetic, sum.kinetic_leapfrog = 0.5 * kinetic_leapfrog,
         sum.kinetic_increment = 0.5 * kinetic_increment;
-        sum.pic = 0.5 * lost, sum.momentum_x = momentum_x, sum.momentum_y = momentum_y;
+        sum.pic = 0.5 * lost, sum.momentum_x = momentum_x, sum.momentum_y = momentum_y,
+        sum.angular = angular;
         reach = seen;
     };
     move_tiles(grains, rigid, nodes, dt_move, particles, sums, move);

@@ -38,17 +38,20 @@ int run_case(const Shape& shape, const Case& parameters, const Scales& scales, c
     std::vector<RigidMotion>& rigid = state.assembly.rigid;
     const std::vector<AnyLaw> laws = laws_of(parameters.problem);
     const Contact contact(parameters.problem.contact, grains, state.assembly.bonds);
+    const Transfer transfer = parameters.transfers();
     const double dt = scales.dt;
     GrainNodes nodes(parameters.problem.mesh(), Shape::width, scales.least_mass);
     LeapfrogRecorder recorder(parameters, scales, state, run.history);
     StepSums sums;
     long step = 0;
     if (run.restarting()) {
-        run.restore(state, step, [&] { validate_state(nodes.mesh(), Shape::width, state); });
+        run.restore(state, step, [&] {
+            validate_state(nodes.mesh(), Shape::width, transfer.kind != Transfer::none, state);
+        });
         nodes.lay_out(grains, state.layout);
     } else {
         nodes.sort(grains, particles, state.layout);
-        start_leapfrog(shape, laws, contact, parameters.frozen, dt, nodes, state);
+        start_leapfrog(shape, laws, contact, transfer.kind, parameters.frozen, dt, nodes, state);
     }
 
     // 3. The loop of the slide.
@@ -56,7 +59,7 @@ int run_case(const Shape& shape, const Case& parameters, const Scales& scales, c
         if (nodes.sort_is_due(state.layout)) nodes.sort(grains, particles, state.layout);
         recorder.snapshot(step, state, run);
         const BodyForce body = apply_loads(parameters.problem.loads(), step, dt, rigid);
-        take_step(shape, laws, contact, body, parameters.flip, parameters.frozen, dt, nodes, state,
+        take_step(shape, laws, contact, body, transfer, parameters.frozen, dt, nodes, state,
                   sums);                               // [MPM-4, 9 ... 12]
         add_energies(step, sums.tiles, state.budget);  // [MPM-14, 15]
         recorder.record(step, sums, nodes, state, run);
@@ -78,7 +81,7 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     Case parameters;
     common::ParameterTable table = describe(parameters, theory::names_of(comparisons));
     const common::CommandLine command = common::read_command_line(argc, argv, info, table);
-    validate(parameters, table);
+    mpm_explicit::validate(parameters, table);
     const Scales scales = scales_of(parameters);
     theory::validate_comparison({parameters, leapfrog}, scales, comparisons);
     if (!common::start_run(

@@ -28,12 +28,17 @@ struct Particles {
     std::vector<double> V_p;                         // volume
     std::vector<double> sxx_p, syy_p, sxy_p, szz_p;  // stress, at half time levels
     std::vector<double> yield_p;                     // accumulated plastic strain
+    std::vector<double> cxx_p, cxy_p, cyx_p, cyy_p;  // affine motion; empty: none is carried
+
+    std::vector<double> turn_p;  // of mpm_implicit: tan of half a step's turn; or empty
 
     long count() const { return static_cast<long>(x_p.size()); }
 
     std::array<std::vector<double>*, 11> all() {
         return {&x_p, &y_p, &vx_p, &vy_p, &m_p, &V_p, &sxx_p, &syy_p, &sxy_p, &szz_p, &yield_p};
     }
+    std::array<std::vector<double>*, 4> affine() { return {&cxx_p, &cxy_p, &cyx_p, &cyy_p}; }
+    bool has_affine() const { return !cxx_p.empty(); }
     void resize(std::size_t count) {
         for (std::vector<double>* quantity : all()) quantity->resize(count, 0.0);
     }
@@ -49,6 +54,9 @@ void archive(Archive& a, Particles& particles) {
         "x_p", "y_p", "vx_p", "vy_p", "m_p", "V_p", "sxx_p", "syy_p", "sxy_p", "szz_p", "yield_p"};
     const auto all = particles.all();
     for (std::size_t k = 0; k < all.size(); ++k) a(names[k], *all[k]);
+    static constexpr std::array<const char*, 4> affine{"cxx_p", "cxy_p", "cyx_p", "cyy_p"};
+    for (std::size_t k = 0; k < affine.size(); ++k) a(affine[k], *particles.affine()[k]);
+    a("turn_p", particles.turn_p);
 }
 
 }  // namespace mpm

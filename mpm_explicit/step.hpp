@@ -5,6 +5,7 @@
 
 #include "common/step_clock.hpp"
 #include "mpm_explicit/accelerate_nodes.hpp"
+#include "mpm_explicit/affine_motion.hpp"
 #include "mpm_explicit/contact.hpp"
 #include "mpm_explicit/grain_nodes.hpp"
 #include "mpm_explicit/move_particles.hpp"
@@ -16,14 +17,14 @@
 namespace mpm_explicit {
 
 /// From t^n to t^{n+1}; stresses from half a step before t^n to half a step after it.
-/// in:     body, forces on all mass; flip, the part of FLIP in the velocity of particles; frozen:
-///         particles keep their places
+/// in:     body, forces on all mass; transfer, what particles take from the nodes; frozen: they keep
+///         their places
 /// in/out: nodes, sorted for where the particles are; state but the budget
 /// out:    sums, which the budget takes
 template <class Shape, class Clock = common::NoClock>
 void take_step(const Shape& shape, const std::vector<AnyLaw>& laws, const Contact& contact,
-               const BodyForce& body, double flip, bool frozen, double dt, GrainNodes& nodes,
-               State& state, StepSums& sums, Clock&& clock = {}) {
+               const BodyForce& body, const Transfer& transfer, bool frozen, double dt,
+               GrainNodes& nodes, State& state, StepSums& sums, Clock&& clock = {}) {
     Particles& particles = state.assembly.particles;
     const std::vector<Grain>& grains = state.assembly.grains;
     std::vector<RigidMotion>& rigid = state.assembly.rigid;
@@ -38,9 +39,10 @@ void take_step(const Shape& shape, const std::vector<AnyLaw>& laws, const Contac
     clock.lap("contact");
     for_each_batch(grains, nodes, sums.tiles, [&](ParticleBatch& batch) {
         velocity_gradient(shape, particles, nodes, OldVelocity{}, dt, batch);  // [MPM-11]
-        update_stress(laws, frozen, batch, grains, particles, sums.tiles);     // [MPM-9, 10]
-        add_internal_force(shape, particles, batch, nodes);                    // [MPM-12]
-        if (!frozen) rotate_stress(batch, particles);
+        if (!frozen) turn_halfway(batch, particles);
+        update_stress(laws, frozen, batch, grains, particles, sums.tiles);  // [MPM-9, 10]
+        if (!frozen) rotate_stress(batch, 0.5, particles);
+        add_internal_force(shape, particles, batch, nodes);  // [MPM-12]
     });
     clock.lap("stress");
     accelerate_nodes(body, grains, rigid, dt, nodes);  // v_i^1  [MPM-12]
@@ -49,7 +51,9 @@ void take_step(const Shape& shape, const std::vector<AnyLaw>& laws, const Contac
     clock.lap("contact");
     sums.nodes = work_on_nodes(body, dt, nodes);
     clock.lap("nodes");
-    move_particles(shape, grains, rigid, nodes, flip, frozen, dt, particles,
+    if (particles.has_affine())
+        take_affine_motion(shape, grains, nodes, transfer.kind, particles, sums.tiles);
+    move_particles(shape, grains, rigid, nodes, transfer.flip, frozen, dt, particles,
                    sums.tiles);  // grid -> particles
     state.layout.moved += frozen ? 0 : dt * sums.nodes.largest_speed;
     clock.lap("move");

@@ -95,17 +95,42 @@ void add_internal_force(const Shape& shape, const Particles& particles, const Pa
     }
 }
 
-/// At the end of the step, stress turns with the body, by the particle's spin.
-/// exact:  energies and invariants stay
+/// Where the particles of a batch were halfway, the gradient of their displacement in the step that
+/// ends where they are.
+///   G = L (1 - L/2)^-1,  L = dt grad v_p
+/// exact:  no symmetric part for a turn R by any angle, which is L = 1 - R^T where it ends
+/// source: Hughes and Winget, Int. J. Numer. Methods Eng. 15, 1862 (1980).
+inline void gradient_halfway(ParticleBatch& batch) {
+#pragma omp simd
+    for (long k = 0; k < batch.count; ++k) {
+        const double xx = batch.xx[k], yy = batch.yy[k], xy = batch.xy[k], yx = batch.yx[k];
+        const double half = 0.5 * (xx * yy - xy * yx),
+                     per_det = 1 / (1 - 0.5 * (xx + yy) + 0.5 * half);
+        batch.xx[k] = per_det * (xx - half), batch.yy[k] = per_det * (yy - half);
+        batch.xy[k] = per_det * xy, batch.yx[k] = per_det * yx;
+    }
+}
+
+/// Stress turns with the body, by `part` of the particle's turn in the step.
+///   tan(angle) = part/2 (G_yx - G_xy)
+/// exact:  energies and invariants stay; two halves make the turn of Hughes and Winget
 /// note:   The slide's [MPM-2] has no such term; grains that roll need it.
-inline void rotate_stress(const ParticleBatch& batch, Particles& particles) {
+inline void rotate_stress(const ParticleBatch& batch, double part, Particles& particles) {
     const auto b = static_cast<std::size_t>(batch.begin);
     double *sxx = &particles.sxx_p[b], *syy = &particles.syy_p[b], *sxy = &particles.sxy_p[b];
 #pragma omp simd
     for (long k = 0; k < batch.count; ++k) {
-        const Stress s = rotated({sxx[k], syy[k], sxy[k], 0}, 0.5 * (batch.yx[k] - batch.xy[k]));
+        const Stress s =
+            rotated({sxx[k], syy[k], sxy[k], 0}, 0.5 * part * (batch.yx[k] - batch.xy[k]));
         sxx[k] = s.xx, syy[k] = s.yy, sxy[k] = s.xy;
     }
+}
+
+/// What [MPM-11] leaves out, so that a body may turn by any angle without strain: the gradient of the
+/// displacement is taken where particles were halfway, and stress has turned with them so far.
+inline void turn_halfway(ParticleBatch& batch, Particles& particles) {
+    gradient_halfway(batch);
+    rotate_stress(batch, 0.5, particles);
 }
 
 }  // namespace mpm

@@ -24,6 +24,12 @@ auto with_shape(const Scheme& scheme, const Work& work) {
     return work(QuadraticShape{});
 }
 
+/// What particles take from their nodes.
+struct Transfer {
+    enum Affine { none, spin, affine } kind = none;  // mpm_explicit/affine_motion.hpp
+    double flip = 1;                                 // the part of FLIP in their velocity
+};
+
 /// Which velocity of a node is meant: before the step, or after it.
 struct OldVelocity {
     static double x(const NodeMotion& v) { return v.vx_0; }
@@ -57,6 +63,19 @@ template <class Shape, class Work>
     }
 }
 
+/// Calls work(dof, S_ip, x_i - x_p, y_i - y_p) for the nodes around a particle of one grain.
+template <class Shape, class Work>
+void for_each_link(const Shape& shape, const Locator& at, const long* origin, double x, double y,
+                   const Work& work) {
+    const double column = (x - at.x_low) * at.per_h, row = (y - at.y_low) * at.per_h,
+                 h = 1 / at.per_h;
+    const auto w_x = shape(column, at.per_h), w_y = shape(row, at.per_h);
+    for (int b = 0; b < Shape::width; ++b)
+        for (int a = 0; a < Shape::width; ++a)
+            work(origin[w_y.first + b] + w_x.first + a, w_x.S[a] * w_y.S[b],
+                 h * (double(w_x.first + a) - column), h * (double(w_y.first + b) - row));
+}
+
 namespace detail {
 
 // One line of the cache at once.
@@ -81,7 +100,7 @@ inline void reduce_ghost_sums(GrainNodes& nodes) {
         const double flip_x = ghost.mirror_x ? -1 : 1, flip_y = ghost.mirror_y ? -1 : 1;
         const bool wraps = !ghost.mirror_x && !ghost.mirror_y;
         to.m += from.m, to.V += from.V;
-        to.px += ghost.sign_x * from.px, to.py += ghost.sign_y * from.py;
+        to.px += ghost.part_x * from.px, to.py += ghost.part_y * from.py;
         to.gx += flip_x * from.gx, to.gy += flip_y * from.gy;
         to.mx += ghost.mirror_x ? ghost.offset * from.m - from.mx
                                 : from.mx - (wraps ? ghost.offset * from.m : 0);
@@ -93,7 +112,12 @@ inline void reduce_ghost_force(GrainNodes& nodes) {
     for (const GhostNode& ghost : nodes.ghosts()) {
         NodeForce& from = nodes.force[ghost.dof];
         NodeForce& to = nodes.force[ghost.master];
-        to.x += ghost.sign_x * from.x, to.y += ghost.sign_y * from.y;
+        to.x += ghost.part_x * from.x;
+        to.y += ghost.part_y * from.y;
+        if (ghost.beyond >= 0) {
+            NodeForce& beyond = nodes.force[ghost.beyond];
+            beyond.x -= from.x, beyond.y -= from.y;
+        }
         from = {};
     }
 }
@@ -103,8 +127,13 @@ inline void fill_ghost_velocity(GrainNodes& nodes) {
     const auto& ghosts = nodes.ghosts();
     for (auto ghost = ghosts.rbegin(); ghost != ghosts.rend(); ++ghost) {
         const NodeMotion& from = nodes.motion[ghost->master];
-        nodes.motion[ghost->dof] = {ghost->sign_x * from.vx_0, ghost->sign_y * from.vy_0,
-                                    ghost->sign_x * from.vx_1, ghost->sign_y * from.vy_1};
+        NodeMotion& to = nodes.motion[ghost->dof];
+        to = {ghost->part_x * from.vx_0, ghost->part_y * from.vy_0, ghost->part_x * from.vx_1,
+              ghost->part_y * from.vy_1};
+        if (ghost->beyond < 0) continue;
+        const NodeMotion& beyond = nodes.motion[ghost->beyond];
+        to.vx_0 -= beyond.vx_0, to.vy_0 -= beyond.vy_0;
+        to.vx_1 -= beyond.vx_1, to.vy_1 -= beyond.vy_1;
     }
 }
 
@@ -116,8 +145,28 @@ struct WithoutForce {
     static constexpr bool value = false;
 };
 
+/// P_i += sum_p m_p S_ip C_p (x_i - x_p), where particles carry affine motion.
+/// exact:  the sum over nodes is zero
+template <class Shape>
+void add_affine_momentum(const Shape& shape, const Particles& particles, GrainNodes& nodes) {
+    const Locator at(nodes.mesh());
+    nodes.for_each_tile([&](const Tile& tile, std::size_t) {
+        for (long k = tile.begin; k < tile.end; ++k) {
+            const auto p = static_cast<std::size_t>(k);
+            const double m = particles.m_p[p], cxx = particles.cxx_p[p], cxy = particles.cxy_p[p],
+                         cyx = particles.cyx_p[p], cyy = particles.cyy_p[p];
+            for_each_link(shape, at, nodes.origins(tile.grain), particles.x_p[p], particles.y_p[p],
+                          [&](long dof, double S, double r_x, double r_y) {
+                              nodes.sums[dof].px += S * m * (cxx * r_x + cxy * r_y);
+                              nodes.sums[dof].py += S * m * (cyx * r_x + cyy * r_y);
+                          });
+        }
+    });
+}
+
 /// m_i, P_i, and what contact needs, from the particles of every grain.
 ///   m_i = sum_p m_p S_ip,  P_i = sum_p m_p v_p S_ip,  f_i = - sum_p V_p sigma_p . grad S_ip
+/// and affine motion where particles carry it.
 /// out:    nodes.sums; nodes.force, zero without force
 /// exact:  sum_i m_i = sum_p m_p and sum_i P_i = sum_p m_p v_p, to round-off; sum_i f_i = 0
 template <class Force = WithoutForce, class Shape>
@@ -151,6 +200,7 @@ void particles_to_grid(const Shape& shape, const Particles& particles, GrainNode
             });
         }
     });
+    if (particles.has_affine()) add_affine_momentum(shape, particles, nodes);
     reduce_ghost_sums(nodes);
 }
 

@@ -29,9 +29,9 @@ void update_stress(const LawOf& law, const Compliance& compliance, bool frozen,
            *sxy = particles.sxy_p.data() + batch.begin, *szz = particles.szz_p.data() + batch.begin,
            *yield = particles.yield_p.data() + batch.begin;
     const double grows = frozen ? 0 : 1;
-    double elastic = 0, leapfrog = 0, old_stress_work = 0, plastic_old = 0, plastic_new = 0,
-           volume = 0, least = 1;
-#pragma omp simd reduction(+ : elastic, leapfrog, old_stress_work, plastic_old, plastic_new, volume) \
+    double elastic = 0, leapfrog = 0, stress_work = 0, old_stress_work = 0, plastic_old = 0,
+           plastic_new = 0, volume = 0, least = 1;
+#pragma omp simd reduction(+ : elastic, leapfrog, stress_work, old_stress_work, plastic_old, plastic_new, volume) \
     reduction(min : least)
     // [stress]
     for (long k = 0; k < batch.count; ++k) {
@@ -49,10 +49,12 @@ void update_stress(const LawOf& law, const Compliance& compliance, bool frozen,
         const double cross = compliance(old, s);
         elastic += V * compliance(s, s), leapfrog += V * cross, volume += (V - V_old) * cross;
         old_stress_work += V_old * (old.xx * de.xx + old.yy * de.yy + 2 * old.xy * de.xy);
+        stress_work += V * (s.xx * de.xx + s.yy * de.yy + 2 * s.xy * de.xy);
         plastic_old += V_old * work(old, dep), plastic_new += V * work(s, dep);
         least = ratio < least ? ratio : least;
     }
     sums.elastic += 0.5 * elastic, sums.leapfrog += 0.5 * leapfrog;
+    sums.stress_work += 0.5 * stress_work;
     sums.old_stress_work += 0.5 * old_stress_work, sums.volume += 0.5 * volume;
     sums.plastic_old += 0.5 * plastic_old, sums.plastic_new += 0.5 * plastic_new;
     sums.least_V = least < sums.least_V ? least : sums.least_V;

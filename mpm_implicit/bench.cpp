@@ -68,14 +68,15 @@ double explicit_step(Case w, long first, long steps) {
     const Contact contact(w.problem.contact, grains, state.assembly.bonds);
     GrainNodes nodes(w.problem.mesh(), LinearShape::width, scales.least_mass);
     nodes.sort(grains, particles, state.layout);
-    start_leapfrog(shape, laws, contact, false, dt, nodes, state);
+    start_leapfrog(shape, laws, contact, Transfer::none, false, dt, nodes, state);
     StepSums sums;
     common::StepClock clock;
     for (long step = 0; step < first + steps; ++step) {
         if (step == first) clock.restart();
         if (nodes.sort_is_due(state.layout)) nodes.sort(grains, particles, state.layout);
         const BodyForce body = mpm::apply_loads(w.problem.loads(), step, dt, state.assembly.rigid);
-        take_step(shape, laws, contact, body, w.flip, w.frozen, dt, nodes, state, sums, clock);
+        take_step(shape, laws, contact, body, w.transfers(), w.frozen, dt, nodes, state, sums,
+                  clock);
     }
     return clock.total() / static_cast<double>(steps);
 }

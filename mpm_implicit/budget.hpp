@@ -37,7 +37,7 @@ struct TileSums {
     double twice_increment = 0;      // m dv dv
     double twice_kinetic_theta = 0;  // m v_p^theta v_p^theta, v_p^theta = S_ip v_i^theta
     double pic = 0;                  // what a FLIP fraction below one takes
-    double momentum_x = 0, momentum_y = 0;
+    double momentum_x = 0, momentum_y = 0, angular = 0;
     double x_least = 0, x_most = 0, y_least = 0, y_most = 0;
 };
 
@@ -56,8 +56,8 @@ struct Budget {
     double contact = 0, friction = 0, bond = 0, plate = 0, gravity = 0, damping = 0, plastic = 0,
            volume = 0, pic = 0;
     double start = 0;
-    double largest_residual = 0;                 // of one step
-    std::vector<double> momentum_x, momentum_y;  // of each grain
+    double largest_residual = 0;   // of one step
+    std::vector<Momenta> momenta;  // of each grain
 
     double energy() const { return kinetic + elastic; }
     double work() const {
@@ -78,21 +78,19 @@ void archive(Archive& a, Budget& l) {
     std::span all(values);  // of this length
     a("budget", all);
     for (std::size_t k = 0; k < numbers.size(); ++k) *numbers[k] = values[k];
-    a("momentum_x", l.momentum_x), a("momentum_y", l.momentum_y);
+    archive_momenta(a, l.momenta);
 }
 
 /// Energies and momenta at the start.
 inline void start_budget(const Assembly& all, const std::vector<AnyLaw>& laws, Budget& l) {
     l = {};
-    l.momentum_x.assign(all.grains.size(), 0), l.momentum_y = l.momentum_x;
+    l.momenta = momenta_of(all);
     const Particles& at = all.particles;
     for (std::size_t g = 0; g < all.grains.size(); ++g) {
         if (all.grains[g].rigid) continue;
         const Compliance& C = laws[all.grains[g].material].compliance;
         for (long k = all.grains[g].begin; k < all.grains[g].end; ++k) {
             const auto p = static_cast<std::size_t>(k);
-            l.momentum_x[g] += at.m_p[p] * at.vx_p[p];
-            l.momentum_y[g] += at.m_p[p] * at.vy_p[p];
             l.kinetic += 0.5 * at.m_p[p] * (at.vx_p[p] * at.vx_p[p] + at.vy_p[p] * at.vy_p[p]);
             l.elastic += 0.5 * at.V_p[p] * C(at.stress(p), at.stress(p));
         }
@@ -106,15 +104,14 @@ inline void add_step(double theta, bool consistent, double damping, double dt,
                      const NodeWork& nodes, const ContactSums& contact, Budget& l) {
     const double energy_before = l.energy(), work_before = l.work();
     TileSums s;
-    std::fill(l.momentum_x.begin(), l.momentum_x.end(), 0.0);
-    std::fill(l.momentum_y.begin(), l.momentum_y.end(), 0.0);
+    std::fill(l.momenta.begin(), l.momenta.end(), Momenta{});
     for (std::size_t k = 0; k < tiles.size(); ++k) {
         const TileSums& one = tiles[k];
         s.elastic += one.elastic, s.theta_strain += one.theta_strain, s.plastic += one.plastic;
         s.volume += one.volume, s.kinetic += one.kinetic, s.twice_increment += one.twice_increment;
         s.twice_kinetic_theta += one.twice_kinetic_theta, s.pic += one.pic;
-        const auto g = static_cast<std::size_t>(where[k].grain);
-        l.momentum_x[g] += one.momentum_x, l.momentum_y[g] += one.momentum_y;
+        Momenta& grain = l.momenta[static_cast<std::size_t>(where[k].grain)];
+        grain.x += one.momentum_x, grain.y += one.momentum_y, grain.angular += one.angular;
     }
     l.kinetic = s.kinetic, l.elastic = s.elastic;
     l.theta_velocity += (theta - 0.5) * s.twice_increment,

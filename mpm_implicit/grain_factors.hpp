@@ -175,21 +175,19 @@ class GrainFactors {
                         const MasterDofs& masters, const Factor& f, const Work& work) const {
         matrix.for_each_block_of(
             grain, nodes, [&](long one, long two, double xx, double xy, double yx, double yy) {
-                const auto a = static_cast<std::size_t>(one), b = static_cast<std::size_t>(two);
-                const long i = number_[masters.dof[a]], j = number_[masters.dof[b]];
-                if (i < 0 || j < 0) return;
-                const bool same = one == two;
-                // Two dofs that stand for one: the entry and its transpose meet on the diagonal.
-                const double twice = i == j && !same ? 2 : 1;
-                const bool i_x = f.moves(i, 0), i_y = f.moves(i, 1), j_x = f.moves(j, 0),
-                           j_y = f.moves(j, 1);
-                if (i_x && j_x)
-                    work(i, 0, j, 0, twice * masters.sign_x[a] * masters.sign_x[b] * xx);
-                if (i_y && j_y)
-                    work(i, 1, j, 1, twice * masters.sign_y[a] * masters.sign_y[b] * yy);
-                if (i_x && j_y) work(i, 0, j, 1, masters.sign_x[a] * masters.sign_y[b] * xy);
-                if (!same && i_y && j_x)
-                    work(i, 1, j, 0, masters.sign_y[a] * masters.sign_x[b] * yx);
+                masters.for_each_pair(one, two, [&](const auto& a, const auto& b) {
+                    const long i = number_[a.dof], j = number_[b.dof];
+                    if (i < 0 || j < 0) return;
+                    const bool same = one == two && i == j;
+                    // Dofs that stand for one: the entry and its transpose meet on the diagonal.
+                    const double twice = i == j && !same ? 2 : 1;
+                    const bool i_x = f.moves(i, 0), i_y = f.moves(i, 1), j_x = f.moves(j, 0),
+                               j_y = f.moves(j, 1);
+                    if (i_x && j_x) work(i, 0, j, 0, twice * a.x * b.x * xx);
+                    if (i_y && j_y) work(i, 1, j, 1, twice * a.y * b.y * yy);
+                    if (i_x && j_y) work(i, 0, j, 1, a.x * b.y * xy);
+                    if (!same && i_y && j_x) work(i, 1, j, 0, a.y * b.x * yx);
+                });
             });
     }
 

@@ -16,13 +16,12 @@
 #include <vector>
 
 #include "mpm_explicit/strain.hpp"
+#include "mpm_implicit/ghost_vectors.hpp"
 #include "mpm_implicit/stencil.hpp"
 
 namespace mpm_implicit {
 
 /// Velocities, momenta or impulses at all dofs: x at dof i in [i], y in [size + i].
-using Vector = Eigen::VectorXd;
-
 /// Components of a block: how the force along the first answers to velocity along the second.
 enum Component { xx, xy, yx, yy };
 
@@ -32,6 +31,7 @@ class GrainMatrix {
     /// Sums up M and K over the particles.
     /// in:     factor_M and factor_K of A; consistent: M in A is the consistent mass, else the
     ///         lumped mass m_i = sum_j M_ij
+    ///         particles.turn_p
     /// exact:  A is symmetric and positive where nodes have mass; K of a rigid motion is zero
     template <class Shape>
     void assemble(const Shape& shape, const std::vector<AnyLaw>& laws,
@@ -55,8 +55,8 @@ class GrainMatrix {
                 const auto p = static_cast<std::size_t>(k);
                 add_particle(shape((particles.x_p[p] - at.x_low) * at.per_h, at.per_h),
                              shape((particles.y_p[p] - at.y_low) * at.per_h, at.per_h), origin,
-                             T.lambda, T.G, factor_K * particles.V_p[p], particles.m_p[p],
-                             factor_M);
+                             T.lambda, T.G, factor_K * particles.V_p[p], particles.turn_p[p],
+                             particles.m_p[p], factor_M);
             }
         });
         if (!consistent) add_lumped(factor_M);
@@ -108,7 +108,7 @@ class GrainMatrix {
         const long n = A_.size();
         std::copy_n(A_.field(0, xx), n, d.data());
         std::copy_n(A_.field(0, yy), n, d.data() + n);
-        reduce_ghost_diagonal(d);
+        reduce_ghost_diagonal(*nodes_, d);
     }
     void diagonal_mass(Vector& d) const {
         const long n = A_.size();
@@ -118,7 +118,7 @@ class GrainMatrix {
             for (long i = 0; i < n; ++i) d[i] = nodes_->sums[i].m;
         }
         std::copy_n(d.data(), n, d.data() + n);
-        if (consistent_) reduce_ghost_diagonal(d);
+        if (consistent_) reduce_ghost_diagonal(*nodes_, d);
     }
 
     /// Calls work(dof, other, xx, xy, yx, yy) for the stored blocks of a grain.
@@ -150,24 +150,6 @@ class GrainMatrix {
         }
     }
 
-    /// Images take their values from the dofs they stand for; and the transpose.
-    void fill_ghosts(Vector& x) const {
-        const long n = A_.size();
-        const auto& ghosts = nodes_->ghosts();
-        for (auto ghost = ghosts.rbegin(); ghost != ghosts.rend(); ++ghost) {
-            x[ghost->dof] = ghost->sign_x * x[ghost->master];
-            x[n + ghost->dof] = ghost->sign_y * x[n + ghost->master];
-        }
-    }
-    void reduce_ghosts(Vector& y) const {
-        const long n = A_.size();
-        for (const GhostNode& ghost : nodes_->ghosts()) {
-            y[ghost.master] += ghost.sign_x * y[ghost.dof];
-            y[n + ghost.master] += ghost.sign_y * y[n + ghost.dof];
-            y[ghost.dof] = y[n + ghost.dof] = 0;
-        }
-    }
-
    private:
     static const Moduli& moduli_of(const Elastic& law) { return law.T; }
     template <class Law>
@@ -178,16 +160,18 @@ class GrainMatrix {
     // One particle's share: the pairs of its nodes, each pair once.
     template <class W>
     [[gnu::always_inline]] void add_particle(const W& w_x, const W& w_y, const long* origin,
-                                             double lambda, double G, double V, double m,
-                                             double factor_M) {
+                                             double lambda, double G, double V, double turn,
+                                             double m, double factor_M) {
         constexpr int width = reach + 1;
+        const double scale = 1 / (1 + turn * turn);  // G_ip of turned_gradient.hpp
         double S[width * width], Gx[width * width], Gy[width * width];
         long dof[width * width];
         for (int b = 0; b < width; ++b) {
             for (int a = 0; a < width; ++a) {
                 const int i = b * width + a;
                 S[i] = w_x.S[a] * w_y.S[b];
-                Gx[i] = w_x.G[a] * w_y.S[b], Gy[i] = w_x.S[a] * w_y.G[b];
+                const double G_x = w_x.G[a] * w_y.S[b], G_y = w_x.S[a] * w_y.G[b];
+                Gx[i] = scale * (G_x - turn * G_y), Gy[i] = scale * (G_y + turn * G_x);
                 dof[i] = origin[w_y.first + b] + w_x.first + a;
             }
         }
@@ -215,17 +199,11 @@ class GrainMatrix {
         });
     }
 
-    void reduce_ghost_diagonal(Vector& d) const {
-        for (const GhostNode& ghost : nodes_->ghosts())
-            for (const long at : {0L, A_.size()})
-                d[at + ghost.master] += d[at + ghost.dof], d[at + ghost.dof] = 0;
-    }
-
     // y = sum of link(...) over the stretches of every row, from zero.
     template <class Link>
     void multiply_rows(Vector& x, Vector& y, const Link& link) const {
         const long n = A_.size();
-        fill_ghosts(x);
+        fill_ghosts(*nodes_, x);
         common::for_each_block(
             static_cast<long>(rows_.size()),
             [&](int, long begin, long end) {
@@ -237,7 +215,7 @@ class GrainMatrix {
                 }
             },
             n);
-        reduce_ghosts(y);
+        reduce_ghosts(*nodes_, y);
     }
 
     bool consistent_ = true;

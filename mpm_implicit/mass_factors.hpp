@@ -88,9 +88,12 @@ class MassFactors {
         });
         const auto for_each_entry = [&](const auto& work) {
             matrix.for_each_mass_of(grain, nodes, [&](long one, long two, double m) {
-                const long i = number_[masters.dof[one]], j = number_[masters.dof[two]];
-                if (i >= 0 && j >= 0)
-                    work(std::max(i, j), std::min(i, j), i == j && one != two ? 2 * m : m);
+                masters.for_each_pair(one, two, [&](const auto& a, const auto& b) {
+                    const long i = number_[a.dof], j = number_[b.dof];
+                    if (i >= 0 && j >= 0)
+                        work(std::max(i, j), std::min(i, j),
+                             (i == j && one != two ? 2 : 1) * m * a.mass * b.mass);
+                });
             });
         };
         const long n = static_cast<long>(f.dofs.size());

@@ -17,7 +17,8 @@ namespace mpm_implicit {
 /// in:     nodes.motion, v^0 and v^theta; flip, the FLIP fraction; frozen particles keep their
 ///         places
 /// in/out: particles; sums of their tiles
-/// exact:  the momentum of the particles changes by that of the nodes, to round-off
+/// exact:  the momentum of the particles changes by that of the nodes, to round-off; with the
+///         consistent mass their angular momentum about the places before, too
 template <class Shape>
 void move_particles(const Shape& shape, const std::vector<Grain>& grains,
                     const std::vector<RigidMotion>& rigid, const GrainNodes& nodes, double theta,
@@ -33,7 +34,7 @@ void move_particles(const Shape& shape, const std::vector<Grain>& grains,
     const auto move = [&](const Tile& tile, TileSums& sum, Extremes& reach) {
         const long* origin = nodes.origins(tile.grain);
         double kinetic = 0, twice_increment = 0, twice_kinetic_theta = 0, lost = 0, momentum_x = 0,
-               momentum_y = 0;
+               momentum_y = 0, angular = 0;
         Extremes seen;
         for (long p = tile.begin; p < tile.end; ++p) {
             double ux = 0, uy = 0, wx = 0, wy = 0;  // v^0 and v^theta of the nodes here
@@ -56,12 +57,13 @@ void move_particles(const Shape& shape, const std::vector<Grain>& grains,
             kinetic += m * now, twice_increment += m * (ax * ax + ay * ay);
             twice_kinetic_theta += m * (wx * wx + wy * wy);
             lost += m * (now - flip_x * flip_x - flip_y * flip_y);
-            momentum_x += m * new_x, momentum_y += m * new_y;
+            momentum_x += m * new_x, momentum_y += m * new_y,
+                angular += m * (x * new_y - y * new_x);
             seen.see(x, y);
         }
         sum.kinetic = 0.5 * kinetic, sum.twice_increment = twice_increment,
         sum.twice_kinetic_theta = twice_kinetic_theta, sum.pic = 0.5 * lost;
-        sum.momentum_x = momentum_x, sum.momentum_y = momentum_y;
+        sum.momentum_x = momentum_x, sum.momentum_y = momentum_y, sum.angular = angular;
         reach = seen;
     };
     move_tiles(grains, rigid, nodes, dt_move, particles, sums, move);

@@ -19,6 +19,7 @@
 #include "mpm_implicit/projected_cg.hpp"
 #include "mpm_implicit/theta_scheme.hpp"
 #include "mpm_implicit/update_active_set.hpp"
+#include "mpm_implicit/update_stress.hpp"
 
 namespace mpm_implicit {
 
@@ -111,9 +112,7 @@ class NodeSolver {
                       SolveReport& report) {
         const std::vector<Grain>& grains = state.assembly.grains;
         std::vector<RigidMotion>& rigid = state.assembly.rigid;
-        for_each_batch(grains, nodes, [&](ParticleBatch& batch) {
-            add_internal_force(shape, state.assembly.particles, batch, nodes);
-        });
+        force_of_stress(shape, grains, state.assembly.particles, nodes);
         prepare(scheme, body, dt, nodes);
         ControlledGrains controlled;
         for (const ForceControl& control : force_controls) {

@@ -36,6 +36,12 @@ void find_matrices(const Shape& shape, const BodyForce& body, double dt,
                    Clock&& clock = {}) {
     // [matrices]
     particles_to_grid(shape, state.assembly.particles, nodes);  // particles -> grid
+    Particles& particles = state.assembly.particles;
+    if (particles.turn_p.empty()) {
+        nodal_velocity(state.assembly.grains, state.assembly.rigid, nodes);
+        scratch.contact.join_bonds(state.assembly.bonds, nodes);
+        start_turns(shape, state.assembly.grains, nodes, dt, scratch.frozen, particles);
+    }
     clock.lap("put");
     scratch.solver.assemble(shape, scratch.laws, scratch.scheme, body, dt, state,
                             nodes);  // M, K of  [MPM-5 ... 8]
@@ -75,9 +81,10 @@ void move_to_new_level(const Shape& shape, const BodyForce& body, double dt,
     // [particles]
     for_each_batch(grains, nodes, sums.tiles, [&](ParticleBatch& batch) {
         velocity_gradient(shape, particles, nodes, NewVelocity{}, dt, batch);  // [MPM-5]
+        turn_gradient(particles, batch);
         update_stress(scratch.laws, scratch.scheme, batch, grains, particles,
                       sums.tiles);  // [MPM-6, 7]
-        if (!scratch.frozen) rotate_stress(batch, particles);
+        if (!scratch.frozen) turn_particles(batch, particles);
     });
     sums.nodes = work_on_nodes(body, scratch.scheme.theta, dt, nodes);
     move_particles(shape, grains, state.assembly.rigid, nodes, scratch.scheme.theta, scratch.flip,

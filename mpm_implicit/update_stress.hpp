@@ -11,6 +11,7 @@
 #include "mpm_explicit/strain.hpp"
 #include "mpm_implicit/budget.hpp"
 #include "mpm_implicit/theta_scheme.hpp"
+#include "mpm_implicit/turned_gradient.hpp"
 
 namespace mpm_implicit {
 
@@ -92,8 +93,24 @@ inline void update_stress(const std::vector<AnyLaw>& laws, const ThetaScheme& sc
         law.law);
 }
 
+/// Force of the stress that particles have.
+template <class Shape>
+void force_of_stress(const Shape& shape, const std::vector<Grain>& grains,
+                     const Particles& particles, GrainNodes& nodes) {
+    for_each_batch(grains, nodes, [&](ParticleBatch& batch) {
+        double xx[ParticleBatch::size], yy[ParticleBatch::size], xy[ParticleBatch::size];
+        for (long k = 0; k < batch.count; ++k) {
+            const auto p = static_cast<std::size_t>(batch.begin + k);
+            const double V = particles.V_p[p];
+            xx[k] = V * particles.sxx_p[p], yy[k] = V * particles.syy_p[p];
+            xy[k] = V * particles.sxy_p[p];
+        }
+        add_turned_force(shape, particles, batch, xx, yy, xy, nodes);
+    });
+}
+
 /// Force on the nodes of the stress that velocities v^theta would make, [MPM-5 ... 7] put in.
-///   f_i = - sum_p V_p sigma_p^theta . grad S_ip
+///   f_i = - sum_p V_p sigma_p^theta . G_ip
 /// in:     nodes.motion, v^theta in the place of v_1; particles, of the old level, which stay
 /// out:    nodes.force
 template <class Shape>
@@ -103,9 +120,9 @@ void force_at_theta(const Shape& shape, const std::vector<AnyLaw>& laws, const T
     common::for_each_block(nodes.size(), [&](int, long begin, long end) {
         std::fill(nodes.force.begin() + begin, nodes.force.begin() + end, NodeForce{});
     });
-    const Locator at(nodes.mesh());
     for_each_batch(grains, nodes, [&](ParticleBatch& batch) {
         velocity_gradient(shape, particles, nodes, NewVelocity{}, dt, batch);
+        turn_gradient(particles, batch);
         double xx[ParticleBatch::size], yy[ParticleBatch::size], xy[ParticleBatch::size];
         const AnyLaw& law = laws[grains[batch.grain].material];
         std::visit(
@@ -114,15 +131,7 @@ void force_at_theta(const Shape& shape, const std::vector<AnyLaw>& laws, const T
                                         particles, xx, yy, xy);
             },
             law.law);
-        const long* origin = nodes.origins(batch.grain);
-        const double *x_p = particles.x_p.data() + batch.begin,
-                     *y_p = particles.y_p.data() + batch.begin;
-        for (long k = 0; k < batch.count; ++k)
-            for_each_node(shape, at, origin, x_p[k], y_p[k],
-                          [&](long dof, double, double Gx, double Gy) {
-                              nodes.force[dof].x -= xx[k] * Gx + xy[k] * Gy;
-                              nodes.force[dof].y -= xy[k] * Gx + yy[k] * Gy;
-                          });
+        add_turned_force(shape, particles, batch, xx, yy, xy, nodes);
     });
     reduce_ghost_force(nodes);
 }

@@ -63,6 +63,18 @@ TEST_CASE("theta one half keeps the energy of a rebound whatever the step" *
     }
 }
 
+TEST_CASE("a free disk keeps its angular momentum and its size whatever the step" *
+          doctest::description("physics")) {
+    for (const auto& [alpha, most] : {std::pair("1", 1e-3), std::pair("10", 0.02)}) {
+        const Run r = run("spin", "spinning_disk", std::string("time.alpha=") + alpha);
+        check_results(r, 4);
+        CHECK(r.value("angular_momentum_change") <= most);
+    }
+    // The lumped mass loses it.
+    const Run lumped = run("spin", "spinning_disk", "method.mass=lumped time.alpha=1");
+    CHECK(!lumped.summary["results"]["angular_momentum_change"]["pass"].get<bool>());
+}
+
 TEST_CASE("with lumped mass what the energy lacks is what the lumping takes" *
           doctest::description("physics")) {
     for (const char* alpha : {"1", "5"}) {

@@ -44,7 +44,7 @@ class LeapfrogRecorder {
                         parameters.problem.contact.wall_friction == 0),
           recorder_(parameters, leapfrog, scales, state.assembly, comparisons, "budget") {
         Budget none;
-        none.momentum_x.assign(state.assembly.grains.size(), 0), none.momentum_y = none.momentum_x;
+        none.momenta.resize(state.assembly.grains.size());
         history.columns(row(0, none, {}, state.assembly));
     }
 
@@ -85,7 +85,7 @@ class LeapfrogRecorder {
         common::Row row;
         row.add("time", "time", double(step) * dt_);
         add_budget(l, row);
-        recorder_.add_to(row, l.momentum_x, l.momentum_y, contact, all);
+        recorder_.add_to(row, l.momenta, contact, all);
         return row;
     }
 

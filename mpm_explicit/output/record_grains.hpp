@@ -51,15 +51,15 @@ class Recorder {
 
     /// Adds what every scheme records beside its energies: momenta, contacts, tracked grains,
     /// bonds, and what the comparison with theory needs.
-    /// in: momentum_x, momentum_y of every grain; what contact did in the step
-    void add_to(common::Row& row, const std::vector<double>& momentum_x,
-                const std::vector<double>& momentum_y, const ContactSums& contact,
+    /// in: momenta of every grain; what contact did in the step
+    void add_to(common::Row& row, const std::vector<Momenta>& momenta, const ContactSums& contact,
                 const Assembly& all) const {
-        double sum_x = 0, sum_y = 0;
-        for (const double p : momentum_x) sum_x += p;
-        for (const double p : momentum_y) sum_y += p;
-        row.add("momentum_x", "momentum", sum_x);
-        row.add("momentum_y", "momentum", sum_y);
+        Momenta sum;
+        for (const Momenta& one : momenta)
+            sum.x += one.x, sum.y += one.y, sum.angular += one.angular;
+        row.add("momentum_x", "momentum", sum.x);
+        row.add("momentum_y", "momentum", sum.y);
+        row.add("angular_momentum", "momentum*length", sum.angular);
         row.add("contacts", "1", contact.nodes);
         row.add("contact_force", "force", contact.impulse / scales_.dt);
         for (const std::size_t g : tracked_) {
@@ -71,8 +71,9 @@ class Recorder {
                 row.add("travel_x_" + name, "length", motion.travel_x);
                 row.add("travel_y_" + name, "length", motion.travel_y);
             } else {
-                row.add("momentum_x_" + name, "momentum", momentum_x[g]);
-                row.add("momentum_y_" + name, "momentum", momentum_y[g]);
+                row.add("momentum_x_" + name, "momentum", momenta[g].x);
+                row.add("momentum_y_" + name, "momentum", momenta[g].y);
+                row.add("angular_momentum_" + name, "momentum*length", momenta[g].angular);
             }
         }
         const auto& bonds = all.bonds;

@@ -17,7 +17,7 @@ struct Case {
     double alpha = 0.25, end = 2;
     double energy_limit = 10;
 
-    std::string shape = "linear";
+    std::string shape = "linear", transfer = "flip";
     double flip = 1;
     bool frozen = false;
 
@@ -39,6 +39,13 @@ struct Case {
                 : shape == "gimp" ? Scheme::gimp
                                   : Scheme::quadratic,
                 0.5 / double(problem.per_side)};
+    }
+    /// What particles take from the nodes.
+    Transfer transfers() const {
+        return {transfer == "apic"   ? Transfer::affine
+                : transfer == "spin" ? Transfer::spin
+                                     : Transfer::none,
+                transfer == "pic" || transfer == "apic" ? 0 : flip};
     }
 };
 
@@ -116,6 +123,9 @@ inline common::ParameterTable describe(Case& parameters,
                                        const std::vector<std::string>& comparison_names) {
     common::ParameterTable table;
     describe_case(table, parameters);
+    table.choice("method.transfer", parameters.transfer, {"flip", "pic", "apic", "spin"},
+                 "what particles take from nodes: changes of velocity (flip), velocities (pic), "
+                 "with their gradients (apic); changes, and the spin around them (spin)");
     table.whole(
         "contact.levels", parameters.problem.contact.levels, "", common::between(1, 2),
         "2: contact acts on v_i^0 and v_i^1; 1: on v_i^1 alone, which bursts grains at rest");

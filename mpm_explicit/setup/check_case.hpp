@@ -192,6 +192,20 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
 
 namespace mpm_explicit {
 
+/// Refuses combinations that cannot run.
+/// errors: InputError with the cure
+inline void validate(const Case& parameters, const common::ParameterTable& table) {
+    mpm::validate(parameters, table);
+    const std::string transfer = "method.transfer = \"" + parameters.transfer + "\"";
+    refuse(parameters.flip != 1 && parameters.transfers().flip != parameters.flip,
+           transfer + " takes no part of FLIP: leave method.flip = 1");
+    refuse(parameters.transfer == "apic" && parameters.shape == "linear",
+           transfer +
+               " with linear shapes bursts: their gradient at a node does not fall with the "
+               "mass there; set method.shape to \"gimp\" or \"quadratic\", or "
+               "method.transfer = \"spin\"");
+}
+
 /// Warnings with the number and the limit, for choices that run but may mislead.
 inline std::vector<std::string> warnings_of(const Case& parameters, const Scales& scales) {
     std::vector<std::string> warnings = resolution_warnings(parameters, scales);

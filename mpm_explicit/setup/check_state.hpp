@@ -103,17 +103,21 @@ inline void validate_tiles(const Mesh& mesh, int width, const Assembly& all,
 }  // namespace detail
 
 /// Refuses particles and nodes that no run on this mesh can have.
-/// in:     width of the shape function in nodes; momentum of each grain, x and y
+/// in:     width of the shape function in nodes; affine, turns: particles carry affine motion, or
+///         turns; momenta of each grain
 /// errors: InputError, one sentence
-inline void validate_state(const Mesh& mesh, int width, Assembly& all, const GridLayout& layout,
-                           const std::vector<double>& momentum_x,
-                           const std::vector<double>& momentum_y) {
+inline void validate_state(const Mesh& mesh, int width, bool affine, bool turns, Assembly& all,
+                           const GridLayout& layout, const std::vector<Momenta>& momenta) {
     Particles& p = all.particles;
     const auto count = static_cast<std::size_t>(all.grains.back().end);
     for (const std::vector<double>* column : p.all())
         refuse(column->size() != count, "its particles are not as many as those of the case");
-    refuse(momentum_x.size() != all.grains.size() || momentum_y.size() != all.grains.size(),
-           "its grains are not as many as those of the case");
+    for (const std::vector<double>* column : p.affine())
+        refuse(column->size() != (affine ? count : 0),
+               "its particles carry affine motion, or not, against method.transfer");
+    refuse(p.turn_p.size() != (turns ? count : 0) || !common::all_within(p.turn_p, -1e3, 1e3),
+           "the turns of its particles are not as many as those of the case, or too large");
+    refuse(momenta.size() != all.grains.size(), "its grains are not as many as those of the case");
     constexpr double least = 1e-300, most = 1e300;
     refuse(!common::all_within(p.m_p, least, most) || !common::all_within(p.V_p, least, most),
            "a particle has no mass or no volume");

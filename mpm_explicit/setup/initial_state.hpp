@@ -3,6 +3,7 @@
 #pragma once
 
 #include "mpm_explicit/accelerate_nodes.hpp"
+#include "mpm_explicit/affine_motion.hpp"
 #include "mpm_explicit/setup/case.hpp"
 #include "mpm_explicit/setup/check_state.hpp"
 #include "mpm_explicit/setup/scales.hpp"
@@ -13,30 +14,37 @@ namespace mpm_explicit {
 
 /// Stresses are taken half a step back with the velocities of the start, as leapfrog needs them:
 ///   sigma^{-1/2} = sigma^0 - T : e(v^0) dt/2
+/// in:     affine, what particles carry of the motion of the nodes around them
 /// note:   positions stay where they are: they belong to t = 0 as the case gives them
 template <class Shape>
 void start_leapfrog(const Shape& shape, const std::vector<AnyLaw>& laws, const Contact& contact,
-                    bool frozen, double dt, GrainNodes& nodes, State& state) {
+                    Transfer::Affine affine, bool frozen, double dt, GrainNodes& nodes,
+                    State& state) {
     Assembly& all = state.assembly;
     particles_to_grid(shape, all.particles, nodes);
     nodal_velocity(all.grains, all.rigid, nodes);
     predict_acceleration({}, all.grains, all.rigid, 0, nodes);
+    std::vector<TileSums> sums(nodes.tiles().size());
+    if (affine != Transfer::none) {
+        for (std::vector<double>* one : all.particles.affine())
+            one->resize(static_cast<std::size_t>(all.particles.count()), 0.0);
+        take_affine_motion(shape, all.grains, nodes, affine, all.particles, sums);
+    }
+    start_budget(all, nodes.tiles(), sums, state.budget);
     ContactList list;
     contact.apply_to_old(all.bonds, nodes, list);
-    std::vector<TileSums> sums;
     for_each_batch(all.grains, nodes, sums, [&](ParticleBatch& batch) {
         velocity_gradient(shape, all.particles, nodes, OldVelocity{}, -0.5 * dt, batch);
         update_stress(laws, frozen, batch, all.grains, all.particles, sums);
     });
-    start_budget(all, state.budget);
 }
 
 /// Refuses a state that no run of the case can have.
-/// in:     width of the shape function in nodes
+/// in:     width of the shape function in nodes; affine: particles carry affine motion
 /// errors: InputError, one sentence
-inline void validate_state(const Mesh& mesh, int width, State& state) {
-    mpm::validate_state(mesh, width, state.assembly, state.layout, state.budget.momentum_x_next,
-                        state.budget.momentum_y_next);
+inline void validate_state(const Mesh& mesh, int width, bool affine, State& state) {
+    mpm::validate_state(mesh, width, affine, false, state.assembly, state.layout,
+                        state.budget.momenta_next);
 }
 
 }  // namespace mpm_explicit

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "mpm_explicit/theory/compare_grains.hpp"
+#include "mpm_explicit/theory/compare_rotation.hpp"
 #include "mpm_explicit/theory/scheme_theory.hpp"
 
 namespace mpm_explicit {
@@ -56,6 +57,7 @@ inline constexpr theory::Comparison comparisons[] = {
     {"oscillator", theory::need_oscillator, compare_oscillator},
     {"block", theory::need_incline, theory::compare_block},
     {"rest", theory::need_rest, theory::compare_rest},
+    {"spin", theory::need_spin, theory::compare_spin, theory::inertia_column},
     {"cylinder", theory::need_incline, theory::compare_cylinder},
     {"disk", theory::need_pressed_disk, theory::compare_disk, theory::center_columns},
     {"bond", theory::need_bond, theory::compare_bond},

@@ -44,7 +44,7 @@ class ThetaRecorder {
           recorder_(parameters, facts_of(parameters, scheme), scales, state.assembly, comparisons,
                     "residual") {
         Budget none;
-        none.momentum_x.assign(state.assembly.grains.size(), 0), none.momentum_y = none.momentum_x;
+        none.momenta.resize(state.assembly.grains.size());
         history.columns(row(0, none, StepSums{}, state.assembly));
     }
 
@@ -94,7 +94,7 @@ class ThetaRecorder {
         row.add("iterations", "1", double(sums.solver.iterations));
         row.add("loops", "1", double(sums.solver.loops));
         row.add("held", "1", double(sums.solver.held));
-        recorder_.add_to(row, l.momentum_x, l.momentum_y, sums.contact, all);
+        recorder_.add_to(row, l.momenta, sums.contact, all);
         return row;
     }
 

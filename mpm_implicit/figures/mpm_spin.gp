@@ -1,0 +1,20 @@
+# A free disk that spins: its angular momentum and its moment of inertia, over those at the start. FLIP with the lumped mass loses the first; a spin that particles carry, APIC, and FLIP with the
+# consistent mass keep it. The disk starts without stress and breathes about the size of a steady spin (dashed).
+wide = 1300; high = 1000
+load 'common/style.gp'
+file(name) = run.'/'.name.'/history.dat'
+angular = col(file('flip_linear'), 'angular_momentum')
+inertia = col(file('flip_linear'), 'inertia')
+turn = 3.14159265
+first(name, c) = real(system(sprintf("awk '$1 !~ /^#/ { print $%d; exit }' '%s'", c, file(name))))
+set multiplot layout 2, 1 title 'A free disk spins, 16 cells across'
+set xrange [0:5]
+set key outside right
+set ylabel 'angular momentum, over the initial'; set yrange [0.8:1.02]
+names = 'flip_linear flip_quadratic spin_linear spin_quadratic apic_quadratic implicit_1 implicit_10'
+titles = '"FLIP, linear" "FLIP, quadratic" "with spin, linear" "with spin, quadratic" "APIC, quadratic" "implicit, {/Symbol a} = 1" "implicit, {/Symbol a} = 10"'
+plot for [k = 1:7] file(word(names, k)) using (column(1) / turn):(column(angular) / first(word(names, k), angular)) with lines lt k lw 2 title word(titles, k)
+set xlabel 'turns'; set ylabel 'moment of inertia, over the initial'; set yrange [0.98:1.1]
+set arrow from 0, 1.00206 to 5, 1.00206 nohead lc rgb ink lw 1.5 dt 2 front
+plot for [k = 1:7] file(word(names, k)) using (column(1) / turn):(column(inertia) / first(word(names, k), inertia)) with lines lt k lw 2 title word(titles, k)
+unset multiplot

@@ -1,0 +1,75 @@
+// Gradients where particles are halfway through a turn, so that a body may turn by any angle without
+// strain.
+//
+//     G_ip = grad S_ip (1 + t_p J)^-1,  t_p = dt/4 (d u_y/dx - d u_x/dy),  u = v^theta
+// with J a quarter turn, counterclockwise: 1 + t_p J carries what is around a particle to the middle
+// of the step. G_ip replaces grad S_ip in strain and in force alike, with the t_p of the step before,
+// and so the step stays linear, and [MPM-13] holds. Stress is kept as it is in the middle of the next
+// step, turned by half a step's turn.
+#pragma once
+
+#include "mpm_explicit/strain.hpp"
+
+namespace mpm_implicit {
+
+using namespace mpm;
+
+/// t_p of the first step; zero where particles are frozen.
+/// in:     nodes.motion, v_0
+template <class Shape>
+void start_turns(const Shape& shape, const std::vector<Grain>& grains, const GrainNodes& nodes,
+                 double dt, bool frozen, Particles& particles) {
+    particles.turn_p.assign(particles.x_p.size(), 0.0);
+    if (frozen) return;
+    for_each_batch(grains, nodes, [&](ParticleBatch& batch) {
+        velocity_gradient(shape, particles, nodes, OldVelocity{}, dt, batch);
+        double* t = particles.turn_p.data() + batch.begin;
+        for (long k = 0; k < batch.count; ++k) t[k] = 0.25 * (batch.yx[k] - batch.xy[k]);
+    });
+}
+
+/// L (1 + t J)^-1 of a batch's particles.
+inline void turn_gradient(const Particles& particles, ParticleBatch& batch) {
+    const double* turn = particles.turn_p.data() + batch.begin;
+#pragma omp simd
+    for (long k = 0; k < batch.count; ++k) {
+        const double t = turn[k], c = 1 / (1 + t * t);
+        const double xx = batch.xx[k], xy = batch.xy[k], yx = batch.yx[k], yy = batch.yy[k];
+        batch.xx[k] = c * (xx - t * xy), batch.xy[k] = c * (xy + t * xx);
+        batch.yx[k] = c * (yx - t * yy), batch.yy[k] = c * (yy + t * yx);
+    }
+}
+
+/// Stress turns with the particles of a batch, and t_p is that of this step.
+/// in:     batch, after turn_gradient()
+inline void turn_particles(const ParticleBatch& batch, Particles& particles) {
+    rotate_stress(batch, 0.5, particles);
+    rotate_stress(batch, 0.5, particles);
+    double* t = particles.turn_p.data() + batch.begin;
+    for (long k = 0; k < batch.count; ++k) t[k] = 0.25 * (batch.yx[k] - batch.xy[k]);
+}
+
+/// f_i -= V_p sigma_p . G_ip of a batch.
+/// in:     V_p sigma_p
+/// exact:  the sum over nodes is zero; the power is that of the strain of turn_gradient()
+template <class Shape>
+void add_turned_force(const Shape& shape, const Particles& particles, const ParticleBatch& batch,
+                      const double* V_sxx, const double* V_syy, const double* V_sxy,
+                      GrainNodes& nodes) {
+    const Locator at(nodes.mesh());
+    const long* origin = nodes.origins(batch.grain);
+    const auto b = static_cast<std::size_t>(batch.begin);
+    const double *x_p = &particles.x_p[b], *y_p = &particles.y_p[b], *turn = &particles.turn_p[b];
+    for (long k = 0; k < batch.count; ++k) {
+        const double t = turn[k], c = 1 / (1 + t * t);
+        const double xx = c * (V_sxx[k] + t * V_sxy[k]), xy = c * (V_sxy[k] - t * V_sxx[k]),
+                     yx = c * (V_sxy[k] + t * V_syy[k]), yy = c * (V_syy[k] - t * V_sxy[k]);
+        for_each_node(shape, at, origin, x_p[k], y_p[k],
+                      [&](long dof, double, double Gx, double Gy) {
+                          nodes.force[dof].x -= xx * Gx + xy * Gy;
+                          nodes.force[dof].y -= yx * Gx + yy * Gy;
+                      });
+    }
+}
+
+}  // namespace mpm_implicit
