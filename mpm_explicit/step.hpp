@@ -12,6 +12,7 @@
 #include "mpm_explicit/strain.hpp"
 #include "mpm_explicit/transfer.hpp"
 #include "mpm_explicit/update_stress.hpp"
+#include "mpm_explicit/viscosity.hpp"
 
 namespace mpm_explicit {
 
@@ -40,6 +41,7 @@ void take_step(const Shape& shape, const std::vector<AnyLaw>& laws, const Contac
         velocity_gradient(shape, particles, nodes, OldVelocity{}, dt, batch);  // [MPM-11]
         update_stress(laws, frozen, batch, grains, particles, sums.tiles);     // [MPM-9, 10]
         add_internal_force(shape, particles, batch, nodes);                    // [MPM-12]
+        add_viscous_force(shape, laws, dt, batch, grains, particles, nodes, sums.tiles);
         if (!frozen) rotate_stress(batch, particles);
     });
     clock.lap("stress");

@@ -8,7 +8,7 @@
 // volumes that stay, so force and energy use those of the start unless a case asks for [MPM-6].
 #pragma once
 
-#include "mpm_explicit/strain.hpp"
+#include "mpm_explicit/viscosity.hpp"
 #include "mpm_implicit/budget.hpp"
 #include "mpm_implicit/theta_scheme.hpp"
 
@@ -58,7 +58,7 @@ void update_stress(const LawOf& law, const Compliance& compliance, double theta,
 // sigma^theta = sigma^0 + theta (sigma^1 - sigma^0) and V^theta, from which the force is made.
 template <class LawOf>
 void stress_at_theta(const LawOf& law, double theta, bool grows, const ParticleBatch& batch,
-                     const Particles& from, double* V_s_xx, double* V_s_yy, double* V_s_xy) {
+                     const Particles& from, BatchStress& V_s) {
     const double *V_p = from.V_p.data() + batch.begin, *sxx = from.sxx_p.data() + batch.begin,
                  *syy = from.syy_p.data() + batch.begin, *sxy = from.sxy_p.data() + batch.begin,
                  *szz = from.szz_p.data() + batch.begin, *yield = from.yield_p.data() + batch.begin;
@@ -71,19 +71,24 @@ void stress_at_theta(const LawOf& law, double theta, bool grows, const ParticleB
         double ep = yield[k];
         law(de, s, dep, ep);
         const double V = V_p[k] * (1 + growth * (de.xx + de.yy));
-        V_s_xx[k] = V * (sxx[k] + theta * (s.xx - sxx[k]));
-        V_s_yy[k] = V * (syy[k] + theta * (s.yy - syy[k]));
-        V_s_xy[k] = V * (sxy[k] + theta * (s.xy - sxy[k]));
+        V_s.xx[k] = V * (sxx[k] + theta * (s.xx - sxx[k]));
+        V_s.yy[k] = V * (syy[k] + theta * (s.yy - syy[k]));
+        V_s.xy[k] = V * (sxy[k] + theta * (s.xy - sxy[k]));
     }
 }
 
 }  // namespace detail
 
 /// Volumes and stresses of a batch at the end of the step, and their energies.    [MPM-6, MPM-7]
-inline void update_stress(const std::vector<AnyLaw>& laws, const ThetaScheme& scheme,
+inline void update_stress(const std::vector<AnyLaw>& laws, const ThetaScheme& scheme, double dt,
                           const ParticleBatch& batch, const std::vector<Grain>& grains,
                           Particles& particles, std::vector<TileSums>& sums) {
     const AnyLaw& law = laws[grains[batch.grain].material];
+    if (law.viscosity > 0) {  // of the volumes V^theta
+        BatchStress V_s{};
+        sums[batch.tile].viscous += add_viscous_stress(
+            law, dt, scheme.keeps_volumes() ? 0 : scheme.theta, batch, particles, V_s);
+    }
     std::visit(
         [&](const auto& one) {
             detail::update_stress(one, law.compliance, scheme.theta, !scheme.keeps_volumes(), batch,
@@ -93,7 +98,7 @@ inline void update_stress(const std::vector<AnyLaw>& laws, const ThetaScheme& sc
 }
 
 /// Force on the nodes of the stress that velocities v^theta would make, [MPM-5 ... 7] put in.
-///   f_i = - sum_p V_p sigma_p^theta . grad S_ip
+///   f_i = - sum_p V_p (sigma_p^theta + sigma_v) . grad S_ip
 /// in:     nodes.motion, v^theta in the place of v_1; particles, of the old level, which stay
 /// out:    nodes.force
 template <class Shape>
@@ -103,26 +108,19 @@ void force_at_theta(const Shape& shape, const std::vector<AnyLaw>& laws, const T
     common::for_each_block(nodes.size(), [&](int, long begin, long end) {
         std::fill(nodes.force.begin() + begin, nodes.force.begin() + end, NodeForce{});
     });
-    const Locator at(nodes.mesh());
     for_each_batch(grains, nodes, [&](ParticleBatch& batch) {
         velocity_gradient(shape, particles, nodes, NewVelocity{}, dt, batch);
-        double xx[ParticleBatch::size], yy[ParticleBatch::size], xy[ParticleBatch::size];
+        BatchStress V_s;
         const AnyLaw& law = laws[grains[batch.grain].material];
         std::visit(
             [&](const auto& one) {
                 detail::stress_at_theta(one, scheme.theta, !scheme.keeps_volumes(), batch,
-                                        particles, xx, yy, xy);
+                                        particles, V_s);
             },
             law.law);
-        const long* origin = nodes.origins(batch.grain);
-        const double *x_p = particles.x_p.data() + batch.begin,
-                     *y_p = particles.y_p.data() + batch.begin;
-        for (long k = 0; k < batch.count; ++k)
-            for_each_node(shape, at, origin, x_p[k], y_p[k],
-                          [&](long dof, double, double Gx, double Gy) {
-                              nodes.force[dof].x -= xx[k] * Gx + xy[k] * Gy;
-                              nodes.force[dof].y -= xy[k] * Gx + yy[k] * Gy;
-                          });
+        add_viscous_stress(law, dt, scheme.keeps_volumes() ? 0 : scheme.theta, batch, particles,
+                           V_s);
+        add_force(shape, particles, batch, V_s, nodes);
     });
     reduce_ghost_force(nodes);
 }

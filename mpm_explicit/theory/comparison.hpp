@@ -62,6 +62,13 @@ struct PlannedCase {
         return parameters.problem.walls[side] == kind;
     }
 
+    /// errors: InputError for a viscosity, where theory knows of none
+    void refuse_viscosity() const {
+        for (const Material& m : materials)
+            refuse(m.viscosity > 0 && m.law != Law::rigid,
+                   " is with a body without viscosity: set material." + m.name + ".viscosity = 0");
+    }
+
     /// errors: InputError 'theory.compare = "..."' with the sentence, where it is impossible
     void refuse(bool impossible, const std::string& sentence) const {
         mpm::refuse(impossible, "theory.compare = \"" + parameters.compare + "\"" + sentence);
