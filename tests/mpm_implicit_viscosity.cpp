@@ -8,6 +8,7 @@
 #include <string>
 
 #include "tests/support/any_theta_step.hpp"
+#include "tests/support/sliding_modes.hpp"
 
 namespace {
 
@@ -129,4 +130,58 @@ TEST_CASE("both solvers find the same velocities with viscosity") {
         CHECK(cg.budget().kinetic == doctest::Approx(newton.budget().kinetic).epsilon(1e-7));
         CHECK(cg.budget().viscous == doctest::Approx(newton.budget().viscous).epsilon(1e-7));
     }
+}
+
+TEST_CASE("finite elements say that sliding flutters and that viscosity ends it") {
+    const auto most = [](double friction, double viscosity, int cells) {
+        SlidingBlock block;
+        block.friction = friction, block.viscosity = viscosity;
+        block.cells_x = cells, block.cells_y = cells / 2;
+        double growth = -1e300;
+        for (const SlidingMode& mode : sliding_modes(block))
+            growth = std::max(growth, mode.s.real());
+        return growth;
+    };
+    for (const double friction : {0.1, 0.3, 0.5, 0.55}) {
+        CHECK(most(friction, 0, 8) > 5);
+        CHECK(most(friction, 2e-3, 8) < -5);
+        CHECK(most(friction, 3e-3, 8) < -30);
+    }
+    CHECK(std::fabs(most(0, 0, 8)) <= 1e-3);
+    CHECK(most(0.55, 1e-3, 8) > 10);
+    // The first mode that grows, and that it is of the block and not of the mesh.
+    double before = 0;
+    for (const int cells : {4, 8, 12}) {
+        SlidingBlock block;
+        block.friction = 0.55, block.cells_x = cells, block.cells_y = cells / 2;
+        const double growth = first_flutter(sliding_modes(block)).s.real();
+        if (cells > 4) CHECK(std::fabs(growth - before) <= 0.1 * growth);
+        before = growth;
+    }
+}
+
+TEST_CASE("a block that slides flutters as finite elements say and viscosity ends it" *
+          doctest::description("physics")) {
+    for (const double friction : {0.3, 0.55})
+        for (const double viscosity : {0.0, 1e-3, 3e-3}) {
+            SlidingBlock block;
+            block.friction = friction;
+            const SlidingMode kicked = first_flutter(sliding_modes(block));
+            block.viscosity = viscosity;
+            const auto modes = sliding_modes(block);
+            const SlidingMode& mode = *std::min_element(
+                modes.begin(), modes.end(), [&](const SlidingMode& a, const SlidingMode& b) {
+                    return std::abs(a.s - kicked.s) < std::abs(b.s - kicked.s);
+                });
+            Case c = sliding_case(block, 3e-3);
+            c.alpha = 0.5;
+            ThetaRun run(c, theta_scheme(0.5));
+            const std::complex<double> s = measured_exponent(block, kicked, viscosity, run);
+            CAPTURE(friction);
+            CAPTURE(viscosity);
+            CAPTURE(s);
+            CAPTURE(mode.s);
+            CHECK(std::fabs(s.real() - mode.s.real()) <= 0.05 * std::fabs(kicked.s.real()));
+            CHECK(std::fabs(s.imag() - mode.s.imag()) <= 0.02 * mode.s.imag());
+        }
 }
