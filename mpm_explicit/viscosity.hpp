@@ -1,6 +1,6 @@
 // Viscosity of Kelvin and Voigt: beside the elastic stress, one that answers the rate of strain.
 //
-//     sigma_v = beta T : de/dt,  f_i -= sum_p V_p sigma_v . grad S_ip
+//     sigma_v = beta T : de/dt,  f_i -= sum_p V_p sigma_v . grad S_ip    beside that of [MPM-2]
 // It is in the force on nodes and not in the particle's memory, so the elastic energy is that of the
 // elastic stress. A motion of the whole grain feels nothing of it; a wave of frequency omega decays
 // as exp(-beta omega^2 t/2).
