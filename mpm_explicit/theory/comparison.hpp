@@ -64,9 +64,10 @@ struct PlannedCase {
 
     /// errors: InputError for a viscosity, where theory knows of none
     void refuse_viscosity() const {
-        for (const Material& m : materials)
-            refuse(m.viscosity > 0 && m.law != Law::rigid,
-                   " is with a body without viscosity: set material." + m.name + ".viscosity = 0");
+        for (const PlannedGrain& plan : plans)
+            refuse(material_of(plan).viscosity > 0 && !is_rigid(plan),
+                   " is with a body without viscosity: set material." + material_of(plan).name +
+                       ".viscosity = 0");
     }
 
     /// errors: InputError 'theory.compare = "..."' with the sentence, where it is impossible
