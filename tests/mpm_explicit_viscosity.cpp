@@ -221,18 +221,13 @@ TEST_CASE("a block that slides flutters as finite elements say up to lumping" *
     // 8 x 4 cells, by a quarter of that on twice as many (the theta scheme has the finite elements'
     // own mass, and meets them to a few parts in a hundred on 8 x 4).
     SlidingBlock block;
-    block.cells_x = 16, block.cells_y = 8;
-    for (const double friction : {0.3, 0.55}) {
-        block.friction = friction;
-        const SlidingMode mode = first_flutter(sliding_modes(block));
-        Case c = sliding_case(block, 3e-3);
-        Run run(
-            c, [](Assembly&) {}, 1.3e-4);
-        const std::complex<double> s = measured_exponent(block, mode, 0, run);
-        CAPTURE(friction);
-        CAPTURE(s);
-        CAPTURE(mode.s);
-        CHECK(std::fabs(s.real() - mode.s.real()) <= 0.1 * mode.s.real());
-        CHECK(std::fabs(s.imag() - mode.s.imag()) <= 0.05 * mode.s.imag());
-    }
+    block.cells_x = 16, block.cells_y = 8, block.friction = 0.55;
+    const SlidingMode mode = first_flutter(sliding_modes(block));
+    Run run(
+        sliding_case(block, 3e-3), [](Assembly&) {}, 1.3e-4);
+    const std::complex<double> s = measured_exponent(block, mode, 0, run);
+    CAPTURE(s);
+    CAPTURE(mode.s);
+    CHECK(std::fabs(s.real() - mode.s.real()) <= 0.1 * mode.s.real());
+    CHECK(std::fabs(s.imag() - mode.s.imag()) <= 0.05 * mode.s.imag());
 }

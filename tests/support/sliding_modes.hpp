@@ -27,11 +27,11 @@ struct SlidingBlock {
 };
 
 struct SlidingMode {
-    std::complex<double> s;  // Im s > 0
+    std::complex<double> s;  // Im s >= 0
     Eigen::VectorXcd u;      // of all nodes, row by row from below: u_x, u_y, u_x ...
 };
 
-/// Modes that vibrate, from low to high frequency.
+/// Modes of the block, from low to high frequency.
 inline std::vector<SlidingMode> sliding_modes(const SlidingBlock& block) {
     using Matrix = Eigen::MatrixXd;
     const int columns = block.cells_x + 1, nodes = columns * (block.cells_y + 1);
@@ -79,13 +79,14 @@ inline std::vector<SlidingMode> sliding_modes(const SlidingBlock& block) {
     const Matrix K_free = K(free, free), M_free = M(free, free);
     const Eigen::EigenSolver<Matrix> solver(M_free.partialPivLu().solve(K_free));
 
-    // K u = q M u, and s^2 + beta q s + q = 0.
+    // K u = q M u, and s^2 + beta q s + q = 0. Slower than this is the block as a whole.
+    const double slow = 0.01 * std::sqrt(block.E / block.density) / block.width;
     std::vector<SlidingMode> modes;
     for (Eigen::Index n = 0; n < solver.eigenvalues().size(); ++n) {
         const std::complex<double> q = solver.eigenvalues()[n], c = 0.5 * block.viscosity * q,
                                    root = std::sqrt(c * c - q);
         for (const std::complex<double>& s : {-c + root, -c - root}) {
-            if (!(s.imag() > 1e-6 * std::sqrt(block.E / block.density) / block.width)) continue;
+            if (!(std::abs(s) > slow && s.imag() >= 0)) continue;
             Eigen::VectorXcd u = Eigen::VectorXcd::Zero(2 * nodes);
             for (std::size_t f = 0; f < free.size(); ++f)
                 u[free[f]] = solver.eigenvectors()(static_cast<Eigen::Index>(f), n);
