@@ -7,8 +7,8 @@
 //           + pic + remap
 // remap is what moving particles from cell to cell costs: the work of the old stress on the strain
 // of the new nodes minus that on the strain of the old ones, and the kinetic energy that lumping the
-// mass takes. viscous is twice the dissipation of v_i^0 in half a step; the work of the viscous
-// force on v_i^0 and v_i^1 in turn differs from it by - 1/2 dt f_i (v_i^0 - v_i^1), in remap, too.
+// mass takes. viscous is - sum_p V_p sigma_v : de_p, never positive; the work of the viscous force on
+// 1/2 (v_i^0 + v_i^1) differs from it by 1/2 dt f_i (v_i^1 - v_i^0), which is in remap, too.
 #pragma once
 
 #include <algorithm>
