@@ -319,6 +319,9 @@ $(eval $(call mpm_series,mpm_explicit_bonded_bar,bonded_bar,out/mpm_explicit/bon
 $(eval $(call mpm_series,mpm_explicit_oscillator,oscillator,out/mpm_explicit/oscillators))
 $(eval $(call mpm_series,mpm_explicit_sulsky_disks,sulsky_disks,out/mpm_explicit/collisions))
 $(eval $(call mpm_series,mpm_explicit_rest,block_at_rest,out/mpm_explicit/rests))
+# Of both programs.
+$(eval $(call mpm_series,mpm_explicit_flutter,sliding_block,out/mpm_explicit/flutters))
+out/mpm_explicit/flutters/.complete: $(BUILD)/mpm_implicit mpm_implicit/cases/sliding_block.toml
 
 # $(call implicit_series,figure,cases,folder): a figure of several runs of mpm_implicit.
 define implicit_series
@@ -388,8 +391,8 @@ test: all tests $(BUILD)/CTestTestfile.cmake | $(packages_first)
 # Runs that the notes quote and no figure needs.
 quoted := out/implicit_moment/gem_1836/.complete $(patsubst %,out/cic/%/.complete,\
     plasma_wave landau upper_hybrid misprint cloud_collision cold_beam_grid_instability thermal_heating)\
-    $(patsubst %,out/mpm_explicit/%/.complete,rebound incline_block incline_cylinder bonded_bar)\
-    $(patsubst %,out/mpm_implicit/%/.complete,compressed incline_block vibrating_bar billet)
+    $(patsubst %,out/mpm_explicit/%/.complete,rebound incline_block incline_cylinder sliding_block bonded_bar)\
+    $(patsubst %,out/mpm_implicit/%/.complete,compressed incline_block sliding_block vibrating_bar billet)
 
 test-long: all tests figures $(quoted) $(BUILD)/CTestTestfile.cmake | $(packages_first)
 	$(call need,ctest)

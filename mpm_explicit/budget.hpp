@@ -3,10 +3,12 @@
 // Leapfrog keeps the energy of [MPM-14] as long as particles stand still:
 //     E^n = 1/2 sum_p m_p v_p^2 + 1/2 sum_p V_p sigma_p^{n-1/2} : T^-1 : sigma_p^{n+1/2}
 // Everything that changes it is counted where it happens, so that the rest, `budget`, is round-off:
-//     d E = external + contact + release + friction + bond + damping - plastic + volume + pic + remap
+//     d E = external + contact + release + friction + bond + damping + viscous - plastic + volume
+//           + pic + remap
 // remap is what moving particles from cell to cell costs: the work that the nodes get from the force
 // of stress, less what stress has given for it in the steps before and after, with the second order
-// of a turn; and the kinetic energy that lumping the mass takes.
+// of a turn; and the kinetic energy that lumping the mass takes. viscous is - sum_p V_p sigma_v : de_p,
+// never positive; by what the work of the viscous force on 1/2 (v_i^0 + v_i^1) differs is in remap.
 #pragma once
 
 #include <algorithm>
@@ -28,6 +30,7 @@ struct TileSums {
     double plastic_old = 0;      // 1/2 V^{n-1/2} sigma^{n-1/2} : de^p
     double plastic_new = 0;      // 1/2 V^{n+1/2} sigma^{n+1/2} : de^p
     double volume = 0;           // 1/2 (V^{n+1/2} - V^{n-1/2}) sigma^{n-1/2} : T^-1 : sigma^{n+1/2}
+    double viscous = 0;          // V^{n+1/2} sigma_v : de
     double least_V = 0;          // smallest V^{n+1/2}/V^{n-1/2}
     // after particles have moved
     double kinetic = 0;            // 1/2 m v^{n+1} v^{n+1}
@@ -57,16 +60,16 @@ struct NodeWork {
 struct Budget {
     double kinetic = 0, elastic = 0;      // of t^n
     double energy_14 = 0, energy_15 = 0;  // [MPM-14] of t^n, [MPM-15] of t^{n+1/2}
-    double external = 0, contact = 0, release = 0, friction = 0, bond = 0, damping = 0, plastic = 0,
-           volume = 0, pic = 0, remap = 0;
+    double external = 0, contact = 0, release = 0, friction = 0, bond = 0, damping = 0, viscous = 0,
+           plastic = 0, volume = 0, pic = 0, remap = 0;
     double start = 0;                                 // energy_14 at t = 0
     double elastic_before = 0;                        // of t^{n-1/2}
     double kinetic_next = 0;                          // of t^{n+1}
     std::vector<mpm::Momenta> momenta, momenta_next;  // of each grain, at t^n and t^{n+1}
 
     double work() const {
-        return external + contact + release + friction + bond + damping - plastic + volume + pic +
-               remap;
+        return external + contact + release + friction + bond + damping + viscous - plastic +
+               volume + pic + remap;
     }
     double residual() const { return energy_14 - start - work(); }
 };
@@ -76,7 +79,7 @@ void archive(Archive& a, Budget& l) {
     std::vector<double*> numbers{
         &l.kinetic,  &l.elastic, &l.energy_14,      &l.energy_15,    &l.external, &l.contact,
         &l.friction, &l.bond,    &l.damping,        &l.plastic,      &l.volume,   &l.pic,
-        &l.remap,    &l.start,   &l.elastic_before, &l.kinetic_next, &l.release};
+        &l.remap,    &l.start,   &l.elastic_before, &l.kinetic_next, &l.release,  &l.viscous};
     std::vector<double> values;
     for (const double* number : numbers) values.push_back(*number);
     std::span all(values);  // of this length
@@ -133,6 +136,7 @@ inline void add_work(const std::vector<mpm::Tile>& where, const std::vector<Tile
         s.plastic_new += tiles[k].plastic_new, s.kinetic += tiles[k].kinetic;
         s.kinetic_increment += tiles[k].kinetic_increment, s.pic += tiles[k].pic;
         s.affine += tiles[k].affine, s.stress_work += tiles[k].stress_work;
+        s.viscous += tiles[k].viscous;
         mpm::Momenta& grain = l.momenta_next[static_cast<std::size_t>(where[k].grain)];
         grain.x += tiles[k].momentum_x, grain.y += tiles[k].momentum_y;
         grain.angular += tiles[k].angular + tiles[k].spin;
@@ -141,10 +145,10 @@ inline void add_work(const std::vector<mpm::Tile>& where, const std::vector<Tile
     l.external += contact.rigid + nodes.gravity;
     l.contact += contact.normal, l.release += contact.release;
     l.friction += contact.friction, l.bond += contact.bond;
-    l.damping += nodes.damping, l.plastic += s.plastic_new;
-    l.pic += s.pic - s.affine;
-    l.remap +=
-        nodes.internal_work + s.stress_work - (nodes.kinetic_increment - s.kinetic_increment);
+    l.damping += nodes.damping, l.viscous -= s.viscous;
+    l.plastic += s.plastic_new, l.pic += s.pic - s.affine;
+    l.remap += nodes.internal_work + s.stress_work + s.viscous -
+               (nodes.kinetic_increment - s.kinetic_increment);
 }
 
 }  // namespace mpm_explicit

@@ -203,13 +203,15 @@ struct DruckerPrager {
 struct AnyLaw {
     std::variant<Elastic, J2, DruckerPrager> law;
     Compliance compliance;
+    Moduli T;
+    double viscosity = 0;  // beta, of sigma_v = beta T : de/dt (viscosity.hpp)
 };
 
 /// The law of every material.
 inline std::vector<AnyLaw> laws_of(const std::vector<Material>& materials) {
     std::vector<AnyLaw> laws;
     for (const Material& m : materials) {
-        laws.push_back({Elastic(m), Compliance(m)});
+        laws.push_back({Elastic(m), Compliance(m), moduli(m), m.viscosity});
         if (m.law == Law::j2) laws.back().law = J2(m);
         if (m.law == Law::drucker_prager) laws.back().law = DruckerPrager(m);
     }

@@ -15,6 +15,7 @@ struct Material {
     std::string name;
     Law law = Law::elastic;
     double E = 1e4, nu = 0.3, density = 1000;  // E > 0, -1 < nu < 1/2, density > 0
+    double viscosity = 0;                      // time, >= 0
     double yield_stress = 100, hardening = 0;  // j2: Y > 0, H >= 0
     // drucker_prager: cohesion >= 0, 0 <= dilatancy_angle <= friction_angle < 90 degrees, and
     // tension >= 0, the largest mean stress (zero: a loose sand)
@@ -66,6 +67,14 @@ inline Moduli moduli(const Material& m) {
 inline double sound_speed(const Material& m) {
     const Moduli T = moduli(m);
     return std::sqrt((T.lambda + 2 * T.G) / m.density);
+}
+
+/// By how much viscosity beta shortens the step that explicit damping bears, at least 1.
+///   leapfrog, omega = 2 c_p/h:  (omega dt/2)^2 + beta omega^2 dt/2 <= 1
+///   dt <= (h/c_p) / [z + (1 + z^2)^1/2],  z = beta c_p/h
+inline double viscous_shortening(const Material& m, double h) {
+    const double z = m.viscosity * sound_speed(m) / h;
+    return z + std::sqrt(1 + z * z);
 }
 
 /// a : T^-1 : b of two stresses, twice the elastic energy per volume where they are the same.

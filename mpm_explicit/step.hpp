@@ -13,6 +13,7 @@
 #include "mpm_explicit/strain.hpp"
 #include "mpm_explicit/transfer.hpp"
 #include "mpm_explicit/update_stress.hpp"
+#include "mpm_explicit/viscosity.hpp"
 
 namespace mpm_explicit {
 
@@ -43,6 +44,7 @@ void take_step(const Shape& shape, const std::vector<AnyLaw>& laws, const Contac
         update_stress(laws, frozen, batch, grains, particles, sums.tiles);  // [MPM-9, 10]
         if (!frozen) rotate_stress(batch, 0.5, particles);
         add_internal_force(shape, particles, batch, nodes);  // [MPM-12]
+        add_viscous_force(shape, laws, dt, batch, grains, particles, nodes, sums.tiles);
     });
     clock.lap("stress");
     accelerate_nodes(body, grains, rigid, dt, nodes);  // v_i^1  [MPM-12]

@@ -73,26 +73,43 @@ void velocity_gradient(const Shape& shape, const Particles& particles, const Gra
     }
 }
 
-/// Force of a batch's stress on the nodes.                                               [MPM-12]
+/// Stresses of a batch's particles, times their volumes.
+struct BatchStress {
+    double xx[ParticleBatch::size], yy[ParticleBatch::size], xy[ParticleBatch::size];
+};
+
+/// Force of stresses of a batch on the nodes.                                            [MPM-12]
 ///   f_i -= V_p sigma_p . grad S_ip
 /// exact:  the sum over nodes is zero
 template <class Shape>
-void add_internal_force(const Shape& shape, const Particles& particles, const ParticleBatch& batch,
-                        GrainNodes& nodes) {
+void add_force(const Shape& shape, const Particles& particles, const ParticleBatch& batch,
+               const BatchStress& V_s, GrainNodes& nodes) {
     const Locator at(nodes.mesh());
     const long* origin = nodes.origins(batch.grain);
     NodeForce* force = nodes.force.data();
-    const auto b = static_cast<std::size_t>(batch.begin);
-    const double *x_p = &particles.x_p[b], *y_p = &particles.y_p[b], *V_p = &particles.V_p[b],
-                 *sxx = &particles.sxx_p[b], *syy = &particles.syy_p[b], *sxy = &particles.sxy_p[b];
+    const double *x_p = particles.x_p.data() + batch.begin,
+                 *y_p = particles.y_p.data() + batch.begin;
     for (long k = 0; k < batch.count; ++k) {
-        const double xx = V_p[k] * sxx[k], yy = V_p[k] * syy[k], xy = V_p[k] * sxy[k];
+        const double xx = V_s.xx[k], yy = V_s.yy[k], xy = V_s.xy[k];
         for_each_node(shape, at, origin, x_p[k], y_p[k],
                       [&](long dof, double, double Gx, double Gy) {
                           force[dof].x -= xx * Gx + xy * Gy;
                           force[dof].y -= xy * Gx + yy * Gy;
                       });
     }
+}
+
+/// The same of the stress that the particles carry.
+template <class Shape>
+void add_internal_force(const Shape& shape, const Particles& particles, const ParticleBatch& batch,
+                        GrainNodes& nodes) {
+    const auto b = static_cast<std::size_t>(batch.begin);
+    const double *V_p = &particles.V_p[b], *sxx = &particles.sxx_p[b], *syy = &particles.syy_p[b],
+                 *sxy = &particles.sxy_p[b];
+    BatchStress V_s;
+    for (long k = 0; k < batch.count; ++k)
+        V_s.xx[k] = V_p[k] * sxx[k], V_s.yy[k] = V_p[k] * syy[k], V_s.xy[k] = V_p[k] * sxy[k];
+    add_force(shape, particles, batch, V_s, nodes);
 }
 
 /// Where the particles of a batch were halfway, the gradient of their displacement in the step that

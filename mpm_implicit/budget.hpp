@@ -7,6 +7,7 @@
 //          - (theta - 1/2) sum_p V_p dsigma_p : de_p              theta_strain
 //          - theta sum_ij dv_i (m_i delta_ij - M_ij) dv_j         lumped: 0 for consistent mass
 //          - sum_p V_p 1/2 (sigma^0 + sigma^1) : de^p             plastic
+//          - sum_p V_p sigma_v : de_p                             viscous: never positive
 //          + work of contact, friction, bonds, plates, gravity, damping + volume + pic
 // The slide's equation is the first two lines. Everything is counted where it happens, so that the
 // rest, `residual`, is round-off and what the solvers leave.
@@ -31,6 +32,7 @@ struct TileSums {
     double theta_strain = 0;  // V dsigma : de
     double plastic = 0;       // V 1/2 (sigma^0 + sigma^1) : de^p
     double volume = 0;        // what a change of volumes adds
+    double viscous = 0;       // V^theta sigma_v : de
     double least_V = 0;       // smallest V^1/V^0
     // after particles have moved
     double kinetic = 0;              // 1/2 m v^1 v^1
@@ -53,26 +55,26 @@ struct NodeWork {
 struct Budget {
     double kinetic = 0, elastic = 0;
     double theta_velocity = 0, theta_strain = 0, lumped = 0;
-    double contact = 0, friction = 0, bond = 0, plate = 0, gravity = 0, damping = 0, plastic = 0,
-           volume = 0, pic = 0;
+    double contact = 0, friction = 0, bond = 0, plate = 0, gravity = 0, damping = 0, viscous = 0,
+           plastic = 0, volume = 0, pic = 0;
     double start = 0;
     double largest_residual = 0;   // of one step
     std::vector<Momenta> momenta;  // of each grain
 
     double energy() const { return kinetic + elastic; }
     double work() const {
-        return contact + friction + bond + plate + gravity + damping + volume + pic - plastic -
-               theta_velocity - theta_strain - lumped;
+        return contact + friction + bond + plate + gravity + damping + viscous + volume + pic -
+               plastic - theta_velocity - theta_strain - lumped;
     }
     double residual() const { return energy() - start - work(); }
 };
 
 template <class Archive>
 void archive(Archive& a, Budget& l) {
-    std::vector<double*> numbers{&l.kinetic, &l.elastic, &l.theta_velocity, &l.theta_strain,
-                                 &l.lumped,  &l.contact, &l.friction,       &l.bond,
-                                 &l.plate,   &l.gravity, &l.damping,        &l.plastic,
-                                 &l.volume,  &l.pic,     &l.start,          &l.largest_residual};
+    std::vector<double*> numbers{
+        &l.kinetic,  &l.elastic, &l.theta_velocity, &l.theta_strain,     &l.lumped,  &l.contact,
+        &l.friction, &l.bond,    &l.plate,          &l.gravity,          &l.damping, &l.plastic,
+        &l.volume,   &l.pic,     &l.start,          &l.largest_residual, &l.viscous};
     std::vector<double> values;
     for (const double* number : numbers) values.push_back(*number);
     std::span all(values);  // of this length
@@ -110,6 +112,7 @@ inline void add_step(double theta, bool consistent, double damping, double dt,
         s.elastic += one.elastic, s.theta_strain += one.theta_strain, s.plastic += one.plastic;
         s.volume += one.volume, s.kinetic += one.kinetic, s.twice_increment += one.twice_increment;
         s.twice_kinetic_theta += one.twice_kinetic_theta, s.pic += one.pic;
+        s.viscous += one.viscous;
         Momenta& grain = l.momenta[static_cast<std::size_t>(where[k].grain)];
         grain.x += one.momentum_x, grain.y += one.momentum_y, grain.angular += one.angular;
     }
@@ -120,7 +123,7 @@ inline void add_step(double theta, bool consistent, double damping, double dt,
     l.contact += contact.normal, l.friction += contact.friction, l.bond += contact.bond;
     l.plate += contact.rigid, l.gravity += nodes.gravity;
     l.damping -= dt * damping * (consistent ? s.twice_kinetic_theta : nodes.twice_kinetic_theta);
-    l.plastic += s.plastic, l.volume += s.volume, l.pic += s.pic;
+    l.viscous -= s.viscous, l.plastic += s.plastic, l.volume += s.volume, l.pic += s.pic;
     const double residual = (l.energy() - energy_before) - (l.work() - work_before);
     l.largest_residual = std::max(l.largest_residual, std::fabs(residual));
 }

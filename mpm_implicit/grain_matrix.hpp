@@ -2,7 +2,7 @@
 //
 //     M_ij = sum_p m_p S_ip S_jp                                   consistent mass
 //     K_ij = sum_p V_p grad S_ip . T . grad S_jp                   stiffness, 2 x 2
-//     A    = (1 + theta dt c) M + theta^2 dt^2 K           what v^theta is solved from  [MPM-8]
+//     A    = (1 + theta dt c) M + theta dt (theta dt + beta) K   what v^theta is solved from [MPM-8]
 // M and A are symmetric, of order 2 n for n dofs, and stored by diagonals of a stencil. No entry
 // couples two grains (contact does):
 //
@@ -12,7 +12,6 @@
 #pragma once
 
 #include <Eigen/Dense>
-#include <variant>
 #include <vector>
 
 #include "mpm_explicit/strain.hpp"
@@ -29,15 +28,14 @@ template <int reach>
 class GrainMatrix {
    public:
     /// Sums up M and K over the particles.
-    /// in:     factor_M and factor_K of A; consistent: M in A is the consistent mass, else the
-    ///         lumped mass m_i = sum_j M_ij
-    ///         particles.turn_p
+    /// in:     factor_M of A, theta dt; consistent: M in A is the consistent mass, else the
+    ///         lumped mass m_i = sum_j M_ij; particles.turn_p
     /// exact:  A is symmetric and positive where nodes have mass; K of a rigid motion is zero
     template <class Shape>
     void assemble(const Shape& shape, const std::vector<AnyLaw>& laws,
                   const std::vector<Grain>& grains, const Particles& particles,
                   const GrainNodes& nodes, const std::vector<GridRow>& rows, double factor_M,
-                  double factor_K, bool consistent) {
+                  double theta_dt, bool consistent) {
         static_assert(Shape::width == reach + 1);
         consistent_ = consistent;
         nodes_ = &nodes;
@@ -48,15 +46,15 @@ class GrainMatrix {
         nodes.for_each_tile([&](const Tile& tile, std::size_t) {
             const Grain& grain = grains[tile.grain];
             if (grain.rigid) return;
-            const Moduli T = std::visit([](const auto& law) { return moduli_of(law); },
-                                        laws[grain.material].law);
+            const AnyLaw& law = laws[grain.material];
+            const double factor_K = theta_dt * (theta_dt + law.viscosity);
             const long* origin = nodes.origins(tile.grain);
             for (long k = tile.begin; k < tile.end; ++k) {
                 const auto p = static_cast<std::size_t>(k);
                 add_particle(shape((particles.x_p[p] - at.x_low) * at.per_h, at.per_h),
                              shape((particles.y_p[p] - at.y_low) * at.per_h, at.per_h), origin,
-                             T.lambda, T.G, factor_K * particles.V_p[p], particles.turn_p[p],
-                             particles.m_p[p], factor_M);
+                             law.T.lambda, law.T.G, factor_K * particles.V_p[p],
+                             particles.turn_p[p], particles.m_p[p], factor_M);
             }
         });
         if (!consistent) add_lumped(factor_M);
@@ -151,12 +149,6 @@ class GrainMatrix {
     }
 
    private:
-    static const Moduli& moduli_of(const Elastic& law) { return law.T; }
-    template <class Law>
-    static const Moduli& moduli_of(const Law& law) {
-        return law.elastic.T;
-    }
-
     // One particle's share: the pairs of its nodes, each pair once.
     template <class W>
     [[gnu::always_inline]] void add_particle(const W& w_x, const W& w_y, const long* origin,

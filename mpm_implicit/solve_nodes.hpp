@@ -4,9 +4,10 @@
 //     m_i (v_i^1 - v_i^0)/dt = - sum_p V_p sigma_p^theta . grad S_ip + m_i f_i^theta     [MPM-8]
 // sigma^theta = sigma^0 + theta T : de, de = dt sym grad v^theta [MPM-5, 7] and
 // v^theta = v^0 + theta (v^1 - v^0), put in, give a symmetric system for v^theta:
-//     A v^theta = M v^0 + theta dt (f^0 + m g) + H^T lambda,   A = (1 + theta dt c) M + theta^2 dt^2 K
-// with f^0 the force of the old stress, c the damping of a case, and impulses lambda of the closed
-// pairs, which are found together with v^theta:
+//     A v^theta = M v^0 + theta dt (f^0 + m g) + H^T lambda,
+//     A = (1 + theta dt c) M + theta dt (theta dt + beta) K
+// with f^0 the force of the old stress, c the damping of a case, beta the viscosity of a material,
+// and impulses lambda of the closed pairs, which are found together with v^theta:
 //
 //     active set (open, slip, stick) -> projected conjugate gradients -> v^theta, lambda
 //           ^                                                               |
@@ -43,7 +44,7 @@ class NodeSolver {
         constrain_small_mass_nodes(rows, nodes);
         const double theta_dt = scheme.theta * dt;
         matrix.assemble(shape, laws, all.grains, all.particles, nodes, rows,
-                        1 + theta_dt * body.damping, theta_dt * theta_dt, scheme.consistent());
+                        1 + theta_dt * body.damping, theta_dt, scheme.consistent());
         if (scheme.consistent())
             constrain_rank_deficient_nodes(mass_factors_.factorize(matrix, all.grains, nodes), rows,
                                            nodes);

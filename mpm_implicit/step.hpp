@@ -82,7 +82,7 @@ void move_to_new_level(const Shape& shape, const BodyForce& body, double dt,
     for_each_batch(grains, nodes, sums.tiles, [&](ParticleBatch& batch) {
         velocity_gradient(shape, particles, nodes, NewVelocity{}, dt, batch);  // [MPM-5]
         turn_gradient(particles, batch);
-        update_stress(scratch.laws, scratch.scheme, batch, grains, particles,
+        update_stress(scratch.laws, scratch.scheme, dt, batch, grains, particles,
                       sums.tiles);  // [MPM-6, 7]
         if (!scratch.frozen) turn_particles(batch, particles);
     });

@@ -54,16 +54,15 @@ inline void turn_particles(const ParticleBatch& batch, Particles& particles) {
 /// exact:  the sum over nodes is zero; the power is that of the strain of turn_gradient()
 template <class Shape>
 void add_turned_force(const Shape& shape, const Particles& particles, const ParticleBatch& batch,
-                      const double* V_sxx, const double* V_syy, const double* V_sxy,
-                      GrainNodes& nodes) {
+                      const BatchStress& V_s, GrainNodes& nodes) {
     const Locator at(nodes.mesh());
     const long* origin = nodes.origins(batch.grain);
     const auto b = static_cast<std::size_t>(batch.begin);
     const double *x_p = &particles.x_p[b], *y_p = &particles.y_p[b], *turn = &particles.turn_p[b];
     for (long k = 0; k < batch.count; ++k) {
         const double t = turn[k], c = 1 / (1 + t * t);
-        const double xx = c * (V_sxx[k] + t * V_sxy[k]), xy = c * (V_sxy[k] - t * V_sxx[k]),
-                     yx = c * (V_sxy[k] + t * V_syy[k]), yy = c * (V_syy[k] - t * V_sxy[k]);
+        const double xx = c * (V_s.xx[k] + t * V_s.xy[k]), xy = c * (V_s.xy[k] - t * V_s.xx[k]),
+                     yx = c * (V_s.xy[k] + t * V_s.yy[k]), yy = c * (V_s.yy[k] - t * V_s.xy[k]);
         for_each_node(shape, at, origin, x_p[k], y_p[k],
                       [&](long dof, double, double Gx, double Gy) {
                           nodes.force[dof].x -= xx * Gx + xy * Gy;

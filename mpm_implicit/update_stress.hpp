@@ -8,7 +8,7 @@
 // volumes that stay, so force and energy use those of the start unless a case asks for [MPM-6].
 #pragma once
 
-#include "mpm_explicit/strain.hpp"
+#include "mpm_explicit/viscosity.hpp"
 #include "mpm_implicit/budget.hpp"
 #include "mpm_implicit/theta_scheme.hpp"
 #include "mpm_implicit/turned_gradient.hpp"
@@ -59,7 +59,7 @@ void update_stress(const LawOf& law, const Compliance& compliance, double theta,
 // sigma^theta = sigma^0 + theta (sigma^1 - sigma^0) and V^theta, from which the force is made.
 template <class LawOf>
 void stress_at_theta(const LawOf& law, double theta, bool grows, const ParticleBatch& batch,
-                     const Particles& from, double* V_s_xx, double* V_s_yy, double* V_s_xy) {
+                     const Particles& from, BatchStress& V_s) {
     const double *V_p = from.V_p.data() + batch.begin, *sxx = from.sxx_p.data() + batch.begin,
                  *syy = from.syy_p.data() + batch.begin, *sxy = from.sxy_p.data() + batch.begin,
                  *szz = from.szz_p.data() + batch.begin, *yield = from.yield_p.data() + batch.begin;
@@ -72,19 +72,24 @@ void stress_at_theta(const LawOf& law, double theta, bool grows, const ParticleB
         double ep = yield[k];
         law(de, s, dep, ep);
         const double V = V_p[k] * (1 + growth * (de.xx + de.yy));
-        V_s_xx[k] = V * (sxx[k] + theta * (s.xx - sxx[k]));
-        V_s_yy[k] = V * (syy[k] + theta * (s.yy - syy[k]));
-        V_s_xy[k] = V * (sxy[k] + theta * (s.xy - sxy[k]));
+        V_s.xx[k] = V * (sxx[k] + theta * (s.xx - sxx[k]));
+        V_s.yy[k] = V * (syy[k] + theta * (s.yy - syy[k]));
+        V_s.xy[k] = V * (sxy[k] + theta * (s.xy - sxy[k]));
     }
 }
 
 }  // namespace detail
 
 /// Volumes and stresses of a batch at the end of the step, and their energies.    [MPM-6, MPM-7]
-inline void update_stress(const std::vector<AnyLaw>& laws, const ThetaScheme& scheme,
+inline void update_stress(const std::vector<AnyLaw>& laws, const ThetaScheme& scheme, double dt,
                           const ParticleBatch& batch, const std::vector<Grain>& grains,
                           Particles& particles, std::vector<TileSums>& sums) {
     const AnyLaw& law = laws[grains[batch.grain].material];
+    if (law.viscosity > 0) {  // of the volumes V^theta
+        BatchStress V_s{};
+        sums[batch.tile].viscous += add_viscous_stress(
+            law, dt, scheme.keeps_volumes() ? 0 : scheme.theta, batch, particles, V_s);
+    }
     std::visit(
         [&](const auto& one) {
             detail::update_stress(one, law.compliance, scheme.theta, !scheme.keeps_volumes(), batch,
@@ -98,19 +103,19 @@ template <class Shape>
 void force_of_stress(const Shape& shape, const std::vector<Grain>& grains,
                      const Particles& particles, GrainNodes& nodes) {
     for_each_batch(grains, nodes, [&](ParticleBatch& batch) {
-        double xx[ParticleBatch::size], yy[ParticleBatch::size], xy[ParticleBatch::size];
+        BatchStress V_s;
         for (long k = 0; k < batch.count; ++k) {
             const auto p = static_cast<std::size_t>(batch.begin + k);
             const double V = particles.V_p[p];
-            xx[k] = V * particles.sxx_p[p], yy[k] = V * particles.syy_p[p];
-            xy[k] = V * particles.sxy_p[p];
+            V_s.xx[k] = V * particles.sxx_p[p], V_s.yy[k] = V * particles.syy_p[p];
+            V_s.xy[k] = V * particles.sxy_p[p];
         }
-        add_turned_force(shape, particles, batch, xx, yy, xy, nodes);
+        add_turned_force(shape, particles, batch, V_s, nodes);
     });
 }
 
 /// Force on the nodes of the stress that velocities v^theta would make, [MPM-5 ... 7] put in.
-///   f_i = - sum_p V_p sigma_p^theta . G_ip
+///   f_i = - sum_p V_p (sigma_p^theta + sigma_v) . G_ip
 /// in:     nodes.motion, v^theta in the place of v_1; particles, of the old level, which stay
 /// out:    nodes.force
 template <class Shape>
@@ -123,15 +128,17 @@ void force_at_theta(const Shape& shape, const std::vector<AnyLaw>& laws, const T
     for_each_batch(grains, nodes, [&](ParticleBatch& batch) {
         velocity_gradient(shape, particles, nodes, NewVelocity{}, dt, batch);
         turn_gradient(particles, batch);
-        double xx[ParticleBatch::size], yy[ParticleBatch::size], xy[ParticleBatch::size];
+        BatchStress V_s;
         const AnyLaw& law = laws[grains[batch.grain].material];
         std::visit(
             [&](const auto& one) {
                 detail::stress_at_theta(one, scheme.theta, !scheme.keeps_volumes(), batch,
-                                        particles, xx, yy, xy);
+                                        particles, V_s);
             },
             law.law);
-        add_turned_force(shape, particles, batch, xx, yy, xy, nodes);
+        add_viscous_stress(law, dt, scheme.keeps_volumes() ? 0 : scheme.theta, batch, particles,
+                           V_s);
+        add_turned_force(shape, particles, batch, V_s, nodes);
     });
     reduce_ghost_force(nodes);
 }

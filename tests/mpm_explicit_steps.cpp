@@ -40,7 +40,7 @@ void add_random_stress(Particles& p, Random& random) {
 template <class Shape>
 void strain(const Shape& shape, double dt, Cloud& cloud, GrainNodes& nodes,
             std::vector<TileSums>& sums) {
-    const std::vector<AnyLaw> laws{{Elastic(standard), Compliance(standard)}};
+    const std::vector<AnyLaw> laws = laws_of({standard});
     for_each_batch(cloud.grains, nodes, sums, [&](ParticleBatch& batch) {
         velocity_gradient(shape, cloud.particles, nodes, OldVelocity{}, dt, batch);
         update_stress(laws, false, batch, cloud.grains, cloud.particles, sums);

@@ -694,6 +694,14 @@ grains body theory.compare=standing_wave slip grain.body.height=0.3 wave
     theory.compare = "standing_wave" needs a box that fills the mesh: make it 0.8 by 0.4
 grains body theory.compare=oscillator slip wave
     theory.compare = "oscillator" needs grid.cells_x = 2, method.frozen = true, and linear FLIP
+grains oscillator.toml material.default.viscosity=1e-3
+    theory.compare = "oscillator" is with a body without viscosity: set
+    material.default.viscosity = 0
+grains vibrating_bar.toml material.default.viscosity=1e-3
+    theory.compare = "bar" is with a body without viscosity: set material.default.viscosity
+    = 0
+grains disks material.default.viscosity=-1e-3
+    'material.default.viscosity' = -0.001 is out of range; allowed: >= 0
 grains oscillator.toml method.frozen=false
 grains oscillator.toml method.shape=quadratic
     theory.compare = "oscillator" needs grid.cells_x = 2, method.frozen = true

@@ -132,6 +132,11 @@ mpm_explicit disks time.alpha=0.8
     warning: time.alpha = 0.8 is above 0.7: nothing bounds the energy of explicit solutions, and
     grains that meet will burst
 mpm_explicit disks time.alpha=0.8 method.frozen=true -> no warning
+mpm_explicit rebound.toml material.default.viscosity=0.03 -> no warning
+mpm_explicit rebound.toml material.default.viscosity=0.05
+    warning: viscosity makes the steps 14.38 times shorter, more than 10: mpm_implicit needs no
+    shorter ones
+mpm_implicit rebound.toml material.default.viscosity=0.05 -> no warning
 mpm_explicit disks grain.left.velocity_x=0.3669
     warning: |v|/c_p = 0.1 is above 0.05: an impact strains the grains by more than the small
     strains of the material laws

@@ -25,6 +25,7 @@ inline void add_budget(const Budget& l, common::Row& row) {
                                       {"friction", l.friction},
                                       {"bond", l.bond},
                                       {"damping", l.damping},
+                                      {"viscous", l.viscous},
                                       {"plastic", l.plastic},
                                       {"volume", l.volume},
                                       {"pic", l.pic},

@@ -214,6 +214,9 @@ inline std::vector<std::string> warnings_of(const Case& parameters, const Scales
                         "time.alpha = " + format(parameters.alpha) +
                             " is above 0.7: nothing bounds the energy of explicit solutions, and "
                             "grains that meet will burst");
+    if (scales.shortening > 10)
+        warnings.push_back("viscosity makes the steps " + format(scales.shortening) +
+                           " times shorter, more than 10: mpm_implicit needs no shorter ones");
     return warnings;
 }
 

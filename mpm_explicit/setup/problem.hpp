@@ -104,6 +104,9 @@ inline void describe_material(common::ParameterTable& table, const std::string& 
     table.real(at + "E", m.material.E, "stress", above(0), "Young's modulus");
     table.real(at + "nu", m.material.nu, "", between(-0.99, 0.495), "Poisson's ratio");
     table.real(at + "density", m.material.density, "mass/volume", above(0), "at the start");
+    table.real(
+        at + "viscosity", m.material.viscosity, "time", at_least(0),
+        "beta of a stress beta T : de/dt (Kelvin-Voigt); leapfrog takes shorter steps with it");
     table.real(at + "yield_stress", m.material.yield_stress, "stress", above(0), "j2: in tension");
     table.real(at + "hardening", m.material.hardening, "stress", at_least(0),
                "j2: rise of the yield stress per plastic strain");

@@ -14,7 +14,7 @@ namespace mpm {
 /// What follows from a case, in its own units.
 struct Scales {
     double sound_speed = 0, speed = 0;  // largest c_p, largest |v| of a grain
-    double dt = 0;
+    double dt = 0, shortening = 1;      // of the step, by viscosity
     long steps = 0, particles = 0, grains = 0;
     double thinnest = 0;  // grain [length]
     double bytes = 0;
@@ -22,21 +22,23 @@ struct Scales {
 };
 
 /// The scales of a case.
-///   dt = alpha h / (c_p + |v|)
+///   dt = alpha h / (c_p + |v|), and for an explicit scheme c_p times viscous_shortening()
 /// errors: InputError for too many steps or particles, or a damping that takes all velocity
-inline Scales scales_of(const Case& parameters) {
+inline Scales scales_of(const Case& parameters, bool is_explicit = true) {
     const std::vector<Material> materials = materials_of(parameters.problem);
     const std::vector<PlannedGrain> plans = plan_grains(parameters.problem, materials);
     Scales s;
     const Problem& problem = parameters.problem;
     const Mesh mesh = problem.mesh();
     const double side = mesh.h / double(problem.per_side);
-    double lightest = 1e300, nodes = 0;
+    double lightest = 1e300, nodes = 0, fastest = 0;
     s.thinnest = 1e300;
     for (const PlannedGrain& plan : plans) {
         const Material& material = materials[plan.material];
         const GrainCase& from = plan.from;
-        s.sound_speed = std::max(s.sound_speed, sound_speed(material));
+        const double c = sound_speed(material);
+        s.sound_speed = std::max(s.sound_speed, c);
+        fastest = std::max(fastest, is_explicit ? c * viscous_shortening(material, mesh.h) : c);
         s.speed = std::max(s.speed, std::hypot(from.velocity_x, from.velocity_y) +
                                         std::fabs(from.amplitude) +
                                         std::fabs(from.spin) * plan.outline.radius);
@@ -49,7 +51,8 @@ inline Scales scales_of(const Case& parameters) {
     s.grains = long(plans.size());
     // Where a smooth shape ends, its weight falls as the square of its gradient.
     s.least_mass = (parameters.shape == "linear" ? 1e-12 : 1e-24) * lightest;
-    s.dt = parameters.alpha * mesh.h / (s.sound_speed + s.speed);
+    s.dt = parameters.alpha * mesh.h / (fastest + s.speed);
+    s.shortening = (fastest + s.speed) / (s.sound_speed + s.speed);
     const double steps = parameters.end / s.dt;
     refuse(!(steps <= 1e9), "the run would take " + format(steps) +
                                 " steps, more than 1e9: raise time.alpha or lower time.end");
@@ -102,7 +105,10 @@ inline std::string describe_scales(const Case& parameters, const Scales& scales,
     line("sound",
          "c_p = " + format(scales.sound_speed) + ", largest |v| = " + format(scales.speed));
     line("steps", std::to_string(scales.steps) + " of dt = " + format(scales.dt) +
-                      ", alpha = " + format(parameters.alpha));
+                      ", alpha = " + format(parameters.alpha) +
+                      (scales.shortening > 1
+                           ? ", " + format(scales.shortening) + " times shorter by viscosity"
+                           : ""));
     line("memory", "about " + format(scales.bytes / 1048576) + " MiB");
     const double seconds =
         cost * double(scales.steps) * double(scales.particles) / particle_steps_per_second;

@@ -47,10 +47,10 @@ inline void need_equal_disks(const PlannedCase& planned) {
 }
 
 /// When they meet, how long they touch, and with what they part.
-/// note: where the scheme takes energy, the disks part as they can.
+/// note: where the scheme or viscosity takes energy, the disks part as they can.
 inline void compare_rebound(const FinishedRun& run, common::Summary& summary) {
     const double energy_tolerance = run.planned.scheme.rebound_tolerance;
-    const bool keeps_energy = std::isfinite(energy_tolerance);
+    const bool keeps_energy = std::isfinite(energy_tolerance) && run.material().viscosity == 0;
     const PlannedGrain &a = run.planned.plans[0], &b = run.planned.plans[1];
     const double dx = b.outline.x - a.outline.x, dy = b.outline.y - a.outline.y,
                  apart = std::hypot(dx, dy), nx = dx / apart, ny = dy / apart;
@@ -98,6 +98,7 @@ inline void compare_rebound(const FinishedRun& run, common::Summary& summary) {
 
 /// Needs boxes with the profile of a bar, of which the first begins at a wall that holds it.
 inline void need_bar(const PlannedCase& planned) {
+    planned.refuse_viscosity();
     const Mesh mesh = planned.parameters.problem.mesh();
     planned.refuse(!planned.has_profile("bar") ||
                        !(planned.has_wall(x_low, "slip") || planned.has_wall(x_low, "stick")),
@@ -155,6 +156,7 @@ inline void need_wave(const PlannedCase& planned) {
 /// The one free node between two fixed ends, with frozen particles; each scheme has its own result.
 inline void need_oscillator(const PlannedCase& planned) {
     const Case& parameters = planned.parameters;
+    planned.refuse_viscosity();
     need_wave(planned);
     planned.refuse(parameters.problem.cells_x != 2 || !parameters.frozen ||
                        parameters.shape != "linear" || parameters.flip != 1,
@@ -166,7 +168,7 @@ inline void compare_standing_wave(const FinishedRun& run, common::Summary& summa
     const Problem& problem = run.parameters.problem;
     const Material& m = run.material();
     const GrainCase& from = problem.grains.front();
-    StandingWave wave{problem.length_x, 1, m.density, moduli(m), int(from.mode)};
+    StandingWave wave{problem.length_x, 1, m.density, moduli(m), int(from.mode), m.viscosity};
     wave.amplitude = from.amplitude / wave.frequency();
     const Particles& at = run.all.particles;
     // The wave is compared where the particles started: x_p less the displacement of theory.

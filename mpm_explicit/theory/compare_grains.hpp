@@ -49,11 +49,17 @@ inline void compare_incline(const FinishedRun& run,
     const double m = run.mass();
     for (double& value : v) value /= std::copysign(m, problem.gravity_x);
     const auto times = run.history.column("time");
-    const double measured = slope(times, v, std::max(problem.rise, 0.25 * run.end));
+    const double from = std::max(problem.rise, 0.25 * run.end), measured = slope(times, v, from);
     summary.result("acceleration", measured, "acceleration", exact,
                    exact > 0 ? run.parameters.tolerance * exact : 0.01 * g * std::sin(angle),
                    source);
     summary.result_info("speed_at_end", v.back(), "velocity", "along the plate");
+    const auto pressed = run.history.column("contacts");
+    double rows = 0, touching = 0;
+    for (std::size_t n = 0; n < times.size(); ++n)
+        if (times[n] >= from) rows += 1, touching += pressed[n] > 0 ? 1 : 0;
+    summary.result_info("contact_time_share", touching / rows, "1",
+                        "share of the rows in which the plate presses; below 1 the grain hops");
 }
 
 /// A block slides, or friction holds it.

@@ -62,6 +62,14 @@ struct PlannedCase {
         return parameters.problem.walls[side] == kind;
     }
 
+    /// errors: InputError for a viscosity, where theory knows of none
+    void refuse_viscosity() const {
+        for (const PlannedGrain& plan : plans)
+            refuse(material_of(plan).viscosity > 0 && !is_rigid(plan),
+                   " is with a body without viscosity: set material." + material_of(plan).name +
+                       ".viscosity = 0");
+    }
+
     /// errors: InputError 'theory.compare = "..."' with the sentence, where it is impossible
     void refuse(bool impossible, const std::string& sentence) const {
         mpm::refuse(impossible, "theory.compare = \"" + parameters.compare + "\"" + sentence);

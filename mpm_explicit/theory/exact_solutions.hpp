@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <numbers>
 
@@ -175,6 +176,7 @@ struct StandingWave {
     double length, amplitude, density;
     Moduli moduli;
     int mode = 1;
+    double viscosity = 0;  // beta
 
     double wave_number() const { return mode * std::numbers::pi / length; }
     double frequency() const {
@@ -182,22 +184,36 @@ struct StandingWave {
     }
 };
 
-///   u_x = amplitude sin(k x) sin(omega t)
+/// How it goes in time, and how fast: sin(omega t) and its rate without viscosity.
+///   q'' + beta omega^2 q' + omega^2 q = 0,  q(0) = 0, q'(0) = omega
+///   q = (omega/s) sinh(s t) exp(-c t),  c = beta omega^2/2, s^2 = c^2 - omega^2
+inline double wave_swing(const StandingWave& w, double t) {
+    const double omega = w.frequency(), c = 0.5 * w.viscosity * omega * omega;
+    const std::complex<double> s = std::sqrt(std::complex<double>(c * c - omega * omega));
+    return std::exp(-c * t) * std::real(omega * std::sinh(s * t) / s);
+}
+inline double wave_swing_rate(const StandingWave& w, double t) {
+    const double omega = w.frequency(), c = 0.5 * w.viscosity * omega * omega;
+    const std::complex<double> s = std::sqrt(std::complex<double>(c * c - omega * omega));
+    return std::exp(-c * t) * omega * std::real(std::cosh(s * t) - c * std::sinh(s * t) / s);
+}
+
+///   u_x = amplitude sin(k x) q(t)
 inline double wave_displacement(const StandingWave& w, double x, double t) {
-    return w.amplitude * std::sin(w.wave_number() * x) * std::sin(w.frequency() * t);
+    return w.amplitude * std::sin(w.wave_number() * x) * wave_swing(w, t);
 }
 
-///   v_x = amplitude omega sin(k x) cos(omega t)
+///   v_x = amplitude sin(k x) q'(t)
 inline double wave_velocity(const StandingWave& w, double x, double t) {
-    return w.amplitude * w.frequency() * std::sin(w.wave_number() * x) *
-           std::cos(w.frequency() * t);
+    return w.amplitude * std::sin(w.wave_number() * x) * wave_swing_rate(w, t);
 }
 
-///   e_xx = amplitude k cos(k x) sin(omega t)
+/// The elastic stress.
+///   e_xx = amplitude k cos(k x) q(t)
 ///   s_xx = (lambda + 2G) e_xx,  s_yy = s_zz = lambda e_xx
 inline Stress wave_stress(const StandingWave& w, double x, double t) {
     const double k = w.wave_number();
-    const double e = w.amplitude * k * std::cos(k * x) * std::sin(w.frequency() * t);
+    const double e = w.amplitude * k * std::cos(k * x) * wave_swing(w, t);
     const double side = w.moduli.lambda * e;
     return {side + 2 * w.moduli.G * e, side, 0, side};
 }

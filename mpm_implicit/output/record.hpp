@@ -27,6 +27,7 @@ inline void add_budget(const Budget& l, common::Row& row) {
                                       {"gravity", l.gravity},
                                       {"external", l.plate + l.gravity},
                                       {"damping", l.damping},
+                                      {"viscous", l.viscous},
                                       {"plastic", l.plastic},
                                       {"volume", l.volume},
                                       {"pic", l.pic},

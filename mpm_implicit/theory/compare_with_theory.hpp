@@ -185,15 +185,16 @@ inline void compare_billet(const theory::FinishedRun& run, common::Summary& summ
 /// Grains that a plate presses: the energy is the work of the plate.
 inline void compare_compression(const theory::FinishedRun& run, common::Summary& summary) {
     const auto energy = run.history.column("energy"), work = run.history.column("plate"),
-               friction = run.history.column("friction");
+               friction = run.history.column("friction"), viscous = run.history.column("viscous");
     const double most =
         std::max(*std::max_element(work.begin(), work.end()), std::numeric_limits<double>::min());
     double apart = 0;
     for (std::size_t n = 0; n < energy.size(); ++n)
-        apart = std::max(apart, std::fabs(energy[n] - energy[0] - work[n] - friction[n]));
+        apart =
+            std::max(apart, std::fabs(energy[n] - energy[0] - work[n] - friction[n] - viscous[n]));
     if (keeps_energy(run.parameters, run.planned.scheme))
         summary.result("energy_less_work", apart / most, "1", 0, 1e-10,
-                       "energy less work of plate and friction, over the work");
+                       "energy less work of plate, friction, viscosity, over the work");
     summary.result_info("plate_work", work.back(), "energy", "at the end");
     summary.result_info("kinetic_share", run.history.column("kinetic").back() / energy.back(), "1",
                         "of the energy at the end");

@@ -42,7 +42,7 @@ struct ThetaRun {
     ThetaRun(const Case& c, const ThetaScheme& s, const Prepare& prepare)
         : parameters(c),
           scheme(s),
-          scales(scales_of(c)),
+          scales(scales_of(c, false)),
           dt(scales.dt),
           state{assemble(c.problem), {}, {}, {}, {}},
           laws(laws_of(c.problem)),
