@@ -499,9 +499,11 @@ grains disks grid.low_y=1e9
     move grid.low_x and low_y nearer to 0
 grains disks time.alpha=1e-9
     the run would take 7.538e+09 steps, more than 1e9: raise time.alpha or lower time.end
+mpm_explicit disks time.dt=1
+    time.dt = 1 is above alpha h/(c_p + |v|) = 0.003317: lower it, or raise time.alpha
 grains disks time.end=1e300 -> steps, more than 1e9: raise time.alpha or lower time.end
 mpm_explicit disks load.damping=400
-    load.damping = 400 takes all velocity in a step of 0.003317: lower it below 301.5
+    load.damping = 400 takes all velocity in a step of 0.003226: lower it below 310
 grains body grid.cells_x=16000 grid.cells_y=8000 grid.particles_per_side=16
     32768000000 particles are more than 2e9: lower grid.particles_per_side
 grains body grid.cells_x=1600 output.fringes_interval=1 grid.cells_y=800 output.pixels_per_cell=64
@@ -671,7 +673,7 @@ grains disks theory.compare=rebound grain.left.shape=box
 grains disks theory.compare=rebound time.end=0.4
     theory.compare = "rebound": the disks meet at t = 0.5, and the run ends at 0.4: raise time.end
 mpm_explicit disks theory.compare=collapse time.end=0.02
-    theory.compare = "collapse" needs at least 10 rows of history, and there would be 6: raise
+    theory.compare = "collapse" needs at least 10 rows of history, and there would be 7: raise
     time.end or lower output.history_steps
 mpm_explicit disks theory.compare=collapse output.history_steps=10
     theory.compare = "collapse" needs at least 10 rows of history, and there would be 3

@@ -145,9 +145,10 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
         warnings.push_back("until time.end = " + format(t) + " sound crosses " + format(crossed) +
                            " cells, below 0.1: the run is over before anything happens; raise "
                            "time.end");
-    else if (t > 0 && scales.steps == 0)
-        warnings.push_back("time.end = " + format(t) + " is below half of the time step " +
-                           format(scales.dt) + ": no step is taken");
+    if (const double last = double(scales.steps) * scales.dt; std::fabs(last - t) > 1e-9 * t)
+        warnings.push_back("time.end = " + format(t) +
+                           " is no whole number of steps of time.dt = " + format(scales.dt) +
+                           ": the run ends at t = " + common::number_text(last));
     if (scales.speed > 0.05 * scales.sound_speed && scales.grains > 1)
         warnings.push_back("|v|/c_p = " + format(scales.speed / scales.sound_speed) +
                            " is above 0.05: an impact strains the grains by more than the small "

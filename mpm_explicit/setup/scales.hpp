@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <variant>
 #include <vector>
 
+#include "common/run/checkpoint.hpp"
 #include "mpm_explicit/setup/assemble.hpp"
 #include "mpm_explicit/setup/case.hpp"
 
@@ -22,8 +24,9 @@ struct Scales {
 };
 
 /// The scales of a case.
-///   dt = alpha h / (c_p + |v|)
-/// errors: InputError for too many steps or particles, or a damping that takes all velocity
+///   dt <= alpha h / (c_p + |v|), and steps dt = time.end where time.dt is not given
+/// errors: InputError for too many steps or particles, a time.dt that alpha does not allow, or a
+///         damping that takes all velocity
 inline Scales scales_of(const Case& parameters) {
     const std::vector<Material> materials = materials_of(parameters.problem);
     const std::vector<PlannedGrain> plans = plan_grains(parameters.problem, materials);
@@ -49,11 +52,17 @@ inline Scales scales_of(const Case& parameters) {
     s.grains = long(plans.size());
     // Where a smooth shape ends, its weight falls as the square of its gradient.
     s.least_mass = (parameters.shape == "linear" ? 1e-12 : 1e-24) * lightest;
-    s.dt = parameters.alpha * mesh.h / (s.sound_speed + s.speed);
+    const double longest = parameters.alpha * mesh.h / (s.sound_speed + s.speed);
+    const bool is_given = parameters.dt > 0;
+    refuse(parameters.dt > longest * (1 + 1e-9),
+           "time.dt = " + format(parameters.dt) + " is above alpha h/(c_p + |v|) = " +
+               format(longest) + ": lower it, or raise time.alpha");
+    s.dt = is_given ? parameters.dt : longest;
     const double steps = parameters.end / s.dt;
     refuse(!(steps <= 1e9), "the run would take " + format(steps) +
                                 " steps, more than 1e9: raise time.alpha or lower time.end");
-    s.steps = std::lround(steps);
+    s.steps = is_given ? std::lround(steps) : long(std::ceil(steps - 1e-9));
+    if (!is_given && s.steps > 0) s.dt = parameters.end / double(s.steps);
     refuse(!(problem.damping * s.dt < 1), "load.damping = " + format(problem.damping) +
                                               " takes all velocity in a step of " + format(s.dt) +
                                               ": lower it below " + format(1 / s.dt));
@@ -73,6 +82,23 @@ inline Scales scales_of(const Case& parameters) {
               pixels * (3 * sizeof(double) + sizeof(int)) +
               sizeof(int) * double((mesh.cells_x + 8) * (mesh.cells_y + 8));
     return s;
+}
+
+/// Keeps the time step of the run that a restart continues: with another time.end it becomes
+/// time.dt.
+/// errors: InputError for a checkpoint that cannot be read
+inline void keep_time_step(const common::ProgramInfo& info, const common::CommandLine& command,
+                           Case& parameters) {
+    if (command.restart_path.empty() || parameters.dt > 0) return;
+    const common::CheckpointReader checkpoint(info, command.restart_path);
+    for (const common::Setting& one :
+         common::read_case(checkpoint.effective_case(), command.restart_path)) {
+        if (one.name != "time.end") continue;
+        const long* const whole = std::get_if<long>(&one.value);
+        Case before = parameters;
+        before.end = whole != nullptr ? double(*whole) : std::get<double>(one.value);
+        if (before.end != parameters.end) parameters.dt = scales_of(before).dt;
+    }
 }
 
 /// The resolved scales as text, for --dry-run and the head of a run.
