@@ -844,3 +844,44 @@ TEST_CASE("a restart reads its pack again and wants the same one" *
         }
     }
 }
+
+TEST_CASE("plates move on with the same bits and want the same tables" *
+          doctest::description("robust")) {
+    const std::string way = "0 0 0\n0.01 0 -1e-3\n0.03 2e-3 -1e-3\n";
+    for (const Program* one : programs_called("grains")) {
+        const Program& program = *one;
+        const fs::path folder = fresh_folder(program);
+        write_all(folder / "way.txt", way);
+        REQUIRE(start(program, folder,
+                      arguments_of({&program,
+                                    "press time.end=0.05 load.rise=0.01 time.alpha=0.2 "
+                                    "grain.top.control=velocity grain.top.stop=0.02 "
+                                    "grain.top.swing_y=-1e-3 grain.top.period=0.02 "
+                                    "grain.top.table=way.txt grain.top.velocity_y=-0.1",
+                                    {}}) +
+                          " --quiet output.checkpoint_steps=7 --out run")
+                    .status == 0);
+        const std::string path = checkpoints(folder / "run")[0], good = read_all(path);
+        REQUIRE(start(program, folder, "--restart " + path + " --out rest --quiet").status == 0);
+        CHECK(read_all(folder / "rest/history.dat") == read_all(folder / "run/history.dat"));
+        // What the plate has gone at the end: velocity times stop, two and a half swings, the table.
+        const std::vector<double> x = column(folder / "run", "travel_x_top"),
+                                  y = column(folder / "run", "travel_y_top");
+        CHECK(std::fabs(x.back() - 2e-3) <= 1e-15);
+        if (program.name == "mpm_implicit")
+            CHECK(std::fabs(y.back() - (-0.1 * 0.02 - 1e-3 - 1e-3)) <= 1e-15);
+        for (const std::string& other :
+             {way + "0.04 2e-3 0\n", std::string("0 0 0\n0.01 0 -1e-3\n0.03 1e-3 -1e-3\n"),
+              std::string("0 0 0\n0.03 2e-3 -1e-3\n")}) {
+            const fs::path here = fresh_folder(program);
+            write_all(here / "way.txt", other);
+            write_all(here / "good.bin", good);
+            const Outcome outcome =
+                start(program, here, "--restart good.bin --out again --force --quiet");
+            INFO(outcome.err);
+            CHECK(outcome.status == 2);
+            CHECK(outcome.err.find("other tables of motion than its case reads") !=
+                  std::string::npos);
+        }
+    }
+}

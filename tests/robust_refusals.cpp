@@ -604,6 +604,9 @@ grains disks material.default.law=drucker_prager material.default.dilatancy_angl
     take at most the friction angle
 grains disks grain.left.control=force_x
     grain 'left' has control = "force_x" and is not rigid: give it a material with law = "rigid"
+grains disks grain.left.swing_y=0.1
+    grain 'left' has stop, swing or table and is not rigid: give it a material with law = "rigid"
+grains disks grain.left.stop=1 -> has stop, swing or table and is not rigid
 grains plates grain.top.spin=1
 grains plates grain.top.profile=wave
     grain 'top' is rigid and moves without turning: take out spin and profile
@@ -945,7 +948,7 @@ TEST_CASE("damaged files of packs are refused with their line" * doctest::descri
         {good + zero, "pack.txt:3: a control character; this is not a text file, or it is damaged"},
         {good + "\x1b[2J\n", "pack.txt:3: a control character"},
         {good + std::string(100001, '#'),
-         "pack.txt:3: the line has more than 100000 letters; this is not a pack of grains"},
+         "pack.txt:3: the line has more than 100000 letters; this is another kind of file"},
         {good + "disk b 0.35 0.3 0.1\n",
          "grains 'p_a' and 'p_b' overlap by 0.15, 3 cells: move them apart"},
     };
@@ -955,6 +958,40 @@ TEST_CASE("damaged files of packs are refused with their line" * doctest::descri
             write_all(folder / "pack.txt", bytes);
             check_refusal(*program, folder,
                           arguments_of({program, "mesh pack.p.kind=file pack.p.file=pack.txt", {}}),
+                          message);
+        }
+    }
+}
+
+TEST_CASE("damaged tables of motion are refused with their line" * doctest::description("robust")) {
+    const std::string good = "# time travel\n0 0 0\n\n1 0 0.1\n";
+    const std::vector<std::pair<std::string, std::string>> damaged{
+        {"", "[grain.lid]: way.txt: holds no travel; write two lines or more like: 0.5 1e-3"},
+        {"0 0\n", "way.txt: holds no travel"},
+        {"0\n1 0\n", "way.txt:1: 1 numbers for a time and a travel along x: write 2"},
+        {"0 0 0 0\n", "way.txt:1: 4 numbers for a time and a travel along x: write 2"},
+        {good + "2 0\n", "way.txt:5: 2 numbers for a time and a travel along x and y: write 3"},
+        {"0 0\n1 0 0\n", "way.txt:2: 3 numbers for a time and a travel along x: write 2"},
+        {good + "1 0 0\n",
+         "way.txt:5: the time '1' is not after that of the line before: sort the lines by time"},
+        {good + "0.5 0 0\n", "way.txt:5: the time '0.5' is not after"},
+        {good + "2 down 0\n", "way.txt:5: 'down' is not a number: write one like 0.25 or 1e-3"},
+        {good + "2 nan 0\n", "way.txt:5: 'nan' is no number to compute with: give a finite one"},
+        {good + "2 1e999 0\n", "way.txt:5: '1e999' is no number to compute with"},
+        {good + "1.000000000001 1 0\n", "steps, more than 1e9: raise time.alpha or lower time.end"},
+        {good + "2 \xff 0\n", "way.txt:5: not UTF-8 text; save the file as UTF-8"},
+        {good + "\x1b[2J\n", "way.txt:5: a control character"},
+    };
+    for (const Program* program : programs_called("grains")) {
+        for (const auto& [bytes, message] : damaged) {
+            const fs::path folder = fresh_folder(*program);
+            write_all(folder / "way.txt", bytes);
+            check_refusal(*program, folder,
+                          arguments_of({program,
+                                        "mesh grain.disk.x=0.3 grain.disk.y=0.3 "
+                                        "material.plate.law=rigid grain.lid.material=plate "
+                                        "grain.lid.x=0.7 grain.lid.y=0.3 grain.lid.table=way.txt",
+                                        {}}),
                           message);
         }
     }

@@ -70,6 +70,11 @@ inline void refuse_grain(const PlannedGrain& plan, const Material& material, con
                                                           plan.from.control +
                                                           "\" and is not rigid: give it a "
                                                           "material with law = \"rigid\"");
+    refuse(!rigid && (plan.from.stop != 0 || plan.from.swing_x != 0 || plan.from.swing_y != 0 ||
+                      !plan.table.empty()),
+           grain +
+               " has stop, swing or table and is not rigid: give it a material with law = "
+               "\"rigid\"");
     refuse(rigid && (plan.from.spin != 0 || plan.from.profile != "none"),
            grain + " is rigid and moves without turning: take out spin and profile");
     refuse(plan.from.profile != "none" && plan.from.shape != "box",
@@ -178,9 +183,9 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
         if (plan.from.control == "velocity" && plan.from.force != 0)
             warnings.push_back("grain '" + plan.name +
                                "' has a force and control = \"velocity\": the force does nothing");
-        const double unused = plan.from.control == "force_x"   ? plan.from.velocity_x
-                              : plan.from.control == "force_y" ? plan.from.velocity_y
-                                                               : 0;
+        double unused = 0;
+        if (plan.from.control == "force_x") unused = plan.from.velocity_x + plan.from.swing_x;
+        if (plan.from.control == "force_y") unused = plan.from.velocity_y + plan.from.swing_y;
         if (unused != 0)
             warnings.push_back("grain '" + plan.name + "' has control = \"" + plan.from.control +
                                "\" and a velocity in that direction, " + format(unused) +

@@ -7,11 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "mpm_explicit/grains.hpp"
 #include "mpm_explicit/material_laws.hpp"
 #include "mpm_explicit/setup/fill_grain.hpp"
 #include "mpm_explicit/setup/pack_file.hpp"
 #include "mpm_explicit/setup/packs.hpp"
 #include "mpm_explicit/setup/problem.hpp"
+#include "mpm_explicit/setup/travel_file.hpp"
 
 namespace mpm {
 
@@ -20,7 +22,8 @@ struct PlannedGrain {
     std::string name;
     Outline outline;
     int material = 0;
-    GrainCase from;  // velocities, profile, control
+    GrainCase from;                // velocities, profile, control
+    std::vector<TravelRow> table;  // that a rigid grain follows
 };
 
 /// Materials in the order of the case; with 'default' at the end when grains use it unnamed.
@@ -77,6 +80,15 @@ inline Outline outline_of(const GrainCase& g) {
     }
 }
 
+// The travel that a named grain is told.
+inline std::vector<TravelRow> table_of(const GrainCase& g) {
+    try {
+        return g.table.empty() ? std::vector<TravelRow>{} : read_travel(g.table);
+    } catch (const common::InputError& error) {
+        throw common::InputError("[grain." + g.name + "]: " + error.what());
+    }
+}
+
 // The grains of a pack.
 inline std::vector<PackedGrain> grains_of(const PackCase& p, const Problem& problem) {
     try {
@@ -113,7 +125,7 @@ inline std::vector<PackedGrain> grains_of(const PackCase& p, const Problem& prob
 }  // namespace detail
 
 /// All grains of a case: the named ones, then those of packs, called <pack>_<name>.
-/// errors: InputError for an unknown material, or an outline or a pack that cannot be
+/// errors: InputError for an unknown material, or an outline, a pack or a table that cannot be
 inline std::vector<PlannedGrain> plan_grains(const Problem& problem,
                                              const std::vector<Material>& materials) {
     const auto material_of = [&](const std::string& name, const std::string& whose) {
@@ -124,15 +136,15 @@ inline std::vector<PlannedGrain> plan_grains(const Problem& problem,
     };
     std::vector<PlannedGrain> grains;
     for (const GrainCase& g : problem.grains)
-        grains.push_back(
-            {g.name, detail::outline_of(g), material_of(g.material, "grain." + g.name), g});
+        grains.push_back({g.name, detail::outline_of(g), material_of(g.material, "grain." + g.name),
+                          g, detail::table_of(g)});
     for (const PackCase& p : problem.packs) {
         const int material = material_of(p.material, "pack." + p.name);
         for (const PackedGrain& packed : detail::grains_of(p, problem)) {
             GrainCase from;
             from.velocity_x = p.velocity_x + p.shear_rate * (packed.outline.y - p.y);
             from.velocity_y = p.velocity_y;
-            grains.push_back({p.name + "_" + packed.name, packed.outline, material, from});
+            grains.push_back({p.name + "_" + packed.name, packed.outline, material, from, {}});
         }
     }
     return grains;

@@ -32,6 +32,8 @@ struct GrainCase {
     std::string profile = "none";  // or bar, wave: of the velocity along x
     double amplitude = 0;
     long mode = 1;
+    double stop = 0, swing_x = 0, swing_y = 0, period = 1;
+    std::string table;                 // path
     std::string control = "velocity";  // or force_x, force_y
     double force = 0, damping = 0;
 };
@@ -136,6 +138,14 @@ inline void describe_grain(common::ParameterTable& table, const std::string& pre
                  "of v_x along its length L: amplitude sin((n - 1/2) pi s/L), sin(n pi s/L)");
     table.real(at + "amplitude", g.amplitude, "velocity", anything(), "of the profile");
     table.whole(at + "mode", g.mode, "", between(1, 1000), "n of the profile");
+    table.real(at + "stop", g.stop, "time", at_least(0),
+               "rigid: when its velocity begins to end, smoothly as it rose; 0: never");
+    table.real(at + "swing_x", g.swing_x, "length", anything(),
+               "rigid: adds swing sin^2(pi t/period) to its travel");
+    table.real(at + "swing_y", g.swing_y, "length", anything(), "the same along y");
+    table.real(at + "period", g.period, "time", above(0), "of the swing");
+    table.text(at + "table", g.table,
+               "rigid: file with a time, a travel along x and, if any, one along y in each line");
     table.choice(at + "control", g.control, {"velocity", "force_x", "force_y"},
                  "rigid: prescribed velocity, or force control in one direction");
     table.real(at + "force", g.force, "force", anything(), "force control: on the grain");

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <variant>
 #include <vector>
@@ -40,9 +41,11 @@ inline Scales scales_of(const Case& parameters) {
         const Material& material = materials[plan.material];
         const GrainCase& from = plan.from;
         s.sound_speed = std::max(s.sound_speed, sound_speed(material));
-        s.speed = std::max(s.speed, std::hypot(from.velocity_x, from.velocity_y) +
-                                        std::fabs(from.amplitude) +
-                                        std::fabs(from.spin) * plan.outline.radius);
+        s.speed = std::max(
+            s.speed, std::hypot(from.velocity_x, from.velocity_y) + std::fabs(from.amplitude) +
+                         std::fabs(from.spin) * plan.outline.radius +
+                         std::numbers::pi / from.period * std::hypot(from.swing_x, from.swing_y) +
+                         fastest(plan.table));
         s.particles += std::lround(area(plan.outline) / (side * side));
         lightest = std::min(lightest, material.density * side * side);
         s.thinnest = std::min(s.thinnest, thinnest(plan.outline));
