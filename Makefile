@@ -319,6 +319,7 @@ $(eval $(call mpm_series,mpm_explicit_bonded_bar,bonded_bar,out/mpm_explicit/bon
 $(eval $(call mpm_series,mpm_explicit_oscillator,oscillator,out/mpm_explicit/oscillators))
 $(eval $(call mpm_series,mpm_explicit_sulsky_disks,sulsky_disks,out/mpm_explicit/collisions))
 $(eval $(call mpm_series,mpm_explicit_rest,block_at_rest,out/mpm_explicit/rests))
+$(eval $(call mpm_series,mpm_explicit_plates,plate_holds cyclic_plate,out/mpm_explicit/plates))
 
 # $(call implicit_series,figure,cases,folder): a figure of several runs of mpm_implicit.
 define implicit_series

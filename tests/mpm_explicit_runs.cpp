@@ -112,6 +112,39 @@ TEST_CASE("a grain at rest stays at rest and bursts with contact on the new velo
     run("rest", "block_at_rest", "time.end=15 contact.levels=1", 3);
 }
 
+TEST_CASE(
+    "a plate that stops holds a block at rest and bursts it with contact on the new velocity" *
+    doctest::description("physics")) {
+    // Free to widen, E/(1 - nu^2); around a period, lambda + 2 G, which is 22 per cent more.
+    for (const char* change :
+         {"", "grid.periodic_x=true grain.block.width=1 grain.bottom.width=1 grain.top.width=1"}) {
+        const Run r = run("hold", "plate_holds", change);
+        check_results(r, 6);
+        CHECK(std::fabs(r.column("travel_y_top").back() + 2e-3) <= 1e-14);
+        check_budget(r);
+    }
+    const Run burst = run("hold", "plate_holds", "contact.levels=1", 3);
+    CHECK(burst.column("time").back() > 3);
+}
+
+TEST_CASE("a block that yields keeps what theory says in every cycle of its plate" *
+          doctest::description("physics")) {
+    const Run r = run("cycle", "cyclic_plate", "");
+    check_results(r, 5);
+    check_budget(r);
+    // Another yield stress, and rollers in the place of the period.
+    check_results(run("cycle", "cyclic_plate",
+                      "material.default.yield_stress=150 grid.periodic_x=false boundary.x_low=slip "
+                      "boundary.x_high=slip"),
+                  5);
+    // What stays elastic gives all back, but for the step.
+    const Run elastic = run("cycle", "cyclic_plate", "material.default.law=elastic");
+    check_results(elastic, 5);
+    const Run finer = run("cycle", "cyclic_plate", "material.default.law=elastic time.alpha=0.125");
+    CHECK(finer.value("loop_area") / elastic.value("loop_area") ==
+          doctest::Approx(0.5).epsilon(0.02));
+}
+
 TEST_CASE("the colliding disks of Sulsky meet when their surfaces do" *
           doctest::description("physics")) {
     const Run r = run("sulsky", "sulsky_disks", "");

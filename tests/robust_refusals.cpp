@@ -768,6 +768,24 @@ mpm_implicit billet.toml grain.top.width=0.5
     and let them touch
 mpm_implicit billet.toml grain.top.y=0.549 grain.billet.height=0.39 grain.billet.y=0.295
     plate 'top' does not cover a whole side of 'billet'
+mpm_implicit billet_plastic.toml grid.cells_x=12 grid.length_x=0.6 grid.periodic_x=true \
+    grain.billet.x=0.3 grain.top.x=0.3 grain.top.width=0.6 grain.bottom.x=0.3 grain.bottom.width=0.6
+    theory.compare = "billet" knows no limit for a block that cannot widen: make it narrower
+mpm_explicit plate_holds.toml grain.top.stop=0
+mpm_explicit plate_holds.toml time.end=5
+mpm_explicit plate_holds.toml material.default.law=j2
+    theory.compare = "hold" needs an elastic block, and a plate that has come to rest, at stop +
+    load.rise, when half of the run is over
+mpm_explicit cyclic_plate.toml grain.top.swing_y=0
+mpm_explicit cyclic_plate.toml grain.top.stop=0
+mpm_explicit cyclic_plate.toml time.end=6
+    theory.compare = "cycle" needs a plate with a swing_y, and two whole periods after it has come
+    to rest otherwise
+mpm_explicit cyclic_plate.toml grain.block.width=0.8
+mpm_explicit cyclic_plate.toml grain.top.velocity_y=-2e-4
+mpm_explicit cyclic_plate.toml grain.top.swing_y=2e-3
+    theory.compare = "cycle" of what yields needs a block as wide as the mesh, between rollers or
+    periodic, and a velocity that presses it before by a stress above 2/3 of yield_stress
 mpm_implicit billet.toml theory.plate=middle -> theory.plate: there is no grain 'middle'
 )");
 }
