@@ -37,7 +37,7 @@ int run_case(const Shape& shape, const Case& parameters, const Scales& scales, c
     const std::vector<Grain>& grains = state.assembly.grains;
     std::vector<RigidMotion>& rigid = state.assembly.rigid;
     const std::vector<AnyLaw> laws = laws_of(parameters.problem);
-    const Contact contact(parameters.problem.contact, grains, state.assembly.bonds);
+    const Contact contact(contact_rule(parameters.problem), grains, state.assembly.bonds);
     const double dt = scales.dt;
     GrainNodes nodes(parameters.problem.mesh(), Shape::width, scales.least_mass);
     LeapfrogRecorder recorder(parameters, scales, state, run.history);

@@ -31,7 +31,7 @@ int run_case(const Shape& shape, const Case& parameters, const ThetaScheme& sche
     // 2. Particles at t = 0.
     State state;
     Assembly& all = state.assembly = assemble(parameters.problem);
-    const Contact contact(parameters.problem.contact, all.grains, all.bonds);
+    const Contact contact(contact_rule(parameters.problem), all.grains, all.bonds);
     const double dt = scales.dt;
     GrainNodes nodes(parameters.problem.mesh(), Shape::width, scales.least_mass);
     StepScratch<Shape::width - 1> scratch{

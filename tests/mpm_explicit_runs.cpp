@@ -204,6 +204,15 @@ TEST_CASE("a block on an incline slides as theory says or sticks" *
     }
 }
 
+TEST_CASE("two blocks on one incline slide each with the friction of its material" *
+          doctest::description("physics")) {
+    facts::check_two_blocks("mpm_explicit", 0.003);
+    // What the comparison expects is of the pair, too.
+    check_results(
+        run("pair", "incline_block", "pair.one.a=plate pair.one.friction=0.1 contact.friction=2"),
+        3);
+}
+
 TEST_CASE("a cylinder rolls on a rough incline and slips on a smooth one" *
           doctest::description("physics")) {
     check_results(run("cylinder", "incline_cylinder", ""), 1);

@@ -302,6 +302,11 @@ TEST_CASE("a block between plates has the modulus of plane strain whatever the s
     }
 }
 
+TEST_CASE("two blocks on one incline slide each with the friction of its material" *
+          doctest::description("physics")) {
+    facts::check_two_blocks("mpm_implicit", 0.003);
+}
+
 TEST_CASE("plates hold and cycle as in the explicit program in longer steps" *
           doctest::description("physics")) {
     const std::string hold = "mpm_explicit/cases/plate_holds.toml output.history_steps=1 ",

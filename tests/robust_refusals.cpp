@@ -650,6 +650,12 @@ TEST_CASE("bonds that nothing can hold are refused with their names" *
 grains disks joint
     [bond.joint]: 'left' and 'right' do not touch: put them within a quarter of a cell
 grains disks bond.joint.tension=1 -> [bond.joint]: '*' and '*' do not touch
+grains disks pair.one.friction=0.2 pair.one.a=glass
+    [pair.one]: there is no [material.glass]; add it, or name another material
+grains disks pair.one.friction=0.2 pair.one.b= -> [pair.one]: there is no [material.]
+grains disks material.glass.E=1e4 pair.one.a=glass pair.two.b=glass
+    [pair.two]: 'default' and 'glass' are in [pair.one], too: take one out
+grains disks pair.one.friction=-1 -> 'pair.one.friction' = -1 is out of range
 grains disks bond.joint.a=nobody
     [bond.joint]: there is no grain 'nobody'; name one of the case, or "*" for all
 grains disks bond.joint.a= -> [bond.joint]: there is no grain ''

@@ -40,8 +40,7 @@ class LeapfrogRecorder {
                      common::History& history)
         : dt_(scales.dt),
           levels_(parameters.problem.contact.levels),
-          frictionless_(parameters.problem.contact.friction == 0 &&
-                        parameters.problem.contact.wall_friction == 0),
+          frictionless_(!parameters.problem.has_friction()),
           recorder_(parameters, leapfrog, scales, state.assembly, comparisons, "budget") {
         Budget none;
         none.momentum_x.assign(state.assembly.grains.size(), 0), none.momentum_y = none.momentum_x;

@@ -132,6 +132,7 @@ inline void validate(const Case& parameters, const common::ParameterTable& table
                                 format(worst.depth) + ", " + format(worst.depth / mesh.h) +
                                 " cells: move them apart or make them smaller");
     (void)bonds_of(problem, plans, materials);
+    (void)contact_rule(problem);
     const double pixels = double(problem.cells_x * parameters.pixels_per_cell) *
                           double(problem.cells_y * parameters.pixels_per_cell);
     refuse(parameters.fringes_interval > 0 && pixels > 5e7,

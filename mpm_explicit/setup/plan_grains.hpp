@@ -48,6 +48,29 @@ inline std::vector<Material> materials_of(const Problem& problem) {
 /// The law of every material.
 inline std::vector<AnyLaw> laws_of(const Problem& w) { return laws_of(materials_of(w)); }
 
+/// The rule of contact, with the friction of every pair of materials.
+/// errors: InputError for a material that is not there, or two whose friction is told twice
+inline ContactRule contact_rule(const Problem& problem) {
+    ContactRule rule = problem.contact;
+    if (problem.pairs.empty()) return rule;
+    const std::vector<Material> materials = materials_of(problem);
+    for (const PairCase& pair : problem.pairs) {
+        const std::string place = "[pair." + pair.name + "]: ";
+        for (const std::string& name : {pair.a, pair.b})
+            refuse(std::none_of(materials.begin(), materials.end(),
+                                [&](const Material& m) { return m.name == name; }),
+                   place + "there is no [material." + name + "]; add it, or name another material");
+        for (const PairCase* other = problem.pairs.data(); other != &pair; ++other)
+            refuse(std::minmax(other->a, other->b) == std::minmax(pair.a, pair.b),
+                   place + "'" + pair.a + "' and '" + pair.b + "' are in [pair." + other->name +
+                       "], too: take one out");
+    }
+    for (const Material& a : materials)
+        for (const Material& b : materials)
+            rule.between.push_back(problem.friction_between(a.name, b.name));
+    return rule;
+}
+
 namespace detail {
 
 // The corners in a text "x y, x y, ...".

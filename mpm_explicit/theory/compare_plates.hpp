@@ -38,7 +38,7 @@ inline void need_press(const PlannedCase& planned) {
     const PlannedGrain& block = planned.plans[planned.target()];
     planned.refuse(planned.free_grains() != 1 || planned.plans.size() != 3 ||
                        block.from.shape != "box" || block.from.angle != 0 ||
-                       problem.contact.friction != 0 || pressing_plate(planned) == planned.target(),
+                       problem.has_friction() || pressing_plate(planned) == planned.target(),
                    " needs one upright box between two rigid plates without friction, of which one "
                    "moves along y");
     const Material& m = planned.material_of(block);

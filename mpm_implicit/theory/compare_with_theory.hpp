@@ -28,7 +28,7 @@ inline bool keeps_energy(const Case& parameters, const theory::SchemeFacts& sche
 inline theory::SchemeFacts facts_of(const Case& parameters, const ThetaScheme& scheme) {
     theory::SchemeFacts facts{
         .theta = scheme.theta, .force_level = scheme.theta, .consistent_mass = scheme.consistent()};
-    const bool keeps = keeps_energy(parameters, facts) && parameters.problem.contact.friction == 0;
+    const bool keeps = keeps_energy(parameters, facts) && !parameters.problem.has_friction();
     facts.bar_tolerance = keeps ? 1e-8 : std::numeric_limits<double>::infinity();
     facts.rebound_tolerance = facts.bar_tolerance;
     return facts;
