@@ -36,6 +36,12 @@ TEST_CASE("at a quarter of the limit two disks rebound" * doctest::description("
     CHECK(std::fabs(r.value("rebound") - 0.95) <= 0.03);
     CHECK(std::fabs(r.value("contact_begins") - 0.5) <= 0.02);
     CHECK(std::fabs(r.value("contact_lasts") - 0.37) <= 0.03);
+    // Half of the contact is 0.24 R, and R is eight cells: too few, which a warning says.
+    CHECK(std::fabs(r.value("contact_half_width") / 8 - 0.24) <= 0.005);
+    CHECK(r.summary["warnings"].size() == 1);
+    CHECK(run("fine", "rebound", "grid.cells_x=144 grid.cells_y=72 time.end=1")
+              .summary["warnings"]
+              .empty());
     check_budget(r);
     const double p = r.column("momentum_x_left").front();
     CHECK(largest(r.column("momentum_x")) <= 1e-12 * p);

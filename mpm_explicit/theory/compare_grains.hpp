@@ -176,8 +176,7 @@ inline void compare_disk(const FinishedRun& run, common::Summary& summary) {
     summary.result("center_yy", yy / center.yy, "1", 1, run.parameters.tolerance,
                    source + ", over -6P/(pi D)");
     const Material& m = run.material();
-    const double b = contact_half_width({R, m.density, m.E, m.nu}, P);
-    summary.result_info("contact_half_width", b / R, "R", "line contact; the loads are no points");
+    report_contact(run, contact_half_width({R, m.density, m.E, m.nu}, P), summary);
 }
 
 // ---- a grain that yields ------------------------------------------------------------------------
