@@ -322,6 +322,7 @@ $(eval $(call mpm_series,mpm_explicit_rest,block_at_rest,out/mpm_explicit/rests)
 # Of both programs.
 $(eval $(call mpm_series,mpm_explicit_flutter,sliding_block,out/mpm_explicit/flutters))
 out/mpm_explicit/flutters/.complete: $(BUILD)/mpm_implicit mpm_implicit/cases/sliding_block.toml
+$(eval $(call mpm_series,mpm_explicit_plates,plate_holds cyclic_plate,out/mpm_explicit/plates))
 
 # $(call implicit_series,figure,cases,folder): a figure of several runs of mpm_implicit.
 define implicit_series

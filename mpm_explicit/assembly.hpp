@@ -51,7 +51,7 @@ void archive_momenta(Archive& a, std::vector<Momenta>& of) {
         of[g] = {x[g], y[g], angular.size() > g ? angular[g] : 0};
 }
 
-/// errors: InputError for a checkpoint whose grains or bonds are not those of the case
+/// errors: InputError for a checkpoint whose grains, bonds or tables are not those of the case
 template <class Archive>
 void archive(Archive& a, Assembly& assembly) {
     std::vector<int> ends;
@@ -59,7 +59,11 @@ void archive(Archive& a, Assembly& assembly) {
     const std::vector<int> expected = ends;
     a("grains", ends);
     archive(a, assembly.particles);
-    std::vector<double> motion, bonds;
+    std::vector<double> motion, bonds, tables;
+    for (const RigidMotion& is : assembly.rigid)
+        for (const TravelRow& row : is.table) tables.insert(tables.end(), {row.t, row.x, row.y});
+    const std::vector<double> expected_tables = tables;
+    a("motion_tables", tables);
     for (RigidMotion& is : assembly.rigid)
         for (double* value : {&is.vx, &is.vy, &is.push_x, &is.push_y, &is.travel_x, &is.travel_y})
             motion.push_back(*value);
@@ -72,6 +76,10 @@ void archive(Archive& a, Assembly& assembly) {
         throw common::InputError(
             "the checkpoint holds other grains or bonds than its case makes: put the files of "
             "packs back as they were when the run began");
+    if (tables != expected_tables)
+        throw common::InputError(
+            "the checkpoint was made with other tables of motion than its case reads: put the "
+            "files back as they were when the run began");
     // What a reader has put there, back where it belongs; a writer finds its own again.
     for (std::size_t k = 0; k < assembly.rigid.size(); ++k) {
         RigidMotion& is = assembly.rigid[k];

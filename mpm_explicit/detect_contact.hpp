@@ -20,6 +20,7 @@ namespace mpm {
 
 struct ContactRule {
     double friction = 0, wall_friction = 0;  // Coulomb's coefficients
+    std::vector<double> between;  // friction of two materials, n by n; empty: one for all
     // Grains press when the centers of their parts around a node are nearer than this, in cells; 0:
     // wherever they approach, which is too early.
     double separation = 0.8;
@@ -69,12 +70,16 @@ class ContactDetection {
    public:
     ContactDetection(const ContactRule& rule, const std::vector<Grain>& grains,
                      const std::vector<Bond>& bonds)
-        : rule_(rule), bonds_of_(grains.size()) {
+        : rule_(rule), materials_(std::lround(std::sqrt(rule.between.size()))) {
+        bonds_of_.resize(grains.size());
         for (std::size_t k = 0; k < bonds.size(); ++k) {
             const auto [low, high] = std::minmax(bonds[k].a, bonds[k].b);
             bonds_of_[low].push_back({high, static_cast<int>(k)});
         }
-        for (const Grain& grain : grains) is_rigid_.push_back(grain.rigid);
+        for (const Grain& grain : grains) {
+            is_rigid_.push_back(grain.rigid);
+            material_.push_back(grain.material);
+        }
     }
 
     const ContactRule& rule() const { return rule_; }
@@ -190,7 +195,11 @@ class ContactDetection {
                 const double limit = rule_.separation * h * (two.wall ? 0.5 : 1);
                 if (bond < 0 && limit > 0 && apart > limit) continue;
                 pair.a = a, pair.b = b, pair.bond = bond;
-                pair.mu = two.wall ? rule_.wall_friction : rule_.friction;
+                pair.mu =
+                    two.wall ? rule_.wall_friction
+                    : rule_.between.empty()
+                        ? rule_.friction
+                        : rule_.between[material_[one.grain] * materials_ + material_[two.grain]];
                 pair.lambda_n = pair.lambda_t = pair.old_n = pair.old_t = 0;
                 pair.state = ContactState::open, pair.held_n = pair.held_t = bond >= 0;
                 ++count;
@@ -227,8 +236,10 @@ class ContactDetection {
     static constexpr double low_mass = 1e-5;
 
     ContactRule rule_;
+    long materials_;
     std::vector<std::vector<std::pair<int, int>>> bonds_of_;
     std::vector<bool> is_rigid_;
+    std::vector<int> material_;
 };
 
 }  // namespace mpm

@@ -16,13 +16,21 @@ struct Grain {
     long begin = 0, end = 0;  // its particles
 };
 
-/// How a rigid grain moves: with a given velocity, or in one direction as a force drives it. Grains
-/// that are not rigid have one, too, and do not use it.
+/// How far a grain has traveled at a time.
+struct TravelRow {
+    double t = 0, x = 0, y = 0;
+};
+
+/// How a rigid grain moves: as it is told (apply_loads.hpp), or in one direction as a force drives
+/// it. Grains that are not rigid have one, too, and do not use it.
 struct RigidMotion {
     double vx = 0, vy = 0;              // velocity in this step
     double push_x = 0, push_y = 0;      // force of the other grains on it, in the last step
     double travel_x = 0, travel_y = 0;  // since the start
     double prescribed_vx = 0, prescribed_vy = 0;  // when the load has risen
+    double stop = 0;                              // when it begins to end; 0: never
+    double swing_x = 0, swing_y = 0, period = 1;
+    std::vector<TravelRow> table;  // times rising
     bool force_control_x = false, force_control_y = false;
     double force = 0, mass = 1, damping = 0;  // of the force control
 };

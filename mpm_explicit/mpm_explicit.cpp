@@ -24,8 +24,7 @@ using namespace mpm_explicit;
 
 const common::ProgramInfo info{
     "mpm_explicit", PROGRAM_VERSION,
-    "the explicit material point method for grains in contact; the default "
-    "case is two elastic disks that rebound",
+    "the explicit material point method for grains; the default case is two disks that rebound",
     "mpm_explicit/cases/rebound.toml"};
 
 template <class Shape>
@@ -33,11 +32,9 @@ int run_case(const Shape& shape, const Case& parameters, const Scales& scales, c
     // 2. Particles at t = 0, stresses half a step before.
     State state;
     state.assembly = assemble(parameters.problem);
-    Particles& particles = state.assembly.particles;
-    const std::vector<Grain>& grains = state.assembly.grains;
-    std::vector<RigidMotion>& rigid = state.assembly.rigid;
+    auto& [particles, grains, rigid, bonds] = state.assembly;
     const std::vector<AnyLaw> laws = laws_of(parameters.problem);
-    const Contact contact(parameters.problem.contact, grains, state.assembly.bonds);
+    const Contact contact(contact_rule(parameters.problem), grains, bonds);
     const Transfer transfer = parameters.transfers();
     const double dt = scales.dt;
     GrainNodes nodes(parameters.problem.mesh(), Shape::width, scales.least_mass);
@@ -45,9 +42,8 @@ int run_case(const Shape& shape, const Case& parameters, const Scales& scales, c
     StepSums sums;
     long step = 0;
     if (run.restarting()) {
-        run.restore(state, step, [&] {
-            validate_state(nodes.mesh(), Shape::width, transfer.kind != Transfer::none, state);
-        });
+        run.restore(state, step,
+                    [&] { validate_state(nodes.mesh(), Shape::width, transfer, state); });
         nodes.lay_out(grains, state.layout);
     } else {
         nodes.sort(grains, particles, state.layout);
@@ -81,7 +77,8 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     Case parameters;
     common::ParameterTable table = describe(parameters, theory::names_of(comparisons));
     const common::CommandLine command = common::read_command_line(argc, argv, info, table);
-    mpm_explicit::validate(parameters, table);
+    validate_explicit(parameters, table);
+    keep_time_step(info, command, parameters);
     const Scales scales = scales_of(parameters);
     theory::validate_comparison({parameters, leapfrog}, scales, comparisons);
     if (!common::start_run(

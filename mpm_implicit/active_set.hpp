@@ -27,7 +27,6 @@ struct PairUpdate {
     double friction = 0;  // lambda_t that the next solution is to have, if the pair slips
     double target = 0;    // what friction ought to be by this solution
     double lambda_before = 0, target_before = 0;  // lambda_t and target of the solution before
-    int releases = 0, switches = 0;               // in this step
 };
 
 /// Impulses of the pairs are those on v^theta: theta times what particles feel.

@@ -29,8 +29,10 @@ inline BodyForce apply_loads(const Loads& loads, long step, double dt,
         if (is.force_control_x || is.force_control_y)
             force_controls.push_back({g, is.force_control_x, is.mass, is.damping, share * is.force,
                                       is.force_control_x ? is.vx : is.vy});
-        if (!is.force_control_x) is.vx = share * is.prescribed_vx, is.travel_x += dt * is.vx;
-        if (!is.force_control_y) is.vy = share * is.prescribed_vy, is.travel_y += dt * is.vy;
+        const auto [vx, vy] =
+            prescribed_velocity(is, static_cast<double>(step) * dt, dt, loads.rise);
+        if (!is.force_control_x) is.vx = vx, is.travel_x += dt * vx;
+        if (!is.force_control_y) is.vy = vy, is.travel_y += dt * vy;
     }
     return body_force(loads, t);
 }

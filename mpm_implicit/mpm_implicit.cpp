@@ -5,7 +5,6 @@
 // Run:   build/mpm_implicit
 // Run:   build/mpm_implicit mpm_implicit/cases/rebound.toml time.alpha=5
 // Run:   build/mpm_implicit mpm_implicit/cases/rebound.toml method.mass=lumped
-//
 // Reading order: step.hpp; then as the README says. What both programs share is in mpm_explicit/.
 #include <optional>
 
@@ -31,7 +30,7 @@ int run_case(const Shape& shape, const Case& parameters, const ThetaScheme& sche
     // 2. Particles at t = 0.
     State state;
     Assembly& all = state.assembly = assemble(parameters.problem);
-    const Contact contact(parameters.problem.contact, all.grains, all.bonds);
+    const Contact contact(contact_rule(parameters.problem), all.grains, all.bonds);
     const double dt = scales.dt;
     GrainNodes nodes(parameters.problem.mesh(), Shape::width, scales.least_mass);
     StepScratch<Shape::width - 1> scratch{
@@ -78,6 +77,7 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     common::ParameterTable table = describe(parameters, scheme, theory::names_of(comparisons));
     const common::CommandLine command = common::read_command_line(argc, argv, info, table);
     validate(parameters, scheme, table);
+    keep_time_step(info, command, parameters);
     Scales scales = scales_of(parameters, false);
     scales.bytes = bytes_of(parameters, scheme, scales);
     theory::validate_comparison({parameters, facts_of(parameters, scheme)}, scales, comparisons);

@@ -138,7 +138,6 @@ class NodeSolver {
             constraints.find_impulses(work_.r, set);
             const ActiveSetChange change =
                 update_active_set(v_, controlled.V, nodes, tolerance, set);
-            report.held = change.held;
             if (change.settled) {
                 if (tolerance == scheme.tolerance) break;
                 // The same set, to the end.

@@ -16,7 +16,6 @@ struct SolveReport {
     long mass_iterations = 0;  // for v^0
     long loops = 0;            // active sets tried, or Newton steps
     long krylov = 0;           // GMRES vectors of Newton's steps
-    long held = 0;             // pairs that the rules against cycles of sets have kept as they were
 };
 
 /// A closed pair of the last step, which the next one begins with.
@@ -31,13 +30,13 @@ struct ActivePair {
 
 /// What the solvers took, summed up over the steps.
 struct Effort {
-    double iterations = 0, mass_iterations = 0, krylov = 0, loops = 0, held = 0;
+    double iterations = 0, mass_iterations = 0, krylov = 0, loops = 0;
 
     void add(const SolveReport& step) {
         iterations += static_cast<double>(step.iterations),
             loops += static_cast<double>(step.loops);
         mass_iterations += static_cast<double>(step.mass_iterations);
-        krylov += static_cast<double>(step.krylov), held += static_cast<double>(step.held);
+        krylov += static_cast<double>(step.krylov);
     }
 };
 
@@ -65,7 +64,7 @@ void archive(Archive& a, State& state) {
     archive(a, state.budget);
     Effort& e = state.effort;
     a("iterations", e.iterations), a("mass_iterations", e.mass_iterations);
-    a("krylov", e.krylov), a("loops", e.loops), a("held", e.held);
+    a("krylov", e.krylov), a("loops", e.loops);
     std::vector<double> pairs;
     for (const ActivePair& pair : state.active_pairs)
         pairs.insert(pairs.end(),

@@ -4,9 +4,9 @@
 //     closed  -> open    where the impulse pulls: lambda < 0
 //     stick   -> slip    where |lambda_t| > mu lambda, or where not all can stick and the pair slides
 //     slip    -> stick   where friction drives: lambda_t (v_b - v_a).t > 0
-// Two rules end cycles of sets: a pair that comes back only slips, and in a step a pair may open
-// twice and change between stick and slip three times. What may change no more stays as it is, and
-// is counted.
+// A pair that comes back only slips: otherwise sets can follow each other in a cycle. A pair may
+// change as often as it has to. Where a pair was kept as it was after two or three changes, it pulled
+// or rubbed too much, by up to a third of the largest impulse.
 #pragma once
 
 #include <cmath>
@@ -21,7 +21,6 @@ struct ActiveSetChange {
     bool settled = true;
     std::size_t pair = 0;  // that changed last, or whose friction changed most
     double friction = 0;   // its change, of the largest impulse
-    long held = 0;         // pairs that ought to change, and may not any more
 };
 
 /// The friction x of slipping pairs that the next solution is to have. Friction makes pressure, and
@@ -59,7 +58,6 @@ inline ActiveSetChange update_active_set(const Vector& v, const std::vector<doub
                                          const GrainNodes& nodes, double accuracy, ActiveSet& set) {
     const long size = nodes.size();
     const double nearly = 1e3 * accuracy, friction_error = 1e5 * accuracy;
-    constexpr int max_releases = 2, max_switches = 3;
     double largest = 0, fastest = 0;
     for (const ContactPair& pair : set.list.pairs)
         largest = std::max({largest, std::fabs(pair.lambda_n), std::fabs(pair.lambda_t)});
@@ -95,28 +93,19 @@ inline ActiveSetChange update_active_set(const Vector& v, const std::vector<doub
                     update.friction = 0;
                 }
             } else if (pair.lambda_n < -nearly * largest) {
-                if (update.releases < max_releases)
-                    pair.state = ContactState::open, ++update.releases;
-                else
-                    ++change.held;
+                pair.state = ContactState::open;
             } else if (pair.mu > 0) {
                 const double most = pair.mu * std::max(0.0, pair.lambda_n);
                 // Where a grain cannot stick to all who hold it, a pair slips all the same.
                 const bool slips = std::fabs(slip) > nearly * fastest;
                 if (pair.state == ContactState::stick &&
                     (slips || std::fabs(pair.lambda_t) > most * (1 + nearly))) {
-                    if (update.switches < max_switches) {
-                        pair.state = ContactState::slip, ++update.switches;
-                        update.friction = std::copysign(most, slips ? -slip : pair.lambda_t);
-                    } else {
-                        ++change.held;
-                    }
+                    pair.state = ContactState::slip;
+                    update.friction = std::copysign(most, slips ? -slip : pair.lambda_t);
                 } else if (pair.state == ContactState::slip) {
-                    const bool drives = pair.lambda_t * slip > nearly * largest * fastest;
-                    if (drives && update.switches < max_switches) {
-                        pair.state = ContactState::stick, ++update.switches;
+                    if (pair.lambda_t * slip > nearly * largest * fastest) {
+                        pair.state = ContactState::stick;
                     } else {
-                        change.held += drives ? 1 : 0;
                         const double now =
                             std::copysign(most, pair.lambda_t == 0 ? -slip : pair.lambda_t);
                         const double by_now = std::fabs(now - pair.lambda_t);

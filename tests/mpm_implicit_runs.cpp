@@ -314,6 +314,43 @@ TEST_CASE("a block between plates has the modulus of plane strain whatever the s
     }
 }
 
+TEST_CASE("contact settles with much friction in long steps" * doctest::description("physics")) {
+    // Where a pair may change only a few times, some pull or rub too much here.
+    for (const char* change : {"contact.friction=0.8 time.alpha=30", "contact.friction=0.3"}) {
+        const Run r = run("settles", "compressed", std::string(change) + " theory.compare=energy");
+        check_results(r, 2);
+        check_theorem(r);
+        CHECK(*std::max_element(r.column("loops").begin(), r.column("loops").end()) <= 25);
+    }
+}
+
+TEST_CASE("two blocks on one incline slide each with the friction of its material" *
+          doctest::description("physics")) {
+    facts::check_two_blocks("mpm_implicit", 0.003);
+}
+
+TEST_CASE("plates hold and cycle as in the explicit program in longer steps" *
+          doctest::description("physics")) {
+    const std::string hold = "mpm_explicit/cases/plate_holds.toml output.history_steps=1 ",
+                      cycle = "mpm_explicit/cases/cyclic_plate.toml ",
+                      elastic = "material.default.law=elastic time.alpha=4 method.theta=";
+    for (const char* change :
+         {"time.alpha=10", "time.alpha=100 method.theta=1",
+          "time.alpha=100 method.theta=1 grid.periodic_x=true grain.block.width=1 "
+          "grain.bottom.width=1 grain.top.width=1"}) {
+        const Run r = facts::run_mpm("mpm_implicit", "hold", hold + change);
+        check_results(r, 5);
+        check_theorem(r);
+        CHECK(std::fabs(r.column("time").back() - 15) <= 1e-12);
+    }
+    check_results(
+        facts::run_mpm("mpm_implicit", "cycle", cycle + "solver.kind=newton_krylov time.alpha=4"),
+        4);
+    // What steps of theta take from an elastic block, (theta - 1/2) pi^2/2 M range^2 dt/T.
+    for (const char* theta : {"0.5", "0.75", "1"})
+        check_results(facts::run_mpm("mpm_implicit", "cycle", cycle + elastic + theta), 4);
+}
+
 TEST_CASE("a block that yields bears the limit of plane strain" * doctest::description("physics")) {
     const Run r = run("billet_plastic", "billet_plastic", "");
     check_results(r, 3);

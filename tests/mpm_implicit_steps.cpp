@@ -473,7 +473,7 @@ TEST_CASE("boxes that are bonded move as one box does") {
 // ---- what contact asks for -----------------------------------------------------------------------
 
 TEST_CASE("impulses press and gaps stay open and friction is Coulomb's at the solution") {
-    long pressed = 0, stuck = 0, slipped = 0, open = 0, held = 0;
+    long pressed = 0, stuck = 0, slipped = 0, open = 0;
     double approach = 0, pull = 0, both = 0, rub = 0, with = 0;
     std::uint64_t number = 0;
     for (const double mu : {0.0, 0.2, 0.8}) {
@@ -488,8 +488,7 @@ TEST_CASE("impulses press and gaps stay open and friction is Coulomb's at the so
                     [&](Assembly& all) { shake(0.1, ++number, all); });
                 for (int step = 0; step < 8; ++step) {
                     run.begin(), run.solve();
-                    held += run.sums.solver.held;
-                    if (run.sums.solver.held == 0) {
+                    {
                         const ActiveSet& set = run.set();
                         double press = 0, speed = 0;
                         for (const ContactPair& pair : set.list.pairs)
@@ -536,7 +535,6 @@ TEST_CASE("impulses press and gaps stay open and friction is Coulomb's at the so
     CHECK(both <= 1e-10);
     CHECK(rub <= 1e-8);
     CHECK(with <= 1e-10);
-    CHECK(50 * held <= pressed);
     CHECK(pressed >= 500);
     CHECK(open >= 200);
     CHECK(stuck >= 100);

@@ -158,6 +158,28 @@ explicit_em explicit_weibel.toml uniform.particles_per_cell=16 time.end=0.8 part
                           {}}));
 }
 
+TEST_CASE("a restart of grains with another end keeps the time step" *
+          doctest::description("robust")) {
+    // Without time.dt, the step is what leads to the end. The case that the restart leaves tells the
+    // step, and makes the same run from the start.
+    for (const Command& command : commands("grains rebound time.end=0.1")) {
+        INFO(command.program->name);
+        const std::string part = folder("part"), rest = folder("rest"), whole = folder("whole");
+        REQUIRE(run(command, part, "output.checkpoint_steps=3") == 0);
+        REQUIRE(run(command.program->name,
+                    "--restart " + checkpoints(part)[0] + " --threads 1 time.end=0.147",
+                    rest) == 0);
+        REQUIRE(run(command.program->name, rest + "/case.toml", whole) == 0);
+        CHECK(read_all(rest + "/history.dat") == read_all(whole + "/history.dat"));
+        CHECK(column(rest, "time")[1] == column(part, "time")[1]);
+        // And the first run ends where it was told to.
+        const std::vector<double> times = column(part, "time");
+        const double next = times.back() + times[1];
+        CHECK(std::fabs((command.program->name == "mpm_explicit" ? next : times.back()) - 0.1) <=
+              1e-15);
+    }
+}
+
 TEST_CASE("a restart goes on wherever its checkpoint was written" *
           doctest::description("robust")) {
     // Before and after a sort, before and after a bond breaks, with and without a contact, after
@@ -306,8 +328,7 @@ TEST_CASE("the runs that are repeated do what they are repeated for" *
 
 TEST_CASE("a signal stops a run after a checkpoint from which it can go on" *
           doctest::description("robust")) {
-    // The time step and the exit status, which is 128 and the signal. For grains, dt = alpha h/(c_p +
-    // |v|) with c_p^2 = (lambda + 2G)/density = 1.346 E/density.
+    // The time step and the exit status, which is 128 and the signal.
     for (const Command& command : commands(R"(
 cic floating -> 0.4 130
 cic plane_streams -> 0.1 143
@@ -315,10 +336,10 @@ fluids sod.toml grid.cells_x=40 time.dt=0.001 theory.compare=none particles.per_
     0.001 130
 pic layers theory.compare=none time.dt=0.01 -> 0.01 143
 flip vortex theory.compare=none grid.cells_x=24 grid.cells_z=24 time.dt=0.01 -> 0.01 143
-mpm_explicit slow_shear -> 0.0008472862295652627 130
-mpm_explicit bar_wave -> 0.0034068328647341673 143
-mpm_implicit slow_shear time.alpha=1 -> 0.0033891449182610507 130
-mpm_implicit bar_wave -> 0.008517082161835419 143
+mpm_explicit slow_shear time.dt=8e-4 -> 8e-4 130
+mpm_explicit bar_wave time.dt=1.5e-3 -> 1.5e-3 143
+mpm_implicit slow_shear time.alpha=1 time.dt=3e-3 -> 3e-3 130
+mpm_implicit bar_wave time.dt=8e-3 -> 8e-3 143
 implicit_moment sheet -> 0.3 143
 implicit_moment sheet -> 0.3 130
 explicit_em sheet -> 0.2 143
@@ -820,6 +841,47 @@ TEST_CASE("a restart reads its pack again and wants the same one" *
             INFO(outcome.err);
             CHECK(outcome.status == 2);
             CHECK(outcome.sentences.size() == 1);
+        }
+    }
+}
+
+TEST_CASE("plates move on with the same bits and want the same tables" *
+          doctest::description("robust")) {
+    const std::string way = "0 0 0\n0.01 0 -1e-3\n0.03 2e-3 -1e-3\n";
+    for (const Program* one : programs_called("grains")) {
+        const Program& program = *one;
+        const fs::path folder = fresh_folder(program);
+        write_all(folder / "way.txt", way);
+        REQUIRE(start(program, folder,
+                      arguments_of({&program,
+                                    "press time.end=0.05 load.rise=0.01 time.alpha=0.2 "
+                                    "grain.top.control=velocity grain.top.stop=0.02 "
+                                    "grain.top.swing_y=-1e-3 grain.top.period=0.02 "
+                                    "grain.top.table=way.txt grain.top.velocity_y=-0.1",
+                                    {}}) +
+                          " --quiet output.checkpoint_steps=7 --out run")
+                    .status == 0);
+        const std::string path = checkpoints(folder / "run")[0], good = read_all(path);
+        REQUIRE(start(program, folder, "--restart " + path + " --out rest --quiet").status == 0);
+        CHECK(read_all(folder / "rest/history.dat") == read_all(folder / "run/history.dat"));
+        // What the plate has gone at the end: velocity times stop, two and a half swings, the table.
+        const std::vector<double> x = column(folder / "run", "travel_x_top"),
+                                  y = column(folder / "run", "travel_y_top");
+        CHECK(std::fabs(x.back() - 2e-3) <= 1e-15);
+        if (program.name == "mpm_implicit")
+            CHECK(std::fabs(y.back() - (-0.1 * 0.02 - 1e-3 - 1e-3)) <= 1e-15);
+        for (const std::string& other :
+             {way + "0.04 2e-3 0\n", std::string("0 0 0\n0.01 0 -1e-3\n0.03 1e-3 -1e-3\n"),
+              std::string("0 0 0\n0.03 2e-3 -1e-3\n")}) {
+            const fs::path here = fresh_folder(program);
+            write_all(here / "way.txt", other);
+            write_all(here / "good.bin", good);
+            const Outcome outcome =
+                start(program, here, "--restart good.bin --out again --force --quiet");
+            INFO(outcome.err);
+            CHECK(outcome.status == 2);
+            CHECK(outcome.err.find("other tables of motion than its case reads") !=
+                  std::string::npos);
         }
     }
 }

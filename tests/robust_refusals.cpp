@@ -499,9 +499,11 @@ grains disks grid.low_y=1e9
     move grid.low_x and low_y nearer to 0
 grains disks time.alpha=1e-9
     the run would take 7.538e+09 steps, more than 1e9: raise time.alpha or lower time.end
+mpm_explicit disks time.dt=1
+    time.dt = 1 is above alpha h/(c_p + |v|) = 0.003317: lower it, or raise time.alpha
 grains disks time.end=1e300 -> steps, more than 1e9: raise time.alpha or lower time.end
 mpm_explicit disks load.damping=400
-    load.damping = 400 takes all velocity in a step of 0.003317: lower it below 301.5
+    load.damping = 400 takes all velocity in a step of 0.003226: lower it below 310
 grains body grid.cells_x=16000 grid.cells_y=8000 grid.particles_per_side=16
     32768000000 particles are more than 2e9: lower grid.particles_per_side
 grains body grid.cells_x=1600 output.fringes_interval=1 grid.cells_y=800 output.pixels_per_cell=64
@@ -602,6 +604,9 @@ grains disks material.default.law=drucker_prager material.default.dilatancy_angl
     take at most the friction angle
 grains disks grain.left.control=force_x
     grain 'left' has control = "force_x" and is not rigid: give it a material with law = "rigid"
+grains disks grain.left.swing_y=0.1
+    grain 'left' has stop, swing or table and is not rigid: give it a material with law = "rigid"
+grains disks grain.left.stop=1 -> has stop, swing or table and is not rigid
 grains plates grain.top.spin=1
 grains plates grain.top.profile=wave
     grain 'top' is rigid and moves without turning: take out spin and profile
@@ -645,6 +650,12 @@ TEST_CASE("bonds that nothing can hold are refused with their names" *
 grains disks joint
     [bond.joint]: 'left' and 'right' do not touch: put them within a quarter of a cell
 grains disks bond.joint.tension=1 -> [bond.joint]: '*' and '*' do not touch
+grains disks pair.one.friction=0.2 pair.one.a=glass
+    [pair.one]: there is no [material.glass]; add it, or name another material
+grains disks pair.one.friction=0.2 pair.one.b= -> [pair.one]: there is no [material.]
+grains disks material.glass.E=1e4 pair.one.a=glass pair.two.b=glass
+    [pair.two]: 'default' and 'glass' are in [pair.one], too: take one out
+grains disks pair.one.friction=-1 -> 'pair.one.friction' = -1 is out of range
 grains disks bond.joint.a=nobody
     [bond.joint]: there is no grain 'nobody'; name one of the case, or "*" for all
 grains disks bond.joint.a= -> [bond.joint]: there is no grain ''
@@ -671,7 +682,7 @@ grains disks theory.compare=rebound grain.left.shape=box
 grains disks theory.compare=rebound time.end=0.4
     theory.compare = "rebound": the disks meet at t = 0.5, and the run ends at 0.4: raise time.end
 mpm_explicit disks theory.compare=collapse time.end=0.02
-    theory.compare = "collapse" needs at least 10 rows of history, and there would be 6: raise
+    theory.compare = "collapse" needs at least 10 rows of history, and there would be 7: raise
     time.end or lower output.history_steps
 mpm_explicit disks theory.compare=collapse output.history_steps=10
     theory.compare = "collapse" needs at least 10 rows of history, and there would be 3
@@ -771,6 +782,24 @@ mpm_implicit billet.toml grain.top.width=0.5
     and let them touch
 mpm_implicit billet.toml grain.top.y=0.549 grain.billet.height=0.39 grain.billet.y=0.295
     plate 'top' does not cover a whole side of 'billet'
+mpm_implicit billet_plastic.toml grid.cells_x=12 grid.length_x=0.6 grid.periodic_x=true \
+    grain.billet.x=0.3 grain.top.x=0.3 grain.top.width=0.6 grain.bottom.x=0.3 grain.bottom.width=0.6
+    theory.compare = "billet" knows no limit for a block that cannot widen: make it narrower
+mpm_explicit plate_holds.toml grain.top.stop=0
+mpm_explicit plate_holds.toml time.end=5
+mpm_explicit plate_holds.toml material.default.law=j2
+    theory.compare = "hold" needs an elastic block, and a plate that has come to rest, at stop +
+    load.rise, when half of the run is over
+mpm_explicit cyclic_plate.toml grain.top.swing_y=0
+mpm_explicit cyclic_plate.toml grain.top.stop=0
+mpm_explicit cyclic_plate.toml time.end=6
+    theory.compare = "cycle" needs a plate with a swing_y, and two whole periods after it has come
+    to rest otherwise
+mpm_explicit cyclic_plate.toml grain.block.width=0.8
+mpm_explicit cyclic_plate.toml grain.top.velocity_y=-2e-4
+mpm_explicit cyclic_plate.toml grain.top.swing_y=2e-3
+    theory.compare = "cycle" of what yields needs a block as wide as the mesh, between rollers or
+    periodic, and a velocity that presses it before by a stress above 2/3 of yield_stress
 mpm_implicit billet.toml theory.plate=middle -> theory.plate: there is no grain 'middle'
 )");
 }
@@ -951,7 +980,7 @@ TEST_CASE("damaged files of packs are refused with their line" * doctest::descri
         {good + zero, "pack.txt:3: a control character; this is not a text file, or it is damaged"},
         {good + "\x1b[2J\n", "pack.txt:3: a control character"},
         {good + std::string(100001, '#'),
-         "pack.txt:3: the line has more than 100000 letters; this is not a pack of grains"},
+         "pack.txt:3: the line has more than 100000 letters; this is another kind of file"},
         {good + "disk b 0.35 0.3 0.1\n",
          "grains 'p_a' and 'p_b' overlap by 0.15, 3 cells: move them apart"},
     };
@@ -961,6 +990,40 @@ TEST_CASE("damaged files of packs are refused with their line" * doctest::descri
             write_all(folder / "pack.txt", bytes);
             check_refusal(*program, folder,
                           arguments_of({program, "mesh pack.p.kind=file pack.p.file=pack.txt", {}}),
+                          message);
+        }
+    }
+}
+
+TEST_CASE("damaged tables of motion are refused with their line" * doctest::description("robust")) {
+    const std::string good = "# time travel\n0 0 0\n\n1 0 0.1\n";
+    const std::vector<std::pair<std::string, std::string>> damaged{
+        {"", "[grain.lid]: way.txt: holds no travel; write two lines or more like: 0.5 1e-3"},
+        {"0 0\n", "way.txt: holds no travel"},
+        {"0\n1 0\n", "way.txt:1: 1 numbers for a time and a travel along x: write 2"},
+        {"0 0 0 0\n", "way.txt:1: 4 numbers for a time and a travel along x: write 2"},
+        {good + "2 0\n", "way.txt:5: 2 numbers for a time and a travel along x and y: write 3"},
+        {"0 0\n1 0 0\n", "way.txt:2: 3 numbers for a time and a travel along x: write 2"},
+        {good + "1 0 0\n",
+         "way.txt:5: the time '1' is not after that of the line before: sort the lines by time"},
+        {good + "0.5 0 0\n", "way.txt:5: the time '0.5' is not after"},
+        {good + "2 down 0\n", "way.txt:5: 'down' is not a number: write one like 0.25 or 1e-3"},
+        {good + "2 nan 0\n", "way.txt:5: 'nan' is no number to compute with: give a finite one"},
+        {good + "2 1e999 0\n", "way.txt:5: '1e999' is no number to compute with"},
+        {good + "1.000000000001 1 0\n", "steps, more than 1e9: raise time.alpha or lower time.end"},
+        {good + "2 \xff 0\n", "way.txt:5: not UTF-8 text; save the file as UTF-8"},
+        {good + "\x1b[2J\n", "way.txt:5: a control character"},
+    };
+    for (const Program* program : programs_called("grains")) {
+        for (const auto& [bytes, message] : damaged) {
+            const fs::path folder = fresh_folder(*program);
+            write_all(folder / "way.txt", bytes);
+            check_refusal(*program, folder,
+                          arguments_of({program,
+                                        "mesh grain.disk.x=0.3 grain.disk.y=0.3 "
+                                        "material.plate.law=rigid grain.lid.material=plate "
+                                        "grain.lid.x=0.7 grain.lid.y=0.3 grain.lid.table=way.txt",
+                                        {}}),
                           message);
         }
     }

@@ -126,8 +126,9 @@ grains disks time.end=1e-3
     warning: until time.end = 0.001 sound crosses 0.07538 cells, below 0.1: the run is over before
     anything happens; raise time.end
 mpm_implicit disks time.end=2e-3 time.alpha=0.1 -> no warning
-mpm_implicit disks time.end=2e-3
-    warning: time.end = 0.002 is below half of the time step 0.01327: no step is taken
+mpm_implicit disks time.end=2e-3 -> no warning
+grains disks time.dt=3e-3
+    warning: time.end = 0.1 is no whole number of steps of time.dt = 0.003: the run ends at t = 0.099
 mpm_explicit disks time.alpha=0.8
     warning: time.alpha = 0.8 is above 0.7: nothing bounds the energy of explicit solutions, and
     grains that meet will burst
@@ -153,9 +154,9 @@ mpm_explicit disks grid.particles_per_side=1
 mpm_explicit disks grid.particles_per_side=1 contact.separation=1.07 -> no warning
 mpm_explicit disks output.particles_interval=1e-3 output.fringes_interval=1 \
     output.grains_interval=1e-4
-    warning: output.particles_interval = 0.001 is below the time step 0.003317: files are
+    warning: output.particles_interval = 0.001 is below the time step 0.003226: files are
     written every step
-    warning: output.grains_interval = 0.0001 is below the time step 0.003317
+    warning: output.grains_interval = 0.0001 is below the time step 0.003226
 mpm_explicit plates grain.bottom.force=2
     warning: grain 'bottom' has a force and control = "velocity": the force does nothing
 mpm_explicit plates grain.top.velocity_y=-0.1
@@ -165,7 +166,7 @@ mpm_explicit plates grain.top.velocity_x=-0.1 -> no warning
 mpm_implicit rebound.toml -> no warning
 mpm_implicit rebound.toml time.alpha=15 time.end=6 -> no warning
 mpm_implicit rebound.toml time.alpha=25 time.end=10 output.particles_interval=0
-    warning: |v| dt/h = 0.6633 is above 0.5: grains can pass through each other's surfaces
+    warning: |v| dt/h = 0.6557 is above 0.5: grains can pass through each other's surfaces
     before they are seen to touch; reduce time.alpha
 mpm_implicit vibrating_bar.toml time.alpha=60 time.end=2000 output.particles_interval=0
     no warning
@@ -266,7 +267,7 @@ mpm_explicit rebound.toml --threads 2 --out run
     grains +2, the thinnest 16 cells
     particles +1608, 2 x 2 per cell
     sound +c_p = 3\.669, largest \|v\| = 0\.1
-    steps +1206 of dt = 0\.001658, alpha = 0\.25
+    steps +1207 of dt = 0\.001657, alpha = 0\.25
     memory +about [0-9.e+-]+ MiB
     time +about [0-9.e+-]+ s on.*
 mpm_explicit shear.toml -> .*50 x 46 cells of 0\.02, periodic in x.*
@@ -278,7 +279,7 @@ mpm_implicit rebound.toml --threads 2
     method +linear shape functions, FLIP, theta = 0\.5, consistent mass
     particles +1608, 2 x 2 per cell
     sound +c_p = 3\.669, largest \|v\| = 0\.1
-    steps +302 of dt = 0\.006633, alpha = 1
+    steps +302 of dt = 0\.006623, alpha = 1
     memory +about [0-9.e+-]+ MiB
     time +about [0-9.e+-]+ s on.*
 implicit_moment --threads 2 --out run

@@ -41,8 +41,7 @@ class LeapfrogRecorder {
                      common::History& history)
         : dt_(scales.dt),
           levels_(parameters.problem.contact.levels),
-          frictionless_(parameters.problem.contact.friction == 0 &&
-                        parameters.problem.contact.wall_friction == 0),
+          frictionless_(!parameters.problem.has_friction()),
           recorder_(parameters, leapfrog, scales, state.assembly, comparisons, "budget") {
         Budget none;
         none.momenta.resize(state.assembly.grains.size());

@@ -149,6 +149,9 @@ inline Assembly assemble(const Problem& w) {
 
         RigidMotion motion;
         motion.prescribed_vx = plan.from.velocity_x, motion.prescribed_vy = plan.from.velocity_y;
+        motion.stop = plan.from.stop, motion.table = plan.table;
+        motion.swing_x = plan.from.swing_x, motion.swing_y = plan.from.swing_y;
+        motion.period = plan.from.period;
         motion.force_control_x = plan.from.control == "force_x";
         motion.force_control_y = plan.from.control == "force_y";
         motion.force = plan.from.force, motion.damping = plan.from.damping;

@@ -14,7 +14,7 @@ namespace mpm {
 struct Case {
     Problem problem;
 
-    double alpha = 0.25, end = 2;
+    double alpha = 0.25, dt = 0, end = 2;
     double energy_limit = 10;
 
     std::string shape = "linear", transfer = "flip";
@@ -55,7 +55,9 @@ inline void describe_case(common::ParameterTable& table, Case& parameters) {
     describe_problem(table, parameters.problem);
     table.group("time");
     table.real("time.alpha", parameters.alpha, "", above(0),
-               "CFL number: dt = alpha h/(c_p + |v|), of the fastest sound and the fastest grain");
+               "CFL number: dt <= alpha h/(c_p + |v|), of the fastest sound and the fastest grain");
+    table.real("time.dt", parameters.dt, "time", at_least(0),
+               "time step; 0: the largest of which a whole number ends at time.end");
     table.real("time.end", parameters.end, "time", at_least(0), "length of the run");
     table.real("time.energy_limit", parameters.energy_limit, "", at_least(0),
                "the run fails when the energy is this many times what was put in; 0: never");

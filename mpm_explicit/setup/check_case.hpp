@@ -70,6 +70,11 @@ inline void refuse_grain(const PlannedGrain& plan, const Material& material, con
                                                           plan.from.control +
                                                           "\" and is not rigid: give it a "
                                                           "material with law = \"rigid\"");
+    refuse(!rigid && (plan.from.stop != 0 || plan.from.swing_x != 0 || plan.from.swing_y != 0 ||
+                      !plan.table.empty()),
+           grain +
+               " has stop, swing or table and is not rigid: give it a material with law = "
+               "\"rigid\"");
     refuse(rigid && (plan.from.spin != 0 || plan.from.profile != "none"),
            grain + " is rigid and moves without turning: take out spin and profile");
     refuse(plan.from.profile != "none" && plan.from.shape != "box",
@@ -127,6 +132,7 @@ inline void validate(const Case& parameters, const common::ParameterTable& table
                                 format(worst.depth) + ", " + format(worst.depth / mesh.h) +
                                 " cells: move them apart or make them smaller");
     (void)bonds_of(problem, plans, materials);
+    (void)contact_rule(problem);
     const double pixels = double(problem.cells_x * parameters.pixels_per_cell) *
                           double(problem.cells_y * parameters.pixels_per_cell);
     refuse(parameters.fringes_interval > 0 && pixels > 5e7,
@@ -145,9 +151,10 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
         warnings.push_back("until time.end = " + format(t) + " sound crosses " + format(crossed) +
                            " cells, below 0.1: the run is over before anything happens; raise "
                            "time.end");
-    else if (t > 0 && scales.steps == 0)
-        warnings.push_back("time.end = " + format(t) + " is below half of the time step " +
-                           format(scales.dt) + ": no step is taken");
+    if (const double last = double(scales.steps) * scales.dt; std::fabs(last - t) > 1e-9 * t)
+        warnings.push_back("time.end = " + format(t) +
+                           " is no whole number of steps of time.dt = " + format(scales.dt) +
+                           ": the run ends at t = " + common::number_text(last));
     if (scales.speed > 0.05 * scales.sound_speed && scales.grains > 1)
         warnings.push_back("|v|/c_p = " + format(scales.speed / scales.sound_speed) +
                            " is above 0.05: an impact strains the grains by more than the small "
@@ -177,9 +184,9 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
         if (plan.from.control == "velocity" && plan.from.force != 0)
             warnings.push_back("grain '" + plan.name +
                                "' has a force and control = \"velocity\": the force does nothing");
-        const double unused = plan.from.control == "force_x"   ? plan.from.velocity_x
-                              : plan.from.control == "force_y" ? plan.from.velocity_y
-                                                               : 0;
+        double unused = 0;
+        if (plan.from.control == "force_x") unused = plan.from.velocity_x + plan.from.swing_x;
+        if (plan.from.control == "force_y") unused = plan.from.velocity_y + plan.from.swing_y;
         if (unused != 0)
             warnings.push_back("grain '" + plan.name + "' has control = \"" + plan.from.control +
                                "\" and a velocity in that direction, " + format(unused) +
@@ -194,8 +201,8 @@ namespace mpm_explicit {
 
 /// Refuses combinations that cannot run.
 /// errors: InputError with the cure
-inline void validate(const Case& parameters, const common::ParameterTable& table) {
-    mpm::validate(parameters, table);
+inline void validate_explicit(const Case& parameters, const common::ParameterTable& table) {
+    validate(parameters, table);
     const std::string transfer = "method.transfer = \"" + parameters.transfer + "\"";
     refuse(parameters.flip != 1 && parameters.transfers().flip != parameters.flip,
            transfer + " takes no part of FLIP: leave method.flip = 1");

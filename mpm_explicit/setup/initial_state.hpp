@@ -40,11 +40,11 @@ void start_leapfrog(const Shape& shape, const std::vector<AnyLaw>& laws, const C
 }
 
 /// Refuses a state that no run of the case can have.
-/// in:     width of the shape function in nodes; affine: particles carry affine motion
+/// in:     width of the shape function in nodes
 /// errors: InputError, one sentence
-inline void validate_state(const Mesh& mesh, int width, bool affine, State& state) {
-    mpm::validate_state(mesh, width, affine, false, state.assembly, state.layout,
-                        state.budget.momenta_next);
+inline void validate_state(const Mesh& mesh, int width, const Transfer& transfer, State& state) {
+    mpm::validate_state(mesh, width, transfer.kind != Transfer::none, false, state.assembly,
+                        state.layout, state.budget.momenta_next);
 }
 
 }  // namespace mpm_explicit

@@ -25,7 +25,7 @@ constexpr std::size_t longest_line = 100000;  // of a polygon with as many corne
 inline void refuse_bad_line(std::string_view line, const std::string& place) {
     require(line.size() <= longest_line, place + ": the line has more than " +
                                              std::to_string(longest_line) +
-                                             " letters; this is not a pack of grains");
+                                             " letters; this is another kind of file");
     for (std::size_t k = 0, length = 0; k < line.size(); k += length) {
         length = common::utf8_length(line, k);
         const auto byte = static_cast<unsigned char>(line[k]);
@@ -79,6 +79,23 @@ inline std::vector<std::string_view> words_of(std::string_view line) {
     }
 }
 
+// Calls visit(words, place) for every line of a text file that has words; place is "file:line".
+template <class Visit>
+void for_each_line(const std::string& path, const Visit& visit) {
+    const std::string text = common::read_file(path);
+    std::string_view rest = text;
+    if (rest.substr(0, 3) == "\xEF\xBB\xBF") rest.remove_prefix(3);  // the mark of UTF-8
+    for (long number = 1; !rest.empty(); ++number) {
+        const std::string place = path + ":" + std::to_string(number);
+        std::string_view line = rest.substr(0, rest.find('\n'));
+        rest.remove_prefix(std::min(rest.size(), line.size() + 1));
+        if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+        refuse_bad_line(line, place);
+        const std::vector<std::string_view> words = words_of(line);
+        if (!words.empty()) visit(words, place);
+    }
+}
+
 // A grain from the words of its line.
 inline PackedGrain read_grain(const std::vector<std::string_view>& words,
                               const std::string& place) {
@@ -112,25 +129,16 @@ inline PackedGrain read_grain(const std::vector<std::string_view>& words,
 /// Reads a pack of grains.
 /// errors: InputError with file and line for what is no pack
 inline std::vector<PackedGrain> read_pack(const std::string& path) {
-    const std::string text = common::read_file(path);
     std::vector<PackedGrain> grains;
     std::map<std::string, std::string> places;
-    std::string_view rest = text;
-    if (rest.substr(0, 3) == "\xEF\xBB\xBF") rest.remove_prefix(3);  // the mark of UTF-8
-    for (long number = 1; !rest.empty(); ++number) {
-        const std::string place = path + ":" + std::to_string(number);
-        std::string_view line = rest.substr(0, rest.find('\n'));
-        rest.remove_prefix(std::min(rest.size(), line.size() + 1));
-        if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-        detail::refuse_bad_line(line, place);
-        const std::vector<std::string_view> words = detail::words_of(line);
-        if (words.empty()) continue;
+    detail::for_each_line(path, [&](const auto& words, const std::string& place) {
         grains.push_back(detail::read_grain(words, place));
-        const auto [earlier, is_new] = places.insert({grains.back().name, std::to_string(number)});
+        const std::string number = place.substr(path.size() + 1);
+        const auto [earlier, is_new] = places.insert({grains.back().name, number});
         require(is_new, place + ": the name " + detail::in_quotes(grains.back().name) +
                             " is that of line " + earlier->second +
                             " too: give each grain its own");
-    }
+    });
     require(!grains.empty(), path + ": holds no grain; write lines like: disk left 0.35 0.3 0.2");
     return grains;
 }

@@ -7,11 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "mpm_explicit/grains.hpp"
 #include "mpm_explicit/material_laws.hpp"
 #include "mpm_explicit/setup/fill_grain.hpp"
 #include "mpm_explicit/setup/pack_file.hpp"
 #include "mpm_explicit/setup/packs.hpp"
 #include "mpm_explicit/setup/problem.hpp"
+#include "mpm_explicit/setup/travel_file.hpp"
 
 namespace mpm {
 
@@ -20,7 +22,8 @@ struct PlannedGrain {
     std::string name;
     Outline outline;
     int material = 0;
-    GrainCase from;  // velocities, profile, control
+    GrainCase from;                // velocities, profile, control
+    std::vector<TravelRow> table;  // that a rigid grain follows
 };
 
 /// Materials in the order of the case; with 'default' at the end when grains use it unnamed.
@@ -44,6 +47,29 @@ inline std::vector<Material> materials_of(const Problem& problem) {
 
 /// The law of every material.
 inline std::vector<AnyLaw> laws_of(const Problem& w) { return laws_of(materials_of(w)); }
+
+/// The rule of contact, with the friction of every pair of materials.
+/// errors: InputError for a material that is not there, or two whose friction is told twice
+inline ContactRule contact_rule(const Problem& problem) {
+    ContactRule rule = problem.contact;
+    if (problem.pairs.empty()) return rule;
+    const std::vector<Material> materials = materials_of(problem);
+    for (const PairCase& pair : problem.pairs) {
+        const std::string place = "[pair." + pair.name + "]: ";
+        for (const std::string& name : {pair.a, pair.b})
+            refuse(std::none_of(materials.begin(), materials.end(),
+                                [&](const Material& m) { return m.name == name; }),
+                   place + "there is no [material." + name + "]; add it, or name another material");
+        for (const PairCase* other = problem.pairs.data(); other != &pair; ++other)
+            refuse(std::minmax(other->a, other->b) == std::minmax(pair.a, pair.b),
+                   place + "'" + pair.a + "' and '" + pair.b + "' are in [pair." + other->name +
+                       "], too: take one out");
+    }
+    for (const Material& a : materials)
+        for (const Material& b : materials)
+            rule.between.push_back(problem.friction_between(a.name, b.name));
+    return rule;
+}
 
 namespace detail {
 
@@ -72,6 +98,15 @@ inline Outline outline_of(const GrainCase& g) {
         if (g.shape == "box") return box(g.x, g.y, g.width, g.height, g.angle);
         if (g.vertices.empty()) return regular_polygon(g.x, g.y, g.radius, g.sides, g.angle);
         return polygon(vertices_of(g.name, g.vertices));
+    } catch (const common::InputError& error) {
+        throw common::InputError("[grain." + g.name + "]: " + error.what());
+    }
+}
+
+// The travel that a named grain is told.
+inline std::vector<TravelRow> table_of(const GrainCase& g) {
+    try {
+        return g.table.empty() ? std::vector<TravelRow>{} : read_travel(g.table);
     } catch (const common::InputError& error) {
         throw common::InputError("[grain." + g.name + "]: " + error.what());
     }
@@ -113,7 +148,7 @@ inline std::vector<PackedGrain> grains_of(const PackCase& p, const Problem& prob
 }  // namespace detail
 
 /// All grains of a case: the named ones, then those of packs, called <pack>_<name>.
-/// errors: InputError for an unknown material, or an outline or a pack that cannot be
+/// errors: InputError for an unknown material, or an outline, a pack or a table that cannot be
 inline std::vector<PlannedGrain> plan_grains(const Problem& problem,
                                              const std::vector<Material>& materials) {
     const auto material_of = [&](const std::string& name, const std::string& whose) {
@@ -124,15 +159,15 @@ inline std::vector<PlannedGrain> plan_grains(const Problem& problem,
     };
     std::vector<PlannedGrain> grains;
     for (const GrainCase& g : problem.grains)
-        grains.push_back(
-            {g.name, detail::outline_of(g), material_of(g.material, "grain." + g.name), g});
+        grains.push_back({g.name, detail::outline_of(g), material_of(g.material, "grain." + g.name),
+                          g, detail::table_of(g)});
     for (const PackCase& p : problem.packs) {
         const int material = material_of(p.material, "pack." + p.name);
         for (const PackedGrain& packed : detail::grains_of(p, problem)) {
             GrainCase from;
             from.velocity_x = p.velocity_x + p.shear_rate * (packed.outline.y - p.y);
             from.velocity_y = p.velocity_y;
-            grains.push_back({p.name + "_" + packed.name, packed.outline, material, from});
+            grains.push_back({p.name + "_" + packed.name, packed.outline, material, from, {}});
         }
     }
     return grains;

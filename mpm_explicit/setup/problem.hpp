@@ -2,6 +2,8 @@
 // materials, grains, packs, bonds, contact, loads. How it is solved is each program's own business.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -32,6 +34,8 @@ struct GrainCase {
     std::string profile = "none";  // or bar, wave: of the velocity along x
     double amplitude = 0;
     long mode = 1;
+    double stop = 0, swing_x = 0, swing_y = 0, period = 1;
+    std::string table;                 // path
     std::string control = "velocity";  // or force_x, force_y
     double force = 0, damping = 0;
 };
@@ -59,6 +63,13 @@ struct BondCase {
     double tension = 1e30, shear = 1e30;
 };
 
+/// Friction between two materials, by name.
+struct PairCase {
+    std::string name;
+    std::string a = "default", b = "default";
+    double friction = 0;
+};
+
 /// What is solved; the words are those of the case file.
 struct Problem {
     long cells_x = 48, cells_y = 24;
@@ -71,12 +82,25 @@ struct Problem {
     std::vector<GrainCase> grains;
     std::vector<PackCase> packs;
     std::vector<BondCase> bonds;
+    std::vector<PairCase> pairs;
     ContactRule contact;
 
     double gravity_x = 0, gravity_y = 0, damping = 0, rise = 0;
 
     /// What acts on every grain and plate.
     Loads loads() const { return {gravity_x, gravity_y, damping, rise}; }
+    /// Coulomb's coefficient between grains of two materials, by name.
+    double friction_between(const std::string& a, const std::string& b) const {
+        for (const PairCase& pair : pairs)
+            if ((pair.a == a && pair.b == b) || (pair.a == b && pair.b == a)) return pair.friction;
+        return contact.friction;
+    }
+    /// Whether anything can rub.
+    bool has_friction() const {
+        return contact.friction > 0 || contact.wall_friction > 0 ||
+               std::any_of(pairs.begin(), pairs.end(),
+                           [](auto& pair) { return pair.friction > 0; });
+    }
     /// The mesh with its walls.
     Mesh mesh() const {
         Mesh m;
@@ -139,6 +163,14 @@ inline void describe_grain(common::ParameterTable& table, const std::string& pre
                  "of v_x along its length L: amplitude sin((n - 1/2) pi s/L), sin(n pi s/L)");
     table.real(at + "amplitude", g.amplitude, "velocity", anything(), "of the profile");
     table.whole(at + "mode", g.mode, "", between(1, 1000), "n of the profile");
+    table.real(at + "stop", g.stop, "time", at_least(0),
+               "rigid: when its velocity begins to end, smoothly as it rose; 0: never");
+    table.real(at + "swing_x", g.swing_x, "length", anything(),
+               "rigid: adds swing sin^2(pi t/period) to its travel");
+    table.real(at + "swing_y", g.swing_y, "length", anything(), "the same along y");
+    table.real(at + "period", g.period, "time", above(0), "of the swing");
+    table.text(at + "table", g.table,
+               "rigid: file with a time, a travel along x and, if any, one along y in each line");
     table.choice(at + "control", g.control, {"velocity", "force_x", "force_y"},
                  "rigid: prescribed velocity, or force control in one direction");
     table.real(at + "force", g.force, "force", anything(), "force control: on the grain");
@@ -183,6 +215,13 @@ inline void describe_bond(common::ParameterTable& table, const std::string& pref
     table.real(at + "shear", b.shear, "stress", common::above(0), "strength against sliding");
 }
 
+inline void describe_pair(common::ParameterTable& table, const std::string& prefix, PairCase& p) {
+    const std::string at = prefix + ".";
+    table.text(at + "a", p.a, "name of a material");
+    table.text(at + "b", p.b, "name of the other, or the same");
+    table.real(at + "friction", p.friction, "", common::at_least(0), "Coulomb's coefficient");
+}
+
 }  // namespace detail
 
 /// Adds the parameters of the problem to a program's table.
@@ -209,7 +248,7 @@ inline void describe_problem(common::ParameterTable& table, Problem& problem) {
 
     table.group("contact between grains");
     table.real("contact.friction", problem.contact.friction, "", at_least(0),
-               "Coulomb's coefficient");
+               "Coulomb's coefficient, of materials that no [pair.<name>] has");
     table.real("contact.separation", problem.contact.separation, "h", between(0, 2),
                "grains press when their parts around a node are nearer; 0: on approach only");
 
@@ -227,6 +266,8 @@ inline void describe_problem(common::ParameterTable& table, Problem& problem) {
     table.list("pack", problem.packs, detail::describe_pack, "many grains, [pack.<name>]");
     table.list("bond", problem.bonds, detail::describe_bond,
                "grains that hold together, [bond.<name>]");
+    table.list("pair", problem.pairs, detail::describe_pair,
+               "friction between two materials, [pair.<name>]");
 }
 
 }  // namespace mpm

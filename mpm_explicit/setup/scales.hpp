@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
+#include <variant>
 #include <vector>
 
+#include "common/run/checkpoint.hpp"
 #include "mpm_explicit/setup/assemble.hpp"
 #include "mpm_explicit/setup/case.hpp"
 
@@ -22,8 +25,10 @@ struct Scales {
 };
 
 /// The scales of a case.
-///   dt = alpha h / (c_p + |v|), and for an explicit scheme c_p times viscous_shortening()
-/// errors: InputError for too many steps or particles, or a damping that takes all velocity
+///   dt <= alpha h / (c_p + |v|), for an explicit scheme c_p times viscous_shortening(), and
+///   steps dt = time.end where time.dt is not given
+/// errors: InputError for too many steps or particles, a time.dt that alpha does not allow, or a
+///         damping that takes all velocity
 inline Scales scales_of(const Case& parameters, bool is_explicit = true) {
     const std::vector<Material> materials = materials_of(parameters.problem);
     const std::vector<PlannedGrain> plans = plan_grains(parameters.problem, materials);
@@ -31,17 +36,19 @@ inline Scales scales_of(const Case& parameters, bool is_explicit = true) {
     const Problem& problem = parameters.problem;
     const Mesh mesh = problem.mesh();
     const double side = mesh.h / double(problem.per_side);
-    double lightest = 1e300, nodes = 0, fastest = 0;
+    double lightest = 1e300, nodes = 0, shortened = 0;
     s.thinnest = 1e300;
     for (const PlannedGrain& plan : plans) {
         const Material& material = materials[plan.material];
         const GrainCase& from = plan.from;
         const double c = sound_speed(material);
         s.sound_speed = std::max(s.sound_speed, c);
-        fastest = std::max(fastest, is_explicit ? c * viscous_shortening(material, mesh.h) : c);
-        s.speed = std::max(s.speed, std::hypot(from.velocity_x, from.velocity_y) +
-                                        std::fabs(from.amplitude) +
-                                        std::fabs(from.spin) * plan.outline.radius);
+        shortened = std::max(shortened, is_explicit ? c * viscous_shortening(material, mesh.h) : c);
+        s.speed = std::max(
+            s.speed, std::hypot(from.velocity_x, from.velocity_y) + std::fabs(from.amplitude) +
+                         std::fabs(from.spin) * plan.outline.radius +
+                         std::numbers::pi / from.period * std::hypot(from.swing_x, from.swing_y) +
+                         fastest(plan.table));
         s.particles += std::lround(area(plan.outline) / (side * side));
         lightest = std::min(lightest, material.density * side * side);
         s.thinnest = std::min(s.thinnest, thinnest(plan.outline));
@@ -51,12 +58,18 @@ inline Scales scales_of(const Case& parameters, bool is_explicit = true) {
     s.grains = long(plans.size());
     // Where a smooth shape ends, its weight falls as the square of its gradient.
     s.least_mass = (parameters.shape == "linear" ? 1e-12 : 1e-24) * lightest;
-    s.dt = parameters.alpha * mesh.h / (fastest + s.speed);
-    s.shortening = (fastest + s.speed) / (s.sound_speed + s.speed);
+    const double longest = parameters.alpha * mesh.h / (shortened + s.speed);
+    s.shortening = (shortened + s.speed) / (s.sound_speed + s.speed);
+    const bool is_given = parameters.dt > 0;
+    refuse(parameters.dt > longest * (1 + 1e-9),
+           "time.dt = " + format(parameters.dt) + " is above alpha h/(c_p + |v|) = " +
+               format(longest) + ": lower it, or raise time.alpha");
+    s.dt = is_given ? parameters.dt : longest;
     const double steps = parameters.end / s.dt;
     refuse(!(steps <= 1e9), "the run would take " + format(steps) +
                                 " steps, more than 1e9: raise time.alpha or lower time.end");
-    s.steps = std::lround(steps);
+    s.steps = is_given ? std::lround(steps) : long(std::ceil(steps - 1e-9));
+    if (!is_given && s.steps > 0) s.dt = parameters.end / double(s.steps);
     refuse(!(problem.damping * s.dt < 1), "load.damping = " + format(problem.damping) +
                                               " takes all velocity in a step of " + format(s.dt) +
                                               ": lower it below " + format(1 / s.dt));
@@ -71,11 +84,29 @@ inline Scales scales_of(const Case& parameters, bool is_explicit = true) {
                               ? double(mesh.cells_x * mesh.cells_y) *
                                     std::pow(double(parameters.pixels_per_cell), 2)
                               : 0;
-    s.bytes = particles * (12 * sizeof(double) + 2 * sizeof(int)) +
+    const long carried = parameters.transfers().kind == Transfer::none ? 12 : 16;
+    s.bytes = particles * double(carried * sizeof(double) + 2 * sizeof(int)) +
               nodes * (sizeof(NodeSums) + sizeof(NodeMotion) + sizeof(NodeForce) + 1) +
               pixels * (3 * sizeof(double) + sizeof(int)) +
               sizeof(int) * double((mesh.cells_x + 8) * (mesh.cells_y + 8));
     return s;
+}
+
+/// Keeps the time step of the run that a restart continues: with another time.end it becomes
+/// time.dt.
+/// errors: InputError for a checkpoint that cannot be read
+inline void keep_time_step(const common::ProgramInfo& info, const common::CommandLine& command,
+                           Case& parameters) {
+    if (command.restart_path.empty() || parameters.dt > 0) return;
+    const common::CheckpointReader checkpoint(info, command.restart_path);
+    for (const common::Setting& one :
+         common::read_case(checkpoint.effective_case(), command.restart_path)) {
+        if (one.name != "time.end") continue;
+        const long* const whole = std::get_if<long>(&one.value);
+        Case before = parameters;
+        before.end = whole != nullptr ? double(*whole) : std::get<double>(one.value);
+        if (before.end != parameters.end) parameters.dt = scales_of(before).dt;
+    }
 }
 
 /// The resolved scales as text, for --dry-run and the head of a run.

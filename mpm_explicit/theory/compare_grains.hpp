@@ -36,6 +36,17 @@ inline void need_incline(const PlannedCase& planned) {
         "load.gravity_y below 0");
 }
 
+/// Friction between the target grain and theory.plate, or the first rigid grain.
+inline double friction_on_plate(const PlannedCase& planned) {
+    const std::string& name = planned.parameters.plate;
+    const auto plate = std::find_if(planned.plans.begin(), planned.plans.end(), [&](auto& plan) {
+        return planned.is_rigid(plan) && (name.empty() || plan.name == name);
+    });
+    return planned.parameters.problem.friction_between(
+        planned.material_of(planned.plans[planned.target()]).name,
+        planned.material_of(*plate).name);
+}
+
 /// The acceleration of the grain, fitted to its momentum.
 /// in: acceleration by theory, of g, angle and friction
 inline void compare_incline(const FinishedRun& run,
@@ -44,7 +55,7 @@ inline void compare_incline(const FinishedRun& run,
     const Problem& problem = run.parameters.problem;
     const double g = std::hypot(problem.gravity_x, problem.gravity_y),
                  angle = std::atan2(std::fabs(problem.gravity_x), -problem.gravity_y),
-                 exact = acceleration(g, angle, problem.contact.friction);
+                 exact = acceleration(g, angle, friction_on_plate(run.planned));
     auto v = run.momentum_x();
     const double m = run.mass();
     for (double& value : v) value /= std::copysign(m, problem.gravity_x);
@@ -171,8 +182,7 @@ inline void compare_disk(const FinishedRun& run, common::Summary& summary) {
     summary.result("center_yy", yy / center.yy, "1", 1, run.parameters.tolerance,
                    source + ", over -6P/(pi D)");
     const Material& m = run.material();
-    const double b = contact_half_width({R, m.density, m.E, m.nu}, P);
-    summary.result_info("contact_half_width", b / R, "R", "line contact; the loads are no points");
+    report_contact(run, contact_half_width({R, m.density, m.E, m.nu}, P), summary);
 }
 
 // ---- a grain that yields ------------------------------------------------------------------------

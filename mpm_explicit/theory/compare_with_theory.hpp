@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "mpm_explicit/theory/compare_grains.hpp"
+#include "mpm_explicit/theory/compare_plates.hpp"
 #include "mpm_explicit/theory/compare_rotation.hpp"
 #include "mpm_explicit/theory/scheme_theory.hpp"
 
@@ -62,6 +63,9 @@ inline constexpr theory::Comparison comparisons[] = {
     {"disk", theory::need_pressed_disk, theory::compare_disk, theory::center_columns},
     {"bond", theory::need_bond, theory::compare_bond},
     {"yield", theory::need_yielding, theory::compare_yield},
+    {"billet", theory::need_billet, theory::compare_billet},
+    {"hold", theory::need_hold, theory::compare_hold},
+    {"cycle", theory::need_cycle, theory::compare_cycle},
     {"collapse", nullptr, theory::compare_collapse, theory::front_column}};
 
 }  // namespace mpm_explicit

@@ -24,7 +24,8 @@ namespace mpm::theory {
 struct SchemeFacts {
     // How far the energy may change, relative; infinite for a scheme that is meant to take energy.
     double rebound_tolerance = 0, bar_tolerance = 0;
-    double theta = 0.5;  // level of velocities and stresses in the step
+    double theta = 0.5;      // level of velocities and stresses in the step
+    double force_level = 1;  // in a step of a plate, of the travel whose stress it works against
     bool consistent_mass = false;
 };
 

@@ -244,4 +244,19 @@ inline double plane_strain_modulus(double E, double nu) { return E / (1 - nu * n
 ///   s_yy = 2 Y / 3^1/2, with s_zz = s_yy / 2: flow along z has come to rest
 inline double plane_strain_strength(double Y) { return 2 * Y / std::numbers::sqrt3; }
 
+/// Work per volume that steps take in a cycle of strain range sin^2(pi t/T) with a modulus M, where
+/// each works against the stress at a level f of the strain that it adds.
+///   (f - 1/2) M sum (de)^2 = (f - 1/2) (pi^2/2) M range^2 dt/T
+inline double cycle_loss(double M, double range, double f, double dt_over_T) {
+    return (f - 0.5) * 0.5 * std::numbers::pi * std::numbers::pi * M * range * range * dt_over_T;
+}
+
+/// Work per volume that a block takes in a cycle of strain of this range, held along x and z, when
+/// it yields at the von Mises stress Y and does not harden. The difference of stresses follows 2 G e
+/// between -Y and Y, and two thirds of it do work.
+///   (4/3) Y (range - Y/G)
+inline double uniaxial_loop_area(double Y, double G, double range) {
+    return 4.0 / 3 * Y * std::max(0.0, range - Y / G);
+}
+
 }  // namespace mpm

@@ -84,7 +84,6 @@ class ThetaRecorder {
         run.summary.performance("mass_iterations_per_step", effort.mass_iterations / steps);
         run.summary.performance("krylov_vectors_per_step", effort.krylov / steps);
         run.summary.performance("loops_per_step", effort.loops / steps);
-        run.summary.performance("held_pairs_per_step", effort.held / steps);
     }
 
    private:
@@ -94,7 +93,6 @@ class ThetaRecorder {
         add_budget(l, row);
         row.add("iterations", "1", double(sums.solver.iterations));
         row.add("loops", "1", double(sums.solver.loops));
-        row.add("held", "1", double(sums.solver.held));
         recorder_.add_to(row, l.momenta, sums.contact, all);
         return row;
     }

@@ -23,7 +23,7 @@ inline void validate_state(const Mesh& mesh, int width, State& state) {
     refuse(!closed || std::adjacent_find(pairs.begin(), pairs.end(), falls) != pairs.end(),
            "its pairs in contact are not closed, or out of order");
     const Effort& e = state.effort;
-    for (const double count : {e.iterations, e.mass_iterations, e.krylov, e.loops, e.held})
+    for (const double count : {e.iterations, e.mass_iterations, e.krylov, e.loops})
         refuse(count < 0, "the iterations of its solvers are negative");
 }
 

@@ -1,6 +1,6 @@
 // The results of a run of mpm_implicit: what any scheme is compared with
-// (mpm_explicit/theory/compare_grains.hpp), the energy theorem in every run, what the theta scheme
-// does to an oscillation, exactly, and what a block bears that is pressed slowly.
+// (mpm_explicit/theory/compare_grains.hpp), the energy theorem in every run, and what the theta
+// scheme does to an oscillation, exactly.
 #pragma once
 
 #include <algorithm>
@@ -12,6 +12,7 @@
 
 #include "common/theory/theta_scheme.hpp"
 #include "mpm_explicit/theory/compare_grains.hpp"
+#include "mpm_explicit/theory/compare_plates.hpp"
 #include "mpm_explicit/theory/compare_rotation.hpp"
 #include "mpm_explicit/theory/scheme_theory.hpp"
 #include "mpm_implicit/budget.hpp"
@@ -26,8 +27,9 @@ inline bool keeps_energy(const Case& parameters, const theory::SchemeFacts& sche
 
 /// The properties of the theta scheme that comparisons use.
 inline theory::SchemeFacts facts_of(const Case& parameters, const ThetaScheme& scheme) {
-    theory::SchemeFacts facts{.theta = scheme.theta, .consistent_mass = scheme.consistent()};
-    const bool keeps = keeps_energy(parameters, facts) && parameters.problem.contact.friction == 0;
+    theory::SchemeFacts facts{
+        .theta = scheme.theta, .force_level = scheme.theta, .consistent_mass = scheme.consistent()};
+    const bool keeps = keeps_energy(parameters, facts) && !parameters.problem.has_friction();
     facts.bar_tolerance = keeps ? 1e-8 : std::numeric_limits<double>::infinity();
     facts.rebound_tolerance = facts.bar_tolerance;
     return facts;
@@ -118,70 +120,6 @@ inline void compare_oscillator(const theory::FinishedRun& run, common::Summary& 
                    source);
 }
 
-/// The plate that presses a billet: theory.plate, or the first that moves along y.
-/// out:    its name; empty if there is none
-inline std::string billet_plate(const theory::PlannedCase& planned) {
-    const std::string& name = planned.parameters.plate;
-    for (const PlannedGrain& plan : planned.plans)
-        if (planned.is_rigid(plan) &&
-            (name.empty() ? plan.from.velocity_y != 0 : plan.name == name))
-            return plan.name;
-    return {};
-}
-
-/// Needs an upright box between two rigid plates without friction, of which one moves along y.
-inline void need_billet(const theory::PlannedCase& planned) {
-    const Problem& problem = planned.parameters.problem;
-    const PlannedGrain& block = planned.plans[planned.target()];
-    planned.refuse(planned.free_grains() != 1 || planned.plans.size() != 3 ||
-                       block.from.shape != "box" || block.from.angle != 0 ||
-                       problem.contact.friction != 0 || billet_plate(planned).empty(),
-                   " needs one upright box between two rigid plates without friction, of which one "
-                   "moves along y");
-    const Material& m = planned.material_of(block);
-    planned.refuse(m.law != Law::elastic && (m.law != Law::j2 || m.hardening != 0),
-                   " knows what is elastic, and what has law = \"j2\" and hardening = 0: change "
-                   "[material." +
-                       m.name + "]");
-    const Bounds box = bounds(block.outline);
-    for (const PlannedGrain& plan : planned.plans) {
-        if (&plan == &block) continue;
-        const Bounds plate = bounds(plan.outline);
-        const double gap =
-            std::min(std::fabs(plate.y_low - box.y_high), std::fabs(plate.y_high - box.y_low));
-        planned.refuse(
-            plate.x_low > box.x_low || plate.x_high < box.x_high || gap > 1e-6 * problem.mesh().h,
-            ": plate '" + plan.name + "' does not cover a whole side of '" + block.name +
-                "': make it wider, and let them touch");
-    }
-}
-
-/// A block that one plate presses against another, slowly: its modulus while it is elastic, and the
-/// most that it bears when it can yield but not harden.
-inline void compare_billet(const theory::FinishedRun& run, common::Summary& summary) {
-    const Bounds box = bounds(run.planned.plans[run.planned.target()].outline);
-    const std::string plate = billet_plate(run.planned);
-    const auto force = run.history.column("force_y_" + plate),
-               way = run.history.column("travel_y_" + plate);
-    const double width = box.x_high - box.x_low, height = box.y_high - box.y_low,
-                 press = std::fabs(force.back()) / width;
-    const Material& m = run.material();
-    summary.result_info("strain", std::fabs(way.back()) / height, "1", "at the end");
-    if (m.law == Law::j2) {
-        const double limit = plane_strain_strength(m.yield_stress);
-        summary.result("limit", press / limit, "1", 1, run.parameters.tolerance,
-                       "stress on the plate at the end, over 2 Y/3^1/2, a plane block's limit");
-        return;
-    }
-    std::vector<double> strain, stress;
-    for (std::size_t n = 0; n < way.size(); ++n)
-        strain.push_back(std::fabs(way[n]) / height), stress.push_back(std::fabs(force[n]) / width);
-    const double exact = plane_strain_modulus(m.E, m.nu);
-    summary.result("modulus", theory::slope(strain, stress, 0.5 * strain.back()), "stress", exact,
-                   run.parameters.tolerance * exact,
-                   "E/(1 - nu^2): stress on the plate against strain, second half of the run");
-}
-
 /// Grains that a plate presses: the energy is the work of the plate.
 inline void compare_compression(const theory::FinishedRun& run, common::Summary& summary) {
     const auto energy = run.history.column("energy"), work = run.history.column("plate"),
@@ -214,7 +152,9 @@ inline constexpr theory::Comparison comparisons[] = {
     {"bond", theory::need_bond, theory::compare_bond},
     {"yield", theory::need_yielding, theory::compare_yield},
     {"compression", nullptr, compare_compression},
-    {"billet", need_billet, compare_billet},
+    {"billet", theory::need_billet, theory::compare_billet},
+    {"hold", theory::need_hold, theory::compare_hold},
+    {"cycle", theory::need_cycle, theory::compare_cycle},
     {"energy"}};  // the energy theorem, which is tried in every run
 
 }  // namespace mpm_implicit

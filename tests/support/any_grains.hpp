@@ -36,7 +36,7 @@ struct Run {
           dt(step_size > 0 ? step_size : scales.dt),
           state{assemble(c.problem), {}, {}},
           laws(laws_of(c.problem)),
-          contact(c.problem.contact, state.assembly.grains, state.assembly.bonds),
+          contact(contact_rule(c.problem), state.assembly.grains, state.assembly.bonds),
           nodes(c.problem.mesh(), c.scheme().width(), scales.least_mass) {
         // Elastic bodies do not use yield_p: it numbers the particles, so that tests find them.
         Particles& p = particles();

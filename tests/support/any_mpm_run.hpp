@@ -1,7 +1,9 @@
 // Whole runs of a program of the material point method, without files for figures.
 #pragma once
 
+#include <cmath>
 #include <string>
+#include <utility>
 
 #include "tests/support/any_summary.hpp"
 
@@ -16,6 +18,30 @@ inline Run run_mpm(const std::string& program, const std::string& name,
                         " output.particles_interval=0 output.fringes_interval=0 "
                         "output.grains_interval=0",
                     status);
+}
+
+/// Blocks of two materials on one incline, each with a friction of its own against the plate, and the
+/// case of the program: g (sin - mu cos).
+inline void check_two_blocks(const std::string& program, double tolerance) {
+    // The names of a pair in either order; what no pair has is friction 0.9, where both would stick.
+    // With more than 0.3, sliding of an elastic block is not steady any more.
+    const Run r = run_mpm(
+        program, "pairs",
+        program +
+            "/cases/incline_block.toml theory.compare=none contact.friction=0.9 "
+            "material.glass.E=1e6 material.glass.density=1000 grain.second.shape=box "
+            "grain.second.x=1.2 grain.second.y=0.25 grain.second.width=0.4 "
+            "grain.second.height=0.2 grain.second.material=glass pair.one.b=plate "
+            "pair.one.friction=0.1 pair.two.a=plate pair.two.b=glass pair.two.friction=0.2");
+    const auto& time = r.column("time");
+    const std::size_t half = time.size() / 2;
+    for (const auto& [block, mu] : {std::pair("block", 0.1), std::pair("second", 0.2)}) {
+        const auto& p = r.column(std::string("momentum_x_") + block);
+        const double acceleration = (p.back() - p[half]) / (80 * (time.back() - time[half])),
+                     expected = 10 * (0.5 - mu * std::sqrt(0.75));
+        CAPTURE(block);
+        CHECK(std::fabs(acceleration - expected) <= tolerance * expected);
+    }
 }
 
 }  // namespace facts

@@ -35,7 +35,7 @@ struct ThetaRun {
     double size = 0;         // largest energy or work of loads, so far
     double growth = -1e300;  // largest of a step, beyond the work of loads and what laws undo
     double least_V = 1;      // smallest V^1/V^0 of a step
-    long held = 0, loops = 0;
+    long loops = 0;
 
     /// in: prepare(assembly), what is changed before the start
     template <class Prepare>
@@ -46,7 +46,7 @@ struct ThetaRun {
           dt(scales.dt),
           state{assemble(c.problem), {}, {}, {}, {}},
           laws(laws_of(c.problem)),
-          contact(c.problem.contact, state.assembly.grains, state.assembly.bonds),
+          contact(contact_rule(c.problem), state.assembly.grains, state.assembly.bonds),
           nodes(c.problem.mesh(), c.scheme().width(), scales.least_mass) {
         // Elastic bodies do not use yield_p: it numbers the particles, so that tests find them.
         Particles& p = particles();
@@ -140,7 +140,7 @@ struct ThetaRun {
         growth = std::max(growth, given() - before);
         size = worst({size, l.energy(), std::fabs(l.plate + l.gravity)});
         for (const TileSums& s : sums.tiles) least_V = std::min(least_V, s.least_V);
-        held += sums.solver.held, loops += sums.solver.loops;
+        loops += sums.solver.loops;
         ++step;
     }
 

@@ -246,7 +246,8 @@ inline const std::string one_species = "[time]\nend = 0\n[species.beam]\ncharge 
                              "cells_z = 8\n",
                          beam_of_grains =
                              "material.beam.E=1 pack.beam.x=0.2 pack.beam.y=0.15 "
-                             "pack.beam.columns=2 pack.beam.rows=1 bond.beam.tension=1",
+                             "pack.beam.columns=2 pack.beam.rows=1 bond.beam.tension=1 "
+                             "pair.beam.friction=1",
                          beam_of_plasma =
                              "plasma.setup=uniform grid.boundary_z=periodic "
                              "species.beam.drift_x=0.1 uniform.particles_per_cell=1";

@@ -1,0 +1,235 @@
+// The results of a block between two smooth plates, whatever the scheme: pressed slowly, pressed and
+// held, pressed in cycles.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "mpm_explicit/theory/compare_grains.hpp"
+
+namespace mpm::theory {
+
+/// The number of the plate that presses: theory.plate, or the first that moves along y; that of the
+/// block if there is none.
+inline std::size_t pressing_plate(const PlannedCase& planned) {
+    const std::string& name = planned.parameters.plate;
+    for (std::size_t g = 0; g < planned.plans.size(); ++g) {
+        const PlannedGrain& plan = planned.plans[g];
+        const bool moves = plan.from.velocity_y != 0 || plan.from.swing_y != 0;
+        if (planned.is_rigid(plan) && (name.empty() ? moves : plan.name == name)) return g;
+    }
+    return planned.target();
+}
+
+/// Whether the block cannot widen along x: it fills the mesh between rollers, or around a period.
+inline bool is_confined(const PlannedCase& planned) {
+    const Mesh mesh = planned.parameters.problem.mesh();
+    const Bounds box = bounds(planned.plans[planned.target()].outline);
+    return box.x_high - box.x_low > mesh.length_x() - 1e-6 * mesh.h &&
+           (mesh.periodic_x ||
+            (planned.has_wall(x_low, "slip") && planned.has_wall(x_high, "slip")));
+}
+
+/// Needs an upright box between two rigid plates without friction, of which one moves along y.
+inline void need_press(const PlannedCase& planned) {
+    const Problem& problem = planned.parameters.problem;
+    const PlannedGrain& block = planned.plans[planned.target()];
+    planned.refuse(planned.free_grains() != 1 || planned.plans.size() != 3 ||
+                       block.from.shape != "box" || block.from.angle != 0 ||
+                       problem.has_friction() || pressing_plate(planned) == planned.target(),
+                   " needs one upright box between two rigid plates without friction, of which one "
+                   "moves along y");
+    const Material& m = planned.material_of(block);
+    planned.refuse(m.law != Law::elastic && (m.law != Law::j2 || m.hardening != 0),
+                   " knows what is elastic, and what has law = \"j2\" and hardening = 0: change "
+                   "[material." +
+                       m.name + "]");
+    const Bounds box = bounds(block.outline);
+    for (const PlannedGrain& plan : planned.plans) {
+        if (&plan == &block) continue;
+        const Bounds plate = bounds(plan.outline);
+        const double gap =
+            std::min(std::fabs(plate.y_low - box.y_high), std::fabs(plate.y_high - box.y_low));
+        planned.refuse(
+            plate.x_low > box.x_low || plate.x_high < box.x_high || gap > 1e-6 * problem.mesh().h,
+            ": plate '" + plan.name + "' does not cover a whole side of '" + block.name +
+                "': make it wider, and let them touch");
+    }
+}
+
+/// What the plate has done to the block, row by row.
+struct Press {
+    double width, height;  // of the block at the start
+    double modulus;        // stress over strain while it is elastic
+    std::string source;
+    std::vector<double> strain, stress;  // engineering ones, positive
+};
+
+inline Press press_of(const FinishedRun& run) {
+    const PlannedCase& planned = run.planned;
+    const Bounds box = bounds(planned.plans[planned.target()].outline);
+    const Material& m = run.material();
+    const bool confined = is_confined(planned);
+    Press press{box.x_high - box.x_low,
+                box.y_high - box.y_low,
+                confined ? moduli(m).lambda + 2 * moduli(m).G : plane_strain_modulus(m.E, m.nu),
+                confined ? "lambda + 2 G" : "E/(1 - nu^2)",
+                {},
+                {}};
+    const std::string& plate = planned.plans[pressing_plate(planned)].name;
+    for (const double way : run.history.column("travel_y_" + plate))
+        press.strain.push_back(std::fabs(way) / press.height);
+    for (const double force : run.history.column("force_y_" + plate))
+        press.stress.push_back(std::fabs(force) / press.width);
+    return press;
+}
+
+// ---- pressed slowly -----------------------------------------------------------------------------
+
+/// Needs a press; what can yield has to be free to widen.
+inline void need_billet(const PlannedCase& planned) {
+    need_press(planned);
+    const Material& m = planned.material_of(planned.plans[planned.target()]);
+    planned.refuse(m.law == Law::j2 && is_confined(planned),
+                   " knows no limit for a block that cannot widen: make it narrower than the mesh");
+}
+
+/// Its modulus while it is elastic, and the most that it bears when it can yield but not harden.
+inline void compare_billet(const FinishedRun& run, common::Summary& summary) {
+    const Press press = press_of(run);
+    const Material& m = run.material();
+    summary.result_info("strain", press.strain.back(), "1", "at the end");
+    if (m.law == Law::j2) {
+        const double limit = plane_strain_strength(m.yield_stress);
+        summary.result("limit", press.stress.back() / limit, "1", 1, run.parameters.tolerance,
+                       "stress on the plate at the end, over 2 Y/3^1/2, a plane block's limit");
+        return;
+    }
+    summary.result("modulus", slope(press.strain, press.stress, 0.5 * press.strain.back()),
+                   "stress", press.modulus, run.parameters.tolerance * press.modulus,
+                   press.source + ": stress on the plate against strain, second half of the run");
+}
+
+// ---- pressed and held ---------------------------------------------------------------------------
+
+/// When the plate has come to rest, but for its swing; 0 for one that only swings.
+inline double time_of_rest(const PlannedCase& planned) {
+    const GrainCase& plate = planned.plans[pressing_plate(planned)].from;
+    return plate.velocity_y == 0 ? 0
+           : plate.stop > 0      ? plate.stop + planned.parameters.problem.rise
+                                 : 1e300;
+}
+
+/// Needs an elastic press whose plate stops in the first half of the run.
+inline void need_hold(const PlannedCase& planned) {
+    need_press(planned);
+    const PlannedGrain& plate = planned.plans[pressing_plate(planned)];
+    planned.refuse(
+        planned.material_of(planned.plans[planned.target()]).law != Law::elastic ||
+            plate.from.swing_y != 0 || time_of_rest(planned) > 0.5 * planned.parameters.end,
+        " needs an elastic block, and a plate that has come to rest, at stop + load.rise, when "
+        "half of the run is over");
+}
+
+/// The stress that holds it, and whether it stays at rest, in the second half of the run.
+inline void compare_hold(const FinishedRun& run, common::Summary& summary) {
+    const Press press = press_of(run);
+    const auto times = run.history.column("time"), kinetic = run.history.column("kinetic"),
+               elastic = run.history.column("elastic");
+    double stress = 0, rows = 0, third = 0, last = 0;
+    for (std::size_t n = 0; n < times.size(); ++n) {
+        if (times[n] < 0.5 * run.end) continue;
+        stress += press.stress[n], rows += 1;
+        double& quarter = times[n] < 0.75 * run.end ? third : last;
+        quarter = std::max(quarter, kinetic[n] / elastic[n]);
+    }
+    summary.result("modulus", stress / rows / press.strain.back(), "stress", press.modulus,
+                   run.parameters.tolerance * press.modulus,
+                   press.source + ": mean stress on the plate over strain");
+    summary.result_within("kinetic_over_elastic", std::max(third, last), "1", 0, 1e-6,
+                          "at rest, in the second half of the run");
+    summary.result_within("kinetic_grows", last - third, "1", -1, 1e-8,
+                          "over the elastic energy, the last quarter less the third");
+}
+
+// ---- pressed in cycles --------------------------------------------------------------------------
+
+/// When the last whole cycle of a swing begins.
+inline double last_cycle(const Case& parameters, double period) {
+    return (std::floor(parameters.end * (1 - 1e-9) / period) - 1) * period;
+}
+
+/// Needs a press whose plate swings on after its preload; what can yield must not widen nor part.
+inline void need_cycle(const PlannedCase& planned) {
+    need_press(planned);
+    const PlannedGrain &block = planned.plans[planned.target()],
+                       &plate = planned.plans[pressing_plate(planned)];
+    const Material& m = planned.material_of(block);
+    const double T = plate.from.period,
+                 preload = plate.from.velocity_y * plate.from.stop / block.from.height;
+    planned.refuse(
+        plate.from.swing_y == 0 || last_cycle(planned.parameters, T) < time_of_rest(planned) + T,
+        " needs a plate with a swing_y, and two whole periods after it has come to rest "
+        "otherwise");
+    const Moduli c = moduli(m);
+    planned.refuse(
+        m.law == Law::j2 &&
+            (!is_confined(planned) || preload * plate.from.swing_y <= 0 ||
+             std::fabs(preload) * (c.lambda + 2.0 / 3 * c.G) < 2.0 / 3 * m.yield_stress),
+        " of what yields needs a block as wide as the mesh, between rollers or periodic, and a "
+        "velocity that presses it before by a stress above 2/3 of yield_stress");
+}
+
+/// The work that the block keeps in the last whole cycle, and its stiffness.
+inline void compare_cycle(const FinishedRun& run, common::Summary& summary) {
+    const Press press = press_of(run);
+    const Material& m = run.material();
+    const GrainCase& plate = run.planned.plans[pressing_plate(run.planned)].from;
+    const double begin = last_cycle(run.parameters, plate.period), end = begin + plate.period;
+    const auto times = run.history.column("time");
+    const auto gain = [&](const char* name) {
+        const auto values = run.history.column(name);
+        const auto at = [&](double t) {
+            const auto n = std::max<std::size_t>(
+                1, std::lower_bound(times.begin(), times.end() - 1, t) - times.begin());
+            const double s = (t - times[n - 1]) / (times[n] - times[n - 1]);
+            return values[n - 1] + s * (values[n] - values[n - 1]);
+        };
+        return at(end) - at(begin);
+    };
+    const double volume = press.width * press.height,
+                 range = std::fabs(plate.swing_y) / press.height,
+                 low = std::fabs(plate.velocity_y) * plate.stop / press.height;
+    const std::string source = "in the last whole cycle";
+    if (m.law == Law::j2) {
+        const double exact = uniaxial_loop_area(m.yield_stress, moduli(m).G, range),
+                     tolerance = run.parameters.tolerance * exact;
+        summary.result("loop_area", gain("external") / volume, "stress", exact, tolerance,
+                       "work of the plate per volume " + source + ": (4/3) Y (range - Y/G)");
+        summary.result("plastic_work", gain("plastic") / volume, "stress", exact, tolerance,
+                       "per volume " + source + ": all that it keeps");
+        return;
+    }
+    const double stored = press.modulus * range * (low + 0.5 * range);
+    // Between two rows the work of the plate is taken as linear, where its velocity changes sign.
+    const double share = run.scales.dt * double(run.parameters.history_steps) / plate.period;
+    summary.result("loop_area", gain("external") / (volume * stored), "1",
+                   cycle_loss(press.modulus, range, run.planned.scheme.force_level,
+                              run.scales.dt / plate.period) /
+                       stored,
+                   1e-4 + 2 * share * share,
+                   "work of the plate " + source +
+                       ", over what it stores: all comes back but (f - 1/2) pi^2/2 M range^2 dt/T");
+    double softest = 1e300, hardest = 0;
+    for (std::size_t n = 0; n < times.size(); ++n)
+        if (times[n] >= begin && times[n] <= end)
+            softest = std::min(softest, press.stress[n]),
+            hardest = std::max(hardest, press.stress[n]);
+    summary.result("modulus", (hardest - softest) / range, "stress", press.modulus,
+                   run.parameters.tolerance * press.modulus,
+                   press.source + ": range of the stress over that of the strain " + source);
+}
+
+}  // namespace mpm::theory
