@@ -40,7 +40,7 @@ inline double mean_share_of_load(double t, double dt, double rise) {
     if (t >= rise) return 1;
     const auto R = [&](double time) {
         if (time >= rise) return time - 0.5 * rise;
-        const double s = std::max(0.0, time) / rise;
+        const double s = time > 0 ? time / rise : 0;
         return rise * s * s * s * s * (2.5 - 3 * s + s * s);
     };
     return t + dt > 0 ? (R(t + dt) - R(t)) / dt : 0;

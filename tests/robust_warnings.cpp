@@ -160,7 +160,8 @@ mpm_explicit disks output.particles_interval=1e-3 output.fringes_interval=1 \
 mpm_explicit plates grain.bottom.force=2
     warning: grain 'bottom' has a force and control = "velocity": the force does nothing
 mpm_explicit plates grain.top.velocity_y=-0.1
-    warning: grain 'top' has control = "force_y" and a velocity in that direction, -0.1: it does
+mpm_explicit plates grain.top.swing_y=-0.01
+    warning: grain 'top' has control = "force_y" and a velocity or a swing in that direction: it does
     nothing, the grain starts at rest
 mpm_explicit plates grain.top.velocity_x=-0.1 -> no warning
 mpm_implicit rebound.toml -> no warning

@@ -184,13 +184,12 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
         if (plan.from.control == "velocity" && plan.from.force != 0)
             warnings.push_back("grain '" + plan.name +
                                "' has a force and control = \"velocity\": the force does nothing");
-        double unused = 0;
-        if (plan.from.control == "force_x") unused = plan.from.velocity_x + plan.from.swing_x;
-        if (plan.from.control == "force_y") unused = plan.from.velocity_y + plan.from.swing_y;
-        if (unused != 0)
-            warnings.push_back("grain '" + plan.name + "' has control = \"" + plan.from.control +
-                               "\" and a velocity in that direction, " + format(unused) +
-                               ": it does nothing, the grain starts at rest");
+        const GrainCase& from = plan.from;
+        if ((from.control == "force_x" && (from.velocity_x != 0 || from.swing_x != 0)) ||
+            (from.control == "force_y" && (from.velocity_y != 0 || from.swing_y != 0)))
+            warnings.push_back("grain '" + plan.name + "' has control = \"" + from.control +
+                               "\" and a velocity or a swing in that direction: it does nothing, "
+                               "the grain starts at rest");
     }
     return warnings;
 }

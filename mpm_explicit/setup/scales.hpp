@@ -92,21 +92,23 @@ inline Scales scales_of(const Case& parameters, bool is_explicit = true) {
     return s;
 }
 
-/// Keeps the time step of the run that a restart continues: with another time.end it becomes
-/// time.dt.
-/// errors: InputError for a checkpoint that cannot be read
-inline void keep_time_step(const common::ProgramInfo& info, const common::CommandLine& command,
-                           Case& parameters) {
-    if (command.restart_path.empty() || parameters.dt > 0) return;
+/// The scales of a run. A restart with another time.end keeps the time step of the run that it
+/// continues, which becomes time.dt.
+/// errors: InputError as scales_of, or for a checkpoint that cannot be read
+inline Scales scales_of_run(const common::ProgramInfo& info, const common::CommandLine& command,
+                            Case& parameters, bool is_explicit = true) {
+    if (command.restart_path.empty() || parameters.dt > 0)
+        return scales_of(parameters, is_explicit);
     const common::CheckpointReader checkpoint(info, command.restart_path);
+    Case before = parameters;
     for (const common::Setting& one :
          common::read_case(checkpoint.effective_case(), command.restart_path)) {
         if (one.name != "time.end") continue;
         const long* const whole = std::get_if<long>(&one.value);
-        Case before = parameters;
         before.end = whole != nullptr ? double(*whole) : std::get<double>(one.value);
-        if (before.end != parameters.end) parameters.dt = scales_of(before).dt;
     }
+    if (before.end != parameters.end) parameters.dt = scales_of(before, is_explicit).dt;
+    return scales_of(parameters, is_explicit);
 }
 
 /// The resolved scales as text, for --dry-run and the head of a run.

@@ -3,18 +3,26 @@
 wide = 1300; high = 1000
 load 'common/style.gp'
 file(name) = run.'/'.name.'/history.dat'
-angular = col(file('flip_linear'), 'angular_momentum')
-inertia = col(file('flip_linear'), 'inertia')
+array angular[2] = [col(file('flip_linear'), 'angular_momentum'), col(file('implicit_1'), 'angular_momentum')]
+array inertia[2] = [col(file('flip_linear'), 'inertia'), col(file('implicit_1'), 'inertia')]
+of(k) = k < 6 ? 1 : 2
 turn = 3.14159265
 first(name, c) = real(system(sprintf("awk '$1 !~ /^#/ { print $%d; exit }' '%s'", c, file(name))))
-set multiplot layout 2, 1 title 'A free disk spins, 16 cells across'
-set xrange [0:5]
-set key outside right
-set ylabel 'angular momentum, over the initial'; set yrange [0.8:1.02]
 names = 'flip_linear flip_quadratic spin_linear spin_quadratic apic_quadratic implicit_1 implicit_10'
 titles = '"FLIP, linear" "FLIP, quadratic" "with spin, linear" "with spin, quadratic" "APIC, quadratic" "implicit, {/Symbol a} = 1" "implicit, {/Symbol a} = 10"'
-plot for [k = 1:7] file(word(names, k)) using (column(1) / turn):(column(angular) / first(word(names, k), angular)) with lines lt k lw 2 title word(titles, k)
-set xlabel 'turns'; set ylabel 'moment of inertia, over the initial'; set yrange [0.98:1.1]
+array angular_0[7]
+array inertia_0[7]
+do for [k = 1:7] {
+    angular_0[k] = first(word(names, k), angular[of(k)])
+    inertia_0[k] = first(word(names, k), inertia[of(k)])
+}
+set multiplot layout 2, 1 title 'A free disk spins, 16 cells across: over the values at the start'
+set xrange [0:5]
+set key outside right
+set ylabel 'angular momentum'; set yrange [0.84:1.02]
+plot for [k = 1:7] file(word(names, k)) using (column(1) / turn):(column(angular[of(k)]) / angular_0[k]) with lines lt k lw 2 title word(titles, k)
+set xlabel 'turns'; set ylabel 'moment of inertia'; set yrange [0.98:1.1]
+unset key
 set arrow from 0, 1.00206 to 5, 1.00206 nohead lc rgb ink lw 1.5 dt 2 front
-plot for [k = 1:7] file(word(names, k)) using (column(1) / turn):(column(inertia) / first(word(names, k), inertia)) with lines lt k lw 2 title word(titles, k)
+plot for [k = 1:7] file(word(names, k)) using (column(1) / turn):(column(inertia[of(k)]) / inertia_0[k]) with lines lt k lw 2 title word(titles, k)
 unset multiplot
