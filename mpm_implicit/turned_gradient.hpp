@@ -3,8 +3,9 @@
 //
 //     G_ip = grad S_ip (1 + t_p J)^-1,  t_p = dt/4 (d u_y/dx - d u_x/dy),  u = v^theta
 // with J a quarter turn, counterclockwise: 1 + t_p J carries what is around a particle to the middle
-// of the step. G_ip replaces grad S_ip in strain and in force alike, with the t_p of the step before,
-// and so the step stays linear, and [MPM-13] holds. Stress is kept as it is in the middle of the next
+// of the step. G_ip replaces grad S_ip in strain and in force alike, with the t_p of the steps before,
+// and so the step stays linear, and [MPM-13] holds. It is a mean over some steps, as with theta = 1/2
+// what is stiff rings from one step to the next. Stress is kept as it is in the middle of the next
 // step, turned by half a step's turn.
 #pragma once
 
@@ -40,13 +41,15 @@ inline void turn_gradient(const Particles& particles, ParticleBatch& batch) {
     }
 }
 
-/// Stress turns with the particles of a batch, and t_p is that of this step.
+/// Stress turns with the particles of a batch, and this step enters t_p.
 /// in:     batch, after turn_gradient()
 inline void turn_particles(const ParticleBatch& batch, Particles& particles) {
     rotate_stress(batch, 0.5, particles);
     rotate_stress(batch, 0.5, particles);
     double* t = particles.turn_p.data() + batch.begin;
-    for (long k = 0; k < batch.count; ++k) t[k] = 0.25 * (batch.yx[k] - batch.xy[k]);
+    constexpr double part = 0.25;  // of this step in the mean
+    for (long k = 0; k < batch.count; ++k)
+        t[k] += part * (0.25 * (batch.yx[k] - batch.xy[k]) - t[k]);
 }
 
 /// f_i -= V_p sigma_p . G_ip of a batch.
