@@ -29,7 +29,7 @@ void start_turns(const Shape& shape, const std::vector<Grain>& grains, const Gra
     });
 }
 
-/// L (1 + t J)^-1 of a batch's particles.
+/// L (1 + t J)^-1 of a batch's particles.                                              [MPM-5]
 inline void turn_gradient(const Particles& particles, ParticleBatch& batch) {
     const double* turn = particles.turn_p.data() + batch.begin;
 #pragma omp simd

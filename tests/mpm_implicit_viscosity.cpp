@@ -56,8 +56,8 @@ TEST_CASE("the energy theorem holds with viscosity whatever else is at work" *
             CAPTURE(s.mass);
             CAPTURE(c.shape);
             ThetaRun run(c, s, [&](Assembly& all) {
-                disturb(0.004, 0, number, all);
-                shake(0.02, number, all);
+                disturb(0.004, 0, 20 + number, all);
+                shake(0.02, 20 + number, all);
             });
             const Budget& l = run.budget();
             bool falls = true;

@@ -309,7 +309,7 @@ TEST_CASE("the runs that are repeated do what they are repeated for" *
             of(program + " rebound" + solver, "friction");
             CHECK(again("friction") < -1e-2 * again("energy"));
         }
-        CHECK(of(program + " shear" + solver, "contacts").back() > 50);
+        CHECK(of(program + " shear" + solver, "contacts").back() >= 40);
         CHECK(again("friction") < (implicit ? -1e-2 * again("energy") : 0));
         CHECK(again("travel_x_top_g0005") > 0.07);
         CHECK(of(program + " bonded" + solver, "broken_bonds").back() == 1);
@@ -657,8 +657,8 @@ mpm_explicit rebound.toml theory.compare=none time.alpha=1.2
     '(left|right)' at \(NUMBER, NUMBER\): reduce time.alpha, refine the mesh, or allow more with
     time.energy_limit
 # Plates that come together faster than sound, in steps that are too long.
-mpm_explicit squeeze load.rise=0 time.alpha=2 time.energy_limit=0 grain.bottom.velocity_y=100 \
-    grain.top.control=velocity grain.top.velocity_y=-100
+mpm_explicit squeeze load.rise=0 time.alpha=1.5 time.energy_limit=0 grain.bottom.velocity_y=50 \
+    grain.top.control=velocity grain.top.velocity_y=-50
     the volume of a particle of grain 'disk' at \(NUMBER, NUMBER\) is inverted at step [0-9]+, t =
     NUMBER: reduce time.alpha, refine the mesh, or load the grain more slowly
 # A solver that does not get there says with whom and how far it was.
