@@ -13,7 +13,8 @@ namespace mpm_implicit {
 /// in:     width of the shape function in nodes
 /// errors: InputError, one sentence
 inline void validate_state(const Mesh& mesh, int width, State& state) {
-    mpm::validate_state(mesh, width, false, true, state.assembly, state.layout, state.budget.momenta);
+    mpm::validate_state(mesh, width, false, true, state.assembly, state.layout,
+                        state.budget.momenta);
     const std::vector<ActivePair>& pairs = state.active_pairs;
     const bool closed = std::all_of(pairs.begin(), pairs.end(), [](const ActivePair& pair) {
         return pair.state == static_cast<int>(ContactState::slip) ||

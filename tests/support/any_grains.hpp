@@ -47,8 +47,8 @@ struct Run {
         prepare(state.assembly);
         nodes.sort(state.assembly.grains, p, state.layout);
         with_shape(c.scheme(), [&](const auto& shape) {
-            start_leapfrog(shape, laws, contact, parameters.transfers().kind, parameters.frozen, dt, nodes,
-                           state);
+            start_leapfrog(shape, laws, contact, parameters.transfers().kind, parameters.frozen, dt,
+                           nodes, state);
         });
     }
     explicit Run(const Case& c) : Run(c, [](Assembly&) {}) {}
@@ -78,8 +78,8 @@ struct Run {
         std::vector<RigidMotion>& rigid = state.assembly.rigid;
         if (nodes.sort_is_due(state.layout)) nodes.sort(grains, at, state.layout);
         const BodyForce body = apply_loads(parameters.problem.loads(), step, dt, rigid);
-        take_step(shape, laws, contact, body, parameters.transfers(), parameters.frozen, dt, nodes, state,
-                  sums);
+        take_step(shape, laws, contact, body, parameters.transfers(), parameters.frozen, dt, nodes,
+                  state, sums);
 
         Budget& l = state.budget;
         add_energies(step, sums.tiles, l);
