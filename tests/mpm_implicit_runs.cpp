@@ -231,7 +231,8 @@ TEST_CASE("a block slides down an incline within a part in a thousand or sticks"
 
 TEST_CASE("a cylinder rolls on a rough incline and slips on a smoother one" *
           doctest::description("physics")) {
-    check_results(run("rolls", "incline_cylinder", ""), 3);
+    for (const char* rough : {"contact.friction=0.3", "contact.friction=0.6"})
+        check_results(run("rolls", "incline_cylinder", rough), 3);
     const Run slips =
         run("slips", "incline_cylinder", "contact.friction=0.1 method.theta=1 time.alpha=4");
     check_results(slips, 3);
