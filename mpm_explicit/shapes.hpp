@@ -24,8 +24,10 @@ struct Weights {
 /// x_p in cells from node 0; per_h = 1/h.
 struct LinearShape {
     static constexpr int width = 2;
+    static constexpr double least = 1e-15;  // weight: round-off
     Weights<2> operator()(double x, double per_h) const {
-        const double cell = std::floor(x), d = x - cell;
+        // On a line of nodes, the node beyond is seen a little: a gradient asks for its velocity.
+        const double cell = std::floor(x), way = x - cell, d = way > least ? way : least;
         return {static_cast<long>(cell), {1 - d, d}, {-per_h, per_h}};
     }
 };

@@ -217,14 +217,14 @@ inline void prescribe_rigid_velocity(const std::vector<Grain>& grains,
 }
 
 /// v_i^0 = P_i/m_i, on walls without what they forbid; rigid grains move as they are told.
+/// note:   However little mass a node has, its velocity counts in gradients.
 inline void nodal_velocity(const std::vector<Grain>& grains, const std::vector<RigidMotion>& rigid,
                            GrainNodes& nodes) {
-    const double least_mass = nodes.least_mass();
     common::for_each_block(nodes.size(), [&](int, long begin, long end) {
         for (long i = begin; i < end; ++i) {
             const auto n = static_cast<std::size_t>(i);
             const NodeSums& sum = nodes.sums[n];
-            const double per_m = sum.m > least_mass ? 1 / sum.m : 0;
+            const double per_m = sum.m > 0 ? 1 / sum.m : 0;
             nodes.motion[n] = {sum.px * per_m, sum.py * per_m, 0, 0};
         }
     });

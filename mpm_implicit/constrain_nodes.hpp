@@ -144,7 +144,7 @@ inline void constrain_small_mass_nodes(const std::vector<GridRow>& rows, GrainNo
         const GridRow& row = rows[r];
         for (long i = row.first; i < row.end; ++i) {
             const long dof = row.origin + i;
-            if (!(mass(dof) > nodes.least_mass())) continue;
+            if (!(mass(dof) > 0)) continue;
             const DofConstraint one = constraint_of(rows, static_cast<long>(r), i, nodes);
             if (mass(dof) < light * mass(one.master)) constraints.push_back(one);
         }

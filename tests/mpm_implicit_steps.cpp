@@ -369,6 +369,24 @@ TEST_CASE("the momentum of all grains stays with contact and friction and bonds"
     CHECK(off <= 1e-13);
 }
 
+TEST_CASE("a free grain keeps its momentum where its particles land on lines of nodes") {
+    // The node beyond has no mass there, and the gradient asks for its velocity.
+    for (const std::string& shape : shape_names) {
+        for (const char* mass : masses) {
+            for (const char* solver : solvers) {
+                Case c = case_on(24, 24, 1.2);
+                c.shape = shape, c.alpha = 30;
+                c.problem.grains = {box_at("a", 0.6, 0.6, 0.3, 0.3, -0.1)};
+                c.dt = 0.0125 / 0.1;  // a quarter of a cell
+                ThetaRun run(c, theta_scheme(0.5, mass, solver));
+                run.advance(9);
+                CHECK(run.budget().elastic <= 1e-20);
+                CHECK(std::fabs(run.budget().momenta[0].x + 0.1 * 1000 * 0.09) <= 1e-10);
+            }
+        }
+    }
+}
+
 TEST_CASE("forces and contact keep the angular momentum of all grains with the consistent mass") {
     // Particles that move keep it to second order in the step; frozen ones show that forces,
     // contact, friction and bonds keep it.

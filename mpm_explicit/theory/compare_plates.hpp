@@ -164,6 +164,7 @@ inline double last_cycle(const Case& parameters, double period) {
 /// Needs a press whose plate swings on after its preload; what can yield must not widen nor part.
 inline void need_cycle(const PlannedCase& planned) {
     need_press(planned);
+    planned.refuse_viscosity();
     const PlannedGrain &block = planned.plans[planned.target()],
                        &plate = planned.plans[pressing_plate(planned)];
     const Material& m = planned.material_of(block);

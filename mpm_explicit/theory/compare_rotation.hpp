@@ -16,24 +16,31 @@ inline void need_spin(const PlannedCase& planned) {
     const PlannedGrain& first = planned.plans[0];
     planned.refuse(planned.plans.size() != 1 || first.outline.kind != OutlineKind::disk ||
                        first.from.spin == 0 || problem.gravity_x != 0 || problem.gravity_y != 0 ||
-                       problem.damping != 0,
-                   " needs a single disk with a spin, without gravity and damping");
+                       problem.damping != 0 || problem.periodic_x || planned.parameters.frozen ||
+                       !(planned.has_wall(x_low, "open") && planned.has_wall(x_high, "open") &&
+                         planned.has_wall(y_low, "open") && planned.has_wall(y_high, "open")),
+                   " needs a single disk with a spin that moves free: no gravity, damping, walls, "
+                   "period or method.frozen");
 }
 
-/// sum_p m_p |x_p - X|^2, about the center of mass X.
-inline double moment_of_inertia(const Particles& at, const Grain& grain) {
+/// Its center of mass X, and sum_p m_p |x_p - X|^2.
+inline void inertia_columns(const PlannedCase& planned, const Assembly& all, common::Row& row) {
+    const Particles& at = all.particles;
+    const Grain& grain = all.grains[planned.target()];
     double m = 0, x = 0, y = 0, squares = 0;
     for (long k = grain.begin; k < grain.end; ++k) {
         const auto p = static_cast<std::size_t>(k);
         m += at.m_p[p], x += at.m_p[p] * at.x_p[p], y += at.m_p[p] * at.y_p[p];
-        squares += at.m_p[p] * (at.x_p[p] * at.x_p[p] + at.y_p[p] * at.y_p[p]);
     }
-    return squares - (x * x + y * y) / m;
-}
-
-inline void inertia_column(const PlannedCase& planned, const Assembly& all, common::Row& row) {
-    row.add("inertia", "mass*length^2",
-            moment_of_inertia(all.particles, all.grains[planned.target()]));
+    x /= m, y /= m;
+    for (long k = grain.begin; k < grain.end; ++k) {
+        const auto p = static_cast<std::size_t>(k);
+        const double dx = at.x_p[p] - x, dy = at.y_p[p] - y;
+        squares += at.m_p[p] * (dx * dx + dy * dy);
+    }
+    row.add("center_x", "length", x);
+    row.add("center_y", "length", y);
+    row.add("inertia", "mass*length^2", squares);
 }
 
 /// By how much the moment of inertia of an elastic disk grows that spins steadily in plane strain.
@@ -45,16 +52,22 @@ inline double inertia_growth(const Material& m, double w, double R) {
     return m.density * w * w * R * R * (1 - n) * per_E / 4 * ((3 + n) - 2 * (1 + n) / 3);
 }
 
-/// Angular momentum, which stays, and the moment of inertia, about which the disk breathes: it starts
-/// without stress.
+/// Angular momentum about the center of mass, L - X x P, which stays whatever the frame; and the
+/// moment of inertia, about which the disk breathes: it starts without stress.
 inline void compare_spin(const FinishedRun& run, common::Summary& summary) {
     const PlannedGrain& plan = run.planned.plans[0];
-    const auto L = run.history.column("angular_momentum"), I = run.history.column("inertia");
+    auto L = run.history.column("angular_momentum");
+    const auto I = run.history.column("inertia"), x = run.history.column("center_x"),
+               y = run.history.column("center_y"), p_x = run.history.column("momentum_x"),
+               p_y = run.history.column("momentum_y");
     double off = 0, mean = 0;
-    for (const double now : L) off = std::fmax(off, std::fabs(now / L.front() - 1));
+    for (std::size_t n = 0; n < L.size(); ++n) {
+        L[n] -= x[n] * p_y[n] - y[n] * p_x[n];
+        off = std::fmax(off, std::fabs(L[n] / L.front() - 1));
+    }
     for (const double now : I) mean += now / (I.front() * double(I.size()));
     summary.result("angular_momentum_change", off, "1", 0, run.parameters.tolerance,
-                   "largest, over that at the start");
+                   "about the center of mass: largest, over that at the start");
     summary.result("moment_of_inertia", mean, "1",
                    1 + inertia_growth(run.material(), plan.from.spin, plan.outline.radius),
                    run.parameters.tolerance,

@@ -146,7 +146,7 @@ inline constexpr theory::Comparison comparisons[] = {
     {"oscillator", theory::need_oscillator, compare_oscillator},
     {"block", theory::need_incline, theory::compare_block},
     {"rest", theory::need_rest, theory::compare_rest},
-    {"spin", theory::need_spin, theory::compare_spin, theory::inertia_column},
+    {"spin", theory::need_spin, theory::compare_spin, theory::inertia_columns},
     {"cylinder", theory::need_incline, theory::compare_cylinder},
     {"disk", theory::need_pressed_disk, theory::compare_disk, theory::center_columns},
     {"bond", theory::need_bond, theory::compare_bond},
