@@ -20,10 +20,10 @@ namespace mpm_explicit {
 using namespace mpm;
 
 /// C_p from the nodes, before particles move.
-/// in:     nodes.motion, after contact; transfer.affine, spin or affine
+/// in:     nodes.motion, after contact; kind, spin or affine
 /// in/out: particles; sums of their tiles: the work that C_p has had, and the angular momentum
 ///         m_p (B_yx - B_xy) that it stands for
-/// exact:  a rotation of the nodes; with quadratic shapes, whose D_p is h^2/4, what
+/// exact:  a rotation of the nodes comes back as C_p; with quadratic shapes, whose D_p is h^2/4, what
 ///         particles_to_grid() gives back to the nodes has this angular momentum, to round-off
 template <class Shape>
 void take_affine_motion(const Shape& shape, const std::vector<Grain>& grains,

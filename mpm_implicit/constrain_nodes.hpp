@@ -24,8 +24,8 @@ struct MasterDofs {
         double x, y;  // of the velocity components
         double mass;  // the same without the signs of walls
     };
-    std::vector<long> first;                  // of each dof: its only master, or
-    std::vector<Share> single;                // with these signs;
+    std::vector<long> first;                  // of each dof: 0, or -1 - k
+    std::vector<Share> single;                // where first is 0, all of its velocity
     std::vector<std::vector<Share>> several;  // where first is -1 - k, several[k]
 
     explicit MasterDofs(const GrainNodes& nodes)

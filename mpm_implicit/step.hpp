@@ -36,12 +36,7 @@ void find_matrices(const Shape& shape, const BodyForce& body, double dt,
                    Clock&& clock = {}) {
     // [matrices]
     particles_to_grid(shape, state.assembly.particles, nodes);  // particles -> grid
-    Particles& particles = state.assembly.particles;
-    if (particles.turn_p.empty()) {
-        nodal_velocity(state.assembly.grains, state.assembly.rigid, nodes);
-        scratch.contact.join_bonds(state.assembly.bonds, nodes);
-        start_turns(shape, state.assembly.grains, nodes, dt, scratch.frozen, particles);
-    }
+    start_turns(shape, scratch.contact, scratch.frozen, dt, nodes, state.assembly);
     clock.lap("put");
     scratch.solver.assemble(shape, scratch.laws, scratch.scheme, body, dt, state,
                             nodes);  // M, K of  [MPM-5 ... 8]

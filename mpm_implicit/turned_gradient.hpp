@@ -9,20 +9,27 @@
 // step, turned by half a step's turn.
 #pragma once
 
+#include "mpm_explicit/contact.hpp"
 #include "mpm_explicit/strain.hpp"
 
 namespace mpm_implicit {
 
 using namespace mpm;
 
-/// t_p of the first step; zero where particles are frozen.
-/// in:     nodes.motion, v_0
+/// t_p of the first step, by the velocities P_i/m_i; zero where particles are frozen. Later steps have
+/// it from turn_particles().
+/// in:     nodes.sums
+/// out:    nodes.motion, v_0, in the first step; particles.turn_p
 template <class Shape>
-void start_turns(const Shape& shape, const std::vector<Grain>& grains, const GrainNodes& nodes,
-                 double dt, bool frozen, Particles& particles) {
+void start_turns(const Shape& shape, const Contact& contact, bool frozen, double dt,
+                 GrainNodes& nodes, Assembly& all) {
+    Particles& particles = all.particles;
+    if (!particles.turn_p.empty()) return;
     particles.turn_p.assign(particles.x_p.size(), 0.0);
     if (frozen) return;
-    for_each_batch(grains, nodes, [&](ParticleBatch& batch) {
+    nodal_velocity(all.grains, all.rigid, nodes);
+    contact.join_bonds(all.bonds, nodes);
+    for_each_batch(all.grains, nodes, [&](ParticleBatch& batch) {
         velocity_gradient(shape, particles, nodes, OldVelocity{}, dt, batch);
         double* t = particles.turn_p.data() + batch.begin;
         for (long k = 0; k < batch.count; ++k) t[k] = 0.25 * (batch.yx[k] - batch.xy[k]);

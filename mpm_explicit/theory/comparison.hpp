@@ -63,7 +63,7 @@ struct PlannedCase {
         return parameters.problem.walls[side] == kind;
     }
 
-    /// errors: InputError for a viscosity, where theory knows of none
+    /// errors: InputError for a grain with viscosity, where the theory is of bodies without
     void refuse_viscosity() const {
         for (const PlannedGrain& plan : plans)
             refuse(material_of(plan).viscosity > 0 && !is_rigid(plan),
