@@ -73,7 +73,8 @@ struct Cloud {
     double node_change() const {
         double worst = 0;
         for (std::size_t n = 0; n < before.nodes.sum.size(); ++n)
-            worst = std::max(worst, (before.nodes.sum[n] - after.nodes.sum[n]).abs().maxCoeff());
+            worst = std::max(worst,
+                             (before.nodes.sum[n] - after.nodes.sum[n]).head<3>().abs().maxCoeff());
         return worst;
     }
     double cell_change(bool energy) const {

@@ -79,6 +79,7 @@ Case several_gases(long nx, long nz, const char* ends_x = "periodic",
     Case w = flip_case(nx, nz, ends_x, ends_z);
     w.materials = {{"air", 1.4, 0}, {"helium", 5.0 / 3, 0}};
     w.dt = 0.004;
+    w.filling = 0;  // clouds at random do not fill their cells
     return w;
 }
 

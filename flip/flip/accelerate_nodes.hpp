@@ -131,7 +131,7 @@ inline void add_viscous_force(const Grid& grid, double viscosity, Mesh& mesh) {
     common::for_each_row_two_colors(grid.z.cells, [&](long j) {
         for (long i = 0; i < grid.x.cells; ++i) {
             const long n = grid.index(i, j);
-            if (has_light_node(grid, g.m, n)) continue;
+            if (has_bare_node(grid, g, n)) continue;
             const auto corners = corners_of(grid, n);
             for (const detail::CornerGradients& d : gradients) {
                 const auto tau = detail::viscous_stress(viscosity, d, corners, g.vx0, g.vz0);
@@ -149,7 +149,7 @@ inline void add_viscous_force(const Grid& grid, double viscosity, Mesh& mesh) {
 /// Heat that viscosity makes in one cell per time, from stresses of v^0 and the motion v_bar.
 inline double viscous_heating(const Grid& grid, double viscosity, const Nodes& g, const Field& vx,
                               const Field& vz, long n) {
-    if (has_light_node(grid, g.m, n)) return 0;
+    if (has_bare_node(grid, g, n)) return 0;
     const auto corners = corners_of(grid, n);
     double sum = 0;
     for (const detail::CornerGradients& d : detail::corner_gradients(grid)) {

@@ -26,7 +26,8 @@ void deposit_row(const WeightScale& scale, const Material* materials, const Part
     for (long k = begin; k < end; ++k) {
         const Weights w = weights_at(scale, p.x_p[k], p.z_p[k]);
         const double m = p.m_p[k];
-        const Four momentum(m, m * p.vx_p[k], m * p.vz_p[k], 0);
+        const double covers = volumes ? p.V_p[k] : 1.0;
+        const Four momentum(m, m * p.vx_p[k], m * p.vz_p[k], covers);
         if constexpr (affine) {
             const Four along_x(0, m * p.Cxx_p[k] * dx, m * p.Czx_p[k] * dx, 0),
                 along_z(0, m * p.Cxz_p[k] * dz, m * p.Czz_p[k] * dz, 0);
@@ -53,8 +54,9 @@ void deposit_row(const WeightScale& scale, const Material* materials, const Part
             const double V_per_K = compliance(a, V, p_p);
             for_cells(scale, w, [&](long c, double R) {
                 mesh.cells.volume[c] += R * V;
-                mesh.cells.compliance[c] += R * V_per_K;
-                mesh.cells.compliance_p[c] += R * V_per_K * p_p;
+                SoftSum& soft = mesh.cells.soft[c * count + material];
+                soft.C += R * V_per_K;
+                soft.Cp += R * V_per_K * p_p;
             });
         }
     }
@@ -67,7 +69,8 @@ void deposit_row(const WeightScale& scale, const Material* materials, const Part
 ///   m_g = sum_p m_p S(x_p - x_g),   v_g = sum_p m_p v_p S(x_p - x_g) / m_g     [FLIP-8]
 ///   M_ck = sum_p m_p R(x_p - x_c),  U_ck = sum_p m_p e_p R(x_p - x_c), over material k
 /// in:     particles sorted by row, every position on the mesh
-/// out:    nodes.m, vx, vz (0 where no particle is near); cells.sum, M, and the sums over volumes
+/// out:    nodes.m, vx, vz (0 where no particle is near), and in nodes.sum[3] the volume of the
+///         particles around a node, or where they carry none their number; cells.sum, M, and the sums over volumes
 /// exact:  totals on nodes and cells are those of the particles, for mass, momentum and energy
 /// source: [FLIP-8]; with apic, v_p + C_p (x_g - x_p) for v_p: Jiang, Schroeder and Teran,
 ///         J. Comput. Phys. 338, 137 (2017).
@@ -78,15 +81,15 @@ inline void deposit_particles(const Grid& grid, std::span<const Material> materi
     Nodes& g = mesh.nodes;
     Cells& c = mesh.cells;
     const long stride = grid.stride(), count = mesh.materials;
-    const auto sums_of_volumes = {&c.volume, &c.compliance, &c.compliance_p};
     common::for_each_row(
         grid.z.cells + 3,
         [&](long row) {
             const long n = row * stride;
             std::fill_n(g.sum.begin() + n, stride, Four::Zero());
             std::fill_n(c.sum.begin() + n * count, stride * count, CellSum{});
-            if (volumes)
-                for (Field* f : sums_of_volumes) std::fill_n(f->data() + n, stride, 0.0);
+            if (!volumes) return;
+            std::fill_n(c.volume.data() + n, stride, 0.0);
+            std::fill_n(c.soft.begin() + n * count, stride * count, SoftSum{});
         },
         grid.size());
     const WeightScale scale(grid);
@@ -102,8 +105,10 @@ inline void deposit_particles(const Grid& grid, std::span<const Material> materi
         particles.count());
     fold_nodes(grid, g.sum.data());
     fold_cells(grid, &c.sum[0].M, 2 * count);
-    if (volumes)
-        for (Field* f : sums_of_volumes) fold_cells(grid, f->data());
+    if (volumes) {
+        fold_cells(grid, c.volume.data());
+        fold_cells(grid, &c.soft[0].C, 2 * count);
+    }
 
     for_each_node(grid, [&](long, long, long n) {
         const Four& sum = g.sum[n];

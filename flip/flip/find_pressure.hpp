@@ -13,12 +13,13 @@
 namespace flip {
 
 /// With particles that carry volumes, a cell of liquid that is filled to less than this part is
-/// surface: p = 0. A gas fills what there is.
+/// surface: p = 0. A gas has room to grow there.
 inline constexpr double least_filled = 0.7;
 
-/// A cell has neither pressure nor viscosity if the lightest of its nodes has less than this part of
-/// the mass of the heaviest: an impulse on a node without mass would leave the budget.
-inline constexpr double lightest_node = 0.01;
+/// A cell has neither pressure nor viscosity if the barest of its nodes is covered by less than this
+/// part of what covers another: an impulse on a node without mass would leave the budget. Volume
+/// decides and not mass, for air does not end where water begins.
+inline constexpr double barest_node = 0.01;
 
 /// Internal energy below zero by less than this part of the kinetic energy is round-off.
 inline constexpr double cold_enough = 1e-9;
@@ -28,19 +29,24 @@ inline std::array<long, 4> corners_of(const Grid& grid, long n) {
     return {n, n + 1, n + grid.stride(), n + grid.stride() + 1};
 }
 
-/// Whether a cell has a node with next to no mass.
-inline bool has_light_node(const Grid& grid, const Field& m, long n) {
+/// Whether a cell has a node with next to no fluid around it.
+inline bool has_bare_node(const Grid& grid, const Nodes& g, long n) {
     const long up = n + grid.stride();
-    const auto [lightest, heaviest] = std::minmax({m[n], m[n + 1], m[up], m[up + 1]});
-    return lightest <= lightest_node * heaviest;
+    const auto covered = [&](long corner) { return g.sum[corner][3]; };
+    const auto [least, most] =
+        std::minmax({covered(n), covered(n + 1), covered(up), covered(up + 1)});
+    return least <= barest_node * most;
 }
 
 /// Pressure and compressibility of every cell, and how its materials share a change of volume.
 ///   density of cells:       find_equilibrium() of masses and energies in the cell
 ///   volumes of particles:   p_c = sum_p R (V_p/K_p) p_p / sum_p R V_p/K_p,  K = rho c^2
 /// in:     deposit_particles() has been called
-/// out:    cells.p, compressibility, share, surface (1: p = 0 whatever happens)
-/// exact:  with volumes a state of equal pressure stays one wherever the particles are
+/// out:    cells.p, compressibility, share, surface (1: p = 0 whatever happens); with volumes excess,
+///         by how much the mean pressure of each material is above that of the cell, and room,
+///         the part by which a gas beside another material would have to grow, at most 1
+/// exact:  with volumes a state of equal pressure stays one wherever the particles are, as long as
+///         they fill the cells, or the filling of the scheme is 0
 /// errors: NumericalError for a negative or not finite density or energy, with where and when
 inline void find_pressure(const Grid& grid, std::span<const Material> materials, double time,
                           Mesh& mesh) {
@@ -71,12 +77,23 @@ inline void find_pressure(const Grid& grid, std::span<const Material> materials,
         c.compressibility[n] = cell.compressibility;
         bool surface = cell.surface;
         if (volumes) {
-            const bool filled = (gas || c.volume[n] >= least_filled * V_c) && c.compliance[n] > 0;
-            c.p[n] = filled ? c.compliance_p[n] / c.compliance[n] : 0;
+            double C = 0, Cp = 0;
+            for (long k = 0; k < count; ++k)
+                C += c.soft[n * count + k].C, Cp += c.soft[n * count + k].Cp;
+            c.compliance[n] = C;
+            const bool filled = (gas || c.volume[n] >= least_filled * V_c) && C > 0;
+            c.p[n] = filled ? Cp / C : 0;
+            for (long k = 0; k < count; ++k) {
+                const SoftSum& soft = c.soft[n * count + k];
+                c.excess[n * count + k] = filled && soft.C > 0 ? soft.Cp / soft.C - c.p[n] : 0;
+            }
             c.compressibility[n] = c.volume[n] > 0 ? c.compliance[n] / c.volume[n] : 0;
             surface = !filled;
+            c.room[n] = count > 1 && gas && c.volume[n] > 0
+                            ? std::clamp(least_filled * V_c / c.volume[n] - 1, 0.0, 1.0)
+                            : 0;
         }
-        surface = surface || has_light_node(grid, g.m, n);
+        surface = surface || has_bare_node(grid, g, n);
         c.surface[n] = surface ? 1 : 0;
         if (surface) c.p[n] = 0;
     });

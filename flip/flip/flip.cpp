@@ -17,6 +17,7 @@
 #include "flip/flip/step.hpp"
 #include "flip/output/flip_diagnostics.hpp"
 #include "flip/output/record.hpp"
+#include "flip/setup/balance_at_rest.hpp"
 #include "flip/setup/check_case.hpp"
 #include "flip/setup/check_state.hpp"
 #include "flip/setup/problem_of_case.hpp"
@@ -60,6 +61,8 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     if (run.restarting())
         run.restore(state, step, [&] { validate_state(problem, run.history, state); });
     sort_particles(parameters.grid, scratch.sort, particles);
+    if (!run.restarting() && all_hydrostatic(parameters))
+        balance_at_rest(problem, particles, scratch.mesh);
 
     // 3. The loop of the slide.
     while (run.not_finished(step, state.time, parameters.end)) {

@@ -24,14 +24,18 @@ namespace flip {
 
 using Four = Eigen::Array4d;
 
-/// What the particles of one material bring to a cell.
+/// What the particles of one material bring to a cell: mass and internal energy, and where they carry
+/// volumes compliance C = V_p/K_p and its product with p_p.
 struct CellSum {
-    double M = 0, U = 0;  // mass, internal energy
+    double M = 0, U = 0;
+};
+struct SoftSum {
+    double C = 0, Cp = 0;
 };
 
 /// The nodes; all columns grid.size() long.
 struct Nodes {
-    std::vector<Four> sum;         // m_g, momentum x and z, nothing
+    std::vector<Four> sum;         // m_g, momentum x and z, and what covers the node
     Field m;                       // m_g
     Field vx, vz;                  // Favre average of the particles' velocities  [FLIP-8]
     Field vx0, vz0;                // the same, with the walls' part set
@@ -56,9 +60,11 @@ struct Cells {
     Field compressibility;            // -(dV/dp)/V; 0 in an empty cell
     Field p_step;                     // the pressure that acts in this step
     std::vector<char> surface;        // 1: partly void, p = 0 whatever happens
-    // Only where particles carry volumes: sums of V_p, of the compliance V_p/K_p, and of p_p V_p/K_p;
-    // V_c div v dt, and its work, per compliance.
-    Field volume, compliance, compliance_p, strain, work, q_work;
+    // Only where particles carry volumes: sums of V_p and V_p/K_p; V_c div v dt, and its work, per
+    // compliance; room for gas; per material, pressure above that of the cell.
+    Field volume, compliance, strain, work, q_work, room;
+    std::vector<SoftSum> soft;
+    std::vector<double> excess;
 };
 
 /// The scratch pad.
@@ -88,9 +94,12 @@ inline Mesh mesh_of(const Problem& problem) {
     for (auto* f : {&c.share, &c.de, &c.relative_de}) f->assign(size * mesh.materials, 0);
     c.surface.assign(size, 0);
     for (Field* f : {&c.M, &c.p, &c.q, &c.compressibility, &c.p_step}) f->setZero(size);
-    if (scheme.particle_volumes)
-        for (Field* f : {&c.volume, &c.compliance, &c.compliance_p, &c.strain, &c.work, &c.q_work})
+    if (scheme.particle_volumes) {
+        for (Field* f : {&c.volume, &c.compliance, &c.strain, &c.work, &c.q_work, &c.room})
             f->setZero(size);
+        c.soft.assign(size * mesh.materials, {});
+        c.excess.assign(size * mesh.materials, 0);
+    }
     return mesh;
 }
 

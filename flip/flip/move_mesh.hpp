@@ -131,8 +131,10 @@ inline void work_on_cells(const Problem& problem, double dt, Mesh& mesh, Budget&
     });
     fill_cells(grid, c.de.data(), count);
     fill_cells(grid, c.relative_de.data(), count);
-    if (volumes)
-        for (Field* f : {&c.strain, &c.work, &c.q_work}) fill_cells(grid, f->data());
+    if (volumes) {
+        for (Field* f : {&c.strain, &c.work, &c.q_work, &c.p, &c.room}) fill_cells(grid, f->data());
+        fill_cells(grid, c.excess.data(), count);
+    }
 }
 
 namespace detail {
@@ -153,13 +155,26 @@ inline void filter_nodes(const Problem& problem, const MassMatrix& M, Nodes& g) 
     });
 }
 
+// How many cells the fastest node crosses per time.
+inline double most_cells_crossed(const Grid& grid, const Nodes& g) {
+    const double per_dx = 1 / grid.x.spacing(), per_dz = is_plane(grid) ? 1 / grid.z.spacing() : 0;
+    double most = 0;
+    for_own_nodes(grid, [&](long, long, long n) {
+        most = std::max({most, std::fabs(g.vxL[n]) * per_dx, std::fabs(g.vzL[n]) * per_dz});
+    });
+    return most;
+}
+
 }  // namespace detail
 
 /// One Lagrangian step of the mesh.
 /// in:     deposit_particles() and find_pressure() have been called
-/// in/out: M, room for the mass matrix, where the scheme asks for one; budget
+/// in/out: dt, halved as long as the new velocity takes some particle farther than a cell: the
+///         implicit pressure may be quick to move air beside water; M, room for the mass matrix,
+///         where the scheme asks for one; budget
 /// out:    what move_particles() needs: nodes.increment, dissipated, filtered; cells.de
-inline StepReport move_mesh(const Problem& problem, double dt, const Particles& particles,
+/// exact:  no particle passes a wall, unless the case gives a dt
+inline StepReport move_mesh(const Problem& problem, double& dt, const Particles& particles,
                             MassMatrix& M, Mesh& mesh, Budget& budget) {
     const Grid& grid = problem.grid;
     const Boundaries& boundaries = problem.boundaries;
@@ -171,14 +186,18 @@ inline StepReport move_mesh(const Problem& problem, double dt, const Particles& 
 
     find_viscosity(grid, boundaries, problem.q, mesh);
     if (consistent) stop_at_walls(problem, M, g);
-    find_known_forces(grid, boundaries, problem.viscosity, mesh);
-    if (problem.scheme.implicit) {
-        report = solve_pressure(problem, dt, mesh);
-    } else {
-        for_each_cell(grid, [&](long, long, long n) { mesh.cells.p_step[n] = mesh.cells.p[n]; });
-        accelerate_nodes(problem, dt, mesh);
+    for (;; dt *= 0.5) {
+        find_known_forces(grid, boundaries, problem.viscosity, mesh);
+        if (problem.scheme.implicit) {
+            report = solve_pressure(problem, dt, mesh);
+        } else {
+            for_each_cell(grid,
+                          [&](long, long, long n) { mesh.cells.p_step[n] = mesh.cells.p[n]; });
+            accelerate_nodes(problem, dt, mesh);
+        }
+        if (consistent) accelerate_consistently(problem, dt, M, g);
+        if (problem.limits.dt > 0 || !(dt * detail::most_cells_crossed(grid, g) > 1)) break;
     }
-    if (consistent) accelerate_consistently(problem, dt, M, g);
     work_on_cells(problem, dt, mesh, budget);
     detail::filter_nodes(problem, M, g);
     return report;

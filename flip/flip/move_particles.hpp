@@ -12,20 +12,41 @@ namespace flip {
 
 namespace detail {
 
-// Work on one particle that carries its volume, which it takes at its own pressure; per mass.
-//   V_p += (V_p/K_p) sum_c R strain_c
-// in: cells.strain, work, q_work; in/out: V_p
-inline double work_on_volume(const Material* materials, const WeightScale& scale, const Weights& at,
+// The factor by which a volume grows in a step, 1 + s, if nothing turned inside out. A bubble of gas
+// that shares its cell with a liquid takes all of the change of volume, more than its own perhaps:
+// below one half it is squeezed less and less.
+inline double growth_of_volume(double s) { return s >= -0.5 ? 1 + s : -0.25 / s; }
+
+// How far the materials of a cell come towards one pressure in a step.
+inline constexpr double relaxation = 0.5;
+
+// Work on one particle that carries its volume, which it takes at its own pressure; per mass. Where
+// materials share a cell, the softer takes nearly all of its change of volume, and a liquid would keep
+// the pressure that it came with, to burst with later: so they push each other towards p_c, volume for
+// volume, with the work of p_c, so that the cell loses none of both. A gas also takes a part of the
+// room that particles leave it, at constant energy: volumes follow the pressure, and where they have
+// drifted from the places of the particles, nothing else would bring them back.
+//   V_p *= growth_of_volume(s),  s = sum_c R (strain_c + relaxation (p_kc - p_c))/K_p
+// in: cells.strain, work, q_work, excess = p_kc - p_c, p, room; in/out: V_p
+inline double work_on_volume(const Problem& problem, const WeightScale& scale, const Weights& at,
                              const Cells& cells, long k, Particles& p) {
-    const Material& a = materials[p.material[k]];
+    const long count = static_cast<long>(problem.materials.size()), material = p.material[k];
+    const Material& a = problem.materials[material];
     const double V = p.V_p[k], p_p = pressure(a, p.m_p[k] / V, p.e_p[k]);
     const double V_per_K = compliance(a, V, p_p);
-    double strain = 0, work = 0;
+    double strain = 0, work = 0, room = 0;
     for_cells(scale, at, [&](long c, double R) {
         strain += R * cells.strain[c];
         work += R * (p_p * cells.work[c] + cells.q_work[c]);
     });
-    p.V_p[k] += V_per_K * strain;
+    if (count > 1)
+        for_cells(scale, at, [&](long c, double R) {
+            const double push = R * relaxation * cells.excess[c * count + material];
+            strain += push;
+            work += push * cells.p[c];
+            if (a.p_infinity == 0) room += R * cells.room[c];
+        });
+    p.V_p[k] *= growth_of_volume(V_per_K * strain / V) * (1 + problem.scheme.filling * room);
     return -V_per_K * work / p.m_p[k];
 }
 
@@ -62,7 +83,7 @@ RowMoved move_row(const Problem& problem, const WeightScale& scale, const Mesh& 
         });
         gained -= deficit * dv.square();
         if constexpr (volumes) {
-            gained += work_on_volume(problem.materials.data(), scale, at, mesh.cells, k, p);
+            gained += work_on_volume(problem, scale, at, mesh.cells, k, p);
             if (!(p.V_p[k] > 0)) moved.inverted = k;
         }
         Velocity v{p.vx_p[k] + dv.x, p.vz_p[k] + dv.z};         // [FLIP-6]

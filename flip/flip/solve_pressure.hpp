@@ -127,6 +127,29 @@ inline Eigen::SparseMatrix<double> pressure_matrix(const Problem& problem, doubl
     return A;
 }
 
+// Solves A x = load by conjugate gradients, from x = 0; A is its own lower half.
+// Preconditioned with z = S F^-1 S r, F the incomplete Cholesky factors of S A S and
+// S = 1/sqrt(diagonal of A). A cell that is nearly empty, or nearly without pressure, gives A
+// entries hundreds of orders of magnitude beyond the others, whose squares no number holds; S A S
+// has ones on its diagonal. Without factors the preconditioner is the diagonal.
+inline common::KrylovResult solve_cells(const Eigen::SparseMatrix<double>& A,
+                                        const Eigen::VectorXd& load, double tolerance,
+                                        long max_iterations, Eigen::VectorXd& x) {
+    const auto multiply = [&A](const Eigen::VectorXd& v, Eigen::VectorXd& Av) {
+        Av.noalias() = A.selfadjointView<Eigen::Lower>() * v;
+    };
+    const Eigen::VectorXd S = A.diagonal().cwiseSqrt().cwiseInverse();
+    const Eigen::SparseMatrix<double> scaled = S.asDiagonal() * A * S.asDiagonal();
+    const Eigen::IncompleteCholesky<double> factors(scaled);
+    const auto precondition = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
+        z = S.cwiseProduct(r);
+        if (factors.info() == Eigen::Success) z = factors.solve(z).eval();
+        z = S.cwiseProduct(z);
+    };
+    x.setZero(load.size());
+    return conjugate_gradients(multiply, precondition, load, x, tolerance, max_iterations);
+}
+
 }  // namespace detail
 
 /// Solves for the pressure at the level theta.
@@ -173,25 +196,10 @@ inline StepReport solve_pressure(const Problem& problem, double dt, Mesh& mesh) 
     if (!(load.norm() > scheme.tolerance * scale))
         return {0, load.norm() / std::max(scale, 1e-300)};
     const auto A = detail::pressure_matrix(problem, dt, mesh, cells, inertia);
-    const auto multiply = [&A](const Eigen::VectorXd& v, Eigen::VectorXd& Av) {
-        Av.noalias() = A.selfadjointView<Eigen::Lower>() * v;
-    };
-    // Preconditioned with z = S F^-1 S r, F the incomplete Cholesky factors of S A S and
-    // S = 1/sqrt(diagonal of A). A cell that is nearly empty, or nearly without pressure, gives A
-    // entries hundreds of orders of magnitude beyond the others, whose squares no number holds; S A S
-    // has ones on its diagonal. Without factors the preconditioner is the diagonal.
-    const Eigen::VectorXd S = A.diagonal().cwiseSqrt().cwiseInverse();
-    const Eigen::SparseMatrix<double> scaled = S.asDiagonal() * A * S.asDiagonal();
-    const Eigen::IncompleteCholesky<double> factors(scaled);
-    const auto precondition = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
-        z = S.cwiseProduct(r);
-        if (factors.info() == Eigen::Success) z = factors.solve(z).eval();
-        z = S.cwiseProduct(z);
-    };
     const double tolerance = std::min(1.0, scheme.tolerance * scale / load.norm());
-    Eigen::VectorXd change = Eigen::VectorXd::Zero(count);
+    Eigen::VectorXd change;
     const common::KrylovResult solved =
-        conjugate_gradients(multiply, precondition, load, change, tolerance, scheme.max_iterations);
+        detail::solve_cells(A, load, tolerance, scheme.max_iterations, change);
     if (!solved.converged)
         throw common::NumericalError(
             "the implicit pressure has not converged: " + solved.reason + "; after " +

@@ -44,7 +44,7 @@ void take_flip_step(const Problem& problem, long step, FlipScratch& scratch, Sta
     Mesh& mesh = scratch.mesh;
     Particles& particles = state.particles;
     // [step]
-    const double dt = step_allowed(problem, mesh, state.dt);
+    double dt = step_allowed(problem, mesh, state.dt);
     state.report =
         move_mesh(problem, dt, particles, scratch.mass_matrix, mesh, state.budget);  // F_g, v_g^L
     clock.lap("mesh");

@@ -23,7 +23,7 @@ struct GasCase {
 
 /// One side of a Riemann problem, with a material of its own.
 struct SideCase {
-    double density = 1, pressure = 1, velocity = 0, gamma = 1.4, p_infinity = 0;
+    double density = 1, pressure = 1, velocity = 0, gamma = 1.4, p_infinity = 0, tension = 0;
     bool operator==(const SideCase&) const = default;
 };
 
@@ -78,6 +78,7 @@ struct Case {
     std::string mass = "lumped";  // or consistent
     bool deficit_to_heat = true;
     std::string density = "cells";  // or particles
+    double filling = 0.1;
     double viscosity = 0;
     std::string pressure = "explicit";  // or implicit
     double theta = 1;

@@ -119,6 +119,8 @@ inline void refuse_materials(const Case& parameters) {
         refuse(a.gamma == 1 && a.p_infinity > 0, "material.", a.name,
                ".p_infinity = ", a.p_infinity,
                " needs gamma above 1: gamma = 1 is dust, without pressure");
+        refuse(a.tension > 0 && a.tension >= a.p_infinity, "material.", a.name,
+               ".tension = ", a.tension, " must be below its p_infinity, ", a.p_infinity);
         refuse(a.gamma == 1 && parameters.implicit(), "material.", a.name,
                ".gamma = 1 is dust, without pressure, and flip.pressure = \"implicit\" needs gamma "
                "above 1: take \"explicit\"");

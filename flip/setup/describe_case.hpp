@@ -28,6 +28,7 @@ inline void describe_side(common::ParameterTable& table, const std::string& name
     table.real(name + ".velocity", s.velocity, "velocity", anything(), "along x");
     table.real(name + ".gamma", s.gamma, "", between(1.01, 100), "ratio of specific heats");
     table.real(name + ".p_infinity", s.p_infinity, "pressure", at_least(0), "stiffness; 0: a gas");
+    table.real(name + ".tension", s.tension, "pressure", at_least(0), "largest that it holds");
 }
 
 inline void describe_region(common::ParameterTable& table, const std::string& prefix,
@@ -68,6 +69,8 @@ inline void describe_material(common::ParameterTable& table, const std::string& 
                "ratio of specific heats; 1: dust without pressure");
     table.real(prefix + ".p_infinity", m.p_infinity, "pressure", common::at_least(0),
                "stiffness; 0: a gas");
+    table.real(prefix + ".tension", m.tension, "pressure", common::at_least(0),
+               "largest that a liquid holds before a void opens; below p_infinity");
 }
 
 }  // namespace detail
@@ -152,6 +155,8 @@ inline common::ParameterTable describe(Case& parameters) {
                "kinetic energy that the transfer loses becomes internal energy");
     table.choice("flip.density", parameters.density, {"cells", "particles"},
                  "density from the mass in a cell, or from volumes that particles carry");
+    table.real("flip.filling", parameters.filling, "", between(0, 1),
+               "part of its room that a gas beside another material takes in a step");
     table.real("flip.viscosity", parameters.viscosity, "mass/(length time)", at_least(0),
                "dynamic viscosity of the fluid");
     table.choice("flip.pressure", parameters.pressure, {"explicit", "implicit"},

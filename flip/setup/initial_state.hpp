@@ -1,6 +1,7 @@
 // How a run begins: particles on a lattice, each with the state of the fluid where it stands.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <string_view>
@@ -19,8 +20,10 @@ inline Case completed(Case parameters) {
     parameters.grid.z.periodic = parameters.is(z_low, "periodic");
     if (parameters.setup == "riemann") {
         const double x_end = parameters.grid.x.low + parameters.grid.x.length;
-        parameters.materials = {{"left", parameters.left.gamma, parameters.left.p_infinity},
-                                {"right", parameters.right.gamma, parameters.right.p_infinity}};
+        parameters.materials = {};
+        for (const auto& [name, s] :
+             {std::pair{"left", parameters.left}, {"right", parameters.right}})
+            parameters.materials.push_back({name, s.gamma, s.p_infinity, s.tension});
         const auto side = [&](const char* name, const SideCase& s, double from, double to) {
             RegionCase r;
             r.name = name;
@@ -63,6 +66,12 @@ inline const RegionCase& region_with_flow(const Case& parameters, std::string_vi
 /// The sound speed of the uniform state of a region.
 inline double sound_speed_of(const Case& parameters, const RegionCase& r) {
     return std::sqrt(stiffness(material_of(parameters, r), r.gas.pressure) / r.gas.density);
+}
+
+/// Whether all fluid begins at rest under gravity.
+inline bool all_hydrostatic(const Case& parameters) {
+    return std::all_of(parameters.regions.begin(), parameters.regions.end(),
+                       [](const RegionCase& r) { return r.hydrostatic; });
 }
 
 /// The fluid at one place.

@@ -43,6 +43,8 @@ inline std::vector<FlipKey> keys_of_flip(const Case& parameters) {
         key("flip.mass", &Case::mass),
         key("flip.deficit_to_heat", &Case::deficit_to_heat),
         key("flip.density", &Case::density),
+        key("flip.filling", &Case::filling, parameters.density == "particles",
+            "flip.density = \"particles\""),
         key("flip.viscosity", &Case::viscosity),
         key("flip.pressure", &Case::pressure),
         key("flip.theta", &Case::theta, implicit, solver),

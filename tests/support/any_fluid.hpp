@@ -53,7 +53,7 @@ struct FlipRun {
     /// particles -> mesh, and the pressure.
     void deposit() { find_fluid(problem, state, scratch.mesh); }
     double move_nodes() {
-        const double dt = step_allowed(problem, scratch.mesh, state.dt);
+        double dt = step_allowed(problem, scratch.mesh, state.dt);
         state.report = move_mesh(problem, dt, state.particles, scratch.mass_matrix, scratch.mesh,
                                  state.budget);
         return dt;
