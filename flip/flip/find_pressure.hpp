@@ -43,7 +43,8 @@ inline bool has_bare_node(const Grid& grid, const Nodes& g, long n) {
 ///   volumes of particles:   p_c = sum_p R (V_p/K_p) p_p / sum_p R V_p/K_p,  K = rho c^2
 /// in:     deposit_particles() has been called
 /// out:    cells.p, compressibility, share, surface (1: p = 0 whatever happens); with volumes excess,
-///         by how much the mean pressure of each material is above that of the cell, and room,
+///         by how much the mean pressure of each material is above that of the cell, less one p_c
+///         for the most so that a gradient within the cell is none, and room,
 ///         the part by which a gas beside another material would have to grow, at most 1
 /// exact:  with volumes a state of equal pressure stays one wherever the particles are, as long as
 ///         they fill the cells, or the filling of the scheme is 0
@@ -83,10 +84,15 @@ inline void find_pressure(const Grid& grid, std::span<const Material> materials,
             c.compliance[n] = C;
             const bool filled = (gas || c.volume[n] >= least_filled * V_c) && C > 0;
             c.p[n] = filled ? Cp / C : 0;
+            double* const excess = &c.excess[n * count];
+            double largest = 0;
             for (long k = 0; k < count; ++k) {
                 const SoftSum& soft = c.soft[n * count + k];
-                c.excess[n * count + k] = filled && soft.C > 0 ? soft.Cp / soft.C - c.p[n] : 0;
+                excess[k] = filled && soft.C > 0 ? soft.Cp / soft.C - c.p[n] : 0;
+                largest = std::max(largest, std::fabs(excess[k]));
             }
+            const double beyond = 1 - std::fabs(c.p[n]) / std::max(largest, 1e-300);
+            for (long k = 0; k < count; ++k) excess[k] *= std::max(0.0, beyond);
             c.compressibility[n] = c.volume[n] > 0 ? c.compliance[n] / c.volume[n] : 0;
             surface = !filled;
             c.room[n] = count > 1 && gas && c.volume[n] > 0

@@ -9,6 +9,7 @@
 #include "flip/theory/compare_impact.hpp"
 #include "flip/theory/compare_instability.hpp"
 #include "flip/theory/compare_noh.hpp"
+#include "flip/theory/compare_rest.hpp"
 #include "flip/theory/compare_riemann.hpp"
 #include "flip/theory/compare_sedov.hpp"
 #include "flip/theory/compare_sound.hpp"
@@ -24,7 +25,8 @@ inline constexpr std::array comparisons{
     no_comparison,        riemann_comparison,   wall_shock_comparison, piston_comparison,
     diffusion_comparison, rotation_comparison,  sedov_comparison,      noh_comparison,
     gresho_comparison,    wave_comparison,      ringing_comparison,    interface_comparison,
-    shear_comparison,     dam_break_comparison, cavity_comparison,     impact_comparison};
+    shear_comparison,     dam_break_comparison, cavity_comparison,     impact_comparison,
+    rest_comparison};
 
 /// The comparison that a case asks for.
 inline const Comparison& comparison_of(const Case& parameters) {

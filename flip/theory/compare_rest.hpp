@@ -1,0 +1,50 @@
+// Fluids that lie still: what moves all the same.
+#pragma once
+
+#include <limits>
+
+#include "flip/theory/comparison.hpp"
+
+namespace flip {
+
+/// The largest speed and the largest kinetic energy that rest allows: of the slowest sound, and of the
+/// weight of the fluid times the height of the mesh.
+inline constexpr double largest_mach_at_rest = 1e-10, largest_kinetic_at_rest = 1e-8;
+
+/// Needs fluids without velocity, of one pressure, or hydrostatic under gravity.
+inline void validate_rest(const Case& parameters, const Refusal& refuse) {
+    const bool falls = parameters.gravity_x != 0 || parameters.gravity_z != 0;
+    refuse(parameters.trap != 0, " is for fluid without trap");
+    for (const RegionCase& r : parameters.regions) {
+        refuse(r.gas.velocity_x != 0 || r.gas.velocity_z != 0 || r.flow != "uniform" || r.noise > 0,
+               " needs fluid at rest, and region.", r.name, " moves");
+        refuse(falls && !r.hydrostatic, " needs region.", r.name, ".hydrostatic = true");
+        refuse(!falls && r.gas.pressure != parameters.regions.front().gas.pressure,
+               " needs one pressure, and region.", r.name, " has ", r.gas.pressure);
+    }
+}
+
+/// Largest speed and kinetic energy of the whole run.
+inline void compare_rest(const FinishedRun& run) {
+    const Case& parameters = run.parameters;
+    double sound = std::numeric_limits<double>::infinity();
+    for (const RegionCase& r : parameters.regions)
+        sound = std::min(sound, sound_speed_of(parameters, r));
+    const double weight =
+        run.totals.mass * std::hypot(parameters.gravity_x * parameters.grid.x.length,
+                                     parameters.gravity_z * parameters.grid.z.length);
+    const double fastest = run.history.largest("largest_speed") / sound;
+    if (!(weight > 0)) {
+        run.summary.result("largest_speed", fastest, "c", 0, largest_mach_at_rest,
+                           "equal pressures balance; c of the slowest sound");
+        return;
+    }
+    run.info("largest_speed", fastest, "c", "of the slowest sound");
+    run.summary.result("kinetic_energy", run.history.largest("kinetic") / weight, "m g h", 0,
+                       largest_kinetic_at_rest, "the pressure balances gravity");
+}
+
+inline constexpr Comparison rest_comparison{"rest",  validate_rest, nullptr,
+                                            nullptr, nullptr,       compare_rest};
+
+}  // namespace flip

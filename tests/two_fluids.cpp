@@ -1,0 +1,189 @@
+// Two fluids of very different density beside each other in flip: rest, balance under gravity, what
+// shares a cell, tension, and that nothing is thrown through a wall.
+#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#include <doctest/doctest.h>
+
+#include <numeric>
+
+#include "flip/setup/balance_at_rest.hpp"
+#include "tests/support/any_fluid.hpp"
+
+namespace {
+
+using namespace facts;
+
+// Two fluids at the pressure 1: a dense one on the left, of the whole height or a disk; `ratio` times
+// as dense as the gas.
+Case two_at_rest(long rows, double ratio, bool liquid) {
+    Case w = flip_case(12, rows, "slip", "slip");
+    w.materials = {{"light", 1.4, 0},
+                   liquid ? Material{"dense", 4.4, 6000} : Material{"dense", 1.4, 0}};
+    const RegionCase light = fluid("light", 1, 1);
+    RegionCase dense = fluid("dense", ratio, 1);
+    dense.shape = rows > 1 ? "disk" : "box";
+    dense.center_x = rows > 1 ? 0.5 : 0.25, dense.center_z = 0.5;
+    dense.half_x = 0.25, dense.half_z = 1, dense.radius = 0.3;
+    w.regions = {light, dense};
+    w.per_cell_x = 3, w.per_cell_z = rows > 1 ? 3 : 1;
+    return w;
+}
+
+double fastest_of(const Particles& p) {
+    double fastest = 0;
+    for (std::size_t k = 0; k < p.x_p.size(); ++k)
+        fastest = worst({fastest, std::fabs(p.vx_p[k]), std::fabs(p.vz_p[k])});
+    return fastest;
+}
+
+double sum_of(const std::vector<double>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+// A pond of water 1 deep under as much air, a thousand times lighter.
+Case pond(const char* density, const char* pressure) {
+    Case w = flip_case(3, 12, "slip", "slip");
+    w.grid.z = {12, -1, 2, false};
+    w.materials = {{"water", 4.4, 61000}, {"air", 1.4, 0}};
+    w.gravity_z = -1, w.density = density, w.pressure = pressure, w.end = 1;
+    RegionCase air = fluid("air", 0.001, 10.2), water = fluid("water", 1, 10.7);
+    air.hydrostatic = water.hydrostatic = true;
+    water.shape = "box", water.center_x = 0.5, water.half_x = 1;
+    water.center_z = -0.5, water.half_z = 0.55;  // to the middle of a cell
+    w.regions = {air, water};
+    return w;
+}
+
+}  // namespace
+
+TEST_CASE("a contact at rest stays at rest at any ratio of densities") {
+    for (const double ratio : {10.0, 199.0, 1e3, 1e5})
+        for (const bool liquid : {false, true})
+            for (const long rows : {1L, 9L})
+                for (const char* pressure : {"explicit", "implicit"})
+                    for (const char* density : {"cells", "particles"})
+                        for (const char* transfer : {"flip", "pic", "blend", "apic", "xpic"}) {
+                            Case w = two_at_rest(rows, ratio, liquid);
+                            w.pressure = pressure, w.density = density, w.transfer = transfer;
+                            CAPTURE(ratio);
+                            CAPTURE(liquid);
+                            CAPTURE(rows);
+                            CAPTURE(std::string(pressure));
+                            CAPTURE(std::string(density));
+                            CAPTURE(std::string(transfer));
+                            FlipRun r(w);
+                            r.steps(12);
+                            const double p = liquid ? 6001 * 4.4 : 1.4;
+                            const double sound = std::min(std::sqrt(1.4), std::sqrt(p / ratio));
+                            CHECK(fastest_of(r.particles()) <= 1e-10 * sound);
+                        }
+}
+
+TEST_CASE("a pond under air balances gravity where the formula alone does not" *
+          doctest::description("physics")) {
+    for (const char* density : {"cells", "particles"}) {
+        for (const char* pressure : {"explicit", "implicit"}) {
+            CAPTURE(std::string(density));
+            CAPTURE(std::string(pressure));
+            const auto largest_kinetic = [&](bool balanced) {
+                FlipRun r(pond(density, pressure));
+                if (balanced) balance_at_rest(r.problem, r.particles(), r.scratch.mesh);
+                double kinetic = 0;
+                while (r.state.time < 0.2) {  // ten times as long as sound takes through all
+                    r.step();
+                    kinetic = worst({kinetic, r.totals().kinetic});
+                }
+                return kinetic / (r.totals().mass * 2);
+            };
+            const double balanced = largest_kinetic(true);
+            CHECK(balanced <= 1e-20);
+            CHECK(largest_kinetic(false) >= 100 * balanced);
+        }
+    }
+}
+
+TEST_CASE("materials that share a cell come to one pressure volume for volume") {
+    // At rest between walls that nothing leaves; a step so short that nothing moves.
+    Case w = flip_case(3, 3, "slip", "slip");
+    w.materials = {{"air", 1.4, 0}, {"water", 4.4, 6000}};
+    w.density = "particles", w.dt = 1e-14, w.q_linear = w.q_quadratic = 0;
+    Particles p;
+    const long n = 12;
+    for (long j = 0; j < n; ++j) {
+        for (long i = 0; i < n; ++i) {
+            const int material = (i + j) % 2 == 0 ? 1 : 0;
+            const Material a = w.materials[static_cast<std::size_t>(material)];
+            const double rho = material == 1 ? 1000 : 1, V = 1 / real(n * n);
+            p.x_p.push_back((real(i) + 0.5) / real(n)), p.z_p.push_back((real(j) + 0.5) / real(n));
+            p.m_p.push_back(rho * V), p.V_p.push_back(V), p.material.push_back(material);
+            p.vx_p.push_back(0), p.vz_p.push_back(0);
+            p.e_p.push_back(internal_energy(a, rho, material == 1 ? 500 : 1));
+        }
+    }
+    FlipRun r(w, p);
+    const double energy = r.totals().internal, volume = sum_of(r.particles().V_p);
+    const auto apart = [&] {
+        double most = 0;
+        r.deposit();
+        for_each_cell(r.grid(), [&](long, long, long c) {
+            most = std::max(most, std::fabs(r.cells().excess[2 * static_cast<std::size_t>(c)] -
+                                            r.cells().excess[2 * static_cast<std::size_t>(c) + 1]));
+        });
+        return most;
+    };
+    const double before = apart();
+    CHECK(before > 100);
+    r.steps(1);
+    CHECK(std::fabs(sum_of(r.particles().V_p) - volume) <= 1e-14);
+    CHECK(std::fabs(r.totals().internal / energy - 1) <= 1e-14);
+    r.steps(30);
+    r.deposit();
+    for_each_cell(r.grid(), [&](long, long, long c) {  // water is within one p_c of the cell
+        CHECK(std::fabs(r.cells().excess[2 * static_cast<std::size_t>(c) + 1]) <=
+              1e-2 * r.cells().p[c]);
+    });
+    CHECK(apart() <= 0.05 * before);
+    CHECK(std::fabs(r.totals().internal / energy - 1) <= 1e-13);
+}
+
+TEST_CASE("a liquid holds its tension and no more and a gas none") {
+    const Material water{"water", 4.4, 6000, 2000}, air{"air", 1.4, 0};
+    double share[2];
+    // Stretched at constant energy: p from the equation of state until it breaks.
+    const double U = internal_energy(water, 1, 0);
+    for (const double rho : {1.0, 0.98, 0.95, 0.93}) {
+        const double M = rho, all = rho * U, exact = 3.4 * all - 4.4 * 6000;
+        const CellState cell = find_equilibrium(std::span(&water, 1), &M, &all, 1, share);
+        CAPTURE(rho);
+        CHECK(cell.surface == (exact < -2000));
+        CHECK(std::fabs(cell.p - (cell.surface ? 0 : exact)) <= 1e-9);
+        CHECK(cell.compressibility > 0);
+    }
+    // A bubble of gas in it fills the cell at a pressure above zero.
+    const Material both[2] = {water, air};
+    const double M[2] = {0.95, 1e-6}, E[2] = {0.95 * U, 2.5e-3};
+    const CellState cell = find_equilibrium(both, M, E, 1, share);
+    CHECK(!cell.surface);
+    CHECK(cell.p > 0);
+    const double filled = 3.4 * E[0] / (cell.p + 4.4 * 6000) + 0.4 * E[1] / cell.p;
+    CHECK(std::fabs(filled - 1) <= 1e-12);
+}
+
+TEST_CASE("no node takes a particle farther than a cell and none passes a wall") {
+    // Water at a high pressure beside air: the implicit step would know nothing of it before.
+    Case w = two_at_rest(1, 1000, true);
+    w.regions[1].gas.pressure = 1e6;
+    w.pressure = "implicit", w.density = "particles";
+    FlipRun r(w);
+    r.state.dt = 1;  // as though a step had gone before
+    r.deposit();
+    const double asked = step_allowed(r.problem, r.scratch.mesh, r.state.dt);
+    const double taken = r.move_nodes();
+    CHECK(taken < asked);
+    double farthest = 0;
+    for_own_nodes(r.grid(), [&](long, long, long n) {
+        farthest = std::max(farthest, std::fabs(r.nodes().vxL[n]) * taken / r.grid().x.spacing());
+    });
+    CHECK(farthest <= 1);
+    CHECK(farthest > 0.25);
+    for (int n = 0; n < 100; ++n) r.step();  // a particle beyond a wall ends the run
+}
