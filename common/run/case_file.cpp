@@ -97,7 +97,7 @@ bool is_name_letter(char c) {
            c == '-';
 }
 
-bool is_override(const std::string& source) { return source.compare(0, 13, "command line:") == 0; }
+bool is_override(const std::string& source) { return source.starts_with("command line:"); }
 
 void flatten(const toml::table& table, const std::string& prefix, const std::string& source,
              std::vector<Placed>& settings) {
