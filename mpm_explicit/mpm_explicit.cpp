@@ -77,7 +77,7 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     Case parameters;
     common::ParameterTable table = describe(parameters, theory::names_of(comparisons));
     const common::CommandLine command = common::read_command_line(argc, argv, info, table);
-    validate_explicit(parameters, table);
+    validate_explicit(parameters);
     const Scales scales = scales_of_run(info, command, parameters);
     theory::validate_comparison({parameters, leapfrog}, scales, comparisons);
     if (!common::start_run(info, command, table,

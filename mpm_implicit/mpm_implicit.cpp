@@ -76,7 +76,7 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     ThetaScheme scheme;
     common::ParameterTable table = describe(parameters, scheme, theory::names_of(comparisons));
     const common::CommandLine command = common::read_command_line(argc, argv, info, table);
-    validate(parameters, scheme, table);
+    validate(parameters, scheme);
     Scales scales = scales_of_run(info, command, parameters, false);
     scales.bytes = bytes_of(parameters, scheme, scales);
     theory::validate_comparison({parameters, facts_of(parameters, scheme)}, scales, comparisons);

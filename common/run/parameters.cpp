@@ -285,6 +285,11 @@ void ParameterTable::set(const Setting& setting) {
         **whole = static_cast<long>(value);
     } else if (auto real = std::get_if<double*>(&entry->target)) {
         require(is_number, "a number");
+        // Beyond these sizes, products of several numbers leave double precision.
+        const double size = std::fabs(value);
+        if (size != 0 && !(size > 1e-40 && size < 1e40))
+            refuse(" = " + number_text(value) +
+                   " is not between 1e-40 and 1e40 in size: choose other units");
         **real = value;
     } else {
         const std::vector<std::string>& choices = entry->choices;
@@ -292,10 +297,10 @@ void ParameterTable::set(const Setting& setting) {
         for (const std::string& choice : choices)
             list += (list.empty() ? "" : ", ") + quoted(choice);
         require(text != nullptr, list.empty() ? "text" : "text, one of " + list);
-        if (!choices.empty() && std::find(choices.begin(), choices.end(), *text) == choices.end())
-            refuse(" = " + quoted(*text) + " is not one of " + list);
         if (std::any_of(text->begin(), text->end(), is_control))
             refuse(" holds a control character; write plain text");
+        if (!choices.empty() && std::find(choices.begin(), choices.end(), *text) == choices.end())
+            refuse(" = " + quoted(*text) + " is not one of " + list);
         if (text->size() > longest_text) {
             refuse(" has " + std::to_string(text->size()) + " letters; write at most " +
                    std::to_string(longest_text));
