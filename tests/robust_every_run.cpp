@@ -440,6 +440,24 @@ TEST_CASE("damaged and cut and foreign checkpoints are refused and nothing is wr
     }
 }
 
+TEST_CASE("of files that are due after the end only those of the start are there" *
+          doctest::description("robust")) {
+    for (const Program& program : every_program()) {
+        std::vector<std::size_t> counts;
+        for (const char* interval : {"1e3", "1e30", "1e39"}) {
+            const std::string out = folder("seldom");
+            const std::string key =
+                program.item == "grain" ? "output.particles_interval" : "output.fields_interval";
+            REQUIRE(run({&program, "run " + key + "=" + interval, {}}, out) == 0);
+            counts.push_back(static_cast<std::size_t>(
+                std::distance(fs::directory_iterator(out), fs::directory_iterator())));
+        }
+        INFO(program.name);
+        CHECK(counts[1] == counts[0]);
+        CHECK(counts[2] == counts[0]);
+    }
+}
+
 TEST_CASE("wrong restarts are refused with the reason" * doctest::description("robust")) {
     // What cannot change.
     const std::vector<Command> fixed = commands(R"(
