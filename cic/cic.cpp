@@ -39,11 +39,10 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     const common::CommandLine command = common::read_command_line(argc, argv, info, table);
     validate(parameters);
     const Scales scales = scales_of(parameters);
-    if (!common::start_run(
-            info, command, table,
-            {describe_scales(parameters, scales), resolution_warnings(parameters, scales),
-             scales.steps, scales.bytes, parameters.checkpoint_steps},
-            holder))
+    if (!common::start_run(info, command, table,
+                           {describe_scales(parameters, scales),
+                            resolution_warnings(parameters, scales), scales.steps, scales.bytes},
+                           {parameters.checkpoint_steps}, holder))
         return 0;
     common::Run& run = *holder;
 

@@ -80,7 +80,7 @@ inline double shorter_fraction(double fraction, double size, double size_trial, 
 /// out:   x; the result says whether it may be used
 /// exact: converged means |F(x)| <= tolerance scale for the returned x. And always:
 ///        guess good enough           x unchanged, no step, converged
-///        F of the guess not finite   at once, not converged, x unchanged
+///        F of the guess not finite   at once, not converged, x unchanged, whatever the scale
 ///        F of a trial not finite     counts as too large: the step is shortened
 ///        no step reduces |F|         not converged, x the best found
 /// source: Eisenstat and Walker, SIAM J. Sci. Comput. 17, 16 (1996); Knoll and Keyes, J. Comput.
@@ -90,7 +90,7 @@ NewtonResult newton_krylov(const Residual& residual, const Preconditioner& preco
                            Eigen::VectorXd& x, double scale, double tolerance, int max_newton,
                            int max_linear, NewtonWorkspace& work,
                            const NewtonOptions& options = {}) {
-    if (!(scale > 0.0)) throw std::invalid_argument("newton_krylov: the scale must be positive");
+    if (scale <= 0.0) throw std::invalid_argument("newton_krylov: the scale must be positive");
     constexpr double unknown = std::numeric_limits<double>::infinity();
     constexpr double root_of_epsilon = 1.4901161193847656e-8;  // 2^-26
     for (auto* v : {&work.F, &work.F_trial, &work.x_trial, &work.step, &work.minus_F})

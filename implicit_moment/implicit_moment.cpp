@@ -36,11 +36,10 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     validate(parameters);
     const Scales scales = scales_of(parameters);
     // Where the closure of the moments does not hold is a warning.                [IMM-13]
-    if (!common::start_run(
-            info, command, table,
-            {describe_scales(parameters, scales), closure_warnings(parameters, scales),
-             scales.steps, scales.bytes, parameters.checkpoint_steps},
-            holder))
+    if (!common::start_run(info, command, table,
+                           {describe_scales(parameters, scales),
+                            closure_warnings(parameters, scales), scales.steps, scales.bytes},
+                           {parameters.checkpoint_steps}, holder))
         return 0;
     common::Run& run = *holder;
 

@@ -45,10 +45,11 @@ void archive_momenta(Archive& a, std::vector<Momenta>& of) {
     std::vector<double> x, y, angular;
     for (const Momenta& one : of)
         x.push_back(one.x), y.push_back(one.y), angular.push_back(one.angular);
-    a("momentum_x", x), a("momentum_y", y), a("angular_momentum", angular);
-    of.resize(x.size());
-    for (std::size_t g = 0; g < of.size(); ++g)
-        of[g] = {x[g], y[g], angular.size() > g ? angular[g] : 0};
+    a("momentum_x", x);
+    of.resize(x.size()), y.resize(x.size()), angular.resize(x.size());
+    std::span all_y(y), all_angular(angular);  // of this length
+    a("momentum_y", all_y), a("angular_momentum", all_angular);
+    for (std::size_t g = 0; g < of.size(); ++g) of[g] = {x[g], y[g], angular[g]};
 }
 
 /// errors: InputError for a checkpoint whose grains, bonds or tables are not those of the case

@@ -77,14 +77,13 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     Case parameters;
     common::ParameterTable table = describe(parameters, theory::names_of(comparisons));
     const common::CommandLine command = common::read_command_line(argc, argv, info, table);
-    validate_explicit(parameters, table);
+    validate_explicit(parameters);
     const Scales scales = scales_of_run(info, command, parameters);
     theory::validate_comparison({parameters, leapfrog}, scales, comparisons);
-    if (!common::start_run(
-            info, command, table,
-            {describe_scales(parameters, scales), warnings_of(parameters, scales), scales.steps,
-             scales.bytes, parameters.checkpoint_steps, parameters.history_steps},
-            holder))
+    if (!common::start_run(info, command, table,
+                           {describe_scales(parameters, scales), warnings_of(parameters, scales),
+                            scales.steps, scales.bytes},
+                           {parameters.checkpoint_steps, parameters.history_steps}, holder))
         return 0;
     return with_shape(parameters.scheme(), [&](const auto& shape) {
         return run_case(shape, parameters, scales, *holder);

@@ -76,15 +76,14 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     ThetaScheme scheme;
     common::ParameterTable table = describe(parameters, scheme, theory::names_of(comparisons));
     const common::CommandLine command = common::read_command_line(argc, argv, info, table);
-    validate(parameters, scheme, table);
+    validate(parameters, scheme);
     Scales scales = scales_of_run(info, command, parameters, false);
     scales.bytes = bytes_of(parameters, scheme, scales);
     theory::validate_comparison({parameters, facts_of(parameters, scheme)}, scales, comparisons);
-    if (!common::start_run(
-            info, command, table,
-            {describe_scales(parameters, scheme, scales), warnings_of(parameters, scheme, scales),
-             scales.steps, scales.bytes, parameters.checkpoint_steps},
-            holder))
+    if (!common::start_run(info, command, table,
+                           {describe_scales(parameters, scheme, scales),
+                            warnings_of(parameters, scheme, scales), scales.steps, scales.bytes},
+                           {parameters.checkpoint_steps, parameters.history_steps, true}, holder))
         return 0;
     return with_shape(parameters.scheme(), [&](const auto& shape) {
         return run_case(shape, parameters, scheme, scales, *holder);

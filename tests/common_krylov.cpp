@@ -341,10 +341,12 @@ TEST_CASE("Newton stops at once when the residual of the guess is not finite") {
     const facts::Untrapped calm;
     const auto residual = [](const VectorXd& x, VectorXd& F) { F = x.array().log(); };
     VectorXd x = VectorXd::Constant(3, -1.0);
-    const auto result = common::newton_krylov(residual, x, 1.0, 1e-12, 30, 10);
-    CHECK_FALSE(result.converged);
-    CHECK(result.newton_iterations == 0);
-    CHECK((x.array() == -1.0).all());
+    for (const double scale : {1.0, std::nan("")}) {
+        const auto result = common::newton_krylov(residual, x, scale, 1e-12, 30, 10);
+        CHECK_FALSE(result.converged);
+        CHECK(result.newton_iterations == 0);
+        CHECK((x.array() == -1.0).all());
+    }
 }
 
 TEST_CASE("Newton steps back from where the residual is not finite") {

@@ -3,8 +3,10 @@
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <climits>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <map>
 #include <string>
@@ -183,6 +185,40 @@ void check_forged(long share) {
 TEST_CASE("a forged checkpoint is refused or is one that a run could have had" *
           doctest::description("robust")) {
     check_forged(30);
+}
+
+TEST_CASE("a history with a row too few or too many is refused" * doctest::description("robust")) {
+    const std::string why = "the checkpoint is of no run: its history lacks rows, or has too many";
+    for (const Command& command : commands("cic run\nfluids run\ngrains run\nplasmas run\n"
+                                           "explicit_em run output.history_steps=2\n"
+                                           "grains run output.history_steps=3")) {
+        const std::string out = folder("good"), forged = out + "_forged";
+        INFO(command.program->name << " " << command.words);
+        REQUIRE(run(command, out, "output.checkpoint_steps=4") == 0);
+        const std::string header = read_all(out + "/history.dat").substr(0, 10000);
+        const std::size_t columns =
+            std::count(header.begin(), header.begin() + static_cast<long>(header.find('\n')), ':');
+        for (const std::string& checkpoint : checkpoints(out)) {
+            std::vector<Block> blocks = blocks_of(read_all(checkpoint));
+            std::string& rows = blocks[5].bytes;
+            REQUIRE(blocks[5].name == "history");
+            const std::string whole = rows, last = rows.substr(rows.size() - 8 * columns);
+            const auto status_with = [&](const std::string& forged_rows) {
+                rows = forged_rows;
+                write_all(forged + ".bin", file_of(blocks));
+                return run(command.program->name, "--restart " + forged + ".bin --force", forged);
+            };
+            CHECK(status_with(whole) == 0);
+            CHECK(status_with(whole.substr(0, whole.size() - 8 * columns)) == 2);
+            CHECK(holds(said(forged), why));
+            double later = 0;
+            std::memcpy(&later, last.data(), sizeof later);
+            later += 1e-6;
+            CHECK(status_with(whole + bytes_of(later) + last.substr(sizeof later)) == 2);
+            CHECK(holds(said(forged), why));
+            fs::remove_all(forged);
+        }
+    }
 }
 
 TEST_CASE("every forgery of every block is refused or is one that a run could have had" *

@@ -918,8 +918,8 @@ TEST_CASE("a free text is read and shown as it stands") {
     ParameterTable table = table_of();
     CHECK(holds(table.help(), "text; default \"none\""));
     CHECK(holds(table.help(), "one | two; default \"one\""));
-    CHECK(table.takes_text("pack.file"));
-    CHECK(table.takes_text("pack.kind"));
+    CHECK(table.takes_text("pack.file") == true);
+    CHECK(table.takes_text("pack.kind") == true);
     const std::string longest(900, '\\');
     for (const std::string text :
          {"", "a pack.txt", "say \"so\"", "C:\\packs\\new", "# no comment", "it's", "{x = [1,",
@@ -957,7 +957,7 @@ TEST_CASE("items of a list may have free texts and be as many as 256") {
             t.text(prefix + ".path", item.path, "a file");
         },
         "grains");
-    CHECK(table.takes_text("grain.new.path"));
+    CHECK(table.takes_text("grain.new.path") == true);
     for (int k = 0; k < 256; ++k)
         table.set({"grain.g" + std::to_string(k) + ".path", "file " + std::to_string(k), "here"});
     REQUIRE(items.size() == 256);

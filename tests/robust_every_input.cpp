@@ -347,7 +347,11 @@ case.toml time.end = 0.1 -> two case files, 'case.toml' and 'time.end': give one
 =0.1 -> command line: '=0.1': write section.key=value
 time.end= -> command line: 'time.end=':
 tiem.end=0.1 -> line: 'tiem.end=0.1': unknown parameter 'tiem.end'; did you mean 'time.end'?
+tiem.end=soon -> line: 'tiem.end=soon': unknown parameter 'tiem.end'; did you mean 'time.end'?
+"weather.forecast=it's" -> unknown parameter 'weather.forecast'; --help lists all
+case.toml ITEM.beam.KEY_=high -> unknown parameter 'ITEM.beam.KEY_'; did you mean 'ITEM.beam.KEY'?
 grid=64 -> unknown parameter 'grid'
+grid={cells_x=1} -> line: 'grid={cells_x=1}': 'grid.cells_x' = 1 is out of range; allowed:
 grid.cells_x=1 -> line: 'grid.cells_x=1': 'grid.cells_x' = 1 is out of range; allowed:
 time.end=nan -> command line: 'time.end=nan': 'time.end' must be finite, not nan
 time.end=fast -> command line: 'time.end=fast':

@@ -22,7 +22,7 @@ cic plane grid.cells_x=4096 grid.cells_z=4096 box
     minutes: take fewer, or make one direction periodic
 cic line time.dt=1e-9
     time.end / time.dt is 2e+09 steps, more than 1e9: raise time.dt or lower time.end
-cic line time.dt=1e-300 time.end=1e300 -> time.end / time.dt is inf steps, more than 1e9
+cic line time.dt=1e-30 time.end=1e30 -> time.end / time.dt is 1e+60 steps, more than 1e9
 cic line time.dt=2
     omega_p dt = 2 is not below 2, where the leapfrog blows up: lower time.dt below 2
 cic between_walls time.dt=1.999
@@ -189,7 +189,7 @@ cic line wave theory.mode_x=0 grid.cells_x=2048
     theory.mode_x = 0 looks for the fastest growing of 1023 modes
 cic line wave theory.mode_x=0 grid.cells_x=2
     theory.mode_x = 0 looks for the fastest growing of 0 modes
-cic line wave theory.near=1e300
+cic line wave theory.near=1e30
     no root of the dispersion relation was found for mode (1, 0): give theory.near a frequency to
     look at, or set theory.compare = "none"
 cic line wave no_charge -> no root of the dispersion relation was found for mode (1, 0)
@@ -501,7 +501,7 @@ grains disks time.alpha=1e-9
     the run would take 7.538e+09 steps, more than 1e9: raise time.alpha or lower time.end
 mpm_explicit disks time.dt=1
     time.dt = 1 is above alpha h/(c_p + |v|) = 0.003317: lower it, or raise time.alpha
-grains disks time.end=1e300 -> steps, more than 1e9: raise time.alpha or lower time.end
+grains disks time.end=1e30 -> steps, more than 1e9: raise time.alpha or lower time.end
 mpm_explicit disks load.damping=400
     load.damping = 400 takes all velocity in a step of 0.003226: lower it below 310
 grains body grid.cells_x=16000 grid.cells_y=8000 grid.particles_per_side=16
@@ -809,8 +809,8 @@ TEST_CASE("a plasma that cannot run is refused with the numbers and the cure" *
     check_refused(R"(
 plasmas time.dt=1e-9 time.end=2
     time.end / time.dt is 2e+09 steps, more than 1e9: raise time.dt or lower time.end
-plasmas time.dt=1e-300 time.end=1e300
-    time.end / time.dt is inf steps, more than 1e9: raise time.dt or lower time.end
+plasmas time.dt=1e-30 time.end=1e30
+    time.end / time.dt is 1e+60 steps, more than 1e9: raise time.dt or lower time.end
 plasmas grid.boundary_z=periodic
 plasmas grid.boundary_x=wall
     the Harris sheet needs grid.boundary_x = "periodic" and grid.boundary_z = "wall"
@@ -824,8 +824,8 @@ plasmas harris.light_over_alfven=2
 plasmas species.beam.density=1
     [species.beam] belongs to plasma.setup = "uniform"; the Harris sheet makes its own
 plasmas theory.wave=light -> theory.wave = "light" needs plasma.setup = "uniform"
-plasmas harris.light_over_alfven=1e200 -> harris.light_over_alfven
-plasmas harris.temperature_ratio=1e-320 -> harris.temperature_ratio
+plasmas harris.light_over_alfven=1e39 -> harris.light_over_alfven
+plasmas harris.temperature_ratio=1e-39 -> harris.temperature_ratio
 plasmas plasma.setup=uniform wave_E_y
     seeded fields need periodic boundaries: take out uniform.wave_E_*
 plasmas beam uniform.B_x=0.1 grid.boundary_x=wall
@@ -923,26 +923,22 @@ grains disks
     material.default.yield_stress material.default.hardening material.default.cohesion
     material.default.tension grain.left.velocity_x grain.left.spin grain.left.amplitude
     grain.left.force grain.left.damping pack.more.shear_rate bond.joint.tension
+plasmas sheet
+    grid.length_x grid.length_z time.dt time.end harris.thickness harris.background
+    harris.guide_field species.beam.density uniform.B_x output.fields_interval
 )")) {
         for (const std::string& name : words_in(joined(command.expected)))
-            for (const std::string value : {"1e+300", "1e-300"}) {
-                const bool many_steps = name == "time.dt" && value == "1e-300";
-                // Cells so flat that they are too many.
-                const bool flat = name == "grid.length_z" && value == "1e-300";
-                check_refusal({command.program,
-                               command.words + " " + name + "=" + value +
-                                   (many_steps ? " time.end=1e-299" : ""),
-                               {}},
-                              flat ? name : name + " = " + value + cure);
-            }
+            for (const std::string value : {"1e+300", "1e-300", "5e-324"})
+                check_refusal({command.program, command.words + " " + name + "=" + value, {}},
+                              "'" + name + "' = " + value + cure);
     }
     check_refused(R"(
 cic line species.electrons.charge=-1e41
-    species.electrons.charge = -1e+41 is not between 1e-40 and 1e40 in size: choose other units
+    'species.electrons.charge' = -1e+41 is not between 1e-40 and 1e40 in size: choose other units
 cic plane grid.length_z=1e-41
-    grid.length_z = 1e-41 is not between 1e-40 and 1e40 in size: choose other units
+    'grid.length_z' = 1e-41 is not between 1e-40 and 1e40 in size: choose other units
 grains disks grain.left.velocity_y=-1e41
-    grain.left.velocity_y = -1e+41 is not between 1e-40 and 1e40 in size
+    'grain.left.velocity_y' = -1e+41 is not between 1e-40 and 1e40 in size
 grains disks grain.left.radius=inf -> 'grain.left.radius' must be finite, not inf
 )");
 }

@@ -28,9 +28,6 @@ inline void validate(Case& parameters) {
     refuse(parameters.end / parameters.dt > 1e9, "time.end / time.dt is ",
            parameters.end / parameters.dt,
            " steps, more than 1e9: raise time.dt or lower time.end");
-    refuse_extreme("", "grid.length_x", grid.x.length, "grid.length_z", grid.z.length, "time.dt",
-                   parameters.dt, "plasma.B_x", parameters.B.x, "plasma.B_y", parameters.B.y,
-                   "plasma.B_z", parameters.B.z, "output.phase_v_max", parameters.phase_v_max);
     refuse(parameters.gauss_sign != 1 && parameters.gauss_sign != -1,
            "gauss.sign = ", parameters.gauss_sign, " is neither 1 nor -1");
     refuse(parameters.weighting == "ngp" && parameters.conserving == "energy",

@@ -8,17 +8,6 @@
 
 namespace cic {
 
-/// Refuses sizes beyond which products of several numbers leave double precision.
-/// in:     names and values in turn
-template <class... Others>
-void refuse_extreme(const std::string& prefix, const std::string& name, double value,
-                    const Others&... others) {
-    const double size = std::fabs(value);
-    refuse(size != 0 && !(size > 1e-40 && size < 1e40), prefix, name, " = ", value,
-           " is not between 1e-40 and 1e40 in size: choose other units");
-    if constexpr (sizeof...(others) > 0) refuse_extreme(prefix, others...);
-}
-
 /// Whether a mode has more than one wavelength per two cells.
 inline bool is_above_cut_off(const Case& parameters, long mode_x, long mode_z) {
     return 2 * std::labs(mode_x) > parameters.grid.x.cells ||
@@ -36,7 +25,6 @@ inline void refuse_walls(const Case& parameters) {
                "there is no wall at ", end, ": set grid.boundary_", direction,
                " = \"wall\", or take out boundary.", end, ", boundary.potential_", end,
                " and boundary.particles_", end);
-        refuse_extreme("boundary.potential_", end, wall.potential);
         refuse(wall.field == "floating" && wall.potential != 0, "boundary.potential_", end, " = ",
                wall.potential,
                " belongs to a grounded wall; the charge of a floating one finds its own: take it "
@@ -52,11 +40,6 @@ inline void refuse_species(const Case& parameters, const SpeciesCase& s) {
     const std::string name = "species." + s.name;
     const bool plane = parameters.dimensions == 2;
     const Grid& grid = parameters.grid;
-    refuse_extreme(name + ".", "density", s.density, "charge", s.charge, "mass", s.mass, "drift_x",
-                   s.drift_x, "drift_y", s.drift_y, "drift_z", s.drift_z, "temperature_x",
-                   s.temperature_x, "temperature_y", s.temperature_y, "temperature_z",
-                   s.temperature_z, "emission", s.emission, "emission_temperature",
-                   s.emission_temperature);
     if (!s.mobile()) {
         refuse(s.profile != "uniform", name,
                ": a fixed species is a uniform background: take out profile, or make it mobile and "

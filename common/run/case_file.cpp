@@ -97,7 +97,7 @@ bool is_name_letter(char c) {
            c == '-';
 }
 
-bool is_override(const std::string& source) { return source.compare(0, 13, "command line:") == 0; }
+bool is_override(const std::string& source) { return source.starts_with("command line:"); }
 
 void flatten(const toml::table& table, const std::string& prefix, const std::string& source,
              std::vector<Placed>& settings) {
@@ -127,12 +127,7 @@ void flatten(const toml::table& table, const std::string& prefix, const std::str
         } else if (const auto* real = node.as_floating_point()) {
             add(real->get());
         } else if (const auto* text = node.as_string()) {
-            const std::string& letters = text->get();
-            if (std::any_of(letters.begin(), letters.end(),
-                            [](unsigned char c) { return c < 0x20; }))
-                throw InputError(place + ": '" + name +
-                                 "' holds a control character; write plain text");
-            add(letters);
+            add(text->get());
         } else {
             throw InputError(place + ": '" + name +
                              "' is a list or a date; parameters are numbers, text, true or false");

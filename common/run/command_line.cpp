@@ -9,6 +9,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <set>
 
 #include "common/run/checkpoint.hpp"
@@ -89,12 +90,8 @@ void look_for_earlier_run(const ProgramInfo& info, const ParameterTable& table,
     command.force = true;
     const fs::path folder = command.out_dir, summary = folder / "summary.json";
     const std::string effective_case = table.effective_case();
-    const auto ends_with = [](const std::string& text, const std::string& end) {
-        return text.size() >= end.size() &&
-               text.compare(text.size() - end.size(), end.size(), end) == 0;
-    };
     if (counts(summary) && counts(folder / "case.toml") &&
-        ends_with(read_file(folder / "case.toml"), "\n" + effective_case)) {
+        read_file(folder / "case.toml").ends_with("\n" + effective_case)) {
         const std::string text = read_file(summary);
         command.complete = text.find("\n  \"status\": 0,") != std::string::npos;
         command.fell_short = text.find("\"pass\": false") != std::string::npos;
@@ -104,7 +101,7 @@ void look_for_earlier_run(const ProgramInfo& info, const ParameterTable& table,
     }
     std::vector<fs::path> checkpoints;
     for (const auto& entry : fs::directory_iterator(folder, error)) {
-        const bool named = entry.path().filename().string().rfind("checkpoint_", 0) == 0;
+        const bool named = entry.path().filename().string().starts_with("checkpoint_");
         if (named && entry.path().extension() == ".bin" && counts(entry.path()))
             checkpoints.push_back(entry.path());
     }
@@ -157,7 +154,10 @@ void apply_override(const std::string& argument, bool restarting, ParameterTable
                          "' cannot change on a restart; start a new run with it");
     }
     const bool quoted = !value.empty() && (value.front() == '"' || value.front() == '\'');
-    if (table.takes_text(name) && !quoted)
+    const std::optional<bool> is_text = table.takes_text(name);
+    // A name that is none is refused whatever its value; {} may be that of a section.
+    if (!is_text && !value.starts_with('{')) return table.set({name, value, place});
+    if (is_text.value_or(false) && !quoted)
         value = "'" + value + "'";
     else
         value = with_leading_zero(value);
@@ -242,6 +242,10 @@ CommandLine read_command_line(int argc, char** argv, const ProgramInfo& info,
             }
             return argv[++k];
         };
+        const auto sets = [&](const char* name, bool& flag) {
+            if (argument == name) flag = true;
+            return argument == name;
+        };
         if (argument == "--out" || argument == "--restart" || argument == "--verify") {
             std::string& path = argument == "--out"       ? command.out_dir
                                 : argument == "--restart" ? command.restart_path
@@ -253,20 +257,11 @@ CommandLine read_command_line(int argc, char** argv, const ProgramInfo& info,
         } else if (is_option && joined) {
             throw InputError("'" + argument +
                              "' takes no value, or is unknown; --help lists all options");
-        } else if (argument == "--dry-run") {
-            command.dry_run = true;
-        } else if (argument == "--quiet") {
-            command.quiet = true;
-        } else if (argument == "--force") {
-            command.force = true;
-        } else if (argument == "--resume") {
-            command.resume = true;
-        } else if (argument == "--strict") {
-            command.strict = true;
-        } else if (argument == "--help" || argument == "-h") {
-            help = true;
-        } else if (argument == "--version") {
-            version = true;
+        } else if (sets("--dry-run", command.dry_run) || sets("--quiet", command.quiet) ||
+                   sets("--force", command.force) || sets("--resume", command.resume) ||
+                   sets("--strict", command.strict) || sets("--version", version) ||
+                   sets("--help", help) || sets("-h", help)) {
+            continue;
         } else if (is_option) {
             std::string guess;
             for (const char* name : option_names) {

@@ -96,26 +96,6 @@ std::string format(double value) {
     return text;
 }
 
-void ParameterTable::real(const std::string& name, double& value, const std::string& unit,
-                          Range allowed, const std::string& meaning) {
-    add({name, unit, meaning, &value, allowed, {}, {}});
-}
-void ParameterTable::whole(const std::string& name, long& value, const std::string& unit,
-                           Range allowed, const std::string& meaning) {
-    add({name, unit, meaning, &value, allowed, {}, {}});
-}
-void ParameterTable::flag(const std::string& name, bool& value, const std::string& meaning) {
-    add({name, "", meaning, &value, anything(), {}, {}});
-}
-void ParameterTable::choice(const std::string& name, std::string& value,
-                            const std::vector<std::string>& choices, const std::string& meaning) {
-    add({name, "", meaning, &value, anything(), choices, {}});
-}
-
-void ParameterTable::text(const std::string& name, std::string& value, const std::string& meaning) {
-    add({name, "", meaning, &value, anything(), {}, {}});
-}
-
 void ParameterTable::add(Entry entry) {
     entry.initial = std::visit(Shown{}, entry.target);
     if (pattern_ != nullptr) {
@@ -143,8 +123,7 @@ void ParameterTable::describe_pattern(const std::string& name,
 
 bool ParameterTable::is_changeable(const std::string& name) const {
     return std::any_of(changeable_.begin(), changeable_.end(), [&](const std::string& allowed) {
-        return allowed.back() == '.' ? name.compare(0, allowed.size(), allowed) == 0
-                                     : name == allowed;
+        return allowed.back() == '.' ? name.starts_with(allowed) : name == allowed;
     });
 }
 
@@ -155,7 +134,7 @@ ParameterTable::Entry* ParameterTable::find(const std::string& name) {
     return nullptr;
 }
 
-bool ParameterTable::takes_text(const std::string& name) {
+std::optional<bool> ParameterTable::takes_text(const std::string& name) {
     const auto is_text = [](const Entry& entry) {
         return std::holds_alternative<std::string*>(entry.target);
     };
@@ -164,17 +143,16 @@ bool ParameterTable::takes_text(const std::string& name) {
     const std::string key = name.substr(name.rfind('.') + 1);
     for (const List& list : lists_)
         for (const Entry& entry : list.pattern)
-            if (name.compare(0, list.name.size() + 1, list.name + ".") == 0 &&
-                entry.name == list.name + ".<name>." + key)
+            if (name.starts_with(list.name + ".") && entry.name == list.name + ".<name>." + key)
                 return is_text(entry);
-    return false;
+    return std::nullopt;
 }
 
 // The name with the word before its first dot spelled like a list; "" where none is near.
 std::string ParameterTable::in_nearest_list(const std::string& name) const {
     const std::string section = name.substr(0, name.find('.'));
     for (const Entry& entry : entries_)
-        if (entry.name.compare(0, section.size() + 1, section + ".") == 0) return "";
+        if (entry.name.starts_with(section + ".")) return "";
     for (const List& list : lists_) {
         const std::size_t distance = edit_distance(section, list.name);
         if (distance > 0 && distance <= 2) return list.name + name.substr(section.size());
@@ -203,7 +181,7 @@ std::string ParameterTable::nearest(const std::string& name) const {
 std::string ParameterTable::new_name(const std::string& name) const {
     for (const auto& [before, now] : renamed_) {
         if (name == before) return now;
-        if (before.back() == '.' && name.compare(0, before.size(), before) == 0)
+        if (before.back() == '.' && name.starts_with(before))
             return now + name.substr(before.size());
     }
     return "";
@@ -213,7 +191,7 @@ std::string ParameterTable::new_name(const std::string& name) const {
 void ParameterTable::make_item(const Setting& setting) {
     for (List& list : lists_) {
         const std::string start = list.name + ".";
-        if (setting.name.compare(0, start.size(), start) != 0 || setting.name == start) continue;
+        if (!setting.name.starts_with(start) || setting.name == start) continue;
         const std::size_t dot = setting.name.find('.', start.size());
         if (dot == std::string::npos) {
             throw InputError(setting.place + ": '" + setting.name +
@@ -241,9 +219,7 @@ void ParameterTable::make_item(const Setting& setting) {
 void ParameterTable::accept_empty_section(const Setting& setting) {
     const std::string start = setting.name + ".";
     make_item({start, {}, setting.place});
-    const auto is_inside = [&](const std::string& name) {
-        return name.compare(0, start.size(), start) == 0;
-    };
+    const auto is_inside = [&](const std::string& name) { return name.starts_with(start); };
     const bool known = std::any_of(entries_.begin(), entries_.end(),
                                    [&](const Entry& entry) { return is_inside(entry.name); }) ||
                        std::any_of(lists_.begin(), lists_.end(),
@@ -309,6 +285,11 @@ void ParameterTable::set(const Setting& setting) {
         **whole = static_cast<long>(value);
     } else if (auto real = std::get_if<double*>(&entry->target)) {
         require(is_number, "a number");
+        // Beyond these sizes, products of several numbers leave double precision.
+        const double size = std::fabs(value);
+        if (size != 0 && !(size > 1e-40 && size < 1e40))
+            refuse(" = " + number_text(value) +
+                   " is not between 1e-40 and 1e40 in size: choose other units");
         **real = value;
     } else {
         const std::vector<std::string>& choices = entry->choices;
@@ -316,10 +297,10 @@ void ParameterTable::set(const Setting& setting) {
         for (const std::string& choice : choices)
             list += (list.empty() ? "" : ", ") + quoted(choice);
         require(text != nullptr, list.empty() ? "text" : "text, one of " + list);
-        if (!choices.empty() && std::find(choices.begin(), choices.end(), *text) == choices.end())
-            refuse(" = " + quoted(*text) + " is not one of " + list);
         if (std::any_of(text->begin(), text->end(), is_control))
             refuse(" holds a control character; write plain text");
+        if (!choices.empty() && std::find(choices.begin(), choices.end(), *text) == choices.end())
+            refuse(" = " + quoted(*text) + " is not one of " + list);
         if (text->size() > longest_text) {
             refuse(" has " + std::to_string(text->size()) + " letters; write at most " +
                    std::to_string(longest_text));

@@ -7,6 +7,7 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -58,16 +59,26 @@ class ParameterTable {
     void group(const std::string& title) { groups_.push_back({title, {}}); }
 
     void real(const std::string& name, double& value, const std::string& unit, Range allowed,
-              const std::string& meaning);
+              const std::string& meaning) {
+        add({name, unit, meaning, &value, allowed, {}, {}});
+    }
     /// A whole number; 1e5 is one.
     void whole(const std::string& name, long& value, const std::string& unit, Range allowed,
-               const std::string& meaning);
-    void flag(const std::string& name, bool& value, const std::string& meaning);
+               const std::string& meaning) {
+        add({name, unit, meaning, &value, allowed, {}, {}});
+    }
+    void flag(const std::string& name, bool& value, const std::string& meaning) {
+        add({name, "", meaning, &value, anything(), {}, {}});
+    }
     void choice(const std::string& name, std::string& value,
-                const std::vector<std::string>& choices, const std::string& meaning);
+                const std::vector<std::string>& choices, const std::string& meaning) {
+        add({name, "", meaning, &value, anything(), choices, {}});
+    }
     /// Free text, such as the path of a file.
     /// note:   without control characters and at most 900 letters, so that a case can hold it.
-    void text(const std::string& name, std::string& value, const std::string& meaning);
+    void text(const std::string& name, std::string& value, const std::string& meaning) {
+        choice(name, value, {}, meaning);
+    }
 
     /// Named sub-tables: [name.item] appends an Item whose member `name` is "item", and describe()
     /// binds its fields to parameters that begin with the prefix "name.item".
@@ -96,8 +107,9 @@ class ParameterTable {
         renamed_ = names;
     }
 
-    /// Whether a parameter takes text, so that it may stand without quotes on the command line.
-    bool takes_text(const std::string& name);
+    /// Whether a parameter takes text, so that it may stand without quotes on the command line;
+    /// nothing for a name that set() refuses.
+    std::optional<bool> takes_text(const std::string& name);
 
     /// Gives a parameter its value.
     /// errors: InputError for an unknown name, a wrong type or a value out of range, with the place

@@ -81,24 +81,17 @@ void listen_to(int signal) {
     sigaction(signal, &action, nullptr);
 }
 
-bool begins(const std::string& text, const std::string& start) {
-    return text.compare(0, start.size(), start) == 0;
-}
-
 // Whether a file of this name is one that a run writes.
 bool is_ours(std::string name) {
     const std::string partial = ".partial";
-    if (name.size() > partial.size() &&
-        name.compare(name.size() - partial.size(), partial.size(), partial) == 0) {
-        name.resize(name.size() - partial.size());
-    }
+    if (name.ends_with(partial)) name.resize(name.size() - partial.size());
     for (const char* plain :
          {"case.toml", "history.dat", "summary.json", "spectrum.dat", "profile.dat", "pack.txt"}) {
         if (name == plain) return true;
     }
     for (const char* start : {"fields_", "particles_", "profile_", "phase_", "velocities_",
                               "fringes_", "grains_", "checkpoint_"}) {
-        if (!begins(name, start)) continue;
+        if (!name.starts_with(start)) continue;
         const std::size_t digits = std::string(start).size();
         const std::size_t ending =
             std::min(name.find_first_not_of("0123456789", digits), name.size());
@@ -157,48 +150,54 @@ Run::Run(const ProgramInfo& info, const CommandLine& command, const ParameterTab
       start_(std::chrono::steady_clock::now()),
       shown_(start_) {
     std::error_code error;
-    const bool is_new = !fs::exists(command_.out_dir, error);
+    is_new_ = !fs::exists(command_.out_dir, error);
     const std::string stopped =
         info_.program + ": stopped by a signal before the first step; " +
         (restarting() ? "continue with: " + command_to_continue(command_.restart_path)
                       : "there is nothing to continue");
     // What is there already stays, until it is known that it may be replaced.
     const std::vector<std::string> begun{path("case.toml"), path("case.toml.partial"),
-                                         path(lock_name), is_new ? command_.out_dir : ""};
-    forget_on_signal(stopped, is_new ? begun : std::vector<std::string>{});
+                                         path(lock_name), is_new_ ? command_.out_dir : ""};
+    forget_on_signal(stopped, is_new_ ? begun : std::vector<std::string>{});
     listen_to(SIGINT);
     listen_to(SIGTERM);
     prepare_folder();
-    if (!restarting()) forget_on_signal(stopped, begun);
+    terminal_ = isatty(STDERR_FILENO) != 0 && std::getenv("NO_PROGRESS") == nullptr;
+    if (restarting()) return;
+    forget_on_signal(stopped, begun);
+    begin();
+}
+
+void Run::begin() {
+    begun_ = true;
+    std::error_code error;
+    for (const std::string& file : replaced_) fs::remove(file, error);
     OutputFile file(path("case.toml"));
     file.text("# " + info_.program + " " + info_.version + ": the complete input of this run\n" +
               effective_case_);
     file.finish();
-    terminal_ = isatty(STDERR_FILENO) != 0 && std::getenv("NO_PROGRESS") == nullptr;
 }
 
 Run::~Run() {
     if (line_open_) std::fputs("\n", stderr);
     if (lock_ != nullptr) unlink(path(lock_name).c_str());
+    if (is_new_ && !begun_) rmdir(command_.out_dir.c_str());
 }
 
 void Run::prepare_folder() {
     std::error_code error;
     const fs::path folder = command_.out_dir;
-    if (fs::exists(folder, error) && !fs::is_directory(folder, error)) {
-        throw InputError(command_.out_dir +
-                         ": is a file, and the results need a folder; choose another --out");
-    }
+    const auto refuse_if = [&](bool impossible, const std::string& why) {
+        if (impossible) throw InputError(command_.out_dir + ": " + why + "; choose another --out");
+    };
+    refuse_if(fs::exists(folder, error) && !fs::is_directory(folder, error),
+              "is a file, and the results need a folder");
     fs::create_directories(folder, error);
-    if (error)
-        throw InputError(command_.out_dir + ": cannot be created: " + error.message() +
-                         "; choose another --out");
+    refuse_if(bool(error), "cannot be created: " + error.message());
     std::vector<fs::path> ours;
     bool foreign = false;
     const fs::directory_iterator entries(folder, error);
-    if (error)
-        throw InputError(command_.out_dir + ": cannot be looked into: " + error.message() +
-                         "; choose another --out");
+    refuse_if(bool(error), "cannot be looked into: " + error.message());
     for (const auto& entry : entries) {
         const std::string name = entry.path().filename().string();
         if (is_ours(name)) ours.push_back(entry.path());
@@ -218,10 +217,9 @@ void Run::prepare_folder() {
     lock_folder();
     if (as_it_is) return;
     // A checkpoint that we are about to read stays.
-    for (const fs::path& file : ours) {
+    for (const fs::path& file : ours)
         if (!restarting() || !fs::equivalent(file, command_.restart_path, error))
-            fs::remove(file, error);
-    }
+            replaced_.push_back(file);
 }
 
 // The lock is held until the program ends, however it ends.
@@ -309,7 +307,7 @@ void Run::keep_two_checkpoints() const {
     std::vector<std::string> names;
     for (const auto& entry : fs::directory_iterator(command_.out_dir, error)) {
         const std::string found = entry.path().filename().string();
-        if (begins(found, "checkpoint_") && entry.path().extension() == ".bin" && found <= last)
+        if (found.starts_with("checkpoint_") && entry.path().extension() == ".bin" && found <= last)
             names.push_back(entry.path().string());
     }
     std::sort(names.begin(), names.end());
@@ -361,6 +359,7 @@ int Run::finish(long step, double count) {
 }
 
 int Run::fail(int status, const std::string& message) {
+    if (!begun_) return status;
     try {
         history.flush();
         summary.write(path("summary.json"), info_, command_.case_name, status, message);

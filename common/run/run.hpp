@@ -6,6 +6,7 @@
 #include <chrono>
 #include <csignal>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,11 +18,19 @@
 
 namespace common {
 
+/// How often a run writes what, and where it ends.
+struct Schedule {
+    long checkpoint_steps = 0;    // from one to the next; 0: only when a signal stops the run
+    long history_steps = 1;       // from row to row
+    bool rows_end_steps = false;  // but for the first, rows are written after their step
+    double end = std::numeric_limits<double>::infinity();  // where steps are not known in number
+};
+
 class Run {
    public:
-    /// Prepares the output folder, locks it, writes case.toml there and listens to SIGINT and
-    /// SIGTERM. Until the first step begins, a signal ends the program at once and takes away what
-    /// it has begun; afterwards the step is finished and a checkpoint is written.
+    /// Prepares the output folder, locks it and listens to SIGINT and SIGTERM. Until the first step
+    /// begins, a signal ends the program at once and takes away what it has begun; afterwards the
+    /// step is finished and a checkpoint is written. A restart writes nothing before restore().
     /// errors: InputError when another run writes into the folder, or it holds something else, or an
     ///         earlier run without --force.
     Run(const ProgramInfo& info, const CommandLine& command, const ParameterTable& table);
@@ -31,15 +40,15 @@ class Run {
 
     History history;
     Summary summary;
-    long checkpoint_steps = 0;  // steps between checkpoints; 0: only when a signal stops the run
-    long history_steps = 0;     // steps between rows of the history; 0: unknown
+    Schedule schedule;
 
     /// Whether the run continues from a checkpoint.
     bool restarting() const { return !command_.restart_path.empty(); }
 
     /// Reads the checkpoint named by --restart into state, history and step.
     /// in:     validate(), which refuses a state that no run of the case can have
-    /// errors: InputError for a file that is damaged or forged
+    /// errors: InputError for a file that is damaged or forged, or beyond the end of the run; nothing
+    ///         has been written then
     template <class State, class Validate>
     void restore(State& state, long& step, const Validate& validate) {
         CheckpointReader reader(info_, command_.restart_path);
@@ -50,14 +59,20 @@ class Run {
         try {
             history.restore(rows);
             if (step < 1 || step > 1000000000000) throw InputError("its step cannot be");
-            if (history_steps > 0 && history.rows() != (step - 1) / history_steps + 1)
+            if (history.rows() !=
+                (step - (schedule.rows_end_steps ? 0 : 1)) / schedule.history_steps + 1)
                 throw InputError("its history lacks rows, or has too many");
             validate();
         } catch (const InputError& error) {
             throw InputError(command_.restart_path + ": the checkpoint is of no run: " +
                              error.what() + "; use an earlier one");
         }
-        history.open();  // last: what was recorded stays where the state is refused
+        if (const double last = history.column("time").back(); reached(last, schedule.end))
+            throw InputError(command_.restart_path + ": has a row of t = " + format(last) +
+                             ", and the run ends at t = " + format(schedule.end) +
+                             ": raise time.end");
+        begin();
+        history.open();
         first_step_ = step;
     }
 
@@ -101,7 +116,8 @@ class Run {
    private:
     template <class State>
     void checkpoint_if_due(long step, bool last, State& state) {
-        const bool due = checkpoint_steps > 0 && (step % checkpoint_steps == 0 || last);
+        const long every = schedule.checkpoint_steps;
+        const bool due = every > 0 && (step % every == 0 || last);
         stepped_ = true;
         if (!due && !asked_to_stop()) return;
         history.flush();
@@ -118,6 +134,7 @@ class Run {
     bool go_on(bool more);
     void lock_folder();
     void prepare_folder();
+    void begin();  // to write into the folder
     void show_progress(long step, long steps, double time, double done);
     void keep_two_checkpoints() const;
     std::string command_to_continue(const std::string& checkpoint) const;
@@ -125,6 +142,7 @@ class Run {
     ProgramInfo info_;
     CommandLine command_;
     std::string effective_case_, last_checkpoint_;
+    std::vector<std::string> replaced_;  // files of an earlier run
     std::shared_ptr<std::FILE> lock_;
     long first_step_ = 0;
     double first_done_ = -1;  // part of the run that was done before the first step
@@ -134,6 +152,8 @@ class Run {
     bool terminal_ = false, line_open_ = false;
     bool stepped_ = false;   // a step has ended since the start
     bool complete_ = false;  // the end of the run is reached
+    bool is_new_ = false;    // the folder was not there
+    bool begun_ = false;     // something was written into it
 };
 
 /// Refuses, before anything is written, a restart beyond the end of the run and a case larger than

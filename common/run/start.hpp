@@ -19,18 +19,16 @@ struct Preparation {
     std::vector<std::string> warnings;
     long steps = 0;    // to be run; a run until a time does not know them
     double bytes = 0;  // of memory
-    long checkpoint_steps = 0;
-    long history_steps = 0;  // of rows that are written before the step; 0: they are not
 };
 
 /// Says what the case is and what may mislead in it, and opens the run.
-/// in:     prepared, of a case that was not refused
+/// in:     prepared and schedule, of a case that was not refused
 /// out:    holder, the run; false with --dry-run, where the words are all, and where --resume finds
 ///         the run complete
 /// errors: InputError where the folder, the memory or the length of the run is impossible
 inline bool start_run(const ProgramInfo& info, const CommandLine& command,
                       const ParameterTable& table, const Preparation& prepared,
-                      std::optional<Run>& holder) {
+                      const Schedule& schedule, std::optional<Run>& holder) {
     for (const std::string& warning : prepared.warnings)
         std::fprintf(stderr, "warning: %s\n", warning.c_str());
     if (!command.quiet) std::printf("%s", prepared.description.c_str());
@@ -50,7 +48,7 @@ inline bool start_run(const ProgramInfo& info, const CommandLine& command,
     set_thread_count(unsaid ? free_cores() : command.threads);
     Run& run = holder.emplace(info, command, table);
     for (const std::string& warning : prepared.warnings) run.summary.warning(warning);
-    run.checkpoint_steps = prepared.checkpoint_steps, run.history_steps = prepared.history_steps;
+    run.schedule = schedule;
     return true;
 }
 

@@ -42,11 +42,11 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     const Case parameters = completed(given);
     validate(parameters, info.program);
     const Scales scales = scales_of(parameters, info.program);
-    if (!common::start_run(info, command, table,
-                           {describe_scales(parameters, scales, info.program),
-                            resolution_warnings(parameters, scales, info.program), LONG_MAX,
-                            scales.bytes, parameters.checkpoint_steps, 1},  // a row at every step
-                           holder))
+    if (!common::start_run(
+            info, command, table,
+            {describe_scales(parameters, scales, info.program),
+             resolution_warnings(parameters, scales, info.program), LONG_MAX, scales.bytes},
+            {parameters.checkpoint_steps, 1, false, parameters.end}, holder))
         return 0;
     common::Run& run = *holder;
 

@@ -36,11 +36,10 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     validate(parameters);
     refuse_unstable(parameters);
     const Scales scales = scales_of(parameters);
-    if (!common::start_run(
-            info, command, table,
-            {describe_scales(parameters, scales), leapfrog_warnings(parameters, scales),
-             scales.steps, scales.bytes, parameters.checkpoint_steps},
-            holder))
+    if (!common::start_run(info, command, table,
+                           {describe_scales(parameters, scales),
+                            leapfrog_warnings(parameters, scales), scales.steps, scales.bytes},
+                           {parameters.checkpoint_steps, parameters.history_steps}, holder))
         return 0;
     common::Run& run = *holder;
 

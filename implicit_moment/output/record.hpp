@@ -168,9 +168,9 @@ class Recorder {
     // Whether a snapshot of the given interval falls on this step.
     bool due(double interval, long step) const {
         if (interval <= 0) return false;
-        const long rows =
-            std::lround(interval / parameters_.dt / double(parameters_.history_steps));
-        return step % (std::max(1L, rows) * parameters_.history_steps) == 0;
+        const double every = double(parameters_.history_steps),
+                     rows = std::max(1.0, std::round(interval / parameters_.dt / every));
+        return std::fmod(double(step), rows * every) == 0;
     }
 
     const Case& parameters_;

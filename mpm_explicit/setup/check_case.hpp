@@ -6,7 +6,6 @@
 #include <set>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "mpm_explicit/setup/case.hpp"
@@ -15,19 +14,6 @@
 namespace mpm {
 
 namespace detail {
-
-// Beyond these sizes, products of several numbers leave double precision.
-inline void refuse_extremes(const common::ParameterTable& table) {
-    for (const auto& [name, value, place] : common::read_case(table.effective_case(), "case")) {
-        const double* number = std::get_if<double>(&value);
-        const bool is_compared_only = name.starts_with("output.") || name.starts_with("time.e");
-        if (number == nullptr || *number == 0 || is_compared_only) continue;
-        const double size = std::fabs(*number);
-        refuse(!(size > 1e-40 && size < 1e40),
-               name + " = " + format(*number) +
-                   " is not between 1e-40 and 1e40 in size: choose other units");
-    }
-}
 
 constexpr std::size_t longest_pack_name = 40;  // that write_pack() takes
 
@@ -84,11 +70,9 @@ inline void refuse_grain(const PlannedGrain& plan, const Material& material, con
 }  // namespace detail
 
 /// Refuses combinations that cannot run.
-/// in:     table, the parameters of the case by name
 /// errors: InputError with the numbers and the cure
-inline void validate(const Case& parameters, const common::ParameterTable& table) {
+inline void validate(const Case& parameters) {
     const Problem& problem = parameters.problem;
-    detail::refuse_extremes(table);
     const Mesh mesh = problem.mesh();
     const double far = std::max(std::fabs(mesh.x_low), std::fabs(mesh.y_low)) / mesh.h;
     refuse(far > 1e9, "the mesh begins " + format(far) +
@@ -200,8 +184,8 @@ namespace mpm_explicit {
 
 /// Refuses combinations that cannot run.
 /// errors: InputError with the cure
-inline void validate_explicit(const Case& parameters, const common::ParameterTable& table) {
-    validate(parameters, table);
+inline void validate_explicit(const Case& parameters) {
+    validate(parameters);
     const std::string transfer = "method.transfer = \"" + parameters.transfer + "\"";
     refuse(parameters.flip != 1 && parameters.transfers().flip != parameters.flip,
            transfer + " takes no part of FLIP: leave method.flip = 1");

@@ -118,10 +118,15 @@ inline void validate_state(const Mesh& mesh, int width, bool affine, bool turns,
     refuse(p.turn_p.size() != (turns ? count : 0) || !common::all_within(p.turn_p, -1e3, 1e3),
            "the turns of its particles are not as many as those of the case, or too large");
     refuse(momenta.size() != all.grains.size(), "its grains are not as many as those of the case");
-    constexpr double least = 1e-300, most = 1e300;
+    constexpr double least = 1e-130, most = 1e130, largest = 1e90;  // products of some are numbers
     refuse(!common::all_within(p.m_p, least, most) || !common::all_within(p.V_p, least, most),
            "a particle has no mass or no volume");
-    refuse(!common::all_within(p.yield_p, 0, most), "the plastic strain of a particle is negative");
+    refuse(!common::all_within(p.yield_p, 0, largest),
+           "the plastic strain of a particle is negative");
+    for (const auto* column : {&p.vx_p, &p.vy_p, &p.sxx_p, &p.syy_p, &p.sxy_p, &p.szz_p, &p.cxx_p,
+                               &p.cxy_p, &p.cyx_p, &p.cyy_p})
+        refuse(!common::all_within(*column, -largest, largest),
+               "the velocity or the stress of a particle is beyond 1e90 in size");
     const double beyond = mesh.periodic_x ? mesh.length_x() : 0;
     refuse(!common::all_within(p.x_p, mesh.x_low - beyond, mesh.x_high() + beyond) ||
                !common::all_within(p.y_p, mesh.y_low, mesh.y_high()),

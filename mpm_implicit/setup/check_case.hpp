@@ -15,9 +15,8 @@ namespace mpm_implicit {
 
 /// Refuses combinations that cannot run.
 /// errors: InputError with the cure
-inline void validate(const Case& parameters, const ThetaScheme& scheme,
-                     const common::ParameterTable& table) {
-    mpm::validate(parameters, table);
+inline void validate(const Case& parameters, const ThetaScheme& scheme) {
+    mpm::validate(parameters);
     for (const Material& m : materials_of(parameters.problem))
         refuse(!scheme.newton() && (m.law == Law::j2 || m.law == Law::drucker_prager),
                "[material." + m.name +
