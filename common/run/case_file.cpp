@@ -110,11 +110,10 @@ void flatten(const toml::table& table, const std::string& prefix, const std::str
         const auto add = [&](const auto& value) {
             settings.push_back({{name, value, place}, {begin.line, begin.column}});
         };
-        if (!std::all_of(word.begin(), word.end(), is_name_letter)) {
+        if (!std::all_of(word.begin(), word.end(), is_name_letter))
             throw InputError(place + ": '" + word +
                              "' is not a name: use letters, digits and '_', and dots only between "
                              "section and key");
-        }
         const auto* inner = node.as_table();
         if (inner != nullptr && inner->empty()) {
             add(EmptySection{});
@@ -127,12 +126,7 @@ void flatten(const toml::table& table, const std::string& prefix, const std::str
         } else if (const auto* real = node.as_floating_point()) {
             add(real->get());
         } else if (const auto* text = node.as_string()) {
-            const std::string& letters = text->get();
-            if (std::any_of(letters.begin(), letters.end(),
-                            [](unsigned char c) { return c < 0x20; }))
-                throw InputError(place + ": '" + name +
-                                 "' holds a control character; write plain text");
-            add(letters);
+            add(text->get());
         } else {
             throw InputError(place + ": '" + name +
                              "' is a list or a date; parameters are numbers, text, true or false");

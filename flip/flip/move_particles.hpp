@@ -13,7 +13,9 @@ namespace flip {
 namespace detail {
 
 // Work on one particle that carries its volume, which it takes at its own pressure; per mass.
-//   V_p += (V_p/K_p) sum_c R strain_c
+//   V_p += V_p s,  s = (1/K_p) sum_c R strain_c
+// A cold particle beside hot ones, in a shock, is so soft that it would be turned inside out: below
+// s = -1/2, V_p goes over to V_p/(-4 s), which stays positive.
 // in: cells.strain, work, q_work; in/out: V_p
 inline double work_on_volume(const Material* materials, const WeightScale& scale, const Weights& at,
                              const Cells& cells, long k, Particles& p) {
@@ -25,7 +27,8 @@ inline double work_on_volume(const Material* materials, const WeightScale& scale
         strain += R * cells.strain[c];
         work += R * (p_p * cells.work[c] + cells.q_work[c]);
     });
-    p.V_p[k] += V_per_K * strain;
+    const double s = V_per_K / V * strain;
+    p.V_p[k] = V * (s > -0.5 ? 1 + s : -0.25 / s);
     return -V_per_K * work / p.m_p[k];
 }
 
@@ -68,9 +71,12 @@ RowMoved move_row(const Problem& problem, const WeightScale& scale, const Mesh& 
         Velocity v{p.vx_p[k] + dv.x, p.vz_p[k] + dv.z};         // [FLIP-6]
         const double x = wrap(grid.x, p.x_p[k] + dt * sum[2]),  // [FLIP-7]
             z = wrap(grid.z, p.z_p[k] + dt * sum[3]);
-        if constexpr (!pure_flip)
+        if constexpr (!pure_flip) {
+            const bool dust = problem.materials[material].gamma == 1;  // may owe
             gained += apply_transfer(transfer, grid, scale, at, weights_at(scale, x, z), mesh.nodes,
-                                     {p.vx_p[k], p.vz_p[k]}, dv, k, p, v);
+                                     {p.vx_p[k], p.vz_p[k]}, dv, dust ? 1e300 : p.e_p[k] + gained,
+                                     k, p, v);
+        }
         p.vx_p[k] = v.x;
         p.vz_p[k] = v.z;
         p.e_p[k] += gained;
@@ -144,8 +150,9 @@ inline void apply_particle_boundaries(const Problem& problem, double t, double d
         budget.energy += m * affine_energy(problem.grid, weights_at(scale, p.x_p[k], p.z_p[k]), C);
     };
     if (left > 0) remove_outflow(problem, t + dt, p, [&](long k) { enter(k, -1); });
-    for (long added = add_inflow(problem, t, dt, p); added > 0; --added)
-        enter(p.count() - added, 1);
+    const long before = p.count();
+    add_inflow(problem, t, dt, p);
+    for (long k = before; k < p.count(); ++k) enter(k, 1);
 }
 
 }  // namespace flip
