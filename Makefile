@@ -57,7 +57,9 @@ need = @command -v $(1) >/dev/null || { echo "'$(1)' is not installed: run 'make
 programs  := $(basename $(notdir $(mains)))
 bench_programs := $(benches:%/bench.cpp=$(BUILD)/bench/%)
 tests     := $(basename $(notdir $(wildcard tests/*.cpp)))
-shared    := $(patsubst %.cpp,$(objects)/%.o,$(wildcard common/*/*.cpp) $(if $(TRAP),tests/support/trap_invalid.cpp))
+shared    := $(patsubst %.cpp,$(objects)/%.o,$(filter-out common/run/formula.cpp,$(wildcard common/*/*.cpp)) $(if $(TRAP),tests/support/trap_invalid.cpp))
+# From an archive the linker takes what a program calls: only who reads formulas needs muParser.
+formula   := $(BUILD)/formula.a
 sources   := $(wildcard */*.hpp */*/*.hpp */*/*/*.hpp */*.cpp */*/*.cpp)
 folder_of  = $(patsubst %/,%,$(dir $(filter %/$(1).cpp,$(mains))))
 method_of  = $(firstword $(subst /, ,$(call folder_of,$(1))))
@@ -148,16 +150,20 @@ $(objects)/%.o: %.cpp $(BUILD)/flags
 # The reader of case files must refuse bad input with a message, never with an assertion of its library.
 $(objects)/common/run/case_file.o: private defines += -DNDEBUG
 
+$(formula): $(objects)/common/run/formula.o
+	@rm -f $@
+	$(AR) rcs $@ $<
+
 define link
 @mkdir -p $(@D)
-$(CXX) $(flags) -o $@ $(filter %.o,$^) $(libraries)
+$(CXX) $(flags) -o $@ $(filter %.o %.a,$^) $(libraries) -Wl,--as-needed -lmuparser
 endef
 # The largest object first, so that the others are compiled beside it.
-$(programs:%=$(BUILD)/%): $(BUILD)/%: $$(objects)/$$(call folder_of,$$*)/$$*.o $(shared) $(BUILD)/flags
+$(programs:%=$(BUILD)/%): $(BUILD)/%: $$(objects)/$$(call folder_of,$$*)/$$*.o $(shared) $(formula) $(BUILD)/flags
 	$(link)
-$(tests:%=$(BUILD)/tests/%): $(BUILD)/tests/%: $(objects)/tests/%.o $(shared) $(BUILD)/flags
+$(tests:%=$(BUILD)/tests/%): $(BUILD)/tests/%: $(objects)/tests/%.o $(shared) $(formula) $(BUILD)/flags
 	$(link)
-$(bench_programs): $(BUILD)/bench/%: $(objects)/%/bench.o $(shared) $(BUILD)/flags
+$(bench_programs): $(BUILD)/bench/%: $(objects)/%/bench.o $(shared) $(formula) $(BUILD)/flags
 	$(link)
 
 -include $(patsubst %.cpp,$(objects)/%.d,$(mains) $(benches) $(wildcard common/*/*.cpp tests/*.cpp))
@@ -411,10 +417,10 @@ fuzzers: $(programs:%=$(BUILD)/fuzz/%)
 $(objects)/fuzz/%.o: $$(call folder_of,$$*)/$$*.cpp $(BUILD)/flags
 	@mkdir -p $(@D)
 	$(CXX) $(flags) $(defines) -Dmain=program_main $(include_paths) -MMD -MP -c -o $@ $<
-$(BUILD)/fuzz/%: $(objects)/fuzz/%.o $(objects)/tests/torture/fuzz.o $(filter-out %/run.o,$(shared)) $(BUILD)/flags
+$(BUILD)/fuzz/%: $(objects)/fuzz/%.o $(objects)/tests/torture/fuzz.o $(filter-out %/run.o,$(shared)) $(formula) $(BUILD)/flags
 	@mkdir -p $(@D)
 	$(CXX) $(flags) -fsanitize=fuzzer -Wl,--wrap=exit,--wrap=getrlimit,--wrap=_ZNSt6chrono3_V212steady_clock3nowEv \
-	    -o $@ $(filter %.o,$^) $(libraries)
+	    -o $@ $(filter %.o %.a,$^) $(libraries) -Wl,--as-needed -lmuparser
 $(BUILD)/planted_race: $(objects)/tests/torture/planted_race.o $(BUILD)/flags
 	$(link)
 -include $(programs:%=$(objects)/fuzz/%.d) $(wildcard $(objects)/tests/torture/*.d)

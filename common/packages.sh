@@ -14,6 +14,7 @@ libtomlplusplus-dev    header  toml++/toml.h     toml++ 3
 nlohmann-json3-dev     header  nlohmann/json.hpp JSON for Modern C++
 librandom123-dev       header  Random123/philox.h Random123
 doctest-dev            header  doctest/doctest.h doctest 2.4
+libmuparser-dev        header  muParser.h        muParser 2
 libxxhash-dev          header  xxhash.h          xxHash 0.8
 clang-format           command clang-format      clang-format 14
 locales                command localedef         sources of locales (glibc)

@@ -22,12 +22,6 @@ inline double spline(int order, double x) {
     return r < 1 ? 2.0 / 3 - r * r + 0.5 * r * r * r : r < 2 ? cube(2 - r) / 6 : 0;
 }
 
-/// d S^(order)/dx per cell, order 1 to 3, as the difference of the next lower spline (exact; at a
-/// kink the mean of the two sides is not taken).
-inline double spline_gradient(int order, double x) {
-    return spline(order - 1, x + 0.5) - spline(order - 1, x - 0.5);
-}
-
 /// What a smooth distribution f(x) of particles puts on the node at x: the integral of f S^(2).
 /// exact: for constant and linear f; otherwise by the midpoint rule, to 1e-4 of what S^(2) changes.
 template <class Function>

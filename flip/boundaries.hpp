@@ -63,13 +63,15 @@ void remove_outflow(const Problem& problem, double time, Particles& particles, c
 /// Adds the particles that enter through inflow boundaries between t and t + dt. They come in
 /// columns as far apart as on the lattice of the start; column n crosses the boundary at
 /// t_n = (n + 1/2) step/speed, and stands where it has got to by t + dt.
-/// out:    the number added, at the end of the columns; all columns that are in use are filled
-inline long add_inflow(const Problem& problem, double t, double dt, Particles& particles) {
+/// out:    the numbers added through each side, in this order at the end of the columns; all columns
+///         that are in use are filled
+inline std::array<long, 4> add_inflow(const Problem& problem, double t, double dt,
+                                      Particles& particles) {
     const Grid& grid = problem.grid;
-    const Inflow& in = problem.boundaries.inflow;
-    long added = 0;
+    std::array<long, 4> added{};
     for (const Side side : all_sides) {
         if (!problem.boundaries.is(side, BoundaryKind::inflow)) continue;
+        const Inflow& in = problem.boundaries.side[side].inflow;
         const bool along_x = is_x_side(side), low = is_low_side(side);
         const common::Axis &across = along_x ? grid.x : grid.z, &aside = along_x ? grid.z : grid.x;
         const double speed = (low ? 1 : -1) * (along_x ? in.vx : in.vz);
@@ -102,7 +104,7 @@ inline long add_inflow(const Problem& problem, double t, double dt, Particles& p
                 particles.z_p.push_back(along_x ? beside : at);
                 particles.m_p.push_back(in.rho * step * width);
                 particles.material.push_back(in.material);
-                ++added;
+                ++added[side];
             }
         }
     }
@@ -123,7 +125,7 @@ inline Held held_at(const Grid& grid, const Boundaries& boundaries, long i, long
     const auto apply = [&](Side side) {
         const Boundary& b = boundaries.side[side];
         const bool along_x = is_x_side(side), inflow = b.kind == BoundaryKind::inflow;
-        const Inflow& in = boundaries.inflow;
+        const Inflow& in = b.inflow;
         const double normal = !inflow ? 0 : (along_x ? in.vx : in.vz),
                      tangential = !inflow ? b.slide : (along_x ? in.vz : in.vx);
         const bool holds_tangential = b.kind == BoundaryKind::no_slip || inflow;

@@ -23,14 +23,7 @@ inline bool is_low_side(Side side) { return side == x_low || side == z_low; }
 /// Conditions that a boundary can set.
 enum class BoundaryKind { periodic, slip, no_slip, open, inflow };
 
-/// The boundary condition on one side.
-struct Boundary {
-    BoundaryKind kind = BoundaryKind::periodic;
-    double slide = 0;     // velocity of a no-slip wall along itself
-    double pressure = 0;  // outside of an open boundary
-};
-
-/// The fluid that enters through inflow boundaries.
+/// The fluid that enters through an inflow boundary.
 struct Inflow {
     int material = 0;
     double rho = 0, p = 0, c = 0,
@@ -38,10 +31,17 @@ struct Inflow {
     double vx = 0, vz = 0;
 };
 
+/// The boundary condition on one side.
+struct Boundary {
+    BoundaryKind kind = BoundaryKind::periodic;
+    double slide = 0;     // velocity of a no-slip wall along itself
+    double pressure = 0;  // outside of an open boundary
+    Inflow inflow = {};
+};
+
 /// The conditions on all four sides.
 struct Boundaries {
     std::array<Boundary, 4> side;
-    Inflow inflow;
 
     bool is(Side s, BoundaryKind kind) const { return side[s].kind == kind; }
     bool has(BoundaryKind kind) const {

@@ -546,7 +546,9 @@ explicit_em particles.relativistic - particles.order - output.history_steps -
         const std::string defaults = run("defaults", "");
         std::set<std::string> listed;
         for (const Parameter& p : parameters)
-            listed.insert(std::regex_replace(p.name, std::regex("<name>"), "beam"));
+            listed.insert(std::regex_replace(
+                std::regex_replace(p.name, std::regex("inflow.<name>"), "inflow.x_low"),  // an end
+                std::regex("<name>"), "beam"));
         CHECK(listed.size() == parameters.size());
         CHECK(listed == keys_in(run("beam", program.beam)));
 

@@ -110,11 +110,10 @@ void flatten(const toml::table& table, const std::string& prefix, const std::str
         const auto add = [&](const auto& value) {
             settings.push_back({{name, value, place}, {begin.line, begin.column}});
         };
-        if (!std::all_of(word.begin(), word.end(), is_name_letter)) {
+        if (!std::all_of(word.begin(), word.end(), is_name_letter))
             throw InputError(place + ": '" + word +
                              "' is not a name: use letters, digits and '_', and dots only between "
                              "section and key");
-        }
         const auto* inner = node.as_table();
         if (inner != nullptr && inner->empty()) {
             add(EmptySection{});

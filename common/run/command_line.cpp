@@ -52,9 +52,8 @@ std::string list_cases(const ProgramInfo& info, const std::string& wrong) {
     const fs::path folder = fs::path(find_in_project(info.default_case)).parent_path();
     std::vector<std::string> names;
     std::error_code error;
-    for (const auto& entry : fs::directory_iterator(folder, error)) {
+    for (const auto& entry : fs::directory_iterator(folder, error))
         if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
-    }
     std::sort(names.begin(), names.end());
     const std::string name = fs::path(wrong).stem().string();
     if (std::find(names.begin(), names.end(), name) != names.end())
@@ -154,7 +153,7 @@ void apply_override(const std::string& argument, bool restarting, ParameterTable
                          "' cannot change on a restart; start a new run with it");
     }
     const bool quoted = !value.empty() && (value.front() == '"' || value.front() == '\'');
-    const std::optional<bool> is_text = table.takes_text(name);
+    const std::optional<bool> is_text = table.takes_text(name, value);
     // A name that is none is refused whatever its value; {} may be that of a section.
     if (!is_text && !value.starts_with('{')) return table.set({name, value, place});
     if (is_text.value_or(false) && !quoted)
@@ -169,9 +168,8 @@ int thread_number(const std::string& text) {
     char* end = nullptr;
     errno = 0;
     const long threads = std::strtol(text.c_str(), &end, 10);
-    if (text.empty() || *end != '\0' || errno != 0 || threads < 1 || threads > 1024) {
+    if (text.empty() || *end != '\0' || errno != 0 || threads < 1 || threads > 1024)
         throw InputError("--threads takes a whole number from 1 to 1024, not '" + text + "'");
-    }
     return static_cast<int>(threads);
 }
 
@@ -236,10 +234,9 @@ CommandLine read_command_line(int argc, char** argv, const ProgramInfo& info,
         if (joined) value = argument.substr(equals + 1), argument.resize(equals);
         const auto value_of = [&]() -> std::string {
             if (joined) return value;
-            if (k + 1 >= argc || std::strncmp(argv[k + 1], "--", 2) == 0) {
+            if (k + 1 >= argc || std::strncmp(argv[k + 1], "--", 2) == 0)
                 throw InputError(argument + " needs a value: " + argument +
                                  (argument == "--threads" ? " 2" : " PATH"));
-            }
             return argv[++k];
         };
         const auto sets = [&](const char* name, bool& flag) {
@@ -292,10 +289,9 @@ CommandLine read_command_line(int argc, char** argv, const ProgramInfo& info,
 
     const bool restarting = !command.restart_path.empty();
     if (restarting) {
-        if (!command.case_path.empty()) {
+        if (!command.case_path.empty())
             throw InputError("--restart takes its case from the checkpoint: leave out '" +
                              command.case_path + "'");
-        }
         if (command.resume)
             throw InputError("--resume finds the checkpoint itself: leave out --restart, or it");
         CheckpointReader checkpoint(info, command.restart_path);
@@ -311,10 +307,9 @@ CommandLine read_command_line(int argc, char** argv, const ProgramInfo& info,
     } else {
         if (command.case_path.empty()) command.case_path = find_in_project(info.default_case);
         std::error_code missing;
-        if (!fs::exists(command.case_path, missing)) {
+        if (!fs::exists(command.case_path, missing))
             throw InputError(command.case_path + ": there is no such file" +
                              list_cases(info, command.case_path));
-        }
         command.case_name = fs::path(command.case_path).stem().string();
         try {
             for (const Setting& one : read_case(read_file(command.case_path), command.case_path))

@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <limits>
 
+#include "common/run/formula.hpp"
+
 namespace common {
 
 namespace {
@@ -28,17 +30,6 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
     return row.back();
 }
 
-std::string text_of(const Range& range) {
-    if (range.low == -infinity && range.high == infinity) return "any";
-    if (range.high == infinity) return (range.open_low ? "> " : ">= ") + number_text(range.low);
-    return number_text(range.low) + (range.open_low ? " < ... " : " ... ") +
-           number_text(range.high);
-}
-
-bool contains(const Range& range, double value) {
-    return (range.open_low ? value > range.low : value >= range.low) && value <= range.high;
-}
-
 std::string quoted(const std::string& text) {
     std::string result = "\"";
     for (const char letter : text) {
@@ -53,6 +44,12 @@ struct Shown {
     std::string operator()(const long* value) const { return std::to_string(*value); }
     std::string operator()(const double* value) const { return number_text(*value); }
     std::string operator()(const std::string* value) const { return quoted(*value); }
+    std::string operator()(const Formula* value) const {
+        return value->is_number() ? number_text(*value) : quoted(value->text());
+    }
+    std::string operator()(const std::optional<double>* value) const {
+        return *value ? number_text(**value) : "";
+    }
 };
 
 std::string kind_of(const Setting& setting) {
@@ -63,9 +60,9 @@ std::string kind_of(const Setting& setting) {
 
 bool is_word(const std::string& text) {
     const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
-    if (text.empty() || !letter(text[0])) return false;
-    return std::all_of(text.begin(), text.end(),
-                       [&](char c) { return letter(c) || (c >= '0' && c <= '9') || c == '_'; });
+    return !text.empty() && letter(text[0]) && std::all_of(text.begin(), text.end(), [&](char c) {
+        return letter(c) || (c >= '0' && c <= '9') || c == '_';
+    });
 }
 
 bool is_control(char letter) {
@@ -83,6 +80,17 @@ Range anything() { return {-infinity, infinity}; }
 Range at_least(double low) { return {low, infinity}; }
 Range above(double low) { return {low, infinity, true}; }
 Range between(double low, double high) { return {low, high}; }
+
+std::string text_of(const Range& range) {
+    if (range.low == -infinity && range.high == infinity) return "any";
+    if (range.high == infinity) return (range.open_low ? "> " : ">= ") + number_text(range.low);
+    return number_text(range.low) + (range.open_low ? " < ... " : " ... ") +
+           number_text(range.high);
+}
+
+bool contains(const Range& range, double value) {
+    return (range.open_low ? value > range.low : value >= range.low) && value <= range.high;
+}
 
 std::string number_text(double value) {
     char text[32];
@@ -107,20 +115,6 @@ void ParameterTable::add(Entry entry) {
     entries_.push_back(std::move(entry));
 }
 
-void ParameterTable::add_list(const std::string& name, const std::string& meaning,
-                              const std::function<void(const std::string&)>& append) {
-    lists_.push_back({name, meaning, append, {}, {}});
-}
-
-void ParameterTable::describe_pattern(const std::string& name,
-                                      const std::function<void()>& describe) {
-    for (List& list : lists_) {
-        if (list.name == name) pattern_ = &list.pattern;
-    }
-    describe();
-    pattern_ = nullptr;
-}
-
 bool ParameterTable::is_changeable(const std::string& name) const {
     return std::any_of(changeable_.begin(), changeable_.end(), [&](const std::string& allowed) {
         return allowed.back() == '.' ? name.starts_with(allowed) : name == allowed;
@@ -128,15 +122,18 @@ bool ParameterTable::is_changeable(const std::string& name) const {
 }
 
 ParameterTable::Entry* ParameterTable::find(const std::string& name) {
-    for (Entry& entry : entries_) {
+    for (Entry& entry : entries_)
         if (entry.name == name) return &entry;
-    }
     return nullptr;
 }
 
-std::optional<bool> ParameterTable::takes_text(const std::string& name) {
-    const auto is_text = [](const Entry& entry) {
-        return std::holds_alternative<std::string*>(entry.target);
+std::optional<bool> ParameterTable::takes_text(const std::string& name, const std::string& value) {
+    const auto is_text = [&](const Entry& entry) {
+        double number = 0;
+        const char* const end = value.data() + value.size();
+        return std::holds_alternative<std::string*>(entry.target) ||
+               (std::holds_alternative<Formula*>(entry.target) &&
+                std::from_chars(value.data() + value.starts_with('+'), end, number).ptr != end);
     };
     if (const Entry* entry = find(name); entry != nullptr) return is_text(*entry);
     // An item that is new.
@@ -171,9 +168,8 @@ std::string ParameterTable::nearest(const std::string& name) const {
     for (const Entry& entry : entries_) consider(entry.name);
     // The right key in the wrong section is the other common slip.
     const std::string key = name.substr(name.rfind('.') + 1);
-    for (const Entry& entry : entries_) {
+    for (const Entry& entry : entries_)
         if (least > 2 && entry.name.substr(entry.name.rfind('.') + 1) == key) return entry.name;
-    }
     return best;
 }
 
@@ -194,20 +190,19 @@ void ParameterTable::make_item(const Setting& setting) {
         if (!setting.name.starts_with(start) || setting.name == start) continue;
         const std::size_t dot = setting.name.find('.', start.size());
         if (dot == std::string::npos) {
+            if (find(setting.name) != nullptr) return;  // a section beside its list
             throw InputError(setting.place + ": '" + setting.name +
                              "' needs the name of an item: write [" + list.name +
                              ".<name>] above its parameters");
         }
         const std::string item = setting.name.substr(start.size(), dot - start.size());
         if (std::find(list.items.begin(), list.items.end(), item) != list.items.end()) return;
-        if (!is_word(item)) {
+        if (!is_word(item))
             throw InputError(setting.place + ": '" + item +
                              "' cannot name an item: use letters, digits and '_', a letter first");
-        }
-        if (list.items.size() == most_items) {
+        if (list.items.size() == most_items)
             throw InputError(setting.place + ": more than " + std::to_string(most_items) +
                              " items in [" + list.name + "]: take some out");
-        }
         list.items.push_back(item);
         groups_.push_back({list.name + " '" + item + "'", {}});
         list.append(item);
@@ -219,16 +214,15 @@ void ParameterTable::make_item(const Setting& setting) {
 void ParameterTable::accept_empty_section(const Setting& setting) {
     const std::string start = setting.name + ".";
     make_item({start, {}, setting.place});
-    const auto is_inside = [&](const std::string& name) { return name.starts_with(start); };
-    const bool known = std::any_of(entries_.begin(), entries_.end(),
-                                   [&](const Entry& entry) { return is_inside(entry.name); }) ||
-                       std::any_of(lists_.begin(), lists_.end(),
-                                   [&](const List& list) { return list.name == setting.name; });
+    const bool known =
+        std::any_of(entries_.begin(), entries_.end(),
+                    [&](const Entry& entry) { return entry.name.starts_with(start); }) ||
+        std::any_of(lists_.begin(), lists_.end(),
+                    [&](const List& list) { return list.name == setting.name; });
     if (known) return;
-    if (const std::string now = new_name(start); !now.empty()) {
+    if (const std::string now = new_name(start); !now.empty())
         throw InputError(setting.place + ": [" + setting.name + "] has a new name: write [" +
                          now.substr(0, now.size() - 1) + "]");
-    }
     std::string guess = in_nearest_list(setting.name);
     if (guess.empty()) {
         const std::string parameter = nearest(setting.name);
@@ -246,10 +240,9 @@ void ParameterTable::set(const Setting& setting) {
     make_item(setting);
     Entry* entry = find(setting.name);
     if (entry == nullptr) {
-        if (const std::string now = new_name(setting.name); find(now) != nullptr) {
+        if (const std::string now = new_name(setting.name); find(now) != nullptr)
             throw InputError(setting.place + ": '" + setting.name + "' has a new name: write '" +
                              now + "'");
-        }
         const std::string guess = nearest(setting.name);
         throw InputError(
             setting.place + ": unknown parameter '" + setting.name + "'" +
@@ -275,28 +268,39 @@ void ParameterTable::set(const Setting& setting) {
                    text_of(entry->allowed) + (entry->unit.empty() ? "" : " " + entry->unit));
         }
     };
+    const auto number_of = [&](const char* type) {
+        require(is_number, type);
+        // Beyond these sizes, products of several numbers leave double precision.
+        const double size = std::fabs(value);
+        if (!std::holds_alternative<long*>(entry->target) && size != 0 &&
+            !(size > 1e-40 && size < 1e40))
+            refuse(" = " + number_text(value) +
+                   " is not between 1e-40 and 1e40 in size: choose other units");
+        return value;
+    };
+    Formula** const formula = std::get_if<Formula*>(&entry->target);
     if (auto flag = std::get_if<bool*>(&entry->target)) {
         require(truth != nullptr, "true or false");
         **flag = *truth;
     } else if (auto whole = std::get_if<long*>(&entry->target)) {
-        require(is_number, "a whole number");
+        number_of("a whole number");
         if (value != std::floor(value) || std::fabs(value) > 9007199254740992.0)
             refuse(" takes a whole number, not " + number_text(value));
         **whole = static_cast<long>(value);
     } else if (auto real = std::get_if<double*>(&entry->target)) {
-        require(is_number, "a number");
-        // Beyond these sizes, products of several numbers leave double precision.
-        const double size = std::fabs(value);
-        if (size != 0 && !(size > 1e-40 && size < 1e40))
-            refuse(" = " + number_text(value) +
-                   " is not between 1e-40 and 1e40 in size: choose other units");
-        **real = value;
+        **real = number_of("a number");
+    } else if (auto optional = std::get_if<std::optional<double>*>(&entry->target)) {
+        **optional = number_of("a number");
+    } else if (formula != nullptr && is_number) {
+        **formula = number_of("a number");
     } else {
         const std::vector<std::string>& choices = entry->choices;
         std::string list;
         for (const std::string& choice : choices)
             list += (list.empty() ? "" : ", ") + quoted(choice);
-        require(text != nullptr, list.empty() ? "text" : "text, one of " + list);
+        require(text != nullptr, formula        ? "a number or a formula"
+                                 : list.empty() ? "text"
+                                                : "text, one of " + list);
         if (std::any_of(text->begin(), text->end(), is_control))
             refuse(" holds a control character; write plain text");
         if (!choices.empty() && std::find(choices.begin(), choices.end(), *text) == choices.end())
@@ -305,7 +309,12 @@ void ParameterTable::set(const Setting& setting) {
             refuse(" has " + std::to_string(text->size()) + " letters; write at most " +
                    std::to_string(longest_text));
         }
-        **std::get_if<std::string*>(&entry->target) = *text;
+        if (formula == nullptr)
+            **std::get_if<std::string*>(&entry->target) = *text;
+        else if (text->empty())
+            refuse(" is empty; write a number or a formula");
+        else
+            **formula = Formula(*text, setting.place + ": '" + setting.name + "'", entry->allowed);
     }
 }
 
@@ -321,10 +330,13 @@ std::string ParameterTable::help() const {
             range = "text";
         } else {
             range = text_of(entry.allowed);
+            if (std::holds_alternative<Formula*>(entry.target))
+                range = "formula or number, " + range;
         }
         const std::string unit = entry.unit.empty() ? "" : " [" + entry.unit + "]";
         return "  " + padded(entry.name, 31) + " " + entry.meaning + unit + "\n" +
-               std::string(34, ' ') + range + "; default " + entry.initial + "\n";
+               std::string(34, ' ') + range + "; default " +
+               (entry.initial.empty() ? "none" : entry.initial) + "\n";
     };
     std::string text;
     for (const Group& group : groups_) {
@@ -342,16 +354,16 @@ std::string ParameterTable::effective_case() const {
     std::vector<std::string> sections;
     std::map<std::string, std::string> body;
     for (const Entry& entry : entries_) {
+        const std::string shown = std::visit(Shown{}, entry.target);
+        if (shown.empty()) continue;
         const std::size_t dot = entry.name.rfind('.');
         const std::string section = entry.name.substr(0, dot);
         if (body.find(section) == body.end()) sections.push_back(section);
-        body[section] +=
-            entry.name.substr(dot + 1) + " = " + std::visit(Shown{}, entry.target) + "\n";
+        body[section] += entry.name.substr(dot + 1) + " = " + shown + "\n";
     }
     std::string text;
-    for (const std::string& section : sections) {
+    for (const std::string& section : sections)
         text += (text.empty() ? "[" : "\n[") + section + "]\n" + body[section];
-    }
     return text;
 }
 

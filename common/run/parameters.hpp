@@ -42,6 +42,10 @@ Range at_least(double low);
 Range above(double low);
 /// low to high, both allowed.
 Range between(double low, double high);
+bool contains(const Range& range, double value);
+std::string text_of(const Range& range);
+
+class Formula;
 
 /// A section of a case file without any key.
 struct EmptySection {};
@@ -58,7 +62,10 @@ class ParameterTable {
     /// A heading in --help.
     void group(const std::string& title) { groups_.push_back({title, {}}); }
 
-    void real(const std::string& name, double& value, const std::string& unit, Range allowed,
+    /// A number: a double, a Formula where text may give one, or a std::optional<double> that need
+    /// not be given and is not in the effective case then.
+    template <class Number>
+    void real(const std::string& name, Number& value, const std::string& unit, Range allowed,
               const std::string& meaning) {
         add({name, unit, meaning, &value, allowed, {}, {}});
     }
@@ -87,13 +94,19 @@ class ParameterTable {
               void (*describe)(ParameterTable&, const std::string& prefix, Item&),
               const std::string& meaning) {
         items.reserve(most_items);  // the table points into it
-        add_list(name, meaning, [this, name, &items, describe](const std::string& item) {
-            items.emplace_back();
-            items.back().name = item;
-            describe(*this, name + "." + item, items.back());
-        });
+        lists_.push_back({name,
+                          meaning,
+                          [this, name, &items, describe](const std::string& item) {
+                              items.emplace_back();
+                              items.back().name = item;
+                              describe(*this, name + "." + item, items.back());
+                          },
+                          {},
+                          {}});
         Item pattern;
-        describe_pattern(name, [&] { describe(*this, name + ".<name>", pattern); });
+        pattern_ = &lists_.back().pattern;
+        describe(*this, name + ".<name>", pattern);
+        pattern_ = nullptr;
     }
 
     /// Names, or beginnings that end in '.', that may differ between a checkpoint's case and a
@@ -107,9 +120,9 @@ class ParameterTable {
         renamed_ = names;
     }
 
-    /// Whether a parameter takes text, so that it may stand without quotes on the command line;
-    /// nothing for a name that set() refuses.
-    std::optional<bool> takes_text(const std::string& name);
+    /// Whether a parameter takes this value as text, which needs no quotes on the command line; nothing
+    /// for a name that set() refuses.
+    std::optional<bool> takes_text(const std::string& name, const std::string& value = "");
 
     /// Gives a parameter its value.
     /// errors: InputError for an unknown name, a wrong type or a value out of range, with the place
@@ -128,7 +141,7 @@ class ParameterTable {
     static constexpr std::size_t longest_text = 900;  // escaped, it still fits a line of a case
     struct Entry {
         std::string name, unit, meaning;
-        std::variant<bool*, long*, double*, std::string*> target;
+        std::variant<bool*, long*, double*, std::string*, Formula*, std::optional<double>*> target;
         Range allowed;
         std::vector<std::string> choices;
         std::string initial;  // the default, as text
@@ -145,9 +158,6 @@ class ParameterTable {
     };
 
     void add(Entry entry);
-    void add_list(const std::string& name, const std::string& meaning,
-                  const std::function<void(const std::string&)>& append);
-    void describe_pattern(const std::string& name, const std::function<void()>& describe);
     Entry* find(const std::string& name);
     void make_item(const Setting& setting);
     void accept_empty_section(const Setting& setting);

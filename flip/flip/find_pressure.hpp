@@ -106,7 +106,8 @@ inline void find_pressure(const Grid& grid, std::span<const Material> materials,
     if (bad < 0) return;
     throw common::NumericalError(
         "density or internal energy is negative " + cell_and_time(grid, bad, time) +
-        ": reduce time.cfl, raise viscosity.linear, or take more particles per cell");
+        ": reduce time.cfl, raise viscosity.linear, or take more particles per cell" +
+        (volumes ? "; where cold gas meets hot gas, flip.density = \"cells\"" : ""));
 }
 
 /// Sound speed of a cell, c^2 = 1/(rho x compressibility); of a mixture, Wood's.

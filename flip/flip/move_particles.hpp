@@ -89,9 +89,12 @@ RowMoved move_row(const Problem& problem, const WeightScale& scale, const Mesh& 
         Velocity v{p.vx_p[k] + dv.x, p.vz_p[k] + dv.z};         // [FLIP-6]
         const double x = wrap(grid.x, p.x_p[k] + dt * sum[2]),  // [FLIP-7]
             z = wrap(grid.z, p.z_p[k] + dt * sum[3]);
-        if constexpr (!pure_flip)
+        if constexpr (!pure_flip) {
+            const bool dust = problem.materials[material].gamma == 1;  // may owe
             gained += apply_transfer(transfer, grid, scale, at, weights_at(scale, x, z), mesh.nodes,
-                                     {p.vx_p[k], p.vz_p[k]}, dv, k, p, v);
+                                     {p.vx_p[k], p.vz_p[k]}, dv, dust ? 1e300 : p.e_p[k] + gained,
+                                     k, p, v);
+        }
         p.vx_p[k] = v.x;
         p.vz_p[k] = v.z;
         p.e_p[k] += gained;
@@ -165,8 +168,9 @@ inline void apply_particle_boundaries(const Problem& problem, double t, double d
         budget.energy += m * affine_energy(problem.grid, weights_at(scale, p.x_p[k], p.z_p[k]), C);
     };
     if (left > 0) remove_outflow(problem, t + dt, p, [&](long k) { enter(k, -1); });
-    for (long added = add_inflow(problem, t, dt, p); added > 0; --added)
-        enter(p.count() - added, 1);
+    const long before = p.count();
+    add_inflow(problem, t, dt, p);
+    for (long k = before; k < p.count(); ++k) enter(k, 1);
 }
 
 }  // namespace flip

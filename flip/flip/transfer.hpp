@@ -91,15 +91,17 @@ inline double lost_in_filter(const WeightScale& scale, const Weights& w, const F
 /// Turns one particle's velocity, which has taken the increment already, from its own towards that
 /// of the mesh.
 /// in:     old, its velocity before the increment; dv, the increment at the particle; at, later: its
-///         weights before and after it has moved
+///         weights before and after it has moved; e, the energy per mass that it has left to give
 /// in/out: v, its velocity; C_p
 /// out:    heat per mass, beyond that of flip, which the nodes have given already
+/// note:   the energy in C_p depends on where in its cell a particle is, and may grow as it moves;
+///         one of apic that cannot pay for it, cold gas that a shock meets, goes without C_p
 /// exact:  with the heat, total energy; for pic, blend and apic the heat is that of differences
 ///         squared, but for what moving does to the energy in C_p
 inline double apply_transfer(const Transfer& rule, const Grid& grid, const WeightScale& scale,
                              const Weights& at, const Weights& later, const Nodes& nodes,
-                             const Velocity& old, const Velocity& dv, long k, Particles& p,
-                             Velocity& v) {
+                             const Velocity& old, const Velocity& dv, double e, long k,
+                             Particles& p, Velocity& v) {
     const Four* const filtered = nodes.filtered.data();
     Four mesh = Four::Zero();
     for_nodes(scale, at, [&](long n, double S) { mesh += S * filtered[n]; });
@@ -111,19 +113,28 @@ inline double apply_transfer(const Transfer& rule, const Grid& grid, const Weigh
                detail::lost_in_filter(scale, at, filtered, nodes.increment.data(), v);
     if (rule.filtered) return 0;
 
-    double C[4] = {0, 0, 0, 0}, C_new[4] = {0, 0, 0, 0}, heat = 0;
+    double C[4] = {0, 0, 0, 0}, C_new[4] = {0, 0, 0, 0};
     if (rule.affine) {
         C[0] = p.Cxx_p[k], C[1] = p.Cxz_p[k], C[2] = p.Czx_p[k], C[3] = p.Czz_p[k];
         detail::bilinear_gradient(grid, scale, at, filtered, C_new);
+    }
+    const double flip = detail::lost_by_increment(scale, at, nodes.increment.data(), dv);
+    const auto heat = [&] {
+        const double pic =
+            detail::lost_on_mesh(grid, scale, at, filtered, old, C, {mesh[2], mesh[3]}, C_new);
+        return rule.part * (pic - flip) + 0.5 * rule.part * (1 - rule.part) * apart.square() +
+               affine_energy(grid, at, C_new) - affine_energy(grid, later, C_new);
+    };
+    double gained = rule.dissipates ? heat() : 0;
+    if (rule.affine) {
+        if (0.5 * e + gained < 0) {
+            std::fill_n(C_new, 4, 0.0);
+            gained = heat();
+        }
         p.Cxx_p[k] = C_new[0], p.Cxz_p[k] = C_new[1];
         p.Czx_p[k] = C_new[2], p.Czz_p[k] = C_new[3];
-        heat = affine_energy(grid, at, C_new) - affine_energy(grid, later, C_new);
     }
-    if (!rule.dissipates) return 0;
-    const double pic = detail::lost_on_mesh(grid, scale, at, filtered, old, C, {mesh[2], mesh[3]},
-                                            C_new),
-                 flip = detail::lost_by_increment(scale, at, nodes.increment.data(), dv);
-    return heat + rule.part * (pic - flip) + 0.5 * rule.part * (1 - rule.part) * apart.square();
+    return gained;
 }
 
 }  // namespace flip

@@ -7,6 +7,7 @@
 
 #include "common/run/run.hpp"
 #include "flip/output/write_output.hpp"
+#include "flip/setup/scales.hpp"
 #include "flip/theory/comparisons.hpp"
 
 namespace flip {
@@ -46,7 +47,9 @@ class Recorder {
     Recorder(const Case& parameters, const std::string& program, common::History& history)
         : parameters_(parameters), program_(program) {
         for (const RegionCase& r : parameters.regions)
-            sound_speed_ = std::max(sound_speed_, sound_speed_of(parameters, r));
+            sound_speed_ =
+                std::max(sound_speed_, r.has_formula() ? scales_of(parameters, program).sound_speed
+                                                       : sound_speed_of(parameters, r));
         CellFields empty;
         for (Field* f : {&empty.rho, &empty.vx, &empty.vz, &empty.p, &empty.e})
             *f = Field::Zero(parameters.grid.size());

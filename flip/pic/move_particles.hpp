@@ -104,7 +104,8 @@ inline void clear_motion(Particles& particles) {
 
 /// Particles that have left are removed, and those that have entered are added, out of order.
 /// out:    budget: mass, momentum and energy of what crossed, with u~ and I~ of the donor cell; the
-///         donor of those that enter is a corner of the ghosts, which holds the inflow
+///         donor of those that enter is a corner of the ghosts, one for each side, which holds its
+///         inflow
 /// errors: NumericalError for a particle beyond a wall
 inline void apply_particle_boundaries(const Problem& problem, double dt, State& state,
                                       PicCells& cells) {
@@ -124,16 +125,20 @@ inline void apply_particle_boundaries(const Problem& problem, double dt, State& 
     });
     std::erase(cells.donor, -1);
 
-    const long added = add_inflow(problem, state.time, dt, particles);
-    if (added == 0) return;
+    const std::array<long, 4> added = add_inflow(problem, state.time, dt, particles);
     clear_motion(particles);
-    const Inflow& in = problem.boundaries.inflow;
-    const int corner = static_cast<int>(problem.grid.size()) - 1;
-    cells.v_tilde[corner] = {in.vx, in.vz};
-    for (long k = 0; k < cells.materials; ++k) cells.e_tilde[corner * cells.materials + k] = in.e;
-    cells.donor.resize(particles.x_p.size(), corner);
-    for (long p = particles.count() - added; p < particles.count(); ++p)
-        enter(particles.m_p[p], {in.vx, in.vz}, in.e);
+    const Grid& grid = problem.grid;
+    for (const Side side : all_sides) {
+        const Inflow& in = problem.boundaries.side[side].inflow;
+        const long corner = grid.index(side & 1 ? grid.x.cells : -1, side & 2 ? grid.z.cells : -1);
+        cells.v_tilde[corner] = {in.vx, in.vz};
+        for (long k = 0; k < cells.materials; ++k)
+            cells.e_tilde[corner * cells.materials + k] = in.e;
+        for (long k = 0; k < added[side]; ++k) {
+            enter(particles.m_p[cells.donor.size()], {in.vx, in.vz}, in.e);
+            cells.donor.push_back(static_cast<int>(corner));
+        }
+    }
 }
 
 /// Particles move with the fluid to their final position; those that leave and enter do so.

@@ -92,14 +92,14 @@ void for_each_ghost(const Grid& grid, Side side, const Visit& visit) {
 /// wall, whose normal component is odd; the same velocity beyond an open boundary; that of an inflow.
 inline void fill_ghosts(const Grid& grid, const Boundaries& boundaries,
                         std::vector<CellVelocity>& v) {
-    const CellVelocity v_in{boundaries.inflow.vx, boundaries.inflow.vz};
     for (const Side side : all_sides) {
+        const Inflow& in = boundaries.side[side].inflow;
         const bool wall = boundaries.is(side, BoundaryKind::slip), along_x = is_x_side(side);
         const double odd_x = wall && along_x ? -1 : 1, odd_z = wall && !along_x ? -1 : 1;
         const bool inflow = boundaries.is(side, BoundaryKind::inflow);
         for_each_ghost(grid, side, [&](long ghost, long inside) {
             const CellVelocity a = v[inside];
-            v[ghost] = inflow ? v_in : CellVelocity{odd_x * a.x, odd_z * a.z};
+            v[ghost] = inflow ? CellVelocity{in.vx, in.vz} : CellVelocity{odd_x * a.x, odd_z * a.z};
         });
     }
 }
@@ -109,8 +109,8 @@ inline void fill_ghosts(const Grid& grid, const Boundaries& boundaries,
 ///         outside
 inline void fill_ghosts(const Grid& grid, const Boundaries& boundaries, PicCells& cells) {
     const double V = grid.cell_area();
-    const Inflow& in = boundaries.inflow;
     for (const Side side : all_sides) {
+        const Inflow& in = boundaries.side[side].inflow;
         const bool open = boundaries.is(side, BoundaryKind::open),
                    inflow = boundaries.is(side, BoundaryKind::inflow);
         const double outside_pressure = boundaries.side[side].pressure;

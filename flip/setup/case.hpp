@@ -3,22 +3,32 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/grid.hpp"
-#include "common/run/parameters.hpp"
+#include "common/run/formula.hpp"
 #include "flip/problem.hpp"
 
 namespace flip {
 
 inline constexpr double pi = 3.14159265358979323846;
 
-/// A uniform state of the gas.
-struct GasCase {
+/// A state of the gas: of numbers, or of formulas of the place.
+template <class Number>
+struct GasOf {
     std::string material;  // empty: the first
-    double density = 1, pressure = 1, velocity_x = 0, velocity_z = 0;
-    bool operator==(const GasCase&) const = default;
+    Number density = 1, pressure = 1, velocity_x = 0, velocity_z = 0;
+    bool operator==(const GasOf&) const = default;
+};
+using GasCase = GasOf<double>;
+
+/// The fluid that enters at one end; what it does not say is that of [inflow].
+struct InflowCase {
+    std::string name;  // of the end
+    std::string material;
+    std::optional<double> density, pressure, velocity_x, velocity_z;
 };
 
 /// One side of a Riemann problem, with a material of its own.
@@ -30,7 +40,7 @@ struct SideCase {
 /// Where fluid is at the start, and how it moves; later regions replace earlier ones.
 struct RegionCase {
     std::string name;
-    GasCase gas;
+    GasOf<common::Formula> gas;
     std::string shape = "everywhere";  // or box, disk, above
     double center_x = 0, center_z = 0, half_x = 0, half_z = 0, radius = 0;
     double ripple = 0;             // of the lower edge of `above`
@@ -40,6 +50,11 @@ struct RegionCase {
     double energy = 0;         // added, shared by the particles of the region
     bool hydrostatic = false;  // pressure is that of center_z
     double noise = 0;          // random part of the velocity
+
+    bool has_formula() const {
+        return !(gas.density.is_number() && gas.pressure.is_number() &&
+                 gas.velocity_x.is_number() && gas.velocity_z.is_number());
+    }
 };
 
 /// One end of the mesh.
@@ -47,6 +62,7 @@ struct BoundaryCase {
     std::string kind = "periodic";  // or slip, no_slip, open, inflow
     double slide = 0;               // speed of a no-slip wall along itself
     double pressure = 0;            // outside an open end
+    GasCase inflow = {};            // made by completed()
 };
 inline constexpr std::array<const char*, 4> side_names{"x_low", "x_high", "z_low", "z_high"};
 
@@ -55,6 +71,7 @@ struct Case {
     common::Grid grid{{100, 0, 1, true}, {1, 0, 1, true}};
     std::array<BoundaryCase, 4> boundaries;
     GasCase inflow;
+    std::vector<InflowCase> inflows;
 
     double cfl = 0.3, dt = 0, end = 1;
     double energy_limit = 10;
@@ -64,6 +81,7 @@ struct Case {
     double interface = 0.5;
     SideCase left, right{0.125, 0.1, 0, 1.4, 0};
     std::vector<RegionCase> regions;
+    std::vector<common::Constant> constants;  // of formulas
     long per_cell_x = 4, per_cell_z = 4;
     std::string loading = "lattice";  // or random
     long seed = 1;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -19,12 +20,16 @@ inline void refuse_extreme(const std::string& name, double value) {
            " is not between 1e-40 and 1e40 in size: choose other units");
 }
 
-/// The same for a state of the gas.
-inline void refuse_extreme(const std::string& prefix, const GasCase& gas) {
-    refuse_extreme(prefix + ".density", gas.density);
-    refuse_extreme(prefix + ".pressure", gas.pressure);
-    refuse_extreme(prefix + ".velocity_x", gas.velocity_x);
-    refuse_extreme(prefix + ".velocity_z", gas.velocity_z);
+/// The same for a state of the gas, and its numbers are all.
+template <class Number>
+void refuse_extreme(const std::string& prefix, const GasOf<Number>& gas) {
+    const std::array<std::pair<const char*, const Number*>, 4> all{
+        {{".density", &gas.density},
+         {".pressure", &gas.pressure},
+         {".velocity_x", &gas.velocity_x},
+         {".velocity_z", &gas.velocity_z}}};
+    for (const auto& [name, value] : all)
+        if (common::Formula(*value).is_number()) refuse_extreme(prefix + name, double(*value));
 }
 
 /// Refuses too many particles, and numbers that lose precision.
@@ -44,6 +49,14 @@ inline void refuse_sizes(const Case& parameters) {
     };
     refuse_far("low_x", parameters.grid.x);
     refuse_far("low_z", parameters.grid.z);
+}
+
+/// The names of all materials, quoted, for a sentence.
+inline std::string list_of_materials(const Case& parameters) {
+    std::string list;
+    for (const Material& a : parameters.materials)
+        list += (list.empty() ? "'" : ", '") + a.name + "'";
+    return list;
 }
 
 /// Refuses boundaries that do not go together, and numbers that none of them uses.
@@ -69,7 +82,10 @@ inline void refuse_boundaries(const Case& parameters) {
                end.pressure, " needs boundary.", name, " = \"open\"");
         if (end.kind != "inflow") continue;
         has_inflow = true;
-        const double v = k < z_low ? parameters.inflow.velocity_x : parameters.inflow.velocity_z;
+        const double v = k < z_low ? end.inflow.velocity_x : end.inflow.velocity_z;
+        refuse(material_index(parameters, end.inflow.material) < 0, "inflow.material = \"",
+               end.inflow.material, "\" is none of ", list_of_materials(parameters));
+        refuse_extreme("inflow." + name, end.inflow);
         const bool low = k == x_low || k == z_low;
         refuse(!(low ? v > 0 : v < 0), "boundary.", name, " = \"inflow\" needs inflow.velocity_",
                name.substr(0, 1), (low ? " above 0" : " below 0"), ", into the mesh, and it is ",
@@ -77,16 +93,15 @@ inline void refuse_boundaries(const Case& parameters) {
     }
     refuse(!has_inflow && !(parameters.inflow == GasCase()),
            "[inflow] needs an end with boundary = \"inflow\": set one, or take it out");
+    for (const InflowCase& in : parameters.inflows) {
+        const auto end = std::find(side_names.begin(), side_names.end(), in.name);
+        refuse(end == side_names.end(), "[inflow.", in.name,
+               "] names no end: write inflow.x_low, x_high, z_low or z_high");
+        refuse(parameters.boundaries[end - side_names.begin()].kind != "inflow", "[inflow.",
+               in.name, "] needs boundary.", in.name, " = \"inflow\": set it, or take it out");
+    }
     refuse(!parameters.plane() && parameters.gravity_z != 0, "gravity.z = ", parameters.gravity_z,
            " needs grid.cells_z of at least 2");
-}
-
-/// The names of all materials, quoted, for a sentence.
-inline std::string list_of_materials(const Case& parameters) {
-    std::string list;
-    for (const Material& a : parameters.materials)
-        list += (list.empty() ? "'" : ", '") + a.name + "'";
-    return list;
 }
 
 /// Refuses materials that the equation of state or the program cannot hold.
@@ -106,8 +121,6 @@ inline void refuse_materials(const Case& parameters) {
                " is between 1 and 1.001, where internal energies drown pressures in round-off: "
                "raise it, or take 1, dust");
     }
-    refuse(material_index(parameters, parameters.inflow.material) < 0, "inflow.material = \"",
-           parameters.inflow.material, "\" is none of ", list_of_materials(parameters));
 }
 
 /// Refuses a region without shape, or with a flow that it cannot have.
@@ -178,8 +191,9 @@ inline void refuse_steps(const Case& parameters, const Scales& s) {
     const double h = parameters.plane()
                          ? std::min(parameters.grid.x.spacing(), parameters.grid.z.spacing())
                          : parameters.grid.x.spacing();
-    double lightest = parameters.regions.front().gas.density;
-    for (const RegionCase& r : parameters.regions) lightest = std::min(lightest, r.gas.density);
+    double lightest = 1e300;
+    for (const RegionScales& r : s.regions)
+        if (r.particles > 0) lightest = std::min(lightest, r.lightest);
     const double number = parameters.viscosity * parameters.dt / (lightest * h * h);
     refuse(number > 0.5, "time.dt = ", parameters.dt,
            ": flip.viscosity dt/(density dx^2) = ", number,

@@ -11,7 +11,8 @@ namespace flip {
 
 namespace detail {
 
-inline void describe_gas(common::ParameterTable& table, const std::string& prefix, GasCase& g) {
+template <class Gas>
+void describe_gas(common::ParameterTable& table, const std::string& prefix, Gas& g) {
     using common::anything, common::above, common::at_least;
     table.text(prefix + ".material", g.material, "which material; empty: the first");
     table.real(prefix + ".density", g.density, "mass/length^3", above(0), "density");
@@ -63,6 +64,11 @@ inline void describe_region(common::ParameterTable& table, const std::string& pr
                "largest random velocity of a particle along x");
 }
 
+inline void describe_constant(common::ParameterTable& table, const std::string& prefix,
+                              common::Constant& c) {
+    table.real(prefix + ".value", c.value, "", common::anything(), "of the name");
+}
+
 inline void describe_material(common::ParameterTable& table, const std::string& prefix,
                               Material& m) {
     table.real(prefix + ".gamma", m.gamma, "", common::between(1, 100),
@@ -103,6 +109,8 @@ inline common::ParameterTable describe(Case& parameters) {
                    at_least(0), "outside an open end");
     }
     detail::describe_gas(table, "inflow", parameters.inflow);
+    table.list("inflow", parameters.inflows, detail::describe_gas<InflowCase>,
+               "x_low, x_high, z_low or z_high: where it differs from [inflow]");
 
     table.group("time");
     table.real("time.cfl", parameters.cfl, "", between(1e-4, 1),
@@ -124,6 +132,8 @@ inline common::ParameterTable describe(Case& parameters) {
     detail::describe_side(table, "right", parameters.right);
     table.list("region", parameters.regions, detail::describe_region,
                "fluid at the start, [region.<name>]; later ones replace earlier ones");
+    table.list("constant", parameters.constants, detail::describe_constant,
+               "a name for a number, for formulas of x, z and r, the distance from the center");
     table.whole("particles.per_cell_x", parameters.per_cell_x, "", between(1, 64),
                 "in a cell along x");
     table.whole("particles.per_cell_z", parameters.per_cell_z, "", between(1, 64), "along z");

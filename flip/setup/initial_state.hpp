@@ -13,8 +13,9 @@
 
 namespace flip {
 
-/// The case as the programs use it: periodic directions marked, at least one material, and a
-/// Riemann problem written as two materials in two regions.
+/// The case as the programs use it: periodic directions marked, at least one material, a Riemann
+/// problem written as two materials in two regions, an inflow for every end, and formulas read.
+/// errors: InputError for a formula that is none
 inline Case completed(Case parameters) {
     parameters.grid.x.periodic = parameters.is(x_low, "periodic");
     parameters.grid.z.periodic = parameters.is(z_low, "periodic");
@@ -40,6 +41,19 @@ inline Case completed(Case parameters) {
             side("right", parameters.right, parameters.interface, x_end)};
     }
     if (parameters.materials.empty()) parameters.materials = {{"gas", 1.4, 0}};
+    for (BoundaryCase& end : parameters.boundaries) end.inflow = parameters.inflow;
+    for (const InflowCase& in : parameters.inflows) {
+        const auto end = std::find(side_names.begin(), side_names.end(), in.name);
+        if (end == side_names.end()) continue;  // refuse_boundaries() says so
+        GasCase& gas = parameters.boundaries[end - side_names.begin()].inflow;
+        gas = {in.material.empty() ? gas.material : in.material, in.density.value_or(gas.density),
+               in.pressure.value_or(gas.pressure), in.velocity_x.value_or(gas.velocity_x),
+               in.velocity_z.value_or(gas.velocity_z)};
+    }
+    for (RegionCase& r : parameters.regions)
+        for (common::Formula* f :
+             {&r.gas.density, &r.gas.pressure, &r.gas.velocity_x, &r.gas.velocity_z})
+            f->read(parameters.constants);
     return parameters;
 }
 
@@ -117,8 +131,9 @@ inline FluidState fluid_of(const Case& parameters, const RegionCase& r, double x
     const Material& a = parameters.materials[index];
     const double dx = x - r.center_x, dz = z - r.center_z, distance = std::hypot(dx, dz);
     const double k = 2 * pi * static_cast<double>(r.mode) / parameters.grid.x.length;
-    double rho = r.gas.density, p = r.gas.pressure, heat = 1;
-    double vx = r.gas.velocity_x, vz = r.gas.velocity_z;
+    const auto at = [&](const common::Formula& f) { return f.at(x, z, distance); };
+    double rho = at(r.gas.density), p = at(r.gas.pressure), heat = 1;
+    double vx = at(r.gas.velocity_x), vz = at(r.gas.velocity_z);
     if (r.hydrostatic) p += rho * parameters.gravity_z * dz;
     if (r.flow == "rotation") {
         vx -= r.speed * dz / r.width;

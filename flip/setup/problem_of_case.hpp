@@ -19,14 +19,13 @@ inline BoundaryKind boundary_kind(const std::string& word) {
                                : BoundaryKind::periodic;
 }
 
-inline Inflow inflow_of(const Case& w) {
-    const int k = material_index(w, w.inflow.material);
+inline Inflow inflow_of(const Case& w, const GasCase& in) {
+    const int k = material_index(w, in.material);
     if (k < 0) return {};
     const Material& a = w.materials[k];
-    const double rho = w.inflow.density, e = internal_energy(a, rho, w.inflow.pressure),
+    const double rho = in.density, e = internal_energy(a, rho, in.pressure),
                  p = pressure(a, rho, e);
-    return {
-        k, rho, p, std::sqrt(stiffness(a, p) / rho), e, w.inflow.velocity_x, w.inflow.velocity_z};
+    return {k, rho, p, std::sqrt(stiffness(a, p) / rho), e, in.velocity_x, in.velocity_z};
 }
 
 }  // namespace detail
@@ -39,8 +38,8 @@ inline Problem problem_of(const Case& w) {
     problem.materials = w.materials;
     for (const Side s : all_sides)
         problem.boundaries.side[s] = {detail::boundary_kind(w.boundaries[s].kind),
-                                      w.boundaries[s].slide, w.boundaries[s].pressure};
-    problem.boundaries.inflow = detail::inflow_of(w);
+                                      w.boundaries[s].slide, w.boundaries[s].pressure,
+                                      detail::inflow_of(w, w.boundaries[s].inflow)};
     problem.body_force = {w.gravity_x, w.gravity_z, w.trap};
     problem.q = {w.q_linear, w.q_quadratic};
     problem.viscosity = w.viscosity;

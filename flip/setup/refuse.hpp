@@ -18,7 +18,7 @@ std::string sentence(const Part&... parts) {
     const auto add = [&](const auto& part) {
         if constexpr (std::is_integral_v<std::decay_t<decltype(part)>>)
             text += std::to_string(part);
-        else if constexpr (std::is_arithmetic_v<std::decay_t<decltype(part)>>)
+        else if constexpr (std::is_convertible_v<decltype(part), double>)
             text += format(part);
         else
             text += part;

@@ -22,6 +22,8 @@ struct RegionScales {
     double sound_speed = 0;  // the smallest
     double speed = 0;        // the largest
     double mach = 0;         // the largest; 0 where there is no sound
+    double lightest = 0;     // the smallest density
+    double least_pressure = 0, most_pressure = 0;
 };
 
 /// The scales of all regions, and the steps, cost and memory that follow.
@@ -81,7 +83,7 @@ inline double bytes_of(const Case& parameters, const std::string& program, doubl
 /// in:     program, pic or flip, which takes more memory
 inline Scales scales_of(const Case& parameters, const std::string& program = "flip") {
     Scales s;
-    for (const RegionCase& r : parameters.regions) s.regions.push_back({r.name, 0, 0, 0, 0, 0});
+    for (const RegionCase& r : parameters.regions) s.regions.push_back({.name = r.name});
     const double per_dx = 1 / parameters.grid.x.spacing(),
                  per_dz = parameters.plane() ? 1 / parameters.grid.z.spacing() : 0;
     const double both = std::hypot(per_dx, per_dz);
@@ -93,7 +95,11 @@ inline Scales scales_of(const Case& parameters, const std::string& program = "fl
         const double speed = std::hypot(fluid.vx, fluid.vz),
                      p = pressure(a, fluid.density, fluid.e),
                      c = std::sqrt(stiffness(a, p) / fluid.density);
-        r.sound_speed = r.particles > 0 ? std::min(r.sound_speed, c) : c;
+        const bool first = r.particles == 0;
+        r.sound_speed = first ? c : std::min(r.sound_speed, c);
+        r.lightest = first ? fluid.density : std::min(r.lightest, fluid.density);
+        r.least_pressure = first ? p : std::min(r.least_pressure, p);
+        r.most_pressure = first ? p : std::max(r.most_pressure, p);
         r.speed = std::max(r.speed, speed);
         if (c > 0) r.mach = std::max(r.mach, speed / c);
         r.particles += weight;
@@ -120,8 +126,8 @@ inline Scales scales_of(const Case& parameters, const std::string& program = "fl
     for (const BoundaryCase& end : parameters.boundaries) {
         s.rate = std::max(s.rate, std::fabs(end.slide) * std::max(per_dx, per_dz));
         if (end.kind == "inflow")
-            s.rate = std::max(s.rate, std::fabs(parameters.inflow.velocity_x) * per_dx +
-                                          std::fabs(parameters.inflow.velocity_z) * per_dz);
+            s.rate = std::max(s.rate, std::fabs(end.inflow.velocity_x) * per_dx +
+                                          std::fabs(end.inflow.velocity_z) * per_dz);
     }
 
     // A fluid at rest is limited by how fast it can begin to move.

@@ -21,12 +21,12 @@ inline void warn_of_regions(const Case& parameters, const Scales& scales,
              " contains no particle: it is outside the mesh, narrower than the distance between "
              "particles, or replaced by a later region");
     for (std::size_t k = 0; k < parameters.materials.size(); ++k) {
-        const auto is_here = [&](const GasCase& gas) {
+        const auto is_here = [&](const auto& gas) {
             return material_index(parameters, gas.material) == static_cast<int>(k);
         };
-        bool used = is_here(parameters.inflow) &&
-                    std::any_of(parameters.boundaries.begin(), parameters.boundaries.end(),
-                                [](auto& end) { return end.kind == "inflow"; });
+        bool used =
+            std::any_of(parameters.boundaries.begin(), parameters.boundaries.end(),
+                        [&](auto& end) { return end.kind == "inflow" && is_here(end.inflow); });
         for (const RegionCase& r : parameters.regions) used = used || is_here(r.gas);
         warn(out, !used, "material.", parameters.materials[k].name, " is nowhere");
     }
@@ -40,16 +40,18 @@ inline void warn_of_regions(const Case& parameters, const Scales& scales,
 }
 
 // Whether nothing but the flow itself moves the fluid: no jump of pressure, no energy set free.
-inline bool is_gentle(const Case& parameters) {
-    double low = 0, high = 0;
+inline bool is_gentle(const Case& parameters, const Scales& scales) {
+    double low = 1e300, high = 0;
     bool filled = false;  // a void beside the fluid sets it in motion
-    for (const RegionCase& r : parameters.regions) {
+    for (std::size_t n = 0; n < parameters.regions.size(); ++n) {
+        const RegionCase& r = parameters.regions[n];
         filled = filled || r.shape == "everywhere";
         if (r.energy > 0 || (r.flow == "gaussian" && material_of(parameters, r).gamma > 1))
             return false;
-        const double p = r.gas.pressure;
-        low = &r == &parameters.regions.front() ? p : std::min(low, p);
-        high = std::max(high, p);
+        const RegionScales& all = scales.regions[n];
+        const bool number = r.gas.pressure.is_number();
+        low = std::min<double>(low, number ? +r.gas.pressure : all.least_pressure);
+        high = std::max<double>(high, number ? +r.gas.pressure : all.most_pressure);
     }
     return filled && high <= 1.5 * low;
 }
@@ -57,11 +59,13 @@ inline bool is_gentle(const Case& parameters) {
 inline void warn_of_speeds(const Case& parameters, const Scales& scales, const std::string& program,
                            std::vector<std::string>& out) {
     const bool slow = scales.sound_speed > 0 && scales.mach < 0.05;
-    warn(out, program == "pic" && slow && is_gentle(parameters), "the flow has Mach ", scales.mach,
+    warn(out, program == "pic" && slow && is_gentle(parameters, scales), "the flow has Mach ",
+         scales.mach,
          ", below 0.05: cells feel a particle only when it enters them, and what classical PIC "
          "makes of such a flow is noise; take flip");
     const RegionCase& r = parameters.regions.front();
-    const double c = sound_speed_of(parameters, r), M = c > 0 ? std::fabs(r.gas.velocity_x) / c : 0;
+    const double c = scales.regions.front().sound_speed,
+                 M = c > 0 && !r.has_formula() ? std::fabs(r.gas.velocity_x) / c : 0;
     warn(out,
          program == "flip" && !parameters.implicit() && parameters.density == "cells" &&
              parameters.compare != ringing_comparison.name && M > 0.07 && M < 0.19,
@@ -69,7 +73,7 @@ inline void warn_of_speeds(const Case& parameters, const Scales& scales, const s
          ", between 0.07 and 0.19, where explicit FLIP rings: try flip.pressure = \"implicit\", or "
          "a frame of reference that moves along");
     const bool shocks =
-        scales.mach > 0.5 || parameters.setup == "riemann" || !is_gentle(parameters);
+        scales.mach > 0.5 || parameters.setup == "riemann" || !is_gentle(parameters, scales);
     warn(out,
          parameters.q_linear == 0 && parameters.q_quadratic == 0 && shocks &&
              !parameters.implicit() && scales.sound_speed > 0,

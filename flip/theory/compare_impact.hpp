@@ -34,7 +34,7 @@ inline void validate_impact(const Case& parameters, const Refusal& refuse) {
     const Impact impact = impact_of(parameters);
     refuse(impact.target == nullptr,
            " needs two materials, and the one that is hit in a region of shape \"box\"");
-    const GasCase& gas = impact.projectile->gas;
+    const auto& gas = impact.projectile->gas;
     refuse(gas.velocity_x == 0 && gas.velocity_z == 0, " needs a region that moves");
 }
 

@@ -18,7 +18,7 @@
 
 namespace flip {
 
-inline constexpr Comparison no_comparison{.name = "none", .frame = Frame::moves};
+inline constexpr Comparison no_comparison{.name = "none", .frame = Frame::moves, .formulas = true};
 
 /// Every value of theory.compare.
 inline constexpr std::array comparisons{
@@ -45,6 +45,9 @@ inline void validate_comparison(const Case& parameters) {
     refuse((parameters.frame_x != 0 && c.frame == Frame::at_rest) ||
                (parameters.frame_z != 0 && c.frame != Frame::moves),
            " is stated in the frame of the mesh: take out theory.frame_x and frame_z");
+    for (const RegionCase& r : parameters.regions)
+        refuse(!c.formulas && r.has_formula(), " needs numbers, and region.", r.name,
+               " has a formula: write numbers, or theory.compare = \"none\"");
     if (c.validate != nullptr) c.validate(parameters, refuse);
 }
 

@@ -253,8 +253,15 @@ inline const std::string one_species = "[time]\nend = 0\n[species.beam]\ncharge 
                              "species.beam.drift_x=0.1 uniform.particles_per_cell=1";
 
 inline const std::vector<Program>& every_program() {
-    static const std::string compare = "theory.compare", setup = "plasma.setup",
-                             gas = "material.beam.gamma=1.5", density = "density";
+    static const std::string
+        compare = "theory.compare",
+        setup = "plasma.setup",
+        gas =
+            "material.beam.gamma=1.5 constant.beam.value=1 region.beam.density=beam "
+            "boundary.x_low=inflow boundary.x_high=slip inflow.x_low.density=1 "
+            "inflow.x_low.pressure=1 inflow.x_low.velocity_x=1 "
+            "inflow.x_low.velocity_z=0",
+        density = "density";
     static const std::vector<Program> all{
         {"cic", "cic", compare, "species", density, one_species, "", words_of_cic},
         {"pic", "flip", compare, "region", density, one_region, gas, words_of_fluids},
