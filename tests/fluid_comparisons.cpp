@@ -377,6 +377,87 @@ TEST_CASE("the growth of a layer of shear is found") {
     CHECK(run.value("growth_over_theory") == doctest::Approx(1).epsilon(1e-5));
 }
 
+TEST_CASE("what cannot be measured is said with its reason and what fails fails") {
+    const auto still = [](const Case&, double, Fluid& f) { f.cells.rho.setOnes(); };
+    const auto verdict = [](const facts::Run& run, const std::string& name) {
+        REQUIRE(run.summary["results"].contains(name));
+        return run.summary["results"][name]["verdict"].get<std::string>() + ": " +
+               run.summary["results"][name]["source"].get<std::string>();
+    };
+    const std::string layers = compare("rayleigh_taylor") + channel +
+                               "grid.cells_x = 32\ngrid.cells_z = 64\ngrid.length_z = 2\n"
+                               "gravity.z = -0.1\n[region.light]\n[region.heavy]\n"
+                               "shape = \"above\"\ndensity = 2\ncenter_z = 1\nripple = 0.2\n";
+    const auto rippled = recorded(layers, "flip", 10, [](const Case& w, double, Fluid& f) {
+        visit_cells(w.grid, [&](long n, double x, double z) {
+            f.cells.rho[n] = z - 1 > 0.2 * std::cos(2 * pi * x) ? 2 : 1;
+        });
+    });
+    CHECK(
+        verdict(rippled, "growth_over_theory").starts_with("NOT MEASURED: the wave begins with "));
+    const std::string shear = compare("kelvin_helmholtz") + channel +
+                              "grid.cells_x = 32\ngrid.cells_z = 32\ntime.end = 0.1\n"
+                              "[region.gas]\nflow = \"shear\"\nspeed = 0.1\nwidth = 0.05\n"
+                              "center_z = 0.5\namplitude = 1e-3\n";
+    CHECK(verdict(recorded(shear, "flip", 3, still), "growth_over_theory")
+              .starts_with("NOT MEASURED: only 4 rows "));
+    const std::string dam = compare("dam_break") + walls + "gravity.z = -1\ngrid.cells_z = 25\n";
+    const auto box = [](const std::string& half_z) {
+        return "[region.water]\nshape = \"box\"\ncenter_x = 0.1\nhalf_x = 0.1\ncenter_z = " +
+               half_z + "\nhalf_z = " + half_z + "\n";
+    };
+    CHECK(verdict(recorded(dam + box("0.2"), "flip", 3, still), "front_speed")
+              .starts_with("NOT MEASURED: the front has come to x = "));
+    CHECK(verdict(recorded(dam + box("0.1"), "flip", 3, still), "front_speed")
+              .starts_with("NOT MEASURED: the column is 1 times as high"));
+    const auto noise = [&](const std::string& end, double rate) {
+        const auto run =
+            recorded(compare("ringing") + "time.end = " + end + "\n[region.gas]\nnoise = 1e-6\n",
+                     "flip", 400, [&](const Case& w, double t, Fluid& f) {
+                         f.cells.rho.setOnes();
+                         const double c = std::sqrt(1.4), grown = std::exp(rate * t * c / 0.01);
+                         visit_cells(w.grid, [&](long n, double x, double) {
+                             f.cells.vx[n] = 1e-6 * grown * std::cos(2 * pi * x);
+                         });
+                     });
+        return verdict(run, "growth");
+    };
+    CHECK(noise("0.1", 0.04).starts_with("NOT MEASURED: sound has crossed 11.8"));
+    CHECK(noise("2", 0.04).starts_with("FAIL: "));
+    CHECK(noise("2", 0.004).starts_with("PASS: "));
+    const std::string disk = compare("rotation") +
+                             "grid.cells_z = 10\n[region.gas]\nflow = \"rotation\"\n"
+                             "speed = 1\nwidth = 1\n";
+    for (const std::string expected : {"", "theory.failure_expected = true\n"}) {
+        const auto slowed =
+            recorded(expected + disk, "pic", 3, [&](const Case& w, double t, Fluid& f) {
+                still(w, t, f);
+                f.totals.angular_momentum = 1 - t;
+            });
+        CHECK(verdict(slowed, "angular_momentum_kept")
+                  .starts_with(expected.empty() ? "FAIL: " : "EXPECTED FAILURE: "));
+    }
+}
+
+TEST_CASE("a layer or a wave of few cells is warned of") {
+    const auto warnings = [](long cells, double width) {
+        Case w;
+        w.grid = {{cells, 0, 1, true}, {cells, 0, 1, false}};
+        w.boundaries[z_low].kind = w.boundaries[z_high].kind = "slip";
+        w.materials = {{"gas", 1.4, 0}};
+        w.regions.resize(1);
+        w.regions[0].flow = "shear", w.regions[0].speed = 1, w.regions[0].width = width;
+        w.end = 10;
+        std::vector<std::string> said;
+        warn_of_shear(w, said);
+        return said;
+    };
+    CHECK(warnings(32, 0.0626).empty());
+    CHECK(warnings(31, 0.07).size() == 1);
+    REQUIRE(warnings(32, 0.0624).size() == 1);
+    CHECK(warnings(32, 0.0624)[0].find("a layer of 3.994 cells, below 4") != std::string::npos);
+}
+
 TEST_CASE("a vortex that loses a tenth in two turns has kept its root in one") {
     for (const std::string frame : {"0", "1"}) {
         const std::string text =

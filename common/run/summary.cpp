@@ -35,6 +35,11 @@ const char* Summary::verdict(const Entry& entry) const {
     return entry.pass() ? "PASS" : expects_failure ? "EXPECTED FAILURE" : "FAIL";
 }
 
+bool Summary::has_verdict() const {
+    return std::any_of(results_.begin(), results_.end(),
+                       [](auto& entry) { return entry.compared; });
+}
+
 bool Summary::is_finite() const {
     const auto finite = [](const Entry& entry) { return std::isfinite(entry.value); };
     return std::all_of(results_.begin(), results_.end(), finite) &&

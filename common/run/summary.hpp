@@ -47,6 +47,9 @@ class Summary {
     /// The results that fell short or could not be measured, a sentence each.
     std::vector<std::string> shortfalls() const;
 
+    /// Whether anything was compared, or could not be measured.
+    bool has_verdict() const;
+
     /// Whether every number is finite; a run with one that is not has failed.
     bool is_finite() const;
 

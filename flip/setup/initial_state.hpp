@@ -13,7 +13,7 @@
 namespace flip {
 
 /// The case as the programs use it: periodic directions marked, at least one material, and a
-/// Riemann problem written as two materials in two regions.
+/// Riemann problem written as two materials in two regions, or in one beside a vacuum.
 inline Case completed(Case parameters) {
     parameters.grid.x.periodic = parameters.is(x_low, "periodic");
     parameters.grid.z.periodic = parameters.is(z_low, "periodic");
@@ -32,9 +32,12 @@ inline Case completed(Case parameters) {
             r.half_z = parameters.grid.z.length;
             return r;
         };
-        parameters.regions = {
-            side("left", parameters.left, parameters.grid.x.low, parameters.interface),
-            side("right", parameters.right, parameters.interface, x_end)};
+        if (parameters.left.density > 0)
+            parameters.regions.push_back(
+                side("left", parameters.left, parameters.grid.x.low, parameters.interface));
+        if (parameters.right.density > 0)
+            parameters.regions.push_back(
+                side("right", parameters.right, parameters.interface, x_end));
     }
     if (parameters.materials.empty()) parameters.materials = {{"gas", 1.4, 0}};
     return parameters;
