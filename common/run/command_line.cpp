@@ -25,8 +25,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::array<const char*, 12> option_names{
-    "--out",    "--force", "--resume", "--restart", "--verify", "--threads",
-    "--refine", "--quiet", "--strict", "--dry-run", "--help",   "--version"};
+    "--refine",  "--out",   "--force",  "--resume",  "--restart", "--verify",
+    "--threads", "--quiet", "--strict", "--dry-run", "--help",    "--version"};
 
 // An argument longer than a path may be is no path.
 bool is_there(const std::string& argument) {

@@ -85,9 +85,11 @@ inline std::array<RiemannWave, 2> waves_of(const theory::RiemannSolution& s, dou
 /// source: Tadmor and Tang, SIAM J. Numer. Anal. 36, 1739 (1999), for fans; the factors from a code
 ///         of that method, tests/support/godunov.hpp
 inline double allowed_cells(const RiemannWave& wave, double n) {
+    // [allowed]
     const double change = std::fabs(wave.behind.velocity - wave.front.velocity),
                  weakness = theory::sound_speed(wave.front) / std::max(change, 1e-300);
     return 1.5 * std::max({1.0, 0.3 * std::log2(n), 0.5 * std::min(std::sqrt(n), weakness)});
+    // [/allowed]
 }
 
 /// Within how many cells a shock and the contact are to be found; head and tail of a fan, within 1.5
