@@ -149,12 +149,10 @@ void look_for_earlier_run(const ProgramInfo& info, const ParameterTable& table,
     for (int n = 0; n < command.refine; ++n) {
         std::string finer, line = shell_word(command.program) + " " + shell_word(command.case_path);
         for (const Setting& one : read_case(table.effective_case(), command.case_path)) {
-            const long* cells = std::get_if<long>(&one.value);
-            const double* dt = std::get_if<double>(&one.value);
-            if (one.name.rfind("grid.cells_", 0) == 0 && cells != nullptr && *cells > 1)
-                finer += " " + one.name + "=" + std::to_string(*cells << n);
-            if (one.name == "time.dt" && dt != nullptr && *dt > 0)
-                finer += " time.dt=" + number_text(std::ldexp(*dt, -n));
+            const long cells = one.name.starts_with("grid.cells_") ? std::get<long>(one.value) : 0;
+            const double* dt = one.name == "time.dt" ? std::get_if<double>(&one.value) : nullptr;
+            if (cells > 1) finer += " " + one.name + "=" + std::to_string(cells << n);
+            if (dt != nullptr && *dt > 0) finer += " time.dt=" + number_text(std::ldexp(*dt, -n));
         }
         for (const std::string& one : overrides)
             if (finer.find(" " + one.substr(0, one.find('=') + 1)) == std::string::npos)
@@ -162,11 +160,8 @@ void look_for_earlier_run(const ProgramInfo& info, const ParameterTable& table,
         const std::string folder = command.out_dir + "/" + std::to_string(n + 1);
         line += finer + " --quiet --out " + shell_word(folder);
         if (command.threads > 0) line += " --threads " + std::to_string(command.threads);
-        for (const auto& [given, option] : {std::pair{command.force, " --force"},
-                                            {command.resume, " --resume"},
-                                            {command.strict, " --strict"},
-                                            {command.dry_run, " --dry-run"}})
-            if (given) line += option;
+        line += std::string(command.force ? " --force" : "") + (command.resume ? " --resume" : "") +
+                (command.strict ? " --strict" : "") + (command.dry_run ? " --dry-run" : "");
         std::printf("%d:%s\n", n + 1, finer.c_str()), std::fflush(stdout);
         const int ended = std::system(line.c_str());
         status = std::max(status, WIFEXITED(ended) ? WEXITSTATUS(ended) : 130);
@@ -182,6 +177,7 @@ void look_for_earlier_run(const ProgramInfo& info, const ParameterTable& table,
         double before = NAN;
         for (const auto& json : found) {
             const auto one = json["results"].value(result.key(), nlohmann::ordered_json::object());
+            if (!one.contains("expected")) std::printf(" %11s", "-");
             if (!one.contains("expected")) continue;
             const double error = std::fabs(double(one["value"]) - double(one["expected"]));
             std::printf(std::isnan(before) ? " %11.4g" : " %11.4g (%5.2f)", error,
