@@ -341,6 +341,8 @@ case.toml other.toml -> two case files, 'case.toml' and 'other.toml': give one (
 --threads x -> --threads takes a whole number from 1 to 1024, not 'x'
 --threads=0.5 -> --threads takes a whole number from 1 to 1024, not '0.5'
 --threads= -> --threads takes a whole number from 1 to 1024, not ''
+--refine 0 -> --refine takes a whole number from 1 to 10, not '0'
+--refine 11 -> --refine takes a whole number from 1 to 10, not '11'
 --threads 99999999999999999999 -> from 1 to 1024, not '99999999999999999999'
 time.end -> time.end: there is no such file
 case.toml time.end = 0.1 -> two case files, 'case.toml' and 'time.end': give one (overrides are

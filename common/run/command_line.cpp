@@ -1,18 +1,22 @@
 // The command line: options, one case file, overrides.
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 
 #include "common/run/checkpoint.hpp"
+#include "common/run/machine.hpp"
 #include "common/run/parameters.hpp"
 
 namespace common {
@@ -21,9 +25,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<const char*, 11> option_names{
-    "--out",   "--force",  "--resume",  "--restart", "--verify", "--threads",
-    "--quiet", "--strict", "--dry-run", "--help",    "--version"};
+constexpr std::array<const char*, 12> option_names{
+    "--refine",  "--out",   "--force",  "--resume",  "--restart", "--verify",
+    "--threads", "--quiet", "--strict", "--dry-run", "--help",    "--version"};
 
 // An argument longer than a path may be is no path.
 bool is_there(const std::string& argument) {
@@ -93,7 +97,8 @@ void look_for_earlier_run(const ProgramInfo& info, const ParameterTable& table,
         read_file(folder / "case.toml").ends_with("\n" + effective_case)) {
         const std::string text = read_file(summary);
         command.complete = text.find("\n  \"status\": 0,") != std::string::npos;
-        command.fell_short = text.find("\"pass\": false") != std::string::npos;
+        command.fell_short = text.find("\"verdict\": \"FAIL\"") != std::string::npos ||
+                             text.find("\"verdict\": \"NOT MEASURED\"") != std::string::npos;
         // --strict asks for the verdicts, so the run ends once more.
         command.complete = command.complete && !(command.strict && command.fell_short);
         if (command.complete) return;
@@ -131,6 +136,55 @@ void look_for_earlier_run(const ProgramInfo& info, const ParameterTable& table,
     std::exit(0);
 }
 
+// Runs a case on meshes with twice the cells, and where it is fixed half the time step, of the one
+// before, prints how the errors of its results fall, and ends the program.
+[[noreturn]] void refine(const ParameterTable& table, const CommandLine& command,
+                         const std::vector<std::string>& overrides) {
+    std::vector<nlohmann::ordered_json> found;
+    int status = 0;
+    for (int n = 0; n < command.refine; ++n) {
+        std::string finer, line = shell_word(command.program) + " " + shell_word(command.case_path);
+        for (const Setting& one : read_case(table.effective_case(), command.case_path)) {
+            const long cells = one.name.starts_with("grid.cells_") ? std::get<long>(one.value) : 0;
+            const double* dt = one.name == "time.dt" ? std::get_if<double>(&one.value) : nullptr;
+            if (cells > 1) finer += " " + one.name + "=" + std::to_string(cells << n);
+            if (dt != nullptr && *dt > 0) finer += " time.dt=" + number_text(std::ldexp(*dt, -n));
+        }
+        for (const std::string& one : overrides)
+            if (finer.find(" " + one.substr(0, one.find('=') + 1)) == std::string::npos)
+                line += " " + shell_word(one);
+        const std::string folder = command.out_dir + "/" + std::to_string(n + 1);
+        line += finer + " --quiet --out " + shell_word(folder);
+        if (command.threads > 0) line += " --threads " + std::to_string(command.threads);
+        line += std::string(command.force ? " --force" : "") + (command.resume ? " --resume" : "") +
+                (command.strict ? " --strict" : "") + (command.dry_run ? " --dry-run" : "");
+        std::printf("%d:%s\n", n + 1, finer.c_str()), std::fflush(stdout);
+        const int ended = std::system(line.c_str());
+        status = std::max(status, WIFEXITED(ended) ? WEXITSTATUS(ended) : 130);
+        if (status > 1) std::exit(status);
+        if (!command.dry_run)
+            found.push_back(nlohmann::ordered_json::parse(read_file(folder + "/summary.json")));
+    }
+    if (found.empty()) std::exit(status);
+    std::printf("error on each mesh, and its order: log2 of the error before over it\n");
+    for (const auto& result : found.back()["results"].items()) {
+        if (!result.value().contains("expected")) continue;
+        std::printf("%-26s", result.key().c_str());
+        double before = NAN;
+        for (const auto& json : found) {
+            const auto one = json["results"].value(result.key(), nlohmann::ordered_json::object());
+            if (!one.contains("expected")) std::printf(" %11s", "-");
+            if (!one.contains("expected")) continue;
+            const double error = std::fabs(double(one["value"]) - double(one["expected"]));
+            std::printf(std::isnan(before) ? " %11.4g" : " %11.4g (%5.2f)", error,
+                        std::log2(before / error));
+            before = error;
+        }
+        std::printf("\n");
+    }
+    std::exit(status);
+}
+
 // A number such as -.5 with the zero that TOML asks for.
 std::string with_leading_zero(const std::string& value) {
     const std::size_t sign = value.find_first_not_of("+-");
@@ -164,13 +218,14 @@ void apply_override(const std::string& argument, bool restarting, ParameterTable
     for (const Setting& setting : read_case(name + " = " + value, place)) table.set(setting);
 }
 
-int thread_number(const std::string& text) {
+int whole_number(const std::string& option, const std::string& text, long low, long high) {
     char* end = nullptr;
     errno = 0;
-    const long threads = std::strtol(text.c_str(), &end, 10);
-    if (text.empty() || *end != '\0' || errno != 0 || threads < 1 || threads > 1024)
-        throw InputError("--threads takes a whole number from 1 to 1024, not '" + text + "'");
-    return static_cast<int>(threads);
+    const long number = std::strtol(text.c_str(), &end, 10);
+    if (text.empty() || *end != '\0' || errno != 0 || number < low || number > high)
+        throw InputError(option + " takes a whole number from " + std::to_string(low) + " to " +
+                         std::to_string(high) + ", not '" + text + "'");
+    return static_cast<int>(number);
 }
 
 void print_help(const ProgramInfo& info, const ParameterTable& table) {
@@ -184,6 +239,8 @@ void print_help(const ProgramInfo& info, const ParameterTable& table) {
         "                  is none, begin; if it is complete, do nothing\n"
         "  --restart FILE  continue from a checkpoint\n"
         "  --verify FILE   say whether a checkpoint is whole, and of what it is\n"
+        "  --refine N      run the case on N meshes, each of twice the cells, in DIR/1, 2 ...,\n"
+        "                  and show the order at which the errors of its results fall\n"
         "  --threads N     number of threads; results do not depend on it\n"
         "  --dry-run       show scales, memory and time, and write nothing\n"
         "  --quiet         no progress, no report; what fell short is still said\n"
@@ -234,9 +291,11 @@ CommandLine read_command_line(int argc, char** argv, const ProgramInfo& info,
         if (joined) value = argument.substr(equals + 1), argument.resize(equals);
         const auto value_of = [&]() -> std::string {
             if (joined) return value;
-            if (k + 1 >= argc || std::strncmp(argv[k + 1], "--", 2) == 0)
+            if (k + 1 >= argc || std::strncmp(argv[k + 1], "--", 2) == 0) {
+                const bool number = argument == "--threads" || argument == "--refine";
                 throw InputError(argument + " needs a value: " + argument +
-                                 (argument == "--threads" ? " 2" : " PATH"));
+                                 (number ? " 2" : " PATH"));
+            }
             return argv[++k];
         };
         const auto sets = [&](const char* name, bool& flag) {
@@ -250,7 +309,9 @@ CommandLine read_command_line(int argc, char** argv, const ProgramInfo& info,
             path = value_of();
             if (path.empty()) throw InputError(argument + " needs a path that is not empty");
         } else if (argument == "--threads") {
-            command.threads = thread_number(value_of());
+            command.threads = whole_number(argument, value_of(), 1, 1024);
+        } else if (argument == "--refine") {
+            command.refine = whole_number(argument, value_of(), 1, 10);
         } else if (is_option && joined) {
             throw InputError("'" + argument +
                              "' takes no value, or is unknown; --help lists all options");
@@ -289,6 +350,8 @@ CommandLine read_command_line(int argc, char** argv, const ProgramInfo& info,
 
     const bool restarting = !command.restart_path.empty();
     if (restarting) {
+        if (command.refine > 0)
+            throw InputError("--refine begins runs of its own: leave out --restart, or it");
         if (!command.case_path.empty())
             throw InputError("--restart takes its case from the checkpoint: leave out '" +
                              command.case_path + "'");
@@ -319,7 +382,8 @@ CommandLine read_command_line(int argc, char** argv, const ProgramInfo& info,
             throw;
         }
         if (command.out_dir.empty())
-            command.out_dir = "out/" + info.program + "/" + command.case_name;
+            command.out_dir = "out/" + info.program + "/" + command.case_name +
+                              (command.refine > 0 ? "_refined" : "");
     }
     std::set<std::string> seen;
     for (const std::string& one : overrides) {
@@ -330,6 +394,7 @@ CommandLine read_command_line(int argc, char** argv, const ProgramInfo& info,
         }
         apply_override(one, restarting, table);
     }
+    if (command.refine > 0) refine(table, command, overrides);
     if (command.resume) look_for_earlier_run(info, table, command);
     return command;
 }

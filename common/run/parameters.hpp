@@ -187,13 +187,15 @@ struct CommandLine {
     std::string restart_path;          // "" without --restart
     long restart_step = 0;             // the step of that checkpoint
     int threads = 0;                   // 0: as many as there are cores to use
+    int refine = 0;                    // on how many meshes the case is run; 0: no --refine
     bool dry_run = false, quiet = false, force = false, strict = false;
     bool resume = false;      // go on with the run in the folder, if it is of this case
     bool complete = false;    // and that run has nothing left to do
     bool fell_short = false;  // and one of its results is a FAIL
 };
 
-/// Reads case file and overrides into the table. --help and --version print and end the program.
+/// Reads case file and overrides into the table. --help and --version print and end the program,
+/// and --refine runs it on one mesh after the other and ends it.
 /// With --restart the case is the one stored in the checkpoint, and only parameters that may change
 /// can be overridden.
 /// errors: InputError with the place and the cure; nothing has been written then.

@@ -26,8 +26,18 @@ void put(Json& object, const std::string& key, double value) {
 }  // namespace
 
 bool Summary::Entry::pass() const {
-    return std::isfinite(value) && std::isfinite(expected) &&
+    return measured && std::isfinite(value) && std::isfinite(expected) &&
            std::fabs(value - expected) <= tolerance;
+}
+
+const char* Summary::verdict(const Entry& entry) const {
+    if (!entry.measured) return "NOT MEASURED";
+    return entry.pass() ? "PASS" : expects_failure ? "EXPECTED FAILURE" : "FAIL";
+}
+
+bool Summary::has_verdict() const {
+    return std::any_of(results_.begin(), results_.end(),
+                       [](auto& entry) { return entry.compared; });
 }
 
 bool Summary::is_finite() const {
@@ -47,14 +57,15 @@ void Summary::write(const std::string& path, const ProgramInfo& info, const std:
     json["results"] = Json::object();
     for (const Entry& entry : results_) {
         Json& result = json["results"][entry.name];
-        put(result, "value", entry.value);
+        if (entry.measured) put(result, "value", entry.value);
+        if (!entry.measured) result["value"] = nullptr;
         result["unit"] = entry.unit;
-        if (entry.compared) {
+        if (entry.compared && entry.measured) {
             put(result, "expected", entry.expected);
             put(result, "tolerance", entry.tolerance);
         }
         result["source"] = entry.source;
-        if (entry.compared) result["pass"] = entry.pass();
+        if (entry.compared) result["pass"] = entry.pass(), result["verdict"] = verdict(entry);
         if (!std::isfinite(entry.value)) result["pass"] = false;
     }
     json["conservation"] = Json::object();
@@ -74,7 +85,11 @@ void Summary::write(const std::string& path, const ProgramInfo& info, const std:
 std::vector<std::string> Summary::shortfalls() const {
     std::vector<std::string> sentences;
     for (const Entry& entry : results_) {
-        if (!entry.compared || entry.pass()) continue;
+        if (!entry.compared || entry.pass() || (entry.measured && expects_failure)) continue;
+        if (!entry.measured) {
+            sentences.push_back("NOT MEASURED " + entry.name + ": " + entry.source);
+            continue;
+        }
         sentences.push_back("FAIL " + entry.name + " = " + format(entry.value) + ", and " +
                             format(entry.expected) + " +- " + format(entry.tolerance) +
                             " is expected (" + entry.source + ")");
@@ -91,14 +106,16 @@ std::string Summary::table() const {
     text += line;
     for (const Entry& entry : results_) {
         char expected[64] = "";
-        if (entry.compared)
+        if (entry.compared && entry.measured)
             std::snprintf(expected, sizeof expected, "%.6g +- %.3g", entry.expected,
                           entry.tolerance);
-        const char* verdict = !entry.compared ? "" : entry.pass() ? "PASS" : "FAIL";
         const std::string unit =
             entry.unit.empty() || entry.unit == "1" ? "" : " [" + entry.unit + "]";
-        std::snprintf(line, sizeof line, "%-26s %14.6g   %-22s %-6s %s%s\n", entry.name.c_str(),
-                      entry.value, expected, verdict, entry.source.c_str(), unit.c_str());
+        char value[32] = "";
+        if (entry.measured) std::snprintf(value, sizeof value, "%.6g", entry.value);
+        std::snprintf(line, sizeof line, "%-26s %14s   %-22s %-6s %s%s\n", entry.name.c_str(),
+                      value, expected, entry.compared ? verdict(entry) : "", entry.source.c_str(),
+                      unit.c_str());
         text += line;
     }
     return text;

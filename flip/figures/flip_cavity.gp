@@ -1,5 +1,5 @@
 # Viscous flow in a square cavity under a lid that slides, Reynolds number 100, Mach 0.05. Left, speed and direction of the flow after ten passages of the lid, and the center
-# of the vortex by Ghia, Ghia and Shin (1982). Right, velocities on both middle lines, and their points.
+# of the vortex by Ghia, Ghia and Shin (1982). Right, velocities of the run's cells on both middle lines, and their points.
 wide = 1500; high = 720
 load 'common/style.gp'
 last = system(sprintf("ls '%s'/fields_*.dat | tail -n 1", run))
@@ -21,13 +21,15 @@ plot last using 1:2:(speed(column(vx), column(vz))) with image, \
 unset label 9; unset colorbox; set border 3; set grid; set size noratio
 set tmargin at screen 0.84
 profile = run.'/profile.dat'
+# The mean of the two columns, and of the two rows, of cells beside the middle.
+line(across, along, c) = sprintf("< LC_ALL=C awk '!/#/ && ($%d - 0.5)^2 * %d < 0.6 { sum[$%d] += $%d; count[$%d]++ } END { for (s in sum) print s, sum[s] / count[s] }' '%s' | LC_ALL=C sort -g", across, n * n, along, c, along, last)
 set lmargin at screen 0.58; set rmargin at screen 0.745
 set xrange [-0.3:1]; set yrange [0:1]; set xtics 0.5; set ytics 0.25
 set xlabel 'v_x / U on x = L/2'; set ylabel 'z / L' offset 1, 0
-plot profile using 3:1 with lines lt 1, profile using 2:1 @published
+plot line(1, 2, vx) using 2:1 with lines lt 1, profile using 2:1 @published
 set lmargin at screen 0.835; set rmargin at screen 0.98
 set xrange [0:1]; set yrange [-0.3:0.25]; set ytics 0.1
 set xlabel 'x / L'; set ylabel 'v_z / U on z = L/2' offset 1, 0
 set key at graph 1.1, 1.13 samplen 1
-plot profile using 4:6 with lines lt 1 title 'flip', profile using 4:5 @published title 'Ghia et al.'
+plot line(2, 1, vz) using 1:2 with lines lt 1 title 'flip', profile using 4:5 @published title 'Ghia et al.'
 unset multiplot

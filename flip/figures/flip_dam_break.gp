@@ -15,23 +15,25 @@ do for [n = 1:3] {
     set tmargin at screen 0.84; set bmargin at screen 0.84 - width * wide / high * 2.1 / 5
     if (n == 1) { set ylabel 'z / a' offset 0.5, 0 } else { unset ylabel; set ytics format '' }
     if (n == 3) { set colorbox user origin 0.922, 0.84 - width * wide / high * 2.1 / 5 size 0.012, width * wide / high * 2.1 / 5; set label 9 '|v| / (g a)^{1/2}' at screen 0.995, 0.84 right offset 0, 1.1 } else { unset colorbox }
-    set title sprintf('t (g/a)^{1/2} = %.1f', 0.8 * n) offset 0, -0.6
+    set title sprintf('T = %.2f', sqrt(2) * 0.8 * n) offset 0, -0.6
     plot word(files, n + 1) using 1:2:(sqrt($4**2 + $5**2)) with points pt 7 ps 0.15 lc palette
 }
 unset colorbox; unset label 9; unset title; set border 3; set grid; set size noratio; set format y '%g'
 set bmargin at screen 0.12; set tmargin at screen 0.5
 T(t) = sqrt(2) * t
-set xrange [0:3.5]; set xtics 1; set xlabel 'T = t (2g/a)^{1/2}'
+set xrange [0:3.5]; set xtics 1; set xlabel 'T = t (2 g / a)^{1/2}'
 set lmargin at screen 0.075; set rmargin at screen 0.48
 set yrange [1:5]; set ytics 1; set ylabel 'front x / a' offset 0.5, 0
-set key top left
+set key top left font ',17'
 late = result('front_ahead')
+set label 1 'their dam took a time to vanish' at graph 0.98, 0.06 right font ',17'
 set datafile separator whitespace
 front = col(history, 'front_x'); height = col(history, 'wall_height')
 data = sprintf("<tr ',' ' ' < flip/data/martin_moyce.csv | grep -v '[TZ]'")
 plot history using (T($1)):(column(front)) with lines lt 1 title 'front', \
      data using 1:2 with points pt 6 ps 1.2 lw 1.4 lc rgb '#aaaaaa' title 'Martin and Moyce', \
-     data using ($1 - late):2 @published title sprintf('the same, %.2f earlier', late)
+     data using ($1 - late):2 @published title sprintf('the same at T - %.2f', late)
+unset label 1
 set lmargin at screen 0.58; set rmargin at screen 0.97
 set yrange [0:2.1]; set ytics 0.5; set ylabel 'height at the wall / a' offset 0.5, 0
 plot history using (T($1)):(column(height)) with lines lt 1 notitle

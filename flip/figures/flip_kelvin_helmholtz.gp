@@ -3,13 +3,13 @@
 wide = 1500; high = 1040
 load 'common/style.gp'
 folder = run; run = folder.'/flip'
-set multiplot title 'A layer of shear winds up' font ',24'
+set multiplot title 'Kelvin-Helmholtz: a layer of shear winds up' font ',24'
 history = run.'/history.dat'
 t = col(history, 'time'); re = col(history, 'mode_re'); im = col(history, 'mode_im')
 rate = result('theory_growth')
 # The line of theory has the height of the run at t = 0.6.
 height = real(system(sprintf("LC_ALL=C awk '!/#/ && $1 > 0.6 { print sqrt($%d^2 + $%d^2) * exp(-%.10g * $1); exit }' '%s'", re, im, rate, history)))
-set bmargin at screen 0.575; set tmargin at screen 0.865
+set bmargin at screen 0.64; set tmargin at screen 0.865
 set lmargin at screen 0.095; set rmargin at screen 0.335
 set logscale y; set format y '10^{%T}'
 set xrange [0:2]; set yrange [0.001:10]; set xtics 0.5
@@ -19,16 +19,17 @@ plot history using t:(sqrt(column(re)**2 + column(im)**2)) @measured title sprin
      height * exp(rate * x) @theory title sprintf('theory: γ = %.3f', rate)
 unset logscale; set format y '%g'
 set xrange [0:1]; set yrange [-0.5:0.5]; unset grid; set border 15; set size ratio -1
-set xlabel; unset ylabel; unset key; unset xtics; set ytics 0.25
+unset key; set ytics 0.5
 file(p, at) = system(sprintf("LC_ALL=C awk -v t=%g '!/#/ { if ($1 >= t - 1e-9) { print NR - 2; exit } }' '%s'/%s/history.dat", at, folder, p))
 times = '0.75 1.25 1.0 1.5 2.0'
 do for [n = 1:5] {
     p = n == 3 ? 'pic' : 'flip'
-    left = word('0.375 0.69 0.06 0.375 0.69', n); bottom = n < 3 ? 0.5 : 0.03
-    set lmargin at screen left; set rmargin at screen left + 0.29
-    set bmargin at screen bottom; set tmargin at screen bottom + 0.4
+    left = word('0.4 0.715 0.085 0.4 0.715', n); bottom = n < 3 ? 0.535 : 0.085
+    set lmargin at screen left; set rmargin at screen left + 0.255
+    set bmargin at screen bottom; set tmargin at screen bottom + 0.255 * wide / high
     set title sprintf('%s, t = %s', p, word(times, n)) offset 0, -0.7
-    set ytics format ''
+    if (n > 2) { set xtics 0.5 format '%g'; set xlabel 'x' offset 0, 0.5 } else { set xtics 0.5 format ''; unset xlabel }
+    if (n == 3) { set ylabel 'z' offset 1.5, 0 } else { unset ylabel }
     plot sprintf('%s/%s/particles_%06d.dat', folder, p, int(file(p, real(word(times, n))))) using 1:2:($3 == 0 ? 0x56b4e9 : 0xd55e00) with points pt 7 ps 0.5 lc rgb variable
 }
 unset multiplot

@@ -2,7 +2,7 @@
 # artificial viscosity heats the gas while it falls together, before there is a shock. This is the honest failure that W. F. Noh made the problem for; finer meshes make it smaller.
 wide = 1500; high = 860
 load 'common/style.gp'
-head = 'Gas falls into a line'
+head = 'Noh: cold gas falls into a line'
 x_top = 0.4; rho_step = 4; colors_top = 18
 bottoms = '0 -1.1 0'; tops = '18 0.2 6.5'; steps = '4 0.4 2'
 R = 0.2

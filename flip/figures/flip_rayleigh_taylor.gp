@@ -3,7 +3,7 @@
 wide = 1440; high = 1075
 load 'common/style.gp'
 folder = run; run = folder.'/flip'
-set multiplot title 'Heavy fluid falls through light fluid' font ',24'
+set multiplot title 'Rayleigh-Taylor: heavy fluid falls through light fluid' font ',24'
 set bmargin at screen 0.3; set tmargin at screen 0.78
 set lmargin at screen 0.085; set rmargin at screen 0.33
 history = run.'/history.dat'

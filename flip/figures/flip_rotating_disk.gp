@@ -22,6 +22,6 @@ set logscale xy
 set xrange [200:3000]; set xtics (241, 483, 1081, 2413)
 set yrange [1e-6:1e3]; set ytics ('10^{-6}' 1e-6, '10^{-5}' 1e-5, '10^{-4}' 1e-4, '0.001' 1e-3, '0.01' 0.01, '0.1' 0.1, '1' 1)
 set xlabel 'steps per turn'; set ylabel 'lost in one turn'
-set key top left maxrows 4 width -6
+set key at graph 1.02, 1.0 top right maxrows 4 width -3 samplen 1.2 font ',17'
 plot for [n = 1:7] run.'/'.word(names, n).'.dat' using 1:(abs(1 - $2)) with linespoints lw 2.4 pt 7 ps 1.3 lc rgb word(tint, n) title word(titles, n)
 unset multiplot

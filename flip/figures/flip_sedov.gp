@@ -2,7 +2,7 @@
 # hardly reached, and the shock is where theory has it. In the middle there are fewer particles than cells: velocity and pressure are noise, which weighs nothing.
 wide = 1500; high = 860
 load 'common/style.gp'
-head = 'A blast'
+head = 'Sedov: a blast in cold gas'
 x_top = 1; rho_step = 1; colors_top = 6
 bottoms = '0 -0.6 0'; tops = '6.3 1.2 0.4'; steps = '1 0.4 0.1'
 exact(k) = column(4 + k)

@@ -80,9 +80,12 @@ class Recorder {
         common::Summary& summary = run.summary;
         if (history.all().empty()) return;
         const Comparison& comparison = comparison_of(parameters_);
+        summary.expects_failure = parameters_.failure_expected;
         if (comparison.compare != nullptr)
             comparison.compare({parameters_, program_, state, now, cells, history,
                                 run.path("profile.dat"), summary});
+        if (comparison.compare != nullptr && !summary.has_verdict())
+            summary.not_measured(comparison.name, "the run is too short for it: raise time.end");
         for (const char* name :
              {"mass_error", "momentum_x_error", "momentum_z_error", "energy_error"})
             summary.conservation(std::string("largest_") + name, history.largest(name), "1");

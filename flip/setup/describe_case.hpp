@@ -24,7 +24,7 @@ void describe_gas(common::ParameterTable& table, const std::string& prefix, Gas&
 
 inline void describe_side(common::ParameterTable& table, const std::string& name, SideCase& s) {
     using common::anything, common::above, common::at_least, common::between;
-    table.real(name + ".density", s.density, "mass/length^3", above(0), "density");
+    table.real(name + ".density", s.density, "mass/length^3", at_least(0), "0: a vacuum");
     table.real(name + ".pressure", s.pressure, "pressure", at_least(0), "pressure");
     table.real(name + ".velocity", s.velocity, "velocity", anything(), "along x");
     table.real(name + ".gamma", s.gamma, "", between(1.01, 100), "ratio of specific heats");
@@ -188,7 +188,10 @@ inline common::ParameterTable describe(Case& parameters) {
     std::vector<std::string> names;
     for (const Comparison& c : comparisons) names.push_back(c.name);
     table.choice("theory.compare", parameters.compare, names, "what the run is compared with");
-    table.real("theory.tolerance", parameters.theory_tolerance, "", above(0), "allowed difference");
+    table.real("theory.tolerance", parameters.theory_tolerance, "", above(0),
+               "allowed difference; of riemann, between the waves, as the mesh sets the others");
+    table.flag("theory.failure_expected", parameters.failure_expected,
+               "the case exists to show a failure, and a FAIL is said to be expected");
     table.real("theory.frame_x", parameters.frame_x, "velocity", anything(),
                "velocity of the frame in which theory is stated");
     table.real("theory.frame_z", parameters.frame_z, "velocity", anything(), "along z");

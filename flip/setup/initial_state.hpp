@@ -14,7 +14,8 @@
 namespace flip {
 
 /// The case as the programs use it: periodic directions marked, at least one material, a Riemann
-/// problem written as two materials in two regions, an inflow for every end, and formulas read.
+/// problem written as two materials in two regions, or in one beside a vacuum, an inflow for every
+/// end, and formulas read.
 /// errors: InputError for a formula that is none
 inline Case completed(Case parameters) {
     parameters.grid.x.periodic = parameters.is(x_low, "periodic");
@@ -36,9 +37,12 @@ inline Case completed(Case parameters) {
             r.half_z = parameters.grid.z.length;
             return r;
         };
-        parameters.regions = {
-            side("left", parameters.left, parameters.grid.x.low, parameters.interface),
-            side("right", parameters.right, parameters.interface, x_end)};
+        if (parameters.left.density > 0)
+            parameters.regions.push_back(
+                side("left", parameters.left, parameters.grid.x.low, parameters.interface));
+        if (parameters.right.density > 0)
+            parameters.regions.push_back(
+                side("right", parameters.right, parameters.interface, x_end));
     }
     if (parameters.materials.empty()) parameters.materials = {{"gas", 1.4, 0}};
     for (BoundaryCase& end : parameters.boundaries) end.inflow = parameters.inflow;

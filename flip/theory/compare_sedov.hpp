@@ -67,6 +67,14 @@ inline std::string predict_sedov(const Case& parameters, const std::string&, dou
                     " at t = ", parameters.end);
 }
 
+/// Warns of what keeps hot gas from pushing cold gas.
+inline void warn_of_sedov(const Case& parameters, std::vector<std::string>& warnings) {
+    warn(
+        warnings, parameters.density == "particles",
+        "flip.density = \"particles\" is for slow flow: where hot and cold particles share a cell, "
+        "it has the pressure of the cold ones, and a blast does not start; take \"cells\"");
+}
+
 /// The outer radius at which the density is half-way to its peak.
 inline void track_sedov(const Snapshot& now, common::Row& row) {
     const Blast blast = blast_of(now.parameters);
@@ -104,7 +112,7 @@ inline void compare_sedov(const FinishedRun& run) {
                                       {"p_exact", "pressure", p_exact}});
 }
 
-inline constexpr Comparison sedov_comparison{"sedov", validate_sedov, predict_sedov,
-                                             nullptr, track_sedov,    compare_sedov};
+inline constexpr Comparison sedov_comparison{"sedov",       validate_sedov, predict_sedov,
+                                             warn_of_sedov, track_sedov,    compare_sedov};
 
 }  // namespace flip

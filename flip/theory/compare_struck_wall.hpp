@@ -99,6 +99,9 @@ inline void compare_wall_shock(const FinishedRun& run) {
         run.result("density_behind_shock", mean, "mass/length^3", wall.shock.density, source);
         run.info("density_scatter", std::sqrt(std::max(0.0, squares / count - mean * mean)),
                  "mass/length^3", "rms over the cells behind the shock");
+    } else {
+        run.summary.not_measured("density_behind_shock",
+                                 "the shock is not yet far enough from the wall: raise time.end");
     }
     const auto times = run.history.column("time"), distance = run.history.column("shock_distance");
     run.result("shock_speed", slope(times, distance, times.size() / 2), "velocity",

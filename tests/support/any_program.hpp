@@ -114,7 +114,8 @@ inline Outcome start(const Program& program, const fs::path& folder, const std::
     outcome.err = read_all(err);
     std::istringstream lines(outcome.err);
     for (std::string line; std::getline(lines, line);) {
-        if (!line.starts_with("warning: ") && !holds(line, ": FAIL "))
+        if (!line.starts_with("warning: ") && !holds(line, ": FAIL ") &&
+            !holds(line, ": NOT MEASURED "))
             outcome.sentences.push_back(line);
     }
     return outcome;
