@@ -12,8 +12,6 @@
 
 namespace flip {
 
-inline constexpr double pi = 3.14159265358979323846;
-
 /// A uniform state of the gas.
 struct GasCase {
     std::string material;  // empty: the first
@@ -50,9 +48,10 @@ struct BoundaryCase {
 };
 inline constexpr std::array<const char*, 4> side_names{"x_low", "x_high", "z_low", "z_high"};
 
-/// A complete input. Any consistent units; per unit length along y.
+/// A complete input. Any consistent units; per unit length along y, or axisymmetric.
 struct Case {
     common::Grid grid{{100, 0, 1, true}, {1, 0, 1, true}};
+    std::string geometry = "plane";  // or axisymmetric
     std::array<BoundaryCase, 4> boundaries;
     GasCase inflow;
 

@@ -81,6 +81,7 @@ struct Comparison {
     void (*compare)(const FinishedRun&) = nullptr;
     Rows rows = Rows::any;
     Frame frame = Frame::at_rest;
+    bool axisymmetric = false;  // stated for rings too
 };
 
 /// Refuses a case without a region that has a flow.
