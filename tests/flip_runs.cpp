@@ -52,8 +52,8 @@ facts::Columns profile(const std::string& name) {
     return columns;
 }
 
-// The ball of iron and its plate, on a coarser mesh.
-const std::string impact = "grid.cells_x=48 grid.cells_z=48";
+// The sphere of iron and its plate, on a coarser mesh.
+const std::string impact = "grid.cells_x=24 grid.cells_z=48";
 
 std::string gresho_pressure(double mach) {
     return " region.gas.pressure=" + text(1 / (1.4 * mach * mach) - 0.5);
