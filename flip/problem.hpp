@@ -27,8 +27,6 @@ inline double ring_length(const Grid& grid, double node) {
 inline double cell_volume(const Grid& grid, long i) {
     return grid.cell_area() * ring_length(grid, static_cast<double>(i) + 0.5);
 }
-/// Whether node i is on the axis.
-inline bool on_axis(const Grid& grid, long i) { return grid.axisymmetric && i == 0; }
 /// The column of the cell or node with index n.
 inline long column_of(const Grid& grid, long n) { return n % grid.stride() - 1; }
 

@@ -175,7 +175,7 @@ TEST_CASE("every step on rings keeps mass and momentum along the axis and energy
     for (const bool hole : {false, true}) {
         for (const char* high : {"slip", "no_slip", "open"}) {
             for (const char* ends_z : {"periodic", "open", "inflow"}) {
-                for (const char* transfer : {"flip", "pic", "blend", "apic"}) {
+                for (const char* transfer : {"flip", "pic", "blend", "apic", "xpic"}) {
                     for (const int method : {0, 1, 2, 3, 4}) {
                         const bool consistent = method == 4;
                         if (consistent && (hole || std::string(transfer) != "flip")) continue;
@@ -187,7 +187,7 @@ TEST_CASE("every step on rings keeps mass and momentum along the axis and energy
                         for (BoundaryCase& end : w.boundaries)
                             if (end.kind == "open") end.pressure = 0.6;
                         w.materials = {{"air", 1.4, 0}, {"water", 4, 0.5}};
-                        w.transfer = transfer, w.dt = 0.004;
+                        w.transfer = transfer, w.xpic_order = 3, w.dt = 0.004;
                         if (method == 1) w.density = "particles", w.viscosity = 0.02;
                         if (method > 1 && !consistent) w.pressure = "implicit", w.tolerance = 1e-10;
                         if (method == 3) w.theta = 0.6, w.viscosity = 0.02;
@@ -218,7 +218,7 @@ TEST_CASE("every step on rings keeps mass and momentum along the axis and energy
             }
         }
     }
-    CHECK(combinations == 2 * 9 * 4 * 4 + 9);
+    CHECK(combinations == 2 * 9 * 5 * 4 + 9);
 }
 
 TEST_CASE("a sphere that hits a plate keeps mass and momentum along the axis and energy") {

@@ -69,7 +69,6 @@ void deposit_row(const WeightScale& scale, const Material* materials, const Part
 /// in:     particles sorted by row, every position on the mesh
 /// out:    nodes.m, vx, vz (0 where no particle is near); cells.sum, M, and the sums over volumes
 /// exact:  totals on nodes and cells are those of the particles, for mass, momentum and energy
-/// note:   on the axis of rings v_r = 0: around the axis its momentum is none
 /// source: [FLIP-8]; with apic, v_p + C_p (x_g - x_p) for v_p: Jiang, Schroeder and Teran,
 ///         J. Comput. Phys. 338, 137 (2017).
 /// note:   "Fabre" on the slide is Favre: weighted by mass.
@@ -106,11 +105,11 @@ inline void deposit_particles(const Grid& grid, std::span<const Material> materi
     if (volumes)
         for (Field* f : sums_of_volumes) fold_cells(grid, f->data());
 
-    for_each_node(grid, [&](long i, long, long n) {
+    for_each_node(grid, [&](long, long, long n) {
         const Four& sum = g.sum[n];
         const double per_mass = sum[0] > least_mass ? 1 / sum[0] : 0;
         g.m[n] = per_mass > 0 ? sum[0] : 0;
-        g.vx[n] = on_axis(grid, i) ? 0 : sum[1] * per_mass;
+        g.vx[n] = sum[1] * per_mass;
         g.vz[n] = sum[2] * per_mass;
     });
     for_each_cell(grid, [&](long, long, long n) {

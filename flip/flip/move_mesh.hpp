@@ -19,6 +19,7 @@ namespace flip {
 ///         what is nearly void; more would throw the nodes apart, and the cell would lose the heat
 inline void limit_viscosity(const Grid& grid, double dt, Mesh& mesh) {
     const Nodes& g = mesh.nodes;
+    const double dx = is_plane(grid) ? grid.x.spacing() : 0;  // in a row nothing moves along z
     for_each_cell(grid, [&](long i, long, long n) {
         double& q = mesh.cells.q[n];
         if (q == 0) return;
@@ -27,8 +28,7 @@ inline void limit_viscosity(const Grid& grid, double dt, Mesh& mesh) {
             const double node = static_cast<double>(i),
                          along_r =
                              grid.z.spacing() * ring_length(grid, node + static_cast<double>(side)),
-                         along_z = grid.x.spacing() *
-                                   ring_length(grid, node + static_cast<double>(1 + side) / 3);
+                         along_z = dx * ring_length(grid, node + static_cast<double>(1 + side) / 3);
             for (const long corner : {n + side, n + side + grid.stride()})
                 response += 0.25 * (along_r * along_r + along_z * along_z) / g.m[corner];
         }

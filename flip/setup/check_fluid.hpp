@@ -120,10 +120,6 @@ inline void refuse_around_axis(const Case& parameters) {
         parameters.rezone_steps > 0, geometry,
         "and rezone.steps do not go together: splitting and merging keep weights that are linear "
         "in r, and rings weigh by r^2; take rezone.steps = 0");
-    refuse(parameters.transfer == "xpic", geometry,
-           "and flip.transfer = \"xpic\" do not go together: its filter takes the velocity on the "
-           "axis "
-           "for the mean of the particles, and that is none; take flip, pic, blend or apic");
     for (const RegionCase& r : parameters.regions)
         refuse(r.flow != "uniform" && r.flow != "radial" && r.flow != "gaussian", geometry,
                "has no flow = \"", r.flow, "\", as region.", r.name,

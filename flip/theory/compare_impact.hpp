@@ -69,9 +69,11 @@ inline void track_impact(const Snapshot& now, common::Row& row) {
 /// Conservation to round-off, and how much momentum and depth the target has taken.
 inline void compare_impact(const FinishedRun& run) {
     const double round_off = 1e-12;
-    for (const char* name : {"mass_error", "momentum_x_error", "momentum_z_error", "energy_error"})
-        run.summary.result(std::string("largest_") + name, run.history.largest(name), "", 0,
-                           round_off, "exact but for round-off");
+    std::vector<std::string> kept{"mass_error", "momentum_z_error", "energy_error"};
+    if (!run.parameters.grid.axisymmetric) kept.insert(kept.begin() + 1, "momentum_x_error");
+    for (const std::string& name : kept)
+        run.summary.result("largest_" + name, run.history.largest(name), "", 0, round_off,
+                           "exact but for round-off");
     const char* along = impact_of(run.parameters).along_x() ? "momentum_x" : "momentum_z";
     const double momentum = run.history.first(along);
     const double given = run.history.column(std::string("target_") + along).back();
