@@ -74,9 +74,10 @@ inline void find_viscosity(const Grid& grid, const Boundaries& boundaries,
         g.vz0[n] = g.vz[n];
     });
     set_walls(grid, boundaries, g.vx0, g.vz0);
-    const double h = is_plane(grid) ? std::sqrt(grid.cell_area()) : grid.x.spacing();
+    const double area = grid.cell_area(), h = is_plane(grid) ? std::sqrt(area) : grid.x.spacing();
     for_each_cell(grid, [&](long i, long, long n) {
-        const double d = dilation(grid, g.vx0, g.vz0, n) / cell_volume(grid, i);
+        const double V_c = area * ring_length(grid, static_cast<double>(i) + 0.5),
+                     d = dilation(grid, g.vx0, g.vz0, n) / V_c;
         const bool squeezed = d < 0 && c.M[n] > 0 && c.surface[n] == 0;
         const double rho = density_of(c, i, n);
         c.q[n] = squeezed
