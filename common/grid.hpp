@@ -8,9 +8,8 @@
 //        |               |        f  face    (i+1/2, j+1/2)      B_y
 //  j+1   o---------------o
 //
-// Nodes run from 0 to N in each direction. In a periodic direction node N is node 0 again; a wall
-// stands on node 0 and on node N. All four kinds of point use the same storage: the value that
-// belongs to (i [+1/2], j [+1/2]) sits at index(i, j), for i, j from -1 to N+1.
+// Nodes run from 0 to N in each direction; in a periodic one node N is node 0 again, in others walls
+// stand on both. The value of any kind of point (i [+1/2], j [+1/2]) sits at index(i, j), -1 to N+1.
 #pragma once
 
 #include <Eigen/Core>
@@ -33,6 +32,7 @@ struct Axis {
 
 struct Grid {
     Axis x, z;
+    bool axisymmetric = false;  // x is the distance r from the axis x = 0, and a cell is a ring
 
     /// Numbers per row of nodes: cells + 1 nodes and a ghost node on either side.
     long stride() const { return x.cells + 3; }

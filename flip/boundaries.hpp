@@ -88,7 +88,9 @@ inline std::array<long, 4> add_inflow(const Problem& problem, double t, double d
             const double depth = (t + dt) * speed - (static_cast<double>(n) + 0.5) * step;
             const double at = low ? across.low + depth : across.high() - depth;
             for (long k = 0; k < count; ++k) {
-                const double beside = aside.low + (static_cast<double>(k) + 0.5) * width;
+                const auto [beside, ring] =
+                    along_x ? LatticeColumn{aside.low + (static_cast<double>(k) + 0.5) * width, 1}
+                            : lattice_column(grid, per_cell, k);
                 const auto add = [](std::vector<double>& column, bool used, double value) {
                     if (used) column.push_back(value);
                 };
@@ -96,13 +98,13 @@ inline std::array<long, 4> add_inflow(const Problem& problem, double t, double d
                 add(particles.vx_p, moving, in.vx);
                 add(particles.vz_p, moving, in.vz);
                 add(particles.e_p, moving, in.e);
-                add(particles.V_p, problem.scheme.particle_volumes && moving, step * width);
+                add(particles.V_p, problem.scheme.particle_volumes && moving, step * width * ring);
                 for (auto* C :
                      {&particles.Cxx_p, &particles.Cxz_p, &particles.Czx_p, &particles.Czz_p})
                     add(*C, problem.scheme.transfer.affine && moving, 0.0);
                 particles.x_p.push_back(along_x ? at : beside);
                 particles.z_p.push_back(along_x ? beside : at);
-                particles.m_p.push_back(in.rho * step * width);
+                particles.m_p.push_back(in.rho * step * width * ring);
                 particles.material.push_back(in.material);
                 ++added[side];
             }
@@ -158,19 +160,26 @@ inline void set_walls(const Grid& grid, const Boundaries& boundaries, Field& vx,
     for (long j = 0; j <= grid.z.cells; ++j) set(0, j), set(grid.x.cells, j);
 }
 
-/// Force of the pressure outside of open boundaries on a node, half as much on a corner.
+/// Force of the pressure outside of open boundaries on a node, half as much on a corner; in rings,
+/// what pressure_force() of the same pressure inside balances.
 /// in:     i from 0 to cells_x, j from 0 to cells_z
 inline Eigen::Vector2d boundary_force(const Grid& grid, const Boundaries& boundaries, long i,
                                       long j) {
-    const auto reach = [](const common::Axis& axis, long k) {
-        const bool corner = !axis.periodic && (k == 0 || k == axis.cells);
-        return corner ? 0.5 * axis.spacing() : axis.spacing();
+    const auto reach = [](const common::Axis& axis, long k, double before, double after) {
+        return 0.5 * axis.spacing() *
+               ((axis.periodic || k > 0 ? before : 0) +
+                (axis.periodic || k < axis.cells ? after : 0));
     };
     const auto pressure = [&](Side side, bool here) {
         return here && boundaries.is(side, BoundaryKind::open) ? boundaries.side[side].pressure : 0;
     };
-    return {reach(grid.z, j) * (pressure(x_low, i == 0) - pressure(x_high, i == grid.x.cells)),
-            reach(grid.x, i) * (pressure(z_low, j == 0) - pressure(z_high, j == grid.z.cells))};
+    const auto ring = [&](double offset) {
+        return ring_length(grid, static_cast<double>(i) + offset);
+    };
+    return {reach(grid.z, j, ring(0), ring(0)) *
+                (pressure(x_low, i == 0) - pressure(x_high, i == grid.x.cells)),
+            reach(grid.x, i, ring(-1. / 3), ring(1. / 3)) *
+                (pressure(z_low, j == 0) - pressure(z_high, j == grid.z.cells))};
 }
 
 }  // namespace flip

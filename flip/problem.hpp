@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "common/grid.hpp"
@@ -13,6 +14,21 @@ namespace flip {
 
 using common::Field;
 using common::Grid;
+
+inline constexpr double pi = 3.14159265358979323846;
+
+/// The length of a ring of cells about the axis, 2 pi r; in the plane 1, as all is per length there.
+/// in:     node, a fraction between nodes: i + 1/2 is the middle of column i
+/// exact:  ring_length(i + 1/2) x area of a cell is the volume of the ring, pi (r_2^2 - r_1^2) dz
+inline double ring_length(const Grid& grid, double node) {
+    return grid.axisymmetric ? 2 * pi * grid.x.at(node) : 1;
+}
+/// The volume of a cell in column i.
+inline double cell_volume(const Grid& grid, long i) {
+    return grid.cell_area() * ring_length(grid, static_cast<double>(i) + 0.5);
+}
+/// The column of the cell or node with index n.
+inline long column_of(const Grid& grid, long n) { return n % grid.stride() - 1; }
 
 /// The sides of the mesh.
 enum Side : std::size_t { x_low, x_high, z_low, z_high };
@@ -112,6 +128,24 @@ struct Problem {
     long per_cell_x = 4, per_cell_z = 4;  // particles of a cell at the start
     Scheme scheme;
 };
+
+/// One column of the particles of the start.
+struct LatticeColumn {
+    double x, ring;  // where it is; length of its ring
+};
+/// Column n of the start, on the lattice or at the part u of its width.
+/// exact:  on the lattice a ring of fluid stands at its center of mass, so that the nodes get from it
+///         what they would get from the fluid; at random, any part of its volume is as likely
+inline LatticeColumn lattice_column(const Grid& grid, long per_cell, long n, bool random = false,
+                                    double u = 0.5) {
+    const double dx = grid.x.spacing() / static_cast<double>(per_cell),
+                 x = grid.x.low + dx * (static_cast<double>(n) + u);
+    if (!grid.axisymmetric) return {x, 1};
+    const double r = dx * (static_cast<double>(n) + 0.5);
+    return {
+        random ? std::sqrt(r * r + 0.25 * dx * dx + (2 * u - 1) * dx * r) : r + dx * dx / (12 * r),
+        2 * pi * r};
+}
 
 /// Whether there is more than one row of cells; in a single row nothing moves along z.
 inline bool is_plane(const Grid& grid) { return grid.z.cells > 1; }

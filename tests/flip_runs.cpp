@@ -54,8 +54,8 @@ facts::Columns profile(const std::string& name) {
     return columns;
 }
 
-// The ball of iron and its plate, on a coarser mesh.
-const std::string impact = "grid.cells_x=48 grid.cells_z=48";
+// The sphere of iron and its plate, on a coarser mesh.
+const std::string impact = "grid.cells_x=24 grid.cells_z=48";
 
 std::string gresho_pressure(double mach) {
     return " region.gas.pressure=" + text(1 / (1.4 * mach * mach) - 0.5);
@@ -71,7 +71,7 @@ TEST_CASE("pic keeps mass and momentum and energy to round-off in a shock tube a
         check_conserved(run("pic", "pic_sod", "sod", q));
     const Run r = run("pic", "pic_impact", "sphere_hits_plate", impact);
     check_conserved(r);
-    check_results(r, 4);
+    check_results(r, 3);
     CHECK(r.value("momentum_given") >= 0.1);
 }
 
@@ -82,7 +82,8 @@ TEST_CASE(
         CAPTURE(transfer);
         const std::string with = " flip.transfer=" + transfer;
         check_conserved(run("flip", "deficit", "sod", with));
-        check_conserved(run("flip", "flip_impact", "sphere_hits_plate", impact + with));
+        check_conserved(run("flip", "flip_impact", "sphere_hits_plate",
+                            impact + " grid.geometry=plane" + with));
         // Without it nothing else changes: mass and momentum are exact, energy is lost.
         const Run without = run("flip", "deficit", "sod", "flip.deficit_to_heat=false" + with);
         CHECK(without.conservation("largest_mass_error") <= 1e-12);
@@ -305,6 +306,25 @@ TEST_CASE("a blast follows Sedov and falling gas is dense but not as dense as No
     CHECK(std::fabs(falling.value("plateau_density_over_theory") - 0.7) <= 0.1);
     CHECK(std::fabs(falling.value("shock_radius_over_theory") - 1.18) <= 0.05);
     CHECK(falling.value("middle_density_over_theory") < 0.5);
+}
+
+TEST_CASE("a blast about an axis follows Sedov's sphere and gas falls into a point" *
+          doctest::description("physics")) {
+    for (const std::string program : {"pic", "flip"}) {
+        CAPTURE(program);
+        const std::string sphere =
+            "grid.geometry=axisymmetric grid.cells_x=48 grid.cells_z=48 time.end=";
+        // Viscosity spreads a shock over two cells, 2/48 of 0.934; in the plane it would be at 1.05.
+        const Run blast = run(program, "sphere", "sedov", sphere + "1.1 theory.tolerance=0.0446");
+        check_results(blast, 1);
+        check_conserved(blast);
+        CHECK(blast.value("peak_density_ratio") <= 6);
+        // Denser than gas that falls into a line, which has a quarter of the 64.
+        const Run falling = run(program, "point", "noh", sphere + "0.6");
+        check_conserved(falling);
+        CHECK(falling.value("plateau_density_over_theory") > 0.25);
+        CHECK(falling.value("plateau_density_over_theory") < 1);
+    }
 }
 
 TEST_CASE("implicit sound is turned and damped as the theta scheme says" *

@@ -1,4 +1,4 @@
-# The showpiece of 1955, in the plane: a ball of iron hits a plate of aluminum at 6 km/s. Particles of classical PIC, iron orange and aluminum blue. The ball spreads and lines
+# The showpiece of 1955: a sphere of iron hits a plate of aluminum at 6 km/s. Particles of classical PIC about the axis, drawn on both sides of it, iron orange and aluminum blue. The sphere spreads and lines
 # the crater, whose lip flies back, and the plate bulges. Such distortions, and two materials with free surfaces, are what a mesh that moves with the fluid cannot follow.
 wide = 1500; high = 590
 load 'common/style.gp'
@@ -8,7 +8,7 @@ time_of(file) = real(system(sprintf("LC_ALL=C awk -v n=%s '!/#/ && k++ == n + 0 
 set multiplot title 'Iron hits aluminum at 6 km/s: Harlow''s particle-in-cell method' font ',24'
 set border 15; unset grid; unset key; set size ratio -1
 set xrange [-5.6:5.6]; set yrange [-6.2:5]; set xtics 2; set ytics 2
-set xlabel 'x [cm]' offset 0, 0.3
+set xlabel 'r [cm]' offset 0, 0.3; set format x '%g'
 width = 0.215; panel_bottom = 0.17; panel_top = panel_bottom + width * wide / high
 set bmargin at screen panel_bottom; set tmargin at screen panel_top
 shown_files = word(files, 1).' '.word(files, 2).' '.word(files, 3).' '.word(files, 4)
@@ -18,6 +18,6 @@ do for [n = 1:4] {
     if (n == 1) { set ylabel 'z [cm]' offset 1, 0 } else { unset ylabel; set ytics format '' }
     file = word(shown_files, n)
     set title sprintf('t = %.0f μs', time_of(file)) offset 0, -0.6
-    plot file using 1:($3 == 0 ? $2 : NaN) with points pt 7 ps 0.22 lc rgb sky, file using 1:($3 == 1 ? $2 : NaN) with points pt 7 ps 0.22 lc rgb orange
+    plot for [side = -1:1:2] for [k = 0:1] file using (side * $1):($3 == k ? $2 : NaN) with points pt 7 ps 0.22 lc rgb word(sky.' '.orange, k + 1)
 }
 unset multiplot

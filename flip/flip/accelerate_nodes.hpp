@@ -13,10 +13,42 @@
 
 namespace flip {
 
+namespace detail {
+
+// [rings]
+// The rate of change of the volume of a ring whose sides stay straight: its corners move by v, and
+// L is the length of a ring. What flows through the side between r_1 and r_2 is the integral of
+// 2 pi r v_z dr, with weights (2 r_1 + r_2)/6 and (r_1 + 2 r_2)/6: L at a third and at two thirds.
+inline double dilation_of_ring(const Grid& grid, const Field& vx, const Field& vz, long n) {
+    const long up = n + grid.stride();
+    const double i = static_cast<double>(column_of(grid, n));
+    return 0.5 * grid.z.spacing() *
+               (ring_length(grid, i + 1) * (vx[n + 1] + vx[up + 1]) -
+                ring_length(grid, i) * (vx[n] + vx[up])) +
+           0.5 * grid.x.spacing() *
+               (ring_length(grid, i + 1. / 3) * (vz[up] - vz[n]) +
+                ring_length(grid, i + 2. / 3) * (vz[up + 1] - vz[n + 1]));
+}
+
+// Its transpose. Uniform pressure pushes no node, so that there is no hoop term to balance.
+inline Eigen::Vector2d pressure_force_of_rings(const Grid& grid, const Field& p, long n) {
+    const long down = n - grid.stride();
+    const double i = static_cast<double>(column_of(grid, n));
+    return {
+        0.5 * grid.z.spacing() * ring_length(grid, i) * (p[down - 1] + p[n - 1] - p[down] - p[n]),
+        0.5 * grid.x.spacing() *
+            (ring_length(grid, i - 1. / 3) * (p[down - 1] - p[n - 1]) +
+             ring_length(grid, i + 1. / 3) * (p[down] - p[n]))};
+}
+// [/rings]
+
+}  // namespace detail
+
 // [transpose]
 /// V_c div v of a cell, from its four nodes.
 inline double dilation(const Grid& grid, const Field& vx, const Field& vz, long n) {
     const long up = n + grid.stride();
+    if (grid.axisymmetric) return detail::dilation_of_ring(grid, vx, vz, n);
     return 0.5 * grid.z.spacing() * (vx[n + 1] + vx[up + 1] - vx[n] - vx[up]) +
            0.5 * grid.x.spacing() * (vz[up] + vz[up + 1] - vz[n] - vz[n + 1]);
 }
@@ -24,6 +56,7 @@ inline double dilation(const Grid& grid, const Field& vx, const Field& vz, long 
 /// Force of the pressures of the four cells around a node; the transpose of dilation().
 inline Eigen::Vector2d pressure_force(const Grid& grid, const Field& p, long n) {
     const long down = n - grid.stride();
+    if (grid.axisymmetric) return detail::pressure_force_of_rings(grid, p, n);
     return {0.5 * grid.z.spacing() * (p[down - 1] + p[n - 1] - p[down] - p[n]),
             0.5 * grid.x.spacing() * (p[down - 1] + p[down] - p[n - 1] - p[n])};
 }
@@ -41,11 +74,12 @@ inline void find_viscosity(const Grid& grid, const Boundaries& boundaries,
         g.vz0[n] = g.vz[n];
     });
     set_walls(grid, boundaries, g.vx0, g.vz0);
-    const double V_c = grid.cell_area(), h = is_plane(grid) ? std::sqrt(V_c) : grid.x.spacing();
-    for_each_cell(grid, [&](long, long, long n) {
-        const double d = dilation(grid, g.vx0, g.vz0, n) / V_c;
+    const double area = grid.cell_area(), h = is_plane(grid) ? std::sqrt(area) : grid.x.spacing();
+    for_each_cell(grid, [&](long i, long, long n) {
+        const double V_c = area * ring_length(grid, static_cast<double>(i) + 0.5),
+                     d = dilation(grid, g.vx0, g.vz0, n) / V_c;
         const bool squeezed = d < 0 && c.M[n] > 0 && c.surface[n] == 0;
-        const double rho = density_of(c, V_c, n);
+        const double rho = density_of(c, i, n);
         c.q[n] = squeezed
                      ? rho * -d * h *
                            (q.linear * sound_speed(rho, c.compressibility[n]) - q.quadratic * h * d)
@@ -72,36 +106,43 @@ inline Eigen::Vector2d node_acceleration(const Grid& grid, const BodyForce& forc
 namespace detail {
 
 // The gradients of the four corner functions at one of the four points of Gauss's rule, for a
-// velocity that is bilinear in the cell; x derivatives and z derivatives.
+// velocity that is bilinear in a cell of column i: x derivatives and z derivatives; in rings also
+// S/r, of which the strain v_r/r around the axis is made. ring is the length of the ring there.
 struct CornerGradients {
-    double x[4], z[4];
+    double x[4], z[4], hoop[4], ring;
 };
-inline std::array<CornerGradients, 4> corner_gradients(const Grid& grid) {
+inline std::array<CornerGradients, 4> corner_gradients(const Grid& grid, long i) {
     const double near = 0.5 - 0.5 / std::sqrt(3.0), dx = grid.x.spacing(), dz = grid.z.spacing();
     std::array<CornerGradients, 4> all;
     for (std::size_t k = 0; k < 4; ++k) {
         const double fx = k & 1 ? 1 - near : near, fz = k & 2 ? 1 - near : near;
+        const double node = static_cast<double>(i) + fx,
+                     per_r = grid.axisymmetric ? 1 / grid.x.at(node) : 0;
         all[k] = {{-(1 - fz) / dx, (1 - fz) / dx, -fz / dx, fz / dx},
-                  {-(1 - fx) / dz, -fx / dz, (1 - fx) / dz, fx / dz}};
+                  {-(1 - fx) / dz, -fx / dz, (1 - fx) / dz, fx / dz},
+                  {per_r * (1 - fx) * (1 - fz), per_r * fx * (1 - fz), per_r * (1 - fx) * fz,
+                   per_r * fx * fz},
+                  ring_length(grid, node)};
     }
     return all;
 }
 
 // Stress of a Newtonian fluid, mu (grad v + grad v^T - (2/3) div v), at one point.
 struct ViscousStress {
-    double xx, zz, xz;
+    double xx, zz, xz, hoop;
 };
 inline ViscousStress viscous_stress(double mu, const CornerGradients& d,
                                     const std::array<long, 4>& n, const Field& vx,
                                     const Field& vz) {
-    double xx = 0, zz = 0, xz = 0;
+    double xx = 0, zz = 0, xz = 0, hoop = 0;
     for (std::size_t a = 0; a < 4; ++a) {
         xx += d.x[a] * vx[n[a]];
         zz += d.z[a] * vz[n[a]];
         xz += d.z[a] * vx[n[a]] + d.x[a] * vz[n[a]];
+        hoop += d.hoop[a] * vx[n[a]];
     }
-    const double mean = (xx + zz) * 2 / 3;
-    return {mu * (2 * xx - mean), mu * (2 * zz - mean), mu * xz};
+    const double mean = (xx + zz + hoop) * 2 / 3;
+    return {mu * (2 * xx - mean), mu * (2 * zz - mean), mu * xz, mu * (2 * hoop - mean)};
 }
 
 }  // namespace detail
@@ -126,17 +167,18 @@ inline void fill_pressure(const Grid& grid, Field& p) {
 inline void add_viscous_force(const Grid& grid, double viscosity, Mesh& mesh) {
     if (viscosity == 0) return;
     Nodes& g = mesh.nodes;
-    const auto gradients = detail::corner_gradients(grid);
-    const double part = 0.25 * grid.cell_area();
+    const double area = 0.25 * grid.cell_area();
     common::for_each_row_two_colors(grid.z.cells, [&](long j) {
         for (long i = 0; i < grid.x.cells; ++i) {
             const long n = grid.index(i, j);
             if (has_bare_node(grid, g, n)) continue;
             const auto corners = corners_of(grid, n);
-            for (const detail::CornerGradients& d : gradients) {
+            for (const detail::CornerGradients& d : detail::corner_gradients(grid, i)) {
                 const auto tau = detail::viscous_stress(viscosity, d, corners, g.vx0, g.vz0);
+                const double part = area * d.ring;
                 for (std::size_t a = 0; a < 4; ++a) {
-                    g.fx[corners[a]] -= part * (tau.xx * d.x[a] + tau.xz * d.z[a]);
+                    g.fx[corners[a]] -=
+                        part * (tau.xx * d.x[a] + tau.xz * d.z[a] + tau.hoop * d.hoop[a]);
                     g.fz[corners[a]] -= part * (tau.xz * d.x[a] + tau.zz * d.z[a]);
                 }
             }
@@ -152,11 +194,12 @@ inline double viscous_heating(const Grid& grid, double viscosity, const Nodes& g
     if (has_bare_node(grid, g, n)) return 0;
     const auto corners = corners_of(grid, n);
     double sum = 0;
-    for (const detail::CornerGradients& d : detail::corner_gradients(grid)) {
+    for (const detail::CornerGradients& d : detail::corner_gradients(grid, column_of(grid, n))) {
         const auto tau = detail::viscous_stress(viscosity, d, corners, g.vx0, g.vz0);
         for (std::size_t a = 0; a < 4; ++a)
-            sum += vx[corners[a]] * (tau.xx * d.x[a] + tau.xz * d.z[a]) +
-                   vz[corners[a]] * (tau.xz * d.x[a] + tau.zz * d.z[a]);
+            sum += d.ring *
+                   (vx[corners[a]] * (tau.xx * d.x[a] + tau.xz * d.z[a] + tau.hoop * d.hoop[a]) +
+                    vz[corners[a]] * (tau.xz * d.x[a] + tau.zz * d.z[a]));
     }
     return 0.25 * grid.cell_area() * sum;
 }

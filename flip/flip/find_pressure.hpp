@@ -54,10 +54,10 @@ inline void find_pressure(const Grid& grid, std::span<const Material> materials,
     const Nodes& g = mesh.nodes;
     Cells& c = mesh.cells;
     const bool volumes = c.volume.size() > 0;
-    const double V_c = grid.cell_area();
     const long count = mesh.materials;
     std::atomic<long> bad{-1};
-    for_each_cell(grid, [&](long, long, long n) {
+    for_each_cell(grid, [&](long i, long, long n) {
+        const double V_c = c.V_of_column[i];
         double speed2 = 0;
         for (const long corner : corners_of(grid, n))
             speed2 = std::max(speed2, g.vx[corner] * g.vx[corner] + g.vz[corner] * g.vz[corner]);
@@ -115,9 +115,9 @@ inline double sound_speed(double rho, double compressibility) {
     return rho > 0 && compressibility > 0 ? 1 / std::sqrt(rho * compressibility) : 0;
 }
 
-/// Density of a cell: of the volumes that its particles carry, where they do.
-inline double density_of(const Cells& c, double V_c, long n) {
-    return c.M[n] / (c.volume.size() > 0 ? std::max(c.volume[n], 1e-300) : V_c);
+/// Density of a cell in column i: of the volumes that its particles carry, where they do.
+inline double density_of(const Cells& c, long i, long n) {
+    return c.M[n] / (c.volume.size() > 0 ? std::max(c.volume[n], 1e-300) : c.V_of_column[i]);
 }
 
 /// The longest step that the flow allows.
@@ -137,7 +137,7 @@ inline double step_allowed(const Problem& problem, const Mesh& mesh, double last
     const Cells& c = mesh.cells;
     const bool plane = is_plane(grid), no_sound = problem.scheme.implicit && last > 0;
     const double per_dx = 1 / grid.x.spacing(), per_dz = plane ? 1 / grid.z.spacing() : 0;
-    const double per_dx2 = per_dx * per_dx + per_dz * per_dz, V_c = grid.cell_area();
+    const double per_dx2 = per_dx * per_dx + per_dz * per_dz;
     std::vector<double> of_row(grid.z.cells, 0.0);
     common::for_each_row(
         grid.z.cells,
@@ -151,7 +151,7 @@ inline double step_allowed(const Problem& problem, const Mesh& mesh, double last
                     vx = std::max(vx, std::fabs(g.vx[corner]));
                     vz = std::max(vz, std::fabs(g.vz[corner]));
                 }
-                const double rho = density_of(c, V_c, n);
+                const double rho = density_of(c, i, n);
                 const double sound =
                     c.surface[n] != 0 || no_sound
                         ? 0

@@ -1,6 +1,6 @@
 // The scratch pad of flip: what the mesh knows within one step. Velocities live on nodes, pressures
 // on cells. A particle * reaches the four nodes of its cell, with weights S, and the four cells whose
-// centers are around it, with weights R; both are area weights.
+// centers are around it, with weights R; see weights.hpp.
 //
 //     o-----------o-----------o      o  node (i, j): mass m_g, velocity v_g
 //     |           |           |      f  cell (i, j): materials, pressure p_c; at index(i, j) too
@@ -17,8 +17,8 @@
 #include <vector>
 
 #include "common/parallel.hpp"
+#include "flip/flip/weights.hpp"
 #include "flip/particles.hpp"
-#include "flip/problem.hpp"
 
 namespace flip {
 
@@ -60,6 +60,7 @@ struct Cells {
     Field compressibility;            // -(dV/dp)/V; 0 in an empty cell
     Field p_step;                     // the pressure that acts in this step
     std::vector<char> surface;        // 1: partly void, p = 0 whatever happens
+    std::vector<double> V_of_column;  // the volume that the lattice of the start fills in a cell
     // Only where particles carry volumes: sums of V_p and V_p/K_p; V_c div v dt, and its work, per
     // compliance; room for gas; per material, pressure above that of the cell.
     Field volume, compliance, strain, work, q_work, room;
@@ -73,6 +74,24 @@ struct Mesh {
     Cells cells;
     long materials = 1;
 };
+
+/// What the particles of the lattice, each with its volume, bring to a cell of each column.
+/// exact:  so uniform fluid on the lattice has its density in every cell, to round-off; in the plane
+///         it is the area of a cell, and in rings the sum approaches the volume with more particles
+inline std::vector<double> lattice_volumes(const Grid& grid, long per_cell) {
+    const long nx = grid.x.cells;
+    if (!grid.axisymmetric) return std::vector<double>(nx, grid.cell_area());
+    const WeightScale scale(grid);
+    std::vector<double> V(nx, 0.0);
+    for (long n = 0; n < nx * per_cell; ++n) {
+        const LatticeColumn column = lattice_column(grid, per_cell, n);
+        const Weights w = weights_at(scale, column.x, grid.z.low);
+        const double part = column.ring * grid.cell_area() / static_cast<double>(per_cell);
+        for (const long side : {0, 1})
+            V[std::clamp(column_of(grid, w.cell + side), 0L, nx - 1)] += part * w.R_x[side];
+    }
+    return V;
+}
 
 /// Makes room, once.
 inline Mesh mesh_of(const Problem& problem) {
@@ -93,6 +112,7 @@ inline Mesh mesh_of(const Problem& problem) {
     c.sum.assign(size * mesh.materials, {});
     for (auto* f : {&c.share, &c.de, &c.relative_de}) f->assign(size * mesh.materials, 0);
     c.surface.assign(size, 0);
+    c.V_of_column = lattice_volumes(problem.grid, problem.per_cell_x);
     for (Field* f : {&c.M, &c.p, &c.q, &c.compressibility, &c.p_step}) f->setZero(size);
     if (scheme.particle_volumes) {
         for (Field* f : {&c.volume, &c.compliance, &c.strain, &c.work, &c.q_work, &c.room})
@@ -101,64 +121,6 @@ inline Mesh mesh_of(const Problem& problem) {
         c.excess.assign(size * mesh.materials, 0);
     }
     return mesh;
-}
-
-/// Where a position is, in both directions: the cell with its four nodes, and the four cells around.
-struct Weights {
-    long node, cell;        // index of the lower left one of each four
-    double S_x[2], S_z[2];  // of the nodes
-    double R_x[2], R_z[2];  // of the cells
-};
-
-/// The constants of weights_at().
-struct WeightScale {
-    double x_low, z_low, per_dx, per_dz;
-    long stride, origin, last_x, last_z;
-
-    explicit WeightScale(const Grid& grid)
-        : x_low(grid.x.low),
-          z_low(grid.z.low),
-          per_dx(1 / grid.x.spacing()),
-          per_dz(1 / grid.z.spacing()),
-          stride(grid.stride()),
-          origin(grid.index(0, 0)),
-          last_x(grid.x.cells - 1),
-          last_z(grid.z.cells - 1) {}
-};
-
-/// S and R of one particle; both are linear, sum to 1, and differ by half a cell.
-/// in:     a position on the mesh
-[[gnu::always_inline]] inline Weights weights_at(const WeightScale& a, double x, double z) {
-    Weights w;
-    const double s = (x - a.x_low) * a.per_dx, t = (z - a.z_low) * a.per_dz;
-    const long i = std::min(static_cast<long>(s), a.last_x),
-               j = std::min(static_cast<long>(t), a.last_z);
-    const double fx = s - static_cast<double>(i), fz = t - static_cast<double>(j);
-    w.S_x[0] = 1 - fx, w.S_x[1] = fx;
-    w.S_z[0] = 1 - fz, w.S_z[1] = fz;
-    const long right = fx >= 0.5, above = fz >= 0.5;
-    w.R_x[1] = fx + 0.5 - static_cast<double>(right), w.R_x[0] = 1 - w.R_x[1];
-    w.R_z[1] = fz + 0.5 - static_cast<double>(above), w.R_z[0] = 1 - w.R_z[1];
-    w.node = a.origin + j * a.stride + i;
-    w.cell = w.node + (above - 1) * a.stride + right - 1;
-    return w;
-}
-
-/// Calls visit(index, weight) for the four nodes of a particle.
-template <class Visit>
-void for_nodes(const WeightScale& a, const Weights& w, const Visit& visit) {
-    visit(w.node, w.S_x[0] * w.S_z[0]);
-    visit(w.node + 1, w.S_x[1] * w.S_z[0]);
-    visit(w.node + a.stride, w.S_x[0] * w.S_z[1]);
-    visit(w.node + a.stride + 1, w.S_x[1] * w.S_z[1]);
-}
-/// The same for the four cells around it.
-template <class Visit>
-void for_cells(const WeightScale& a, const Weights& w, const Visit& visit) {
-    visit(w.cell, w.R_x[0] * w.R_z[0]);
-    visit(w.cell + 1, w.R_x[1] * w.R_z[0]);
-    visit(w.cell + a.stride, w.R_x[0] * w.R_z[1]);
-    visit(w.cell + a.stride + 1, w.R_x[1] * w.R_z[1]);
 }
 
 /// Copies nodes to their periodic images; what is beyond a boundary stays as it is.

@@ -13,6 +13,29 @@
 
 namespace flip {
 
+/// Lowers the artificial viscosity of rings to what stops the compression of a cell within the step.
+///   q <= -D v^0/(dt D M^-1 D^T)
+/// note:   a cell has that much only where its nodes are lighter than it is, as those near the axis in
+///         what is nearly void; more would throw the nodes apart, and the cell would lose the heat
+inline void limit_viscosity(const Grid& grid, double dt, Mesh& mesh) {
+    const Nodes& g = mesh.nodes;
+    const double dx = is_plane(grid) ? grid.x.spacing() : 0;  // in a row nothing moves along z
+    for_each_cell(grid, [&](long i, long, long n) {
+        double& q = mesh.cells.q[n];
+        if (q == 0) return;
+        double response = 0;  // D M^-1 D^T, of this cell alone
+        for (const long side : {0, 1}) {
+            const double node = static_cast<double>(i),
+                         along_r =
+                             grid.z.spacing() * ring_length(grid, node + static_cast<double>(side)),
+                         along_z = dx * ring_length(grid, node + static_cast<double>(1 + side) / 3);
+            for (const long corner : {n + side, n + side + grid.stride()})
+                response += 0.25 * (along_r * along_r + along_z * along_z) / g.m[corner];
+        }
+        q = std::min(q, -dilation(grid, g.vx0, g.vz0, n) / (dt * response));
+    });
+}
+
 /// Adds to the budget what comes from outside within the step: gravity, the pressure outside of open
 /// boundaries, and what walls give to the nodes that they hold, R = m (v^L - v) - dt (F + m g).
 ///   momentum: the impulses;  energy: impulse . v_bar, of walls impulse . velocity of the wall
@@ -185,6 +208,7 @@ inline StepReport move_mesh(const Problem& problem, double& dt, const Particles&
     if (consistent) solve_velocity(grid, M, g);
 
     find_viscosity(grid, boundaries, problem.q, mesh);
+    if (grid.axisymmetric) limit_viscosity(grid, dt, mesh);
     if (consistent) stop_at_walls(problem, M, g);
     for (;; dt *= 0.5) {
         find_known_forces(grid, boundaries, problem.viscosity, mesh);

@@ -12,8 +12,8 @@
 // couples the four cells around it, and a cell so meets its eight neighbors.
 //
 //     2 | 3      cells 0 to 3 around a node o; a pressure p of cell 0 pushes it with
-//     --o--      p dz/2 along x and p dx/2 along z, of cell 3 with the opposite; a component
-//     0 | 1      that a boundary gives is not pushed at all
+//     --o--      p dz/2 along x and p dx/2 along z, of cell 3 with the opposite; in rings, times
+//     0 | 1      their lengths; a component that a boundary gives is not pushed at all
 #pragma once
 
 #include <Eigen/IterativeLinearSolvers>
@@ -49,8 +49,12 @@ inline NodeStencil stencil_at(const Problem& problem, const Cells& c, long i, lo
             const long ia = inside(grid.x, a), jb = inside(grid.z, b);
             const long n = ia < 0 || jb < 0 ? -1 : grid.index(ia, jb);
             stencil.cell[k] = n >= 0 && c.M[n] > 0 && c.surface[n] == 0 ? n : -1;
-            stencil.x[k] = held.x ? 0 : (a < i ? 0.5 : -0.5) * grid.z.spacing();
-            stencil.z[k] = held.z ? 0 : (b < j ? 0.5 : -0.5) * grid.x.spacing();
+            const double node = static_cast<double>(i), side = a < i ? -1. / 3 : 1. / 3;
+            stencil.x[k] =
+                held.x ? 0 : (a < i ? 0.5 : -0.5) * grid.z.spacing() * ring_length(grid, node);
+            stencil.z[k] =
+                held.z ? 0
+                       : (b < j ? 0.5 : -0.5) * grid.x.spacing() * ring_length(grid, node + side);
             ++k;
         }
     }
@@ -92,7 +96,7 @@ inline PressureCells number_cells(const Problem& problem, double dt, const Mesh&
     for (long j = 0; j < grid.z.cells; ++j) {
         for (long i = 0; i < grid.x.cells; ++i) {
             const long n = grid.index(i, j);
-            const double inertia = grid.cell_area() * c.compressibility[n];
+            const double inertia = cell_volume(grid, i) * c.compressibility[n];
             if (c.M[n] <= 0 || c.surface[n] != 0 || inertia <= 0 ||
                 response[n] <= round_off * inertia)
                 continue;
@@ -166,7 +170,7 @@ inline StepReport solve_pressure(const Problem& problem, double dt, Mesh& mesh) 
     const Scheme& scheme = problem.scheme;
     Nodes& g = mesh.nodes;
     Cells& c = mesh.cells;
-    const double V_c = grid.cell_area(), theta = scheme.theta;
+    const double theta = scheme.theta;
     const detail::PressureCells cells = detail::number_cells(problem, dt, mesh);
     const long count = cells.count();
 
@@ -183,7 +187,7 @@ inline StepReport solve_pressure(const Problem& problem, double dt, Mesh& mesh) 
     Eigen::VectorXd load(count), inertia(count);
     for (long r = 0; r < count; ++r) {
         const long n = cells.index[r];
-        inertia[r] = V_c * c.compressibility[n];
+        inertia[r] = cell_volume(grid, column_of(grid, n)) * c.compressibility[n];
         load[r] = -theta * dt * dilation(grid, vx, vz, n);
     }
 
@@ -191,8 +195,9 @@ inline StepReport solve_pressure(const Problem& problem, double dt, Mesh& mesh) 
     double speed = 0;
     for_own_nodes(grid,
                   [&](long, long, long n) { speed = std::max(speed, std::hypot(vx[n], vz[n])); });
-    const double h = is_plane(grid) ? std::sqrt(V_c) : grid.x.spacing();
-    const double scale = theta * dt * V_c * speed / h * std::sqrt(static_cast<double>(count));
+    const double h = is_plane(grid) ? std::sqrt(grid.cell_area()) : grid.x.spacing(),
+                 V = cell_volume(grid, grid.x.cells / 2),
+                 scale = theta * dt * V * speed / h * std::sqrt(static_cast<double>(count));
     if (!(load.norm() > scheme.tolerance * scale))
         return {0, load.norm() / std::max(scale, 1e-300)};
     const auto A = detail::pressure_matrix(problem, dt, mesh, cells, inertia);

@@ -54,12 +54,11 @@ inline Totals particle_totals(const Grid& grid, const Particles& p) {
 /// in:     deposit_particles() and find_pressure() have been called
 inline CellFields cell_fields(const Grid& grid, const Mesh& mesh) {
     const Nodes& g = mesh.nodes;
-    const double per_V = 1 / grid.cell_area();
     CellFields f;
     for (Field* field : {&f.rho, &f.vx, &f.vz, &f.p, &f.e}) field->setZero(grid.size());
     f.rho_of.assign(mesh.materials, Field::Zero(grid.size()));
-    for_each_cell(grid, [&](long, long, long n) {
-        const double M = mesh.cells.M[n];
+    for_each_cell(grid, [&](long i, long, long n) {
+        const double M = mesh.cells.M[n], per_V = 1 / mesh.cells.V_of_column[i];
         if (M <= 0) return;
         const long up = n + grid.stride();
         double U = 0;

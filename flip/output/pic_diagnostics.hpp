@@ -45,14 +45,16 @@ inline Totals totals_of(const Grid& grid, const State& state, PicCells& cells) {
 /// out: fields, zero in empty cells; reused from step to step
 inline void fields_of(const Grid& grid, const State& state, const PicCells& cells,
                       CellFields& fields) {
-    const double per_V = 1 / grid.cell_area();
+    const double per_area = 1 / grid.cell_area();
     if (fields.rho.size() != grid.size()) {
         for (Field* f : {&fields.rho, &fields.vx, &fields.vz, &fields.p, &fields.e})
             f->setZero(grid.size());
         fields.rho_of.assign(cells.materials, fields.rho);
     }
     for_each_row_of_cells(grid, [&](long j) {
-        for (long n = grid.index(0, j); n < grid.index(grid.x.cells, j); ++n) {
+        for (long i = 0; i < grid.x.cells; ++i) {
+            const long n = grid.index(i, j);
+            const double per_V = per_area * cells.per_ring[i + 1];
             fields.rho[n] = cells.mass[n] * per_V;
             fields.vx[n] = state.cells.vx[n];
             fields.vz[n] = state.cells.vz[n];

@@ -94,7 +94,7 @@ class Recorder {
 
    private:
     // The quantities of t^n, each beside its name and unit.
-    common::Row row_of(const State& state, const Totals& now, const CellFields& cells,
+    common::Row row_of(const State& state, Totals now, const CellFields& cells,
                        const common::History& history) const {
         const auto first = [&](const char* name, double value) {
             return history.all().empty() ? value : history.first(name);
@@ -103,7 +103,11 @@ class Recorder {
             const double scale = before > 0 ? before : std::fabs(came_in);
             return scale > 0 ? change / scale : 0.0;
         };
-        const Budget& budget = state.budget;
+        Budget budget = state.budget;
+        // Around an axis momenta that point outward cancel, and nothing turns.
+        const bool rings = parameters_.grid.axisymmetric;
+        if (rings) now.momentum_x = now.angular_momentum = budget.momentum_x = 0;
+        const std::string per_length = rings ? "" : "/length";
         const double mass = first("mass", now.mass), kinetic = first("kinetic", now.kinetic);
         const double energy = now.kinetic + now.internal, gross = first("energy", energy);
         const double momentum = std::sqrt(2 * kinetic * mass) + mass * sound_speed_;
@@ -114,12 +118,12 @@ class Recorder {
         common::Row row;
         row.add("time", "time", state.time);
         row.add("dt", "time", state.dt);
-        row.add("energy", "energy/length", energy);
-        row.add("kinetic", "energy/length", now.kinetic);
-        row.add("internal", "energy/length", now.internal);
-        row.add("mass", "mass/length", now.mass);
-        row.add("momentum_x", "momentum/length", now.momentum_x);
-        row.add("momentum_z", "momentum/length", now.momentum_z);
+        row.add("energy", "energy" + per_length, energy);
+        row.add("kinetic", "energy" + per_length, now.kinetic);
+        row.add("internal", "energy" + per_length, now.internal);
+        row.add("mass", "mass" + per_length, now.mass);
+        row.add("momentum_x", "momentum" + per_length, now.momentum_x);
+        row.add("momentum_z", "momentum" + per_length, now.momentum_z);
         row.add("angular_momentum", "momentum", now.angular_momentum);
         row.add("mass_error", "1", relative(now.mass - budget.mass - mass, mass, budget.mass));
         row.add("momentum_x_error", "1",

@@ -24,7 +24,8 @@ struct Contribution {
 [[noreturn]] inline void refuse_cell(const Problem& problem, const State& state,
                                      const PicCells& cells, long n) {
     const Grid& grid = problem.grid;
-    std::string what = "the density, " + common::format(cells.mass[n] / grid.cell_area());
+    std::string what =
+        "the density, " + common::format(cells.mass[n] / cell_volume(grid, column_of(grid, n)));
     for (long k = 0; k < cells.materials; ++k) {
         const double e = state.cells.e[k][n];
         if (!(e >= 0))

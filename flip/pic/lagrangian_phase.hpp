@@ -4,7 +4,7 @@
 //     u~_c = u_c - (dt A/M_c) (P_right - P_left) + dt g          P_face = (p_left + p_right)/2 + q
 //     M_c (I~_c - I_c) = -dt sum over faces of A (p_c + q) (ubar_beyond - ubar_c)/2, outward
 //
-// with ubar = (u + u~)/2. The centered velocity is what makes total energy exact: on every face
+// with ubar = (u + u~)/2, and A of a ring of cells its volume V_c/dx: each cell's A goes with its u. The centered velocity is what makes total energy exact: on every face
 // inside the fluid the kinetic energy that it gives to the two cells is what their internal
 // energies lose.
 #pragma once
@@ -28,20 +28,22 @@ inline void viscous_pressure(const Grid& grid, const ArtificialViscosity& given,
     const double half_per_V = 0.5 / grid.cell_area();
     const double *filled = cells.filled.data(), *mass = cells.mass.data(), *c = cells.c.data();
     const CellVelocity* v = cells.v.data();
-    const auto q = [=](long a, long b, double du) {
-        return filled[a] * filled[b] *
-               viscosity(half_per_V * (mass[a] + mass[b]), 0.5 * (c[a] + c[b]), du);
-    };
+    const double* const per_ring = cells.per_ring.data() + 1;
     const long n = grid.index(0, j);
+    const auto q = [=](long a, long b, long before, double du) {
+        const double rho = half_per_V * (mass[a] * per_ring[before] + mass[b] * per_ring[b - n]);
+        return filled[a] * filled[b] * viscosity(rho, 0.5 * (c[a] + c[b]), du);
+    };
     double *q_x = cells.q_x.data(), *q_z = cells.q_z.data();
     if (j < grid.z.cells)
-        for (long m = n; m <= n + nx; ++m) q_x[m] = q(m - 1, m, v[m].x - v[m - 1].x);
+        for (long m = n; m <= n + nx; ++m) q_x[m] = q(m - 1, m, m - 1 - n, v[m].x - v[m - 1].x);
     if (is_plane(grid))
-        for (long m = n; m < n + nx; ++m) q_z[m] = q(m - stride, m, v[m].z - v[m - stride].z);
+        for (long m = n; m < n + nx; ++m)
+            q_z[m] = q(m - stride, m, m - n, v[m].z - v[m - stride].z);
 }
 
-// Sum of of_face(inside, beyond, q) over the faces on one side, with the cells on both sides of a face
-// and its viscous pressure.
+// Sum of of_face(inside, beyond, q) over the faces on one side, times the lengths of their rings, with
+// the cells on both sides of a face and its viscous pressure.
 template <class OfFace>
 double sum_over_faces(const Grid& grid, const PicCells& cells, Side side, const OfFace& of_face) {
     const long nx = grid.x.cells, nz = grid.z.cells;
@@ -49,12 +51,14 @@ double sum_over_faces(const Grid& grid, const PicCells& cells, Side side, const 
     double sum = 0;
     if (is_x_side(side)) {
         for (long j = 0; j < nz; ++j)
-            sum += of_face(grid.index(low ? 0 : nx - 1, j), grid.index(low ? -1 : nx, j),
-                           cells.q_x[grid.index(low ? 0 : nx, j)]);
+            sum += cells.ring[low ? 1 : nx] * of_face(grid.index(low ? 0 : nx - 1, j),
+                                                      grid.index(low ? -1 : nx, j),
+                                                      cells.q_x[grid.index(low ? 0 : nx, j)]);
     } else {
         for (long i = 0; i < nx; ++i)
-            sum += of_face(grid.index(i, low ? 0 : nz - 1), grid.index(i, low ? -1 : nz),
-                           cells.q_z[grid.index(i, low ? 0 : nz)]);
+            sum += cells.ring[i + 1] * of_face(grid.index(i, low ? 0 : nz - 1),
+                                               grid.index(i, low ? -1 : nz),
+                                               cells.q_z[grid.index(i, low ? 0 : nz)]);
     }
     return sum;
 }
@@ -88,7 +92,8 @@ inline void accelerate_cells(const Problem& problem, double dt, State& state, Pi
         };
         for (long i = 0; i < nx; ++i) {
             const long n = grid.index(i, j);
-            const double dt_per_M = dt * cells.per_mass[n], dt_here = dt * cells.filled[n];
+            const double dt_per_M = dt * cells.per_mass[n] * cells.ring[i + 1],
+                         dt_here = dt * cells.filled[n];
             const CellVelocity& v = cells.v[n];
             CellVelocity& v_tilde = cells.v_tilde[n];
             v_tilde.x = v.x - dt_per_M * A_x * (P_x(n + 1) - P_x(n)) + dt_here * g.x(i);
@@ -137,9 +142,12 @@ inline void do_work(const Problem& problem, double dt, State& state, PicCells& c
     const double A_x = grid.z.spacing(), A_z = grid.x.spacing();
     const Field &p = cells.p, &q_x = cells.q_x, &q_z = cells.q_z, &filled = cells.filled;
     const std::vector<CellVelocity>&v = cells.v, &v_tilde = cells.v_tilde;
-    // Half the difference of ubar across a face, beyond it minus here.
-    const auto step_x = [&](long here, long beyond) {
-        return 0.25 * ((v[beyond].x + v_tilde[beyond].x) - (v[here].x + v_tilde[here].x));
+    const double* const ring = cells.ring.data() + 1;
+    // Half the difference of ubar across a face, beyond it minus here; along x times the lengths of
+    // the rings, the transpose of what accelerate_cells() does.
+    const auto step_x = [&](long here, long beyond, long i, long i_beyond) {
+        return 0.25 * (ring[i_beyond] * (v[beyond].x + v_tilde[beyond].x) -
+                       ring[i] * (v[here].x + v_tilde[here].x));
     };
     const auto step_z = [&](long here, long beyond) {
         return 0.25 * ((v[beyond].z + v_tilde[beyond].z) - (v[here].z + v_tilde[here].z));
@@ -148,12 +156,14 @@ inline void do_work(const Problem& problem, double dt, State& state, PicCells& c
         for (long i = 0; i < nx; ++i) {
             const long n = grid.index(i, j);
             // [work]
-            double growth = A_x * (filled[n + 1] * (p[n] + q_x[n + 1]) * step_x(n, n + 1) -
-                                   filled[n - 1] * (p[n] + q_x[n]) * step_x(n, n - 1));
+            double growth =
+                A_x * (filled[n + 1] * (p[n] + q_x[n + 1]) * step_x(n, n + 1, i, i + 1) -
+                       filled[n - 1] * (p[n] + q_x[n]) * step_x(n, n - 1, i, i - 1));
             if (plane) {
                 const long up = n + stride, down = n - stride;
-                growth += A_z * (filled[up] * (p[n] + q_z[up]) * step_z(n, up) -
-                                 filled[down] * (p[n] + q_z[n]) * step_z(n, down));
+                growth += A_z * ring[i] *
+                          (filled[up] * (p[n] + q_z[up]) * step_z(n, up) -
+                           filled[down] * (p[n] + q_z[n]) * step_z(n, down));
             }
             const double work = -dt * growth;
             // [/work]
@@ -174,11 +184,12 @@ inline void do_work(const Problem& problem, double dt, State& state, PicCells& c
         const double inward = is_low_side(side) ? 1 : -1;
         const double work =
             detail::sum_over_faces(grid, cells, side, [&](long inside, long beyond, double q) {
-                const double ubar = along_x ? 0.5 * (v[inside].x + v_tilde[inside].x)
-                                            : 0.5 * (v[inside].z + v_tilde[inside].z);
-                const double step = along_x ? step_x(inside, beyond) : step_z(inside, beyond);
-                return detail::face_pressure(cells, inside, beyond, q) * ubar +
-                       filled[inside] * filled[beyond] * (p[inside] + q) * step;
+                const auto ubar = [&](long n) {
+                    return along_x ? 0.5 * (v[n].x + v_tilde[n].x) : 0.5 * (v[n].z + v_tilde[n].z);
+                };
+                return detail::face_pressure(cells, inside, beyond, q) * ubar(inside) +
+                       filled[inside] * filled[beyond] * (p[inside] + q) * 0.5 *
+                           (ubar(beyond) - ubar(inside));
             });
         budget.energy += inward * dt * (along_x ? A_x : A_z) * work;
     }

@@ -44,11 +44,11 @@ inline void find_pressure(const Problem& problem, const State& state, PicCells& 
     const Grid& grid = problem.grid;
     const std::vector<Material>& materials = problem.materials;
     const long K = cells.materials;
-    const double V = grid.cell_area();
     for_each_row_of_cells(grid, [&](long j) {
         std::array<double, most_materials> U{};
         for (long i = 0; i < grid.x.cells; ++i) {
             const long n = grid.index(i, j);
+            const double V = grid.cell_area() * cells.ring[i + 1];
             double* const M = &cells.M[n * K];
             double* const share = &cells.share[n * K];
             double mass = 0;
@@ -78,12 +78,13 @@ inline void find_pressure(const Problem& problem, const State& state, PicCells& 
 
 namespace detail {
 
-// The largest of what of_cell(n) says.
+// The largest of what of_cell(n, place of its column in cells.ring) says.
 template <class OfCell>
 double largest_over_cells(const Grid& grid, PicCells& cells, const OfCell& of_cell) {
     for_each_row_of_cells(grid, [&](long j) {
         double most = 0;
-        for (long i = 0; i < grid.x.cells; ++i) most = std::max(most, of_cell(grid.index(i, j)));
+        for (long i = 0; i < grid.x.cells; ++i)
+            most = std::max(most, of_cell(grid.index(i, j), i + 1));
         cells.row[j] = most;
     });
     return *std::max_element(cells.row.begin(), cells.row.end());
@@ -94,16 +95,16 @@ double largest_over_cells(const Grid& grid, PicCells& cells, const OfCell& of_ce
 inline double rate_of_signals(const Grid& grid, PicCells& cells) {
     const bool plane = is_plane(grid);
     const double per_dx = 1 / grid.x.spacing(), per_dz = plane ? 1 / grid.z.spacing() : 0.0,
-                 both = std::sqrt(per_dx * per_dx + per_dz * per_dz), V = grid.cell_area();
+                 both = std::sqrt(per_dx * per_dx + per_dz * per_dz), area = grid.cell_area();
     const long stride = grid.stride();
     const Field &p = cells.p, &c = cells.c, &filled = cells.filled;
-    return largest_over_cells(grid, cells, [&](long n) {
+    return largest_over_cells(grid, cells, [&](long n, long column) {
         const CellVelocity& v = cells.v[n];
         double P = 0;
         const auto face = [&](long m) { P = std::max(P, filled[m] * 0.5 * (p[n] + p[m])); };
         face(n - 1), face(n + 1);
         if (plane) face(n - stride), face(n + stride);
-        const double c2 = std::max(c[n] * c[n], P * V * cells.per_mass[n]);
+        const double c2 = std::max(c[n] * c[n], P * area * cells.ring[column] * cells.per_mass[n]);
         return filled[n] *
                (std::fabs(v.x) * per_dx + std::fabs(v.z) * per_dz + std::sqrt(c2) * both);
     });
@@ -112,23 +113,27 @@ inline double rate_of_signals(const Grid& grid, PicCells& cells) {
 // Rate at which viscosity takes away differences of velocity, all faces of a cell together.
 inline double rate_of_viscosity(const Grid& grid, const ArtificialViscosity& viscosity,
                                 PicCells& cells) {
-    const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing(), V = grid.cell_area();
+    const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing(),
+                 area = grid.cell_area();
     const long stride = grid.stride();
     const Field &mass = cells.mass, &per_mass = cells.per_mass, &c = cells.c;
     const std::vector<CellVelocity>& v = cells.v;
-    return largest_over_cells(grid, cells, [&](long n) {
+    const std::vector<double>&ring = cells.ring, &per_ring = cells.per_ring;
+    return largest_over_cells(grid, cells, [&](long n, long column) {
         double rate = 0;
-        const auto face = [&](long m, double du, double per_distance) {
+        const auto face = [&](long m, long beside, double du, double per_distance) {
             if (!(du < 0)) return;
-            const double slope =
-                viscosity.slope(0.5 * (mass[n] + mass[m]) / V, 0.5 * (c[n] + c[m]), du);
-            rate += cells.filled[m] * slope * V * (per_mass[n] + per_mass[m]) * per_distance;
+            const double slope = viscosity.slope(
+                0.5 * (mass[n] * per_ring[column] + mass[m] * per_ring[beside]) / area,
+                0.5 * (c[n] + c[m]), du);
+            rate += cells.filled[m] * slope * area *
+                    (per_mass[n] * ring[column] + per_mass[m] * ring[beside]) * per_distance;
         };
-        face(n + 1, v[n + 1].x - v[n].x, per_dx);
-        face(n - 1, v[n].x - v[n - 1].x, per_dx);
+        face(n + 1, column + 1, v[n + 1].x - v[n].x, per_dx);
+        face(n - 1, column - 1, v[n].x - v[n - 1].x, per_dx);
         if (is_plane(grid)) {
-            face(n + stride, v[n + stride].z - v[n].z, per_dz);
-            face(n - stride, v[n].z - v[n - stride].z, per_dz);
+            face(n + stride, column, v[n + stride].z - v[n].z, per_dz);
+            face(n - stride, column, v[n].z - v[n - stride].z, per_dz);
         }
         return cells.filled[n] * rate;
     });

@@ -2,7 +2,7 @@
 // surfaces and with slip at the walls. Cells hold velocity and energy; particles are mass and a
 // label, and carry it from cell to cell.
 //
-// The default case is the showpiece of 1955: an iron ball, here a rod, hits an aluminum plate.
+// The default case is the showpiece of 1955: a sphere of iron hits a plate of aluminum.
 // Run:   build/pic
 // Run:   build/pic flip/cases/sod.toml particles.per_cell_x=64
 // Run:   build/pic flip/cases/advected_blob.toml time.dt=0.001
@@ -28,7 +28,7 @@ using namespace flip;
 const common::ProgramInfo info{
     "pic", PROGRAM_VERSION,
     "Harlow's particle-in-cell method for compressible flow; the default case "
-    "is a ball that hits a plate",
+    "is a sphere that hits a plate",
     "flip/cases/sphere_hits_plate.toml"};
 
 int run_program(int argc, char** argv, std::optional<common::Run>& holder) {

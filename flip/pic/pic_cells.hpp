@@ -27,15 +27,16 @@ struct CellVelocity {
 /// The scratch pad. Of several materials, those of one cell lie together: [cell * materials + k].
 struct PicCells {
     long materials = 1;
-    std::vector<double> M;              // mass of each material
-    Field mass, per_mass;               // of all; 1/mass, 0 in an empty cell
-    Field filled;                       // 1, or 0 in an empty cell
-    Field p, c;                         // pressure, speed of sound
-    std::vector<double> share;          // of the work of the pressure, that each material takes
-    Field q_x, q_z;                     // viscous pressure on the faces before the cell
-    std::vector<CellVelocity> v;        // u
-    std::vector<CellVelocity> v_tilde;  // u~
-    std::vector<double> e_tilde;        // I~ of each material
+    std::vector<double> M;               // mass of each material
+    Field mass, per_mass;                // of all; 1/mass, 0 in an empty cell
+    Field filled;                        // 1, or 0 in an empty cell
+    Field p, c;                          // pressure, speed of sound
+    std::vector<double> share;           // of the work of the pressure, that each material takes
+    Field q_x, q_z;                      // viscous pressure on the faces before the cell
+    std::vector<double> ring, per_ring;  // ring_length() of column i at [i + 1], ghosts like inside
+    std::vector<CellVelocity> v;         // u
+    std::vector<CellVelocity> v_tilde;   // u~
+    std::vector<double> e_tilde;         // I~ of each material
 
     std::vector<int> donor;    // of each particle, the cell that it comes from
     std::vector<double> sums;  // what particles bring to a cell
@@ -46,6 +47,11 @@ struct PicCells {
         : materials(static_cast<long>(problem.materials.size())) {
         const Grid& grid = problem.grid;
         for (Field* f : {&mass, &per_mass, &filled, &p, &c, &q_x, &q_z}) f->setZero(grid.size());
+        ring.assign(grid.x.cells + 2, 1.0);
+        for (long i = 0; i < grid.x.cells; ++i)
+            ring[i + 1] = ring_length(grid, static_cast<double>(i) + 0.5);
+        ring.front() = ring[1], ring.back() = ring[grid.x.cells];
+        for (const double length : ring) per_ring.push_back(1 / length);
         for (auto* f : {&M, &share, &e_tilde}) f->assign(grid.size() * materials, 0.0);
         v.assign(grid.size(), {});
         v_tilde.assign(grid.size(), {});
@@ -119,7 +125,7 @@ inline void fill_ghosts(const Grid& grid, const Boundaries& boundaries, PicCells
                 (*f)[ghost] = (*f)[inside];
             if (open) cells.p[ghost] = 2 * outside_pressure - cells.p[inside];
             if (!inflow) return;
-            cells.mass[ghost] = in.rho * V;
+            cells.mass[ghost] = in.rho * V * cells.ring[column_of(grid, ghost) + 1];
             cells.per_mass[ghost] = 1 / cells.mass[ghost];
             cells.filled[ghost] = 1;
             cells.p[ghost] = in.p;

@@ -46,7 +46,8 @@ inline Field change_to_balance(const Problem& problem, Mesh& mesh) {
 // are means with the weights w_p = -dV_p/dp, by a given amount.
 //   sum_p R w_p dp_p = amount_c sum_p R w_p
 inline std::vector<double> particle_changes(const Problem& problem, const Particles& particles,
-                                            double V_p, const Cells& c, const Field& amount) {
+                                            const std::vector<double>& V_p, const Cells& c,
+                                            const Field& amount) {
     const Grid& grid = problem.grid;
     const WeightScale scale(grid);
     const long count = particles.count();
@@ -71,8 +72,8 @@ inline std::vector<double> particle_changes(const Problem& problem, const Partic
     };
     for (long k = 0; k < count; ++k) {
         const Material& a = problem.materials[particles.material[k]];
-        const double p = pressure(a, particles.m_p[k] / V_p, particles.e_p[k]);
-        w[k] = volumes ? compliance(a, V_p, p) : V_p / (p + a.gamma * a.p_infinity);
+        const double p = pressure(a, particles.m_p[k] / V_p[k], particles.e_p[k]);
+        w[k] = volumes ? compliance(a, V_p[k], p) : V_p[k] / (p + a.gamma * a.p_infinity);
         if (a.gamma == 1 || !std::isfinite(w[k])) w[k] = 0;
     }
     const Field W = deposit([&](long k) { return w[k]; });
@@ -103,8 +104,13 @@ inline std::vector<double> particle_changes(const Problem& problem, const Partic
 inline void balance_at_rest(const Problem& problem, Particles& particles, Mesh& mesh) {
     const Grid& grid = problem.grid;
     const Cells& c = mesh.cells;
-    const double V_p =
-        grid.cell_area() / static_cast<double>(problem.per_cell_x * problem.per_cell_z);
+    std::vector<double> V_p = particles.V_p;
+    if (V_p.empty()) {  // of a place on the lattice; rings to a per cent, which the loop mends
+        const double A_p = grid.x.spacing() * grid.z.spacing() /
+                           static_cast<double>(problem.per_cell_x * problem.per_cell_z);
+        for (const double x : particles.x_p)
+            V_p.push_back(A_p * (grid.axisymmetric ? 2 * pi * x : 1));
+    }
     Field target;
     double apart_before = 0;
     for (int n = 0; n < 20; ++n) {
@@ -121,7 +127,7 @@ inline void balance_at_rest(const Problem& problem, Particles& particles, Mesh& 
         const std::vector<double> dp = detail::particle_changes(problem, particles, V_p, c, apart);
         for (long k = 0; k < particles.count(); ++k) {
             const double gamma = problem.materials[particles.material[k]].gamma;
-            if (gamma > 1) particles.e_p[k] += dp[k] * V_p / ((gamma - 1) * particles.m_p[k]);
+            if (gamma > 1) particles.e_p[k] += dp[k] * V_p[k] / ((gamma - 1) * particles.m_p[k]);
         }
     }
 }

@@ -13,8 +13,6 @@
 
 namespace flip {
 
-inline constexpr double pi = 3.14159265358979323846;
-
 /// A state of the gas: of numbers, or of formulas of the place.
 template <class Number>
 struct GasOf {
@@ -66,9 +64,10 @@ struct BoundaryCase {
 };
 inline constexpr std::array<const char*, 4> side_names{"x_low", "x_high", "z_low", "z_high"};
 
-/// A complete input. Any consistent units; per unit length along y.
+/// A complete input. Any consistent units; per unit length along y, or axisymmetric.
 struct Case {
     common::Grid grid{{100, 0, 1, true}, {1, 0, 1, true}};
+    std::string geometry = "plane";  // or axisymmetric
     std::array<BoundaryCase, 4> boundaries;
     GasCase inflow;
     std::vector<InflowCase> inflows;

@@ -69,6 +69,7 @@ inline void validate(const Case& parameters, const std::string& program) {
            " is not on the mesh, from ", parameters.grid.x.low, " to ", parameters.grid.x.high());
     refuse_sizes(parameters);
     refuse_boundaries(parameters);
+    refuse_around_axis(parameters);
     refuse_materials(parameters);
     for (const RegionCase& r : parameters.regions) refuse_region(parameters, r);
     refuse_methods(parameters, program);

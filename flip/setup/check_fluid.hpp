@@ -104,6 +104,29 @@ inline void refuse_boundaries(const Case& parameters) {
            " needs grid.cells_z of at least 2");
 }
 
+/// Refuses what has no meaning around an axis.
+inline void refuse_around_axis(const Case& parameters) {
+    if (!parameters.grid.axisymmetric) return;
+    const std::string geometry = "grid.geometry = \"axisymmetric\" ";
+    refuse(parameters.grid.x.low != 0, geometry, "needs the axis at grid.low_x = 0, and it is ",
+           parameters.grid.x.low);
+    refuse(!parameters.is(x_low, "slip"), geometry,
+           "needs boundary.x_low = \"slip\": nothing crosses the axis");
+    refuse(parameters.is(x_high, "inflow"), geometry,
+           "and boundary.x_high = \"inflow\" do not go together: a stream towards the axis is not "
+           "uniform; let it come in along z");
+    refuse(parameters.gravity_x != 0 || parameters.trap != 0, geometry,
+           "has no direction x: take out gravity.x and gravity.trap");
+    refuse(
+        parameters.rezone_steps > 0, geometry,
+        "and rezone.steps do not go together: splitting and merging keep weights that are linear "
+        "in r, and rings weigh by r^2; take rezone.steps = 0");
+    for (const RegionCase& r : parameters.regions)
+        refuse(r.flow != "uniform" && r.flow != "radial" && r.flow != "gaussian", geometry,
+               "has no flow = \"", r.flow, "\", as region.", r.name,
+               " asks for: take uniform, radial or gaussian");
+}
+
 /// Refuses materials that the equation of state or the program cannot hold.
 inline void refuse_materials(const Case& parameters) {
     refuse(parameters.materials.size() > most_materials, parameters.materials.size(),

@@ -87,7 +87,8 @@ inline common::ParameterTable describe(Case& parameters) {
     using common::anything, common::above, common::at_least, common::between;
     common::ParameterTable table;
 
-    table.group("mesh: the plane (x, z), or a single row of cells; nothing depends on y");
+    table.group(
+        "mesh: the plane (x, z), or a single row of cells; nothing depends on y, or on the angle");
     table.whole("grid.cells_x", parameters.grid.x.cells, "", between(2, 16384), "cells along x");
     table.whole("grid.cells_z", parameters.grid.z.cells, "", between(1, 16384),
                 "cells along z; 1: a row");
@@ -96,6 +97,9 @@ inline common::ParameterTable describe(Case& parameters) {
     table.real("grid.length_z", parameters.grid.z.length, "length", above(0), "along z");
     table.real("grid.low_x", parameters.grid.x.low, "length", anything(), "left end");
     table.real("grid.low_z", parameters.grid.z.low, "length", anything(), "lower end");
+    table.choice(
+        "grid.geometry", parameters.geometry, {"plane", "axisymmetric"},
+        "axisymmetric: x is the distance r from the axis x = 0, and all is of whole rings");
 
     table.group("boundaries of the mesh");
     for (std::size_t k = 0; k < 4; ++k) {

@@ -18,6 +18,7 @@ namespace flip {
 /// end, and formulas read.
 /// errors: InputError for a formula that is none
 inline Case completed(Case parameters) {
+    parameters.grid.axisymmetric = parameters.geometry == "axisymmetric";
     parameters.grid.x.periodic = parameters.is(x_low, "periodic");
     parameters.grid.z.periodic = parameters.is(z_low, "periodic");
     if (parameters.setup == "riemann") {
@@ -196,8 +197,8 @@ inline Particles load_particles(const Case& parameters) {
             const bool random = parameters.loading == "random";
             const double u = random ? common::uniform(seed, where, place, 0) : 0.5,
                          v = random ? common::uniform(seed, where, place, 1) : 0.5;
-            const double x = grid.x.low + dx * (static_cast<double>(i) + u),
-                         z = grid.z.low + dz * (static_cast<double>(j) + v);
+            const auto [x, ring] = lattice_column(grid, parameters.per_cell_x, i, random, u);
+            const double z = grid.z.low + dz * (static_cast<double>(j) + v);
             const long n = region_at(parameters, x, z);
             if (n < 0) continue;
             const RegionCase& region = parameters.regions[n];
@@ -205,12 +206,13 @@ inline Particles load_particles(const Case& parameters) {
             const double noise = region.noise * (2 * common::uniform(seed, how_fast, place, 0) - 1);
             particles.x_p.push_back(x);
             particles.z_p.push_back(z);
-            particles.m_p.push_back(fluid.density * dx * dz);
+            particles.m_p.push_back(fluid.density * dx * dz * ring);
             particles.vx_p.push_back(fluid.vx + (region.noise > 0 ? noise : 0.0));
             particles.vz_p.push_back(fluid.vz);
             particles.e_p.push_back(fluid.e);
             particles.material.push_back(fluid.material);
-            region_mass[n] += fluid.density * dx * dz;
+            if (parameters.density == "particles") particles.V_p.push_back(dx * dz * ring);
+            region_mass[n] += fluid.density * dx * dz * ring;
             region_of.push_back(n);
         }
     }
@@ -219,7 +221,6 @@ inline Particles load_particles(const Case& parameters) {
         if (parameters.regions[n].energy > 0)
             particles.e_p[p] += parameters.regions[n].energy / region_mass[n];
     }
-    if (parameters.density == "particles") particles.V_p.assign(particles.x_p.size(), dx * dz);
     if (parameters.transfer == "apic") {
         const double step_x = 1e-3 * grid.x.spacing(), step_z = 1e-3 * grid.z.spacing();
         for (std::size_t p = 0; p < region_of.size(); ++p) {

@@ -89,7 +89,8 @@ inline Scales scales_of(const Case& parameters, const std::string& program = "fl
     const double both = std::hypot(per_dx, per_dz);
     const double place = parameters.grid.cell_area() /
                          static_cast<double>(parameters.per_cell_x * parameters.per_cell_z);
-    for_each_place(parameters, [&](long n, const FluidState& fluid, double, double, double weight) {
+    for_each_place(parameters, [&](long n, const FluidState& fluid, double x, double,
+                                   double weight) {
         RegionScales& r = s.regions[n];
         const Material& a = parameters.materials[fluid.material];
         const double speed = std::hypot(fluid.vx, fluid.vz),
@@ -103,7 +104,7 @@ inline Scales scales_of(const Case& parameters, const std::string& program = "fl
         r.speed = std::max(r.speed, speed);
         if (c > 0) r.mach = std::max(r.mach, speed / c);
         r.particles += weight;
-        r.mass += weight * fluid.density * place;
+        r.mass += weight * fluid.density * place * (parameters.grid.axisymmetric ? 2 * pi * x : 1);
         s.sound_speed = std::max(s.sound_speed, c);
         s.rate = std::max(s.rate, std::fabs(fluid.vx) * per_dx + std::fabs(fluid.vz) * per_dz +
                                       (parameters.implicit() ? 0 : c * both));
@@ -158,7 +159,8 @@ inline std::string describe_scales(const Case& parameters, const Scales& scales,
         return a == b ? a : a + " and " + b;
     };
     line("mesh", grid.x.cells, " x ", grid.z.cells, " cells of ", grid.x.spacing(), " x ",
-         grid.z.spacing(), ", ", ends(x_low), " in x, ", ends(z_low), " in z");
+         grid.z.spacing(), ", ", ends(x_low), " in x, ", ends(z_low), " in z",
+         (grid.axisymmetric ? ", rings about the axis x = 0" : ""));
     if (program == "flip") {
         std::string method = parameters.transfer;
         if (parameters.transfer == "blend") method += " " + format(parameters.blend);

@@ -24,6 +24,7 @@ inline const RegionCase& hot_region(const Case& parameters) {
 /// The blast of a case.
 inline Blast blast_of(const Case& parameters) {
     const RegionCase &hot = hot_region(parameters), &cold = parameters.regions.front();
+    const int around = parameters.grid.axisymmetric ? 1 : 0;
     double energy = hot.energy / (parameters.plane() ? 1 : parameters.grid.z.length);
     const auto mirrored = [&](Side low, const common::Axis& axis, double center) {
         const double near = 0.5 * axis.spacing();
@@ -32,9 +33,10 @@ inline Blast blast_of(const Case& parameters) {
             parameters.is(Side(low + 1), "slip") && std::fabs(center - axis.high()) <= near;
         return at_low || at_high ? 2.0 : 1.0;
     };
-    energy *= mirrored(x_low, parameters.grid.x, hot.center_x);
+    if (around == 0) energy *= mirrored(x_low, parameters.grid.x, hot.center_x);
     if (parameters.plane()) energy *= mirrored(z_low, parameters.grid.z, hot.center_z);
-    return {theory::blast_wave(material_of(parameters, cold).gamma, parameters.plane() ? 2 : 1),
+    return {theory::blast_wave(material_of(parameters, cold).gamma,
+                               (parameters.plane() ? 2 : 1) + around),
             energy, cold.gas.density, hot.center_x, hot.center_z};
 }
 
@@ -45,6 +47,8 @@ inline void validate_sedov(const Case& parameters, const Refusal& refuse) {
                                    [](const RegionCase& r) { return r.energy > 0; });
     refuse(hot != 1 || parameters.regions.size() < 2 || cold.energy > 0,
            " needs a cold region first, and one with an energy inside it; ", hot, " have one");
+    refuse(parameters.grid.axisymmetric && hot_region(parameters).center_x != 0,
+           " needs the blast on the axis: ", hot_region(parameters).center_x, " is not 0");
     const double gamma = material_of(parameters, cold).gamma;
     refuse(!(gamma > 1 && gamma < 2), " is known for gamma between 1 and 2, and it is ", gamma);
     refuse(hot_region(parameters).gas.density != cold.gas.density,
@@ -113,6 +117,7 @@ inline void compare_sedov(const FinishedRun& run) {
 }
 
 inline constexpr Comparison sedov_comparison{"sedov",       validate_sedov, predict_sedov,
-                                             warn_of_sedov, track_sedov,    compare_sedov};
+                                             warn_of_sedov, track_sedov,    compare_sedov,
+                                             Rows::any,     Frame::at_rest, true};
 
 }  // namespace flip

@@ -81,7 +81,8 @@ struct Comparison {
     void (*compare)(const FinishedRun&) = nullptr;
     Rows rows = Rows::any;
     Frame frame = Frame::at_rest;
-    bool formulas = false;  // whether regions may have them
+    bool axisymmetric = false;  // stated for rings too
+    bool formulas = false;      // whether regions may have them
 };
 
 /// Refuses a case without a region that has a flow.

@@ -18,7 +18,8 @@
 
 namespace flip {
 
-inline constexpr Comparison no_comparison{.name = "none", .frame = Frame::moves, .formulas = true};
+inline constexpr Comparison no_comparison{
+    .name = "none", .frame = Frame::moves, .axisymmetric = true, .formulas = true};
 
 /// Every value of theory.compare.
 inline constexpr std::array comparisons{
@@ -42,6 +43,8 @@ inline void validate_comparison(const Case& parameters) {
     const Comparison& c = comparison_of(parameters);
     const Refusal refuse{sentence("theory.compare = \"", c.name, "\"")};
     refuse(c.rows == Rows::several && !parameters.plane(), " needs grid.cells_z of at least 2");
+    refuse(parameters.grid.axisymmetric && !c.axisymmetric,
+           " is stated for grid.geometry = \"plane\": take that, or another comparison");
     refuse((parameters.frame_x != 0 && c.frame == Frame::at_rest) ||
                (parameters.frame_z != 0 && c.frame != Frame::moves),
            " is stated in the frame of the mesh: take out theory.frame_x and frame_z");

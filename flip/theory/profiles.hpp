@@ -38,45 +38,46 @@ inline double apart(const common::Axis& axis, double a, double b) {
     return axis.periodic ? d - axis.length * std::floor(d / axis.length + 0.5) : d;
 }
 
-/// Means over rings, one cell wide, around a point; in a row of cells, over both sides of it.
+/// Means over shells, one cell wide, around a point; in a row of cells, over both sides of it.
 struct RadialProfile {
     std::vector<double> r, rho, v_r, v_phi, p, e;  // v_phi counterclockwise from x to z
 };
 
 /// The fluid around (x0, z0), in a frame that moves with (vx0, vz0).
-/// out:    density and pressure are means over the area, velocity and energy over the mass
+/// out:    density and pressure are means over the volume, velocity and energy over the mass
 inline RadialProfile radial_profile(const Grid& grid, const CellFields& cells, double x0, double z0,
                                     double vx0 = 0, double vz0 = 0) {
     const bool plane = grid.z.cells > 1;
     const double step = std::max(grid.x.spacing(), plane ? grid.z.spacing() : 0.0);
     RadialProfile sums;
-    std::vector<double> count, mass;
+    std::vector<double> volume, mass;
     visit_cells(grid, [&](long c, double x, double z) {
         const double dx = apart(grid.x, x0, x), dz = plane ? apart(grid.z, z0, z) : 0.0,
                      r = std::hypot(dx, dz);
         const auto n = static_cast<std::size_t>(r / step);
-        if (n >= count.size())
+        if (n >= volume.size())
             for (auto* column :
-                 {&count, &mass, &sums.r, &sums.rho, &sums.v_r, &sums.v_phi, &sums.p, &sums.e})
+                 {&volume, &mass, &sums.r, &sums.rho, &sums.v_r, &sums.v_phi, &sums.p, &sums.e})
                 column->resize(n + 1, 0.0);
-        const double m = cells.rho[c], vx = cells.vx[c] - vx0, vz = cells.vz[c] - vz0;
-        count[n] += 1;
+        const double V = grid.axisymmetric ? x : 1, m = V * cells.rho[c], vx = cells.vx[c] - vx0,
+                     vz = cells.vz[c] - vz0;
+        volume[n] += V;
         mass[n] += m;
-        sums.r[n] += r;
+        sums.r[n] += V * r;
         sums.rho[n] += m;
-        sums.p[n] += cells.p[c];
+        sums.p[n] += V * cells.p[c];
         sums.e[n] += m * cells.e[c];
         if (r == 0) return;
         sums.v_r[n] += m * (vx * dx + vz * dz) / r;
         sums.v_phi[n] += m * (vz * dx - vx * dz) / r;
     });
     RadialProfile profile;
-    for (std::size_t n = 0; n < count.size(); ++n) {
-        if (count[n] == 0) continue;
+    for (std::size_t n = 0; n < volume.size(); ++n) {
+        if (volume[n] == 0) continue;
         const double per_mass = mass[n] > 0 ? 1 / mass[n] : 0;
-        profile.r.push_back(sums.r[n] / count[n]);
-        profile.rho.push_back(sums.rho[n] / count[n]);
-        profile.p.push_back(sums.p[n] / count[n]);
+        profile.r.push_back(sums.r[n] / volume[n]);
+        profile.rho.push_back(sums.rho[n] / volume[n]);
+        profile.p.push_back(sums.p[n] / volume[n]);
         profile.e.push_back(sums.e[n] * per_mass);
         profile.v_r.push_back(sums.v_r[n] * per_mass);
         profile.v_phi.push_back(sums.v_phi[n] * per_mass);
