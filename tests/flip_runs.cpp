@@ -291,6 +291,20 @@ TEST_CASE("tubes of two gases and of water and air follow the exact solution in 
     }
 }
 
+TEST_CASE("a dam breaks with the air that it had and a pond under air lies still" *
+          doctest::description("physics")) {
+    const Run dam = run("flip", "dam_with_air", "dam_break_air");
+    check_results(dam, 1);
+    check_conserved(dam);
+    for (const char* pressure : {"explicit", "implicit"}) {
+        CAPTURE(std::string(pressure));
+        const Run pond =
+            run("flip", "pond", "pond", "grid.cells_x=6 flip.pressure=" + std::string(pressure));
+        check_results(pond, 1);
+        CHECK(pond.value("kinetic_energy") <= 1e-20);
+    }
+}
+
 TEST_CASE("a blast follows Sedov and falling gas is dense but not as dense as Noh's" *
           doctest::description("physics")) {
     const Run blast = run("flip", "blast", "sedov", "grid.cells_x=48 grid.cells_z=48");

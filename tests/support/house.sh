@@ -28,5 +28,5 @@ for program in cic/cic.cpp flip/pic/pic.cpp flip/flip/flip.cpp mpm_explicit/mpm_
 done
 
 lines=$(cat common/*.hpp common/*/*.hpp common/*/*.cpp | wc -l)
-[ "$lines" -le 4934 ] || complain "common/ has $lines lines, more than 4934"
+[ "$lines" -le 4957 ] || complain "common/ has $lines lines, more than 4957"
 exit $status
