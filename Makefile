@@ -299,6 +299,7 @@ $(eval $(call fluid_series,flip_kelvin_helmholtz,kelvin_helmholtz,out/flip/strea
 $(eval $(call fluid_series,flip_acoustic,acoustic,out/flip/sound_waves))
 $(eval $(call fluid_series,flip_ringing,ringing,out/flip/uniform_flows))
 $(eval $(call figure,flip_dam_break,flip,out/flip/dam_break))
+$(eval $(call figure,flip_dam_break_air,flip,out/flip/dam_break_air))
 $(eval $(call figure,flip_cavity,flip,out/flip/cavity))
 $(eval $(call fluid_series,flip_translating_frame,translating_frame,out/flip/frames))
 $(eval $(call fluid_series,flip_sedov,sedov,out/flip/blasts))

@@ -309,9 +309,9 @@ TEST_CASE("four ends let in four gases and all of them are in the budget") {
     for (const char* transfer : {"flip", "pic", "apic"}) {
         for (const char* density : {"cells", "particles"}) {
             Case w = four_streams();
-            w.transfer = transfer, w.density = density, w.dt = 0.004;
+            w.transfer = transfer, w.density = density, w.dt = 0.002;
             FlipRun r(w, Particles{});
-            r.steps(45);
+            r.steps(90);
             CAPTURE(transfer);
             CAPTURE(density);
             check_masses(r.w, r.particles(), r.state.time);

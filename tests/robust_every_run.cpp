@@ -651,7 +651,7 @@ pic wall_shock.toml time.dt=0.005 viscosity.linear=0 viscosity.quadratic=0
     a particle has gone through the wall to x = NUMBER, z = NUMBER at t = NUMBER: reduce time.cfl
     \(in step NUMBER\)
 flip shock_tube time.cfl=1 viscosity.linear=20
-flip shock_tube left.velocity=20 right.velocity=-20 time.cfl=1
+flip shock_tube left.velocity=20 right.velocity=-20 time.cfl=1 particles.loading=random
     density or internal energy is negative in the cell at x = NUMBER, z = NUMBER at t = NUMBER:
     reduce time.cfl, raise viscosity.linear, or take more particles per cell \(in step NUMBER\)
 flip vortex flip.max_iterations=1
