@@ -26,8 +26,7 @@ void deposit_row(const WeightScale& scale, const Material* materials, const Part
     for (long k = begin; k < end; ++k) {
         const Weights w = weights_at(scale, p.x_p[k], p.z_p[k]);
         const double m = p.m_p[k];
-        const double covers = volumes ? p.V_p[k] : 1.0;
-        const Four momentum(m, m * p.vx_p[k], m * p.vz_p[k], covers);
+        const Four momentum(m, m * p.vx_p[k], m * p.vz_p[k], 1);
         if constexpr (affine) {
             const Four along_x(0, m * p.Cxx_p[k] * dx, m * p.Czx_p[k] * dx, 0),
                 along_z(0, m * p.Cxz_p[k] * dz, m * p.Czz_p[k] * dz, 0);
@@ -69,8 +68,8 @@ void deposit_row(const WeightScale& scale, const Material* materials, const Part
 ///   m_g = sum_p m_p S(x_p - x_g),   v_g = sum_p m_p v_p S(x_p - x_g) / m_g     [FLIP-8]
 ///   M_ck = sum_p m_p R(x_p - x_c),  U_ck = sum_p m_p e_p R(x_p - x_c), over material k
 /// in:     particles sorted by row, every position on the mesh
-/// out:    nodes.m, vx, vz (0 where no particle is near), and in nodes.sum[3] the volume of the
-///         particles around a node, or where they carry none their number; cells.sum, M, and the sums over volumes
+/// out:    nodes.m, vx, vz (0 where no particle is near), and in nodes.sum[3] how many
+///         particles are around a node; cells.sum, M, and the sums over volumes
 /// exact:  totals on nodes and cells are those of the particles, for mass, momentum and energy
 /// source: [FLIP-8]; with apic, v_p + C_p (x_g - x_p) for v_p: Jiang, Schroeder and Teran,
 ///         J. Comput. Phys. 338, 137 (2017).

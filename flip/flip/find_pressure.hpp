@@ -16,9 +16,10 @@ namespace flip {
 /// surface: p = 0. A gas has room to grow there.
 inline constexpr double least_filled = 0.7;
 
-/// A cell has neither pressure nor viscosity if the barest of its nodes is covered by less than this
-/// part of what covers another: an impulse on a node without mass would leave the budget. Volume
-/// decides and not mass, for air does not end where water begins.
+/// A cell has neither pressure nor viscosity if the barest of its nodes has less than this part of the
+/// particles of another: an impulse on a node without mass would leave the budget. Their number
+/// stands for the volume that they began with; mass must not decide, for air does not end where water
+/// begins.
 inline constexpr double barest_node = 0.01;
 
 /// Internal energy below zero by less than this part of the kinetic energy is round-off.
@@ -32,9 +33,8 @@ inline std::array<long, 4> corners_of(const Grid& grid, long n) {
 /// Whether a cell has a node with next to no fluid around it.
 inline bool has_bare_node(const Grid& grid, const Nodes& g, long n) {
     const long up = n + grid.stride();
-    const auto covered = [&](long corner) { return g.sum[corner][3]; };
-    const auto [least, most] =
-        std::minmax({covered(n), covered(n + 1), covered(up), covered(up + 1)});
+    const auto around = [&](long corner) { return g.sum[corner][3]; };
+    const auto [least, most] = std::minmax({around(n), around(n + 1), around(up), around(up + 1)});
     return least <= barest_node * most;
 }
 

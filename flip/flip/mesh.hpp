@@ -35,7 +35,7 @@ struct SoftSum {
 
 /// The nodes; all columns grid.size() long.
 struct Nodes {
-    std::vector<Four> sum;         // m_g, momentum x and z, and what covers the node
+    std::vector<Four> sum;         // m_g, momentum x and z, and number of particles
     Field m;                       // m_g
     Field vx, vz;                  // Favre average of the particles' velocities  [FLIP-8]
     Field vx0, vz0;                // the same, with the walls' part set
