@@ -4,13 +4,13 @@
 //
 // With p_infinity = 0 this is the gamma law of a gas. With a large one it is the simplest liquid or
 // metal: stiff, and able to have a surface, because its pressure falls to zero at a density that
-// is not zero. It may hold some tension, a pressure down to -tension above -p_infinity; a cell that
-// would need more is partly void, and p = 0.
+// is not zero. A particle that carries its volume may hold some tension, a pressure down to -tension
+// above -p_infinity. Cells hold none: they cannot tell a liquid that is stretched from one that does
+// not fill them; there p = 0.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <span>
 #include <string>
 
@@ -55,7 +55,7 @@ inline double internal_energy(const Material& a, double rho, double p) {
 struct CellState {
     double p = 0;                // their common pressure
     double compressibility = 0;  // -(dV/dp)/V at constant entropy of each; 0 in an empty cell
-    bool surface = false;        // the materials do not fill the cell, even under tension: p = 0
+    bool surface = false;        // the materials do not fill the cell: p = 0
 };
 
 /// Materials that one cell can hold.
@@ -73,10 +73,11 @@ inline CellState find_equilibrium(std::span<const Material> materials, const dou
                                   const double* U, double V, double* share) {
     const std::size_t count = materials.size();
     CellState cell;
-    double mass = 0, tension = std::numeric_limits<double>::infinity();
+    double p = 0, mass = 0;
     for (std::size_t k = 0; k < count; ++k) {
+        const Material& a = materials[k];
         mass += M[k];
-        if (M[k] > 0) tension = std::min(tension, materials[k].tension);
+        p = std::max(p, (a.gamma - 1) * U[k] / V - a.gamma * a.p_infinity);
     }
     const auto volume_of = [&](std::size_t k, double at) {
         const Material& a = materials[k];
@@ -87,9 +88,6 @@ inline CellState find_equilibrium(std::span<const Material> materials, const dou
         std::fill(share, share + count, 0.0);
         return cell;
     }
-    double p = -tension;
-    for (std::size_t k = 0; k < count; ++k)
-        if (M[k] > 0) p = std::max(p, pressure(materials[k], M[k] / V, U[k] / M[k]));
     if (count > 1) {
         for (int n = 0; n < 50; ++n) {
             double sum = -V, slope = 0;
@@ -102,19 +100,18 @@ inline CellState find_equilibrium(std::span<const Material> materials, const dou
             p += sum / slope;
         }
     }
-    double filled = 0;
-    for (std::size_t k = 0; k < count; ++k) filled += volume_of(k, p);
-    cell.surface = p == -tension && filled < V;
-    cell.p = p = cell.surface ? 0 : p;
+    cell.p = p;
 
     // A material that nothing can compress, dust, and a gas below least_stiffness take no part in a
     // change of volume; where there is nothing else, shares go by mass.
-    double sum = 0;
+    double filled = 0, sum = 0;
     for (std::size_t k = 0; k < count; ++k) {
         const double V_k = volume_of(k, p), stiff = stiffness(materials[k], p);
+        filled += V_k;
         share[k] = stiff > least_stiffness ? V_k / stiff : 0.0;
         sum += share[k];
     }
+    cell.surface = p == 0 && filled < V;
     cell.compressibility = sum / V;
     for (std::size_t k = 0; k < count; ++k) share[k] = sum > 0 ? share[k] / sum : M[k] / mass;
     return cell;

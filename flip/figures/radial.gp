@@ -26,7 +26,7 @@ do for [k = 1:3] {
     set format x (k < 3 ? '' : '%g')
     if (k == 3) { set xlabel 'r' offset 0, 0.5 }
     set ylabel word(labels, k) offset 1, 0
-    if (k == 1) { set key at screen 0.79, 0.97 center top maxrows 1 } else { unset key }
+    if (k == 1) { set key at screen 0.79, 0.93 center top maxrows 1 } else { unset key }
     y = col(file('pic'), word(names, k));     plot file('flip') using 1:(exact(k)) with lines lw 2 lc rgb ink title 'exact', \
          file('pic') using 1:y with points pt 7 ps 0.8 lc rgb orange title 'pic', \
          file('flip') using 1:y with points pt 7 ps 0.8 lc rgb blue title 'flip'

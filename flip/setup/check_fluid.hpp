@@ -128,7 +128,7 @@ inline void refuse_around_axis(const Case& parameters) {
 }
 
 /// Refuses materials that the equation of state or the program cannot hold.
-inline void refuse_materials(const Case& parameters) {
+inline void refuse_materials(const Case& parameters, const std::string& program) {
     refuse(parameters.materials.size() > most_materials, parameters.materials.size(),
            " materials are more than the ", most_materials, " that a cell can hold: use fewer");
     for (const Material& a : parameters.materials) {
@@ -137,6 +137,10 @@ inline void refuse_materials(const Case& parameters) {
                " needs gamma above 1: gamma = 1 is dust, without pressure");
         refuse(a.tension > 0 && a.tension >= a.p_infinity, "material.", a.name,
                ".tension = ", a.tension, " must be below its p_infinity, ", a.p_infinity);
+        refuse(a.tension > 0 && (program == "pic" || parameters.density != "particles"),
+               "material.", a.name, ".tension = ", a.tension,
+               " needs flip with flip.density = \"particles\": a cell cannot tell a liquid that is "
+               "stretched from one that does not fill it");
         refuse(a.gamma == 1 && parameters.implicit(), "material.", a.name,
                ".gamma = 1 is dust, without pressure, and flip.pressure = \"implicit\" needs gamma "
                "above 1: take \"explicit\"");

@@ -139,11 +139,20 @@ inline void compare_riemann(const FinishedRun& run) {
         L1_p_of[side] += dx * std::fabs(p[n] - at.pressure);
         L1_u += rho[n] > 0 ? dx * std::fabs(u[n] - u_exact[n]) : 0;
         // A few cells away from the waves, in the gas of the lower pressures.
-        if (side == soft && xi - 8 * half > exact.left_tail && xi + 8 * half < exact.right_tail)
+        if (side == soft && rho[n] > 0 && xi - 8 * half > exact.left_tail &&
+            xi + 8 * half < exact.right_tail)
             star_p += p[n], star_u += u[n], star_cells += 1;
     }
 
-    // What the mesh allows: cells times jumps, and a thousandth.
+    // What the mesh allows: cells times jumps, and a thousandth. A window as large as half of what it
+    // is relative to sees nothing.
+    const auto judge_L1 = [&](const std::string& name, double value, double allowed,
+                              const std::string& what) {
+        if (allowed < 0.5) return run.summary.result("L1_" + name, value, "", 0, allowed, what);
+        run.summary.not_measured("L1_" + name,
+                                 "the waves have swept too few cells: raise time.end, or "
+                                 "refine the mesh");
+    };
     double allowed_rho =
                1.5 * std::fabs(exact.left_of_contact.density - exact.right_of_contact.density),
            allowed_u = 0, speed = 0, swept = 0;
@@ -154,25 +163,23 @@ inline void compare_riemann(const FinishedRun& run) {
         const double cells = allowed_cells(wave, wave.swept / dx), per = dx / wave.swept,
                      jump = std::fabs(b.density - a.density), density = wave.density(),
                      pressure = wave.pressure();
-        run.summary.result("L1_density_" + wave.side, L1_rho_of[side] / (wave.swept * density), "",
-                           0, 1e-3 + per * (cells * jump / density + 0.5),
-                           "the " + wave.side + " gas beyond 3 cells from the contact");
-        run.summary.result("L1_pressure_" + wave.side, L1_p_of[side] / (wave.swept * pressure), "",
-                           0, 1e-3 + per * cells * std::fabs(b.pressure - a.pressure) / pressure,
-                           "the " + wave.side + " gas");
+        judge_L1("density_" + wave.side, L1_rho_of[side] / (wave.swept * density),
+                 1e-3 + per * (cells * jump / density + 0.5),
+                 "the " + wave.side + " gas beyond 3 cells from the contact");
+        judge_L1("pressure_" + wave.side, L1_p_of[side] / (wave.swept * pressure),
+                 1e-3 + per * cells * std::fabs(b.pressure - a.pressure) / pressure,
+                 "the " + wave.side + " gas");
         allowed_rho += cells * jump;
         allowed_u += cells * std::fabs(b.velocity - a.velocity);
         speed += std::fabs(b.velocity - a.velocity), swept += wave.swept;
     }
     const double density = std::max(parameters.left.density, parameters.right.density),
                  length = parameters.grid.x.length;
-    run.summary.result("L1_density", L1_rho / (density * length), "", 0,
-                       1e-3 + allowed_rho * dx / (density * length),
-                       "whole mesh; relative to the larger density");
+    judge_L1("density", L1_rho / (density * length), 1e-3 + allowed_rho * dx / (density * length),
+             "whole mesh; relative to the larger density");
     if (speed > 0)
-        run.summary.result("L1_velocity_over_jump", L1_u / (speed * swept), "", 0,
-                           1e-3 + allowed_u * dx / (speed * swept),
-                           "relative to the changes of velocity");
+        judge_L1("velocity_over_jump", L1_u / (speed * swept),
+                 1e-3 + allowed_u * dx / (speed * swept), "relative to the changes of velocity");
     run.info("L1_velocity", L1_u / length, "velocity", source + "; mean over the mesh");
 
     // The gases keep apart where their particles do.
@@ -239,8 +246,8 @@ inline void compare_riemann(const FinishedRun& run) {
                                 0, "relative to the changes of velocity");
     } else {
         run.summary.not_measured("star_pressure",
-                                 "no cell is 4 cells away from both waves: raise time.end, or "
-                                 "refine the mesh");
+                                 "no cell with fluid is 4 cells away from both waves: raise "
+                                 "time.end, or refine the mesh");
     }
     common::write_table(run.profile, {{"x", "length", x},
                                       {"rho", "mass/length^3", rho},
