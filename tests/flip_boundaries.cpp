@@ -183,6 +183,19 @@ TEST_CASE("what is beyond a wall ends the run with where and when") {
     }
 }
 
+TEST_CASE("no particle of a confined gas passes a wall however rough the flow") {
+    for (const char* ends : {"slip", "no_slip"}) {
+        Case w = flip_case(6, 5, ends, ends);
+        w.density = "particles", w.confined = true, w.filling = 0;
+        w.cfl = 0.95;
+        for (int n = 0; n < 1000; ++n) {
+            FlipRun r(w, any_cloud(w, 20, static_cast<std::uint64_t>(n), 1));
+            r.state.dt = 1;
+            CHECK(message_of([&] { r.step(); }) == "nothing");
+        }
+    }
+}
+
 TEST_CASE("what leaves through an open boundary is in the budget to the last bit of energy") {
     for (const char* transfer : {"flip", "apic"}) {
         for (const char* density : {"cells", "particles"}) {

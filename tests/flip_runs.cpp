@@ -471,6 +471,18 @@ TEST_CASE("the vortex of Gresho keeps 97 per cent in a turn on the shipped mesh"
           0.7);
 }
 
+TEST_CASE("a lid drives a vortex and no particle into its corners" *
+          doctest::description("physics")) {
+    const auto fastest = [](const Run& r) { return largest(r.column("largest_speed")); };
+    const Run steady = run("flip", "cavity", "cavity");
+    check_results(steady, 1);
+    check_conserved(steady, 1e-11);
+    CHECK(fastest(steady) <= 1);
+    const Run kicked = run("flip", "cavity_kicked", "cavity", "flip.confined=false time.end=6");
+    CHECK(fastest(kicked) > 2);
+    CHECK(kicked.value("unsteadiness") > 0.1);
+}
+
 TEST_CASE("blasts and dams and cavities and layers are right on their shipped meshes" *
           doctest::description("long")) {
     for (const char* file :

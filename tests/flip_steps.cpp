@@ -5,6 +5,7 @@
 
 #include <Eigen/Dense>
 #include <complex>
+#include <map>
 #include <memory>
 
 #include "common/splines.hpp"
@@ -441,7 +442,8 @@ TEST_CASE("every step keeps mass and momentum and energy whatever it holds" *
         {"trap", [](Case& w) { w.trap = 1.3; }},
         {"viscosity", [](Case& w) { w.viscosity = 0.02; }},
         {"volumes", [](Case& w) { w.density = "particles"; }},
-        {"volumes and viscosity", [](Case& w) { w.density = "particles", w.viscosity = 0.02; }},
+        {"confined, with viscosity",
+         [](Case& w) { w.density = "particles", w.confined = true, w.viscosity = 0.02; }},
     };
     const auto implicit = [](double theta) {
         return [theta](Case& w) { w.pressure = "implicit", w.theta = theta, w.tolerance = 1e-10; };
@@ -1196,6 +1198,65 @@ TEST_CASE("volumes change as the nodes say to round-off") {
             CAPTURE(ends.name);
             CHECK(size > 1e-4);
             CHECK(std::fabs(column(r.particles().V_p).sum() - before - grown) <= 1e-14);
+        }
+    }
+}
+
+TEST_CASE("the paths of a confined gas diverge in each quarter of a cell as the cell does") {
+    for (const char* ends : {"periodic", "slip", "no_slip"}) {
+        Case w = flip_case(5, 4, ends, ends);
+        w.grid.z.length = 0.5;
+        w.regions = {fluid("", 1, 1)};
+        w.density = "particles", w.confined = true, w.dt = 0.01;
+        Particles p = load_particles(completed(w));
+        Random random(31);
+        for (std::size_t k = 0; k < p.m_p.size(); ++k)
+            p.vx_p[k] = random(-1, 1), p.vz_p[k] = random(-1, 1);
+        FlipRun r(w, p);
+        r.deposit();
+        const double dt = r.move_nodes();
+        const Particles before = r.particles();
+        move_particles(r.problem, dt, r.scratch.mesh, r.particles());
+        const Grid& grid = r.grid();
+        const double dx = grid.x.spacing(), dz = grid.z.spacing();
+        // Four particles of a quarter, a quarter of a cell apart: how fast their square grows.
+        std::map<std::pair<long, long>, double> divergence;
+        for (std::size_t k = 0; k < before.m_p.size(); ++k) {
+            const auto a = static_cast<long>(before.x_p[k] / dx * 4),
+                       b = static_cast<long>(before.z_p[k] / dz * 4);
+            const auto moved = [](const common::Axis& axis, double d) {
+                return axis.periodic ? d - axis.length * std::round(d / axis.length) : d;
+            };
+            divergence[{a / 2, b / 2}] +=
+                ((a % 2 ? 2 : -2) * moved(grid.x, r.particles().x_p[k] - before.x_p[k]) / dx +
+                 (b % 2 ? 2 : -2) * moved(grid.z, r.particles().z_p[k] - before.z_p[k]) / dz) /
+                dt;
+        }
+        CHECK(divergence.size() == 80);
+        double most = 0;
+        for (const auto& [quarter, found] : divergence) {
+            const long n = grid.index(quarter.first / 2, quarter.second / 2);
+            const double of_cell = dilation(grid, r.nodes().vxL, r.nodes().vzL, n) / (dx * dz);
+            most = worst({most, std::fabs(of_cell)});
+            CHECK(std::fabs(found - of_cell) <= 1e-11);
+        }
+        CHECK(most > 0.5);
+    }
+}
+
+TEST_CASE("a confined gas takes a tenth of its room and gives what it has too much") {
+    for (const double part : {0.8, 1.0, 1.3}) {
+        Case w = flip_case(6, 5, "slip", "slip");
+        w.regions = {fluid("", 1, 1)};
+        w.density = "particles", w.pressure = "implicit";
+        for (const bool confined : {false, true}) {
+            w.confined = confined;
+            Particles p = load_particles(completed(w));
+            for (double& V : p.V_p) V *= part;
+            FlipRun r(w, p);
+            r.step();
+            const double V = part * (confined ? 1 + 0.1 * (1 / part - 1) : 1);
+            CHECK(column(r.particles().V_p).sum() == doctest::Approx(V).epsilon(1e-12));
         }
     }
 }

@@ -367,6 +367,7 @@ pic tube boundary.x_low=no_slip
     boundary.x_low = "no_slip" needs viscosity: run the case with flip, or take "slip"
 fluids tube flip.blend=0.9 -> flip.blend = 0.9 needs flip.transfer = "blend"
 fluids tube flip.xpic_order=3 -> flip.xpic_order = 3 needs flip.transfer = "xpic"
+fluids tube flip.confined=true -> flip.confined = true needs flip.density = "particles"
 fluids tube flip.theta=0.6 -> flip.theta = 0.6 needs flip.pressure = "implicit"
 fluids tube rezone.max_particles=40 -> rezone.max_particles = 40 needs rezone.steps above 0
 fluids tube rezone.steps=1 rezone.min_particles=8 rezone.max_particles=15

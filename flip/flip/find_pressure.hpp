@@ -45,12 +45,13 @@ inline bool has_bare_node(const Grid& grid, const Nodes& g, long n) {
 /// out:    cells.p, compressibility, share, surface (1: p = 0 whatever happens); with volumes excess,
 ///         by how much the mean pressure of each material is above that of the cell, less one p_c
 ///         for the most so that a gradient within the cell is none, and room,
-///         the part by which a gas beside another material would have to grow, at most 1
+///         the part by which a gas beside another material would have to grow, at most 1, or one
+///         that is confined to grow or to shrink, at least -1/2
 /// exact:  with volumes a state of equal pressure stays one wherever the particles are, as long as
 ///         they fill the cells, or the filling of the scheme is 0
 /// errors: NumericalError for a negative or not finite density or energy, with where and when
 inline void find_pressure(const Grid& grid, std::span<const Material> materials, double time,
-                          Mesh& mesh) {
+                          Mesh& mesh, bool confined = false) {
     const Nodes& g = mesh.nodes;
     Cells& c = mesh.cells;
     const bool volumes = c.volume.size() > 0;
@@ -95,8 +96,9 @@ inline void find_pressure(const Grid& grid, std::span<const Material> materials,
             for (long k = 0; k < count; ++k) excess[k] *= std::max(0.0, beyond);
             c.compressibility[n] = c.volume[n] > 0 ? c.compliance[n] / c.volume[n] : 0;
             surface = !filled;
-            c.room[n] = count > 1 && gas && c.volume[n] > 0
-                            ? std::clamp(least_filled * V_c / c.volume[n] - 1, 0.0, 1.0)
+            const double full = confined ? 1 : least_filled, least = confined ? -0.5 : 0;
+            c.room[n] = (count > 1 || confined) && gas && c.volume[n] > 0
+                            ? std::clamp(full * V_c / c.volume[n] - 1, least, 1.0)
                             : 0;
         }
         surface = surface || has_bare_node(grid, g, n);

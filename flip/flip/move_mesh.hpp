@@ -178,13 +178,26 @@ inline void filter_nodes(const Problem& problem, const MassMatrix& M, Nodes& g) 
     });
 }
 
-// How many cells the fastest node crosses per time.
-inline double most_cells_crossed(const Grid& grid, const Nodes& g) {
+// How many cells the fastest node crosses per time, and in a confined fluid the fastest particle.
+inline double most_cells_crossed(const Grid& grid, const Nodes& g, bool confined) {
     const double per_dx = 1 / grid.x.spacing(), per_dz = is_plane(grid) ? 1 / grid.z.spacing() : 0;
     double most = 0;
     for_own_nodes(grid, [&](long, long, long n) {
         most = std::max({most, std::fabs(g.vxL[n]) * per_dx, std::fabs(g.vzL[n]) * per_dz});
     });
+    for (long j = 0; confined && j < grid.z.cells; ++j) {
+        for (long i = 0; i < grid.x.cells; ++i) {
+            const auto at = corners_of(grid, grid.index(i, j));
+            const auto crossed = [&](const Field& v, const Field& w, double per_v, double per_w) {
+                double fastest = 0;
+                for (const long corner : at) fastest = std::max(fastest, std::fabs(v[corner]));
+                return per_v * fastest +
+                       0.5 * per_w * std::fabs(w[at[0]] - w[at[1]] - w[at[2]] + w[at[3]]);
+            };
+            most = std::max({most, crossed(g.vxL, g.vzL, per_dx, per_dz),
+                             crossed(g.vzL, g.vxL, per_dz, per_dx)});
+        }
+    }
     return most;
 }
 
@@ -220,7 +233,9 @@ inline StepReport move_mesh(const Problem& problem, double& dt, const Particles&
             accelerate_nodes(problem, dt, mesh);
         }
         if (consistent) accelerate_consistently(problem, dt, M, g);
-        if (problem.limits.dt > 0 || !(dt * detail::most_cells_crossed(grid, g) > 1)) break;
+        if (problem.limits.dt > 0 ||
+            !(dt * detail::most_cells_crossed(grid, g, problem.scheme.confined) > 1))
+            break;
     }
     work_on_cells(problem, dt, mesh, budget);
     detail::filter_nodes(problem, M, g);

@@ -25,7 +25,8 @@ inline constexpr double relaxation = 0.5;
 // the pressure that it came with, to burst with later: so they push each other towards p_c, volume for
 // volume, with the work of p_c, so that the cell loses none of both. A gas also takes a part of the
 // room that particles leave it, at constant energy: volumes follow the pressure, and where they have
-// drifted from the places of the particles, nothing else would bring them back.
+// drifted from the places of the particles, nothing else would bring them back. That of a confined gas
+// may be negative.
 //   V_p *= growth_of_volume(s),  s = sum_c R (strain_c + relaxation (p_kc - p_c))/K_p
 // in: cells.strain, work, q_work, excess = p_kc - p_c, p, room; in/out: V_p
 inline double work_on_volume(const Problem& problem, const WeightScale& scale, const Weights& at,
@@ -44,11 +45,27 @@ inline double work_on_volume(const Problem& problem, const WeightScale& scale, c
             const double push = R * relaxation * cells.excess[c * count + material];
             strain += push;
             work += push * cells.p[c];
-            if (a.p_infinity == 0) room += R * cells.room[c];
         });
+    if (a.p_infinity == 0 && (count > 1 || problem.scheme.confined))
+        for_cells(scale, at, [&](long c, double R) { room += R * cells.room[c]; });
     p.V_p[k] *= growth_of_volume(V_per_K * strain / V) * (1 + problem.scheme.filling * room);
     return -V_per_K * work / p.m_p[k];
 }
+
+// [conservative]
+// What bilinear velocities lack for the divergence of their cell to be that of each place in it: else
+// particles gather where it is less, in the corner that a lid drives them into, and leave voids where
+// it is more. The flow through the sides of the cell stays as it is.
+//   v_x += (dx/2 dz) S_x0 S_x1 t_z,  v_z += (dz/2 dx) S_z0 S_z1 t_x,  t = v_00 - v_10 - v_01 + v_11
+// source: Wang, Agrusta and van Hunen, Geochem. Geophys. Geosyst. 16, 2015 (2015).
+inline Velocity missing_velocity(const Grid& grid, const WeightScale& scale, const Weights& w,
+                                 const Four* v) {
+    const Four t =
+        v[w.node] - v[w.node + 1] - v[w.node + scale.stride] + v[w.node + scale.stride + 1];
+    const double aspect = grid.x.spacing() / grid.z.spacing();
+    return {0.5 * aspect * w.S_x[0] * w.S_x[1] * t[3], 0.5 / aspect * w.S_z[0] * w.S_z[1] * t[2]};
+}
+// [/conservative]
 
 // What came of a row: how many particles left the mesh, and one without volume, -1: none.
 struct RowMoved {
@@ -64,6 +81,7 @@ RowMoved move_row(const Problem& problem, const WeightScale& scale, const Mesh& 
     const double *const dissipated = mesh.nodes.dissipated.data(), *const de = mesh.cells.de.data(),
                         *const relative_de = mesh.cells.relative_de.data();
     const long count = mesh.materials;
+    const bool confined = problem.scheme.confined;
     const double deficit = transfer.dissipates ? 0.5 : 0;
     RowMoved moved;
     // [move]
@@ -85,6 +103,11 @@ RowMoved move_row(const Problem& problem, const WeightScale& scale, const Mesh& 
         if constexpr (volumes) {
             gained += work_on_volume(problem, scale, at, mesh.cells, k, p);
             if (!(p.V_p[k] > 0)) moved.inverted = k;
+        }
+        if (confined) {
+            const Velocity missing = missing_velocity(grid, scale, at, increment);
+            sum[2] += missing.x;
+            sum[3] += missing.z;
         }
         Velocity v{p.vx_p[k] + dv.x, p.vz_p[k] + dv.z};         // [FLIP-6]
         const double x = wrap(grid.x, p.x_p[k] + dt * sum[2]),  // [FLIP-7]
@@ -111,6 +134,7 @@ RowMoved move_row(const Problem& problem, const WeightScale& scale, const Mesh& 
 /// Particles after the step.
 ///   v_p += sum_g S (v_g^L - v_g)                                                  [FLIP-6]
 ///   x_p += dt sum_g S v_g^L; with an implicit pressure v_g^theta                  [FLIP-7]
+///          where the fluid is confined, with what that lacks of the divergence of the cell
 ///   e_p += sum_c R (de_c + e_p relative_de_c) + sum_g S dissipated_g - |sum_g S dv_g|^2/2
 ///   and what another transfer than flip makes of v_p: apply_transfer()
 /// in:     nodes.increment, dissipated, filtered; cells.de, relative_de

@@ -30,7 +30,7 @@ void find_fluid(const Problem& problem, const State& state, Mesh& mesh, Clock&& 
     // [fluid]
     deposit_particles(grid, materials, state.particles, mesh);  // particles -> mesh: v_g [FLIP-8]
     clock.lap("deposit");
-    find_pressure(grid, materials, state.time, mesh);  // on the mesh: p_c
+    find_pressure(grid, materials, state.time, mesh, problem.scheme.confined);  // on the mesh: p_c
     clock.lap("mesh");
     // [/fluid]
 }

@@ -96,6 +96,7 @@ struct Case {
     bool deficit_to_heat = true;
     std::string density = "cells";  // or particles
     double filling = 0.1;
+    bool confined = false;
     double viscosity = 0;
     std::string pressure = "explicit";  // or implicit
     double theta = 1;

@@ -121,6 +121,8 @@ inline void refuse_around_axis(const Case& parameters) {
         parameters.rezone_steps > 0, geometry,
         "and rezone.steps do not go together: splitting and merging keep weights that are linear "
         "in r, and rings weigh by r^2; take rezone.steps = 0");
+    refuse(parameters.confined, geometry,
+           "and flip.confined do not go together: its paths are those of a plane");
     for (const RegionCase& r : parameters.regions)
         refuse(r.flow != "uniform" && r.flow != "radial" && r.flow != "gaussian", geometry,
                "has no flow = \"", r.flow, "\", as region.", r.name,

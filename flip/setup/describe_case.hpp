@@ -171,6 +171,8 @@ inline common::ParameterTable describe(Case& parameters) {
                  "density from the mass in a cell, or from volumes that particles carry");
     table.real("flip.filling", parameters.filling, "", between(0, 1),
                "part of its room that a gas beside another material takes in a step");
+    table.flag("flip.confined", parameters.confined,
+               "gas everywhere: particles leave no void, and volumes follow the room both ways");
     table.real("flip.viscosity", parameters.viscosity, "mass/(length time)", at_least(0),
                "dynamic viscosity of the fluid");
     table.choice("flip.pressure", parameters.pressure, {"explicit", "implicit"},

@@ -45,6 +45,8 @@ inline std::vector<FlipKey> keys_of_flip(const Case& parameters) {
         key("flip.density", &Case::density),
         key("flip.filling", &Case::filling, parameters.density == "particles",
             "flip.density = \"particles\""),
+        key("flip.confined", &Case::confined, parameters.density == "particles",
+            "flip.density = \"particles\""),
         key("flip.viscosity", &Case::viscosity),
         key("flip.pressure", &Case::pressure),
         key("flip.theta", &Case::theta, implicit, solver),
