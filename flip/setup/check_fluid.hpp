@@ -139,8 +139,8 @@ inline void refuse_materials(const Case& parameters, const std::string& program)
                " needs gamma above 1: gamma = 1 is dust, without pressure");
         refuse(a.tension > 0 && a.tension >= a.p_infinity, "material.", a.name,
                ".tension = ", a.tension, " must be below its p_infinity, ", a.p_infinity);
-        refuse(a.tension > 0 && (program == "pic" || parameters.density != "particles"),
-               "material.", a.name, ".tension = ", a.tension,
+        refuse(a.tension > 0 && program == "flip" && parameters.density != "particles", "material.",
+               a.name, ".tension = ", a.tension,
                " needs flip with flip.density = \"particles\": a cell cannot tell a liquid that is "
                "stretched from one that does not fill it");
         refuse(a.gamma == 1 && parameters.implicit(), "material.", a.name,

@@ -117,6 +117,9 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
     for (const FlipKey& key : keys_of_flip(parameters))
         warn(warnings, program == "pic" && key.changed, key.name, " = ", key.value,
              " means nothing to pic, whose particles are mass alone");
+    for (const Material& a : parameters.materials)
+        warn(warnings, program == "pic" && a.tension > 0, "material.", a.name,
+             ".tension = ", a.tension, " means nothing to pic, whose cells hold none");
     detail::warn_of_idleness(parameters, scales, warnings);
     detail::warn_of_regions(parameters, scales, warnings);
     detail::warn_of_speeds(parameters, scales, program, warnings);
