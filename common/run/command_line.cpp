@@ -151,8 +151,8 @@ void look_for_earlier_run(const ProgramInfo& info, const ParameterTable& table,
             if (dt != nullptr && *dt > 0) finer += " time.dt=" + number_text(std::ldexp(*dt, -n));
         }
         for (const std::string& one : overrides)
-            if (finer.find(" " + one.substr(0, one.find('=') + 1)) == std::string::npos)
-                line += " " + shell_word(one);
+            if (finer.find(' ' + one.substr(0, one.find('=') + 1)) == std::string::npos)
+                line += ' ' + shell_word(one);
         const std::string folder = command.out_dir + "/" + std::to_string(n + 1);
         line += finer + " --quiet --out " + shell_word(folder);
         if (command.threads > 0) line += " --threads " + std::to_string(command.threads);
