@@ -42,11 +42,11 @@ inline bool has_bare_node(const Grid& grid, const Nodes& g, long n) {
 ///   density of cells:       find_equilibrium() of masses and energies in the cell
 ///   volumes of particles:   p_c = sum_p R (V_p/K_p) p_p / sum_p R V_p/K_p,  K = rho c^2
 /// in:     deposit_particles() has been called
-/// out:    cells.p, compressibility, share, surface (1: p = 0 whatever happens); with volumes excess,
-///         by how much the mean pressure of each material is above that of the cell, less one p_c
-///         for the most so that a gradient within the cell is none, and room,
-///         the part by which a gas beside another material would have to grow, at most 1, or one
-///         that is confined to grow or to shrink, at least -1/2
+/// out:    cells.p, compressibility, share, surface (1: p = 0 whatever happens). With volumes also
+///         excess = (p_kc - p_c)(1 - |p_c|/max_k |p_kc - p_c|), p_kc the mean pressure of material k;
+///         0 where no difference exceeds p_c, as gravity's within a cell; and room, the part by which
+///         gas would have to grow to fill the cell: in 0 to 1 beside another material, in -1/2 to 1
+///         where it is confined
 /// exact:  with volumes a state of equal pressure stays one wherever the particles are, as long as
 ///         they fill the cells, or the filling of the scheme is 0
 /// errors: NumericalError for a negative or not finite density or energy, with where and when

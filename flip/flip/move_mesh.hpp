@@ -13,16 +13,21 @@
 
 namespace flip {
 
-/// Lowers the artificial viscosity of rings to what stops the compression of a cell within the step.
+/// Lowers the artificial viscosity of rings, and of cells with several materials, to what stops the
+/// compression of a cell within the step.
 ///   q <= -D v^0/(dt D M^-1 D^T)
-/// note:   a cell has that much only where its nodes are lighter than it is, as those near the axis in
-///         what is nearly void; more would throw the nodes apart, and the cell would lose the heat
+/// note:   more would throw apart nodes lighter than the cell, of air by water or of a near void
 inline void limit_viscosity(const Grid& grid, double dt, Mesh& mesh) {
     const Nodes& g = mesh.nodes;
+    const auto mixed = [&](long n) {
+        const auto first = mesh.cells.sum.begin() + n * mesh.materials,
+                   end = first + mesh.materials;
+        return std::count_if(first, end, [](const CellSum& sum) { return sum.M > 0; }) > 1;
+    };
     const double dx = is_plane(grid) ? grid.x.spacing() : 0;  // in a row nothing moves along z
     for_each_cell(grid, [&](long i, long, long n) {
         double& q = mesh.cells.q[n];
-        if (q == 0) return;
+        if (q == 0 || !(grid.axisymmetric || mixed(n))) return;
         double response = 0;  // D M^-1 D^T, of this cell alone
         for (const long side : {0, 1}) {
             const double node = static_cast<double>(i),
@@ -221,7 +226,7 @@ inline StepReport move_mesh(const Problem& problem, double& dt, const Particles&
     if (consistent) solve_velocity(grid, M, g);
 
     find_viscosity(grid, boundaries, problem.q, mesh);
-    if (grid.axisymmetric) limit_viscosity(grid, dt, mesh);
+    if (grid.axisymmetric || mesh.materials > 1) limit_viscosity(grid, dt, mesh);
     if (consistent) stop_at_walls(problem, M, g);
     for (;; dt *= 0.5) {
         find_known_forces(grid, boundaries, problem.viscosity, mesh);

@@ -23,12 +23,12 @@ inline constexpr double relaxation = 0.5;
 // Work on one particle that carries its volume, which it takes at its own pressure; per mass. Where
 // materials share a cell, the softer takes nearly all of its change of volume, and a liquid would keep
 // the pressure that it came with, to burst with later: so they push each other towards p_c, volume for
-// volume, with the work of p_c, so that the cell loses none of both. A gas also takes a part of the
-// room that particles leave it, at constant energy: volumes follow the pressure, and where they have
-// drifted from the places of the particles, nothing else would bring them back. That of a confined gas
-// may be negative.
-//   V_p *= growth_of_volume(s),  s = sum_c R (strain_c + relaxation (p_kc - p_c))/K_p
-// in: cells.strain, work, q_work, excess = p_kc - p_c, p, room; in/out: V_p
+// volume, with the work of p_c: the cell keeps its volume and its energy. A gas also takes a part of
+// the room in its cell, at constant energy: volumes follow the pressure, and where they have drifted
+// from the places of the particles, nothing else would bring them back.
+//   V_p *= growth_of_volume(s) (1 + filling sum_c R room_c)
+//   s = sum_c R (strain_c + relaxation excess_kc)/K_p,  excess of find_pressure()
+// in: cells.strain, work, q_work, excess, p, room; in/out: V_p
 inline double work_on_volume(const Problem& problem, const WeightScale& scale, const Weights& at,
                              const Cells& cells, long k, Particles& p) {
     const long count = static_cast<long>(problem.materials.size()), material = p.material[k];

@@ -1,5 +1,5 @@
-// The weights with which a particle and the mesh know of each other: S of the four nodes of its
-// cell, R of the four cells whose centers are around it.
+// Shape functions: the weights S of a particle at the four nodes of its cell, and R at the four cells
+// whose centers are around it.
 #pragma once
 
 #include <algorithm>

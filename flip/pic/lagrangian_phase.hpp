@@ -4,9 +4,9 @@
 //     u~_c = u_c - (dt A/M_c) (P_right - P_left) + dt g          P_face = (p_left + p_right)/2 + q
 //     M_c (I~_c - I_c) = -dt sum over faces of A (p_c + q) (ubar_beyond - ubar_c)/2, outward
 //
-// with ubar = (u + u~)/2, and A of a ring of cells its volume V_c/dx: each cell's A goes with its u. The centered velocity is what makes total energy exact: on every face
-// inside the fluid the kinetic energy that it gives to the two cells is what their internal
-// energies lose.
+// with ubar = (u + u~)/2; for a cell that is a ring, A = V_c/dx, and each ubar is multiplied by the A
+// of its own cell. The centered velocity is what makes total energy exact: on every face inside the
+// fluid the kinetic energy that it gives to the two cells is what their internal energies lose.
 #pragma once
 
 #include "flip/pic/largest_step.hpp"

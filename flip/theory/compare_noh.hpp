@@ -71,7 +71,11 @@ inline void compare_noh(const FinishedRun& run) {
                  R_then = theory::noh_shock_radius(noh, run.history.column("time").back());
     run.result("plateau_density_over_theory", plateau / behind.density, "", 1,
                sentence(source, ": ", behind.density));
-    if (R_then > 0)
+    if (R_then > 0 && !(radius > 0))
+        run.summary.not_measured("shock_radius_over_theory",
+                                 "the density does not reach its level: raise time.end, or refine "
+                                 "the mesh");
+    else if (R_then > 0)
         run.result("shock_radius_over_theory", radius / R_then, "", 1,
                    sentence(source, ": ", R_then));
     run.info("middle_density_over_theory", profile.rho[0] / behind.density, "",

@@ -24,7 +24,11 @@ inline void validate_riemann(const Case& parameters, const Refusal& refuse) {
     refuse(parameters.grid.x.periodic, " needs ends in x, and they are periodic: make them open");
     refuse(parameters.gravity_x != 0 || parameters.gravity_z != 0 || parameters.trap != 0,
            " is for fluid without gravity or trap");
-    riemann_of(parameters);
+    const double p = riemann_of(parameters).left_of_contact.pressure,
+                 tension = std::min(parameters.left.tension, parameters.right.tension);
+    refuse(p < -tension,
+           " knows no void between liquids that part: the pressure at the contact is ", p,
+           " and the tension that both hold ", tension);
 }
 
 /// Pressure and velocity between the waves.
