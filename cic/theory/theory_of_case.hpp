@@ -157,7 +157,8 @@ struct Theory {
     std::complex<double> omega;
     std::string source;
     long mode_x = 0, mode_z = 0;
-    double seed = 0;             // amplitude with which the field of this root starts; 0: not known
+    double seed = 0;        // amplitude with which the field of this root starts; 0: not known
+    bool mirrored = false;  // -conj(omega) is a root as well, of the wave that goes the other way
     std::vector<double> others;  // frequencies of other undamped waves, where they are known
 };
 
@@ -336,6 +337,9 @@ inline Theory theory_of_wave(const Case& parameters, long mode_x, long mode_z) {
     const double least = 1e-9 * std::abs(theory.omega);
     theory.omega = {std::fabs(theory.omega.real()) < least ? 0 : theory.omega.real(),
                     std::fabs(theory.omega.imag()) < least ? 0 : theory.omega.imag()};
+    const std::complex<double> mirror = -std::conj(theory.omega);
+    const common::DispersionRoot other = common::root_near(D, mirror);
+    theory.mirrored = other.found && std::abs(other.omega - mirror) < 1e-6 * std::abs(mirror);
     if (!on_mesh) refuse_resonance(parameters, k, theory);
     if (!on_mesh) theory.seed = seeded_field(parameters, theory, responses, D);
     return theory;
