@@ -100,13 +100,13 @@ inline double onset_field(const Case& parameters, const Theory& theory) {
     return 0.1 * gamma * gamma / std::pow(bounce_frequency(parameters, theory, 1), 2);
 }
 
-/// Time of the onset, before the run: the seeded field grows at the rate of theory.
+/// Time of the onset, before the run: the seeded field grows at the rate of theory, where a wave and
+/// its mirror image run against each other both of them.
 /// out:    0 for a mode that does not grow or is not seeded
 inline double predicted_onset(const Case& parameters, const Theory& theory) {
     const double growth = theory.omega.imag(), onset = onset_field(parameters, theory);
-    return growth > 0 && theory.seed > 0 && onset > theory.seed
-               ? std::log(onset / theory.seed) / growth
-               : 0;
+    const double seed = theory.seed * (theory.mirrored && theory.omega.real() != 0 ? 2 : 1);
+    return growth > 0 && seed > 0 && onset > seed ? std::log(onset / seed) / growth : 0;
 }
 /// What the onset is, in words.
 inline const std::string onset_meaning = "the seed has grown to a tenth of what traps particles";
@@ -216,6 +216,7 @@ inline Lines describe_wave(const Case& parameters) {
     Lines lines{{"theory", mode_text(theory.mode_x, theory.mode_z) +
                                ": omega = " + format(theory.omega.real()) + ", growth = " +
                                format(theory.omega.imag()) + " omega_p; " + theory.source}};
+    if (theory.seed > 0) lines.push_back({"seeded field", "E_k = " + format(theory.seed)});
     std::string others;
     for (std::size_t n = 0; n < std::min<std::size_t>(10, theory.others.size()); ++n)
         others += (n > 0 ? ", " : "") + format(theory.others[n]);
