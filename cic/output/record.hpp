@@ -27,7 +27,7 @@ class Recorder {
         background_ = fixed_background(parameters) * grid.x.length * grid.z.length;
         double charge = 0;
         for (const SpeciesCase& s : parameters.species)
-            charge += std::fabs(s.charge) * s.density * filled_volume(parameters, s);
+            charge += std::fabs(s.charge) * s.mean_density() * filled_volume(parameters, s);
         const double round_off = 100 * double(std::numeric_limits<Real>::epsilon());
         least_energy_ = std::pow(round_off * charge, 2) * grid.x.length / grid.z.length;
 

@@ -61,7 +61,7 @@ inline std::complex<double> diocotron_frequency(const ChargedLayer& layer, doubl
 /// Growth rate of the followed mode of a case whose only species is a layer.
 inline double diocotron_growth(const Case& parameters) {
     const SpeciesCase& s = parameters.species[0];
-    const ChargedLayer layer{s.charge * s.density / parameters.B.y, s.half_width,
+    const ChargedLayer layer{s.charge * s.mean_density() / parameters.B.y, s.half_width,
                              0.5 * parameters.grid.z.length};
     return std::fabs(
         diocotron_frequency(layer, wave_vector(parameters, parameters.mode_x, 0).size()).imag());
