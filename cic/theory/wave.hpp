@@ -137,16 +137,14 @@ inline std::string likely_cause(const Case& parameters, const Theory& theory, do
                         rate, ", and linear theory does not hold: lower the amplitude ",
                         common::format(rate * rate / (bounce * bounce)), " times");
     if (parameters.model != "mesh" && cell > 0.5)
-        return sentence(
-            "k dx is ", cell,
-            ", and the mesh changes the wave: raise grid.cells_x, or set theory.model = "
-            "\"mesh\"");
+        return sentence("k dx is ", cell,
+                        ", and the mesh changes the wave: raise grid.cells_x, or take theory.model "
+                        "= \"mesh\"");
     if (step > 0.3)
         return sentence("|omega| dt is ", step,
                         ", and the leapfrog changes the wave: lower time.dt");
-    return "the noise of particles is the most likely cause: raise particles_per_cell, or set "
-           "loading "
-           "= \"quiet\"";
+    return "the noise of particles is the most likely cause: raise particles_per_cell, or take "
+           "loading = \"quiet\"";
 }
 
 /// A wave or an instability against the dispersion relation: frequency, growth or damping by
@@ -180,7 +178,7 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
     search.begin = grows ? 1 / growth : 2 * pi / frequency;
     search.below_maximum = 0.1;
     if (onset > search.begin) search.end = onset;
-    const bool swings = frequency >= 0.01 * std::fabs(growth);
+    const bool swings = frequency > 0 && frequency >= 0.01 * std::fabs(growth);
     const common::MeasuredMode seen =
         grows || swings ? common::measure_mode(times, mode, search) : common::MeasuredMode{};
     const std::string where = theory.source + "; measured " + seen.window;
