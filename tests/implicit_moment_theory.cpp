@@ -17,6 +17,7 @@
 #include "implicit_moment/theory/compare_energy.hpp"
 #include "implicit_moment/theory/compare_reconnection.hpp"
 #include "tests/support/any_particles.hpp"
+#include "tests/support/any_program.hpp"
 #include "tests/support/any_summary.hpp"
 
 namespace {
@@ -32,7 +33,7 @@ Case magnetized(bool leapfrog, double theta = 0.5) {
     w.grid = {{48, -2, 4, true}, {40, -2.5, 5, true}};
     w.dt = 0.05, w.end = 5;
     w.leapfrog.chosen = leapfrog, w.field.theta = theta;
-    w.uniform.B_x = 0.4, w.uniform.B_y = -0.3, w.uniform.B_z = 0.5;
+    w.uniform.B_x = 0.4, w.uniform.B_y = -0.3, w.uniform.B_z = 0.2;
     w.uniform.mode_x = 1, w.uniform.mode_z = -1;
     SpeciesCase ions, electrons;
     ions.name = "ions", electrons.name = "electrons";
@@ -109,9 +110,12 @@ TEST_CASE("cold magnetized plasma at an angle moves as the matrix of its step sa
             w.uniform.species[0].wave_z = -1e-4;
             CAPTURE(leapfrog);
             CAPTURE(theta);
-            // Splines see fields that are smaller by (k dx)^2/6 and less, which is 0.4 % at most.
-            const double off = deviation(w);
-            CHECK(off <= 0.02);
+            // Splines see fields that are smaller by (k dx)^2/6 in each direction, so waves are
+            // slower by half of that, and their phase is off in proportion to the time.
+            const WaveVector k = wave_vector(w);
+            const double part = std::pow(k.x * w.grid.x.spacing(), 2) / 12 +
+                                std::pow(k.z * w.grid.z.spacing(), 2) / 12;
+            CHECK(deviation(w) <= part * cold_waves(w).back().real() * w.end);
             // The other sense of gyration is not that motion.
             Case turned = w;
             turned.uniform.B_x *= -1, turned.uniform.B_y *= -1, turned.uniform.B_z *= -1;
@@ -185,8 +189,8 @@ TEST_CASE("a seeded wave at an angle obeys both constraints of the mesh") {
     const State state = initial_state(w);
     Field divergence = Field::Zero(w.grid.size());
     divergence_of_electric(w.grid, state.field.E.all.data(), divergence);
-    CHECK(largest(w.grid, on_nodes, divergence) <= 1e-15);
-    CHECK(largest_divergence(w.grid, state.field.B, divergence) <= 1e-15);
+    CHECK(largest(w.grid, on_nodes, divergence) <= 1e-14);
+    CHECK(largest_divergence(w.grid, state.field.B, divergence) <= 1e-14);
     const Amplitudes seeded = amplitudes(w, state.field);
     CHECK(std::abs(seeded[0] - 1e-3) <= 3e-6);
     CHECK(std::abs(seeded[2] - 1.25e-3) <= 3e-6);
@@ -285,9 +289,7 @@ TEST_CASE("a plasma in crossed uniform fields drifts with both and shares out th
             CAPTURE(run);
             const Run finished =
                 run_into("crossed", program,
-                         std::string("implicit_moment/cases/e_cross_b.toml uniform."
-                                     "particles_per_cell=16 --threads 1") +
-                             rest);
+                         std::string("implicit_moment/cases/e_cross_b.toml --threads 1") + rest);
             check_results(finished, 3);
             CHECK(finished.value("mean_E_error") <= 0.01);
         }
@@ -332,7 +334,7 @@ TEST_CASE("filaments of a plasma with a tail beyond the speed of light run with 
                  "time.end=4");
     const auto warnings = finished.summary["warnings"];
     REQUIRE(!warnings.empty());
-    CHECK(holds(warnings.dump(), "electrons: about 6"));
+    CHECK(holds(warnings.dump(), "electrons: about 64"));
     CHECK(holds(warnings.dump(), "faster than light, and the push is not relativistic"));
     CHECK(finished.value("energy_drift") <= 0.05);
 }

@@ -80,6 +80,7 @@ struct ReconnectionWindow {
     std::string source;
 };
 inline const std::vector<ReconnectionWindow>& reconnection_windows() {
+    static const std::string rival = "our explicit run, data/explicit_gem_quarter_flux.csv";
     static const std::string codes = "an implicit and an explicit code; Pritchett 2001, figure 3";
     static const std::vector<ReconnectionWindow> windows{
         {"electron_outflow", "v_A", 1, 2, "mean over 1 < |x| < 3 from the X-line; " + codes},
@@ -88,18 +89,28 @@ inline const std::vector<ReconnectionWindow>& reconnection_windows() {
         {"density_at_X_line", "e n0", 0.25, 0.5, codes},
         {"time_at_unit_flux", "1/Omega_ci", 14.5, 18, "the same, and seeds"},
         {"peak_reconnection_rate", "B0 v_A", 0.21, 0.27, "Pritchett 2001: 0.24 +- 0.03"},
-        {"quadrupole_at_unit_flux", "B0", 0.025, 0.06, "an implicit and an explicit code"}};
+        {"quadrupole_at_unit_flux", "B0", 0.025, 0.06, "an implicit and an explicit code"},
+        {"flux_at_t30", "B0 d_i", 2.8, 3.6, rival + "; digitized Birn et al. 2001: 4.0 +- 0.25"},
+        {"mean_rate_flux_1_to_3", "B0 v_A", 0.14, 0.24, rival + "; digitized: 0.33 +- 0.08"}};
     return windows;
 }
 
-/// Compares a value with its window, which belongs to m_i/m_e = 25; others are only shown.
+/// Compares a value with its window, which belongs to m_i/m_e = 25; of other sheets only the rate.
 inline void judge_reconnection(const std::string& name, double value, double mass_ratio,
                                common::Summary& summary) {
     const auto& all = reconnection_windows();
     const auto& window =
         *std::find_if(all.begin(), all.end(), [&](const auto& one) { return one.name == name; });
-    if (mass_ratio == 25)
+    summary.hint(
+        "noise decides when the sheet lets go, and the mesh how: try plasma.seed, "
+        "harris.particles, or another mesh and time.dt");
+    if (!std::isfinite(value))
+        summary.not_measured(name, "no cell lies there: take more cells along x");
+    else if (mass_ratio == 25)
         summary.result_within(name, value, window.unit, window.low, window.high, window.source);
+    else if (name == "peak_reconnection_rate")
+        summary.result_within(name, value, window.unit, 0.2, 0.4,
+                              "Ricci et al. 2003: the rate depends weakly on the mass ratio");
     else
         summary.result_info(name, value, window.unit, "measured; windows are for m_i/m_e = 25");
 }
@@ -173,10 +184,13 @@ inline void compare_reconnection(const Case& w, const common::History& history,
     judge("peak_reconnection_rate", detail::steepest_slope(times, flux, 2));
     judge("quadrupole_at_unit_flux", detail::at_time(times, quadrupole, unit));
     if (last < 30) return;
-    summary.result_info("flux_at_t30", detail::at_time(times, flux, 30), "B0 d_i", "measured");
+    judge("flux_at_t30", detail::at_time(times, flux, 30));
     const double rate = 2 / (common::time_at_level(times, flux, 3) - unit);
     if (std::isfinite(rate))
-        summary.result_info("mean_rate_flux_1_to_3", rate, "B0 v_A", "measured");
+        judge("mean_rate_flux_1_to_3", rate);
+    else
+        summary.not_measured("mean_rate_flux_1_to_3",
+                             "the flux does not come to 3 B0 d_i: raise time.end");
 }
 
 }  // namespace implicit_moment
