@@ -115,12 +115,12 @@ inline void judge_reconnection(const std::string& name, double value, double mas
         summary.result_info(name, value, window.unit, "measured; windows are for m_i/m_e = 25");
 }
 
-/// Mean velocity away from the X-line over begin <= |x| < begin + 2, both sides.
+/// Mean velocity away from the X-line over begin <= |x| <= begin + 2, both sides.
 inline double outflow(const ProfileColumns& columns, const std::vector<double>& v_x, double begin) {
     double sum = 0, count = 0;
     for (std::size_t k = 0; k < v_x.size(); ++k) {
         const double from_X = std::fabs(columns.x[k]);
-        if (from_X < begin || from_X >= begin + 2) continue;
+        if (from_X < begin - 1e-9 || from_X > begin + 2 + 1e-9) continue;
         sum += v_x[k] * std::copysign(1.0, columns.x[k]), count += 1;
     }
     return sum / count;
