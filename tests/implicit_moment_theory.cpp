@@ -237,7 +237,7 @@ TEST_CASE("profiles that are not those of reconnection fall out of their windows
             profile.B_z.push_back(B0 * sense);
             profile.rho_ions.push_back(rho);
             profile.rho_electrons.push_back(-rho);
-            profile.J_x_ions.push_back(sense * rho * ions * B0 * std::min(far / 4, 1.0));
+            profile.J_x_ions.push_back(sense * rho * ions * B0 * std::min(far / 3, 1.0));
             profile.J_x_electrons.push_back(-sense * rho * electrons * B0 * std::min(far, 1.0));
         }
         common::Summary summary;
