@@ -158,7 +158,7 @@ TEST_CASE("an ion cyclotron wave has the frequency of the cold dispersion relati
     const std::string e = text(E), i = text(ions), l = text(electrons);
     const Json summary = run(
         "ion_cyclotron",
-        "implicit_moment/cases/whistler.toml time.end=400 theory.near=0.031 uniform.wave_E_y=" + e +
+        "implicit_moment/cases/whistler.toml time.end=700 theory.near=0.031 uniform.wave_E_y=" + e +
             " uniform.wave_E_z=" + e +
             " uniform.phase_E_z=-90 uniform.phase_B_y=90 species.ions.wave_y=" + i +
             " species.ions.wave_z=" + i + " species.ions.phase_z=0 species.electrons.wave_y=" + l +

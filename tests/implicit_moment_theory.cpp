@@ -302,6 +302,14 @@ TEST_CASE("a plasma in crossed uniform fields drifts with both and shares out th
     }
 }
 
+TEST_CASE("a whistler and an ion cyclotron wave at an angle have the frequencies of the scheme" *
+          doctest::description("physics")) {
+    const std::string whistler = "implicit_moment/cases/oblique_whistler.toml --threads 1";
+    check_results(run_into("whistler", "implicit_moment", whistler), 3);
+    check_results(
+        run_into("whistler", "implicit_moment", whistler + " theory.near=0.0267 time.end=800"), 3);
+}
+
 TEST_CASE("light and beams at an angle to the mesh are those of theory" *
           doctest::description("physics")) {
     const std::string cases = "implicit_moment/cases/",
