@@ -827,7 +827,7 @@ plasmas theory.wave=light -> theory.wave = "light" needs plasma.setup = "uniform
 plasmas harris.light_over_alfven=1e39 -> harris.light_over_alfven
 plasmas harris.temperature_ratio=1e-39 -> harris.temperature_ratio
 plasmas plasma.setup=uniform wave_E_y
-    seeded fields need periodic boundaries: take out uniform.wave_E_*
+    seeded fields need periodic boundaries: take out uniform.E_*, uniform.wave_E_*
 plasmas beam uniform.B_x=0.1 grid.boundary_x=wall
     uniform.B_x = 0.1 would cross the conducting walls normal to x: make it 0
 plasmas beam uniform.B_z=0.1 grid.boundary_z=wall
@@ -881,7 +881,7 @@ plasmas langmuir species.electrons.charge=-1 uniform.B_z=0.1
     the dispersion relation is solved for B along k or zero
 plasmas longitudinal species.electrons.charge=-1 uniform.B_z=0.1
     the dispersion relation is solved for B along k or zero: take out the part of uniform.B across
-    the mode, or theory.wave
+    the mode, or choose "cold" or "none" for theory.wave
 plasmas transverse species.electrons.charge=-1 uniform.B_x=0.1 uniform.mode_x=0 uniform.mode_z=1
     the dispersion relation is solved for B along k or zero
 plasmas longitudinal species.electrons.charge=-1 theory.near=1e10

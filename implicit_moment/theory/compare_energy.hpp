@@ -28,7 +28,7 @@ inline EnergyWindow energy_window(const Case& w) {
     if (w.is_across_current() && w.harris.perturbation == 0) {
         window.tolerance = 0.005, window.source = "equilibrium";
     } else if (w.is_across_current() && w.harris.mass_ratio == 25) {
-        window.tolerance = 0.006, window.source = "an implicit and an explicit code keep 0.6 %";
+        window.tolerance = 0.006, window.source = "two codes, implicit and explicit, keep 0.6 %";
     } else if (!w.is_uniform()) {
         window.tolerance = 0.03;
     } else if (w.wave == "light" || w.wave == "langmuir") {

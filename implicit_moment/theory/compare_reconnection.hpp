@@ -81,15 +81,15 @@ struct ReconnectionWindow {
 };
 inline const std::vector<ReconnectionWindow>& reconnection_windows() {
     static const std::string rival = "our explicit run, data/explicit_gem_quarter_flux.csv";
-    static const std::string codes = "an implicit and an explicit code; Pritchett 2001, figure 3";
+    static const std::string codes = "two codes, implicit and explicit";
     static const std::vector<ReconnectionWindow> windows{
         {"electron_outflow", "v_A", 1, 2, "mean over 1 < |x| < 3 from the X-line; " + codes},
         {"ion_outflow", "v_A", 0.35, 0.65, "largest mean over 2 d_i; " + codes},
         {"ion_over_electron_outflow", "", 0.2, 0.5, "over 1 < |x| < 3; " + codes},
         {"density_at_X_line", "e n0", 0.25, 0.5, codes},
-        {"time_at_unit_flux", "1/Omega_ci", 14.5, 18, "the same, and seeds"},
+        {"time_at_unit_flux", "1/Omega_ci", 14.5, 18, codes + ", and their seeds"},
         {"peak_reconnection_rate", "B0 v_A", 0.21, 0.27, "Pritchett 2001: 0.24 +- 0.03"},
-        {"quadrupole_at_unit_flux", "B0", 0.025, 0.06, "an implicit and an explicit code"},
+        {"quadrupole_at_unit_flux", "B0", 0.025, 0.06, codes},
         {"flux_at_t30", "B0 d_i", 2.8, 3.6, rival + "; digitized Birn et al. 2001: 4.0 +- 0.25"},
         {"mean_rate_flux_1_to_3", "B0 v_A", 0.14, 0.24, rival + "; digitized: 0.33 +- 0.08"}};
     return windows;
