@@ -102,7 +102,7 @@ The particle-in-cell family in running code
                          $(wordlist 16,99,$(mpm_figures))
   make figures           draw them all
   make cost              the cost slide, measured: explicit over implicit, against the mass ratio
-  make explicit_gem      the full explicit run of that slide, an hour; resumable
+  make explicit_gem      the full explicit run of that slide, to the plateau, two hours; resumable
   make test              the facts, at most ten minutes   (make test ARGS='-R gmres': some of them)
   make test-long         every figure at full length, its numbers checked
   make torture           half an hour of kills, failing disks, forged files and fuzzing; resumable
@@ -231,10 +231,11 @@ out/implicit_moment/cost/.complete: implicit_moment/figures/fig_cost.sh $(BUILD)
 cost: fig_cost
 	@sh implicit_moment/figures/show_cost.sh out/implicit_moment/cost/cost.dat
 
-# The full explicit run of the cost slide, an hour on two cores, and what is kept of it for figures 9 and 10. It goes on where it was stopped.
+# The full explicit run of the cost slide, carried to t Omega_ci = 40 as the implicit one, two hours on two cores, and what is kept of it for figures 9
+# and 10. It goes on where it was stopped.
 explicit_gem: $(BUILD)/explicit_em
 	@mkdir -p out/explicit_em/gem_explicit
-	$(one_at_a_time) $(BUILD)/explicit_em implicit_moment/cases/gem_explicit.toml \
+	$(one_at_a_time) $(BUILD)/explicit_em implicit_moment/cases/gem_explicit.toml time.end=800 \
 	    --out out/explicit_em/gem_explicit --resume
 	sh implicit_moment/data/keep_explicit_gem.sh out/explicit_em/gem_explicit implicit_moment/data
 
