@@ -100,10 +100,10 @@ foreach(exercise IN LISTS exercises)
 endforeach()
 
 # ---- what the documentation says must run --------------------------------------------------------
-# The commands `build/...` and `make ...` of README files, and the lines  // Run:   build/...  of
-# program headers, each with --dry-run (which make understands as well).
+# The commands `build/...` and `make ...` of README files and projects, and the lines  // Run:   build/...
+# of program headers, each with --dry-run (which make understands as well).
 file(GLOB documents "${root}/README.md" "${root}/*/README.md" "${root}/*/*.cpp"
-    "${root}/*/*/*.cpp")
+    "${root}/*/*/*.cpp" "${root}/lecture_notes/exercises/projects-*.md")
 foreach(document IN LISTS documents)
     file(RELATIVE_PATH where "${root}" "${document}")
     if(document MATCHES "[.]md$")
