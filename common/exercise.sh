@@ -104,8 +104,8 @@ holds() {
 }
 
 # ---- the runs and their numbers --------------------------------------------------------------------
-run_lines() {  # folder of the programs, folder of the runs, where the words of the programs go
-    binaries=$1 folder=$2 words=$3
+run_lines() {  # folder of the programs, folder of the runs; what the programs say goes to 4
+    binaries=$1 folder=$2
     rm -rf "$folder"
     mkdir -p "$folder"
     while IFS= read -r line <&3; do
@@ -115,7 +115,7 @@ run_lines() {  # folder of the programs, folder of the runs, where the words of 
         shift
         printf '\n%s: %s\n' "$name" "$build/${line#*: }"
         result=0
-        "$binaries/$program" "$@" --out "$folder/$name" >> "$words" 2>&1 || result=$?
+        "$binaries/$program" "$@" --out "$folder/$name" >&4 2>&4 || result=$?
         [ "$result" -lt 128 ] || exit "$result"
         echo "$result" > "$folder/$name.status"
     done 3< "$scratch/runs"
@@ -162,7 +162,7 @@ copy_with_patch() {
         done
     applies "$tree" "$PWD/$patch" "" || stop "$patch does not apply to the sources"
     for program in $(programs_of); do
-        env -u MAKEFLAGS -u MAKELEVEL -u BUILD nice make -C "$tree" JOBS=1 OPTIMIZE=-O1 "build/$program"
+        env -u MAKEFLAGS -u MAKELEVEL -u BUILD -u SANITIZE -u TRAP -u REAL make -C "$tree" JOBS=1 OPTIMIZE=-O1 "build/$program"
     done
 }
 
@@ -186,7 +186,8 @@ run:2)
     find_exercise "$2"
     awk '/^```exercise/ { exit } { print }' "$question"
     [ -s "$scratch/runs" ] || { echo "Nothing to run: give an answer, make exercise E=$id ANSWER=..."; exit 0; }
-    run_lines "$build" "out/exercises/$id" /dev/stdout
+    exec 4>&1
+    run_lines "$build" "out/exercises/$id"
     echo
     judge "out/exercises/$id" no
     if [ -n "$patch" ] && [ "$wrong" = 1 ] && applies . "$PWD/$patch" --check > /dev/null; then
@@ -221,9 +222,10 @@ test:2)
         copy_with_patch > "$scratch/words" 2>&1 || { cat "$scratch/words"; exit 1; }
         binaries=$build/exercises/tree/build
     fi
-    run_lines "$binaries" "$folder" "$scratch/words" || { cat "$scratch/words"; exit 1; }
+    exec 4> "$scratch/words"
+    run_lines "$binaries" "$folder"
     judge "$folder" yes
-    [ "$wrong" = 0 ] && rm -rf "$folder"
+    if [ "$wrong" = 0 ]; then rm -rf "$folder"; else tail -n 40 "$scratch/words"; fi
     exit "$wrong"
     ;;
 check:1)
