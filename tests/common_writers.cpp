@@ -271,6 +271,55 @@ TEST_CASE("a checkpoint replaces regular files only and leaves no half of one") 
     CHECK(!fs::exists(target + ".partial"));
 }
 
+TEST_CASE("an error bar enters the verdict and an expected failure is none") {
+    const Folder folder;
+    common::Summary numbers;
+    numbers.expectation = {"off, absent, fine", "the step is too long"};
+    numbers.result("near", {1.25, 0.2}, "m", 1, 0.1, "exact");
+    numbers.result("close", {1.15, 0.06}, "m", 1, 0.1, "exact");
+    numbers.hint("lower time.dt");
+    numbers.result("far", {1.25, 0.06}, "m", 1, 0.1, "exact");
+    numbers.result("off", 3, "m", 1, 0.1, "exact");
+    numbers.result("fine", 1, "m", 1, 0.1, "exact");
+    numbers.result_at_most("low", 1.3, "", 1.2, "bound");
+    numbers.result_at_least("high", 1.3, "", 1.2, "bound");
+    numbers.result_at_most("lost", std::nan(""), "", 1.2, "bound");
+    numbers.close(0);
+    const std::string path = folder.file("numbers.json");
+    numbers.write(path, {"p", "1", "", ""}, "c", 0, "m");
+    const auto results = nlohmann::json::parse(read_all(path))["results"];
+    const std::vector<std::pair<std::string, std::string>> expected{
+        {"near", "NOT MEASURED"}, {"close", "PASS"},           {"far", "FAIL"},
+        {"low", "FAIL"},          {"off", "EXPECTED FAILURE"}, {"fine", "FAIL"},
+        {"high", "PASS"},         {"absent", "NOT MEASURED"},  {"lost", "FAIL"}};
+    for (const auto& [name, verdict] : expected) {
+        CAPTURE(name);
+        CHECK(results[name]["verdict"] == verdict);
+        CHECK(results[name]["pass"] == (verdict == "PASS"));
+    }
+    CHECK(results["near"]["error"] == 0.2);
+    CHECK(results["low"]["at_most"] == 1.2);
+    CHECK(numbers.table().find("<= 1.2") != std::string::npos);
+    const std::vector<std::string> said = numbers.shortfalls();
+    const auto says = [&](const std::string& text) {
+        return std::count(said.begin(), said.end(), text) == 1;
+    };
+    CHECK(says("FAIL far = 1.25 +- 0.06, and 1 +- 0.1 is expected (exact); lower time.dt"));
+    CHECK(says("as expected, off = 3 and not 1 +- 0.1: the step is too long"));
+    CHECK(numbers.fell_short());
+}
+
+TEST_CASE("a case that exists to show a failure says so and falls short without it") {
+    common::Summary numbers;
+    numbers.expectation = {"off, status 3", "the step is too long"};
+    numbers.result("off", 3, "m", 1, 0.1, "exact");
+    CHECK(!numbers.fell_short());
+    numbers.close(3);
+    CHECK(!numbers.fell_short());
+    numbers.close(0);
+    CHECK(numbers.fell_short());
+}
+
 TEST_CASE("a number that is not finite is never hidden") {
     const Folder folder;
     common::Summary numbers;
@@ -284,6 +333,7 @@ TEST_CASE("a number that is not finite is never hidden") {
     CHECK(results["bad"]["pass"] == false);
     CHECK(results["bad"]["finite"] == false);
     CHECK(results["good"]["pass"] == true);
+    CHECK(results["good"]["verdict"] == "PASS");
 
     common::History history(folder.file("history.dat"));
     history.columns({{"time", "s"}, {"x", "m"}});

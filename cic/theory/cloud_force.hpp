@@ -23,7 +23,7 @@
 #include "cic/theory/comparison.hpp"
 #include "common/grid.hpp"
 #include "common/splines.hpp"
-#include "common/theory/fit_oscillation.hpp"
+#include "common/theory/measure_modes.hpp"
 
 namespace cic {
 
@@ -161,12 +161,20 @@ inline void compare_clouds(const Case& parameters, const History& history, Summa
                             "measured");
         return;
     }
-    const common::OscillationFit fit = common::fit_oscillation(separation, parameters.dt);
-    summary.result("omega_over_theory", fit.frequency / expected, "", 1,
+    const common::MeasuredMode seen = common::measure_mode(history.column("time"), separation,
+                                                           {.expected = {expected, -expected}});
+    summary.hint(
+        "the pair may swing beyond the linear part of the force: bring the clouds closer "
+        "together, or lower time.dt");
+    if (!seen.found) return summary.not_measured("omega_over_theory", seen.reason);
+    summary.result("omega_over_theory",
+                   {seen.frequency() / expected, seen.frequency_error() / expected}, "", 1,
                    parameters.frequency_tolerance,
                    "linear force of overlapping clouds, mean over all places on the mesh");
-    summary.result_info("omega", fit.frequency, omega_p_unit, "measured");
-    summary.result_info("misfit", fit.misfit, "", "rms of what is not harmonic");
+    summary.result_info("omega", {seen.frequency(), seen.frequency_error()}, omega_p_unit,
+                        "measured " + seen.window);
+    summary.result_info("misfit", std::sqrt(std::max(0.0, 1 - seen.share)), "",
+                        "rms of what is not harmonic");
 }
 
 /// Refuses a case that is not two points in a periodic plane.

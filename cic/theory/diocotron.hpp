@@ -16,7 +16,7 @@
 
 #include "cic/theory/comparison.hpp"
 #include "cic/theory/theory_of_case.hpp"
-#include "common/theory/fit_growth.hpp"
+#include "common/theory/measure_modes.hpp"
 
 namespace cic {
 
@@ -70,15 +70,22 @@ inline double diocotron_growth(const Case& parameters) {
 /// The rate at which the edges of a charged layer wind up.
 inline void compare_diocotron(const Case& parameters, const History& history, Summary& summary) {
     const double growth = diocotron_growth(parameters);
-    const common::GrowthFit fit =
-        common::fit_growth(history.column("time"), amplitude_of_mode(history), {2.0, 0.2});
+    std::vector<std::complex<double>> mode;
+    const auto re = history.column("mode_re"), im = history.column("mode_im");
+    for (std::size_t n = 0; n < re.size(); ++n) mode.emplace_back(re[n], im[n]);
+    const common::MeasuredMode seen = common::measure_mode(
+        history.column("time"), mode,
+        {.expected = {{0, growth}}, .begin = 1 / growth, .below_maximum = 0.2});
     const std::string where =
-        "guiding centers, two edges between grounded walls; fitted from t = " + format(fit.begin) +
-        " to " + format(fit.end);
+        "guiding centers, two edges between grounded walls; measured " + seen.window;
     summary.result_info("theory_growth", growth, omega_p_unit, where);
-    summary.result_info("growth", fit.rate, omega_p_unit, where);
-    summary.result("growth_over_theory", fit.rate / growth, "", 1, parameters.growth_tolerance,
-                   where);
+    summary.hint(
+        "inertia changes the drift where omega_p is not far below Omega_c, and so does a "
+        "coarse layer: lower the density, or raise grid.cells_z");
+    if (!seen.found) return summary.not_measured("growth_over_theory", seen.reason);
+    summary.result_info("growth", {seen.growth(), seen.growth_error()}, omega_p_unit, where);
+    summary.result("growth_over_theory", {seen.growth() / growth, seen.growth_error() / growth}, "",
+                   1, parameters.growth_tolerance, where);
 }
 
 /// Refuses a case that is not one layer between grounded walls, across the magnetic field.

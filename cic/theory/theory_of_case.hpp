@@ -71,6 +71,8 @@ struct Theory {
     std::string source;
     long mode_x = 0, mode_z = 0;
     double seed = 0;  // amplitude with which the field of this root starts; 0: not known
+    bool mirrored =
+        false;  // whether -conj(omega) is a root as well, of the wave that goes the other way
 };
 
 /// The part of the seeded field that belongs to one root of D: the residue of the initial-value
@@ -137,6 +139,9 @@ inline Theory theory_of_wave(const Case& parameters, long mode_x, long mode_z) {
     const double least = 1e-9 * std::abs(root.omega);
     theory.omega = {std::fabs(root.omega.real()) < least ? 0 : root.omega.real(),
                     std::fabs(root.omega.imag()) < least ? 0 : root.omega.imag()};
+    const std::complex<double> mirror = -std::conj(root.omega);
+    const common::DispersionRoot other = common::root_near(D, mirror);
+    theory.mirrored = other.found && std::abs(other.omega - mirror) < 1e-6 * std::abs(mirror);
     if (!on_mesh && !parameters.magnetized()) theory.seed = seeded_field(parameters, theory, D);
     return theory;
 }

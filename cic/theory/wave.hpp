@@ -10,8 +10,7 @@
 
 #include "cic/theory/comparison.hpp"
 #include "cic/theory/theory_of_case.hpp"
-#include "common/theory/fit_growth.hpp"
-#include "common/theory/fit_oscillation.hpp"
+#include "common/theory/measure_modes.hpp"
 
 namespace cic {
 
@@ -40,15 +39,20 @@ inline void refuse_wave(const Case& parameters, const std::string& what, long mo
            " with a magnetic field is for gauss.sign = 1");
 }
 
+/// How fast particles bounce in the field of a wave, sqrt(|q| k E/m), of the lightest charge.
+inline double bounce_frequency(const Case& parameters, const Theory& theory, double field) {
+    double most = 0;
+    for (const SpeciesCase& s : parameters.species)
+        if (s.mobile()) most = std::max(most, std::fabs(s.charge) / s.mass);
+    return std::sqrt(most * wave_vector(parameters, theory.mode_x, theory.mode_z).size() * field);
+}
+
 /// Amplitude of the field at which an instability is visible: a tenth of the one in which the
 /// species with the largest |q|/m bounces as fast as the wave grows, |q| k E/m = gamma^2, where
 /// linear growth ends.
 inline double onset_field(const Case& parameters, const Theory& theory) {
-    double most = 0;
-    for (const SpeciesCase& s : parameters.species)
-        if (s.mobile()) most = std::max(most, std::fabs(s.charge) / s.mass);
-    const double k = wave_vector(parameters, theory.mode_x, theory.mode_z).size();
-    return 0.1 * theory.omega.imag() * theory.omega.imag() / (most * k);
+    const double gamma = theory.omega.imag();
+    return 0.1 * gamma * gamma / std::pow(bounce_frequency(parameters, theory, 1), 2);
 }
 
 /// Time of the onset, before the run: the seeded field grows at the rate of theory.
@@ -62,39 +66,35 @@ inline double predicted_onset(const Case& parameters, const Theory& theory) {
 /// What the onset is, in words.
 inline const std::string onset_meaning = "the seed has grown to a tenth of what traps particles";
 
-namespace detail {
-
-// The rows in which a damped wave is measured.
-struct Window {
-    std::size_t begin = 0, end = 0;
-};
-
-// One period after the start, when what else was excited has died away, until the amplitude has
-// fallen by e^3, or to the end. A standing wave is zero twice a period: the amplitude at a time is
-// the largest within the next half period.
-inline Window ringing_window(const std::vector<double>& amplitude, double dt, double frequency) {
-    const std::size_t count = amplitude.size();
-    const auto half = std::max<std::size_t>(1, static_cast<std::size_t>(pi / (frequency * dt)));
-    const auto envelope = [&](std::size_t n) {
-        const auto from = amplitude.begin() + static_cast<std::ptrdiff_t>(n);
-        return *std::max_element(from,
-                                 from + static_cast<std::ptrdiff_t>(std::min(half, count - n)));
-    };
-    Window window{std::min(2 * half, count / 4), count};
-    const double start = envelope(window.begin);
-    for (std::size_t n = window.begin; n + half < count; n += half) {
-        if (envelope(n) >= std::exp(-3.0) * start) continue;
-        window.end = n;
-        break;
-    }
-    return window;
+/// What a wave that is not as in theory is most likely due to, and what to change.
+/// in:     field, the amplitude with which the mode begins
+inline std::string likely_cause(const Case& parameters, const Theory& theory, double field) {
+    const double bounce = bounce_frequency(parameters, theory, field),
+                 rate = std::fabs(theory.omega.imag()),
+                 step = std::abs(theory.omega) * parameters.dt,
+                 cell = wave_vector(parameters, theory.mode_x, theory.mode_z).size() *
+                        parameters.grid.x.spacing();
+    if (bounce > rate && rate > 1e-3 * std::abs(theory.omega))
+        return sentence("particles bounce in the wave with ", bounce, ", faster than the rate ",
+                        rate, ", and linear theory does not hold: lower the amplitude ",
+                        common::format(rate * rate / (bounce * bounce)), " times");
+    if (parameters.model != "mesh" && cell > 0.5)
+        return sentence(
+            "k dx is ", cell,
+            ", and the mesh changes the wave: raise grid.cells_x, or set theory.model = "
+            "\"mesh\"");
+    if (step > 0.3)
+        return sentence("|omega| dt is ", step,
+                        ", and the leapfrog changes the wave: lower time.dt");
+    return "the noise of particles is the most likely cause: raise particles_per_cell, or set "
+           "loading "
+           "= \"quiet\"";
 }
 
-}  // namespace detail
-
-/// A wave or an instability against the dispersion relation.
-///   growing: rate by fit_growth, frequency by rotation within the same times, onset
-///   otherwise: frequency and damping within ringing_window
+/// A wave or an instability against the dispersion relation: frequency, growth or damping by
+/// measure_mode(); of what grows the onset as well.
+///   the record begins when the transient of the start is over: a growth time, or a period
+///   what grows ends at a tenth of its maximum
 inline void compare_wave(const Case& parameters, const History& history, Summary& summary) {
     const Theory theory = theory_of_wave(parameters);
     const auto times = history.column("time"), re = history.column("mode_re"),
@@ -104,87 +104,65 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
     summary.result_info("theory_omega", theory.omega.real(), omega_p_unit, theory.source);
     summary.result_info("theory_growth", growth, omega_p_unit, theory.source);
     summary.result_info("mode_x", double(theory.mode_x), "", "followed");
+    std::vector<std::complex<double>> mode;
+    for (std::size_t n = 0; n < re.size(); ++n) mode.emplace_back(re[n], im[n]);
+    const double start = *std::max_element(
+        amplitude.begin(),
+        amplitude.begin() + static_cast<std::ptrdiff_t>(1 + amplitude.size() / 10));
+    summary.hint(likely_cause(parameters, theory, start));
 
     const bool grows = growth > 1e-3 * std::abs(theory.omega);
-    std::vector<std::complex<double>> mode;
-    const auto take = [&](std::size_t begin, std::size_t end) {
-        mode.clear();
-        for (std::size_t n = begin; n < end; ++n) mode.emplace_back(re[n], im[n]);
+    common::ModeSearch search;
+    search.expected = {theory.omega};
+    if (theory.mirrored) search.expected.push_back(-std::conj(theory.omega));
+    search.begin = grows ? 1 / growth : 2 * pi / frequency;
+    search.below_maximum = 0.1;
+    const bool swings = frequency >= 0.01 * std::fabs(growth);
+    const common::MeasuredMode seen =
+        grows || swings ? common::measure_mode(times, mode, search) : common::MeasuredMode{};
+    const std::string where = theory.source + "; measured " + seen.window;
+    const auto report = [&](const std::string& name, double value, double error, double expected,
+                            double tolerance) {
+        if (seen.found)
+            summary.result(name, {value / expected, error / std::fabs(expected)}, "", 1, tolerance,
+                           where);
+        else
+            summary.not_measured(name, seen.reason);
     };
+    if (seen.found) {
+        summary.result_info("omega", {seen.frequency(), seen.frequency_error()}, omega_p_unit,
+                            where);
+        summary.result_info("growth", {seen.growth(), seen.growth_error()}, omega_p_unit, where);
+    }
     if (grows) {
-        const common::GrowthFit fit = common::fit_growth(times, amplitude, {3.0, 0.1});
-        const std::string where = theory.source + "; fitted from t = " + format(fit.begin) +
-                                  " to " + format(fit.end) +
-                                  (fit.found ? "" : " (" + fit.reason + ")");
-        summary.result_info("growth", fit.rate, omega_p_unit, where);
-        summary.result("growth_over_theory", fit.rate / growth, "", 1, parameters.growth_tolerance,
-                       where);
-        if (fit.found && frequency > 0.1 * growth) {
-            const auto row = [&](double t) {
-                return static_cast<std::size_t>(t / parameters.dt + 0.5);
-            };
-            take(row(fit.begin), row(fit.end) + 1);
-            const common::RotationFit rotation = common::fit_rotation(mode, parameters.dt);
-            summary.result("omega_over_theory", -rotation.frequency / theory.omega.real(), "", 1,
-                           parameters.frequency_tolerance, where);
-        }
+        report("growth_over_theory", seen.growth(), seen.growth_error(), growth,
+               parameters.growth_tolerance);
+        if (frequency > 0.1 * growth)
+            report("omega_over_theory", seen.omega.real(), seen.frequency_error(),
+                   theory.omega.real(), parameters.frequency_tolerance);
         const double onset = predicted_onset(parameters, theory), allowed = 0.5 / growth;
-        const double seen =
-            common::time_at_level(times, amplitude, onset_field(parameters, theory));
+        const double at = common::time_at_level(times, amplitude, onset_field(parameters, theory));
         if (onset > 0 && times.back() > onset + allowed)
-            summary.result("onset", std::isnan(seen) ? times.back() : seen, "1/omega_p", onset,
-                           allowed, onset_meaning);
+            summary.result("onset", std::isnan(at) ? times.back() : at, "1/omega_p", onset, allowed,
+                           onset_meaning);
         return;
     }
 
     // Where nothing should grow, nothing may.
-    const double start = *std::max_element(
-        amplitude.begin(),
-        amplitude.begin() + static_cast<std::ptrdiff_t>(1 + amplitude.size() / 10));
-    summary.result_within("largest_over_start",
-                          *std::max_element(amplitude.begin(), amplitude.end()) / start, "", 0, 1.2,
-                          "no growing root");
-    if (frequency < 0.01 * std::fabs(growth)) return;  // too damped to swing
-
-    const detail::Window window = detail::ringing_window(amplitude, parameters.dt, frequency);
-    take(window.begin, window.end);
-    // In a magnetic field a part of the seed stays at rest: it drops out of differences over half a
-    // period, which change neither frequency nor damping.
-    if (parameters.magnetized()) {
-        const auto half = static_cast<std::size_t>(std::ceil(pi / (frequency * parameters.dt)));
-        for (std::size_t n = 0; n + half < mode.size(); ++n) mode[n] -= mode[n + half];
-        mode.resize(mode.size() > half ? mode.size() - half : 0);
+    summary.result_at_most("largest_over_start",
+                           *std::max_element(amplitude.begin(), amplitude.end()) / start, "", 1.2,
+                           "no growing root");
+    if (!swings) {
+        summary.not_measured("omega_over_theory",
+                             "the mode of theory is too damped to swing: take a smaller "
+                             "theory.mode_x, or a colder plasma");
+        return;
     }
-    // A standing wave keeps its phase, a traveling one turns it: its ellipse is round.
-    std::complex<double> squares = 0;
-    for (const auto& z : mode) squares += z * z;
-    const std::complex<double> direction = std::polar(1.0, -0.5 * std::arg(squares));
-    std::vector<double> standing;
-    double along = 0, across = 0;
-    for (const auto& z : mode) {
-        const std::complex<double> turned = direction * z;
-        standing.push_back(turned.real());
-        along += turned.real() * turned.real();
-        across += turned.imag() * turned.imag();
-    }
-    double omega = 0, gamma = 0;
-    if (across < 0.1 * along) {
-        const common::OscillationFit fit = common::fit_oscillation(standing, parameters.dt);
-        omega = fit.frequency, gamma = fit.growth;
-    } else {
-        const common::RotationFit fit = common::fit_rotation(mode, parameters.dt);
-        omega = std::fabs(fit.frequency), gamma = fit.growth;
-    }
-    const std::string where = theory.source + "; fitted from t = " + format(times[window.begin]) +
-                              " to " + format(times[window.end - 1]);
-    summary.result_info("omega", omega, omega_p_unit, where);
-    summary.result("omega_over_theory", omega / frequency, "", 1, parameters.frequency_tolerance,
-                   where);
+    report("omega_over_theory", seen.frequency(), seen.frequency_error(), frequency,
+           parameters.frequency_tolerance);
     if (growth < -1e-3 * frequency)
-        summary.result("damping_over_theory", gamma / growth, "", 1, parameters.growth_tolerance,
-                       where);
-    else
-        summary.result_info("damping", -gamma, omega_p_unit, where);
+        report("damping_over_theory", seen.growth(), seen.growth_error(), growth,
+               parameters.growth_tolerance);
 }
 
 /// Frequency, growth and onset of the followed mode in words, before the run.

@@ -280,6 +280,7 @@ CommandLine read_command_line(int argc, char** argv, const ProgramInfo& info,
                               ParameterTable& table) {
     CommandLine command;
     command.program = argv[0];
+    table.describe_expectation();
     std::vector<std::string> overrides;
     std::string to_verify;
     bool help = false, version = false;

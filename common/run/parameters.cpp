@@ -115,7 +115,16 @@ void ParameterTable::add(Entry entry) {
     entries_.push_back(std::move(entry));
 }
 
+void ParameterTable::describe_expectation() {
+    group("what the case exists to show");
+    text("expect.fails", expectation.fails,
+         "results that fall short, with commas between them, or \"status 3\": they are said to be "
+         "expected, and one that does not fall short fails");
+    text("expect.because", expectation.because, "why, in a sentence");
+}
+
 bool ParameterTable::is_changeable(const std::string& name) const {
+    if (name.starts_with("expect.")) return true;
     return std::any_of(changeable_.begin(), changeable_.end(), [&](const std::string& allowed) {
         return allowed.back() == '.' ? name.starts_with(allowed) : name == allowed;
     });

@@ -57,6 +57,14 @@ struct Setting {
     std::string place;
 };
 
+/// What a case exists to show, from its section [expect].
+struct Expectation {
+    std::string fails;    // names of results, or "status 3", with commas between them
+    std::string because;  // a sentence
+    std::vector<std::string> list() const;
+    bool names(const std::string& result) const;
+};
+
 class ParameterTable {
    public:
     /// A heading in --help.
@@ -135,6 +143,11 @@ class ParameterTable {
     /// Complete TOML text of all values.
     /// exact:  reading it gives the same values and the same text.
     std::string effective_case() const;
+
+    /// What the case exists to show; describe_expectation() gives it the parameters expect.fails and
+    /// expect.because.
+    Expectation expectation;
+    void describe_expectation();
 
    private:
     static constexpr std::size_t most_items = 256;

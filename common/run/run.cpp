@@ -149,6 +149,7 @@ Run::Run(const ProgramInfo& info, const CommandLine& command, const ParameterTab
       effective_case_(table.effective_case()),
       start_(std::chrono::steady_clock::now()),
       shown_(start_) {
+    summary.expectation = table.expectation;
     std::error_code error;
     is_new_ = !fs::exists(command_.out_dir, error);
     const std::string stopped =
@@ -330,6 +331,7 @@ int Run::finish(long step, double count) {
 
     int status = 0;
     std::string message = "done", next;
+    if (!asked_to_stop() || complete_) summary.close(0);
     const std::vector<std::string> shortfalls = summary.shortfalls();
     if (asked_to_stop() && !complete_) {
         status = 128 + stop_signal;
@@ -338,7 +340,7 @@ int Run::finish(long step, double count) {
     } else if (!summary.is_finite()) {
         status = 3;
         message = "a result is not finite";
-    } else if (command_.strict && !shortfalls.empty()) {
+    } else if (command_.strict && summary.fell_short()) {
         status = 1;
         message = "a result fell short";
     }
@@ -359,9 +361,13 @@ int Run::finish(long step, double count) {
 }
 
 int Run::fail(int status, const std::string& message) {
+    if (status == 3 && summary.expectation.names("status 3"))
+        std::fprintf(stderr, "%s: as expected, %s\n", info_.program.c_str(),
+                     summary.expectation.because.c_str());
     if (!begun_) return status;
     try {
         history.flush();
+        summary.close(status);
         summary.write(path("summary.json"), info_, command_.case_name, status, message);
     } catch (const std::exception&) {
         // The disk may be full; what has failed is on the terminal anyway.

@@ -23,25 +23,77 @@ void put(Json& object, const std::string& key, double value) {
     }
 }
 
+// Six digits, and the error with two.
+std::string text_of(const Measured& number) {
+    char text[64];
+    const int length = std::snprintf(text, sizeof text, "%.6g", number.value);
+    if (number.error > 0)
+        std::snprintf(text + length, sizeof text - length, " +- %.2g", number.error);
+    return text;
+}
+
 }  // namespace
 
-bool Summary::Entry::pass() const {
-    return measured && std::isfinite(value) && std::isfinite(expected) &&
-           std::fabs(value - expected) <= tolerance;
+bool Expectation::names(const std::string& result) const {
+    const std::vector<std::string> all = list();
+    return std::find(all.begin(), all.end(), result) != all.end();
+}
+
+std::vector<std::string> Expectation::list() const {
+    std::vector<std::string> names;
+    for (std::size_t begin = 0, end = 0; begin < fails.size(); begin = end + 1) {
+        end = std::min(fails.find(',', begin), fails.size());
+        std::string name = fails.substr(begin, end - begin);
+        name.erase(0, name.find_first_not_of(' ')), name.erase(name.find_last_not_of(' ') + 1);
+        if (!name.empty()) names.push_back(name);
+    }
+    return names;
+}
+
+bool Summary::Entry::is_measured() const {
+    return kind != Kind::not_measured && !(is_judged() && value.error > tolerance);
+}
+
+bool Summary::Entry::meets() const {
+    const double above = value.value - expected, slack = value.error;
+    if (!is_measured() || !std::isfinite(above)) return false;
+    return kind == Kind::at_most    ? above <= slack
+           : kind == Kind::at_least ? above >= -slack
+                                    : std::fabs(above) <= tolerance + slack;
+}
+
+std::string Summary::Entry::wanted() const {
+    return kind == Kind::at_most    ? "<= " + format(expected)
+           : kind == Kind::at_least ? ">= " + format(expected)
+           : kind == Kind::compared ? format(expected) + " +- " + format(tolerance)
+                                    : "";
 }
 
 const char* Summary::verdict(const Entry& entry) const {
-    if (!entry.measured) return "NOT MEASURED";
-    return entry.pass() ? "PASS" : expects_failure ? "EXPECTED FAILURE" : "FAIL";
+    if (!entry.is_measured()) return "NOT MEASURED";
+    if (expectation.names(entry.name)) return entry.meets() ? "FAIL" : "EXPECTED FAILURE";
+    return entry.meets() ? "PASS" : "FAIL";
 }
 
 bool Summary::has_verdict() const {
-    return std::any_of(results_.begin(), results_.end(),
-                       [](auto& entry) { return entry.compared; });
+    return std::any_of(results_.begin(), results_.end(), [](auto& one) { return one.is_judged(); });
+}
+
+void Summary::close(int status) {
+    hint_ = "";
+    for (const std::string& name : expectation.list()) {
+        const bool is_there = std::any_of(results_.begin(), results_.end(),
+                                          [&](auto& one) { return one.name == name; });
+        if (name == "status 3")
+            add({name, "", "status of a run without numerical failure", status, 0, 0,
+                 Kind::compared});
+        else if (status == 0 && !is_there)
+            not_measured(name, "expect.fails names it, and the run has no such result");
+    }
 }
 
 bool Summary::is_finite() const {
-    const auto finite = [](const Entry& entry) { return std::isfinite(entry.value); };
+    const auto finite = [](const Entry& entry) { return std::isfinite(entry.value.value); };
     return std::all_of(results_.begin(), results_.end(), finite) &&
            std::all_of(conservation_.begin(), conservation_.end(), finite);
 }
@@ -57,24 +109,31 @@ void Summary::write(const std::string& path, const ProgramInfo& info, const std:
     json["results"] = Json::object();
     for (const Entry& entry : results_) {
         Json& result = json["results"][entry.name];
-        if (entry.measured) put(result, "value", entry.value);
-        if (!entry.measured) result["value"] = nullptr;
+        const bool measured = entry.kind != Kind::not_measured;
+        if (measured) put(result, "value", entry.value.value);
+        if (!measured) result["value"] = nullptr;
+        if (entry.value.error > 0) put(result, "error", entry.value.error);
         result["unit"] = entry.unit;
-        if (entry.compared && entry.measured) {
+        if (entry.kind == Kind::compared) {
             put(result, "expected", entry.expected);
             put(result, "tolerance", entry.tolerance);
         }
+        if (entry.kind == Kind::at_most) put(result, "at_most", entry.expected);
+        if (entry.kind == Kind::at_least) put(result, "at_least", entry.expected);
         result["source"] = entry.source;
-        if (entry.compared) result["pass"] = entry.pass(), result["verdict"] = verdict(entry);
-        if (!std::isfinite(entry.value)) result["pass"] = false;
+        if (entry.is_judged()) {
+            const std::string word = verdict(entry);
+            result["pass"] = word == "PASS", result["verdict"] = word;
+        }
+        if (!std::isfinite(entry.value.value)) result["pass"] = false;
     }
     json["conservation"] = Json::object();
     for (const Entry& entry : conservation_) {
-        put(json["conservation"][entry.name], "value", entry.value);
+        put(json["conservation"][entry.name], "value", entry.value.value);
         json["conservation"][entry.name]["unit"] = entry.unit;
     }
     json["performance"] = Json::object();
-    for (const Entry& entry : performance_) put(json["performance"], entry.name, entry.value);
+    for (const Entry& entry : performance_) put(json["performance"], entry.name, entry.value.value);
     json["warnings"] = warnings_;
 
     OutputFile file(path);
@@ -85,37 +144,50 @@ void Summary::write(const std::string& path, const ProgramInfo& info, const std:
 std::vector<std::string> Summary::shortfalls() const {
     std::vector<std::string> sentences;
     for (const Entry& entry : results_) {
-        if (!entry.compared || entry.pass() || (entry.measured && expects_failure)) continue;
-        if (!entry.measured) {
-            sentences.push_back("NOT MEASURED " + entry.name + ": " + entry.source);
-            continue;
-        }
-        sentences.push_back("FAIL " + entry.name + " = " + format(entry.value) + ", and " +
-                            format(entry.expected) + " +- " + format(entry.tolerance) +
-                            " is expected (" + entry.source + ")");
+        const std::string word = entry.is_judged() ? verdict(entry) : "PASS";
+        const std::string start = word + " " + entry.name,
+                          hint = entry.hint.empty() ? "" : "; " + entry.hint;
+        const std::string value = " = " + text_of(entry.value);
+        if (word == "NOT MEASURED")
+            sentences.push_back(entry.kind == Kind::not_measured
+                                    ? start + ": " + entry.source
+                                    : start + value + ": the error is larger than the tolerance, " +
+                                          format(entry.tolerance) + hint);
+        else if (word == "FAIL" && expectation.names(entry.name))
+            sentences.push_back(start + value +
+                                " is as theory has it, and expect.fails says that " + "it fails (" +
+                                expectation.because + ")");
+        else if (word == "FAIL")
+            sentences.push_back(start + value + ", and " + entry.wanted() + " is expected (" +
+                                entry.source + ")" + hint);
+        else if (word == "EXPECTED FAILURE")
+            sentences.push_back("as expected, " + entry.name + value + " and not " +
+                                entry.wanted() + ": " + expectation.because);
     }
     return sentences;
+}
+
+bool Summary::fell_short() const {
+    return std::any_of(results_.begin(), results_.end(), [&](const Entry& entry) {
+        const std::string word = entry.is_judged() ? verdict(entry) : "PASS";
+        return word == "FAIL" || word == "NOT MEASURED";
+    });
 }
 
 std::string Summary::table() const {
     if (results_.empty()) return "";
     std::string text;
     char line[512];
-    std::snprintf(line, sizeof line, "%-26s %14s   %-22s %-6s %s\n", "result", "measured",
+    std::snprintf(line, sizeof line, "%-26s %20s   %-20s %-6s %s\n", "result", "measured",
                   "expected", "", "source");
     text += line;
     for (const Entry& entry : results_) {
-        char expected[64] = "";
-        if (entry.compared && entry.measured)
-            std::snprintf(expected, sizeof expected, "%.6g +- %.3g", entry.expected,
-                          entry.tolerance);
+        const bool measured = entry.kind != Kind::not_measured;
         const std::string unit =
             entry.unit.empty() || entry.unit == "1" ? "" : " [" + entry.unit + "]";
-        char value[32] = "";
-        if (entry.measured) std::snprintf(value, sizeof value, "%.6g", entry.value);
-        std::snprintf(line, sizeof line, "%-26s %14s   %-22s %-6s %s%s\n", entry.name.c_str(),
-                      value, expected, entry.compared ? verdict(entry) : "", entry.source.c_str(),
-                      unit.c_str());
+        std::snprintf(line, sizeof line, "%-26s %20s   %-20s %-6s %s%s\n", entry.name.c_str(),
+                      measured ? text_of(entry.value).c_str() : "", entry.wanted().c_str(),
+                      entry.is_judged() ? verdict(entry) : "", entry.source.c_str(), unit.c_str());
         text += line;
     }
     return text;

@@ -80,7 +80,6 @@ class Recorder {
         common::Summary& summary = run.summary;
         if (history.all().empty()) return;
         const Comparison& comparison = comparison_of(parameters_);
-        summary.expects_failure = parameters_.failure_expected;
         if (comparison.compare != nullptr)
             comparison.compare({parameters_, program_, state, now, cells, history,
                                 run.path("profile.dat"), summary});

@@ -107,7 +107,6 @@ struct Case {
     // What the run is compared with.
     std::string compare = "none";
     double theory_tolerance = 0.05;
-    bool failure_expected = false;
     double frame_x = 0, frame_z = 0;  // velocity of the frame in which theory is stated
     long mode = 1;
 

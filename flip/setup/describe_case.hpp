@@ -196,8 +196,6 @@ inline common::ParameterTable describe(Case& parameters) {
     table.choice("theory.compare", parameters.compare, names, "what the run is compared with");
     table.real("theory.tolerance", parameters.theory_tolerance, "", above(0),
                "allowed difference; of riemann, between the waves, as the mesh sets the others");
-    table.flag("theory.failure_expected", parameters.failure_expected,
-               "the case exists to show a failure, and a FAIL is said to be expected");
     table.real("theory.frame_x", parameters.frame_x, "velocity", anything(),
                "velocity of the frame in which theory is stated");
     table.real("theory.frame_z", parameters.frame_z, "velocity", anything(), "along z");

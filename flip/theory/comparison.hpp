@@ -9,7 +9,6 @@
 #include "common/run/history.hpp"
 #include "common/run/summary.hpp"
 #include "common/run/writers.hpp"
-#include "common/theory/fit_growth.hpp"
 #include "flip/setup/initial_state.hpp"
 #include "flip/setup/refuse.hpp"
 #include "flip/theory/profiles.hpp"
@@ -97,7 +96,14 @@ inline void validate_flow(const Case& parameters, const Refusal& refuse, const s
 inline double slope(const std::vector<double>& t, const std::vector<double>& y,
                     std::size_t begin = 0) {
     if (begin + 2 > t.size()) return 0;
-    return common::growth_detail::RunningSums(t, y).line(begin, t.size()).slope;
+    const double count = static_cast<double>(t.size() - begin);
+    double mean_t = 0, mean_y = 0, along = 0, product = 0;
+    for (std::size_t n = begin; n < t.size(); ++n) mean_t += t[n] / count, mean_y += y[n] / count;
+    for (std::size_t n = begin; n < t.size(); ++n) {
+        along += (t[n] - mean_t) * (t[n] - mean_t);
+        product += (t[n] - mean_t) * (y[n] - mean_y);
+    }
+    return along > 0 ? product / along : 0;
 }
 
 }  // namespace flip

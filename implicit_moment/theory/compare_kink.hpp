@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "common/run/run.hpp"
-#include "common/theory/fit_growth.hpp"
+#include "common/theory/measure_modes.hpp"
 #include "implicit_moment/setup/current_sheet.hpp"
 
 namespace implicit_moment {
@@ -37,13 +37,15 @@ inline double level_after(std::span<const double> times, std::span<const double>
     return length > 0 ? std::sqrt(sum / length) : std::nan("");
 }
 
-/// Growth in the second phase: nearly all of the way, in logarithm, between 1.5 times the level
-/// with which that phase begins and 0.7 times the maximum.
+/// Growth in the second phase, up to 0.7 times the maximum.
+/// in:     expected, about the rate that is looked for
 /// exact:  for an exponential in the second phase, whatever was before
-inline common::GrowthFit second_growth(std::span<const double> times, std::span<const double> a) {
-    const long first =
-        std::lower_bound(times.begin(), times.end(), second_phase * (1 - 1e-9)) - times.begin();
-    return common::fit_growth(times.subspan(first), a.subspan(first), {1.5, 0.7, 0.05, 0.9});
+inline common::MeasuredMode second_growth(std::span<const double> times, std::span<const double> a,
+                                          double expected) {
+    common::ModeSearch search{
+        .expected = {{0, expected}}, .begin = second_phase, .below_maximum = 0.7};
+    search.e_foldings = 1;  // the talk's curves have no more
+    return common::measure_mode(times, a, search);
 }
 
 /// What the talk says about one of its sheets, m_i/m_e = 180 and u_i/v_i = 1.
@@ -71,8 +73,9 @@ inline void compare_kink(const Case& w, const common::History& history, common::
     const auto sheet = std::find_if(talk_kinks.begin(), talk_kinks.end(), [&](const TalkKink& k) {
         return of_the_talk && k.temperature_ratio == s.temperature_ratio;
     });
-    const auto report = [&](const std::string& name, double value, const std::string& unit,
-                            double TalkKink::*talk, const std::string& source) {
+    const auto report = [&](const std::string& name, common::Measured value,
+                            const std::string& unit, double TalkKink::*talk,
+                            const std::string& source) {
         if (sheet == talk_kinks.end())
             summary.result_info(name, value, unit, source);
         else
@@ -81,16 +84,20 @@ inline void compare_kink(const Case& w, const common::History& history, common::
                                       ", within a factor 2; " + source);
     };
     const auto growth = [&](const std::string& name, const std::vector<double>& a, bool compared) {
-        const common::GrowthFit fit = second_growth(times, a);
-        if (!fit.found) return;
-        const std::string window = "fitted from t Omega_ci = " + common::format(fit.begin) +
-                                   " to " + common::format(fit.end);
+        const common::MeasuredMode seen =
+            second_growth(times, a, sheet == talk_kinks.end() ? 0.1 : sheet->growth);
+        if (!seen.found) {
+            if (compared) summary.not_measured(name, seen.reason + ": raise time.end");
+            return;
+        }
+        const common::Measured rate{seen.growth(), seen.growth_error()};
+        const std::string window = "measured " + seen.window;
         if (compared)
-            report(name, fit.rate, "Omega_ci", &TalkKink::growth, window);
+            report(name, rate, "Omega_ci", &TalkKink::growth, window);
         else
-            summary.result_info(name, fit.rate, "Omega_ci", window);
-        summary.result_info(name + "_begin", fit.begin, "1/Omega_ci", "of the fit");
-        summary.result_info(name + "_end", fit.end, "1/Omega_ci", "of the fit");
+            summary.result_info(name, rate, "Omega_ci", window);
+        summary.result_info(name + "_begin", seen.begin, "1/Omega_ci", "of the fit");
+        summary.result_info(name + "_end", seen.end, "1/Omega_ci", "of the fit");
     };
     growth("kink_growth", B_1, true);
     growth("kink_growth_of_displacement", displacement, false);

@@ -11,9 +11,8 @@
 #include <vector>
 
 #include "common/run/run.hpp"
-#include "common/theory/fit_growth.hpp"
-#include "common/theory/fit_oscillation.hpp"
 #include "common/theory/kinetic_dispersion.hpp"
+#include "common/theory/measure_modes.hpp"
 #include "common/theory/theta_scheme.hpp"
 #include "implicit_moment/explicit_em/yee_field.hpp"
 #include "implicit_moment/output/diagnostics.hpp"
@@ -208,56 +207,55 @@ inline void add_mode(const Case& w, const FieldState& field, common::Row& row) {
     row.add("mode_im", w.component, mode.imag());
 }
 
-/// The seeded mode against theory: frequency and damping of a wave, growth rate of an instability.
+/// The seeded mode against theory, by measure_mode(): growth rate of an instability, up to a tenth of
+/// its maximum; frequency and damping of a wave.
 inline void compare_wave(const Case& w, const common::History& history, common::Summary& summary) {
     const Wave* wave = wave_of(w);
     if (wave == nullptr) return;
     const Theory theory = wave->expect(w);
     const double tolerance = theory.of_scheme ? 0.005 : 0.03;
-    const double dt = w.dt * double(w.history_steps);  // from row to row
     const auto times = history.column("time"), re = history.column("mode_re"),
                im = history.column("mode_im");
     const double growth = theory.omega.imag(), frequency = std::fabs(theory.omega.real());
     summary.result_info("theory_omega", frequency, "omega_pi", theory.source);
     summary.result_info("theory_growth", growth, "omega_pi", theory.source);
 
-    std::vector<double> amplitude;
-    for (std::size_t n = 0; n < re.size(); ++n) amplitude.push_back(std::hypot(re[n], im[n]));
-    if (!theory.of_scheme && growth > 0.05 * std::abs(theory.omega)) {
-        const common::GrowthFit fit = common::fit_growth(times, amplitude, {3.0, 0.1});
-        summary.result("growth_over_theory", fit.rate / growth, "", 1, tolerance,
-                       theory.source + "; fitted from t = " + common::format(fit.begin) + " to " +
-                           common::format(fit.end));
-        return;
-    }
-
-    // A standing wave keeps its phase, a traveling wave does not.
-    const auto largest = std::max_element(amplitude.begin(), amplitude.end()) - amplitude.begin();
-    const std::complex<double> direction = std::polar(1.0, -std::atan2(im[largest], re[largest]));
     std::vector<std::complex<double>> mode;
-    std::vector<double> standing;
-    double quadrature = 0;
-    for (std::size_t n = 0; n < re.size(); ++n) {
-        mode.push_back(direction * std::complex<double>(re[n], im[n]));
-        standing.push_back(mode.back().real());
-        quadrature = std::max(quadrature, std::fabs(mode.back().imag()));
-    }
-    double omega = 0, gamma = 0;
-    if (quadrature < 0.1 * std::abs(mode[largest])) {
-        const common::OscillationFit fit = common::fit_oscillation(standing, dt);
-        omega = fit.frequency, gamma = fit.growth;
-    } else {
-        const common::RotationFit fit = common::fit_rotation(mode, dt);
-        omega = std::fabs(fit.frequency), gamma = fit.growth;
-    }
-    summary.result("omega_over_theory", omega / frequency, "", 1, tolerance, theory.source);
-    if (std::fabs(growth) > 1e-6 * frequency && theory.of_scheme) {
-        summary.result("damping_over_theory", gamma / growth, "", 1, tolerance, theory.source);
-    } else if (theory.of_scheme) {
-        summary.result("damping", -gamma, "omega_pi", 0, 1e-3 * frequency, theory.source);
-    } else {
-        summary.result_info("damping", -gamma, "omega_pi", theory.source);
-    }
+    for (std::size_t n = 0; n < re.size(); ++n) mode.emplace_back(re[n], im[n]);
+    const bool grows = !theory.of_scheme && growth > 1e-3 * std::abs(theory.omega);
+    common::ModeSearch search;
+    // Fields are real, and the seed may run either way.
+    search.expected = {theory.omega, -std::conj(theory.omega)};
+    if (grows) search.begin = 1 / growth, search.below_maximum = 0.1;
+    const common::MeasuredMode seen = common::measure_mode(times, mode, search);
+    const std::string where = theory.source + "; measured " + seen.window;
+    summary.hint(
+        grows ? "the seed may be below the noise, or the run too short: raise the amplitude "
+                "of the seed, the particles per cell, or time.end"
+              : "noise, or a step that changes the wave, is the most likely cause: raise the "
+                "particles per cell, or lower time.dt");
+    const auto report = [&](const std::string& name, common::Measured value) {
+        if (seen.found)
+            summary.result(name, value, "", 1, tolerance, where);
+        else
+            summary.not_measured(name, seen.reason);
+    };
+    if (grows) report("growth_over_theory", {seen.growth() / growth, seen.growth_error() / growth});
+    if (!grows || frequency > 0.1 * growth)
+        report("omega_over_theory",
+               {seen.frequency() / frequency, seen.frequency_error() / frequency});
+    if (grows) return;
+    const common::Measured damping{-seen.growth(), seen.growth_error()};
+    if (theory.of_scheme && std::fabs(growth) > 1e-6 * frequency)
+        report("damping_over_theory",
+               {seen.growth() / growth, seen.growth_error() / std::fabs(growth)});
+    else if (!theory.of_scheme && growth < -1e-3 * frequency)
+        report("damping_over_theory",
+               {seen.growth() / growth, seen.growth_error() / std::fabs(growth)});
+    else if (theory.of_scheme && seen.found)
+        summary.result("damping", damping, "omega_pi", 0, 1e-3 * frequency, theory.source);
+    else if (seen.found)
+        summary.result_info("damping", damping, "omega_pi", theory.source);
 }
 
 }  // namespace implicit_moment

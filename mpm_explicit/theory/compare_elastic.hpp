@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "common/theory/fit_oscillation.hpp"
+#include "common/theory/measure_modes.hpp"
 #include "mpm_explicit/theory/comparison.hpp"
 #include "mpm_explicit/theory/exact_solutions.hpp"
 
@@ -135,17 +135,36 @@ inline Bar bar_of(const FinishedRun& run) {
             from.amplitude};
 }
 
-/// Frequency and growth of the momentum along x.
-inline common::OscillationFit fit_momentum(const FinishedRun& run) {
-    return common::fit_oscillation(run.history.column("momentum_x"),
-                                   run.scales.dt * double(run.parameters.history_steps));
+/// Frequency and damping of a body that rings, and what to say where they cannot be measured.
+/// in:     y(t) of the rows of the history, or of their changes; expected, the root of theory
+inline common::MeasuredMode measure_ringing(const FinishedRun& run, const std::vector<double>& y,
+                                            std::complex<double> expected) {
+    const auto times = run.history.column("time");
+    common::ModeSearch search{.expected = {expected, -std::conj(expected)}};
+    search.periods = search.e_foldings = 1;  // such a record has no noise
+    return common::measure_mode(std::span(times).first(y.size()), y, search);
+}
+
+/// A number of what rings beside theory.
+inline void report_ringing(const common::MeasuredMode& seen, const std::string& name,
+                           common::Measured value, const std::string& unit, double expected,
+                           double tolerance, const std::string& source, common::Summary& summary) {
+    summary.hint(
+        "more cells, a smaller amplitude or a shorter step bring the body closer to theory");
+    if (seen.found)
+        summary.result(name, value, unit, expected, tolerance, source + "; " + seen.window);
+    else
+        summary.not_measured(name, seen.reason);
 }
 
 /// Its frequency, and the energy it keeps.
 inline void compare_bar(const FinishedRun& run, common::Summary& summary) {
     const double expected = bar_of(run).frequency();
-    summary.result("frequency", fit_momentum(run).frequency, "1/time", expected,
-                   run.parameters.tolerance * expected, "bar with a fixed and a free end");
+    const common::MeasuredMode seen =
+        measure_ringing(run, run.history.column("momentum_x"), expected);
+    report_ringing(seen, "frequency", {seen.frequency(), seen.frequency_error()}, "1/time",
+                   expected, run.parameters.tolerance * expected, "bar with a fixed and a free end",
+                   summary);
     compare_energy(run, run.planned.scheme.bar_tolerance, summary);
 }
 

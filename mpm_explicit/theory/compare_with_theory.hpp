@@ -36,9 +36,11 @@ inline void compare_oscillator(const theory::FinishedRun& run, common::Summary& 
     summary.result_info("energy_14", e14.front() / kinetic.front(), "1",
                         "over the kinetic energy at the start; negative beyond omega dt = 2");
     if (stable) {
-        const common::OscillationFit fit = common::fit_oscillation(run.momentum_x(), dt);
-        summary.result("frequency", fit.frequency, "1/time", leapfrog_frequency(w, dt), 1e-4 * w,
-                       "leapfrog, (2/dt) asin(omega dt/2)");
+        const common::MeasuredMode seen =
+            theory::measure_ringing(run, run.momentum_x(), leapfrog_frequency(w, dt));
+        theory::report_ringing(seen, "frequency", {seen.frequency(), seen.frequency_error()},
+                               "1/time", leapfrog_frequency(w, dt), 1e-4 * w,
+                               "leapfrog, (2/dt) asin(omega dt/2)", summary);
         summary.result_within("largest_kinetic", most, "1", 0, 1 / (1 - 0.25 * w * w * dt * dt),
                               "bounded by [MPM-14], over the initial");
     } else {

@@ -80,16 +80,19 @@ inline void compare_bar(const theory::FinishedRun& run, common::Summary& summary
     const std::complex<double> g =
         common::theta_light_wave(theta, theory::bar_of(run).frequency() * dt);
     const double frequency = std::arg(g) / dt, damping = -std::log(std::abs(g)) / dt;
-    const common::OscillationFit fit = theory::fit_momentum(run);
-    summary.result("frequency", fit.frequency, "1/time", frequency,
-                   run.parameters.tolerance * frequency,
-                   "the theta scheme's, for the exact frequency of the body");
+    const common::MeasuredMode seen =
+        theory::measure_ringing(run, run.history.column("momentum_x"), {frequency, -damping});
+    theory::report_ringing(seen, "frequency", {seen.frequency(), seen.frequency_error()}, "1/time",
+                           frequency, run.parameters.tolerance * frequency,
+                           "the theta scheme's, for the exact frequency of the body", summary);
     if (theta > 0.5)
-        summary.result("damping", -fit.growth, "1/time", damping,
-                       run.parameters.tolerance * damping, "the theta scheme's");
+        theory::report_ringing(seen, "damping", {-seen.growth(), seen.growth_error()}, "1/time",
+                               damping, run.parameters.tolerance * damping, "the theta scheme's",
+                               summary);
     else
-        summary.result("damping", -fit.growth / frequency, "1", 0, 1e-3,
-                       "none, over the frequency");
+        theory::report_ringing(seen, "damping",
+                               {-seen.growth() / frequency, seen.growth_error() / frequency}, "1",
+                               0, 1e-3, "none, over the frequency", summary);
 }
 
 /// The one free node between two fixed ends, with frozen particles.
@@ -113,11 +116,12 @@ inline void compare_oscillator(const theory::FinishedRun& run, common::Summary& 
         return;
     }
     const double size = std::abs(std::log(g)) / dt, tolerance = run.parameters.tolerance * size;
-    const common::OscillationFit fit =
-        common::fit_oscillation(change, dt * double(run.parameters.history_steps));
-    summary.result("frequency", fit.frequency, "1/time", std::arg(g) / dt, tolerance, source);
-    summary.result("damping", -fit.growth, "1/time", -std::log(std::abs(g)) / dt, tolerance,
-                   source);
+    const double frequency = std::arg(g) / dt, damping = -std::log(std::abs(g)) / dt;
+    const common::MeasuredMode seen = theory::measure_ringing(run, change, {frequency, -damping});
+    theory::report_ringing(seen, "frequency", {seen.frequency(), seen.frequency_error()}, "1/time",
+                           frequency, tolerance, source, summary);
+    theory::report_ringing(seen, "damping", {-seen.growth(), seen.growth_error()}, "1/time",
+                           damping, tolerance, source, summary);
 }
 
 /// Grains that a plate presses: the energy is the work of the plate.

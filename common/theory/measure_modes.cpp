@@ -1,0 +1,369 @@
+#include "common/theory/measure_modes.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "common/run/parameters.hpp"
+
+namespace common {
+
+namespace {
+
+using Complex = std::complex<double>;
+using Eigen::Index, Eigen::MatrixXcd, Eigen::VectorXcd;
+
+constexpr double pi = 3.14159265358979323846;
+constexpr long most_samples = 320;     // in a window, after averaging
+constexpr double fastest_decay = -5;   // of an exponential, in a sample
+constexpr double least_evidence = 30;  // of noise alone one mode in some thousand has that much
+
+// The model sum_j c_j exp(s_j (n - n_j)), n_j the sample at which its exponential is 1 at most.
+struct Model {
+    VectorXcd s, c;
+    double rest = 0;  // sum of |z - model|^2
+
+    // exp(s_j (n - n_j)) of all samples and exponentials.
+    MatrixXcd columns(Index samples) const {
+        MatrixXcd result(samples, s.size());
+        for (Index j = 0; j < s.size(); ++j)
+            for (Index n = 0; n < samples; ++n)
+                result(n, j) = std::exp(s[j] * double(n - origin(j, samples)));
+        return result;
+    }
+    Index origin(Index j, Index samples) const { return s[j].real() > 0 ? samples - 1 : 0; }
+
+    // The least squares of the amplitudes, at these s.
+    void find_amplitudes(const VectorXcd& z) {
+        const MatrixXcd A = columns(z.size());
+        c = A.colPivHouseholderQr().solve(z);
+        rest = (z - A * c).squaredNorm();
+    }
+    // Derivatives of the model by the c_j, and by the s_j.
+    MatrixXcd slopes(Index samples) const {
+        MatrixXcd J(samples, 2 * s.size());
+        J.leftCols(s.size()) = columns(samples);
+        for (Index j = 0; j < s.size(); ++j)
+            for (Index n = 0; n < samples; ++n)
+                J(n, s.size() + j) = c[j] * double(n - origin(j, samples)) * J(n, j);
+        return J;
+    }
+};
+
+// Steps 1 and 2 of find_modes().
+Model start_of(const VectorXcd& z, const MatrixXcd& V, Index order) {
+    const MatrixXcd span = V.leftCols(order).conjugate();
+    const Index rows = span.rows() - 1;
+    const MatrixXcd step = span.topRows(rows).colPivHouseholderQr().solve(span.bottomRows(rows));
+    Model model;
+    model.s = Eigen::ComplexEigenSolver<MatrixXcd>(step, false).eigenvalues();
+    // What dies within a sample, or grows by e^60, is nothing that the record can tell.
+    for (Complex& s : model.s) {
+        s = std::abs(s) > 0 ? std::log(s) : Complex(fastest_decay);
+        s.real(std::clamp(s.real(), fastest_decay, 60.0 / double(z.size())));
+    }
+    model.find_amplitudes(z);
+    return model;
+}
+
+// Step 3.
+void improve(const VectorXcd& z, Model& model) {
+    const Index order = model.s.size();
+    for (int iteration = 0; iteration < 12; ++iteration) {
+        const VectorXcd difference = z - model.columns(z.size()) * model.c;
+        const VectorXcd change =
+            model.slopes(z.size()).colPivHouseholderQr().solve(difference).tail(order);
+        if (!change.allFinite()) return;
+        bool better = false;
+        for (double part = 1; part > 0.1 && !better; part *= 0.5) {
+            Model next = model;
+            next.s += part * change;
+            if (next.s.real().maxCoeff() * double(z.size()) > 100 ||
+                next.s.real().minCoeff() < fastest_decay || next.s.imag().cwiseAbs().maxCoeff() > 4)
+                continue;
+            next.find_amplitudes(z);
+            better = next.rest < model.rest;
+            if (better) model = next;
+        }
+        if (!better || change.norm() < 1e-9 * model.s.norm()) return;
+    }
+}
+
+// The correlation of neighboring residuals.
+double correlation(const VectorXcd& difference) {
+    const Index last = difference.size() - 1;
+    const double squares = difference.squaredNorm();
+    const double product = difference.head(last).dot(difference.tail(last)).real();
+    return squares > 0 ? std::clamp(product / squares, 0.0, 0.9) : 0;
+}
+
+// The modes of a model, with errors and evidence.
+ModeList modes_of(const VectorXcd& z, const Model& model, double dt) {
+    const Index order = model.s.size(), samples = z.size();
+    const double freedom = double(std::max<Index>(1, samples - 2 * order));
+    const double floor = 1e-30 * z.squaredNorm();
+    const MatrixXcd A = model.columns(samples);
+    const VectorXcd difference = z - A * model.c;
+    const double r = correlation(difference), variance = (model.rest + floor) / freedom;
+
+    // The covariance, from slopes of equal size.
+    const MatrixXcd J = model.slopes(samples);
+    Eigen::VectorXd size = J.colwise().norm().transpose();
+    size = size.cwiseMax(std::numeric_limits<double>::min());
+    const MatrixXcd unit = J * size.cwiseInverse().asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<MatrixXcd> gram(unit.adjoint() * unit);
+    const Eigen::ArrayXd values =
+        gram.eigenvalues().array().max(1e-15 * gram.eigenvalues().tail(1)[0]);
+    ModeList list;
+    for (Index j = 0; j < order; ++j) {
+        const double spread =
+            (gram.eigenvectors().row(order + j).transpose().array().abs2() / values).sum();
+        const double deviation =
+            std::sqrt(0.5 * variance * (1 + r) / (1 - r) * spread) / size[order + j];
+        Model without;
+        without.s.resize(order - 1);
+        without.s << model.s.head(j), model.s.tail(order - 1 - j);
+        without.rest = z.squaredNorm();
+        if (order > 1) without.find_amplitudes(z);
+        Mode mode;
+        mode.omega = Complex(0, 1) * model.s[j] / dt;
+        mode.error = Complex(2.2, 2.2) * deviation / dt;
+        mode.amplitude = model.c[j] * A(0, j);
+        mode.share = A.col(j).squaredNorm() * std::norm(model.c[j]) / z.squaredNorm();
+        mode.evidence = (without.rest - model.rest) / variance;
+        list.modes.push_back(mode);
+    }
+    list.noise = std::sqrt(model.rest / z.squaredNorm());
+    std::sort(list.modes.begin(), list.modes.end(),
+              [](const Mode& a, const Mode& b) { return a.share > b.share; });
+    return list;
+}
+
+}  // namespace
+
+ModeList find_modes(std::span<const Complex> record, double dt, int most) {
+    const VectorXcd z = Eigen::Map<const VectorXcd>(record.data(), Index(record.size()));
+    const Index samples = z.size();
+    if (samples < 8) return {{}, 0, "the record has fewer than 8 samples"};
+    if (!z.allFinite()) return {{}, 0, "a value of the record is not finite"};
+    const double size = z.cwiseAbs().maxCoeff();
+    if (!(size > 0)) return {{}, 0, "the record is zero"};
+    const VectorXcd unit = z / size;
+
+    const Index columns = std::min<Index>(samples / 2, 80);
+    MatrixXcd Z(samples - columns, columns + 1);
+    for (Index i = 0; i < Z.rows(); ++i) Z.row(i) = unit.segment(i, columns + 1).transpose();
+    const Eigen::SelfAdjointEigenSolver<MatrixXcd> gram(Z.adjoint() * Z);
+    const MatrixXcd V = gram.eigenvectors().rowwise().reverse();  // the largest first
+
+    // Step 4.
+    std::optional<Model> best;
+    double least = std::numeric_limits<double>::infinity();
+    const Index largest = std::min<Index>({most, columns - 1, Z.rows(), (samples - 2) / 3});
+    for (Index order = 1; order <= largest; ++order) {
+        Model model = start_of(unit, V, order);
+        improve(unit, model);
+        const double floor = 1e-26 * unit.squaredNorm();
+        const double score = 2 * double(samples) * std::log(std::max(model.rest, floor)) +
+                             4 * double(order) * std::log(2 * double(samples));
+        if (std::isfinite(score) && score < least) least = score, best = model;
+        if (model.rest <= floor) break;
+    }
+    if (!best) return {{}, 0, "no exponentials fit the record"};
+    ModeList list = modes_of(unit, *best, dt);
+    for (Mode& mode : list.modes) mode.amplitude *= size;
+    return list;
+}
+
+namespace {
+
+// The rows begin ... end - 1 of a history.
+struct Rows {
+    long begin = 0, end = 0;
+    long count() const { return end - begin; }
+};
+
+// What is looked for, in numbers.
+struct Wanted {
+    double growth = 0, frequency = 0, size = 0;  // of the roots of theory, the largest of each
+    explicit Wanted(const ModeSearch& search) {
+        for (const Complex& omega : search.expected) {
+            growth = std::abs(omega.imag()) > std::abs(growth) ? omega.imag() : growth;
+            frequency = std::max(frequency, std::abs(omega.real()));
+            size = std::max(size, std::abs(omega));
+        }
+    }
+};
+
+// A root of theory and the mode that is taken for it.
+struct Match {
+    Mode mode;
+    double distance = std::numeric_limits<double>::infinity();
+    bool mirrored = false;
+};
+
+// What is left of modes that a window of this length can tell from a constant, and from noise.
+std::vector<Mode> told_apart(const ModeList& list, double length, const Wanted& wanted) {
+    std::vector<Mode> modes;
+    const double least = std::min(2.0, 0.5 * wanted.size * length);
+    for (const Mode& mode : list.modes)
+        if (mode.evidence >= least_evidence && std::abs(mode.omega) * length >= least)
+            modes.push_back(mode);
+    return modes;
+}
+
+// The mode nearest to one of the roots, turned into the direction of the first root.
+Match nearest(const std::vector<Mode>& modes, const std::vector<Complex>& expected) {
+    Match best;
+    for (const Complex& root : expected)
+        for (const Mode& mode : modes) {
+            const double distance = std::abs(mode.omega - root);
+            if (distance < best.distance)
+                best = {mode, distance, root.real() * expected.front().real() < 0};
+        }
+    if (best.mirrored) best.mode.omega = -std::conj(best.mode.omega);
+    return best;
+}
+
+// Blocks of samples, averaged.
+std::vector<Complex> averaged(std::span<const Complex> z, Rows rows, long block) {
+    std::vector<Complex> result;
+    for (long n = rows.begin; n + block <= rows.end; n += block) {
+        Complex sum = 0;
+        for (long m = 0; m < block; ++m) sum += z[std::size_t(n + m)];
+        result.push_back(sum / double(block));
+    }
+    return result;
+}
+
+// The part of the record that tells most, and in how large blocks.
+Rows window_of(std::span<const double> times, std::span<const Complex> z, const ModeSearch& search,
+               const Wanted& wanted, long& block) {
+    const double dt = times[1] - times[0], slack = 1e-9 * dt;
+    Rows rows;
+    while (rows.begin < long(times.size()) && times[std::size_t(rows.begin)] < search.begin - slack)
+        ++rows.begin;
+    rows.end = rows.begin;
+    while (rows.end < long(times.size()) && times[std::size_t(rows.end)] <= search.end + slack)
+        ++rows.end;
+    const bool grows = wanted.growth > 0 && search.below_maximum < 1;
+    if (grows && rows.count() > 0) {
+        double largest = 0;
+        for (long n = rows.begin; n < rows.end; ++n)
+            largest = std::max(largest, std::abs(z[std::size_t(n)]));
+        long end = rows.begin;
+        while (end < rows.end && std::abs(z[std::size_t(end)]) < search.below_maximum * largest)
+            ++end;
+        rows.end = end;
+    }
+    const double e_folding = 1 / (std::abs(wanted.growth) * dt), radian = 1 / (wanted.size * dt);
+    if (8 * e_folding < double(rows.count())) {
+        const long enough = std::lround(std::ceil(std::max(8 * e_folding, 8.0)));
+        (grows ? rows.begin : rows.end) = grows ? rows.end - enough : rows.begin + enough;
+    }
+    block = std::max(1L, std::min(long(0.4 * radian), rows.count() / 64));
+    const long longer = (rows.count() + most_samples - 1) / most_samples;
+    block = std::max(block, std::min(longer, long(0.8 * radian)));
+    if (rows.count() > most_samples * block)
+        (grows ? rows.begin : rows.end) =
+            grows ? rows.end - most_samples * block : rows.begin + most_samples * block;
+    return rows;
+}
+
+std::string text_of(const Complex& omega) {
+    return format(omega.real()) + (omega.imag() < 0 ? " - " : " + ") +
+           format(std::abs(omega.imag())) + " i";
+}
+
+}  // namespace
+
+MeasuredMode measure_mode(std::span<const double> times, std::span<const Complex> z,
+                          const ModeSearch& search) {
+    MeasuredMode result;
+    const auto cannot = [&](const std::string& why) {
+        result.found = false;
+        result.reason = "cannot be measured, because " + why;
+        return result;
+    };
+    const Wanted wanted(search);
+    if (times.size() < 8 || times.size() != z.size())
+        return cannot("the history has fewer than 8 rows");
+    if (!(wanted.size > 0)) return cannot("theory has no root to look for");
+
+    // Choose the window.
+    long block = 1;
+    const Rows rows = window_of(times, z, search, wanted, block);
+    const double dt = times[1] - times[0];
+    if (rows.count() < 8 * block)
+        return cannot("only " + std::to_string(std::max(0L, rows.count())) +
+                      " rows of the history are between the transient of the start and the end of "
+                      "the linear phase");
+    result.begin = times[std::size_t(rows.begin)], result.end = times[std::size_t(rows.end - 1)];
+    const double length = result.end - result.begin;
+
+    // Find its modes, and among them the one of theory.
+    const std::vector<Complex> record = averaged(z, rows, block);
+    const ModeList list = find_modes(record, double(block) * dt);
+    if (list.modes.empty()) return cannot(list.reason);
+    const std::vector<Mode> modes = told_apart(list, length, wanted);
+    if (modes.empty())
+        return cannot("noise is " + format(list.noise) +
+                      " of the record from t = " + format(result.begin) + " to " +
+                      format(result.end) + ", and no mode stands out of it");
+    const Match match = nearest(modes, search.expected);
+    result.omega = match.mode.omega, result.error = match.mode.error;
+
+    // Look for it in parts of the window.
+    Complex strays = 0;
+    const long quarter = long(record.size()) / 4;
+    for (const Rows part :
+         {Rows{quarter, long(record.size())}, Rows{0, long(record.size()) - quarter},
+          Rows{quarter / 2, long(record.size()) - quarter / 2}}) {
+        const ModeList there = find_modes(
+            std::span(record).subspan(std::size_t(part.begin), std::size_t(part.count())),
+            double(block) * dt);
+        const Match same = nearest(
+            told_apart(there, length * double(part.count()) / double(record.size()), wanted),
+            {result.omega, -std::conj(result.omega)});
+        if (!std::isfinite(same.distance)) continue;
+        const Complex off = same.mode.omega - result.omega;
+        const auto beyond = [](double change, double error) {
+            return std::sqrt(std::max(0.0, change * change - error * error));
+        };
+        strays.real(std::max(strays.real(), beyond(off.real(), same.mode.error.real())));
+        strays.imag(std::max(strays.imag(), beyond(off.imag(), same.mode.error.imag())));
+    }
+    result.error = {std::hypot(result.error.real(), strays.real()),
+                    std::hypot(result.error.imag(), strays.imag())};
+
+    // Say what was seen.
+    result.window = "from t = " + format(result.begin) + " to " + format(result.end);
+    std::string others;
+    for (const Mode& mode : modes) {
+        const bool same = std::abs(mode.omega - match.mode.omega) < 1e-9 * wanted.size ||
+                          std::abs(mode.omega + std::conj(match.mode.omega)) <
+                              std::abs(match.mode.error) + 1e-6 * wanted.size;
+        if (same) result.share += mode.share;
+        if (!same && mode.share > 1e-3)
+            others += (others.empty() ? "" : ", ") + text_of(mode.omega);
+    }
+    if (!others.empty()) result.window += "; also seen: omega = " + others;
+    const double turns = result.frequency() * length / (2 * pi),
+                 folds = std::abs(result.growth()) * length;
+    if (turns < search.periods && folds < search.e_foldings)
+        return cannot("the window " + result.window + " holds " + format(turns) + " periods and " +
+                      format(folds) + " e-foldings, and " + format(search.periods) + " or " +
+                      format(search.e_foldings) + " are needed");
+    result.found = true;
+    return result;
+}
+
+MeasuredMode measure_mode(std::span<const double> times, std::span<const double> y,
+                          const ModeSearch& search) {
+    const std::vector<Complex> z(y.begin(), y.end());
+    return measure_mode(times, z, search);
+}
+
+}  // namespace common
