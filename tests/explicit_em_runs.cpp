@@ -128,3 +128,29 @@ TEST_CASE("rows and snapshots of a sparse history are those of a dense one" *
     }
     CHECK(snapshots == 4);
 }
+
+TEST_CASE("what is kept of a long explicit run stays when a shorter one is kept" *
+          doctest::description("robust")) {
+    const std::string run_of = folder("kept"), data = folder("data");
+    fs::create_directories(run_of);
+    fs::create_directories(data);
+    const std::string flux = data + "/explicit_gem_flux.csv";
+    const auto keep = [&](double end) {
+        std::ofstream(run_of + "/summary.json") << "{\n  \"version\": \"1\"\n}\n";
+        std::ofstream history(run_of + "/history.dat");
+        history << "# 1:time[1/omega_pi] 2:time_Omega_ci[1/Omega_ci] 3:flux[B0*d_i]\n";
+        for (double t = 0; t <= end; t += 0.25)
+            history << 20 * t << ' ' << t << ' ' << t / 2 << '\n';
+        history.close();
+        const std::string command = "sh implicit_moment/data/keep_explicit_gem.sh " + run_of + " " +
+                                    data + " 2> " + data + "/said";
+        REQUIRE(std::system(command.c_str()) == 0);
+        return read_all(flux);
+    };
+    const std::string longer = keep(3.25);
+    CHECK(holds(longer, "\n3.000,1.50000\n3.250,1.62500\n"));
+    CHECK(keep(2) == longer);
+    CHECK(holds(read_all(data + "/said"), "is shorter than what"));
+    CHECK(holds(keep(4), "\n3.500,1.75000\n4.000,2.00000\n"));
+    CHECK(!holds(read_all(flux), "4.000,2.00000\n4.000"));
+}

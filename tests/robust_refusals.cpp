@@ -835,16 +835,15 @@ plasmas grid.cells_z=63
     grid.cells_z = 63 is odd: the flux is measured on the row z = 0, so make it even
 plasmas harris.thickness=4
     harris.thickness = 4 d_i does not fit between walls 12.8 d_i apart: at most a quarter
-plasmas harris.light_over_alfven=2
-    c (drift or three thermal speeds), and the mover is not relativistic: raise
-    harris.light_over_alfven above
+plasmas harris.light_over_alfven=1.2
+    c (drift or thermal speed): raise harris.light_over_alfven above
 plasmas species.beam.density=1
     [species.beam] belongs to plasma.setup = "uniform"; the Harris sheet makes its own
 plasmas theory.wave=light -> theory.wave = "light" needs plasma.setup = "uniform"
 plasmas harris.light_over_alfven=1e39 -> harris.light_over_alfven
 plasmas harris.temperature_ratio=1e-39 -> harris.temperature_ratio
 plasmas plasma.setup=uniform wave_E_y
-    seeded fields need periodic boundaries: take out uniform.wave_E_*
+    seeded fields need periodic boundaries: take out uniform.E_*, uniform.wave_E_*
 plasmas beam uniform.B_x=0.1 grid.boundary_x=wall
     uniform.B_x = 0.1 would cross the conducting walls normal to x: make it 0
 plasmas beam uniform.B_z=0.1 grid.boundary_z=wall
@@ -860,22 +859,36 @@ plasmas uniform uniform.wave_B_x=1e-3
 plasmas uniform uniform.wave_E_x=1e-3
     the seeded E has a part along k: that part follows from the charge, so seed it with
 plasmas beam species.beam.drift_x=0.8 species.beam.drift_z=0.8
-    species 'beam' has speeds of 1.131 c (drift or three thermal speeds), and the mover
-plasmas beam species.beam.temperature_y=0.25
-    species 'beam' has speeds of 1.5 c (drift or three thermal speeds), and the mover
+    species 'beam' has speeds of 1.131 c (drift or thermal speed): lower them
+plasmas beam species.beam.temperature_y=1.44
+    species 'beam' has speeds of 1.2 c (drift or thermal speed): lower them
+plasmas uniform uniform.E_x=1e-3 grid.boundary_x=wall
+    seeded fields need periodic boundaries: take out uniform.E_*
+plasmas uniform uniform.mode_z=1 uniform.wave_B_x=1e-3 uniform.wave_B_z=-5e-4 uniform.phase_B_z=9
+    the two components in the plane of a wave at an angle to x and z have different phases
+plasmas cold wave_E_y -> theory.wave = "cold" needs charges: it needs a [species.<name>]
+plasmas cold species.electrons.charge=-1 species.electrons.drift_y=0.1
+    species 'electrons' is warm or drifts: choose "longitudinal" or "transverse"
+plasmas cold species.electrons.charge=-1 uniform.mode_z=30
+    theory.wave = "cold" takes splines for points, and the mode has
+plasmas cold species.electrons.charge=-1 grid.cells_x=64 grid.cells_z=64
+    theory.wave = "cold" needs theory.near: this plasma has waves at omega =
+plasmas longitudinal species.electrons.charge=-1 uniform.mode_z=1 uniform.B_x=0.1
+    the dispersion relation is solved for B along k or zero
+plasmas transverse species.electrons.charge=-1 uniform.mode_z=1 species.electrons.temperature_z=0.1
+    species 'electrons' has another temperature along x than along z, and a wave at an angle to both
+    is not transverse: make them equal, or the mode along x or z
 plasmas uniform
     an empty uniform plasma: add a [species.<name>] or seed a field with uniform.wave_E_y
 implicit_moment light wave_E_y time.end=2.9
     theory.wave needs at least 10 steps to measure: raise time.end above 3
-plasmas light wave_E_y uniform.mode_z=1
-    theory.wave needs a mode along x or along z: set uniform.mode_x or uniform.mode_z to 0
 plasmas light species.electrons.charge=-1
     theory.wave = "light" is a wave in vacuum: take out the species or choose "transverse"
-plasmas langmuir wave_E_y -> theory.wave = "langmuir" needs a [species.<name>]
+plasmas langmuir wave_E_y -> theory.wave = "langmuir" needs charges: it needs a [species.<name>]
 plasmas transverse wave_E_y -> theory.wave = "transverse" needs a [species.<name>]
 plasmas langmuir species.electrons.charge=-1 species.electrons.temperature_x=1e-4
     theory.wave = "langmuir" is exact for a cold plasma at rest, and species 'electrons' is warm or
-    drifts: choose "longitudinal"
+    drifts: choose "longitudinal" or "transverse"
 plasmas langmuir species.electrons.charge=-1 species.electrons.drift_z=0.1
     species 'electrons' is warm or drifts: choose "longitudinal"
 plasmas langmuir species.electrons.charge=0 species.electrons.wave_x=1e-5 time.end=3 few
@@ -884,7 +897,7 @@ plasmas langmuir species.electrons.charge=-1 uniform.B_z=0.1
     the dispersion relation is solved for B along k or zero
 plasmas longitudinal species.electrons.charge=-1 uniform.B_z=0.1
     the dispersion relation is solved for B along k or zero: take out the part of uniform.B across
-    the mode, or theory.wave
+    the mode, or choose "cold" or "none" for theory.wave
 plasmas transverse species.electrons.charge=-1 uniform.B_x=0.1 uniform.mode_x=0 uniform.mode_z=1
     the dispersion relation is solved for B along k or zero
 plasmas longitudinal species.electrons.charge=-1 theory.near=1e10

@@ -222,7 +222,12 @@ explicit_em harris.light_over_alfven=10 harris.guide_field=10
     warning: electrons: Omega_c dt = 0.7537 is above 0.5, gyration is too slow by more than 2 %:
     lower time.dt to 0.0199
 explicit_em beam particles.relativistic=false species.beam.temperature_x=0.09 grid.cells_x=512
-    warning: beam: four thermal speeds are 1.2 c, and the push is not relativistic
+    warning: beam: about 7198 of 8.389e+06 particles, 0.08581 %, are loaded faster than light, and
+    the push is not relativistic
+explicit_em beam species.beam.temperature_x=0.09 grid.cells_x=512
+    warning: beam: about 7198 of 8.389e+06 particles, 0.08581 %, are loaded with u = gamma v above c
+implicit_moment beam species.beam.temperature_y=0.09
+    warning: beam: about 225 of 2.621e+05 particles
 )");
 }
 

@@ -74,8 +74,7 @@ inline void compare_diocotron(const Case& parameters, const History& history, Su
     const auto re = history.column("mode_re"), im = history.column("mode_im");
     for (std::size_t n = 0; n < re.size(); ++n) mode.emplace_back(re[n], im[n]);
     const common::MeasuredMode seen = common::measure_mode(
-        history.column("time"), mode,
-        {.expected = {{0, growth}}, .begin = 1 / growth, .below_maximum = 0.2});
+        history.column("time"), mode, {.expected = {{0, growth}}, .below_maximum = 0.2});
     const std::string where =
         "guiding centers, two edges between grounded walls; measured " + seen.window;
     summary.result_info("theory_growth", growth, omega_p_unit, where);

@@ -111,6 +111,19 @@ inline double predicted_onset(const Case& parameters, const Theory& theory) {
 /// What the onset is, in words.
 inline const std::string onset_meaning = "the seed has grown to a tenth of what traps particles";
 
+/// The field that the noise of randomly placed particles has in the mode, rms, before it is screened.
+///   E_k^2 = sum_s (2 q_s n_s / k)^2 / N_s
+inline double noise_field(const Case& parameters, const Theory& theory) {
+    const double k = wave_vector(parameters, theory.mode_x, theory.mode_z).size();
+    double squares = 0;
+    for (const SpeciesCase& s : parameters.species)
+        if (s.mobile() && s.loading != "lattice")
+            squares += std::pow(2 * s.charge * s.density / k, 2) /
+                       (double(s.particles_per_cell) * double(parameters.grid.x.cells) *
+                        double(parameters.dimensions == 2 ? parameters.grid.z.cells : 1));
+    return std::sqrt(squares);
+}
+
 /// What a wave that is not as in theory is most likely due to, and what to change.
 /// in:     field, the amplitude with which the mode begins
 inline std::string likely_cause(const Case& parameters, const Theory& theory, double field) {
@@ -124,16 +137,14 @@ inline std::string likely_cause(const Case& parameters, const Theory& theory, do
                         rate, ", and linear theory does not hold: lower the amplitude ",
                         common::format(rate * rate / (bounce * bounce)), " times");
     if (parameters.model != "mesh" && cell > 0.5)
-        return sentence(
-            "k dx is ", cell,
-            ", and the mesh changes the wave: raise grid.cells_x, or set theory.model = "
-            "\"mesh\"");
+        return sentence("k dx is ", cell,
+                        ", and the mesh changes the wave: raise grid.cells_x, or take theory.model "
+                        "= \"mesh\"");
     if (step > 0.3)
         return sentence("|omega| dt is ", step,
                         ", and the leapfrog changes the wave: lower time.dt");
-    return "the noise of particles is the most likely cause: raise particles_per_cell, or set "
-           "loading "
-           "= \"quiet\"";
+    return "the noise of particles is the most likely cause: raise particles_per_cell, or take "
+           "loading = \"quiet\"";
 }
 
 /// A wave or an instability against the dispersion relation: frequency, growth or damping by
@@ -160,9 +171,14 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
     common::ModeSearch search;
     search.expected = {theory.omega};
     if (theory.mirrored) search.expected.push_back(-std::conj(theory.omega));
+    const double onset = predicted_onset(parameters, theory);
+    bool random = false;
+    for (const SpeciesCase& s : parameters.species) random = random || s.loading == "random";
+    const double noise = random ? noise_field(parameters, theory) : 0;
     search.begin = grows ? 1 / growth : 2 * pi / frequency;
     search.below_maximum = 0.1;
-    const bool swings = frequency >= 0.01 * std::fabs(growth);
+    if (onset > search.begin) search.end = onset;
+    const bool swings = frequency > 0 && frequency >= 0.01 * std::fabs(growth);
     const common::MeasuredMode seen =
         grows || swings ? common::measure_mode(times, mode, search) : common::MeasuredMode{};
     const std::string where = theory.source + "; measured " + seen.window;
@@ -185,18 +201,23 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
         if (frequency > 0.1 * growth)
             report("omega_over_theory", seen.omega.real(), seen.frequency_error(),
                    theory.omega.real(), parameters.frequency_tolerance);
-        const double onset = predicted_onset(parameters, theory), allowed = 0.5 / growth;
-        const double at = common::time_at_level(times, amplitude, onset_field(parameters, theory));
-        if (onset > 0 && times.back() > onset + allowed)
+        const double allowed = 0.5 / growth,
+                     at = common::time_at_level(times, amplitude, onset_field(parameters, theory));
+        if (onset > 0 && times.back() > onset + allowed && noise > 0.3 * theory.seed)
+            summary.not_measured("onset", sentence("the noise of particles, ", noise,
+                                                   ", is not small beside the seed, ", theory.seed,
+                                                   ": raise amplitude or particles_per_cell"));
+        else if (onset > 0 && times.back() > onset + allowed)
             summary.result("onset", std::isnan(at) ? times.back() : at, "1/omega_p", onset, allowed,
                            onset_meaning);
         return;
     }
 
-    // Where nothing should grow, nothing may.
+    // Where nothing should grow, nothing may; but a quiet start does not stay quieter than noise.
     summary.result_at_most("largest_over_start",
-                           *std::max_element(amplitude.begin(), amplitude.end()) / start, "", 1.2,
-                           "no growing root");
+                           {*std::max_element(amplitude.begin(), amplitude.end()) / start,
+                            3 * noise_field(parameters, theory) / start},
+                           "", 1.2, "no growing root");
     if (!swings) {
         summary.not_measured("omega_over_theory",
                              "the mode of theory is too damped to swing: take a smaller "

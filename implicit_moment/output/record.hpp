@@ -15,6 +15,8 @@
 #include "implicit_moment/output/write_output.hpp"
 #include "implicit_moment/solve_field.hpp"
 #include "implicit_moment/theory/compare_current_sheet.hpp"
+#include "implicit_moment/theory/compare_drift.hpp"
+#include "implicit_moment/theory/compare_energy.hpp"
 #include "implicit_moment/theory/compare_equilibrium.hpp"
 #include "implicit_moment/theory/compare_kink.hpp"
 #include "implicit_moment/theory/compare_reconnection.hpp"
@@ -101,14 +103,16 @@ class Recorder {
             if (w.harris.perturbation != 0)
                 compare_reconnection(w, history, profile, summary);
             else
-                compare_equilibrium(w, state.plasma, plasma_moments_(state), history, summary);
+                compare_equilibrium(w, state.plasma, plasma_moments_(state), summary);
             write_profile(run.path("profile.dat"), profile, w.grid, harris_sheet(w.harris).B0);
         } else if (sheet_) {
             compare_current_sheet(w, history, summary);
             compare_kink(w, history, summary);
         } else {
             compare_wave(w, history, summary);
+            if (has_uniform_E(w)) compare_drift(w, history, summary);
         }
+        compare_energy(w, history, summary);
         const auto conserved = [&](const std::string& name, const std::string& unit) {
             summary.conservation("largest_" + name, history.largest(name), unit);
         };
@@ -162,6 +166,7 @@ class Recorder {
         if (parameters_.is_across_current()) add_reconnection(parameters_, field, row);
         if (parameters_.is_along_current()) sheet_->add(field, row);
         if (parameters_.is_uniform()) add_mode(parameters_, field, row);
+        if (has_uniform_E(parameters_)) add_mean_field(grid, field, row);
         return row;
     }
 

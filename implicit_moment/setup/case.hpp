@@ -52,9 +52,10 @@ struct SpeciesCase {
     double phase_x = 0, phase_y = 0, phase_z = 0;  // its phase [degrees]
 };
 
-/// A uniform plasma in a uniform magnetic field, with one seeded mode cos(k x + phase).
+/// A uniform plasma in uniform fields, with one seeded mode cos(k x + phase).
 struct UniformCase {
     double B_x = 0, B_y = 0, B_z = 0;                 // [m_i c omega_pi / e]
+    double E_x = 0, E_y = 0, E_z = 0;                 // at t = 0
     long particles_per_cell = 64;                     // of each species
     long mode_x = 1, mode_z = 0;                      // wave number in units of 2 pi / length
     double wave_B_x = 0, wave_B_y = 0, wave_B_z = 0;  // field amplitudes of the seeded mode

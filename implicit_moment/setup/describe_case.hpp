@@ -108,6 +108,10 @@ inline void describe_plasma(common::ParameterTable& table, Case& w) {
                "uniform magnetic field along x");
     table.real("uniform.B_y", w.uniform.B_y, "m_i c omega_pi/e", anything(), "out of the plane");
     table.real("uniform.B_z", w.uniform.B_z, "m_i c omega_pi/e", anything(), "along z");
+    table.real("uniform.E_x", w.uniform.E_x, "m_i c omega_pi/e", anything(),
+               "uniform electric field along x at the start");
+    table.real("uniform.E_y", w.uniform.E_y, "m_i c omega_pi/e", anything(), "out of the plane");
+    table.real("uniform.E_z", w.uniform.E_z, "m_i c omega_pi/e", anything(), "along z");
     table.whole("uniform.mode_x", w.uniform.mode_x, "", between(-2048, 2048),
                 "seeded wavelengths in length_x");
     table.whole("uniform.mode_z", w.uniform.mode_z, "", between(-2048, 2048),
@@ -142,7 +146,7 @@ inline void describe_results(common::ParameterTable& table, Case& w) {
     std::vector<std::string> names{"none"};
     for (const Wave& wave : waves()) names.push_back(wave.name);
     table.choice("theory.wave", w.wave, names,
-                 "exact theta scheme in vacuum or cold plasma; kinetic dispersion relation");
+                 "exact for the scheme in vacuum or cold plasma; kinetic dispersion relation");
     table.choice("theory.component", w.component, {"E_x", "E_y", "E_z", "B_x", "B_y", "B_z"},
                  "whose seeded mode is followed");
     table.real("theory.near", w.near, "omega_pi", anything(),

@@ -7,6 +7,7 @@
 #include "implicit_moment/deposit_moments.hpp"
 #include "implicit_moment/mesh_modes.hpp"
 #include "implicit_moment/setup/load_plasma.hpp"
+#include "implicit_moment/solve_field.hpp"
 #include "implicit_moment/sort_particles.hpp"
 
 namespace implicit_moment {
@@ -56,7 +57,7 @@ inline void current_sheet_field(const Case& parameters, FieldState& field) {
     fill_ghosts(grid, magnetic, field.B);
 }
 
-/// The uniform magnetic field and the seeded mode; its part of B in the plane is made from A_y,
+/// The uniform fields and the seeded mode; its part of B in the plane is made from A_y,
 /// so that div B = 0 to round-off.
 inline void uniform_field(const Case& parameters, FieldState& field) {
     const UniformCase& u = parameters.uniform;
@@ -79,9 +80,9 @@ inline void uniform_field(const Case& parameters, FieldState& field) {
             const double i = double(l), j = double(m);
             potential.y()[n] =
                 A * std::sin(mode_phase(parameters, grid.x.at(i), grid.z.at(j)) + A_phase);
-            field.E.x()[n] = mode(i + 0.5, j, u.wave_E_x, u.phase_E_x);
-            field.E.y()[n] = mode(i, j, u.wave_E_y, u.phase_E_y);
-            field.E.z()[n] = mode(i, j + 0.5, u.wave_E_z, u.phase_E_z);
+            field.E.x()[n] = u.E_x + mode(i + 0.5, j, u.wave_E_x, u.phase_E_x);
+            field.E.y()[n] = u.E_y + mode(i, j, u.wave_E_y, u.phase_E_y);
+            field.E.z()[n] = u.E_z + mode(i, j + 0.5, u.wave_E_z, u.phase_E_z);
         }
     }
     curl_of_electric(grid, potential.all.data(), field.B.all.data());
@@ -98,13 +99,15 @@ inline void uniform_field(const Case& parameters, FieldState& field) {
     fill_ghosts(grid, magnetic, field.B);
 }
 
-/// Adds -grad phi with -lap phi = 4 pi rho, phi = 0 on walls, so that Gauss's law holds at t = 0.
-/// in:     rho, smoothed as the field equations smooth it.
+/// Adds -grad phi with -lap phi = 4 pi rho - div E, phi = 0 on walls, so that Gauss's law holds at
+/// t = 0, also on this mesh for a seeded E whose k . E is 0.
+/// in:     rho, smoothed as the field equations smooth it; E with ghosts filled.
 /// note:   in a doubly periodic box a uniform background neutralizes the mean of rho.
 inline void add_electrostatic_field(const Grid& grid, const MeshModes& modes, const Field& rho,
                                     FieldState& field) {
-    Field phi = 4 * pi * rho;
-    common::fill_ghosts(grid, common::on_nodes, {-1, -1}, phi.data());
+    Field phi = Field::Zero(grid.size());
+    gauss_residual(grid, field.E, rho, phi);
+    phi = -phi;
     solve_poisson(grid, modes, phi);
     const long s = grid.stride();
     for_each_point(grid, [&](long n) {

@@ -14,8 +14,7 @@ namespace implicit_moment {
 /// Harris sheet without perturbation: profiles against n0 sech^2(z/lambda) + n_inf, in units of
 /// their own particle noise.
 inline void compare_equilibrium(const Case& w, const Plasma& plasma,
-                                const std::vector<Moments>& moments, const common::History& history,
-                                common::Summary& summary) {
+                                const std::vector<Moments>& moments, common::Summary& summary) {
     const Grid& grid = w.grid;
     const HarrisSheet sheet = harris_sheet(w.harris);
     const double weight = plasma.species[0].q_p;
@@ -41,12 +40,10 @@ inline void compare_equilibrium(const Case& w, const Plasma& plasma,
         current_y += std::pow((row(moments[0].J_y) + row(moments[1].J_y) - J) / J_noise, 2);
     }
     const double rows = double(grid.z.cells - 1);
-    summary.result_within("density_over_noise", std::sqrt(density / (2 * rows)), "", 0, 1.2,
-                          "n0 sech^2(z/lambda) + n_inf");
-    summary.result_within("current_over_noise", std::sqrt(current_y / rows), "", 0, 1.2,
-                          "Harris 1962");
-    summary.result("energy_drift", history.column("energy_drift").back(), "", 0, 0.005,
-                   "equilibrium");
+    summary.result_at_most("density_over_noise", std::sqrt(density / (2 * rows)), "", 1.2,
+                           "n0 sech^2(z/lambda) + n_inf");
+    summary.result_at_most("current_over_noise", std::sqrt(current_y / rows), "", 1.2,
+                           "Harris 1962");
 }
 
 }  // namespace implicit_moment

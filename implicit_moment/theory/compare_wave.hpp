@@ -17,6 +17,7 @@
 #include "implicit_moment/explicit_em/yee_field.hpp"
 #include "implicit_moment/output/diagnostics.hpp"
 #include "implicit_moment/setup/case.hpp"
+#include "implicit_moment/theory/cold_plasma.hpp"
 
 namespace implicit_moment {
 
@@ -37,30 +38,26 @@ struct Wave {
 
 namespace detail {
 
-// The seeded mode: the axis that it lies along, and its wave number.
-inline bool along_x(const Case& w) { return w.uniform.mode_x != 0; }
-inline const common::Axis& axis_of_mode(const Case& w) { return along_x(w) ? w.grid.x : w.grid.z; }
-inline double wave_number(const Case& w) {
-    return 2 * pi * double(along_x(w) ? w.uniform.mode_x : w.uniform.mode_z) /
-           axis_of_mode(w).length;
-}
-
 // The species of a uniform case as the dispersion relation wants them, with k along the mode.
+//     T_k = T_x k_x^2/k^2 + T_z k_z^2/k^2
 inline std::vector<common::PlasmaSpecies> theory_species(const Case& w) {
     const UniformCase& u = w.uniform;
-    const bool x = along_x(w);
-    const bool across_is_y = w.component == "E_y" || w.component == (x ? "B_z" : "B_x");
+    const WaveVector k = wave_vector(w);
+    const double along_x = k.x / k.size(), along_z = k.z / k.size();
+    const bool across_is_y = w.component == "E_y" || w.component == "B_x" || w.component == "B_z";
     std::vector<common::PlasmaSpecies> plasma;
     for (const SpeciesCase& s : u.species) {
         common::PlasmaSpecies p;
         p.density = n0 * s.density, p.charge = s.charge, p.mass = s.mass;
-        p.drift = x ? s.drift_x : s.drift_z;
-        p.temperature_along = x ? s.temperature_x : s.temperature_z;
-        const double T_plane = x ? s.temperature_z : s.temperature_x;
-        const double u_plane = x ? s.drift_z : s.drift_x;
+        p.drift = s.drift_x * along_x + s.drift_z * along_z;
+        p.temperature_along =
+            s.temperature_x * along_x * along_x + s.temperature_z * along_z * along_z;
+        const double T_plane =
+            s.temperature_x * along_z * along_z + s.temperature_z * along_x * along_x;
+        const double u_plane = s.drift_z * along_x - s.drift_x * along_z;
         p.temperature_across = across_is_y ? s.temperature_y + s.mass * s.drift_y * s.drift_y
                                            : T_plane + s.mass * u_plane * u_plane;
-        p.gyrofrequency = s.charge * (x ? u.B_x : u.B_z) / (s.mass * c);
+        p.gyrofrequency = s.charge * (u.B_x * along_x + u.B_z * along_z) / (s.mass * c);
         plasma.push_back(p);
     }
     return plasma;
@@ -78,34 +75,35 @@ inline void refuse_light(const Case& w, const std::string& name) {
                "\" is a wave in vacuum: take out the species or choose \"transverse\"");
 }
 inline Theory expect_light(const Case& w) {
-    const double k = wave_number(w), dx = axis_of_mode(w).spacing();
+    const WaveVector k = wave_vector(w);
     if (w.leapfrog.chosen)
-        return {yee_frequency(w.grid, w.dt, along_x(w) ? k : 0, along_x(w) ? 0 : k),
-                "exact dispersion on Yee's mesh", true};
-    const double K = 2 / dx * std::sin(0.5 * k * dx);
-    return of_factor(w, common::theta_light_wave(w.field.theta, c * w.dt * K));
+        return {yee_frequency(w.grid, w.dt, k.x, k.z), "exact dispersion on Yee's mesh", true};
+    return of_factor(
+        w, common::theta_light_wave(w.field.theta, c * w.dt * mesh_wave_vector(w).size()));
 }
 
 inline void refuse_kinetic(const Case& w, const std::string& name) {
     const UniformCase& u = w.uniform;
+    const WaveVector k = wave_vector(w);
     refuse(u.species.empty(), "theory.wave = \"" + name + "\" needs a [species.<name>]");
-    refuse(along_x(w) ? u.B_y != 0 || u.B_z != 0 : u.B_x != 0 || u.B_y != 0,
+    refuse(u.B_y != 0 ||
+               std::fabs(u.B_x * k.z - u.B_z * k.x) > 1e-9 * std::hypot(u.B_x, u.B_z) * k.size(),
            "the dispersion relation is solved for B along k or zero: take out the part of "
-           "uniform.B across the mode, or theory.wave");
+           "uniform.B across the mode, or choose \"cold\" or \"none\" for theory.wave");
+}
+
+inline void refuse_uncharged(const Case& w, const std::string& wave) {
+    const auto& species = w.uniform.species;
+    refuse(std::all_of(species.begin(), species.end(),
+                       [](const SpeciesCase& s) { return s.charge == 0; }),
+           wave + " needs charges: " +
+               (species.empty() ? "it needs a [species.<name>]" : "give a species a charge"));
 }
 
 inline void refuse_langmuir(const Case& w, const std::string& name) {
-    const auto& species = w.uniform.species;
-    const std::string wave = "theory.wave = \"" + name + "\" ";
-    refuse(!species.empty() && std::all_of(species.begin(), species.end(),
-                                           [](const SpeciesCase& s) { return s.charge == 0; }),
-           wave + "needs charges: give a species a charge");
-    for (const SpeciesCase& s : species) {
-        refuse(s.temperature_x > 0 || s.temperature_y > 0 || s.temperature_z > 0 ||
-                   s.drift_x != 0 || s.drift_z != 0,
-               wave + "is exact for a cold plasma at rest, and species '" + s.name +
-                   "' is warm or drifts: choose \"longitudinal\"");
-    }
+    const std::string wave = "theory.wave = \"" + name + "\"";
+    refuse_uncharged(w, wave);
+    refuse_warm(w, wave);
     refuse_kinetic(w, name);
 }
 inline Theory expect_langmuir(const Case& w) {
@@ -114,11 +112,43 @@ inline Theory expect_langmuir(const Case& w) {
     if (!w.leapfrog.chosen)
         return of_factor(
             w, common::theta_langmuir_wave(w.field.theta, std::sqrt(omega_squared) * w.dt));
-    // Quadratic splines see a field that varies within a cell; linear ones do not.
-    const double k_dx = wave_number(w) * axis_of_mode(w).spacing();
-    const double seen = w.leapfrog.order == 1 ? 1 : (2 + std::cos(k_dx)) / 3;
-    return {leapfrog_frequency(std::sqrt(omega_squared * seen), w.dt),
+    // What splines see of a field that varies within a cell, along it and across it.
+    const WaveVector k = wave_vector(w), K = mesh_wave_vector(w);
+    const auto seen = [&](double angle, double other_angle) {
+        const double c_1 = std::cos(angle), c_2 = std::cos(other_angle);
+        return w.leapfrog.order == 1
+                   ? (2 + c_2) / 3
+                   : (2 + c_1) / 3 * (33 + 26 * c_2 + std::cos(2 * other_angle)) / 60;
+    };
+    const double x = k.x * w.grid.x.spacing(), z = k.z * w.grid.z.spacing();
+    const double part = (K.x * K.x * seen(x, z) + K.z * K.z * seen(z, x)) / (K.size() * K.size());
+    return {leapfrog_frequency(std::sqrt(omega_squared * part), w.dt),
             "leapfrog, exact: sin(omega dt/2) = omega_p dt/2", true};
+}
+
+// The wave of the cold plasma that is nearest to theory.near.
+inline Theory expect_cold(const Case& w) {
+    const auto waves = cold_waves(w);
+    const auto distance = [&](std::complex<double> one) { return std::fabs(one.real() - w.near); };
+    return {*std::min_element(waves.begin(), waves.end(),
+                              [&](auto a, auto b) { return distance(a) < distance(b); }),
+            "cold plasma, exact for the step of the program", true};
+}
+inline void refuse_cold(const Case& w, const std::string& name) {
+    const std::string wave = "theory.wave = \"" + name + "\"";
+    refuse_uncharged(w, wave);
+    refuse_warm(w, wave);
+    const WaveVector k = wave_vector(w);
+    const double k_dx =
+        std::max(std::fabs(k.x) * w.grid.x.spacing(), std::fabs(k.z) * w.grid.z.spacing());
+    refuse(k_dx > 0.25, wave + " takes splines for points, and the mode has " +
+                            common::format(2 * pi / k_dx) +
+                            " cells in a wavelength: take 26 or more");
+    if (w.near > 0) return;
+    std::string found;
+    for (const std::complex<double> one : cold_waves(w))
+        found += (found.empty() ? "" : ", ") + common::format(one.real());
+    refuse(true, wave + " needs theory.near: this plasma has waves at omega = " + found);
 }
 
 // errors: InputError when no root was found.
@@ -130,7 +160,7 @@ inline Theory kinetic(const Case& w, const common::DispersionRoot& root) {
 }
 inline Theory expect_longitudinal(const Case& w) {
     const auto plasma = theory_species(w);
-    const double k = wave_number(w);
+    const double k = wave_vector(w).size();
     const auto D = [&](common::Complex omega) {
         return common::longitudinal_dispersion(plasma, k, omega);
     };
@@ -139,7 +169,7 @@ inline Theory expect_longitudinal(const Case& w) {
 }
 inline Theory expect_transverse(const Case& w) {
     const auto plasma = theory_species(w);
-    const double k = wave_number(w);
+    const double k = wave_vector(w).size();
     common::DispersionRoot root;
     for (const int sense : {+1, -1}) {
         const auto D = [&](common::Complex omega) {
@@ -162,16 +192,24 @@ inline void refuse_longitudinal(const Case& w, const std::string& name) {
 }
 inline void refuse_transverse(const Case& w, const std::string& name) {
     refuse_kinetic(w, name);
+    const WaveVector k = wave_vector(w);
+    for (const SpeciesCase& s : w.uniform.species) {
+        refuse(k.x * k.z != 0 && s.temperature_x != s.temperature_z,
+               "species '" + s.name +
+                   "' has another temperature along x than along z, and a wave at an angle to both "
+                   "is not transverse: make them equal, or the mode along x or z");
+    }
     expect_transverse(w);
 }
 
 }  // namespace detail
 
 /// All that theory.wave can name, beside "none".
-inline const std::array<Wave, 4>& waves() {
-    static const std::array<Wave, 4> all{
+inline const std::array<Wave, 5>& waves() {
+    static const std::array<Wave, 5> all{
         {{"light", detail::refuse_light, detail::expect_light},
          {"langmuir", detail::refuse_langmuir, detail::expect_langmuir},
+         {"cold", detail::refuse_cold, detail::expect_cold},
          {"longitudinal", detail::refuse_longitudinal, detail::expect_longitudinal},
          {"transverse", detail::refuse_transverse, detail::expect_transverse}}};
     return all;
@@ -193,9 +231,8 @@ inline void refuse_wave(const Case& w) {
     refuse(w.end < 10 * w.dt,
            "theory.wave needs at least 10 steps to measure: raise time.end above " +
                common::format(10 * w.dt));
-    refuse(
-        (w.uniform.mode_x != 0) == (w.uniform.mode_z != 0),
-        "theory.wave needs a mode along x or along z: set uniform.mode_x or uniform.mode_z to 0");
+    refuse(w.uniform.mode_x == 0 && w.uniform.mode_z == 0,
+           "theory.wave needs a mode: set uniform.mode_x or uniform.mode_z");
     wave->refuse(w, wave->name);
 }
 

@@ -46,6 +46,7 @@ inline void refuse_unstable(const Case& w) {
 /// source: Birdsall and Langdon (1985), chapters 8, 9 and 15.
 inline std::vector<std::string> leapfrog_warnings(const Case& w, const Scales& scales) {
     std::vector<std::string> warnings = idleness_warnings(w, scales);
+    for (const std::string& warning : tail_warnings(w, scales)) warnings.push_back(warning);
     const double cell = std::min(w.grid.x.spacing(), w.grid.z.spacing());
     const double omega_p_dt = detail::omega_p_dt(w, scales);
     if (omega_p_dt > 1.62) {
@@ -65,10 +66,6 @@ inline std::vector<std::string> leapfrog_warnings(const Case& w, const Scales& s
                                " is above 0.5, gyration is too slow by more than 2 %: lower "
                                "time.dt to " +
                                format(w.dt * 0.5 / s.Omega_c_dt));
-        }
-        if (!w.leapfrog.relativistic && 4 * s.thermal_speed > c) {
-            warnings.push_back(s.name + ": four thermal speeds are " + format(4 * s.thermal_speed) +
-                               " c, and the push is not relativistic");
         }
     }
     return warnings;

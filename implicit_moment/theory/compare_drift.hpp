@@ -1,0 +1,101 @@
+// A uniform electric field in a uniform plasma: what it becomes, and the drift E x B, beside their
+// exact values.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "common/run/run.hpp"
+#include "implicit_moment/output/diagnostics.hpp"
+#include "implicit_moment/theory/cold_plasma.hpp"
+
+namespace implicit_moment {
+
+inline bool has_uniform_E(const Case& w) {
+    return w.uniform.E_x != 0 || w.uniform.E_y != 0 || w.uniform.E_z != 0;
+}
+
+/// The columns of a uniform plasma with a uniform E: the mean of E.
+inline void add_mean_field(const Grid& grid, const FieldState& field, common::Row& row) {
+    for (long a = 0; a < 3; ++a)
+        row.add(std::string("mean_E_") + "xyz"[a], "m_i*c*omega_pi/e",
+                interior(grid, field.E.all.data() + a * grid.size()).mean());
+}
+
+/// Mean E of the scheme after each of so many steps.
+///     dE/dt = -4 pi sum n q u,   du/dt = q/m (E + u x B/c)
+/// exact:  whatever the temperatures: the mean of all forces of a uniform field is that on the mean
+inline std::vector<Eigen::Vector3d> mean_field(const Case& w, long steps) {
+    Case still = w;
+    still.uniform.mode_x = still.uniform.mode_z = 0;
+    const Eigen::MatrixXcd step = cold_step(still), rates = w.dt * cold_rates(still);
+    const long velocities = step.rows() - 6;
+    Eigen::VectorXcd state = Eigen::VectorXcd::Zero(step.rows());
+    state.head(3) << w.uniform.E_x, w.uniform.E_y, w.uniform.E_z;
+    for (std::size_t s = 0; s < w.uniform.species.size(); ++s) {
+        const SpeciesCase& one = w.uniform.species[s];
+        state.segment(6 + 3 * long(s), 3) << one.drift_x, one.drift_y, one.drift_z;
+    }
+    if (w.leapfrog.chosen) {
+        // Half a step back: the rotation first, then the kick.
+        const Eigen::MatrixXcd one = Eigen::MatrixXcd::Identity(velocities, velocities),
+                               turn = 0.25 * rates.bottomRightCorner(velocities, velocities);
+        state.tail(velocities) = (one + turn).lu().solve((one - turn) * state.tail(velocities)) -
+                                 0.5 * rates.bottomLeftCorner(velocities, 3) * state.head(3);
+    }
+    std::vector<Eigen::Vector3d> means{state.head(3).real()};
+    for (long n = 0; n < steps; ++n) {
+        state = step * state;
+        means.push_back(state.head(3).real());
+    }
+    return means;
+}
+
+/// The mean of E against that of the scheme, and the mean velocity over the run against c E x B/B^2.
+///     E is shared out: the plasma answers with currents, and of E_0 across a strong B is left
+///     E_0/(1 + sum omega_s^2/Omega_s^2), with oscillations
+/// note:   a mean over the time T has the turning points of a gyration at its ends, 4/(Omega T).
+inline void compare_drift(const Case& w, const common::History& history, common::Summary& summary) {
+    const auto times = history.column("time");
+    const auto vector_of = [&](const std::string& name) {
+        const std::array<std::vector<double>, 3> columns{
+            history.column(name + "_x"), history.column(name + "_y"), history.column(name + "_z")};
+        std::vector<Eigen::Vector3d> rows;
+        for (std::size_t n = 0; n < times.size(); ++n)
+            rows.emplace_back(columns[0][n], columns[1][n], columns[2][n]);
+        return rows;
+    };
+    const auto E = vector_of("mean_E"), momentum = vector_of("momentum");
+    const auto expected = mean_field(w, std::lround(times.back() / w.dt));
+    double off = 0, largest = 0;
+    for (std::size_t n = 0; n < times.size(); ++n) {
+        const Eigen::Vector3d& theory = expected.at(std::lround(times[n] / w.dt));
+        off = std::max(off, (E[n] - theory).norm());
+        largest = std::max(largest, theory.norm());
+    }
+    summary.hint("few particles per cell shift the frequencies: raise uniform.particles_per_cell");
+    summary.result_at_most("mean_E_error", off / largest, "", 0.01, "exact for the scheme");
+
+    const Eigen::Vector3d B(w.uniform.B_x, w.uniform.B_y, w.uniform.B_z);
+    double mass = 0, slowest = HUGE_VAL;  // of what has a charge
+    for (const SpeciesCase& s : w.uniform.species) {
+        if (s.charge == 0) continue;
+        mass += s.density * s.mass * w.grid.x.length * w.grid.z.length;
+        slowest = std::min(slowest, std::fabs(s.charge) / s.mass * B.norm() / c);
+    }
+    Eigen::Vector3d E_mean = Eigen::Vector3d::Zero(), velocity = E_mean;
+    for (std::size_t n = 1; n < times.size(); ++n) {
+        const double part = 0.5 * (times[n] - times[n - 1]) / times.back();
+        E_mean += part * (E[n] + E[n - 1]);
+        velocity += part / mass * (momentum[n] + momentum[n - 1]);
+    }
+    const Eigen::Vector3d drift = c * E_mean.cross(B) / B.squaredNorm();
+    if (!(slowest * times.back() > 20) || !(drift.norm() * B.norm() > 1e-3 * c * largest)) return;
+    summary.result_info("E_cross_B_drift", drift.norm(), "c", "c E x B/B^2, E the mean in time");
+    summary.result("drift_over_E_cross_B", velocity.dot(drift) / drift.squaredNorm(), "", 1,
+                   0.01 + 4 / (slowest * times.back()), "all charges drift alike");
+}
+
+}  // namespace implicit_moment

@@ -1,0 +1,348 @@
+// Facts about what both plasma programs are compared with: cold waves at any angle, uniform fields,
+// tails beyond the speed of light, the windows of reconnection and of the energy.
+#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <string>
+#include <vector>
+
+#include "common/theory/kinetic_dispersion.hpp"
+#include "implicit_moment/explicit_em/setup/leapfrog_state.hpp"
+#include "implicit_moment/setup/check_case.hpp"
+#include "implicit_moment/step.hpp"
+#include "implicit_moment/theory/compare_drift.hpp"
+#include "implicit_moment/theory/compare_energy.hpp"
+#include "implicit_moment/theory/compare_reconnection.hpp"
+#include "tests/support/any_particles.hpp"
+#include "tests/support/any_program.hpp"
+#include "tests/support/any_summary.hpp"
+
+namespace {
+
+using namespace facts;
+using Complex = std::complex<double>;
+using Amplitudes = Eigen::VectorXcd;
+
+// Ions and electrons in a field at an angle to both axes and to the plane; a mode at another angle.
+Case magnetized(bool leapfrog, double theta = 0.5) {
+    Case w;
+    w.setup = "uniform", w.boundary_z = "periodic";
+    w.grid = {{48, -2, 4, true}, {40, -2.5, 5, true}};
+    w.dt = 0.05, w.end = 5;
+    w.leapfrog.chosen = leapfrog, w.field.theta = theta;
+    w.uniform.B_x = 0.4, w.uniform.B_y = -0.3, w.uniform.B_z = 0.2;
+    w.uniform.mode_x = 1, w.uniform.mode_z = -1;
+    SpeciesCase ions, electrons;
+    ions.name = "ions", electrons.name = "electrons";
+    electrons.charge = -1, electrons.mass = 0.2;
+    w.uniform.species = {ions, electrons};
+    return w;
+}
+
+// E and B of the seeded mode.
+Amplitudes amplitudes(const Case& w, const FieldState& field) {
+    Amplitudes all = Amplitudes::Zero(6);
+    const char* names[] = {"E_x", "E_y", "E_z", "B_x", "B_y", "B_z"};
+    for (long a = 0; a < 6; ++a)
+        all[a] = mode_amplitude(w.grid, field, names[a], w.uniform.mode_x, w.uniform.mode_z);
+    return all;
+}
+
+// The state of the linear theory at t = 0, with u half a step back for the leapfrog.
+Amplitudes start_of(const Case& w, const FieldState& field) {
+    const long species = long(w.uniform.species.size());
+    Amplitudes state = Amplitudes::Zero(6 + 3 * species);
+    state.head(6) = amplitudes(w, field);
+    for (long s = 0; s < species; ++s) {
+        const SpeciesCase& one = w.uniform.species[std::size_t(s)];
+        state[6 + 3 * s] = std::polar(one.wave_x, one.phase_x * pi / 180);
+        state[7 + 3 * s] = std::polar(one.wave_y, one.phase_y * pi / 180);
+        state[8 + 3 * s] = std::polar(one.wave_z, one.phase_z * pi / 180);
+    }
+    if (!w.leapfrog.chosen) return state;
+    const long u = 3 * species;
+    const Eigen::MatrixXcd rates = w.dt * cold_rates(w), half = 0.5 * rates.bottomRightCorner(u, u);
+    state.tail(u) -= half * state.tail(u) + 0.5 * rates.bottomLeftCorner(u, 6) * state.head(6);
+    return state;
+}
+
+// The largest difference between a run's mode and the powers of the step matrix, in units of the
+// largest amplitude of E.
+double deviation(const Case& w) {
+    const Grid& grid = w.grid;
+    State state = w.leapfrog.chosen ? leapfrog_state(w) : initial_state(w);
+    std::vector<Particles>& particles = state.plasma.species;
+    Amplitudes theory = start_of(w, state.field);
+    const Eigen::MatrixXcd step = cold_step(w);
+    LeapfrogScratch leapfrog(grid);
+    StepScratch scratch(grid, w.field, particles.size());
+    double off = 0, largest = 0;
+    for (long n = 0; n < std::lround(w.end / w.dt); ++n) {
+        if (w.leapfrog.chosen) {
+            interleave_field(grid, w.field.smoothing, state.field, leapfrog);
+            take_step(grid, w.dt, w.leapfrog, w.field.smoothing, leapfrog, particles, state.field);
+        } else {
+            find_moments(grid, w.dt, particles, state.field, scratch);
+            take_step(grid, w.dt, w.mover, state.plasma.charge_over_mass(), scratch, particles,
+                      state.field);
+        }
+        theory = step * theory;
+        off = worst({off, (amplitudes(w, state.field) - theory.head(6)).norm()});
+        largest = std::max(largest, theory.head(3).norm());
+    }
+    return off / largest;
+}
+
+}  // namespace
+
+TEST_CASE("cold magnetized plasma at an angle moves as the matrix of its step says" *
+          doctest::description("physics")) {
+    for (const bool leapfrog : {false, true}) {
+        for (const double theta : {0.5, 0.8}) {
+            if (leapfrog && theta != 0.5) continue;
+            Case w = magnetized(leapfrog, theta);
+            w.uniform.particles_per_cell = 16;
+            w.uniform.wave_E_y = 1e-4;
+            w.uniform.species[1].wave_x = 2e-4, w.uniform.species[1].phase_x = 30;
+            w.uniform.species[0].wave_z = -1e-4;
+            CAPTURE(leapfrog);
+            CAPTURE(theta);
+            // Splines see fields that are smaller by (k dx)^2/6 in each direction, so waves are
+            // slower by half of that, and their phase is off in proportion to the time.
+            const WaveVector k = wave_vector(w);
+            const double part = std::pow(k.x * w.grid.x.spacing(), 2) / 12 +
+                                std::pow(k.z * w.grid.z.spacing(), 2) / 12;
+            CHECK(deviation(w) <= part * cold_waves(w).back().real() * w.end);
+            // The other sense of gyration is not that motion.
+            Case turned = w;
+            turned.uniform.B_x *= -1, turned.uniform.B_y *= -1, turned.uniform.B_z *= -1;
+            const Eigen::MatrixXcd difference = cold_step(turned) - cold_step(w);
+            CHECK(difference.norm() >= 0.05);
+        }
+    }
+}
+
+TEST_CASE("waves of a cold plasma are roots of the biquadratic of Stix at any angle") {
+    for (const bool leapfrog : {false, true}) {
+        Case w = magnetized(leapfrog);
+        w.dt = 1e-4;
+        w.grid.x.cells = w.grid.z.cells = 4096;
+        const WaveVector k = wave_vector(w);
+        const double B = std::hypot(w.uniform.B_x, w.uniform.B_y, w.uniform.B_z),
+                     cosine = (k.x * w.uniform.B_x + k.z * w.uniform.B_z) / (k.size() * B),
+                     cos2 = cosine * cosine, sin2 = 1 - cos2;
+        const auto waves = cold_waves(w);
+        REQUIRE(waves.size() == 5);
+        for (const Complex wave : waves) {
+            const double omega = wave.real();
+            double R = 1, L = 1, P = 1;
+            for (const SpeciesCase& s : w.uniform.species) {
+                const double Omega = s.charge * B / s.mass, p2 = s.density / s.mass;
+                R -= p2 / (omega * (omega + Omega)), L -= p2 / (omega * (omega - Omega));
+                P -= p2 / (omega * omega);
+            }
+            const double S = 0.5 * (R + L), n2 = k.size() * k.size() / (omega * omega),
+                         A = S * sin2 + P * cos2, BB = R * L * sin2 + P * S * (1 + cos2),
+                         C = P * R * L;
+            const double size = std::fabs(A * n2 * n2) + std::fabs(BB * n2) + std::fabs(C);
+            CAPTURE(omega);
+            CHECK(std::fabs(A * n2 * n2 - BB * n2 + C) <= 1e-4 * size);
+            CHECK(std::fabs(wave.imag()) <= 1e-6);
+        }
+    }
+}
+
+TEST_CASE("without a magnetic field cold waves are light and Langmuir waves of the scheme") {
+    for (const bool leapfrog : {false, true}) {
+        for (const double theta : {0.5, 0.9}) {
+            Case w = magnetized(leapfrog, theta);
+            w.uniform.B_x = w.uniform.B_y = w.uniform.B_z = 0;
+            w.uniform.species.resize(1);
+            w.field.smoothing.passes = 0;
+            const auto waves = cold_waves(w);
+            REQUIRE(waves.size() == 2);
+            const double K = mesh_wave_vector(w).size();
+            if (leapfrog) {
+                CHECK(std::fabs(waves[0].real() - leapfrog_frequency(1, w.dt)) <= 1e-9);
+                CHECK(std::fabs(waves[1].real() - leapfrog_frequency(std::hypot(1, K), w.dt)) <=
+                      1e-9);
+            } else {
+                const Complex g = common::theta_langmuir_wave(theta, w.dt);
+                CHECK(std::fabs(waves[0].real() - std::arg(g) / w.dt) <= 1e-9);
+                CHECK(std::fabs(waves[0].imag() - std::log(std::abs(g)) / w.dt) <= 1e-9);
+                const double exact = 2 / w.dt * std::atan(0.5 * w.dt * std::hypot(1, K));
+                CHECK((theta != 0.5 || std::fabs(waves[1].real() - exact) <= 1e-9));
+            }
+        }
+    }
+}
+
+TEST_CASE("a seeded wave at an angle obeys both constraints of the mesh") {
+    Case w = magnetized(false);
+    w.uniform.species.clear();
+    w.uniform.wave_E_x = 1e-3, w.uniform.wave_E_z = 1e-3 * 5 / 4;  // k . E = 0
+    w.uniform.wave_B_x = 2e-3, w.uniform.wave_B_z = 2e-3 * 5 / 4;
+    validate(w);
+    const State state = initial_state(w);
+    Field divergence = Field::Zero(w.grid.size());
+    divergence_of_electric(w.grid, state.field.E.all.data(), divergence);
+    CHECK(largest(w.grid, on_nodes, divergence) <= 1e-14);
+    CHECK(largest_divergence(w.grid, state.field.B, divergence) <= 1e-14);
+    const Amplitudes seeded = amplitudes(w, state.field);
+    CHECK(std::abs(seeded[0] - 1e-3) <= 3e-6);
+    CHECK(std::abs(seeded[2] - 1.25e-3) <= 3e-6);
+    w.uniform.phase_E_x = 90;
+    CHECK_THROWS_AS(validate(w), common::InputError);
+}
+
+TEST_CASE("the part of a Maxwellian beyond the speed of light is that of its particles") {
+    // Isotropic, at rest: erfc(r/2^1/2) + (2/pi)^1/2 r exp(-r^2/2) with r = c/v.
+    for (const double v : {0.2, 0.3, 0.5}) {
+        const double r = 1 / v, exact = std::erfc(r / std::sqrt(2.0)) +
+                                        std::sqrt(2 / pi) * r * std::exp(-0.5 * r * r);
+        CHECK(std::fabs(part_beyond_c({0, 0, 0}, {v, v, v}) / exact - 1) <= 1e-9);
+    }
+    CHECK(part_beyond_c({0.5, 0, 0}, {0, 0, 0}) == 0);
+    // Along one axis: two tails of a Gaussian, whatever the others do while they are cold.
+    const auto tail = [](double to) { return 0.5 * std::erfc(to / (0.3 * std::sqrt(2.0))); };
+    CHECK(std::fabs(part_beyond_c({0, 0.2, 0}, {1e-4, 0.3, 1e-4}) / (tail(0.8) + tail(1.2)) - 1) <=
+          0.02);
+    Case w = magnetized(true);
+    w.loading = "random", w.uniform.particles_per_cell = 100;
+    SpeciesCase& s = w.uniform.species[0];
+    s.temperature_x = 0.01, s.temperature_y = 0.09, s.temperature_z = 0.04, s.drift_x = 0.3;
+    const Particles particles = load_uniform(w).species[0];
+    double counted = 0;
+    for (std::size_t p = 0; p < particles.x_p.size(); ++p)
+        counted += std::hypot(particles.ux_p[p], particles.uy_p[p], particles.uz_p[p]) > 1;
+    const double expected = scales_of(w).species[0].beyond_c * double(particles.count());
+    CHECK(expected > 300);
+    CHECK(std::fabs(counted - expected) <= 5 * std::sqrt(expected));
+}
+
+TEST_CASE("profiles that are not those of reconnection fall out of their windows") {
+    const Grid grid{{256, -12.8, 25.6, true}, {8, -2, 4, false}};
+    const HarrisCase sheet;
+    const double B0 = harris_sheet(sheet).B0;
+    // Ions of a third of n0, outflows that rise to 0.5 and 1.5 v_A; and what is wrong with others.
+    const auto shortfalls = [&](double electrons, double ions, double density) {
+        UnitFluxProfile profile;
+        profile.steps = 1, profile.begin = 15, profile.end = 15.6;
+        for (long i = 0; i < grid.x.cells; ++i) {
+            const double x = grid.x.at(double(i) + 0.5), sense = x < 0 ? -1 : 1, far = std::fabs(x),
+                         rho = n0 * density;
+            profile.B_z.push_back(B0 * sense);
+            profile.rho_ions.push_back(rho);
+            profile.rho_electrons.push_back(-rho);
+            profile.J_x_ions.push_back(sense * rho * ions * B0 * std::min(far / 3, 1.0));
+            profile.J_x_electrons.push_back(-sense * rho * electrons * B0 * std::min(far, 1.0));
+        }
+        common::Summary summary;
+        compare_profile(profile, grid, sheet, summary);
+        return summary.shortfalls().size();
+    };
+    CHECK(shortfalls(1.5, 0.6, 0.34) == 0);
+    CHECK(shortfalls(1.5, 0.6, 1.2) == 1);    // the sheet that has not left
+    CHECK(shortfalls(-1.5, 0.6, 0.34) == 2);  // inflow
+    CHECK(shortfalls(3, 0.6, 0.34) == 2);
+    CHECK(shortfalls(1.5, 1.5, 0.34) == 2);  // ions that leave with the electrons
+    CHECK(shortfalls(0, 0, 0.34) == 3);
+}
+
+TEST_CASE("a uniform plasma whose energy changes by more than 5 percent fails") {
+    Case w = magnetized(true);
+    const auto verdict = [&](std::vector<double> drift, const Case& of) {
+        common::History history(folder_of_test() + "/energy/history.dat");
+        std::filesystem::create_directories(folder_of_test() + "/energy");
+        history.columns(std::vector<common::Column>{{"energy_drift", "1"}});
+        for (const double one : drift) history.row(std::vector<double>{one});
+        common::Summary summary;
+        compare_energy(of, history, summary);
+        REQUIRE(summary.has_verdict());
+        return summary.shortfalls().empty();
+    };
+    CHECK(verdict({0, 0.02, -0.04}, w));
+    CHECK(!verdict({0, 0.06, 0.01}, w));
+    CHECK(!verdict({0, -0.44}, w));
+    // Light that the scheme must damp fails where it is kept.
+    Case light = magnetized(false, 1);
+    light.uniform.species.clear(), light.uniform.wave_E_y = 1, light.wave = "light";
+    const double left = std::expm1(2 * wave_of(light)->expect(light).omega.imag() * light.end);
+    CHECK(left < -0.1);
+    CHECK(verdict({0, left}, light));
+    CHECK(!verdict({0, 0}, light));
+    // GEM: 0.6 %.
+    Case gem;
+    CHECK(verdict({0, -0.005}, gem));
+    CHECK(!verdict({0, -0.007}, gem));
+}
+
+TEST_CASE("a plasma in crossed uniform fields drifts with both and shares out the field" *
+          doctest::description("physics")) {
+    for (const char* program : {"implicit_moment", "explicit_em"}) {
+        for (const char* rest : {"", " uniform.E_x=0 uniform.E_z=1e-3 uniform.B_x=0.3",
+                                 " uniform.E_y=1e-3 uniform.B_z=-0.4"}) {
+            const std::string run = std::string(program) + rest;
+            CAPTURE(run);
+            const Run finished =
+                run_into("crossed", program,
+                         std::string("implicit_moment/cases/e_cross_b.toml --threads 1") + rest);
+            check_results(finished, 3);
+            CHECK(finished.value("mean_E_error") <= 0.01);
+        }
+        // Without B the field drives plasma oscillations, and nothing drifts.
+        const Run oscillation =
+            run_into("oscillation", program,
+                     "implicit_moment/cases/e_cross_b.toml uniform.B_y=0 time.end=20 --threads 1");
+        check_results(oscillation, 2);
+        CHECK(!oscillation.summary["results"].contains("drift_over_E_cross_B"));
+    }
+}
+
+TEST_CASE("a whistler and an ion cyclotron wave at an angle have the frequencies of the scheme" *
+          doctest::description("physics")) {
+    const std::string whistler = "implicit_moment/cases/oblique_whistler.toml --threads 1";
+    check_results(run_into("whistler", "implicit_moment", whistler), 3);
+    check_results(
+        run_into("whistler", "implicit_moment", whistler + " theory.near=0.0267 time.end=800"), 3);
+}
+
+TEST_CASE("light and beams at an angle to the mesh are those of theory" *
+          doctest::description("physics")) {
+    const std::string cases = "implicit_moment/cases/",
+                      oblique = " grid.cells_z=48 grid.length_z=6 uniform.mode_z=";
+    const std::string in_plane =
+        " uniform.wave_E_y=0 uniform.wave_E_x=1e-3 theory.component=E_x uniform.wave_E_z=";
+    for (const std::string& rest : {oblique + "1", oblique + "-1 field.theta=0.7",
+                                    oblique + "1 field.theta=0.8" + in_plane + "-0.9375e-3"})
+        check_results(run_into("light", "implicit_moment", cases + "light_wave.toml" + rest), 3);
+    for (const std::string& rest : {std::string(" uniform.mode_z=1"),
+                                    oblique + "-2 uniform.mode_x=2" + in_plane + "0.9375e-3"})
+        check_results(run_into("light", "explicit_em", cases + "explicit_light_wave.toml" + rest),
+                      3);
+    // k v0 = (3/8)^1/2 with k = 2 pi (1/2.053, 1/2): drifts of 0.1376 along k.
+    const std::string beams =
+        " grid.cells_z=60 grid.length_z=2 uniform.mode_z=1 uniform.particles_per_cell=16"
+        " species.right.drift_x=0.0988 species.right.drift_z=0.0988 species.left.drift_x=-0.0988"
+        " species.left.drift_z=-0.0988 species.right.wave_z=1e-5";
+    const Run finished = run_into("beams", "implicit_moment", cases + "two_stream.toml" + beams);
+    check_results(finished, 2);
+    CHECK(std::fabs(finished.value("theory_growth") - 1 / std::sqrt(8.0)) <= 1e-4);
+}
+
+TEST_CASE("filaments of a plasma with a tail beyond the speed of light run with a warning" *
+          doctest::description("physics")) {
+    const Run finished =
+        run_into("tail", "explicit_em",
+                 "implicit_moment/cases/explicit_weibel.toml species.electrons.temperature_x=0.01 "
+                 "species.electrons.temperature_z=0.01 species.electrons.temperature_y=0.09 "
+                 "time.end=4");
+    const auto warnings = finished.summary["warnings"];
+    REQUIRE(!warnings.empty());
+    CHECK(holds(warnings.dump(), "electrons: about 64"));
+    CHECK(holds(warnings.dump(), "faster than light, and the push is not relativistic"));
+    CHECK(finished.value("energy_drift") <= 0.05);
+}
