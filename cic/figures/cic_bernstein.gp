@@ -23,14 +23,14 @@ unset label 1; unset colorbox; unset logscale cb; set border 3; set grid
 set lmargin at screen 0.66; set rmargin at screen 0.98
 history = run.'/seeded/history.dat'
 im = col(history, 'mode_im')
-E_0 = 0.01
+E_0 = 0.02
 seeds = system(sprintf("grep -v '#' '%s/seeds.dat'", run))
 count = words(seeds) / 2
 omega(n) = real(word(seeds, 2 * n - 1)); E(n) = real(word(seeds, 2 * n))
 rest = E_0 - 2 * (sum [n = 1:count] E(n))
 set title 'seeded wave, k v_{th} / Ω_c = 1'
 set xlabel 't ω_p'; set ylabel 'E_k / E_k(0)' offset 1, 0
-set xrange [0:60]; set yrange [-1.1:1.4]; set xtics 20; set ytics 0.5
+set xrange [0:60]; set yrange [-0.8:1.4]; set xtics 20; set ytics 0.5
 set samples 900
 set key top right textcolor rgb ink
 plot history using 1:(column(im) / E_0) @measured title 'run', \

@@ -9,7 +9,7 @@ period = 2 * pi / omega
 top = system(sprintf("LC_ALL=C awk '!/#/ && $1 > %g && $1 < %g { if ($%d > m) { m = $%d; t = $1 } } END { print t, m }' '%s'", 0.9 * period, 1.9 * period, im, im, history))
 t_1 = real(word(top, 1)); E_1 = real(word(top, 2))
 phase = atan2(rate, omega)
-set title sprintf('ion-acoustic wave: run over theory %.4f in frequency, %.3f in damping', result('omega_over_theory'), result('damping_over_theory'))
+set title "ion-acoustic wave, m_i/m_e = 25, T_e/T_i = 10, k λ_{De} = 0.5"
 set xlabel 't ω_p'; set ylabel 'E_k / (m v_{th} ω_p/e)'
 set xrange [0:parameter('end')]; set yrange [-1.5 * E_1:2 * E_1]
 set samples 900
