@@ -269,11 +269,12 @@ define cic_series
 $(call figure,$(1),cic,$(3))
 $(call series,cic/figures/$(1).sh,cic,$(2:%=cic/cases/%.toml),$(3))
 endef
-$(foreach c,two_stream warm_two_stream two_stream_2d weak_beam buneman bump_on_tail sheath diocotron,\
+$(foreach c,two_stream warm_two_stream two_stream_2d weak_beam buneman bump_on_tail sheath diocotron ion_acoustic,\
     $(eval $(call figure,cic_$c,cic,out/cic/$c)))
 $(eval $(call cic_series,cic_plasma_wave,plasma_wave landau,out/cic/waves_on_the_mesh))
 $(eval $(call cic_series,cic_landau,landau,out/cic/landau_damping))
 $(eval $(call cic_series,cic_upper_hybrid,upper_hybrid,out/cic/magnetic_fields))
+$(eval $(call cic_series,cic_bernstein,bernstein,out/cic/bernstein_modes))
 $(eval $(call cic_series,cic_misprint,misprint,out/cic/both_signs))
 $(eval $(call cic_series,cic_cloud_collision,cloud_collision,out/cic/clouds))
 $(eval $(call cic_series,cic_grid_instability,cold_beam_grid_instability,out/cic/cold_beams))

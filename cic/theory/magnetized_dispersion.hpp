@@ -56,7 +56,7 @@ inline Harmonics maxwellian_harmonics(double k_across, double v_across, double O
 /// in:     count of at least 20 + 1.3 x
 inline std::vector<double> bessel_functions(double x, std::size_t count) {
     std::vector<double> J(count + 1, 0.0);
-    J[0] = 1;
+    J[0] = 1, J[1] = 0.5 * x;
     if (x < 1e-8) return J;
     // Where they would overflow, higher ones are nothing.
     const auto top = std::min(count, static_cast<std::size_t>(20 + 1.3 * x));

@@ -306,6 +306,8 @@ inline Theory theory_of_wave(const Case& parameters, long mode_x, long mode_z) {
     const MeshScheme scheme{axis.spacing(), parameters.dt, parameters.scheme().order,
                             parameters.scheme().energy_conserving};
     const bool on_mesh = parameters.model == "mesh";
+    const bool by_formula = std::any_of(parameters.species.begin(), parameters.species.end(),
+                                        [](const SpeciesCase& s) { return s.has_distribution(); });
     const auto D = [&](std::complex<double> omega) {
         if (on_mesh) return mesh_dispersion(plasma, k.size(), scheme, omega);
         // 1 + chi, and 1 - chi where like charges attract.
@@ -330,6 +332,8 @@ inline Theory theory_of_wave(const Case& parameters, long mode_x, long mode_z) {
         if (!root.found)
             throw common::InputError(sentence(
                 "no root of the dispersion relation was found for ", mode_text(mode_x, mode_z),
+                by_formula ? ", and with distributions by formula none that is damped is known"
+                           : "",
                 ": give theory.near a frequency to look at, or set theory.compare = \"none\""));
         theory.omega = root.omega;
     }
