@@ -74,8 +74,8 @@ one_at_a_time = $(if $(shell command -v flock),flock out)
 .DELETE_ON_ERROR:
 .SECONDEXPANSION:
 .PRECIOUS: $(objects)/%.o $(objects)/fuzz/%.o out/%/.complete
-.PHONY: menu deps deps-dev all figures cost explicit_gem test tests test-long torture fuzzers bench notes format \
-        clean FORCE $(programs)
+.PHONY: menu deps deps-dev all figures cost explicit_gem test tests test-long exercise exercises torture mutate fuzzers bench \
+        notes format clean FORCE $(programs)
 
 # ---- the menu ------------------------------------------------------------------------------------
 
@@ -106,6 +106,10 @@ The particle-in-cell family in running code
   make test              the facts, at most ten minutes   (make test ARGS='-R gmres': some of them)
   make test-long         every figure at full length, its numbers checked
   make torture           half an hour of kills, failing disks, forged files and fuzzing; resumable
+  make mutate            the changes in a program that no fact notices: PROGRAM=cic N=50 SEED=1; resumable
+  make exercises         the exercises of the lecture notes, each with its title and its time
+  make exercise E=1-3    its question, its runs, and whether they give what is expected
+                         (with ANSWER=0.92: is the answer right?)
   make bench             particle-steps per second on 1 and 2 threads, and where the time goes
   make notes             refresh the code and the numbers in the lecture notes
   make format            clang-format all sources
@@ -407,12 +411,30 @@ test-long: all tests figures $(quoted) $(BUILD)/CTestTestfile.cmake | $(packages
 	$(call need,ctest)
 	$(ctest) -L long
 
+# ---- exercises -----------------------------------------------------------------------------------
+
+# With an answer nothing is run; else the programs of the exercise are built, with what the student changed in them.
+exercise: $(if $(E),$(if $(ANSWER),,$(addprefix $(BUILD)/,$(shell sh common/exercise.sh programs '$(E)' 2>/dev/null))))
+	@$(if $(E),,echo "which one? make exercise E=1-3; 'make exercises' lists them" >&2; exit 2;) \
+	    BUILD=$(BUILD) sh common/exercise.sh $(if $(ANSWER),answer '$(E)' '$(ANSWER)',run '$(E)')
+exercises:
+	@sh common/exercise.sh list
+
 # ---- the laboratory ------------------------------------------------------------------------------
 
 # Half an hour of bad luck and bad will, with compilers and tools of `make deps-dev`; it can be stopped and goes on.
 MINUTES ?= 30
 torture: all
 	@MINUTES=$(MINUTES) JOBS=$(JOBS) BUILD=$(BUILD) MAKE='$(MAKE)' sh tests/torture/torture.sh
+
+# What the facts of a program do not notice.
+PROGRAM ?= cic
+N       ?= 50
+SEED    ?= 1
+RUNS    ?= yes
+mutate:
+	@PROGRAM=$(PROGRAM) N=$(N) SEED=$(SEED) RUNS=$(RUNS) MAIN=$(filter %/$(PROGRAM).cpp,$(mains)) MAINS='$(mains)' JOBS=$(JOBS) MAKE='$(MAKE)' \
+	    CXX='$(CXX)' EIGEN='$(EIGEN)' sh tests/mutate
 
 # Built by it, with clang: each program with all inputs that libFuzzer thinks of, and a race that must be found.
 fuzzers: $(programs:%=$(BUILD)/fuzz/%)

@@ -7,7 +7,7 @@
 #   TEST_CASE("a fact about physics" * doctest::description("physics")) {
 # becomes the CTest test "NAME.a fact as a sentence". The description is the label:
 #   unit (the default, up to 60 s), physics or robust (300 s), figure (600 s), long (3600 s; run by
-#   `make test-long` only). Names may not contain , ; [ ] " \ * or ?, which mean something to CTest or doctest.
+#   `make test-long` only). An exercise has the label exercise, and long too when it takes more than 10 s. Names may not contain , ; [ ] " \ * or ?, which mean something to CTest or doctest.
 # All tests start in the root of the project, so that paths read as in the README.
 
 get_filename_component(root "${CMAKE_CURRENT_LIST_DIR}/.." ABSOLUTE)
@@ -18,6 +18,7 @@ set(time_robust 300)
 set(time_figure 600)
 set(time_long 3600)
 set(time_notes 60)
+set(time_exercise 300)
 set(time_documented 60)
 
 function(describe_test name label)
@@ -73,11 +74,36 @@ describe_test(notes.every_label_of_the_ledger_exists notes)
 add_test(notes.numbers_agree_with_the_runs sh common/notes.sh compare)
 describe_test(notes.numbers_agree_with_the_runs long)
 
+# ---- the exercises -------------------------------------------------------------------------------
+# Each that runs something. Those with a patch build in one and the same copy of the sources.
+add_test(exercises.each_has_a_solution sh common/exercise.sh check)
+describe_test(exercises.each_has_a_solution notes)
+file(GLOB exercises "${root}/lecture_notes/exercises/[0-9]*.md")
+foreach(exercise IN LISTS exercises)
+    get_filename_component(id "${exercise}" NAME_WE)
+    file(STRINGS "${exercise}" runs REGEX "^run ")
+    file(STRINGS "${exercise}" patch REGEX "^patch:")
+    file(STRINGS "${exercise}" seconds REGEX "^time: [0-9]+ s$")
+    string(REGEX MATCH "[0-9]+" seconds "${seconds}")
+    if(runs)
+        add_test("exercise ${id}" sh -c "BUILD=${build_folder} sh common/exercise.sh test ${id}")
+        if(patch OR seconds GREATER 10)
+            describe_test("exercise ${id}" long)
+            set_tests_properties("exercise ${id}" PROPERTIES LABELS "exercise;long")
+        else()
+            describe_test("exercise ${id}" exercise)
+        endif()
+        if(patch)
+            set_tests_properties("exercise ${id}" PROPERTIES RESOURCE_LOCK patched_sources)
+        endif()
+    endif()
+endforeach()
+
 # ---- what the documentation says must run --------------------------------------------------------
-# The commands `build/...` and `make ...` of README files, and the lines  // Run:   build/...  of
-# program headers, each with --dry-run (which make understands as well).
+# The commands `build/...` and `make ...` of README files and projects, and the lines  // Run:   build/...
+# of program headers, each with --dry-run (which make understands as well).
 file(GLOB documents "${root}/README.md" "${root}/*/README.md" "${root}/*/*.cpp"
-    "${root}/*/*/*.cpp")
+    "${root}/*/*/*.cpp" "${root}/lecture_notes/exercises/projects-*.md")
 foreach(document IN LISTS documents)
     file(RELATIVE_PATH where "${root}" "${document}")
     if(document MATCHES "[.]md$")

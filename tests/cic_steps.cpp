@@ -22,6 +22,7 @@ namespace {
 
 using namespace cic;
 using facts::eps;
+using facts::real;
 using facts::worst;
 
 // Numbers in [0, 1).
@@ -113,6 +114,27 @@ ParticleBatch whole(Particles& s) {
     const auto from = [](std::vector<Real>& v) { return v.empty() ? nullptr : v.data(); };
     return {from(s.x_p), from(s.z_p), from(s.vx_p), from(s.vy_p), from(s.vz_p), s.count(), s.q_p,
             s.m_p,       {}};
+}
+
+// How far numbers are from filling (0, 1) evenly, each alone and all pairs: the largest mean of a
+// wave as long as the interval, over the numbers, their sums and their differences; 1 with one outside.
+double unevenness(const std::vector<std::vector<double>>& u) {
+    double most = 0;
+    const auto mean = [](const std::vector<double>& a, const std::vector<double>& b, double sign) {
+        std::complex<double> sum = 0;
+        for (std::size_t p = 0; p < a.size(); ++p)
+            sum += std::polar(1.0, 2 * pi * (a[p] + (sign != 0 ? sign * b[p] : 0)));
+        return a.empty() ? 0 : std::abs(sum) / static_cast<double>(a.size());
+    };
+    for (std::size_t a = 0; a < u.size(); ++a) {
+        most = worst({most, mean(u[a], u[a], 0)});
+        for (const double number : u[a])
+            if (!(number >= -8 * eps && number <= 1 + 8 * eps)) most = 1;
+        for (std::size_t b = a + 1; b < u.size(); ++b)
+            if (!u[a].empty() && !u[b].empty())
+                most = worst({most, mean(u[a], u[b], 1), mean(u[a], u[b], -1)});
+    }
+    return most;
 }
 
 }  // namespace
@@ -262,7 +284,12 @@ TEST_CASE("the force of the energy scheme is the gradient of the field energy") 
 }
 
 TEST_CASE("the difference equation holds on every node") {
-    for (const Mesh& m : meshes(false)) {
+    // Also on meshes of several tiles, the last of them as narrow or as wide as it can be.
+    std::vector<Mesh> all = meshes(false);
+    for (const long nz : {15, 16, 17, 33})
+        all.push_back(
+            {{{17, 0, 17, nz % 2 == 0}, {nz, 0, real(nz), true}}, {1, false, 2}, "tiles"});
+    for (const Mesh& m : all) {
         for (const bool nine_point : {false, true}) {
             CAPTURE(m.name);
             CAPTURE(nine_point);
@@ -526,10 +553,12 @@ TEST_CASE("sorting by row moves whole particles") {
     for (std::size_t p = 0; p < 1000; ++p) {
         after += s.vx_p[p];
         CHECK(s.vx_p[p] == s.x_p[p] + 10 * s.z_p[p]);
-        if (p > 0)
-            CHECK(std::floor(4 * (s.z_p[p] - 0.3)) >= std::floor(4 * (s.z_p[p - 1] - 0.3)) - 4);
+        if (p > 0) CHECK(std::floor(4 * s.z_p[p]) >= std::floor(4 * s.z_p[p - 1]));
     }
     CHECK(std::fabs(after - sum) <= 1e-9);
+    CHECK(sort_is_due(25, 50));
+    CHECK(!sort_is_due(25, 51));
+    CHECK(!sort_is_due(0, 50));
 }
 
 TEST_CASE("a perturbed species has the density that the case asks for") {
@@ -569,4 +598,248 @@ TEST_CASE("a quiet Maxwellian has its moments") {
     CHECK(std::fabs(v) <= 1e-3);
     CHECK(std::fabs(v2 - 1) <= 2e-3);
     CHECK(std::fabs(v4 - 3) <= 0.03);
+}
+
+TEST_CASE("what is loaded is spread evenly and each quantity independently of the others") {
+    for (const std::string profile : {"line", "uniform", "layer", "disk"}) {
+        for (const std::string loading : {"quiet", "random"}) {
+            CAPTURE(profile);
+            CAPTURE(loading);
+            Case parameters;
+            parameters.dimensions = profile == "line" ? 1 : 2;
+            parameters.grid = {{16, -1, 4, true}, {1, 0, 1, true}};
+            if (profile != "line") parameters.grid.z = {8, 0.5, 2, true};
+            parameters.B.y = 1;
+            SpeciesCase s;
+            s.profile = profile == "line" ? "uniform" : profile, s.loading = loading;
+            s.center_x = 0.9, s.center_z = 1.5, s.half_width = 0.6, s.density = 0.3, s.mass = 0.5;
+            s.temperature_x = 2, s.temperature_y = 0.5, s.temperature_z = 1.5;
+            s.drift_x = 0.1, s.drift_y = -0.2, s.drift_z = 0.4, s.particles_per_cell = 1000;
+            const Particles loaded = load_species(parameters, s, 1);
+
+            // The measures in which all are uniform in (0, 1).
+            std::vector<std::vector<double>> u(5);
+            const auto maxwellian = [](double v, double drift, double T) {
+                return 0.5 * std::erfc((drift - v) / std::sqrt(2 * T / 0.5));
+            };
+            for (std::size_t p = 0; p < loaded.x_p.size(); ++p) {
+                const double x = loaded.x_p[p] - 0.9,
+                             z = loaded.z_p.empty() ? 0 : loaded.z_p[p] - 1.5;
+                if (profile == "disk") {
+                    u[0].push_back((x * x + z * z) / 0.36);
+                    u[1].push_back(std::atan2(z, x) / (2 * pi) + 0.5);
+                } else {
+                    u[0].push_back((x + 1.9) / 4);
+                    if (profile != "line")
+                        u[1].push_back((z / (profile == "layer" ? 1.2 : 2)) + 0.5);
+                }
+                u[2].push_back(maxwellian(loaded.vx_p[p], 0.1, 2));
+                u[3].push_back(maxwellian(loaded.vy_p[p], -0.2, 0.5));
+                u[4].push_back(maxwellian(loaded.vz_p[p], 0.4, 1.5));
+            }
+            // Of N independent numbers the mean wave is larger than this once in e^16 trials.
+            const double N = static_cast<double>(loaded.count());
+            CHECK(unevenness(u) <= 4 / std::sqrt(N));
+            if (loading == "quiet" && profile == "line")
+                CHECK(worst({std::fabs(u[0].front() - 0.5 / N),
+                             std::fabs(u[0].back() - 1 + 0.5 / N)}) <= 4 * eps);
+
+            const double volume = profile == "line"      ? 4
+                                  : profile == "uniform" ? 8
+                                  : profile == "layer"   ? 4 * 1.2
+                                                         : pi * 0.36;
+            CHECK(std::fabs(N - 1000 * volume / parameters.grid.cell_area()) <= 0.5);
+            CHECK(std::fabs(N * loaded.q_p + 0.3 * volume) <= 1e-12);
+            CHECK(std::fabs(N * loaded.m_p - 0.5 * 0.3 * volume) <= 1e-12);
+        }
+    }
+}
+
+TEST_CASE("a lattice has one particle in the middle of each of its cells") {
+    Case parameters;
+    parameters.dimensions = 2;
+    parameters.grid = {{5, -1, 2, true}, {4, 0.5, 3, true}};
+    SpeciesCase s;
+    s.loading = "lattice", s.particles_per_cell = 6;  // three columns and two rows in a cell
+    const Particles loaded = load_species(parameters, s, 1);
+    REQUIRE(loaded.count() == 120);
+    std::vector<int> held(120, 0);
+    for (std::size_t p = 0; p < 120; ++p) {
+        const double column = (loaded.x_p[p] + 1) / 2 * 15 - 0.5,
+                     row = (loaded.z_p[p] - 0.5) / 3 * 8 - 0.5;
+        CHECK(std::fabs(column - std::round(column)) <= 32 * eps);
+        CHECK(std::fabs(row - std::round(row)) <= 32 * eps);
+        ++held[static_cast<std::size_t>(std::lround(column) + 15 * std::lround(row))];
+    }
+    CHECK(held == std::vector<int>(120, 1));
+}
+
+TEST_CASE("every particle is in one batch and its work leaves the others alone") {
+    for (const long count :
+         {0L, 1L, batch_size - 1, batch_size, batch_size + 1, 9 * batch_size + 5}) {
+        CAPTURE(count);
+        std::vector<Particles> species(1);
+        resize(count, true, true, species[0]);
+        for_each_batch(species, [&](ParticleBatch& batch) {
+            CHECK(batch.count <= batch_size);
+            for (long k = 0; k < batch.count; ++k) batch.vz_p[k] += 1;
+            batch.sums.kinetic = static_cast<double>(batch.count);
+            batch.sums.momentum = {1.0 * batch.sums.kinetic, 2 * batch.sums.kinetic,
+                                   3 * batch.sums.kinetic};
+        });
+        CHECK(species[0].vz_p == std::vector<Real>(static_cast<std::size_t>(count), 1));
+        CHECK(species[0].sums.kinetic == static_cast<double>(count));
+        for (std::size_t a = 0; a < 3; ++a)
+            CHECK(species[0].sums.momentum[a] == (real(static_cast<long>(a)) + 1) * real(count));
+    }
+    for (const bool magnetized : {false, true}) {
+        for (Mesh m : meshes(false)) {
+            CAPTURE(m.name);
+            Particles s = scattered(m, 5, -1, 14);
+            if (magnetized) resize(5, m.scheme.dimensions == 2, true, s);
+            Particles before = s;
+            const MeshField E_g(static_cast<std::size_t>(m.grid.size()), {0.3, -0.2});
+            FieldAtParticles E_p;
+            std::fill_n(E_p.x, 5, 7), std::fill_n(E_p.z, 5, 7);
+            ParticleBatch batch = whole(s);
+            batch.count = 3;
+            gather_field(E_g, m.grid, m.scheme, batch, E_p);
+            start_leapfrog(E_p, {0, 0.5, 0}, 0.1, batch);
+            accelerate(E_p, {0, 0.5, 0}, 0.1, batch);
+            move_particles(m.grid, 0.1, batch);
+            for (const std::size_t p : {3u, 4u}) {
+                CHECK(E_p.x[p] == 7);
+                CHECK(E_p.z[p] == 7);
+                for (std::size_t a = 0; a < 5; ++a)
+                    if (!s.all()[a]->empty()) CHECK((*s.all()[a])[p] == (*before.all()[a])[p]);
+            }
+            CHECK(s.x_p[2] != before.x_p[2]);
+            CHECK(std::fabs(batch.sums.momentum[0] - 0.7 * (s.vx_p[0] + s.vx_p[1] + s.vx_p[2])) <=
+                  8 * eps);
+        }
+    }
+}
+
+TEST_CASE("the amplitude of a mode of the field is that of minus the derivative of the potential") {
+    const Grid grid{{16, 0, 4, true}, {8, 0, 3, true}};
+    const double k_x = 2 * pi * 3 / 4, k_z = -2 * pi * 2 / 3, k = std::hypot(k_x, k_z);
+    Field phi = Field::Zero(grid.size());
+    for (long j = 0; j < 8; ++j)
+        for (long i = 0; i < 16; ++i)
+            phi[grid.index(i, j)] = std::cos(k_x * 0.25 * real(i) + k_z * 0.375 * real(j) - 0.3);
+    const std::complex<double> of_field = FourierMode(grid, 3, -2, k).amplitude(grid, phi);
+    CHECK(std::abs(of_field - std::complex<double>(0, -k) * std::polar(1.0, -0.3)) <= 1e-13);
+    CHECK(std::abs(FourierMode(grid, 3, 2, k).amplitude(grid, phi)) <= 1e-13);
+}
+
+TEST_CASE("half a step backwards and one ahead is half a step ahead") {
+    for (const bool plane : {false, true}) {
+        for (const bool magnetized : {false, true}) {
+            const MagneticField B = magnetized ? MagneticField{0.4, -0.3, 1.2} : MagneticField{};
+            Particles s;
+            s.q_p = -0.5, s.m_p = 0.25;
+            resize(1, plane, magnetized, s);
+            for (std::vector<Real>* quantity : s.all())
+                if (!quantity->empty()) (*quantity)[0] = 0.3 + 0.1 * real(quantity - &s.x_p);
+            Particles mirrored = s;
+            FieldAtParticles E_p{};
+            E_p.x[0] = 0.8, E_p.z[0] = -0.5;
+            ParticleBatch batch = whole(s), other = whole(mirrored);
+            start_leapfrog(E_p, B, 0.2, batch);
+            accelerate(E_p, B, 0.2, batch);
+            start_leapfrog(E_p, B, -0.2, other);
+            for (std::size_t a = 0; a < 5; ++a)
+                if (!s.all()[a]->empty())
+                    CHECK(std::fabs((*s.all()[a])[0] - (*mirrored.all()[a])[0]) <= 4 * eps);
+        }
+    }
+}
+
+TEST_CASE(
+    "a cold traveling wave starts with the velocities of a wave that runs at omega_p over k") {
+    Case parameters;
+    parameters.dimensions = 2;
+    parameters.grid = {{16, -1, 4, true}, {8, 0.5, 3, true}};
+    SpeciesCase s;
+    s.name = "electrons", s.loading = "lattice", s.wave = "traveling", s.amplitude = 1e-4;
+    s.mode_x = 2, s.mode_z = -1, s.drift_x = 0.2, s.drift_z = 0.3;
+    parameters.species = {s};
+    const WaveVector k = wave_vector(parameters, 2, -1);
+    parameters.near = k.x * 0.2 + k.z * 0.3 + 1;  // of the two waves the one that runs along k
+    const Particles loaded = load_species(parameters, s, 1);
+    const double N = static_cast<double>(loaded.count());
+    std::complex<double> along = 0, across = 0, density = 0;
+    for (std::size_t p = 0; p < loaded.x_p.size(); ++p) {
+        const double u_x = loaded.vx_p[p] - 0.2, u_z = loaded.vz_p[p] - 0.3;
+        const std::complex<double> wave =
+            std::polar(2 / N, -k.x * (loaded.x_p[p] + 1) - k.z * (loaded.z_p[p] - 0.5));
+        along += wave * (u_x * k.x + u_z * k.z) / k.size();
+        across += wave * (u_x * k.z - u_z * k.x) / k.size();
+        density += wave;
+    }
+    // To first order in the amplitude.
+    CHECK(std::abs(density - 1e-4) <= 1e-8);
+    CHECK(std::abs(along - 1e-4 / k.size()) <= 1e-8);
+    CHECK(std::abs(across) <= 1e-8);
+}
+
+TEST_CASE("what a source emits is spread evenly and each quantity independently of the others") {
+    const Grid grid{{8, -1, 100, false}, {4, 0.5, 2, true}};
+    ParticleBoundaries boundaries;
+    boundaries.walls[x_low] = AtWall::source;
+    boundaries.emission = {{1.5, 1000.25}};
+    boundaries.dt = 0.25, boundaries.plane = boundaries.magnetized = true;
+    std::vector<Particles> species(1);
+    Walls walls;
+    std::vector<long> emitted_again{0};
+    species[0].q_p = -0.5;
+    std::vector<std::vector<double>> u(5);
+    const auto note = [&](std::size_t p) {
+        const Particles& s = species[0];
+        u[0].push_back(std::exp(-0.5 * s.vx_p[p] * s.vx_p[p] / 2.25));
+        u[1].push_back((s.x_p[p] + 1) / (0.25 * s.vx_p[p]));  // on its way for a part of the step
+        u[2].push_back(0.5 * std::erfc(-s.vy_p[p] / (1.5 * std::sqrt(2.0))));
+        u[3].push_back(0.5 * std::erfc(-s.vz_p[p] / (1.5 * std::sqrt(2.0))));
+    };
+    for (long step = 0; step < 20; ++step)
+        apply_particle_boundaries(grid, boundaries, step, species, walls, emitted_again);
+    REQUIRE(species[0].count() == 20005);  // 20 times 1000.25
+    CHECK(walls[x_low].charge == 0.25 * 20005);
+    for (std::size_t p = 0; p < 20005; ++p) {
+        note(p);
+        u[4].push_back((species[0].z_p[p] - 0.5) / 2);
+    }
+    CHECK(unevenness(u) <= 4 / std::sqrt(20005));
+    // Those that come back are sent out again, where they are along the wall.
+    std::fill(species[0].x_p.begin(), species[0].x_p.end(), -1.5);
+    boundaries.emission[0].per_step = 0;
+    const std::vector<Real> z = species[0].z_p;
+    apply_particle_boundaries(grid, boundaries, 20, species, walls, emitted_again);
+    CHECK(species[0].z_p == z);
+    CHECK(emitted_again[0] == 20005);
+    std::vector<double> first = u[0];
+    u.assign(5, {});
+    for (std::size_t p = 0; p < 20005; ++p) note(p);
+    u[4] = first;
+    CHECK(unevenness(u) <= 4 / std::sqrt(20005));
+}
+
+TEST_CASE("what a case does not say is a cold plasma at rest without fields of its own") {
+    const Case c;
+    const SpeciesCase s;
+    // The wave that grows fastest in two cold streams at +- 1, (3/8)^1/2, fits in once.
+    CHECK(std::fabs(2 * pi / c.grid.x.length - std::sqrt(0.375)) <= 4 * eps);
+    CHECK(worst({std::fabs(s.temperature_x), std::fabs(s.temperature_y), std::fabs(s.temperature_z),
+                 std::fabs(s.drift_x), std::fabs(s.drift_y), std::fabs(s.drift_z),
+                 std::fabs(s.amplitude), std::fabs(s.ripple), std::fabs(s.emission), c.B.size()}) ==
+          0);
+    CHECK(s.density * s.charge * s.charge / s.mass == 1);  // omega_p
+    CHECK(c.gauss_sign == 1);
+    CHECK(worst({c.fields_interval, c.particles_interval, c.phase_interval, real(c.modes),
+                 real(c.checkpoint_steps), real(c.spectrum), real(c.vtk)}) == 0);
+    for (const Wall& wall : walls_of(c)) {
+        CHECK(!wall.floating);
+        CHECK(wall.potential == 0);
+        CHECK(wall.charge == 0);
+    }
 }

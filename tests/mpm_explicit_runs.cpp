@@ -222,7 +222,12 @@ TEST_CASE("one free node is a leapfrog with both invariants" * doctest::descript
 TEST_CASE("beyond omega dt 2 both invariants stay and bound nothing" *
           doctest::description("physics")) {
     const Run r = run("unbounded", "oscillator", "time.alpha=2 time.dt=0.4896 time.energy_limit=0");
-    check_results(r, 2);
+    const auto passes = [&](const char* name) {
+        return r.summary["results"][name]["pass"] == true;
+    };
+    CHECK(passes("change_of_energy_14"));
+    CHECK(passes("change_of_energy_15"));
+    CHECK(!passes("energy_gain"));
     CHECK(r.value("omega_dt") > 2);
     CHECK(r.value("energy_14") < 0);
     CHECK(r.value("largest_kinetic") > 1e6);

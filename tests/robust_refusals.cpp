@@ -77,8 +77,10 @@ cic line species.ions.drift_x=1
 cic line species.ions.temperature_x=1
 cic line species.ions.ripple=1
 cic line species.ions.emission=1
-    species.ions: a fixed species stays as it is: take out drift, temperature, amplitude, ripple and
-    emission, or make it mobile
+cic line species.ions.distribution_x=1 species.ions.distribution_max=1
+cic line perturbation.a.species=ions perturbation.a.amplitude=0.1
+    species.ions: a fixed species stays as it is: take out drift, temperature, distribution,
+    amplitude, perturbation, ripple and emission, or make it mobile
 cic line species.electrons.profile=layer
     species.electrons.profile = "layer" needs grid.dimensions = 2
 cic line species.electrons.profile=disk
@@ -104,10 +106,10 @@ cic line species.electrons.temperature_x=1 species.electrons.loading=lattice
     species.electrons.loading = "lattice" is for cold species: take "quiet"
 cic plane species.electrons.drift_y=1
     species.electrons has a velocity out of the plane, which nothing can see without a magnetic
-    field: take out drift_y and temperature_y, or set plasma.B_x, B_y or B_z
+    field: take out drift_y, temperature_y and distribution_y, or set plasma.B_x, B_y or B_z
 cic line species.electrons.temperature_z=1
     species.electrons has a velocity along z, which nothing can see in one dimension without a
-    magnetic field: take out drift_z and temperature_z
+    magnetic field: take out drift_z, temperature_z, distribution_z and distribution_across
 cic line species.electrons.start=ExB
     species.electrons.start = "ExB" needs a magnetic field: set plasma.B_x, B_y or B_z
 cic line species.electrons.amplitude=0.1 species.electrons.mode_x=0
@@ -126,6 +128,13 @@ cic plane species.electrons.half_width=0.5 species.electrons.ripple=0.1 species.
     species.electrons: mode (5, 0) has more than one wavelength per two cells
 cic plane species.electrons.amplitude=0.1 species.electrons.mode_z=1 grid.boundary_z=wall
     species.electrons: mode (1, 1) would push particles through the walls: set mode_x or mode_z to 0
+cic line perturbation.a.species=electron perturbation.a.amplitude=0.1
+    perturbation.a.species = "electron" is the name of no species
+cic line perturbation.a.species=electrons -> perturbation.a.amplitude = 0 perturbs nothing
+cic line perturbation.a.species=electrons perturbation.a.amplitude=0.1 perturbation.a.mode_x=9
+    perturbation.a: mode (9, 0) has more than one wavelength per two cells
+cic line perturbation.a.species=electrons perturbation.a.amplitude=0.5 species.electrons.amplitude=0.5
+    species.electrons: the amplitudes of its perturbations have the sum 1, above 0.9
 )");
 }
 
@@ -173,9 +182,16 @@ cic plane wave species.electrons.profile=disk species.electrons.center_x=3 \
     species.electrons.density=11.459155902616464
     theory.compare = "wave" needs uniform species, and 'electrons' is a disk
 cic line wave plasma.B_y=1 species.electrons.temperature_x=1
-    theory.compare = "wave" with a magnetic field is for cold species at rest, and 'electrons' is
-    warm or drifts: take out plasma.B_x, B_y and B_z, or set theory.compare = "none"
-cic line wave plasma.B_y=1 species.electrons.drift_z=1 -> 'electrons' is warm or drifts
+    theory.compare = "wave" with a magnetic field needs the same temperature in all directions
+    across it, and 'electrons' has temperature_x = 1, y: 0, z: 0
+cic line wave plasma.B_y=1 species.electrons.drift_z=1
+    theory.compare = "wave" with a magnetic field is for drifts along it, and 'electrons' drifts
+    across: it would gyrate as a whole
+cic line wave plasma.B_y=1 species.electrons.charge=0 species.ions.charge=0
+    theory.compare = "wave" with a magnetic field is for charged species
+cic line wave plasma.B_y=0.01 species.electrons.temperature_x=1 species.electrons.temperature_z=1
+    theory.compare = "wave": the orbits of 'electrons' are 104.7 times the length 1/k across the
+    field, more than the 100 to which harmonics are summed
 cic line wave plasma.B_y=1 gauss.sign=-1
     theory.compare = "wave" with a magnetic field is for gauss.sign = 1
 cic plane wave theory.model=mesh theory.mode_z=1
@@ -197,8 +213,8 @@ cic line wave theory.model=mesh theory.mode_x=8
     no root of the dispersion relation was found for mode (8, 0)
 cic between_walls traveling -> species.electrons.wave = "traveling" needs periodic boundaries
 cic line traveling no_charge -> no root of the dispersion relation was found for mode (1, 0)
-cic line traveling plasma.B_y=1 species.electrons.temperature_x=1
-    species.electrons.wave = "traveling" with a magnetic field is for cold species
+cic line traveling plasma.B_y=1
+    species.electrons.wave = "traveling" is for waves without a magnetic field
 cic plane theory.compare=diocotron
 cic diocotron.toml species.ions.motion=fixed
 cic diocotron.toml grid.boundary_x=wall

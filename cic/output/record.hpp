@@ -1,6 +1,7 @@
 // One row of history per step, snapshots when they are due, results at the end.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -26,7 +27,7 @@ class Recorder {
         background_ = fixed_background(parameters) * grid.x.length * grid.z.length;
         double charge = 0;
         for (const SpeciesCase& s : parameters.species)
-            charge += std::fabs(s.charge) * s.density * filled_volume(parameters, s);
+            charge += std::fabs(s.charge) * s.mean_density() * filled_volume(parameters, s);
         const double round_off = 100 * double(std::numeric_limits<Real>::epsilon());
         least_energy_ = std::pow(round_off * charge, 2) * grid.x.length / grid.z.length;
 
@@ -70,6 +71,10 @@ class Recorder {
         common::Summary& summary = run.summary;
         if (history.all().empty()) return;
         comparison_.add_results(parameters_, history, summary);
+        if (parameters_.compare != "none" && !summary.has_verdict())
+            summary.not_measured(parameters_.compare,
+                                 "the run is too short for it: raise time.end");
+        judge_energy(history, summary);
         summary.conservation("largest_energy_drift", history.largest("energy_drift"), "1");
         summary.conservation("largest_charge_error", history.largest("charge_error"), "1");
         const auto p_x = history.column("momentum_x");
@@ -79,6 +84,25 @@ class Recorder {
     }
 
    private:
+    // Whether energy was kept, of its start or, where that is nothing, of its largest.
+    void judge_energy(const common::History& history, common::Summary& summary) const {
+        if (parameters_.has_walls() || parameters_.gauss_sign < 0) return;
+        const auto energy = history.column("energy");
+        double change = 0, largest = 0;
+        for (const double one : energy) {
+            change = std::max(change, std::fabs(one - energy.front()));
+            largest = std::max(largest, std::fabs(one));
+        }
+        const double scale = energy.front() > 1e-3 * largest ? energy.front() : largest;
+        summary.hint(
+            "the mesh heats what it does not resolve, and the leapfrog what swings within a step: "
+            "raise grid.cells_x, take method.scheme = \"energy\" or method.weighting = \"tsc\", or "
+            "lower time.dt");
+        if (scale > least_energy_)
+            summary.result_at_most("energy_change", change / scale, "", 0.05,
+                                   "energy is conserved, but for the mesh and the step");
+    }
+
     struct Energies {
         double kinetic = 0, field = 0;
         double change = 0;    // of their sum, since the start

@@ -101,8 +101,9 @@ inline double phase_v_max(const Case& parameters) {
     double most = 0;
     for (const SpeciesCase& s : parameters.species)
         if (s.mobile())
-            most = std::max(most,
-                            1.8 * std::fabs(s.drift_x) + 5 * std::sqrt(s.temperature_x / s.mass));
+            most = std::max(
+                most, 1.8 * std::fabs(s.drift_x) +
+                          std::max(s.distribution_max, 5 * std::sqrt(s.temperature_x / s.mass)));
     return most > 0 ? most : 1;
 }
 

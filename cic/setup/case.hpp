@@ -2,6 +2,7 @@
 // species are in the case file. What each value means stands in describe_case.hpp.
 #pragma once
 
+#include <array>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -9,14 +10,33 @@
 #include "cic/gather_field.hpp"
 #include "cic/move_particles.hpp"
 #include "cic/poisson.hpp"
-#include "common/run/parameters.hpp"
+#include "cic/setup/distribution.hpp"
+#include "common/run/formula.hpp"
 
 namespace cic {
+
+/// A perturbation of the density in one mode.
+struct PerturbationCase {
+    std::string name, species;
+    long mode_x = 1, mode_z = 0;
+    double amplitude = 0;
+    std::string wave = "standing";  // or traveling
+};
+
+/// What read_formulas() has made of the formulas of a species.
+struct Tables {
+    Distribution x;               // of positions, and
+    std::vector<Distribution> z;  // in two dimensions, for every piece of x
+    double mean_density = 0;
+    std::array<Distribution, 3> v;  // of the velocities along x, y and z
+    Distribution speed;             // of the one across an axis
+};
 
 /// One species; the components of a vector are _x, _y, _z.
 struct SpeciesCase {
     std::string name;
-    double density = 1, charge = -1, mass = 1;
+    common::Formula density = 1;
+    double charge = -1, mass = 1;
     std::string motion = "mobile";    // or fixed: a uniform background without particles
     std::string profile = "uniform";  // or layer, disk, point
     double center_x = 0, center_z = 0, half_width = 0;
@@ -24,13 +44,37 @@ struct SpeciesCase {
     std::string loading = "quiet";  // or random, lattice
     double drift_x = 0, drift_y = 0, drift_z = 0;
     double temperature_x = 0, temperature_y = 0, temperature_z = 0;
+    // Of the velocity without the drift, in place of a Maxwellian: of each direction, or of the speed
+    // across B, without a field across y.
+    common::Formula distribution_x, distribution_y, distribution_z, distribution_across;
+    double distribution_max = 0;
     std::string start = "drift";  // or ExB: the drift in the field at t = 0
     long mode_x = 1, mode_z = 0;
     double amplitude = 0, ripple = 0;
     std::string wave = "standing";  // or traveling
     double emission = 0, emission_temperature = 1;
+    Tables tables;
 
     bool mobile() const { return motion == "mobile"; }
+    double mean_density() const {
+        return density.is_number() ? double(density) : tables.mean_density;
+    }
+    std::array<double, 3> drift() const { return {drift_x, drift_y, drift_z}; }
+    bool at_rest() const { return drift_x == 0 && drift_y == 0 && drift_z == 0; }
+    bool has_distribution() const {
+        return tables.speed.given() || tables.v[0].given() || tables.v[1].given() ||
+               tables.v[2].given();
+    }
+    /// The temperatures, m times the mean squares, along x, y and z, also of formulas.
+    /// in:     axis, the one that distribution_across is across
+    std::array<double, 3> temperatures(std::size_t axis) const {
+        std::array<double, 3> T{temperature_x, temperature_y, temperature_z};
+        for (std::size_t a = 0; a < 3; ++a) {
+            if (tables.v[a].given()) T[a] = mass * tables.v[a].mean_square(tables.v[a].mean());
+            if (tables.speed.given() && a != axis) T[a] = 0.5 * mass * tables.speed.mean_square(0);
+        }
+        return T;
+    }
 };
 
 /// What meets a wall.
@@ -56,6 +100,8 @@ struct Case {
     long sort_interval = 25;
     long seed = 1;
     std::vector<SpeciesCase> species;
+    std::vector<PerturbationCase> perturbations;
+    std::vector<common::Constant> constants;  // of formulas
 
     // What the run is compared with.
     std::string compare = "none";  // see theory/comparisons.hpp
@@ -78,9 +124,28 @@ struct Case {
                 static_cast<int>(dimensions)};
     }
     bool magnetized() const { return B.size() > 0; }
+    /// The axis of gyration, 0, 1 or 2: the largest component of B, and y without a field.
+    std::size_t axis() const {
+        const double x = std::fabs(B.x), y = std::fabs(B.y), z = std::fabs(B.z);
+        return x > y && x >= z ? 0 : z > y ? 2 : 1;
+    }
     bool is_box() const { return boundary_x == "wall" && boundary_z == "wall"; }
     bool has_walls() const { return boundary_x == "wall" || boundary_z == "wall"; }
 };
+
+/// The perturbations of a species: its own and those of the list.
+inline std::vector<PerturbationCase> perturbations_of(const Case& parameters,
+                                                      const SpeciesCase& s) {
+    std::vector<PerturbationCase> all;
+    if (s.amplitude != 0)
+        all.push_back({"species." + s.name, s.name, s.mode_x, s.mode_z, s.amplitude, s.wave});
+    for (const PerturbationCase& p : parameters.perturbations) {
+        if (p.species != s.name) continue;
+        all.push_back(p);
+        all.back().name = "perturbation." + p.name;
+    }
+    return all;
+}
 
 using common::format;
 

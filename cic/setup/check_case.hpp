@@ -6,13 +6,15 @@
 #include <string>
 
 #include "cic/setup/check_species.hpp"
+#include "cic/setup/read_formulas.hpp"
 #include "cic/setup/scales.hpp"
 #include "cic/theory/comparisons.hpp"
 
 namespace cic {
 
 /// Refuses what cannot run. errors: InputError, one sentence with the numbers and the cure.
-/// in/out: the mesh of the case gets its boundaries; in one dimension one cell of height 1.
+/// in/out: the mesh of the case gets its boundaries, in one dimension one cell of height 1, and its
+///         formulas their tables.
 inline void validate(Case& parameters) {
     Grid& grid = parameters.grid;
     grid.x.periodic = parameters.boundary_x == "periodic";
@@ -37,7 +39,9 @@ inline void validate(Case& parameters) {
            "method.stencil = \"nine_point\" needs grid.dimensions = 2");
     refuse_walls(parameters);
     refuse(parameters.species.empty(), "there is no plasma: add a [species.<name>]");
+    read_formulas(parameters);
     for (const SpeciesCase& s : parameters.species) refuse_species(parameters, s);
+    refuse_unused(parameters);
     const auto mobile = [](const SpeciesCase& s) { return s.mobile(); };
     refuse(std::none_of(parameters.species.begin(), parameters.species.end(), mobile),
            "every species is fixed, so nothing can happen: make one mobile");
@@ -61,8 +65,8 @@ inline void validate(Case& parameters) {
     for (const SpeciesCase& s : parameters.species) {
         const double volume =
             s.mobile() ? filled_volume(parameters, s) : grid.x.length * grid.z.length;
-        total += s.charge * s.density * volume;
-        size += std::fabs(s.charge) * s.density * volume;
+        total += s.charge * s.mean_density() * volume;
+        size += std::fabs(s.charge) * s.mean_density() * volume;
     }
     const auto closed = [&](const std::string& boundary, std::size_t low) {
         return boundary == "periodic" || (parameters.walls[low].field == "floating" &&
@@ -75,8 +79,8 @@ inline void validate(Case& parameters) {
                ", ", 100 * total / size,
                " % of the sum of all charges, and there is no grounded wall to carry the opposite: "
                "change a density, or add a fixed species with density ",
-               std::fabs(total) / (grid.x.length * grid.z.length), " and charge ",
-               (total > 0 ? "-1" : "1"));
+               common::number_text(std::fabs(total) / (grid.x.length * grid.z.length)),
+               " and charge ", (total > 0 ? "-1" : "1"));
     const Scales scales = scales_of(parameters);
     refuse(scales.particles < 2, "the case has ", scales.particles,
            " particle, and alone it only feels itself: raise particles_per_cell");
@@ -112,11 +116,15 @@ inline void validate(Case& parameters) {
     refuse(parameters.spectrum && scales.steps < 8,
            "output.spectrum needs at least 8 steps, and there are ", scales.steps,
            ": raise time.end above ", 8 * parameters.dt);
-    for (const SpeciesCase& s : parameters.species) {
-        if (!s.mobile() || s.amplitude == 0 || s.wave != "traveling") continue;
-        refuse_wave(parameters, "species." + s.name + ".wave = \"traveling\"", s.mode_x, s.mode_z);
-        theory_of_wave(parameters, s.mode_x, s.mode_z);  // throws where there is no such wave
-    }
+    for (const SpeciesCase& s : parameters.species)
+        for (const PerturbationCase& p : perturbations_of(parameters, s)) {
+            if (p.wave != "traveling") continue;
+            refuse(parameters.magnetized(), p.name,
+                   ".wave = \"traveling\" is for waves without a magnetic field, whose velocities "
+                   "are along them: take \"standing\"");
+            refuse_wave(parameters, p.name + ".wave = \"traveling\"", p.mode_x, p.mode_z);
+            theory_of_wave(parameters, p.mode_x, p.mode_z);  // throws where there is no such wave
+        }
     validate_comparison(parameters);
 }
 

@@ -1,6 +1,7 @@
 // What is refused of walls and of one species, before a run starts.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -35,6 +36,50 @@ inline void refuse_walls(const Case& parameters) {
     }
 }
 
+/// Refuses formulas of a species that say the same twice, or what it cannot have.
+inline void refuse_formulas(const Case& parameters, const SpeciesCase& s) {
+    const std::string name = "species." + s.name;
+    refuse(!s.density.is_number() && (s.profile != "uniform" || s.loading == "lattice"), name,
+           ".density is a formula: it needs profile = \"uniform\" and loading = \"quiet\" or "
+           "\"random\"");
+    refuse(s.distribution_max != 0 && !s.has_distribution(), name,
+           ".distribution_max ends a distribution by formula, and there is none: write "
+           "distribution_x, y, z or across, or take it out");
+    refuse(s.loading == "lattice" && s.has_distribution(), name,
+           ".loading = \"lattice\" is for cold species: take \"quiet\"");
+    const std::array<double, 3> T{s.temperature_x, s.temperature_y, s.temperature_z};
+    for (std::size_t a = 0; a < 3; ++a) {
+        const std::string direction(1, "xyz"[a]);
+        refuse(s.tables.v[a].given() && T[a] != 0, name, ".distribution_", direction,
+               " has a temperature of its own: take out temperature_", direction);
+        refuse(s.tables.speed.given() && a != parameters.axis() &&
+                   (s.tables.v[a].given() || T[a] != 0),
+               name, ".distribution_across is also of the velocity along ", direction,
+               ": take out temperature_", direction, " and distribution_", direction);
+    }
+    const double along =
+        std::max({std::fabs(parameters.B.x), std::fabs(parameters.B.y), std::fabs(parameters.B.z)});
+    refuse(s.tables.speed.given() && along < parameters.B.size(), name,
+           ".distribution_across needs a magnetic field along x, y or z, or none");
+}
+
+/// Refuses constants and perturbations that belong to nothing.
+inline void refuse_unused(const Case& parameters) {
+    bool formulas = false;
+    for (const SpeciesCase& s : parameters.species)
+        formulas = formulas || !s.density.is_number() || s.has_distribution();
+    refuse(!parameters.constants.empty() && !formulas,
+           "[constant.*] needs a formula in a species: write one, or take it out");
+    for (const PerturbationCase& p : parameters.perturbations) {
+        const auto named = [&](const SpeciesCase& s) { return s.name == p.species; };
+        refuse(std::none_of(parameters.species.begin(), parameters.species.end(), named),
+               "perturbation.", p.name, ".species = \"", p.species,
+               "\" is the name of no species: write one of [species.<name>]");
+        refuse(p.amplitude == 0, "perturbation.", p.name,
+               ".amplitude = 0 perturbs nothing: set it, or take the perturbation out");
+    }
+}
+
 /// Refuses a species that cannot be loaded, moved or emitted.
 inline void refuse_species(const Case& parameters, const SpeciesCase& s) {
     const std::string name = "species." + s.name;
@@ -44,14 +89,18 @@ inline void refuse_species(const Case& parameters, const SpeciesCase& s) {
         refuse(s.profile != "uniform", name,
                ": a fixed species is a uniform background: take out profile, or make it mobile and "
                "heavy");
-        const bool moves = s.drift_x != 0 || s.drift_y != 0 || s.drift_z != 0 ||
-                           s.temperature_x != 0 || s.temperature_y != 0 || s.temperature_z != 0;
-        refuse(moves || s.amplitude != 0 || s.ripple != 0 || s.emission != 0, name,
-               ": a fixed species stays as it is: take out drift, temperature, amplitude, ripple "
-               "and emission, or make it mobile");
+        const bool moves = !s.at_rest() || s.temperature_x != 0 || s.temperature_y != 0 ||
+                           s.temperature_z != 0 || s.has_distribution();
+        const bool perturbed = !perturbations_of(parameters, s).empty() || s.ripple != 0;
+        refuse(moves || perturbed || s.emission != 0, name,
+               ": a fixed species stays as it is: take out drift, temperature, distribution, "
+               "amplitude, perturbation, ripple and emission, or make it mobile");
+        refuse(!s.density.is_number(), name,
+               ".density: a fixed species is a uniform background: write a number, or make it "
+               "mobile and heavy");
         return;
     }
-    refuse(s.density == 0, name,
+    refuse(s.mean_density() == 0, name,
            ".density = 0 leaves its particles without charge and mass: raise it, or take the "
            "species out");
     refuse(!plane && (s.profile == "layer" || s.profile == "disk"), name, ".profile = \"",
@@ -75,30 +124,39 @@ inline void refuse_species(const Case& parameters, const SpeciesCase& s) {
     refuse(s.loading == "lattice" &&
                (s.temperature_x > 0 || s.temperature_y > 0 || s.temperature_z > 0),
            name, ".loading = \"lattice\" is for cold species: take \"quiet\"");
-    const bool across = s.temperature_y != 0 || s.drift_y != 0;
-    const bool along_z = s.temperature_z != 0 || s.drift_z != 0;
+    refuse_formulas(parameters, s);
+    const bool across = s.temperature_y != 0 || s.drift_y != 0 || s.tables.v[1].given();
+    const bool along_z =
+        s.temperature_z != 0 || s.drift_z != 0 || s.tables.v[2].given() || s.tables.speed.given();
     refuse(!parameters.magnetized() && across, name,
            " has a velocity out of the plane, which nothing can see without a magnetic field: take "
-           "out drift_y and temperature_y, or set plasma.B_x, B_y or B_z");
+           "out drift_y, temperature_y and distribution_y, or set plasma.B_x, B_y or B_z");
     refuse(!parameters.magnetized() && !plane && along_z, name,
            " has a velocity along z, which nothing can see in one dimension without a magnetic "
-           "field: take out drift_z and temperature_z");
+           "field: take out drift_z, temperature_z, distribution_z and distribution_across");
     refuse(s.start == "ExB" && !parameters.magnetized(), name,
            ".start = \"ExB\" needs a magnetic field: set plasma.B_x, B_y or B_z");
-    if (s.amplitude != 0) {
-        refuse(s.mode_x == 0 && (s.mode_z == 0 || !plane), name,
+    const auto refuse_above_cut_off = [&](const std::string& where, long mode_x, long mode_z) {
+        refuse(is_above_cut_off(parameters, mode_x, mode_z), where, ": ", mode_text(mode_x, mode_z),
+               " has more than one wavelength per two cells, the cut-off of the mesh: refine it or "
+               "lower the mode");
+    };
+    double amplitudes = 0;
+    for (const PerturbationCase& p : perturbations_of(parameters, s)) {
+        refuse(p.mode_x == 0 && (p.mode_z == 0 || !plane), p.name,
                ": the perturbed mode has no wave number: set mode_x", (plane ? " or mode_z" : ""));
-        refuse(!plane && s.mode_z != 0, name, ".mode_z needs grid.dimensions = 2");
-        refuse(parameters.has_walls() && s.mode_x != 0 && s.mode_z != 0, name, ": ",
-               mode_text(s.mode_x, s.mode_z),
+        refuse(!plane && p.mode_z != 0, p.name, ".mode_z needs grid.dimensions = 2");
+        refuse(parameters.has_walls() && p.mode_x != 0 && p.mode_z != 0, p.name, ": ",
+               mode_text(p.mode_x, p.mode_z),
                " would push particles through the walls: set mode_x or mode_z to 0");
+        refuse_above_cut_off(p.name, p.mode_x, p.mode_z);
+        amplitudes += std::fabs(p.amplitude);
     }
+    refuse(amplitudes > 0.9, name, ": the amplitudes of its perturbations have the sum ",
+           amplitudes, ", above 0.9, where the density could vanish: lower them");
     refuse(s.ripple != 0 && s.mode_x == 0, name, ".ripple = ", s.ripple,
            " has no wave number: set mode_x");
-    refuse((s.amplitude != 0 || s.ripple != 0) && is_above_cut_off(parameters, s.mode_x, s.mode_z),
-           name, ": ", mode_text(s.mode_x, s.mode_z),
-           " has more than one wavelength per two cells, the cut-off of the mesh: refine it or "
-           "lower the mode");
+    if (s.ripple != 0) refuse_above_cut_off(name, s.mode_x, s.mode_z);
     refuse(particle_count(parameters, s) < 1, name,
            " has no particle: raise particles_per_cell, or its half_width of ", s.half_width);
     refuse(s.emission > 0 &&
@@ -111,7 +169,7 @@ inline void refuse_species(const Case& parameters, const SpeciesCase& s) {
            ".emission_temperature = ", s.emission_temperature, ": a particle emitted with ",
            fastest, " crosses the whole box in one step: lower it, or time.dt below ",
            grid.x.length / fastest);
-    const double weight = s.density * filled_volume(parameters, s) /
+    const double weight = s.mean_density() * filled_volume(parameters, s) /
                           double(particle_count(parameters, s)),
                  emitted = emitted_per_step(parameters, s, weight);
     refuse(emitted > 1e6, name, ".emission = ", s.emission, " is ", emitted,

@@ -21,7 +21,12 @@ inline void describe_species(common::ParameterTable& table, const std::string& p
                             const std::vector<std::string>& choices, const char* meaning) {
         table.choice(prefix + "." + name, value, choices, meaning);
     };
-    real("density", s.density, "n0", at_least(0), "number density; of a point, the number itself");
+    const auto formula = [&](const char* name, common::Formula& value, const char* unit,
+                             const char* meaning) {
+        table.real(prefix + "." + name, value, unit, at_least(0), meaning);
+    };
+    formula("density", s.density, "n0",
+            "number density, also a formula of x, z and r; of a point, the number itself");
     real("charge", s.charge, "e", anything(), "charge of one particle");
     real("mass", s.mass, "m", above(0), "mass of one particle");
     choice("motion", s.motion, {"mobile", "fixed"}, "fixed: a uniform background of charge");
@@ -40,6 +45,14 @@ inline void describe_species(common::ParameterTable& table, const std::string& p
     real("temperature_x", s.temperature_x, "m velocity^2", at_least(0), "temperature of v_x");
     real("temperature_y", s.temperature_y, "m velocity^2", at_least(0), "of v_y; needs a field");
     real("temperature_z", s.temperature_z, "m velocity^2", at_least(0), "of v_z");
+    formula("distribution_x", s.distribution_x, "",
+            "formula of v: the distribution of v_x less the drift, in any unit; 0: Maxwellian");
+    formula("distribution_y", s.distribution_y, "", "of v_y; needs a field");
+    formula("distribution_z", s.distribution_z, "", "of v_z");
+    formula("distribution_across", s.distribution_across, "",
+            "of the speed v across B, per area of the plane of velocities; without B, in (x, z)");
+    real("distribution_max", s.distribution_max, "velocity", at_least(0),
+         "distributions end at this speed");
     choice("start", s.start, {"drift", "ExB"},
            "ExB: replaces the drift by E x B/B^2 in the field at t = 0");
     table.whole(prefix + ".mode_x", s.mode_x, "", between(-2048, 2048),
@@ -55,6 +68,23 @@ inline void describe_species(common::ParameterTable& table, const std::string& p
          "particles per area and time from a source wall");
     real("emission_temperature", s.emission_temperature, "m velocity^2", above(0),
          "of the half-Maxwellian that a source wall emits");
+}
+
+inline void describe_perturbation(common::ParameterTable& table, const std::string& prefix,
+                                  PerturbationCase& p) {
+    using common::between;
+    table.text(prefix + ".species", p.species, "the name of the perturbed species");
+    table.whole(prefix + ".mode_x", p.mode_x, "", between(-2048, 2048), "wavelengths in length_x");
+    table.whole(prefix + ".mode_z", p.mode_z, "", between(-2048, 2048), "in length_z");
+    table.real(prefix + ".amplitude", p.amplitude, "density", between(-0.9, 0.9),
+               "of the density, relative");
+    table.choice(prefix + ".wave", p.wave, {"standing", "traveling"},
+                 "traveling: with the velocities of the wave of theory");
+}
+
+inline void describe_constant(common::ParameterTable& table, const std::string& prefix,
+                              common::Constant& c) {
+    table.real(prefix + ".value", c.value, "", common::anything(), "of the name");
 }
 
 }  // namespace detail
@@ -119,6 +149,10 @@ inline common::ParameterTable describe(Case& parameters) {
                 "another number, another realization");
     table.list("species", parameters.species, detail::describe_species,
                "a species of the plasma, [species.<name>]");
+    table.list("perturbation", parameters.perturbations, detail::describe_perturbation,
+               "one more perturbed mode of a species, [perturbation.<name>]");
+    table.list("constant", parameters.constants, detail::describe_constant,
+               "a name for a number, for formulas");
 
     table.group("comparison with theory");
     table.choice("theory.compare", parameters.compare, names_of_comparisons(),

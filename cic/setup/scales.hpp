@@ -38,10 +38,10 @@ inline Scales scales_of(const Case& parameters) {
         if (!k.mobile()) continue;
         SpeciesScales scale;
         scale.name = k.name;
-        const double omega2 = k.density * k.charge * k.charge / k.mass;
+        const double omega2 = k.mean_density() * k.charge * k.charge / k.mass;
         scale.omega_p = std::sqrt(omega2);
-        scale.thermal_speed =
-            std::sqrt(std::max({k.temperature_x, k.temperature_y, k.temperature_z}) / k.mass);
+        const std::array<double, 3> T = k.temperatures(parameters.axis());
+        scale.thermal_speed = std::sqrt(*std::max_element(T.begin(), T.end()) / k.mass);
         scale.drift = std::hypot(k.drift_x, k.drift_y, k.drift_z);
         scale.Omega_c = std::fabs(k.charge) * parameters.B.size() / k.mass;
         scale.debye_length = omega2 > 0 ? scale.thermal_speed / scale.omega_p : 0;
@@ -177,9 +177,12 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
     bool followed = false;
     for (const SpeciesCase& s : parameters.species) {
         emission += s.emission;
-        const bool perturbed = s.amplitude != 0 || s.ripple != 0;
-        followed = followed ||
-                   (perturbed && s.mode_x == parameters.mode_x && s.mode_z == parameters.mode_z);
+        const auto follow = [&](long mode_x, long mode_z) {
+            followed = followed || (mode_x == parameters.mode_x && mode_z == parameters.mode_z);
+        };
+        if (s.ripple != 0) follow(s.mode_x, s.mode_z);
+        for (const PerturbationCase& p : perturbations_of(parameters, s))
+            follow(p.mode_x, p.mode_z);
     }
     if (parameters.walls[x_low].particles == "source" && emission == 0)
         warn(

@@ -152,9 +152,9 @@ inline void compare_clouds(const Case& parameters, const History& history, Summa
     const auto separation = history.column("separation_x");
     const CloudPair pair =
         make_cloud_pair(parameters.grid.x, parameters.grid.z, parameters.scheme().order);
-    const double expected = std::sqrt(
-        std::max(0.0, overlap_frequency_squared(pair, a.density * a.charge, a.density * a.mass,
-                                                b.density * b.charge, b.density * b.mass)[0]));
+    const double expected = std::sqrt(std::max(
+        0.0, overlap_frequency_squared(pair, a.mean_density() * a.charge, a.mean_density() * a.mass,
+                                       b.mean_density() * b.charge, b.mean_density() * b.mass)[0]));
     if (expected == 0) {
         summary.result_info("largest_separation",
                             *std::max_element(separation.begin(), separation.end()), "length",

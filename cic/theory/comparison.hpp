@@ -25,6 +25,7 @@ struct Comparison {
     const char* name;
     long least_steps = 10;      // of the run
     bool either_sign = false;   // also for Gauss's law as the slide prints it
+    bool formulas = false;      // species may have densities and distributions by formula
     bool follows_mode = false;  // the amplitude of theory.mode_x, mode_z: some species must seed it
 
     /// Refuses a case that the theory does not describe. errors: InputError

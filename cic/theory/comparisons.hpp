@@ -1,6 +1,7 @@
 // All comparisons with theory that a case can ask for.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
@@ -15,7 +16,7 @@ namespace cic {
 
 /// No comparison, and all others.
 inline constexpr std::array<Comparison, 6> comparisons{
-    Comparison{.name = "none", .least_steps = 0, .either_sign = true},
+    Comparison{.name = "none", .least_steps = 0, .either_sign = true, .formulas = true},
     wave_comparison,
     diocotron_comparison,
     sheath_comparison,
@@ -44,6 +45,12 @@ inline void validate_comparison(const Case& parameters) {
            double(comparison.least_steps) * parameters.dt);
     refuse(!comparison.either_sign && parameters.gauss_sign < 0, asked_for(parameters),
            " is for gauss.sign = 1");
+    const auto by_formula = [](const SpeciesCase& s) {
+        return !s.density.is_number() || s.has_distribution();
+    };
+    refuse(!comparison.formulas &&
+               std::any_of(parameters.species.begin(), parameters.species.end(), by_formula),
+           asked_for(parameters), " is for species without formulas: write numbers");
     comparison.validate(parameters);
 }
 

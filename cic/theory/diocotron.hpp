@@ -61,7 +61,7 @@ inline std::complex<double> diocotron_frequency(const ChargedLayer& layer, doubl
 /// Growth rate of the followed mode of a case whose only species is a layer.
 inline double diocotron_growth(const Case& parameters) {
     const SpeciesCase& s = parameters.species[0];
-    const ChargedLayer layer{s.charge * s.density / parameters.B.y, s.half_width,
+    const ChargedLayer layer{s.charge * s.mean_density() / parameters.B.y, s.half_width,
                              0.5 * parameters.grid.z.length};
     return std::fabs(
         diocotron_frequency(layer, wave_vector(parameters, parameters.mode_x, 0).size()).imag());
@@ -74,8 +74,7 @@ inline void compare_diocotron(const Case& parameters, const History& history, Su
     const auto re = history.column("mode_re"), im = history.column("mode_im");
     for (std::size_t n = 0; n < re.size(); ++n) mode.emplace_back(re[n], im[n]);
     const common::MeasuredMode seen = common::measure_mode(
-        history.column("time"), mode,
-        {.expected = {{0, growth}}, .begin = 1 / growth, .below_maximum = 0.2});
+        history.column("time"), mode, {.expected = {{0, growth}}, .below_maximum = 0.2});
     const std::string where =
         "guiding centers, two edges between grounded walls; measured " + seen.window;
     summary.result_info("theory_growth", growth, omega_p_unit, where);

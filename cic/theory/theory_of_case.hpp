@@ -2,11 +2,15 @@
 // dispersion relation of the species that the case file lists.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <complex>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "cic/setup/case.hpp"
+#include "cic/theory/magnetized_dispersion.hpp"
 #include "cic/theory/mesh_dispersion.hpp"
 #include "common/theory/kinetic_dispersion.hpp"
 
@@ -38,31 +42,114 @@ inline std::vector<common::PlasmaSpecies> theory_species(const Case& parameters,
     const double n_x = k.x / k.size(), n_z = k.z / k.size();
     for (const SpeciesCase& s : parameters.species) {
         if (!s.mobile()) continue;
+        const std::array<double, 3> T = s.temperatures(parameters.axis());
         common::PlasmaSpecies p;
-        p.density = s.density / (4 * pi), p.charge = s.charge, p.mass = s.mass;
+        p.density = s.mean_density() / (4 * pi), p.charge = s.charge, p.mass = s.mass;
         p.drift = s.drift_x * n_x + s.drift_z * n_z;
-        p.temperature_along = s.temperature_x * n_x * n_x + s.temperature_z * n_z * n_z;
+        p.temperature_along = T[0] * n_x * n_x + T[2] * n_z * n_z;
+        p.gyrofrequency = s.charge * parameters.B.size() / s.mass;
         plasma.push_back(p);
     }
     return plasma;
 }
 
-/// Longitudinal waves of a cold magnetized plasma at rest, B at an angle alpha with k.
-///   D = 1 - sum_s omega_s^2 [cos^2 alpha / omega^2 + sin^2 alpha / (omega^2 - Omega_s^2)]
-/// source: Stix, Waves in Plasmas (1992), chapter 2, the limit of large k.
-inline std::complex<double> cold_magnetized_dispersion(const Case& parameters, const WaveVector& k,
-                                                       std::complex<double> omega) {
-    const double along =
-        (k.x * parameters.B.x + k.z * parameters.B.z) / (k.size() * parameters.B.size());
-    const double cos2 = along * along;
-    std::complex<double> D = 1;
+/// A species in the magnetic field of the case, for one wave vector.
+inline MagnetizedSpecies magnetized_species(const Case& parameters, const SpeciesCase& s,
+                                            const WaveVector& k) {
+    const double B = parameters.B.size();
+    const std::array<double, 3> b{parameters.B.x / B, parameters.B.y / B, parameters.B.z / B},
+        u = s.drift(), T = s.temperatures(parameters.axis());
+    MagnetizedSpecies m;
+    m.omega2 = s.mean_density() * s.charge * s.charge / s.mass;
+    m.Omega = s.charge * B / s.mass;
+    m.k = k.size(), m.k_along = k.x * b[0] + k.z * b[2];
+    double T_along = 0, T_all = 0;
+    for (std::size_t a = 0; a < 3; ++a)
+        m.drift += u[a] * b[a], T_along += T[a] * b[a] * b[a], T_all += T[a];
+    m.v_along = std::sqrt(T_along / s.mass);
+    const double k_across = std::sqrt(std::max(0.0, m.k * m.k - m.k_along * m.k_along));
+    m.harmonics =
+        s.tables.speed.given()
+            ? tabulated_harmonics(k_across, s.tables.speed, m.Omega)
+            : maxwellian_harmonics(
+                  k_across, std::sqrt(std::max(0.0, 0.5 * (T_all - T_along)) / s.mass), m.Omega);
+    return m;
+}
+
+/// chi of a distribution by formula: f' is a sum over the steps of its table.
+///   chi = -(omega_s / k)^2 int f' dv / (v - c),  c = omega / k - u
+/// exact:  for the table everywhere, for a smooth f where Im c is some pieces above the real axis
+inline std::complex<double> tabulated_susceptibility(const Distribution& table, double omega2,
+                                                     double k, double drift,
+                                                     std::complex<double> omega) {
+    // In real numbers, so that many pieces are summed at a time.
+    const double y = omega.imag(), x = omega.real() - k * drift;
+    double re = 0, im = 0;
+#pragma omp simd reduction(+ : re, im)
+    for (std::size_t j = 0; j < table.rise.size(); ++j) {
+        const double w = x - k * table.edge(j), part = table.rise[j] / (w * w + y * y + 1e-300);
+        re += part * w, im -= part * y;
+    }
+    return omega2 / k * std::complex<double>(re, im);
+}
+
+/// G = int f dv / (omega - k v) of a distribution by formula, = (1 / k) int f' log(omega - k v) dv.
+inline std::complex<double> tabulated_free_response(const Distribution& table, double k,
+                                                    double drift, std::complex<double> omega) {
+    std::complex<double> sum = 0;
+    for (std::size_t j = 0; j < table.rise.size(); ++j)
+        if (table.rise[j] != 0)
+            sum += table.rise[j] * std::log(omega - k * (drift + table.edge(j)));
+    return sum / k;
+}
+
+/// What one mobile species does in a wave.
+///   D = 1 + sum_s chi_s;  G_s = int f_s dv / (omega - k v): of a seed in free particles
+struct SpeciesResponse {
+    std::function<std::complex<double>(std::complex<double>)> chi, G;
+};
+
+/// The table along k of a distribution by formula, where the species has one; k along an axis.
+inline const Distribution& table_along(const SpeciesCase& s, const WaveVector& k) {
+    return s.tables.v[k.z == 0 ? 0 : 2];
+}
+
+/// The responses of all mobile species to the waves of one wave vector.
+/// in:     magnetized, the same species in a magnetic field; empty without one
+inline std::vector<SpeciesResponse> responses_of(const Case& parameters, const WaveVector& k,
+                                                 const std::vector<MagnetizedSpecies>& magnetized) {
+    const auto plasma = theory_species(parameters, k);
+    std::vector<SpeciesResponse> all;
     for (const SpeciesCase& s : parameters.species) {
         if (!s.mobile()) continue;
-        const double omega2_s = s.density * s.charge * s.charge / s.mass,
-                     Omega_s = s.charge * parameters.B.size() / s.mass;
-        D -= omega2_s * (cos2 / (omega * omega) + (1 - cos2) / (omega * omega - Omega_s * Omega_s));
+        const common::PlasmaSpecies p = plasma[all.size()];
+        const double size = k.size(), along = k.z == 0 ? k.x : k.z;
+        if (parameters.magnetized()) {
+            const MagnetizedSpecies& m = magnetized[all.size()];
+            all.push_back({[&m](auto omega) { return magnetized_response(m, omega).chi; },
+                           [&m](auto omega) { return magnetized_response(m, omega).G; }});
+        } else if (const Distribution& f = table_along(s, k); f.given()) {
+            const double omega2 = s.mean_density() * s.charge * s.charge / s.mass,
+                         drift = p.drift * size / along;
+            all.push_back({[&f, omega2, along, drift](auto omega) {
+                               return tabulated_susceptibility(f, omega2, along, drift, omega);
+                           },
+                           [&f, along, drift](auto omega) {
+                               return tabulated_free_response(f, along, drift, omega);
+                           }});
+        } else {
+            const double kv = std::numbers::sqrt2 * size * p.speed_along();
+            all.push_back({[p, size](auto omega) {
+                               return common::longitudinal_dispersion({&p, 1}, size, omega) - 1.0;
+                           },
+                           [p, size, kv](auto omega) -> std::complex<double> {
+                               const std::complex<double> doppler = omega - size * p.drift;
+                               if (kv == 0) return 1.0 / doppler;
+                               return -common::plasma_dispersion(doppler / kv) / kv;
+                           }});
+        }
     }
-    return D;
+    return all;
 }
 
 /// What theory says about a mode, and where it comes from.
@@ -70,36 +157,138 @@ struct Theory {
     std::complex<double> omega;
     std::string source;
     long mode_x = 0, mode_z = 0;
-    double seed = 0;  // amplitude with which the field of this root starts; 0: not known
-    bool mirrored =
-        false;  // whether -conj(omega) is a root as well, of the wave that goes the other way
+    double seed = 0;        // amplitude with which the field of this root starts; 0: not known
+    bool mirrored = false;  // -conj(omega) is a root as well, of the wave that goes the other way
+    std::vector<double> others;  // frequencies of other undamped waves, where they are known
 };
 
 /// The part of the seeded field that belongs to one root of D: the residue of the initial-value
 /// problem.
-///   E_k = |sum_s q_s n_s A_s G_s / (k D'(omega))|,  G_s = int f_s dv / (omega - k v)
-///       = 1/(omega - k u_s) for a cold species, and -Z(zeta_s) / (2^1/2 k v_s) for a Maxwellian
+///   E_k = |sum_s q_s n_s A_s G_s / (k D'(omega))|
+/// in:     uniformly, whether all charge is perturbed alike, for modes that no species seeds
 /// exact:  for standing perturbations, in linear theory; 0 for traveling ones
 /// source: Landau, J. Phys. USSR 10, 25 (1946).
 template <class Dispersion>
-double seeded_field(const Case& parameters, const Theory& theory, const Dispersion& D) {
-    const WaveVector k = wave_vector(parameters, theory.mode_x, theory.mode_z);
-    const auto plasma = theory_species(parameters, k);
-    const std::complex<double> omega = theory.omega, aside = 1e-4 * std::abs(omega);
+double seeded_field(const Case& parameters, const Theory& theory,
+                    const std::vector<SpeciesResponse>& responses, const Dispersion& D,
+                    bool uniformly = false) {
+    const double k = wave_vector(parameters, theory.mode_x, theory.mode_z).size();
+    const std::complex<double> omega = theory.omega, aside = 1e-8 * std::abs(omega);
     const std::complex<double> slope = (D(omega + aside) - D(omega - aside)) / (2.0 * aside);
     std::complex<double> charge = 0;
-    auto along_k = plasma.begin();
+    auto response = responses.begin();
     for (const SpeciesCase& s : parameters.species) {
         if (!s.mobile()) continue;
-        const common::PlasmaSpecies& p = *along_k++;
-        if (s.mode_x != theory.mode_x || s.mode_z != theory.mode_z) continue;
-        if (s.amplitude != 0 && s.wave == "traveling") return 0;
-        const std::complex<double> doppler = omega - k.size() * p.drift;
-        const double kv = std::numbers::sqrt2 * k.size() * p.speed_along();
-        charge += s.charge * s.density * s.amplitude *
-                  (kv == 0 ? 1.0 / doppler : -common::plasma_dispersion(doppler / kv) / kv);
+        double seed = uniformly ? std::fabs(s.charge) * s.mean_density() : 0;
+        for (const PerturbationCase& p : perturbations_of(parameters, s)) {
+            if (uniformly || p.mode_x != theory.mode_x || p.mode_z != theory.mode_z) continue;
+            if (p.wave == "traveling") return 0;
+            seed += s.charge * s.mean_density() * p.amplitude;
+        }
+        if (seed != 0) charge += seed * response->G(omega);
+        ++response;
     }
-    return std::abs(charge / slope) / k.size();
+    return std::abs(charge / slope) / k;
+}
+
+/// The roots that are reached from all guesses, without repetition.
+template <class Dispersion>
+std::vector<std::complex<double>> all_roots(const Dispersion& D,
+                                            const std::vector<std::complex<double>>& guesses) {
+    std::vector<std::complex<double>> roots;
+    for (const std::complex<double> guess : guesses) {
+        const common::DispersionRoot root = common::root_near(D, guess);
+        const auto same = [&](std::complex<double> other) {
+            return std::abs(other - root.omega) <= 1e-7 * std::abs(root.omega);
+        };
+        if (root.found && std::none_of(roots.begin(), roots.end(), same))
+            roots.push_back(root.omega);
+    }
+    return roots;
+}
+
+/// The waves of a magnetized plasma. Which of its many roots the run is compared with:
+///   1. with theory.near, the one nearest to it
+///   2. the fastest growing
+///   3. where nothing grows, the one that has most of the seeded field during the run: the largest
+///      E_k^2 / max(2 |gamma|, 1 / time.end)
+/// errors: InputError when no root is found
+template <class Dispersion>
+void find_magnetized_wave(const Case& parameters, const WaveVector& k,
+                          const std::vector<MagnetizedSpecies>& plasma,
+                          const std::vector<SpeciesResponse>& responses, const Dispersion& D,
+                          Theory& theory) {
+    bool bernstein = std::fabs(plasma.front().k_along) <= 1e-12 * k.size();
+    for (const SpeciesCase& s : parameters.species)
+        bernstein = bernstein && !s.tables.speed.given();
+    std::vector<std::complex<double>> roots;
+    if (bernstein) {
+        for (const double omega : bernstein_roots(plasma)) roots.push_back(omega);
+    } else {
+        auto guesses = common::fan_of_guesses(theory_species(parameters, k), k.size());
+        for (const MagnetizedSpecies& s : plasma)
+            for (int n = 0; n <= 8; ++n)
+                for (const double part : {0.02, 0.3, 0.6, 0.9})
+                    for (const double growth : {-0.02, 0.1, 0.5})
+                        guesses.push_back(s.k_along * s.drift +
+                                          std::fabs(s.Omega) *
+                                              std::complex<double>(n + part, growth));
+        if (parameters.near != 0) guesses.push_back({parameters.near, 1e-3 * parameters.near});
+        roots = all_roots(D, guesses);
+    }
+    refuse(roots.empty(), "no root of the dispersion relation was found for ",
+           mode_text(theory.mode_x, theory.mode_z), ": set theory.compare = \"none\"");
+    bool seeded = false, grows = false;
+    const auto is_growing = [](std::complex<double> omega) {
+        return omega.imag() > 1e-6 * std::abs(omega);
+    };
+    for (const std::complex<double> root : roots) {
+        theory.omega = root;
+        seeded = seeded || seeded_field(parameters, theory, responses, D) > 0;
+        grows = grows || is_growing(root);
+    }
+    const auto merit = [&](std::complex<double> root) {
+        if (parameters.near != 0) return -std::abs(root - parameters.near);
+        const double forward = root.real() > 0 ? 1 : 0.999;  // of two that mirror each other
+        if (grows) return root.imag() * forward;
+        theory.omega = root;
+        const double E = seeded_field(parameters, theory, responses, D, !seeded);
+        return E * E / std::max(2 * std::fabs(root.imag()), 1 / parameters.end) * forward;
+    };
+    std::complex<double> best = roots.front();
+    double most = merit(best);
+    for (const std::complex<double> root : roots)
+        if (const double value = merit(root); value > most) best = root, most = value;
+    theory.omega = best;
+    theory.source = bernstein ? "Bernstein mode" : "dispersion relation in a magnetic field";
+    theory.source += parameters.near != 0 ? ", nearest to theory.near"
+                     : grows              ? ", fastest growing"
+                                          : ", the one that is seeded most";
+    if (bernstein)
+        for (const std::complex<double> root : roots)
+            if (root != best) theory.others.push_back(root.real());
+}
+
+/// Refuses a root at which some distribution by formula has particles that move with the wave: the
+/// integral over its table is not continued below the real axis.
+inline void refuse_resonance(const Case& parameters, const WaveVector& k, const Theory& theory) {
+    for (const SpeciesCase& s : parameters.species) {
+        const Distribution& f = table_along(s, k);
+        if (!s.mobile() || !f.given()) continue;
+        const double along = k.z == 0 ? k.x : k.z;
+        const std::complex<double> c = theory.omega / along - (k.z == 0 ? s.drift_x : s.drift_z);
+        bool resonant = false;
+        for (std::size_t j = 0; j < f.rise.size(); ++j)
+            resonant = resonant || (f.rise[j] != 0 && std::abs(c.real() - f.edge(j)) < 4 * f.step);
+        const bool damped = theory.omega.imag() < 0;
+        refuse((damped || resonant) && theory.omega.imag() < 4 * f.step * std::fabs(along),
+               "theory of species.", s.name,
+               ", whose distribution is a formula, is for waves that grow faster than ",
+               4 * f.step * std::fabs(along),
+               " or have no particles at their phase velocity, and the one of ",
+               mode_text(theory.mode_x, theory.mode_z), " has omega = ", theory.omega.real(),
+               ", growth = ", theory.omega.imag(), ": set theory.compare = \"none\"");
+    }
 }
 
 /// The root of the dispersion relation for one mode.
@@ -108,41 +297,51 @@ double seeded_field(const Case& parameters, const Theory& theory, const Dispersi
 inline Theory theory_of_wave(const Case& parameters, long mode_x, long mode_z) {
     const WaveVector k = wave_vector(parameters, mode_x, mode_z);
     const auto plasma = theory_species(parameters, k);
+    std::vector<MagnetizedSpecies> magnetized;
+    for (const SpeciesCase& s : parameters.species)
+        if (parameters.magnetized() && s.mobile())
+            magnetized.push_back(magnetized_species(parameters, s, k));
+    const auto responses = responses_of(parameters, k, magnetized);
     const common::Axis& axis = mode_x != 0 ? parameters.grid.x : parameters.grid.z;
     const MeshScheme scheme{axis.spacing(), parameters.dt, parameters.scheme().order,
                             parameters.scheme().energy_conserving};
     const bool on_mesh = parameters.model == "mesh";
     const auto D = [&](std::complex<double> omega) {
         if (on_mesh) return mesh_dispersion(plasma, k.size(), scheme, omega);
-        if (parameters.magnetized()) return cold_magnetized_dispersion(parameters, k, omega);
         // 1 + chi, and 1 - chi where like charges attract.
-        return 1.0 + parameters.gauss_sign *
-                         (common::longitudinal_dispersion(plasma, k.size(), omega) - 1.0);
+        std::complex<double> chi = 0;
+        for (const SpeciesResponse& s : responses) chi += s.chi(omega);
+        return 1.0 + parameters.gauss_sign * chi;
     };
 
     Theory theory;
     theory.mode_x = mode_x, theory.mode_z = mode_z;
-    theory.source = on_mesh ? "dispersion relation on this mesh, " + parameters.weighting + ", " +
-                                  parameters.conserving + "-conserving"
-                    : parameters.magnetized()   ? "cold magnetized plasma"
-                    : parameters.gauss_sign > 0 ? "kinetic dispersion relation"
-                                                : "dispersion relation with div E = -rho";
-    const common::DispersionRoot root =
-        parameters.near != 0 ? common::root_near(D, {parameters.near, 1e-3 * parameters.near})
-        : on_mesh            ? fastest_growing_on_mesh(plasma, k.size(), scheme)
-                  : common::fastest_growing_root(D, common::fan_of_guesses(plasma, k.size()));
-    if (!root.found)
-        throw common::InputError(sentence(
-            "no root of the dispersion relation was found for ", mode_text(mode_x, mode_z),
-            ": give theory.near a frequency to look at, or set theory.compare = \"none\""));
+    if (parameters.magnetized()) {
+        find_magnetized_wave(parameters, k, magnetized, responses, D, theory);
+    } else {
+        theory.source = on_mesh ? "dispersion relation on this mesh, " + parameters.weighting +
+                                      ", " + parameters.conserving + "-conserving"
+                        : parameters.gauss_sign > 0 ? "kinetic dispersion relation"
+                                                    : "dispersion relation with div E = -rho";
+        const common::DispersionRoot root =
+            parameters.near != 0 ? common::root_near(D, {parameters.near, 1e-3 * parameters.near})
+            : on_mesh            ? fastest_growing_on_mesh(plasma, k.size(), scheme)
+                      : common::fastest_growing_root(D, common::fan_of_guesses(plasma, k.size()));
+        if (!root.found)
+            throw common::InputError(sentence(
+                "no root of the dispersion relation was found for ", mode_text(mode_x, mode_z),
+                ": give theory.near a frequency to look at, or set theory.compare = \"none\""));
+        theory.omega = root.omega;
+    }
     // What is only round-off is zero.
-    const double least = 1e-9 * std::abs(root.omega);
-    theory.omega = {std::fabs(root.omega.real()) < least ? 0 : root.omega.real(),
-                    std::fabs(root.omega.imag()) < least ? 0 : root.omega.imag()};
-    const std::complex<double> mirror = -std::conj(root.omega);
+    const double least = 1e-9 * std::abs(theory.omega);
+    theory.omega = {std::fabs(theory.omega.real()) < least ? 0 : theory.omega.real(),
+                    std::fabs(theory.omega.imag()) < least ? 0 : theory.omega.imag()};
+    const std::complex<double> mirror = -std::conj(theory.omega);
     const common::DispersionRoot other = common::root_near(D, mirror);
     theory.mirrored = other.found && std::abs(other.omega - mirror) < 1e-6 * std::abs(mirror);
-    if (!on_mesh && !parameters.magnetized()) theory.seed = seeded_field(parameters, theory, D);
+    if (!on_mesh) refuse_resonance(parameters, k, theory);
+    if (!on_mesh) theory.seed = seeded_field(parameters, theory, responses, D);
     return theory;
 }
 

@@ -36,7 +36,7 @@ inline void compare_heating(const Case& parameters, const History& history, Summ
     double inverse_debye2 = 0, per_cell = 0;
     for (const SpeciesCase& s : parameters.species) {
         if (!s.mobile()) continue;
-        inverse_debye2 += s.density * s.charge * s.charge / s.temperature_x;
+        inverse_debye2 += s.mean_density() * s.charge * s.charge / s.temperature_x;
         per_cell += double(s.particles_per_cell);
     }
     const double at_start = 1 / std::sqrt(inverse_debye2) / parameters.grid.x.spacing();

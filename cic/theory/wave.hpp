@@ -14,20 +14,65 @@
 
 namespace cic {
 
+/// Refuses a species in a magnetic field that does not stay as it is without a wave, or whose gyration
+/// the theory cannot follow.
+inline void refuse_magnetized(const Case& parameters, const SpeciesCase& s, const std::string& what,
+                              const WaveVector& k) {
+    const std::size_t axis = parameters.axis();
+    const std::array<double, 3> B{parameters.B.x, parameters.B.y, parameters.B.z},
+        T = s.temperatures(axis), u = s.drift();
+    const bool aligned = std::fabs(B[axis]) == parameters.B.size();
+    const std::size_t a = (axis + 1) % 3, b = (axis + 2) % 3;
+    const double most = std::max({T[0], T[1], T[2]});
+    refuse(std::fabs(T[a] - T[b]) > 1e-9 * most ||
+               (!aligned && std::fabs(T[axis] - T[a]) > 1e-9 * most),
+           what,
+           " with a magnetic field needs the same temperature in all directions across it, "
+           "and '",
+           s.name, "' has temperature_x = ", T[0], ", y: ", T[1], ", z: ", T[2]);
+    refuse(std::hypot(u[1] * B[2] - u[2] * B[1], u[2] * B[0] - u[0] * B[2],
+                      u[0] * B[1] - u[1] * B[0]) >
+               1e-12 * std::hypot(u[0], u[1], u[2]) * parameters.B.size(),
+           what, " with a magnetic field is for drifts along it, and '", s.name,
+           "' drifts across: it would gyrate as a whole; take out that drift, or set "
+           "theory.compare = \"none\" and waves to \"standing\"");
+    refuse(s.tables.v[0].given() || s.tables.v[1].given() || s.tables.v[2].given(), what,
+           " with a magnetic field is for Maxwellians and distribution_across, and '", s.name,
+           "' has a distribution by formula of one direction");
+    const double speed = s.tables.speed.given() ? s.distribution_max : std::sqrt(most / s.mass),
+                 along = (k.x * B[0] + k.z * B[2]) / parameters.B.size(),
+                 across = std::sqrt(std::max(0.0, k.size() * k.size() - along * along)),
+                 orbit = across * speed * s.mass / (std::fabs(s.charge) * parameters.B.size());
+    refuse(s.charge == 0, what, " with a magnetic field is for charged species, and '", s.name,
+           "' has none: make it fixed or take it out");
+    refuse(orbit > 100, what, ": the orbits of '", s.name, "' are ", orbit,
+           " times the length 1/k across the field, more than the 100 to which harmonics are "
+           "summed: raise the magnetic field, "
+           "or take it out");
+}
+
 /// Refuses a case for which the dispersion relations of theory_of_case.hpp do not hold.
 /// in:     what asks for them, and for which mode
 inline void refuse_wave(const Case& parameters, const std::string& what, long mode_x, long mode_z) {
     refuse(parameters.has_walls(), what, " needs periodic boundaries");
+    const WaveVector k = wave_vector(parameters, mode_x, mode_z);
     for (const SpeciesCase& s : parameters.species) {
         if (!s.mobile()) continue;
         refuse(s.profile != "uniform", what, " needs uniform species, and '", s.name, "' is a ",
                s.profile);
-        const bool cold = s.temperature_x == 0 && s.temperature_y == 0 && s.temperature_z == 0;
-        const bool at_rest = s.drift_x == 0 && s.drift_y == 0 && s.drift_z == 0;
-        refuse(parameters.magnetized() && !(cold && at_rest), what,
-               " with a magnetic field is for cold species at rest, and '", s.name,
-               "' is warm or drifts: take out plasma.B_x, B_y and B_z, or set theory.compare = "
-               "\"none\" and waves to \"standing\"");
+        refuse(!s.density.is_number(), what, " needs uniform species, and the density of '", s.name,
+               "' is a formula");
+        refuse(parameters.model == "mesh" && s.has_distribution(),
+               "theory.model = \"mesh\" is for Maxwellians, and '", s.name,
+               "' has a distribution by formula: take \"plasma\"");
+        if (parameters.magnetized())
+            refuse_magnetized(parameters, s, what, k);
+        else
+            refuse(
+                s.tables.speed.given() || (s.has_distribution() && k.x != 0 && k.z != 0), what,
+                " is for distributions by formula of the velocity along x or along z, and a mode "
+                "along the same axis: change the mode or distribution of '",
+                s.name, "'");
     }
     refuse(parameters.model == "mesh" && mode_x != 0 && mode_z != 0,
            "theory.model = \"mesh\" needs a mode along x or along z, and not ",
@@ -55,16 +100,29 @@ inline double onset_field(const Case& parameters, const Theory& theory) {
     return 0.1 * gamma * gamma / std::pow(bounce_frequency(parameters, theory, 1), 2);
 }
 
-/// Time of the onset, before the run: the seeded field grows at the rate of theory.
+/// Time of the onset, before the run: the seeded field grows at the rate of theory, where a wave and
+/// its mirror image run against each other both of them.
 /// out:    0 for a mode that does not grow or is not seeded
 inline double predicted_onset(const Case& parameters, const Theory& theory) {
     const double growth = theory.omega.imag(), onset = onset_field(parameters, theory);
-    return growth > 0 && theory.seed > 0 && onset > theory.seed
-               ? std::log(onset / theory.seed) / growth
-               : 0;
+    const double seed = theory.seed * (theory.mirrored && theory.omega.real() != 0 ? 2 : 1);
+    return growth > 0 && seed > 0 && onset > seed ? std::log(onset / seed) / growth : 0;
 }
 /// What the onset is, in words.
 inline const std::string onset_meaning = "the seed has grown to a tenth of what traps particles";
+
+/// The field that the noise of randomly placed particles has in the mode, rms, before it is screened.
+///   E_k^2 = sum_s (2 q_s n_s / k)^2 / N_s
+inline double noise_field(const Case& parameters, const Theory& theory) {
+    const double k = wave_vector(parameters, theory.mode_x, theory.mode_z).size();
+    double squares = 0;
+    for (const SpeciesCase& s : parameters.species)
+        if (s.mobile() && s.loading != "lattice")
+            squares += std::pow(2 * s.charge * s.density / k, 2) /
+                       (double(s.particles_per_cell) * double(parameters.grid.x.cells) *
+                        double(parameters.dimensions == 2 ? parameters.grid.z.cells : 1));
+    return std::sqrt(squares);
+}
 
 /// What a wave that is not as in theory is most likely due to, and what to change.
 /// in:     field, the amplitude with which the mode begins
@@ -79,16 +137,14 @@ inline std::string likely_cause(const Case& parameters, const Theory& theory, do
                         rate, ", and linear theory does not hold: lower the amplitude ",
                         common::format(rate * rate / (bounce * bounce)), " times");
     if (parameters.model != "mesh" && cell > 0.5)
-        return sentence(
-            "k dx is ", cell,
-            ", and the mesh changes the wave: raise grid.cells_x, or set theory.model = "
-            "\"mesh\"");
+        return sentence("k dx is ", cell,
+                        ", and the mesh changes the wave: raise grid.cells_x, or take theory.model "
+                        "= \"mesh\"");
     if (step > 0.3)
         return sentence("|omega| dt is ", step,
                         ", and the leapfrog changes the wave: lower time.dt");
-    return "the noise of particles is the most likely cause: raise particles_per_cell, or set "
-           "loading "
-           "= \"quiet\"";
+    return "the noise of particles is the most likely cause: raise particles_per_cell, or take "
+           "loading = \"quiet\"";
 }
 
 /// A wave or an instability against the dispersion relation: frequency, growth or damping by
@@ -115,9 +171,14 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
     common::ModeSearch search;
     search.expected = {theory.omega};
     if (theory.mirrored) search.expected.push_back(-std::conj(theory.omega));
+    const double onset = predicted_onset(parameters, theory);
+    bool random = false;
+    for (const SpeciesCase& s : parameters.species) random = random || s.loading == "random";
+    const double noise = random ? noise_field(parameters, theory) : 0;
     search.begin = grows ? 1 / growth : 2 * pi / frequency;
     search.below_maximum = 0.1;
-    const bool swings = frequency >= 0.01 * std::fabs(growth);
+    if (onset > search.begin) search.end = onset;
+    const bool swings = frequency > 0 && frequency >= 0.01 * std::fabs(growth);
     const common::MeasuredMode seen =
         grows || swings ? common::measure_mode(times, mode, search) : common::MeasuredMode{};
     const std::string where = theory.source + "; measured " + seen.window;
@@ -140,18 +201,23 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
         if (frequency > 0.1 * growth)
             report("omega_over_theory", seen.omega.real(), seen.frequency_error(),
                    theory.omega.real(), parameters.frequency_tolerance);
-        const double onset = predicted_onset(parameters, theory), allowed = 0.5 / growth;
-        const double at = common::time_at_level(times, amplitude, onset_field(parameters, theory));
-        if (onset > 0 && times.back() > onset + allowed)
+        const double allowed = 0.5 / growth,
+                     at = common::time_at_level(times, amplitude, onset_field(parameters, theory));
+        if (onset > 0 && times.back() > onset + allowed && noise > 0.3 * theory.seed)
+            summary.not_measured("onset", sentence("the noise of particles, ", noise,
+                                                   ", is not small beside the seed, ", theory.seed,
+                                                   ": raise amplitude or particles_per_cell"));
+        else if (onset > 0 && times.back() > onset + allowed)
             summary.result("onset", std::isnan(at) ? times.back() : at, "1/omega_p", onset, allowed,
                            onset_meaning);
         return;
     }
 
-    // Where nothing should grow, nothing may.
+    // Where nothing should grow, nothing may; but a quiet start does not stay quieter than noise.
     summary.result_at_most("largest_over_start",
-                           *std::max_element(amplitude.begin(), amplitude.end()) / start, "", 1.2,
-                           "no growing root");
+                           {*std::max_element(amplitude.begin(), amplitude.end()) / start,
+                            3 * noise_field(parameters, theory) / start},
+                           "", 1.2, "no growing root");
     if (!swings) {
         summary.not_measured("omega_over_theory",
                              "the mode of theory is too damped to swing: take a smaller "
@@ -171,6 +237,11 @@ inline Lines describe_wave(const Case& parameters) {
     Lines lines{{"theory", mode_text(theory.mode_x, theory.mode_z) +
                                ": omega = " + format(theory.omega.real()) + ", growth = " +
                                format(theory.omega.imag()) + " omega_p; " + theory.source}};
+    if (theory.seed > 0) lines.push_back({"seeded field", "E_k = " + format(theory.seed)});
+    std::string others;
+    for (std::size_t n = 0; n < std::min<std::size_t>(10, theory.others.size()); ++n)
+        others += (n > 0 ? ", " : "") + format(theory.others[n]);
+    if (!others.empty()) lines.push_back({"other Bernstein modes", "omega = " + others});
     const double onset = predicted_onset(parameters, theory);
     if (onset > 0) lines.push_back({"onset", "about t = " + format(onset) + ": " + onset_meaning});
     return lines;
@@ -180,6 +251,7 @@ inline Lines describe_wave(const Case& parameters) {
 inline constexpr Comparison wave_comparison{
     .name = "wave",
     .either_sign = true,
+    .formulas = true,
     .follows_mode = true,
     .validate =
         [](const Case& parameters) {

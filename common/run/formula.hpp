@@ -31,16 +31,16 @@ class Formula {
         throw InputError(where_ + ": a formula, where this run needs a number: write one");
     }
 
-    /// Reads the text. Its names are x, z, r (the distance from a center), pi and the constants.
-    /// errors: InputError with the place and the cure
-    void read(const std::vector<Constant>& constants);
-    /// The value at a place, after read(); by one thread at a time.
-    /// errors: InputError with x and z where it is not finite or out of range
-    double at(double x, double z, double r) const;
+    /// Reads the text. Its names are x, z, r (the distance from a center), or the letters of such a
+    /// list, pi and the constants. errors: InputError with the place and the cure
+    void read(const std::vector<Constant>& constants, const std::string& variables = "x, z, r");
+    /// The value where x, z, r, or the only variable, have these values; by one thread at a time.
+    /// errors: InputError with the place where it is not finite or out of range
+    double at(double x, double z = 0, double r = 0) const;
 
    private:
     double number_ = 0;
-    std::string text_, where_;
+    std::string text_, where_, variables_;
     Range allowed_{};
     std::shared_ptr<struct Parser> parser_;
 };

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
+#include <vector>
 
 #include "common/run/parameters.hpp"
 
@@ -18,6 +18,8 @@ using Eigen::Index, Eigen::MatrixXcd, Eigen::VectorXcd;
 constexpr double pi = 3.14159265358979323846;
 constexpr long most_samples = 320;     // in a window, after averaging
 constexpr double fastest_decay = -5;   // of an exponential, in a sample
+constexpr double far_out = 100;        // energy of a mode over that of the noise
+constexpr double weak = 0.05;          // share of a mode that may be noise
 constexpr double least_evidence = 30;  // of noise alone one mode in some thousand has that much
 
 // The model sum_j c_j exp(s_j (n - n_j)), n_j the sample at which its exponential is 1 at most.
@@ -91,51 +93,80 @@ void improve(const VectorXcd& z, Model& model) {
     }
 }
 
-// The correlation of neighboring residuals.
-double correlation(const VectorXcd& difference) {
-    const Index last = difference.size() - 1;
-    const double squares = difference.squaredNorm();
-    const double product = difference.head(last).dot(difference.tail(last)).real();
-    return squares > 0 ? std::clamp(product / squares, 0.0, 0.9) : 0;
+// The standard error of s of the first of these modes in noise like `rest`.
+//   J^+ R J^+H,  R_mn = C(m - n) the covariance of the noise, of lags below an eighth of the record;
+//   not below that of white noise, R = C(0)
+// in: slopes J by all c and then all s of a model
+double error_of_first(const MatrixXcd& J, const std::vector<Index>& modes, const VectorXcd& rest,
+                      double freedom) {
+    const Index count = Index(modes.size()), samples = J.rows(),
+                lags = std::max<Index>(4, samples / 8);
+    MatrixXcd slopes(samples, 2 * count);
+    for (Index j = 0; j < count; ++j) {
+        slopes.col(j) = J.col(modes[std::size_t(j)]);
+        slopes.col(count + j) = J.col(J.cols() / 2 + modes[std::size_t(j)]);
+    }
+    const Eigen::VectorXd size =
+        slopes.colwise().norm().transpose().cwiseMax(std::numeric_limits<double>::min());
+    const MatrixXcd unit = slopes * size.cwiseInverse().asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<MatrixXcd> gram(unit.adjoint() * unit);
+    const Eigen::ArrayXd values =
+        gram.eigenvalues().array().max(1e-15 * gram.eigenvalues().tail(1)[0]);
+    const VectorXcd inverse =
+        gram.eigenvectors() *
+        (gram.eigenvectors().row(count).adjoint().array() / values.cast<Complex>()).matrix();
+    const VectorXcd row = unit * inverse / size[count];  // of J^+, conjugate
+    double squares = row.squaredNorm() * rest.squaredNorm();
+    const double white = squares;
+    for (Index k = 1; k < lags; ++k) {
+        const Complex C = rest.head(samples - k).dot(rest.tail(samples - k)),
+                      turned = row.tail(samples - k).dot(row.head(samples - k));
+        squares += 2 * (1 - double(k) / double(lags)) * (C * turned).real();
+    }
+    return std::sqrt(std::max(squares, white) / freedom);
 }
 
 // The modes of a model, with errors and evidence.
 ModeList modes_of(const VectorXcd& z, const Model& model, double dt) {
     const Index order = model.s.size(), samples = z.size();
     const double freedom = double(std::max<Index>(1, samples - 2 * order));
-    const double floor = 1e-30 * z.squaredNorm();
-    const MatrixXcd A = model.columns(samples);
+    const double energy = z.squaredNorm(), floor = 1e-30 * energy;
+    const MatrixXcd A = model.columns(samples), parts = A * model.c.asDiagonal();
     const VectorXcd difference = z - A * model.c;
-    const double r = correlation(difference), variance = (model.rest + floor) / freedom;
+    const auto share = [&](Index j) { return parts.col(j).squaredNorm() / energy; };
 
-    // The covariance, from slopes of equal size.
     const MatrixXcd J = model.slopes(samples);
-    Eigen::VectorXd size = J.colwise().norm().transpose();
-    size = size.cwiseMax(std::numeric_limits<double>::min());
-    const MatrixXcd unit = J * size.cwiseInverse().asDiagonal();
-    const Eigen::SelfAdjointEigenSolver<MatrixXcd> gram(unit.adjoint() * unit);
-    const Eigen::ArrayXd values =
-        gram.eigenvalues().array().max(1e-15 * gram.eigenvalues().tail(1)[0]);
+
     ModeList list;
     for (Index j = 0; j < order; ++j) {
-        const double spread =
-            (gram.eigenvectors().row(order + j).transpose().array().abs2() / values).sum();
-        const double deviation =
-            std::sqrt(0.5 * variance * (1 + r) / (1 - r) * spread) / size[order + j];
+        // Weak modes that do not stand far out of the noise may be noise as well: they count as such
+        // in the errors of all others.
+        VectorXcd rest = difference;
+        std::vector<Index> kept{j};
+        for (Index k = 0; k < order; ++k) {
+            if (k == j) continue;
+            const bool opposite = std::abs(model.s[k] - std::conj(model.s[j])) < 1e-2;
+            const bool noisy = parts.col(k).squaredNorm() < far_out * model.rest;
+            if (share(k) < weak && noisy && !opposite)
+                rest += parts.col(k);
+            else
+                kept.push_back(k);
+        }
+        const double deviation = std::sqrt(0.5) * error_of_first(J, kept, rest, freedom);
         Model without;
         without.s.resize(order - 1);
         without.s << model.s.head(j), model.s.tail(order - 1 - j);
-        without.rest = z.squaredNorm();
+        without.rest = energy;
         if (order > 1) without.find_amplitudes(z);
         Mode mode;
         mode.omega = Complex(0, 1) * model.s[j] / dt;
-        mode.error = Complex(2.2, 2.2) * deviation / dt;
+        mode.error = Complex(2.2, 2.2) * std::max(deviation, 1e-15) / dt;
         mode.amplitude = model.c[j] * A(0, j);
-        mode.share = A.col(j).squaredNorm() * std::norm(model.c[j]) / z.squaredNorm();
-        mode.evidence = (without.rest - model.rest) / variance;
+        mode.share = share(j);
+        mode.evidence = (without.rest - model.rest) * freedom / (model.rest + floor);
         list.modes.push_back(mode);
     }
-    list.noise = std::sqrt(model.rest / z.squaredNorm());
+    list.noise = std::sqrt(model.rest / energy);
     std::sort(list.modes.begin(), list.modes.end(),
               [](const Mode& a, const Mode& b) { return a.share > b.share; });
     return list;
@@ -159,21 +190,39 @@ ModeList find_modes(std::span<const Complex> record, double dt, int most) {
     const MatrixXcd V = gram.eigenvectors().rowwise().reverse();  // the largest first
 
     // Step 4.
-    std::optional<Model> best;
+    std::vector<Model> models;
+    std::size_t best = 0;
     double least = std::numeric_limits<double>::infinity();
+    const double floor = 1e-26 * unit.squaredNorm();
     const Index largest = std::min<Index>({most, columns - 1, Z.rows(), (samples - 2) / 3});
     for (Index order = 1; order <= largest; ++order) {
-        Model model = start_of(unit, V, order);
+        models.push_back(start_of(unit, V, order));
+        Model& model = models.back();
         improve(unit, model);
-        const double floor = 1e-26 * unit.squaredNorm();
         const double score = 2 * double(samples) * std::log(std::max(model.rest, floor)) +
-                             4 * double(order) * std::log(2 * double(samples));
-        if (std::isfinite(score) && score < least) least = score, best = model;
+                             12 * double(order) * std::log(2 * double(samples));
+        if (std::isfinite(score) && score < least) least = score, best = models.size() - 1;
         if (model.rest <= floor) break;
     }
-    if (!best) return {{}, 0, "no exponentials fit the record"};
-    ModeList list = modes_of(unit, *best, dt);
-    for (Mode& mode : list.modes) mode.amplitude *= size;
+    if (!std::isfinite(least)) return {{}, 0, "no exponentials fit the record"};
+    ModeList list = modes_of(unit, models[best], dt);
+    for (Mode& mode : list.modes) {
+        mode.amplitude *= size;
+        // Noise with a color looks like modes. Models that explain nearly as much tell how far that
+        // moves this one.
+        double real = 0, imag = 0;
+        for (const Model& model : models) {
+            if (!(model.rest <= 4 * std::max(models[best].rest, floor))) continue;
+            Complex off = std::numeric_limits<double>::infinity();
+            for (const Complex& s : model.s)
+                if (const Complex here = Complex(0, 1) * s / dt - mode.omega;
+                    std::abs(here) < std::abs(off))
+                    off = here;
+            real = std::max(real, std::abs(off.real())),
+            imag = std::max(imag, std::abs(off.imag()));
+        }
+        mode.error = {std::hypot(mode.error.real(), real), std::hypot(mode.error.imag(), imag)};
+    }
     return list;
 }
 
@@ -249,21 +298,37 @@ Rows window_of(std::span<const double> times, std::span<const Complex> z, const 
     while (rows.end < long(times.size()) && times[std::size_t(rows.end)] <= search.end + slack)
         ++rows.end;
     const bool grows = wanted.growth > 0 && search.below_maximum < 1;
+    const auto size = [&](long n) { return std::abs(z[std::size_t(n)]); };
+    const auto largest = [&](long begin, long end) {
+        double most = 0;
+        for (long n = begin; n < std::min(end, rows.end); ++n) most = std::max(most, size(n));
+        return most;
+    };
     if (grows && rows.count() > 0) {
-        double largest = 0;
-        for (long n = rows.begin; n < rows.end; ++n)
-            largest = std::max(largest, std::abs(z[std::size_t(n)]));
+        double level = 0;
+        for (long n = rows.begin; n < long(z.size()); ++n) level = std::max(level, size(n));
+        level *= search.below_maximum;
         long end = rows.begin;
-        while (end < rows.end && std::abs(z[std::size_t(end)]) < search.below_maximum * largest)
-            ++end;
-        rows.end = end;
+        while (end < rows.end && size(end) < level) ++end;
+        // A record that begins above the level has another mode, and only search.end knows.
+        if (end > rows.begin) rows.end = end;
+    }
+    if (wanted.growth < 0 && rows.count() > 8) {
+        std::vector<double> late;
+        for (long n = rows.end - rows.count() / 4; n < rows.end; ++n) late.push_back(size(n));
+        std::nth_element(late.begin(), late.begin() + long(late.size() / 2), late.end());
+        const double noise = late[late.size() / 2];
+        const long period = std::lround(std::ceil(2 * pi / (wanted.size * dt)));
+        long end = rows.begin;
+        while (end < rows.end && largest(end, end + period) > 2.5 * noise) ++end;
+        if (largest(rows.begin, rows.begin + period) > 5 * noise) rows.end = end;
     }
     const double e_folding = 1 / (std::abs(wanted.growth) * dt), radian = 1 / (wanted.size * dt);
     if (8 * e_folding < double(rows.count())) {
         const long enough = std::lround(std::ceil(std::max(8 * e_folding, 8.0)));
         (grows ? rows.begin : rows.end) = grows ? rows.end - enough : rows.begin + enough;
     }
-    block = std::max(1L, std::min(long(0.4 * radian), rows.count() / 64));
+    block = std::max(1L, std::min(long(0.8 * radian), rows.count() / 64));
     const long longer = (rows.count() + most_samples - 1) / most_samples;
     block = std::max(block, std::min(longer, long(0.8 * radian)));
     if (rows.count() > most_samples * block)

@@ -32,10 +32,12 @@ struct ModeList {
 ///   1. singular vectors V of the Hankel matrix Z_ij = z_(i+j); the p largest span the exponentials
 ///   2. exp(-i omega_j dt) = eigenvalues of V_1^+ V_2, V without its last and without its first row
 ///   3. Gauss and Newton on sum |z - model|^2 in all omega_j and a_j
-///   4. of p = 1 ... most the one with the least 2 N ln(sum |z - model|^2) + 4 p ln 2N
+///   4. of p = 1 ... most the one with the least 2 N ln(sum |z - model|^2) + 12 p ln 2N; the noise of
+///      particles has a color, and costs modes three times what white noise does
 /// in:     z, evenly sampled, dt apart, at most a few hundred; most, how many exponentials at most
-/// out:    errors from the covariance of step 3, of white noise, times (1 + r)/(1 - r), r the
-///         correlation of neighboring residuals
+/// out:    errors from the covariance of step 3 and of the noise, which is what the model leaves and
+///         other modes of less than a twentieth of the energy and 100 times the noise; and from how far a mode is in models
+///         of another p that leave at most four times as much
 /// exact:  without noise, to round-off, where omega dt is below pi and modes differ
 /// source: Roy and Kailath, IEEE Trans. ASSP 37, 984 (1989); Hua and Sarkar, ibid. 38, 814 (1990);
 ///         step 4: Schwarz, Ann. Statist. 6, 461 (1978)
@@ -69,9 +71,10 @@ struct MeasuredMode {
 };
 
 /// Measures the mode that theory expects.
-///   window: from search.begin, until a growing record has come to below_maximum of its largest
-///           value, or to search.end; of a long one the 40 periods or the 8 e-foldings that tell
-///           most. Many samples per period are averaged in blocks, which changes no omega
+///   window: from search.begin to search.end; what grows ends before, where it comes to below_maximum
+///           of its largest value, and what decays where noise is left; of a long record as many
+///           periods, or 8 e-foldings, as tell most. Many samples per period are averaged in
+///           blocks, which changes no omega
 ///   answer: of the modes with evidence the one nearest to a root of theory; one without a
 ///           turn and without an e-folding in the window is what stays at rest, and none
 ///   error:  twice the root of the squares of: the covariance, and the spread of the same mode over

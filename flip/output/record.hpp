@@ -1,7 +1,9 @@
 // One row of history per step, snapshots when they are due, results at the end.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -80,11 +82,12 @@ class Recorder {
         common::Summary& summary = run.summary;
         if (history.all().empty()) return;
         const Comparison& comparison = comparison_of(parameters_);
-        if (comparison.compare != nullptr)
+        if (comparison.compare != nullptr && history.rows() > 1)
             comparison.compare({parameters_, program_, state, now, cells, history,
                                 run.path("profile.dat"), summary});
         if (comparison.compare != nullptr && !summary.has_verdict())
             summary.not_measured(comparison.name, "the run is too short for it: raise time.end");
+        if (history.rows() > 1) judge_energy(history, summary);
         for (const char* name :
              {"mass_error", "momentum_x_error", "momentum_z_error", "energy_error"})
             summary.conservation(std::string("largest_") + name, history.largest(name), "1");
@@ -138,6 +141,29 @@ class Recorder {
         const Comparison& comparison = comparison_of(parameters_);
         if (comparison.track != nullptr) comparison.track({parameters_, state, now, cells}, row);
         return row;
+    }
+
+    // Energy less what came in at the ends and from forces is kept to round-off: kinetic energy that a
+    // transfer to particles takes becomes heat; where it does not, the transfer only takes.
+    void judge_energy(const common::History& history, common::Summary& summary) const {
+        // A part in 1e12, and ten units in the last place in a step, of the largest energy.
+        const double steps = static_cast<double>(history.rows() - 1),
+                     first = history.first("energy"),
+                     times = first > 0 ? history.largest("energy") / first : 1,
+                     round_off =
+                         times * (1e-12 + 10 * std::numeric_limits<double>::epsilon() * steps);
+        const std::vector<double> error = history.column("energy_error");
+        const auto [least, most] = std::ranges::minmax(error);
+        summary.hint(
+            "no step of the scheme makes or loses energy, so that the run has gone astray: lower "
+            "time.cfl, or flip.tolerance of an implicit pressure");
+        if (program_ == "pic" || parameters_.deficit_to_heat)
+            return summary.result_at_most("energy_error", std::max(most, -least), "", round_off,
+                                          "largest, over the start: exact but for round-off");
+        summary.result_at_most("energy_gain", most, "", round_off,
+                               "largest, over the start: the transfer to particles only takes");
+        summary.result_info("energy_lost", -least, "",
+                            "what the transfer takes, for flip.deficit_to_heat = false");
     }
 
     // An energy that is many times what the start and the work done account for is no result.

@@ -68,6 +68,11 @@ inline void compare_diffusion(const FinishedRun& run) {
                  dx = parameters.grid.x.spacing();
     const double unit = std::fabs(u) * dx, tolerance = parameters.theory_tolerance * 0.5;
     const double D = 0.5 * slope(run.history.column("time"), run.history.column("variance")) / unit;
+    if (run.history.rows() < 3)
+        return run.not_measured("diffusivity", "the run has fewer than two steps: raise time.end");
+    run.hint("the blob is ", region_with_flow(parameters, "gaussian").width / dx,
+             " cells wide: below a dozen the mesh does not see it, so refine it or widen the blob; "
+             "cells of few particles mix by another amount, so raise particles.per_cell_x");
     run.info("courant_number", std::fabs(u) * parameters.dt / dx, "", "|u| dt/dx");
     if (run.program != "pic") {
         run.summary.result("diffusivity", D, "u dx", 0, tolerance, "particles carry energy");

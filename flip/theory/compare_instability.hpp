@@ -4,6 +4,7 @@
 
 #include <complex>
 #include <limits>
+#include <span>
 
 #include "flip/theory/instabilities.hpp"
 #include "flip/theory/modes.hpp"
@@ -38,17 +39,16 @@ inline double shear_growth_of(const Case& parameters) {
 struct HyperbolicFit {
     double rate = 0;
     double misfit = 0;  // rms of the rest, relative to that of z
-    long samples = 0;
 };
+using Times = std::span<const double>;
+using Amplitudes = std::span<const std::complex<double>>;
 
 /// Sum of |z - A cosh - B sinh|^2 for the best A and B.
-inline double hyperbolic_misfit(const std::vector<double>& t,
-                                const std::vector<std::complex<double>>& z, std::size_t count,
-                                double rate) {
+inline double hyperbolic_misfit(Times t, Amplitudes z, double rate) {
     double cc = 0, cs = 0, ss = 0;
     std::complex<double> cz = 0, sz = 0;
-    for (std::size_t n = 0; n < count; ++n) {
-        const double c = std::cosh(rate * t[n]), s = std::sinh(rate * t[n]);
+    for (std::size_t n = 0; n < t.size(); ++n) {
+        const double c = std::cosh(rate * (t[n] - t[0])), s = std::sinh(rate * (t[n] - t[0]));
         cc += c * c, cs += c * s, ss += s * s;
         cz += c * z[n], sz += s * z[n];
     }
@@ -57,21 +57,19 @@ inline double hyperbolic_misfit(const std::vector<double>& t,
     const std::complex<double> A = (ss * cz - cs * sz) / determinant,
                                B = (cc * sz - cs * cz) / determinant;
     double rest = 0;
-    for (std::size_t n = 0; n < count; ++n)
-        rest += std::norm(z[n] - A * std::cosh(rate * t[n]) - B * std::sinh(rate * t[n]));
+    for (std::size_t n = 0; n < t.size(); ++n)
+        rest += std::norm(z[n] - A * std::cosh(rate * (t[n] - t[0])) -
+                          B * std::sinh(rate * (t[n] - t[0])));
     return rest;
 }
 
 /// The growth rate of a linear instability from its very start, where the growing and the decaying
 /// wave are both there.
-/// in:     t from 0; z; the first `count` samples are used; rates from expected/5 to 5 expected
-inline HyperbolicFit fit_hyperbolic(const std::vector<double>& t,
-                                    const std::vector<std::complex<double>>& z, std::size_t count,
-                                    double expected) {
+/// in:     t; z, not zero; rates from expected/5 to 5 expected
+inline HyperbolicFit fit_hyperbolic(Times t, Amplitudes z, double expected) {
     HyperbolicFit fit;
-    if (count < 5 || !(expected > 0)) return fit;
     const auto misfit = [&](double log_rate) {
-        return hyperbolic_misfit(t, z, count, std::exp(log_rate));
+        return hyperbolic_misfit(t, z, std::exp(log_rate));
     };
     // Find the valley, then narrow it by golden sections.
     const double low = std::log(expected / 5), step = std::log(25.0) / 100;
@@ -87,11 +85,17 @@ inline HyperbolicFit fit_hyperbolic(const std::vector<double>& t,
         (misfit(left) < misfit(right) ? b : a) = misfit(left) < misfit(right) ? right : left;
     }
     double squares = 0;
-    for (std::size_t n = 0; n < count; ++n) squares += std::norm(z[n]);
+    for (const std::complex<double>& one : z) squares += std::norm(one);
     fit.rate = std::exp(0.5 * (a + b));
     fit.misfit = std::sqrt(misfit(0.5 * (a + b)) / squares);
-    fit.samples = static_cast<long>(count);
     return fit;
+}
+
+/// By how much the rate is uncertain: its difference between the first and the last three quarters.
+inline double growth_error(Times t, Amplitudes z, double expected) {
+    const std::size_t part = 3 * t.size() / 4, rest = t.size() - part;
+    return std::fabs(fit_hyperbolic(t.first(part), z.first(part), expected).rate -
+                     fit_hyperbolic(t.subspan(rest), z.subspan(rest), expected).rate);
 }
 
 /// The growth rate in one line.
@@ -117,26 +121,35 @@ inline void compare_growth(const FinishedRun& run, double expected, double most,
     const std::vector<std::complex<double>> mode = mode_column(run.history, "mode");
     std::size_t count = 0;
     while (count < mode.size() && std::abs(mode[count]) < most) ++count;
-    const HyperbolicFit fit = fit_hyperbolic(times, mode, count, expected);
     run.info("theory_growth", expected, "1/time", source);
-    if (fit.samples == 0)
-        return run.summary.not_measured(
-            "growth_over_theory",
-            std::abs(mode.front()) < most
-                ? sentence("only ", count, " rows before the wave was as large as ", most,
-                           ", where that of theory ends: start with a smaller one, or raise "
-                           "time.end")
-                : sentence("the wave begins with ", std::abs(mode.front()),
-                           ", and that of theory "
-                           "ends at ",
-                           most, ": lower the amplitude or the ripple"));
+    const char* name = "growth_over_theory";
+    if (std::abs(mode.front()) >= most)
+        return run.not_measured(name, "the wave begins with ", std::abs(mode.front()),
+                                ", and that of theory ends at ", most,
+                                ": lower the amplitude or the ripple");
+    if (count < 8)
+        return run.not_measured(name, "only ", count, " rows before the wave was as large as ",
+                                most,
+                                ", where that of theory ends: start with a smaller one, or "
+                                "raise time.end");
+    const Times t = Times(times).first(count);
+    const Amplitudes z = Amplitudes(mode).first(count);
+    if (std::all_of(z.begin(), z.end(), [](const auto& one) { return std::norm(one) == 0; }))
+        return run.not_measured(name, "there is no wave: give a region an amplitude, or a ripple");
+    const HyperbolicFit fit = fit_hyperbolic(t, z, expected);
+    const common::Measured rate(fit.rate, growth_error(t, z, expected));
     const std::string where =
-        sentence(source, "; fitted up to t = ", times[count - 1], ", misfit ", fit.misfit);
-    run.info("growth", fit.rate, "1/time", where);
-    run.result("growth_over_theory", fit.rate / expected, "", 1, where);
-    run.summary.result("fit_misfit", fit.misfit, "", 0, 0.2,
-                       "what is no sum of a growing and a decaying wave, rms");
-    run.info("e_foldings", expected * times[count - 1], "", "within the fit");
+        sentence(source, "; fitted up to t = ", t.back(), ", misfit ", fit.misfit);
+    run.hint("the wave has ", run.parameters.grid.x.cells / run.parameters.mode,
+             " cells, which cost it a part 2/cells, and ", expected * t.back(),
+             " e-foldings within the fit: refine the mesh, and raise time.end or lower the "
+             "amplitude until there are 2; a large Mach number or viscosity slows it, too");
+    run.summary.result_info("growth", rate, "1/time", where);
+    run.summary.result(name, {rate.value / expected, rate.error / expected}, "", 1,
+                       run.parameters.theory_tolerance,
+                       where + "; error from the first and the last three quarters");
+    run.info("fit_misfit", fit.misfit, "", "what is no sum of a growing and a decaying wave, rms");
+    run.info("e_foldings", expected * t.back(), "", "within the fit");
 }
 
 /// Needs heavy fluid above light fluid between walls.

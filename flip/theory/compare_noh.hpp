@@ -69,6 +69,9 @@ inline void compare_noh(const FinishedRun& run) {
     const double plateau = area > 0 ? sum / area : 0;
     const double radius = run.history.column("shock_radius").back(),
                  R_then = theory::noh_shock_radius(noh, run.history.column("time").back());
+    run.hint("the shock has come ", R / run.parameters.grid.x.spacing(),
+             " cells from the middle, where heat piles up and keeps mass away: refine the mesh, or "
+             "raise time.end");
     run.result("plateau_density_over_theory", plateau / behind.density, "", 1,
                sentence(source, ": ", behind.density));
     if (R_then > 0 && !(radius > 0))

@@ -45,6 +45,16 @@ struct FinishedRun {
                          double expected, const std::string& source) const {
         summary.result(name, value, unit, expected, parameters.theory_tolerance, source);
     }
+    /// What a shortfall of the results that follow is most likely due to, and what to change.
+    template <class... Part>
+    void hint(const Part&... parts) const {
+        summary.hint(sentence(parts...));
+    }
+    /// What could not be measured, why, and what to change.
+    template <class... Part>
+    void not_measured(const std::string& name, const Part&... parts) const {
+        summary.not_measured(name, sentence(parts...));
+    }
     /// A measured value without a verdict.
     void info(const std::string& name, double value, const std::string& unit,
               const std::string& source) const {

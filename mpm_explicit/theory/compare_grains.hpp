@@ -61,6 +61,15 @@ inline void compare_incline(const FinishedRun& run,
     for (double& value : v) value /= std::copysign(m, problem.gravity_x);
     const auto times = run.history.column("time");
     const double from = std::max(problem.rise, 0.25 * run.end), measured = slope(times, v, from);
+    if (std::isnan(measured))
+        return summary.not_measured("acceleration",
+                                    "it is measured from t = " + format(from) +
+                                        " on, when gravity is there: raise time.end");
+    summary.hint(
+        "friction follows the pressure, which flutters where a grain slides without "
+        "viscosity, and a round grain rolls on a staircase of particles: set "
+        "material.*.viscosity = 3e-3, refine the mesh, and lower time.alpha = " +
+        format(run.parameters.alpha));
     summary.result("acceleration", measured, "acceleration", exact,
                    exact > 0 ? run.parameters.tolerance * exact : 0.01 * g * std::sin(angle),
                    source);
@@ -87,6 +96,11 @@ inline void compare_cylinder(const FinishedRun& run, common::Summary& summary) {
 
 // ---- a grain at rest on a rigid plate -----------------------------------------------------------
 
+/// What moves a grain that should rest.
+inline constexpr const char* rest_hint =
+    "what presses comes to rest with contact.levels = 2, method.shape = \"linear\", surfaces on "
+    "lines of nodes, and a load.rise of many periods of the block: lengthen load.rise";
+
 /// Needs one grain, a rigid plate, and gravity towards it.
 inline void need_rest(const PlannedCase& planned) {
     const Problem& problem = planned.parameters.problem;
@@ -109,10 +123,11 @@ inline void compare_rest(const FinishedRun& run, common::Summary& summary) {
         double& quarter = times[n] < 0.75 * run.end ? third : last;
         quarter = std::max(quarter, kinetic[n]);
     }
-    summary.result_within("kinetic_over_weight", std::max(third, last) / weight, "1", 0, 1e-6,
-                          "at rest, over m g h, in the second half of the run");
-    summary.result_within("kinetic_grows", (last - third) / weight, "1", -1, 1e-8,
-                          "the last quarter less the third, over m g h");
+    summary.hint(rest_hint);
+    summary.result_at_most("kinetic_over_weight", std::max(third, last) / weight, "1", 1e-6,
+                           "at rest, over m g h, in the second half of the run");
+    summary.result_at_most("kinetic_grows", (last - third) / weight, "1", 1e-8,
+                           "the last quarter less the third, over m g h");
 }
 
 // ---- a disk between two plates (Brazilian test) -------------------------------------------------
@@ -175,6 +190,12 @@ inline void compare_disk(const FinishedRun& run, common::Summary& summary) {
     const std::string source = "Hertz's disk between two line loads";
     summary.result_info("load", P, "force",
                         "of the plates, the mean over the last tenth of the run");
+    summary.hint("the contact is " +
+                 format(contact_half_width(
+                            {R, run.material().density, run.material().E, run.material().nu}, P) /
+                        run.parameters.problem.mesh().h) +
+                 " cells wide at each side and waves of the load die out slowly: refine the mesh, "
+                 "lengthen load.rise, raise load.damping, or take method.shape = \"gimp\"");
     summary.result("center_difference", std::hypot(xx - yy, 2 * xy) / exact, "1", 1,
                    run.parameters.tolerance, source + ", over 8P/(pi D)");
     summary.result("center_xx", xx / center.xx, "1", 1, run.parameters.tolerance,
@@ -214,14 +235,19 @@ inline void compare_yield(const FinishedRun& run, common::Summary& summary) {
         most = std::max(most, at.yield_p[p]);
         yielded += at.yield_p[p] > 0 ? 1 : 0;
     }
+    if (yielded == 0)
+        return summary.not_measured("largest_stress_over_strength",
+                                    "nothing has yielded: raise the velocity or time.end, or lower "
+                                    "yield_stress");
     const auto plastic = run.history.column("plastic"), energy = run.history.column("energy");
     double backward = 0;
     for (std::size_t n = 1; n < plastic.size(); ++n)
         backward = std::max(backward, plastic[n - 1] - plastic[n]);
-    summary.result_within("largest_stress_over_strength", worst, "1", 0, 1 + 1e-12,
-                          "von Mises stress over Y + H ep, at the end");
-    summary.result_within("plastic_work_undone", backward, "energy", 0, 1e-12 * energy.front(),
-                          "plastic work never comes back");
+    summary.hint("the return to the yield surface is exact in a step: lower time.alpha");
+    summary.result_at_most("largest_stress_over_strength", worst, "1", 1 + 1e-12,
+                           "von Mises stress over Y + H ep, at the end");
+    summary.result_at_most("plastic_work_undone", backward, "energy", 1e-12 * energy.front(),
+                           "plastic work never comes back");
     summary.result_info("plastic_work", plastic.back() / energy.front(), "1",
                         "of the initial energy");
     summary.result_info("largest_plastic_strain", most, "1", "of a particle");
@@ -262,6 +288,10 @@ inline void compare_collapse(const FinishedRun& run, common::Summary& summary) {
     const double width = high - low, a = (top - run.parameters.problem.origin_y) / width,
                  runout = (front.back() - high) / width;
     summary.result_info("aspect_ratio", a, "1", "height over width of the column");
+    summary.hint(
+        "grains of few cells and smooth floors run out farther, and steep or rough ones "
+        "less: contact.friction = 0.5 on all, boundary.friction the same, some thousand "
+        "grains, and a time.end at which they rest");
     summary.result_within("runout", runout, "1", runout_in_experiments(a), runout_of_disks(a),
                           "(L_end - L_0)/L_0, between columns of sand between plates (Lube and "
                           "others 2005) and stiff disks in two dimensions (Staron and Hinch 2005)");

@@ -245,6 +245,9 @@ inline const std::string one_species = "[time]\nend = 0\n[species.beam]\ncharge 
                          one_sheet =
                              "[time]\nend = 0\n[harris]\nparticles = 2\n[grid]\ncells_x = 8\n"
                              "cells_z = 8\n",
+                         beam_of_cic =
+                             "constant.beam.value=1 species.beam.density=beam "
+                             "perturbation.beam.species=beam perturbation.beam.amplitude=0.1",
                          beam_of_grains =
                              "material.beam.E=1 pack.beam.x=0.2 pack.beam.y=0.15 "
                              "pack.beam.columns=2 pack.beam.rows=1 bond.beam.tension=1 "
@@ -264,7 +267,7 @@ inline const std::vector<Program>& every_program() {
             "inflow.x_low.velocity_z=0",
         density = "density";
     static const std::vector<Program> all{
-        {"cic", "cic", compare, "species", density, one_species, "", words_of_cic},
+        {"cic", "cic", compare, "species", density, one_species, beam_of_cic, words_of_cic},
         {"pic", "flip", compare, "region", density, one_region, gas, words_of_fluids},
         {"flip", "flip", compare, "region", density, one_region, gas, words_of_fluids},
         {"mpm_explicit", "mpm_explicit", compare, "grain", "radius", one_grain, beam_of_grains,

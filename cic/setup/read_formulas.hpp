@@ -1,0 +1,70 @@
+// Formulas of a case as tables: profiles of the density, distributions of velocities.
+#pragma once
+
+#include <algorithm>
+#include <string>
+
+#include "cic/setup/case.hpp"
+
+namespace cic {
+
+/// Pieces of the table of a distribution of velocities.
+inline constexpr long velocity_pieces = 4096;
+
+/// Reads the formulas of all species and makes their tables, density and distributions.
+///   The table of positions has at least 4096 pieces in one dimension and 512 x 512 in two, with one
+///   or more in a cell.
+/// errors: InputError for a formula that is none, negative, or zero everywhere
+inline void read_formulas(Case& parameters) {
+    const Grid& grid = parameters.grid;
+    for (SpeciesCase& s : parameters.species) {
+        const std::string name = "species." + s.name;
+        s.tables = {};
+        const auto refuse_nothing = [&](const Distribution& table, const char* what) {
+            refuse(!table.given(), name, ".", what, " is 0 everywhere: particles need a place");
+        };
+        if (!s.density.is_number()) {
+            s.density.read(parameters.constants);
+            const auto density = [&](double x, double z) {
+                return s.density.at(x, z, std::hypot(x - s.center_x, z - s.center_z));
+            };
+            double sum = 0;  // of all pieces
+            const bool plane = parameters.dimensions == 2;
+            const long pieces = std::max(plane ? 512L : 4096L, grid.x.cells),
+                       rows = plane ? std::max(512L, grid.z.cells) : 1;
+            s.tables.x = tabulate(grid.x.low, grid.x.high(), pieces, false, [&](double x) {
+                double column = 0;
+                const auto along_z = [&](double z) {
+                    const double n = density(x, z);
+                    column += n;
+                    return n;
+                };
+                if (plane)
+                    s.tables.z.push_back(tabulate(grid.z.low, grid.z.high(), rows, false, along_z));
+                else
+                    along_z(0);
+                sum += column;
+                return column;
+            });
+            refuse_nothing(s.tables.x, "density");
+            s.tables.mean_density = sum / double(pieces * rows);
+        }
+        const auto read = [&](common::Formula& f, const char* what, double low, bool speeds,
+                              Distribution& table) {
+            if (f.is_number() && double(f) == 0) return;
+            refuse(s.distribution_max == 0, name, ".", what, " needs ", name,
+                   ".distribution_max, the speed at which it ends");
+            f.read(parameters.constants, "v");
+            table = tabulate(low, s.distribution_max, velocity_pieces, speeds,
+                             [&](double v) { return f.at(v); });
+            refuse_nothing(table, what);
+        };
+        const double lowest = -s.distribution_max;
+        read(s.distribution_x, "distribution_x", lowest, false, s.tables.v[0]);
+        read(s.distribution_y, "distribution_y", lowest, false, s.tables.v[1]);
+        read(s.distribution_z, "distribution_z", lowest, false, s.tables.v[2]);
+        read(s.distribution_across, "distribution_across", 0, true, s.tables.speed);
+    }
+}
+
+}  // namespace cic
