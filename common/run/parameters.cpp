@@ -118,8 +118,8 @@ void ParameterTable::add(Entry entry) {
 void ParameterTable::describe_expectation() {
     group("what the case exists to show");
     text("expect.fails", expectation.fails,
-         "results that fall short, with commas between them, or \"status 3\": they are said to be "
-         "expected, and one that does not fall short fails");
+         "results that may fall short, with commas between them, or \"status 3\": it is said to be "
+         "expected");
     text("expect.because", expectation.because, "why, in a sentence");
 }
 

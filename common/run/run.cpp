@@ -331,7 +331,6 @@ int Run::finish(long step, double count) {
 
     int status = 0;
     std::string message = "done", next;
-    if (!asked_to_stop() || complete_) summary.close(0);
     const std::vector<std::string> shortfalls = summary.shortfalls();
     if (asked_to_stop() && !complete_) {
         status = 128 + stop_signal;
@@ -367,7 +366,6 @@ int Run::fail(int status, const std::string& message) {
     if (!begun_) return status;
     try {
         history.flush();
-        summary.close(status);
         summary.write(path("summary.json"), info_, command_.case_name, status, message);
     } catch (const std::exception&) {
         // The disk may be full; what has failed is on the terminal anyway.

@@ -62,12 +62,8 @@ class Summary {
     /// A sentence that was printed as a warning before the run.
     void warning(const std::string& text) { warnings_.push_back(text); }
 
-    /// A result that is named here has the verdict EXPECTED FAILURE when it falls short, and FAIL when
-    /// it does not.
+    /// A result that is named here and falls short has the verdict EXPECTED FAILURE.
     Expectation expectation;
-
-    /// Compares the status of a run, and the names that [expect] gives, with what there is.
-    void close(int status);
 
     /// The results that fell short, as expected or not, or could not be measured, a sentence each.
     std::vector<std::string> shortfalls() const;

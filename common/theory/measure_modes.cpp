@@ -311,7 +311,9 @@ Rows window_of(std::span<const double> times, std::span<const Complex> z, const 
         long end = rows.begin;
         while (end < rows.end && size(end) < level) ++end;
         // A record that begins above the level has another mode, and only search.end knows.
-        if (end > rows.begin) rows.end = end;
+        const bool turns = wanted.frequency > std::abs(wanted.growth);
+        const double half = turns ? pi / (wanted.frequency * dt) : 1;
+        if (largest(rows.begin, rows.begin + std::lround(half)) < level) rows.end = end;
     }
     if (wanted.growth < 0 && rows.count() > 8) {
         std::vector<double> late;

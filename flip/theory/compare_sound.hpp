@@ -2,6 +2,7 @@
 // make none.
 #pragma once
 
+#include <algorithm>
 #include <complex>
 
 #include "flip/theory/acoustics.hpp"
@@ -165,9 +166,11 @@ inline void compare_ringing(const FinishedRun& run) {
     const RegionCase& r = parameters.regions.front();
     const double c = sound_speed_of(parameters, r), dx = parameters.grid.x.spacing();
     const auto times = run.history.column("time"), noise = run.history.column("noise");
+    const double level = 0.2 * run.history.largest("noise");
+    const auto end = std::find_if(noise.begin(), noise.end(), [&](double a) { return a >= level; });
     std::vector<double> t, log_noise;
-    for (std::size_t n = 0; n < noise.size() && noise[n] < 0.2 * run.history.largest("noise"); ++n)
-        if (noise[n] > 0) t.push_back(times[n]), log_noise.push_back(std::log(noise[n]));
+    for (auto at = std::min_element(noise.begin(), end); at != end; ++at)
+        if (*at > 0) t.push_back(times[at - noise.begin()]), log_noise.push_back(std::log(*at));
     const double rate = t.size() < 8 ? 0 : slope(t, log_noise);
     const double crossed = run.state.time * c / dx;
     run.hint(
@@ -179,7 +182,7 @@ inline void compare_ringing(const FinishedRun& run) {
     else
         run.summary.result_at_most(
             "growth", rate * dx / c, "c/dx", 0.1 * parameters.theory_tolerance,
-            "slope of the logarithm of the noise, up to a fifth of its largest");
+            "slope of the logarithm of the noise, from its least to a fifth of its largest");
     run.info("mach", std::fabs(r.gas.velocity_x) / c, "", "of the flow over the mesh");
     run.info("largest_noise", run.history.largest("noise") / c, "c",
              "rms of the velocity on the cells");
