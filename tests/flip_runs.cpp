@@ -420,7 +420,7 @@ TEST_CASE("heavy fluid falls at the rate of Rayleigh and Taylor and better on fi
 
 TEST_CASE("a layer of shear winds up at the rate of Rayleigh" * doctest::description("physics")) {
     const Run r =
-        run("flip", "shear", "kelvin_helmholtz", "time.end=0.8 grid.cells_x=32 grid.cells_z=32");
+        run("flip", "shear", "kelvin_helmholtz", "time.end=1.4 grid.cells_x=48 grid.cells_z=48");
     check_results(r, 2);
     check_conserved(r);
 }

@@ -1,5 +1,5 @@
 # Kelvin-Helmholtz: a stream to the right (orange) above a stream to the left (blue), at Mach 0.2 with a layer of shear between them. Top left: the velocity across the layer in flip grows at the rate of
-# Rayleigh's theory. Then the layer winds up into a billow, and the sharp interface with it. Below left: in pic, which begins with five times the wave, sound that particles make as they cross cells stirs the layer.
+# Rayleigh's theory. Then the layer winds up into a billow, and the sharp interface with it. Below left: in pic, which begins with twenty times the wave, sound that particles make as they cross cells stirs the layer.
 wide = 1500; high = 1040
 load 'common/style.gp'
 folder = run; run = folder.'/flip'
@@ -12,7 +12,7 @@ height = real(system(sprintf("LC_ALL=C awk '!/#/ && $1 > 0.6 { print sqrt($%d^2 
 set bmargin at screen 0.64; set tmargin at screen 0.865
 set lmargin at screen 0.095; set rmargin at screen 0.335
 set logscale y; set format y '10^{%T}'
-set xrange [0:2]; set yrange [0.001:10]; set xtics 0.5
+set xrange [0:2.5]; set yrange [0.001:10]; set xtics 0.5
 set xlabel 'time' offset 0, 0.3; set ylabel 'v_z of the wave' offset 0.8, 0
 set key bottom right samplen 1.5 width -4 font ',18'
 plot history using t:(sqrt(column(re)**2 + column(im)**2)) @measured title sprintf('flip: γ = %.3f', result('growth')), \
@@ -21,7 +21,7 @@ unset logscale; set format y '%g'
 set xrange [0:1]; set yrange [-0.5:0.5]; unset grid; set border 15; set size ratio -1
 unset key; set ytics 0.5
 file(p, at) = system(sprintf("LC_ALL=C awk -v t=%g '!/#/ { if ($1 >= t - 1e-9) { print NR - 2; exit } }' '%s'/%s/history.dat", at, folder, p))
-times = '0.75 1.25 1.0 1.5 2.0'
+times = '1.25 1.75 1.0 2.0 2.5'
 do for [n = 1:5] {
     p = n == 3 ? 'pic' : 'flip'
     left = word('0.4 0.715 0.085 0.4 0.715', n); bottom = n < 3 ? 0.535 : 0.085

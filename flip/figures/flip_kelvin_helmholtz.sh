@@ -1,5 +1,5 @@
 #!/bin/sh
-# flip_kelvin_helmholtz.sh PIC FLIP FOLDER: a layer of shear winds up in flip; pic, with a wave five times as large at the start, has it drowned in noise.
+# flip_kelvin_helmholtz.sh PIC FLIP FOLDER: a layer of shear winds up in flip; pic, with a wave twenty times as large at the start, has it drowned in noise.
 set -eu
 export LC_ALL=C.UTF-8
 folder=$3

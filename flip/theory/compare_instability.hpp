@@ -143,7 +143,7 @@ inline void compare_growth(const FinishedRun& run, double expected, double most,
     run.hint("the wave has ", run.parameters.grid.x.cells / run.parameters.mode,
              " cells, which cost it a part 2/cells, and ", expected * t.back(),
              " e-foldings within the fit: refine the mesh, and raise time.end or lower the "
-             "amplitude until there are 2; a large Mach number or viscosity slows it, too");
+             "amplitude until there are 4; a large Mach number or viscosity slows it, too");
     run.summary.result_info("growth", rate, "1/time", where);
     run.summary.result(name, {rate.value / expected, rate.error / expected}, "", 1,
                        run.parameters.theory_tolerance,
