@@ -323,7 +323,10 @@ Rows window_of(std::span<const double> times, std::span<const Complex> z, const 
         const long period = std::lround(std::ceil(2 * pi / (wanted.size * dt)));
         long end = rows.begin;
         while (end < rows.end && largest(end, end + period) > 2.5 * noise) ++end;
-        if (largest(rows.begin, rows.begin + period) > 5 * noise) rows.end = end;
+        // It is noise where it is more than what theory leaves of the wave by then.
+        const double start = largest(rows.begin, rows.begin + period),
+                     left = start * std::exp(wanted.growth * dt * 0.875 * double(rows.count()));
+        if (start > 5 * noise && noise > 1.5 * left) rows.end = end;
     }
     const double e_folding = 1 / (std::abs(wanted.growth) * dt), radian = 1 / (wanted.size * dt);
     if (8 * e_folding < double(rows.count())) {
