@@ -349,6 +349,9 @@ TEST_CASE("the force between walls is the difference of the field pressures") {
             CHECK(std::fabs(force - 0.5 * (high * high - low * low)) <= 1e-12);
             // Gauss's law from wall to wall.
             CHECK(std::fabs(low + high + 0.3 * 30) <= 1e-12);
+            // The low one of two floating walls is where the potential is zero.
+            CHECK(s.field.walls[x_low].potential == (floating ? 0 : 1));
+            CHECK(s.field.walls[x_high].potential == s.field.phi[m.grid.index(11, 0)]);
         }
     }
 }
@@ -842,4 +845,20 @@ TEST_CASE("what a case does not say is a cold plasma at rest without fields of i
         CHECK(wall.potential == 0);
         CHECK(wall.charge == 0);
     }
+}
+
+TEST_CASE("who starts with the drift in E and B keeps it") {
+    Case parameters;
+    parameters.dimensions = 2;
+    parameters.grid = {{4, 0, 1, true}, {4, 0, 1, true}};
+    parameters.B = {0.3, -2, 0.4};
+    const MeshField E_g(static_cast<std::size_t>(parameters.grid.size()), {0.3, -0.2});
+    Particles s;
+    s.q_p = -1, s.m_p = 0.5;
+    resize(2, true, true, s);
+    start_drifting(E_g, parameters, s);
+    const Eigen::Vector3d B(0.3, -2, 0.4),
+        v = Eigen::Vector3d(0.3, 0, -0.2).cross(B) / B.squaredNorm();
+    for (const std::size_t p : {0u, 1u})
+        CHECK((Eigen::Vector3d(s.vx_p[p], s.vy_p[p], s.vz_p[p]) - v).norm() <= 4 * eps);
 }
