@@ -1,6 +1,6 @@
 # Figure 9 of the talk: reconnected flux of the GEM challenge. The flux grows slowly until t = 9, fast from t = 11, and reaches unit flux at the
 # time of the published curves; the initial value 0.2 is exact, and the straight line has the slope of Pritchett's reconnection field, 0.24. Dashed: the same by
-# this project's explicit program at the numbers of the cost slide, and dotted with a quarter of its particles, as far as it was carried. The
+# this project's explicit program at the numbers of the cost slide, to t = 19, and dotted with a quarter of its particles, to 40. The
 # published points are digitized by hand: the bar is their error.
 load 'common/style.gp'
 history = run.'/history.dat'
