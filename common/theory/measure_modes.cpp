@@ -423,9 +423,9 @@ MeasuredMode measure_mode(std::span<const double> times, std::span<const Complex
     const double turns = result.frequency() * length / (2 * pi),
                  folds = std::abs(result.growth()) * length;
     if (turns < search.periods && folds < search.e_foldings)
-        return cannot("the window " + result.window + " holds " + format(turns) + " periods and " +
-                      format(folds) + " e-foldings, and " + format(search.periods) + " or " +
-                      format(search.e_foldings) + " are needed");
+        return cannot("it has " + format(turns) + " periods and " + format(folds) +
+                      " e-foldings, and " + format(search.periods) + " or " +
+                      format(search.e_foldings) + " are needed, " + result.window);
     result.found = true;
     return result;
 }
