@@ -274,7 +274,7 @@ TEST_CASE("a checkpoint replaces regular files only and leaves no half of one") 
 TEST_CASE("an error bar enters the verdict and an expected failure is none") {
     const Folder folder;
     common::Summary numbers;
-    numbers.expectation = {"off, fine", "the step is too long"};
+    numbers.expectation = {"off, fine, misspelled", "the step is too long"};
     numbers.result("near", {1.25, 0.2}, "m", 1, 0.1, "exact");
     numbers.result("close", {1.15, 0.06}, "m", 1, 0.1, "exact");
     numbers.hint("lower time.dt");
@@ -304,6 +304,7 @@ TEST_CASE("an error bar enters the verdict and an expected failure is none") {
     };
     CHECK(says("FAIL far = 1.25 +- 0.06, and 1 +- 0.1 is expected (exact); lower time.dt"));
     CHECK(says("as expected, off = 3 and not 1 +- 0.1: the step is too long"));
+    CHECK(says("expect.fails names 'misspelled', and this run has no such result"));
     CHECK(numbers.fell_short());
 }
 

@@ -260,7 +260,8 @@ TEST_CASE("lengths and meshes and speeds that a thin sheet cannot have are refus
     parameters.boundary_z = "periodic";
     CHECK(holds(refusal(parameters), "the Harris sheet needs grid.boundary_x"));
     parameters = thin_sheet();
-    parameters.current_sheet.light_over_alfven = 10;
+    // T_i and v_A make ions of 10 v_A^(1/2) at T_i = 10, faster than light where c is 2 v_A.
+    parameters.current_sheet.light_over_alfven = 2;
     CHECK(holds(refusal(parameters), "raise current_sheet.light_over_alfven above"));
     parameters = thin_sheet();
     parameters.wave = "light";

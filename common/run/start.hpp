@@ -38,7 +38,7 @@ inline bool start_run(const ProgramInfo& info, const CommandLine& command,
             std::printf("%s: %s holds this run, complete\n", info.program.c_str(),
                         command.out_dir.c_str());
         if (command.fell_short)
-            std::fprintf(stderr, "%s: FAIL, a result fell short; see %s/summary.json\n",
+            std::fprintf(stderr, "%s: a result fell short; see %s/summary.json\n",
                          info.program.c_str(), command.out_dir.c_str());
         return false;
     }

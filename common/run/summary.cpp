@@ -147,6 +147,12 @@ std::vector<std::string> Summary::shortfalls() const {
             sentences.push_back("as expected, " + entry.name + value + " and not " +
                                 entry.wanted() + ": " + expectation.because);
     }
+    for (const std::string& name : expectation.list()) {
+        const auto is_named = [&](const Entry& entry) { return entry.name == name; };
+        if (name != "status 3" && std::none_of(results_.begin(), results_.end(), is_named))
+            sentences.push_back("expect.fails names '" + name +
+                                "', and this run has no such result");
+    }
     return sentences;
 }
 

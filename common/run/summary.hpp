@@ -65,7 +65,8 @@ class Summary {
     /// A result that is named here and falls short has the verdict EXPECTED FAILURE.
     Expectation expectation;
 
-    /// The results that fell short, as expected or not, or could not be measured, a sentence each.
+    /// The results that fell short, as expected or not, or could not be measured, or are expected
+    /// to fall short and are none, a sentence each.
     std::vector<std::string> shortfalls() const;
 
     /// Whether one fell short that was not expected to, or could not be measured.

@@ -263,15 +263,23 @@ std::vector<Mode> told_apart(const ModeList& list, double length, const Wanted& 
     return modes;
 }
 
-// The mode nearest to one of the roots, turned into the direction of the first root.
+// The mode nearest to one of the roots, turned into the direction of the first root. What is left of a
+// wave in the other direction is as near and known less well: the larger of the two counts.
 Match nearest(const std::vector<Mode>& modes, const std::vector<Complex>& expected) {
     Match best;
+    const auto take = [&](const Mode& mode, const Complex& root) {
+        best = {mode, std::abs(mode.omega - root), root.real() * expected.front().real() < 0};
+    };
     for (const Complex& root : expected)
-        for (const Mode& mode : modes) {
-            const double distance = std::abs(mode.omega - root);
-            if (distance < best.distance)
-                best = {mode, distance, root.real() * expected.front().real() < 0};
-        }
+        for (const Mode& mode : modes)
+            if (std::abs(mode.omega - root) < best.distance) take(mode, root);
+    const Mode first = best.mode;
+    for (const Complex& root : expected)
+        for (const Mode& mode : modes)
+            if (std::abs(mode.omega + std::conj(first.omega)) <=
+                    std::abs(mode.error) + std::abs(first.error) &&
+                root.real() * mode.omega.real() > 0 && mode.share > best.mode.share)
+                take(mode, root);
     if (best.mirrored) best.mode.omega = -std::conj(best.mode.omega);
     return best;
 }

@@ -23,14 +23,14 @@ inline double value(const nlohmann::json& summary, const std::string& result) {
     return summary["results"][result]["value"].get<double>();
 }
 
-// Every result that is compared with something must pass.
+// Every result that is compared with something must pass, or fail as its case expects.
 inline void check_results(const nlohmann::json& summary, int at_least) {
     int compared = 0;
     for (const auto& [name, result] : summary["results"].items()) {
         if (!result.contains("pass")) continue;
         const std::string format = name + " = " + result.dump();
         INFO(format);
-        CHECK(result["pass"].get<bool>());
+        CHECK((result["pass"].get<bool>() || result["verdict"] == "EXPECTED FAILURE"));
         ++compared;
     }
     CHECK(compared >= at_least);
