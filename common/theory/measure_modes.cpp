@@ -263,9 +263,10 @@ std::vector<Mode> told_apart(const ModeList& list, double length, const Wanted& 
     return modes;
 }
 
-// The mode nearest to one of the roots, turned into the direction of the first root. What is left of a
-// wave in the other direction is as near and known less well: the larger of the two counts.
-Match nearest(const std::vector<Mode>& modes, const std::vector<Complex>& expected) {
+// The mode nearest to one of the roots, turned into the direction of the first root. Where it cannot be
+// told from a larger one that is less than 1/length away, in the same direction or the other, it is a
+// part of that wave or its echo, and the larger one counts.
+Match nearest(const std::vector<Mode>& modes, const std::vector<Complex>& expected, double length) {
     Match best;
     const auto take = [&](const Mode& mode, const Complex& root) {
         best = {mode, std::abs(mode.omega - root), root.real() * expected.front().real() < 0};
@@ -275,11 +276,13 @@ Match nearest(const std::vector<Mode>& modes, const std::vector<Complex>& expect
             if (std::abs(mode.omega - root) < best.distance) take(mode, root);
     const Mode first = best.mode;
     for (const Complex& root : expected)
-        for (const Mode& mode : modes)
-            if (std::abs(mode.omega + std::conj(first.omega)) <=
-                    std::abs(mode.error) + std::abs(first.error) &&
-                root.real() * mode.omega.real() > 0 && mode.share > best.mode.share)
+        for (const Mode& mode : modes) {
+            const double apart = std::min(std::abs(mode.omega - first.omega),
+                                          std::abs(mode.omega + std::conj(first.omega)));
+            if (apart <= std::min(1 / length, std::abs(mode.error) + std::abs(first.error)) &&
+                root.real() * mode.omega.real() >= 0 && mode.share > best.mode.share)
                 take(mode, root);
+        }
     if (best.mirrored) best.mode.omega = -std::conj(best.mode.omega);
     return best;
 }
@@ -390,7 +393,7 @@ MeasuredMode measure_mode(std::span<const double> times, std::span<const Complex
         return cannot("noise is " + format(list.noise) +
                       " of the record from t = " + format(result.begin) + " to " +
                       format(result.end) + ", and no mode stands out of it");
-    const Match match = nearest(modes, search.expected);
+    const Match match = nearest(modes, search.expected, length);
     result.omega = match.mode.omega, result.error = match.mode.error;
 
     // Look for it in parts of the window.
@@ -402,9 +405,9 @@ MeasuredMode measure_mode(std::span<const double> times, std::span<const Complex
         const ModeList there = find_modes(
             std::span(record).subspan(std::size_t(part.begin), std::size_t(part.count())),
             double(block) * dt);
-        const Match same = nearest(
-            told_apart(there, length * double(part.count()) / double(record.size()), wanted),
-            {result.omega, -std::conj(result.omega)});
+        const double shorter = length * double(part.count()) / double(record.size());
+        const Match same = nearest(told_apart(there, shorter, wanted),
+                                   {result.omega, -std::conj(result.omega)}, shorter);
         if (!std::isfinite(same.distance)) continue;
         const Complex off = same.mode.omega - result.omega;
         const auto beyond = [](double change, double error) {
