@@ -11,6 +11,7 @@
 #include "common/theory/kinetic_dispersion.hpp"
 #include "common/theory/plasma_dispersion.hpp"
 #include "common/theory/theta_scheme.hpp"
+#include "implicit_moment/theory/transverse_dispersion.hpp"
 
 namespace {
 
@@ -212,8 +213,9 @@ TEST_CASE("a cold species is the limit of a warm one") {
         CHECK(distance(common::longitudinal_dispersion(warm, 0.8, w),
                        common::longitudinal_dispersion(cold, 0.8, w)) <= 1e-8);
         for (const int sense : {-1, 1})
-            CHECK(distance(common::transverse_dispersion(warm, 0.8, 5.0, sense, w),
-                           common::transverse_dispersion(cold, 0.8, 5.0, sense, w)) <= 1e-8);
+            CHECK(distance(implicit_moment::transverse_dispersion(warm, 0.8, 5.0, sense, w),
+                           implicit_moment::transverse_dispersion(cold, 0.8, 5.0, sense, w)) <=
+                  1e-8);
     }
 }
 
@@ -231,7 +233,7 @@ TEST_CASE("a dispersion relation moves with the plasma") {
 TEST_CASE("light in a cold plasma has omega squared of omega_p squared plus c k squared") {
     const PlasmaSpecies plasma = electrons(1.3);
     for (const double k : {0.0, 0.2, 1.0, 4.0}) {
-        const auto root = common::fastest_growing_transverse({&plasma, 1}, k, 2.0, 1);
+        const auto root = implicit_moment::fastest_growing_transverse({&plasma, 1}, k, 2.0, 1);
         CHECK(root.found);
         CHECK(std::abs(root.omega - std::sqrt(1.69 + 4.0 * k * k)) <= 1e-12);
     }
@@ -245,7 +247,7 @@ TEST_CASE("the Weibel root solves its relation and grows below the cutoff only")
     plasma.temperature_across = 0.09;
     const double cutoff = std::sqrt(8.0);
     for (const double k : {0.2, 0.5, 1.0, 1.5, 2.0, 2.7}) {
-        const auto root = common::fastest_growing_transverse({&plasma, 1}, k, 1.0, 1);
+        const auto root = implicit_moment::fastest_growing_transverse({&plasma, 1}, k, 1.0, 1);
         const Complex w = root.omega, zeta = w / (std::sqrt(2.0) * k * 0.1);
         CHECK(root.found);
         CHECK(std::abs(w.real()) <= 1e-10);
@@ -253,7 +255,8 @@ TEST_CASE("the Weibel root solves its relation and grows below the cutoff only")
         CHECK(std::abs(w * w - k * k - 1.0 + 9.0 * (1.0 + zeta * plasma_dispersion(zeta))) <=
               1e-10);
     }
-    const auto stable = common::fastest_growing_transverse({&plasma, 1}, 1.01 * cutoff, 1.0, 1);
+    const auto stable =
+        implicit_moment::fastest_growing_transverse({&plasma, 1}, 1.01 * cutoff, 1.0, 1);
     CHECK(stable.found);
     CHECK(stable.omega.imag() <= 1e-10);
 }
@@ -265,7 +268,7 @@ TEST_CASE("the Weibel instability of a plasma that is cold along k has its exact
     for (const double k : {0.3, 1.0, 3.0}) {
         const double b = 1.0 + k * k;
         const double exact = std::sqrt(0.5 * (std::sqrt(b * b + 4.0 * k * k * 0.04) - b));
-        const auto root = common::fastest_growing_transverse({&plasma, 1}, k, 1.0, 1);
+        const auto root = implicit_moment::fastest_growing_transverse({&plasma, 1}, k, 1.0, 1);
         CHECK(std::abs(root.omega - i * exact) <= 1e-12);
     }
 }
@@ -273,10 +276,10 @@ TEST_CASE("the Weibel instability of a plasma that is cold along k has its exact
 TEST_CASE("parallel waves in a cold magnetized plasma have the published frequencies") {
     const auto plasma = cold_magnetized(20.0, 25.0);
     const auto whistler = [&](Complex w) {
-        return common::transverse_dispersion(plasma, 1.0, 20.0, +1, w);
+        return implicit_moment::transverse_dispersion(plasma, 1.0, 20.0, +1, w);
     };
     const auto ion_cyclotron = [&](Complex w) {
-        return common::transverse_dispersion(plasma, 1.0, 20.0, -1, w);
+        return implicit_moment::transverse_dispersion(plasma, 1.0, 20.0, -1, w);
     };
     CHECK(std::abs(common::root_near(whistler, 1.6).omega - 1.498601) <= 1e-6);
     CHECK(std::abs(common::root_near(ion_cyclotron, 0.6).omega - 0.615325) <= 1e-6);
@@ -286,7 +289,7 @@ TEST_CASE("parallel waves in a cold magnetized plasma have the published frequen
         const double w =
             common::root_near(
                 [&](Complex omega) {
-                    return common::transverse_dispersion(plasma, 1.0, 20.0, sense, omega);
+                    return implicit_moment::transverse_dispersion(plasma, 1.0, 20.0, sense, omega);
                 },
                 sense > 0 ? 1.6 : 0.6)
                 .omega.real();
@@ -301,7 +304,7 @@ TEST_CASE("long parallel waves travel at the Alfven speed") {
     const double k = 1e-3, v_A = 1.0 / std::sqrt(1.0 + (1.0 + 1.0 / 1836.0) / 400.0);
     for (const int sense : {-1, 1}) {
         const auto D = [&](Complex w) {
-            return common::transverse_dispersion(plasma, k, 20.0, sense, w);
+            return implicit_moment::transverse_dispersion(plasma, k, 20.0, sense, w);
         };
         CHECK(std::abs(common::root_near(D, 0.9 * k).omega / k - v_A) <= 1e-3);
     }
@@ -347,13 +350,13 @@ TEST_CASE("the theta scheme treats cold Langmuir waves as tabulated") {
                   {.998858, .989966, .911738, .843983, .628319}}};
     for (const auto& row : table)
         for (int n = 0; n < 5; ++n) {
-            const Complex g = common::theta_langmuir_wave(row.theta, W[n]);
+            const Complex g = implicit_moment::theta_langmuir_wave(row.theta, W[n]);
             CHECK(std::abs(std::abs(g) - row.size[n]) <= 1e-6);
             CHECK(std::abs(std::arg(g) / W[n] - row.frequency[n]) <= 1e-6);
         }
 
     // With theta = 1 and W = 5 both roots are real; the other one is -1/9.
-    const Complex slow = common::theta_langmuir_wave(1.0, 5.0);
+    const Complex slow = implicit_moment::theta_langmuir_wave(1.0, 5.0);
     CHECK(std::abs(slow + 2.0 / 3.0) <= 1e-14);
     CHECK(std::abs(1.0 / (13.5 * slow) + 1.0 / 9.0) <= 1e-14);
 }
@@ -361,14 +364,14 @@ TEST_CASE("the theta scheme treats cold Langmuir waves as tabulated") {
 TEST_CASE("the theta scheme with one half is neutral and with more damps") {
     for (const double a : {0.01, 0.3, 1.0, 3.0, 20.0}) {
         CHECK(std::abs(std::abs(common::theta_light_wave(0.5, a)) - 1.0) <= 1e-14);
-        CHECK(std::abs(std::abs(common::theta_langmuir_wave(0.5, a)) - 1.0) <= 1e-14);
-        CHECK(std::abs(std::tan(std::arg(common::theta_langmuir_wave(0.5, a)) / 2) - a / 2) <=
-              1e-12 * (1.0 + a * a));
+        CHECK(std::abs(std::abs(implicit_moment::theta_langmuir_wave(0.5, a)) - 1.0) <= 1e-14);
+        CHECK(std::abs(std::tan(std::arg(implicit_moment::theta_langmuir_wave(0.5, a)) / 2) -
+                       a / 2) <= 1e-12 * (1.0 + a * a));
         CHECK(std::abs(common::theta_light_wave(0.7, a)) < 1.0);
-        CHECK(std::abs(common::theta_langmuir_wave(0.7, a)) < 1.0);
+        CHECK(std::abs(implicit_moment::theta_langmuir_wave(0.7, a)) < 1.0);
         CHECK(std::abs(common::theta_light_wave(0.4, a)) > 1.0);
-        CHECK(std::abs(common::theta_langmuir_wave(0.4, a)) > 1.0);
-        CHECK(std::abs(std::norm(common::theta_langmuir_wave(1.0, a)) -
+        CHECK(std::abs(implicit_moment::theta_langmuir_wave(0.4, a)) > 1.0);
+        CHECK(std::abs(std::norm(implicit_moment::theta_langmuir_wave(1.0, a)) -
                        1.0 / (1.0 + a * a / 2.0)) <= (a < 5.0 ? 1e-12 : 2.0));
     }
 }
@@ -376,7 +379,7 @@ TEST_CASE("the theta scheme with one half is neutral and with more damps") {
 TEST_CASE("the theta Langmuir factor solves its quadratic equation") {
     for (const double theta : {0.5, 0.6, 0.8, 1.0})
         for (const double W : {0.05, 0.7, 2.0, 10.0}) {
-            const Complex g = common::theta_langmuir_wave(theta, W);
+            const Complex g = implicit_moment::theta_langmuir_wave(theta, W);
             const Complex left = (g - 1.0) * (g - 1.0);
             const Complex right = -(W * W / 2.0) * (1.0 + g) * (theta * g + 1.0 - theta);
             CHECK(std::abs(left - right) <= 1e-13 * (1.0 + W * W));

@@ -172,7 +172,7 @@ TEST_CASE("without a magnetic field cold waves are light and Langmuir waves of t
                 CHECK(std::fabs(waves[1].real() - leapfrog_frequency(std::hypot(1, K), w.dt)) <=
                       1e-9);
             } else {
-                const Complex g = common::theta_langmuir_wave(theta, w.dt);
+                const Complex g = theta_langmuir_wave(theta, w.dt);
                 CHECK(std::fabs(waves[0].real() - std::arg(g) / w.dt) <= 1e-9);
                 CHECK(std::fabs(waves[0].imag() - std::log(std::abs(g)) / w.dt) <= 1e-9);
                 const double exact = 2 / w.dt * std::atan(0.5 * w.dt * std::hypot(1, K));

@@ -872,9 +872,17 @@ plasmas cold species.electrons.charge=-1 species.electrons.drift_y=0.1
 plasmas cold species.electrons.charge=-1 uniform.mode_z=30
     theory.wave = "cold" takes splines for points, and the mode has
 plasmas cold species.electrons.charge=-1 grid.cells_x=64 grid.cells_z=64
-    theory.wave = "cold" needs theory.near: this plasma has waves at omega =
+    theory.wave = "cold" needs theory.near: without temperatures this plasma has waves at omega =
 plasmas longitudinal species.electrons.charge=-1 uniform.mode_z=1 uniform.B_x=0.1
     the dispersion relation is solved for B along k or zero
+plasmas magnetized species.electrons.charge=-1 uniform.mode_z=1
+    theory.wave = "magnetized" needs a field: give uniform.B_x, B_y or B_z
+plasmas magnetized species.electrons.charge=-1 uniform.B_x=0.1 species.electrons.temperature_y=0.1
+    species 'electrons' has two temperatures across uniform.B
+plasmas magnetized species.electrons.charge=-1 uniform.B_x=0.1 species.electrons.drift_y=0.1
+    species 'electrons' drifts across uniform.B
+plasmas magnetized species.electrons.charge=-1 uniform.B_z=0.1 grid.cells_x=64 grid.cells_z=64
+    theory.wave = "magnetized" needs theory.near: without temperatures this plasma has waves at
 plasmas transverse species.electrons.charge=-1 uniform.mode_z=1 species.electrons.temperature_z=0.1
     species 'electrons' has another temperature along x than along z, and a wave at an angle to both
     is not transverse: make them equal, or the mode along x or z
@@ -897,7 +905,7 @@ plasmas langmuir species.electrons.charge=-1 uniform.B_z=0.1
     the dispersion relation is solved for B along k or zero
 plasmas longitudinal species.electrons.charge=-1 uniform.B_z=0.1
     the dispersion relation is solved for B along k or zero: take out the part of uniform.B across
-    the mode, or choose "cold" or "none" for theory.wave
+    the mode, or choose "magnetized" or "cold" for theory.wave
 plasmas transverse species.electrons.charge=-1 uniform.B_x=0.1 uniform.mode_x=0 uniform.mode_z=1
     the dispersion relation is solved for B along k or zero
 plasmas longitudinal species.electrons.charge=-1 theory.near=1e10

@@ -29,25 +29,14 @@ struct Harmonics {
 };
 
 /// Of a Maxwellian with the thermal speed v_across, b = (k_across v_across / Omega)^2.
-///   weight_n = exp(-b) I_n(b),  gain_n = (k_across^2 / Omega) n weight_n / b
-///   The ratios I_n / I_(n-1) = b / (2 n + b I_(n+1) / I_n) are taken downward, and all begins with
-///   weight_0 + 2 (weight_1 + ...) = 1.
-/// exact:  sum_n n^2 weight_n = b; for b = 0 a cold species, gain_1 = k_across^2 / (2 Omega)
+///   weight_n = exp(-b) I_n(b),  gain_n = (k_across^2 / Omega) (weight_(n-1) - weight_(n+1)) / 2
+/// exact:  gain_n = (k_across^2 / Omega) n weight_n / b,  sum_n n^2 weight_n = b
 inline Harmonics maxwellian_harmonics(double k_across, double v_across, double Omega) {
     const double b = std::pow(k_across * v_across / Omega, 2);
-    const auto count = static_cast<std::size_t>(20 + 9 * std::sqrt(b));
-    std::vector<double> over_b(count + 2, 0.0);  // of I_n / I_(n-1)
-    for (std::size_t n = count; n > 0; --n) over_b[n] = 1 / (2 * double(n) + b * b * over_b[n + 1]);
-    Harmonics h{{1}, {0}};
-    double product = 1, sum = 1;  // of I_n / I_0, and of all
-    for (std::size_t n = 1; n <= count; ++n) {
-        const double part = product * over_b[n];  // I_n / (I_0 b)
-        product = b * part;
-        sum += 2 * product;
-        h.weight.push_back(product);
-        h.gain.push_back(k_across * k_across / Omega * double(n) * part);
-    }
-    for (std::size_t n = 0; n <= count; ++n) h.weight[n] /= sum, h.gain[n] /= sum;
+    Harmonics h{common::harmonics_of_maxwellian(b), {0}};
+    for (std::size_t n = 1; n + 1 < h.weight.size(); ++n)
+        h.gain.push_back(0.5 * k_across * k_across / Omega * (h.weight[n - 1] - h.weight[n + 1]));
+    h.weight.pop_back();
     return h;
 }
 

@@ -62,38 +62,19 @@ inline Complex longitudinal_dispersion(std::span<const PlasmaSpecies> plasma, do
     return D;
 }
 
-/// Waves with E across k, circularly polarized, with B_0 along k or zero.
-///   D = omega^2 - c^2 k^2 + sum_s omega_s^2 { (omega - k u_s) / (2^1/2 k v_s) Z(zeta_s)
-///                                             + (T_across / T_along - 1) [1 + zeta_s Z(zeta_s)] },
-///   zeta_s = (omega - k u_s + sense Omega_s) / (2^1/2 k v_s),
-///   and for a species that is cold along k
-///   - omega_s^2 { (omega - k u_s) / w + k^2 T_across / (m w^2) },
-///   w = omega - k u_s + sense Omega_s
-/// in:    sense +1: electrons resonate at omega = |Omega_e|, the whistler; -1: ions at Omega_i.
-///        Without B_0 both are the same, and any polarization has this relation.
-/// source: Stix, Waves in Plasmas (1992), chapter 10; Weibel, Phys. Rev. Lett. 2, 83 (1959).
-inline Complex transverse_dispersion(std::span<const PlasmaSpecies> plasma, double k, double c,
-                                     int sense, Complex omega) {
-    Complex D = omega * omega - c * c * k * k;
-    for (const auto& s : plasma) {
-        const Complex doppler = omega - k * s.drift;
-        const Complex shifted = doppler + sense * s.gyrofrequency;
-        const double kv = std::abs(k) * s.speed_along();
-        Complex response;
-        if (kv == 0.0) {
-            const double kv_across_squared = k * k * s.temperature_across / s.mass;
-            if (shifted * shifted == 0.0) return no_value;
-            response = s.gyrofrequency == 0.0 ? Complex(-1.0) : -doppler / shifted;
-            if (kv_across_squared > 0.0) response -= kv_across_squared / (shifted * shifted);
-        } else {
-            const double root2_kv = std::numbers::sqrt2 * kv;
-            const auto f = plasma_dispersion_detail::values(shifted / root2_kv);
-            const double anisotropy = s.temperature_across / s.temperature_along - 1.0;
-            response = doppler / root2_kv * f.Z + anisotropy * f.one_plus_zeta_Z;
-        }
-        D += s.frequency_squared() * response;
-    }
-    return D;
+/// exp(-x) I_n(x) of the modified Bessel functions for n = 0, 1, ..., until they are below round-off:
+/// what harmonic n of its gyration takes of a Maxwellian, x = (k_across v_across / Omega)^2.
+///   The ratios I_n / I_(n-1) = x / (2 n + x I_(n+1) / I_n) are taken downward, and
+///   exp(-x) (I_0 + 2 I_1 + 2 I_2 + ...) = 1 gives the first.
+inline std::vector<double> harmonics_of_maxwellian(double x) {
+    const auto count = static_cast<std::size_t>(20 + 9 * std::sqrt(x));
+    std::vector<double> I(count + 2, 0.0);
+    for (std::size_t n = count; n > 0; --n) I[n] = x / (2 * static_cast<double>(n) + x * I[n + 1]);
+    I[0] = 1;
+    double sum = 1;
+    for (std::size_t n = 1; n <= count; ++n) sum += 2 * (I[n] *= I[n - 1]);
+    for (double& value : I) value /= sum;
+    return I;
 }
 
 struct DispersionRoot {
@@ -192,13 +173,6 @@ inline DispersionRoot fastest_growing_longitudinal(std::span<const PlasmaSpecies
                                                    double k) {
     const auto D = [&](Complex omega) { return longitudinal_dispersion(plasma, k, omega); };
     return fastest_growing_root(D, fan_of_guesses(plasma, k));
-}
-
-/// The fastest growing (or least damped) transverse wave of wave number k.
-inline DispersionRoot fastest_growing_transverse(std::span<const PlasmaSpecies> plasma, double k,
-                                                 double c, int sense) {
-    const auto D = [&](Complex omega) { return transverse_dispersion(plasma, k, c, sense, omega); };
-    return fastest_growing_root(D, fan_of_guesses(plasma, k, c));
 }
 
 }  // namespace common

@@ -18,6 +18,8 @@
 #include "implicit_moment/output/diagnostics.hpp"
 #include "implicit_moment/setup/case.hpp"
 #include "implicit_moment/theory/cold_plasma.hpp"
+#include "implicit_moment/theory/magnetized_plasma.hpp"
+#include "implicit_moment/theory/transverse_dispersion.hpp"
 
 namespace implicit_moment {
 
@@ -89,7 +91,7 @@ inline void refuse_kinetic(const Case& w, const std::string& name) {
     refuse(u.B_y != 0 ||
                std::fabs(u.B_x * k.z - u.B_z * k.x) > 1e-9 * std::hypot(u.B_x, u.B_z) * k.size(),
            "the dispersion relation is solved for B along k or zero: take out the part of "
-           "uniform.B across the mode, or choose \"cold\" or \"none\" for theory.wave");
+           "uniform.B across the mode, or choose \"magnetized\" or \"cold\" for theory.wave");
 }
 
 inline void refuse_uncharged(const Case& w, const std::string& wave) {
@@ -110,8 +112,7 @@ inline Theory expect_langmuir(const Case& w) {
     double omega_squared = 0;
     for (const auto& s : theory_species(w)) omega_squared += s.frequency_squared();
     if (!w.leapfrog.chosen)
-        return of_factor(
-            w, common::theta_langmuir_wave(w.field.theta, std::sqrt(omega_squared) * w.dt));
+        return of_factor(w, theta_langmuir_wave(w.field.theta, std::sqrt(omega_squared) * w.dt));
     // What splines see of a field that varies within a cell, along it and across it.
     const WaveVector k = wave_vector(w), K = mesh_wave_vector(w);
     const auto seen = [&](double angle, double other_angle) {
@@ -124,6 +125,16 @@ inline Theory expect_langmuir(const Case& w) {
     const double part = (K.x * K.x * seen(x, z) + K.z * K.z * seen(z, x)) / (K.size() * K.size());
     return {leapfrog_frequency(std::sqrt(omega_squared * part), w.dt),
             "leapfrog, exact: sin(omega dt/2) = omega_p dt/2", true};
+}
+
+inline void refuse_without_near(const Case& w, const std::string& wave) {
+    if (w.near > 0) return;
+    std::string found;
+    for (const std::complex<double> one : cold_waves(w))
+        found += (found.empty() ? "" : ", ") + common::format(one.real());
+    refuse(true, wave +
+                     " needs theory.near: without temperatures this plasma has waves at omega = " +
+                     found);
 }
 
 // The wave of the cold plasma that is nearest to theory.near.
@@ -144,11 +155,7 @@ inline void refuse_cold(const Case& w, const std::string& name) {
     refuse(k_dx > 0.25, wave + " takes splines for points, and the mode has " +
                             common::format(2 * pi / k_dx) +
                             " cells in a wavelength: take 26 or more");
-    if (w.near > 0) return;
-    std::string found;
-    for (const std::complex<double> one : cold_waves(w))
-        found += (found.empty() ? "" : ", ") + common::format(one.real());
-    refuse(true, wave + " needs theory.near: this plasma has waves at omega = " + found);
+    refuse_without_near(w, wave);
 }
 
 // errors: InputError when no root was found.
@@ -173,10 +180,10 @@ inline Theory expect_transverse(const Case& w) {
     common::DispersionRoot root;
     for (const int sense : {+1, -1}) {
         const auto D = [&](common::Complex omega) {
-            return common::transverse_dispersion(plasma, k, c, sense, omega);
+            return transverse_dispersion(plasma, k, c, sense, omega);
         };
         const auto found = w.near != 0 ? common::root_near(D, w.near)
-                                       : common::fastest_growing_transverse(plasma, k, c, sense);
+                                       : fastest_growing_transverse(plasma, k, c, sense);
         const bool better = w.near != 0
                                 ? std::abs(found.omega - w.near) < std::abs(root.omega - w.near)
                                 : found.omega.imag() > root.omega.imag() + 1e-12;
@@ -185,7 +192,40 @@ inline Theory expect_transverse(const Case& w) {
     return kinetic(w, root);
 }
 
+inline Theory expect_magnetized(const Case& w) {
+    const auto plasma = magnetized_species(w);
+    const MagnetizedWave k = magnetized_wave(w);
+    const auto D = [&](common::Complex omega) {
+        return magnetized_dispersion(plasma, k, c, omega);
+    };
+    return kinetic(w, common::root_near(D, w.near));
+}
+
 // These need a root, too.
+inline void refuse_magnetized(const Case& w, const std::string& name) {
+    const std::string wave = "theory.wave = \"" + name + "\"";
+    const UniformCase& u = w.uniform;
+    const Eigen::Vector3d B(u.B_x, u.B_y, u.B_z), b = B.normalized();
+    refuse_uncharged(w, wave);
+    refuse(B.norm() == 0, wave +
+                              " needs a field: give uniform.B_x, B_y or B_z, or choose "
+                              "\"longitudinal\" or \"transverse\"");
+    for (const SpeciesCase& s : u.species) {
+        const Eigen::Vector3d T(s.temperature_x, s.temperature_y, s.temperature_z),
+            drift(s.drift_x, s.drift_y, s.drift_z);
+        const double along = T.dot(b.cwiseAbs2()), across = 0.5 * (T.sum() - along);
+        const Eigen::Matrix3d turned =
+            across * Eigen::Matrix3d::Identity() + (along - across) * b * b.transpose();
+        refuse((turned - Eigen::Matrix3d(T.asDiagonal())).norm() > 1e-9 * T.norm(),
+               "species '" + s.name + "' has two temperatures across uniform.B: " + wave +
+                   " wants one across it and one along it");
+        refuse(
+            drift.cross(b).norm() > 1e-9 * drift.norm(),
+            "species '" + s.name + "' drifts across uniform.B: " + wave + " wants drifts along it");
+    }
+    refuse_without_near(w, wave);
+    expect_magnetized(w);
+}
 inline void refuse_longitudinal(const Case& w, const std::string& name) {
     refuse_kinetic(w, name);
     expect_longitudinal(w);
@@ -205,11 +245,12 @@ inline void refuse_transverse(const Case& w, const std::string& name) {
 }  // namespace detail
 
 /// All that theory.wave can name, beside "none".
-inline const std::array<Wave, 5>& waves() {
-    static const std::array<Wave, 5> all{
+inline const std::array<Wave, 6>& waves() {
+    static const std::array<Wave, 6> all{
         {{"light", detail::refuse_light, detail::expect_light},
          {"langmuir", detail::refuse_langmuir, detail::expect_langmuir},
          {"cold", detail::refuse_cold, detail::expect_cold},
+         {"magnetized", detail::refuse_magnetized, detail::expect_magnetized},
          {"longitudinal", detail::refuse_longitudinal, detail::expect_longitudinal},
          {"transverse", detail::refuse_transverse, detail::expect_transverse}}};
     return all;

@@ -218,6 +218,7 @@ electrons uniform species.electrons.charge=-1
 light uniform theory.wave=light
 langmuir uniform theory.wave=langmuir
 cold uniform theory.wave=cold
+magnetized uniform theory.wave=magnetized
 transverse uniform theory.wave=transverse
 longitudinal uniform theory.wave=longitudinal
 wave_E_y uniform.wave_E_y=1
