@@ -18,12 +18,13 @@ namespace implicit_moment {
 ///   and for a species that is cold along k
 ///   - omega_s^2 { (omega - k u_s) / w + k^2 T_across / (m w^2) },
 ///   w = omega - k u_s + sense Omega_s
-/// in:    sense +1: electrons resonate at omega = |Omega_e|, the whistler; -1: ions at Omega_i.
+/// in:    light, the speed c; sense +1: electrons resonate at omega = |Omega_e|, the whistler; -1: ions at Omega_i.
 ///        Without B_0 both are the same, and any polarization has this relation.
 /// source: Stix, Waves in Plasmas (1992), chapter 10; Weibel, Phys. Rev. Lett. 2, 83 (1959).
 inline common::Complex transverse_dispersion(std::span<const common::PlasmaSpecies> plasma,
-                                             double k, double c, int sense, common::Complex omega) {
-    common::Complex D = omega * omega - c * c * k * k;
+                                             double k, double light, int sense,
+                                             common::Complex omega) {
+    common::Complex D = omega * omega - light * light * k * k;
     for (const auto& s : plasma) {
         const common::Complex doppler = omega - k * s.drift;
         const common::Complex shifted = doppler + sense * s.gyrofrequency;
@@ -47,11 +48,11 @@ inline common::Complex transverse_dispersion(std::span<const common::PlasmaSpeci
 
 /// The fastest growing (or least damped) transverse wave of wave number k.
 inline common::DispersionRoot fastest_growing_transverse(
-    std::span<const common::PlasmaSpecies> plasma, double k, double c, int sense) {
+    std::span<const common::PlasmaSpecies> plasma, double k, double light, int sense) {
     const auto D = [&](common::Complex omega) {
-        return transverse_dispersion(plasma, k, c, sense, omega);
+        return transverse_dispersion(plasma, k, light, sense, omega);
     };
-    return common::fastest_growing_root(D, common::fan_of_guesses(plasma, k, c));
+    return common::fastest_growing_root(D, common::fan_of_guesses(plasma, k, light));
 }
 
 /// A Langmuir wave in a cold plasma whose particles are moved by E at the level theta.
