@@ -436,7 +436,8 @@ MeasuredMode measure_mode(std::span<const double> times, std::span<const Complex
     if (turns < search.periods && folds < search.e_foldings)
         return cannot("it has " + format(turns) + " periods and " + format(folds) +
                       " e-foldings, and " + format(search.periods) + " or " +
-                      format(search.e_foldings) + " are needed, " + result.window);
+                      format(search.e_foldings) + " are needed, " + result.window +
+                      ": raise time.end");
     result.found = true;
     return result;
 }
