@@ -163,17 +163,41 @@ TEST_CASE("the mode of theory is found beside a stronger one which is told as we
 }
 
 TEST_CASE("of a traveling wave and what is left of it the other way the wave is measured") {
-    // Noise makes the echo seem nearer to theory than the wave is.
+    // Theory is nearer to the echo than to the wave.
     Signal whistler{"whistler", {0.0751, -0.0748}, {1, 0.005}, 600, 0.5, both(0.0748)};
     const auto seen =
-        measure_mode(times_of(whistler), record_of(whistler, 0.05, 4), search_of(whistler));
+        measure_mode(times_of(whistler), record_of(whistler, 0.01, 4), search_of(whistler));
     REQUIRE(seen.found);
     CHECK(std::fabs(seen.frequency() - 0.0751) <= seen.frequency_error());
-    CHECK(seen.frequency_error() <= 2e-4);
-    // An echo that is known well is another wave.
-    const auto clear =
-        measure_mode(times_of(whistler), record_of(whistler, 1e-6, 4), search_of(whistler));
-    CHECK(std::fabs(clear.frequency() - 0.0748) <= 1e-5);
+    CHECK(seen.frequency_error() <= 1e-4);
+}
+
+TEST_CASE("two directions of a standing wave that disagree make the error of their mean") {
+    // What random numbers add to a damped wave rings as the wave does, and no fit tells it apart.
+    const std::vector<Complex> two{{1.28, -0.063}, {-1.27, -0.044}};
+    Signal landau{"landau", two, {1, 0.8}, 400, 0.1, both({1.285, -0.066})};
+    const auto seen = measure_mode(times_of(landau), record_of(landau, 0.01, 2), search_of(landau));
+    REQUIRE(seen.found);
+    CHECK(std::fabs(seen.growth() + 0.055) <= 0.003);
+    CHECK(seen.growth_error() >= 0.019);
+    CHECK(seen.frequency_error() >= 0.01);
+    CHECK(seen.growth_error() <= 0.03);
+}
+
+TEST_CASE("a wave whose amplitude bends is one mode and not several that no record tells apart") {
+    // Growth that slows down a little, as before saturation.
+    std::vector<double> t;
+    std::vector<Complex> z;
+    for (int n = 0; n < 400; ++n) {
+        t.push_back(0.1 * n);
+        z.push_back(1e-4 * std::exp(0.2 * t.back() - 4e-4 * t.back() * t.back()));
+    }
+    const auto seen = measure_mode(t, z, {.expected = {{0, 0.19}}, .begin = 5});
+    REQUIRE(seen.found);
+    // From 5 to 40 the rate falls from 0.196 to 0.168.
+    CHECK(seen.growth() + seen.growth_error() >= 0.168);
+    CHECK(seen.growth() - seen.growth_error() <= 0.196);
+    CHECK(seen.growth_error() <= 0.03);
 }
 
 TEST_CASE("a signal that crosses zero while it grows is fitted over all of its growth") {

@@ -276,6 +276,7 @@ TEST_CASE("an error bar enters the verdict and an expected failure is none") {
     common::Summary numbers;
     numbers.expectation = {"off, fine, misspelled", "the step is too long"};
     numbers.result("near", {1.25, 0.2}, "m", 1, 0.1, "exact");
+    numbers.result("certain", {2.0, 0.2}, "m", 1, 0.1, "exact");
     numbers.result("close", {1.15, 0.06}, "m", 1, 0.1, "exact");
     numbers.hint("lower time.dt");
     numbers.result("far", {1.25, 0.06}, "m", 1, 0.1, "exact");
@@ -288,8 +289,9 @@ TEST_CASE("an error bar enters the verdict and an expected failure is none") {
     numbers.write(path, {"p", "1", "", ""}, "c", 0, "m");
     const auto results = nlohmann::json::parse(read_all(path))["results"];
     const std::vector<std::pair<std::string, std::string>> expected{
-        {"near", "NOT MEASURED"},    {"close", "PASS"}, {"far", "FAIL"},  {"low", "FAIL"},
-        {"off", "EXPECTED FAILURE"}, {"fine", "PASS"},  {"high", "PASS"}, {"lost", "FAIL"}};
+        {"near", "NOT MEASURED"}, {"certain", "FAIL"}, {"close", "PASS"},
+        {"far", "FAIL"},          {"low", "FAIL"},     {"off", "EXPECTED FAILURE"},
+        {"fine", "PASS"},         {"high", "PASS"},    {"lost", "FAIL"}};
     for (const auto& [name, verdict] : expected) {
         CAPTURE(name);
         CHECK(results[name]["verdict"] == verdict);
@@ -305,6 +307,7 @@ TEST_CASE("an error bar enters the verdict and an expected failure is none") {
     CHECK(says("FAIL far = 1.25 +- 0.06, and 1 +- 0.1 is expected (exact); lower time.dt"));
     CHECK(says("as expected, off = 3 and not 1 +- 0.1: the step is too long"));
     CHECK(says("expect.fails names 'misspelled', and this run has no such result"));
+    CHECK(says("expect.fails names 'fine', and it passed"));
     CHECK(numbers.fell_short());
 }
 

@@ -125,13 +125,18 @@ inline double noise_field(const Case& parameters, const Theory& theory) {
 }
 
 /// What a wave that is not as in theory is most likely due to, and what to change.
-/// in:     field, the amplitude with which the mode begins
-inline std::string likely_cause(const Case& parameters, const Theory& theory, double field) {
+/// in:     field, the amplitude of the wave without noise; noise of random numbers in it
+inline std::string likely_cause(const Case& parameters, const Theory& theory, double field,
+                                double noise) {
     const double bounce = bounce_frequency(parameters, theory, field),
                  rate = std::fabs(theory.omega.imag()),
                  step = std::abs(theory.omega) * parameters.dt,
                  cell = wave_vector(parameters, theory.mode_x, theory.mode_z).size() *
                         parameters.grid.x.spacing();
+    if (noise > 0.1 * field)
+        return sentence("random particles have up to ", noise / field,
+                        " of the seeded field in this mode: raise amplitude or "
+                        "particles_per_cell, or take loading = \"quiet\"");
     if (bounce > rate && rate > 1e-3 * std::abs(theory.omega))
         return sentence("particles bounce in the wave with ", bounce, ", faster than the rate ",
                         rate, ", and linear theory does not hold: lower the amplitude ",
@@ -140,11 +145,14 @@ inline std::string likely_cause(const Case& parameters, const Theory& theory, do
         return sentence("k dx is ", cell,
                         ", and the mesh changes the wave: raise grid.cells_x, or take theory.model "
                         "= \"mesh\"");
-    if (step > 0.3)
+    if (parameters.model != "mesh" && step > 0.3)
         return sentence("|omega| dt is ", step,
-                        ", and the leapfrog changes the wave: lower time.dt");
-    return "the noise of particles is the most likely cause: raise particles_per_cell, or take "
-           "loading = \"quiet\"";
+                        ", and the leapfrog changes the wave: lower time.dt, or take theory.model "
+                        "= \"mesh\"");
+    return noise > 0 ? "the noise of particles is the most likely cause: raise particles_per_cell, "
+                       "or take loading = \"quiet\""
+                     : "another wave beside it, or too short a record, is the most likely cause: "
+                       "raise time.end, or particles_per_cell where the start is quiet";
 }
 
 /// A wave or an instability against the dispersion relation: frequency, growth or damping by
@@ -165,8 +173,6 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
     const double start = *std::max_element(
         amplitude.begin(),
         amplitude.begin() + static_cast<std::ptrdiff_t>(1 + amplitude.size() / 10));
-    summary.hint(likely_cause(parameters, theory, start));
-
     const bool grows = growth > 1e-3 * std::abs(theory.omega);
     common::ModeSearch search;
     search.expected = {theory.omega};
@@ -175,6 +181,8 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
     bool random = false;
     for (const SpeciesCase& s : parameters.species) random = random || s.loading == "random";
     const double noise = random ? noise_field(parameters, theory) : 0;
+    const double seed = theory.seed * (theory.mirrored ? 2 : 1);
+    summary.hint(likely_cause(parameters, theory, seed > 0 ? seed : start, noise));
     search.begin = grows ? 1 / growth : 2 * pi / frequency;
     search.below_maximum = 0.1;
     if (onset > search.begin) search.end = onset;
@@ -222,9 +230,11 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
     const double largest = *std::max_element(amplitude.begin(), amplitude.end()) / start,
                  level = noise_field(parameters, theory) / start;
     if (largest > 1.2 && largest < 1.2 + 3 * level)
-        summary.not_measured("largest_over_start",
-                             sentence("the noise of particles is ", level,
-                                      " of the wave: raise amplitude or particles_per_cell"));
+        summary.not_measured(
+            "largest_over_start",
+            sentence("the noise of particles, of which a quiet start shows more and "
+                     "more, may become ",
+                     level, " of the wave: raise amplitude or particles_per_cell"));
     else
         summary.result_at_most("largest_over_start", largest, "", 1.2, "no growing root");
     if (!swings) {

@@ -20,7 +20,7 @@ struct Measured {
 class Summary {
    public:
     /// A measured value that passes when |value - expected| <= tolerance + error, and could not be
-    /// measured when its error is larger than the tolerance.
+    /// measured when its error is larger than the tolerance and it is not three of them off.
     void result(const std::string& name, Measured value, const std::string& unit, double expected,
                 double tolerance, const std::string& source) {
         add({name, unit, source, value, expected, tolerance, Kind::compared});

@@ -43,6 +43,12 @@ struct Model {
         c = A.colPivHouseholderQr().solve(z);
         rest = (z - A * c).squaredNorm();
     }
+    // What a record of this length cannot tell apart is not two modes.
+    bool is_resolved(Index samples) const {
+        for (Index j = 1; j < s.size(); ++j)
+            if ((s.head(j).array() - s[j]).abs().minCoeff() * double(samples) < 1) return false;
+        return true;
+    }
     // Derivatives of the model by the c_j, and by the s_j.
     MatrixXcd slopes(Index samples) const {
         MatrixXcd J(samples, 2 * s.size());
@@ -201,15 +207,16 @@ ModeList find_modes(std::span<const Complex> record, double dt, int most) {
         improve(unit, model);
         const double score = 2 * double(samples) * std::log(std::max(model.rest, floor)) +
                              12 * double(order) * std::log(2 * double(samples));
-        if (std::isfinite(score) && score < least) least = score, best = models.size() - 1;
+        if (std::isfinite(score) && score < least && model.is_resolved(samples))
+            least = score, best = models.size() - 1;
         if (model.rest <= floor) break;
     }
     if (!std::isfinite(least)) return {{}, 0, "no exponentials fit the record"};
     ModeList list = modes_of(unit, models[best], dt);
     for (Mode& mode : list.modes) {
         mode.amplitude *= size;
-        // Noise with a color looks like modes. Models that explain nearly as much tell how far that
-        // moves this one.
+        // Noise with a color looks like modes. Models that explain nearly as much, and have this
+        // mode, tell how far that moves it.
         double real = 0, imag = 0;
         for (const Model& model : models) {
             if (!(model.rest <= 4 * std::max(models[best].rest, floor))) continue;
@@ -218,6 +225,10 @@ ModeList find_modes(std::span<const Complex> record, double dt, int most) {
                 if (const Complex here = Complex(0, 1) * s / dt - mode.omega;
                     std::abs(here) < std::abs(off))
                     off = here;
+            const auto is_nearer = [&](const Mode& one) {
+                return std::abs(mode.omega + off - one.omega) < std::abs(off);
+            };
+            if (std::any_of(list.modes.begin(), list.modes.end(), is_nearer)) continue;
             real = std::max(real, std::abs(off.real())),
             imag = std::max(imag, std::abs(off.imag()));
         }
@@ -263,28 +274,48 @@ std::vector<Mode> told_apart(const ModeList& list, double length, const Wanted& 
     return modes;
 }
 
-// The mode nearest to one of the roots, turned into the direction of the first root. Where it cannot be
-// told from a larger one that is less than 1/length away, in the same direction or the other, it is a
-// part of that wave or its echo, and the larger one counts.
-Match nearest(const std::vector<Mode>& modes, const std::vector<Complex>& expected, double length) {
+// What a difference has beyond its error.
+double beyond(double difference, double error) {
+    return std::sqrt(std::max(0.0, difference * difference - error * error));
+}
+
+// The mode nearest to one of the roots, turned into the direction of the first root.
+Match nearest(const std::vector<Mode>& modes, const std::vector<Complex>& expected) {
     Match best;
-    const auto take = [&](const Mode& mode, const Complex& root) {
-        best = {mode, std::abs(mode.omega - root), root.real() * expected.front().real() < 0};
-    };
-    for (const Complex& root : expected)
-        for (const Mode& mode : modes)
-            if (std::abs(mode.omega - root) < best.distance) take(mode, root);
-    const Mode first = best.mode;
     for (const Complex& root : expected)
         for (const Mode& mode : modes) {
-            const double apart = std::min(std::abs(mode.omega - first.omega),
-                                          std::abs(mode.omega + std::conj(first.omega)));
-            if (apart <= std::min(1 / length, std::abs(mode.error) + std::abs(first.error)) &&
-                root.real() * mode.omega.real() >= 0 && mode.share > best.mode.share)
-                take(mode, root);
+            const double distance = std::abs(mode.omega - root);
+            if (distance < best.distance)
+                best = {mode, distance, root.real() * expected.front().real() < 0};
         }
     if (best.mirrored) best.mode.omega = -std::conj(best.mode.omega);
     return best;
+}
+
+// A wave that stands runs both ways with the same frequency and rate: their mean, and an error that
+// holds both. Of one direction with less than a tenth of the other nothing is asked.
+Match of_both_directions(Match match, const std::vector<Mode>& modes, double size) {
+    Mode &mode = match.mode, other;
+    double closest = 0.3 * size;
+    if (std::abs(mode.omega.real()) < closest) return match;
+    for (Mode one : modes) {
+        if (!match.mirrored) one.omega = -std::conj(one.omega);
+        if (std::abs(one.omega - mode.omega) < closest)
+            closest = std::abs(one.omega - mode.omega), other = one;
+    }
+    const double part = other.share / (other.share + mode.share);
+    if (part > 10.0 / 11) {
+        mode = other;
+    } else if (part > 1.0 / 11) {
+        const Complex apart = other.omega - mode.omega;
+        const auto error = [part](double one, double two, double off) {
+            return std::hypot((1 - part) * one, part * two, beyond(off, std::hypot(one, two)));
+        };
+        mode.omega += part * apart;
+        mode.error = {error(mode.error.real(), other.error.real(), apart.real()),
+                      error(mode.error.imag(), other.error.imag(), apart.imag())};
+    }
+    return match;
 }
 
 // Blocks of samples, averaged.
@@ -393,7 +424,8 @@ MeasuredMode measure_mode(std::span<const double> times, std::span<const Complex
         return cannot("noise is " + format(list.noise) +
                       " of the record from t = " + format(result.begin) + " to " +
                       format(result.end) + ", and no mode stands out of it");
-    const Match match = nearest(modes, search.expected, length);
+    Match match = nearest(modes, search.expected);
+    if (search.expected.size() > 1) match = of_both_directions(match, modes, wanted.size);
     result.omega = match.mode.omega, result.error = match.mode.error;
 
     // Look for it in parts of the window.
@@ -405,14 +437,11 @@ MeasuredMode measure_mode(std::span<const double> times, std::span<const Complex
         const ModeList there = find_modes(
             std::span(record).subspan(std::size_t(part.begin), std::size_t(part.count())),
             double(block) * dt);
-        const double shorter = length * double(part.count()) / double(record.size());
-        const Match same = nearest(told_apart(there, shorter, wanted),
-                                   {result.omega, -std::conj(result.omega)}, shorter);
+        const Match same = nearest(
+            told_apart(there, length * double(part.count()) / double(record.size()), wanted),
+            {result.omega, -std::conj(result.omega)});
         if (!std::isfinite(same.distance)) continue;
         const Complex off = same.mode.omega - result.omega;
-        const auto beyond = [](double change, double error) {
-            return std::sqrt(std::max(0.0, change * change - error * error));
-        };
         strays.real(std::max(strays.real(), beyond(off.real(), same.mode.error.real())));
         strays.imag(std::max(strays.imag(), beyond(off.imag(), same.mode.error.imag())));
     }
@@ -423,9 +452,9 @@ MeasuredMode measure_mode(std::span<const double> times, std::span<const Complex
     result.window = "from t = " + format(result.begin) + " to " + format(result.end);
     std::string others;
     for (const Mode& mode : modes) {
-        const bool same = std::abs(mode.omega - match.mode.omega) < 1e-9 * wanted.size ||
-                          std::abs(mode.omega + std::conj(match.mode.omega)) <
-                              std::abs(match.mode.error) + 1e-6 * wanted.size;
+        const bool same = std::min(std::abs(mode.omega - match.mode.omega),
+                                   std::abs(mode.omega + std::conj(match.mode.omega))) <
+                          std::abs(match.mode.error) + 1e-6 * wanted.size;
         if (same) result.share += mode.share;
         if (!same && mode.share > 1e-3)
             others += (others.empty() ? "" : ", ") + text_of(mode.omega);

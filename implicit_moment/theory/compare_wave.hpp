@@ -275,6 +275,19 @@ inline void refuse_wave(const Case& w) {
     refuse(w.uniform.mode_x == 0 && w.uniform.mode_z == 0,
            "theory.wave needs a mode: set uniform.mode_x or uniform.mode_z");
     wave->refuse(w, wave->name);
+    const WaveVector k = wave_vector(w);
+    const char axis = w.component.back();
+    const bool is_longitudinal = wave->name == "longitudinal" || wave->name == "langmuir",
+               has_k = (axis == 'x' && k.x != 0) || (axis == 'z' && k.z != 0),
+               only_k = (axis == 'x' && k.z == 0) || (axis == 'z' && k.x == 0);
+    refuse(is_longitudinal && (w.component.front() != 'E' || !has_k),
+           "theory.wave = \"" + wave->name + "\" has E along the mode, and theory.component = \"" +
+               w.component + "\" has no part along it: choose E_" + (k.x != 0 ? "x" : "z"));
+    refuse((wave->name == "light" || wave->name == "transverse") && only_k,
+           "theory.wave = \"" + wave->name +
+               "\" has its fields across the mode, and theory.component "
+               "= \"" +
+               w.component + "\" is along it: choose another one");
 }
 
 /// The columns of a uniform plasma: the complex amplitude of the seeded mode in one component.
@@ -308,10 +321,14 @@ inline void compare_wave(const Case& w, const common::History& history, common::
     const common::MeasuredMode seen = common::measure_mode(times, mode, search);
     const std::string where = theory.source + "; measured " + seen.window;
     summary.hint(
-        grows ? "the seed may be below the noise, or the run too short: raise the amplitude "
-                "of the seed, the particles per cell, or time.end"
-              : "noise, or a step that changes the wave, is the most likely cause: raise the "
-                "particles per cell, or lower time.dt");
+        grows
+            ? "the seed may be below the noise, so large that growth is soon over, or the run too "
+              "short: raise the particles per cell, change the seed, or raise time.end"
+            : "noise, a seed so large that the wave is not linear, a step or a mesh that changes "
+              "it, "
+              "or a field that this wave does not have are likely causes: raise the particles per "
+              "cell, lower the seed or time.dt, raise grid.cells_x or cells_z, or change "
+              "theory.component");
     const auto report = [&](const std::string& name, common::Measured value) {
         if (seen.found)
             summary.result(name, value, "", 1, tolerance, where);
