@@ -4,27 +4,15 @@
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
-#include <filesystem>
-#include <iterator>
 #include <map>
-#include <set>
-#include <sstream>
 #include <string>
 #include <vector>
 
-#include "tests/support/any_summary.hpp"
+#include "tests/support/any_mutation.hpp"
 
 namespace {
 
-struct Mutation {
-    std::string program, file, overrides, fails;  // fails: names of results
-};
-
-using Words = std::set<std::string>;
-Words words(const std::string& text) {
-    std::istringstream in(text);
-    return {std::istream_iterator<std::string>(in), {}};
-}
+using facts::Mutation, facts::Words, facts::words;
 
 // What a tube has; L1 of a side, and where its wave is.
 const std::string tube =
@@ -183,35 +171,14 @@ const std::map<std::string, std::string> left_out{
 
 // Runs all rows of the programs; every result that they judge has to be failed by one of them.
 void check_mutations(const std::vector<Mutation>& table) {
-    std::map<std::string, Words> judged, failed;  // by program and case, and by program
-    for (const Mutation& row : table) {
-        const std::string folder = row.program == "pic" ? "flip" : row.program,
-                          path = folder + "/cases/" + row.file + ".toml",
-                          key = row.program + " " + row.file;
-        INFO(key << " " << row.overrides);
-        REQUIRE(std::filesystem::exists(path));
-        const facts::Run run = facts::run_into(
-            "mutation", row.program, path + " " + row.overrides + " output.particles_interval=0");
-        Words fails = words(row.fails);
-        for (const auto& [name, result] : run.summary["results"].items()) {
-            if (!result.contains("verdict")) continue;
-            const std::string verdict = result["verdict"];
-            judged[key].insert(name);
-            if (fails.erase(name) == 0) continue;
-            INFO(name << " = " << result.dump());
-            CHECK(verdict == "FAIL");
-            failed[key].insert(name), failed[row.program].insert(name);
-        }
-        CAPTURE(row.fails);
-        CHECK(fails.empty());  // names of results that there are
-    }
-    for (const auto& [key, names] : judged) {
+    facts::Verdicts all = facts::run_mutations(table);
+    for (const auto& [key, names] : all.judged) {
         const std::string program = key.substr(0, key.find(' '));
         for (const std::string& name : names) {
             INFO(key << ": no row fails " << name);
-            const bool alike = everywhere.contains(name) && failed[program].contains(name);
+            const bool alike = everywhere.contains(name) && all.failed[program].contains(name);
             const bool open = still_open.contains(key) && words(still_open.at(key)).contains(name);
-            CHECK((failed[key].contains(name) || alike || elsewhere.contains(name) || open));
+            CHECK((all.failed[key].contains(name) || alike || elsewhere.contains(name) || open));
         }
     }
 }
@@ -229,15 +196,5 @@ TEST_CASE("for every result of grains there is a wrong run that fails it" *
 }
 
 TEST_CASE("every shipped case of fluids and grains has a wrong run or a reason why not") {
-    std::set<std::string> there;
-    for (const auto* table : {&fluids, &grains})
-        for (const Mutation& row : *table)
-            there.insert((row.program == "pic" ? "flip" : row.program) + "/cases/" + row.file);
-    for (const char* folder : {"flip", "mpm_explicit", "mpm_implicit"})
-        for (const auto& file :
-             std::filesystem::directory_iterator(folder + std::string("/cases"))) {
-            const std::string name = file.path().parent_path() / file.path().stem();
-            INFO(name);
-            CHECK((there.contains(name) || left_out.contains(name)));
-        }
+    facts::check_every_case({fluids, grains}, {"flip", "mpm_explicit", "mpm_implicit"}, left_out);
 }
