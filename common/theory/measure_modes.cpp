@@ -21,6 +21,7 @@ constexpr double fastest_decay = -5;   // of an exponential, in a sample
 constexpr double far_out = 100;        // energy of a mode over that of the noise
 constexpr double weak = 0.05;          // share of a mode that may be noise
 constexpr double least_evidence = 30;  // of noise alone one mode in some thousand has that much
+constexpr double faint = 1e-3;  // share, over the largest, of a mode that has to be near theory
 
 // The model sum_j c_j exp(s_j (n - n_j)), n_j the sample at which its exponential is 1 at most.
 struct Model {
@@ -265,15 +266,22 @@ std::vector<Mode> told_apart(const ModeList& list, double length, const Wanted& 
 
 // The mode nearest to one of the roots, turned into the direction of the first root. Where it cannot be
 // told from a larger one that is less than 1/length away, in the same direction or the other, it is a
-// part of that wave or its echo, and the larger one counts.
+// part of that wave or its echo, and the larger one counts. Of a record with next to no noise even the
+// last trace of another wave has evidence: it counts within its error and a tenth of the root.
 Match nearest(const std::vector<Mode>& modes, const std::vector<Complex>& expected, double length) {
     Match best;
     const auto take = [&](const Mode& mode, const Complex& root) {
         best = {mode, std::abs(mode.omega - root), root.real() * expected.front().real() < 0};
     };
+    double largest = 0;
+    for (const Mode& mode : modes) largest = std::max(largest, mode.share);
     for (const Complex& root : expected)
-        for (const Mode& mode : modes)
-            if (std::abs(mode.omega - root) < best.distance) take(mode, root);
+        for (const Mode& mode : modes) {
+            const double off = std::abs(mode.omega - root),
+                         near = std::abs(mode.error) + 0.1 * std::abs(root);
+            if (off < best.distance && (mode.share >= faint * largest || off <= near))
+                take(mode, root);
+        }
     const Mode first = best.mode;
     for (const Complex& root : expected)
         for (const Mode& mode : modes) {
