@@ -159,6 +159,7 @@ TEST_CASE("a trace that is nearer to a wrong theory than the wave is not taken f
     REQUIRE(seen.found);
     CHECK(std::fabs(seen.frequency() - 0.7107) <= seen.frequency_error());
     CHECK(seen.frequency_error() <= 1e-4);
+    CHECK(std::fabs(1 - seen.share - 1.25e-7) <= 1e-8);
     // It is what is measured where theory has it.
     wave.expected = both(0.77);
     const auto trace = measure_mode(times_of(wave), record_of(wave, 1e-5, 2), search_of(wave));

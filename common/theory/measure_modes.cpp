@@ -434,11 +434,17 @@ MeasuredMode measure_mode(std::span<const double> times, std::span<const Complex
         const bool same = std::abs(mode.omega - match.mode.omega) < 1e-9 * wanted.size ||
                           std::abs(mode.omega + std::conj(match.mode.omega)) <
                               std::abs(match.mode.error) + 1e-6 * wanted.size;
-        if (same) result.share += mode.share;
         if (!same && mode.share > 1e-3)
             others += (others.empty() ? "" : ", ") + text_of(mode.omega);
     }
     if (!others.empty()) result.window += "; also seen: omega = " + others;
+    const VectorXcd samples = Eigen::Map<const VectorXcd>(record.data(), Index(record.size()));
+    const Complex s = Complex(0, -double(block) * dt) * match.mode.omega;
+    Model wave;
+    wave.s.resize(2);
+    wave.s << s, std::conj(s);
+    wave.find_amplitudes(samples);
+    result.share = 1 - wave.rest / samples.squaredNorm();
     const double turns = result.frequency() * length / (2 * pi),
                  folds = std::abs(result.growth()) * length;
     if (turns < search.periods && folds < search.e_foldings)
