@@ -60,7 +60,7 @@ struct EdgeWave {
 ///         and at most of them it would grow more slowly. A run starts from noise, three e-foldings
 ///         below saturation, and realizations differ: three seeds of lhdi_quick.toml give modes 8,
 ///         8 and 9 with 0.79, 0.6 and 0.90 of the growth, known to 0.15, 0.4 and 0.21, and 0.92,
-///         1.03 and 0.98 of the frequency of local theory, lhdi.toml gives 9 with 0.97 and 0.92.
+///         1.03 and 0.98 of the frequency of local theory, lhdi.toml gives 8 with 0.70 and 1.07.
 ///         Theory with the wider gyrations of the quick case's long step has 12 % less growth.
 inline void compare_current_sheet(const Case& w, const common::History& history,
                                   common::Summary& summary) {
