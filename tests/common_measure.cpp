@@ -153,6 +153,20 @@ TEST_CASE("a wave of another frequency than theory has is measured where it is")
     CHECK(std::abs(seen.omega - Complex(1.3, -0.05)) <= 0.002);
 }
 
+TEST_CASE("a trace that is nearer to a wrong theory than the wave is not taken for it") {
+    Signal wave{"wave", {0.7107, -0.7107, 0.77}, {1, 1, 5e-4}, 320, 0.5, both(1.0107)};
+    const auto seen = measure_mode(times_of(wave), record_of(wave, 1e-5, 2), search_of(wave));
+    REQUIRE(seen.found);
+    CHECK(std::fabs(seen.frequency() - 0.7107) <= seen.frequency_error());
+    CHECK(seen.frequency_error() <= 1e-4);
+    CHECK(std::fabs(1 - seen.share - 1.25e-7) <= 1e-8);
+    // It is what is measured where theory has it.
+    wave.expected = both(0.77);
+    const auto trace = measure_mode(times_of(wave), record_of(wave, 1e-5, 2), search_of(wave));
+    REQUIRE(trace.found);
+    CHECK(std::fabs(trace.frequency() - 0.77) <= trace.frequency_error());
+}
+
 TEST_CASE("the mode of theory is found beside a stronger one which is told as well") {
     Signal beam{"beam", {{0.3, 0.08}, 1.0, -1.0}, {1e-3, 0.1, 0.1}, 1000, 0.08, {{0.3, 0.08}}};
     ModeSearch search{.expected = beam.expected};

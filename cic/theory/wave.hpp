@@ -229,7 +229,10 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
     // Where nothing should grow, nothing may; but a quiet start does not stay quieter than noise.
     const double largest = *std::max_element(amplitude.begin(), amplitude.end()) / start,
                  level = noise_field(parameters, theory) / start;
-    if (largest > 1.2 && largest < 1.2 + 3 * level)
+    if (!(start > 0))
+        summary.not_measured("largest_over_start",
+                             "cannot be measured, because the record begins with zero");
+    else if (largest > 1.2 && largest < 1.2 + 3 * level)
         summary.not_measured(
             "largest_over_start",
             sentence("the noise of particles, of which a quiet start shows more and "

@@ -21,6 +21,7 @@ constexpr double fastest_decay = -5;   // of an exponential, in a sample
 constexpr double far_out = 100;        // energy of a mode over that of the noise
 constexpr double weak = 0.05;          // share of a mode that may be noise
 constexpr double least_evidence = 30;  // of noise alone one mode in some thousand has that much
+constexpr double faint = 1e-3;  // share, over the largest, of a mode that has to be near theory
 
 // The model sum_j c_j exp(s_j (n - n_j)), n_j the sample at which its exponential is 1 at most.
 struct Model {
@@ -279,13 +280,18 @@ double beyond(double difference, double error) {
     return std::sqrt(std::max(0.0, difference * difference - error * error));
 }
 
-// The mode nearest to one of the roots, turned into the direction of the first root.
+// The mode nearest to one of the roots, turned into the direction of the first root. Of a record with
+// next to no noise even the last trace of another wave has evidence: it counts within its error and a
+// tenth of the root.
 Match nearest(const std::vector<Mode>& modes, const std::vector<Complex>& expected) {
     Match best;
+    double largest = 0;
+    for (const Mode& mode : modes) largest = std::max(largest, mode.share);
     for (const Complex& root : expected)
         for (const Mode& mode : modes) {
-            const double distance = std::abs(mode.omega - root);
-            if (distance < best.distance)
+            const double distance = std::abs(mode.omega - root),
+                         near = std::abs(mode.error) + 0.1 * std::abs(root);
+            if (distance < best.distance && (mode.share >= faint * largest || distance <= near))
                 best = {mode, distance, root.real() * expected.front().real() < 0};
         }
     if (best.mirrored) best.mode.omega = -std::conj(best.mode.omega);
@@ -455,11 +461,17 @@ MeasuredMode measure_mode(std::span<const double> times, std::span<const Complex
         const bool same = std::min(std::abs(mode.omega - match.mode.omega),
                                    std::abs(mode.omega + std::conj(match.mode.omega))) <
                           std::abs(match.mode.error) + 1e-6 * wanted.size;
-        if (same) result.share += mode.share;
         if (!same && mode.share > 1e-3)
             others += (others.empty() ? "" : ", ") + text_of(mode.omega);
     }
     if (!others.empty()) result.window += "; also seen: omega = " + others;
+    const VectorXcd samples = Eigen::Map<const VectorXcd>(record.data(), Index(record.size()));
+    const Complex s = Complex(0, -double(block) * dt) * match.mode.omega;
+    Model wave;
+    wave.s.resize(2);
+    wave.s << s, std::conj(s);
+    wave.find_amplitudes(samples);
+    result.share = 1 - wave.rest / samples.squaredNorm();
     const double turns = result.frequency() * length / (2 * pi),
                  folds = std::abs(result.growth()) * length;
     if (turns < search.periods && folds < search.e_foldings)

@@ -59,9 +59,9 @@ struct EdgeWave {
 /// note:   local theory is an upper bound: a wave must be one over all the heights that it covers,
 ///         and at most of them it would grow more slowly. A run starts from noise, three e-foldings
 ///         below saturation, and realizations differ: three seeds of lhdi_quick.toml give modes 8,
-///         7 and 9 with 0.80, 0.71 and 0.85 of the growth and 0.97, 1.04 and 0.93 of the frequency
-///         of local theory, lhdi.toml gives 9 with 0.97 and 0.92. Theory with the wider gyrations
-///         of the quick case's long step has 12 % less growth.
+///         8 and 9 with 0.79, 0.6 and 0.90 of the growth, known to 0.15, 0.4 and 0.21, and 0.92,
+///         1.03 and 0.98 of the frequency of local theory, lhdi.toml gives 8 with 0.70 and 1.07.
+///         Theory with the wider gyrations of the quick case's long step has 12 % less growth.
 inline void compare_current_sheet(const Case& w, const common::History& history,
                                   common::Summary& summary) {
     const std::string talk = "talk, figure 12: m_y = 8", local = "local kinetic theory";
