@@ -76,7 +76,7 @@ const std::vector<Mutation> electrostatic{
     {"cic", "ring", long_step, "energy_change"},
     {"cic", "sheath", "grid.cells_x=24 time.end=300", "collector_potential plasma_potential"},
     {"cic", "thermal_heating", "", ""},
-    {"cic", "thermal_heating", "time.dt=1 expect.fails=", "field_over_kinetic energy_change"},
+    {"cic", "thermal_heating", "time.dt=1", "field_over_kinetic energy_change"},
     {"cic", "two_stream", "", ""},
     {"cic", "two_stream", "grid.cells_x=8", fails_growth},
     {"cic", "two_stream_2d", "", ""},
@@ -106,10 +106,6 @@ const std::string smoothed_sheet =
 const std::vector<Mutation> implicit{
     {"implicit_moment", "e_cross_b", "", ""},
     {"implicit_moment", "e_cross_b", "uniform.particles_per_cell=1", "mean_E_error"},
-    // A gas without charges, whose momentum is no E x B drift.
-    {"implicit_moment", "e_cross_b",
-     "species.gas.charge=0 species.gas.drift_z=1e-3 uniform.particles_per_cell=4 time.dt=0.2",
-     "drift_over_E_cross_B"},
     {"implicit_moment", "e_cross_b", "uniform.B_y=0.01 uniform.E_x=0.01 field.theta=1 time.dt=0.5",
      "energy_drift"},
     {"implicit_moment", "gem", five_nodes, "flux_initial"},
@@ -202,8 +198,10 @@ const std::map<std::string, std::string> still_open{
     // Theory is the scheme itself, with the same mesh and step: linear, without particles. Only
     // another program can be wrong.
     {"explicit_em explicit_light_wave", "damping energy_drift"},
-    // The same; a loose solver errs in the energy, and much less in the phase.
+    // The same; a loose solver errs in the energy, and its tolerance is allowed for.
     {"implicit_moment light_wave", "omega_over_theory damping"},
+    // The mean of the momentum equation, whatever the step: theory is with the E that was measured.
+    {"implicit_moment e_cross_b", "drift_over_E_cross_B"},
     // Wrong runs are noisy, and a verdict adds its error to a wide window: growth from 0.35 to 1.35
     // of theory passes, a frequency from 0.6 to 1.4, and a kink from 0 to 2.7 of the talk's rate.
     {"implicit_moment lhdi_quick", "growth_over_theory omega_over_theory"},

@@ -309,6 +309,11 @@ Match of_both_directions(Match match, const std::vector<Mode>& modes, double siz
         if (std::abs(one.omega - mode.omega) < closest)
             closest = std::abs(one.omega - mode.omega), other = one;
     }
+    for (Mode one : modes) {
+        if (match.mirrored) one.omega = -std::conj(one.omega);
+        if (std::abs(one.omega - other.omega) < closest)
+            return match;  // whose other direction it is
+    }
     const double part = other.share / (other.share + mode.share);
     if (part > 10.0 / 11) {
         mode = other;

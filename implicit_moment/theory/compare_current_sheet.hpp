@@ -92,6 +92,10 @@ inline void compare_current_sheet(const Case& w, const common::History& history,
     summary.result_info("theory_growth", theory.gamma, "Omega_ci", local);
     summary.result_info("theory_omega", theory.omega, "Omega_ci", local);
     summary.result_info("theory_z", theory.z, "L", local);
+    if (!(theory.gamma > 0))
+        return summary.not_measured("growth_over_theory",
+                                    "local theory has no growth for the dominant mode: raise "
+                                    "current_sheet.drift, or refine the mesh along x");
     const EdgeWave wave(history, dominant);
     common::ModeSearch search{.expected = {{theory.omega, theory.gamma}},
                               .begin = 0,
@@ -110,7 +114,8 @@ inline void compare_current_sheet(const Case& w, const common::History& history,
     const auto mean = [](double a, double b, double error_a, double error_b, double expected) {
         return common::Measured{
             0.5 * (a + b) / expected,
-            std::max(0.5 * std::hypot(error_a, error_b), 0.5 * std::fabs(a - b)) / expected};
+            std::max(0.5 * std::hypot(error_a, error_b), 0.5 * std::fabs(a - b)) /
+                std::fabs(expected)};
     };
     const std::string window = local + "; measured " + upper.window;
     summary.result_within("growth_over_theory",

@@ -80,16 +80,21 @@ inline void compare_drift(const Case& w, const common::History& history, common:
 
     const Eigen::Vector3d B(w.uniform.B_x, w.uniform.B_y, w.uniform.B_z);
     double mass = 0, slowest = HUGE_VAL;  // of what has a charge
+    Eigen::Vector3d of_neutrals = Eigen::Vector3d::Zero();
     for (const SpeciesCase& s : w.uniform.species) {
-        if (s.charge == 0) continue;
-        mass += s.density * s.mass * w.grid.x.length * w.grid.z.length;
+        const double all = s.density * s.mass * w.grid.x.length * w.grid.z.length;
+        if (s.charge == 0) {
+            of_neutrals += all * Eigen::Vector3d(s.drift_x, s.drift_y, s.drift_z);
+            continue;
+        }
+        mass += all;
         slowest = std::min(slowest, std::fabs(s.charge) / s.mass * B.norm() / c);
     }
     Eigen::Vector3d E_mean = Eigen::Vector3d::Zero(), velocity = E_mean;
     for (std::size_t n = 1; n < times.size(); ++n) {
         const double part = 0.5 * (times[n] - times[n - 1]) / times.back();
         E_mean += part * (E[n] + E[n - 1]);
-        velocity += part / mass * (momentum[n] + momentum[n - 1]);
+        velocity += part / mass * (momentum[n] + momentum[n - 1] - 2 * of_neutrals);
     }
     const Eigen::Vector3d drift = c * E_mean.cross(B) / B.squaredNorm();
     if (!(slowest * times.back() > 20) || !(drift.norm() * B.norm() > 1e-3 * c * largest)) return;
