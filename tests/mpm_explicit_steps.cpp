@@ -1164,6 +1164,7 @@ TEST_CASE(
     // Steps that fit neither the rise nor the stop nor the rows of the table.
     const double dt = 0.0137, stop = 1.3;
     const std::vector<TravelRow> table{{0.1, 2, 1}, {0.7, 2.3, 1}, {0.9, 2.2, 1.5}};
+    CHECK(std::fabs(fastest(table) - std::hypot(0.1, 0.5) / 0.2) <= 1e-14);
     // The integral of the share, by Simpson's rule, which is exact to eight digits here.
     const auto risen = [](double t, double rise) {
         const int n = 2000;
