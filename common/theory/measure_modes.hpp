@@ -32,8 +32,9 @@ struct ModeList {
 ///   1. singular vectors V of the Hankel matrix Z_ij = z_(i+j); the p largest span the exponentials
 ///   2. exp(-i omega_j dt) = eigenvalues of V_1^+ V_2, V without its last and without its first row
 ///   3. Gauss and Newton on sum |z - model|^2 in all omega_j and a_j
-///   4. of p = 1 ... most the one with the least 2 N ln(sum |z - model|^2) + 12 p ln 2N; the noise of
-///      particles has a color, and costs modes three times what white noise does
+///   4. of p = 1 ... most, no two omega_j closer than 1 over the length of the record, the one with the
+///      least 2 N ln(sum |z - model|^2) + 12 p ln 2N; the noise of particles has a color, and costs
+///      modes three times what white noise does
 /// in:     z, evenly sampled, dt apart, at most a few hundred; most, how many exponentials at most
 /// out:    errors from the covariance of step 3 and of the noise, which is what the model leaves and
 ///         other modes of less than a twentieth of the energy and 100 times the noise; and from how far a mode is in models
@@ -75,10 +76,11 @@ struct MeasuredMode {
 ///           of its largest value, and what decays where noise is left; of a long record as many
 ///           periods, or 8 e-foldings, as tell most. Many samples per period are averaged in
 ///           blocks, which changes no omega
-///   answer: of the modes with evidence the one nearest to a root of theory; one without a
-///           turn and without an e-folding in the window is what stays at rest, and none
-///   error:  twice the root of the squares of: the covariance, and the spread of the same mode over
-///           parts of the window
+///   answer: of the modes with evidence the one nearest to a root of theory, and the mean of its two
+///           directions; one without a turn and without an e-folding in the window is what stays at
+///           rest, and none
+///   error:  from the squares of: the covariance, the spread of the same mode over parts of the
+///           window, and how far its two directions disagree
 /// in:     times, evenly spaced; z, the complex amplitude of a mode, in which both directions of
 ///         travel are modes of their own, or a real signal
 /// out:    not found, with the reason: no signal, only noise, too few samples, periods or
