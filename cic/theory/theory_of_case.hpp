@@ -334,7 +334,10 @@ inline Theory theory_of_wave(const Case& parameters, long mode_x, long mode_z) {
                 "no root of the dispersion relation was found for ", mode_text(mode_x, mode_z),
                 by_formula ? ", and with distributions by formula none that is damped is known"
                            : "",
-                ": give theory.near a frequency to look at, or set theory.compare = \"none\""));
+                parameters.near != 0 ? sentence(" near theory.near = ", parameters.near,
+                                                ": change it, or take it out")
+                                     : ": give theory.near a frequency to look at",
+                ", or set theory.compare = \"none\""));
         theory.omega = root.omega;
     }
     // What is only round-off is zero.
