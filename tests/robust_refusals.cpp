@@ -206,8 +206,8 @@ cic line wave theory.mode_x=0 grid.cells_x=2048
 cic line wave theory.mode_x=0 grid.cells_x=2
     theory.mode_x = 0 looks for the fastest growing of 0 modes
 cic line wave theory.near=1e30
-    no root of the dispersion relation was found for mode (1, 0): give theory.near a frequency to
-    look at, or set theory.compare = "none"
+    no root of the dispersion relation was found for mode (1, 0) near theory.near = 1e+30: change
+    it or take it out, or set theory.compare = "none"
 cic line wave no_charge -> no root of the dispersion relation was found for mode (1, 0)
 cic line wave theory.model=mesh theory.mode_x=8
     no root of the dispersion relation was found for mode (8, 0)

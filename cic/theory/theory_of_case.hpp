@@ -335,7 +335,7 @@ inline Theory theory_of_wave(const Case& parameters, long mode_x, long mode_z) {
                 by_formula ? ", and with distributions by formula none that is damped is known"
                            : "",
                 parameters.near != 0 ? sentence(" near theory.near = ", parameters.near,
-                                                ": change it, or take it out")
+                                                ": change it or take it out")
                                      : ": give theory.near a frequency to look at",
                 ", or set theory.compare = \"none\""));
         theory.omega = root.omega;
