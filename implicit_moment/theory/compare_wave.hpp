@@ -292,7 +292,8 @@ inline void refuse_wave(const Case& w) {
 
 /// How exact a wave is for which theory is the scheme: without particles to what the solver leaves.
 inline double exact_to(const Case& w) {
-    return w.wave != "light" ? 0.005 : w.leapfrog.chosen ? 1e-9 : 100 * w.field.tolerance;
+    if (w.wave != "light") return 0.005;
+    return w.leapfrog.chosen ? 1e-9 : std::min(0.005, 100 * w.field.tolerance);
 }
 
 /// The columns of a uniform plasma: the complex amplitude of the seeded mode in one component.
