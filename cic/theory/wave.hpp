@@ -187,8 +187,14 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
     search.below_maximum = 0.1;
     if (onset > search.begin) search.end = onset;
     const bool swings = frequency > 0 && frequency >= 0.01 * std::fabs(growth);
-    const common::MeasuredMode seen =
+    common::MeasuredMode seen =
         grows || swings ? common::measure_mode(times, mode, search) : common::MeasuredMode{};
+    // Of a wave that decays, noise that rings as it does moves the phase: no fit can tell it apart.
+    if (!grows && seed > 0) {
+        const double moved =
+            2 * noise / seed * std::max(std::fabs(growth), 1 / (seen.end - seen.begin));
+        seen.error = {std::hypot(seen.error.real(), moved), std::hypot(seen.error.imag(), moved)};
+    }
     const std::string where = theory.source + "; measured " + seen.window;
     const auto report = [&](const std::string& name, double value, double error, double expected,
                             double tolerance) {
