@@ -73,6 +73,18 @@ TEST_CASE("a formula gives particles what the flow of that name gives them") {
     CHECK(most <= 4 * eps * fastest);
 }
 
+TEST_CASE("an apic particle starts with the gradient of the velocity at its place") {
+    const Particles p = load_particles(read("[flip]\ntransfer = \"apic\"\n" + box +
+                                            "velocity_x = \"0.3*x - 2*z\"\n"
+                                            "velocity_z = \"5*x + 0.7*z\"\n")
+                                           .completed);
+    double off = 0;
+    for (std::size_t k = 0; k < p.x_p.size(); ++k)
+        off = worst({off, std::fabs(p.Cxx_p[k] - 0.3), std::fabs(p.Cxz_p[k] + 2),
+                     std::fabs(p.Czx_p[k] - 5), std::fabs(p.Czz_p[k] - 0.7)});
+    CHECK(off <= 1e-9);
+}
+
 TEST_CASE("r in a formula is the distance from the center of the region") {
     const Case w = read(box + "center_x = 0.25\ncenter_z = -2\ndensity = \"1 + r^2\"\n").completed;
     const Particles p = load_particles(w);
