@@ -658,6 +658,28 @@ TEST_CASE("every grain keeps its momentum without contact") {
     }
 }
 
+TEST_CASE(
+    "the angular momentum of a grain counts what its particles carry of the turn around them") {
+    Case c = case_on(30, 24, 1.5);
+    c.transfer = "spin";
+    c.problem.grains = {disk_at("a", 0.75, 0.6, 0.3)};
+    const double omega = 0.1;
+    Run run(c, [&](Assembly& all) {
+        Particles& p = all.particles;
+        for (std::size_t k = 0; k < p.x_p.size(); ++k)
+            p.vx_p[k] = -omega * (p.y_p[k] - 0.6), p.vy_p[k] = omega * (p.x_p[k] - 0.75);
+    });
+    // Of lumped nodes: omega m (h^2/6) in each direction on the average, less at the rim.
+    double mass = 0;
+    for (const double m : run.particles().m_p) mass += m;
+    for (int step = 0; step < 20; ++step) {
+        run.advance();
+        const double spin =
+            run.budget().momenta_next[0].angular - momenta_of(run.state.assembly)[0].angular;
+        CHECK(spin / (omega * mass * 0.05 * 0.05 / 3) == doctest::Approx(0.9).epsilon(0.15));
+    }
+}
+
 TEST_CASE("PIC gives particles the velocity of the nodes and FLIP their change") {
     for_each_shape([&](const auto& shape, const std::string& name) {
         CAPTURE(name);
