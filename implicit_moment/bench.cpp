@@ -55,22 +55,28 @@ void time_threads(const Case& parameters, const std::string& program, long steps
 }  // namespace
 
 int main() {
-    const Case w;  // the defaults are the GEM challenge
-    time_threads(w, "implicit_moment", 400, {"moments", "field", "mover", "sort"}, initial_state,
-                 [&](State& state, common::StepClock& clock) {
-                     std::vector<Particles>& particles = state.plasma.species;
-                     const auto charge_over_mass = state.plasma.charge_over_mass();
-                     StepScratch scratch(w.grid, w.field, particles.size());
-                     double iterations = 0;
-                     clock.resume();
-                     for (long step = 0; step < 400; ++step) {
-                         find_moments(w.grid, w.dt, particles, state.field, scratch, clock);
-                         iterations += take_step(w.grid, w.dt, w.mover, charge_over_mass, scratch,
-                                                 particles, state.field, clock)
-                                           .iterations;
-                     }
-                     return iterations / 400;
-                 });
+    Case w;  // the defaults are the GEM challenge
+    const auto time_response = [&](const std::string& response, long steps,
+                                   const std::vector<std::string>& parts) {
+        w.field.response = response;
+        time_threads(w, "implicit_moment, response = " + response, steps, parts, initial_state,
+                     [&](State& state, common::StepClock& clock) {
+                         std::vector<Particles>& particles = state.plasma.species;
+                         const auto charge_over_mass = state.plasma.charge_over_mass();
+                         StepScratch scratch(w.grid, w.field, particles.size());
+                         double iterations = 0;
+                         clock.resume();
+                         for (long step = 0; step < steps; ++step) {
+                             find_moments(w.grid, w.dt, particles, state.field, scratch, clock);
+                             iterations += take_step(w.grid, w.dt, w.mover, charge_over_mass,
+                                                     scratch, particles, state.field, clock)
+                                               .iterations;
+                         }
+                         return iterations / double(steps);
+                     });
+    };
+    time_response("moments", 400, {"moments", "field", "mover", "sort"});
+    time_response("mass_matrix", 200, {"moments", "mass", "field", "mover", "sort"});
     Case e;
     describe_explicit(e);
     time_threads(e, "explicit_em", 20, {"push", "field", "sort"}, leapfrog_state,

@@ -76,17 +76,14 @@ struct NodeSums {
     }
 };
 
-// The magnetic rotation R of [IMM-12] with B as the deposit reads it: the three components on the
-// mesh, k = q dt / 2mc, and the distance between rows.
-struct MagneticRotation {
+// B as a deposit reads it, component by component on the mesh; stride, the distance between rows.
+struct MeshB {
     const double *B_x, *B_y, *B_z;
-    double k;
     long stride;
 
-    // vbar = [ v + v x O + (v . O) O ] / (1 + O^2),  O = k B, with B at eight particles.
-    void operator()(long corner, const common::QuadraticWeights<SimdVector>& S_x,
-                    const common::QuadraticWeights<SimdVector>& S_z,
-                    Velocity<SimdVector>& v) const {
+    // B at eight particles of one node.
+    Velocity<SimdVector> at(long corner, const common::QuadraticWeights<SimdVector>& S_x,
+                            const common::QuadraticWeights<SimdVector>& S_z) const {
         const auto& q_x = S_x.quadratic;
         const auto& l_x = S_x.linear;
         SimdVector b_x{}, b_y{}, b_z{};
@@ -99,7 +96,21 @@ struct MagneticRotation {
             b_x += S_z.linear[j] * (q_x[0] * f[0] + q_x[1] * f[1] + q_x[2] * f[2]);
             b_y += S_z.linear[j] * (l_x[0] * g[0] + l_x[1] * g[1]);
         }
-        v = mean_velocity<SimdVector>(v, {SimdVector{}, SimdVector{}, SimdVector{}, b_x, b_y, b_z},
+        return {b_x, b_y, b_z};
+    }
+};
+
+// The magnetic rotation R of [IMM-12], k = q dt / 2mc.
+struct MagneticRotation {
+    MeshB B;
+    double k;
+
+    // vbar = [ v + v x O + (v . O) O ] / (1 + O^2),  O = k B, with B at eight particles.
+    void operator()(long corner, const common::QuadraticWeights<SimdVector>& S_x,
+                    const common::QuadraticWeights<SimdVector>& S_z,
+                    Velocity<SimdVector>& v) const {
+        const Velocity<SimdVector> b = B.at(corner, S_x, S_z);
+        v = mean_velocity<SimdVector>(v, {SimdVector{}, SimdVector{}, SimdVector{}, b.x, b.y, b.z},
                                       k * c);
     }
 };
@@ -216,7 +227,7 @@ inline void deposit_moments(const Particles& particles, const Grid& grid, const 
                             double dt, Moments& moments) {
     const double k = 0.5 * dt * particles.q_p / (particles.m_p * c);
     detail::deposit(particles, grid,
-                    detail::MagneticRotation{B.x(), B.y(), B.z(), k, grid.stride()},
+                    detail::MagneticRotation{{B.x(), B.y(), B.z(), grid.stride()}, k},
                     Images::conductor, moments);
 }
 

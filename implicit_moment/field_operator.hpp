@@ -6,8 +6,8 @@
 //     E  edges, nodes --curl--> B  z-edges, faces, x-edges --curl--> edges, nodes   times a^2
 //     E  --smooth S--> as particles feel it --chi--> their current --smooth S--> as the field sees it
 //
-// chi is a 3 x 3 tensor on nodes (predict_current.hpp), S the smoothing; walls enter through the
-// ghosts. A is never built as a matrix.
+// chi is a 3 x 3 tensor on nodes (predict_current.hpp), or 4 pi theta dt times the mass matrix
+// (mass_matrix.hpp); S is the smoothing; walls enter through the ghosts. A is never built as a matrix.
 //
 // For a uniform chi_0 without magnetization the operator falls apart. In the modes of mesh_modes.hpp
 // E_x has U_k(x) V_l(z), E_y has V_k V_l, E_z has V_k U_l; curl curl and S act on each mode alone:
@@ -15,8 +15,9 @@
 //     | 1 + w^2 chi_x + k_z^2      - k_x k_z        |  e_x
 //     |     - k_x k_z          1 + w^2 chi_z + k_x^2 |  e_z       (1 + w^2 chi_y + k_x^2 + k_z^2) e_y
 //
-// with k = a sigma and w the smoothing factor of the mode. So the inverse is: to modes by four small
-// matrix products, 2 x 2 and 1 x 1 solves, and back.
+// with k = a sigma and w the smoothing factor of the mode; with the mass matrix w^2 also has what the
+// products of its splines make of the mode. So the inverse is: to modes by four small matrix products,
+// 2 x 2 and 1 x 1 solves, and back.
 #pragma once
 
 #include <array>
@@ -24,6 +25,7 @@
 
 #include "common/gmres.hpp"
 #include "common/newton_krylov.hpp"
+#include "implicit_moment/mass_matrix.hpp"
 #include "implicit_moment/mesh_modes.hpp"
 #include "implicit_moment/predict_current.hpp"
 
@@ -31,11 +33,18 @@ namespace implicit_moment {
 
 /// How the field equations are solved.
 struct FieldSettings {
-    std::string solver = "gmres";  // or "newton_krylov"
-    double theta = 0.5;            // time level of E
-    double tolerance = 1e-8;       // residual over right-hand side
+    std::string response = "moments";  // or "mass_matrix": the current that E drives
+    std::string solver = "gmres";      // or "newton_krylov"
+    double theta = 0.5;                // time level of E
+    double tolerance = 0;              // residual over right-hand side; 0: what the response needs
     long max_iterations = 200;
     SmoothingSettings smoothing;
+
+    bool uses_mass_matrix() const { return response == "mass_matrix"; }
+    // With the mass matrix the energy is as exact as the solution.
+    double solved_to() const {
+        return tolerance > 0 ? tolerance : uses_mass_matrix() ? 1e-12 : 1e-8;
+    }
 };
 
 /// The inverse of the uniform field operator for every mode: 2 x 2 in the plane, one number for y.
@@ -49,7 +58,8 @@ struct FieldSolver {
     Grid grid;
     FieldSettings settings;
     MeshModes modes;
-    PlasmaResponse response;
+    PlasmaResponse response;  // of the moments
+    MassMatrix mass;          // of the particles themselves, where the case asks for it
     Field gauss, scratch;
     VectorField source, ghosted, curl_E, chi_E;
     std::array<Eigen::MatrixXf, 3> amplitude, unknowns;
@@ -66,6 +76,7 @@ struct FieldSolver {
           settings(s),
           modes(g),
           response(g),
+          mass(g),
           gauss(Field::Zero(g.size())),
           scratch(Field::Zero(g.size())),
           source(g),
@@ -84,7 +95,7 @@ struct FieldSolver {
 };
 
 /// out = (1 + S chi S) E + a^2 curl curl E on the unknowns of E, zero elsewhere.
-/// in:     a = c theta dt; E, any values where no unknowns are; solver.response.chi.
+/// in:     a = c theta dt; E, any values where no unknowns are; solver.response.chi or solver.mass.
 /// note:   particles feel the smoothed field and their current is smoothed; with chi between the
 ///         same two smoothings the predicted current does the work that the particles receive.
 inline void apply_field_operator(FieldSolver& solver, double a, const Eigen::VectorXd& E,
@@ -98,9 +109,14 @@ inline void apply_field_operator(FieldSolver& solver, double a, const Eigen::Vec
     fill_ghosts(grid, magnetic, curl_E);
     curl_of_magnetic(grid, curl_E.all.data(), out.data());
     smooth(grid, electric, smoothing, ghosted.all.data(), solver.scratch);
-    apply_tensor(grid, solver.response.chi, ghosted.all.data(), false, solver.response.scratch,
-                 chi_E.all.data());
-    fill_ghosts(grid, electric, chi_E);
+    if (solver.settings.uses_mass_matrix()) {
+        apply_mass_matrix(grid, solver.mass, ghosted.all.data(), chi_E.all.data());
+        chi_E.all *= 4 * pi * a / c;
+    } else {
+        apply_tensor(grid, solver.response.chi, ghosted.all.data(), false, solver.response.scratch,
+                     chi_E.all.data());
+        fill_ghosts(grid, electric, chi_E);
+    }
     smooth(grid, electric, smoothing, chi_E.all.data(), solver.scratch);
     out = E + chi_E.all + a * a * out;
     keep_unknowns(grid, out.data());
@@ -113,8 +129,15 @@ inline void apply_field_operator(FieldSolver& solver, double a, const Eigen::Vec
 inline void prepare_preconditioner(FieldSolver& solver, double a) {
     const Grid& grid = solver.grid;
     std::array<double, 3> chi_0{};
+    const bool has_mass = solver.settings.uses_mass_matrix();
     for (std::size_t k = 0; k < 3; ++k)
-        chi_0[k] = interior(grid, solver.response.chi.entry[4 * k].data()).mean();
+        chi_0[k] = has_mass ? 4 * pi * a / c * mean_response(grid, solver.mass, int(k))
+                            : interior(grid, solver.response.chi.entry[4 * k].data()).mean();
+    // What the overlap of splines makes of a mode, by the place of a component.
+    const auto half = [&](double angle) { return has_mass ? common::linear_overlap(angle) : 1; };
+    const auto whole = [&](double angle) {
+        return has_mass ? common::quadratic_overlap(angle) : 1;
+    };
     ModeInverse& inverse = solver.inverse;
     for (Eigen::ArrayXXf* f : {&inverse.xx, &inverse.xz, &inverse.zz, &inverse.yy})
         f->resize(grid.x.cells, grid.z.cells);
@@ -122,10 +145,11 @@ inline void prepare_preconditioner(FieldSolver& solver, double a) {
         const double k_z = a * solver.modes.z.sigma[l];
         for (long k = 0; k < grid.x.cells; ++k) {
             const double k_x = a * solver.modes.x.sigma[k];
+            const double x = solver.modes.x.angle[k], z = solver.modes.z.angle[l];
             const double w = solver.smoothing_x[k] * solver.smoothing_z[l];
-            const double xx = 1 + w * w * chi_0[0] + k_z * k_z;
-            const double zz = 1 + w * w * chi_0[2] + k_x * k_x;
-            const double yy = 1 + w * w * chi_0[1] + k_x * k_x + k_z * k_z;
+            const double xx = 1 + w * w * chi_0[0] * half(x) * whole(z) + k_z * k_z;
+            const double zz = 1 + w * w * chi_0[2] * whole(x) * half(z) + k_x * k_x;
+            const double yy = 1 + w * w * chi_0[1] * whole(x) * whole(z) + k_x * k_x + k_z * k_z;
             const double determinant = xx * zz - k_x * k_x * k_z * k_z;
             inverse.xx(k, l) = float(zz / determinant);
             inverse.xz(k, l) = float(k_x * k_z / determinant);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "implicit_moment/interleaved_field.hpp"
@@ -39,6 +40,17 @@ inline Velocity<Real> mean_velocity(const Velocity<Real>& v, const LocalField<Re
             scale * (t_z + t_x * O_y - t_y * O_x + dot * O_z)};
 }
 // [/midpoint]
+
+/// The same for E = 0 as a matrix, R v = vbar; entries xx xy xz, yx yy yz, zx zy zz.
+/// in:     O = q dt B / (2 m c)
+/// exact:  R v - (R v) x O = v;  v . R v >= 0;  |2 R v - v| = |v|.
+template <class Real>
+inline std::array<Real, 9> rotation_matrix(const Real& x, const Real& y, const Real& z) {
+    const Real scale = 1.0 / (1.0 + x * x + y * y + z * z);
+    return {scale * (1.0 + x * x), scale * (x * y + z),   scale * (x * z - y),
+            scale * (y * x - z),   scale * (1.0 + y * y), scale * (y * z + x),
+            scale * (z * x + y),   scale * (z * y - x),   scale * (1.0 + z * z)};
+}
 
 namespace detail {
 

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "implicit_moment/deposit_moments.hpp"
+#include "implicit_moment/move_one.hpp"
 #include "implicit_moment/smooth.hpp"
 #include "implicit_moment/units.hpp"
 
@@ -92,17 +93,8 @@ inline void rotation_tensor(const Grid& grid, const double* B, double half_kick,
     std::array<double*, 9> r{};
     for (std::size_t a = 0; a < 9; ++a) r[a] = R.entry[a].data();
     for_each_point(grid, [=](long n) {
-        const double x = O.x(n), y = O.y(n), z = O.z(n);
-        const double scale = 1 / (1 + x * x + y * y + z * z);
-        r[0][n] = scale * (1 + x * x);
-        r[1][n] = scale * (x * y + z);
-        r[2][n] = scale * (x * z - y);
-        r[3][n] = scale * (y * x - z);
-        r[4][n] = scale * (1 + y * y);
-        r[5][n] = scale * (y * z + x);
-        r[6][n] = scale * (z * x + y);
-        r[7][n] = scale * (z * y - x);
-        r[8][n] = scale * (1 + z * z);
+        const auto at_node = rotation_matrix(O.x(n), O.y(n), O.z(n));
+        for (std::size_t a = 0; a < 9; ++a) r[a][n] = at_node[a];
     });
 }
 

@@ -33,6 +33,34 @@ struct FieldReport {
     double residual = 0;  // over the right-hand side
 };
 
+namespace detail {
+
+// errors: NumericalError, with what the solver says
+template <class Result>
+[[noreturn]] inline void refuse_solution(const std::string& which, const Result& result) {
+    throw common::NumericalError("the " + which + " did not converge: " + result.reason +
+                                 " (relative residual " + std::to_string(result.residual) +
+                                 "); reduce time.dt or raise field.max_iterations");
+}
+
+// Solves A E = solver.source. in/out: E, the guess and the solution
+inline FieldReport solve_linear_field(FieldSolver& solver, double a, double tolerance,
+                                      Eigen::VectorXd& E) {
+    const auto apply = [&](const Eigen::VectorXd& v, Eigen::VectorXd& out) {
+        out.resize(v.size());
+        apply_field_operator(solver, a, v, out);
+    };
+    const auto precondition = [&](const Eigen::VectorXd& r, Eigen::VectorXd& out) {
+        precondition_field(solver, r, out);
+    };
+    const auto result = common::gmres(apply, precondition, solver.source.all, E, tolerance,
+                                      int(solver.settings.max_iterations), 40, solver.krylov);
+    if (!result.converged) refuse_solution("field equations", result);
+    return {result.iterations, result.residual};
+}
+
+}  // namespace detail
+
 /// div E - 4 pi rho on nodes, zero on walls. in: E at t^n with ghosts, rho smoothed.
 inline void gauss_residual(const Grid& grid, const VectorField& E, const Field& rho, Field& G) {
     divergence_of_electric(grid, E.all.data(), G);
@@ -95,26 +123,13 @@ inline FieldReport solve_field(FieldSolver& solver, const std::vector<Moments>& 
     const auto precondition = [&](const Eigen::VectorXd& r, Eigen::VectorXd& out) {
         precondition_field(solver, r, out);
     };
-    const auto refuse = [](const std::string& which, const auto& result) {
-        throw common::NumericalError("the " + which + " did not converge: " + result.reason +
-                                     " (relative residual " + std::to_string(result.residual) +
-                                     "); reduce time.dt or raise field.max_iterations");
-    };
     Eigen::VectorXd& E = field.E_theta.all;
     keep_unknowns(grid, E.data());
     FieldReport report;
     if (settings.solver == "gmres") {
         solver.source.all -= by_J * response.J_hat.all;
         keep_unknowns(grid, solver.source.all.data());
-        const auto apply = [&](const Eigen::VectorXd& v, Eigen::VectorXd& out) {
-            out.resize(v.size());
-            apply_field_operator(solver, a, v, out);
-        };
-        const auto result =
-            common::gmres(apply, precondition, solver.source.all, E, settings.tolerance,
-                          int(settings.max_iterations), 40, solver.krylov);
-        if (!result.converged) refuse("field equations", result);
-        report = {result.iterations, result.residual};
+        report = detail::solve_linear_field(solver, a, settings.solved_to(), E);
     } else {
         const auto residual = [&](const Eigen::VectorXd& v, Eigen::VectorXd& F) {
             F.resize(v.size());
@@ -136,28 +151,87 @@ inline FieldReport solve_field(FieldSolver& solver, const std::vector<Moments>& 
             throw common::NumericalError("the source of the field equations is not finite");
         if (scale > 0) {
             const auto result =
-                common::newton_krylov(residual, precondition, E, scale, settings.tolerance, 30,
+                common::newton_krylov(residual, precondition, E, scale, settings.solved_to(), 30,
                                       int(settings.max_iterations), solver.newton);
-            if (!result.converged) refuse("nonlinear field equations", result);
+            if (!result.converged) detail::refuse_solution("nonlinear field equations", result);
             report = {result.linear_iterations, result.residual};
         } else {
             E.setZero();
         }
     }
     fill_ghosts(grid, electric, field.E_theta);
+    field.iterations = report.iterations;
     return report;
 }
 
+/// Solves for E^{n+theta} with the current of the mass matrix, (1 + S M S 4 pi theta dt) E + a^2 curl curl E
+/// = E^n + a curl B^n - 4 pi theta dt S J_hat.
+/// in:     solver.mass, deposited; E and B at t^n
+/// out:    field.E_theta, ghosts filled
+/// exact:  |residual| <= tolerance |source|
+/// errors: NumericalError when the solver does not converge
+/// note:   Gauss's law is not in it: a^2 grad G would do work that nothing accounts for.
+inline FieldReport solve_field(FieldSolver& solver, double dt, FieldState& field,
+                               double tolerance) {
+    const Grid& grid = solver.grid;
+    const double a = c * solver.settings.theta * dt;
+    prepare_preconditioner(solver, a);
+    smooth(grid, electric, solver.settings.smoothing, solver.mass.J_hat.all.data(), solver.scratch);
+    curl_of_magnetic(grid, field.B.all.data(), solver.source.all.data());
+    solver.source.all = field.E.all + a * solver.source.all -
+                        4 * pi * solver.settings.theta * dt * solver.mass.J_hat.all;
+    keep_unknowns(grid, solver.source.all.data());
+    keep_unknowns(grid, field.E_theta.all.data());
+    const FieldReport report = detail::solve_linear_field(solver, a, tolerance, field.E_theta.all);
+    fill_ghosts(grid, electric, field.E_theta);
+    field.iterations = report.iterations;
+    return report;
+}
+
+/// Adds to field.by_theta what the time level theta takes from the energy in a step by dE,
+/// -(theta - 1/2) sum V (|dE|^2 + |dB|^2) / 4 pi. in: solver.curl_E, of E^{n+theta}
+inline void take_by_theta(FieldSolver& solver, double dt, const Eigen::VectorXd& dE,
+                          FieldState& field) {
+    const Grid& grid = solver.grid;
+    double squares = 0;
+    for (long k = 0; k < 3; ++k) {
+        squares += interior(grid, dE.data() + k * grid.size()).squaredNorm();
+        squares += c * c * dt * dt *
+                   interior(grid, solver.curl_E.all.data() + k * grid.size()).squaredNorm();
+    }
+    field.by_theta -= (solver.settings.theta - 0.5) * squares * grid.cell_area() / (4 * pi);
+}
+
 /// E^{n+1} = [E^{n+theta} - (1 - theta) E^n] / theta,   B^{n+1} = B^n - c dt curl E^{n+theta}.
-/// in/out: field, ghosts filled.
-/// exact:  div B is unchanged to round-off.
+/// in/out: field, ghosts filled; what theta takes is added to field.by_theta.
+/// exact:  div B is unchanged to round-off. The energy of the field changes by what theta takes and by
+///         -dt sum V J . E^{n+theta}.
 /// source: [IMM-10]
 inline void advance_field(FieldSolver& solver, double dt, FieldState& field) {
     const Grid& grid = solver.grid;
     const double theta = solver.settings.theta;
     curl_of_electric(grid, field.E_theta.all.data(), solver.curl_E.all.data());
+    solver.source.all = (field.E_theta.all - field.E.all) / theta;
+    take_by_theta(solver, dt, solver.source.all, field);
     field.B.all -= c * dt * solver.curl_E.all;
     field.E.all = (field.E_theta.all - (1 - theta) * field.E.all) / theta;
+    fill_ghosts(grid, electric, field.E);
+    fill_ghosts(grid, magnetic, field.B);
+}
+
+/// The same with a current that is known: E^{n+1} = E^n + dt (c curl B_theta - 4 pi J), so that Gauss's
+/// law stays where it is to round-off even if E^{n+theta} is only nearly solved for.
+/// in:     J, smoothed, and B_theta = B^n - c theta dt curl E^{n+theta}; ghosts filled
+inline void advance_field(FieldSolver& solver, double dt, const VectorField& J,
+                          const VectorField& B_theta, FieldState& field) {
+    const Grid& grid = solver.grid;
+    curl_of_electric(grid, field.E_theta.all.data(), solver.curl_E.all.data());
+    curl_of_magnetic(grid, B_theta.all.data(), solver.source.all.data());
+    solver.source.all = dt * (c * solver.source.all - 4 * pi * J.all);
+    keep_unknowns(grid, solver.source.all.data());
+    take_by_theta(solver, dt, solver.source.all, field);
+    field.E.all += solver.source.all;
+    field.B.all -= c * dt * solver.curl_E.all;
     fill_ghosts(grid, electric, field.E);
     fill_ghosts(grid, magnetic, field.B);
 }

@@ -6,7 +6,9 @@
 
 #include "common/step_clock.hpp"
 #include "implicit_moment/deposit_moments.hpp"
+#include "implicit_moment/enslave_particles.hpp"
 #include "implicit_moment/interleaved_field.hpp"
+#include "implicit_moment/kick_and_fly.hpp"
 #include "implicit_moment/move_particles.hpp"
 #include "implicit_moment/solve_field.hpp"
 #include "implicit_moment/sort_particles.hpp"
@@ -21,9 +23,14 @@ struct StepScratch {
     InterleavedField field;  // smoothed E^{n+theta} and B_push, where particles feel them
     InterleaveScratch interleave;
     SortScratch sort;
+    EnslavedParticles enslaved;
 
     StepScratch(const Grid& grid, const FieldSettings& settings, std::size_t species)
-        : moments(species, Moments(grid)), solver(grid, settings), B_push(grid), interleave(grid) {}
+        : moments(species, Moments(grid)),
+          solver(grid, settings),
+          B_push(grid),
+          interleave(grid),
+          enslaved(grid) {}
 };
 
 /// The moments of t^n.
@@ -38,6 +45,62 @@ void find_moments(const Grid& grid, double dt, const std::vector<Particles>& par
     // [/moments]
 }
 
+/// From t^n to t^{n+1} with the particles' own current. The energy of particles and field changes by what
+/// field.by_theta says and by nothing else, for any step.
+/// in/out: particles, sorted by node; field
+/// out:    iterations and residual of the field solve
+/// errors: NumericalError when the field does not converge or has blown up
+template <class Clock = common::NoClock>
+FieldReport take_mass_matrix_step(const Grid& grid, double dt, StepScratch& scratch,
+                                  std::vector<Particles>& particles, FieldState& field,
+                                  Clock&& clock = {}) {
+    // [mass matrix step]
+    fly(grid, 0.5 * dt, particles);  // to x*
+    clock.lap("mover");
+    sort_particles(grid, scratch.sort, particles);
+    clock.lap("sort");
+    deposit_mass_matrix(particles, grid, field.B, dt, scratch.solver.mass);  // particles -> grid
+    clock.lap("mass");
+    const FieldReport solved =
+        solve_field(scratch.solver, dt, field, scratch.solver.settings.solved_to());  // [IMM-10]
+    interleave_field(grid, scratch.solver.settings.smoothing, field.E_theta, field.B,
+                     scratch.interleave, scratch.field);
+    clock.lap("field");
+    kick_particles(scratch.field, grid, dt, particles);  // grid -> particles
+    fly(grid, 0.5 * dt, particles);                      // from x*
+    clock.lap("mover");
+    advance_field(scratch.solver, dt, field);  // [IMM-10]
+    clock.lap("field");
+    sort_particles(grid, scratch.sort, particles);  // for the next step
+    clock.lap("sort");
+    // [/mass matrix step]
+    return solved;
+}
+
+/// From t^n to t^{n+1} with particles that follow the field within the step: as above, and Gauss's law
+/// holds as well.
+template <class Clock = common::NoClock>
+FieldReport take_enslaved_step(const Grid& grid, double dt, const MoverSettings& mover,
+                               StepScratch& scratch, std::vector<Particles>& particles,
+                               FieldState& field, Clock&& clock = {}) {
+    // [enslaved step]
+    fly(grid, 0.5 * dt, particles);  // to x* and back: there the response is found
+    sort_particles(grid, scratch.sort, particles);
+    deposit_mass_matrix(particles, grid, field.B, dt, scratch.solver.mass);
+    fly(grid, -0.5 * dt, particles);
+    clock.lap("mass");
+    const FieldReport solved =
+        solve_enslaved_field(scratch.solver, dt, mover, particles, field, scratch.B_push,
+                             scratch.interleave, scratch.field, scratch.enslaved);
+    clock.lap("field");
+    move_enslaved(scratch.field, grid, dt, scratch.enslaved, particles);
+    advance_field(scratch.solver, dt, scratch.enslaved.J, scratch.B_push, field);  // [IMM-10]
+    sort_particles(grid, scratch.sort, particles);
+    clock.lap("sort");
+    // [/enslaved step]
+    return solved;
+}
+
 /// From t^n to t^{n+1}.
 /// in:     scratch.moments of t^n; q/m of each species
 /// in/out: particles and field
@@ -47,6 +110,11 @@ template <class Clock = common::NoClock>
 FieldReport take_step(const Grid& grid, double dt, const MoverSettings& mover,
                       const std::vector<double>& charge_over_mass, StepScratch& scratch,
                       std::vector<Particles>& particles, FieldState& field, Clock&& clock = {}) {
+    if (scratch.solver.settings.uses_mass_matrix() &&
+        scratch.solver.settings.solver == "newton_krylov")
+        return take_enslaved_step(grid, dt, mover, scratch, particles, field, clock);
+    if (scratch.solver.settings.uses_mass_matrix())
+        return take_mass_matrix_step(grid, dt, scratch, particles, field, clock);
     // [step]
     const FieldReport solved = solve_field(scratch.solver, scratch.moments, charge_over_mass, dt,
                                            field, scratch.B_push);  // [IMM-10, 11, 12]

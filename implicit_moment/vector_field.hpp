@@ -40,6 +40,8 @@ struct VectorField {
 /// step, where the solver starts; explicit_em does not use that one.
 struct FieldState {
     VectorField E, B, E_theta;
+    double by_theta = 0;    // energy that the time level theta has taken so far, see advance_field
+    double iterations = 0;  // of the field solve of the last step
     explicit FieldState(const Grid& grid) : E(grid), B(grid), E_theta(grid) {}
 };
 

@@ -118,6 +118,13 @@ class Recorder {
         };
         conserved("energy_drift", "1");
         conserved("div_B", "B*omega_pi/c");
+        // What each species has been heated by, the mesh and its noise included.
+        for (const Particles& s : state.plasma.species) {
+            const auto kinetic = history.column("kinetic_" + s.name);
+            if (kinetic.front() > 0)
+                summary.conservation("kinetic_change_" + s.name,
+                                     kinetic.back() / kinetic.front() - 1, "1");
+        }
         conserved("gauss_residual", "4pi*e*n0");
         summary.performance("particles", double(state.plasma.count()));
     }
@@ -155,6 +162,12 @@ class Recorder {
         row.add("energy", of_energy, energy);
         // A cold plasma at rest has no energy to compare with.
         row.add("energy_drift", "1", initial > 0 ? energy / initial - 1 : 0);
+        if (!parameters_.leapfrog.chosen) {
+            const double by_theta = field.by_theta / n0;
+            row.add("energy_by_theta", of_energy, by_theta);
+            row.add("energy_residual", "1", initial > 0 ? (energy - by_theta) / initial - 1 : 0);
+            row.add("iterations", "1", field.iterations);
+        }
         row.add("electric", of_energy, field_energy(grid, field.E) / n0);
         row.add("magnetic", of_energy, field_energy(grid, field.B) / n0);
         for (std::size_t k = 0; k < moments.size(); ++k)

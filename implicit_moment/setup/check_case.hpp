@@ -94,8 +94,12 @@ inline Scales scales_of(const Case& w) {
     }
     s.steps = std::lround(w.end / w.dt);
     const double krylov = 45 * 3 * 8, tensors = 40 * 8, moments = 85 * 8;
+    const bool follow = w.field.uses_mass_matrix() && w.field.solver == "newton_krylov";
     s.bytes = (w.leapfrog.chosen ? 46.0 : 60.0) * double(s.particles) +
               double(w.grid.size()) * (w.leapfrog.chosen ? moments : krylov + tensors);
+    if (w.field.uses_mass_matrix()) s.bytes += double(w.grid.size()) * (detail::offsets + 10) * 8;
+    // Paths, and currents of blocks with room for Anderson's acceleration.
+    if (follow) s.bytes += 32 * double(s.particles) + double(w.grid.size()) * (48 + 75) * 8;
     return s;
 }
 
@@ -192,6 +196,9 @@ inline void validate(Case& w) {
     refuse(w.end / w.dt > 1e9, "time.end / time.dt is " + format(w.end / w.dt) +
                                    " steps, more than 1e9: raise time.dt or lower time.end");
 
+    refuse(w.field.tolerance > 0 && w.field.tolerance < 1e-13,
+           "field.tolerance = " + format(w.field.tolerance) +
+               " is below 1e-13, what round-off leaves: raise it, or 0 for the default");
     w.is_uniform() ? detail::validate_uniform(w) : detail::validate_sheet(w);
 }
 
@@ -319,7 +326,10 @@ inline std::string describe_scales(const Case& w, const Scales& scales) {
     line("memory", "about " + format(scales.bytes / 1048576) + " MiB");
     const double work =
         double(scales.steps) * (double(scales.particles) + 10.0 * double(w.grid.size()));
-    const double per_second = w.leapfrog.chosen ? 40e6 : 15e6;
+    const double per_second = w.leapfrog.chosen                   ? 40e6
+                              : !w.field.uses_mass_matrix()       ? 15e6
+                              : w.field.solver == "newton_krylov" ? 2e5
+                                                                  : 7e6;
     line("time", "about " + format(work / per_second) + " s on one core");
     return text;
 }

@@ -177,10 +177,13 @@ inline common::ParameterTable describe(Case& w) {
     table.group("field equations");
     table.real("field.theta", w.field.theta, "", between(0.5, 1),
                "time level of E: 0.5 conserves energy, 1 damps fast waves");
+    table.choice("field.response", w.field.response, {"moments", "mass_matrix"},
+                 "current that E drives: the slide's prediction, or the particles' own, which "
+                 "conserves energy for any step");
     table.choice("field.solver", w.field.solver, {"gmres", "newton_krylov"},
                  "newton_krylov rotates the current in B at the theta level");
-    table.real("field.tolerance", w.field.tolerance, "", between(1e-13, 1e-2),
-               "residual over right-hand side");
+    table.real("field.tolerance", w.field.tolerance, "", between(0, 1e-2),
+               "residual over right-hand side; 0: 1e-8 with moments, 1e-12 with mass_matrix");
     table.whole("field.max_iterations", w.field.max_iterations, "", between(1, 1e5),
                 "before the run ends with status 3");
     detail::describe_smoothing(table, w, "binomial passes on sources and on the pushing field");

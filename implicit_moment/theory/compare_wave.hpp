@@ -293,7 +293,7 @@ inline void refuse_wave(const Case& w) {
 /// How exact a wave is for which theory is the scheme: without particles to what the solver leaves.
 inline double exact_to(const Case& w) {
     if (w.wave != "light") return 0.005;
-    return w.leapfrog.chosen ? 1e-9 : std::min(0.005, 100 * w.field.tolerance);
+    return w.leapfrog.chosen ? 1e-9 : std::min(0.005, 100 * w.field.solved_to());
 }
 
 /// The columns of a uniform plasma: the complex amplitude of the seeded mode in one component.

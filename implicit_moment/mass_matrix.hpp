@@ -1,0 +1,269 @@
+// particles -> grid: the current of the coming step as the particles themselves will carry it, linear
+// in the field that is not known yet. It stands beside the slide's prediction from moments, and
+// carries [MPM-13], the energy of any step, to the plasma.
+//
+// Where a particle feels the field of the step, x*, is fixed before that field is known. Its mean
+// velocity is then linear in E = E^{n+theta},
+//
+//     vbar_p = R_p [ v_p^n + (q dt/2m) sum_h W_h(x*) E_h ],     R_p the rotation of [IMM-12],
+//
+// and so is the current that the particles deposit at x* with the same splines W:
+//
+//     J_g = (1/V) sum_p q W_g(x*) vbar_p = J_hat_g + sum_h M_gh E_h
+//     J_hat_g = (1/V) sum_p q W_g R_p v_p^n
+//     M_gh    = (1/V) sum_p (q^2 dt/2m) W_g R_p W_h             (a tensor for each pair of places)
+//
+// M is a mass matrix. The slide's chi is M with each row summed to its diagonal, as a lumped mass is,
+// and its J - dt/2 div P is J_hat expanded about x^n.
+//
+// g and h run over the 21 places that the particles of one nearest node reach: 2 x 3 x-edges (S1 S2),
+// 3 x 3 nodes (S2 S2), 3 x 2 z-edges (S2 S1). These particles all add to one 21 x 21 block,
+//
+//     block = sum_p a_p b_p^T,   a_p = q W_g / V,   b_p = (q dt/2m) R_p W_h  and, 22nd, R_p v_p,
+//
+// whose last column is J_hat.
+//
+// source: G. Lapenta, J. Comput. Phys. 334, 349 (2017), with other splines and other places.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "implicit_moment/deposit_moments.hpp"
+#include "implicit_moment/smooth.hpp"
+
+namespace implicit_moment {
+
+namespace detail {
+
+// The places of E_x, E_y, E_z around one node, and where each component begins among the 21.
+inline constexpr int places = 21;
+inline constexpr std::array<int, 3> wide{2, 3, 3}, high{3, 3, 2};
+inline constexpr std::array<int, 4> first_place{0, 6, 15, places};
+
+// What h of component b can be away from g of component a: so many columns and rows, the first of
+// them -(wide[a] - 1) and -(high[a] - 1). Such offsets are counted through all pairs of components.
+constexpr int columns_of(int a, int b) { return wide[a] + wide[b] - 1; }
+constexpr int rows_of(int a, int b) { return high[a] + high[b] - 1; }
+constexpr int first_offset(int pair) {
+    int first = 0;
+    for (int k = 0; k < pair; ++k) first += columns_of(k / 3, k % 3) * rows_of(k / 3, k % 3);
+    return first;
+}
+inline constexpr int offsets = first_offset(9);
+
+}  // namespace detail
+
+/// M on the mesh: for every place g the 15 to 25 places h of each component that share particles with
+/// it, 167 numbers per node; and J_hat, which is found in the same sweep.
+/// note:   the number of (row, offset, column) stands at (row * 167 + offset) * stride + column, with
+///         rows and columns as they are stored, ghosts included.
+struct MassMatrix {
+    std::vector<double> entry;
+    VectorField J_hat;           // ghosts filled
+    std::vector<double> padded;  // E with room around it
+
+    explicit MassMatrix(const Grid& grid) : J_hat(grid) {}
+};
+
+namespace detail {
+
+inline constexpr int row_vectors = 3;  // 24 columns: 21 places, J_hat, two that stay 0
+using BlockRow = std::array<SimdVector, row_vectors>;
+
+// Eight particles on both sides of a block.
+struct BlockFactors {
+    SimdVector a[places];               // [g]: lanes are particles
+    BlockRow b[3][common::simd_width];  // [component][particle]: lanes are columns
+
+    // in: weights W of the 21 places; a_scale = q / V, 0 in lanes that hold no particle; b_scale = q dt / 2m;
+    //     R and R v
+    void set(const SimdVector (&W)[places], const SimdVector& a_scale, double b_scale,
+             const std::array<SimdVector, 9>& R, const Velocity<SimdVector>& vbar) {
+        // 1 where a column belongs to E_x, E_y, E_z and to J_hat.
+        constexpr SimdVector x0{1, 1, 1, 1, 1, 1, 0, 0}, y0{0, 0, 0, 0, 0, 0, 1, 1},
+            y1{1, 1, 1, 1, 1, 1, 1, 0}, z1{0, 0, 0, 0, 0, 0, 0, 1}, z2{1, 1, 1, 1, 1, 0, 0, 0},
+            J2{0, 0, 0, 0, 0, 1, 0, 0};
+        for (int g = 0; g < places; ++g) a[g] = W[g] * a_scale;
+        for (int p = 0; p < common::simd_width; ++p) {
+            BlockRow row{};
+            for (int h = 0; h < places; ++h) row[h / 8][h % 8] = b_scale * W[h][p];
+            const double v[3] = {vbar.x[p], vbar.y[p], vbar.z[p]};
+            for (int k = 0; k < 3; ++k) {
+                const double R_x = R[3 * k][p], R_y = R[3 * k + 1][p], R_z = R[3 * k + 2][p];
+                b[k][p] = {row[0] * (R_x * x0 + R_y * y0), row[1] * (R_y * y1 + R_z * z1),
+                           row[2] * (R_z * z2) + v[k] * J2};
+            }
+        }
+    }
+};
+
+// The block of one node's particles of all species.
+struct NodeBlock {
+    BlockRow row[places]{};
+
+    // Adds a b^T of eight particles.
+    void add(const BlockFactors& factors) {
+        for (int component = 0; component < 3; ++component) {
+            for (int half = 0; half < common::simd_width; half += 4) {
+                const BlockRow* b = &factors.b[component][half];
+                for (int g = first_place[component]; g < first_place[component + 1]; ++g) {
+                    for (int k = 0; k < row_vectors; ++k) {
+                        SimdVector sum = row[g][k];
+                        for (int p = 0; p < 4; ++p) sum += factors.a[g][half + p] * b[p][k];
+                        row[g][k] = sum;
+                    }
+                }
+            }
+        }
+    }
+};
+
+// Where the 21 places stand, from the corner down left of their node, and where the block's numbers go,
+// from row and column of that corner.
+struct BlockPlaces {
+    std::array<long, places> place{};
+    std::array<std::array<long, places>, places> entry{};
+
+    explicit BlockPlaces(const Grid& grid) {
+        const long stride = grid.stride();
+        const auto for_each_place = [&](const auto& visit) {
+            for (int a = 0; a < 3; ++a)
+                for (int j = 0; j < high[a]; ++j)
+                    for (int i = 0; i < wide[a]; ++i)
+                        visit(first_place[a] + j * wide[a] + i, a, i, j);
+        };
+        for_each_place([&](int g, int a, int i, int j) {
+            place[g] = a * grid.size() + j * stride + i;
+            for_each_place([&](int h, int b, int i_h, int j_h) {
+                const int column = i_h - i + wide[a] - 1, row = j_h - j + high[a] - 1;
+                const int offset = first_offset(3 * a + b) + row * columns_of(a, b) + column;
+                entry[g][h] = (long(j) * offsets + offset) * stride + i;
+            });
+        });
+    }
+};
+
+}  // namespace detail
+
+/// Deposits M and J_hat of all species.
+/// in:     particles at x*, sorted by node there; B, ghosts filled, in which their velocities are
+///         rotated; dt
+/// out:    mass, with what was deposited behind walls and periodic ends folded back in J_hat; M keeps
+///         it and is folded where it is applied
+/// exact:  J_hat + M E is the current of kick_particles in that E, to round-off.
+inline void deposit_mass_matrix(const std::vector<Particles>& species, const Grid& grid,
+                                const VectorField& B, double dt, MassMatrix& mass) {
+    const long columns = nodes_x(grid), stride = grid.stride();
+    const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing();
+    const detail::MeshB mesh_B{B.x(), B.y(), B.z(), stride};
+    const detail::BlockPlaces block_places(grid);
+    mass.entry.assign(std::size_t((grid.z.cells + 3) * detail::offsets * stride), 0);
+    mass.J_hat.all.setZero();
+    double* J_hat = mass.J_hat.all.data();
+
+    common::for_each_row_three_colors(nodes_z(grid), [&](long row) {
+        const double z_node = grid.z.at(double(row));
+        detail::BlockFactors factors;
+        for (long column = 0; column < columns; ++column) {
+            const long node = row * columns + column, corner = grid.index(column - 1, row - 1);
+            const double x_node = grid.x.at(double(column));
+            detail::NodeBlock block;
+            bool empty = true;
+            for (const Particles& s : species) {
+                const double half_kick = 0.5 * dt * s.q_p / s.m_p, k = half_kick / c;
+                const long begin = s.first_of_node[node], end = s.first_of_node[node + 1];
+                for (long p = begin; p < end; p += common::simd_width) {
+                    const long count = end - p;
+                    empty = false;
+                    const common::QuadraticWeights<SimdVector> S_x(
+                        (common::load_simd(&s.x_p[p], count) - x_node) * per_dx),
+                        S_z((common::load_simd(&s.z_p[p], count) - z_node) * per_dz);
+                    // [mass matrix]
+                    SimdVector W[detail::places];
+                    for (int j = 0; j < 3; ++j) {
+                        for (int i = 0; i < 2; ++i) W[2 * j + i] = S_x.linear[i] * S_z.quadratic[j];
+                        for (int i = 0; i < 3; ++i)
+                            W[6 + 3 * j + i] = S_x.quadratic[i] * S_z.quadratic[j];
+                    }
+                    for (int j = 0; j < 2; ++j)
+                        for (int i = 0; i < 3; ++i)
+                            W[15 + 3 * j + i] = S_x.quadratic[i] * S_z.linear[j];
+                    const Velocity<SimdVector> b = mesh_B.at(corner, S_x, S_z),
+                                               v{common::load_simd(&s.ux_p[p], count),
+                                                 common::load_simd(&s.uy_p[p], count),
+                                                 common::load_simd(&s.uz_p[p], count)};
+                    const auto R = rotation_matrix<SimdVector>(k * b.x, k * b.y, k * b.z);
+                    const Velocity<SimdVector> R_v{R[0] * v.x + R[1] * v.y + R[2] * v.z,
+                                                   R[3] * v.x + R[4] * v.y + R[5] * v.z,
+                                                   R[6] * v.x + R[7] * v.y + R[8] * v.z};
+                    factors.set(W, common::first_simd(count) * (s.q_p / grid.cell_area()),
+                                half_kick, R, R_v);
+                    block.add(factors);
+                    // [/mass matrix]
+                }
+            }
+            if (empty) continue;
+            double* entry = &mass.entry[std::size_t(row * detail::offsets * stride + column)];
+            for (int g = 0; g < detail::places; ++g) {
+                for (int h = 0; h < detail::places; ++h)
+                    entry[block_places.entry[g][h]] += block.row[g][h / 8][h % 8];
+                J_hat[corner + block_places.place[g]] += block.row[g][2][5];
+            }
+        }
+    });
+    for (std::size_t a = 0; a < 3; ++a)
+        common::fold_ghosts(grid, electric.place[a], electric.parity[a],
+                            mass.J_hat.all.data() + long(a) * grid.size());
+}
+
+/// The mean of what M makes of a uniform E along one component: the sum of that component's entries over
+/// the cells.
+inline double mean_response(const Grid& grid, const MassMatrix& mass, int component) {
+    const long stride = grid.stride();
+    const int first = detail::first_offset(4 * component),
+              end = detail::first_offset(4 * component + 1);
+    double sum = 0;
+    for (long row = 0; row < grid.z.cells + 3; ++row) {
+        const double* entry = &mass.entry[std::size_t((row * detail::offsets + first) * stride)];
+        for (long n = 0; n < (end - first) * stride; ++n) sum += entry[n];
+    }
+    return sum / double(grid.x.cells * grid.z.cells);
+}
+
+/// J = M E.
+/// in:     E as particles feel it, ghosts filled
+/// out:    J, ghosts filled
+/// exact:  sum_g J_g . E_g V over the unknowns is the work of the kicks on the particles, >= 0.
+inline void apply_mass_matrix(const Grid& grid, MassMatrix& mass, const double* E, double* J) {
+    const long stride = grid.stride(), size = grid.size(), rows = grid.z.cells + 3;
+    const long margin = 2 * stride + 2, room = size + 2 * margin;
+    mass.padded.assign(std::size_t(3 * room), 0);
+    double* padded = mass.padded.data();
+    for (long a = 0; a < 3; ++a) std::copy_n(E + a * size, size, padded + a * room + margin);
+    common::for_each_row(
+        rows,
+        [&](long row) {
+            const double* entry = &mass.entry[std::size_t(row * detail::offsets * stride)];
+            for (int a = 0; a < 3; ++a) {
+                double* sum = J + a * size + row * stride;
+                std::fill_n(sum, stride, 0.0);
+                for (int b = 0; b < 3; ++b) {
+                    for (int j = 0; j < detail::rows_of(a, b); ++j) {
+                        for (int i = 0; i < detail::columns_of(a, b); ++i, entry += stride) {
+                            const double* E_h = padded + b * room + margin +
+                                                (row + j - detail::high[a] + 1) * stride + i -
+                                                detail::wide[a] + 1;
+#pragma omp simd
+                            for (long n = 0; n < stride; ++n) sum[n] += entry[n] * E_h[n];
+                        }
+                    }
+                }
+            }
+        },
+        167 * size);
+    for (std::size_t a = 0; a < 3; ++a)
+        common::fold_ghosts(grid, electric.place[a], electric.parity[a], J + long(a) * size);
+}
+
+}  // namespace implicit_moment
