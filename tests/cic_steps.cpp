@@ -376,6 +376,25 @@ TEST_CASE("a floating wall carries its charge and a row of floating walls no net
     CHECK(spread <= 1e-13);                   // a conductor has one potential
 }
 
+TEST_CASE("a mode along floating walls obeys Gauss's law in the half cells at both") {
+    const long N = 6;
+    const double dx = 0.4, c = 0.9, K2 = 1.7;  // K2 fixes the mean
+    const Wall low{true, 0, 0.3}, high{true, 0, -0.8};
+    Random random(31);
+    std::vector<double> rho, scratch;
+    for (long i = 0; i <= N; ++i) rho.push_back(random() - 0.5);
+    std::vector<double> phi = rho;
+    solve_tridiagonal(dx, c, K2, low, high, phi.data(), N, scratch);
+    // What flows out of a cell through its faces, and out of the wall, is what is in it.
+    const auto out = [&](std::size_t i, std::size_t to) { return c * (phi[i] - phi[to]) / dx; };
+    const auto held = [&](std::size_t i) { return dx * (rho[i] - K2 * phi[i]); };
+    double most = worst({std::fabs(out(0, 1) - 0.5 * held(0) - low.charge),
+                         std::fabs(out(6, 5) - 0.5 * held(6) - high.charge)});
+    for (std::size_t i = 1; i < 6; ++i)
+        most = worst({most, std::fabs(out(i, i - 1) + out(i, i + 1) - held(i))});
+    CHECK(most <= 1e-14);
+}
+
 TEST_CASE("the leapfrog can be run backwards") {
     Mesh m{{{16, 0, 16, true}, {16, 0, 16, true}}, {2, false, 2}, ""};
     std::vector<Particles> species{scattered(m, 400, -0.64, 12)};
@@ -585,6 +604,19 @@ TEST_CASE("a perturbed species has the density that the case asks for") {
     }
 }
 
+TEST_CASE("simulation particles have together the charge and the mass of all that they stand for") {
+    for (const double charge : {-1.0, -0.5, 2.0}) {
+        Case parameters;
+        parameters.grid.x = {8, 0, 5.0, true};
+        SpeciesCase s;
+        s.name = "ions", s.density = 0.3, s.charge = charge, s.mass = 4, s.particles_per_cell = 10;
+        parameters.species = {s};
+        const Particles loaded = load_species(parameters, s, 1);
+        CHECK(std::fabs(80 * loaded.q_p - charge * 0.3 * 5) <= 1e-14);
+        CHECK(std::fabs(80 * loaded.m_p - 4 * 0.3 * 5) <= 1e-14);
+    }
+}
+
 TEST_CASE("a quiet Maxwellian has its moments") {
     Case parameters;
     parameters.grid.x = {32, 0, 32, true};
@@ -720,6 +752,26 @@ TEST_CASE("every particle is in one batch and its work leaves the others alone")
             CHECK(std::fabs(batch.sums.momentum[0] - 0.7 * (s.vx_p[0] + s.vx_p[1] + s.vx_p[2])) <=
                   8 * eps);
         }
+    }
+}
+
+TEST_CASE("a particle moves by its own velocity times the step between walls and across a seam") {
+    for (const Mesh& m : meshes(false)) {
+        CAPTURE(m.name);
+        Particles s = scattered(m, 9, 1, 32);
+        const Particles before = s;
+        ParticleBatch batch = whole(s);
+        move_particles(m.grid, 0.7, batch);
+        const auto off = [](const common::Axis& axis, double way) {
+            return std::fabs(axis.periodic ? std::remainder(way, axis.length) : way);
+        };
+        double most = 0;
+        for (std::size_t p = 0; p < 9; ++p) {
+            most = worst({most, off(m.grid.x, s.x_p[p] - before.x_p[p] - 0.7 * s.vx_p[p])});
+            if (!s.z_p.empty())
+                most = worst({most, off(m.grid.z, s.z_p[p] - before.z_p[p] - 0.7 * s.vz_p[p])});
+        }
+        CHECK(most <= 32 * eps);
     }
 }
 

@@ -590,6 +590,40 @@ TEST_CASE("the trap pulls alike at both images of a seam and towards the middle"
     }
 }
 
+TEST_CASE("fluid at rest takes the step in which a trap or gravity sets it in motion") {
+    Case w = flip_case(8, 4, "slip", "slip");
+    w.regions = {fluid("", 1, 1)};
+    w.pressure = "implicit";  // after the first step sound does not count
+    const auto allowed = [&] {
+        FlipRun r(w);
+        r.deposit();
+        return step_allowed(r.problem, r.scratch.mesh, 1e3) / w.cfl;
+    };
+    for (const double trap : {0.25, 1.0, 4.0}) {
+        w.trap = trap;
+        CHECK(allowed() == doctest::Approx(1 / std::sqrt(trap)).epsilon(1e-14));
+    }
+    w.trap = 0, w.gravity_x = 3, w.gravity_z = -4;
+    CHECK(allowed() == doctest::Approx(std::sqrt(0.125 / 5 / w.cfl)).epsilon(1e-14));
+}
+
+TEST_CASE("the fastest node crosses so many cells and in a row none along z") {
+    for (const long rows : {1L, 4L}) {
+        Case w = flip_case(2, rows, "periodic", "periodic");  // cells 0.5 by 0.25
+        if (rows == 1) w.grid.z.length = 0.25;
+        FlipRun r(w, any_cloud(w, 0, 6));
+        Nodes& g = r.nodes();
+        const auto crossed = [&](double vx, double vz) {
+            g.vxL.setZero(r.grid().size()), g.vzL.setZero(r.grid().size());
+            g.vxL[r.grid().index(1, 0)] = vx, g.vzL[r.grid().index(0, 0)] = vz;
+            return flip::detail::most_cells_crossed(r.grid(), g, false);
+        };
+        CHECK(crossed(3, 1) == 6);
+        CHECK(crossed(-3, 1) == 6);
+        CHECK(crossed(1, -3) == (rows == 1 ? 2 : 12));
+    }
+}
+
 TEST_CASE("an open end feels the pressure outside over its length and no further") {
     Case w = several_gases(7, 5, "open", "open");
     const double p[4] = {0.5, 0.9, 0.2, 1.3};
@@ -1258,6 +1292,29 @@ TEST_CASE("a confined gas takes a tenth of its room and gives what it has too mu
             const double V = part * (confined ? 1 + 0.1 * (1 / part - 1) : 1);
             CHECK(column(r.particles().V_p).sum() == doctest::Approx(V).epsilon(1e-12));
         }
+    }
+}
+
+TEST_CASE("gas takes a tenth of the room beside a liquid and the liquid none") {
+    for (const char* pressure : {"explicit", "implicit"}) {
+        Case w = flip_case(6, 5, "slip", "slip");
+        w.materials = {{"air", 1.4, 0}, {"water", 4.4, 6}};
+        w.regions = {fluid("air", 1, 1)};
+        w.density = "particles", w.pressure = pressure;
+        Particles p = load_particles(completed(w));
+        // Half full, and 0.7 of a cell is what a liquid fills.
+        for (std::size_t k = 0; k < p.V_p.size(); ++k) {
+            p.V_p[k] *= 0.5, p.material[k] = static_cast<int>(k % 2);
+            const Material& a = w.materials[k % 2];
+            p.e_p[k] = internal_energy(a, p.m_p[k] / p.V_p[k], 1);
+        }
+        FlipRun r(w, p);
+        r.step();
+        std::array<double, 2> V{};
+        for (std::size_t k = 0; k < p.V_p.size(); ++k)
+            V[static_cast<std::size_t>(r.particles().material[k])] += r.particles().V_p[k];
+        CHECK(V[0] == doctest::Approx(0.25 * (1 + 0.1 * (0.7 / 0.5 - 1))).epsilon(1e-12));
+        CHECK(V[1] == doctest::Approx(0.25).epsilon(1e-12));
     }
 }
 

@@ -169,6 +169,27 @@ TEST_CASE("the cells of rings have their volumes and the density of the fluid") 
     }
 }
 
+TEST_CASE("regions of rings hold the energies that they are given beside those of their pressure") {
+    for (const bool random : {false, true}) {
+        Case w = rings(6, 4);
+        w.regions = {fluid("", 2, 1), fluid("", 3, 1)};
+        w.regions[1].shape = "disk", w.regions[1].center_z = 0.5, w.regions[1].radius = 0.4;
+        if (random) w.loading = "random";
+        const auto internal = [&] {
+            const Particles p = load_particles(completed(w));
+            double sum = 0;
+            for (std::size_t k = 0; k < p.m_p.size(); ++k) sum += p.m_p[k] * p.e_p[k];
+            return sum;
+        };
+        const double before = internal();
+        for (const auto& [region, energy] : {std::pair(0, 5.0), {1, 7.0}}) {
+            w.regions[0].energy = w.regions[1].energy = 0;
+            w.regions[static_cast<std::size_t>(region)].energy = energy;
+            CHECK(std::fabs(internal() - before - energy) <= 1e-13 * (before + energy));
+        }
+    }
+}
+
 TEST_CASE("every step on rings keeps mass and momentum along the axis and energy" *
           doctest::description("physics")) {
     long combinations = 0;

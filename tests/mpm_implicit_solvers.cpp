@@ -538,6 +538,15 @@ TEST_CASE("the mass matrix weighs a translation with the mass") {
     CHECK(off <= 1e-13);
 }
 
+TEST_CASE("with the lumped mass the velocity of a node is momentum over mass without iteration") {
+    long lumped = 0, consistent = 0;
+    for_each_start([&](const Situation&, const auto&, ThetaRun& run, auto&) {
+        (run.scheme.consistent() ? consistent : lumped) += run.sums.solver.mass_iterations;
+    });
+    CHECK(lumped == 0);
+    CHECK(consistent > 0);
+}
+
 TEST_CASE("rigid motions meet no stiffness") {
     double off = 0;
     long turned = 0;
@@ -770,6 +779,30 @@ TEST_CASE("impulses are found whose sum on every node is what is left of its equ
     });
     CHECK(off <= 1e-11);
     CHECK(redundant >= 10);
+}
+
+TEST_CASE("a pull far below the largest impulse is round-off and opens no pair") {
+    const double accuracy = 1e-12, largest = 1e6;  // impulses are known to 1e3 times that
+    for_each_contact_case([&](ThetaRun& run, auto& solver, Random&) {
+        ActiveSet& set = solver.set;
+        const Vector at_rest = Vector::Zero(2 * run.nodes.size());
+        const std::vector<double> V(solver.force_controls.size(), 0.0);
+        for (const bool rubs : {false, true}) {
+            for (const double pull : {0.5e-9, 2e-9}) {
+                for (ContactPair& pair : set.list.pairs) {
+                    pair.state = ContactState::slip, pair.mu = 0;
+                    pair.lambda_n = -pull * largest, pair.lambda_t = 0;
+                }
+                ContactPair& first = set.list.pairs.front();
+                (rubs ? first.lambda_t : first.lambda_n) = largest;
+                update_active_set(at_rest, V, run.nodes, accuracy, set);
+                const auto begin = set.list.pairs.begin() + 1, end = set.list.pairs.end();
+                const auto closed = std::count_if(
+                    begin, end, [](const ContactPair& pair) { return pair.closed(); });
+                CHECK(closed == (pull < 1e-9 ? end - begin : 0));
+            }
+        }
+    });
 }
 
 TEST_CASE("a plate that a force drives takes along whom it presses") {

@@ -427,6 +427,26 @@ TEST_CASE("a grain across the ends of a periodic mesh is filled on both sides") 
     }
 }
 
+TEST_CASE("an outline may reach beyond the mesh by a millionth of the spacing and no further") {
+    const double h = 0.5, spacing = 0.25;
+    const Mesh mesh = mesh_of(4, 6, h, -1, -2);  // to 1 and 1
+    const auto fits = [&](double left, double right, double below, double above) {
+        const double x_low = -1 - left, x_high = 1 + right, y_low = -2 - below, y_high = 1 + above;
+        const Outline outline =
+            polygon({{x_low, y_low}, {x_high, y_low}, {x_high, y_high}, {x_low, y_high}});
+        std::size_t count = 0;
+        const std::string sentence = refusal([&] { count = fill(outline, mesh, 2).size(); });
+        CHECK((holds(sentence, "does not fit on the mesh") || count == 8 * 12));
+        return sentence.empty();
+    };
+    const double just = 1e-6 * spacing, far = 1.1e-6 * spacing;
+    CHECK(fits(just, just, just, just));
+    CHECK_FALSE(fits(far, 0, 0, 0));
+    CHECK_FALSE(fits(0, far, 0, 0));
+    CHECK_FALSE(fits(0, 0, far, 0));
+    CHECK_FALSE(fits(0, 0, 0, far));
+}
+
 TEST_CASE("rows of disks make the compressed pack and the sheared one") {
     Rows rows;
     rows.x = 0.1, rows.y = 0.1, rows.columns = 5, rows.rows = 4, rows.radius = 0.1;
@@ -652,6 +672,28 @@ TEST_CASE("a random pack depends on its seed and not on its place") {
         CHECK(same == 0);
         CHECK(first[0].name == "g0001");
         CHECK(first[299].name == "g0300");
+    }
+}
+
+TEST_CASE("in another unit of length a random pack is the same") {
+    for (const bool periodic : {false, true}) {
+        for (const bool loose : {false, true}) {
+            RandomDisks pack = pack_of(300, periodic, loose, 0);
+            const auto grains = random_disks(pack);
+            const double unit = 64;  // a power of two changes no digit
+            for (double* length : {&pack.box.x_low, &pack.box.x_high, &pack.box.y_low,
+                                   &pack.box.y_high, &pack.radius_min, &pack.radius_max})
+                *length *= unit;
+            const auto scaled = random_disks(pack);
+            REQUIRE(scaled.size() == grains.size());
+            double most = 0;
+            for (std::size_t k = 0; k < grains.size(); ++k) {
+                const Outline &a = grains[k].outline, &b = scaled[k].outline;
+                most = worst({most, std::fabs(b.x / unit - a.x), std::fabs(b.y / unit - a.y),
+                              std::fabs(b.radius / unit - a.radius)});
+            }
+            CHECK(most <= 1e-9);
+        }
     }
 }
 
