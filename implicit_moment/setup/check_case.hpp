@@ -328,7 +328,7 @@ inline std::string describe_scales(const Case& w, const Scales& scales) {
         double(scales.steps) * (double(scales.particles) + 10.0 * double(w.grid.size()));
     const double per_second = w.leapfrog.chosen                   ? 40e6
                               : !w.field.uses_mass_matrix()       ? 15e6
-                              : w.field.solver == "newton_krylov" ? 2e5
+                              : w.field.solver == "newton_krylov" ? 4e5
                                                                   : 7e6;
     line("time", "about " + format(work / per_second) + " s on one core");
     return text;
