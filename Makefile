@@ -243,6 +243,15 @@ explicit_gem: $(BUILD)/explicit_em
 	    --out out/explicit_em/gem_explicit --resume
 	sh implicit_moment/data/keep_explicit_gem.sh out/explicit_em/gem_explicit implicit_moment/data
 
+# The energy theorem: both programs, by  sh SCRIPT IMPLICIT EXPLICIT FOLDER .
+$(eval $(call figure,implicit_moment_energy,implicit_moment,out/implicit_moment/energy))
+out/implicit_moment/energy/.complete: implicit_moment/figures/implicit_moment_energy.sh $(BUILD)/implicit_moment $(BUILD)/explicit_em \
+    implicit_moment/cases/finite_grid.toml | $(packages_first)
+	@rm -f $@
+	@mkdir -p $(@D)
+	$(one_at_a_time) sh $< $(BUILD)/implicit_moment $(BUILD)/explicit_em $(@D)
+	@touch $@
+
 $(eval $(call figure,implicit_moment_mass_ratio,implicit_moment,out/implicit_moment/mass_ratios))
 $(eval $(call series,implicit_moment/figures/implicit_moment_mass_ratio.sh,implicit_moment,$(wildcard \
     implicit_moment/cases/gem.toml implicit_moment/cases/gem_1836.toml),out/implicit_moment/mass_ratios))

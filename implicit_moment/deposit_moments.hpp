@@ -231,11 +231,16 @@ inline void deposit_moments(const Particles& particles, const Grid& grid, const 
                     Images::conductor, moments);
 }
 
-/// Deposits all species with their mean velocities, for the field equations.
+/// Deposits all species for the field equations, with their mean velocities, or with v^n where R turns
+/// their sums on the mesh.
 inline void deposit_moments(const std::vector<Particles>& species, const Grid& grid,
-                            const VectorField& B, double dt, std::vector<Moments>& moments) {
+                            const VectorField& B, double dt, bool rotate_on_mesh,
+                            std::vector<Moments>& moments) {
     for (std::size_t k = 0; k < species.size(); ++k) {
-        deposit_moments(species[k], grid, B, dt, moments[k]);
+        if (rotate_on_mesh)
+            detail::deposit(species[k], grid, detail::NoRotation{}, Images::conductor, moments[k]);
+        else
+            deposit_moments(species[k], grid, B, dt, moments[k]);
     }
 }
 

@@ -33,14 +33,17 @@ namespace implicit_moment {
 
 /// How the field equations are solved.
 struct FieldSettings {
-    std::string response = "moments";  // or "mass_matrix": the current that E drives
-    std::string solver = "gmres";      // or "newton_krylov"
-    double theta = 0.5;                // time level of E
-    double tolerance = 0;              // residual over right-hand side; 0: what the response needs
+    std::string response = "moments";    // or "mass_matrix": the current that E drives
+    std::string rotation = "particles";  // or "mesh": what R of [IMM-12] turns, with moments
+    std::string B_level = "start";  // or "middle": time of the B in which particles are rotated
+    std::string solver = "gmres";   // or "newton_krylov"
+    double theta = 0.5;             // time level of E
+    double tolerance = 0;           // residual over right-hand side; 0: what the response needs
     long max_iterations = 200;
     SmoothingSettings smoothing;
 
     bool uses_mass_matrix() const { return response == "mass_matrix"; }
+    bool rotates_on_mesh() const { return rotation == "mesh"; }
     // With the mass matrix the energy is as exact as the solution.
     double solved_to() const {
         return tolerance > 0 ? tolerance : uses_mass_matrix() ? 1e-12 : 1e-8;

@@ -12,7 +12,8 @@
 //
 //     chi = sum_s theta/2 (omega_ps dt)^2 R_s,      omega_ps^2 = 4 pi rho_s q_s/m_s.
 //
-// In the part without E, J_hat, every particle has been rotated by itself (deposit_moments.hpp).
+// In the part without E, J_hat, every particle has been rotated by itself (deposit_moments.hpp), or R
+// turns J - dt/2 div P here, as the slide has it (field.rotation = "mesh").
 #pragma once
 
 #include <vector>
@@ -154,8 +155,8 @@ struct PlasmaResponse {
 };
 
 /// The charge, J_hat and chi of all species, with the magnetic rotation in B_theta.
-/// in:     moments and q/m of each species; B, in which the moments were rotated, and B_theta, the
-///         same field or another one; ghosts filled.
+/// in:     moments and q/m of each species; B, in which the moments were rotated, or null where they
+///         were not, and B_theta, the same field or another one; ghosts filled.
 /// out:    response, nothing of it smoothed.
 /// note:   chi is the diagonal form of the exact response, in which a place also answers for the
 ///         places whose splines overlap with its own. It is never smaller than the exact one, which
@@ -175,7 +176,7 @@ inline void predict_current(const Grid& grid, const std::vector<Moments>& moment
             response.J_hat.all += response.J_hat_of_species.all;
         } else {
             rotation_tensor(grid, B_theta, half_kick, response.R);
-            multiply_by_inverse_rotation(grid, B, half_kick, response.R);
+            if (B != nullptr) multiply_by_inverse_rotation(grid, B, half_kick, response.R);
             apply_tensor(grid, response.R, response.J_hat_of_species.all.data(), true,
                          response.scratch, response.J_hat.all.data());
         }

@@ -93,9 +93,20 @@ inline void maxwell_source(FieldSolver& solver, const FieldState& field, double 
     keep_unknowns(grid, source.all.data());
 }
 
+/// The B in which currents and particles are rotated: B^n as on the slide, or B^{n+1/2} = B^n - c dt/2 curl E^n,
+/// with which the step is of second order in dt.
+inline void find_push_B(FieldSolver& solver, double dt, const FieldState& field,
+                        VectorField& B_push) {
+    B_push.all = field.B.all;
+    if (solver.settings.B_level != "middle") return;
+    curl_of_electric(solver.grid, field.E.all.data(), solver.curl_E.all.data());
+    B_push.all -= 0.5 * c * dt * solver.curl_E.all;
+    fill_ghosts(solver.grid, magnetic, B_push);
+}
+
 /// Solves for E^{n+theta}.
-/// in:     moments of all species at t^n, E and B at t^n.
-/// out:    field.E_theta, ghosts filled; B_push, the B in which the current is rotated, for the mover;
+/// in:     moments of all species at t^n, E and B at t^n; B_push, of find_push_B
+/// out:    field.E_theta, ghosts filled; B_push, with "newton_krylov" at the level theta;
 ///         solver.gauss, the Gauss residual at t^n.
 /// exact:  |residual| <= tolerance |source|; on periodic meshes and inside walls the Gauss residual
 ///         obeys (ii) to that tolerance.
@@ -110,9 +121,11 @@ inline FieldReport solve_field(FieldSolver& solver, const std::vector<Moments>& 
     const FieldSettings& settings = solver.settings;
     const double a = c * settings.theta * dt, by_J = 4 * pi * settings.theta * dt;
     PlasmaResponse& response = solver.response;
-    B_push.all = field.B.all;
+    const double* rotated_in = settings.rotates_on_mesh()   ? nullptr
+                               : settings.solver == "gmres" ? B_push.all.data()
+                                                            : field.B.all.data();
 
-    predict_current(grid, moments, charge_over_mass, field.B.all.data(), field.B.all.data(), dt,
+    predict_current(grid, moments, charge_over_mass, rotated_in, B_push.all.data(), dt,
                     settings.theta, response);
     smooth(grid, electric, settings.smoothing, response.J_hat.all.data(), solver.scratch);
     smooth(grid, common::on_nodes, {-1, -1}, settings.smoothing, response.rho.data(),
@@ -138,8 +151,8 @@ inline FieldReport solve_field(FieldSolver& solver, const std::vector<Moments>& 
             curl_of_electric(grid, solver.ghosted.all.data(), B_push.all.data());
             B_push.all = field.B.all - a * B_push.all;
             fill_ghosts(grid, magnetic, B_push);
-            predict_current(grid, moments, charge_over_mass, field.B.all.data(), B_push.all.data(),
-                            dt, settings.theta, response);
+            predict_current(grid, moments, charge_over_mass, rotated_in, B_push.all.data(), dt,
+                            settings.theta, response);
             smooth(grid, electric, settings.smoothing, response.J_hat.all.data(), solver.scratch);
             apply_field_operator(solver, a, v, F);
             F += by_J * response.J_hat.all - solver.source.all;

@@ -40,7 +40,9 @@ template <class Clock = common::NoClock>
 void find_moments(const Grid& grid, double dt, const std::vector<Particles>& particles,
                   const FieldState& field, StepScratch& scratch, Clock&& clock = {}) {
     // [moments]
-    deposit_moments(particles, grid, field.B, dt, scratch.moments);  // particles -> grid   [IMM-9]
+    find_push_B(scratch.solver, dt, field, scratch.B_push);
+    deposit_moments(particles, grid, scratch.B_push, dt, scratch.solver.settings.rotates_on_mesh(),
+                    scratch.moments);  // particles -> grid   [IMM-9]
     clock.lap("moments");
     // [/moments]
 }
@@ -59,11 +61,12 @@ FieldReport take_mass_matrix_step(const Grid& grid, double dt, StepScratch& scra
     clock.lap("mover");
     sort_particles(grid, scratch.sort, particles);
     clock.lap("sort");
-    deposit_mass_matrix(particles, grid, field.B, dt, scratch.solver.mass);  // particles -> grid
+    deposit_mass_matrix(particles, grid, scratch.B_push, dt,
+                        scratch.solver.mass);  // particles -> grid
     clock.lap("mass");
     const FieldReport solved =
         solve_field(scratch.solver, dt, field, scratch.solver.settings.solved_to());  // [IMM-10]
-    interleave_field(grid, scratch.solver.settings.smoothing, field.E_theta, field.B,
+    interleave_field(grid, scratch.solver.settings.smoothing, field.E_theta, scratch.B_push,
                      scratch.interleave, scratch.field);
     clock.lap("field");
     kick_particles(scratch.field, grid, dt, particles);  // grid -> particles

@@ -296,3 +296,49 @@ TEST_CASE("charge is conserved along any path") {
         }
     }
 }
+
+TEST_CASE(
+    "particles in a wave of light are followed to second order with B of the middle of the step") {
+    // Charges too small to be felt, in a wave that travels along x. The light itself is of second order.
+    const Grid grid{{64, 0, 2 * pi, true}, {4, 0, 0.4, true}};
+    const auto velocities = [&](const std::string& response, const std::string& level, double dt) {
+        FieldState field(grid);
+        for (long j = -1; j <= grid.z.cells + 1; ++j)
+            for (long i = -1; i <= grid.x.cells + 1; ++i) {
+                const long n = grid.index(i, j);
+                field.E.y()[n] = 0.4 * std::cos(grid.x.at(double(i)));
+                field.B.z()[n] = 0.4 * std::cos(grid.x.at(double(i) + 0.5));
+            }
+        std::vector<Particles> species{no_particles()};
+        species[0].q_p = species[0].m_p = 1e-12;
+        Random random;
+        for (int p = 0; p < 40; ++p)
+            add(species[0], pi * (1 + random()), 0.2 * (1 + random()), 0.1 * random.vector());
+        sort(grid, species[0]);
+        FieldSettings settings;
+        settings.response = response, settings.B_level = level;
+        settings.smoothing.passes = 0, settings.tolerance = 1e-12;
+        StepScratch scratch(grid, settings, 1);
+        for (double t = 0; t < 2 - 0.5 * dt; t += dt) {
+            find_moments(grid, dt, species, field, scratch);
+            take_step(grid, dt, tight, {1.0}, scratch, species, field);
+        }
+        // In the order of their velocities along z, which only E_z and B could change: it hardly does.
+        std::vector<std::pair<double, double>> found;
+        for (std::size_t p = 0; p < species[0].x_p.size(); ++p)
+            found.emplace_back(species[0].uz_p[p], species[0].ux_p[p]);
+        std::sort(found.begin(), found.end());
+        Eigen::VectorXd v(long(found.size()));
+        for (long p = 0; p < v.size(); ++p) v[p] = found[std::size_t(p)].second;
+        return v;
+    };
+    for (const std::string response : {"moments", "mass_matrix"}) {
+        const auto order = [&](const std::string& level) {
+            const auto v = [&](double dt) { return velocities(response, level, dt); };
+            const Eigen::VectorXd coarse = v(0.1), middle = v(0.05), fine = v(0.025);
+            return std::log2((coarse - middle).norm() / (middle - fine).norm());
+        };
+        CHECK(std::fabs(order("start") - 1) <= 0.15);
+        CHECK(std::fabs(order("middle") - 2) <= 0.15);
+    }
+}

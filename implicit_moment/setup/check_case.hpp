@@ -196,6 +196,11 @@ inline void validate(Case& w) {
     refuse(w.end / w.dt > 1e9, "time.end / time.dt is " + format(w.end / w.dt) +
                                    " steps, more than 1e9: raise time.dt or lower time.end");
 
+    refuse(w.field.B_level == "middle" && w.field.solver == "newton_krylov",
+           "field.solver = \"newton_krylov\" takes B at the level theta: leave field.B_level at "
+           "\"start\"");
+    refuse(w.field.uses_mass_matrix() && w.field.rotates_on_mesh(),
+           "field.rotation = \"mesh\" turns moments: it needs field.response = \"moments\"");
     refuse(w.field.tolerance > 0 && w.field.tolerance < 1e-13,
            "field.tolerance = " + format(w.field.tolerance) +
                " is below 1e-13, what round-off leaves: raise it, or 0 for the default");

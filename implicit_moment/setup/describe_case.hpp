@@ -180,6 +180,11 @@ inline common::ParameterTable describe(Case& w) {
     table.choice("field.response", w.field.response, {"moments", "mass_matrix"},
                  "current that E drives: the slide's prediction, or the particles' own, which "
                  "conserves energy for any step");
+    table.choice(
+        "field.rotation", w.field.rotation, {"particles", "mesh"},
+        "moments: what R turns, each particle before it is deposited, or the sums, as the slide");
+    table.choice("field.B_level", w.field.B_level, {"start", "middle"},
+                 "time of the B that rotates particles: t^n, or t^n + dt/2, of second order");
     table.choice("field.solver", w.field.solver, {"gmres", "newton_krylov"},
                  "newton_krylov rotates the current in B at the theta level");
     table.real("field.tolerance", w.field.tolerance, "", between(0, 1e-2),
