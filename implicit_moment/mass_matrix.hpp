@@ -179,7 +179,7 @@ inline void deposit_mass_matrix(const std::vector<Particles>& species, const Gri
                     const common::QuadraticWeights<SimdVector> S_x(
                         (common::load_simd(&s.x_p[p], count) - x_node) * per_dx),
                         S_z((common::load_simd(&s.z_p[p], count) - z_node) * per_dz);
-                    // [mass matrix]
+                    // [mass_matrix]
                     SimdVector W[detail::places];
                     for (int j = 0; j < 3; ++j) {
                         for (int i = 0; i < 2; ++i) W[2 * j + i] = S_x.linear[i] * S_z.quadratic[j];
@@ -200,7 +200,7 @@ inline void deposit_mass_matrix(const std::vector<Particles>& species, const Gri
                     factors.set(W, common::first_simd(count) * (s.q_p / grid.cell_area()),
                                 half_kick, R, R_v);
                     block.add(factors);
-                    // [/mass matrix]
+                    // [/mass_matrix]
                 }
             }
             if (empty) continue;

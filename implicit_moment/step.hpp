@@ -56,7 +56,7 @@ template <class Clock = common::NoClock>
 FieldReport take_mass_matrix_step(const Grid& grid, double dt, StepScratch& scratch,
                                   std::vector<Particles>& particles, FieldState& field,
                                   Clock&& clock = {}) {
-    // [mass matrix step]
+    // [mass_matrix_step]
     fly(grid, 0.5 * dt, particles);  // to x*
     clock.lap("mover");
     sort_particles(grid, scratch.sort, particles);
@@ -76,7 +76,7 @@ FieldReport take_mass_matrix_step(const Grid& grid, double dt, StepScratch& scra
     clock.lap("field");
     sort_particles(grid, scratch.sort, particles);  // for the next step
     clock.lap("sort");
-    // [/mass matrix step]
+    // [/mass_matrix_step]
     return solved;
 }
 
@@ -86,7 +86,7 @@ template <class Clock = common::NoClock>
 FieldReport take_enslaved_step(const Grid& grid, double dt, const MoverSettings& mover,
                                StepScratch& scratch, std::vector<Particles>& particles,
                                FieldState& field, Clock&& clock = {}) {
-    // [enslaved step]
+    // [enslaved_step]
     fly(grid, 0.5 * dt, particles);  // to x* and back: there the response is found
     sort_particles(grid, scratch.sort, particles);
     deposit_mass_matrix(particles, grid, field.B, dt, scratch.solver.mass);
@@ -100,7 +100,7 @@ FieldReport take_enslaved_step(const Grid& grid, double dt, const MoverSettings&
     advance_field(scratch.solver, dt, scratch.enslaved.J, scratch.B_push, field);  // [IMM-10]
     sort_particles(grid, scratch.sort, particles);
     clock.lap("sort");
-    // [/enslaved step]
+    // [/enslaved_step]
     return solved;
 }
 
