@@ -106,8 +106,11 @@ inline void compare_kink(const Case& w, const common::History& history, common::
     };
     growth("kink_growth", B_1, true);
     growth("kink_growth_of_displacement", displacement, false);
-    const auto waves =
-        growing_waves(linear_sheet(theory_sheet(s), 2 * pi / s.length_x, 0.5 * s.length_z));
+    const double half_length = std::min(0.5 * s.length_z, 20.0);  // walls beyond are far away
+    KinkResolution resolution;
+    resolution.cells = int(std::ceil(resolution.cells * std::max(half_length / 4.5, 0.5)));
+    const auto waves = growing_waves(
+        linear_sheet(theory_sheet(s), 2 * pi / s.length_x, half_length, true, resolution));
     const SheetWave fastest = waves.empty() ? SheetWave{} : waves.front();
     const std::string linear = "linear Vlasov theory of the first sheet";
     summary.result_info("kink_theory_growth", fastest.omega.imag(), "Omega_ci",
