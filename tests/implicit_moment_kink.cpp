@@ -128,6 +128,10 @@ TEST_CASE("a sheet of the talk is compared with its figure and another sheet wit
     CHECK(std::fabs(four["kink_largest"]["value"].get<double>() - 0.6) <= 1e-9);
     CHECK(four["kink_growth"]["pass"] == true);
     CHECK(four["lhdi_level"]["pass"] == true);
+    // Linear theory stands beside it and judges nothing.
+    CHECK(std::fabs(one["kink_theory_growth"]["value"].get<double>() - 0.09) <= 0.01);
+    CHECK(std::fabs(four["kink_theory_growth"]["value"].get<double>() - 0.035) <= 0.01);
+    CHECK_FALSE(one["kink_theory_growth"].contains("pass"));
     // More than twice 0.04 and 1.5e-3.
     CHECK(one["kink_growth"]["pass"] == false);
     CHECK(one["lhdi_level"]["pass"] == false);

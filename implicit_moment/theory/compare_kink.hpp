@@ -12,6 +12,8 @@
 #include "common/run/run.hpp"
 #include "common/theory/measure_modes.hpp"
 #include "implicit_moment/setup/current_sheet.hpp"
+#include "implicit_moment/theory/compare_current_sheet.hpp"
+#include "implicit_moment/theory/drift_kink.hpp"
 
 namespace implicit_moment {
 
@@ -60,6 +62,9 @@ inline constexpr std::array<TalkKink, 3> talk_kinks{
 /// Growth of the kink, mode 1 along the current, and level of mode 4, beside the talk.
 ///     kink_growth    of B_1, the root mean square over z of the amplitude of the mode of B_y
 ///     kink_growth_of_displacement   of the same mode of where B_y changes sign
+///     kink_theory_growth, kink_theory_omega, kink_theory_z   of the fastest growing wave of this
+///         length that bends a sheet without other waves: nothing is judged by it, because the sheet
+///         that kinks is another after its drift instability
 ///     lhdi_level     root mean square in time of B_4, from t Omega_ci = 10 to the end
 /// note:   The talk does not say how its Fourier components are normalized, nor the length of its
 ///         box; with another length than 4 L the modes are other waves, and nothing is expected.
@@ -101,6 +106,19 @@ inline void compare_kink(const Case& w, const common::History& history, common::
     };
     growth("kink_growth", B_1, true);
     growth("kink_growth_of_displacement", displacement, false);
+    const double half_length = std::min(0.5 * s.length_z, 20.0);  // walls beyond are far away
+    KinkResolution resolution;
+    resolution.cells = int(std::ceil(resolution.cells * std::max(half_length / 4.5, 0.5)));
+    const auto waves = growing_waves(
+        linear_sheet(theory_sheet(s), 2 * pi / s.length_x, half_length, true, resolution));
+    const SheetWave fastest = waves.empty() ? SheetWave{} : waves.front();
+    const std::string linear = "linear Vlasov theory of the first sheet";
+    summary.result_info("kink_theory_growth", fastest.omega.imag(), "Omega_ci",
+                        waves.empty() ? linear + ", below 0.01" : linear);
+    if (!waves.empty()) {
+        summary.result_info("kink_theory_omega", fastest.omega.real(), "Omega_ci", linear);
+        summary.result_info("kink_theory_z", fastest.height, "L", linear);
+    }
     summary.result_info("kink_largest", *std::max_element(displacement.begin(), displacement.end()),
                         "L", "amplitude of the displacement");
     report("lhdi_level", level_after(times, B_4, second_phase), "B0", &TalkKink::level,
