@@ -202,7 +202,8 @@ inline FieldReport solve_field(FieldSolver& solver, double dt, FieldState& field
 }
 
 /// Adds to field.by_theta what the time level theta takes from the energy in a step by dE,
-/// -(theta - 1/2) sum V (|dE|^2 + |dB|^2) / 4 pi. in: solver.curl_E, of E^{n+theta}
+/// -(theta - 1/2) sum V (|dE|^2 + |dB|^2) / 4 pi: [MPM-13] of the field.
+/// in:     solver.curl_E, of E^{n+theta}
 inline void take_by_theta(FieldSolver& solver, double dt, const Eigen::VectorXd& dE,
                           FieldState& field) {
     const Grid& grid = solver.grid;

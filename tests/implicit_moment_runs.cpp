@@ -174,6 +174,58 @@ TEST_CASE("a Harris sheet at rest keeps its profiles within noise" *
     CHECK(std::fabs(value(summary, "energy_drift")) <= 0.005);
 }
 
+TEST_CASE(
+    "with the particles' own current waves and growth are those of theory and the energy stays" *
+    doctest::description("physics")) {
+    for (const std::string name : {"light_wave", "langmuir", "two_stream", "weibel", "whistler",
+                                   "oblique_whistler", "e_cross_b", "harris_equilibrium"}) {
+        INFO(name);
+        const Json summary = run(
+            "mass_" + name, "implicit_moment/cases/" + name + ".toml field.response=mass_matrix");
+        check_results(summary, 3);
+        CHECK(value(summary, "energy_identity_per_step") <= 1e-11);
+        CHECK(std::fabs(value(summary, "energy_drift")) <= 1e-9);
+    }
+}
+
+TEST_CASE("the energy theorem holds for few particles and many and whatever a case adds" *
+          doctest::description("physics")) {
+    const std::string rest = "plasma_at_rest.toml", coarse = "finite_grid.toml",
+                      gem = "gem.toml harris.particles=20000 time.end=6 field.response=mass_matrix",
+                      sheet =
+                          "lhdi_quick.toml current_sheet.particles=40000 time.end=4 "
+                          "field.response=mass_matrix";
+    const std::string both = " field.solver=newton_krylov";
+    for (const std::string& arguments :
+         {rest, rest + " uniform.particles_per_cell=1", rest + " plasma.loading=quiet",
+          rest + " field.smoothing_passes=0 field.theta=0.6",
+          rest + " uniform.B_x=0.55 uniform.B_y=0.73",  // Omega_ce dt = 46
+          rest + " grid.boundary_x=wall grid.boundary_z=wall uniform.B_x=0 uniform.B_y=0.2", coarse,
+          coarse + " uniform.particles_per_cell=1 field.smoothing_passes=0",
+          coarse + " field.theta=1", gem, sheet, rest + " time.end=10" + both,
+          rest + " uniform.particles_per_cell=1 time.end=10" + both,
+          rest +
+              " grid.boundary_x=wall grid.boundary_z=wall uniform.B_x=0 uniform.B_y=0.2 "
+              "time.end=10" +
+              both,
+          coarse + " uniform.particles_per_cell=1 time.end=10" + both, gem + " time.end=1.5" + both,
+          sheet + " time.end=0.8" + both}) {
+        INFO(arguments);
+        const Json summary = run("theorem", "implicit_moment/cases/" + arguments);
+        CHECK(value(summary, "energy_identity_per_step") <= 1e-11);
+        const double gauss =
+            summary["conservation"]["largest_gauss_residual"]["value"].get<double>();
+        CHECK(gauss <= (arguments.find(both) != std::string::npos ? 1e-9 : 0.06));
+    }
+}
+
+TEST_CASE("sums turned on the mesh heat a plasma that particles turned one by one do not" *
+          doctest::description("physics")) {
+    const std::string hot = "implicit_moment/cases/mesh_rotation.toml";
+    CHECK(value(run("mesh_rotation", hot), "energy_drift") >= 0.5);
+    CHECK(value(run("particles_rotate", hot + " field.rotation=particles"), "energy_drift") <= 0.1);
+}
+
 TEST_CASE("Newton and GMRES agree on the reconnected flux" * doctest::description("physics")) {
     const std::string arguments =
         "implicit_moment/cases/gem.toml time.end=60 output.fields_interval=0 "

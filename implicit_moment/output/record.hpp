@@ -162,12 +162,6 @@ class Recorder {
         row.add("energy", of_energy, energy);
         // A cold plasma at rest has no energy to compare with.
         row.add("energy_drift", "1", initial > 0 ? energy / initial - 1 : 0);
-        if (!parameters_.leapfrog.chosen) {
-            const double by_theta = field.by_theta / n0;
-            row.add("energy_by_theta", of_energy, by_theta);
-            row.add("energy_residual", "1", initial > 0 ? (energy - by_theta) / initial - 1 : 0);
-            row.add("iterations", "1", field.iterations);
-        }
         row.add("electric", of_energy, field_energy(grid, field.E) / n0);
         row.add("magnetic", of_energy, field_energy(grid, field.B) / n0);
         for (std::size_t k = 0; k < moments.size(); ++k)
@@ -176,6 +170,12 @@ class Recorder {
             row.add(std::string("momentum_") + "xyz"[a], of_momentum, momentum[a] / n0);
         row.add("div_B", "B*omega_pi/c", largest_divergence(grid, field.B, scratch));
         row.add("gauss_residual", "4pi*e*n0", gauss_error(grid, gauss));
+        if (!parameters_.leapfrog.chosen) {
+            const double by_theta = field.by_theta / n0;
+            row.add("energy_by_theta", of_energy, by_theta);
+            row.add("energy_residual", "1", initial > 0 ? (energy - by_theta) / initial - 1 : 0);
+            row.add("iterations", "1", field.iterations);
+        }
         if (parameters_.is_across_current()) add_reconnection(parameters_, field, row);
         if (parameters_.is_along_current()) sheet_->add(field, row);
         if (parameters_.is_uniform()) add_mode(parameters_, field, row);
