@@ -190,24 +190,23 @@ TEST_CASE(
 
 TEST_CASE("the energy theorem holds for few particles and many and whatever a case adds" *
           doctest::description("physics")) {
-    const std::string rest = "plasma_at_rest.toml", coarse = "finite_grid.toml",
-                      gem = "gem.toml harris.particles=20000 time.end=6 field.response=mass_matrix",
-                      sheet =
-                          "lhdi_quick.toml current_sheet.particles=40000 time.end=4 "
-                          "field.response=mass_matrix";
-    const std::string both = " field.solver=newton_krylov";
+    const std::string rest = "plasma_at_rest.toml", short_rest = rest + " time.end=200",
+                      walls = rest +
+                              " grid.boundary_x=wall grid.boundary_z=wall uniform.B_x=0 "
+                              "uniform.B_y=0.2",
+                      coarse = "finite_grid.toml", mass = " field.response=mass_matrix",
+                      gem = "gem.toml harris.particles=20000" + mass,
+                      sheet = "lhdi_quick.toml current_sheet.particles=40000" + mass,
+                      both = " field.solver=newton_krylov";
     for (const std::string& arguments :
-         {rest, rest + " uniform.particles_per_cell=1", rest + " plasma.loading=quiet",
-          rest + " field.smoothing_passes=0 field.theta=0.6",
-          rest + " uniform.B_x=0.55 uniform.B_y=0.73",  // Omega_ce dt = 46
-          rest + " grid.boundary_x=wall grid.boundary_z=wall uniform.B_x=0 uniform.B_y=0.2", coarse,
+         {rest, short_rest + " uniform.particles_per_cell=1", short_rest + " plasma.loading=quiet",
+          short_rest + " field.smoothing_passes=0 field.theta=0.6",
+          short_rest + " uniform.B_x=0.55 uniform.B_y=0.73",  // Omega_ce dt = 46
+          walls + " time.end=200", coarse,
           coarse + " uniform.particles_per_cell=1 field.smoothing_passes=0",
-          coarse + " field.theta=1", gem, sheet, rest + " time.end=10" + both,
-          rest + " uniform.particles_per_cell=1 time.end=10" + both,
-          rest +
-              " grid.boundary_x=wall grid.boundary_z=wall uniform.B_x=0 uniform.B_y=0.2 "
-              "time.end=10" +
-              both,
+          coarse + " field.theta=1", gem + " time.end=6", sheet + " time.end=4",
+          rest + " time.end=10" + both, rest + " uniform.particles_per_cell=1 time.end=10" + both,
+          walls + " time.end=10" + both,
           coarse + " uniform.particles_per_cell=1 time.end=10" + both, gem + " time.end=1.5" + both,
           sheet + " time.end=0.8" + both}) {
         INFO(arguments);
@@ -215,7 +214,10 @@ TEST_CASE("the energy theorem holds for few particles and many and whatever a ca
         CHECK(value(summary, "energy_identity_per_step") <= 1e-11);
         const double gauss =
             summary["conservation"]["largest_gauss_residual"]["value"].get<double>();
-        CHECK(gauss <= (arguments.find(both) != std::string::npos ? 1e-9 : 0.06));
+        if (arguments.find(both) != std::string::npos)
+            CHECK(gauss <= 1e-9);
+        else if (arguments.find(mass) != std::string::npos)
+            CHECK(gauss <= 1e-2);
     }
 }
 
