@@ -35,13 +35,6 @@ double spline_average(const Function& f, double x, double dx) {
     return sum;
 }
 
-/// What a uniform density makes of a wave with k dx = angle between two splines of the same order,
-/// the sum over g of cos(angle g) times the integral of S(x) S(x - g): 1 for long waves.
-inline double linear_overlap(double angle) { return (2 + std::cos(angle)) / 3; }
-inline double quadratic_overlap(double angle) {
-    return (33 + 26 * std::cos(angle) + std::cos(2 * angle)) / 60;
-}
-
 /// The quadratic and linear weights that a particle at distance d (in cells, |d| <= 1/2) from its
 /// nearest node gives to its neighbors:
 ///     quadratic[0..2] = S^(2) to the nodes -1, 0, +1

@@ -25,7 +25,7 @@
 
 #include "common/gmres.hpp"
 #include "common/newton_krylov.hpp"
-#include "implicit_moment/mass_matrix.hpp"
+#include "implicit_moment/apply_mass_matrix.hpp"
 #include "implicit_moment/mesh_modes.hpp"
 #include "implicit_moment/predict_current.hpp"
 
@@ -137,10 +137,8 @@ inline void prepare_preconditioner(FieldSolver& solver, double a) {
         chi_0[k] = has_mass ? 4 * pi * a / c * mean_response(grid, solver.mass, int(k))
                             : interior(grid, solver.response.chi.entry[4 * k].data()).mean();
     // What the overlap of splines makes of a mode, by the place of a component.
-    const auto half = [&](double angle) { return has_mass ? common::linear_overlap(angle) : 1; };
-    const auto whole = [&](double angle) {
-        return has_mass ? common::quadratic_overlap(angle) : 1;
-    };
+    const auto half = [&](double angle) { return has_mass ? linear_overlap(angle) : 1; };
+    const auto whole = [&](double angle) { return has_mass ? quadratic_overlap(angle) : 1; };
     ModeInverse& inverse = solver.inverse;
     for (Eigen::ArrayXXf* f : {&inverse.xx, &inverse.xz, &inverse.zz, &inverse.yy})
         f->resize(grid.x.cells, grid.z.cells);

@@ -5,11 +5,12 @@
 #include <vector>
 
 #include "common/step_clock.hpp"
+#include "implicit_moment/advance_field.hpp"
 #include "implicit_moment/deposit_moments.hpp"
-#include "implicit_moment/enslave_particles.hpp"
 #include "implicit_moment/interleaved_field.hpp"
 #include "implicit_moment/kick_and_fly.hpp"
 #include "implicit_moment/move_particles.hpp"
+#include "implicit_moment/solve_enslaved_field.hpp"
 #include "implicit_moment/solve_field.hpp"
 #include "implicit_moment/sort_particles.hpp"
 

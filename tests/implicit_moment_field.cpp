@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "implicit_moment/advance_field.hpp"
 #include "implicit_moment/move_particles.hpp"
 #include "implicit_moment/output/diagnostics.hpp"
 #include "tests/support/any_fields.hpp"

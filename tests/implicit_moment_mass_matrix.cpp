@@ -181,7 +181,6 @@ TEST_CASE(
         apply_mass_matrix(grid, mass, one.all.data(), J.all.data());
         return sum_of_products(grid, one, J) / sum_of_products(grid, one, one) / lumped;
     };
-    using common::linear_overlap, common::quadratic_overlap;
     CHECK(std::fabs(response(E.x()) - linear_overlap(k_x) * quadratic_overlap(k_z)) <= 2e-3);
     CHECK(std::fabs(response(E.y()) - quadratic_overlap(k_x) * quadratic_overlap(k_z)) <= 2e-3);
     CHECK(std::fabs(response(E.z()) - quadratic_overlap(k_x) * linear_overlap(k_z)) <= 2e-3);

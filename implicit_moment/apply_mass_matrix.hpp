@@ -1,0 +1,67 @@
+// on the grid: the current that a field drives, J = M E, and what M makes of a uniform plasma.
+#pragma once
+
+#include <cmath>
+
+#include "common/parallel.hpp"
+#include "implicit_moment/mass_matrix.hpp"
+
+namespace implicit_moment {
+
+/// What a uniform density makes of a wave with k dx = angle between two splines of the same order,
+/// the sum over g of cos(angle g) times the integral of S(x) S(x - g): 1 for long waves.
+inline double linear_overlap(double angle) { return (2 + std::cos(angle)) / 3; }
+inline double quadratic_overlap(double angle) {
+    return (33 + 26 * std::cos(angle) + std::cos(2 * angle)) / 60;
+}
+
+/// The mean of what M makes of a uniform E along one component: the sum of that component's entries over
+/// the cells.
+inline double mean_response(const Grid& grid, const MassMatrix& mass, int component) {
+    const long stride = grid.stride();
+    const int first = detail::first_offset(4 * component),
+              end = detail::first_offset(4 * component + 1);
+    double sum = 0;
+    for (long row = 0; row < grid.z.cells + 3; ++row) {
+        const double* entry = &mass.entry[std::size_t((row * detail::offsets + first) * stride)];
+        for (long n = 0; n < (end - first) * stride; ++n) sum += entry[n];
+    }
+    return sum / double(grid.x.cells * grid.z.cells);
+}
+
+/// J = M E.
+/// in:     E as particles feel it, ghosts filled
+/// out:    J, ghosts filled
+/// exact:  sum_g J_g . E_g V over the unknowns is the work of the kicks on the particles, >= 0.
+inline void apply_mass_matrix(const Grid& grid, MassMatrix& mass, const double* E, double* J) {
+    const long stride = grid.stride(), size = grid.size(), rows = grid.z.cells + 3;
+    const long margin = 2 * stride + 2, room = size + 2 * margin;
+    mass.padded.assign(std::size_t(3 * room), 0);
+    double* padded = mass.padded.data();
+    for (long a = 0; a < 3; ++a) std::copy_n(E + a * size, size, padded + a * room + margin);
+    common::for_each_row(
+        rows,
+        [&](long row) {
+            const double* entry = &mass.entry[std::size_t(row * detail::offsets * stride)];
+            for (int a = 0; a < 3; ++a) {
+                double* sum = J + a * size + row * stride;
+                std::fill_n(sum, stride, 0.0);
+                for (int b = 0; b < 3; ++b) {
+                    for (int j = 0; j < detail::rows_of(a, b); ++j) {
+                        for (int i = 0; i < detail::columns_of(a, b); ++i, entry += stride) {
+                            const double* E_h = padded + b * room + margin +
+                                                (row + j - detail::high[a] + 1) * stride + i -
+                                                detail::wide[a] + 1;
+#pragma omp simd
+                            for (long n = 0; n < stride; ++n) sum[n] += entry[n] * E_h[n];
+                        }
+                    }
+                }
+            }
+        },
+        167 * size);
+    for (std::size_t a = 0; a < 3; ++a)
+        common::fold_ghosts(grid, electric.place[a], electric.parity[a], J + long(a) * size);
+}
+
+}  // namespace implicit_moment

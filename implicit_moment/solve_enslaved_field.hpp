@@ -1,0 +1,108 @@
+// particles and grid at once: E^{n+theta} and the paths of all particles in it, found together.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "implicit_moment/advance_field.hpp"
+#include "implicit_moment/enslave_particles.hpp"
+
+namespace implicit_moment {
+
+namespace detail {
+
+// Anderson's acceleration of E <- E + f(E): of the last few E and f the combination with the smallest f.
+// source: D. G. Anderson, J. ACM 12, 547 (1965)
+class Acceleration {
+   public:
+    // in: f, what E lacks by the plain iteration. out: E, the next guess
+    void next(const Eigen::VectorXd& f, Eigen::VectorXd& E) {
+        if (last_f_.size() > 0) {
+            const Eigen::Index k = count_++ % depth;
+            if (dE_.cols() == 0) dE_.setZero(E.size(), depth), df_ = dE_;
+            dE_.col(k) = E - last_E_;
+            df_.col(k) = f - last_f_;
+        }
+        last_E_ = E, last_f_ = f;
+        E += f;
+        const Eigen::Index known = std::min<Eigen::Index>(count_, depth);
+        if (known == 0) return;
+        const Eigen::VectorXd gamma = df_.leftCols(known).colPivHouseholderQr().solve(f);
+        E -= (dE_.leftCols(known) + df_.leftCols(known)) * gamma;
+    }
+
+   private:
+    static constexpr Eigen::Index depth = 8;
+    Eigen::Index count_ = 0;
+    Eigen::MatrixXd dE_, df_;
+    Eigen::VectorXd last_E_, last_f_;
+};
+
+}  // namespace detail
+
+/// Solves field and particles together.
+/// in:     solver.mass of the same particles; particles and field at t^n
+/// out:    field.E_theta; enslaved.vbar; enslaved.J, smoothed
+/// exact:  |residual| <= tolerance |source|
+/// errors: NumericalError when it does not converge
+inline FieldReport solve_enslaved_field(FieldSolver& solver, double dt,
+                                        const MoverSettings& settings,
+                                        const std::vector<Particles>& species, FieldState& field,
+                                        VectorField& B_theta, InterleaveScratch& scratch,
+                                        InterleavedField& interleaved,
+                                        EnslavedParticles& enslaved) {
+    const Grid& grid = solver.grid;
+    const SmoothingSettings& smoothing = solver.settings.smoothing;
+    const double a = c * solver.settings.theta * dt, by_J = 4 * pi * solver.settings.theta * dt;
+    const double goal = solver.settings.solved_to();
+    enslaved.vbar.resize(species.size());
+    enslaved.state.resize(species.size());
+    for (std::size_t k = 0; k < species.size(); ++k) {
+        enslaved.vbar[k].resize(species[k].x_p.size());
+        enslaved.state[k].assign(species[k].x_p.size(), {});
+        for (std::size_t p = 0; p < species[k].x_p.size(); ++p)
+            enslaved.vbar[k][p] = {species[k].ux_p[p], species[k].uy_p[p], species[k].uz_p[p]};
+    }
+
+    // The guess: the mass matrix alone. Then what is left of the field equations is corrected with it.
+    FieldReport report = solve_field(solver, dt, field, 1e-3);
+    Eigen::VectorXd source = solver.source.all + by_J * solver.mass.J_hat.all, correction;
+    keep_unknowns(grid, source.data());
+    const double scale = std::max(common::safe_norm(source), common::safe_norm(solver.source.all));
+    detail::Acceleration faster;
+    MoverSettings follow = settings;
+    for (int turn = 0;; ++turn) {
+        // B at the same level: B^n - a curl E.
+        curl_of_electric(grid, field.E_theta.all.data(), enslaved.curl.all.data());
+        B_theta.all = field.B.all - a * enslaved.curl.all;
+        fill_ghosts(grid, magnetic, B_theta);
+        interleave_field(grid, smoothing, field.E_theta, B_theta, scratch, interleaved);
+        follow_field(interleaved, grid, dt, follow, species, turn, enslaved);
+        smooth(grid, electric, smoothing, enslaved.J.all.data(), solver.scratch);
+
+        // What is left: source - E + a curl (B_theta - B^n) - 4 pi theta dt J.
+        VectorField& left = solver.source;
+        B_theta.all -= field.B.all;
+        curl_of_magnetic(grid, B_theta.all.data(), left.all.data());
+        left.all = source - field.E_theta.all + a * left.all - by_J * enslaved.J.all;
+        keep_unknowns(grid, left.all.data());
+        report.residual = scale > 0 ? common::safe_norm(left.all) / scale : 0;
+        if (report.residual <= goal) break;
+        if (turn == 100 || !std::isfinite(report.residual))
+            throw common::NumericalError(
+                "field and particles did not converge together (relative "
+                "residual " +
+                common::format(report.residual) + "); reduce time.dt");
+        follow.tolerance = std::min(settings.tolerance, std::max(1e-14, 0.1 * report.residual));
+        correction.setZero(left.all.size());
+        report.iterations += detail::solve_linear_field(solver, a, 1e-3, correction).iterations;
+        faster.next(correction, field.E_theta.all);
+        keep_unknowns(grid, field.E_theta.all.data());
+        fill_ghosts(grid, electric, field.E_theta);
+    }
+    B_theta.all += field.B.all;
+    field.iterations = report.iterations;
+    return report;
+}
+
+}  // namespace implicit_moment
