@@ -35,14 +35,20 @@ namespace implicit_moment {
 struct FieldSettings {
     std::string response = "moments";    // or "mass_matrix": the current that E drives
     std::string rotation = "particles";  // or "mesh": what R of [IMM-12] turns, with moments
-    std::string B_level = "start";  // or "middle": time of the B in which particles are rotated
-    std::string solver = "gmres";   // or "newton_krylov"
-    double theta = 0.5;             // time level of E
-    double tolerance = 0;           // residual over right-hand side; 0: what the response needs
+    std::string B_level =
+        "by_response";             // or "start", "middle": time of the B that rotates particles
+    std::string solver = "gmres";  // or "newton_krylov"
+    double theta = 0.5;            // time level of E
+    double tolerance = 0;          // residual over right-hand side; 0: what the response needs
     long max_iterations = 200;
     SmoothingSettings smoothing;
 
     bool uses_mass_matrix() const { return response == "mass_matrix"; }
+    // A plasma that moves needs it: with B^n the particles' own current drives transverse waves, at a rate of
+    // half of omega_p V/c, which no energy forbids.
+    bool rotates_in_the_middle() const {
+        return B_level == "middle" || (B_level == "by_response" && uses_mass_matrix());
+    }
     bool rotates_on_mesh() const { return rotation == "mesh"; }
     // With the mass matrix the energy is as exact as the solution.
     double solved_to() const {

@@ -39,7 +39,7 @@ namespace detail {
 template <class Result>
 [[noreturn]] inline void refuse_solution(const std::string& which, const Result& result) {
     throw common::NumericalError("the " + which + " did not converge: " + result.reason +
-                                 " (relative residual " + std::to_string(result.residual) +
+                                 " (relative residual " + common::format(result.residual) +
                                  "); reduce time.dt or raise field.max_iterations");
 }
 
@@ -98,7 +98,7 @@ inline void maxwell_source(FieldSolver& solver, const FieldState& field, double 
 inline void find_push_B(FieldSolver& solver, double dt, const FieldState& field,
                         VectorField& B_push) {
     B_push.all = field.B.all;
-    if (solver.settings.B_level != "middle") return;
+    if (!solver.settings.rotates_in_the_middle()) return;
     curl_of_electric(solver.grid, field.E.all.data(), solver.curl_E.all.data());
     B_push.all -= 0.5 * c * dt * solver.curl_E.all;
     fill_ghosts(solver.grid, magnetic, B_push);

@@ -221,6 +221,13 @@ TEST_CASE("the energy theorem holds for few particles and many and whatever a ca
     }
 }
 
+TEST_CASE("a plasma that moves keeps its momentum where B is taken in the middle of the step" *
+          doctest::description("physics")) {
+    const std::string moving = "implicit_moment/cases/moving_plasma.toml time.end=150";
+    CHECK(value(run("moving", moving), "momentum_change") <= 0.01);
+    CHECK(value(run("braked", moving + " field.B_level=start"), "momentum_change") >= 0.1);
+}
+
 TEST_CASE("sums turned on the mesh heat a plasma that particles turned one by one do not" *
           doctest::description("physics")) {
     const std::string hot = "implicit_moment/cases/mesh_rotation.toml";

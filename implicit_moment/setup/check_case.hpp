@@ -196,9 +196,8 @@ inline void validate(Case& w) {
     refuse(w.end / w.dt > 1e9, "time.end / time.dt is " + format(w.end / w.dt) +
                                    " steps, more than 1e9: raise time.dt or lower time.end");
 
-    refuse(w.field.B_level == "middle" && w.field.solver == "newton_krylov",
-           "field.solver = \"newton_krylov\" takes B at the level theta: leave field.B_level at "
-           "\"start\"");
+    refuse(w.field.B_level != "by_response" && w.field.solver == "newton_krylov",
+           "field.solver = \"newton_krylov\" takes B at the level theta: take out field.B_level");
     refuse(w.field.uses_mass_matrix() && w.field.rotates_on_mesh(),
            "field.rotation = \"mesh\" turns moments: it needs field.response = \"moments\"");
     refuse(w.field.tolerance > 0 && w.field.tolerance < 1e-13,
@@ -271,7 +270,13 @@ inline std::vector<std::string> closure_warnings(const Case& w, const Scales& sc
     const double dx = w.grid.x.spacing(), dz = w.grid.z.spacing();
     for (const SpeciesScales& s : scales.species) {
         const double most = s.thermal_speed * w.dt / std::min(dx, dz);
-        if (most > 1) {
+        const bool moments = !w.field.uses_mass_matrix() || w.leapfrog.chosen;
+        if (most > 1 && !moments && w.field.solver == "gmres")
+            warnings.push_back(s.name + ": v_th dt/dx = " + format(most) +
+                               " is above 1: a particle deposits its current far from most of its "
+                               "path, watch the Gauss residual or lower time.dt to " +
+                               format(w.dt / most));
+        if (most > 1 && moments) {
             warnings.push_back(
                 s.name + ": v_th dt/dx = " + format(most) +
                 " is above 1, where the moment closure fails [IMM-13]: lower time.dt to " +
@@ -282,7 +287,10 @@ inline std::vector<std::string> closure_warnings(const Case& w, const Scales& sc
             warnings.push_back(s.name + ": v_th dt/dx = " + format(most) +
                                " is below 0.05 and the Debye length is " +
                                format(s.debye_length / std::min(dx, dz)) +
-                               " cells: finite-grid heating is possible, watch the energy");
+                               (moments
+                                    ? " cells: finite-grid heating is possible, watch the energy"
+                                    : " cells: the mesh may turn drifts into heat, watch kinetic_" +
+                                          s.name + " and the momentum"));
         }
     }
     if (w.is_along_current()) {
