@@ -182,8 +182,7 @@ TEST_CASE(
         INFO(name);
         const Json summary = run(
             "mass_" + name, "implicit_moment/cases/" + name + ".toml field.response=mass_matrix");
-        check_results(summary, 3);
-        CHECK(value(summary, "energy_identity_per_step") <= 1e-11);
+        check_results(summary, 3);  // the identity among them
         CHECK(std::fabs(value(summary, "energy_drift")) <= 1e-9);
     }
 }

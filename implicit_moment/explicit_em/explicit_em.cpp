@@ -59,7 +59,7 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     // 3. The loop.
     const long steps = scales.steps;
     long step = 0;
-    Checkpoint checkpoint{state, recorder.profile};
+    Checkpoint checkpoint{state, recorder.profile, false};
     const auto sort = [&](std::vector<Particles>& all) {
         sort_by_cell(grid, settings.order, scratch.sort, all);
     };

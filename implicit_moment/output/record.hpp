@@ -36,6 +36,7 @@ inline std::vector<Moments> slide_moments(const Grid& grid, const State& state) 
 struct Checkpoint {
     State& state;
     UnitFluxProfile& profile;
+    bool is_implicit = true;  // explicit_em has no level theta and solves for nothing
 };
 
 /// Names every number of the checkpoint, for writing and for reading alike.
@@ -43,6 +44,9 @@ template <class Archive>
 void archive(Archive& a, Checkpoint& checkpoint) {
     archive(a, checkpoint.state);
     archive(a, checkpoint.profile);
+    if (!checkpoint.is_implicit) return;
+    a("by_theta", checkpoint.state.field.by_theta);
+    a("iterations", checkpoint.state.field.iterations);
 }
 
 /// What the loop hands its results to; it never changes the state. Rows belong to t^n: moments, E and

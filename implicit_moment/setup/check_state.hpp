@@ -1,6 +1,7 @@
 // What is refused of a state that was read from a file: what no run of the case can have.
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -52,6 +53,10 @@ void validate_state(const Case& parameters, long step, const Sort& sort, Checkpo
         refuse(plasma.species[k].first_of_node != read[k],
                plasma.species[k].name + ": its particles are not sorted");
     detail::validate_profile(parameters, step, checkpoint.profile);
+    const FieldState& field = checkpoint.state.field;
+    refuse(field.by_theta > 0, "the level theta takes energy and gives none");
+    refuse(field.iterations < 0 || field.iterations != std::floor(field.iterations),
+           "its field was solved in a number of iterations that is none");
 }
 
 }  // namespace implicit_moment

@@ -137,8 +137,6 @@ void archive(Archive& a, State& state) {
     a("E", state.field.E.all);
     a("B", state.field.B.all);
     a("E_theta", state.field.E_theta.all);
-    a("by_theta", state.field.by_theta);
-    a("iterations", state.field.iterations);
 }
 
 /// Particles and fields of the set-up, before E has its part that follows from the charge.
