@@ -21,7 +21,9 @@
 //         as the Jacobian here.
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include "implicit_moment/particle_path.hpp"
@@ -32,34 +34,46 @@ namespace implicit_moment {
 struct EnslavedParticles {
     std::vector<std::vector<Velocity<double>>> vbar;  // [species][particle]
     std::vector<std::vector<detail::PathState>> state;
-    std::vector<VectorField> J_of_block;
+    std::vector<VectorField> J_of_block;  // made when first needed
     VectorField J, curl;
-    explicit EnslavedParticles(const Grid& grid)
-        : J_of_block(common::block_count, VectorField(grid)), J(grid), curl(grid) {}
+    explicit EnslavedParticles(const Grid& grid) : J(grid), curl(grid) {}
 };
 
 inline constexpr int free_turns = 4;  // after which a path that meets a wall stays as it is
+
+inline void refuse_lost(const Particles& s, double lost) {
+    if (lost > 0)
+        throw common::NumericalError("the paths of " + common::format(lost) + " of the " + s.name +
+                                     " are not found; reduce time.dt");
+}
 
 /// Finds every particle's path in a field, and the current along the paths.
 /// in:     field, the smoothed E^{n+theta} and B, ghosts filled; particles at t^n
 /// in/out: enslaved.vbar, the guess and what was found
 /// out:    enslaved.J, ghosts filled
 /// exact:  rho(x^n + dt vbar) - rho(x^n) + dt div J = 0 to round-off, for any vbar
+/// errors: NumericalError where a path has no number, or goes through more than longest_path cells
 inline void follow_field(const InterleavedField& field, const Grid& grid, double dt,
                          const MoverSettings& settings, const std::vector<Particles>& species,
                          int turn, EnslavedParticles& enslaved) {
+    enslaved.J_of_block.resize(common::block_count, VectorField(grid));
     for (VectorField& J : enslaved.J_of_block) J.all.setZero();
     const long stride = grid.stride();
     for (std::size_t k = 0; k < species.size(); ++k) {
         const Particles& s = species[k];
         const double half_kick = 0.5 * dt * s.q_p / s.m_p, q = s.q_p / grid.cell_area();
+        std::array<long, common::block_count> lost{};
         common::for_each_block(s.count(), [&](int block, long begin, long end) {
             VectorField& J = enslaved.J_of_block[std::size_t(block)];
             for (long p = begin; p < end; ++p) {
                 const Velocity<double> v{s.ux_p[p], s.uy_p[p], s.uz_p[p]};
                 Velocity<double>& vbar = enslaved.vbar[k][std::size_t(p)];
-                detail::find_path(grid, field, dt, settings, half_kick, s.x_p[p], s.z_p[p], v,
-                                  turn < free_turns, vbar, enslaved.state[k][std::size_t(p)]);
+                if (!detail::find_path(grid, field, dt, settings, half_kick, s.x_p[p], s.z_p[p], v,
+                                       turn < free_turns, vbar,
+                                       enslaved.state[k][std::size_t(p)])) {
+                    ++lost[std::size_t(block)];
+                    continue;
+                }
                 detail::along_path(
                     grid, {grid.x, s.x_p[p], dt * vbar.x}, {grid.z, s.z_p[p], dt * vbar.z},
                     [&](double w, long corner, double d_x, double d_z, double m_x, double m_z) {
@@ -81,6 +95,7 @@ inline void follow_field(const InterleavedField& field, const Grid& grid, double
                     });
             }
         });
+        refuse_lost(s, double(std::accumulate(lost.begin(), lost.end(), 0L)));
     }
     enslaved.J.all.setZero();
     for (const VectorField& J : enslaved.J_of_block) enslaved.J.all += J.all;
@@ -121,9 +136,7 @@ inline void move_enslaved(const InterleavedField& field, const Grid& grid, doubl
             }
             return count;
         });
-        if (lost > 0)
-            throw common::NumericalError("the paths of " + common::format(lost) + " of the " +
-                                         s.name + " are not found; reduce time.dt");
+        refuse_lost(s, lost);
     }
 }
 

@@ -115,12 +115,14 @@ struct PathState {
     bool settled = false, slides_x = false, slides_z = false;
 };
 
-// Finds the path of one particle in a field, by iteration.
+inline constexpr double longest_path = 1e4;  // cells along either direction
+
+// Finds the path of one particle in a field, by iteration; false where there is none.
 // in:     x, z and v at t^n; may_change, false where a path that meets a wall is to stay as it is
 // in/out: vbar; state
 // note:   reflected paths may jump between two ways to go, and a particle that the field presses against a
 //         wall would bounce for ever: corrections become smaller, and at last it slides.
-inline void find_path(const Grid& grid, const InterleavedField& field, double dt,
+inline bool find_path(const Grid& grid, const InterleavedField& field, double dt,
                       const MoverSettings& settings, double half_kick, double x, double z,
                       const Velocity<double>& v, bool may_change, Velocity<double>& vbar,
                       PathState& state) {
@@ -130,6 +132,8 @@ inline void find_path(const Grid& grid, const InterleavedField& field, double dt
         if (state.slides_x) vbar.x = 0;
         if (state.slides_z) vbar.z = 0;
         const PathAxis path_x(grid.x, x, dt * vbar.x), path_z(grid.z, z, dt * vbar.z);
+        if (!(std::fabs(path_x.way) <= longest_path && std::fabs(path_z.way) <= longest_path))
+            return false;
         if (!may_change && (path_x.meets_wall() || path_z.meets_wall())) {
             state.settled = true;
             break;
@@ -148,6 +152,7 @@ inline void find_path(const Grid& grid, const InterleavedField& field, double dt
     }
     if (state.slides_x) vbar.x = 0;
     if (state.slides_z) vbar.z = 0;
+    return std::isfinite(vbar.x + vbar.y + vbar.z);
 }
 
 }  // namespace detail

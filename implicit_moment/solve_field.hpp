@@ -112,7 +112,7 @@ inline void find_push_B(FieldSolver& solver, double dt, const FieldState& field,
 ///         obeys (ii) to that tolerance.
 /// errors: NumericalError when the solver does not converge; the field is then not used.
 /// source: [IMM-10..12]
-/// note:   "gmres" rotates the current in B^n, as the slide does; "newton_krylov" rotates it in
+/// note:   "gmres" rotates the current in B_push, B^n on the slide; "newton_krylov" rotates it in
 ///         B^{n+theta} = B^n - a curl E^{n+theta}, which makes the equations nonlinear.
 inline FieldReport solve_field(FieldSolver& solver, const std::vector<Moments>& moments,
                                const std::vector<double>& charge_over_mass, double dt,

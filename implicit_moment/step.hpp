@@ -34,9 +34,9 @@ struct StepScratch {
           enslaved(grid) {}
 };
 
-/// The moments of t^n.
-/// in:     particles, sorted by node; B^n
-/// out:    scratch.moments
+/// The moments of t^n, and the B in which particles are rotated.
+/// in:     particles, sorted by node; E^n and B^n
+/// out:    scratch.moments; scratch.B_push
 template <class Clock = common::NoClock>
 void find_moments(const Grid& grid, double dt, const std::vector<Particles>& particles,
                   const FieldState& field, StepScratch& scratch, Clock&& clock = {}) {

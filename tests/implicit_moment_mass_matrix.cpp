@@ -230,6 +230,7 @@ void check_energy(const std::string& solver, double longest) {
                         for (int step = 0; step < 3; ++step) {
                             const Field gauss = plasma.gauss(grid, settings.smoothing);
                             const double by_theta = plasma.field.by_theta;
+                            find_moments(grid, dt, plasma.species, plasma.field, scratch);
                             take_step(grid, dt, {}, plasma.charge_over_mass(), scratch,
                                       plasma.species, plasma.field);
                             const double after = plasma.energy(grid),
@@ -293,6 +294,25 @@ TEST_CASE("charge is conserved along any path") {
                 }
             CHECK(most <= 1e-12 * std::max(size, 1.0));
         }
+    }
+}
+
+TEST_CASE("a field in which no path ends is refused") {
+    const facts::Untrapped calm;
+    Random random;
+    const Grid grid = meshes().front();
+    for (const double E : {1e12, std::nan("")}) {
+        AnyPlasma plasma(grid, 10, 0.1, 0.1, 0, random);
+        EnslavedParticles enslaved(grid);
+        enslaved.vbar.resize(2), enslaved.state.resize(2);
+        for (std::size_t k = 0; k < 2; ++k)
+            enslaved.state[k].resize(10), enslaved.vbar[k].resize(10, {0, 0, 0});
+        InterleaveScratch scratch(grid);
+        InterleavedField field;
+        plasma.field.E.all.setConstant(E);
+        interleave_field(grid, {0, false}, plasma.field.E, plasma.field.B, scratch, field);
+        CHECK_THROWS_AS(follow_field(field, grid, 1, {}, plasma.species, 0, enslaved),
+                        common::NumericalError);
     }
 }
 

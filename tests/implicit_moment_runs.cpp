@@ -197,6 +197,13 @@ TEST_CASE("the energy theorem holds for few particles and many and whatever a ca
                       gem = "gem.toml harris.particles=20000" + mass,
                       sheet = "lhdi_quick.toml current_sheet.particles=40000" + mass,
                       both = " field.solver=newton_krylov";
+    // Currents cancel until their round-off is most of what is left.
+    std::string cold =
+        rest +
+        " plasma.loading=quiet time.dt=0.04 time.end=0.4 grid.cells_x=32 grid.cells_z=4 "
+        "grid.length_x=0.64 grid.length_z=0.08 uniform.B_x=0.2 uniform.B_y=0";
+    for (const std::string s : {" species.ions.", " species.electrons."})
+        for (const std::string axis : {"x", "y", "z"}) cold += s + "temperature_" + axis + "=1e-6";
     for (const std::string& arguments :
          {rest, short_rest + " uniform.particles_per_cell=1", short_rest + " plasma.loading=quiet",
           short_rest + " field.smoothing_passes=0 field.theta=0.6",
@@ -207,7 +214,7 @@ TEST_CASE("the energy theorem holds for few particles and many and whatever a ca
           rest + " time.end=10" + both, rest + " uniform.particles_per_cell=1 time.end=10" + both,
           walls + " time.end=10" + both,
           coarse + " uniform.particles_per_cell=1 time.end=10" + both, gem + " time.end=1.5" + both,
-          sheet + " time.end=0.8" + both}) {
+          sheet + " time.end=0.8" + both, cold + both}) {
         INFO(arguments);
         const Json summary = run("theorem", "implicit_moment/cases/" + arguments);
         CHECK(value(summary, "energy_identity_per_step") <= 1e-11);

@@ -188,7 +188,8 @@ inline common::ParameterTable describe(Case& w) {
         "time of the B that rotates particles: t^n (moments), or t^n + dt/2, of second order "
         "(mass_matrix)");
     table.choice("field.solver", w.field.solver, {"gmres", "newton_krylov"},
-                 "newton_krylov rotates the current in B at the theta level");
+                 "newton_krylov: moments, B of the rotation at the theta level; mass_matrix, "
+                 "particles felt along their whole path, which keeps Gauss's law as well");
     table.real("field.tolerance", w.field.tolerance, "", between(0, 1e-2),
                "residual over right-hand side; 0: 1e-8 with moments, 1e-12 with mass_matrix");
     table.whole("field.max_iterations", w.field.max_iterations, "", between(1, 1e5),
