@@ -39,7 +39,7 @@ double spline_average(const Function& f, double x, double dx) {
 /// nearest node gives to its neighbors:
 ///     quadratic[0..2] = S^(2) to the nodes -1, 0, +1
 ///     linear[0..1]    = S^(1) to the midpoints -1/2, +1/2
-/// Real is double, or SimdVector for eight particles at once. S^(0) to the nearest node is 1.
+/// Real is double, or SimdVector for several particles at once. S^(0) to the nearest node is 1.
 template <class Real>
 struct QuadraticWeights {
     Real quadratic[3];

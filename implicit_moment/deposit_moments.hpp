@@ -42,7 +42,7 @@ struct NodeSums {
     SimdVector P_xz[2][2]{};
     SimdVector P_xx[3][1]{}, P_zz[1][3]{};
 
-    // Adds eight particles of velocity v with the splines S; present is 0 for lanes that hold none.
+    // Adds particles of velocity v with the splines S; present is 0 for lanes that hold none.
     void add(const common::QuadraticWeights<SimdVector>& S_x,
              const common::QuadraticWeights<SimdVector>& S_z, const SimdVector& v_x,
              const SimdVector& v_y, const SimdVector& v_z, const SimdVector& present) {
@@ -81,7 +81,7 @@ struct MeshB {
     const double *B_x, *B_y, *B_z;
     long stride;
 
-    // B at eight particles of one node.
+    // B at particles of one node.
     Velocity<SimdVector> at(long corner, const common::QuadraticWeights<SimdVector>& S_x,
                             const common::QuadraticWeights<SimdVector>& S_z) const {
         const auto& q_x = S_x.quadratic;
@@ -105,7 +105,7 @@ struct MagneticRotation {
     MeshB B;
     double k;
 
-    // vbar = [ v + v x O + (v . O) O ] / (1 + O^2),  O = k B, with B at eight particles.
+    // vbar = [ v + v x O + (v . O) O ] / (1 + O^2),  O = k B, with B at the particles.
     void operator()(long corner, const common::QuadraticWeights<SimdVector>& S_x,
                     const common::QuadraticWeights<SimdVector>& S_z,
                     Velocity<SimdVector>& v) const {

@@ -22,7 +22,7 @@ struct alignas(64) NodeField {
 /// grid.size() records, ghosts included.
 using InterleavedField = std::vector<NodeField>;
 
-/// The six components at one particle (Real = double) or at eight (SimdVector).
+/// The six components at one particle (Real = double) or at several (SimdVector).
 template <class Real>
 struct LocalField {
     Real E_x, E_y, E_z, B_x, B_y, B_z;
@@ -63,7 +63,7 @@ inline void interleave_field(const Grid& grid, const SmoothingSettings& smoothin
 ///     E_x(x_p) = sum_g E_x,g S1(x) S2(z),  B_z alike;   E_z, B_x with S2 S1;   E_y with S2 S2;
 ///     B_y with S1 S1
 /// in:     corner, the record down left of the nearest node; stride between rows. Real is double or
-///         eight SimdVector that share one node.
+///         SimdVector for particles that share one node.
 /// exact:  E is gathered with the splines that deposit J, so that the work done on particles is the
 ///         work taken from the mesh; a potential field E = -grad phi is gathered as the exact
 ///         gradient of the gathered potential, and the gathered B is divergence-free at every

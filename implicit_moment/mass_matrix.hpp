@@ -26,6 +26,7 @@
 // source: G. Lapenta, J. Comput. Phys. 334, 349 (2017), with other splines and other places.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -68,31 +69,34 @@ struct MassMatrix {
 
 namespace detail {
 
-inline constexpr int row_vectors = 3;  // 24 columns: 21 places, J_hat, two that stay 0
-using BlockRow = std::array<SimdVector, row_vectors>;
+inline constexpr int columns = 24, J_column = places;  // 21 places, J_hat, two that stay 0
 
-// Eight particles on both sides of a block.
+// A few particles on both sides of a block. Plain numbers, so that the loops over columns take the width of
+// the machine's registers by themselves.
 struct BlockFactors {
-    SimdVector a[places];               // [g]: lanes are particles
-    BlockRow b[3][common::simd_width];  // [component][particle]: lanes are columns
+    alignas(64) double a[places][common::simd_width];      // [g][particle]
+    alignas(64) double b[3][common::simd_width][columns];  // [component][particle][column]
 
     // in: weights W of the 21 places; a_scale = q / V, 0 in lanes that hold no particle; b_scale = q dt / 2m;
     //     R and R v
     void set(const SimdVector (&W)[places], const SimdVector& a_scale, double b_scale,
              const std::array<SimdVector, 9>& R, const Velocity<SimdVector>& vbar) {
-        // 1 where a column belongs to E_x, E_y, E_z and to J_hat.
-        constexpr SimdVector x0{1, 1, 1, 1, 1, 1, 0, 0}, y0{0, 0, 0, 0, 0, 0, 1, 1},
-            y1{1, 1, 1, 1, 1, 1, 1, 0}, z1{0, 0, 0, 0, 0, 0, 0, 1}, z2{1, 1, 1, 1, 1, 0, 0, 0},
-            J2{0, 0, 0, 0, 0, 1, 0, 0};
-        for (int g = 0; g < places; ++g) a[g] = W[g] * a_scale;
+        for (int g = 0; g < places; ++g) {
+            const SimdVector scaled = W[g] * a_scale;
+            __builtin_memcpy(a[g], &scaled, sizeof scaled);
+        }
         for (int p = 0; p < common::simd_width; ++p) {
-            BlockRow row{};
-            for (int h = 0; h < places; ++h) row[h / 8][h % 8] = b_scale * W[h][p];
+            double row[columns] = {};
+            for (int h = 0; h < places; ++h) row[h] = b_scale * W[h][p];
             const double v[3] = {vbar.x[p], vbar.y[p], vbar.z[p]};
             for (int k = 0; k < 3; ++k) {
-                const double R_x = R[3 * k][p], R_y = R[3 * k + 1][p], R_z = R[3 * k + 2][p];
-                b[k][p] = {row[0] * (R_x * x0 + R_y * y0), row[1] * (R_y * y1 + R_z * z1),
-                           row[2] * (R_z * z2) + v[k] * J2};
+                for (int component = 0; component < 3; ++component) {
+                    const double R_kc = R[3 * k + component][p];
+                    for (int h = first_place[component]; h < first_place[component + 1]; ++h)
+                        b[k][p][h] = R_kc * row[h];
+                }
+                b[k][p][J_column] = v[k];
+                for (int h = J_column + 1; h < columns; ++h) b[k][p][h] = 0;
             }
         }
     }
@@ -100,18 +104,21 @@ struct BlockFactors {
 
 // The block of one node's particles of all species.
 struct NodeBlock {
-    BlockRow row[places]{};
+    alignas(64) double row[places][columns] = {};
 
-    // Adds a b^T of eight particles.
+    // Adds a b^T of the particles, at most four at a time.
     void add(const BlockFactors& factors) {
+        constexpr int together = std::min(common::simd_width, 4);
         for (int component = 0; component < 3; ++component) {
-            for (int half = 0; half < common::simd_width; half += 4) {
-                const BlockRow* b = &factors.b[component][half];
+            for (int first = 0; first < common::simd_width; first += together) {
+                const double(*b)[columns] = &factors.b[component][first];
                 for (int g = first_place[component]; g < first_place[component + 1]; ++g) {
-                    for (int k = 0; k < row_vectors; ++k) {
-                        SimdVector sum = row[g][k];
-                        for (int p = 0; p < 4; ++p) sum += factors.a[g][half + p] * b[p][k];
-                        row[g][k] = sum;
+                    const double* a = &factors.a[g][first];
+#pragma omp simd
+                    for (int h = 0; h < columns; ++h) {
+                        double sum = a[0] * b[0][h];
+                        for (int p = 1; p < together; ++p) sum += a[p] * b[p][h];
+                        row[g][h] += sum;
                     }
                 }
             }
@@ -154,7 +161,7 @@ struct BlockPlaces {
 /// exact:  J_hat + M E is the current of kick_particles in that E, to round-off.
 inline void deposit_mass_matrix(const std::vector<Particles>& species, const Grid& grid,
                                 const VectorField& B, double dt, MassMatrix& mass) {
-    const long columns = nodes_x(grid), stride = grid.stride();
+    const long nodes = nodes_x(grid), stride = grid.stride();
     const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing();
     const detail::MeshB mesh_B{B.x(), B.y(), B.z(), stride};
     const detail::BlockPlaces block_places(grid);
@@ -165,8 +172,8 @@ inline void deposit_mass_matrix(const std::vector<Particles>& species, const Gri
     common::for_each_row_three_colors(nodes_z(grid), [&](long row) {
         const double z_node = grid.z.at(double(row));
         detail::BlockFactors factors;
-        for (long column = 0; column < columns; ++column) {
-            const long node = row * columns + column, corner = grid.index(column - 1, row - 1);
+        for (long column = 0; column < nodes; ++column) {
+            const long node = row * nodes + column, corner = grid.index(column - 1, row - 1);
             const double x_node = grid.x.at(double(column));
             detail::NodeBlock block;
             bool empty = true;
@@ -184,11 +191,13 @@ inline void deposit_mass_matrix(const std::vector<Particles>& species, const Gri
                     for (int j = 0; j < 3; ++j) {
                         for (int i = 0; i < 2; ++i) W[2 * j + i] = S_x.linear[i] * S_z.quadratic[j];
                         for (int i = 0; i < 3; ++i)
-                            W[6 + 3 * j + i] = S_x.quadratic[i] * S_z.quadratic[j];
+                            W[detail::first_place[1] + 3 * j + i] =
+                                S_x.quadratic[i] * S_z.quadratic[j];
                     }
                     for (int j = 0; j < 2; ++j)
                         for (int i = 0; i < 3; ++i)
-                            W[15 + 3 * j + i] = S_x.quadratic[i] * S_z.linear[j];
+                            W[detail::first_place[2] + 3 * j + i] =
+                                S_x.quadratic[i] * S_z.linear[j];
                     const Velocity<SimdVector> b = mesh_B.at(corner, S_x, S_z),
                                                v{common::load_simd(&s.ux_p[p], count),
                                                  common::load_simd(&s.uy_p[p], count),
@@ -207,8 +216,8 @@ inline void deposit_mass_matrix(const std::vector<Particles>& species, const Gri
             double* entry = &mass.entry[std::size_t(row * detail::offsets * stride + column)];
             for (int g = 0; g < detail::places; ++g) {
                 for (int h = 0; h < detail::places; ++h)
-                    entry[block_places.entry[g][h]] += block.row[g][h / 8][h % 8];
-                J_hat[corner + block_places.place[g]] += block.row[g][2][5];
+                    entry[block_places.entry[g][h]] += block.row[g][h];
+                J_hat[corner + block_places.place[g]] += block.row[g][detail::J_column];
             }
         }
     });

@@ -6,7 +6,7 @@
 //     x^{n+1} = x^n + dt vbar,   v^{n+1} = 2 vbar - v^n
 //
 // The rule is iterated until the midpoint stands still. Particles that share a nearest node see
-// the same 3 x 3 mesh values, so eight of them are iterated at once; the few whose midpoint
+// the same 3 x 3 mesh values, so several of them are iterated at once; the few whose midpoint
 // leaves the neighborhood of that node, or that meet a wall, are moved one by one (move_one.hpp).
 #pragma once
 
@@ -84,8 +84,8 @@ inline MoverReport move_particles(const InterleavedField& field, const Grid& gri
                                        common::load_simd(&particles.uz_p[p], count)};
                 const SimdVector from_x = (x - x_node) * per_dx, from_z = (z - z_node) * per_dz;
 
-                // Iterate all eight midpoints; note how far each strays beyond the node's cell.
-                Velocity<SimdVector> vbar = v;
+                // Iterate all midpoints; note how far each strays beyond the node's cell.
+                Velocity<SimdVector> vbar{v.x, v.y, v.z};
                 SimdVector outside{}, change{};
                 for (long iteration = 0; iteration < settings.max_iterations; ++iteration) {
                     const SimdVector d_x = from_x + (h * per_dx) * vbar.x,
@@ -99,8 +99,9 @@ inline MoverReport move_particles(const InterleavedField& field, const Grid& gri
                     change = common::larger(common::magnitude(next.x - vbar.x) * (h * per_dx),
                                             common::magnitude(next.z - vbar.z) * (h * per_dz));
                     change = outside > 0.0 ? 0.0 * change : change;
-                    vbar = next;
-                    if (iteration > 0 && common::simd_max(change) <= settings.tolerance) break;
+                    // One by one: a copy of all three at once goes through memory.
+                    vbar.x = next.x, vbar.y = next.y, vbar.z = next.z;
+                    if (iteration > 0 && !common::any_simd(change > settings.tolerance)) break;
                 }
 
                 outside =
@@ -127,7 +128,7 @@ inline MoverReport move_particles(const InterleavedField& field, const Grid& gri
                     }
                     ++report.one_by_one;
                     if (parts > 1) ++report.sub_stepped;
-                    // Put the moved particle back among the eight, such that the update below
+                    // Put the moved particle back among them, such that the update below
                     // leaves it where it is.
                     x[l] = x_1, z[l] = z_1;
                     vbar.x[l] = vbar.y[l] = vbar.z[l] = 0;
@@ -136,14 +137,13 @@ inline MoverReport move_particles(const InterleavedField& field, const Grid& gri
 
                 x += dt * vbar.x;
                 z += dt * vbar.z;
-                v = {2.0 * vbar.x - v.x, 2.0 * vbar.y - v.y, 2.0 * vbar.z - v.z};
                 wrap(grid.x, x);
                 wrap(grid.z, z);
                 common::store_simd(x, &particles.x_p[p], count);
                 common::store_simd(z, &particles.z_p[p], count);
-                common::store_simd(v.x, &particles.ux_p[p], count);
-                common::store_simd(v.y, &particles.uy_p[p], count);
-                common::store_simd(v.z, &particles.uz_p[p], count);
+                common::store_simd(2.0 * vbar.x - v.x, &particles.ux_p[p], count);
+                common::store_simd(2.0 * vbar.y - v.y, &particles.uy_p[p], count);
+                common::store_simd(2.0 * vbar.z - v.z, &particles.uz_p[p], count);
             }
         }
     });

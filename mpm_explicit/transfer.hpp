@@ -78,15 +78,22 @@ void for_each_link(const Shape& shape, const Locator& at, const long* origin, do
 
 namespace detail {
 
-// One line of the cache at once.
+// Half a line of the cache at once.
+using HalfLine [[gnu::vector_size(4 * sizeof(double))]] = double;
+
+// What a particle adds to a node: m, px, py and mx with S; my, gx, gy and V with S, Gx, Gy and S.
+struct Carried {
+    HalfLine first, second;
+};
 [[gnu::always_inline]] inline void add(NodeSums& node, double S, double Gx, double Gy,
-                                       const common::SimdVector& carried,
-                                       const common::SimdVector& along_x,
-                                       const common::SimdVector& along_y) {
-    common::SimdVector lanes;
-    std::memcpy(&lanes, &node, sizeof lanes);
-    lanes += S * carried + Gx * along_x + Gy * along_y;
-    std::memcpy(&node, &lanes, sizeof lanes);
+                                       const Carried& carried) {
+    HalfLine first, second;
+    std::memcpy(&first, &node.m, sizeof first);
+    std::memcpy(&second, &node.my, sizeof second);
+    first += S * carried.first;
+    second += HalfLine{S, Gx, Gy, S} * carried.second;
+    std::memcpy(&node.m, &first, sizeof first);
+    std::memcpy(&node.my, &second, sizeof second);
 }
 
 }  // namespace detail
@@ -189,10 +196,9 @@ void particles_to_grid(const Shape& shape, const Particles& particles, GrainNode
         for (long p = tile.begin; p < tile.end; ++p) {
             const double x = x_p[p], y = y_p[p], m = m_p[p], V = V_p[p];
             const double Vxx = V * sxx[p], Vxy = V * sxy[p], Vyy = V * syy[p];
-            const common::SimdVector carried{m, m * vx_p[p], m * vy_p[p], m * x, m * y, 0, 0, V},
-                along_x{0, 0, 0, 0, 0, V, 0, 0}, along_y{0, 0, 0, 0, 0, 0, V, 0};
+            const detail::Carried carried{{m, m * vx_p[p], m * vy_p[p], m * x}, {m * y, V, V, V}};
             for_each_node(shape, at, origin, x, y, [&](long dof, double S, double Gx, double Gy) {
-                detail::add(sums[dof], S, Gx, Gy, carried, along_x, along_y);
+                detail::add(sums[dof], S, Gx, Gy, carried);
                 if constexpr (Force::value) {
                     force[dof].x -= Vxx * Gx + Vxy * Gy;
                     force[dof].y -= Vxy * Gx + Vyy * Gy;

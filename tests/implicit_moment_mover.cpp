@@ -67,7 +67,7 @@ TEST_CASE("moved particles satisfy the midpoint rule to the tolerance of the mov
     }
 }
 
-TEST_CASE("eight at once and one by one find the same step also at walls") {
+TEST_CASE("several at once and one by one find the same step also at walls") {
     Random random;
     for (const Grid& grid : meshes()) {
         const InterleavedField push = random_push(grid, 0.2, 0.5, random);

@@ -6,7 +6,7 @@
 //
 // Fields are gathered with the splines that deposit J: then E does on particles the work that J
 // takes from the mesh, and a plasma at rest is not heated by a mesh that does not resolve its Debye
-// length. Particles that share a cell go eight at a time; the trajectories of the few that leave it
+// length. Particles that share a cell go several at a time; the trajectories of the few that leave it
 // are cut into segments one by one (deposit_current.hpp).
 #pragma once
 
