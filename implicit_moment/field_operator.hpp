@@ -180,10 +180,14 @@ inline void precondition_field(FieldSolver& solver, const Eigen::VectorXd& r,
     const std::array<const Eigen::MatrixXf*, 3> Z{&solver.V_z, &solver.V_z, &solver.U_z};
     // Calls work(component, half, first, columns) for both halves of every component.
     const auto for_each_half = [&](const auto& work) {
-        common::for_each_row(6, [&](long task) {
-            const long first = task % 2 * (nz / 2), columns = task % 2 == 0 ? nz / 2 : nz - nz / 2;
-            work(task / 2, task, first, columns);
-        });
+        common::for_each_row(
+            6,
+            [&](long task) {
+                const long first = task % 2 * (nz / 2),
+                           columns = task % 2 == 0 ? nz / 2 : nz - nz / 2;
+                work(task / 2, task, first, columns);
+            },
+            numbers_to_share(grid));
     };
     for (std::size_t k = 0; k < 3; ++k) {
         solver.unknowns[k] = interior(grid, r.data() + k * m).cast<float>();

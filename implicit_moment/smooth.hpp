@@ -44,19 +44,22 @@ inline void smooth_all(const Grid& grid, long count, const Place* place, const P
     if (settings.passes == 0) return;
     const long size = grid.size(), row = grid.stride();
     if (scratch.size() < count * (size + row)) scratch.setZero(count * (size + row));
-    common::for_each_row(count, [&](long k) {
-        double *from = f + k * size, *to = scratch.data() + k * size,
-               *across = scratch.data() + count * size + k * row;
-        const auto pass = [&](double side, double middle) {
-            stencil_rows(grid, side, middle, from, across, to);
-            common::fill_ghosts(grid, place[k], parity[k], to);
-            std::swap(from, to);
-        };
-        for (long n = 0; n < settings.passes; ++n) pass(0.25, 0.5);
-        const double a = 0.25 * double(settings.passes);
-        if (settings.compensate) pass(-a, 1 + 2 * a);
-        if (from != f + k * size) std::copy_n(from, size, f + k * size);
-    });
+    common::for_each_row(
+        count,
+        [&](long k) {
+            double *from = f + k * size, *to = scratch.data() + k * size,
+                   *across = scratch.data() + count * size + k * row;
+            const auto pass = [&](double side, double middle) {
+                stencil_rows(grid, side, middle, from, across, to);
+                common::fill_ghosts(grid, place[k], parity[k], to);
+                std::swap(from, to);
+            };
+            for (long n = 0; n < settings.passes; ++n) pass(0.25, 0.5);
+            const double a = 0.25 * double(settings.passes);
+            if (settings.compensate) pass(-a, 1 + 2 * a);
+            if (from != f + k * size) std::copy_n(from, size, f + k * size);
+        },
+        numbers_to_share(grid));
 }
 
 }  // namespace detail

@@ -79,6 +79,10 @@ inline ConstBlock interior(const Grid& grid, const double* f) {
     return {f + grid.index(0, 0), grid.x.cells, grid.z.cells, Eigen::OuterStride<>(grid.stride())};
 }
 
+/// A mesh as the loops of common/parallel.hpp count numbers: below 32768 points threads lose more than they
+/// gain, since what they work on moves from the cache of one core to that of another in every loop.
+inline long numbers_to_share(const Grid& grid) { return grid.size() / 8; }
+
 /// Calls work(n) for the storage index n of rows and columns 0..N, of all points whose neighbors
 /// are stored.
 template <class Work>

@@ -332,6 +332,13 @@ inline std::string describe_scales(const Case& w, const Scales& scales) {
                          format(s.thermal_speed * w.dt / dz) +
                          ", Debye length = " + format(s.debye_length) + " d_i");
     }
+    if (w.is_uniform() && w.grid.x.periodic && w.grid.z.periodic) {
+        double charge = 0;
+        for (const SpeciesCase& s : w.uniform.species) charge += s.density * s.charge;
+        if (std::fabs(charge) > 1e-12)
+            line("fixed background",
+                 "of charge " + format(-charge) + " e n0, which makes the periodic box neutral");
+    }
     if (!w.is_uniform() && !w.leapfrog.chosen) {
         line("explicit instead", "about " + format(cost_ratio(harris_of(w).mass_ratio, 2)) +
                                      " times the time, by the slide's formula [COST]");

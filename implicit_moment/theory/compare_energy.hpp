@@ -104,9 +104,11 @@ inline void compare_theorem(const Case& w, const common::History& history,
                                   : "a small part of the charge of the ions");
     const double change = momentum_change(w, history);
     if (std::isnan(change)) return;
-    summary.hint(
-        "the mesh brakes the drift: take B in the middle of the step, field.B_level = \"middle\", "
-        "or resolve the Debye length");
+    summary.hint(w.field.rotates_in_the_middle()
+                     ? "the mesh brakes the drift: resolve the Debye length"
+                     : "the mesh brakes the drift: take B in the middle of the step, field.B_level "
+                       "= \"middle\", "
+                       "or resolve the Debye length");
     summary.result_at_most("momentum_change", change, "", 0.05, "conservation");
 }
 
