@@ -225,6 +225,25 @@ TEST_CASE("the part of a Maxwellian beyond the speed of light is that of its par
     CHECK(std::fabs(counted - expected) <= 5 * std::sqrt(expected));
 }
 
+TEST_CASE("a charge that a periodic box must neutralize is named before the run") {
+    Case w;
+    w.setup = "uniform";
+    SpeciesCase electrons;
+    electrons.charge = -1, electrons.density = 0.5;
+    w.uniform.species = {electrons};
+    w.grid.x.periodic = w.grid.z.periodic = true;
+    const auto text = [&] { return describe_scales(w, scales_of(w)); };
+    CHECK(text().find("fixed background") != std::string::npos);
+    CHECK(text().find("of charge 0.5 e n0") != std::string::npos);
+    w.grid.z.periodic = false;  // there the charge stays, and its field
+    CHECK(text().find("fixed background") == std::string::npos);
+    SpeciesCase ions;
+    ions.density = 0.5;
+    w.uniform.species.push_back(ions);
+    w.grid.z.periodic = true;
+    CHECK(text().find("fixed background") == std::string::npos);
+}
+
 TEST_CASE("profiles that are not those of reconnection fall out of their windows") {
     const Grid grid{{256, -12.8, 25.6, true}, {8, -2, 4, false}};
     const HarrisCase sheet;
