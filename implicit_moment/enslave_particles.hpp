@@ -41,6 +41,7 @@ struct EnslavedParticles {
 
 inline constexpr int free_turns = 4;  // after which a path that meets a wall stays as it is
 
+/// Ends the run where particles of a species have no path. errors: NumericalError
 inline void refuse_lost(const Particles& s, double lost) {
     if (lost > 0)
         throw common::NumericalError("the paths of " + common::format(lost) + " of the " + s.name +

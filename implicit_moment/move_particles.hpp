@@ -99,7 +99,7 @@ inline MoverReport move_particles(const InterleavedField& field, const Grid& gri
                     change = common::larger(common::magnitude(next.x - vbar.x) * (h * per_dx),
                                             common::magnitude(next.z - vbar.z) * (h * per_dz));
                     change = outside > 0.0 ? 0.0 * change : change;
-                    // One by one: a copy of all three at once goes through memory.
+                    // By component: a copy of the whole goes through memory in pieces.
                     vbar.x = next.x, vbar.y = next.y, vbar.z = next.z;
                     if (iteration > 0 && !common::any_simd(change > settings.tolerance)) break;
                 }

@@ -106,9 +106,8 @@ inline void compare_theorem(const Case& w, const common::History& history,
     if (std::isnan(change)) return;
     summary.hint(w.field.rotates_in_the_middle()
                      ? "the mesh brakes the drift: resolve the Debye length"
-                     : "the mesh brakes the drift: take B in the middle of the step, field.B_level "
-                       "= \"middle\", "
-                       "or resolve the Debye length");
+                     : "the mesh brakes the drift: take B in the middle of the step, "
+                       "field.B_level = \"middle\", or resolve the Debye length");
     summary.result_at_most("momentum_change", change, "", 0.05, "conservation");
 }
 
