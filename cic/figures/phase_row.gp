@@ -25,9 +25,10 @@ do for [k = 1:panels] {
         if (k == panels) { set colorbox user origin 0.908, row_bottom size 0.012, row_top - row_bottom; set cbtics density_step; set label 82 'f v_{th}/n_0' at screen 0.985, row_top right offset 0, 1.1 } else { unset colorbox }
         plot sprintf('%s/phase_%06d.dat', run, step) using 1:2:(@density) with image
     } else {
+        picture = sprintf('%s/particles_%06d.dat', run, step); v_x = col(picture, 'v_x')
         # Species in turns, so that none covers the others.
-        plot for [turn = 0:3] for [s = 1:words(colors_of_species)] sprintf('%s/particles_%06d.dat', run, step) every 4::turn \
-            using ($1 == s - 1 ? @x_of : NaN):4 with points pointtype 7 pointsize 0.1 linecolor rgb word(colors_of_species, s)
+        plot for [turn = 0:3] for [s = 1:words(colors_of_species)] picture every 4::turn \
+            using ($1 == s - 1 ? @x_of : NaN):v_x with points pointtype 7 pointsize 0.1 linecolor rgb word(colors_of_species, s)
     }
 }
 unset title; unset arrow 81; unset label 81; unset label 82; set border 3; set format y '%g'; set grid
