@@ -24,7 +24,14 @@ libomp-dev             header  omp-tools.h       libomp-devel       libomp      
 llvm                   command llvm-symbolizer   llvm               llvm           llvm, which names the lines of a report
 strace                 command strace            strace             -              strace 5, which can inject errors
 libhdf5-dev            header  hdf5.h            hdf5-devel         hdf5           HDF5 1.10, for output.openpmd
-hdf5-tools             command h5dump            hdf5               hdf5           h5dump, which reads such files'
+hdf5-tools             command h5dump            hdf5               hdf5           h5dump, which reads such files
+parallel               command parallel          parallel           parallel       GNU parallel, for make sweep
+ffmpeg                 command ffmpeg            ffmpeg             ffmpeg         ffmpeg, for make movie
+pandoc                 command pandoc            pandoc             pandoc         pandoc 2.17, for the book
+nodejs                 command node              nodejs             node           Node 18, which renders the formulas of the book
+libjs-katex            header  katex             -                  -              KaTeX 0.16, with its fonts
+chromium               command chromium          chromium           chromium       Chromium, which prints the book and tests the pages
+emscripten             command em++              emscripten         emscripten     Emscripten 3.1, for the pages'
 
 CXX=${CXX:-g++}
 EIGEN=${EIGEN:-/usr/include/eigen3}
