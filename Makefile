@@ -384,6 +384,17 @@ mpm_figures = $(filter mpm_%,$(figures))
 
 figures: $(figures)
 
+# ---- any run: pictures, animations, comparisons and sweeps ------------------------------------------------------
+
+plot watch movie:
+	$(call need,gnuplot)
+	@sh common/plot.sh $(@:plot=draw) '$(RUN)'
+compare:
+	$(call need,gnuplot)
+	@sh common/plot.sh compare '$(A)' '$(B)'
+sweep: $(BUILD)/$(if $(PROGRAM_OF_CASE),$(PROGRAM_OF_CASE),cic)
+	@sh common/sweep.sh $(CASE) $(KEYS)
+
 # The same without the zero.
 $(foreach n,1 2 3 4 5 6 7 8 9,$(eval .PHONY: fig$n)$(eval fig$n: fig0$n))
 

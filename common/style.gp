@@ -87,6 +87,9 @@ parameter(name) = real(system(sprintf("awk -v name='%s' '$1 == name && $2 == \"=
 pi_tics(axis, n) = sprintf("set %stics ('0' 0, 'π' pi", axis) . \
     (n < 2 ? '' : ", '2π' 2*pi") . (n < 3 ? '' : ", '3π' 3*pi") . (n < 4 ? '' : ", '4π' 4*pi") . ")"
 
-# The number of a named column of history.dat:  plot file using (column(col(file, 'time'))):...  or
+# The number of a named column of a table, whose first line holds the names:  plot file using (column(col(file, 'time'))):...  or
 #   t = col(file, 'time'); plot file using t:(column(t + 1))
-col(file, name) = int(system(sprintf("awk -v name='%s' 'NR == 1 { for (i = 2; i <= NF; i++) { n = $i; sub(/^[0-9]+:/, \"\", n); sub(/\\[.*/, \"\", n); if (n == name) print i - 1 } exit }' '%s'", name, file)))
+col(file, name) = int(system(sprintf("awk -v name='%s' '{ for (i = 1; i <= NF; i++) if ($i == name) print i; exit }' '%s'", name, file)))
+
+# The time of a snapshot, fields_000400.dat or another.
+time_of(file) = real(system(sprintf("awk '/^# time/ { print $3; exit }' '%s'", file)))
