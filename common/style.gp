@@ -93,3 +93,10 @@ col(file, name) = int(system(sprintf("awk -v name='%s' '{ for (i = 1; i <= NF; i
 
 # The time of a snapshot, fields_000400.dat or another.
 time_of(file) = real(system(sprintf("awk '/^# time/ { print $3; exit }' '%s'", file)))
+
+# ---- the snapshots that a run has --------------------------------------------------------------------
+# times_of('fields', 4): four of its times, or as many as there are; near('fields', '10 20'): of its times the nearest to these, with a note where they differ;
+# file_at('fields', 10): the file that is nearest to a time.
+times_of(kind, count) = system(sprintf("sh common/snapshots.sh some '%s' %s %d", run, kind, count))
+near(kind, wanted) = system(sprintf("sh common/snapshots.sh near '%s' %s '%s'", run, kind, wanted))
+file_at(kind, time) = system(sprintf("sh common/snapshots.sh file '%s' %s %.12g", run, kind, time))

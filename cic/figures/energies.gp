@@ -2,7 +2,7 @@
 # energy_unit, energy_label, energy_low, energy_high and energy_key.
 kinetic = col(history, 'kinetic'); field = col(history, 'field'); energy = col(history, 'energy')
 if (!exists('energy_unit')) {
-    energy_unit = real(system(sprintf("LC_ALL=C awk '!/#/ { print $%d; exit }' '%s'", kinetic, history)))
+    energy_unit = real(system(sprintf("LC_ALL=C awk '$1 + 0 == $1 { print $%d; exit }' '%s'", kinetic, history)))
     energy_label = 'energy / initial kinetic'; energy_low = 0; energy_high = 1.15
 }
 if (!exists('energy_key')) energy_key = 'center left'

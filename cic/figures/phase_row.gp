@@ -15,19 +15,19 @@ unset key
 if (density ne '') { eval colors(inferno); set cbrange [0:density_top]; unset grid }
 if (exists('wave_speed')) { set arrow 81 from graph 0, first wave_speed to graph 1, first wave_speed nohead front dashtype 2 linewidth 1.6 linecolor rgb gray }
 do for [k = 1:panels] {
-    step = int(real(word(times, k)) / parameter('dt') + 0.5)
     left = 0.075 + (k - 1) * (panel_width + gap)
     set lmargin at screen left; set rmargin at screen left + panel_width
-    set title sprintf('t ω_p = %s', word(times, k)) offset 0, -0.6
+    set title sprintf('t ω_p = %.4g', real(word(times, k))) offset 0, -0.6
     if (k == 1) { set ylabel v_label offset 0.3, 0; set ytics v_step } else { unset ylabel; set ytics v_step format '' }
     if (k == 1 && exists('wave_speed')) { set label 81 'ω/k' at graph 0.04, first wave_speed offset 0, -0.7 front textcolor rgb gray } else { unset label 81 }
     if (density ne '') {
         if (k == panels) { set colorbox user origin 0.908, row_bottom size 0.012, row_top - row_bottom; set cbtics density_step; set label 82 'f v_{th}/n_0' at screen 0.985, row_top right offset 0, 1.1 } else { unset colorbox }
-        plot sprintf('%s/phase_%06d.dat', run, step) using 1:2:(@density) with image
+        plot file_at('phase', real(word(times, k))) using 1:2:(@density) with image
     } else {
+        picture = file_at('particles', real(word(times, k))); v_x = col(picture, 'v_x')
         # Species in turns, so that none covers the others.
-        plot for [turn = 0:3] for [s = 1:words(colors_of_species)] sprintf('%s/particles_%06d.dat', run, step) every 4::turn \
-            using ($1 == s - 1 ? @x_of : NaN):4 with points pointtype 7 pointsize 0.1 linecolor rgb word(colors_of_species, s)
+        plot for [turn = 0:3] for [s = 1:words(colors_of_species)] picture every 4::turn \
+            using ($1 == s - 1 ? @x_of : NaN):v_x with points pointtype 7 pointsize 0.1 linecolor rgb word(colors_of_species, s)
     }
 }
 unset title; unset arrow 81; unset label 81; unset label 82; set border 3; set format y '%g'; set grid

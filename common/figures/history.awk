@@ -91,7 +91,7 @@ function draw(p,    of, n, i, k, hidden, top, bottom, long, least, title, label,
     if (p == "modes" || p == "zero") {
         bottom = p == "modes" ? 1e-8 * top : 1e-4 * least
         if (bottom < 1e-300) bottom = 1e-300
-        printf "set logscale y; set format y '10^{%%T}'; set yrange [%.3g:%.3g]\n", bottom, top * (top / bottom) ^ 0.4
+        printf "set yrange [1:2]; set logscale y; set format y '10^{%%T}'; set yrange [%.3g:%.3g]\n", bottom, top * (top / bottom) ^ 0.4
     } else {
         y = top < 0 ? -bottom : top
         if (top - bottom <= 1e-6 * y) { y = y ? 0.1 * y : 1; top += y; bottom -= y }

@@ -52,7 +52,7 @@ function row(k, a, b, colored,    f, left, top) {
 END {
     group = number["species"] + number["material"] + number["grain"]
     other = number["z"] ? number["z"] : number["y"]
-    plane = other && low[other] < high[other]
+    plane = other && high[other] - low[other] > 1e-9 * (high[number["x"]] - low[number["x"]])
     for (i = 1; i <= columns; i++) if (name[i] ~ /^v_[xyz]$/) { squares = squares (squares == "" ? "" : " + ") "$" i "**2"; of_speed = unit[i] == 1 ? "" : " [" plain(unit[i]) "]" }
     x = number["x"]
     true = plane

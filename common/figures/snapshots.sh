@@ -6,7 +6,7 @@ run=$1 kind=$2
 shift 2
 if [ $# = 0 ]; then
     for time in $(sh common/snapshots.sh some "$run" "$kind" 4); do
-        set -- "$@" "$(sh common/snapshots.sh nearest "$run" "$kind" "$time")"
+        set -- "$@" "$(sh common/snapshots.sh file "$run" "$kind" "$time")"
     done
 fi
 script=common/figures/fields.awk
