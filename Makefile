@@ -1,6 +1,6 @@
 # The front door. `make` alone prints the menu; products go to build/ and out/ and nowhere else.
 
-VERSION := 0.1.0
+VERSION := 1.0.0
 
 # Numbers are read and written with a decimal point, whatever language the user speaks.
 export LC_ALL := C.UTF-8
@@ -47,6 +47,9 @@ flags   = -std=c++20 $(OPTIMIZE) $(ARCH) -fopenmp -fno-math-errno $(sanitize) $(
 defines = -DEIGEN_DONT_PARALLELIZE -DREAL=$(REAL) -DPROGRAM_VERSION=\"$(VERSION)\" -DBUILD_FOLDER=\"$(BUILD)\"
 include_paths = -I. -isystem $(EIGEN) $(CPPFLAGS)
 libraries = -lgsl -lgslcblas -lm $(LDLIBS)
+# HDF5 files where the library is; without it everything else is the same.
+hdf5 = $(firstword $(wildcard /usr/include/hdf5/serial/hdf5.h /usr/include/hdf5.h))
+hdf5_library = $(if $(hdf5),-l$(if $(findstring serial,$(hdf5)),hdf5_serial,hdf5))
 
 # With `make deps fig09`, also with -j, everything waits until the packages are there.
 packages_first := $(filter deps deps-dev,$(MAKECMDGOALS))
@@ -131,7 +134,7 @@ deps:
 	@CXX='$(CXX)' EIGEN='$(EIGEN)' sh common/packages.sh
 
 deps-dev: | $(filter deps,$(MAKECMDGOALS))
-	@sh common/packages.sh clang-format locales clang libclang-rt-dev libomp-dev llvm strace
+	@sh common/packages.sh clang-format locales clang libclang-rt-dev libomp-dev llvm strace libhdf5-dev hdf5-tools
 
 # ---- programs ------------------------------------------------------------------------------------
 
@@ -154,13 +157,16 @@ $(objects)/%.o: %.cpp $(BUILD)/flags
 # The reader of case files must refuse bad input with a message, never with an assertion of its library.
 $(objects)/common/run/case_file.o: private defines += -DNDEBUG
 
+$(objects)/common/run/openpmd.o: private defines += $(if $(hdf5),-DHAVE_HDF5 -isystem $(dir $(hdf5)))
+$(objects)/common/run/openpmd.o: $(hdf5)
+
 $(formula): $(objects)/common/run/formula.o
 	@rm -f $@
 	$(AR) rcs $@ $<
 
 define link
 @mkdir -p $(@D)
-$(CXX) $(flags) -o $@ $(filter %.o %.a,$^) $(libraries) -Wl,--as-needed -lmuparser
+$(CXX) $(flags) -o $@ $(filter %.o %.a,$^) $(libraries) -Wl,--as-needed -lmuparser $(hdf5_library)
 endef
 # The largest object first, so that the others are compiled beside it.
 $(programs:%=$(BUILD)/%): $(BUILD)/%: $$(objects)/$$(call folder_of,$$*)/$$*.o $(shared) $(formula) $(BUILD)/flags
@@ -465,7 +471,7 @@ $(objects)/fuzz/%.o: $$(call folder_of,$$*)/$$*.cpp $(BUILD)/flags
 $(BUILD)/fuzz/%: $(objects)/fuzz/%.o $(objects)/tests/torture/fuzz.o $(filter-out %/run.o,$(shared)) $(formula) $(BUILD)/flags
 	@mkdir -p $(@D)
 	$(CXX) $(flags) -fsanitize=fuzzer -Wl,--wrap=exit,--wrap=getrlimit,--wrap=_ZNSt6chrono3_V212steady_clock3nowEv \
-	    -o $@ $(filter %.o %.a,$^) $(libraries) -Wl,--as-needed -lmuparser
+	    -o $@ $(filter %.o %.a,$^) $(libraries) -Wl,--as-needed -lmuparser $(hdf5_library)
 $(BUILD)/planted_race: $(objects)/tests/torture/planted_race.o $(BUILD)/flags
 	$(link)
 -include $(programs:%=$(objects)/fuzz/%.d) $(wildcard $(objects)/tests/torture/*.d)

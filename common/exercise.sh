@@ -59,13 +59,14 @@ applies() (  # the patch to the tree in this folder, whether a repository is aro
 value_in_history() {  # file, COLUMN.last or COLUMN.at TIME
     awk -v column="${2%%.*}" -v which="${2#*.}" '
     BEGIN { at = split(which, part, " ") == 2 && part[1] == "at"; which = part[1] }
-    NR == 1 {  # "# 1:time[unit] 2:name[unit] ..."
-        here = match($0, " [0-9]+:" column "\\[") ? substr($0, RSTART + 1) + 0 : 0
-        time = match($0, / [0-9]+:time\[/) ? substr($0, RSTART + 1) + 0 : 0
+    NR == 1 {  # the names
+        for (k = 1; k <= NF; k++) {
+            if ($k == column) here = k
+            if ($k == "time") time = k
+        }
         if (!here || (at && !time)) exit
-        next
     }
-    {
+    $1 + 0 == $1 {
         x = $here
         distance = $time - part[2]
         if (distance < 0) distance = -distance

@@ -64,6 +64,11 @@ foreach(source IN LISTS programs)
     endforeach()
 endforeach()
 
+# ---- files for others ----------------------------------------------------------------------------
+add_test(openpmd.another_reader_finds_the_numbers sh tests/support/read_openpmd.sh "${build_folder}")
+describe_test(openpmd.another_reader_finds_the_numbers physics)
+set_tests_properties(openpmd.another_reader_finds_the_numbers PROPERTIES SKIP_RETURN_CODE 77)
+
 # ---- the notes -----------------------------------------------------------------------------------
 add_test(house.every_header_is_in_its_room sh tests/support/house.sh)
 describe_test(house.every_header_is_in_its_room notes)

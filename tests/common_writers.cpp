@@ -107,7 +107,9 @@ TEST_CASE("a table read back has the bits that were written") {
     std::ifstream in(folder.file("t.dat"));
     std::string line, first, second;
     std::getline(in, line);
-    CHECK(line == "# 1:time[1/omega_pi] 2:b[]");
+    CHECK(line == "time b");
+    std::getline(in, line);
+    CHECK(line == "# units: time 1/omega_pi");
     for (std::size_t i = 0; i < a.size(); ++i) {
         in >> first >> second;
         CHECK(same_bits(std::strtod(first.c_str(), nullptr), a[i]));
@@ -122,12 +124,17 @@ TEST_CASE("a field file has an empty line after each row of the mesh") {
     const Folder folder;
     std::vector<double> f;
     for (int k = 0; k < 12; ++k) f.push_back(k * k);
-    common::write_fields(folder.file("f.dat"), {"x", "d_i", -1.0, 0.5, 4},
-                         {"z", "d_i", 2.0, 0.25, 3}, {{"f", "B0", f}});
-    std::istringstream in(read_all(folder.file("f.dat")));
+    const common::Snapshot at{folder.file(""), 400, 40.5};
+    common::write_fields(at, "f", {"x", "d_i", -1.0, 0.5, 4}, {"z", "d_i", 2.0, 0.25, 3},
+                         {{"f", "B0", f}});
+    std::istringstream in(read_all(folder.file("f_000400.dat")));
     std::string line;
     std::getline(in, line);
-    CHECK(line == "# 1:x[d_i] 2:z[d_i] 3:f[B0]");
+    CHECK(line == "x z f");
+    std::getline(in, line);
+    CHECK(line == "# units: x d_i, z d_i, f B0");
+    std::getline(in, line);
+    CHECK(line == "# time 40.5 step 400");
     for (int j = 0; j < 3; ++j) {
         for (int i = 0; i < 4; ++i) {
             std::getline(in, line);
@@ -148,11 +155,13 @@ TEST_CASE("an image file is well-formed XML that holds every value") {
     const Folder folder;
     const auto s = awkward_numbers(15), x = awkward_numbers(15), y = std::vector<double>(15, 2.0),
                z = std::vector<double>(15, -3.0);
-    common::write_vti(folder.file("f.vti"),
+    common::write_vti({folder.file(""), 7, 0.125}, "f",
                       {{{"x", "d_i", -1.0, 0.5, 5}, {}, {"z", "d_i", 0.0, 0.25, 3}}},
                       {{"a<b & \"c\"", "", s}}, {{"B", "B0", x, y, z}});
-    const std::string xml = read_all(folder.file("f.vti"));
-    CHECK(count_tags(xml) == 7);
+    const std::string xml = read_all(folder.file("f_000007.vti"));
+    CHECK(count_tags(xml) == 9);
+    CHECK(xml.find("Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">0.125<") !=
+          std::string::npos);
     CHECK(xml.find(
               "<ImageData WholeExtent=\"0 4 0 0 0 2\" Origin=\"-1 0 0\" Spacing=\"0.5 1 0.25\">") !=
           std::string::npos);
@@ -174,10 +183,10 @@ TEST_CASE("a particle file is well-formed XML that holds every particle") {
         auto x = awkward_numbers(10);
         x.resize(n);
         const std::vector<double> zero(n, 0.0), w(n, 1.5);
-        common::write_vtp(folder.file("p.vtp"), {"position", "d_i", x, zero, x},
+        common::write_vtp({folder.file(""), 0, 0}, "p", {"position", "d_i", x, zero, x},
                           {{"weight", "", w}}, {{"v", "c", x, x, zero}});
-        const std::string xml = read_all(folder.file("p.vtp"));
-        CHECK(count_tags(xml) == 11);
+        const std::string xml = read_all(folder.file("p_000000.vtp"));
+        CHECK(count_tags(xml) == 13);
         const std::string count = "\"" + std::to_string(n) + "\"";
         CHECK(xml.find("NumberOfPoints=" + count + " NumberOfVerts=" + count) != std::string::npos);
         const auto points = data_array<double>(xml, "Points");
@@ -194,6 +203,44 @@ TEST_CASE("a particle file is well-formed XML that holds every particle") {
             CHECK(offsets[i] == std::int64_t(i + 1));
         }
     }
+}
+
+TEST_CASE("a list of files by time forgets what a restart has undone") {
+    const Folder folder;
+    const std::vector<double> one(1, 1.0);
+    const auto write = [&](long step, double time) {
+        common::write_vtp({folder.file(""), step, time}, "p", {"position", "", one, one, one}, {},
+                          {});
+    };
+    write(0, 0), write(10, 1), write(20, 2), write(30, 3);
+    write(20, 2.5);
+    const std::string xml = read_all(folder.file("p.pvd"));
+    CHECK(count_tags(xml) == 2);
+    std::string times;
+    const std::string start = "<DataSet timestep=\"";
+    for (std::size_t at = 0; (at = xml.find(start, at)) != std::string::npos;) {
+        at += start.size();
+        times += xml.substr(at, xml.find("/>", at) - at) + "\n";
+    }
+    CHECK(times ==
+          "0\" file=\"p_000000.vtp\"\n1\" file=\"p_000010.vtp\"\n2.5\" file=\"p_000020.vtp\"\n");
+}
+
+TEST_CASE("a format that the program cannot write is refused before the run") {
+    common::require_formats({true, false});
+    if (common::has_openpmd())
+        common::require_formats({false, true});
+    else
+        CHECK_THROWS_WITH_AS(common::require_formats({false, true}),
+                             doctest::Contains("built without HDF5"), common::InputError);
+}
+
+TEST_CASE("an axis without a name has no column") {
+    const Folder folder;
+    const std::vector<double> f{1, 4, 9};
+    common::write_fields(folder.file("f.dat"), {"x", "d_i", 0, 0.5, 3}, {"", "", 7, 1, 1},
+                         {{"f", "1", f}});
+    CHECK(read_all(folder.file("f.dat")) == "x f\n# units: x d_i\n0 1\n0.5 4\n1 9\n\n");
 }
 
 TEST_CASE("a file that cannot be written is refused with its path") {
@@ -343,7 +390,7 @@ TEST_CASE("a number that is not finite is never hidden") {
     CHECK_THROWS_AS(history.row(broken), common::NumericalError);
     CHECK_THROWS(history.row(more));
     history.flush();
-    CHECK(read_all(folder.file("history.dat")) == "# 1:time[s] 2:x[m]\n0 1\n");
+    CHECK(read_all(folder.file("history.dat")) == "time x\n# units: time s, x m\n0 1\n");
     CHECK(history.column("x") == std::vector<double>{1});
     CHECK_THROWS(history.column("y"));
 }

@@ -138,7 +138,7 @@ TEST_CASE("what is kept of a long explicit run stays when a shorter one is kept"
     const auto keep = [&](double end) {
         std::ofstream(run_of + "/summary.json") << "{\n  \"version\": \"1\"\n}\n";
         std::ofstream history(run_of + "/history.dat");
-        history << "# 1:time[1/omega_pi] 2:time_Omega_ci[1/Omega_ci] 3:flux[B0*d_i]\n";
+        history << "time time_Omega_ci flux\n# units: none\n";
         for (double t = 0; t <= end; t += 0.25)
             history << 20 * t << ' ' << t << ' ' << t / 2 << '\n';
         history.close();

@@ -197,7 +197,8 @@ TEST_CASE("a history with a row too few or too many is refused" * doctest::descr
         REQUIRE(run(command, out, "output.checkpoint_steps=4") == 0);
         const std::string header = read_all(out + "/history.dat").substr(0, 10000);
         const std::size_t columns =
-            std::count(header.begin(), header.begin() + static_cast<long>(header.find('\n')), ':');
+            1 +
+            std::count(header.begin(), header.begin() + static_cast<long>(header.find('\n')), ' ');
         for (const std::string& checkpoint : checkpoints(out)) {
             std::vector<Block> blocks = blocks_of(read_all(checkpoint));
             std::string& rows = blocks[5].bytes;

@@ -44,10 +44,10 @@ std::vector<std::vector<double>> rows(const std::string& name) {
     std::ifstream history(facts::folder_of_test() + "/" + name + "/history.dat");
     std::vector<std::vector<double>> all;
     for (std::string line; std::getline(history, line);) {
-        if (line[0] == '#') continue;
-        all.emplace_back();
         std::istringstream words(line);
-        for (double number; words >> number;) all.back().push_back(number);
+        std::vector<double> row;
+        for (double number; words >> number;) row.push_back(number);
+        if (!row.empty()) all.push_back(row);
     }
     REQUIRE(!all.empty());
     return all;

@@ -831,14 +831,19 @@ TEST_CASE("a file of fringes holds every pixel and is whole") {
     const FringeRaster raster = mpm::draw_fringes(particles, grains, mesh, mpm::whole(mesh), 7);
     const auto folder = std::filesystem::temp_directory_path() / "mpm_theory_fringes";
     std::filesystem::create_directories(folder);
-    const std::string path = (folder / "fringes.dat").string();
-    mpm::write_fringes(path, raster);
+    const common::Snapshot at{folder.string(), 12, 0.75};
+    const std::string path = at.path("fringes", "dat");
+    mpm::write_fringes(at, raster);
     CHECK(!std::filesystem::exists(path + ".partial"));
 
     std::ifstream file(path);
     std::string line;
     std::getline(file, line);
-    CHECK(line == "# 1:x[length] 2:y[length] 3:stress_difference[E] 4:pressure[E] 5:grain[]");
+    CHECK(line == "x y stress_difference pressure grain");
+    std::getline(file, line);
+    CHECK(line == "# units: x length, y length, stress_difference E, pressure E");
+    std::getline(file, line);
+    CHECK(line == "# time 0.75 step 12");
     long rows = 0, empty = 0, inside = 0;
     while (std::getline(file, line)) {
         if (line.empty()) {

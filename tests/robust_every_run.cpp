@@ -226,17 +226,17 @@ cic streams time.end=4 output.fields_interval=1 output.particles_interval=1 \
 cic floating time.end=4 output.fields_interval=1 output.particles_interval=1 \
     output.phase_interval=1 -> 18
 cic mirrors time.end=4 output.fields_interval=1 output.particles_interval=1 \
-    output.phase_interval=1 output.vtk=true -> 26
+    output.phase_interval=1 output.vtk=true -> 28
 cic plane_streams time.end=4 output.modes=4 output.spectrum=true -> 5
 fluids shock_tube -> 3
-pic channel output.fields_interval=0.08 output.particles_interval=0.08 output.vtk=true -> 14
-flip vortex output.fields_interval=0.12 output.particles_interval=0.12 output.vtk=true -> 15
+pic channel output.fields_interval=0.08 output.particles_interval=0.08 output.vtk=true -> 16
+flip vortex output.fields_interval=0.12 output.particles_interval=0.12 output.vtk=true -> 17
 flip channel rezoned output.particles_interval=0.08 -> 5
 mpm_explicit rebound time.end=0.2 output.particles_interval=0.1 output.grains_interval=0.1 \
     output.fringes_interval=0.1 output.pixels_per_cell=2 output.pack=true
 mpm_implicit rebound newton output.particles_interval=0.133 output.grains_interval=0.133 \
     output.fringes_interval=0.133 output.pixels_per_cell=2 output.pack=true -> 12
-mpm_explicit bonded output.particles_interval=2.5 output.vtk=true -> 8
+mpm_explicit bonded output.particles_interval=2.5 output.vtk=true -> 9
 mpm_explicit rebound time.end=0.01 grain.left.shape=polygon grain.left.angle=1e-3 \
     material.more.nu=0.123456789012345678 grain.right.material=more -> 3
 mpm_implicit press method.theta=0.7 solver.tolerance=1e-12 solver.preconditioner=diagonal \
@@ -815,7 +815,7 @@ TEST_CASE("a pack that is written and read again gives the same run" *
           doctest::description("robust")) {
     const auto rows = [](const std::string& out) {
         const std::string text = read_all(out + "/history.dat");
-        return text.substr(text.find('\n') + 1);
+        return text.substr(text.find('\n', text.find("# units:")) + 1);
     };
     for (const Command& command : commands(R"(
 grains written_pack pack.p.kind=hexagonal pack.p.radius=0.15 pack.p.x=0.2 \

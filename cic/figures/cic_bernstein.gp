@@ -4,7 +4,7 @@ wide = 1500; high = 780
 load 'common/style.gp'
 spectrum = run.'/noise/spectrum.dat'
 Omega = 0.5
-largest = real(system("LC_ALL=C awk '!/#/ && $1 > 0.3 && $2^2 * $3 > m { m = $2^2 * $3 } END { print m }' '".spectrum."'"))
+largest = real(system("LC_ALL=C awk '$1 + 0 == $1 && $1 > 0.3 && $2^2 * $3 > m { m = $2^2 * $3 } END { print m }' '".spectrum."'"))
 set multiplot
 set bmargin at screen 0.145; set tmargin at screen 0.89
 set lmargin at screen 0.08; set rmargin at screen 0.49
@@ -24,7 +24,7 @@ set lmargin at screen 0.66; set rmargin at screen 0.98
 history = run.'/seeded/history.dat'
 im = col(history, 'mode_im')
 E_0 = 0.02
-seeds = system(sprintf("grep -v '#' '%s/seeds.dat'", run))
+seeds = system(sprintf("sed 1d '%s/seeds.dat'", run))
 count = words(seeds) / 2
 omega(n) = real(word(seeds, 2 * n - 1)); E(n) = real(word(seeds, 2 * n))
 rest = E_0 - 2 * (sum [n = 1:count] E(n))

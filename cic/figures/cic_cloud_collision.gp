@@ -28,7 +28,7 @@ older = 0; old = 0
 force(r) = (step = (r - 2 * old + older) / dt**2, middle = old, older = old, old = r, -m * step * sgn(middle) / q**2)
 array slope[3]
 do for [n = 1:3] { slope[n] = omega[n]**2 * m / q**2 }
-plot for [n = 1:3] for [place = 0:7] file(n, 'passing_'.place) using (F = force(column(separation)), $0 > 1 ? abs(middle) : NaN):(F) with points pt 7 ps 0.25 lc rgb word(tint, n) notitle, \
+plot for [n = 1:3] for [place = 0:7] file(n, 'passing_'.place) using (F = force(column("separation_x")), $0 > 1 ? abs(middle) : NaN):(F) with points pt 7 ps 0.25 lc rgb word(tint, n) notitle, \
      for [n = 1:3] NaN with points pt 7 ps 1.2 lc rgb word(tint, n) title word(weightings, n), \
      1 / (2 * pi * x) - x / (2 * L**2) with lines lt 8 lw 2 title "Coulomb's law, 1/(2πr)", \
      (x < 1.2 ? slope[2] * x : NaN) with lines dt 2 lw 2 lc rgb ink title 'linear force, cic'

@@ -25,13 +25,13 @@ do for [n = 1:4] {
     set title word(titles, n).', t ω_p = '.word(early, n) offset 0, -0.6
     if (n == 1) { set ylabel 'v_x / (ω_p Δx)' offset 1, 0; set ytics 0.2 } else { unset ylabel; set ytics 0.2 format '' }
     set arrow 1 from 0, 0.1 to 12, 0.1 nohead dashtype 2 linewidth 1.6 linecolor rgb ink
-    plot particles(n, word(late, n)) using 2:4 with points pt 7 ps 0.4 lc rgb '#c4c4c4', particles(n, word(early, n)) using 2:4 with points pt 7 ps 0.6 lc rgb word(tint, n)
+    plot particles(n, word(late, n)) using "x":"v_x" with points pt 7 ps 0.4 lc rgb '#c4c4c4', particles(n, word(early, n)) using "x":"v_x" with points pt 7 ps 0.6 lc rgb word(tint, n)
 }
 unset title; unset arrow 1; set border 3
 set bmargin at screen 0.1; set tmargin at screen 0.42
 set xrange [0:200]; set xtics 50; set xlabel 't ω_p'
 # Where v_th passes 1e-3, and the rate of theory there.
-passes(n) = real(system(sprintf("LC_ALL=C awk '!/#/ && sqrt((2 * $%d / %g - ($%d / %g)^2)^2) > 1e-6 { print $1; exit }' '%s'", kinetic, L, momentum, L, file(n))))
+passes(n) = real(system(sprintf("LC_ALL=C awk '$1 + 0 == $1 && sqrt((2 * $%d / %g - ($%d / %g)^2)^2) > 1e-6 { print $1; exit }' '%s'", kinetic, L, momentum, L, file(n))))
 array since[4]; array rate[4]
 at_end(n) = real(system(sprintf("LC_ALL=C awk 'END { print sqrt(2 * $%d / %g - ($%d / %g)^2) }' '%s'", kinetic, L, momentum, L, file(n))))
 set label 5 'at the end' at graph 0.97, 0.42 right font ',17'

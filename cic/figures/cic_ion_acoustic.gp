@@ -6,7 +6,7 @@ history = run.'/history.dat'
 im = col(history, 'mode_im')
 omega = result('theory_omega'); rate = result('theory_growth')
 period = 2 * pi / omega
-top = system(sprintf("LC_ALL=C awk '!/#/ && $1 > %g && $1 < %g { if ($%d > m) { m = $%d; t = $1 } } END { print t, m }' '%s'", 0.9 * period, 1.9 * period, im, im, history))
+top = system(sprintf("LC_ALL=C awk '$1 + 0 == $1 && $1 > %g && $1 < %g { if ($%d > m) { m = $%d; t = $1 } } END { print t, m }' '%s'", 0.9 * period, 1.9 * period, im, im, history))
 t_1 = real(word(top, 1)); E_1 = real(word(top, 2))
 phase = atan2(rate, omega)
 set title "ion-acoustic wave, m_i/m_e = 25, T_e/T_i = 10, k λ_{De} = 0.5"

@@ -4,7 +4,7 @@ wide = 1500; high = 1080
 load 'common/style.gp'
 folder = run
 # Height of the line of theory: the first maximum of the wave after the transient, at t = 4 ... 7.
-peak(file, rate) = real(system(sprintf("LC_ALL=C awk '!/#/ && $1 > 4 && $1 < 7 { a = 0.5 * log($%d^2 + $%d^2) - %g * $1; if (n++ == 0 || a > m) m = a } END { print m }' '%s'", \
+peak(file, rate) = real(system(sprintf("LC_ALL=C awk '$1 + 0 == $1 && $1 > 4 && $1 < 7 { a = 0.5 * log($%d^2 + $%d^2) - %g * $1; if (n++ == 0 || a > m) m = a } END { print m }' '%s'", \
     col(file, 'mode_re'), col(file, 'mode_im'), rate, file)))
 names = '0.3 0.4 0.5 trapping'
 array start[4]; array rate[4]; array height[4]; array file[4]
@@ -13,7 +13,7 @@ do for [n = 1:4] {
     file[n] = run.'/history.dat'
     rate[n] = result('theory_growth')
     height[n] = peak(file[n], rate[n])
-    start[n] = real(system(sprintf("LC_ALL=C awk '!/#/ { print sqrt($%d^2 + $%d^2); exit }' '%s'", col(file[n], 'mode_re'), col(file[n], 'mode_im'), file[n])))
+    start[n] = real(system(sprintf("LC_ALL=C awk '$1 + 0 == $1 { print sqrt($%d^2 + $%d^2); exit }' '%s'", col(file[n], 'mode_re'), col(file[n], 'mode_im'), file[n])))
 }
 re = col(file[1], 'mode_re'); im = col(file[1], 'mode_im')
 set multiplot title 'Landau damping of Langmuir waves' font ',24'

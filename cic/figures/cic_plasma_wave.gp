@@ -6,7 +6,7 @@ dt = 0.2
 leapfrog(w) = 2 / dt * asin(0.5 * dt * w)
 c(x) = cos(0.5 * x)
 spectrum = run.'/warm/spectrum.dat'
-largest = real(system("LC_ALL=C awk '!/#/ && $2^2 * $3 > m { m = $2^2 * $3 } END { print m }' '".spectrum."'"))
+largest = real(system("LC_ALL=C awk '$1 + 0 == $1 && $2^2 * $3 > m { m = $2^2 * $3 } END { print m }' '".spectrum."'"))
 set multiplot
 set bmargin at screen 0.145; set tmargin at screen 0.89
 set lmargin at screen 0.085; set rmargin at screen 0.475
@@ -37,5 +37,5 @@ plot spectrum using 2:1:($2**2 * $3 / largest) with image notitle, \
      sqrt(1 + 3 * x**2) with lines lc rgb 'white' lw 1.8 dt 3 title 'Bohm and Gross', \
      file('roots') using (0.0125 * $1):2 smooth csplines with lines lc rgb sky lw 1.8 dt 2 title 'kinetic root'
 unspectrum = run.'/warm/spectrum.dat'
-largest = real(system("LC_ALL=C awk '!/#/ && $2^2 * $3 > m { m = $2^2 * $3 } END { print m }' '".spectrum."'"))
+largest = real(system("LC_ALL=C awk '$1 + 0 == $1 && $2^2 * $3 > m { m = $2^2 * $3 } END { print m }' '".spectrum."'"))
 set multiplot

@@ -12,7 +12,7 @@ entry() { awk -v key="results.$1.value" -f common/json_lines.awk "$2/summary.jso
 for scheme in momentum energy; do
     for weighting in cic tsc; do
         table=$folder/${weighting}_$scheme.dat
-        echo '# 1:mode 2:frequency 3:theory' > "$table.partial"
+        echo 'mode frequency theory' > "$table.partial"
         for mode in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15; do
             run=$folder/runs/${weighting}_${scheme}_$mode
             "$program" $cases/plasma_wave.toml method.weighting=$weighting method.scheme=$scheme \
@@ -27,7 +27,7 @@ done
 warm="$cases/landau.toml grid.cells_x=2048 grid.length_x=502.6548245743669 species.electrons.loading=random \
     species.electrons.particles_per_cell=50 output.phase_interval=0"
 "$program" $warm species.electrons.amplitude=0 time.dt=0.2 time.end=400 theory.compare=none output.modes=80 output.spectrum=true --out "$folder/warm" --threads 1 --resume --quiet
-printf '%s\n' '# 1:mode 2:frequency 3:growth' '0 1 0' > "$folder/roots.partial"
+printf '%s\n' 'mode frequency growth' '0 1 0' > "$folder/roots.partial"
 for mode in 8 12 16 20 24 28 32 36 40 44 48 52 56 60 64 68 72 76 80; do
     "$program" $warm theory.mode_x=$mode species.electrons.mode_x=$mode --dry-run |
         sed -n "s|.* omega = \([^,]*\), growth = \([^ ]*\) .*|$mode \1 \2|p" >> "$folder/roots.partial"

@@ -71,6 +71,6 @@ set title 'ions'
 set ylabel 'v_x / (T_e/m_i)^{1/2}'
 set yrange [0:5]; set ytics 1
 M = 100
-plot run.'/particles_020000.dat' using ($1 == 1 ? $2 : NaN):(sqrt(M) * $4) with points pt 7 ps 0.1 lc rgb orange, \
+plot run.'/particles_020000.dat' using ($1 == 1 ? $2 : NaN):(sqrt(M) * column("v_x")) with points pt 7 ps 0.1 lc rgb orange, \
      $source using 1:(sqrt(-2 * $2)) @by_theory, $wall using 1:(sqrt(-2 * $2)) @by_theory
 unset multiplot

@@ -6,7 +6,7 @@ program=$1
 folder=$2
 for scheme in ngp_momentum cic_momentum tsc_momentum cic_energy; do
     table=$folder/$scheme.dat
-    echo '# 1:debye_length_over_dx 2:kinetic_over_initial 3:debye_length_over_dx_at_the_end' > "$table.partial"
+    echo 'debye_length_over_dx kinetic_over_initial debye_length_over_dx_at_the_end' > "$table.partial"
     for ratio in 0.05 0.1 0.2 0.3183 0.5 1; do
         run=$folder/runs/${scheme}_$ratio
         "$program" cic/cases/thermal_heating.toml method.weighting=${scheme%_*} method.scheme=${scheme#*_} grid.length_x="$(awk -v r=$ratio 'BEGIN { print 64 / r }')" \

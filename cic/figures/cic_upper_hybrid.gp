@@ -31,5 +31,5 @@ set xrange [-1:1]; set yrange [-1.4:1.06]; set xtics 0.5; set ytics 0.5
 set key top center
 set parametric; set trange [0:2 * pi]
 plot for [n = 1:3] sin(t) / omega(real(word(fields, n))), real(word(fields, n)) / omega(real(word(fields, n)))**2 * (cos(t) - 1) with lines dt 2 lw 2 lc rgb ink notitle, \
-     for [n = 1:3] run.'/orbit_'.word(fields, n).'.dat' using ($4 / A):($6 / A) with points lt n ps 1 title 'Ω_c = '.word(fields, n).' ω_p'
+     for [n = 1:3] run.'/orbit_'.word(fields, n).'.dat' using ($1 / A):($2 / A) with points lt n ps 1 title 'Ω_c = '.word(fields, n).' ω_p'
 unset multiplot

@@ -41,13 +41,12 @@ class Recorder {
     void snapshot(long step, const State& state, const Field& rho_g, const FieldState& field,
                   common::Run& run) {
         record_positions(state);
-        const std::string folder = run.path(".");
+        const common::Snapshot at{run.path("."), step, double(step) * parameters_.dt,
+                                  parameters_.also};
         if (due(parameters_.fields_interval, step))
-            write_fields(folder, step, parameters_, state, rho_g, field);
-        if (due(parameters_.particles_interval, step))
-            write_particles(folder, step, parameters_, state);
-        if (due(parameters_.phase_interval, step))
-            write_phase_space(folder, step, parameters_, state);
+            write_fields(at, parameters_, state, rho_g, field);
+        if (due(parameters_.particles_interval, step)) write_particles(at, parameters_, state);
+        if (due(parameters_.phase_interval, step)) write_phase_space(at, parameters_, state);
     }
 
     /// One row for t^n, with the sums that the mover has made.
@@ -142,8 +141,9 @@ class Recorder {
             all.add(s.sums);
         }
         row.add("momentum_x", momentum, all.momentum[0]);
-        row.add("momentum_y", momentum, all.momentum[1]);
-        row.add("momentum_z", momentum, all.momentum[2]);
+        const bool plane = parameters_.dimensions == 2, magnetized = parameters_.magnetized();
+        if (magnetized) row.add("momentum_y", momentum, all.momentum[1]);
+        if (magnetized || plane) row.add("momentum_z", momentum, all.momentum[2]);
         const auto add_amplitude = [&](std::size_t m) {
             const auto& [name, mode] = modes_[m];
             const std::complex<double> E_k = mode.amplitude(grid, field.phi);

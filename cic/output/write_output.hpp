@@ -20,7 +20,7 @@ inline constexpr long most_particles_written = 40000;
 
 /// Writes fields_NNNNNN.dat (and .vti): rho, phi, E_x, E_z on nodes, density of every species; E of
 /// the energy-conserving scheme is that of the edge behind the node.
-inline void write_fields(const std::string& folder, long step, const Case& parameters,
+inline void write_fields(const common::Snapshot& at_time, const Case& parameters,
                          const State& state, const Field& rho_g, const FieldState& field) {
     const Grid& grid = parameters.grid;
     const bool plane = parameters.dimensions == 2;
@@ -46,21 +46,19 @@ inline void write_fields(const std::string& folder, long step, const Case& param
     }
 
     const common::SampledAxis x{"x", "length", grid.x.low, grid.x.spacing(), grid.x.cells + 1};
-    const common::SampledAxis z{"z", "length", grid.z.low, grid.z.spacing(),
+    const common::SampledAxis z{plane ? "z" : "", "length", grid.z.low, grid.z.spacing(),
                                 plane ? grid.z.cells + 1 : 1};
     std::vector<common::ScalarColumn> columns;
     for (std::size_t k = 0; k < data.size(); ++k) columns.push_back({names[k], units[k], data[k]});
-    common::write_fields(folder + "/" + common::numbered("fields", step, "dat"), x, z, columns);
-    if (parameters.vtk) {
-        const common::SampledAxis y{"y", "length", 0, 1, 1};
-        common::write_vti(folder + "/" + common::numbered("fields", step, "vti"), {x, y, z},
-                          columns, {});
-    }
+    common::write_fields(at_time, "fields", x, z, columns);
+    if (at_time.also.vtk)
+        common::write_vti(at_time, "fields", {x, {"y", "length", 0, 1, 1}, z}, columns, {});
 }
 
 /// Writes particles_NNNNNN.dat (and .vtp): a random sample of each species, about
-/// most_particles_written in all; positions at t^n, velocities half a step before.
-inline void write_particles(const std::string& folder, long step, const Case& parameters,
+/// most_particles_written in all; positions at t^n, velocities half a step before. In one dimension
+/// there are no columns of what particles do not have.
+inline void write_particles(const common::Snapshot& at_time, const Case& parameters,
                             const State& state) {
     const long every =
         std::max(1L, (state.count() + most_particles_written - 1) / most_particles_written);
@@ -79,17 +77,16 @@ inline void write_particles(const std::string& folder, long step, const Case& pa
             for (std::size_t a = 0; a < 6; ++a) data[a].push_back(row[a]);
         }
     }
-    common::write_table(folder + "/" + common::numbered("particles", step, "dat"),
-                        {{"species", "", data[0]},
-                         {"x", "length", data[1]},
-                         {"z", "length", data[2]},
-                         {"v_x", "velocity", data[3]},
-                         {"v_y", "velocity", data[4]},
-                         {"v_z", "velocity", data[5]}});
-    if (parameters.vtk) {
+    const bool plane = parameters.dimensions == 2, magnetized = parameters.magnetized();
+    std::vector<common::ScalarColumn> columns{{"species", "", data[0]}, {"x", "length", data[1]}};
+    if (plane) columns.push_back({"z", "length", data[2]});
+    columns.push_back({"v_x", "velocity", data[3]});
+    if (magnetized) columns.push_back({"v_y", "velocity", data[4]});
+    if (magnetized || plane) columns.push_back({"v_z", "velocity", data[5]});
+    common::write_table(at_time, "particles", columns);
+    if (at_time.also.vtk) {
         const std::vector<double> zero(data[0].size(), 0.0);
-        common::write_vtp(folder + "/" + common::numbered("particles", step, "vtp"),
-                          {"position", "length", data[1], zero, data[2]},
+        common::write_vtp(at_time, "particles", {"position", "length", data[1], zero, data[2]},
                           {{"species", "", data[0]}},
                           {{"velocity", "velocity", data[3], data[4], data[5]}});
     }
@@ -110,7 +107,7 @@ inline double phase_v_max(const Case& parameters) {
 /// Writes phase_NNNNNN.dat, the phase-space density f_s(x, v_x) of every species, and
 /// velocities_NNNNNN.dat, f_s(v_x). What is faster than the bins reach is left out.
 /// exact:  sum f dx dv (times L_z in two dimensions) is the number of particles in the bins
-inline void write_phase_space(const std::string& folder, long step, const Case& parameters,
+inline void write_phase_space(const common::Snapshot& at_time, const Case& parameters,
                               const State& state) {
     const long nx = parameters.phase_bins_x, nv = parameters.phase_bins_v;
     const double v_max = phase_v_max(parameters), dv = 2 * v_max / double(nv),
@@ -143,8 +140,8 @@ inline void write_phase_space(const std::string& folder, long step, const Case& 
         planes.push_back({"f_" + state.species[k].name, "n0/velocity", f[k]});
         lines.push_back({"f_" + state.species[k].name, "n0/velocity", f_v[k]});
     }
-    common::write_fields(folder + "/" + common::numbered("phase", step, "dat"), x, v, planes);
-    common::write_table(folder + "/" + common::numbered("velocities", step, "dat"), lines);
+    common::write_fields(at_time, "phase", x, v, planes);
+    common::write_table(at_time, "velocities", lines);
 }
 
 /// Writes spectrum.dat: |E|^2 of the recorded modes against frequency, in units of 1/omega_p times

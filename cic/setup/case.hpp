@@ -12,6 +12,7 @@
 #include "cic/poisson.hpp"
 #include "cic/setup/distribution.hpp"
 #include "common/run/formula.hpp"
+#include "common/run/output_file.hpp"
 
 namespace cic {
 
@@ -115,7 +116,8 @@ struct Case {
     long modes = 0;
     long phase_bins_x = 128, phase_bins_v = 128;
     double phase_v_max = 0;
-    bool spectrum = false, vtk = false;
+    bool spectrum = false;
+    common::FileFormats also;
     long checkpoint_steps = 0;
 
     /// The weighting, the scheme and the dimensions as numbers.

@@ -16,6 +16,7 @@ namespace cic {
 /// in/out: the mesh of the case gets its boundaries, in one dimension one cell of height 1, and its
 ///         formulas their tables.
 inline void validate(Case& parameters) {
+    common::require_formats(parameters.also);
     Grid& grid = parameters.grid;
     grid.x.periodic = parameters.boundary_x == "periodic";
     grid.z.periodic = parameters.boundary_z == "periodic";

@@ -186,14 +186,16 @@ inline common::ParameterTable describe(Case& parameters) {
                 "bins along v_x");
     table.real("output.phase_v_max", parameters.phase_v_max, "velocity", at_least(0),
                "bins reach from -v_max to v_max; 0: far enough for the start");
-    table.flag("output.vtk", parameters.vtk, "also write .vti and .vtp for ParaView");
+    table.flag("output.vtk", parameters.also.vtk, "also write .vti and .vtp for ParaView");
+    table.flag("output.openpmd", parameters.also.openpmd, "also write .h5, HDF5 after openPMD");
     table.whole("output.checkpoint_steps", parameters.checkpoint_steps, "", between(0, 1e9),
                 "steps between checkpoints; 0: only when stopped");
 
     // Columns of the history and the number of modes belong to the whole run.
     table.renamed({{"walls.", "boundary."}});
     table.may_change_on_restart({"time.end", "output.fields_interval", "output.particles_interval",
-                                 "output.phase_interval", "output.vtk", "output.checkpoint_steps"});
+                                 "output.phase_interval", "output.vtk", "output.openpmd",
+                                 "output.checkpoint_steps"});
     return table;
 }
 

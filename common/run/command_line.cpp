@@ -35,14 +35,15 @@ bool is_there(const std::string& argument) {
     return fs::exists(argument, unreadable);
 }
 
-// A file of the project, found from the program's own place (build/ in the project) or the current
-// folder.
+// A file of the project, found from the program's own place (build/ in the project, or bin/ beside
+// share/ where it is installed) or the current folder.
 std::string find_in_project(const std::string& file) {
     std::error_code error;
     const fs::path program = fs::read_symlink("/proc/self/exe", error);
     for (fs::path folder = program.parent_path(); !error && folder.has_relative_path();
          folder = folder.parent_path()) {
-        const fs::path candidate = folder / file;
+        fs::path candidate = folder / file;
+        if (!fs::exists(candidate)) candidate = folder / "share/particle-in-cell" / file;
         if (!fs::exists(candidate)) continue;
         const fs::path nearby = fs::relative(candidate, error);
         return !error && !nearby.empty() && nearby.begin()->string() != ".." ? nearby.string()

@@ -43,8 +43,7 @@ class History {
         if (file_ != nullptr) std::fclose(file_);
     }
 
-    /// Names the columns, once, before the first row. The first line of the file is
-    /// "# 1:name[unit] 2:...".
+    /// Names the columns, once, before the first row: names_and_units() begins the file.
     void columns(const std::vector<Column>& columns) { columns_ = columns; }
     /// The same from a row whose values do not count.
     void columns(const Row& row) { columns_ = row.columns; }
@@ -126,12 +125,7 @@ class History {
     /// Writes the file anew with all rows so far: the same bytes, for rows that were restored.
     void open() {
         file_ = open_for_writing(path_);
-        std::string line = "#";
-        for (std::size_t k = 0; k < columns_.size(); ++k) {
-            line.append(" ").append(std::to_string(k + 1)).append(":");
-            line.append(columns_[k].name).append("[").append(columns_[k].unit).append("]");
-        }
-        std::fputs((line + "\n").c_str(), file_);
+        std::fputs(names_and_units(columns_).c_str(), file_);
         for (std::size_t n = 0; n < values_.size(); n += columns_.size())
             write(std::span(values_).subspan(n, columns_.size()));
         flush();

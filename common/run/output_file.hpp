@@ -20,6 +20,21 @@ void refuse_special_file(const std::string& path);
 /// errors: InputError that says why it cannot be written
 std::FILE* open_for_writing(const std::string& path);
 
+/// What snapshots are written as besides text: VTK files for ParaView, HDF5 after openPMD.
+struct FileFormats {
+    bool vtk = false, openpmd = false;
+};
+
+/// Whether the program can write HDF5 files: it was built where the library is.
+bool has_openpmd();
+/// errors: InputError where a format is asked for that the program cannot write
+inline void require_formats(const FileFormats& formats) {
+    if (formats.openpmd && !has_openpmd())
+        throw InputError(
+            "output.openpmd = true, but the program was built without HDF5: install its headers "
+            "(libhdf5-dev on Debian) and build again");
+}
+
 /// A file that appears under its name only when finish() has been called and everything is written.
 class OutputFile {
    public:
@@ -74,5 +89,19 @@ class OutputFile {
     std::FILE* file_ = nullptr;
     bool finished_ = false;
 };
+
+/// The first two lines of a table. The first has the names alone, as gnuplot and pandas read them;
+/// the second is a comment, "# units: time 1/omega_p, x d_i", without pure numbers.
+/// in: columns, which have a name and a unit ("" or "1" for a pure number)
+template <class Columns>
+std::string names_and_units(const Columns& columns) {
+    std::string names, units;
+    for (const auto& column : columns) {
+        names.append(names.empty() ? "" : " ").append(column.name);
+        if (column.unit.empty() || column.unit == "1") continue;
+        units.append(units.empty() ? " " : ", ").append(column.name).append(" " + column.unit);
+    }
+    return names + "\n# units:" + (units.empty() ? " none" : units) + "\n";
+}
 
 }  // namespace common

@@ -85,8 +85,8 @@ void listen_to(int signal) {
 bool is_ours(std::string name) {
     const std::string partial = ".partial";
     if (name.ends_with(partial)) name.resize(name.size() - partial.size());
-    for (const char* plain :
-         {"case.toml", "history.dat", "summary.json", "spectrum.dat", "profile.dat", "pack.txt"}) {
+    for (const char* plain : {"case.toml", "history.dat", "summary.json", "spectrum.dat",
+                              "profile.dat", "pack.txt", "fields.pvd", "particles.pvd"}) {
         if (name == plain) return true;
     }
     for (const char* start : {"fields_", "particles_", "profile_", "phase_", "velocities_",
@@ -96,7 +96,7 @@ bool is_ours(std::string name) {
         const std::size_t ending =
             std::min(name.find_first_not_of("0123456789", digits), name.size());
         if (ending < digits + 6) return false;
-        for (const char* known : {".dat", ".vti", ".vtp", ".bin"}) {
+        for (const char* known : {".dat", ".vti", ".vtp", ".h5", ".bin"}) {
             if (name.compare(ending, std::string::npos, known) == 0) return true;
         }
     }
@@ -350,6 +350,8 @@ int Run::finish(long step, double count) {
                     info_.program.c_str(), message.c_str(), step, clock_text(wall).c_str(),
                     command_.out_dir.c_str());
         if (!next.empty()) std::printf("%s\n", next.c_str());
+        if (fs::exists("common/plot.sh"))
+            std::printf("pictures: make plot RUN=%s\n", shell_word(command_.out_dir).c_str());
     }
     for (const std::string& sentence : shortfalls)
         std::fprintf(stderr, "%s: %s\n", info_.program.c_str(), sentence.c_str());

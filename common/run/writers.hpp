@@ -1,4 +1,5 @@
-// Files for gnuplot (text columns) and for ParaView (.vti meshes, .vtp particles).
+// Files for gnuplot and pandas (text columns) and for ParaView (.vti meshes, .vtp particles, .pvd
+// lists of them by time).
 //
 // Every file is written under a temporary name and then renamed, so a file that is there is whole.
 // Numbers are written with as many digits as it takes to read the same bits back.
@@ -9,7 +10,9 @@
 #include <bit>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -19,7 +22,19 @@
 
 namespace common {
 
-/// The evenly spaced coordinates of one direction of a mesh.
+/// A time at which a run is written down: fields_000400.dat of step 400, and what goes with it.
+struct Snapshot {
+    std::string folder;
+    long step = 0;
+    double time = 0;  // as in the history
+    FileFormats also = {};
+
+    /// Where a kind of file of this time is, e.g. ("fields", "dat").
+    std::string path(const std::string& kind, const std::string& ending) const;
+};
+
+/// The evenly spaced coordinates of one direction of a mesh; one without a name has a single point
+/// and no column.
 struct SampledAxis {
     std::string name, unit;
     double first = 0.0, step = 1.0;
@@ -56,14 +71,15 @@ inline void require_length(std::span<const double> values, long count, const std
                 std::to_string(count) + " points");
 }
 
-/// "# 1:x[d_i] 2:z[d_i] 3:rho[n_0 e]"
-inline void write_column_names(OutputFile& file, const std::vector<ScalarColumn>& columns) {
-    file.text("#");
-    for (std::size_t k = 0; k < columns.size(); ++k) {
-        file.text(" ");
-        file.number(static_cast<long>(k + 1));
-        file.text(":" + columns[k].name + "[" + columns[k].unit + "]");
-    }
+/// The first lines of a table: names_and_units(), and for a snapshot "# time 40 step 400".
+inline void begin_table(OutputFile& file, const std::vector<ScalarColumn>& columns,
+                        const Snapshot* at = nullptr) {
+    file.text(names_and_units(columns));
+    if (at == nullptr) return;
+    file.text("# time ");
+    file.number(at->time);
+    file.text(" step ");
+    file.number(at->step);
     file.text("\n");
 }
 
@@ -150,11 +166,20 @@ inline void write_point_data(OutputFile& file, const std::string& path, long cou
 }
 
 /// The first lines of a VTK file of this type.
-inline void begin_vtk(OutputFile& file, const std::string& type) {
+inline void begin_vtk_file(OutputFile& file, const std::string& type) {
     const bool little = std::endian::native == std::endian::little;
     file.text("<?xml version=\"1.0\"?>\n<VTKFile type=\"" + type +
               "\" version=\"1.0\" byte_order=\"" + (little ? "LittleEndian" : "BigEndian") +
               "\" header_type=\"UInt64\">\n");
+}
+
+/// The time of a VTK file, under the name that ParaView knows.
+inline void write_time(OutputFile& file, double time) {
+    file.text(
+        "<FieldData>\n<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" "
+        "format=\"ascii\">");
+    file.number(time);
+    file.text("</DataArray>\n</FieldData>\n");
 }
 
 }  // namespace writers_detail
@@ -166,14 +191,59 @@ inline std::string numbered(const std::string& kind, long step, const std::strin
     return kind + digits + ending;
 }
 
+inline std::string Snapshot::path(const std::string& kind, const std::string& ending) const {
+    return folder + "/" + numbered(kind, step, ending);
+}
+
+namespace writers_detail {
+
+/// Adds a file to the list of its kind, fields.pvd, which ParaView opens as one thing in time. Lines
+/// of this step and later steps are those of a run that has gone back to an earlier checkpoint.
+inline void add_to_collection(const Snapshot& at, const std::string& kind,
+                              const std::string& ending) {
+    const std::string path = at.folder + "/" + kind + ".pvd", start = "<DataSet timestep=",
+                      name = "\" file=\"" + numbered(kind, at.step, ending) + "\"/>\n";
+    std::string earlier;
+    std::ifstream before(path);
+    for (std::string line; std::getline(before, line);) {
+        const std::size_t file = line.rfind(kind + "_");
+        if (!line.starts_with(start) || file == std::string::npos) continue;
+        if (std::strtol(line.c_str() + file + kind.size() + 1, nullptr, 10) < at.step)
+            earlier += line + "\n";
+    }
+    OutputFile list(path);
+    list.text(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n"
+        "<Collection>\n" +
+        earlier + start + "\"");
+    list.number(at.time);
+    list.text(name + "</Collection>\n</VTKFile>\n");
+    list.finish();
+}
+
+}  // namespace writers_detail
+
+/// Writes fields_000400.h5: each field a mesh record, E_x and E_z components of one, in the order
+/// z, x; each with its unit as an attribute.
+/// exact:  the values are the bits given
+/// errors: InputError with the path where the file cannot be written
+/// source: The openPMD standard 1.1.0.
+void write_openpmd_mesh(const Snapshot& at, const std::string& kind, const SampledAxis& x,
+                        const SampledAxis& z, const std::vector<ScalarColumn>& fields);
+/// The same for particles_000400.h5: x, y, z are the position, all others records of their own.
+void write_openpmd_particles(const Snapshot& at, const std::string& kind,
+                             const std::vector<ScalarColumn>& columns);
+
 /// Writes columns of equal length, one row per particle or time.
-/// in:    columns, each with name and unit for the first line "# 1:name[unit] 2:..."
+/// in:    columns, each with its name for the first line and its unit for the second; the snapshot
+///        to which they belong, for the third
 /// exact: numbers read back have the same bits; on failure nothing appears under `path`
-inline void write_table(const std::string& path, const std::vector<ScalarColumn>& columns) {
+inline void write_table(const std::string& path, const std::vector<ScalarColumn>& columns,
+                        const Snapshot* at = nullptr) {
     const long rows = columns.empty() ? 0 : static_cast<long>(columns.front().values.size());
     for (const auto& c : columns) writers_detail::require_length(c.values, rows, path, c.name);
     OutputFile file(path);
-    writers_detail::write_column_names(file, columns);
+    writers_detail::begin_table(file, columns, at);
     for (std::size_t row = 0; row < static_cast<std::size_t>(rows); ++row) {
         for (std::size_t k = 0; k < columns.size(); ++k) {
             if (k > 0) file.text(" ");
@@ -183,24 +253,32 @@ inline void write_table(const std::string& path, const std::vector<ScalarColumn>
     }
     file.finish();
 }
+inline void write_table(const Snapshot& at, const std::string& kind,
+                        const std::vector<ScalarColumn>& columns) {
+    write_table(at.path(kind, "dat"), columns, &at);
+    if (at.also.openpmd && kind == "particles") write_openpmd_particles(at, kind, columns);
+}
 
 /// Writes fields on a plane mesh for gnuplot: columns x, z, fields; an empty line after each row of
 /// the mesh.
 /// in:    axes x and z; fields of x.count * z.count values, x fastest
 /// exact: as write_table
 inline void write_fields(const std::string& path, const SampledAxis& x, const SampledAxis& z,
-                         const std::vector<ScalarColumn>& fields) {
+                         const std::vector<ScalarColumn>& fields, const Snapshot* at = nullptr) {
     for (const auto& f : fields)
         writers_detail::require_length(f.values, x.count * z.count, path, f.name);
-    std::vector<ScalarColumn> columns{{x.name, x.unit, {}}, {z.name, z.unit, {}}};
+    std::vector<ScalarColumn> columns{{x.name, x.unit, {}}};
+    if (!z.name.empty()) columns.push_back({z.name, z.unit, {}});
     columns.insert(columns.end(), fields.begin(), fields.end());
     OutputFile file(path);
-    writers_detail::write_column_names(file, columns);
+    writers_detail::begin_table(file, columns, at);
     for (long j = 0; j < z.count; ++j) {
         for (long i = 0; i < x.count; ++i) {
             file.number(x.at(i));
-            file.text(" ");
-            file.number(z.at(j));
+            if (!z.name.empty()) {
+                file.text(" ");
+                file.number(z.at(j));
+            }
             for (const auto& f : fields) {
                 file.text(" ");
                 file.number(f.values[static_cast<std::size_t>(j * x.count + i)]);
@@ -211,17 +289,24 @@ inline void write_fields(const std::string& path, const SampledAxis& x, const Sa
     }
     file.finish();
 }
+inline void write_fields(const Snapshot& at, const std::string& kind, const SampledAxis& x,
+                         const SampledAxis& z, const std::vector<ScalarColumn>& fields) {
+    write_fields(at.path(kind, "dat"), x, z, fields, &at);
+    if (at.also.openpmd) write_openpmd_mesh(at, kind, x, z, fields);
+}
 
 /// Writes fields on a mesh for ParaView (VTK image data, point data in base64).
 /// in:    axes x, y, z, one point in a direction that the mesh does not have; scalars and vectors
 ///        of one value per point, x fastest and z slowest
 /// exact: well-formed XML; the values are the bits given
 /// source: The VTK User's Guide, "VTK File Formats".
-inline void write_vti(const std::string& path, const std::array<SampledAxis, 3>& axes,
+inline void write_vti(const Snapshot& at, const std::string& kind,
+                      const std::array<SampledAxis, 3>& axes,
                       const std::vector<ScalarColumn>& scalars,
                       const std::vector<VectorColumn>& vectors) {
+    const std::string path = at.path(kind, "vti");
     OutputFile file(path);
-    writers_detail::begin_vtk(file, "ImageData");
+    writers_detail::begin_vtk_file(file, "ImageData");
     std::string extent;
     for (const auto& axis : axes)
         extent += (extent.empty() ? "0 " : " 0 ") + std::to_string(axis.count - 1);
@@ -235,26 +320,32 @@ inline void write_vti(const std::string& path, const std::array<SampledAxis, 3>&
         if (d > 0) file.text(" ");
         file.number(axes[d].step);
     }
-    file.text("\">\n<Piece Extent=\"" + extent + "\">\n");
+    file.text("\">\n");
+    writers_detail::write_time(file, at.time);
+    file.text("<Piece Extent=\"" + extent + "\">\n");
     const long points = axes[0].count * axes[1].count * axes[2].count;
     writers_detail::write_point_data(file, path, points, scalars, vectors);
     file.text("<CellData></CellData>\n</Piece>\n</ImageData>\n</VTKFile>\n");
     file.finish();
+    writers_detail::add_to_collection(at, kind, "vti");
 }
 
 /// Writes particles for ParaView (VTK poly data, one vertex per particle).
 /// in:    positions of n particles; scalars and vectors of n values
 /// exact: as write_vti
-inline void write_vtp(const std::string& path, const VectorColumn& position,
+inline void write_vtp(const Snapshot& at, const std::string& kind, const VectorColumn& position,
                       const std::vector<ScalarColumn>& scalars,
                       const std::vector<VectorColumn>& vectors) {
+    const std::string path = at.path(kind, "vtp");
     const long points = static_cast<long>(position.x.size());
     for (const auto& part : {position.x, position.y, position.z})
         writers_detail::require_length(part, points, path, position.name);
     OutputFile file(path);
-    writers_detail::begin_vtk(file, "PolyData");
+    writers_detail::begin_vtk_file(file, "PolyData");
     const std::string count = std::to_string(points);
-    file.text("<PolyData>\n<Piece NumberOfPoints=\"" + count + "\" NumberOfVerts=\"" + count +
+    file.text("<PolyData>\n");
+    writers_detail::write_time(file, at.time);
+    file.text("<Piece NumberOfPoints=\"" + count + "\" NumberOfVerts=\"" + count +
               "\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n");
     writers_detail::write_point_data(file, path, points, scalars, vectors);
     file.text("<Points>\n");
@@ -270,6 +361,7 @@ inline void write_vtp(const std::string& path, const VectorColumn& position,
     writers_detail::write_data_array(file, "offsets", 1, offsets);
     file.text("</Verts>\n</Piece>\n</PolyData>\n</VTKFile>\n");
     file.finish();
+    writers_detail::add_to_collection(at, kind, "vtp");
 }
 
 }  // namespace common

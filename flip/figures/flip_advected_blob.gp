@@ -8,11 +8,11 @@ tint = orange.' '.amber.' '.green.' '.pink
 history(p, n) = folder.'/'.p.'_'.word(names, n).'/history.dat'
 t = col(history('pic', 1), 'time'); variance = col(history('pic', 1), 'variance')
 array start[4]
-do for [n = 1:4] { start[n] = real(system(sprintf("LC_ALL=C awk '!/#/ { print $%d; exit }' '%s'", variance, history('pic', n)))) }
+do for [n = 1:4] { start[n] = real(system(sprintf("LC_ALL=C awk '$1 + 0 == $1 { print $%d; exit }' '%s'", variance, history('pic', n)))) }
 D(n) = (run = folder.'/pic_'.word(names, n), result('diffusivity'))
 last(p, n) = system(sprintf('ls "%s"/%s_%s/fields_*.dat | tail -1', folder, p, word(names, n)))
 first = folder.'/pic_0.05/fields_000000.dat'
-e = col(first, 'e'); background = real(system(sprintf("LC_ALL=C awk '!/#/ && NF { print $%d; exit }' '%s'", e, first)))
+e = col(first, 'e'); background = real(system(sprintf("LC_ALL=C awk 'NF && $1 + 0 == $1 { print $%d; exit }' '%s'", e, first)))
 set multiplot title 'A blob of heat on its way around the box' font ',24'
 set bmargin at screen 0.14; set tmargin at screen 0.88
 set lmargin at screen 0.085; set rmargin at screen 0.47

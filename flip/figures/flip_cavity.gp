@@ -22,7 +22,7 @@ unset label 9; unset colorbox; set border 3; set grid; set size noratio
 set tmargin at screen 0.84
 profile = run.'/profile.dat'
 # The mean of the two columns, and of the two rows, of cells beside the middle.
-line(across, along, c) = sprintf("< LC_ALL=C awk '!/#/ && ($%d - 0.5)^2 * %d < 0.6 { sum[$%d] += $%d; count[$%d]++ } END { for (s in sum) print s, sum[s] / count[s] }' '%s' | LC_ALL=C sort -g", across, n * n, along, c, along, last)
+line(across, along, c) = sprintf("< LC_ALL=C awk '$1 + 0 == $1 && ($%d - 0.5)^2 * %d < 0.6 { sum[$%d] += $%d; count[$%d]++ } END { for (s in sum) print s, sum[s] / count[s] }' '%s' | LC_ALL=C sort -g", across, n * n, along, c, along, last)
 set lmargin at screen 0.58; set rmargin at screen 0.745
 set xrange [-0.3:1]; set yrange [0:1]; set xtics 0.5; set ytics 0.25
 set xlabel 'v_x / U on x = L/2'; set ylabel 'z / L' offset 1, 0

@@ -45,7 +45,7 @@ set logscale x; set xrange [5e-4:0.2]; set format x '10^{%T}'; set xtics 10
 set xlabel 'Mach number'; set ylabel 'kept after one turn' offset 1, 0
 machs = '0.001 0.01 0.1'
 kept(n, m) = (run = folder.'/'.word(transfers, n).'-'.word(machs, m), result('kinetic_energy_kept'))
-iterations(m) = real(system(sprintf("LC_ALL=C awk '!/#/ { s += $%d; n++ } END { printf \"%%.0f\", s / (n - 1) }' '%s'/flip-%s/history.dat", col(folder.'/flip-0.1/history.dat', 'iterations'), folder, word(machs, m))))
+iterations(m) = real(system(sprintf("LC_ALL=C awk '$1 + 0 == $1 { s += $%d; n++ } END { printf \"%%.0f\", s / (n - 1) }' '%s'/flip-%s/history.dat", col(folder.'/flip-0.1/history.dat', 'iterations'), folder, word(machs, m))))
 do for [m = 1:3] { set label 10 + m sprintf('%.0f', iterations(m)) at real(word(machs, m)), 1.1 center font ',17' }
 set label 20 'iterations per step' at graph 0.5, 0.95 center font ',17'
 plot for [n = 1:3] '+' using (real(word(machs, int($0) + 1))):(kept(n, int($0) + 1)) every ::0::2 with linespoints lc rgb word(tint, n) pt 7 ps 1.4 notitle

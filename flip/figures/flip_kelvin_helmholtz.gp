@@ -8,7 +8,7 @@ history = run.'/history.dat'
 t = col(history, 'time'); re = col(history, 'mode_re'); im = col(history, 'mode_im')
 rate = result('theory_growth')
 # The line of theory has the height of the run at t = 0.6.
-height = real(system(sprintf("LC_ALL=C awk '!/#/ && $1 > 0.6 { print sqrt($%d^2 + $%d^2) * exp(-%.10g * $1); exit }' '%s'", re, im, rate, history)))
+height = real(system(sprintf("LC_ALL=C awk '$1 + 0 == $1 && $1 > 0.6 { print sqrt($%d^2 + $%d^2) * exp(-%.10g * $1); exit }' '%s'", re, im, rate, history)))
 set bmargin at screen 0.64; set tmargin at screen 0.865
 set lmargin at screen 0.095; set rmargin at screen 0.335
 set logscale y; set format y '10^{%T}'
@@ -20,7 +20,7 @@ plot history using t:(sqrt(column(re)**2 + column(im)**2)) @measured title sprin
 unset logscale; set format y '%g'
 set xrange [0:1]; set yrange [-0.5:0.5]; unset grid; set border 15; set size ratio -1
 unset key; set ytics 0.5
-file(p, at) = system(sprintf("LC_ALL=C awk -v t=%g '!/#/ { if ($1 >= t - 1e-9) { print NR - 2; exit } }' '%s'/%s/history.dat", at, folder, p))
+file(p, at) = system(sprintf("LC_ALL=C awk -v t=%g '$1 + 0 == $1 { if ($1 >= t - 1e-9) { print NR - 3; exit } }' '%s'/%s/history.dat", at, folder, p))
 times = '1.25 1.75 1.0 2.0 2.5'
 do for [n = 1:5] {
     p = n == 3 ? 'pic' : 'flip'

@@ -19,7 +19,7 @@ plot history using t:(sqrt(column(re)**2 + column(im)**2)) @measured title sprin
 unset logscale; set format y '%g'
 set xrange [0:1]; set yrange [-1:1]; unset grid; set border 15; set size ratio -1
 unset xtics; unset xlabel; unset ylabel; unset key
-file(p, at) = system(sprintf("LC_ALL=C awk -v t=%g '!/#/ { if ($1 >= t - 1e-9) { print NR - 2; exit } }' '%s'/%s/history.dat", at, folder, p))
+file(p, at) = system(sprintf("LC_ALL=C awk -v t=%g '$1 + 0 == $1 { if ($1 >= t - 1e-9) { print NR - 3; exit } }' '%s'/%s/history.dat", at, folder, p))
 times = '1.5 2.5 3.5 4.5 0.5 1.5 2.5 3.5'
 do for [n = 1:8] {
     p = n < 5 ? 'flip' : 'pic'

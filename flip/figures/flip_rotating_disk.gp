@@ -8,7 +8,7 @@ tint = orange.' '.gray.' '.amber.' '.green.' '.sky.' '.blue.' '.pink
 history(n, steps) = sprintf('%s/%s.%d/history.dat', run, word(names, n), steps)
 L = col(history(1, 483), 'angular_momentum')
 array start[7]
-do for [n = 1:7] { start[n] = real(system(sprintf("LC_ALL=C awk '!/#/ { print $%d; exit }' '%s'", L, history(n, 483)))) }
+do for [n = 1:7] { start[n] = real(system(sprintf("LC_ALL=C awk '$1 + 0 == $1 { print $%d; exit }' '%s'", L, history(n, 483)))) }
 set multiplot title 'A disk of dust that should turn for ever' font ',24'
 set bmargin at screen 0.13; set tmargin at screen 0.89
 set lmargin at screen 0.085; set rmargin at screen 0.47

@@ -11,7 +11,7 @@ disk() {
     name=$1
     program=$2
     shift 2
-    echo '# 1:steps 2:angular_momentum_kept' > "$folder/$name.dat"
+    echo 'steps angular_momentum_kept' > "$folder/$name.dat"
     for steps in 241 483 1081 2413; do
         # A hair more than the even share, lest round-off adds a step.
         dt=$(awk -v n=$steps 'BEGIN { printf "%.12g", 8 * atan2(1, 1) / n * (1 + 1e-9) }')

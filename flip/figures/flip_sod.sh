@@ -16,7 +16,7 @@ scan() {
     file=$folder/$1.dat
     program=$2
     shift 2
-    echo '# 1:cells 2:L1_density 3:L1_velocity' > "$file"
+    echo 'cells L1_density L1_velocity' > "$file"
     for cells in 50 71 100 141 200 283 400 566 800; do
         tube "$program" flip/cases/sod.toml grid.cells_x=$cells "$@" --out "$folder/scan"
         echo "$cells $(error density) $(error velocity)" >> "$file"

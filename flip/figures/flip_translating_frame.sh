@@ -11,7 +11,7 @@ tube() {
     name=$1
     program=$2
     shift 2
-    echo '# 1:frame_velocity 2:L1_density 3:L1_velocity' > "$folder/$name.dat"
+    echo 'frame_velocity L1_density L1_velocity' > "$folder/$name.dat"
     for V in 0 0.25 0.5 1 1.5 2 2.5 3 3.5 4; do
         ends="inflow.velocity_x=$V"
         if [ $V = 0 ]; then ends='boundary.x_low="slip" inflow.velocity_x=0 inflow.material=""'; fi

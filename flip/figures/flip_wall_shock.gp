@@ -4,7 +4,7 @@ wide = 1500; high = 1060
 load 'common/style.gp'
 folder(k, n) = run.'/'.word('wall_shock piston', k).'_'.word('pic flip', n)
 file(k, n, q) = folder(k, n).(q ? '' : '_without_q').'/profile.dat'
-duration(path) = real(system(sprintf("LC_ALL=C awk '!/#/ { t = $1 } END { print t }' '%s/history.dat'", path)))
+duration(path) = real(system(sprintf("LC_ALL=C awk '$1 + 0 == $1 { t = $1 } END { print t }' '%s/history.dat'", path)))
 set multiplot title 'Shocks at a wall, with artificial viscosity and without' font ',24'
 speeds = '0.2 0.76619'
 do for [k = 1:2] {

@@ -3,8 +3,6 @@
 wide = 1500; high = 590
 load 'common/style.gp'
 files = system(sprintf("ls '%s'/particles_*.dat", run))
-step_of(file) = file[strlen(file) - 9 : strlen(file) - 4]
-time_of(file) = real(system(sprintf("LC_ALL=C awk -v n=%s '!/#/ && k++ == n + 0 { print $1 }' '%s'/history.dat", step_of(file), run)))
 set multiplot title 'Iron hits aluminum at 6 km/s: Harlow''s particle-in-cell method' font ',24'
 set border 15; unset grid; unset key; set size ratio -1
 set xrange [-5.6:5.6]; set yrange [-6.2:5]; set xtics 2; set ytics 2

@@ -63,11 +63,10 @@ class Recorder {
     /// errors: NumericalError when the energy is not finite or has left the limit of the case
     void record(long step, const State& state, const Totals& now, const CellFields& cells,
                 common::Run& run) const {
-        const std::string folder = run.path(".");
-        if (is_due(parameters_.fields_interval, state))
-            write_fields(folder, step, parameters_, cells);
+        const common::Snapshot at{run.path("."), step, state.time, parameters_.also};
+        if (is_due(parameters_.fields_interval, state)) write_fields(at, parameters_, cells);
         if (is_due(parameters_.particles_interval, state))
-            write_particles(folder, step, parameters_, state.particles);
+            write_particles(at, parameters_, state.particles);
         const double energy = now.kinetic + now.internal;
         const bool is_first = run.history.all().empty();
         check_energy(step, state, energy, is_first ? energy : run.history.first("energy"));
@@ -88,9 +87,10 @@ class Recorder {
         if (comparison.compare != nullptr && !summary.has_verdict())
             summary.not_measured(comparison.name, "the run is too short for it: raise time.end");
         if (history.rows() > 1) judge_energy(history, summary);
-        for (const char* name :
-             {"mass_error", "momentum_x_error", "momentum_z_error", "energy_error"})
-            summary.conservation(std::string("largest_") + name, history.largest(name), "1");
+        std::vector<std::string> errors{"mass_error", "momentum_x_error", "energy_error"};
+        if (parameters_.grid.z.cells > 1) errors.insert(errors.begin() + 2, "momentum_z_error");
+        for (const std::string& name : errors)
+            summary.conservation("largest_" + name, history.largest(name), "1");
         summary.performance("particles", static_cast<double>(state.particles.count()));
     }
 
@@ -107,7 +107,7 @@ class Recorder {
         };
         Budget budget = state.budget;
         // Around an axis momenta that point outward cancel, and nothing turns.
-        const bool rings = parameters_.grid.axisymmetric;
+        const bool rings = parameters_.grid.axisymmetric, plane = parameters_.grid.z.cells > 1;
         if (rings) now.momentum_x = now.angular_momentum = budget.momentum_x = 0;
         const std::string per_length = rings ? "" : "/length";
         const double mass = first("mass", now.mass), kinetic = first("kinetic", now.kinetic);
@@ -125,13 +125,14 @@ class Recorder {
         row.add("internal", "energy" + per_length, now.internal);
         row.add("mass", "mass" + per_length, now.mass);
         row.add("momentum_x", "momentum" + per_length, now.momentum_x);
-        row.add("momentum_z", "momentum" + per_length, now.momentum_z);
-        row.add("angular_momentum", "momentum", now.angular_momentum);
+        if (plane) row.add("momentum_z", "momentum" + per_length, now.momentum_z);
+        if (plane) row.add("angular_momentum", "momentum", now.angular_momentum);
         row.add("mass_error", "1", relative(now.mass - budget.mass - mass, mass, budget.mass));
         row.add("momentum_x_error", "1",
                 momentum_error("momentum_x", now.momentum_x, budget.momentum_x));
-        row.add("momentum_z_error", "1",
-                momentum_error("momentum_z", now.momentum_z, budget.momentum_z));
+        if (plane)
+            row.add("momentum_z_error", "1",
+                    momentum_error("momentum_z", now.momentum_z, budget.momentum_z));
         row.add("energy_error", "1",
                 relative(energy - budget.energy - gross, gross, budget.energy));
         row.add("largest_speed", "velocity", most.speed);

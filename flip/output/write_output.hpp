@@ -16,11 +16,12 @@ namespace flip {
 inline constexpr long most_particles_written = 40000;
 
 /// Writes fields_NNNNNN.dat (and .vti): rho, v_x, v_z, p, e at the middles of the cells, and the
-/// density of each material.
+/// density of each material; without z and v_z on a mesh of one row.
 /// in:     cells, zero where there is no fluid
-inline void write_fields(const std::string& folder, long step, const Case& parameters,
+inline void write_fields(const common::Snapshot& at, const Case& parameters,
                          const CellFields& cells) {
     const Grid& grid = parameters.grid;
+    const bool plane = grid.z.cells > 1;
     std::vector<std::vector<double>> data;
     std::vector<common::ScalarColumn> columns;
     const auto add = [&](const std::string& name, const std::string& unit, const Field& f) {
@@ -30,28 +31,29 @@ inline void write_fields(const std::string& folder, long step, const Case& param
     };
     add("rho", "mass/length^3", cells.rho);
     add("v_x", "velocity", cells.vx);
-    add("v_z", "velocity", cells.vz);
+    if (plane) add("v_z", "velocity", cells.vz);
     add("p", "pressure", cells.p);
     add("e", "velocity^2", cells.e);
     for (std::size_t k = 0; k < cells.rho_of.size() && k < parameters.materials.size(); ++k)
         add("rho_" + parameters.materials[k].name, "mass/length^3", cells.rho_of[k]);
 
     const common::SampledAxis x{"x", "length", grid.x.at(0.5), grid.x.spacing(), grid.x.cells};
-    const common::SampledAxis z{"z", "length", grid.z.at(0.5), grid.z.spacing(), grid.z.cells};
-    common::write_fields(folder + "/" + common::numbered("fields", step, "dat"), x, z, columns);
-    if (!parameters.vtk) return;
-    const common::SampledAxis y{"y", "length", 0, 1, 1};
+    const common::SampledAxis z{plane ? "z" : "", "length", grid.z.at(0.5), grid.z.spacing(),
+                                grid.z.cells};
+    common::write_fields(at, "fields", x, z, columns);
+    if (!at.also.vtk) return;
     const std::vector<double> zero(data[0].size(), 0.0);
-    columns.erase(columns.begin() + 1, columns.begin() + 3);
-    common::write_vti(folder + "/" + common::numbered("fields", step, "vti"), {x, y, z}, columns,
-                      {{"velocity", "velocity", data[1], zero, data[2]}});
+    columns.erase(columns.begin() + 1, columns.begin() + (plane ? 3 : 2));
+    common::write_vti(at, "fields", {x, {"y", "length", 0, 1, 1}, z}, columns,
+                      {{"velocity", "velocity", data[1], zero, plane ? data[2] : zero}});
 }
 
 /// Writes particles_NNNNNN.dat (and .vtp): position, material and, where particles carry them,
 /// velocity and internal energy. One particle, drawn at random, stands for each group of neighbors
 /// in memory, so that there are at most most_particles_written.
-inline void write_particles(const std::string& folder, long step, const Case& parameters,
+inline void write_particles(const common::Snapshot& at, const Case& parameters,
                             const Particles& particles) {
+    const bool plane = parameters.grid.z.cells > 1;
     const long count = particles.count();
     const long every = std::max(1L, (count + most_particles_written - 1) / most_particles_written);
     const bool moving = has(particles.vx_p);
@@ -68,15 +70,16 @@ inline void write_particles(const std::string& folder, long step, const Case& pa
         vz.push_back(particles.vz_p[p]);
         e.push_back(particles.e_p[p]);
     }
-    std::vector<common::ScalarColumn> columns{
-        {"x", "length", x}, {"z", "length", z}, {"material", "", material}};
+    std::vector<common::ScalarColumn> columns{{"x", "length", x}};
+    if (plane) columns.push_back({"z", "length", z});
+    columns.push_back({"material", "", material});
     if (moving) {
         columns.push_back({"v_x", "velocity", vx});
-        columns.push_back({"v_z", "velocity", vz});
+        if (plane) columns.push_back({"v_z", "velocity", vz});
         columns.push_back({"e", "velocity^2", e});
     }
-    common::write_table(folder + "/" + common::numbered("particles", step, "dat"), columns);
-    if (!parameters.vtk) return;
+    common::write_table(at, "particles", columns);
+    if (!at.also.vtk) return;
     const std::vector<double> zero(x.size(), 0.0);
     std::vector<common::ScalarColumn> scalars{{"material", "", material}};
     std::vector<common::VectorColumn> vectors;
@@ -84,8 +87,7 @@ inline void write_particles(const std::string& folder, long step, const Case& pa
         scalars.push_back({"e", "velocity^2", e});
         vectors.push_back({"velocity", "velocity", vx, zero, vz});
     }
-    common::write_vtp(folder + "/" + common::numbered("particles", step, "vtp"),
-                      {"position", "length", x, zero, z}, scalars, vectors);
+    common::write_vtp(at, "particles", {"position", "length", x, zero, z}, scalars, vectors);
 }
 
 }  // namespace flip

@@ -9,6 +9,7 @@
 
 #include "common/grid.hpp"
 #include "common/run/formula.hpp"
+#include "common/run/output_file.hpp"
 #include "flip/problem.hpp"
 
 namespace flip {
@@ -111,7 +112,7 @@ struct Case {
     long mode = 1;
 
     double fields_interval = 0, particles_interval = 0;
-    bool vtk = false;
+    common::FileFormats also;
     long checkpoint_steps = 0;
 
     /// Whether what the lumped masses owe the particles goes to heat; consistent ones owe nothing.

@@ -61,6 +61,7 @@ inline void reject_unused(const Case& parameters) {
 /// in:     a completed case; program, pic or flip
 /// errors: InputError, one sentence with the numbers and the cure
 inline void validate(const Case& parameters, const std::string& program) {
+    common::require_formats(parameters.also);
     refuse(parameters.regions.empty(),
            "there is no fluid: add a [region.<name>], or set setup.kind = \"riemann\"");
     const bool between = parameters.interface > parameters.grid.x.low &&

@@ -207,7 +207,8 @@ inline common::ParameterTable describe(Case& parameters) {
                "time between fields files; 0: none");
     table.real("output.particles_interval", parameters.particles_interval, "time", at_least(0),
                "time between particles files; 0: none");
-    table.flag("output.vtk", parameters.vtk, "also write .vti and .vtp for ParaView");
+    table.flag("output.vtk", parameters.also.vtk, "also write .vti and .vtp for ParaView");
+    table.flag("output.openpmd", parameters.also.openpmd, "also write .h5, HDF5 after openPMD");
     table.whole("output.checkpoint_steps", parameters.checkpoint_steps, "", between(0, 1e9),
                 "steps between checkpoints; 0: only when stopped");
 
@@ -215,7 +216,7 @@ inline common::ParameterTable describe(Case& parameters) {
                    {"rezone.fewest", "rezone.min_particles"},
                    {"rezone.most", "rezone.max_particles"}});
     table.may_change_on_restart({"time.end", "output.fields_interval", "output.particles_interval",
-                                 "output.vtk", "output.checkpoint_steps"});
+                                 "output.vtk", "output.openpmd", "output.checkpoint_steps"});
     return table;
 }
 

@@ -8,13 +8,13 @@ folder=$2
 entry() { awk -v key="$1" -f common/json_lines.awk "$run/summary.json"; }
 where="explicit_em $(entry version), implicit_moment/cases/gem_explicit.toml: 512 x 256 cells, 9.12e6 particles, omega_pe dt = 0.15"
 ends() { awk -F, '!/^#/ { t = $1 } END { print t + 0 }' "$1"; }
-column() { awk -v name="$1" 'NR == 1 { for (k = 2; k <= NF; k++) { split($k, part, /[:[]/); if (part[2] == name) print part[1] } exit }' "$run/history.dat"; }
+column() { awk -v name="$1" '{ for (k = 1; k <= NF; k++) if ($k == name) print k; exit }' "$run/history.dat"; }
 {
     echo "# $where"
     echo '# reconnected flux in B0 d_i against t Omega_ci'
     echo '# time_Omega_ci,flux'
-    awk -v t="$(column time_Omega_ci)" -v f="$(column flux)" '!/^#/ && $t >= next_one - 1e-6 { printf "%.3f,%.5f\n", $t, $f; next_one += 0.5 }
-        !/^#/ { last = sprintf("%.3f,%.5f", $t, $f) } END { print last }' "$run/history.dat" | uniq
+    awk -v t="$(column time_Omega_ci)" -v f="$(column flux)" '$1 + 0 == $1 && $t >= next_one - 1e-6 { printf "%.3f,%.5f\n", $t, $f; next_one += 0.5 }
+        $1 + 0 == $1 { last = sprintf("%.3f,%.5f", $t, $f) } END { print last }' "$run/history.dat" | uniq
 } > "$folder/new.csv"
 if [ -f "$folder/explicit_gem_flux.csv" ] && awk -v a="$(ends "$folder/new.csv")" -v b="$(ends "$folder/explicit_gem_flux.csv")" 'BEGIN { exit !(a < b) }'; then
     echo "keep_explicit_gem.sh: $run is shorter than what $folder has, which stays" >&2
@@ -28,5 +28,5 @@ mv "$folder/new.csv" "$folder/explicit_gem_flux.csv"
     printf '# along z = 0: averages from t Omega_ci = %.2f to %.2f, the first steps of unit flux, and B_z at the first; v_A, n0, B0\n' \
         "$(entry results.profile_begin.value)" "$(entry results.profile_end.value)"
     echo '# x,v_x_electrons,rho_ions,v_x_ions,B_z'
-    awk '!/^#/ { printf "%.3f,%.4f,%.4f,%.4f,%.5f\n", $1, $2, $3, $4, $5 }' "$run/profile.dat"
+    awk '$1 + 0 == $1 { printf "%.3f,%.4f,%.4f,%.4f,%.5f\n", $1, $2, $3, $4, $5 }' "$run/profile.dat"
 } > "$folder/explicit_gem_profile.csv"

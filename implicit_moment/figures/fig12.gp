@@ -42,7 +42,7 @@ gamma = result('growth_over_theory') * result('theory_growth')
 omega = result('omega_over_theory') * result('theory_omega')
 t0 = result('time_of_saturation')
 size(a, b, c, d) = sqrt(0.5 * (a**2 + b**2 + c**2 + d**2))
-top = real(system(sprintf("LC_ALL=C awk 'NR > 1 { a = sqrt(0.5*($%d^2+$%d^2+$%d^2+$%d^2)); if ($%d <= 7 && a > top) top = a } END { print top }' '%s'", u, u + 1, l, l + 1, t, history)))
+top = real(system(sprintf("LC_ALL=C awk '$1 + 0 == $1 { a = sqrt(0.5*($%d^2+$%d^2+$%d^2+$%d^2)); if ($%d <= 7 && a > top) top = a } END { print top }' '%s'", u, u + 1, l, l + 1, t, history)))
 set label 1 sprintf('γ = %.1f Ω_{ci}  (local theory %.1f)', gamma, result('theory_growth')) at 2.3, 0.0078 textcolor rgb ink font ',17'
 set label 2 sprintf('ω = %.1f Ω_{ci}  (local theory %.1f)', omega, result('theory_omega')) at 2.3, 0.0046 textcolor rgb ink font ',17'
 plot history using t:(size(column(u), column(u + 1), column(l), column(l + 1))) @measured title sprintf('m_y = %d', m), \

@@ -23,7 +23,7 @@ seconds() {
 
 unit_25=$(awk -F, '/^#/ { next } $2 >= 1 { print t + ($1 - t) * (1 - f) / ($2 - f); exit } { t = $1; f = $2 }' implicit_moment/data/explicit_gem_flux.csv)
 {
-    echo '# 1:mass_ratio 2:light_over_alfven 3:unit_flux_at[1/Omega_ci] 4:implicit_particles 5:implicit_steps 6:implicit_s' \
+    echo 'mass_ratio light_over_alfven unit_flux_at implicit_particles implicit_steps implicit_s' \
         '7:explicit_unit_flux_at[1/Omega_ci] 8:explicit_particles 9:explicit_steps 10:particle_steps_per_s 11:explicit_s 12:timed' \
         '13:ratio_of_particle_steps 14:ratio_of_time 15:formula'
 } > "$table.partial"

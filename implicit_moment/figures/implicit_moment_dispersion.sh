@@ -16,7 +16,7 @@ for wave in light langmuir; do
     [ $wave = light ] && file=$cases/light_wave.toml
     for theta in 0.5 1; do
         table=$folder/${wave}_$theta.dat
-        echo '# 1:angle 2:frequency_over_exact 3:damping 4:theory_omega 5:theory_growth 6:dt' > "$table.partial"
+        echo 'angle frequency_over_exact damping theory_omega theory_growth dt' > "$table.partial"
         for angle in 0.1 0.3 0.6 1 1.5 2 3 5; do
             run=$folder/runs/${wave}_${theta}_$angle
             # For light the angle is c dt K with K = 0.98135 of the mesh; for the plasma it is omega_p dt = dt.

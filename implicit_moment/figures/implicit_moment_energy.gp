@@ -7,7 +7,7 @@ history(name) = run.'/'.name.'/history.dat'
 t = col(history('half'), 'time'); drift = col(history('half'), 'energy_drift')
 energy = col(history('half'), 'energy'); by_theta = col(history('half'), 'energy_by_theta'); residual = col(history('half'), 'energy_residual')
 te = col(history('explicit'), 'time'); de = col(history('explicit'), 'energy_drift')
-stats history('one') every ::0::0 using energy nooutput
+stats history('one') every ::1::1 using energy nooutput
 E0 = STATS_max
 set multiplot title 'Energy of a plasma that the mesh does not resolve, {/Symbol D}x = 12 {/Symbol l}_D, {/Symbol w}_p{/Symbol D}t = 0.5' font ',22'
 set tmargin at screen 0.88; set bmargin at screen 0.15

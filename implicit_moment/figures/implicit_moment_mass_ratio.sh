@@ -18,7 +18,7 @@ one_run() {
     echo "$ratio $seed $(of time_at_unit_flux) $(of peak_reconnection_rate)" >> "$folder/rates.new"
 }
 
-echo '# 1:mass_ratio[1] 2:seed[1] 3:time_at_unit_flux[1/Omega_ci] 4:peak_rate[B0*v_A]' > "$folder/rates.new"
+echo 'mass_ratio seed time_at_unit_flux peak_rate' > "$folder/rates.new"
 # To t Omega_ci = 22, and 18 where reconnection starts earlier. With 180 and c/v_A = 20 as with 25, a step has omega_pe dt = 4 and Omega_ce dt = 2.7.
 for seed in 1 2 3; do one_run 25 $seed $cases/gem.toml time.end=440; done
 for seed in 1 2 3; do one_run 180 $seed $cases/gem.toml harris.mass_ratio=180 harris.light_over_alfven=20 time.dt=0.3 time.end=440; done

@@ -9,7 +9,7 @@ folder=$2
 case=implicit_moment/cases/${3:-kink}.toml
 dt=$(awk '$1 == "dt" { print $3 }' "$case")
 
-echo '# 1:T_i/T_e[1] 2:kink_growth[Omega_ci] 3:talk[Omega_ci] 4:lhdi_level[B0] 5:talk[B0] 6:energy_drift[1]' > "$folder/kinks.new"
+echo 'T_i/T_e kink_growth talk_growth lhdi_level talk_level energy_drift' > "$folder/kinks.new"
 while read -r ratio part growth level; do
     run=$folder/ratio_$ratio
     "$program" "$case" current_sheet.temperature_ratio="$ratio" time.dt="$(awk "BEGIN { print $dt * $part }")" --out "$run" --resume --quiet
@@ -20,7 +20,7 @@ done <<END
 2 1 0.07 3.5e-3
 1 0.75 0.04 1.5e-3
 END
-awk '{ print } !/#/ { growth[++n] = $2; level[n] = $4 }
+awk '{ print } $1 + 0 == $1 { growth[++n] = $2; level[n] = $4 }
     function order(a) { return a[1] > a[2] && a[2] > a[3] ? "holds" : "does not hold" }
     END { print "# order 4 > 2 > 1 of the growth rates " order(growth) ", of the levels " order(level) }' \
     "$folder/kinks.new" > "$folder/kinks.dat"

@@ -2,7 +2,7 @@
 # show_cost.sh TABLE: the table of fig_cost.sh for the reader.
 set -eu
 export LC_ALL=C.UTF-8
-awk '!/^#/ {
+awk '$1 + 0 == $1 {
     if (!head++) {
         printf "\ntime to unit flux of the GEM challenge, one thread\n\n%8s %28s %46s %30s\n", "", "implicit", "explicit", "explicit / implicit"
         printf "%8s %9s %8s %9s %12s %10s %10s %12s %12s %9s %9s\n", "m_i/m_e", "particles", "steps", "s", "particles", "steps", "M/s", "s", "part.-steps", "time", "formula"

@@ -88,14 +88,13 @@ class Recorder {
             record_profile(profile, time * B0 / c, middle_row(grid, field.B).flux / B0, grid,
                            field.B, [&] { return plasma_moments_(state); });
         }
-        if (due(parameters_.fields_interval, step)) {
-            write_fields(run.path("."), step, grid, field, state.plasma, plasma_moments_(state),
-                         parameters_.vtk);
-        }
+        const common::Snapshot at{run.path("."), step, time, parameters_.also};
+        if (due(parameters_.fields_interval, step))
+            write_fields(at, grid, field, state.plasma, plasma_moments_(state));
         if (due(parameters_.particles_interval, step))
-            write_particles(run.path("."), step, state.plasma, parameters_);
+            write_particles(at, state.plasma, parameters_);
         if (sheet_ && due(parameters_.profile_interval, step))
-            write_profile(run.path("."), step, parameters_, field, plasma_moments_(state));
+            write_profile(at, parameters_, field, plasma_moments_(state));
     }
 
     /// The results of the whole run, after its last row.

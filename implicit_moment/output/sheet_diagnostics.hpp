@@ -120,14 +120,14 @@ class SheetDiagnostics {
 };
 
 /// Writes profile_NNNNNN.dat: means over x, row by row of the nodes.
-inline void write_profile(const std::string& folder, long step, const Case& parameters,
+inline void write_profile(const common::Snapshot& at, const Case& parameters,
                           const FieldState& field, const std::vector<Moments>& moments) {
     const Grid& grid = parameters.grid;
     const HarrisCase h = harris_of(parameters);
     const HarrisSheet sheet = harris_sheet(h);
     const double J0 = c * sheet.B0 / (4 * pi * h.thickness);
     const double v_i = std::sqrt(2 * sheet.T_i), rows = double(nodes_z(grid));
-    const double time = double(step) * parameters.dt * sheet.Omega_ci;
+    const double time = at.time * sheet.Omega_ci;
     const Moments &ions = moments[0], &electrons = moments[1];
     std::array<std::vector<double>, 8> data;
     for (long j = 0; j < nodes_z(grid); ++j) {
@@ -148,7 +148,7 @@ inline void write_profile(const std::string& folder, long step, const Case& para
             n_e > 0 ? -J_e / (n_e * v_i) : 0};
         for (std::size_t k = 0; k < row.size(); ++k) data[k].push_back(row[k]);
     }
-    common::write_table(folder + "/" + common::numbered("profile", step, "dat"),
+    common::write_table(at, "profile",
                         {{"time_Omega_ci", "1/Omega_ci", data[0]},
                          {"z", "L", data[1]},
                          {"B_y", "B0", data[2]},

@@ -11,8 +11,6 @@ namespace implicit_moment {
 
 inline constexpr long most_particles_written = 40000;
 
-using common::numbered;
-
 /// One quantity brought to the nodes 0..N of both directions by averaging the places beside each
 /// node, x fastest.
 /// in:     f, ghosts filled.
@@ -31,9 +29,8 @@ inline std::vector<double> on_all_nodes(const Grid& grid, Place place, const dou
 
 /// Writes fields_NNNNNN.dat (and .vti): E, B, A_y; mean velocity and charge density of every
 /// species; total J. Units of units.hpp.
-inline void write_fields(const std::string& folder, long step, const Grid& grid,
-                         const FieldState& field, const Plasma& plasma,
-                         const std::vector<Moments>& moments, bool vtk) {
+inline void write_fields(const common::Snapshot& at, const Grid& grid, const FieldState& field,
+                         const Plasma& plasma, const std::vector<Moments>& moments) {
     std::vector<std::vector<double>> data;
     std::vector<std::string> names, units;
     const auto add = [&](const std::string& name, const std::string& unit,
@@ -79,16 +76,13 @@ inline void write_fields(const std::string& folder, long step, const Grid& grid,
     const common::SampledAxis z{"z", "d_i", grid.z.low, grid.z.spacing(), nodes_z(grid)};
     std::vector<common::ScalarColumn> columns;
     for (std::size_t k = 0; k < data.size(); ++k) columns.push_back({names[k], units[k], data[k]});
-    common::write_fields(folder + "/" + numbered("fields", step, "dat"), x, z, columns);
-    if (vtk) {
-        const common::SampledAxis y{"y", "d_i", 0, 1, 1};
-        common::write_vti(folder + "/" + numbered("fields", step, "vti"), {x, y, z}, columns, {});
-    }
+    common::write_fields(at, "fields", x, z, columns);
+    if (at.also.vtk) common::write_vti(at, "fields", {x, {"y", "d_i", 0, 1, 1}, z}, columns, {});
 }
 
 /// Writes particles_NNNNNN.dat (and .vtp): every n-th particle of each species, at most
 /// most_particles_written in all; v of implicit_moment, u = gamma v of explicit_em.
-inline void write_particles(const std::string& folder, long step, const Plasma& plasma,
+inline void write_particles(const common::Snapshot& at, const Plasma& plasma,
                             const Case& parameters) {
     const long every = (plasma.count() + most_particles_written - 1) / most_particles_written;
     std::array<std::vector<double>, 6> data;
@@ -102,18 +96,18 @@ inline void write_particles(const std::string& folder, long step, const Plasma& 
     }
     const bool is_u = parameters.leapfrog.chosen && parameters.leapfrog.relativistic;
     const std::string v = is_u ? "u_" : "v_";
-    common::write_table(folder + "/" + numbered("particles", step, "dat"),
+    common::write_table(at, "particles",
                         {{"species", "", data[0]},
                          {"x", "d_i", data[1]},
                          {"z", "d_i", data[2]},
                          {v + "x", "c", data[3]},
                          {v + "y", "c", data[4]},
                          {v + "z", "c", data[5]}});
-    if (parameters.vtk) {
+    if (at.also.vtk) {
         const std::vector<double> zero(data[0].size(), 0.0);
         common::write_vtp(
-            folder + "/" + numbered("particles", step, "vtp"),
-            {"position", "d_i", data[1], zero, data[2]}, {{"species", "", data[0]}},
+            at, "particles", {"position", "d_i", data[1], zero, data[2]},
+            {{"species", "", data[0]}},
             {{is_u ? "momentum_per_mass" : "velocity", "c", data[3], data[4], data[5]}});
     }
 }

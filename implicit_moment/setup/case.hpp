@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/grid.hpp"
+#include "common/run/output_file.hpp"
 #include "common/run/parameters.hpp"
 #include "implicit_moment/explicit_em/boris_push.hpp"
 #include "implicit_moment/move_particles.hpp"
@@ -87,7 +88,7 @@ struct Case {
 
     // How often, in 1/omega_pi; 0: never.
     double fields_interval = 0, particles_interval = 0, profile_interval = 0;
-    bool vtk = false;
+    common::FileFormats also;
     long checkpoint_steps = 0;
     long history_steps = 1;  // steps from one row of history.dat to the next
 

@@ -188,6 +188,7 @@ inline void validate_uniform(const Case& w) {
 
 /// Refuses what cannot run. errors: InputError, one sentence with the numbers and the cure.
 inline void validate(Case& w) {
+    common::require_formats(w.also);
     w.grid.x.periodic = w.boundary_x == "periodic";
     w.grid.z.periodic = w.boundary_z == "periodic";
     if (w.is_along_current()) fit_mesh_to_sheet(w);

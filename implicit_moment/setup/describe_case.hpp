@@ -159,7 +159,8 @@ inline void describe_results(common::ParameterTable& table, Case& w) {
                "time between particles files; 0: none");
     table.real("output.profile_interval", w.profile_interval, "1/omega_pi", at_least(0),
                "time between profile files of a current sheet; 0: none");
-    table.flag("output.vtk", w.vtk, "also write .vti and .vtp for ParaView");
+    table.flag("output.vtk", w.also.vtk, "also write .vti and .vtp for ParaView");
+    table.flag("output.openpmd", w.also.openpmd, "also write .h5, HDF5 after openPMD");
     table.whole("output.checkpoint_steps", w.checkpoint_steps, "", between(0, 1e9),
                 "steps between checkpoints; 0: only when stopped");
     table.may_change_on_restart({"time.end", "output."});

@@ -10,7 +10,7 @@ panel_width = 0.43; panel_height = panel_width * wide / high * 3.2 / 6.3
 do for [row = 1:2] { do for [column = 1:2] {
     end = word('0.7 2', row); alpha = word('0.25 1', column)
     run = folder.'/alpha_'.alpha.'_to_'.end
-    rows = sprintf("LC_ALL=C awk '!/#/ { e = $%d; if (n++ == 0) f = e } END { print e / f }' '%s'", col(run.'/history.dat', 'energy'), run.'/history.dat')
+    rows = sprintf("LC_ALL=C awk '$1 + 0 == $1 { e = $%d; if (n++ == 0) f = e } END { print e / f }' '%s'", col(run.'/history.dat', 'energy'), run.'/history.dat')
     energy = real(system(rows))
     if (row == 2 && column == 1) {
         lasts = real(entry('results.contact_lasts.expected')); apart = 0.1 * (2 - lasts - 0.5)

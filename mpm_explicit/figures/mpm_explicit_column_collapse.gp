@@ -4,11 +4,11 @@ wide = 1500; high = 1320
 load 'common/style.gp'
 file = run.'/history.dat'; front = col(file, 'front')
 files = system('ls "'.run.'"/grains_*.dat')
-dt = real(system(sprintf("LC_ALL=C awk '!/#/ && n++ == 1 { print $1; exit }' '%s'", file))) / parameter('history_steps')
+dt = real(system(sprintf("LC_ALL=C awk '$1 + 0 == $1 && n++ == 1 { print $1; exit }' '%s'", file))) / parameter('history_steps')
 # A one before the digits keeps zeros in front from making the number octal.
 when(n) = (real('1'.system(sprintf("basename '%s' .dat | tr -dc 0-9", word(files, n)))) - 1e6) * dt
 # Of the column at the start: left and right end and top, with the radii of disks of density 1.
-ends = system(sprintf("LC_ALL=C awk '!/#/ && !$10 { r = sqrt($6 / 3.14159265); if (!n++ || $2 - r < a) a = $2 - r; if ($2 + r > b) b = $2 + r; if ($3 + r > c) c = $3 + r } END { print a, b, c }' '%s'", word(files, 1)))
+ends = system(sprintf("LC_ALL=C awk '$1 + 0 == $1 && !$10 { r = sqrt($6 / 3.14159265); if (!n++ || $2 - r < a) a = $2 - r; if ($2 + r > b) b = $2 + r; if ($3 + r > c) c = $3 + r } END { print a, b, c }' '%s'", word(files, 1)))
 low = real(word(ends, 1)); right = real(word(ends, 2)); H = real(word(ends, 3)); L_0 = right - low; a = H / L_0
 unit = sqrt(H / abs(parameter('gravity_y')))
 disks(a) = a < 2 ? 2.5 * a : 3.25 * a**0.7

@@ -9,7 +9,7 @@ tint = blue.' '.sky.' '.green.' '.amber.' '.orange
 file(n) = folder.'/alpha_'.word(alphas, n).'/history.dat'
 kinetic = col(file(1), 'kinetic'); elastic = col(file(1), 'elastic'); energy = col(file(1), 'energy')
 left = col(file(1), 'momentum_x_left'); right = col(file(1), 'momentum_x_right'); all = col(file(1), 'momentum_x')
-first(what) = real(system(sprintf("LC_ALL=C awk '!/#/ { print $%d; exit }' '%s'", what, file(1))))
+first(what) = real(system(sprintf("LC_ALL=C awk '$1 + 0 == $1 { print $%d; exit }' '%s'", what, file(1))))
 E_0 = first(energy); p_0 = first(left)
 run = folder.'/alpha_0.25'
 touch = real(entry('results.contact_begins.expected')); lasts = real(entry('results.contact_lasts.expected'))

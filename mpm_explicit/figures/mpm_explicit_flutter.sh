@@ -10,15 +10,15 @@ for scheme in explicit implicit; do
     method=; [ $scheme = explicit ] || method='time.alpha=0.5 method.theta=0.5'
     for viscosity in 0 3e-3; do
         table=$folder/${scheme}_$viscosity.dat
-        echo '# 1:friction 2:acceleration 3:theory' > "$table.partial"
+        echo 'friction acceleration theory' > "$table.partial"
         for friction in 0.1 0.2 0.3 0.4 0.5 0.55; do
             run=$folder/${scheme}_${viscosity}_$friction
             "$program" mpm_$scheme/cases/sliding_block.toml contact.friction=$friction material.default.viscosity=$viscosity theory.tolerance=10 $method --threads 1 --resume --quiet --out "$run"
             number() { awk -v key=results.$1 -f common/json_lines.awk "$run/summary.json"; }
             echo "$friction $(number acceleration.value) $(number acceleration.expected)" >> "$table.partial"
             awk -v speed="$(number speed_at_end.value)" '
-                NR == 1 { for (k = 2; k <= NF; ++k) { split($k, part, /[:[]/); column[part[2]] = part[1] }; next }
-                { t[++n] = $1; kinetic[n] = $column["kinetic"]; x[n] = $column["momentum_x_block"]; y[n] = $column["momentum_y_block"] }
+                NR == 1 { for (k = 1; k <= NF; ++k) column[$k] = k }
+                $1 + 0 == $1 { t[++n] = $1; kinetic[n] = $column["kinetic"]; x[n] = $column["momentum_x_block"]; y[n] = $column["momentum_y_block"] }
                 END {
                     mass = x[n] / speed
                     for (k = 1; k <= n; ++k) {

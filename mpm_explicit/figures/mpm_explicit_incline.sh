@@ -7,7 +7,7 @@ folder=$2
 mkdir -p "$folder"
 for body in block cylinder; do
     table=$folder/$body.dat
-    echo '# 1:friction 2:acceleration 3:theory' > "$table.partial"
+    echo 'friction acceleration theory' > "$table.partial"
     for friction in 0 0.1 0.2 0.3 0.4 0.5 0.6 0.7; do
         run=$folder/${body}_$friction
         "$program" mpm_explicit/cases/incline_$body.toml contact.friction=$friction --threads 1 --resume --quiet --out "$run"

@@ -6,7 +6,7 @@ folder = run
 steps = '0.5 1.9 2.02'
 file(n) = folder.'/omega_dt_'.word(steps, n).'/history.dat'
 kinetic = col(file(1), 'kinetic'); energy_14 = col(file(1), 'energy_14'); energy_15 = col(file(1), 'energy_15'); p_x = col(file(1), 'momentum_x')
-row(n, what, k) = real(system(sprintf("LC_ALL=C awk '!/#/ && n++ == %d { print $%d; exit }' '%s'", k, what, file(n))))
+row(n, what, k) = real(system(sprintf("LC_ALL=C awk '$1 + 0 == $1 && n++ == %d { print $%d; exit }' '%s'", k, what, file(n))))
 K_0 = row(1, kinetic, 0)
 set multiplot title 'One free node, leapfrog' font ',24'
 set samples 2000
@@ -30,7 +30,7 @@ do for [n = 1:3] {
     p_walls = (row(n, p_x, 0) + row(n, p_x, 2) - (2 - w**2) * row(n, p_x, 1)) / w**2
     p_0 = row(n, p_x, 0) - p_walls
     plot (q * (1 - x**2) >= 0 ? sqrt(q * (1 - x**2)) : NaN) with lines lt 2, (q * (1 - x**2) >= 0 ? -sqrt(q * (1 - x**2)) : NaN) with lines lt 2, \
-         file(n) every ::0::41 using (X = orbit((column(p_x) - p_walls) / p_0, w), $0 > 1 ? now : NaN):(X) with points pt 7 ps 0.9 lc rgb blue
+         file(n) every ::0::41 using (X = orbit((column("momentum_x") - p_walls) / p_0, w), $0 > 1 ? now : NaN):(X) with points pt 7 ps 0.9 lc rgb blue
 }
 do for [n = 1:3] {
     w = real(word(steps, n)); q = 1 - w**2 / 4

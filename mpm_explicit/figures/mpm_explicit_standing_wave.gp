@@ -9,7 +9,7 @@ set xlabel 'h / L'; set ylabel 'rms error / rms velocity' offset 0.5, 0
 set xtics ('1/8' 1./8, '1/16' 1./16, '1/32' 1./32, '1/64' 1./64, '1/128' 1./128); set format y '10^{%T}'
 set key bottom right
 file(shape) = run.'/'.shape.'.dat'
-first = real(system(sprintf("LC_ALL=C awk '!/#/ { print $2; exit }' '%s'", file('linear'))))
+first = real(system(sprintf("LC_ALL=C awk '$1 + 0 == $1 { print $2; exit }' '%s'", file('linear'))))
 plot 0.5 * first * (8 * x)**2 with lines lt 8 lw 2 dt 2 title 'slope 2', \
      file('quadratic') using (1 / $1):2 with linespoints lt 3 ps 2 title 'quadratic', \
      file('gimp') using (1 / $1):2 with linespoints lt 2 pt 6 ps 3 lw 2.4 title 'gimp', \

@@ -9,7 +9,7 @@ wave() {
     name=$1
     shift
     table=$folder/$name.dat
-    echo '# 1:cells 2:velocity_error' > "$table.partial"
+    echo 'cells velocity_error' > "$table.partial"
     for cells in 8 16 32 64 128; do
         run=$folder/runs/${name}_$cells
         "$program" mpm_explicit/cases/standing_wave.toml grid.cells_x=$cells grid.cells_y=$((cells / 4)) --threads 1 --resume --quiet --out "$run" "$@"

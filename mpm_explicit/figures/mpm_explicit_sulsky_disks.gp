@@ -6,7 +6,7 @@ folder = run
 run = folder.'/when_near'
 near = run.'/history.dat'; early = folder.'/on_approach/history.dat'
 kinetic = col(near, 'kinetic'); elastic = col(near, 'elastic'); energy = col(near, 'energy'); force = col(near, 'contact_force')
-E_0 = real(system(sprintf("LC_ALL=C awk '!/#/ { print $%d; exit }' '%s'", energy, near)))
+E_0 = real(system(sprintf("LC_ALL=C awk '$1 + 0 == $1 { print $%d; exit }' '%s'", energy, near)))
 touch = real(entry('results.contact_begins.expected'))
 interval = parameter('particles_interval')
 picture(t) = word(system('ls "'.run.'"/particles_*.dat'), int(t / interval + 1.5))

@@ -7,7 +7,7 @@ k = pi / (2 * L); omega = k * sqrt(E / rho); T = 2 * pi / omega; mass = rho * L 
 file = run.'/history.dat'
 p_x = col(file, 'momentum_x'); kinetic = col(file, 'kinetic'); elastic = col(file, 'elastic'); energy = col(file, 'energy')
 unit = mass * v_0**2 / 4
-dt = real(system(sprintf("LC_ALL=C awk '!/#/ && n++ == 1 { print $1; exit }' '%s'", file)))
+dt = real(system(sprintf("LC_ALL=C awk '$1 + 0 == $1 && n++ == 1 { print $1; exit }' '%s'", file)))
 set multiplot title 'A bar held at one end' font ',24'
 set xrange [0:5]; set xtics 1
 set xlabel 't / period'

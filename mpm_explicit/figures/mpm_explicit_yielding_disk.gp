@@ -5,11 +5,11 @@ load 'common/style.gp'
 R = 0.2; v_0 = 0.1
 file = run.'/history.dat'
 kinetic = col(file, 'kinetic'); elastic = col(file, 'elastic'); plastic = col(file, 'plastic'); contact = col(file, 'contact'); p_x = col(file, 'momentum_x')
-E_0 = real(system(sprintf("LC_ALL=C awk '!/#/ { print $%d; exit }' '%s'", kinetic, file)))
-p_0 = real(system(sprintf("LC_ALL=C awk '!/#/ { print $%d; exit }' '%s'", p_x, file)))
+E_0 = real(system(sprintf("LC_ALL=C awk '$1 + 0 == $1 { print $%d; exit }' '%s'", kinetic, file)))
+p_0 = real(system(sprintf("LC_ALL=C awk '$1 + 0 == $1 { print $%d; exit }' '%s'", p_x, file)))
 interval = parameter('particles_interval')
 picture(t) = word(system('ls "'.run.'"/particles_*.dat'), int(t / interval + 1.5))
-middle(t, axis) = real(system(sprintf("LC_ALL=C awk '!/#/ { s += $%d; n++ } END { print s / n }' '%s'", axis, picture(t))))
+middle(t, axis) = real(system(sprintf("LC_ALL=C awk '$1 + 0 == $1 { s += $%d; n++ } END { print s / n }' '%s'", axis, picture(t))))
 times = '0.4 0.6 1.2'
 set multiplot title 'A disk that yields' font ',24'
 set border 15; unset grid; unset key

@@ -37,13 +37,11 @@ class Recorder {
 
     /// Writes the files that are due at this step, before it.
     void snapshot(long step, const Assembly& all, const common::Run& run) const {
-        const std::string folder = run.path("");
-        if (due(parameters_.particles_interval, step))
-            write_particles(folder, step, parameters_, all);
-        if (due(parameters_.grains_interval, step)) write_grains(folder, step, all);
-        if (due(parameters_.fringes_interval, step))
-            write_fringe_raster(folder, step, parameters_, all);
-        if (parameters_.pack && step == 0) write_pack_of(folder, parameters_);
+        const common::Snapshot at{run.path("."), step, double(step) * scales_.dt, parameters_.also};
+        if (due(parameters_.particles_interval, step)) write_particles(at, parameters_, all);
+        if (due(parameters_.grains_interval, step)) write_grains(at, all);
+        if (due(parameters_.fringes_interval, step)) write_fringe_raster(at, parameters_, all);
+        if (parameters_.pack && step == 0) write_pack_of(run.path(""), parameters_);
     }
 
     /// Whether a row of the history belongs to this step.

@@ -39,7 +39,7 @@ struct Table {
 /// Writes particles_NNNNNN.dat (and .vtp): all of them, or a random sample of about
 /// most_particles_written.
 /// note:   positions are those inside of a periodic mesh
-inline void write_particles(const std::string& folder, long step, const Case& parameters,
+inline void write_particles(const common::Snapshot& at_time, const Case& parameters,
                             const Assembly& all) {
     const Particles& at = all.particles;
     const Mesh mesh = parameters.problem.mesh();
@@ -67,12 +67,11 @@ inline void write_particles(const std::string& folder, long step, const Case& pa
         }
     }
     const auto columns = table.columns();
-    common::write_table(folder + common::numbered("particles", step, "dat"), columns);
-    if (parameters.vtk) {
+    common::write_table(at_time, "particles", columns);
+    if (at_time.also.vtk) {
         const std::vector<double> zero(table.values[0].size(), 0.0);
         const auto& data = table.values;
-        common::write_vtp(folder + common::numbered("particles", step, "vtp"),
-                          {"position", "length", data[0], data[1], zero},
+        common::write_vtp(at_time, "particles", {"position", "length", data[0], data[1], zero},
                           {columns.begin() + 4, columns.end()},
                           {{"velocity", "velocity", data[2], data[3], zero}});
     }
@@ -80,7 +79,7 @@ inline void write_particles(const std::string& folder, long step, const Case& pa
 
 /// Writes grains_NNNNNN.dat, one line per grain: number, center of mass, mean velocity, mass, mean
 /// stress over the grain, whether rigid.
-inline void write_grains(const std::string& folder, long step, const Assembly& all) {
+inline void write_grains(const common::Snapshot& at_time, const Assembly& all) {
     const Particles& at = all.particles;
     Table table;
     for (std::size_t g = 0; g < all.grains.size(); ++g) {
@@ -105,7 +104,7 @@ inline void write_grains(const std::string& folder, long step, const Assembly& a
         row.add("rigid", "", grain.rigid ? 1 : 0);
         table.add(row);
     }
-    common::write_table(folder + common::numbered("grains", step, "dat"), table.columns());
+    common::write_table(at_time, "grains", table.columns());
 }
 
 /// Writes a raster for gnuplot: columns x y stress_difference pressure grain, an empty line after
@@ -113,7 +112,7 @@ inline void write_grains(const std::string& folder, long step, const Assembly& a
 /// asks column 5, for an expression of NaN is undefined whatever it says.
 /// exact: places have ten digits and stresses six, enough for a picture; on failure nothing appears
 ///        under `path`
-inline void write_fringes(const std::string& path, const FringeRaster& raster) {
+inline void write_fringes(const common::Snapshot& at_time, const FringeRaster& raster) {
     const auto digits = [](double value, int precision) {
         char text[32];
         const auto end =
@@ -123,8 +122,14 @@ inline void write_fringes(const std::string& path, const FringeRaster& raster) {
     std::vector<std::string> columns;
     for (long i = 0; i < raster.x.count; ++i) columns.push_back(digits(raster.x.at(i), 10) + " ");
 
-    common::OutputFile file(path);
-    file.text("# 1:x[length] 2:y[length] 3:stress_difference[E] 4:pressure[E] 5:grain[]\n");
+    common::OutputFile file(at_time.path("fringes", "dat"));
+    common::writers_detail::begin_table(file,
+                                        {{"x", "length", {}},
+                                         {"y", "length", {}},
+                                         {"stress_difference", "E", {}},
+                                         {"pressure", "E", {}},
+                                         {"grain", "", {}}},
+                                        &at_time);
     for (long j = 0; j < raster.y.count; ++j) {
         const std::string y = digits(raster.y.at(j), 10) + " ";
         for (long i = 0; i < raster.x.count; ++i) {
@@ -146,12 +151,11 @@ inline void write_fringes(const std::string& path, const FringeRaster& raster) {
 }
 
 /// Writes fringes_NNNNNN.dat: the principal stress difference of elastic grains on pixels.
-inline void write_fringe_raster(const std::string& folder, long step, const Case& parameters,
+inline void write_fringe_raster(const common::Snapshot& at_time, const Case& parameters,
                                 const Assembly& all) {
     const Mesh mesh = parameters.problem.mesh();
-    write_fringes(folder + common::numbered("fringes", step, "dat"),
-                  draw_fringes(all.particles, all.grains, mesh, whole(mesh),
-                               int(parameters.pixels_per_cell)));
+    write_fringes(at_time, draw_fringes(all.particles, all.grains, mesh, whole(mesh),
+                                        int(parameters.pixels_per_cell)));
 }
 
 /// Writes pack.txt: the grains of the case, to be read again as a pack of kind "file".

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "common/run/output_file.hpp"
 #include "mpm_explicit/setup/problem.hpp"
 #include "mpm_explicit/transfer.hpp"
 
@@ -30,7 +31,8 @@ struct Case {
     double particles_interval = 0, fringes_interval = 0, grains_interval = 0;
     long history_steps = 1;
     long pixels_per_cell = 8;
-    bool pack = false, vtk = false;
+    bool pack = false;
+    common::FileFormats also;
     long checkpoint_steps = 0;
 
     /// The shape function.
@@ -99,7 +101,8 @@ inline void describe_output(common::ParameterTable& table, Case& parameters,
                "time between files with one line per grain; 0: none");
     table.flag("output.pack", parameters.pack,
                "pack.txt: the grains at the start, to be read again");
-    table.flag("output.vtk", parameters.vtk, "also write .vtp for ParaView");
+    table.flag("output.vtk", parameters.also.vtk, "also write .vtp for ParaView");
+    table.flag("output.openpmd", parameters.also.openpmd, "also write .h5, HDF5 after openPMD");
     table.whole("output.checkpoint_steps", parameters.checkpoint_steps, "", between(0, 1e9),
                 "steps between checkpoints; 0: only when stopped");
 
@@ -111,7 +114,7 @@ inline void describe_output(common::ParameterTable& table, Case& parameters,
                    {"solver.most_loops", "solver.max_outer_iterations"}});
     table.may_change_on_restart({"time.end", "output.particles_interval", "output.fringes_interval",
                                  "output.grains_interval", "output.pixels_per_cell", "output.vtk",
-                                 "output.checkpoint_steps"});
+                                 "output.openpmd", "output.checkpoint_steps"});
 }
 
 }  // namespace mpm

@@ -72,6 +72,7 @@ inline void refuse_grain(const PlannedGrain& plan, const Material& material, con
 /// Refuses combinations that cannot run.
 /// errors: InputError with the numbers and the cure
 inline void validate(const Case& parameters) {
+    common::require_formats(parameters.also);
     const Problem& problem = parameters.problem;
     const Mesh mesh = problem.mesh();
     const double far = std::max(std::fabs(mesh.x_low), std::fabs(mesh.y_low)) / mesh.h;

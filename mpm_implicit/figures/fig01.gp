@@ -5,7 +5,7 @@ load 'common/style.gp'
 R = 0.2; v_0 = 0.1; interval = 0.1
 file = run.'/history.dat'
 energy = col(file, 'energy'); elastic = col(file, 'elastic')
-at(what, t) = real(system(sprintf("LC_ALL=C awk -v t=%g '!/#/ { if ($1 <= t + 1e-9) v = $%d } END { print v }' '%s'", t, what, file)))
+at(what, t) = real(system(sprintf("LC_ALL=C awk -v t=%g '$1 + 0 == $1 { if ($1 <= t + 1e-9) v = $%d } END { print v }' '%s'", t, what, file)))
 E_0 = at(energy, 0)
 set multiplot title 'Elastic rebound, implicit, α = 1.00: grain positions' font ',24'
 set border 15; unset grid; unset key; set tics front

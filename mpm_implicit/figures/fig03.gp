@@ -10,7 +10,7 @@ array dash[4] = [1, 1, 2, 4]
 array width[4] = [2.6, 2.6, 2.6, 2.2]
 file(n) = word(files, n)
 number(n, what) = col(file(n), what)
-first(n, what) = real(system(sprintf("LC_ALL=C awk '!/#/ { print $%d; exit }' '%s'", number(n, what), file(n))))
+first(n, what) = real(system(sprintf("LC_ALL=C awk '$1 + 0 == $1 { print $%d; exit }' '%s'", number(n, what), file(n))))
 E_0 = first(1, 'energy'); p_0 = first(1, 'momentum_x_left')
 run = folder.'/alpha_1'
 touch = real(entry('results.contact_begins.expected')); lasts = real(entry('results.contact_lasts.expected'))

@@ -8,7 +8,7 @@ folder=$3
 end=80
 seconds() { awk -v key=performance.wall_s -f common/json_lines.awk "$1/summary.json"; }
 {
-    echo '# 1:alpha[] 2:steps[] 3:wall[s]'
+    echo 'alpha steps wall'
     for alpha in 1 4 16 64 250 1000; do
         share=$(awk "BEGIN { a = $alpha / 64; print a < 1 ? a : 1 }")
         run=$folder/alpha_$alpha

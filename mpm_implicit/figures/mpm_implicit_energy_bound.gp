@@ -6,8 +6,8 @@ folder = run
 theta(t, m) = folder.'/theta_'.t.'_'.m.'/history.dat'
 leap(a) = folder.'/explicit_'.a.'/history.dat'
 energy = col(theta('0.5', 'consistent'), 'energy'); energy_leap = col(leap('0.25'), 'energy')
-E_0 = real(system(sprintf("LC_ALL=C awk '!/#/ { print $%d; exit }' '%s'", energy, theta('0.5', 'consistent'))))
-last(file, what) = real(system(sprintf("LC_ALL=C awk '!/#/ { v = $%d } END { print v }' '%s'", what, file)))
+E_0 = real(system(sprintf("LC_ALL=C awk '$1 + 0 == $1 { print $%d; exit }' '%s'", energy, theta('0.5', 'consistent'))))
+last(file, what) = real(system(sprintf("LC_ALL=C awk '$1 + 0 == $1 { v = $%d } END { print v }' '%s'", what, file)))
 set multiplot title 'Energy of disks in a closed box / initial: implicit, α = 1, and explicit' font ',24'
 set lmargin at screen 0.075; set rmargin at screen 0.735
 set tmargin at screen 0.9; set bmargin at screen 0.115

@@ -5,7 +5,7 @@ load 'common/style.gp'
 file = run.'/oblique/history.dat'
 kinetic = col(file, 'kinetic'); elastic = col(file, 'elastic'); energy = col(file, 'energy'); theta_velocity = col(file, 'theta_velocity'); theta_strain = col(file, 'theta_strain')
 lumped = col(file, 'lumped'); friction = col(file, 'friction'); contact = col(file, 'contact'); residual = col(file, 'residual')
-E_0 = real(system(sprintf("LC_ALL=C awk '!/#/ { print $%d; exit }' '%s'", energy, file)))
+E_0 = real(system(sprintf("LC_ALL=C awk '$1 + 0 == $1 { print $%d; exit }' '%s'", energy, file)))
 set multiplot title 'Where the energy goes: an oblique rebound with friction, implicit, θ = 0.75, lumped mass' font ',24'
 set xrange [0.6:2]; set xtics 0.2
 set lmargin at screen 0.11; set rmargin at screen 0.745

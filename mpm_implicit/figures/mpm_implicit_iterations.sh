@@ -4,7 +4,7 @@ set -eu
 export LC_ALL=C.UTF-8
 program=$1
 folder=$2
-echo '# 1:alpha[] 2:grains[iterations per solve] 3:grains[solves per step] 4:diagonal[iterations per solve] 5:diagonal[solves per step]' > "$folder/iterations.new"
+echo 'alpha grains_iterations grains_solves diagonal_iterations diagonal_solves' > "$folder/iterations.new"
 for alpha in 0.25 0.5 1 2 4 8 16 32 64; do
     line=$alpha
     for preconditioner in grains diagonal; do

@@ -7,7 +7,7 @@ array angular[2] = [col(file('flip_linear'), 'angular_momentum'), col(file('impl
 array inertia[2] = [col(file('flip_linear'), 'inertia'), col(file('implicit_1'), 'inertia')]
 of(k) = k < 6 ? 1 : 2
 turn = 3.14159265
-first(name, c) = real(system(sprintf("awk '$1 !~ /^#/ { print $%d; exit }' '%s'", c, file(name))))
+first(name, c) = real(system(sprintf("awk '$1 + 0 == $1 { print $%d; exit }' '%s'", c, file(name))))
 names = 'flip_linear flip_quadratic spin_linear spin_quadratic apic_quadratic implicit_1 implicit_10'
 titles = '"FLIP, linear" "FLIP, quadratic" "with spin, linear" "with spin, quadratic" "APIC, quadratic" "implicit, {/Symbol a} = 1" "implicit, {/Symbol a} = 10"'
 array angular_0[7]

@@ -65,12 +65,12 @@ inline std::vector<double> column(const std::string& out, const std::string& nam
     std::ifstream file(out + "/history.dat");
     std::string words;
     std::getline(file, words);
-    const std::size_t end = words.find(":" + name + "[");
-    REQUIRE(end != std::string::npos);
-    const std::size_t begin = words.rfind(' ', end) + 1;
-    const int number = std::stoi(words.substr(begin, end - begin));
+    std::istringstream names(words);
+    int number = 0;
+    for (std::string one; one != name; ++number) REQUIRE(bool(names >> one));
     std::vector<double> values;
     while (std::getline(file, words)) {
+        if (words[0] == '#') continue;
         std::istringstream row(words);
         double value = 0;
         for (int k = 0; k < number; ++k) row >> value;

@@ -36,7 +36,7 @@ inline void check_results(const nlohmann::json& summary, int at_least) {
     CHECK(compared >= at_least);
 }
 
-/// The columns of a table by their names, which its first line holds as "# 1:name[unit] 2:...".
+/// The columns of a table by their names, which its first line holds.
 using Columns = std::map<std::string, std::vector<double>>;
 inline Columns columns_of(const std::string& path) {
     Columns columns;
@@ -44,12 +44,10 @@ inline Columns columns_of(const std::string& path) {
     std::string line;
     std::getline(file, line);
     std::vector<std::string> names;
-    std::istringstream head(line.substr(std::min<std::size_t>(1, line.size())));
-    for (std::string word; head >> word;) {
-        const std::size_t colon = word.find(':') + 1;
-        names.push_back(word.substr(colon, word.find('[') - colon));
-    }
+    std::istringstream head(line);
+    for (std::string word; head >> word;) names.push_back(word);
     while (std::getline(file, line)) {
+        if (line.starts_with("#")) continue;
         std::istringstream row(line);
         for (const std::string& column : names) {
             double number = 0;
