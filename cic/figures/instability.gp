@@ -9,11 +9,12 @@ kind = exists('density') ? 'phase' : 'particles'
 if (exists('times')) { times = near(kind, times) } else {
     onset = entry('results.onset.value'); rate = result('theory_growth')
     times = onset eq '' || rate <= 0 ? times_of(kind, 4) : system(sprintf("sh common/snapshots.sh near '%s' %s '%g %g %g %g' 2>/dev/null", \
-        run, kind, real(onset) + 1 / rate, real(onset) + 4 / rate, real(onset) + 8 / rate, 1e300))
+        run, kind, real(onset) + 1 / rate, real(onset) + 4 / rate, real(onset) + 8 / rate, parameter('end')))
 }
 marks = times
-if (!exists('heading')) heading = run.': a wave of mode '.sprintf('%d', result('mode_x'))
-set multiplot title heading font ',24'
+as_is = exists('heading') ? '' : 'noenhanced'
+if (!exists('heading')) heading = sprintf('wave of mode %d in %s', result('mode_x'), run)
+set multiplot title heading @as_is font ',24'
 if (times ne '') row_bottom = 0.545; row_top = 0.875; load 'cic/figures/phase_row.gp'
 set bmargin at screen 0.1; set tmargin at screen (times eq '' ? 0.85 : 0.42)
 set lmargin at screen 0.085; set rmargin at screen 0.53

@@ -2,6 +2,7 @@
 # v_step, row_bottom and row_top (screen), and either colors_of_species, for dots, or density, what to add up of phase_*.dat, e.g. '$3 + $4', density_top and density_step.
 # With wave_speed a line is drawn at the phase velocity of theory. x_low and x_of, what to draw as x, cut the periodic box elsewhere than at 0.
 if (!exists('density')) density = ''
+if (!exists('density_title')) density_title = 'f v_{th}/n_0'
 if (!exists('x_low')) { x_low = 0; x_of = '$2' }
 panels = words(times)
 gap = 0.018
@@ -21,7 +22,7 @@ do for [k = 1:panels] {
     if (k == 1) { set ylabel v_label offset 0.3, 0; set ytics v_step } else { unset ylabel; set ytics v_step format '' }
     if (k == 1 && exists('wave_speed')) { set label 81 'ω/k' at graph 0.04, first wave_speed offset 0, -0.7 front textcolor rgb gray } else { unset label 81 }
     if (density ne '') {
-        if (k == panels) { set colorbox user origin 0.908, row_bottom size 0.012, row_top - row_bottom; set cbtics density_step; set label 82 'f v_{th}/n_0' at screen 0.985, row_top right offset 0, 1.1 } else { unset colorbox }
+        if (k == panels) { set colorbox user origin 0.908, row_bottom size 0.012, row_top - row_bottom; set cbtics density_step; set label 82 density_title at screen 0.985, row_top right offset 0, 1.1 } else { unset colorbox }
         plot file_at('phase', real(word(times, k))) using 1:2:(@density) with image
     } else {
         picture = file_at('particles', real(word(times, k))); v_x = col(picture, 'v_x')

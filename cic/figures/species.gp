@@ -1,8 +1,8 @@
 # species.gp: what phase_row.gp draws of a run whose species it does not know: phase_*.dat, all densities added up, or dots in a color for each species; and ranges from the data.
-heading = sprintf('%s', run)
+field_label = '|E_k|'; density_title = 'f / n_0'
 x_label = 'x'; v_label = 'v_x'
 kind = times_of('particles', 1) ne '' ? 'particles' : 'phase'
-sample = file_at(kind, 1e300)
+sample = file_at(kind, parameter('end'))
 of_v = sample eq '' ? 0 : col(sample, 'v_x')
 if (kind eq 'particles' && sample ne '') {
     colors_of_species = system("awk '$1 + 0 == $1 && $1 > m { m = $1 } END { print m + 1 }' '".sample."'")
