@@ -52,7 +52,7 @@ hdf5 = $(firstword $(wildcard /usr/include/hdf5/serial/hdf5.h /usr/include/hdf5.
 hdf5_library = $(if $(hdf5),-l$(if $(findstring serial,$(hdf5)),hdf5_serial,hdf5))
 
 # With `make deps fig09`, also with -j, everything waits until the packages are there.
-packages_first := $(filter deps deps-dev,$(MAKECMDGOALS))
+packages_first := $(filter deps deps-dev deps-sweep,$(MAKECMDGOALS))
 
 # $(call need,command): stop with a cure where a tool is missing.
 need = @command -v $(1) >/dev/null || { echo "'$(1)' is not installed: run 'make deps'" >&2; exit 2; }
@@ -77,7 +77,7 @@ one_at_a_time = $(if $(shell command -v flock),flock out)
 .DELETE_ON_ERROR:
 .SECONDEXPANSION:
 .PRECIOUS: $(objects)/%.o $(objects)/fuzz/%.o out/%/.complete
-.PHONY: menu deps deps-dev all figures cost explicit_gem test tests test-long exercise exercises torture mutate fuzzers bench \
+.PHONY: menu deps deps-dev deps-sweep plot watch movie compare sweep all figures cost explicit_gem test tests test-long exercise exercises torture mutate fuzzers bench \
         notes format clean FORCE $(programs)
 
 # ---- the menu ------------------------------------------------------------------------------------
@@ -104,6 +104,10 @@ The particle-in-cell family in running code
                          $(wordlist 13,15,$(mpm_figures))
                          $(wordlist 16,99,$(mpm_figures))
   make figures           draw them all
+  make plot RUN=out/cic/mine     every figure that fits a run; also: make watch RUN=... while it runs,
+                         make movie RUN=... , make compare A=... B=... of two runs
+  make sweep CASE=cic/cases/two_stream.toml KEYS='grid.cells_x=32,64 seed=1,2,3'
+                         all combinations side by side (make deps-sweep), a table and a figure
   make cost              the cost slide, measured: explicit over implicit, against the mass ratio
   make explicit_gem      the full explicit run of that slide, to the plateau, two hours; resumable
   make test              the facts, at most ten minutes   (make test ARGS='-R gmres': some of them)
@@ -135,6 +139,9 @@ deps:
 
 deps-dev: | $(filter deps,$(MAKECMDGOALS))
 	@sh common/packages.sh clang-format locales clang libclang-rt-dev libomp-dev llvm strace libhdf5-dev hdf5-tools
+
+deps-sweep: | $(filter deps,$(MAKECMDGOALS))
+	@sh common/packages.sh parallel ffmpeg
 
 # ---- programs ------------------------------------------------------------------------------------
 
@@ -390,26 +397,20 @@ mpm_figures = $(filter mpm_%,$(figures))
 
 figures: $(figures)
 
-# ---- any run: pictures, animations, comparisons and sweeps ------------------------------------------------------
+# ---- any run -------------------------------------------------------------------------------------
 
+# make plot RUN=out/cic/mine
 plot watch movie:
 	$(call need,gnuplot)
 	@sh common/plot.sh $(@:plot=draw) '$(RUN)'
 compare:
 	$(call need,gnuplot)
 	@sh common/plot.sh compare '$(A)' '$(B)'
-sweep: $(BUILD)/$(if $(PROGRAM_OF_CASE),$(PROGRAM_OF_CASE),cic)
-	@sh common/sweep.sh $(CASE) $(KEYS)
 
-# The same without the zero.
-$(foreach n,1 2 3 4 5 6 7 8 9,$(eval .PHONY: fig$n)$(eval fig$n: fig0$n))
-
-# Figures of the talk whose method has no program so far.
-fig11 fig12 fig13 fig14 fig15: method := the thin current sheet of implicit_moment
-figures_to_come := $(filter-out $(figures),$(foreach n,01 02 03 04 05 06 07 08 09 10 11 12 13 14 15,fig$n))
-.PHONY: $(figures_to_come)
-$(figures_to_come):
-	@echo "figure $(patsubst 0%,%,$(@:fig%=%)) belongs to $(method), which is not built yet; there is: $(figures)" >&2; exit 2
+# The program is that of the folder of the case, unless PROGRAM names another.
+sweep_program = $(if $(filter command environment,$(firstword $(origin PROGRAM))),$(PROGRAM),$(firstword $(subst /, ,$(CASE))))
+sweep: $$(addprefix $(BUILD)/,$$(filter $(programs),$$(sweep_program)))
+	@PROGRAM=$(sweep_program) BUILD=$(BUILD) sh common/sweep.sh '$(CASE)' $(KEYS)
 
 # ---- tests ---------------------------------------------------------------------------------------
 

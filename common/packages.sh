@@ -22,7 +22,9 @@ clang                  command clang++           clang 14, with libFuzzer and it
 libclang-rt-dev        header  clang_rt          the sanitizers of clang and libFuzzer
 libomp-dev             header  omp-tools.h       the OpenMP of clang, with archer
 llvm                   command llvm-symbolizer   llvm, which names the lines of a report
-strace                 command strace            strace 5, which can inject errors'
+strace                 command strace            strace 5, which can inject errors
+parallel               command parallel          GNU parallel
+ffmpeg                 command ffmpeg            ffmpeg'
 
 CXX=${CXX:-g++}
 EIGEN=${EIGEN:-/usr/include/eigen3}
