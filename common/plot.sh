@@ -5,7 +5,7 @@
 # plot.sh compare A B       the histories and the results of two runs on one page
 # plot.sh movie RUN         an animation of its snapshots, mp4 and webp with ffmpeg, else gif
 # Pictures go to out/figures/PROGRAM_NAME/, or to the folder PLOTS. A script of figures says itself which runs it fits, in a line
-#   # fits: PROGRAM|PROGRAM SECTION.KEY=VALUE|VALUE result:NAME file:PATTERN kinds:KIND,KIND
+#   # fits: PROGRAM|PROGRAM SECTION.KEY=VALUE|VALUE SECTION.KEY!=VALUE result:NAME file:PATTERN kinds:KIND,KIND
 # whose conditions must all hold: a parameter of the run's case.toml, a result of its summary.json, files in its folder. With kinds the script is run for each
 # kind of snapshots that there is, as the variable `kind`. `any` is every program.
 set -eu
@@ -43,6 +43,7 @@ fits() {
         result:*) [ -f "$run/summary.json" ] && awk -v key="results.$value.value" -f common/json_lines.awk "$run/summary.json" >/dev/null ;;
         file:*) ls "$run"/$value >/dev/null 2>&1 ;;
         kinds:*) kinds=$(for kind in $(echo "$value" | tr ',' ' '); do ls "$run/${kind}"_[0-9]*.dat >/dev/null 2>&1 && echo "$kind"; done); [ -n "$kinds" ] ;;
+        *!=*) fits any "${condition%%!=*}=$value" && return 1 || true ;;
         *=*) awk -v wanted="${condition%%=*}" -v values="$value" '
             /^\[/ { gsub(/[][]/, ""); section = $1 }
             section "." $1 == wanted && $2 == "=" { gsub(/"/, "", $3); found = index("|" values "|", "|" $3 "|") > 0 }

@@ -1,5 +1,6 @@
 # Between a source (left) and a floating wall (right), means of the second half of the run. Electrons are faster than ions, so the wall charges up until it turns most of
 # them back: none comes back faster than those that just did not reach it (dashed). Ions are only accelerated. Dashed in all panels: the theory of Schwager and Birdsall.
+# fits: cic theory.compare=sheath file:fields_*.dat file:phase_*.dat file:particles_*.dat result:plasma_potential
 wide = 1500; high = 1080
 load 'common/style.gp'
 second_half = sprintf('LC_ALL=C awk -v first=%d -f cic/figures/mean_of_files.awk ', int(0.5 * parameter('end') / parameter('dt')))

@@ -1,8 +1,9 @@
 # The two streams in the plane, seeded with a mode across the corner of the box. Only the part of k along the beams counts, so the oblique wave grows at
 # the rate of the straight one; along k the electrons roll up as in one dimension.
+# fits: cic grid.dimensions=2 theory.compare=wave file:fields_*.dat file:particles_*.dat result:growth
 wide = 1500; high = 1020
 load 'common/style.gp'
-times = '25 30 35 50'; marks = times
+times = near('fields', '25 30 35 50'); marks = times
 x_label = 'x ω_p / v_0'; z_label = 'z ω_p / v_0'; plane_step = 4
 E_x = col(run.'/fields_000000.dat', 'E_x'); field_of = 'column(E_x)'; field_title = 'E_x'
 eval signed(0.8); set cbtics 0.4

@@ -1,5 +1,6 @@
 # A column of water whose dam vanishes, after Martin and Moyce (1952): a free surface in fluid at Mach 0.05 under implicit pressure. Above, the particles in the color of their speed. Below left,
 # the front against the laboratory's: their dam took a time to vanish, and behind the same points with a later clock the speeds agree. Right, the height at the wall behind.
+# fits: flip theory.compare=dam_break file:particles_*.dat result:front_ahead
 wide = 1500; high = 940
 load 'common/style.gp'
 files = system(sprintf("ls '%s'/particles_*.dat", run))

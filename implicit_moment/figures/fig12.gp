@@ -1,5 +1,6 @@
 # Figure 12 of the talk: E_y of the lower-hybrid drift instability in the plane of current (y) and gradient (z), T_i/T_e = 4. Left, when it saturates, eight
 # waves fill the box at both edges of the sheet; middle, the talk's time, t Ω_{ci} = 7; right, the growth of the largest mode beside local kinetic theory.
+# fits: implicit_moment file:fields_*.dat result:dominant_mode result:growth_over_theory
 wide = 1700; high = 760
 load 'common/style.gp'
 load 'implicit_moment/figures/thin_sheet.gp'

@@ -1,5 +1,6 @@
 # A disk between two plates (Brazilian test). Above: fringes of the principal stress difference, in each picture computed on the left and, on the right, of Hertz's disk between two line loads of the
 # same size. Below: stress on both diameters; points are particles. The plates press a flat, an eighth of the disk wide, not a line: next to it the two differ.
+# fits: mpm_explicit theory.compare=disk file:fringes_*.dat file:particles_*.dat result:load
 wide = 1500; high = 1330
 load 'common/style.gp'
 f_sigma = 300.0; wider = 2.5   # in white light, whose higher orders are pale

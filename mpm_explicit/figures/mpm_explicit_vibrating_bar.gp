@@ -1,5 +1,6 @@
 # A bar held at its left end swings in its lowest mode. Above: velocity of its center of mass, and energies. Below: velocity and stress of the particles over half a period, and theory (lines). The scheme
 # swings a little too slowly, as its mesh is coarse, and keeps the energy.
+# fits: mpm_explicit|mpm_implicit theory.compare=bar file:particles_*.dat result:frequency
 wide = 1500; high = 1080
 load 'common/style.gp'
 E = 100; rho = 1; L = 25; H = 3.125; v_0 = 0.1

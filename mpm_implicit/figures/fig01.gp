@@ -1,5 +1,6 @@
 # Figure 1 of the talk: grain positions through the elastic rebound, implicit, with a CFL number of 1.00, where the explicit program bursts. Particles are colored by their velocity: the grains meet, come to
 # rest while their energy is that of strain, and part as they came, but for some vibration. The energy in each panel is all there is, kinetic and elastic.
+# fits: mpm_explicit|mpm_implicit theory.compare=rebound file:particles_*.dat
 wide = 1500; high = 1000
 load 'common/style.gp'
 R = 0.2; v_0 = 0.1; interval = 0.1
