@@ -82,6 +82,8 @@ entry(path) = system(sprintf("awk -v key='%s' -f common/json_lines.awk '%s/summa
 result(name) = real(entry('results.' . name . '.value'))
 # parameter('dt'): a number of the run's complete input, case.toml.
 parameter(name) = real(system(sprintf("awk -v name='%s' '$1 == name && $2 == \"=\" { print $3; exit }' '%s/case.toml'", name, run)))
+# given('grain.left.radius') by its section; with a * for a name, as in given('grain.*.radius'), the first that there is. Text stays text.
+given(path) = system(sprintf("awk -v path='%s' 'BEGIN { gsub(/[.]/, \"[.]\", path); gsub(/[*]/, \"[^.]*\", path) } /^\\[/ { gsub(/[][]/, \"\"); section = $1 } $2 == \"=\" && section \".\" $1 ~ \"^\" path \"$\" { sub(/^[^=]*= */, \"\"); gsub(/\"/, \"\"); print; exit }' '%s/case.toml'", path, run))
 
 # Labels of an axis in units of pi:  set xtics pi; eval pi_tics('x', 4)
 pi_tics(axis, n) = sprintf("set %stics ('0' 0, 'π' pi", axis) . \

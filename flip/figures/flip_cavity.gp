@@ -17,7 +17,7 @@ set label 9 '|v| / U' at screen 0.48, 0.15 + side * wide / high right offset 0, 
 even(x) = int(x * n) % 2 == 0
 reach = 0.045
 plot last using 1:2:(speed(column(vx), column(vz))) with image, \
-     last using (even($1) && even($2) ? $1 : NaN):2:(reach * column(vx) / speed(column(vx), column(vz))**0.5):(reach * column(vz) / speed(column(vx), column(vz))**0.5) with vectors head size 0.01, 20 lw 1.2 lc rgb '#40ffffff', \
+     last skip 1 using (even($1) && even($2) ? $1 : NaN):2:(reach * column(vx) / speed(column(vx), column(vz))**0.5):(reach * column(vz) / speed(column(vx), column(vz))**0.5) with vectors head size 0.01, 20 lw 1.2 lc rgb '#40ffffff', \
      '+' using (0.6172):(0.7344) every ::0::0 with points pt 6 ps 2.2 lw 2.5 lc rgb orange
 unset label 9; unset colorbox; set border 3; set grid; set size noratio
 set tmargin at screen 0.84

@@ -3,21 +3,21 @@
 # fits: flip theory.compare=dam_break file:particles_*.dat result:front_ahead
 wide = 1500; high = 940
 load 'common/style.gp'
-files = system(sprintf("ls '%s'/particles_*.dat", run))
+times = near('particles', '0.8 1.6 2.4')   # of T = 2^{1/2} t
 history = run.'/history.dat'
 set multiplot title 'A broken dam' font ',24'
 eval colors(viridis); set cbrange [0:2.5]; set cbtics 0.5
 set border 15; set tics front; unset grid; unset key; set size ratio -1
-set xrange [0:5]; set yrange [0:2.1]; set xtics 0, 1, 4.5; set ytics 1; set xlabel 'x / a' offset 0, 0.4
+set xrange [0:parameter('length_x')]; set yrange [0:2.1]; set xtics 0, 1, parameter('length_x') - 0.5; set ytics 1; set xlabel 'x / a' offset 0, 0.4
 width = 0.265
-do for [n = 1:3] {
+do for [n = 1:words(times)] {
     left = 0.075 + (n - 1) * 0.285
     set lmargin at screen left; set rmargin at screen left + width
     set tmargin at screen 0.84; set bmargin at screen 0.84 - width * wide / high * 2.1 / 5
     if (n == 1) { set ylabel 'z / a' offset 0.5, 0 } else { unset ylabel; set ytics format '' }
-    if (n == 3) { set colorbox user origin 0.922, 0.84 - width * wide / high * 2.1 / 5 size 0.012, width * wide / high * 2.1 / 5; set label 9 '|v| / (g a)^{1/2}' at screen 0.995, 0.84 right offset 0, 1.1 } else { unset colorbox }
-    set title sprintf('T = %.2f', sqrt(2) * 0.8 * n) offset 0, -0.6
-    plot word(files, n + 1) using 1:2:(sqrt($4**2 + $5**2)) with points pt 7 ps 0.15 lc palette
+    if (n == words(times)) { set colorbox user origin 0.922, 0.84 - width * wide / high * 2.1 / 5 size 0.012, width * wide / high * 2.1 / 5; set label 9 '|v| / (g a)^{1/2}' at screen 0.995, 0.84 right offset 0, 1.1 } else { unset colorbox }
+    set title sprintf('T = %.2f', sqrt(2) * real(word(times, n))) offset 0, -0.6
+    plot file_at('particles', real(word(times, n))) using 1:2:(sqrt($4**2 + $5**2)) with points pt 7 ps 0.15 lc palette
 }
 unset colorbox; unset label 9; unset title; set border 3; set grid; set size noratio; set format y '%g'
 set bmargin at screen 0.12; set tmargin at screen 0.5

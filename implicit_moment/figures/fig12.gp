@@ -5,12 +5,10 @@ wide = 1700; high = 760
 load 'common/style.gp'
 load 'implicit_moment/figures/thin_sheet.gp'
 B0 = 1 / sheet('light_over_alfven'); L = half_width(sheet('temperature_ratio'), sheet('drift')); length = sheet('length_x')
-step(t) = int(t / (B0 * parameter('dt')) + 0.5)
-file(t) = sprintf('%s/fields_%06d.dat', run, step(t))
 history = run.'/history.dat'
 m = int(result('dominant_mode') + 0.5)
-early = int(result('time_of_saturation') + 0.5)
-E = col(file(7), 'E_x')
+times = near('fields', sprintf('%g %g', result('time_of_saturation') / B0, 7 / B0))   # 7/Ω_{ci} is the talk's time
+E = col(file_at('fields', 0), 'E_x')
 set multiplot title sprintf('Lower-hybrid drift instability: the largest mode has m_y = %d, k_y L = %.1f  (talk: 8, 12.5)', m, result('dominant_k_L')) font ',22'
 
 eval field_frame
@@ -20,14 +18,14 @@ eval signed(2); set cbtics 1
 set xrange [0:length]; set yrange [-3:3]
 set xtics 1; set ytics 1
 set xlabel 'y / L'
-do for [panel = 1:2] {
-    t = panel == 1 ? early : 7
+do for [panel = 1:words(times)] {
+    t = real(word(times, panel))
     left = panel == 1 ? 0.045 : 0.3
     set lmargin at screen left; set rmargin at screen left + 0.235
     set bmargin at screen 0.14; set tmargin at screen 0.83
-    set title sprintf('E_y at t Ω_{ci} = %d', t) offset 0, -0.6
+    set title sprintf('E_y at t Ω_{ci} = %.2g', t * B0) offset 0, -0.6
     if (panel == 1) { set ylabel 'z / L' offset 1.5, 0; unset colorbox } else { unset ylabel; set format y ''; set colorbox user origin 0.543, 0.14 size 0.011, 0.69; set cblabel 'E_y c / (B_0 v_A)' offset 1, 0 }
-    plot file(t) using ($1 / L + 0.5 * length):($2 / L):(column(E) / B0**2) with image notitle
+    plot file_at('fields', t) skip 1 using ($1 / L + 0.5 * length):($2 / L):(column(E) / B0**2) with image notitle
 }
 
 unset colorbox; set format y '10^{%L}'; set border 3; set grid
