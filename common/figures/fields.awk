@@ -1,6 +1,8 @@
-# fields.awk: the gnuplot commands of fields.gp, from what columns.awk says of the files, and the files.
+# fields.awk: the gnuplot commands of fields.gp, from what columns.awk says of the files, and the files. quantities: only these columns, 'J_y E_x'. frames: a folder in which each
+# file gets a picture of its own, 000001.png ..., all of the same size and colors.
 FILENAME == "-" {
     name[$1] = $2
+    number[$2] = $1
     columns = $1
     sub(/^[^ ]* [^ ]* /, "")
     unit[columns] = $0
@@ -18,21 +20,23 @@ $1 + 0 == $1 {
 function plain(text) { gsub(/_/, "\\\\_", text); return text }
 function label(i) { return plain(name[i]) (unit[i] == 1 ? "" : " [" plain(unit[i]) "]") }
 
-function lines(along, first,    i, k, rows) {
-    for (i = first; i <= columns; i++) if (low[i] < high[i]) varying[++rows] = i
+function wanted(i) { return quantities == "" || index(" " quantities " ", " " name[i] " ") }
+
+function lines(along, first,    i, k, f, rows) {
+    for (i = first; i <= columns; i++) if (low[i] < high[i] && wanted(i)) varying[++rows] = i
     if (!rows) varying[++rows] = first
     printf("panels = %d; load 'common/figures/panels.gp'; set xlabel '%s'; set xrange [%.9g:%.9g]\n", rows > 12 ? 12 : rows, label(along), low[along], high[along])
     for (k = 1; k <= rows && k <= 12; k++) {
         i = varying[k]
         printf "set title '%s'; set yrange [%.9g:%.9g]; set key %s title 'time'\n", label(i), low[i] - 0.05 * (high[i] - low[i]) - (low[i] == high[i]), high[i] + 0.4 * (high[i] - low[i]) + (low[i] == high[i]), k == 1 ? "on" : "off"
-        for (f = 1; f <= files; f++) printf "%s'%s' using %d:%d with lines lt %d title '%s'", f == 1 ? "plot " : ", ", file[f], along, i, f, time[f] == "" ? "" : sprintf("%.5g", time[f])
+        for (f = from; f <= to; f++) printf "%s'%s' using %d:%d with lines lt %d title '%s'", f == from ? "plot " : ", ", file[f], along, i, f - from + 1, time[f] == "" ? "" : sprintf("%.5g", time[f])
         print ""
     }
     print "unset multiplot"
 }
 
 function images(    i, k, f, rows, ratio, width, height, wide, high_of_page, size, top) {
-    for (i = 3; i <= columns; i++) if (low[i] < high[i] && name[i] != "grain") varying[++rows] = i
+    for (i = 3; i <= columns; i++) if (low[i] < high[i] && name[i] != "grain" && wanted(i)) varying[++rows] = i
     if (rows > 12) rows = 12
     ratio = (high[2] - low[2]) / (high[1] - low[1])
     # True proportions where both are lengths and the page can hold them.
@@ -40,7 +44,7 @@ function images(    i, k, f, rows, ratio, width, height, wide, high_of_page, siz
     width = true && ratio > 1.2 ? 330 / ratio + 60 : 360
     height = true ? width * ratio : 260
     if (height < 120) height = 120
-    wide = 250 + files * (width + 25); if (wide < 700) wide = 700
+    wide = 250 + (to - from + 1) * (width + 25); if (wide < 700) wide = 700
     high_of_page = 150 + rows * (height + 62)
     printf "wide = %d; high = %d; load 'common/style.gp'\n", wide, high_of_page
     print "set multiplot title heading noenhanced font ',24'; unset key; unset grid; set border 15; set tics front font ',14'; set title font ',16' offset 0, -0.5"
@@ -52,17 +56,19 @@ function images(    i, k, f, rows, ratio, width, height, wide, high_of_page, siz
         size = high[i] > -low[i] ? high[i] : -low[i]
         if (low[i] < 0 && high[i] > 0 && (high[i] < -low[i] ? high[i] : -low[i]) > 0.05 * size) printf "eval signed(%.9g)\n", size
         else printf "eval colors(%s); set cbrange [%.9g:%.9g]\n", kind == "phase" ? "inferno" : "viridis", low[i], high[i]
-        for (f = 1; f <= files; f++) {
-            left = 105 + (f - 1) * (width + 25)
+        for (f = from; f <= to; f++) {
+            # Field lines over the current.
+            if (name[i] == "J_y" && number["A_y"]) printf "set format '%%g'; eval contours_of('%s', '1:2:%d', 'levels 20', '$lines')\n", file[f], number["A_y"]
+            left = 105 + (f - from) * (width + 25)
             printf "set lmargin at screen %.5f; set rmargin at screen %.5f; set tmargin at screen %.5f; set bmargin at screen %.5f\n", left / wide, (left + width) / wide, top / high_of_page, (top - height) / high_of_page
-            if (f == 1) printf "set ylabel '%s' offset 0.5, 0 font ',16'; set format y '%%g'\n", label(2)
+            if (f == from) printf "set ylabel '%s' offset 0.5, 0 font ',16'; set format y '%%g'\n", label(2)
             else print "unset ylabel; set format y ''"
             if (k == rows) printf "set xlabel '%s' offset 0, 0.4 font ',16'; set format x '%%g'\n", label(1)
             else print "unset xlabel; set format x ''"
-            if (f == files) printf "set colorbox user origin %.5f, %.5f size %.5f, %.5f; set cbtics autofreq; set cblabel '%s' font ',16'; set format cb '%%.2g'\n", (left + width + 12) / wide, (top - height) / high_of_page, 14 / wide, height / high_of_page, label(i)
+            if (f == to) printf "set colorbox user origin %.5f, %.5f size %.5f, %.5f; set cbtics autofreq; set cblabel '%s' font ',16'; set format cb '%%.2g'\n", (left + width + 12) / wide, (top - height) / high_of_page, 14 / wide, height / high_of_page, label(i)
             else print "unset colorbox"
             printf "set title '%s'\n", time[f] == "" ? plain(name[i]) : plain(name[i]) sprintf(", time %.5g", time[f])
-            printf "plot '%s' using 1:2:%d with image\n", file[f], i
+            printf "plot '%s' using 1:2:%d with image%s\n", file[f], i, name[i] == "J_y" && number["A_y"] ? ", $lines using 1:2 @contours" : ""
         }
     }
     print "unset multiplot"
@@ -73,10 +79,19 @@ function nice(step,    power) {
     return (step / power < 2 ? 1 : step / power < 5 ? 2 : 5) * power
 }
 
-END {
-    plane = kind != "velocities" && (kind != "fields" || name[2] == "z" || name[2] == "y")
+function page() {
     if (!plane) lines(1, 2)
     else if (low[2] == high[2]) lines(1, 3)
     else if (low[1] == high[1] || kind == "profile") lines(2, 3)
     else images()
+}
+
+END {
+    plane = kind != "velocities" && (kind != "fields" || name[2] == "z" || name[2] == "y")
+    from = 1; to = files
+    if (frames == "") page()
+    else for (from = to = 1; from <= files; from = ++to) {
+        printf "out = '%s/%06d.png'\n", frames, from
+        page()
+    }
 }

@@ -1,4 +1,4 @@
-# particles.awk: the gnuplot commands of particles.gp, from what columns.awk says of the files, and the files.
+# particles.awk: the gnuplot commands of particles.gp, from what columns.awk says of the files, and the files; frames as in fields.awk.
 FILENAME == "-" {
     name[$1] = $2
     number[$2] = $1
@@ -36,12 +36,12 @@ function row(k, a, b, colored,    f, left, top) {
     print range("x", a) "; " range("y", b)
     print "set size " (true ? "ratio -1" : "noratio")
     if (colored) printf "eval colors(viridis); set cbrange [0:%.9g]\n", sqrt(fastest)
-    for (f = 1; f <= files; f++) {
-        left = 115 + (f - 1) * (width + 25)
+    for (f = from; f <= to; f++) {
+        left = 115 + (f - from) * (width + 25)
         printf "set lmargin at screen %.5f; set rmargin at screen %.5f; set tmargin at screen %.5f; set bmargin at screen %.5f\n", left / wide, (left + width) / wide, top / high_of_page, (top - height) / high_of_page
-        print f == 1 ? "set ylabel '" label(b) "' offset 0.5, 0 font ',16'; set format y '%g'" : "unset ylabel; set format y ''"
+        print f == from ? "set ylabel '" label(b) "' offset 0.5, 0 font ',16'; set format y '%g'" : "unset ylabel; set format y ''"
         print k == rows ? "set xlabel '" label(a) "' offset 0, 0.4 font ',16'; set format x '%g'" : "unset xlabel; set format x ''"
-        if (colored && f == files) printf "set colorbox user origin %.5f, %.5f size %.5f, %.5f; set cblabel 'speed%s' font ',16'; set format cb '%%.2g'\n", (left + width + 12) / wide, (top - height) / high_of_page, 14 / wide, height / high_of_page, of_speed
+        if (colored && f == to) printf "set colorbox user origin %.5f, %.5f size %.5f, %.5f; set cblabel 'speed%s' font ',16'; set format cb '%%.2g'\n", (left + width + 12) / wide, (top - height) / high_of_page, 14 / wide, height / high_of_page, of_speed
         else print "unset colorbox"
         printf "set title 'time %.5g'\n", time[f]
         size = count[f] > 5000 ? 0.15 : count[f] > 500 ? 0.4 : 1
@@ -62,9 +62,18 @@ END {
     height = true ? width * ratio : 260
     if (height < 120) height = 120
     rows = !plane ? 1 : squares == "" ? 1 : 2
-    wide = 250 + files * (width + 25)
+    wide = 250 + (frames == "" ? files : 1) * (width + 25)
     if (wide < 700) wide = 700
     high_of_page = 150 + rows * (height + 62)
+    from = 1; to = files
+    if (frames == "") page()
+    else for (from = to = 1; from <= files; from = ++to) {
+        printf "out = '%s/%06d.png'\n", frames, from
+        page()
+    }
+}
+
+function page() {
     printf "wide = %d; high = %d; load 'common/style.gp'\n", wide, high_of_page
     print "set multiplot title heading noenhanced font ',24'; unset key; unset grid; set border 15; set tics front font ',14'; set title font ',16' offset 0, -0.5"
     print "color_of(n) = n < 0 ? 0x777777 : int(word('29362 13983232 40563 13400487 15113984 5682409 7829367 0', 1 + int(n) % 8))"

@@ -9,7 +9,7 @@ file(k) = file_at('fields', real(word(times, k)))
 A = col(file(1), 'A_y'); J = col(file(1), 'J_y')
 J0 = B0 / parameter('thickness')   # in the middle of the initial sheet, c B0/(4 pi lambda), in the e n0 c of the files
 eval field_frame
-eval colors(inferno)
+eval colors(oranges)
 unset key
 length_x = parameter('length_x'); length_z = parameter('length_z')
 set xrange [-0.5 * length_x:0.5 * length_x]; set yrange [-0.5 * length_z:0.5 * length_z]

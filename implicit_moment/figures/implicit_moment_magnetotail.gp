@@ -26,7 +26,7 @@ set xtics -12, 4; set ytics -6, 3
 eval contours_of(file, sprintf('1:2:%d', A), sprintf('levels incremental %g, %g, %g', -8 * B0, 0.4 * B0, 8 * B0), '$lines')
 set lmargin at screen 0.51; set rmargin at screen 0.88
 set bmargin at screen 0.515; set tmargin at screen 0.86
-eval colors(inferno); set cbrange [0:1.4]
+eval colors(oranges); set cbrange [0:1.4]
 set colorbox user origin 0.895, 0.54 size 0.012, 0.29; set cblabel 'J_y / J_0' offset -0.5, 0
 unset xlabel; set format x ''; set ylabel 'z / d_i' offset 0.5, 0
 set title sprintf('B_g = %g B_0, t Ω_{ci} = %d', guide, time) offset 0, -0.6 font ',20'
