@@ -77,7 +77,7 @@ one_at_a_time = $(if $(shell command -v flock),flock out)
 .DELETE_ON_ERROR:
 .SECONDEXPANSION:
 .PRECIOUS: $(objects)/%.o $(objects)/fuzz/%.o out/%/.complete
-.PHONY: menu deps deps-dev deps-sweep plot watch movie compare sweep all figures cost explicit_gem test tests test-long exercise exercises torture mutate fuzzers bench \
+.PHONY: menu deps deps-dev deps-sweep plot watch movie movies compare sweep all figures cost explicit_gem test tests test-long exercise exercises torture mutate fuzzers bench \
         notes format clean FORCE $(programs)
 
 # ---- the menu ------------------------------------------------------------------------------------
@@ -105,7 +105,8 @@ The particle-in-cell family in running code
                          $(wordlist 16,99,$(mpm_figures))
   make figures           draw them all
   make plot RUN=out/cic/mine     every figure that fits a run; also: make watch RUN=... while it runs,
-                         make movie RUN=... , make compare A=... B=... of two runs
+                         make movie RUN=..., make compare A=... B=... of two runs
+  make movies            the talk's figures that move: $(movies)
   make sweep CASE=cic/cases/two_stream.toml KEYS='grid.cells_x=32,64 seed=1,2,3'
                          all combinations side by side (make deps-sweep), a table and a figure
   make cost              the cost slide, measured: explicit over implicit, against the mass ratio
@@ -406,6 +407,27 @@ plot watch movie:
 compare:
 	$(call need,gnuplot)
 	@sh common/plot.sh compare '$(A)' '$(B)'
+
+# The talk's figures that move, each from a run of its own with many snapshots: program, case and overrides, kind of snapshots, quantities.
+define movie
+.PHONY: $(1)
+movies += $(1)
+$(1): $(BUILD)/$(2) | $(packages_first)
+	$$(call need,gnuplot)
+	@mkdir -p out/movies
+	$$(one_at_a_time) $(BUILD)/$(2) $(2:explicit_em=implicit_moment)/cases/$(3) --quiet --resume --out out/movies/$(1)
+	@QUANTITIES='$(5)' PLOTS=out/figures/$(1) sh common/movie.sh out/movies/$(1) '$(4)'
+endef
+$(eval $(call movie,movie01,mpm_implicit,rebound.toml output.particles_interval=0.02,particles))
+$(eval $(call movie,movie02,mpm_explicit,rebound.toml time.alpha=1 contact.levels=1 time.energy_limit=0 output.particles_interval=0.02 \
+    grid.cells_x=64 grid.cells_y=32 grid.length_x=1.6 grid.low_x=-0.2 grid.low_y=-0.1,particles))
+$(eval $(call movie,movie05,mpm_explicit,compressed.toml output.fringes_interval=0.005,fringes))
+$(eval $(call movie,movie07,mpm_implicit,shear.toml output.particles_interval=0.01 output.fringes_interval=0.01,particles fringes))
+$(eval $(call movie,movie08,implicit_moment,gem.toml output.fields_interval=10,fields,J_y))
+$(eval $(call movie,movie11,implicit_moment,lhdi_quick.toml output.fields_interval=0 current_sheet.temperature_ratio=1 time.dt=0.24,profile,J_x))
+$(eval $(call movie,movie12,implicit_moment,lhdi_quick.toml output.fields_interval=4,fields,E_x))
+$(eval $(call movie,movie13,implicit_moment,kink_quick.toml output.fields_interval=20,fields,B_y))
+movies: $(movies)
 
 # The program is that of the folder of the case, unless PROGRAM names another.
 sweep_program = $(if $(filter command environment,$(firstword $(origin PROGRAM))),$(PROGRAM),$(firstword $(subst /, ,$(CASE))))

@@ -29,9 +29,12 @@ for kind in $kinds; do
         endings='mp4 webp'
     else
         echo "note: without ffmpeg (make deps-sweep) it becomes a gif" >&2
-        gnuplot -e "set terminal gif animate delay $((100 / ${RATE:-12})) size 900,600;
-            set output '$frames/movie.gif'; unset border; unset tics; set margins 0, 0, 0, 0; set size ratio -1
-            do for [f in system('ls $frames/*.png')] { plot f binary filetype=png with rgbimage notitle }"
+        gnuplot <<EOD
+set terminal gif animate delay $((100 / ${RATE:-12})) size 1000, 700
+set output '$frames/movie.gif'
+unset border; unset tics; unset key; set margins 0, 0, 0, 0; set size ratio -1
+do for [picture in system('ls $frames/*.png')] { plot picture binary filetype=png with rgbimage }
+EOD
         endings=gif
     fi
     rm -f "$frames"/*.png

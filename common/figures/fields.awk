@@ -44,6 +44,7 @@ function images(    i, k, f, rows, ratio, width, height, wide, high_of_page, siz
     width = true && ratio > 1.2 ? 330 / ratio + 60 : 360
     height = true ? width * ratio : 260
     if (height < 120) height = 120
+    if (frames != "") { width *= 2; height *= 2 }
     wide = 250 + (to - from + 1) * (width + 25); if (wide < 700) wide = 700
     high_of_page = 150 + rows * (height + 62)
     printf "wide = %d; high = %d; load 'common/style.gp'\n", wide, high_of_page

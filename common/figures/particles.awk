@@ -61,6 +61,7 @@ END {
     width = true && ratio > 1.2 ? 330 / ratio + 60 : 360
     height = true ? width * ratio : 260
     if (height < 120) height = 120
+    if (frames != "") { width *= 2; height *= 2 }
     rows = !plane ? 1 : squares == "" ? 1 : 2
     wide = 250 + (frames == "" ? files : 1) * (width + 25)
     if (wide < 700) wide = 700
