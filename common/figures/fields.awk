@@ -20,15 +20,17 @@ $1 + 0 == $1 {
 function plain(text) { gsub(/_/, "\\\\_", text); return text }
 function label(i) { return plain(name[i]) (unit[i] == 1 ? "" : " [" plain(unit[i]) "]") }
 
+# More than round-off.
+function varies(i) { return high[i] - low[i] > 1e-6 * (high[i] > -low[i] ? high[i] : -low[i]) }
 function wanted(i) { return quantities == "" || index(" " quantities " ", " " name[i] " ") }
 
 function lines(along, first,    i, k, f, rows) {
-    for (i = first; i <= columns; i++) if (low[i] < high[i] && wanted(i)) varying[++rows] = i
+    for (i = first; i <= columns; i++) if (varies(i) && wanted(i)) varying[++rows] = i
     if (!rows) varying[++rows] = first
     printf("panels = %d; load 'common/figures/panels.gp'; set xlabel '%s'; set xrange [%.9g:%.9g]\n", rows > 12 ? 12 : rows, label(along), low[along], high[along])
     for (k = 1; k <= rows && k <= 12; k++) {
         i = varying[k]
-        printf "set title '%s'; set yrange [%.9g:%.9g]; set key %s title 'time'\n", label(i), low[i] - 0.05 * (high[i] - low[i]) - (low[i] == high[i]), high[i] + 0.4 * (high[i] - low[i]) + (low[i] == high[i]), k == 1 ? "on" : "off"
+        printf "set title '%s'; set yrange [%.9g:%.9g]; set key %s title 'time'\n", label(i), low[i] - 0.05 * (high[i] - low[i]) - !varies(i), high[i] + 0.4 * (high[i] - low[i]) + !varies(i), k == 1 ? "on" : "off"
         for (f = from; f <= to; f++) printf "%s'%s' using %d:%d with lines lt %d title '%s'", f == from ? "plot " : ", ", file[f], along, i, f - from + 1, time[f] == "" ? "" : sprintf("%.5g", time[f])
         print ""
     }
@@ -36,7 +38,7 @@ function lines(along, first,    i, k, f, rows) {
 }
 
 function images(    i, k, f, rows, ratio, width, height, wide, high_of_page, size, top) {
-    for (i = 3; i <= columns; i++) if (low[i] < high[i] && name[i] != "grain" && wanted(i)) varying[++rows] = i
+    for (i = 3; i <= columns; i++) if (varies(i) && name[i] != "grain" && wanted(i)) varying[++rows] = i
     if (rows > 12) rows = 12
     ratio = (high[2] - low[2]) / (high[1] - low[1])
     # True proportions where both are lengths and the page can hold them.

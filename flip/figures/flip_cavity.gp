@@ -31,6 +31,6 @@ plot line(1, 2, vx) using 2:1 with lines lt 1, profile using 2:1 @published
 set lmargin at screen 0.835; set rmargin at screen 0.98
 set xrange [0:1]; set yrange [-0.3:0.25]; set ytics 0.1
 set xlabel 'x / L'; set ylabel 'v_z / U on z = L/2' offset 1, 0
-set key at graph 1.1, 1.13 samplen 1
+set key at graph 1.06, 1 samplen 1 width -2 font ',17'
 plot line(2, 1, vz) using 1:2 with lines lt 1 title 'flip', profile using 4:5 @published title 'Ghia et al.'
 unset multiplot

@@ -24,17 +24,15 @@ set bmargin at screen 0.12; set tmargin at screen 0.5
 T(t) = sqrt(2) * t
 set xrange [0:3.5]; set xtics 1; set xlabel 'T = t (2 g / a)^{1/2}'
 set lmargin at screen 0.075; set rmargin at screen 0.48
-set yrange [1:5]; set ytics 1; set ylabel 'front x / a' offset 0.5, 0
-set key top left font ',17'
+set yrange [1:6]; set ytics 1; set ylabel 'front x / a' offset -0.3, 0
+set key top left font ',16' samplen 1.5
 late = result('front_ahead')
-set label 1 'their dam took a time to vanish' at graph 0.98, 0.06 right font ',17'
 set datafile separator whitespace
 front = col(history, 'front_x'); height = col(history, 'wall_height')
 data = sprintf("<tr ',' ' ' < flip/data/martin_moyce.csv | grep -v '[TZ]'")
 plot history using (T($1)):(column(front)) with lines lt 1 title 'front', \
-     data using 1:2 with points pt 6 ps 1.2 lw 1.4 lc rgb '#aaaaaa' title 'Martin and Moyce', \
+     data using 1:2 with points pt 6 ps 1.2 lw 1.4 lc rgb '#aaaaaa' title 'Martin and Moyce, whose dam took a time to vanish', \
      data using ($1 - late):2 @published title sprintf('the same at T - %.2f', late)
-unset label 1
 set lmargin at screen 0.58; set rmargin at screen 0.97
 set yrange [0:2.1]; set ytics 0.5; set ylabel 'height at the wall / a' offset 0.5, 0
 plot history using (T($1)):(column(height)) with lines lt 1 notitle

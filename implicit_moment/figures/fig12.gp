@@ -29,7 +29,7 @@ do for [panel = 1:words(times)] {
 }
 
 unset colorbox; set format y '10^{%L}'; set border 3; set grid
-set lmargin at screen 0.695; set rmargin at screen 0.975
+set lmargin at screen 0.715; set rmargin at screen 0.98
 set title 'edges, 0.75 L < |z| < 1.75 L' offset 0, -0.6
 set xrange [0:7]; set yrange [2e-3:5]; set logscale y; set ytics auto; set xtics 1
 set xlabel 't Ω_{ci}'; set ylabel 'amplitude of E_y c / (B_0 v_A)' offset 1, 0
@@ -42,8 +42,8 @@ omega = result('omega_over_theory') * result('theory_omega')
 t0 = result('time_of_saturation')
 size(a, b, c, d) = sqrt(0.5 * (a**2 + b**2 + c**2 + d**2))
 top = real(system(sprintf("LC_ALL=C awk '$1 + 0 == $1 { a = sqrt(0.5*($%d^2+$%d^2+$%d^2+$%d^2)); if ($%d <= 7 && a > top) top = a } END { print top }' '%s'", u, u + 1, l, l + 1, t, history)))
-set label 1 sprintf('γ = %.1f Ω_{ci}  (local theory %.1f)', gamma, result('theory_growth')) at 2.3, 0.0078 textcolor rgb ink font ',17'
-set label 2 sprintf('ω = %.1f Ω_{ci}  (local theory %.1f)', omega, result('theory_omega')) at 2.3, 0.0046 textcolor rgb ink font ',17'
+set label 1 sprintf('γ = %.1f Ω_{ci}  (local theory %.1f)', gamma, result('theory_growth')) at 1.75, 0.0078 textcolor rgb ink font ',17'
+set label 2 sprintf('ω = %.1f Ω_{ci}  (local theory %.1f)', omega, result('theory_omega')) at 1.75, 0.0046 textcolor rgb ink font ',17'
 plot history using t:(size(column(u), column(u + 1), column(l), column(l + 1))) @measured title sprintf('m_y = %d', m), \
      [0.3:t0 - 0.2] top * exp(result('theory_growth') * (x - t0 + 0.3)) @theory title 'slope of local theory'
 unset multiplot

@@ -23,10 +23,10 @@ eval colors(viridis); set cbrange [0:1]; set cbtics 0.5
 panel = 0.41; gap = 0.02; panel_height = panel * wide / high * 1.05 * H / length_x
 do for [k = 1:4] {
     column_ = (k - 1) % 2; row = (k - 1) / 2
-    left = 0.075 + column_ * (panel + gap); top = 0.91 - row * (panel_height + 0.055)
+    left = 0.075 + column_ * (panel + gap); top = 0.885 - row * (panel_height + 0.055)
     set lmargin at screen left; set rmargin at screen left + panel
     set tmargin at screen top; set bmargin at screen top - panel_height
-    set title sprintf('t = %.1f (H/g)^{1/2}', when(shown_[k]) / unit) offset 0, -0.6
+    set title sprintf('t = %.1f (H/g)^{1/2}', when(shown_[k]) / unit) offset 0, -0.7 font ',18'
     if (row == 1) { set xlabel 'x / L_0'; set format x '%g' } else { unset xlabel; set format x '' }
     if (column_ == 0) { set ylabel 'y / L_0' offset 0, 0; set format y '%g' } else { unset ylabel; set format y '' }
     if (k == 2) { set colorbox user origin left + panel + 0.012, top - panel_height size 0.01, panel_height; set label 82 'y(0) / H' at screen 0.995, top right offset 0, 1 } else { unset colorbox; unset label 82 }

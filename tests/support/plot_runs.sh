@@ -48,7 +48,10 @@ draw_case() {
     "$program" "$@" --quiet --threads 1 --out "$folder/run" > "$folder/said" 2>&1 ||
         "$program" "$@" theory.compare=none --quiet --threads 1 --out "$folder/run" > "$folder/said" 2>&1 ||
         { complain "$1: status $?: $(cat "$folder/said")"; return; }
-    draws "$folder/run" history
+    rm -rf "${folder:?}/$(basename "$1" .toml)"
+    mv "$folder/run" "$folder/$(basename "$1" .toml)"
+    draws "$folder/$(basename "$1" .toml)" history
+    rm -rf "${folder:?}/$(basename "$1" .toml)"
 }
 
 case $2 in
