@@ -31,8 +31,8 @@ set datafile separator whitespace
 front = col(history, 'front_x'); height = col(history, 'wall_height')
 data = sprintf("<tr ',' ' ' < flip/data/martin_moyce.csv | grep -v '[TZ]'")
 plot history using (T($1)):(column(front)) with lines lt 1 title 'front', \
-     data using 1:2 with points pt 6 ps 1.2 lw 1.4 lc rgb '#aaaaaa' title 'Martin and Moyce, whose dam took a time to vanish', \
-     data using ($1 - late):2 @published title sprintf('the same at T - %.2f', late)
+     data using 1:2 with points pt 6 ps 1.2 lw 1.4 lc rgb '#aaaaaa' title 'Martin and Moyce', \
+     data using ($1 - late):2 @published title sprintf('with their clock set back by %.2f', late)
 set lmargin at screen 0.58; set rmargin at screen 0.97
 set yrange [0:2.1]; set ytics 0.5; set ylabel 'height at the wall / a' offset 0.5, 0
 plot history using (T($1)):(column(height)) with lines lt 1 notitle
