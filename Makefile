@@ -107,7 +107,7 @@ The particle-in-cell family in running code
   make plot RUN=out/cic/mine     every figure that fits a run; also: make watch RUN=... while it runs,
                          make movie RUN=..., make compare A=... B=... of two runs
   make movies            the talk's figures that move: $(movies)
-  make sweep CASE=cic/cases/two_stream.toml KEYS='grid.cells_x=32,64 seed=1,2,3'
+  make sweep CASE=cic/cases/thermal_heating.toml KEYS='method.weighting=ngp,cic,tsc seed=1,2,3'
                          all combinations side by side (make deps-sweep), a table and a figure
   make cost              the cost slide, measured: explicit over implicit, against the mass ratio
   make explicit_gem      the full explicit run of that slide, to the plateau, two hours; resumable

@@ -1,6 +1,6 @@
 #!/bin/sh
 # sweep.sh CASE KEY=VALUE,VALUE ... [-- KEY=VALUE ...]: runs of a case with all combinations of these values, side by side, one thread each; a table of all results, results.dat, and a figure of them.
-#   sh common/sweep.sh cic/cases/two_stream.toml grid.cells_x=32,64,128 seed=1,2,3 -- time.end=40
+#   sh common/sweep.sh cic/cases/thermal_heating.toml method.weighting=ngp,cic,tsc seed=1,2,3 -- time.end=200
 # A key without a section is completed (seed: plasma.seed); what follows -- is the same for all runs. Runs go to out/sweep/CASE/KEY=VALUE_KEY=VALUE; stopped, the same command goes
 # on, and what is complete is not run again. In the environment, all optional:
 #   PROGRAM           the program, where the folder of the case does not say it
@@ -16,7 +16,7 @@ cd "$(dirname "$0")/.."
 fail() { echo "$*" >&2; exit 2; }
 
 case=${1:-}
-[ -f "$case" ] && [ $# -ge 2 ] || fail "which case, and which values? make sweep CASE=cic/cases/two_stream.toml KEYS='grid.cells_x=32,64 seed=1,2,3'"
+[ -f "$case" ] && [ $# -ge 2 ] || fail "which case, and which values? make sweep CASE=cic/cases/thermal_heating.toml KEYS='method.weighting=ngp,cic,tsc seed=1,2,3'"
 shift
 program=${PROGRAM:-${case%%/*}}
 [ "${program##*/}" != "$program" ] || program=${BUILD:-build}/$program

@@ -43,7 +43,7 @@ END {
     if (!panels) panel[++panels] = keys + 1
     title = FILENAME
     sub(/\/results.dat$/, "", title)
-    printf "heading = '%s'; panels = %d; load 'common/figures/panels.gp'; set xlabel '%s'; set key maxrows 6\n", title, panels, plain(name[along])
+    printf "heading = '%s'; panels = %d; load 'common/figures/panels.gp'; set xlabel '%s'; set key maxrows 6; set format y '%%g'\n", title, panels, plain(name[along])
     if (logarithmic) printf "set logscale x; set xrange [%.6g:%.6g]\n", least / 1.3, most * 1.3
     else printf "set xrange [%.9g:%.9g]\n", least - 0.08 * (most - least) - (most == least), most + 0.08 * (most - least) + (most == least)
     if (words[along] || (different[along] < 9 && logarithmic)) {
