@@ -91,7 +91,7 @@ draw)
     ;;
 watch)
     while :; do
-        ended=$([ -f "$run/summary.json" ] && echo yes || true)
+        ended=$([ -f "$run/summary.json" ] && [ -z "$(find "$run/history.dat" -newer "$run/summary.json")" ] && echo yes || true)
         if [ "${TEXT:-}" ]; then
             names=$(awk -f common/columns.awk "$run/history.dat" | awk '$2 == "energy" { unit = $3 } { name[NR] = $2; of[NR] = $3 } END { for (i = 2; i <= NR; i++) if (of[i] == unit && n++ < 4) print name[i] }')
             gnuplot -e "set terminal dumb $(tput cols || echo 100) 30; set title '$run' noenhanced; set key noenhanced; plot for [name in '$names'] '$run/history.dat' using 'time':name with lines title name"
