@@ -42,7 +42,14 @@ fits() {
         case $condition in
         result:*) [ -f "$run/summary.json" ] && awk -v key="results.$value.value" -f common/json_lines.awk "$run/summary.json" >/dev/null ;;
         file:*) ls "$run"/$value >/dev/null 2>&1 ;;
-        kinds:*) kinds=$(for kind in $(echo "$value" | tr ',' ' '); do ls "$run/${kind}"_[0-9]*.dat >/dev/null 2>&1 && echo "$kind"; done); [ -n "$kinds" ] ;;
+        kinds:*)
+            # With something in the last of them, below the three lines about it.
+            kinds=$(for kind in $(echo "$value" | tr ',' ' '); do
+                last=$(ls "$run/${kind}"_[0-9]*.dat 2>/dev/null | tail -n 1)
+                [ -n "$last" ] && [ -n "$(sed -n 4p "$last")" ] && echo "$kind"
+            done)
+            [ -n "$kinds" ]
+            ;;
         *!=*) fits any "${condition%%!=*}=$value" && return 1 || true ;;
         *=*) awk -v wanted="${condition%%=*}" -v values="$value" '
             /^\[/ { gsub(/[][]/, ""); section = $1 }

@@ -45,7 +45,8 @@ function row(k, a, b, colored,    f, left, top) {
         else print "unset colorbox"
         printf "set title 'time %.5g'\n", time[f]
         size = count[f] > 5000 ? 0.15 : count[f] > 500 ? 0.4 : 1
-        printf "plot '%s' using %d:%d:(%s) with points pt 7 ps %g lc %s\n", file[f], a, b, colored ? "sqrt(" squares ")" : group ? "color_of($" group ")" : "0x0072B2", size, colored ? "palette" : "rgb variable"
+        if (!count[f]) print "plot -1e30"
+        else printf "plot '%s' using %d:%d:(%s) with points pt 7 ps %g lc %s\n", file[f], a, b, colored ? "sqrt(" squares ")" : group ? "color_of($" group ")" : "0x0072B2", size, colored ? "palette" : "rgb variable"
     }
 }
 

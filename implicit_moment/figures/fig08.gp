@@ -1,7 +1,7 @@
 # Figure 8 of the talk: magnetic field lines (contours of A_y) and out-of-plane current density (color) of the GEM challenge at four times. The sheet thins at
 # the X-line in the middle and is drawn out into the separatrices, while the island at the ends of the periodic box swallows the flux.
 # fits: implicit_moment|explicit_em file:fields_*.dat result:peak_reconnection_rate
-wide = 1500; high = 940
+wide = 1400; high = 880
 load 'common/style.gp'
 B0 = 1 / parameter('light_over_alfven')
 times = near('fields', sprintf('0 %g %g %g', 12 / B0, 18 / B0, 24 / B0))
