@@ -421,8 +421,8 @@ endef
 $(eval $(call movie,movie01,mpm_implicit,rebound.toml output.particles_interval=0.02,particles))
 $(eval $(call movie,movie02,mpm_explicit,rebound.toml time.alpha=1 contact.levels=1 time.energy_limit=0 output.particles_interval=0.02 \
     grid.cells_x=64 grid.cells_y=32 grid.length_x=1.6 grid.low_x=-0.2 grid.low_y=-0.1,particles))
-$(eval $(call movie,movie05,mpm_explicit,compressed.toml output.fringes_interval=0.005,fringes))
-$(eval $(call movie,movie07,mpm_implicit,shear.toml output.particles_interval=0.01 output.fringes_interval=0.01,particles fringes))
+$(eval $(call movie,movie05,mpm_explicit,compressed.toml output.fringes_interval=0.005,fringes,stress_difference))
+$(eval $(call movie,movie07,mpm_implicit,shear.toml output.particles_interval=0.01 output.fringes_interval=0.01,particles fringes,stress_difference))
 $(eval $(call movie,movie08,implicit_moment,gem.toml output.fields_interval=10,fields,J_y))
 $(eval $(call movie,movie11,implicit_moment,lhdi_quick.toml output.fields_interval=0 current_sheet.temperature_ratio=1 time.dt=0.24,profile,J_x))
 $(eval $(call movie,movie12,implicit_moment,lhdi_quick.toml output.fields_interval=4,fields,E_x))

@@ -25,7 +25,7 @@ for kind in $kinds; do
     if command -v ffmpeg >/dev/null; then
         movie() { ffmpeg -loglevel error -y -framerate "${RATE:-12}" -start_number 1 -i "$frames/%06d.png" "$@"; }
         movie -vf 'pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white' -c:v libx264 -pix_fmt yuv420p -crf 20 "$frames/movie.mp4"
-        movie -c:v libwebp_anim -loop 0 -quality 70 "$frames/movie.webp"
+        movie -vf "scale='min(760,iw)':-2" -c:v libwebp_anim -loop 0 -quality 55 "$frames/movie.webp"
         endings='mp4 webp'
     else
         echo "note: without ffmpeg (make deps-sweep) it becomes a gif" >&2

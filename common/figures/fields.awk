@@ -37,7 +37,7 @@ function lines(along, first,    i, k, f, rows) {
     print "unset multiplot"
 }
 
-function images(    i, k, f, rows, ratio, width, height, wide, high_of_page, size, top) {
+function images(    i, k, fringe, f, rows, ratio, width, height, wide, high_of_page, size, top) {
     for (i = 3; i <= columns; i++) if (varies(i) && name[i] != "grain" && wanted(i)) varying[++rows] = i
     if (rows > 12) rows = 12
     ratio = (high[2] - low[2]) / (high[1] - low[1])
@@ -57,7 +57,9 @@ function images(    i, k, f, rows, ratio, width, height, wide, high_of_page, siz
         i = varying[k]
         top = high_of_page - 100 - (k - 1) * (height + 62)
         size = high[i] > -low[i] ? high[i] : -low[i]
-        if (low[i] < 0 && high[i] > 0 && (high[i] < -low[i] ? high[i] : -low[i]) > 0.05 * size) printf "eval signed(%.9g)\n", size
+        fringe = kind == "fringes" && name[i] == "stress_difference" ? high[i] / 6 : 0
+        if (fringe) print "set palette gray; set cbrange [0:1]"
+        else if (low[i] < 0 && high[i] > 0 && (high[i] < -low[i] ? high[i] : -low[i]) > 0.05 * size) printf "eval signed(%.9g)\n", size
         else printf "eval colors(%s); set cbrange [%.9g:%.9g]\n", kind == "phase" ? "inferno" : "viridis", low[i], high[i]
         for (f = from; f <= to; f++) {
             # Field lines over the current.
@@ -71,7 +73,9 @@ function images(    i, k, f, rows, ratio, width, height, wide, high_of_page, siz
             if (f == to) printf "set colorbox user origin %.5f, %.5f size %.5f, %.5f; set cbtics autofreq; set cblabel '%s' font ',16'; set format cb '%%.2g'\n", (left + width + 12) / wide, (top - height) / high_of_page, 14 / wide, height / high_of_page, label(i)
             else print "unset colorbox"
             printf "set title '%s'\n", time[f] == "" ? plain(name[i]) : plain(name[i]) sprintf(", time %.5g", time[f])
-            printf "plot '%s' using 1:2:%d with image%s\n", file[f], i, name[i] == "J_y" && number["A_y"] ? ", $lines using 1:2 @contours" : ""
+            # Grains as in a polariscope: dark where the stress difference is 0, 1, 2 ... fringes.
+            if (fringe) printf "set cblabel 'polarized light, a fringe is %.3g'; plot '%s' using 1:2:(sin(pi * $%d / %g)**2) with image\n", fringe, file[f], i, fringe
+            else printf "plot '%s' using 1:2:%d with image%s\n", file[f], i, name[i] == "J_y" && number["A_y"] ? ", $lines using 1:2 @contours" : ""
         }
     }
     print "unset multiplot"
