@@ -29,7 +29,7 @@ for kind in $kinds; do
         endings='mp4 webp'
     else
         echo "note: without ffmpeg (make deps-sweep) it becomes a gif" >&2
-        gnuplot <<EOD
+        gnuplot 2>/dev/null <<EOD
 set terminal gif animate delay $((100 / ${RATE:-12})) size 1000, 700
 set output '$frames/movie.gif'
 unset border; unset tics; unset key; set margins 0, 0, 0, 0; set size ratio -1

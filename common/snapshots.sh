@@ -10,7 +10,7 @@ export LC_ALL=C.UTF-8
 what=$1 run=$2 kind=$3 wanted=${4:-0}
 
 files=$(ls "$run/${kind}"_[0-9]*.dat 2>/dev/null) || exit 0
-echo "$files" | tr '\n' '\0' | xargs -0 awk '/^# time/ { print $3, FILENAME }' |
+echo "$files" | tr '\n' '\0' | xargs -0 awk '/^# time/ { print $3, FILENAME } FNR == 3 { nextfile }' |
     awk -v what="$what" -v wanted="$wanted" -v run="$run" -v kind="$kind" '
     { time[NR] = $1; sub(/^[^ ]* /, ""); file[NR] = $0 }
     function nearest(t,    i, best) {

@@ -31,7 +31,7 @@ full_name() {  # of a key without its section
     echo "$full"
 }
 
-lists= fixed=
+lists="" fixed=""
 while [ $# -gt 0 ]; do
     case $1 in
     --) shift; fixed=$*; break ;;

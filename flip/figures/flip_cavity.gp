@@ -1,6 +1,6 @@
 # Viscous flow in a square cavity under a lid that slides, Reynolds number 100, Mach 0.05. Left, speed and direction of the flow after twelve passages of the lid, and the center
 # of the vortex by Ghia, Ghia and Shin (1982). Right, velocities of the run's cells on both middle lines, and their points.
-# fits: flip theory.compare=cavity file:fields_*.dat file:profile.dat
+# fits: flip theory.compare=cavity file:fields_*.dat file:profile.dat file:summary.json
 wide = 1500; high = 720
 load 'common/style.gp'
 last = system(sprintf("ls '%s'/fields_*.dat | tail -n 1", run))

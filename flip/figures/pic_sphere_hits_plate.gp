@@ -1,6 +1,6 @@
 # The showpiece of 1955: a sphere of iron hits a plate of aluminum at 6 km/s. Particles of classical PIC about the axis, drawn on both sides of it, iron orange and aluminum blue. The sphere spreads and lines
 # the crater, whose lip flies back, and the plate bulges. Such distortions, and two materials with free surfaces, are what a mesh that moves with the fluid cannot follow.
-# fits: pic|flip theory.compare=impact grid.geometry=axisymmetric file:particles_*.dat
+# fits: pic|flip theory.compare=impact grid.geometry=axisymmetric file:particles_*.dat file:summary.json
 wide = 1500; high = 590
 load 'common/style.gp'
 times = times_of('particles', 4)

@@ -1,6 +1,6 @@
 # A column of frictional disks collapses on a rough floor; the grains are colored by the height at which they started. Below: how far the front (all mass but one percent) has run, and the run-out
 # against height over width of the column, with published fits for disks in two dimensions (Staron and Hinch 2005) and for sand, rice and sugar between plates (Lube and others 2005).
-# fits: mpm_explicit|mpm_implicit theory.compare=collapse file:grains_*.dat
+# fits: mpm_explicit|mpm_implicit theory.compare=collapse file:grains_*.dat file:summary.json
 wide = 1500; high = 1320
 load 'common/style.gp'
 file = run.'/history.dat'; front = col(file, 'front')

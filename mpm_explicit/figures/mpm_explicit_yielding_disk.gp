@@ -1,6 +1,6 @@
 # A disk that yields meets a rigid wall at x = 0. Above: its particles, colored by plastic strain; the dashed circle has its center and its first radius. Below: where the energy goes; it leaves with
 # a small part of what it brought, vibrating, and most of the rest is plastic work, which never comes back.
-# fits: mpm_explicit|mpm_implicit theory.compare=yield file:particles_*.dat
+# fits: mpm_explicit|mpm_implicit theory.compare=yield file:particles_*.dat result:largest_plastic_strain
 wide = 1500; high = 1060
 load 'common/style.gp'
 R = real(given('grain.*.radius')); v_0 = abs(real(given('grain.*.velocity_x')))

@@ -1,6 +1,6 @@
 # Figure 1 of the talk: grain positions through the elastic rebound, implicit, with a CFL number of 1.00, where the explicit program bursts. Particles are colored by their velocity: the grains meet, come to
 # rest while their energy is that of strain, and part as they came, but for some vibration. The energy in each panel is all there is, kinetic and elastic.
-# fits: mpm_explicit|mpm_implicit theory.compare=rebound file:particles_*.dat
+# fits: mpm_explicit|mpm_implicit theory.compare=rebound file:particles_*.dat file:summary.json
 wide = 1500; high = 1000
 load 'common/style.gp'
 R = real(given('grain.*.radius')); v_0 = abs(real(given('grain.*.velocity_x')))
