@@ -52,7 +52,7 @@ hdf5 = $(firstword $(wildcard /usr/include/hdf5/serial/hdf5.h /usr/include/hdf5.
 openpmd = $(if $(hdf5),$(BUILD)/openpmd.so)
 
 # With `make deps fig09`, also with -j, everything waits until the packages are there.
-packages_first := $(filter deps deps-dev,$(MAKECMDGOALS))
+packages_first := $(filter deps deps-dev deps-sweep,$(MAKECMDGOALS))
 
 # $(call need,command): stop with a cure where a tool is missing.
 need = @command -v $(1) >/dev/null || { echo "'$(1)' is not installed: run 'make deps'" >&2; exit 2; }
@@ -77,7 +77,7 @@ one_at_a_time = $(if $(shell command -v flock),flock out)
 .DELETE_ON_ERROR:
 .SECONDEXPANSION:
 .PRECIOUS: $(objects)/%.o $(objects)/fuzz/%.o out/%/.complete
-.PHONY: menu deps deps-dev all install dist figures cost explicit_gem test tests test-long exercise exercises torture mutate fuzzers bench \
+.PHONY: menu deps deps-dev deps-sweep plot watch movie movies compare sweep all install dist figures cost explicit_gem test tests test-long exercise exercises torture mutate fuzzers bench \
         notes format clean FORCE $(programs)
 
 # ---- the menu ------------------------------------------------------------------------------------
@@ -104,6 +104,11 @@ The particle-in-cell family in running code
                          $(wordlist 13,15,$(mpm_figures))
                          $(wordlist 16,99,$(mpm_figures))
   make figures           draw them all
+  make plot RUN=out/cic/mine     every figure that fits a run; also: make watch RUN=... while it runs,
+                         make movie RUN=..., make compare A=... B=... of two runs
+  make movies            the talk's figures that move: $(movies)
+  make sweep CASE=cic/cases/thermal_heating.toml KEYS='method.weighting=ngp,cic,tsc seed=1,2,3'
+                         all combinations side by side (make deps-sweep), a table and a figure
   make cost              the cost slide, measured: explicit over implicit, against the mass ratio
   make explicit_gem      the full explicit run of that slide, to the plateau, two hours; resumable
   make test              the facts, at most ten minutes   (make test ARGS='-R gmres': some of them)
@@ -138,6 +143,9 @@ deps:
 
 deps-dev: | $(filter deps,$(MAKECMDGOALS))
 	@sh common/packages.sh clang-format locales clang libclang-rt-dev libomp-dev llvm strace libhdf5-dev hdf5-tools
+
+deps-sweep: | $(filter deps,$(MAKECMDGOALS))
+	@sh common/packages.sh parallel ffmpeg
 
 # ---- programs ------------------------------------------------------------------------------------
 
@@ -393,15 +401,41 @@ mpm_figures = $(filter mpm_%,$(figures))
 
 figures: $(figures)
 
-# The same without the zero.
-$(foreach n,1 2 3 4 5 6 7 8 9,$(eval .PHONY: fig$n)$(eval fig$n: fig0$n))
+# ---- any run -------------------------------------------------------------------------------------
 
-# Figures of the talk whose method has no program so far.
-fig11 fig12 fig13 fig14 fig15: method := the thin current sheet of implicit_moment
-figures_to_come := $(filter-out $(figures),$(foreach n,01 02 03 04 05 06 07 08 09 10 11 12 13 14 15,fig$n))
-.PHONY: $(figures_to_come)
-$(figures_to_come):
-	@echo "figure $(patsubst 0%,%,$(@:fig%=%)) belongs to $(method), which is not built yet; there is: $(figures)" >&2; exit 2
+# make plot RUN=out/cic/mine
+plot watch movie:
+	$(call need,gnuplot)
+	@sh common/plot.sh $(@:plot=draw) '$(RUN)'
+compare:
+	$(call need,gnuplot)
+	@sh common/plot.sh compare '$(A)' '$(B)'
+
+# The talk's figures that move, each from a run of its own with many snapshots: program, case and overrides, kind of snapshots, quantities.
+define movie
+.PHONY: $(1)
+movies += $(1)
+$(1): $(BUILD)/$(2) | $(packages_first)
+	$$(call need,gnuplot)
+	@mkdir -p out/movies
+	$$(one_at_a_time) $(BUILD)/$(2) $(2:explicit_em=implicit_moment)/cases/$(3) --quiet --resume --out out/movies/$(1)
+	@QUANTITIES='$(5)' PLOTS=out/figures/$(1) sh common/movie.sh out/movies/$(1) '$(4)'
+endef
+$(eval $(call movie,movie01,mpm_implicit,rebound.toml output.particles_interval=0.02,particles))
+$(eval $(call movie,movie02,mpm_explicit,rebound.toml time.alpha=1 contact.levels=1 time.energy_limit=0 output.particles_interval=0.02 \
+    grid.cells_x=64 grid.cells_y=32 grid.length_x=1.6 grid.low_x=-0.2 grid.low_y=-0.1,particles))
+$(eval $(call movie,movie05,mpm_explicit,compressed.toml output.fringes_interval=0.005,fringes,stress_difference))
+$(eval $(call movie,movie07,mpm_implicit,shear.toml output.particles_interval=0.01 output.fringes_interval=0.01,particles fringes,stress_difference))
+$(eval $(call movie,movie08,implicit_moment,gem.toml output.fields_interval=10,fields,J_y))
+$(eval $(call movie,movie11,implicit_moment,lhdi_quick.toml output.fields_interval=0 current_sheet.temperature_ratio=1 time.dt=0.24,profile,J_x))
+$(eval $(call movie,movie12,implicit_moment,lhdi_quick.toml output.fields_interval=4,fields,E_x))
+$(eval $(call movie,movie13,implicit_moment,kink_quick.toml output.fields_interval=20,fields,B_y))
+movies: $(movies)
+
+# The program is that of the folder of the case, unless PROGRAM names another.
+sweep_program = $(if $(filter command environment,$(firstword $(origin PROGRAM))),$(PROGRAM),$(firstword $(subst /, ,$(CASE))))
+sweep: $$(addprefix $(BUILD)/,$$(filter $(programs),$$(sweep_program)))
+	@PROGRAM=$(sweep_program) BUILD=$(BUILD) sh common/sweep.sh '$(CASE)' $(KEYS)
 
 # ---- tests ---------------------------------------------------------------------------------------
 

@@ -54,12 +54,14 @@ theory    = "with lines linetype 2 dashtype 2"
 published = "with points pointtype 6 pointsize 1.2 linewidth 2 linecolor rgb ink"
 band      = "with filledcurves fillstyle transparent solid 0.18 noborder"
 dots      = "with points pointtype 7 pointsize 0.12"
-contours  = "with lines linewidth 1.2 linecolor rgb '#a0ffffff'"
+contours  = "with lines linewidth 1.2 linecolor rgb '#50204060'"
 
 # ---- colors of a field:  eval colors(viridis)  or  eval signed(range) -----------------------------
-# Sampled perceptually uniform maps; the last one is for fields with a sign, its middle is zero.
+# Sampled perceptually uniform maps; the last is for fields with a sign, its middle is zero.
 viridis = "0 '#440154', 1 '#472d7b', 2 '#3b528b', 3 '#2c728e', 4 '#21918c', 5 '#28ae80', 6 '#5ec962', 7 '#addc30', 8 '#fde725'"
 inferno = "0 '#000004', 1 '#1b0c41', 2 '#4a0c6b', 3 '#781c6d', 4 '#a52c60', 5 '#cf4446', 6 '#ed6925', 7 '#fb9b06', 8 '#f7d13d', 9 '#fcffa4'"
+# Light enough for dark lines on it.
+oranges = "0 '#fffaf3', 1 '#fee6ce', 2 '#fdd0a2', 3 '#fdae6b', 4 '#fd8d3c', 5 '#e6550d', 6 '#b63c00', 7 '#7f2704'"
 diverging = "-4 '#053061', -3 '#2166ac', -2 '#4393c3', -1 '#92c5de', 0 '#f7f7f7', 1 '#f4a582', 2 '#d6604d', 3 '#b2182b', 4 '#67001f'"
 colors(map) = "set palette defined (" . map . ")"
 signed(range) = sprintf("%s; set cbrange [%g:%g]", colors(diverging), -range, range)
@@ -82,6 +84,8 @@ entry(path) = system(sprintf("awk -v key='%s' -f common/json_lines.awk '%s/summa
 result(name) = real(entry('results.' . name . '.value'))
 # parameter('dt'): a number of the run's complete input, case.toml.
 parameter(name) = real(system(sprintf("awk -v name='%s' '$1 == name && $2 == \"=\" { print $3; exit }' '%s/case.toml'", name, run)))
+# given('grain.left.radius') by its section; with a * for a name, as in given('grain.*.radius'), the first that there is. Text stays text.
+given(path) = system(sprintf("awk -v path='%s' 'BEGIN { gsub(/[.]/, \"[.]\", path); gsub(/[*]/, \"[^.]*\", path) } /^\\[/ { gsub(/[][]/, \"\"); section = $1 } $2 == \"=\" && section \".\" $1 ~ \"^\" path \"$\" { sub(/^[^=]*= */, \"\"); gsub(/\"/, \"\"); print; exit }' '%s/case.toml'", path, run))
 
 # Labels of an axis in units of pi:  set xtics pi; eval pi_tics('x', 4)
 pi_tics(axis, n) = sprintf("set %stics ('0' 0, 'π' pi", axis) . \
@@ -93,3 +97,10 @@ col(file, name) = int(system(sprintf("awk -v name='%s' '{ for (i = 1; i <= NF; i
 
 # The time of a snapshot, fields_000400.dat or another.
 time_of(file) = real(system(sprintf("awk '/^# time/ { print $3; exit }' '%s'", file)))
+
+# ---- the snapshots that a run has --------------------------------------------------------------------
+# times_of('fields', 4): four of its times, or as many as there are; near('fields', '10 20'): of its times the nearest to these, with a note where they differ;
+# file_at('fields', 10): the file that is nearest to a time.
+times_of(kind, count) = system(sprintf("sh common/snapshots.sh some '%s' %s %d", run, kind, count))
+near(kind, wanted) = system(sprintf("sh common/snapshots.sh near '%s' %s '%s'", run, kind, wanted))
+file_at(kind, time) = system(sprintf("sh common/snapshots.sh file '%s' %s %.12g", run, kind, time))

@@ -79,6 +79,13 @@ describe_test(notes.every_label_of_the_ledger_exists notes)
 add_test(notes.numbers_agree_with_the_runs sh common/notes.sh compare)
 describe_test(notes.numbers_agree_with_the_runs long)
 
+# ---- pictures of any run -------------------------------------------------------------------------
+foreach(what some own tools all)
+    add_test(plot.${what} sh tests/support/plot_runs.sh "${build_folder}" ${what})
+    describe_test(plot.${what} figure)
+endforeach()
+describe_test(plot.all long)
+
 # ---- the exercises -------------------------------------------------------------------------------
 # Each that runs something. Those with a patch build in one and the same copy of the sources.
 add_test(exercises.each_has_a_solution sh common/exercise.sh check)

@@ -17,7 +17,7 @@ set logscale cb; set cbrange [1e-4:1]; set format cb '10^{%T}'
 set colorbox user origin 0.505, 0.145 size 0.013, 0.745
 set label 1 '|ρ|^2 / largest' at screen 0.575, 0.935 right
 set key at graph 0.98, 0.97 top right textcolor rgb 'white'
-plot spectrum using 2:($1 / Omega):($2**2 * $3 / largest) with image notitle, \
+plot spectrum skip 1 using 2:($1 / Omega):($2**2 * $3 / largest) with image notitle, \
      for [n = 2:6] run.'/modes.dat' using 1:(column(n) / Omega) with lines lc rgb sky lw 1.8 dt 2 title (n == 2 ? 'Bernstein modes' : '')
 unset label 1; unset colorbox; unset logscale cb; set border 3; set grid
 set lmargin at screen 0.66; set rmargin at screen 0.98

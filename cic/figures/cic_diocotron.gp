@@ -1,8 +1,9 @@
 # Diocotron instability: a layer of electrons (their density is shown) between grounded walls, in a magnetic field out of the plane. The layer shears itself, its edges
 # ripple at the rate of theory and wind up into a vortex, drawing filaments around it, like a shear layer of an ideal fluid. Below right, which ripples grow.
+# fits: cic theory.compare=diocotron file:fields_*.dat result:growth
 wide = 1500; high = 1020
 load 'common/style.gp'
-times = '450 600 750 900'; marks = times
+times = near('fields', '450 600 750 900'); marks = times
 x_label = 'x / d'; z_label = 'z / d'; plane_step = 4
 rho = col(run.'/fields_000000.dat', 'rho'); field_of = '-column(rho)'; field_title = 'n / n_0'
 eval colors(inferno); set cbrange [0:1.2]; set cbtics 0.4

@@ -1,7 +1,9 @@
 # Between a source (left) and a floating wall (right), means of the second half of the run. Electrons are faster than ions, so the wall charges up until it turns most of
 # them back: none comes back faster than those that just did not reach it (dashed). Ions are only accelerated. Dashed in all panels: the theory of Schwager and Birdsall.
+# fits: cic theory.compare=sheath file:fields_*.dat file:phase_*.dat file:particles_*.dat result:plasma_potential
 wide = 1500; high = 1080
 load 'common/style.gp'
+M = real(given('species.ions.mass')) / real(given('species.electrons.mass'))
 second_half = sprintf('LC_ALL=C awk -v first=%d -f cic/figures/mean_of_files.awk ', int(0.5 * parameter('end') / parameter('dt')))
 $fields << EOD
 EOD
@@ -31,7 +33,7 @@ distance(edge, n) = n < 1 ? 0 : sum [i = 0:n - 1] du * slope(edge, (i + 0.5) * d
 set table $source; plot sample [n = 0:100:1] '+' using (distance(0, int(n))):(p_of(0, n * du)); unset table
 set table $wall; plot sample [n = 0:100:1] '+' using (L - distance(C, int(n))):(p_of(C, n * du)); unset table
 by_theory = "with lines dashtype 2 linewidth 2.4 linecolor rgb ink"
-set multiplot title 'A floating wall in front of a plasma, m_i = 100 m_e, T_i = T_e' font ',24'
+set multiplot title sprintf('A floating wall in front of a plasma, m_i = %g m_e, T_i = T_e', M) font ',24'
 set bmargin at screen 0.61; set tmargin at screen 0.9
 set xrange [0:L]; set xtics 6; set xlabel 'x / λ_D'
 set lmargin at screen 0.085; set rmargin at screen 0.325
@@ -70,7 +72,6 @@ set lmargin at screen 0.58; set rmargin at screen 0.965
 set title 'ions'
 set ylabel 'v_x / (T_e/m_i)^{1/2}'
 set yrange [0:5]; set ytics 1
-M = 100
-plot run.'/particles_020000.dat' using ($1 == 1 ? $2 : NaN):(sqrt(M) * column("v_x")) with points pt 7 ps 0.1 lc rgb orange, \
+plot file_at('particles', parameter('end')) using ($1 == 1 ? $2 : NaN):(sqrt(M) * column("v_x")) with points pt 7 ps 0.1 lc rgb orange, \
      $source using 1:(sqrt(-2 * $2)) @by_theory, $wall using 1:(sqrt(-2 * $2)) @by_theory
 unset multiplot

@@ -21,7 +21,11 @@ if (onset ne '') {
     height = real(system(sprintf("LC_ALL=C awk '$%d >= %s && $%d <= %s { sum += 0.5 * log($%d^2 + $%d^2) - %.15g * $%d; n++ } END { print sum / n }' '%s'", \
         t, word(fitted, 1), t, word(fitted, 3), re, im, rate, t, history)))
 }
-set logscale y; set format y '10^{%T}'
+if (!exists('growth_floor')) {
+    growth_top = real(system(sprintf("LC_ALL=C awk '$1 + 0 == $1 { E = $%d^2 + $%d^2; if (E > m) m = E } END { print 10 * sqrt(m) }' '%s'", re, im, history)))
+    growth_floor = growth_top * (rate > 0 ? 1e-8 : 1e-6)
+}
+set yrange [1:2]; set logscale y; set format y '10^{%T}'
 set xrange [0:parameter('end')]; set xtics auto
 set yrange [growth_floor:growth_top]; set ytics auto
 set xlabel 't ω_p'; set ylabel field_label offset 0.5, 0

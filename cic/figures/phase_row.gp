@@ -2,6 +2,7 @@
 # v_step, row_bottom and row_top (screen), and either colors_of_species, for dots, or density, what to add up of phase_*.dat, e.g. '$3 + $4', density_top and density_step.
 # With wave_speed a line is drawn at the phase velocity of theory. x_low and x_of, what to draw as x, cut the periodic box elsewhere than at 0.
 if (!exists('density')) density = ''
+if (!exists('density_title')) density_title = 'f v_{th}/n_0'
 if (!exists('x_low')) { x_low = 0; x_of = '$2' }
 panels = words(times)
 gap = 0.018
@@ -15,17 +16,16 @@ unset key
 if (density ne '') { eval colors(inferno); set cbrange [0:density_top]; unset grid }
 if (exists('wave_speed')) { set arrow 81 from graph 0, first wave_speed to graph 1, first wave_speed nohead front dashtype 2 linewidth 1.6 linecolor rgb gray }
 do for [k = 1:panels] {
-    step = int(real(word(times, k)) / parameter('dt') + 0.5)
     left = 0.075 + (k - 1) * (panel_width + gap)
     set lmargin at screen left; set rmargin at screen left + panel_width
-    set title sprintf('t ω_p = %s', word(times, k)) offset 0, -0.6
+    set title sprintf('t ω_p = %.4g', real(word(times, k))) offset 0, -0.6
     if (k == 1) { set ylabel v_label offset 0.3, 0; set ytics v_step } else { unset ylabel; set ytics v_step format '' }
     if (k == 1 && exists('wave_speed')) { set label 81 'ω/k' at graph 0.04, first wave_speed offset 0, -0.7 front textcolor rgb gray } else { unset label 81 }
     if (density ne '') {
-        if (k == panels) { set colorbox user origin 0.908, row_bottom size 0.012, row_top - row_bottom; set cbtics density_step; set label 82 'f v_{th}/n_0' at screen 0.985, row_top right offset 0, 1.1 } else { unset colorbox }
-        plot sprintf('%s/phase_%06d.dat', run, step) using 1:2:(@density) with image
+        if (k == panels) { set colorbox user origin 0.908, row_bottom size 0.012, row_top - row_bottom; set cbtics density_step; set label 82 density_title at screen 0.985, row_top right offset 0, 1.1 } else { unset colorbox }
+        plot file_at('phase', real(word(times, k))) using 1:2:(@density) with image
     } else {
-        picture = sprintf('%s/particles_%06d.dat', run, step); v_x = col(picture, 'v_x')
+        picture = file_at('particles', real(word(times, k))); v_x = col(picture, 'v_x')
         # Species in turns, so that none covers the others.
         plot for [turn = 0:3] for [s = 1:words(colors_of_species)] picture every 4::turn \
             using ($1 == s - 1 ? @x_of : NaN):v_x with points pointtype 7 pointsize 0.1 linecolor rgb word(colors_of_species, s)

@@ -1,5 +1,6 @@
 # Viscous flow in a square cavity under a lid that slides, Reynolds number 100, Mach 0.05. Left, speed and direction of the flow after twelve passages of the lid, and the center
 # of the vortex by Ghia, Ghia and Shin (1982). Right, velocities of the run's cells on both middle lines, and their points.
+# fits: flip theory.compare=cavity file:fields_*.dat file:profile.dat file:summary.json
 wide = 1500; high = 720
 load 'common/style.gp'
 last = system(sprintf("ls '%s'/fields_*.dat | tail -n 1", run))
@@ -16,7 +17,7 @@ set label 9 '|v| / U' at screen 0.48, 0.15 + side * wide / high right offset 0, 
 even(x) = int(x * n) % 2 == 0
 reach = 0.045
 plot last using 1:2:(speed(column(vx), column(vz))) with image, \
-     last using (even($1) && even($2) ? $1 : NaN):2:(reach * column(vx) / speed(column(vx), column(vz))**0.5):(reach * column(vz) / speed(column(vx), column(vz))**0.5) with vectors head size 0.01, 20 lw 1.2 lc rgb '#40ffffff', \
+     last skip 1 using (even($1) && even($2) ? $1 : NaN):2:(reach * column(vx) / speed(column(vx), column(vz))**0.5):(reach * column(vz) / speed(column(vx), column(vz))**0.5) with vectors head size 0.01, 20 lw 1.2 lc rgb '#40ffffff', \
      '+' using (0.6172):(0.7344) every ::0::0 with points pt 6 ps 2.2 lw 2.5 lc rgb orange
 unset label 9; unset colorbox; set border 3; set grid; set size noratio
 set tmargin at screen 0.84
@@ -30,6 +31,6 @@ plot line(1, 2, vx) using 2:1 with lines lt 1, profile using 2:1 @published
 set lmargin at screen 0.835; set rmargin at screen 0.98
 set xrange [0:1]; set yrange [-0.3:0.25]; set ytics 0.1
 set xlabel 'x / L'; set ylabel 'v_z / U on z = L/2' offset 1, 0
-set key at graph 1.1, 1.13 samplen 1
+set key at graph 1.06, 1 samplen 1 width -2 font ',17'
 plot line(2, 1, vz) using 1:2 with lines lt 1 title 'flip', profile using 4:5 @published title 'Ghia et al.'
 unset multiplot

@@ -29,7 +29,7 @@ do for [n = 1:5] {
     set bmargin at screen bottom; set tmargin at screen bottom + 0.255 * wide / high
     set title sprintf('%s, t = %s', p, word(times, n)) offset 0, -0.7
     if (n > 2) { set xtics 0.5 format '%g'; set xlabel 'x' offset 0, 0.5 } else { set xtics 0.5 format ''; unset xlabel }
-    if (n == 3) { set ylabel 'z' offset 1.5, 0 } else { unset ylabel }
+    if (n == 1 || n == 3) { set ylabel 'z' offset 1.8, 0; set format y '%g' } else { unset ylabel; set format y '' }
     plot sprintf('%s/%s/particles_%06d.dat', folder, p, int(file(p, real(word(times, n))))) using 1:2:($3 == 0 ? 0x56b4e9 : 0xd55e00) with points pt 7 ps 0.5 lc rgb variable
 }
 unset multiplot

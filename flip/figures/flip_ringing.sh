@@ -8,9 +8,8 @@ folder=$3
 scan() {
     name=$1
     shift
-    for mach in 0 0.03 0.06 0.08 0.1 0.12 0.14 0.16 0.18 0.2 0.25 0.3 0.4; do
-        "$flip" flip/cases/ringing.toml region.gas.velocity_x=$mach --threads 1 --resume --quiet --out "$folder/$name-$mach" "$@"
-    done
+    PROGRAM=$flip SWEEP=$folder SWEEP_NAME="$name-{1}" sh common/sweep.sh flip/cases/ringing.toml \
+        region.gas.velocity_x=0,0.03,0.06,0.08,0.1,0.12,0.14,0.16,0.18,0.2,0.25,0.3,0.4 -- "$@"
 }
 scan flip
 scan viscosity viscosity.linear=0.5

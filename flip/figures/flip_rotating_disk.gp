@@ -15,12 +15,14 @@ set lmargin at screen 0.085; set rmargin at screen 0.47
 set xrange [0:1]; set yrange [0:1.05]; set xtics 0.2; set ytics 0.2
 set xlabel 'turns'; set ylabel 'angular momentum / its start' offset 0.8, 0
 unset key
+set label 1 "483 steps: lines\n2413 steps: dashes" at graph 0.97, 0.3 right textcolor rgb ink font ',17'
 plot for [n = 1:7] history(n, 483) using ($1 / (2 * pi)):(column(L) / start[n]) with lines lw 3 lc rgb word(tint, n), \
      for [n = 1:7] history(n, 2413) using ($1 / (2 * pi)):(column(L) / start[n]) with lines lw 2 dt 2 lc rgb word(tint, n)
+unset label 1
 set lmargin at screen 0.58; set rmargin at screen 0.97
 set logscale xy
 set xrange [200:3000]; set xtics (241, 483, 1081, 2413)
-set yrange [1e-6:1e3]; set ytics ('10^{-6}' 1e-6, '10^{-5}' 1e-5, '10^{-4}' 1e-4, '0.001' 1e-3, '0.01' 0.01, '0.1' 0.1, '1' 1)
+set yrange [1e-6:1e3]; set ytics ('10^{-6}' 1e-6, '10^{-5}' 1e-5, '10^{-4}' 1e-4, '10^{-3}' 1e-3, '10^{-2}' 0.01, '10^{-1}' 0.1, '1' 1)
 set xlabel 'steps per turn'; set ylabel 'lost in one turn'
 set key at graph 1.02, 1.0 top right maxrows 4 width -3 samplen 1.2 font ',17'
 plot for [n = 1:7] run.'/'.word(names, n).'.dat' using 1:(abs(1 - $2)) with linespoints lw 2.4 pt 7 ps 1.3 lc rgb word(tint, n) title word(titles, n)

@@ -2,6 +2,7 @@
 # time of the published curves; the initial value 0.2 is exact, and the straight line has the slope of Pritchett's reconnection field, 0.24. Dashed: the same by
 # this project's explicit program at the numbers of the cost slide, to t = 19, and dotted with a quarter of its particles, to 40. The
 # published points are digitized by hand: the bar is their error.
+# fits: implicit_moment|explicit_em result:time_at_unit_flux harris.guide_field=0
 load 'common/style.gp'
 history = run.'/history.dat'
 data = 'implicit_moment/data/birn2001_fig1.csv'

@@ -2,6 +2,7 @@
 # 2001, which the talk compares with) could not be had in digital form; the dashed reference is this project's own explicit run at the slide's numbers.
 # Averaged from unit flux on for 0.6/Ω_ci (a-c), at unit flux (d); x is measured from the X-line of each run. Electrons leave the X-line first
 # and faster than the ions, and the sheet there has lost most of its density.
+# fits: implicit_moment|explicit_em file:profile.dat result:density_at_X_line
 wide = 1500; high = 940
 load 'common/style.gp'
 implicit = run.'/profile.dat'

@@ -1,15 +1,14 @@
 # Figure 12 of the talk: E_y of the lower-hybrid drift instability in the plane of current (y) and gradient (z), T_i/T_e = 4. Left, when it saturates, eight
 # waves fill the box at both edges of the sheet; middle, the talk's time, t Ω_{ci} = 7; right, the growth of the largest mode beside local kinetic theory.
+# fits: implicit_moment file:fields_*.dat result:dominant_mode result:growth_over_theory
 wide = 1700; high = 760
 load 'common/style.gp'
 load 'implicit_moment/figures/thin_sheet.gp'
 B0 = 1 / sheet('light_over_alfven'); L = half_width(sheet('temperature_ratio'), sheet('drift')); length = sheet('length_x')
-step(t) = int(t / (B0 * parameter('dt')) + 0.5)
-file(t) = sprintf('%s/fields_%06d.dat', run, step(t))
 history = run.'/history.dat'
 m = int(result('dominant_mode') + 0.5)
-early = int(result('time_of_saturation') + 0.5)
-E = col(file(7), 'E_x')
+times = near('fields', sprintf('%g %g', result('time_of_saturation') / B0, 7 / B0))   # 7/Ω_{ci} is the talk's time
+E = col(file_at('fields', 0), 'E_x')
 set multiplot title sprintf('Lower-hybrid drift instability: the largest mode has m_y = %d, k_y L = %.1f  (talk: 8, 12.5)', m, result('dominant_k_L')) font ',22'
 
 eval field_frame
@@ -19,18 +18,18 @@ eval signed(2); set cbtics 1
 set xrange [0:length]; set yrange [-3:3]
 set xtics 1; set ytics 1
 set xlabel 'y / L'
-do for [panel = 1:2] {
-    t = panel == 1 ? early : 7
+do for [panel = 1:words(times)] {
+    t = real(word(times, panel))
     left = panel == 1 ? 0.045 : 0.3
     set lmargin at screen left; set rmargin at screen left + 0.235
     set bmargin at screen 0.14; set tmargin at screen 0.83
-    set title sprintf('E_y at t Ω_{ci} = %d', t) offset 0, -0.6
+    set title sprintf('E_y at t Ω_{ci} = %.2g', t * B0) offset 0, -0.6
     if (panel == 1) { set ylabel 'z / L' offset 1.5, 0; unset colorbox } else { unset ylabel; set format y ''; set colorbox user origin 0.543, 0.14 size 0.011, 0.69; set cblabel 'E_y c / (B_0 v_A)' offset 1, 0 }
-    plot file(t) using ($1 / L + 0.5 * length):($2 / L):(column(E) / B0**2) with image notitle
+    plot file_at('fields', t) skip 1 using ($1 / L + 0.5 * length):($2 / L):(column(E) / B0**2) with image notitle
 }
 
 unset colorbox; set format y '10^{%L}'; set border 3; set grid
-set lmargin at screen 0.695; set rmargin at screen 0.975
+set lmargin at screen 0.715; set rmargin at screen 0.98
 set title 'edges, 0.75 L < |z| < 1.75 L' offset 0, -0.6
 set xrange [0:7]; set yrange [2e-3:5]; set logscale y; set ytics auto; set xtics 1
 set xlabel 't Ω_{ci}'; set ylabel 'amplitude of E_y c / (B_0 v_A)' offset 1, 0
@@ -43,8 +42,8 @@ omega = result('omega_over_theory') * result('theory_omega')
 t0 = result('time_of_saturation')
 size(a, b, c, d) = sqrt(0.5 * (a**2 + b**2 + c**2 + d**2))
 top = real(system(sprintf("LC_ALL=C awk '$1 + 0 == $1 { a = sqrt(0.5*($%d^2+$%d^2+$%d^2+$%d^2)); if ($%d <= 7 && a > top) top = a } END { print top }' '%s'", u, u + 1, l, l + 1, t, history)))
-set label 1 sprintf('γ = %.1f Ω_{ci}  (local theory %.1f)', gamma, result('theory_growth')) at 2.3, 0.0078 textcolor rgb ink font ',17'
-set label 2 sprintf('ω = %.1f Ω_{ci}  (local theory %.1f)', omega, result('theory_omega')) at 2.3, 0.0046 textcolor rgb ink font ',17'
+set label 1 sprintf('γ = %.1f Ω_{ci}  (local theory %.1f)', gamma, result('theory_growth')) at 1.75, 0.0078 textcolor rgb ink font ',17'
+set label 2 sprintf('ω = %.1f Ω_{ci}  (local theory %.1f)', omega, result('theory_omega')) at 1.75, 0.0046 textcolor rgb ink font ',17'
 plot history using t:(size(column(u), column(u + 1), column(l), column(l + 1))) @measured title sprintf('m_y = %d', m), \
      [0.3:t0 - 0.2] top * exp(result('theory_growth') * (x - t0 + 0.3)) @theory title 'slope of local theory'
 unset multiplot

@@ -19,5 +19,5 @@ set xlabel 'y / L'; set ylabel 'z / L'; set cblabel 'B_x / B_0'
 place = sprintf('($1 / %g + %g):($2 / %g):(-$%d / %g)', L, 0.5 * length, L, B, B0)
 eval contours_of(file, place, 'levels incremental -0.8, 0.2, 0.8', '$lines')
 eval contours_of(file, place, 'levels discrete 0', '$middle')
-plot file using ($1 / L + 0.5 * length):($2 / L):(-column(B) / B0) with image notitle, \
+plot file skip 1 using ($1 / L + 0.5 * length):($2 / L):(-column(B) / B0) with image notitle, \
      $lines using 1:2 with lines lw 1 lc rgb '#80333333', $middle using 1:2 with lines lw 2.6 lc rgb 'black'

@@ -26,7 +26,7 @@ set tmargin at screen 0.82; set bmargin at screen 0.15
 set key top left font ',17'
 
 set lmargin at screen 0.085; set rmargin at screen 0.485
-set title '(a) kink, m_y = 1: growth rate γ / Ω_{ci} (talk)' offset 0, -0.4
+set title '(a) kink, m_y = 1: γ / Ω_{ci} (talk)' offset 0, -0.4
 set ylabel 'rms over z of B_x(m_y = 1) / B_0' offset 0.5, 0
 set yrange [1e-3:3]
 plot for [k = 1:3] history(word(ratios, k)) using t:B1 with lines linetype k linewidth 1.6 \
@@ -34,7 +34,7 @@ plot for [k = 1:3] history(word(ratios, k)) using t:B1 with lines linetype k lin
      for [k = 1:3] [begin[k]:end[k]] 1.5 * height[k] * exp(rate[k] * x) with lines linetype k linewidth 3 notitle
 
 set lmargin at screen 0.585; set rmargin at screen 0.985
-set title '(b) m_y = 4: level after t Ω_{ci} = 10, 10^{-3} (talk)' offset 0, -0.4
+set title '(b) m_y = 4: level later × 1000 (talk)' offset 0, -0.4
 set ylabel 'rms over z of B_x(m_y = 4) / B_0' offset 0.5, 0
 set yrange [1e-4:1]
 plot for [k = 1:3] history(word(ratios, k)) using t:B4 with lines linetype k linewidth 1.6 \

@@ -9,8 +9,7 @@ t = col(history('0.5'), 'time_Omega_ci'); psi = col(history('0.5'), 'flux')
 run = case.'/0.5'
 B0 = 1 / parameter('light_over_alfven')
 guide = parameter('guide_field')
-time = 15
-file = sprintf('%s/fields_%06d.dat', run, int(time / (B0 * parameter('dt')) + 0.5))
+file = file_at('fields', real(near('fields', sprintf('%g', 15 / B0))))
 A = col(file, 'A_y'); J = col(file, 'J_y'); B = col(file, 'B_y')
 J0 = B0 / parameter('thickness')   # in the middle of the initial sheet
 set multiplot title 'Reconnection with a guide field' font ',22'
@@ -26,10 +25,10 @@ set xtics -12, 4; set ytics -6, 3
 eval contours_of(file, sprintf('1:2:%d', A), sprintf('levels incremental %g, %g, %g', -8 * B0, 0.4 * B0, 8 * B0), '$lines')
 set lmargin at screen 0.51; set rmargin at screen 0.88
 set bmargin at screen 0.515; set tmargin at screen 0.86
-eval colors(inferno); set cbrange [0:1.4]
+eval colors(oranges); set cbrange [0:1.4]
 set colorbox user origin 0.895, 0.54 size 0.012, 0.29; set cblabel 'J_y / J_0' offset -0.5, 0
 unset xlabel; set format x ''; set ylabel 'z / d_i' offset 0.5, 0
-set title sprintf('B_g = %g B_0, t Ω_{ci} = %d', guide, time) offset 0, -0.6 font ',20'
+set title sprintf('B_g = %g B_0, t Ω_{ci} = %.3g', guide, B0 * time_of(file)) offset 0, -0.6 font ',20'
 plot file using 1:2:(column(J) / J0) with image notitle, $lines using 1:2 @contours notitle
 unset title
 set bmargin at screen 0.13; set tmargin at screen 0.475

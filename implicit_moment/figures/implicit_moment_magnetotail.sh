@@ -4,6 +4,4 @@ set -eu
 export LC_ALL=C.UTF-8
 program=$1
 folder=$2
-for guide in 0 0.5 1; do
-    "$program" implicit_moment/cases/magnetotail.toml harris.guide_field=$guide --out "$folder/$guide" --resume --quiet
-done
+PROGRAM=$program SWEEP=$folder SWEEP_NAME='{1}' sh common/sweep.sh implicit_moment/cases/magnetotail.toml harris.guide_field=0,0.5,1

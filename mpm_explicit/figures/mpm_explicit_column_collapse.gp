@@ -1,5 +1,6 @@
 # A column of frictional disks collapses on a rough floor; the grains are colored by the height at which they started. Below: how far the front (all mass but one percent) has run, and the run-out
 # against height over width of the column, with published fits for disks in two dimensions (Staron and Hinch 2005) and for sand, rice and sugar between plates (Lube and others 2005).
+# fits: mpm_explicit|mpm_implicit theory.compare=collapse file:grains_*.dat file:summary.json
 wide = 1500; high = 1320
 load 'common/style.gp'
 file = run.'/history.dat'; front = col(file, 'front')
@@ -22,10 +23,10 @@ eval colors(viridis); set cbrange [0:1]; set cbtics 0.5
 panel = 0.41; gap = 0.02; panel_height = panel * wide / high * 1.05 * H / length_x
 do for [k = 1:4] {
     column_ = (k - 1) % 2; row = (k - 1) / 2
-    left = 0.075 + column_ * (panel + gap); top = 0.91 - row * (panel_height + 0.055)
+    left = 0.075 + column_ * (panel + gap); top = 0.885 - row * (panel_height + 0.055)
     set lmargin at screen left; set rmargin at screen left + panel
     set tmargin at screen top; set bmargin at screen top - panel_height
-    set title sprintf('t = %.1f (H/g)^{1/2}', when(shown_[k]) / unit) offset 0, -0.6
+    set title sprintf('t = %.1f (H/g)^{1/2}', when(shown_[k]) / unit) offset 0, -0.7 font ',18'
     if (row == 1) { set xlabel 'x / L_0'; set format x '%g' } else { unset xlabel; set format x '' }
     if (column_ == 0) { set ylabel 'y / L_0' offset 0, 0; set format y '%g' } else { unset ylabel; set format y '' }
     if (k == 2) { set colorbox user origin left + panel + 0.012, top - panel_height size 0.01, panel_height; set label 82 'y(0) / H' at screen 0.995, top right offset 0, 1 } else { unset colorbox; unset label 82 }

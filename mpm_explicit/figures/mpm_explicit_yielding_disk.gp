@@ -1,32 +1,33 @@
 # A disk that yields meets a rigid wall at x = 0. Above: its particles, colored by plastic strain; the dashed circle has its center and its first radius. Below: where the energy goes; it leaves with
 # a small part of what it brought, vibrating, and most of the rest is plastic work, which never comes back.
+# fits: mpm_explicit|mpm_implicit theory.compare=yield file:particles_*.dat result:largest_plastic_strain
 wide = 1500; high = 1060
 load 'common/style.gp'
-R = 0.2; v_0 = 0.1
+R = real(given('grain.*.radius')); v_0 = abs(real(given('grain.*.velocity_x')))
 file = run.'/history.dat'
 kinetic = col(file, 'kinetic'); elastic = col(file, 'elastic'); plastic = col(file, 'plastic'); contact = col(file, 'contact'); p_x = col(file, 'momentum_x')
 E_0 = real(system(sprintf("LC_ALL=C awk '$1 + 0 == $1 { print $%d; exit }' '%s'", kinetic, file)))
 p_0 = real(system(sprintf("LC_ALL=C awk '$1 + 0 == $1 { print $%d; exit }' '%s'", p_x, file)))
-interval = parameter('particles_interval')
-picture(t) = word(system('ls "'.run.'"/particles_*.dat'), int(t / interval + 1.5))
+picture(t) = file_at('particles', t)
+strain = col(picture(0), 'plastic_strain')
 middle(t, axis) = real(system(sprintf("LC_ALL=C awk '$1 + 0 == $1 { s += $%d; n++ } END { print s / n }' '%s'", axis, picture(t))))
-times = '0.4 0.6 1.2'
+times = near('particles', sprintf('%g %g %g', 0.2 * R / v_0, 0.3 * R / v_0, 0.6 * R / v_0))
 set multiplot title 'A disk that yields' font ',24'
 set border 15; unset grid; unset key
 set xrange [0:2.5]; set yrange [0.3:2.7]; set xtics 0, 0.5, 2; set ytics 0.5
 set xlabel 'x / R'
-eval colors(viridis); set cbrange [0:0.08]; set cbtics 0.02
+eval colors(viridis); set cbrange [0:result("largest_plastic_strain")]
 panel = 0.265; gap = 0.02; top = 0.87; bottom = top - panel * wide / high * 2.4 / 2.5
-do for [k = 1:3] {
+do for [k = 1:words(times)] {
     t = real(word(times, k))
     left = 0.075 + (k - 1) * (panel + gap)
     set lmargin at screen left; set rmargin at screen left + panel
     set tmargin at screen top; set bmargin at screen bottom
     set title sprintf('t = %.1f R/v_0', t * v_0 / R) offset 0, -0.5
     if (k == 1) { set ylabel 'y / R' offset 0.5, 0; set format y '%g' } else { unset ylabel; set format y '' }
-    if (k == 3) { set colorbox user origin left + panel + 0.015, bottom size 0.012, top - bottom; set label 82 'plastic strain' at screen 0.995, top right offset 0, 1 } else { unset colorbox }
+    if (k == words(times)) { set colorbox user origin left + panel + 0.015, bottom size 0.012, top - bottom; set label 82 'plastic strain' at screen 0.995, top right offset 0, 1 } else { unset colorbox }
     set object 1 circle at middle(t, 1) / R, middle(t, 2) / R size 1 front fillstyle empty border lc rgb ink lw 1.5 dt 2
-    plot picture(t) using ($1 / R):($2 / R):11 with points pt 7 ps 1.05 lc palette
+    plot picture(t) using ($1 / R):($2 / R):strain with points pt 7 ps 1.05 lc palette
 }
 unset object 1; unset label 82; unset title; set border 3; set grid; set format y '%g'
 end = parameter('end')

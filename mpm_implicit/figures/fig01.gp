@@ -1,28 +1,32 @@
 # Figure 1 of the talk: grain positions through the elastic rebound, implicit, with a CFL number of 1.00, where the explicit program bursts. Particles are colored by their velocity: the grains meet, come to
 # rest while their energy is that of strain, and part as they came, but for some vibration. The energy in each panel is all there is, kinetic and elastic.
+# fits: mpm_explicit|mpm_implicit theory.compare=rebound file:particles_*.dat file:summary.json
 wide = 1500; high = 1000
 load 'common/style.gp'
-R = 0.2; v_0 = 0.1; interval = 0.1
+R = real(given('grain.*.radius')); v_0 = abs(real(given('grain.*.velocity_x')))
 file = run.'/history.dat'
 energy = col(file, 'energy'); elastic = col(file, 'elastic')
 at(what, t) = real(system(sprintf("LC_ALL=C awk -v t=%g '$1 + 0 == $1 { if ($1 <= t + 1e-9) v = $%d } END { print v }' '%s'", t, what, file)))
 E_0 = at(energy, 0)
-set multiplot title 'Elastic rebound, implicit, α = 1.00: grain positions' font ',24'
+set multiplot title sprintf('Elastic rebound, %s, α = %.2f: grain positions', entry('program') eq 'mpm_implicit' ? 'implicit' : 'explicit', parameter('alpha')) font ',24'
 set border 15; unset grid; unset key; set tics front
-set xrange [0:6]; set yrange [0.35:2.95]; set xtics 1; set ytics 1, 1, 2
+set xrange [0:parameter('length_x') / R]; set yrange [0.35:2.95]; set xtics 1; set ytics 1, 1, 2
 eval signed(1); set cbtics 0.5
-times = '0 0.5 0.7 0.9 1.4 2'
+# Before, when contact begins, in its middle, at its end, between that and the end, and the end.
+begins = entry('results.contact_begins.value'); lasts = entry('results.contact_lasts.value'); end = parameter('end')
+if (begins ne '' && lasts ne '') { b = real(begins); l = real(lasts) }
+times = begins eq '' || lasts eq '' ? times_of('particles', 6) : near('particles', sprintf('0 %.1f %.1f %.1f %.1f %g', b, b + 0.5 * l, b + l, 0.5 * (b + l + end), end))
 panel_width = 0.385; panel_height = panel_width * wide / high * 2.6 / 6.0
-do for [row = 1:3] { do for [column = 1:2] {
-    t = real(word(times, 2 * (row - 1) + column))
+do for [panel = 0:words(times) - 1] {
+    row = panel / 2 + 1; column = panel % 2 + 1; t = real(word(times, panel + 1))
     left = 0.075 + (column - 1) * (panel_width + 0.04); top = 0.905 - (row - 1) * (panel_height + 0.022)
     set lmargin at screen left; set rmargin at screen left + panel_width
     set tmargin at screen top; set bmargin at screen top - panel_height
     if (row == 3) { set format x '%g'; set xlabel 'x / R' } else { set format x ''; unset xlabel }
     if (column == 1) { set ylabel 'y / R' offset 0.3, 0; set format y '%g' } else { unset ylabel; set format y '' }
-    set label 1 sprintf('t = %.1f', t) at graph 0.02, 0.92
+    set label 1 sprintf('t = %.3g', t) at graph 0.02, 0.92
     set label 2 sprintf('elastic %.0f %% of E_0', 100 * at(elastic, t) / E_0) at graph 0.98, 0.92 right
     if (row == 1 && column == 1) { set colorbox user origin 0.93, top - 3 * panel_height - 0.044 size 0.013, 3 * panel_height + 0.044; set label 3 'v_x / v_0' at screen 0.985, top right offset 0, 1 } else { unset colorbox; unset label 3 }
-    plot system(sprintf("ls '%s'/particles_*.dat | sed -n %dp", run, int(t / interval + 1.5))) using ($1 / R):($2 / R):($3 / v_0) with points pt 7 ps 0.6 lc palette
-} }
+    plot file_at('particles', t) using ($1 / R):($2 / R):($3 / v_0) with points pt 7 ps 0.6 lc palette
+}
 unset multiplot

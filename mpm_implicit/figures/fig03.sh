@@ -4,4 +4,4 @@ set -eu
 export LC_ALL=C.UTF-8
 program=$1
 folder=$2
-for alpha in 1 5; do "$program" mpm_implicit/cases/rebound.toml time.alpha=$alpha output.particles_interval=0 --resume --quiet --out "$folder/alpha_$alpha"; done
+PROGRAM=$program SWEEP=$folder SWEEP_NAME='alpha_{1}' sh common/sweep.sh mpm_implicit/cases/rebound.toml time.alpha=1,5 -- output.particles_interval=0

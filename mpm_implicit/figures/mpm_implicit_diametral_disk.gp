@@ -1,10 +1,12 @@
 # A disk between two plates (Brazilian test), implicit, with linear shape functions, a CFL number of 4 and theta = 1. Above: fringes of the principal stress difference, in each picture computed on the left and, on the right, of Hertz's disk between two line loads of the
 # same size. Below: stress on both diameters; points are particles. The plates press a flat, an eighth of the disk wide, not a line: next to it the two differ.
+# fits: mpm_implicit theory.compare=disk file:fringes_*.dat file:particles_*.dat result:load
 wide = 1500; high = 1330
 load 'common/style.gp'
-f_sigma = 300.0; wider = 2.5   # in white light, whose higher orders are pale
+R = real(given('grain.*.radius')); P = result('load'); unit = 2 * P / (pi * 2 * R)
+# As many fringes for any load; and wider ones in white light, whose higher orders are pale.
+f_sigma = 0.8 * unit; wider = 2.5
 load 'mpm_explicit/figures/polariscope.gp'
-R = 0.2; P = result('load'); unit = 2 * P / (pi * 2 * R)
 last(what) = system('ls "'.run.'"/'.what.'_*.dat | tail -n 1')
 fringes = last('fringes'); particles = last('particles')
 middle(axis) = real(system(sprintf("LC_ALL=C awk '$5 == 0 { s += $%d; n++ } END { print s / n }' '%s'", axis, particles)))
@@ -34,10 +36,10 @@ do for [k = 1:2] {
     set tmargin at screen top; set bmargin at screen top - side * wide / high
     if (k == 1) {
         set ylabel 'y / R' offset 1, 0
-        plot fringes using @X:@Y:(light(@pixel)) with image
+        plot fringes skip 1 using @X:@Y:(light(@pixel)) with image
     } else {
         unset ylabel
-        plot fringes using @X:@Y:(d = @pixel, channel(d, 1)):(channel(d, 2)):(channel(d, 3)) with rgbimage
+        plot fringes skip 1 using @X:@Y:(d = @pixel, channel(d, 1)):(channel(d, 2)):(channel(d, 3)) with rgbimage
     }
 }
 eval daylight

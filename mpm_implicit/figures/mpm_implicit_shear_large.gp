@@ -26,7 +26,7 @@ do for [k = 1:2] {
     } else {
         unset label 82; unset ylabel
         eval in_one_color; unset colorbox; set size noratio
-        plot fringes using ($1 / R):($2 / R):(light($5, $3)) with image
+        plot fringes skip 1 using ($1 / R):($2 / R):(light($5, $3)) with image
     }
 }
 unset multiplot

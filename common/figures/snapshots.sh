@@ -1,0 +1,14 @@
+#!/bin/sh
+# snapshots.sh RUN KIND [FILE ...]: the gnuplot commands of fields.gp and particles.gp, for these files or for four of those that there are.
+set -eu
+export LC_ALL=C.UTF-8
+run=$1 kind=$2
+shift 2
+if [ $# = 0 ]; then
+    for time in $(sh common/snapshots.sh some "$run" "$kind" 4); do
+        set -- "$@" "$(sh common/snapshots.sh file "$run" "$kind" "$time")"
+    done
+fi
+script=common/figures/fields.awk
+[ "$kind" != particles ] || script=common/figures/particles.awk
+awk -f common/columns.awk "$1" | awk -v kind="$kind" -f $script - "$@"

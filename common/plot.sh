@@ -1,0 +1,123 @@
+#!/bin/sh
+# plot.sh [draw] RUN        draw every figure that fits a run, e.g.  sh common/plot.sh out/cic/mine
+# plot.sh list RUN          name their scripts only
+# plot.sh watch RUN         draw its history and its last snapshots every few seconds (EVERY=5) until it ends; TEXT=1: its energies as text, for a terminal
+# plot.sh compare A B       the histories and the results of two runs on one page
+# plot.sh movie RUN         an animation of its snapshots, mp4 and webp with ffmpeg, else gif
+# Pictures go to out/figures/PROGRAM_NAME/, or to the folder PLOTS. A script of figures says itself which runs it fits, in a line
+#   # fits: PROGRAM|PROGRAM SECTION.KEY=VALUE|VALUE SECTION.KEY!=VALUE result:NAME file:PATTERN kinds:KIND,KIND
+# whose conditions must all hold: a parameter of the run's case.toml, a result of its summary.json, files in its folder. With kinds the script is run for each
+# kind of snapshots that there is, as the variable `kind`. `any` is every program.
+set -eu
+export LC_ALL=C.UTF-8
+
+fail() { echo "$*" >&2; exit 2; }
+
+case ${1:-} in
+list | draw | watch | compare | movie) mode=$1; shift ;;
+*) mode=draw ;;
+esac
+[ -n "${1:-}" ] || fail "which run? RUN=out/cic/mine is its folder (with compare: A= and B=)"
+
+# Folders are named from where the command was given; scripts are read from the project's root.
+absolute() { (cd "$1" 2>/dev/null && pwd) || fail "there is no folder $1"; }
+run=$(absolute "$1")
+other=${2:+$(absolute "$2")}
+cd "$(dirname "$0")/.."
+here=$(pwd)
+run=${run#"$here"/} other=${other#"$here"/}
+for folder in "$run" $other; do
+    [ -f "$folder/case.toml" ] && [ -f "$folder/history.dat" ] || fail "$folder is not the folder of a run: it needs case.toml and history.dat"
+done
+command -v gnuplot >/dev/null || fail "'gnuplot' is not installed: run 'make deps'"
+program=$(sed -n '1s/^# \([a-z_]*\) .*/\1/p' "$run/case.toml")
+plots=${PLOTS:-out/figures/${program}_$(basename "$run")}
+
+# Does every condition of the line hold?
+fits() {
+    case "|$1|" in *"|$program|"* | '|any|') ;; *) return 1 ;; esac
+    shift
+    for condition; do
+        value=${condition#*[=:]}
+        case $condition in
+        result:*) [ -f "$run/summary.json" ] && awk -v key="results.$value.value" -f common/json_lines.awk "$run/summary.json" >/dev/null ;;
+        file:*) ls "$run"/$value >/dev/null 2>&1 ;;
+        kinds:*)
+            # With something in the last of them, below the three lines about it.
+            kinds=$(for kind in $(echo "$value" | tr ',' ' '); do
+                last=$(ls "$run/${kind}"_[0-9]*.dat 2>/dev/null | tail -n 1)
+                [ -n "$last" ] && [ -n "$(sed -n 4p "$last")" ] && echo "$kind"
+            done)
+            [ -n "$kinds" ]
+            ;;
+        *!=*) fits any "${condition%%!=*}=$value" && return 1 || true ;;
+        *=*) awk -v wanted="${condition%%=*}" -v values="$value" '
+            /^\[/ { gsub(/[][]/, ""); section = $1 }
+            section "." $1 == wanted && $2 == "=" { gsub(/"/, "", $3); found = index("|" values "|", "|" $3 "|") > 0 }
+            END { exit !found }' "$run/case.toml" ;;
+        *) fail "a figure cannot ask for '$condition'" ;;
+        esac || return 1
+    done
+}
+
+# Lines "SCRIPT" or "SCRIPT KIND" of all figures that fit.
+figures() {
+    for script in common/figures/*.gp ./*/figures/*.gp; do
+        script=${script#./}
+        conditions=$(sed -n 's/^# fits: //p' "$script")
+        kinds=
+        # shellcheck disable=SC2086
+        [ -n "$conditions" ] && fits $conditions || continue
+        for kind in ${kinds:-none}; do echo "$script ${kind#none}"; done
+    done | sort -u
+}
+
+# draw SCRIPT [KIND]: one picture, under its name only when it is whole.
+draw() {
+    picture=$plots/${2:-$(basename "$1" .gp)}.png
+    mkdir -p "$plots"
+    if gnuplot -e "run='$run'; out='$picture.partial.png'${2:+; kind='$2'}" "$1" && [ -s "$picture.partial.png" ]; then
+        mv "$picture.partial.png" "$picture"
+    else
+        rm -f "$picture.partial.png"
+        echo "$1 could not draw $run" >&2
+        return 1
+    fi
+}
+
+case $mode in
+list) figures ;;
+draw)
+    figures | {
+        status=0
+        while read -r script kind; do
+            if draw "$script" "$kind"; then echo "figure: $picture"; else status=1; fi
+        done
+        exit $status
+    }
+    ;;
+watch)
+    while :; do
+        ended=$([ -f "$run/summary.json" ] && [ -z "$(find "$run/history.dat" -newer "$run/summary.json")" ] && echo yes || true)
+        if [ "${TEXT:-}" ]; then
+            names=$(awk -f common/columns.awk "$run/history.dat" | awk '$2 == "energy" { unit = $3 } { name[NR] = $2; of[NR] = $3 } END { for (i = 2; i <= NR; i++) if (of[i] == unit && n++ < 4) print name[i] }')
+            gnuplot -e "set terminal dumb $(tput cols || echo 100) 30; set title '$run' noenhanced; set key noenhanced; plot for [name in '$names'] '$run/history.dat' using 'time':name with lines title name"
+        else
+            figures | grep '^common/figures/[hfp]' | while read -r script kind; do
+                draw "$script" "$kind" && { [ "${told:-}" ] || echo "figure: $picture"; }
+            done
+            told=yes
+        fi
+        [ -z "$ended" ] || break
+        sleep "${EVERY:-5}"
+    done
+    ;;
+compare)
+    [ -n "$other" ] || fail "compare which two runs? A= and B="
+    picture=${PLOTS:-out/figures}/compare_$(basename "$run")_$(basename "$other").png
+    mkdir -p "$(dirname "$picture")"
+    gnuplot -e "run='$run'; other='$other'; out='$picture'" common/figures/compare.gp
+    echo "figure: $picture"
+    ;;
+movie) PLOTS=$plots sh common/movie.sh "$run" ;;
+esac

@@ -1,0 +1,113 @@
+#!/bin/sh
+# sweep.sh CASE KEY=VALUE,VALUE ... [-- KEY=VALUE ...]: runs of a case with all combinations of these values, side by side, one thread each; a table of all results, results.dat, and a figure of them.
+#   sh common/sweep.sh cic/cases/thermal_heating.toml method.weighting=ngp,cic,tsc seed=1,2,3 -- time.end=200
+# A key without a section is completed (seed: plasma.seed); what follows -- is the same for all runs. Runs go to out/sweep/CASE/KEY=VALUE_KEY=VALUE; stopped, the same command goes
+# on, and what is complete is not run again. In the environment, all optional:
+#   PROGRAM           the program, where the folder of the case does not say it
+#   SWEEP             folder of the runs;  SWEEP_NAME: their names, e.g. '{2}_{1}' of the first and the second value
+#   PARALLEL_OPTIONS  of GNU parallel, e.g. '-j 4', or '--sshloginfile hosts --workdir .' for hosts that share this folder
+#   SWEEP_ONLY=K/N    only every Nth run, beginning with the Kth: one element of a Slurm array,
+#                     sbatch --array=1-8 --wrap 'SWEEP_ONLY=$SLURM_ARRAY_TASK_ID/8 make sweep CASE=... KEYS=...'
+# Without GNU parallel (make deps-sweep) one run follows the other. Who publishes what came out of it is asked by GNU parallel to cite it: parallel --citation.
+set -eu
+export LC_ALL=C.UTF-8
+cd "$(dirname "$0")/.."
+
+fail() { echo "$*" >&2; exit 2; }
+
+case=${1:-}
+[ -f "$case" ] && [ $# -ge 2 ] || fail "which case, and which values? make sweep CASE=cic/cases/thermal_heating.toml KEYS='method.weighting=ngp,cic,tsc seed=1,2,3'"
+shift
+program=${PROGRAM:-${case%%/*}}
+[ "${program##*/}" != "$program" ] || program=${BUILD:-build}/$program
+[ -x "$program" ] || fail "$program is not there: build it, or name the program of $case with PROGRAM=..."
+folder=${SWEEP:-out/sweep/$(basename "$case" .toml)}
+mkdir -p "$folder"
+
+full_name() {  # of a key without its section
+    case $1 in *.*) echo "$1"; return ;; esac
+    full=$("$program" --help | sed -n "s/^  \([a-z_.]*\.$1\) .*/\1/p")
+    [ "$(echo "$full" | grep -c .)" = 1 ] || fail "'$1' is the key of several parameters of $program, or of none: $(echo $full)"
+    echo "$full"
+}
+
+lists="" fixed=""
+while [ $# -gt 0 ]; do
+    case $1 in
+    --) shift; fixed=$*; break ;;
+    *=*) lists="$lists $(full_name "${1%%=*}")=${1#*=}" ;;
+    *) fail "'$1' is not KEY=VALUE,VALUE" ;;
+    esac
+    shift
+done
+
+# All combinations, the last key the fastest, as lines "NAME KEY=VALUE ...".
+# shellcheck disable=SC2086
+combinations=$(echo $lists | awk -v pattern="${SWEEP_NAME:-}" '
+    function combine(k, name, keys,    value, n, i, part, key) {
+        if (k > NF) { print (pattern == "" ? substr(name, 2) : filled()) keys; return }
+        key = substr($k, 1, index($k, "=") - 1)
+        n = split(substr($k, index($k, "=") + 1), value, ",")
+        for (i = 1; i <= n; i++) {
+            now[k] = value[i]
+            part = key
+            sub(/.*\./, "", part)
+            combine(k + 1, name "_" part "=" value[i], keys " " key "=" value[i])
+        }
+    }
+    function filled(    text, k) {
+        text = pattern
+        for (k = 1; k <= NF; k++) gsub("[{]" k "[}]", now[k], text)
+        return text
+    }
+    { combine(1, "", "") }')
+
+# One line of the shell for each run.
+only=${SWEEP_ONLY:-1/1}
+commands=$folder/commands${SWEEP_ONLY:+.${only%/*}}
+echo "$combinations" | awk -v start="$program $case --threads 1 --resume --quiet --out $folder/" -v fixed="$fixed" -v k="${only%/*}" -v n="${only#*/}" \
+    '(NR - k) % n == 0 { name = $1; $1 = ""; print start name $0 " " fixed }' > "$commands"
+
+status=0
+if command -v parallel >/dev/null; then
+    # shellcheck disable=SC2086
+    parallel --joblog "$commands.log" ${PARALLEL_OPTIONS:-} < "$commands" || status=$?
+else
+    echo "note: GNU parallel is not installed (make deps-sweep): one run follows the other" >&2
+    while read -r line; do $line </dev/null || status=$((status + 1)); done < "$commands"
+fi
+[ $status = 0 ] || echo "$status of $(grep -c . "$commands") runs did not end as they should: see $commands.log" >&2
+
+# The table: keys, then every result with its error, expected value and verdict; "-" where there is none.
+echo "$combinations" | while read -r name keys; do
+    summary=$folder/$name/summary.json
+    [ -f "$summary" ] || continue
+    # shellcheck disable=SC2086
+    printf 'key %s\n' $keys
+    awk -f common/json_lines.awk "$summary" | awk -f common/figures/results.awk | sed 1d
+    echo end
+done | awk '
+    $1 == "key" { split($2, pair, "="); if (!(pair[1] in is_key)) { is_key[pair[1]] = 1; keys[++key_count] = pair[1] } cell[rows + 1, pair[1]] = substr($2, index($2, "=") + 1); next }
+    $1 == "end" { rows++; next }
+    {
+        if (!($1 in is_result)) { is_result[$1] = 1; results[++result_count] = $1 }
+        cell[rows + 1, $1] = $2 " " $3 " " $4 " " $6
+    }
+    END {
+        for (k = 1; k <= key_count; k++) printf "%s ", keys[k]
+        for (k = 1; k <= result_count; k++) printf "%s %s_error %s_expected %s_verdict ", results[k], results[k], results[k], results[k]
+        print ""
+        for (row = 1; row <= rows; row++) {
+            for (k = 1; k <= key_count; k++) printf "%s ", cell[row, keys[k]]
+            for (k = 1; k <= result_count; k++) printf "%s ", ((row, results[k]) in cell) ? cell[row, results[k]] : "- - - -"
+            print ""
+        }
+    }' > "$folder/results.dat.$$"
+mv "$folder/results.dat.$$" "$folder/results.dat"
+[ -n "${SWEEP_NAME:-}" ] || echo "table: $folder/results.dat, $(($(grep -c . "$folder/results.dat") - 1)) of $(echo "$combinations" | grep -c .) runs"
+if [ -z "${SWEEP_NAME:-}" ] && command -v gnuplot >/dev/null; then
+    mkdir -p out/figures
+    picture=out/figures/sweep_$(basename "$folder").png
+    gnuplot -e "table='$folder/results.dat'; out='$picture'" common/figures/sweep.gp && echo "figure: $picture"
+fi
+[ $status = 0 ] || exit 1

@@ -1,0 +1,195 @@
+#!/bin/sh
+# plot_runs.sh BUILD some|all|own|tools: runs draw without an edit: pictures of sane size, and no word of gnuplot.
+#   some, all   shipped cases, cut to a few steps with a few snapshots
+#   own         three cases of a user, run to the end, with the figures that fit them
+#   tools       comparing, watching, animating and sweeping
+set -u
+export LC_ALL=C.UTF-8 OMP_NUM_THREADS=1
+build=$1
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+trap 'exit 1' HUP INT TERM
+status=0
+complain() { echo "$*" >&2; status=1; }
+
+# A PNG of a size that a picture with something on it has.
+is_picture() { [ -f "$1" ] && [ "$(wc -c < "$1")" -gt 6000 ] && head -c 4 "$1" | grep -q PNG; }
+
+# draws RUN PICTURE...: draws the run, quietly but for notes; these pictures are among them.
+draws() {
+    run=$1
+    shift
+    PLOTS=$folder/plots sh common/plot.sh "$run" > "$folder/told" 2> "$folder/errors" || complain "$run: status $?"
+    grep -v '^note: ' "$folder/errors" && complain "$run: gnuplot or a script complained"
+    [ "$(wc -l < "$folder/told")" -ge 2 ] || complain "$run: fewer than two figures"
+    for picture; do grep -q "/$picture.png\$" "$folder/told" || complain "$run has no figure $picture"; done
+    for picture in $(sed -n 's/^figure: //p' "$folder/told"); do is_picture "$picture" || complain "$run: $picture is no picture"; done
+    rm -rf "$folder/plots"
+}
+
+program_of() {
+    case $1 in
+    */sphere_hits_plate.toml) echo pic ;;
+    implicit_moment/cases/*explicit*) echo explicit_em ;;
+    *) echo "${1%%/*}" ;;
+    esac
+}
+
+# Twelve steps of a case, with snapshots of all kinds that its program has.
+draw_case() {
+    program=$build/$(program_of "$1")
+    dt=$("$program" "$1" --dry-run 2>/dev/null | sed -n 's/^ *steps.* of \(dt = \)\{0,1\}\([0-9.e+-]*[0-9]\).*/\2/p')
+    set -- "$1" "time.end=$(awk "BEGIN { print 12 * $dt }")"
+    for kind in fields particles phase fringes grains profile; do
+        "$program" --help | grep -q "^  output.${kind}_interval" && set -- "$@" "output.${kind}_interval=$(awk "BEGIN { print 4 * $dt }")"
+    done
+    rm -rf "$folder/run"
+    # Some comparisons refuse to be cut short.
+    "$program" "$@" --quiet --threads 1 --out "$folder/run" > "$folder/said" 2>&1 ||
+        "$program" "$@" theory.compare=none --quiet --threads 1 --out "$folder/run" > "$folder/said" 2>&1 ||
+        { complain "$1: status $?: $(cat "$folder/said")"; return; }
+    rm -rf "${folder:?}/$(basename "$1" .toml)"
+    mv "$folder/run" "$folder/$(basename "$1" .toml)"
+    draws "$folder/$(basename "$1" .toml)" history
+    rm -rf "${folder:?}/$(basename "$1" .toml)"
+}
+
+case $2 in
+some)
+    for case in cic/cases/two_stream.toml cic/cases/diocotron.toml flip/cases/sod.toml flip/cases/sphere_hits_plate.toml flip/cases/dam_break.toml \
+        mpm_explicit/cases/rebound.toml mpm_explicit/cases/diametral_disk.toml mpm_implicit/cases/shear.toml implicit_moment/cases/gem.toml \
+        implicit_moment/cases/explicit_weibel.toml; do
+        draw_case $case
+    done
+    ;;
+all) for case in ./*/cases/*.toml; do draw_case "${case#./}"; done ;;
+own)
+    # Two streams, longer, on another mesh, of species with other names, and snapshots at other times.
+    cat > "$folder/beams.toml" <<'EOD'
+[grid]
+cells_x = 48
+length_x = 9
+[time]
+dt = 0.07
+end = 100
+[species.east]
+density = 0.5
+drift_x = 1
+loading = "lattice"
+particles_per_cell = 40
+amplitude = 1e-4
+[species.west]
+density = 0.5
+drift_x = -1
+loading = "lattice"
+particles_per_cell = 40
+[species.background]
+charge = 1
+motion = "fixed"
+density = 1
+[theory]
+compare = "wave"
+[output]
+particles_interval = 11
+EOD
+    "$build/cic" "$folder/beams.toml" --quiet --out "$folder/beams" 2>/dev/null || complain "beams: status $?"
+    draws "$folder/beams" history results particles instability
+    [ "$(sh common/snapshots.sh near "$folder/beams" particles '20 33 50 1000' 2>/dev/null | awk '{ print NF, ($2 - 33 < 1), ($4 > 90) }')" = '4 1 1' ] ||
+        complain "beams: the times of the snapshots are not those of the run"
+    # A Riemann problem.
+    cat > "$folder/tube.toml" <<'EOD'
+[grid]
+cells_x = 80
+length_x = 2
+[time]
+end = 0.3
+[boundary]
+x_low = "slip"
+x_high = "slip"
+[setup]
+kind = "riemann"
+interface = 0.8
+[left]
+density = 2
+pressure = 3
+[right]
+density = 0.5
+pressure = 0.4
+[theory]
+compare = "riemann"
+[output]
+fields_interval = 0.1
+EOD
+    "$build/flip" "$folder/tube.toml" --quiet --out "$folder/tube" 2>/dev/null || complain "tube: status $?"
+    draws "$folder/tube" history results profile fields
+    # Four grains.
+    cat > "$folder/grains.toml" <<'EOD'
+[grid]
+cells_x = 40
+cells_y = 40
+length_x = 1
+[time]
+end = 0.3
+[material.default]
+E = 1e4
+nu = 0.3
+density = 1000
+[grain.a]
+x = 0.3
+y = 0.3
+radius = 0.12
+velocity_x = 0.3
+[grain.b]
+x = 0.7
+y = 0.3
+radius = 0.12
+[grain.c]
+x = 0.3
+y = 0.7
+radius = 0.1
+velocity_y = -0.3
+[grain.d]
+x = 0.7
+y = 0.7
+radius = 0.14
+velocity_x = -0.2
+[output]
+particles_interval = 0.06
+fringes_interval = 0.15
+EOD
+    "$build/mpm_explicit" "$folder/grains.toml" --quiet --out "$folder/grains" 2>/dev/null || complain "grains: status $?"
+    draws "$folder/grains" history particles fringes
+    ;;
+tools)
+    for cells in 32 64; do
+        "$build/flip" flip/cases/sod.toml grid.cells_x=$cells output.particles_interval=0.05 --quiet --out "$folder/$cells" 2>/dev/null
+    done
+    PLOTS=$folder/plots sh common/plot.sh compare "$folder/32" "$folder/64" > "$folder/told" 2>&1 || complain "compare: $(cat "$folder/told")"
+    is_picture "$folder/plots/compare_32_64.png" || complain "comparing two runs drew nothing"
+    # Of a run that has ended it draws once.
+    PLOTS=$folder/plots sh common/plot.sh watch "$folder/32" > "$folder/told" 2>&1 || complain "watch: $(cat "$folder/told")"
+    is_picture "$folder/plots/history.png" || complain "watching drew nothing"
+    TEXT=1 sh common/plot.sh watch "$folder/32" 2>&1 | grep -q kinetic || complain "watching in text showed no energy"
+    PLOTS=$folder/plots sh common/plot.sh movie "$folder/32" > "$folder/told" 2>&1 || complain "movie: $(cat "$folder/told")"
+    for movie in "$folder"/plots/particles.mp4 "$folder"/plots/particles.gif; do [ -s "$movie" ] && found=yes; done
+    [ "${found:-}" ] || complain "there is no animation"
+    sh common/plot.sh "$folder" 2>/dev/null
+    [ $? = 2 ] || complain "a folder that is no run was not refused"
+
+    # A sweep is the product of its lists, its table has every run, and the second time nothing is run.
+    sweep() { PROGRAM=flip BUILD=$build SWEEP=$folder/sweep sh common/sweep.sh flip/cases/sod.toml "$@" > "$folder/told" 2>&1; }
+    SWEEP_ONLY=2/3 sweep cells_x=20,30 flip.transfer=flip,apic,pic -- time.end=0.05
+    [ "$(grep -c . "$folder/sweep/results.dat")" = 3 ] || complain "an element of two runs of six has $(grep -c . "$folder/sweep/results.dat") lines"
+    sweep cells_x=20,30 flip.transfer=flip,apic,pic -- time.end=0.05 || complain "sweep: $(cat "$folder/told")"
+    [ "$(awk 'NR > 1 { print $1, $2 }' "$folder/sweep/results.dat" | sort -u | grep -c .)" = 6 ] || complain "the table does not have six runs"
+    [ "$(awk 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "L1_density") c = i } NR > 1 && $c > 0 && $c < 1' "$folder/sweep/results.dat" | grep -c .)" = 6 ] || complain "the table lacks results"
+    # shellcheck disable=SC2012
+    before=$(ls -l --time-style=full-iso "$folder"/sweep/*/summary.json)
+    sweep cells_x=20,30 flip.transfer=flip,apic,pic -- time.end=0.05
+    # shellcheck disable=SC2012
+    [ "$before" = "$(ls -l --time-style=full-iso "$folder"/sweep/*/summary.json)" ] || complain "a complete sweep was run again"
+    rm -f out/figures/sweep_sweep.png
+    sweep cells_x=20,0 && complain "a run that failed was not told"
+    ;;
+esac
+exit $status
