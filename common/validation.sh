@@ -1,0 +1,2 @@
+#!/bin/sh
+echo '<h1>Validation</h1>'
