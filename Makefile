@@ -112,6 +112,8 @@ The particle-in-cell family in running code
                          (with ANSWER=0.92: is the answer right?)
   make bench             particle-steps per second on 1 and 2 threads, and where the time goes
   make notes             refresh the code and the numbers in the lecture notes
+  make book              the notes as out/book/index.html and out/book.pdf   (packages: make deps-book)
+  make validation        what the finished runs say beside theory: out/book/validation.html
   make format            clang-format all sources
   make clean             remove build/ and out/, with all programs, runs and figures
 
@@ -463,6 +465,17 @@ $(BUILD)/planted_race: $(objects)/tests/torture/planted_race.o $(BUILD)/flags
 
 bench: $(bench_programs)
 	@set -e; for b in $^; do $$b; done
+
+# ---- the book --------------------------------------------------------------------------------------
+
+# The notes, sources and finished runs as HTML and PDF; and the page of the runs alone, which needs no packages.
+.PHONY: deps-book book validation
+deps-book:
+	@sh common/packages.sh pandoc nodejs libjs-katex chromium
+book: | $(filter deps deps-book,$(MAKECMDGOALS))
+	@sh lecture_notes/book/build.sh
+validation:
+	@sh common/validation.sh
 
 # ---- notes, format, clean ------------------------------------------------------------------------
 

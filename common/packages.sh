@@ -22,7 +22,11 @@ clang                  command clang++           clang 14, with libFuzzer and it
 libclang-rt-dev        header  clang_rt          the sanitizers of clang and libFuzzer
 libomp-dev             header  omp-tools.h       the OpenMP of clang, with archer
 llvm                   command llvm-symbolizer   llvm, which names the lines of a report
-strace                 command strace            strace 5, which can inject errors'
+strace                 command strace            strace 5, which can inject errors
+pandoc                 command pandoc            pandoc 2.17, for the book
+nodejs                 command node              node 18, which renders the formulas of the book
+libjs-katex            header  katex             KaTeX 0.16, with its fonts
+chromium               command chromium          chromium, which prints the book'
 
 CXX=${CXX:-g++}
 EIGEN=${EIGEN:-/usr/include/eigen3}

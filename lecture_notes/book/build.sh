@@ -15,7 +15,7 @@ katex=$(node -p "require('./$book/formulas.js').folder || ''")
 
 rm -rf "$work" "$out"
 mkdir -p "$work" "$out/katex"
-cp -r "$katex/katex.min.css" "$katex/fonts" "$out/katex/"
+cp -rL "$katex/katex.min.css" "$katex/fonts" "$out/katex/"
 cp "$book/book.css" "$book/book.js" "$out/"
 cp -r lecture_notes/figures "$out/figures"
 
