@@ -54,6 +54,9 @@ awk '{
 }' lecture_notes/0*.md > "$work/labels"
 awk '{ sub(/.*-/, "", $2) } seen[$1]++ { print "the label " $1 " is given twice"; bad = 1 } END { exit bad }' "$work/labels" >&2
 
+sed -n 's|^@[a-z]*{\(.*\),$|\1|p; s|^  doi = {\(.*\)}$|doi \1|p' "$book/references.bib" |
+    awk '$1 == "doi" { print key, $2; next } { key = $1 }' > "$work/dois"
+
 # ---- generated pages ---------------------------------------------------------------------------------
 for method in 1 2 3 4a 4b 5 6; do
     note=$(echo lecture_notes/0"$method"_*.md)
@@ -96,7 +99,7 @@ done < "$work/pages" > "$work/titles"
 count=0
 while read -r note page group; do
     count=$((count + 1))
-    chapter=$(echo "$page" | sed -n 's/^0*\([0-9][0-9]*[ab]*\)_.*/\1/p; s/^exercises_\(.*\)\.html/E\1/p; s/^program_.*/P/p')
+    chapter=$(echo "$page" | sed -n 's/^00b_.*/P/p; s/^0*\([0-9][0-9]*[ab]*\)_.*/\1/p; s/^exercises_\(.*\)\.html/E\1/p; s/^program_.*/R/p')
     case $note in
     validation) sh common/validation.sh body > "$work/body" ;;
     "$work"/source_* | "$work/facts.md")

@@ -51,7 +51,7 @@ const terms = fs.readFileSync('lecture_notes/book/terms.txt', 'utf8').trim().spl
     .filter((line) => !line.startsWith('#'));
 const entries = terms.map((line) => {
     const [name, ...others] = line.split('|').map((word) => word.trim());
-    const pattern = new RegExp('\\b(' + [name, ...others].map((word) => word.replace(/[.*+?^${}()]/g, '\\$&')
+    const pattern = new RegExp('\\b(' + [name, ...others].map((word) => word.replace(/[.*+?^${}()[\]\\]/g, '\\$&')
         .replace(/\s+/g, '\\s+')).join('|') + ')', 'i');
     const places = sections.filter((section) => /^0/.test(section.page) &&
         (pattern.test(section.title) || pattern.test(section.text)));

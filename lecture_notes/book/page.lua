@@ -5,7 +5,7 @@
 --   build/book/places, labels, pages: what is where (sources.sh, build.sh)
 local stringify = pandoc.utils.stringify
 local source, chapter, formulas, failed
-local places, functions, tests, labels, pages, captions = {}, {}, {}, {}, {}, {}
+local places, functions, tests, labels, pages, dois = {}, {}, {}, {}, {}, {}
 
 local function complain(message)
   io.stderr:write(source .. ": " .. message .. "\n")
@@ -33,6 +33,10 @@ local function read_tables()
     local label, url = line:match("^(%S+) (%S+)$")
     labels[label] = url
   end)
+  each_line("build/book/dois", function(line)
+    local key, doi = line:match("^(%S+) (%S+)$")
+    dois[doi] = key
+  end)
   each_line("build/book/pages", function(line)
     local note, page = line:match("^(%S+) (%S+)")
     pages[note] = page
@@ -49,6 +53,11 @@ local function resolved(path)
 end
 
 local function target_of(link)
+  local doi = link:match("^https://doi%.org/(.*)")
+  if doi then
+    doi = doi:gsub("%%(%x%x)", function(code) return string.char(tonumber(code, 16)) end)
+    return dois[doi] and "bibliography.html#ref-" .. dois[doi]
+  end
   if link:match("^#") or link:match("^https?:") then return link end
   local path, anchor = link:match("^([^#]*)(#?.*)$")
   local file = resolved(path)
@@ -206,8 +215,8 @@ return {
       link.target = target
       return link
     end
-    -- Folders and data are not in the book.
-    if link.target:match("%.md") or link.target:match("%.[ch]pp") then complain("where does " .. link.target .. " lead?") end
+    -- Folders and data are not in the book; what is cited is in the bibliography.
+    if link.target:match("^https://doi") or link.target:match("%.md") or link.target:match("%.[ch]pp") then complain("where does " .. link.target .. " lead?") end
     return link.content
   end,
   Header = function(header) return header, false end},
