@@ -53,7 +53,7 @@ body() {
         split(folder, part, "/")
         if (part[2] != program) print "<h2 id=\"" (program = part[2]) "\">" program "</h2>"
         print "<h3 id=\"" folder "\">" substr(folder, length("out/" program) + 2) "</h3>"
-        print "<table class=\"ledger\"><thead><tr><th>result</th><th>measured</th><th>error</th><th>expected</th><th>tolerance</th>" \
+        print "<table class=\"wide\"><thead><tr><th>result</th><th>measured</th><th>error</th><th>expected</th><th>tolerance</th>" \
               "<th>verdict</th><th>source</th></tr></thead><tbody>"
         for (i = 1; i <= results; i++) {
             name = order[i]

@@ -31,7 +31,10 @@ sh "$book/sources.sh" "$work"
         echo "$folder/README.md program_$folder.html Programs"
     done
     echo "$work/cases.md cases.html Programs"
-    for page in "$work"/source_*.md; do echo "$page $(basename "$page" .md).html Sources"; done
+    for program in $(sed -n "s/^mains := //p" Makefile) common; do
+        program=$(basename "$program" .cpp)
+        echo "$work/source_$program.md source_$program.html Sources"
+    done
     echo "$work/facts.md facts.html Sources"
     echo "validation validation.html Reference"
     echo "$work/bibliography.md bibliography.html Reference"
@@ -88,6 +91,7 @@ title_of() {
     case $1 in
     validation) echo Validation ;;
     "$work"/source_*) sed -n 's/^title: "\(.*\)"/\1/p' "$1" ;;
+    */README.md) echo "${1%/README.md}: run it, read it" ;;
     "$work/facts.md") echo 'Facts of the ledger' ;;
     *) sed -n 's/^# *//p' "$1" | sed -n 1p ;;
     esac

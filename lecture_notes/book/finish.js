@@ -29,7 +29,7 @@ for (const page of pages) {
         const heading = part.match(/^<h[123](?: id="([^"]*)")?[^>]*>([\s\S]*?)<\/h[123]>/);
         if (!heading) continue;
         const name = plain(heading[2]);
-        sections.push({url: page.page + (heading[1] ? '#' + heading[1] : ''), page: page.page,
+        sections.push({name, url: page.page + (heading[1] ? '#' + heading[1] : ''), page: page.page,
             title: name === title ? name : `${title}: ${name}`,
             text: plain(part.slice(heading[0].length)).replace(/\s+/g, ' ').trim()});
     }
@@ -54,6 +54,7 @@ const entries = terms.map((line) => {
     const pattern = new RegExp('\\b(' + [name, ...others].map((word) => word.replace(/[.*+?^${}()[\]\\]/g, '\\$&')
         .replace(/\s+/g, '\\s+')).join('|') + ')', 'i');
     const places = sections.filter((section) => /^0/.test(section.page) &&
+        !/^(Exercises|Symbols|The ledger|Projects)$/.test(section.name) &&
         (pattern.test(section.title) || pattern.test(section.text)));
     if (!places.length) complain(`lecture_notes/book/terms.txt: "${name}" is in no chapter`);
     // The sections that say it most often, and any that has it in its title.
@@ -62,7 +63,7 @@ const entries = terms.map((line) => {
     const best = places.map((section) => [weight(section), section]).sort((a, b) => b[0] - a[0]).slice(0, 5)
         .map(([, section]) => section).sort((a, b) => sections.indexOf(a) - sections.indexOf(b));
     return `<p>${name}: ` + best.map((section) =>
-        `<a href="${section.url}">${section.title.replace(/^.*?: /, '')}</a>`).join(', ') + '</p>';
+        `<a href="${section.url}">${section.name}</a>`).join(', ') + '</p>';
 });
 for (const page of pages)
     page.html = page.html.replace('<p>@INDEX@</p>', `<div class="columns">${entries.join('\n')}</div>`);

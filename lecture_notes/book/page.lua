@@ -196,7 +196,7 @@ local function mark_rows(tab)
   for _, body in ipairs(tab.bodies) do
     for _, row in ipairs(body.body) do
       local label = stringify(row.cells[1].contents)
-      if label:match("^%u+%-%d+$") then row.attr = pandoc.Attr("ledger-" .. label); tab.attr = pandoc.Attr("", {"ledger"}) end
+      if label:match("^%u+%-%d+$") then row.attr = pandoc.Attr("ledger-" .. label); tab.attr = pandoc.Attr("", {"ledger", "wide"}) end
     end
   end
   return tab
