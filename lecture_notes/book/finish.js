@@ -23,7 +23,9 @@ const sections = [];
 for (const page of pages) {
     const path = `${out}/${page.page}`;
     let html = fs.readFileSync(path, 'utf8');
-    const words = body(html).replace(/<(pre|figcaption)[\s\S]*?<\/\1>/g, ' ');
+    const words = body(html).replace(/<(pre|figcaption)[\s\S]*?<\/\1>/g, ' ')
+        .replace(/<span class="math[^>]*>([\s\S]*?)<\/span>/g, (all, tex) => tex.replace(
+            /\\(mathbf|boldsymbol|mathrm|text|t?frac|thinspace|q?quad|left|right|[Bb]ig|tag)\b/g, ' ').replace(/[\\{}]/g, ''));
     const title = plain((html.match(/<h1[^>]*>([\s\S]*?)<\/h1>/) || ['', page.page])[1]);
     for (const part of words.split(/(?=<h[123][ >])/)) {
         const heading = part.match(/^<h[123](?: id="([^"]*)")?[^>]*>([\s\S]*?)<\/h[123]>/);
