@@ -6,6 +6,7 @@
 set -eu
 export LC_ALL=C.UTF-8
 cd "$(dirname "$0")/.."
+runs=${RUN_FOLDER:-out}
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 trap 'exit 1' HUP INT TERM
@@ -19,18 +20,16 @@ picture_of() {  # folder of a run: the name of its picture, which is copied besi
     for folder in "$1" "${1%/*}"; do
         awk -v folder="$folder" '$1 == folder { print $2 }' "$scratch/figures"
     done | while read -r figure; do
-        for picture in "out/figures/$figure.png" "lecture_notes/figures/$figure.png"; do
-            [ -e "$picture" ] || continue
-            mkdir -p out/book/runs
-            cp "$picture" "out/book/runs/$figure.png"
-            echo "$figure"
-            break
-        done
+        picture=out/figures/$figure.png
+        [ -e "$picture" ] || continue
+        mkdir -p out/book/runs
+        cp "$picture" out/book/runs/
+        echo "$figure"
     done | sort -u | tr '\n' ' '
 }
 
 body() {
-    find out -mindepth 3 -name summary.json ! -path 'out/exercises/*' | sort > "$scratch/runs"
+    find "$runs" -mindepth 3 -name summary.json ! -path "$runs/exercises/*" | sort > "$scratch/runs"
     echo '<h1>Validation</h1>'
     if [ ! -s "$scratch/runs" ]; then
         echo '<p>There are no finished runs in <code>out/</code>. Make some, for example <code>make cic_landau fig09</code>, or all: <code>make figures</code>.</p>'
@@ -50,9 +49,8 @@ body() {
     function cell(text) { return "<td>" text "</td>" }
     function flush(    i, name, row, expected, verdict, rest) {
         if (folder == "") return
-        split(folder, part, "/")
-        if (part[2] != program) print "<h2 id=\"" (program = part[2]) "\">" program "</h2>"
-        print "<h3 id=\"" folder "\">" substr(folder, length("out/" program) + 2) "</h3>"
+        if (value["", "program"] != program) print "<h2 id=\"" (program = value["", "program"]) "\">" program "</h2>"
+        print "<h3 id=\"" folder "\">" substr(folder, index(folder, program) + length(program) + 1) "</h3>"
         print "<table class=\"wide\"><thead><tr><th>result</th><th>measured</th><th>error</th><th>expected</th><th>tolerance</th>" \
               "<th>verdict</th><th>source</th></tr></thead><tbody>"
         for (i = 1; i <= results; i++) {
