@@ -54,8 +54,18 @@ awk '{
         print part[1], page "#eq-" part[1]
         if (count > 1) print method part[2], page "#eq-" method part[2]
     }
+    line = $0
+    while (match(line, /\\tag\{(i+|[A-Z])\}/)) {  # numbers that hold within a chapter
+        label = substr(line, RSTART + 5, RLENGTH - 6)
+        line = substr(line, RSTART + RLENGTH)
+        page = FILENAME
+        sub(/.*\//, "", page); sub(/[.]md$/, ".html", page)
+        print page ":(" label ")", page "#eq-" label
+    }
 }' lecture_notes/0*.md > "$work/labels"
+grep -o "](figures/[a-z0-9_]*\.png)" lecture_notes/0*.md | sed "s|^lecture_notes/\(.*\)\.md:.*/\(.*\)\.png)|figure:\2 \1.html#figure-\2|" | awk '!seen[$1]++' > "$work/figures"
 awk '{ sub(/.*-/, "", $2) } seen[$1]++ { print "the label " $1 " is given twice"; bad = 1 } END { exit bad }' "$work/labels" >&2
+cat "$work/figures" >> "$work/labels"
 
 sed -n 's|^@[a-z]*{\(.*\),$|\1|p; s|^  doi = {\(.*\)}$|doi \1|p' "$book/references.bib" |
     awk '$1 == "doi" { print key, $2; next } { key = $1 }' > "$work/dois"

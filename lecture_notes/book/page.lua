@@ -78,6 +78,11 @@ end
 
 -- [CIC-1], "MPM-5 to MPM-8": every label leads to its equation.
 local function with_labels(text)
+  local before, here, after = text:match("^([^%(]*)%((%w+)%)(.*)$")
+  local url = here and labels[(pages[source] or "") .. ":(" .. here .. ")"]
+  if url then
+    return {pandoc.Str(before), link_to({pandoc.Str("(" .. here .. ")")}, url, "label"), pandoc.Str(after)}
+  end
   local pieces, from = pandoc.List(), 1
   while true do
     local first, last = text:find("%f[%a]%u+%-%d+%f[%D]", from)
@@ -125,6 +130,7 @@ local function inlines(list)
             places[file.text .. ":" .. x.text]
         if url then list[i] = link_to({x}, url, "code")
         else complain("where is " .. x.text .. " of " .. file.text .. "?") end
+      elseif labels["figure:" .. x.text] then list[i] = link_to({x}, labels["figure:" .. x.text], "code")
       elseif places[x.text] then list[i] = link_to({x}, places[x.text], "code")
       elseif functions[x.text] and functions[x.text] ~= "several" and #x.text > 8 then
         list[i] = link_to({x}, functions[x.text], "code")
