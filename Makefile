@@ -120,6 +120,8 @@ The particle-in-cell family in running code
                          (with ANSWER=0.92: is the answer right?)
   make bench             particle-steps per second on 1 and 2 threads, and where the time goes
   make notes             refresh the code and the numbers in the lecture notes
+  make book              the notes as out/book/index.html and out/book.pdf   (packages: make deps-book)
+  make validation        what the finished runs say beside theory: out/book/validation.html
   make format            clang-format all sources
   make install           programs and cases to PREFIX=/usr/local   (also DESTDIR=)
   make dist              the sources as an archive, build/particle-in-cell-$(VERSION).tar.gz
@@ -522,6 +524,17 @@ install: all
 dist:
 	@mkdir -p build
 	git archive --prefix=particle-in-cell-$(VERSION)/ -o build/particle-in-cell-$(VERSION).tar.gz HEAD
+
+# ---- the book --------------------------------------------------------------------------------------
+
+# The notes, sources and finished runs as HTML and PDF; and the page of the runs alone, which needs no packages.
+.PHONY: deps-book book validation
+deps-book:
+	@sh common/packages.sh pandoc nodejs libjs-katex chromium
+book: | $(filter deps deps-book,$(MAKECMDGOALS))
+	@sh lecture_notes/book/build.sh
+validation:
+	@sh common/validation.sh
 
 # ---- notes, format, clean ------------------------------------------------------------------------
 
