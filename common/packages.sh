@@ -16,6 +16,8 @@ librandom123-dev       header  Random123/philox.h Random123
 doctest-dev            header  doctest/doctest.h doctest 2.4
 libmuparser-dev        header  muParser.h        muParser 2
 libxxhash-dev          header  xxhash.h          xxHash 0.8
+emscripten             command em++              Emscripten 3.1
+chromium               command chromium          Chromium
 clang-format           command clang-format      clang-format 14
 locales                command localedef         sources of locales (glibc)
 clang                  command clang++           clang 14, with libFuzzer and its sanitizers
@@ -26,7 +28,7 @@ strace                 command strace            strace 5, which can inject erro
 
 CXX=${CXX:-g++}
 EIGEN=${EIGEN:-/usr/include/eigen3}
-wanted=${*:-$(echo "$needed" | sed -e '/^clang-format/,$d' -e 's/ .*//')}
+wanted=${*:-$(echo "$needed" | sed -e '/^emscripten/,$d' -e 's/ .*//')}
 
 installed() {  # is the package with this name, proof and kind there?
     if [ "$2" = command ]; then
