@@ -472,11 +472,12 @@ bench: $(bench_programs)
 page      := lecture_notes/page
 web       := build/web
 web_cases := two_stream landau finite_grid sod rayleigh_taylor rebound compressed gem
+web_programs := cic pic flip mpm_explicit mpm_implicit implicit_moment
 web_flags := -std=c++20 -O3 -msimd128 -fexceptions -fno-math-errno -w -Wno-c++11-narrowing -I$(page)/instead -I. -isystem $(web)/include $(defines)
 # Left and entered again between two steps: what may be on the stack there.
 web_link  := -O3 -msimd128 -fexceptions -Wl,--wrap=_ZN6common3Run12not_finishedEll,--wrap=_ZN6common3Run12not_finishedEldd \
     -sASYNCIFY -sASYNCIFY_IMPORTS=page_wait \
-    -sASYNCIFY_ONLY='main,*run_and_report_errors*,*__function::*,__wrap_*,dynCall_*' \
+    -sASYNCIFY_STACK_SIZE=65536 -sASYNCIFY_ONLY='main,*run_*,*__function::*,__wrap_*,dynCall_*' \
     -sMODULARIZE -sEXPORT_NAME=program -sINVOKE_RUN=0 -sALLOW_MEMORY_GROWTH -sINITIAL_MEMORY=64MB -sENVIRONMENT=worker,node \
     -sFORCE_FILESYSTEM -sEXPORTED_RUNTIME_METHODS=callMain,FS
 web_gsl   := cdf/gaussinv fft/fft fit/linear specfunc/bessel_I0 err/error err/stream err/strerror sys/infnan
@@ -489,7 +490,7 @@ emscripten := NODE_PATH=/usr/share/nodejs em++
 deps-web: deps
 	@sh common/packages.sh emscripten chromium
 web: $(web_cases:%=out/web/%.html) $(patsubst $(page)/%,out/web/%,$(wildcard $(page)/*.css $(page)/index.html $(filter-out %/worker.js,$(wildcard $(page)/*.js)))) \
-    out/web/code.js $(programs:%=out/web/programs/%.js)
+    out/web/code.js $(web_programs:%=out/web/programs/%.js)
 	@echo "open out/web/index.html in a browser"
 
 $(web)/sources/.complete: $(page)/get_sources.sh | $(packages_first)
@@ -511,7 +512,7 @@ $(web)/flags: FORCE $(web)/sources/.complete
 $(web)/%.o: %.cpp $(web)/flags
 	@mkdir -p $(@D)
 	$(emscripten) $(web_flags) $(if $(filter $<,$(mains)),-Dmain=program_main) -MMD -MP -c -o $@ $<
-$(programs:%=$(web)/%.js): $(web)/%.js: $(web)/$$(call folder_of,$$*)/$$*.o $(web_common) $(wildcard */cases/*.toml)
+$(web_programs:%=$(web)/%.js): $(web)/%.js: $(web)/$$(call folder_of,$$*)/$$*.o $(web_common) $(wildcard */cases/*.toml)
 	$(emscripten) $(web_link) -o $@ $(filter %.o %.a,$^) $(foreach d,cases data,$(if $(wildcard $(call method_of,$*)/$d),--embed-file $(call method_of,$*)/$d))
 # Script and program as letters, so that a page may take them from a file.
 out/web/programs/%.js: $(web)/%.js $(page)/worker.js

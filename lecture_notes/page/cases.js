@@ -16,8 +16,8 @@ const cases = {
     },
     landau: {
         title: "Landau damping (clouds-in-cells)",
-        words: "A wave in a warm plasma is damped without collisions: particles near its phase velocity take its energy. Color is the phase-space density less its mean over x.",
-        runs: [{program: "cic", args: ["cic/cases/landau.toml", "species.electrons.particles_per_cell=4096", "output.phase_interval=0.1", "output.phase_v_max=4"]}],
+        words: "A wave in a warm plasma is damped without collisions: particles near its phase velocity take its energy. Color is the density in phase space less its mean over x.",
+        runs: [{program: "cic", args: ["cic/cases/landau.toml", "species.electrons.particles_per_cell=4096", "output.phase_interval=0.1", "output.phase_v_max=4", "output.phase_bins_x=32", "output.phase_bins_v=64"]}],
         picture: {kind: "phase", draw: "image", value: "f_electrons", palette: "diverging", less_mean: true},
         chart: {x: "time", log: true, lines: ["field"]},
         sliders: [["species.electrons.amplitude", 0.001, 0.5], ["species.electrons.temperature_x", 0.2, 2], ["time.dt", 0.01, 0.4], ["time.end", 10, 100]],

@@ -44,7 +44,8 @@ std::size_t numbers_shown = 0;   // of the history
 void show_and_wait(const common::Run& run, bool more, double done) {
     const double now = emscripten_get_now();
     const bool in_time = ms_per_picture > 0 ? !picture_is_new : now - last_wait < shortest_ms;
-    if (more && in_time && !paused) return;
+    const bool go_on = paused ? pictures_to_show > 0 : in_time;
+    if (more && go_on) return;
     const auto& rows = run.history.all();
     if (rows.size() > numbers_shown)
         page_add_rows(rows.data() + numbers_shown, int(rows.size() - numbers_shown), done);

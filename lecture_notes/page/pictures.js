@@ -71,7 +71,9 @@ function frame(canvas, x, y, {log = false, equal = false} = {}) {
     return {to, box, at_x, at_y, scale};
 }
 
-const with_unit = (name, unit) => unit && unit !== "1" ? `${name} [${unit}]` : name;
+// Names and units as they are printed: omega_p^2 with Greek letters and powers.
+const print = (text) => text.replaceAll("omega", "ω").replaceAll("Omega", "Ω").replaceAll("^2", "²").replaceAll("^3", "³").replaceAll("*", " ");
+const with_unit = (name, unit) => unit && unit !== "1" ? `${name} [${print(unit)}]` : name;
 
 function range_of(numbers) {
     let low = Infinity, high = -Infinity;

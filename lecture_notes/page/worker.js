@@ -73,8 +73,8 @@ onmessage = async ({data}) => {
     }
     if (data.next) instance?._show_one_picture?.();
     if (data.run) {
+        await run(data.module, data.kind, data.run);  // to its first wait
         if (data.wantsHelp) postMessage({help: await help(data.module)});
-        run(data.module, data.kind, data.run);
         return;
     }
     wake?.();

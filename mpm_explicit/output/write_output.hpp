@@ -1,6 +1,7 @@
 // Files for the figures: particles, one line per grain, and the fringes of a polariscope.
 #pragma once
 
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <string>
@@ -45,32 +46,43 @@ inline void write_particles(const std::string& folder, long step, const Case& pa
     const Mesh mesh = parameters.problem.mesh();
     const double length = mesh.length_x();
     const long every = (at.count() + most_particles_written - 1) / most_particles_written;
-    Table table;
+    const std::array<common::Column, 11> names{{{"x", "length"},
+                                                {"y", "length"},
+                                                {"v_x", "velocity"},
+                                                {"v_y", "velocity"},
+                                                {"grain", ""},
+                                                {"s_xx", "stress"},
+                                                {"s_yy", "stress"},
+                                                {"s_xy", "stress"},
+                                                {"s_zz", "stress"},
+                                                {"V", "volume"},
+                                                {"plastic_strain", "1"}}};
+    std::array<std::vector<double>, 11> data;
     for (std::size_t g = 0; g < all.grains.size(); ++g) {
         for (long p = all.grains[g].begin; p < all.grains[g].end; ++p) {
             if (every > 1 && !(common::uniform(7, 7, p, 0) * double(every) < 1)) continue;
             const double x = at.x_p[p];
             const double turns = mesh.periodic_x ? std::floor((x - mesh.x_low) / length) : 0;
-            common::Row row;
-            row.add("x", "length", mesh.periodic_x ? x - length * turns : x);
-            row.add("y", "length", at.y_p[p]);
-            row.add("v_x", "velocity", at.vx_p[p]);
-            row.add("v_y", "velocity", at.vy_p[p]);
-            row.add("grain", "", double(g));
-            row.add("s_xx", "stress", at.sxx_p[p]);
-            row.add("s_yy", "stress", at.syy_p[p]);
-            row.add("s_xy", "stress", at.sxy_p[p]);
-            row.add("s_zz", "stress", at.szz_p[p]);
-            row.add("V", "volume", at.V_p[p]);
-            row.add("plastic_strain", "1", at.yield_p[p]);
-            table.add(row);
+            const std::array<double, 11> row{mesh.periodic_x ? x - length * turns : x,
+                                             at.y_p[p],
+                                             at.vx_p[p],
+                                             at.vy_p[p],
+                                             double(g),
+                                             at.sxx_p[p],
+                                             at.syy_p[p],
+                                             at.sxy_p[p],
+                                             at.szz_p[p],
+                                             at.V_p[p],
+                                             at.yield_p[p]};
+            for (std::size_t k = 0; k < row.size(); ++k) data[k].push_back(row[k]);
         }
     }
-    const auto columns = table.columns();
+    std::vector<common::ScalarColumn> columns;
+    for (std::size_t k = 0; k < names.size(); ++k)
+        columns.push_back({names[k].name, names[k].unit, data[k]});
     common::write_table(folder + common::numbered("particles", step, "dat"), columns);
     if (parameters.vtk) {
-        const std::vector<double> zero(table.values[0].size(), 0.0);
-        const auto& data = table.values;
+        const std::vector<double> zero(data[0].size(), 0.0);
         common::write_vtp(folder + common::numbered("particles", step, "vtp"),
                           {"position", "length", data[0], data[1], zero},
                           {columns.begin() + 4, columns.end()},
