@@ -49,7 +49,7 @@ include_paths = -I. -isystem $(EIGEN) $(CPPFLAGS)
 libraries = -lgsl -lgslcblas -lm $(LDLIBS)
 
 # With `make deps fig09`, also with -j, everything waits until the packages are there.
-packages_first := $(filter deps deps-dev,$(MAKECMDGOALS))
+packages_first := $(filter deps deps-dev deps-web,$(MAKECMDGOALS))
 
 # $(call need,command): stop with a cure where a tool is missing.
 need = @command -v $(1) >/dev/null || { echo "'$(1)' is not installed: run 'make deps'" >&2; exit 2; }
@@ -111,6 +111,8 @@ The particle-in-cell family in running code
   make exercise E=1-3    its question, its runs, and whether they give what is expected
                          (with ANSWER=0.92: is the answer right?)
   make bench             particle-steps per second on 1 and 2 threads, and where the time goes
+  make web               the programs in the browser, a page per case, in out/web/ (packages: make deps-web)
+  make test-web          every page run in Chromium, beside the native programs; CASES='gem': some of them
   make notes             refresh the code and the numbers in the lecture notes
   make format            clang-format all sources
   make clean             remove build/ and out/, with all programs, runs and figures
@@ -533,7 +535,7 @@ out/web/%: $(page)/%
 # In a real browser, without a window: every page, beside the native programs.
 test-web: web all
 	@command -v chromium >/dev/null || { echo "'chromium' is not installed: run 'make deps-web'" >&2; exit 2; }
-	node $(page)/test.mjs $(ARGS)
+	node $(page)/test.mjs $(CASES)
 
 # ---- notes, format, clean ------------------------------------------------------------------------
 

@@ -31,14 +31,15 @@ int program_main(int argc, char** argv);
 
 namespace {
 
-constexpr double shortest_ms = 30;  // from one picture to the next, and between two looks at the page
+constexpr double shortest_ms =
+    30;  // from one picture to the next, and between two looks at the page
 
 bool paused = false;
-double ms_per_picture = 0;       // 0: as fast as the program goes, with some of its pictures
-long pictures_to_show = 1;       // although it is paused
+double ms_per_picture = 0;  // 0: as fast as the program goes, with some of its pictures
+long pictures_to_show = 1;  // although it is paused
 double last_picture = -1e9, last_wait = -1e9;
-bool picture_is_new = false;     // since the last wait
-std::size_t numbers_shown = 0;   // of the history
+bool picture_is_new = false;    // since the last wait
+std::size_t numbers_shown = 0;  // of the history
 
 // Between two steps.
 void show_and_wait(const common::Run& run, bool more, double done) {
@@ -91,7 +92,9 @@ int main(int argc, char** argv) {
 extern "C" {
 
 // For the page: whether to pause, and how long a picture stays; one more picture in a pause.
-EMSCRIPTEN_KEEPALIVE void set_pace(int pause, double ms) { paused = pause != 0, ms_per_picture = ms; }
+EMSCRIPTEN_KEEPALIVE void set_pace(int pause, double ms) {
+    paused = pause != 0, ms_per_picture = ms;
+}
 EMSCRIPTEN_KEEPALIVE void show_one_picture() { pictures_to_show = 1; }
 
 bool __real__ZN6common3Run12not_finishedEll(common::Run*, long, long);

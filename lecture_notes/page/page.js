@@ -86,9 +86,10 @@ function end(run, {status, summary, history}) {
     const last = run.lines.filter((line) => line.startsWith("/") || line.includes(run.program + ":")).pop() ?? "";
     if (runs.some((one) => one.status === null)) return;
     const words = runs.map((one) => {
-        const results = Object.entries(one.summary?.results ?? {}).filter(([, result]) => result.verdict);
-        const verdicts = results.map(([name, result]) => `${name} ${result.verdict}`).join(", ");
-        return `${one.program}: ${one.status === 0 ? "done" : "ended with status " + one.status}${verdicts ? "; " + verdicts : ""}`;
+        const judged = Object.entries(one.summary?.results ?? {}).filter(([, result]) => result.verdict);
+        const others = judged.filter(([, {verdict}]) => verdict !== "PASS").map(([name, {verdict}]) => `, ${name} ${verdict}`);
+        const verdicts = judged.length ? `, ${judged.length - others.length} of ${judged.length} results PASS${others.join("")}` : "";
+        return `${one.program}: ${one.status === 0 ? "done" : "ended with status " + one.status}${verdicts}`;
     });
     say(words.join(". ") + (runs.some((one) => one.status) ? ". " + last : "."), runs.some((one) => one.status));
     $("pause").disabled = $("next").disabled = true;
