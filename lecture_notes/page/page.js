@@ -240,7 +240,7 @@ function show_results({program, summary}) {
     const rows = Object.entries(summary.results).map(([name, one]) => {
         const expected = one.at_most !== undefined ? `≤ ${number(one.at_most)}` : one.expected === undefined ? "" : `${number(one.expected)} ± ${number(one.tolerance ?? 0)}`;
         const verdict = element("td", {className: one.verdict ?? ""}, one.verdict ?? "");
-        return element("tr", {}, element("th", {scope: "row"}, name), element("td", {}, `${number(one.value)} ${print(one.unit ?? "")}`),
+        return element("tr", {}, element("th", {scope: "row"}, name), element("td", {}, `${number(one.value)} ${one.unit === "1" ? "" : print(one.unit ?? "")}`),
                        element("td", {}, expected), verdict, element("td", {}, one.source ?? ""));
     });
     const head = element("tr", {}, ...["result", "measured", "expected", "verdict", "source"].map((text) => element("th", {scope: "col"}, text)));

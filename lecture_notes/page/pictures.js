@@ -56,14 +56,14 @@ function frame(canvas, x, y, {log = false, equal = false} = {}) {
     to.font = `${em}px system-ui, "DejaVu Sans", sans-serif`;
     to.fillStyle = ink, to.strokeStyle = css("--faint"), to.lineWidth = scale;
     const label = (text, px, py, align, base) => Object.assign(to, {textAlign: align, textBaseline: base}) && to.fillText(text, px, py);
-    for (const v of ticks(x.low, x.high, Math.max(2, box.width / (6 * em)))) label(String(v).replace("-", "−"), at_x(v), box.top + box.height + 0.5 * em, "center", "top");
+    for (const v of ticks(x.low, x.high, Math.max(2, box.width / (4.5 * em)))) label(String(v).replace("-", "−"), at_x(v), box.top + box.height + 0.5 * em, "center", "top");
     const decades = () => ticks(f(y.low), f(y.high), Math.max(2, box.height / (3 * em))).filter(Number.isInteger).map((k) => 10 ** k);
     for (const v of log ? decades() : ticks(y.low, y.high, Math.max(2, box.height / (3 * em)))) {
         label(log ? v.toExponential(0).replace("e+", "e") : String(v).replace("-", "−"), box.left - 0.5 * em, at_y(v), "right", "middle");
         to.beginPath(), to.moveTo(box.left, at_y(v)), to.lineTo(box.left + box.width, at_y(v)), to.stroke();
     }
     label(x.label, box.left + box.width / 2, box.top + box.height + 1.8 * em, "center", "top");
-    to.save(), to.translate(0.2 * em, box.top + box.height / 2), to.rotate(-Math.PI / 2);
+    to.save(), to.translate(Math.max(0.2 * em, box.left - 4 * em), box.top + box.height / 2), to.rotate(-Math.PI / 2);
     label(y.label, 0, 0, "center", "top");
     to.restore();
     to.strokeStyle = ink;
@@ -226,8 +226,7 @@ function draw_chart(canvas, style, histories, end) {
     if (lines.length === 0) return;
     let [low, high] = range_of(lines.flatMap(({y}) => style.log ? y.filter((v) => v > 1e-30) : y));
     if (style.log) low = Math.max(low, high * 1e-12) * 0.8, high *= 1.5;
-    else [low, high] = [Math.min(low, style.y_low ?? 0), Math.max(high, style.y_high ?? high)];
-    if (style.y_high) high = Math.min(high, style.y_high);
+    else [low, high] = [Math.min(low, style.y_low ?? 0), Math.max(high, style.y_high ?? 0)];
     if (high === low) high = low + 1;
     const name = style.lines.length === 1 ? style.lines[0] : "energy";
     const last = Math.max(...lines.map(({x}) => x[x.length - 1]));

@@ -8,7 +8,7 @@ import {tmpdir} from "node:os";
 import {join, resolve} from "node:path";
 import vm from "node:vm";
 
-// How many digits a history shares with that of the native program, of the largest number in each column, and
+// How many digits a history shares with that of the native program, of the largest number of the same unit, and
 // until when if not to the end: particles that meet in a knot of orbits, or change cells, part in time.
 const agreement = {
     two_stream: {digits: 9, until: 25}, landau: {digits: 9}, finite_grid: {digits: 9, until: 20}, sod: {digits: 9}, rayleigh_taylor: {digits: 6, until: 1},
@@ -72,6 +72,7 @@ async function open(file, width, height) {
     };
     tab.size = (w, h) => tab.ask("Emulation.setDeviceMetricsOverride", {width: w, height: h, deviceScaleFactor: 1, mobile: w < 500});
     tab.picture = async (name) => {
+        await tab.value("scrollTo(0, 0)");
         await sleep(300);
         const {data} = await tab.ask("Page.captureScreenshot", {format: "png", captureBeyondViewport: false});
         writeFileSync(`${shots}/${name}.png`, Buffer.from(data, "base64"));
@@ -90,18 +91,21 @@ async function until(condition, seconds) {
 
 function history_of(text) {
     const [names, ...rows] = text.trim().split("\n");
-    return {names: names.slice(2).split(" ").map((name) => name.replace(/^\d+:|\[.*/g, "")), rows: rows.map((line) => line.split(" ").map(Number))};
+    const columns = names.slice(2).split(" ");
+    return {names: columns.map((column) => column.replace(/^\d+:|\[.*/g, "")), units: columns.map((column) => column.replace(/.*\[/, "[")), rows: rows.map((line) => line.split(" ").map(Number))};
 }
 
-// Digits shared by two histories up to a time: of the difference over the largest number in the column.
+// Digits shared by two histories up to a time: of the difference over the largest number of the same unit.
 // out: of the column that shares the fewest, and its name
 function shared_digits(here, native, last) {
     const rows = native.rows.filter(([time]) => time <= last);
     let least = {digits: here.rows.length === native.rows.length ? 17 : 0, name: "rows"};
+    const largest = new Map();
+    native.units.forEach((unit, c) => largest.set(unit, Math.max(largest.get(unit) ?? 0, ...rows.map((row) => Math.abs(row[c])))));
     native.names.forEach((name, c) => {
-        const size = Math.max(...rows.map((row) => Math.abs(row[c])));
-        // Errors that are round-off, and counts of iterations, have no digits in common.
-        if (size < 1e-9 || /error|residual|drift|^iterations|^loops|divergence/.test(name)) return;
+        const size = largest.get(native.units[c]);
+        // Errors that are round-off, and counts, have no digits in common.
+        if (size < 1e-9 || /error|residual|drift|divergence|^iterations|^loops|^contacts$/.test(name)) return;
         const most = Math.max(...rows.map((row, n) => Math.abs(row[c] - (here.rows[n]?.[c] ?? NaN))));
         const digits = Number.isNaN(most) ? 0 : Math.min(17, -Math.log10(most / size));
         if (digits < least.digits) least = {digits, name};
@@ -144,6 +148,9 @@ async function check_page(name) {
     await until(() => tab.value(`typeof record === "object" && record.first_picture !== null`), 30);
     const first = await tab.value(`record.first_picture`);
     check(first !== null && first < first_picture_ms, `${name}: first picture after ${Math.round(first)} ms`);
+    if (first === null) return void check(false, `${name}: ${tab.complaints} ${await tab.value(`runs.flatMap((run) => run.lines).join(" ")`)}`);
+    const sliders = await tab.value(`document.querySelectorAll("#sliders input").length`);
+    check(sliders === cases[name].sliders.length, `${name}: ${sliders} sliders from the parameter table`);
 
     const count = `Math.min(...runs.map((run) => run.pictures))`;
     await sleep(500);
