@@ -52,7 +52,7 @@ hdf5 = $(firstword $(wildcard /usr/include/hdf5/serial/hdf5.h /usr/include/hdf5.
 openpmd = $(if $(hdf5),$(BUILD)/openpmd.so)
 
 # With `make deps fig09`, also with -j, everything waits until the packages are there.
-packages_first := $(filter deps deps-dev deps-sweep,$(MAKECMDGOALS))
+packages_first := $(filter deps deps-dev deps-sweep deps-web,$(MAKECMDGOALS))
 
 # $(call need,command): stop with a cure where a tool is missing.
 need = @command -v $(1) >/dev/null || { echo "'$(1)' is not installed: run 'make deps'" >&2; exit 2; }
@@ -119,6 +119,8 @@ The particle-in-cell family in running code
   make exercise E=1-3    its question, its runs, and whether they give what is expected
                          (with ANSWER=0.92: is the answer right?)
   make bench             particle-steps per second on 1 and 2 threads, and where the time goes
+  make web               the programs in the browser, a page per case, in out/web/ (packages: make deps-web)
+  make test-web          every page run in Chromium, beside the native programs; CASES='gem': some of them
   make notes             refresh the code and the numbers in the lecture notes
   make book              the notes as out/book/index.html and out/book.pdf   (packages: make deps-book)
   make validation        what the finished runs say beside theory: out/book/validation.html
@@ -535,6 +537,77 @@ book: | $(filter deps deps-book,$(MAKECMDGOALS))
 	@sh lecture_notes/book/build.sh
 validation:
 	@sh common/validation.sh
+
+# ---- in the browser -------------------------------------------------------------------------------
+
+# The programs, their sources unchanged, compiled by Emscripten to out/web/: an index and a page per case, which need no server
+# and no network. Headers in instead/ come before all others. Of GSL and muParser, which no package has for the browser, what the programs call is compiled from
+# Debian's sources.
+page      := lecture_notes/page
+web       := build/web
+web_cases := two_stream landau finite_grid sod rayleigh_taylor rebound compressed gem
+web_programs := cic pic flip mpm_explicit mpm_implicit implicit_moment
+web_flags := -std=c++20 -O3 -msimd128 -fexceptions -fno-math-errno -w -Wno-c++11-narrowing -I$(page)/instead -I. -isystem $(web)/include $(defines)
+# Left and entered again between two steps: what may be on the stack there.
+web_link  := -O3 -msimd128 -fexceptions -Wl,--wrap=_ZN6common3Run12not_finishedEll,--wrap=_ZN6common3Run12not_finishedEldd \
+    -sASYNCIFY -sASYNCIFY_IMPORTS=page_wait \
+    -sASYNCIFY_STACK_SIZE=65536 -sASYNCIFY_ONLY='main,*run_*,*__function::*,__wrap_*,dynCall_*' \
+    -sMODULARIZE -sEXPORT_NAME=program -sINVOKE_RUN=0 -sALLOW_MEMORY_GROWTH -sINITIAL_MEMORY=64MB -sENVIRONMENT=worker,node \
+    -sFORCE_FILESYSTEM -sEXPORTED_RUNTIME_METHODS=callMain,FS
+web_gsl   := cdf/gaussinv fft/fft fit/linear specfunc/bessel_I0 err/error err/stream err/strerror sys/infnan
+web_muparser := muParser muParserBase muParserBytecode muParserCallback muParserError muParserTokenReader
+web_common := $(patsubst %.cpp,$(web)/%.o,$(wildcard common/*/*.cpp) $(page)/glue.cpp) $(web)/libraries.a
+# Emscripten looks for modules of node where Debian puts them.
+emscripten := NODE_PATH=/usr/share/nodejs em++
+
+.PHONY: web deps-web test-web
+deps-web: deps
+	@sh common/packages.sh emscripten chromium
+web: $(web_cases:%=out/web/%.html) $(patsubst $(page)/%,out/web/%,$(wildcard $(page)/*.css $(page)/index.html $(filter-out %/worker.js,$(wildcard $(page)/*.js)))) \
+    out/web/code.js $(web_programs:%=out/web/programs/%.js)
+	@echo "open out/web/index.html in a browser"
+
+$(web)/sources/.complete: $(page)/get_sources.sh | $(packages_first)
+	@command -v em++ >/dev/null || { echo "'em++' is not installed: run 'make deps-web'" >&2; exit 2; }
+	@rm -rf $(web)/sources $(web)/include
+	sh $(page)/get_sources.sh $(web)/sources gsl muparser
+	@mkdir -p $(web)/include
+	ln -s $(EIGEN)/Eigen /usr/include/gsl /usr/include/toml++ /usr/include/nlohmann /usr/include/Random123 \
+	    /usr/include/xxhash.h /usr/include/muParser*.h $(web)/include
+	@printf '#define %s\n' 'HAVE_DECL_FINITE 1' 'HAVE_DECL_ISNAN 1' 'RETURN_IF_NULL(x) if (!x) { return; }' > $(web)/sources/gsl/config.h
+	@touch $@
+$(web)/libraries.a: $(web)/sources/.complete
+	@rm -f $@
+	cd $(web)/sources/gsl && for f in $(web_gsl); do emcc -O3 -w -I. -I../../include -c -o $$(basename $$f).o $$f.c || exit; done
+	cd $(web)/sources/muparser && for f in $(web_muparser); do emcc -O2 -w -std=c++17 -fexceptions -Iinclude -c -o $$f.o src/$$f.cpp || exit; done
+	emar rcs $@ $(web)/sources/*/*.o
+$(web)/flags: FORCE $(web)/sources/.complete
+	@echo '$(web_flags)' | cmp -s - $@ || echo '$(web_flags)' > $@
+$(web)/%.o: %.cpp $(web)/flags
+	@mkdir -p $(@D)
+	$(emscripten) $(web_flags) $(if $(filter $<,$(mains)),-Dmain=program_main) -MMD -MP -c -o $@ $<
+$(web_programs:%=$(web)/%.js): $(web)/%.js: $(web)/$$(call folder_of,$$*)/$$*.o $(web_common) $(wildcard */cases/*.toml)
+	$(emscripten) $(web_link) -o $@ $(filter %.o %.a,$^) $(foreach d,cases data,$(if $(wildcard $(call method_of,$*)/$d),--embed-file $(call method_of,$*)/$d))
+# Script and program as letters, so that a page may take them from a file.
+out/web/programs/%.js: $(web)/%.js $(page)/worker.js
+	@mkdir -p $(@D)
+	{ printf 'programs.%s = {script: "' $*; cat $^ | base64 -w0; printf '",\nwasm: "'; base64 -w0 $(web)/$*.wasm; echo '"};'; } > $@
+out/web/code.js: $(addsuffix step.hpp,cic/ flip/pic/ flip/flip/ mpm_explicit/ mpm_implicit/ implicit_moment/)
+	@mkdir -p $(@D)
+	awk 'BEGIN { printf "const code = {" } FNR == 1 { printf "%s\"%s\": [", (NR > 1 ? "]," : ""), FILENAME } \
+	    { gsub(/[\\"]/, "\\\\&"); printf "\"%s\",\n", $$0 } END { print "]};" }' $^ > $@
+$(web_cases:%=out/web/%.html): out/web/%.html: $(page)/page.html
+	@mkdir -p $(@D)
+	sed 's/CASE/$*/' $< > $@
+out/web/%: $(page)/%
+	@mkdir -p $(@D)
+	cp $< $@
+-include $(patsubst %.cpp,$(web)/%.d,$(mains) $(wildcard common/*/*.cpp) $(page)/glue.cpp)
+
+# In a real browser, without a window: every page, beside the native programs.
+test-web: web all
+	@command -v chromium >/dev/null || { echo "'chromium' is not installed: run 'make deps-web'" >&2; exit 2; }
+	node $(page)/test.mjs $(CASES)
 
 # ---- notes, format, clean ------------------------------------------------------------------------
 
