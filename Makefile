@@ -49,7 +49,7 @@ include_paths = -I. -isystem $(EIGEN) $(CPPFLAGS)
 libraries = -lgsl -lgslcblas -lm $(LDLIBS)
 # HDF5 files where the library is; without it everything else is the same.
 hdf5 = $(firstword $(wildcard /usr/include/hdf5/serial/hdf5.h /usr/include/hdf5.h))
-hdf5_library = $(if $(hdf5),-l$(if $(findstring serial,$(hdf5)),hdf5_serial,hdf5))
+openpmd = $(if $(hdf5),$(BUILD)/openpmd.so)
 
 # With `make deps fig09`, also with -j, everything waits until the packages are there.
 packages_first := $(filter deps deps-dev deps-sweep,$(MAKECMDGOALS))
@@ -60,7 +60,7 @@ need = @command -v $(1) >/dev/null || { echo "'$(1)' is not installed: run 'make
 programs  := $(basename $(notdir $(mains)))
 bench_programs := $(benches:%/bench.cpp=$(BUILD)/bench/%)
 tests     := $(basename $(notdir $(wildcard tests/*.cpp)))
-shared    := $(patsubst %.cpp,$(objects)/%.o,$(filter-out common/run/formula.cpp,$(wildcard common/*/*.cpp)) $(if $(TRAP),tests/support/trap_invalid.cpp))
+shared    := $(patsubst %.cpp,$(objects)/%.o,$(filter-out %/formula.cpp %/openpmd.cpp,$(wildcard common/*/*.cpp)) $(if $(TRAP),tests/support/trap_invalid.cpp))
 # From an archive the linker takes what a program calls: only who reads formulas needs muParser.
 formula   := $(BUILD)/formula.a
 sources   := $(wildcard */*.hpp */*/*.hpp */*/*/*.hpp */*.cpp */*/*.cpp)
@@ -77,7 +77,7 @@ one_at_a_time = $(if $(shell command -v flock),flock out)
 .DELETE_ON_ERROR:
 .SECONDEXPANSION:
 .PRECIOUS: $(objects)/%.o $(objects)/fuzz/%.o out/%/.complete
-.PHONY: menu deps deps-dev deps-sweep plot watch movie movies compare sweep all figures cost explicit_gem test tests test-long exercise exercises torture mutate fuzzers bench \
+.PHONY: menu deps deps-dev deps-sweep plot watch movie movies compare sweep all install dist figures cost explicit_gem test tests test-long exercise exercises torture mutate fuzzers bench \
         notes format clean FORCE $(programs)
 
 # ---- the menu ------------------------------------------------------------------------------------
@@ -121,12 +121,15 @@ The particle-in-cell family in running code
   make bench             particle-steps per second on 1 and 2 threads, and where the time goes
   make notes             refresh the code and the numbers in the lecture notes
   make format            clang-format all sources
+  make install           programs and cases to PREFIX=/usr/local   (also DESTDIR=)
+  make dist              the sources as an archive, build/particle-in-cell-$(VERSION).tar.gz
   make clean             remove build/ and out/, with all programs, runs and figures
 
   make SANITIZE=address,undefined test     the facts under the sanitizers, in build/sanitize/
   make TRAP=1 test                         the facts, ended where 0/0 or inf - inf arises, in build/trap/
   make REAL=float bench                    particles of cic in single precision, in build/float/
   make CXX=clang++-14 all                  another compiler; also ARCH=, OPTIMIZE=, EIGEN=, CXXFLAGS=
+  make OPTIMIZE=-O0 BUILD=build/quick cic  compiled in less than half the time
 endef
 export menu_text
 
@@ -146,9 +149,9 @@ deps-sweep: | $(filter deps,$(MAKECMDGOALS))
 
 # ---- programs ------------------------------------------------------------------------------------
 
-all: $(programs)
+all: $(programs) $$(openpmd)
 tests: $(tests:%=$(BUILD)/tests/%)
-$(programs): %: $(BUILD)/%
+$(programs): %: $(BUILD)/% $$(openpmd)
 
 # The flags and a fingerprint of compiler and machine: when they change, everything is built again.
 $(BUILD)/flags: FORCE | $(packages_first)
@@ -165,8 +168,8 @@ $(objects)/%.o: %.cpp $(BUILD)/flags
 # The reader of case files must refuse bad input with a message, never with an assertion of its library.
 $(objects)/common/run/case_file.o: private defines += -DNDEBUG
 
-$(objects)/common/run/openpmd.o: private defines += $(if $(hdf5),-DHAVE_HDF5 -isystem $(dir $(hdf5)))
-$(objects)/common/run/openpmd.o: $(hdf5)
+$(BUILD)/openpmd.so: common/run/openpmd.cpp $(wildcard common/run/*.hpp) $(BUILD)/flags
+	$(CXX) $(flags) $(defines) $(include_paths) -isystem $(dir $(hdf5)) -fPIC -shared -o $@ $< -l$(if $(findstring serial,$(hdf5)),hdf5_serial,hdf5)
 
 $(formula): $(objects)/common/run/formula.o
 	@rm -f $@
@@ -174,7 +177,7 @@ $(formula): $(objects)/common/run/formula.o
 
 define link
 @mkdir -p $(@D)
-$(CXX) $(flags) -o $@ $(filter %.o %.a,$^) $(libraries) -Wl,--as-needed -lmuparser $(hdf5_library)
+$(CXX) $(flags) -o $@ $(filter %.o %.a,$^) $(libraries) -Wl,--as-needed -lmuparser
 endef
 # The largest object first, so that the others are compiled beside it.
 $(programs:%=$(BUILD)/%): $(BUILD)/%: $$(objects)/$$(call folder_of,$$*)/$$*.o $(shared) $(formula) $(BUILD)/flags
@@ -494,7 +497,7 @@ $(objects)/fuzz/%.o: $$(call folder_of,$$*)/$$*.cpp $(BUILD)/flags
 $(BUILD)/fuzz/%: $(objects)/fuzz/%.o $(objects)/tests/torture/fuzz.o $(filter-out %/run.o,$(shared)) $(formula) $(BUILD)/flags
 	@mkdir -p $(@D)
 	$(CXX) $(flags) -fsanitize=fuzzer -Wl,--wrap=exit,--wrap=getrlimit,--wrap=_ZNSt6chrono3_V212steady_clock3nowEv \
-	    -o $@ $(filter %.o %.a,$^) $(libraries) -Wl,--as-needed -lmuparser $(hdf5_library)
+	    -o $@ $(filter %.o %.a,$^) $(libraries) -Wl,--as-needed -lmuparser
 $(BUILD)/planted_race: $(objects)/tests/torture/planted_race.o $(BUILD)/flags
 	$(link)
 -include $(programs:%=$(objects)/fuzz/%.d) $(wildcard $(objects)/tests/torture/*.d)
@@ -503,6 +506,22 @@ $(BUILD)/planted_race: $(objects)/tests/torture/planted_race.o $(BUILD)/flags
 
 bench: $(bench_programs)
 	@set -e; for b in $^; do $$b; done
+
+# ---- to others -----------------------------------------------------------------------------------
+
+# An installed program finds its cases, and the data that they compare with, beside itself in share/.
+PREFIX ?= /usr/local
+share   = $(DESTDIR)$(PREFIX)/share/particle-in-cell
+install: all
+	install -d '$(DESTDIR)$(PREFIX)/bin'
+	install $(programs:%=$(BUILD)/%) '$(DESTDIR)$(PREFIX)/bin'
+	$(if $(hdf5),install -D -m 644 $(openpmd) '$(DESTDIR)$(PREFIX)/lib/particle-in-cell/openpmd.so')
+	for d in $(wildcard */cases */data); do install -d '$(share)'/$$d && install -m 644 $$d/*.* '$(share)'/$$d || exit; done
+	install -m 644 LICENSE README.md CITATION.cff '$(share)'
+
+dist:
+	@mkdir -p build
+	git archive --prefix=particle-in-cell-$(VERSION)/ -o build/particle-in-cell-$(VERSION).tar.gz HEAD
 
 # ---- notes, format, clean ------------------------------------------------------------------------
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace common {
@@ -17,7 +18,7 @@ inline constexpr int simd_width = 2;
 
 /// So many doubles with +, -, *, / and comparisons per lane; a plain double meets all lanes.
 using SimdVector [[gnu::vector_size(simd_width * sizeof(double))]] = double;
-using SimdMask [[gnu::vector_size(simd_width * sizeof(double))]] = long;  // of a comparison
+using SimdMask [[gnu::vector_size(simd_width * sizeof(double))]] = std::int64_t;  // of a comparison
 
 /// from[0], ..., from[count-1]; the lanes beyond count repeat from[0], so that they stay harmless.
 inline SimdVector load_simd(const double* from, long count) {
@@ -58,7 +59,7 @@ inline double simd_sum(const SimdVector& lanes) {
 /// Larger of a and b, |a| and the square root, lane by lane; the last of one number, too.
 inline SimdVector larger(const SimdVector& a, const SimdVector& b) { return a > b ? a : b; }
 inline SimdVector magnitude(const SimdVector& a) {
-    return SimdVector(SimdMask(a) & std::numeric_limits<long>::max());
+    return SimdVector(SimdMask(a) & std::numeric_limits<std::int64_t>::max());
 }
 inline SimdVector square_root(const SimdVector& a) {
     SimdVector root;
@@ -69,7 +70,7 @@ inline double square_root(double a) { return std::sqrt(a); }
 
 /// Whether a comparison holds in any lane.
 inline bool any_simd(const SimdMask& mask) {
-    long bits[simd_width];
+    std::int64_t bits[simd_width];
     __builtin_memcpy(bits, &mask, sizeof mask);
     for (int half = simd_width / 2; half > 0; half /= 2)
         for (int l = 0; l < half; ++l) bits[l] |= bits[l + half];

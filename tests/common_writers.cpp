@@ -215,7 +215,6 @@ TEST_CASE("a list of files by time forgets what a restart has undone") {
     write(0, 0), write(10, 1), write(20, 2), write(30, 3);
     write(20, 2.5);
     const std::string xml = read_all(folder.file("p.pvd"));
-    CHECK(count_tags(xml) == 2);
     std::string times;
     const std::string start = "<DataSet timestep=\"";
     for (std::size_t at = 0; (at = xml.find(start, at)) != std::string::npos;) {

@@ -773,6 +773,23 @@ TEST_CASE("the summary holds what the contract names" * doctest::description("ro
     }
 }
 
+TEST_CASE("an installed program finds its cases from any folder" * doctest::description("robust")) {
+    const fs::path root = folder("installed");
+    fs::create_directories(root / "bin");
+    fs::copy_file(std::string(BUILD_FOLDER) + "/cic", root / "bin/cic");
+    fs::create_directories(root / "share/particle-in-cell/cic");
+    fs::copy("cic/cases", root / "share/particle-in-cell/cic/cases");
+    for (const char* words : {"", "cic/cases/landau.toml"}) {
+        const std::string command = "cd " + root.string() + " && bin/cic --dry-run " + words;
+        CHECK(std::system((command + " > said 2> warned").c_str()) == 0);
+        CHECK(holds(read_all(root / "said"), "weighting"));
+    }
+    CHECK(std::system(
+              ("cd " + root.string() + " && bin/cic cic/cases/ladau.toml > said 2>&1").c_str()) !=
+          0);
+    CHECK(holds(read_all(root / "said"), "landau, misprint"));
+}
+
 TEST_CASE("a dry run tells the memory that the run takes and a checkpoint takes no more" *
           doctest::description("robust")) {
     if (holds(BUILD_FOLDER, "sanitize")) return;  // whose own memory is larger

@@ -337,7 +337,7 @@ CommandLine read_command_line(int argc, char** argv, const ProgramInfo& info,
         } else if (argument.empty()) {
             throw InputError("an empty argument: give the path of a case file, or leave it out");
         } else if (command.case_path.empty()) {
-            command.case_path = argument;
+            command.case_path = is_there(argument) ? argument : find_in_project(argument);
         } else {
             throw InputError("two case files, '" + command.case_path + "' and '" + argument +
                              "': give one (overrides are written section.key=value)");

@@ -1,29 +1,13 @@
-// Snapshots as HDF5 files after the openPMD standard, where the HDF5 library was there when the
-// program was built.
+// openpmd.so: snapshots as HDF5 files after the openPMD standard. writers.cpp opens it.
 //
 // source: The openPMD standard 1.1.0, https://doi.org/10.5281/zenodo.1167843.
-#include <filesystem>
+#include <hdf5.h>
+
 #include <utility>
 
 #include "common/run/writers.hpp"
 
-#ifdef HAVE_HDF5
-#include <hdf5.h>
-#endif
-
 namespace common {
-
-#ifndef HAVE_HDF5
-
-bool has_openpmd() { return false; }
-void write_openpmd_mesh(const Snapshot&, const std::string&, const SampledAxis&, const SampledAxis&,
-                        const std::vector<ScalarColumn>&) {}
-void write_openpmd_particles(const Snapshot&, const std::string&,
-                             const std::vector<ScalarColumn>&) {}
-
-#else
-
-bool has_openpmd() { return true; }
 
 namespace {
 
@@ -139,41 +123,35 @@ void write_records(hid_t parent, const std::vector<hsize_t>& shape,
     }
 }
 
-/// Makes the file of a snapshot, there whole or not at all.
+/// Makes the file of a snapshot. out: what went wrong, or nothing
 /// in: what, "meshes" or "particles"; fill(group), which writes into the group of that name
 template <class Fill>
-void write_file(const Snapshot& at, const std::string& kind, const std::string& what,
-                const Fill& fill) {
-    const std::string path = at.path(kind, "h5"), partial = path + ".partial";
-    refuse_special_file(path);
-    std::fclose(open_for_writing(partial));
+std::string write_file(const std::string& path, const Snapshot& at, const std::string& kind,
+                       const std::string& what, const Fill& fill) {
     try {
         H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-        {
-            const Handle file(H5Fcreate(partial.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT),
-                              H5Fclose);
-            attribute(file.id, "openPMD", std::string("1.1.0"));
-            attribute(file.id, "openPMDextension", std::uint32_t(0));
-            attribute(file.id, "basePath", std::string("/data/%T/"));
-            attribute(file.id, "iterationEncoding", std::string("fileBased"));
-            attribute(file.id, "iterationFormat", kind + "_%06T.h5");
-            attribute(file.id, "software", std::string("particle-in-cell family"));
-            attribute(file.id, "softwareVersion", std::string(PROGRAM_VERSION));
-            attribute(file.id, "comment",
-                      std::string("numbers are in the units of the run, named by 'unit'"));
-            const Handle data = group(file.id, "data");
-            const Handle iteration = group(data.id, std::to_string(at.step));
-            attribute(iteration.id, "time", at.time);
-            attribute(iteration.id, "dt", at.step > 0 ? at.time / double(at.step) : 0.0);
-            attribute(iteration.id, "timeUnitSI", 1.0);
-            attribute(file.id, (what + "Path").c_str(), what + "/");
-            fill(group(iteration.id, what).id);
-            require(H5Fflush(file.id, H5F_SCOPE_LOCAL));
-        }
-        std::filesystem::rename(partial, path);
+        const Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT),
+                          H5Fclose);
+        attribute(file.id, "openPMD", std::string("1.1.0"));
+        attribute(file.id, "openPMDextension", std::uint32_t(0));
+        attribute(file.id, "basePath", std::string("/data/%T/"));
+        attribute(file.id, (what + "Path").c_str(), what + "/");
+        attribute(file.id, "iterationEncoding", std::string("fileBased"));
+        attribute(file.id, "iterationFormat", kind + "_%06T.h5");
+        attribute(file.id, "software", std::string("particle-in-cell family"));
+        attribute(file.id, "softwareVersion", std::string(PROGRAM_VERSION));
+        attribute(file.id, "comment",
+                  std::string("numbers are in the units of the run, named by 'unit'"));
+        const Handle data = group(file.id, "data");
+        const Handle iteration = group(data.id, std::to_string(at.step));
+        attribute(iteration.id, "time", at.time);
+        attribute(iteration.id, "dt", at.step > 0 ? at.time / double(at.step) : 0.0);
+        attribute(iteration.id, "timeUnitSI", 1.0);
+        fill(group(iteration.id, what).id);
+        require(H5Fflush(file.id, H5F_SCOPE_LOCAL));
+        return "";
     } catch (const std::exception& error) {
-        std::remove(partial.c_str());
-        throw InputError(path + ": cannot be written: " + error.what());
+        return error.what();
     }
 }
 
@@ -181,8 +159,9 @@ const std::vector<double> dimensionless(7, 0.0);
 
 }  // namespace
 
-void write_openpmd_mesh(const Snapshot& at, const std::string& kind, const SampledAxis& x,
-                        const SampledAxis& z, const std::vector<ScalarColumn>& fields) {
+extern "C" __attribute__((visibility("default"))) std::string write_openpmd_mesh(
+    const std::string& path, const Snapshot& at, const std::string& kind, const SampledAxis& x,
+    const SampledAxis& z, const std::vector<ScalarColumn>& fields) {
     const bool plane = !z.name.empty();
     std::vector<hsize_t> shape{hsize_t(x.count)};
     std::vector<std::string> labels{x.name};
@@ -193,7 +172,7 @@ void write_openpmd_mesh(const Snapshot& at, const std::string& kind, const Sampl
         spacing.insert(spacing.begin(), z.step);
         offset.insert(offset.begin(), z.first);
     }
-    write_file(at, kind, "meshes", [&](hid_t meshes) {
+    return write_file(path, at, kind, "meshes", [&](hid_t meshes) {
         write_records(
             meshes, shape, fields,
             [&](hid_t record, const std::string&) {
@@ -212,8 +191,9 @@ void write_openpmd_mesh(const Snapshot& at, const std::string& kind, const Sampl
     });
 }
 
-void write_openpmd_particles(const Snapshot& at, const std::string& kind,
-                             const std::vector<ScalarColumn>& columns) {
+extern "C" __attribute__((visibility("default"))) std::string write_openpmd_particles(
+    const std::string& path, const Snapshot& at, const std::string& kind,
+    const std::vector<ScalarColumn>& columns) {
     const hsize_t one = 1, count = columns.empty() ? 0 : columns[0].values.size();
     std::vector<ScalarColumn> named = columns;
     std::vector<std::string> directions;
@@ -223,7 +203,7 @@ void write_openpmd_particles(const Snapshot& at, const std::string& kind,
         directions.push_back(column.name);
         column.name = "position_" + column.name;
     }
-    write_file(at, kind, "particles", [&](hid_t particles) {
+    return write_file(path, at, kind, "particles", [&](hid_t particles) {
         const Handle all = group(particles, "all");
         const auto describe = [&](hid_t record, const std::string& name) {
             attribute(record, "unitDimension",
@@ -245,7 +225,5 @@ void write_openpmd_particles(const Snapshot& at, const std::string& kind,
         }
     });
 }
-
-#endif
 
 }  // namespace common

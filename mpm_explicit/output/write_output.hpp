@@ -45,32 +45,41 @@ inline void write_particles(const common::Snapshot& at_time, const Case& paramet
     const Mesh mesh = parameters.problem.mesh();
     const double length = mesh.length_x();
     const long every = (at.count() + most_particles_written - 1) / most_particles_written;
-    Table table;
+    std::vector<long> shown, grain_of;
     for (std::size_t g = 0; g < all.grains.size(); ++g) {
         for (long p = all.grains[g].begin; p < all.grains[g].end; ++p) {
             if (every > 1 && !(common::uniform(7, 7, p, 0) * double(every) < 1)) continue;
-            const double x = at.x_p[p];
-            const double turns = mesh.periodic_x ? std::floor((x - mesh.x_low) / length) : 0;
-            common::Row row;
-            row.add("x", "length", mesh.periodic_x ? x - length * turns : x);
-            row.add("y", "length", at.y_p[p]);
-            row.add("v_x", "velocity", at.vx_p[p]);
-            row.add("v_y", "velocity", at.vy_p[p]);
-            row.add("grain", "", double(g));
-            row.add("s_xx", "stress", at.sxx_p[p]);
-            row.add("s_yy", "stress", at.syy_p[p]);
-            row.add("s_xy", "stress", at.sxy_p[p]);
-            row.add("s_zz", "stress", at.szz_p[p]);
-            row.add("V", "volume", at.V_p[p]);
-            row.add("plastic_strain", "1", at.yield_p[p]);
-            table.add(row);
+            shown.push_back(p), grain_of.push_back(long(g));
         }
     }
-    const auto columns = table.columns();
+    std::vector<std::vector<double>> data;
+    std::vector<common::ScalarColumn> columns;
+    const auto add = [&](const char* name, const char* unit, const auto& value) {
+        std::vector<double>& column = data.emplace_back();
+        for (const long p : shown) column.push_back(value(p));
+        columns.push_back({name, unit, column});
+    };
+    const auto add_plain = [&](const char* name, const char* unit,
+                               const std::vector<double>& values) {
+        add(name, unit, [&](long p) { return values[p]; });
+    };
+    add("x", "length", [&](long p) {
+        const double x = at.x_p[p];
+        return mesh.periodic_x ? x - length * std::floor((x - mesh.x_low) / length) : x;
+    });
+    add_plain("y", "length", at.y_p);
+    add_plain("v_x", "velocity", at.vx_p);
+    add_plain("v_y", "velocity", at.vy_p);
+    columns.push_back({"grain", "", data.emplace_back(grain_of.begin(), grain_of.end())});
+    add_plain("s_xx", "stress", at.sxx_p);
+    add_plain("s_yy", "stress", at.syy_p);
+    add_plain("s_xy", "stress", at.sxy_p);
+    add_plain("s_zz", "stress", at.szz_p);
+    add_plain("V", "volume", at.V_p);
+    add_plain("plastic_strain", "1", at.yield_p);
     common::write_table(at_time, "particles", columns);
     if (at_time.also.vtk) {
-        const std::vector<double> zero(table.values[0].size(), 0.0);
-        const auto& data = table.values;
+        const std::vector<double> zero(shown.size(), 0.0);
         common::write_vtp(at_time, "particles", {"position", "length", data[0], data[1], zero},
                           {columns.begin() + 4, columns.end()},
                           {{"velocity", "velocity", data[2], data[3], zero}});
