@@ -40,7 +40,7 @@ fits() {
     for condition; do
         value=${condition#*[=:]}
         case $condition in
-        result:*) [ -f "$run/summary.json" ] && awk -v key="results.$value.value" -f common/json_lines.awk "$run/summary.json" >/dev/null ;;
+        result:*) [ -f "$run/summary.json" ] && awk -v key="results.$value.value" -f common/json_lines.awk "$run/summary.json" | grep -q '^[-+.0-9]' ;;
         file:*) ls "$run"/$value >/dev/null 2>&1 ;;
         kinds:*)
             # With something in the last of them, below the three lines about it.

@@ -47,7 +47,7 @@ function images(    i, k, fringe, f, rows, ratio, width, height, wide, high_of_p
     height = true ? width * ratio : 260
     if (height < 120) height = 120
     if (frames != "") { width *= 2; height *= 2 }
-    wide = 250 + (to - from + 1) * (width + 25); if (wide < 700) wide = 700
+    wide = 285 + (to - from + 1) * (width + 25); if (wide < 700) wide = 700
     high_of_page = 150 + rows * (height + 62)
     printf "wide = %d; high = %d; load 'common/style.gp'\n", wide, high_of_page
     print "set multiplot title heading noenhanced font ',24'; unset key; unset grid; set border 15; set tics front font ',14'; set title font ',16' offset 0, -0.5"

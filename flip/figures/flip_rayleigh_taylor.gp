@@ -24,11 +24,12 @@ times = '1.5 2.5 3.5 4.5 0.5 1.5 2.5 3.5'
 do for [n = 1:8] {
     p = n < 5 ? 'flip' : 'pic'
     k = (n - 1) % 4
-    left = 0.4 + 0.152 * k; bottom = n < 5 ? 0.505 : 0.03
+    left = 0.405 + 0.152 * k; bottom = n < 5 ? 0.53 : 0.075
     set lmargin at screen left; set rmargin at screen left + 0.135
-    set bmargin at screen bottom; set tmargin at screen bottom + 0.38
+    set bmargin at screen bottom; set tmargin at screen bottom + 0.37
     set title sprintf('%s, t = %s', p, word(times, n)) offset 0, -0.7
-    if (k == 0) { set ytics 0.5 format '%g' } else { set ytics 0.5 format '' }
+    if (k == 0) { set ytics 0.5 format '%g'; set ylabel 'z' offset 2.2, 0 } else { set ytics 0.5 format ''; unset ylabel }
+    if (n > 4) { set xtics ('0' 0, '0.5' 0.5); set xlabel 'x' offset 0, 0.6 }
     picture = sprintf('%s/%s/particles_%06d.dat', folder, p, int(file(p, real(word(times, n)))))
     plot picture using 1:2:($3 == 0 ? 0x56b4e9 : 0xd55e00) with points pt 7 ps 0.26 lc rgb variable
 }

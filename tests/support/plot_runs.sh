@@ -1,5 +1,5 @@
 #!/bin/sh
-# plot_runs.sh BUILD some|all|own|tools: runs draw without an edit: pictures of sane size, and no word of gnuplot.
+# plot_runs.sh BUILD some|all|own|tools [CASE ...]: runs draw without an edit: pictures of sane size, and no word of gnuplot.
 #   some, all   shipped cases, cut to a few steps with a few snapshots
 #   own         three cases of a user, run to the end, with the figures that fit them
 #   tools       comparing, watching, animating and sweeping
@@ -43,6 +43,8 @@ draw_case() {
     for kind in fields particles phase fringes grains profile; do
         "$program" --help | grep -q "^  output.${kind}_interval" && set -- "$@" "output.${kind}_interval=$(awk "BEGIN { print 4 * $dt }")"
     done
+    # Large packs need no fine rasters here.
+    "$program" --help | grep -q '^  output.pixels_per_cell' && set -- "$@" output.pixels_per_cell=2
     rm -rf "$folder/run"
     # Some comparisons refuse to be cut short.
     "$program" "$@" --quiet --threads 1 --out "$folder/run" > "$folder/said" 2>&1 ||
@@ -62,7 +64,11 @@ some)
         draw_case $case
     done
     ;;
-all) for case in ./*/cases/*.toml; do draw_case "${case#./}"; done ;;
+all)
+    shift 2
+    [ $# -gt 0 ] || set -- ./*/cases/*.toml
+    for case; do draw_case "${case#./}"; done
+    ;;
 own)
     # Two streams, longer, on another mesh, of species with other names, and snapshots at other times.
     cat > "$folder/beams.toml" <<'EOD'
