@@ -132,7 +132,7 @@ done < "$work/pages"
 node "$book/finish.js" "$out" "$out/print.html"
 
 # ---- the PDF -----------------------------------------------------------------------------------------
-[ "${1:-}" != html ] || exit 0
+[ "${1:-}" != html ] || { rm "$out/print.html"; exit 0; }
 browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome || true)
 [ -n "$browser" ] || { echo "no PDF: 'chromium' is not installed: run 'make deps-book'" >&2; exit 2; }
 profile=$(mktemp -d)

@@ -35,9 +35,12 @@ for (const page of pages) {
             title: name === title ? name : `${title}: ${name}`,
             text: plain(part.slice(heading[0].length)).replace(/\s+/g, ' ').trim()});
     }
-    html = html.replace(/<span class="math (inline|display)">([\s\S]*?)<\/span>/g, (all, kind, tex) => {
+    // A mark behind a formula goes into its last box, or a line might begin with it.
+    html = html.replace(/<span class="math (inline|display)">([\s\S]*?)<\/span>([,.;:)]*)/g, (all, kind, tex, mark) => {
         try {
-            return render(plain(tex), kind === 'display');
+            const shown = render(plain(tex), kind === 'display');
+            if (kind === 'display' || !mark) return shown + mark;
+            return shown.replace(/(<\/span>){3}$/, `<span class="mark">${mark}</span>$&`);
         } catch (error) {
             complain(`${page.note}: ${error.message}: ${plain(tex)}`);
             return all;
