@@ -20,7 +20,6 @@ cp "$book/book.css" "$book/book.js" "$out/"
 cp -r lecture_notes/figures "$out/figures"
 
 # ---- the pages, in order: note, page, group ---------------------------------------------------------
-sh "$book/sources.sh" "$work"
 {
     echo "$book/index.md index.html Start"
     for note in lecture_notes/0*.md; do
@@ -66,6 +65,8 @@ awk '{
 grep -o "](figures/[a-z0-9_]*\.png)" lecture_notes/0*.md | sed "s|^lecture_notes/\(.*\)\.md:.*/\(.*\)\.png)|figure:\2 \1.html#figure-\2|" | awk '!seen[$1]++' > "$work/figures"
 awk '{ sub(/.*-/, "", $2) } seen[$1]++ { print "the label " $1 " is given twice"; bad = 1 } END { exit bad }' "$work/labels" >&2
 cat "$work/figures" >> "$work/labels"
+
+sh "$book/sources.sh" "$work"
 
 sed -n 's|^@[a-z]*{\(.*\),$|\1|p; s|^  doi = {\(.*\)}$|doi \1|p' "$book/references.bib" |
     awk '$1 == "doi" { print key, $2; next } { key = $1 }' > "$work/dois"
