@@ -81,6 +81,7 @@ for method in 1 2 3 4a 4b 5 6; do
           id=$(basename "$question" .md)
           printf '\n<a id="%s"></a>\n\n' "$id"
           sed '/^```exercise/,/^```/d; 1s/^#/##/' "$question"
+          printf '\nTo be graded: `make exercise E=%s`, %s.\n' "$id" "$(sed -n 's|^time: ||p' "$question")"
           printf '\n<details><summary>Answer</summary>\n\n'
           sed '1d; /^```answer/,/^```/d' "lecture_notes/solutions/$id.md"
           sed -n 's/^answer: *\(.*\)/\n**\1**/p' "lecture_notes/solutions/$id.md" | sed 's/+-/±/'
