@@ -13,6 +13,8 @@ done
 katex=$(node -p "require('./$book/formulas.js').folder || ''")
 [ -n "$katex" ] || { echo "KaTeX is not installed: run 'make deps-book'" >&2; exit 2; }
 
+node "$book/formulas.js" check README.md ./*/README.md lecture_notes/*.md lecture_notes/*/*.md
+
 rm -rf "$work" "$out"
 mkdir -p "$work" "$out/katex"
 cp -rL "$katex/katex.min.css" "$katex/fonts" "$out/katex/"

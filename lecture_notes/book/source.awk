@@ -69,6 +69,8 @@ function flush_code(    i, first, last, name) {
         printf "``` {#%s.L%d .cpp .numberLines startFrom=\"%d\"}\n", anchor, first, first
         for (i = first; i <= last; i++) {
             print code[i - start + 1]
+            if (match(code[i - start + 1], /\/\/ \[[A-Za-z0-9_]+\]$/))
+                print "region", file "#" substr(code[i - start + 1], RSTART + 4, RLENGTH - 5), page "#" anchor ".L" first "-" i >> places
             name = defined(code[i - start + 1])
             if (name != "" && !seen[name]++) print "function", file ":" name, page "#" anchor ".L" first "-" i >> places
         }

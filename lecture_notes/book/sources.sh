@@ -1,7 +1,7 @@
 #!/bin/sh
 # sources.sh FOLDER: one page of sources for each program, in reading order: main, the step, the
 # headers of the step in the order in which the step calls them, and what these use.
-#   out:  FOLDER/source_PROGRAM.md, and FOLDER/places, lines "kind name page#anchor": where each file,
+#   out:  FOLDER/source_PROGRAM.md, and FOLDER/places, lines "kind name page#anchor": where each file, region,
 #         each function of a file (FILE:FUNCTION), and each test (TESTFILE:NAME) is shown
 set -eu
 folder=$1
