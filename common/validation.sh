@@ -90,6 +90,7 @@ body() {
         count_of_parts = split($1, key, ".")
         text = substr($0, length($1) + 2)
         if (count_of_parts == 1) value["", key[1]] = text
+        else if (key[1] ~ /^command/) value["", key[1]] = value["", key[1]] (key[2] == 0 ? "" : " ") text  # a list of words
         else if (key[1] == "performance") value["performance", key[2]] = text
         else if (key[1] == "results") {
             if (!((key[2], "seen") in value)) { value[key[2], "seen"] = 1; order[++results] = key[2] }
