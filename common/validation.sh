@@ -72,7 +72,7 @@ body() {
         revision = value["", "source_revision"] value["", "revision"]
         print "<p>Again: <code>" escaped(command) "</code>. " \
               (revision != "" ? "Revision " escaped(revision) ", v" : "V") "ersion " value["", "version"] ", " \
-              sprintf("%.3g", value["performance", "wall_s"]) " s on " short(value["performance", "threads"]) " threads.</p>"
+              sprintf("%.3g", value["performance", "wall_s"]) " s on " short(value["performance", "threads"]) (value["performance", "threads"] == 1 ? " thread" : " threads") ".</p>"
         for (i = 1; i <= pictures; i++)
             print "<figure><a href=\"runs/" picture[i] ".png\"><img src=\"runs/" picture[i] ".png\" alt=\"" picture[i] "\" loading=\"lazy\"></a></figure>"
         delete_all()

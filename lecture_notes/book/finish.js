@@ -114,8 +114,9 @@ const chapters = printed.map(({page, html}) => {
     return `<section class="chapter" id="${name(page)}">${text}</section>`;
 });
 const front = pages.find(({page}) => page === 'index.html').html;
-const contents = printed.map(({page, html}) => `<li><a href="#${name(page)}">` +
-    `${plain((html.match(/<h1[^>]*>([\s\S]*?)<\/h1>/) || ['', page])[1])}</a></li>`).join('\n');
+const titles = new Map(fs.readFileSync('build/book/titles', 'utf8').trim().split('\n')
+    .map((line) => line.split('\t')).map(([page, , title]) => [page, title]));
+const contents = printed.map(({page}) => `<li><a href="#${name(page)}">${titles.get(page)}</a></li>`).join('\n');
 fs.writeFileSync(print, front.replace(/<nav>[\s\S]*<\/nav>/, '').replace(/<script[\s\S]*?<\/script>/, '')
     .replace(/<input[^>]*>\s*<label[\s\S]*?<\/label>/, '')
     .replace(/(<main[^>]*>)[\s\S]*<\/main>/, (all, main) => `${main}<div class="cover">
