@@ -72,7 +72,7 @@ body() {
         revision = value["", "source_revision"] value["", "revision"]
         print "<p>Again: <code>" escaped(command) "</code>. " \
               (revision != "" ? "Revision " escaped(revision) ", v" : "V") "ersion " value["", "version"] ", " \
-              sprintf("%.3g", value["performance", "wall_s"]) " s on " short(value["performance", "threads"]) " threads.</p>"
+              sprintf("%.3g", value["performance", "wall_s"]) " s on " short(value["performance", "threads"]) (value["performance", "threads"] == 1 ? " thread" : " threads") ".</p>"
         for (i = 1; i <= pictures; i++)
             print "<figure><a href=\"runs/" picture[i] ".png\"><img src=\"runs/" picture[i] ".png\" alt=\"" picture[i] "\" loading=\"lazy\"></a></figure>"
         delete_all()
@@ -90,6 +90,7 @@ body() {
         count_of_parts = split($1, key, ".")
         text = substr($0, length($1) + 2)
         if (count_of_parts == 1) value["", key[1]] = text
+        else if (key[1] ~ /^command/) value["", key[1]] = value["", key[1]] (key[2] == 0 ? "" : " ") text  # a list of words
         else if (key[1] == "performance") value["performance", key[2]] = text
         else if (key[1] == "results") {
             if (!((key[2], "seen") in value)) { value[key[2], "seen"] = 1; order[++results] = key[2] }

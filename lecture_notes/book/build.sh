@@ -13,6 +13,8 @@ done
 katex=$(node -p "require('./$book/formulas.js').folder || ''")
 [ -n "$katex" ] || { echo "KaTeX is not installed: run 'make deps-book'" >&2; exit 2; }
 
+node "$book/formulas.js" check README.md ./*/README.md lecture_notes/*.md lecture_notes/*/*.md
+
 rm -rf "$work" "$out"
 mkdir -p "$work" "$out/katex"
 cp -rL "$katex/katex.min.css" "$katex/fonts" "$out/katex/"
@@ -20,7 +22,6 @@ cp "$book/book.css" "$book/book.js" "$out/"
 cp -r lecture_notes/figures "$out/figures"
 
 # ---- the pages, in order: note, page, group ---------------------------------------------------------
-sh "$book/sources.sh" "$work"
 {
     echo "$book/index.md index.html Start"
     for note in lecture_notes/0*.md; do
@@ -67,6 +68,8 @@ grep -o "](figures/[a-z0-9_]*\.png)" lecture_notes/0*.md | sed "s|^lecture_notes
 awk '{ sub(/.*-/, "", $2) } seen[$1]++ { print "the label " $1 " is given twice"; bad = 1 } END { exit bad }' "$work/labels" >&2
 cat "$work/figures" >> "$work/labels"
 
+sh "$book/sources.sh" "$work"
+
 sed -n 's|^@[a-z]*{\(.*\),$|\1|p; s|^  doi = {\(.*\)}$|doi \1|p' "$book/references.bib" |
     awk '$1 == "doi" { print key, $2; next } { key = $1 }' > "$work/dois"
 
@@ -80,6 +83,7 @@ for method in 1 2 3 4a 4b 5 6; do
           id=$(basename "$question" .md)
           printf '\n<a id="%s"></a>\n\n' "$id"
           sed '/^```exercise/,/^```/d; 1s/^#/##/' "$question"
+          printf '\nTo be graded: `make exercise E=%s`, %s.\n' "$id" "$(sed -n 's|^time: ||p' "$question")"
           printf '\n<details><summary>Answer</summary>\n\n'
           sed '1d; /^```answer/,/^```/d' "lecture_notes/solutions/$id.md"
           sed -n 's/^answer: *\(.*\)/\n**\1**/p' "lecture_notes/solutions/$id.md" | sed 's/+-/±/'
@@ -132,7 +136,7 @@ done < "$work/pages"
 node "$book/finish.js" "$out" "$out/print.html"
 
 # ---- the PDF -----------------------------------------------------------------------------------------
-[ "${1:-}" != html ] || exit 0
+[ "${1:-}" != html ] || { rm "$out/print.html"; exit 0; }
 browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome || true)
 [ -n "$browser" ] || { echo "no PDF: 'chromium' is not installed: run 'make deps-book'" >&2; exit 2; }
 profile=$(mktemp -d)

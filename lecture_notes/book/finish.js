@@ -35,9 +35,12 @@ for (const page of pages) {
             title: name === title ? name : `${title}: ${name}`,
             text: plain(part.slice(heading[0].length)).replace(/\s+/g, ' ').trim()});
     }
-    html = html.replace(/<span class="math (inline|display)">([\s\S]*?)<\/span>/g, (all, kind, tex) => {
+    // A mark behind a formula goes into its last box, or a line might begin with it.
+    html = html.replace(/<span class="math (inline|display)">([\s\S]*?)<\/span>([,.;:)]*)/g, (all, kind, tex, mark) => {
         try {
-            return render(plain(tex), kind === 'display');
+            const shown = render(plain(tex), kind === 'display');
+            if (kind === 'display' || !mark) return shown + mark;
+            return shown.replace(/(<\/span>){3}$/, `<span class="mark">${mark}</span>$&`);
         } catch (error) {
             complain(`${page.note}: ${error.message}: ${plain(tex)}`);
             return all;
@@ -96,23 +99,31 @@ for (const figure of figures)
 const printed = pages.filter(({page}) => !/^(source_|facts|index\.html)/.test(page));
 const inPrint = new Set(printed.map(({page}) => page));
 const name = (page, anchor) => page.replace('.html', '') + (anchor ? '--' + anchor : '');
+const answers = [];  // on paper they stand at the end
 const chapters = printed.map(({page, html}) => {
     const text = body(html)
         .replace(/ id="([^"]*)"/g, (all, id) => ` id="${name(page, id)}"`)
         .replace(/<a href="(?!https?:)([^"#]*)#?([^"]*)"([^>]*)>([\s\S]*?)<\/a>/g, (all, file, anchor, more, inside) =>
             inPrint.has(file || page) ? `<a href="#${name(file || page, anchor)}"${more}>${inside}</a>` : inside)
+        .replace(/<a id="([^"]*--([^"]*))"><\/a>((?:(?!<a id=)[\s\S])*?)<details><summary>Answer<\/summary>([\s\S]*?)<\/details>/g,
+            (all, id, exercise, question, answer) => {
+                answers.push(`<h3 id="answer-${exercise}">Answer to <a href="#${id}">${exercise}</a></h3>${answer}`);
+                return `<a id="${id}"></a>${question}<p><a href="#answer-${exercise}">Answer</a></p>`;
+            })
         .replace(/<details>/g, '<details open>');
     return `<section class="chapter" id="${name(page)}">${text}</section>`;
 });
 const front = pages.find(({page}) => page === 'index.html').html;
-const contents = printed.map(({page, html}) => `<li><a href="#${name(page)}">` +
-    `${plain((html.match(/<h1[^>]*>([\s\S]*?)<\/h1>/) || ['', page])[1])}</a></li>`).join('\n');
+const titles = new Map(fs.readFileSync('build/book/titles', 'utf8').trim().split('\n')
+    .map((line) => line.split('\t')).map(([page, , title]) => [page, title]));
+const contents = printed.map(({page}) => `<li><a href="#${name(page)}">${titles.get(page)}</a></li>`).join('\n');
 fs.writeFileSync(print, front.replace(/<nav>[\s\S]*<\/nav>/, '').replace(/<script[\s\S]*?<\/script>/, '')
     .replace(/<input[^>]*>\s*<label[\s\S]*?<\/label>/, '')
     .replace(/(<main[^>]*>)[\s\S]*<\/main>/, (all, main) => `${main}<div class="cover">
 <h1>The particle-in-cell family in running code</h1>
 <p>Lecture notes to J. U. Brackbill's talk<br><em>The First Half Century of the Particle-in-Cell Method</em> (2002)</p></div>
-<section class="chapter contents"><h1>Contents</h1><ul>${contents}</ul></section>${chapters.join('\n')}</main>`));
+<section class="chapter contents"><h1>Contents</h1><ul>${contents}<li><a href="#answers">Answers</a></li></ul></section>${chapters.join('\n')}
+<section class="chapter" id="answers"><h1>Answers</h1>${answers.join('\n')}</section></main>`));
 
 for (const {page, html} of pages) fs.writeFileSync(`${out}/${page}`, html);
 console.log(`${pages.length} pages, ${links} links, ${sections.length} sections, ${entries.length} terms`);

@@ -36,6 +36,26 @@ function prose(text) {
         .replace(/(`+)[^`\n]+\1/g, blank);
 }
 
+// Underscores that Markdown would take for emphasis: one that may begin it, and a later one in the same paragraph
+// that may end it. A space before the second keeps it from ending anything, and no formula minds.
+function emphasized(text) {
+    const mark = (c) => /[!-\/:-@[-`{-~]/.test(c), space = (c) => !c || /\s/.test(c);
+    const found = [];
+    let begun = false;
+    for (const {0: piece, index: at} of text.matchAll(/_|\n\s*\n|\|/g)) {
+        if (piece !== '_') {
+            begun = begun && piece === '|' && !/^\|/.test(text.slice(text.lastIndexOf('\n', at) + 1));
+            continue;
+        }
+        const a = text[at - 1], b = text[at + 1];
+        const left = !space(b) && (!mark(b) || space(a) || mark(a));
+        const right = !space(a) && (!mark(a) || space(b) || mark(b));
+        if (begun && right && (!left || mark(b))) found.push(at);
+        begun = begun || (left && (!right || mark(a)));
+    }
+    return found;
+}
+
 function check(path) {
     const text = prose(fs.readFileSync(path, 'utf8'));
     const formula = /\$\$([\s\S]+?)\$\$|\$((?:[^$\n]|\n(?!\n))+?)\$/g;
@@ -60,6 +80,11 @@ function check(path) {
         } catch (error) {
             complain(error.message);
         }
+    }
+    for (const at of emphasized(text)) {
+        console.log(`${path}:${text.slice(0, at).split('\n').length}: Markdown may take this for the end of emphasis; ` +
+            `write a space before the underscore: ${text.slice(Math.max(0, at - 20), at + 10).replace(/\n/g, ' ')}`);
+        faults++;
     }
     if (/\$/.test(text.replace(formula, ''))) {
         console.log(`${path}: a $ has no partner`);

@@ -21,7 +21,7 @@ end
 local function read_tables()
   each_line("build/book/places", function(line)
     local kind, name, url = line:match("^(%S+) (%S+) (%S+)$")
-    if kind == "file" then places[name] = url
+    if kind == "file" or kind == "region" then places[name] = url
     elseif kind == "test" then tests[name] = url
     else
       places[name] = url
@@ -174,7 +174,7 @@ local function blocks(list)
         local file = from:match("^[^#]*")
         if not places[file] then complain("no page shows " .. file)
         else
-          result:insert(pandoc.Div({pandoc.Plain({link_to({pandoc.Code(file)}, places[file], "code")})},
+          result:insert(pandoc.Div({pandoc.Plain({link_to({pandoc.Code(file)}, places[from] or places[file], "code")})},
             pandoc.Attr("", {"from"})))
         end
         from = nil

@@ -1,33 +1,22 @@
 #!/bin/sh
 # sources.sh FOLDER: one page of sources for each program, in reading order: main, the step, the
 # headers of the step in the order in which the step calls them, and what these use.
-#   out:  FOLDER/source_PROGRAM.md, and FOLDER/places, lines "kind name page#anchor": where each file,
+#   out:  FOLDER/source_PROGRAM.md, and FOLDER/places, lines "kind name page#anchor": where each file, region,
 #         each function of a file (FILE:FUNCTION), and each test (TESTFILE:NAME) is shown
 set -eu
 folder=$1
 : > "$folder/places"
 : > "$folder/shown"
 
-# The functions that a file defines: names before a bracket on a line that begins a definition.
-functions='
-function defined(line,    name) {
-    if (line !~ /^(    )?[A-Za-z][A-Za-z0-9_:<>,&* ]*[ &*][a-z][A-Za-z0-9_]*\(/) return ""
-    if (line ~ /^ *(return|namespace|using|static_assert|template|else|if|for|while|throw|case|delete) *[^A-Za-z_]/) return ""
-    if (line ~ /^ *(return|throw|else) /) return ""
-    name = line
-    sub(/\(.*/, "", name)
-    sub(/.*[ &*]/, "", name)
-    return name
-}'
-
 # The headers that a step includes, of methods only, in the order in which it calls what they define.
 in_order_of_calls() {  # step.hpp
     sed -n 's/^#include "\(.*\)"/\1/p' "$1" | grep -vE '^common/|/(setup|theory|output)/' |
         while read -r header; do
-            awk -v step="$1" -v header="$header" "$functions"'
+            awk -v step="$1" -v header="$header" -f lecture_notes/book/defined.awk -f /dev/stdin "$header" << 'END'
             BEGIN { while ((getline line < step) > 0) if (line !~ /^#include/) text = text line "\n" }
             (name = defined($0)) != "" && match(text, "[^A-Za-z0-9_]" name "[(<]") && (!first || RSTART < first) { first = RSTART }
-            END { print (first ? first : 1000000 + NR), header }' "$header"
+            END { print (first ? first : 1000000 + NR), header }
+END
         done | sort -s -n -k1,1 | sed 's/^[0-9]* //'
 }
 
@@ -70,13 +59,8 @@ page() {  # page, title; the files on stdin
         echo "$file $page" >> "$folder/shown"
         anchor=$(echo "$file" | tr / .)
         { printf '## %s {#%s}\n\n' "$file" "$anchor"
-          printf '``` {#%s.L .cpp .numberLines}\n' "$anchor"
-          cat "$file"
-          printf '```\n\n'; } >> "$folder/$page.md"
-        awk -v file="$file" -v url="$page.html#$anchor" "$functions"'
-        BEGIN { print "file", file, url }
-        (name = defined($0)) != "" && !seen[name]++ { print "function", file ":" name, url ".L-" FNR }' \
-            "$file" >> "$folder/places"
+          awk -v file="$file" -v page="$page.html" -v anchor="$anchor" -v places="$folder/places" \
+              -v labels="$folder/labels" -f lecture_notes/book/defined.awk -f lecture_notes/book/source.awk "$file"; } >> "$folder/$page.md"
     done < "$folder/files"
 }
 
