@@ -556,7 +556,7 @@ web_link  := -O3 -msimd128 -fexceptions -Wl,--wrap=_ZN6common3Run12not_finishedE
     -sFORCE_FILESYSTEM -sEXPORTED_RUNTIME_METHODS=callMain,FS
 web_gsl   := cdf/gaussinv fft/fft fit/linear specfunc/bessel_I0 err/error err/stream err/strerror sys/infnan
 web_muparser := muParser muParserBase muParserBytecode muParserCallback muParserError muParserTokenReader
-web_common := $(patsubst %.cpp,$(web)/%.o,$(wildcard common/*/*.cpp) $(page)/glue.cpp) $(web)/libraries.a
+web_common := $(patsubst %.cpp,$(web)/%.o,$(filter-out %/openpmd.cpp,$(wildcard common/*/*.cpp)) $(page)/glue.cpp) $(web)/libraries.a
 # Emscripten looks for modules of node where Debian puts them.
 emscripten := NODE_PATH=/usr/share/nodejs em++
 

@@ -63,11 +63,10 @@ void show_and_wait(const common::Run& run, bool more, double done) {
 
 namespace common {
 
-void show_columns(const std::string& path, const std::vector<ScalarColumn>& columns,
+void show_columns(const std::string& kind, const std::vector<ScalarColumn>& columns,
                   const SampledAxis& x, const SampledAxis& z) {
-    const std::string name = path.substr(path.rfind('/') + 1);
     const double now = emscripten_get_now();
-    if (!page_wants(name.substr(0, name.find('_')).c_str())) return;
+    if (!page_wants(kind.c_str())) return;
     if (ms_per_picture == 0 && !paused && now - last_picture < shortest_ms) return;
     last_picture = now;
     picture_is_new = true;

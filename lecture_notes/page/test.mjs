@@ -90,9 +90,9 @@ async function until(condition, seconds) {
 // ---- what every page must do ----------------------------------------------------------------------
 
 function history_of(text) {
-    const [names, ...rows] = text.trim().split("\n");
-    const columns = names.slice(2).split(" ");
-    return {names: columns.map((column) => column.replace(/^\d+:|\[.*/g, "")), units: columns.map((column) => column.replace(/.*\[/, "[")), rows: rows.map((line) => line.split(" ").map(Number))};
+    const [first, second, ...rows] = text.trim().split("\n"), names = first.split(" ");
+    const units = new Map(second.replace("# units: ", "").split(", ").map((pair) => pair.split(" ")));
+    return {names, units: names.map((name) => units.get(name) ?? "1"), rows: rows.map((line) => line.split(" ").map(Number))};
 }
 
 // Digits shared by two histories up to a time: of the difference over the largest number of the same unit.

@@ -36,10 +36,11 @@ async function run(module, kind, args) {
             instance.picture = {axes: [], columns: {}};
         },
         addRows(numbers, done) {
-            names ??= read("history.dat").split("\n", 1)[0].slice(2).split(" ").map((column) => {
-                const [, name, unit] = /^\d+:(.*)\[(.*)\]$/.exec(column);
-                return {name, unit};
-            });
+            if (!names) {
+                const [first, second] = read("history.dat").split("\n", 2);
+                const units = new Map(second.replace("# units: ", "").split(", ").map((pair) => pair.split(" ")));
+                names = first.split(" ").map((name) => ({name, unit: units.get(name) ?? "1"}));
+            }
             postMessage({rows: numbers, names, done}, [numbers.buffer]);
         },
         wait(ms) {

@@ -11,16 +11,20 @@
 namespace common {
 
 /// Hands columns to the page, if a picture is due.
-/// in: path, whose name tells the kind, such as particles_000123.dat; x and z, the axes of a mesh
-void show_columns(const std::string& path, const std::vector<ScalarColumn>& columns,
+/// in: kind, such as particles; x and z, the axes of a mesh
+void show_columns(const std::string& kind, const std::vector<ScalarColumn>& columns,
                   const SampledAxis& x = {}, const SampledAxis& z = {});
 
-inline void write_table(const std::string& path, const std::vector<ScalarColumn>& columns) {
-    show_columns(path, columns);
+inline void write_table(const Snapshot&, const std::string& kind,
+                        const std::vector<ScalarColumn>& columns) {
+    show_columns(kind, columns);
 }
-inline void write_fields(const std::string& path, const SampledAxis& x, const SampledAxis& z,
-                         const std::vector<ScalarColumn>& fields) {
-    show_columns(path, fields, x, z);
+inline void write_fields(const Snapshot&, const std::string& kind, const SampledAxis& x,
+                         const SampledAxis& z, const std::vector<ScalarColumn>& fields) {
+    show_columns(kind, fields, x, z);
 }
+inline void write_table(const std::string&, const std::vector<ScalarColumn>&) {}
+inline void write_fields(const std::string&, const SampledAxis&, const SampledAxis&,
+                         const std::vector<ScalarColumn>&) {}
 
 }  // namespace common
