@@ -26,7 +26,7 @@ do for [k = 1:4] {
     left = 0.075 + column_ * (panel + gap); top = 0.885 - row * (panel_height + 0.055)
     set lmargin at screen left; set rmargin at screen left + panel
     set tmargin at screen top; set bmargin at screen top - panel_height
-    set title sprintf('t = %.1f (H/g)^{1/2}', when(shown_[k]) / unit) offset 0, -0.7 font ',18'
+    set title sprintf('t = %.2g (H/g)^{1/2}', when(shown_[k]) / unit) offset 0, -0.7 font ',18'
     if (row == 1) { set xlabel 'x / L_0'; set format x '%g' } else { unset xlabel; set format x '' }
     if (column_ == 0) { set ylabel 'y / L_0' offset 0, 0; set format y '%g' } else { unset ylabel; set format y '' }
     if (k == 2) { set colorbox user origin left + panel + 0.012, top - panel_height size 0.01, panel_height; set label 82 'y(0) / H' at screen 0.995, top right offset 0, 1 } else { unset colorbox; unset label 82 }
@@ -36,7 +36,7 @@ unset title; unset label 82; set border 3; set grid; set format '%g'
 set bmargin at screen 0.085; set tmargin at screen top - panel_height - 0.115
 set lmargin at screen 0.075; set rmargin at screen 0.075 + panel
 set xlabel 't / (H/g)^{1/2}'; set ylabel '(L − L_0) / L_0'
-set xrange [0:parameter('end') / unit]; set yrange [0:1.9 * disks(a)]; set xtics 1; set ytics 2
+set xrange [0:parameter('end') / unit]; set yrange [0:2.4 * disks(a)]; set xtics 1; set ytics 2
 set key top left
 plot file using ($1 / unit):((column(front) - right) / L_0) with lines lt 1 title 'front', disks(a) with lines lw 2 dt 2 lc rgb orange title 'disks', experiments(a) with lines lw 2 dt 2 lc rgb green title 'experiments'
 set lmargin at screen 0.075 + panel + 0.09; set rmargin at screen 0.975
