@@ -91,7 +91,7 @@ function draw_points(canvas, picture, style, memory, effective) {
     const image = to.createImageData(width, height), data = new Uint32Array(image.data.buffer);
     const polarized = style.color === "fringes";
     const colors = okabe_ito.map((color) => pixel(...bytes(color)));
-    const fringe = 0.02 * effective["material.default.E"];  // the stress difference of one
+    const fringe = 0.05 * effective["material.default.E"];  // the stress difference of one
     if (polarized) data.fill(pixel(0, 0, 0));
     // Particles that stand for a volume are as large as that; others cover half of the picture in all.
     const shared = Math.sqrt(width * height / X.numbers.length / 2);
