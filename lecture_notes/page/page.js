@@ -45,6 +45,7 @@ function start() {
     for (const run of runs) run.worker.terminate();
     $("results").querySelectorAll("table, .scroll").forEach((old) => old.remove());
     $("no-results").hidden = false;
+    $("lines").textContent = "";
     $("progress").value = 0;
     say(paused ? "Paused at the start." : "Running.");
     runs = page.runs.map(({program, args}, r) => {
@@ -62,7 +63,10 @@ function start() {
 }
 
 function receive(run, data) {
-    if (data.line !== undefined) run.lines.push(data.line);
+    if (data.line !== undefined) {
+        run.lines.push(data.line);
+        $("lines").textContent = runs.flatMap(({lines}) => lines).join("\n");
+    }
     if (data.help) show_table(run.program, data.help);
     if (data.effective) {
         run.effective = parse_case(data.effective);
@@ -83,7 +87,6 @@ function receive(run, data) {
 function end(run, {status, summary, history}) {
     Object.assign(run, {status, done: 1, text: history, summary: summary ? JSON.parse(summary) : null});
     if (run.summary) show_results(run);
-    const last = run.lines.filter((line) => line.startsWith("/") || line.includes(run.program + ":")).pop() ?? "";
     if (runs.some((one) => one.status === null)) return;
     const words = runs.map((one) => {
         const judged = Object.entries(one.summary?.results ?? {}).filter(([, result]) => result.verdict);
@@ -91,7 +94,9 @@ function end(run, {status, summary, history}) {
         const verdicts = judged.length ? `, ${judged.length - others.length} of ${judged.length} results PASS${others.join("")}` : "";
         return `${one.program}: ${one.status === 0 ? "done" : "ended with status " + one.status}${verdicts}`;
     });
-    say(words.join(". ") + (runs.some((one) => one.status) ? ". " + last : "."), runs.some((one) => one.status));
+    const failed = runs.filter((one) => one.status !== 0);
+    const reasons = failed.map(({lines, program}) => lines.filter((line) => line.includes(`${program}: `)).pop() ?? "");
+    say([...words, ...reasons].join(". "), failed.length > 0);
     $("pause").disabled = $("next").disabled = true;
 }
 
@@ -176,13 +181,13 @@ function show_sliders() {
         const [low, high] = limits(entry.range);
         const whole = Number.isInteger(from) && Number.isInteger(to) && /cells|per_cell/.test(name);
         const slider = element("input", {
-            type: "range", id: `slider-${n}`, min: Math.max(from, low), max: Math.min(to, high), step: whole ? 1 : (to - from) / 200
+            type: "range", id: `slider-${n}`, min: Math.max(from, low), max: Math.min(to, high), step: whole ? 1 : "any"
         });
         slider.dataset.name = name, slider.dataset.run = of[0];
         slider.setAttribute("aria-describedby", `meaning-${n}`);
         const value = element("output", {id: `value-${n}`});
         slider.oninput = () => value.textContent = shown(slider.value, entry.unit);
-        slider.onchange = () => set(of, name, slider.value);
+        slider.onchange = () => set(of, name, +Number(slider.value).toPrecision(4));
         const owner = only === undefined ? "" : ` of ${page.runs[only].program}`;
         $("sliders").append(element("label", {className: "row", htmlFor: slider.id}, name + owner, value), slider,
                             element("p", {className: "meaning", id: `meaning-${n}`}, `${entry.meaning}; ${entry.range}`));

@@ -143,6 +143,36 @@ async function check_pause(tab, name) {
     await tab.value(`document.getElementById("pause").click()`);
 }
 
+// A slider reaches the program, an impossible value is refused in words, and Reset takes both back.
+async function check_parameters(tab, name) {
+    const [parameter, value, before] = await tab.value(`(() => { const slider = document.querySelector("#sliders input");
+        const before = runs[slider.dataset.run].effective[slider.dataset.name];
+        slider.value = slider.max; slider.oninput(); slider.onchange();
+        return [slider.dataset.name, Number(slider.value), before]; })()`);
+    const arrives = (wanted) => until(() => tab.value(`runs.some((run) => run.effective?.["${parameter}"] === ${wanted})`), 10);
+    check(value !== before && await arrives(value), `${name}: the slider sets ${parameter} = ${value}`);
+    await tab.value(`set([0], "${parameter}", "nonsense")`);
+    await until(() => tab.value(`runs[0].status !== null`), 10);
+    check(await tab.value(`runs[0].status === 2 && runs[0].lines.some((line) => line.includes("${parameter}"))`), `${name}: nonsense is refused with a sentence`);
+    await tab.value(`document.getElementById("reset").click()`);
+    check(await arrives(before), `${name}: Reset takes it back to ${before}`);
+}
+
+// Who asks for less motion gets one picture, and a page that waits; who asks for the dark, dark.
+async function check_wishes(name) {
+    const tab = await open("out/web/index.html", 1280, 900);
+    await tab.ask("Emulation.setEmulatedMedia", {features: [{name: "prefers-reduced-motion", value: "reduce"}, {name: "prefers-color-scheme", value: "dark"}]});
+    await tab.ask("Page.navigate", {url: `file://${resolve(`out/web/${name}.html`)}`});
+    await until(() => tab.value(`typeof record === "object" && record.first_picture !== null`), 10);
+    await sleep(1000);
+    check(await tab.value(`paused && runs.every((run) => run.pictures === 1)`), `${name}: starts paused, with one picture, for who asks for less motion`);
+    await tab.value(`document.getElementById("pause").click()`);
+    await sleep(2000);
+    check(await tab.value(`runs[0].pictures > 5`), `${name}: and goes on with Run`);
+    await tab.picture(`${name}_dark`);
+    await tab.close();
+}
+
 async function check_page(name) {
     const tab = await open(`out/web/${name}.html`, 1280, 900);
     await until(() => tab.value(`typeof record === "object" && record.first_picture !== null`), 30);
@@ -165,6 +195,7 @@ async function check_page(name) {
     await check_pause(tab, name);
     await check_access(tab, name);
     await tab.picture(`${name}_running`);
+    await check_parameters(tab, name);
     await tab.value(`(() => { const speed = document.getElementById("speed"); speed.value = speed.max; speed.oninput(); })()`);
     const start = Date.now();
     const ended = await until(() => tab.value(`runs.every((run) => run.status !== null)`), longest_s);
@@ -210,6 +241,7 @@ try {
     check(await index.value(`document.querySelectorAll("#cases a").length`) === Object.keys(cases).length, "the index names all pages");
     await index.picture("index");
     await index.close();
+    await check_wishes(names[0]);
     for (const name of names) await check_page(name);
 } finally {
     browser.kill();
