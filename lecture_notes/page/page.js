@@ -130,24 +130,21 @@ function redraw() {
 // Where the axis of the history ends, if it is that of the first column and known.
 const end_time = () => page.chart.x === "time" ? runs[0].effective?.["time.end"] : undefined;
 
-function show_legend() {
-    const several = page.runs.length > 1;
-    const names = several ? page.runs.map(({program}) => program) : page.chart.lines;
-    const keys = names.flatMap((name, k) => {
-        const key = element("span", {className: "key"});
-        key.style.borderTopColor = okabe_ito[k];
-        if (several && k) key.style.borderTopStyle = "dashed";
+// Name by name beside a piece of its line; the second of two runs is dashed.
+function keys(names, dashed = false) {
+    return names.flatMap((name, k) => {
+        const key = element("span", {className: dashed && k ? "key dashed" : "key"});
+        key.style.borderTopColor = `var(--line-${k})`;
         return [key, name];
     });
-    const what = several ? `${page.chart.lines[0]}${page.chart.relative ? " over its first value" : ""} of ` : "";
-    $("legend").append(what, ...keys);
-    $("chart").setAttribute("aria-label", `history of ${page.chart.lines.join(", ")}`);
-    if (page.picture.draw === "lines")
-        page.picture.values.forEach((name, k) => {
-            const key = element("span", {className: "key"});
-            key.style.borderTopColor = okabe_ito[k];
-            $("pictures-legend").append(key, name);
-        });
+}
+
+function show_legend() {
+    const {lines, relative} = page.chart, several = page.runs.length > 1;
+    const what = several ? `${lines[0]}${relative ? " over its first value" : ""} of ` : "";
+    $("legend").append(what, ...keys(several ? page.runs.map(({program}) => program) : lines, several));
+    $("chart").setAttribute("aria-label", `history of ${lines.join(", ")}`);
+    if (page.picture.draw === "lines") $("pictures").after(element("p", {}, ...keys(page.picture.values)));
 }
 
 // ---- parameters -----------------------------------------------------------------------------------
@@ -299,7 +296,6 @@ async function open_page() {
         canvas.setAttribute("aria-label", page.title);
         $("pictures").append(element("figure", {}, canvas, element("figcaption", {id: `caption-${r}`})));
     });
-    $("pictures").after(element("p", {id: "pictures-legend"}));
     show_legend();
     show_code();
     $("pause").onclick = () => set_pause(!paused);

@@ -1,12 +1,12 @@
-// The pictures: points, an image with contours, lines, and the history. Colors are those of common/style.gp.
+// The pictures: points, an image with contours, lines, and the history. Colors are those of page.css.
 
-const okabe_ito = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
 const palettes = {
     inferno: ["#000004", "#1b0c41", "#4a0c6b", "#781c6d", "#a52c60", "#cf4446", "#ed6925", "#fb9b06", "#f7d13d", "#fcffa4"],
     diverging: ["#053061", "#2166ac", "#4393c3", "#92c5de", "#f7f7f7", "#f4a582", "#d6604d", "#b2182b", "#67001f"]
 };
 const bytes = (hex) => [1, 3, 5].map((k) => parseInt(hex.slice(k, k + 2), 16));
 const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+const line_colors = () => [0, 1, 2, 3].map((k) => css(`--line-${k}`));
 
 /// 256 colors, as the 32 bits of a pixel.
 function table_of(palette) {
@@ -90,7 +90,7 @@ function draw_points(canvas, picture, style, memory, effective) {
     if (width < 1 || height < 1) return;
     const image = to.createImageData(width, height), data = new Uint32Array(image.data.buffer);
     const polarized = style.color === "fringes";
-    const colors = okabe_ito.map((color) => pixel(...bytes(color)));
+    const colors = line_colors().map((color) => pixel(...bytes(color)));
     const fringe = 0.05 * effective["material.default.E"];  // the stress difference of one
     if (polarized) data.fill(pixel(0, 0, 0));
     // Particles that stand for a volume are as large as that; others cover half of the picture in all.
@@ -191,9 +191,10 @@ function draw_lines(canvas, picture, style) {
     const x = picture.axes[0];
     const view = frame(canvas, {low: x.low, high: x.low + (x.count - 1) * x.step, label: with_unit(x.name, x.unit)},
                        {low: style.y_low, high: style.y_high, label: style.values.join(", ")});
+    const colors = line_colors();
     style.values.forEach((name, k) => {
         const numbers = picture.columns[name].numbers;
-        draw_line(view, Array.from(numbers, (_, i) => x.low + i * x.step), numbers, okabe_ito[k]);
+        draw_line(view, Array.from(numbers, (_, i) => x.low + i * x.step), numbers, colors[k]);
     });
 }
 
@@ -210,7 +211,7 @@ function draw_line({to, box, at_x, at_y, scale}, x, y, color, dashes = []) {
 
 /// Columns of the history of one run or two, which is dashed.
 function draw_chart(canvas, style, histories, end) {
-    const lines = [];
+    const lines = [], colors = line_colors();
     histories.forEach(({names, values}, r) => style.lines.forEach((name, k) => {
         if (!names) return;
         const column = (name) => {
@@ -220,7 +221,7 @@ function draw_chart(canvas, style, histories, end) {
         let y = column(name);
         if (style.relative) y = y.map((v) => v / y[0]);
         if (style.log) y = y.map((v) => Math.max(v, 1e-300));
-        lines.push({x: column(style.x), y, color: okabe_ito[histories.length > 1 ? r : k], dashes: r ? [6, 4] : [],
+        lines.push({x: column(style.x), y, color: colors[histories.length > 1 ? r : k], dashes: r ? [6, 4] : [],
             unit: style.relative ? "over its first value" : names.find((one) => one.name === name).unit, x_unit: names.find((one) => one.name === style.x).unit});
     }));
     if (lines.length === 0) return;
