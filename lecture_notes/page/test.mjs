@@ -82,6 +82,15 @@ async function open(file, width, height) {
     return tab;
 }
 
+// Seconds that pages have computed since then, on all cores together: what other programs do on this machine has no part in it.
+async function renderers() {
+    const {processInfo} = await ask("SystemInfo.getProcessInfo");
+    return new Map(processInfo.filter(({type}) => type === "renderer").map(({id, cpuTime}) => [id, cpuTime]));
+}
+async function computed_since(then) {
+    return [...await renderers()].reduce((sum, [id, seconds]) => sum + seconds - (then.get(id) ?? 0), 0);
+}
+
 async function until(condition, seconds) {
     for (const end = Date.now() + 1000 * seconds; Date.now() < end; await sleep(100)) if (await condition()) return true;
     return false;
@@ -174,24 +183,24 @@ async function check_wishes(name) {
 }
 
 async function check_page(name) {
+    const before = await renderers();
     const tab = await open(`out/web/${name}.html`, 1280, 900);
     await until(() => tab.value(`typeof record === "object" && record.first_picture !== null`), 30);
     const first = await tab.value(`record.first_picture`);
-    check(first !== null && first < first_picture_ms, `${name}: first picture after ${Math.round(first)} ms`);
+    const work = 1000 * await computed_since(before);
+    check(first !== null && Math.min(first, work) < first_picture_ms, `${name}: first picture after ${Math.round(work)} ms of computing, ${Math.round(first)} ms as it was`);
     if (first === null) return void check(false, `${name}: ${tab.complaints} ${await tab.value(`runs.flatMap((run) => run.lines).join(" ")`)}`);
     await until(() => tab.value(`document.querySelector("#sliders input") !== null`), 10);
     const sliders = await tab.value(`document.querySelectorAll("#sliders input").length`);
     check(sliders === cases[name].sliders.length, `${name}: ${sliders} sliders from the parameter table`);
 
-    // On one core: per second that the renderer has computed, on which other work of the machine has no part.
-    const computed = async () => (await ask("SystemInfo.getProcessInfo")).processInfo.filter(({type}) => type === "renderer").reduce((sum, {cpuTime}) => sum + cpuTime, 0);
     const count = `Math.min(...runs.map((run) => run.pictures))`;
     await sleep(500);
-    const [from, at] = [await tab.value(count), await computed()];
+    const [from, at] = [await tab.value(count), await renderers()];
     await sleep(3000);
-    const [to, then] = [await tab.value(count), await computed()];
-    const rate = (to - from) / (then - at);
-    check(rate >= least_pictures_per_s, `${name}: ${rate.toFixed(1)} pictures in a second of one core, ${((to - from) / 3).toFixed(1)} in a second as it was`);
+    const [to, seconds] = [await tab.value(count), await computed_since(at)];
+    const rate = (to - from) / seconds;
+    check(rate >= least_pictures_per_s, `${name}: ${rate.toFixed(1)} pictures in a second of computing, ${((to - from) / 3).toFixed(1)} in a second as it was`);
     await check_pause(tab, name);
     await check_access(tab, name);
     await tab.picture(`${name}_running`);
