@@ -74,6 +74,10 @@ describe_test(notes.every_label_of_the_ledger_exists notes)
 add_test(notes.numbers_agree_with_the_runs sh common/notes.sh compare)
 describe_test(notes.numbers_agree_with_the_runs long)
 
+# ---- the pages for the browser (make test-web runs them) -------------------------------------------
+add_test(pages.runs_and_sliders_are_those_of_the_programs sh tests/support/pages.sh ${build_folder})
+describe_test(pages.runs_and_sliders_are_those_of_the_programs physics)
+
 # ---- the exercises -------------------------------------------------------------------------------
 # Each that runs something. Those with a patch build in one and the same copy of the sources.
 add_test(exercises.each_has_a_solution sh common/exercise.sh check)

@@ -11,7 +11,7 @@ const cases = {
         runs: [{program: "cic", args: ["cic/cases/two_stream.toml", "output.particles_interval=0.2"]}],
         picture: {kind: "particles", draw: "points", x: "x", y: "v_x", color: "species", y_low: -3, y_high: 3},
         chart: {x: "time", log: true, lines: ["field", "kinetic"]},
-        sliders: [["species.right.drift_x", 0.2, 2], ["species.right.temperature_x", 0, 0.5], ["species.right.amplitude", 0, 0.1], ["time.dt", 0.01, 0.4], ["time.end", 20, 200]],
+        sliders: [["species.right.drift_x", 0.2, 2], ["species.left.drift_x", -2, -0.2], ["species.right.amplitude", 0, 0.1], ["time.dt", 0.01, 0.4], ["time.end", 20, 200]],
         chapter: "01_clouds_in_cells.md", step: "cic/step.hpp"
     },
     landau: {
@@ -29,7 +29,7 @@ const cases = {
         runs: [{program: "cic", args: ["cic/cases/cold_beam_grid_instability.toml", "output.particles_interval=0.4"]}],
         picture: {kind: "particles", draw: "points", x: "x", y: "v_x", color: "species", y_low: -0.6, y_high: 0.8},
         chart: {x: "time", log: true, lines: ["kinetic", "field"]},
-        sliders: [["species.beam.drift_x", 0.02, 1], ["grid.cells_x", 16, 256], ["species.beam.temperature_x", 0, 0.3], ["time.end", 50, 400]],
+        sliders: [["species.beam.drift_x", 0.02, 1], ["grid.cells_x", 48, 256], ["species.beam.amplitude", 0.00001, 0.01], ["time.end", 50, 400]],
         chapter: "01_clouds_in_cells.md", step: "cic/step.hpp"
     },
     sod: {
@@ -57,7 +57,7 @@ const cases = {
         runs: [{program: "mpm_explicit", args: ["mpm_explicit/cases/rebound.toml", "output.particles_interval=0.006"]}, {program: "mpm_implicit", args: ["mpm_implicit/cases/rebound.toml", "output.particles_interval=0.006"]}],
         picture: {kind: "particles", draw: "points", x: "x", y: "y", color: "grain", equal: true},
         chart: {x: "time", lines: ["energy"], relative: true, y_low: 0.9, y_high: 1.1},
-        sliders: [["time.alpha", 0.05, 1.2, 0], ["time.alpha", 0.25, 8, 1], ["method.theta", 0.5, 1, 1], ["grain.left.velocity_x", 0.02, 0.3], ["material.default.nu", 0, 0.45]],
+        sliders: [["time.alpha", 0.05, 2, 0], ["time.alpha", 0.25, 8, 1], ["method.theta", 0.5, 1, 1], ["grain.left.velocity_x", 0.02, 0.3], ["material.default.nu", 0, 0.45]],
         chapter: "04b_implicit_mpm.md", step: "mpm_implicit/step.hpp"
     },
     compressed: {

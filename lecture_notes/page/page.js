@@ -56,8 +56,9 @@ function start() {
         };
         run.worker.onmessage = ({data}) => receive(run, data);
         run.worker.onerror = (event) => { record.errors.push(event.message); say(`${program}: ${event.message}`, true); };
-        const settings = [...changed].filter(([key]) => key.startsWith(`${r}:`)).map(([key, value]) => `${key.slice(2)}=${value}`);
-        run.worker.postMessage({pace: pace(), module, kind: page.picture.kind, run: [...args, ...settings], wantsHelp: !table.has(program)});
+        const settings = new Map([...changed].filter(([key]) => key.startsWith(`${r}:`)).map(([key, value]) => [key.slice(2), value]));
+        const words = args.filter((arg) => !settings.has(arg.split("=")[0])).concat([...settings].map(([name, value]) => `${name}=${value}`));
+        run.worker.postMessage({pace: pace(), module, kind: page.picture.kind, run: words, wantsHelp: !table.has(program)});
         return run;
     });
 }
