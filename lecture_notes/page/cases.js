@@ -64,7 +64,7 @@ const cases = {
         title: "Compressed grains in polarized light (material point method)",
         words: "Eighteen disks in a box, pressed by a plate. Between crossed polarizers every dark line joins points of equal difference of the principal stresses.",
         runs: [{program: "mpm_explicit", args: ["mpm_explicit/cases/compressed.toml", "method.shape=gimp", "output.fringes_interval=0", "output.particles_interval=0.001"]}],
-        picture: {kind: "particles", draw: "points", x: "x", y: "y", color: "fringes", equal: true, size: "V"},
+        picture: {kind: "particles", draw: "points", x: "x", y: "y", color: "fringes", equal: true},
         chart: {x: "time", lines: ["energy", "elastic", "kinetic"]},
         sliders: [["grain.plate.velocity_y", -0.3, -0.02], ["material.default.E", 2e4, 5e5], ["material.default.nu", 0, 0.45], ["time.alpha", 0.05, 0.5], ["time.end", 0.1, 0.4]],
         chapter: "04a_explicit_mpm.md", step: "mpm_explicit/step.hpp"

@@ -313,7 +313,10 @@ async function open_page() {
     $("search").oninput = fill_table;
     $("all").ontoggle = show_values;
     for (const form of [$("sliders"), $("table")]) form.onsubmit = (event) => event.preventDefault();
-    const anew = () => { for (const run of runs) run.drawn = null; redraw(); };
+    const anew = () => {
+        for (const run of runs) Object.assign(run, {drawn: null}).canvas.style.height = "";
+        redraw();
+    };
     addEventListener("resize", anew);
     matchMedia("(prefers-color-scheme: dark)").onchange = anew;
     say("Loading.");
