@@ -62,7 +62,7 @@ const cases = {
     },
     compressed: {
         title: "Compressed grains in polarized light (material point method)",
-        words: "Eighteen disks in a box, pressed by a plate. Between crossed polarizers every dark line joins points of equal difference of the principal stresses.",
+        words: "Eighteen disks in a box, pressed by a plate. Between crossed polarizers every dark line joins points of equal difference of the principal stresses, 0.03 E from one line to the next.",
         runs: [{program: "mpm_explicit", args: ["mpm_explicit/cases/compressed.toml", "method.shape=gimp", "output.fringes_interval=0", "output.particles_interval=0.001"]}],
         picture: {kind: "particles", draw: "points", x: "x", y: "y", color: "fringes", equal: true},
         chart: {x: "time", lines: ["energy", "elastic", "kinetic"]},

@@ -95,7 +95,7 @@ function draw_points(canvas, picture, style, memory, effective) {
     const image = to.createImageData(width, height), data = new Uint32Array(image.data.buffer);
     const polarized = style.color === "fringes";
     const colors = line_colors().map((color) => pixel(...bytes(color)));
-    const fringe = 0.05 * effective["material.default.E"];  // the stress difference of one
+    const fringe = 0.03 * effective["material.default.E"];  // the stress difference of one
     if (polarized) data.fill(pixel(0, 0, 0));
     // Particles of a known volume are as large as that; others cover a part of the picture in all.
     const {V, s_xx, s_yy, s_xy} = picture.columns;
