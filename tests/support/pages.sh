@@ -1,5 +1,6 @@
 #!/bin/sh
-# pages.sh BUILD: every run of the pages in lecture_notes/page is a case of its program, and every slider one of its parameters, at both ends.
+# pages.sh BUILD: every run of the pages in lecture_notes/page is a case of its program, and every slider one of its
+# parameters, at both ends; chapters and code that a page points at are there.
 set -eu
 build=$1
 out=$(mktemp)
@@ -37,4 +38,7 @@ while read -r program arguments; do
     # shellcheck disable=SC2086
     said=$("$build/$program" $arguments --dry-run 2>&1) || { status=1; echo "$program $arguments: $said" >&2; }
 done < "$out"
+for file in $(sed -n 's/.*chapter: "\([^"]*\)", step: "\([^"]*\)".*/lecture_notes\/\1 \2/p' lecture_notes/page/cases.js); do
+    [ -f "$file" ] || { status=1; echo "cases.js: there is no $file" >&2; }
+done
 exit $status
