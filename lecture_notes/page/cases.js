@@ -39,7 +39,7 @@ const cases = {
         picture: {kind: "fields", draw: "lines", values: ["rho", "v_x", "p"], y_low: 0, y_high: 1.1},
         chart: {x: "time", lines: ["kinetic"]},
         sliders: [["left.pressure", 0.2, 5], ["right.density", 0.05, 1], ["grid.cells_x", 25, 400], ["particles.per_cell_x", 2, 32]],
-        chapter: "03_flip.md", step: "flip/flip/step.hpp"
+        chapter: "03_flip.md", step: "flip/pic/step.hpp flip/flip/step.hpp"
     },
     rayleigh_taylor: {
         title: "Heavy above light fluid (pic and FLIP)",
@@ -49,7 +49,7 @@ const cases = {
         picture: {kind: "particles", draw: "points", x: "x", y: "z", color: "material", equal: true},
         chart: {x: "time", log: true, lines: ["kinetic"]},
         sliders: [["region.upper.density", 1.1, 4], ["gravity.z", -3, -0.2], ["region.upper.amplitude", 0.01, 0.4, 1], ["grid.cells_x", 16, 64], ["grid.cells_z", 32, 128]],
-        chapter: "03_flip.md", step: "flip/flip/step.hpp"
+        chapter: "03_flip.md", step: "flip/pic/step.hpp flip/flip/step.hpp"
     },
     rebound: {
         title: "A rebound (explicit and implicit material point method)",
@@ -58,7 +58,7 @@ const cases = {
         picture: {kind: "particles", draw: "points", x: "x", y: "y", color: "grain", equal: true},
         chart: {x: "time", lines: ["energy"], relative: true, y_low: 0.9, y_high: 1.1},
         sliders: [["time.alpha", 0.05, 2, 0], ["time.alpha", 0.25, 8, 1], ["method.theta", 0.5, 1, 1], ["grain.left.velocity_x", 0.02, 0.3], ["material.default.nu", 0, 0.45]],
-        chapter: "04b_implicit_mpm.md", step: "mpm_implicit/step.hpp"
+        chapter: "04b_implicit_mpm.md", step: "mpm_explicit/step.hpp mpm_implicit/step.hpp"
     },
     compressed: {
         title: "Compressed grains in polarized light (material point method)",

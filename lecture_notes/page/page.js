@@ -257,17 +257,18 @@ function show_results({program, summary}) {
 
 function show_code() {
     const chapter = element("a", {href: `../../lecture_notes/${page.chapter}`}, "the chapter of the lecture notes");
-    const file = element("a", {href: `../../${page.step}`}, page.step);
-    $("code").append(element("p", {}, "This is what runs here, ", file, "; why, says ", chapter, "."));
-    const pre = element("pre", {tabIndex: 0});
-    pre.setAttribute("aria-label", page.step);
-    let inside = false;
-    code[page.step].forEach((line, n) => {
-        if (/\/\/ \[\/\w+\]/.test(line)) inside = false;
-        if (inside) pre.append(element("span", {}, String(n + 1).padStart(4) + "  "), line + "\n");
-        if (/^ *\/\/ \[\w+\]$/.test(line)) inside = true;
-    });
-    $("code").append(pre);
+    $("code").append(element("p", {}, "This is what runs here; why, says ", chapter, "."));
+    for (const path of page.step.split(" ")) {
+        const pre = element("pre", {tabIndex: 0});
+        pre.setAttribute("aria-label", path);
+        let inside = false;
+        code[path].forEach((line, n) => {
+            if (/\/\/ \[\/\w+\]/.test(line)) inside = false, pre.append("\n");
+            if (inside) pre.append(element("span", {}, String(n + 1).padStart(4) + "  "), line + "\n");
+            if (/^ *\/\/ \[\w+\]$/.test(line)) inside = true;
+        });
+        $("code").append(element("p", {}, element("a", {href: `../../${path}`}, path)), pre);
+    }
 }
 
 // ---- the page -------------------------------------------------------------------------------------
