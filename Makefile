@@ -540,9 +540,9 @@ validation:
 
 # ---- in the browser -------------------------------------------------------------------------------
 
-# The programs, their sources unchanged, compiled by Emscripten to out/web/: an index and a page per case, which need no server
-# and no network. Headers in instead/ come before all others. Of GSL and muParser, which no package has for the browser, what the programs call is compiled from
-# Debian's sources.
+# The programs, their sources unchanged, compiled by Emscripten to out/web/: an index and a page per case, which
+# need no server and no network. Headers in instead/ come before all others. GSL and muParser have no package for
+# the browser: what the programs call of them is compiled from Debian's sources.
 page      := lecture_notes/page
 web       := build/web
 web_cases := two_stream landau finite_grid sod rayleigh_taylor rebound compressed gem
@@ -551,7 +551,7 @@ web_flags := -std=c++20 -O3 -msimd128 -fexceptions -fno-math-errno -w -Wno-c++11
 # Left and entered again between two steps: what may be on the stack there.
 web_link  := -O3 -msimd128 -fexceptions -Wl,--wrap=_ZN6common3Run12not_finishedEll,--wrap=_ZN6common3Run12not_finishedEldd \
     -sASYNCIFY -sASYNCIFY_IMPORTS=page_wait \
-    -sASYNCIFY_STACK_SIZE=65536 -sASYNCIFY_ONLY='main,*run_*,*__function::*,__wrap_*,dynCall_*' \
+    -sASYNCIFY_STACK_SIZE=65536 -sASYNCIFY_ONLY="main,*run_*,*__function::*,__wrap_*,dynCall_*" \
     -sMODULARIZE -sEXPORT_NAME=program -sINVOKE_RUN=0 -sALLOW_MEMORY_GROWTH -sINITIAL_MEMORY=64MB -sENVIRONMENT=worker,node \
     -sFORCE_FILESYSTEM -sEXPORTED_RUNTIME_METHODS=callMain,FS
 web_gsl   := cdf/gaussinv fft/fft fit/linear specfunc/bessel_I0 err/error err/stream err/strerror sys/infnan
@@ -563,8 +563,8 @@ emscripten := NODE_PATH=/usr/share/nodejs em++
 .PHONY: web deps-web test-web
 deps-web: deps
 	@sh common/packages.sh emscripten chromium
-web: $(web_cases:%=out/web/%.html) $(patsubst $(page)/%,out/web/%,$(wildcard $(page)/*.css $(page)/index.html $(filter-out %/worker.js,$(wildcard $(page)/*.js)))) \
-    out/web/code.js $(web_programs:%=out/web/programs/%.js)
+web: $(web_cases:%=out/web/%.html) $(addprefix out/web/,index.html page.css cases.js page.js pictures.js code.js) \
+    $(web_programs:%=out/web/programs/%.js)
 	@echo "open out/web/index.html in a browser"
 
 $(web)/sources/.complete: $(page)/get_sources.sh | $(packages_first)
@@ -582,7 +582,7 @@ $(web)/libraries.a: $(web)/sources/.complete
 	cd $(web)/sources/muparser && for f in $(web_muparser); do emcc -O2 -w -std=c++17 -fexceptions -Iinclude -c -o $$f.o src/$$f.cpp || exit; done
 	emar rcs $@ $(web)/sources/*/*.o
 $(web)/flags: FORCE $(web)/sources/.complete
-	@echo '$(web_flags)' | cmp -s - $@ || echo '$(web_flags)' > $@
+	@echo '$(web_flags) $(web_link)' | cmp -s - $@ || echo '$(web_flags) $(web_link)' > $@
 $(web)/%.o: %.cpp $(web)/flags
 	@mkdir -p $(@D)
 	$(emscripten) $(web_flags) $(if $(filter $<,$(mains)),-Dmain=program_main) -MMD -MP -c -o $@ $<

@@ -96,6 +96,9 @@ foreach(what some own tools all)
     describe_test(plot.${what} figure)
 endforeach()
 describe_test(plot.all long)
+# ---- the pages for the browser (make test-web runs them) -------------------------------------------
+add_test(pages.runs_and_sliders_are_those_of_the_programs sh tests/support/pages.sh ${build_folder})
+describe_test(pages.runs_and_sliders_are_those_of_the_programs physics)
 
 # ---- the exercises -------------------------------------------------------------------------------
 # Each that runs something. Those with a patch build in one and the same copy of the sources.

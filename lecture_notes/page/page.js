@@ -45,6 +45,7 @@ function start() {
     for (const run of runs) run.worker.terminate();
     $("results").querySelectorAll("table, .scroll").forEach((old) => old.remove());
     $("no-results").hidden = false;
+    $("lines").textContent = "";
     $("progress").value = 0;
     say(paused ? "Paused at the start." : "Running.");
     runs = page.runs.map(({program, args}, r) => {
@@ -55,14 +56,18 @@ function start() {
         };
         run.worker.onmessage = ({data}) => receive(run, data);
         run.worker.onerror = (event) => { record.errors.push(event.message); say(`${program}: ${event.message}`, true); };
-        const settings = [...changed].filter(([key]) => key.startsWith(`${r}:`)).map(([key, value]) => `${key.slice(2)}=${value}`);
-        run.worker.postMessage({pace: pace(), module, kind: page.picture.kind, run: [...args, ...settings], wantsHelp: !table.has(program)});
+        const settings = new Map([...changed].filter(([key]) => key.startsWith(`${r}:`)).map(([key, value]) => [key.slice(2), value]));
+        const words = args.filter((arg) => !settings.has(arg.split("=")[0])).concat([...settings].map(([name, value]) => `${name}=${value}`));
+        run.worker.postMessage({pace: pace(), module, kind: page.picture.kind, run: words, wantsHelp: !table.has(program)});
         return run;
     });
 }
 
 function receive(run, data) {
-    if (data.line !== undefined) run.lines.push(data.line);
+    if (data.line !== undefined) {
+        run.lines.push(data.line);
+        $("lines").textContent = runs.flatMap(({lines}) => lines).join("\n");
+    }
     if (data.help) show_table(run.program, data.help);
     if (data.effective) {
         run.effective = parse_case(data.effective);
@@ -83,7 +88,6 @@ function receive(run, data) {
 function end(run, {status, summary, history}) {
     Object.assign(run, {status, done: 1, text: history, summary: summary ? JSON.parse(summary) : null});
     if (run.summary) show_results(run);
-    const last = run.lines.filter((line) => line.startsWith("/") || line.includes(run.program + ":")).pop() ?? "";
     if (runs.some((one) => one.status === null)) return;
     const words = runs.map((one) => {
         const judged = Object.entries(one.summary?.results ?? {}).filter(([, result]) => result.verdict);
@@ -91,7 +95,9 @@ function end(run, {status, summary, history}) {
         const verdicts = judged.length ? `, ${judged.length - others.length} of ${judged.length} results PASS${others.join("")}` : "";
         return `${one.program}: ${one.status === 0 ? "done" : "ended with status " + one.status}${verdicts}`;
     });
-    say(words.join(". ") + (runs.some((one) => one.status) ? ". " + last : "."), runs.some((one) => one.status));
+    const failed = runs.filter((one) => one.status !== 0);
+    const reasons = failed.map(({lines, program}) => lines.filter((line) => line.includes(`${program}: `)).pop() ?? "");
+    say([...words, ...reasons].join(". "), failed.length > 0);
     $("pause").disabled = $("next").disabled = true;
 }
 
@@ -125,24 +131,21 @@ function redraw() {
 // Where the axis of the history ends, if it is that of the first column and known.
 const end_time = () => page.chart.x === "time" ? runs[0].effective?.["time.end"] : undefined;
 
-function show_legend() {
-    const several = page.runs.length > 1;
-    const names = several ? page.runs.map(({program}) => program) : page.chart.lines;
-    const keys = names.flatMap((name, k) => {
-        const key = element("span", {className: "key"});
-        key.style.borderTopColor = okabe_ito[k];
-        if (several && k) key.style.borderTopStyle = "dashed";
+// Name by name beside a piece of its line; the second of two runs is dashed.
+function keys(names, dashed = false) {
+    return names.flatMap((name, k) => {
+        const key = element("span", {className: dashed && k ? "key dashed" : "key"});
+        key.style.borderTopColor = `var(--line-${k})`;
         return [key, name];
     });
-    const what = several ? `${page.chart.lines[0]}${page.chart.relative ? " over its first value" : ""} of ` : "";
-    $("legend").append(what, ...keys);
-    $("chart").setAttribute("aria-label", `history of ${page.chart.lines.join(", ")}`);
-    if (page.picture.draw === "lines")
-        page.picture.values.forEach((name, k) => {
-            const key = element("span", {className: "key"});
-            key.style.borderTopColor = okabe_ito[k];
-            $("pictures-legend").append(key, name);
-        });
+}
+
+function show_legend() {
+    const {lines, relative} = page.chart, several = page.runs.length > 1;
+    const what = several ? `${lines[0]}${relative ? " over its first value" : ""} of ` : "";
+    $("legend").append(what, ...keys(several ? page.runs.map(({program}) => program) : lines, several));
+    $("chart").setAttribute("aria-label", `history of ${lines.join(", ")}`);
+    if (page.picture.draw === "lines") $("pictures").after(element("p", {}, ...keys(page.picture.values)));
 }
 
 // ---- parameters -----------------------------------------------------------------------------------
@@ -176,13 +179,13 @@ function show_sliders() {
         const [low, high] = limits(entry.range);
         const whole = Number.isInteger(from) && Number.isInteger(to) && /cells|per_cell/.test(name);
         const slider = element("input", {
-            type: "range", id: `slider-${n}`, min: Math.max(from, low), max: Math.min(to, high), step: whole ? 1 : (to - from) / 200
+            type: "range", id: `slider-${n}`, min: Math.max(from, low), max: Math.min(to, high), step: whole ? 1 : "any"
         });
         slider.dataset.name = name, slider.dataset.run = of[0];
         slider.setAttribute("aria-describedby", `meaning-${n}`);
         const value = element("output", {id: `value-${n}`});
         slider.oninput = () => value.textContent = shown(slider.value, entry.unit);
-        slider.onchange = () => set(of, name, slider.value);
+        slider.onchange = () => set(of, name, +Number(slider.value).toPrecision(4));
         const owner = only === undefined ? "" : ` of ${page.runs[only].program}`;
         $("sliders").append(element("label", {className: "row", htmlFor: slider.id}, name + owner, value), slider,
                             element("p", {className: "meaning", id: `meaning-${n}`}, `${entry.meaning}; ${entry.range}`));
@@ -254,17 +257,18 @@ function show_results({program, summary}) {
 
 function show_code() {
     const chapter = element("a", {href: `../../lecture_notes/${page.chapter}`}, "the chapter of the lecture notes");
-    const file = element("a", {href: `../../${page.step}`}, page.step);
-    $("code").append(element("p", {}, "This is what runs here, ", file, "; why, says ", chapter, "."));
-    const pre = element("pre", {tabIndex: 0});
-    pre.setAttribute("aria-label", page.step);
-    let inside = false;
-    code[page.step].forEach((line, n) => {
-        if (/\/\/ \[\/\w+\]/.test(line)) inside = false;
-        if (inside) pre.append(element("span", {}, String(n + 1).padStart(4) + "  "), line + "\n");
-        if (/^ *\/\/ \[\w+\]$/.test(line)) inside = true;
-    });
-    $("code").append(pre);
+    $("code").append(element("p", {}, "This is what runs here; why, says ", chapter, "."));
+    for (const path of page.step.split(" ")) {
+        const pre = element("pre", {tabIndex: 0});
+        pre.setAttribute("aria-label", path);
+        let inside = false;
+        code[path].forEach((line, n) => {
+            if (/\/\/ \[\/\w+\]/.test(line)) inside = false, pre.append("\n");
+            if (inside) pre.append(element("span", {}, String(n + 1).padStart(4) + "  "), line + "\n");
+            if (/^ *\/\/ \[\w+\]$/.test(line)) inside = true;
+        });
+        $("code").append(element("p", {}, element("a", {href: `../../${path}`}, path)), pre);
+    }
 }
 
 // ---- the page -------------------------------------------------------------------------------------
@@ -294,7 +298,6 @@ async function open_page() {
         canvas.setAttribute("aria-label", page.title);
         $("pictures").append(element("figure", {}, canvas, element("figcaption", {id: `caption-${r}`})));
     });
-    $("pictures").after(element("p", {id: "pictures-legend"}));
     show_legend();
     show_code();
     $("pause").onclick = () => set_pause(!paused);
@@ -311,7 +314,10 @@ async function open_page() {
     $("search").oninput = fill_table;
     $("all").ontoggle = show_values;
     for (const form of [$("sliders"), $("table")]) form.onsubmit = (event) => event.preventDefault();
-    const anew = () => { for (const run of runs) run.drawn = null; redraw(); };
+    const anew = () => {
+        for (const run of runs) Object.assign(run, {drawn: null}).canvas.style.height = "";
+        redraw();
+    };
     addEventListener("resize", anew);
     matchMedia("(prefers-color-scheme: dark)").onchange = anew;
     say("Loading.");

@@ -1,12 +1,12 @@
-// The pictures: points, an image with contours, lines, and the history. Colors are those of common/style.gp.
+// The pictures: points, an image with contours, lines, and the history. Colors are those of page.css.
 
-const okabe_ito = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
 const palettes = {
     inferno: ["#000004", "#1b0c41", "#4a0c6b", "#781c6d", "#a52c60", "#cf4446", "#ed6925", "#fb9b06", "#f7d13d", "#fcffa4"],
     diverging: ["#053061", "#2166ac", "#4393c3", "#92c5de", "#f7f7f7", "#f4a582", "#d6604d", "#b2182b", "#67001f"]
 };
 const bytes = (hex) => [1, 3, 5].map((k) => parseInt(hex.slice(k, k + 2), 16));
 const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+const line_colors = () => [0, 1, 2, 3].map((k) => css(`--line-${k}`));
 
 /// 256 colors, as the 32 bits of a pixel.
 function table_of(palette) {
@@ -38,6 +38,10 @@ function ticks(low, high, count) {
 /// A canvas as large as it is shown, with two axes. out: context, the rectangle of the data, and where x and y are in it
 function frame(canvas, x, y, {log = false, equal = false} = {}) {
     const scale = window.devicePixelRatio || 1;
+    if (equal) {  // no higher than the data
+        const needed = (canvas.clientWidth - 65) * (y.high - y.low) / (x.high - x.low) + 50;
+        if (needed < canvas.clientHeight - 1) canvas.style.height = `${needed}px`;
+    }
     const width = Math.round(canvas.clientWidth * scale), height = Math.round(canvas.clientHeight * scale);
     if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, {width, height});
     const to = canvas.getContext("2d");
@@ -90,22 +94,18 @@ function draw_points(canvas, picture, style, memory, effective) {
     if (width < 1 || height < 1) return;
     const image = to.createImageData(width, height), data = new Uint32Array(image.data.buffer);
     const polarized = style.color === "fringes";
-    const colors = okabe_ito.map((color) => pixel(...bytes(color)));
-    const fringe = 0.02 * effective["material.default.E"];  // the stress difference of one
+    const colors = line_colors().map((color) => pixel(...bytes(color)));
+    const fringe = 0.03 * effective["material.default.E"];  // the stress difference of one
     if (polarized) data.fill(pixel(0, 0, 0));
-    // Particles that stand for a volume are as large as that; others cover half of the picture in all.
+    // Particles of a known volume are as large as that; others cover a part of the picture in all.
+    const {V, s_xx, s_yy, s_xy} = picture.columns;
+    const unit = width / (area.x.high - area.x.low);
     const shared = Math.sqrt(width * height / X.numbers.length / 2);
-    let size = Math.round(Math.min(4 * scale, Math.max(style.equal ? 2 : 1, style.equal ? shared * 1.5 : shared / 2)));
+    let size = Math.round(Math.min(4 * scale, style.equal ? Math.max(2, shared * 1.5) : Math.max(1, shared / 2)));
     for (let p = 0; p < X.numbers.length; ++p) {
-        let color;
-        if (polarized) {
-            const {s_xx, s_yy, s_xy} = picture.columns;
-            const order = Math.hypot(s_xx.numbers[p] - s_yy.numbers[p], 2 * s_xy.numbers[p]) / fringe;
-            color = fringes[Math.floor(256 * order) % 256];
-            size = Math.ceil(Math.sqrt(picture.columns.V.numbers[p]) / (area.x.high - area.x.low) * width) + 1;
-        } else {
-            color = colors[C.numbers[p] % colors.length];
-        }
+        if (V) size = Math.ceil(Math.sqrt(V.numbers[p]) * unit) + 1;
+        const order = polarized ? Math.hypot(s_xx.numbers[p] - s_yy.numbers[p], 2 * s_xy.numbers[p]) / fringe : 0;
+        const color = polarized ? fringes[Math.floor(256 * order) % 256] : colors[C.numbers[p] % colors.length];
         const i = Math.round(at_x(X.numbers[p]) - box.left - size / 2), j = Math.round(at_y(Y.numbers[p]) - box.top - size / 2);
         for (let b = Math.max(0, j); b < Math.min(height, j + size); ++b)
             for (let a = Math.max(0, i); a < Math.min(width, i + size); ++a) data[b * width + a] = color;
@@ -163,27 +163,33 @@ function draw_image(canvas, picture, style, memory) {
     const A = picture.columns[style.contours].numbers;
     memory.levels ??= range_of(A);
     to.strokeStyle = "#ffffffb0", to.lineWidth = 1.2 * scale;
+    const levels = Array.from({length: 15}, (_, k) => memory.levels[0] + (k + 1) / 16 * (memory.levels[1] - memory.levels[0]));
     to.beginPath();
-    for (let k = 1; k < 16; ++k) contour(A, nx, nz, memory.levels[0] + k / 16 * (memory.levels[1] - memory.levels[0]), (i0, j0, i1, j1) => {
+    contour(A, nx, nz, levels, (i0, j0, i1, j1) => {
         to.moveTo(at_x(x.low + i0 * x.step), at_y(z.low + j0 * z.step));
         to.lineTo(at_x(x.low + i1 * x.step), at_y(z.low + j1 * z.step));
     });
     to.stroke();
 }
 
-/// Calls line(i0, j0, i1, j1) for the pieces of a contour line, two triangles in every cell.
-function contour(A, nx, nz, level, line) {
+/// Calls line(i0, j0, i1, j1) for the pieces of contour lines, two triangles in every cell.
+function contour(A, nx, nz, levels, line) {
     for (let j = 0; j + 1 < nz; ++j)
-        for (let i = 0; i + 1 < nx; ++i)
-            for (const corners of [[[i, j], [i + 1, j], [i + 1, j + 1]], [[i, j], [i, j + 1], [i + 1, j + 1]]]) {
-                const ends = [];
-                for (let k = 0; k < 3; ++k) {
-                    const [a, b] = [corners[k], corners[(k + 1) % 3]];
-                    const [f, g] = [a, b].map(([m, n]) => A[n * nx + m] - level);
-                    if (f < 0 !== g < 0) ends.push(a[0] + f / (f - g) * (b[0] - a[0]), a[1] + f / (f - g) * (b[1] - a[1]));
-                }
-                if (ends.length === 4) line(...ends);
-            }
+        for (let i = 0; i + 1 < nx; ++i) {
+            const n = j * nx + i;
+            const low = Math.min(A[n], A[n + 1], A[n + nx], A[n + nx + 1]), high = Math.max(A[n], A[n + 1], A[n + nx], A[n + nx + 1]);
+            for (const level of levels)
+                if (low < level && level <= high)
+                    for (const corners of [[[i, j], [i + 1, j], [i + 1, j + 1]], [[i, j], [i, j + 1], [i + 1, j + 1]]]) {
+                        const ends = [];
+                        for (let k = 0; k < 3; ++k) {
+                            const [a, b] = [corners[k], corners[(k + 1) % 3]];
+                            const [f, g] = [a, b].map(([p, q]) => A[q * nx + p] - level);
+                            if (f < 0 !== g < 0) ends.push(a[0] + f / (f - g) * (b[0] - a[0]), a[1] + f / (f - g) * (b[1] - a[1]));
+                        }
+                        if (ends.length === 4) line(...ends);
+                    }
+        }
 }
 
 /// Columns of a mesh of one dimension.
@@ -191,9 +197,10 @@ function draw_lines(canvas, picture, style) {
     const x = picture.axes[0];
     const view = frame(canvas, {low: x.low, high: x.low + (x.count - 1) * x.step, label: with_unit(x.name, x.unit)},
                        {low: style.y_low, high: style.y_high, label: style.values.join(", ")});
+    const colors = line_colors();
     style.values.forEach((name, k) => {
         const numbers = picture.columns[name].numbers;
-        draw_line(view, Array.from(numbers, (_, i) => x.low + i * x.step), numbers, okabe_ito[k]);
+        draw_line(view, Array.from(numbers, (_, i) => x.low + i * x.step), numbers, colors[k]);
     });
 }
 
@@ -210,7 +217,7 @@ function draw_line({to, box, at_x, at_y, scale}, x, y, color, dashes = []) {
 
 /// Columns of the history of one run or two, which is dashed.
 function draw_chart(canvas, style, histories, end) {
-    const lines = [];
+    const lines = [], colors = line_colors();
     histories.forEach(({names, values}, r) => style.lines.forEach((name, k) => {
         if (!names) return;
         const column = (name) => {
@@ -220,7 +227,7 @@ function draw_chart(canvas, style, histories, end) {
         let y = column(name);
         if (style.relative) y = y.map((v) => v / y[0]);
         if (style.log) y = y.map((v) => Math.max(v, 1e-300));
-        lines.push({x: column(style.x), y, color: okabe_ito[histories.length > 1 ? r : k], dashes: r ? [6, 4] : [],
+        lines.push({x: column(style.x), y, color: colors[histories.length > 1 ? r : k], dashes: r ? [6, 4] : [],
             unit: style.relative ? "over its first value" : names.find((one) => one.name === name).unit, x_unit: names.find((one) => one.name === style.x).unit});
     }));
     if (lines.length === 0) return;
