@@ -547,7 +547,7 @@ page      := lecture_notes/page
 web       := build/web
 web_cases := two_stream landau finite_grid sod rayleigh_taylor rebound compressed gem
 web_programs := cic pic flip mpm_explicit mpm_implicit implicit_moment
-web_flags := -std=c++20 -O3 -msimd128 -fexceptions -fno-math-errno -w -Wno-c++11-narrowing -I$(page)/instead -I. -isystem $(web)/include $(defines)
+web_flags := -std=c++20 -DBUILD_FLAGS=\"emscripten\" -O3 -msimd128 -fexceptions -fno-math-errno -w -Wno-c++11-narrowing -I$(page)/instead -I. -isystem $(web)/include $(defines)
 # Left and entered again between two steps: what may be on the stack there.
 web_link  := -O3 -msimd128 -fexceptions -Wl,--wrap=_ZN6common3Run12not_finishedEll,--wrap=_ZN6common3Run12not_finishedEldd \
     -sASYNCIFY -sASYNCIFY_IMPORTS=page_wait \
