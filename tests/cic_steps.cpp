@@ -891,7 +891,7 @@ TEST_CASE("what a case does not say is a cold plasma at rest without fields of i
     CHECK(s.density * s.charge * s.charge / s.mass == 1);  // omega_p
     CHECK(c.gauss_sign == 1);
     CHECK(worst({c.fields_interval, c.particles_interval, c.phase_interval, real(c.modes),
-                 real(c.checkpoint_steps), real(c.spectrum), real(c.vtk)}) == 0);
+                 real(c.checkpoint_steps), real(c.spectrum), real(c.also.vtk)}) == 0);
     for (const Wall& wall : walls_of(c)) {
         CHECK(!wall.floating);
         CHECK(wall.potential == 0);
