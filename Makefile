@@ -179,13 +179,18 @@ $(formula): $(objects)/common/run/formula.o
 	@rm -f $@
 	$(AR) rcs $@ $<
 
+# What a summary says of the program: its flags, and the revision of the sources when it was linked.
+$(objects)/common/run/summary.o: private defines += -DBUILD_FLAGS='"$(CXX) $(flags)"'
+name_revision = @printf 'extern const char* const source_revision;\nconst char* const source_revision = "%s";\n' \
+    "$$(git describe --always --dirty 2>/dev/null)" | $(CXX) $(flags) -x c++ -c -o $(objects)/$(@F).revision.o -
 define link
 @mkdir -p $(@D)
 $(CXX) $(flags) -o $@ $(filter %.o %.a,$^) $(libraries) -Wl,--as-needed -lmuparser
 endef
 # The largest object first, so that the others are compiled beside it.
 $(programs:%=$(BUILD)/%): $(BUILD)/%: $$(objects)/$$(call folder_of,$$*)/$$*.o $(shared) $(formula) $(BUILD)/flags
-	$(link)
+	$(name_revision)
+	$(link) $(objects)/$(@F).revision.o
 $(tests:%=$(BUILD)/tests/%): $(BUILD)/tests/%: $(objects)/tests/%.o $(shared) $(formula) $(BUILD)/flags
 	$(link)
 $(bench_programs): $(BUILD)/bench/%: $(objects)/%/bench.o $(shared) $(formula) $(BUILD)/flags

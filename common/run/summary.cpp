@@ -1,17 +1,38 @@
 #include "common/run/summary.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "common/run/machine.hpp"
 #include "common/run/output_file.hpp"
+
+// The state of the sources, which the build links into programs; empty without git.
+[[gnu::weak]] extern const char* const source_revision;
 
 namespace common {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+// The command line of this process, to be given to a shell again.
+std::string command_line() {
+    std::ifstream words("/proc/self/cmdline");
+    std::string line;
+    for (std::string word; std::getline(words, word, '\0');)
+        line += (line.empty() ? "" : " ") + shell_word(word);
+    return line;
+}
+
+std::string host_name() {
+    char name[256] = {};
+    return gethostname(name, sizeof name - 1) == 0 ? name : "";
+}
 
 // The library writes a number that is not finite as null without a word; say so.
 void put(Json& object, const std::string& key, double value) {
@@ -93,6 +114,11 @@ void Summary::write(const std::string& path, const ProgramInfo& info, const std:
     Json json;
     json["program"] = info.program;
     json["version"] = info.version;
+    json["revision"] = &source_revision != nullptr ? source_revision : "";
+    json["command"] = command_line();
+    json["host"] = host_name();
+    json["compiler"] = __VERSION__;
+    json["flags"] = BUILD_FLAGS;
     json["case"] = case_name;
     json["status"] = status;
     json["message"] = message;
