@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 namespace common {
 
@@ -57,7 +58,9 @@ inline double simd_sum(const SimdVector& lanes) {
 
 /// Larger of a and b, |a| and the square root, lane by lane; the last of one number, too.
 inline SimdVector larger(const SimdVector& a, const SimdVector& b) { return a > b ? a : b; }
-inline SimdVector magnitude(const SimdVector& a) { return SimdVector(SimdMask(a) & INT64_MAX); }
+inline SimdVector magnitude(const SimdVector& a) {
+    return SimdVector(SimdMask(a) & std::numeric_limits<std::int64_t>::max());
+}
 inline SimdVector square_root(const SimdVector& a) {
     SimdVector root;
     for (int l = 0; l < simd_width; ++l) root[l] = std::sqrt(a[l]);
