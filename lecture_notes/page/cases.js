@@ -9,7 +9,7 @@ const cases = {
         title: "Two streams (clouds-in-cells)",
         words: "Two cold electron beams pass through each other. The field grows as theory says, until it traps particles: the beams roll up into vortices in phase space.",
         runs: [{program: "cic", args: ["cic/cases/two_stream.toml", "output.particles_interval=0.2"]}],
-        picture: {kind: "particles", draw: "points", x: "x", y: "v_x", color: "species", y_low: -3, y_high: 3},
+        picture: {kind: "particles", draw: "points", x: "x", y: "v_x", color: "species", y_low: -3.5, y_high: 3.5},
         chart: {x: "time", log: true, lines: ["field", "kinetic"]},
         sliders: [["species.right.drift_x", 0.2, 2], ["species.left.drift_x", -2, -0.2], ["species.right.amplitude", 0, 0.1], ["time.dt", 0.01, 0.4], ["time.end", 20, 200]],
         chapter: "01_clouds_in_cells.md", step: "cic/step.hpp"
