@@ -773,6 +773,26 @@ TEST_CASE("the summary holds what the contract names" * doctest::description("ro
     }
 }
 
+TEST_CASE("the command of a summary runs again to the same bytes" *
+          doctest::description("robust")) {
+    const fs::path out = fs::path(folder("summed up")) / "it's here";
+    fs::create_directories(out.parent_path());
+    std::string command = BUILD_FOLDER;
+    command.append("/cic time.end=1 'species.left.drift=-0.5' --quiet --force --out \"");
+    command.append(out.string()).append("\" 2> /dev/null");
+    REQUIRE(std::system(command.c_str()) == 0);
+    const std::string history = read_all(out / "history.dat");
+    const auto summary = nlohmann::json::parse(read_all(out / "summary.json"));
+    CHECK(!summary["host"].get<std::string>().empty());
+    CHECK(holds(summary["flags"].get<std::string>(), "-std=c++20"));
+    CHECK(holds(summary["compiler"].get<std::string>(), "."));
+    CHECK(summary.contains("revision"));
+    fs::remove_all(out);
+    const std::string again = summary["command"].get<std::string>() + " 2> /dev/null";
+    REQUIRE(std::system(again.c_str()) == 0);
+    CHECK(read_all(out / "history.dat") == history);
+}
+
 TEST_CASE("an installed program finds its cases from any folder" * doctest::description("robust")) {
     const fs::path root = folder("installed");
     fs::create_directories(root / "bin");

@@ -43,8 +43,8 @@ std::string find_in_project(const std::string& file) {
     for (fs::path folder = program.parent_path(); !error && folder.has_relative_path();
          folder = folder.parent_path()) {
         fs::path candidate = folder / file;
-        if (!fs::exists(candidate)) candidate = folder / "share/particle-in-cell" / file;
-        if (!fs::exists(candidate)) continue;
+        if (!is_there(candidate)) candidate = folder / "share/particle-in-cell" / file;
+        if (!is_there(candidate)) continue;
         const fs::path nearby = fs::relative(candidate, error);
         return !error && !nearby.empty() && nearby.begin()->string() != ".." ? nearby.string()
                                                                              : candidate.string();

@@ -25,7 +25,7 @@ std::string command_line() {
     std::ifstream words("/proc/self/cmdline");
     std::string line;
     for (std::string word; std::getline(words, word, '\0');)
-        line += (line.empty() ? "" : " ") + shell_word(word);
+        line.append(line.empty() ? "" : " ").append(shell_word(word));
     return line;
 }
 

@@ -88,7 +88,7 @@ class Recorder {
             summary.not_measured(comparison.name, "the run is too short for it: raise time.end");
         if (history.rows() > 1) judge_energy(history, summary);
         std::vector<std::string> errors{"mass_error", "momentum_x_error", "energy_error"};
-        if (parameters_.grid.z.cells > 1) errors.insert(errors.begin() + 2, "momentum_z_error");
+        if (parameters_.moves_along_z()) errors.insert(errors.begin() + 2, "momentum_z_error");
         for (const std::string& name : errors)
             summary.conservation("largest_" + name, history.largest(name), "1");
         summary.performance("particles", static_cast<double>(state.particles.count()));
@@ -107,7 +107,7 @@ class Recorder {
         };
         Budget budget = state.budget;
         // Around an axis momenta that point outward cancel, and nothing turns.
-        const bool rings = parameters_.grid.axisymmetric, plane = parameters_.grid.z.cells > 1;
+        const bool rings = parameters_.grid.axisymmetric, plane = parameters_.moves_along_z();
         if (rings) now.momentum_x = now.angular_momentum = budget.momentum_x = 0;
         const std::string per_length = rings ? "" : "/length";
         const double mass = first("mass", now.mass), kinetic = first("kinetic", now.kinetic);

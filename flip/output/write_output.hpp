@@ -21,7 +21,7 @@ inline constexpr long most_particles_written = 40000;
 inline void write_fields(const common::Snapshot& at, const Case& parameters,
                          const CellFields& cells) {
     const Grid& grid = parameters.grid;
-    const bool plane = grid.z.cells > 1;
+    const bool plane = parameters.moves_along_z();
     std::vector<std::vector<double>> data;
     std::vector<common::ScalarColumn> columns;
     const auto add = [&](const std::string& name, const std::string& unit, const Field& f) {
@@ -53,7 +53,7 @@ inline void write_fields(const common::Snapshot& at, const Case& parameters,
 /// in memory, so that there are at most most_particles_written.
 inline void write_particles(const common::Snapshot& at, const Case& parameters,
                             const Particles& particles) {
-    const bool plane = parameters.grid.z.cells > 1;
+    const bool plane = parameters.moves_along_z();
     const long count = particles.count();
     const long every = std::max(1L, (count + most_particles_written - 1) / most_particles_written);
     const bool moving = has(particles.vx_p);

@@ -2,6 +2,7 @@
 // both programs; how FLIP goes about it stands in sections of its own, which mean nothing to pic.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
@@ -119,6 +120,19 @@ struct Case {
     bool heats() const { return deficit_to_heat && mass == "lumped"; }
     bool implicit() const { return pressure == "implicit"; }
     bool plane() const { return grid.z.cells > 1; }
+    /// Whether something can move along z; where nothing does, files have no columns of it.
+    bool moves_along_z() const {
+        const auto at_end = [](const BoundaryCase& b) { return b.slide != 0; };
+        const auto at_inflow = [](const InflowCase& i) { return i.velocity_z.value_or(0) != 0; };
+        const auto in_region = [](const RegionCase& r) {
+            const common::Formula& v = r.gas.velocity_z;
+            return !v.is_number() || double(v) != 0;
+        };
+        return plane() || inflow.velocity_z != 0 ||
+               std::any_of(boundaries.begin(), boundaries.end(), at_end) ||
+               std::any_of(inflows.begin(), inflows.end(), at_inflow) ||
+               std::any_of(regions.begin(), regions.end(), in_region);
+    }
     bool is(Side e, const char* kind) const { return boundaries[e].kind == kind; }
 };
 
