@@ -778,7 +778,7 @@ TEST_CASE("the command of a summary runs again to the same bytes" *
     const fs::path out = fs::path(folder("summed up")) / "it's here";
     fs::create_directories(out.parent_path());
     std::string command = BUILD_FOLDER;
-    command.append("/cic time.end=1 'species.left.drift=-0.5' --quiet --force --out \"");
+    command.append("/cic time.end=1 'species.left.amplitude=2e-3' --quiet --force --out \"");
     command.append(out.string()).append("\" 2> /dev/null");
     REQUIRE(std::system(command.c_str()) == 0);
     const std::string history = read_all(out / "history.dat");
