@@ -117,7 +117,7 @@ The particle-in-cell family in running code
   make mutate            the changes in a program that no fact notices: PROGRAM=cic N=50 SEED=1; resumable
   make exercises         the exercises of the lecture notes, each with its title and its time
   make exercise E=1-3    its question, its runs, and whether they give what is expected
-                         (with ANSWER=0.92: is the answer right?)
+                         (with ANSWER=0.9239: is the answer right?)
   make bench             particle-steps per second on 1 and 2 threads, and where the time goes
   make web               the programs in the browser, a page per case, in out/web/ (packages: make deps-web)
   make test-web          every page run in Chromium, beside the native programs; CASES='gem': some of them

@@ -4,12 +4,14 @@
 # plot.sh watch RUN         draw its history and its last snapshots every few seconds (EVERY=5) until it ends; TEXT=1: its energies as text, for a terminal
 # plot.sh compare A B       the histories and the results of two runs on one page
 # plot.sh movie RUN         an animation of its snapshots, mp4 and webp with ffmpeg, else gif
-# Pictures go to out/figures/PROGRAM_NAME/, or to the folder PLOTS. A script of figures says itself which runs it fits, in a line
+# Pictures go to out/figures/PROGRAM_NAME/ (of out/PROGRAM/NAME; else with the folders on the way), or to the folder PLOTS. A script of figures says itself which runs it fits, in a line
 #   # fits: PROGRAM|PROGRAM SECTION.KEY=VALUE|VALUE SECTION.KEY!=VALUE result:NAME file:PATTERN kinds:KIND,KIND
 # whose conditions must all hold: a parameter of the run's case.toml, a result of its summary.json, files in its folder. With kinds the script is run for each
 # kind of snapshots that there is, as the variable `kind`. `any` is every program.
 set -eu
 export LC_ALL=C.UTF-8
+trap 'rm -f "${partial:-}"' EXIT
+trap 'exit 130' HUP INT TERM
 
 fail() { echo "$*" >&2; exit 2; }
 
@@ -31,7 +33,9 @@ for folder in "$run" $other; do
 done
 command -v gnuplot >/dev/null || fail "'gnuplot' is not installed: run 'make deps'"
 program=$(sed -n '1s/^# \([a-z_]*\) .*/\1/p' "$run/case.toml")
-plots=${PLOTS:-out/figures/${program}_$(basename "$run")}
+name=${run#/} name=${name#out/} name=${name#"$program"/}
+plots=${PLOTS:-out/figures/${program}_$(echo "$name" | tr -c 'A-Za-z0-9._+=\n-' '_')}
+case $run$other in *[\'\"\`]*) fail "gnuplot cannot read from a folder with quotes in its name: $run $other" ;; esac
 
 # Does every condition of the line hold?
 fits() {
@@ -75,11 +79,12 @@ figures() {
 # draw SCRIPT [KIND]: one picture, under its name only when it is whole.
 draw() {
     picture=$plots/${2:-$(basename "$1" .gp)}.png
+    partial=$plots/.$$.png
     mkdir -p "$plots"
-    if gnuplot -e "run='$run'; out='$picture.partial.png'${2:+; kind='$2'}" "$1" && [ -s "$picture.partial.png" ]; then
-        mv "$picture.partial.png" "$picture"
+    if gnuplot -e "run='$run'; out='$partial'${2:+; kind='$2'}" "$1" && [ -s "$partial" ]; then
+        mv "$partial" "$picture"
     else
-        rm -f "$picture.partial.png"
+        rm -f "$partial"
         echo "$1 could not draw $run" >&2
         return 1
     fi
@@ -88,6 +93,10 @@ draw() {
 case $mode in
 list) figures ;;
 draw)
+    status=0
+    [ ! -f "$run/summary.json" ] || status=$(awk -v key=status -f common/json_lines.awk "$run/summary.json")
+    [ "$status" = 0 ] || echo "note: the run ended with status $status: $(awk -v key=message -f common/json_lines.awk "$run/summary.json")" >&2
+    rm -f "$plots"/*.png
     figures | {
         status=0
         while read -r script kind; do
@@ -114,7 +123,10 @@ watch)
     ;;
 compare)
     [ -n "$other" ] || fail "compare which two runs? A= and B="
-    picture=${PLOTS:-out/figures}/compare_$(basename "$run")_$(basename "$other").png
+    other_program=$(sed -n '1s/^# \([a-z_]*\) .*/\1/p' "$other/case.toml")
+    [ "$(sed -n 2p "$run/history.dat")" = "$(sed -n 2p "$other/history.dat")" ] ||
+        echo "note: $program and $other_program record other columns, or in other units; the axes have those of $run" >&2
+    picture=${PLOTS:-out/figures}/compare_${plots##*/}_${other_program}_$(basename "$other").png
     mkdir -p "$(dirname "$picture")"
     gnuplot -e "run='$run'; other='$other'; out='$picture'" common/figures/compare.gp
     echo "figure: $picture"

@@ -76,7 +76,7 @@ else
     echo "note: GNU parallel is not installed (make deps-sweep): one run follows the other" >&2
     while read -r line; do $line </dev/null || status=$((status + 1)); done < "$commands"
 fi
-[ $status = 0 ] || echo "$status of $(grep -c . "$commands") runs did not end as they should: see $commands.log" >&2
+[ $status = 0 ] || echo "not all of the $(grep -c . "$commands") runs ended as they should: see $commands.log, and what they said above" >&2
 
 # The table: keys, then every result with its error, expected value and verdict; "-" where there is none.
 echo "$combinations" | while read -r name keys; do
@@ -105,6 +105,7 @@ done | awk '
     }' > "$folder/results.dat.$$"
 mv "$folder/results.dat.$$" "$folder/results.dat"
 [ -n "${SWEEP_NAME:-}" ] || echo "table: $folder/results.dat, $(($(grep -c . "$folder/results.dat") - 1)) of $(echo "$combinations" | grep -c .) runs"
+[ "$(grep -c . "$folder/results.dat")" -gt 1 ] || fail "no run has left results: there is no figure"
 if [ -z "${SWEEP_NAME:-}" ] && command -v gnuplot >/dev/null; then
     mkdir -p out/figures
     picture=out/figures/sweep_$(basename "$folder").png

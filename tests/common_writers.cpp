@@ -135,6 +135,11 @@ TEST_CASE("a field file has an empty line after each row of the mesh") {
     CHECK(line == "# units: x d_i, z d_i, f B0");
     std::getline(in, line);
     CHECK(line == "# time 40.5 step 400");
+    common::Snapshot sample = at;
+    sample.particles = 1000000;
+    common::write_table(sample, "p", {{"x", "d_i", f}});
+    CHECK(read_all(folder.file("p_000400.dat"))
+              .starts_with("x\n# units: x d_i\n# time 40.5 step 400 particles 1000000\n0\n1\n4\n"));
     for (int j = 0; j < 3; ++j) {
         for (int i = 0; i < 4; ++i) {
             std::getline(in, line);

@@ -841,7 +841,7 @@ TEST_CASE("a file of fringes holds every pixel and is whole") {
     std::getline(file, line);
     CHECK(line == "x y stress_difference pressure grain");
     std::getline(file, line);
-    CHECK(line == "# units: x length, y length, stress_difference E, pressure E");
+    CHECK(line == "# units: x length, y length, stress_difference stress, pressure stress");
     std::getline(file, line);
     CHECK(line == "# time 0.75 step 12");
     long rows = 0, empty = 0, inside = 0;

@@ -83,7 +83,9 @@ inline void write_particles(const common::Snapshot& at_time, const Case& paramet
     columns.push_back({"v_x", "velocity", data[3]});
     if (magnetized) columns.push_back({"v_y", "velocity", data[4]});
     if (magnetized || plane) columns.push_back({"v_z", "velocity", data[5]});
-    common::write_table(at_time, "particles", columns);
+    common::Snapshot sample = at_time;
+    sample.particles = state.count();
+    common::write_table(sample, "particles", columns);
     if (at_time.also.vtk) {
         const std::vector<double> zero(data[0].size(), 0.0);
         common::write_vtp(at_time, "particles", {"position", "length", data[1], zero, data[2]},

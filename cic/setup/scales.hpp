@@ -228,7 +228,8 @@ inline std::string describe_scales(const Case& parameters, const Scales& scales)
                                       : ", cold"));
     for (const SpeciesScales& s : scales.species)
         line(s.name, s.particles, " particles, omega_p = ", s.omega_p, ", v_th = ", s.thermal_speed,
-             ", drift = ", s.drift, (s.Omega_c > 0 ? ", Omega_c = " + format(s.Omega_c) : ""));
+             ", speed of the drift = ", s.drift,
+             (s.Omega_c > 0 ? ", Omega_c = " + format(s.Omega_c) : ""));
     for (const auto& [name, value] : comparison_of(parameters).describe(parameters))
         line(name, value);
     line("memory", "about ", scales.bytes / 1048576, " MiB");

@@ -31,9 +31,12 @@ $1 + 0 == $1 {
         if (!(i in high) || $i > high[i]) high[i] = $i
         if ($i < 0 ? -$i > size[i] : $i > size[i]) size[i] = $i < 0 ? -$i : $i
     }
-    if (files == 1 && theory != "" && $1 >= growth[2] && $1 <= growth[3]) {
+    if (files == 1 && growth[3] != "" && $1 >= growth[2] && $1 <= growth[3]) {
         re = $number["mode_re"]; im = $number["mode_im"]
-        if (re || im) { height += 0.5 * log(re ^ 2 + im ^ 2) - growth[1] * $1; heights++ }
+        if (re || im) {
+            above = 0.5 * log(re ^ 2 + im ^ 2) - growth[1] * $1
+            if (!heights++ || above > height) height = above
+        }
     }
 }
 
@@ -83,11 +86,11 @@ function draw(p,    of, n, i, k, hidden, top, bottom, long, least, title, label,
         commands = commands (k == 1 ? "plot " : ", ") curve(1, i, p, "lt " k) " title '" plain(label) "'"
         if ((2, name[i]) in place) commands = commands ", " curve(2, i, p, "lt " k " lw 1.6 dt 2") " notitle"
     }
-    if (p == "modes" && heights) commands = commands sprintf(", exp(%.9g + %.9g * x) with lines lw 2 dt 2 lc rgb ink title 'theory, γ = %.4g'", height / heights, growth[1], growth[1])
+    if (p == "modes" && heights) commands = commands sprintf(", exp(%.9g + %.9g * x) with lines lw 2 dt 2 lc rgb ink title 'theory, γ = %.4g'", height, growth[1], growth[1])
     title = p == "energy" ? "energy" : p == "zero" ? "what should be 0" : p == "modes" ? "amplitudes of modes" : n == 1 ? name[of[1]] : p == 1 ? "numbers" : p
     if (hidden) title = title ", the largest " n " of " n + hidden
     print "set title '" plain(title) "' offset 0, -0.4"
-    print "set ylabel '" (p == "zero" ? "absolute value" : p == 1 ? "" : plain(unit[of[1]])) "' offset 0.5, 0"
+    print "set ylabel '" (p == "zero" ? "absolute value" : p == 1 || title == p ? "" : plain(unit[of[1]])) "' offset 0.5, 0"
     if (p == "modes" || p == "zero") {
         bottom = p == "modes" ? 1e-8 * top : 1e-4 * least
         if (bottom < 1e-300) bottom = 1e-300

@@ -3,6 +3,8 @@
 # fits: any file:summary.json
 table = sprintf("awk -f common/json_lines.awk '%s/summary.json' | awk -f common/figures/results.awk", run)
 count = int(system(table." | wc -l")) - 1
+nothing = count < 1
+if (nothing) { count = 1 }
 wide = 1500; high = 170 + 34 * count
 load 'common/style.gp'
 set label 1 run.': results' noenhanced at screen 0.5, screen 1 - 30.0 / high center font ',22'
@@ -17,4 +19,6 @@ within(d) = d > 2.4 ? 2.4 : d < -2.4 ? -2.4 : d
 # What has no point stands outside of the frame.
 off(n) = strcol(5) eq '-' ? 99 : within((column(2) - column(4)) / column(5))
 bar(n) = strcol(3) eq '-' || strcol(5) eq '-' ? 0 : within(column(3) / column(5))
-plot '< '.table skip 1 using (off(0)):($0 + 1):(bar(0)):(strcol(6) eq 'PASS' ? 0x009E73 : 0xD55E00) with xerrorbars pt 7 ps 1.3 lw 2 lc rgb variable
+if (nothing) { set label 2 'no results yet' at 0, 1 center; plot NaN } else {
+    plot '< '.table skip 1 using (off(0)):($0 + 1):(bar(0)):(strcol(6) eq 'PASS' ? 0x009E73 : 0xD55E00) with xerrorbars pt 7 ps 1.3 lw 2 lc rgb variable
+}

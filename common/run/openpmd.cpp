@@ -71,6 +71,7 @@ Handle dataset(hid_t parent, const std::string& name, const std::vector<hsize_t>
                const ScalarColumn& column) {
     const Handle space(H5Screate_simple(int(shape.size()), shape.data(), nullptr), H5Sclose),
         layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    require(H5Pset_obj_track_times(layout.id, false));  // the same bytes for the same numbers
     if (!column.values.empty()) {
         std::vector<hsize_t> chunk = shape;
         for (hsize_t& n : chunk) n = std::min<hsize_t>(n, shape.size() == 1 ? 65536 : 256);
@@ -123,13 +124,21 @@ void write_records(hid_t parent, const std::vector<hsize_t>& shape,
     }
 }
 
+/// Errors are ours to tell; and at the end of the program nothing is written again that a full disk
+/// has refused.
+void set_up_library() {
+    static const bool once =
+        H5dont_atexit() >= 0 && H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr) >= 0;
+    require(once ? 0 : -1);
+}
+
 /// Makes the file of a snapshot. out: what went wrong, or nothing
 /// in: what, "meshes" or "particles"; fill(group), which writes into the group of that name
 template <class Fill>
 std::string write_file(const std::string& path, const Snapshot& at, const std::string& kind,
                        const std::string& what, const Fill& fill) {
     try {
-        H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+        set_up_library();
         const Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT),
                           H5Fclose);
         attribute(file.id, "openPMD", std::string("1.1.0"));
@@ -205,6 +214,7 @@ extern "C" __attribute__((visibility("default"))) std::string write_openpmd_part
     }
     return write_file(path, at, kind, "particles", [&](hid_t particles) {
         const Handle all = group(particles, "all");
+        attribute(all.id, "particlesOfTheRun", double(at.particles));
         const auto describe = [&](hid_t record, const std::string& name) {
             attribute(record, "unitDimension",
                       name.starts_with("position") ? std::vector<double>{1, 0, 0, 0, 0, 0, 0}

@@ -78,7 +78,9 @@ inline void write_particles(const common::Snapshot& at, const Case& parameters,
         if (plane) columns.push_back({"v_z", "velocity", vz});
         columns.push_back({"e", "velocity^2", e});
     }
-    common::write_table(at, "particles", columns);
+    common::Snapshot sample = at;
+    sample.particles = count;
+    common::write_table(sample, "particles", columns);
     if (!at.also.vtk) return;
     const std::vector<double> zero(x.size(), 0.0);
     std::vector<common::ScalarColumn> scalars{{"material", "", material}};

@@ -96,7 +96,9 @@ inline void write_particles(const common::Snapshot& at, const Plasma& plasma,
     }
     const bool is_u = parameters.leapfrog.chosen && parameters.leapfrog.relativistic;
     const std::string v = is_u ? "u_" : "v_";
-    common::write_table(at, "particles",
+    common::Snapshot sample = at;
+    sample.particles = plasma.count();
+    common::write_table(sample, "particles",
                         {{"species", "", data[0]},
                          {"x", "d_i", data[1]},
                          {"z", "d_i", data[2]},

@@ -36,7 +36,7 @@ inline Window whole(const Mesh& mesh) {
 /// grains the number of the grain is -1 and the stresses are not numbers.
 struct FringeRaster {
     common::SampledAxis x{"x", "length"}, y{"y", "length"};
-    std::vector<double> stress_difference, pressure;  // s1 - s2, -(xx + yy + zz) / 3 [E]
+    std::vector<double> stress_difference, pressure;  // s1 - s2, -(xx + yy + zz) / 3
     std::vector<double> coverage;                     // by the grain that is drawn there
     std::vector<int> grain;
 

@@ -77,7 +77,9 @@ inline void write_particles(const common::Snapshot& at_time, const Case& paramet
     add_plain("s_zz", "stress", at.szz_p);
     add_plain("V", "volume", at.V_p);
     add_plain("plastic_strain", "1", at.yield_p);
-    common::write_table(at_time, "particles", columns);
+    common::Snapshot sample = at_time;
+    sample.particles = at.count();
+    common::write_table(sample, "particles", columns);
     if (at_time.also.vtk) {
         const std::vector<double> zero(shown.size(), 0.0);
         common::write_vtp(at_time, "particles", {"position", "length", data[0], data[1], zero},
@@ -135,8 +137,8 @@ inline void write_fringes(const common::Snapshot& at_time, const FringeRaster& r
     common::writers_detail::begin_table(file,
                                         {{"x", "length", {}},
                                          {"y", "length", {}},
-                                         {"stress_difference", "E", {}},
-                                         {"pressure", "E", {}},
+                                         {"stress_difference", "stress", {}},
+                                         {"pressure", "stress", {}},
                                          {"grain", "", {}}},
                                         &at_time);
     for (long j = 0; j < raster.y.count; ++j) {

@@ -28,5 +28,5 @@ for program in cic/cic.cpp flip/pic/pic.cpp flip/flip/flip.cpp mpm_explicit/mpm_
 done
 
 lines=$(cat common/*.hpp common/*/*.hpp common/*/*.cpp | wc -l)
-[ "$lines" -le 5650 ] || complain "common/ has $lines lines, more than 5650"
+[ "$lines" -le 5665 ] || complain "common/ has $lines lines, more than 5665"
 exit $status
