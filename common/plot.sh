@@ -32,9 +32,10 @@ for folder in "$run" $other; do
     [ -f "$folder/case.toml" ] && [ -f "$folder/history.dat" ] || fail "$folder is not the folder of a run: it needs case.toml and history.dat"
 done
 command -v gnuplot >/dev/null || fail "'gnuplot' is not installed: run 'make deps'"
-program=$(sed -n '1s/^# \([a-z_]*\) .*/\1/p' "$run/case.toml")
-name=${run#/} name=${name#out/} name=${name#"$program"/}
-plots=${PLOTS:-out/figures/${program}_$(echo "$name" | tr -c 'A-Za-z0-9._+=\n-' '_')}
+program_of() { sed -n '1s/^# \([a-z_]*\) .*/\1/p' "$1/case.toml"; }
+program=$(program_of "$run")
+name_of() { echo "${1#/}" | sed "s|^out/||; s|^$(program_of "$1")/||; s|[^A-Za-z0-9._+=-]|_|g; s|^|$(program_of "$1")_|"; }
+plots=${PLOTS:-out/figures/$(name_of "$run")}
 case $run$other in *[\'\"\`]*) fail "gnuplot cannot read from a folder with quotes in its name: $run $other" ;; esac
 
 # Does every condition of the line hold?
@@ -123,10 +124,9 @@ watch)
     ;;
 compare)
     [ -n "$other" ] || fail "compare which two runs? A= and B="
-    other_program=$(sed -n '1s/^# \([a-z_]*\) .*/\1/p' "$other/case.toml")
     [ "$(sed -n 2p "$run/history.dat")" = "$(sed -n 2p "$other/history.dat")" ] ||
-        echo "note: $program and $other_program record other columns, or in other units; the axes have those of $run" >&2
-    picture=${PLOTS:-out/figures}/compare_${plots##*/}_${other_program}_$(basename "$other").png
+        echo "note: $program and $(program_of "$other") record other columns, or in other units; the axes have those of $run" >&2
+    picture=${PLOTS:-out/figures}/compare_$(name_of "$run")_$(name_of "$other").png
     mkdir -p "$(dirname "$picture")"
     gnuplot -e "run='$run'; other='$other'; out='$picture'" common/figures/compare.gp
     echo "figure: $picture"

@@ -242,7 +242,7 @@ cic two_stream.toml --threads 2 --out run
     steps +1600 of 0\.05
     particles +65536
     all mobile species together +omega_p = 1, omega_p dt = 0\.05, cold
-    right +32768 particles, omega_p = 0\.7071, v_th = 0, drift = 1
+    right +32768 particles, omega_p = 0\.7071, v_th = 0, speed of the drift = 1
     theory +mode \(1, 0\): omega = 0, growth = 0\.3536 omega_p; .*
     onset +about t = .*
     memory +about [0-9.e+]+ [KMG]iB.*

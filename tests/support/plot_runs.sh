@@ -171,7 +171,7 @@ tools)
         "$build/flip" flip/cases/sod.toml grid.cells_x=$cells output.particles_interval=0.05 --quiet --out "$folder/$cells" 2>/dev/null
     done
     PLOTS=$folder/plots sh common/plot.sh compare "$folder/32" "$folder/64" > "$folder/told" 2>&1 || complain "compare: $(cat "$folder/told")"
-    is_picture "$folder/plots/compare_32_64.png" || complain "comparing two runs drew nothing"
+    is_picture "$(echo "$folder"/plots/compare_flip_*_32_flip_*_64.png)" || complain "comparing two runs drew nothing"
     # Of a run that has ended it draws once.
     PLOTS=$folder/plots sh common/plot.sh watch "$folder/32" > "$folder/told" 2>&1 || complain "watch: $(cat "$folder/told")"
     is_picture "$folder/plots/history.png" || complain "watching drew nothing"
