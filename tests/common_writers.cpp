@@ -343,7 +343,8 @@ TEST_CASE("an error bar enters the verdict and an expected failure is none") {
         {"near", "NOT MEASURED"}, {"certain", "FAIL"}, {"close", "PASS"},
         {"far", "FAIL"},          {"low", "FAIL"},     {"off", "EXPECTED FAILURE"},
         {"fine", "PASS"},         {"high", "PASS"},    {"lost", "FAIL"}};
-    for (const auto& [name, verdict] : expected) {
+    for (const auto& one : expected) {
+        const std::string name = one.first, verdict = one.second;
         CAPTURE(name);
         CHECK(results[name]["verdict"] == verdict);
         CHECK(results[name]["pass"] == (verdict == "PASS"));
