@@ -410,6 +410,9 @@ mpm_figures = $(filter mpm_%,$(figures))
 
 figures: $(figures)
 
+# The same without the zero.
+$(foreach n,1 2 3 4 5 6 7 8 9,$(eval .PHONY: fig$n)$(eval fig$n: fig0$n))
+
 # ---- any run -------------------------------------------------------------------------------------
 
 # make plot RUN=out/cic/mine

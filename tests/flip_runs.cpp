@@ -42,7 +42,8 @@ void check_conserved(const Run& r, double tolerance = 1e-12) {
     for (const char* name :
          {"mass_error", "momentum_x_error", "momentum_z_error", "energy_error"}) {
         CAPTURE(std::string(name));
-        if (std::string(name) == "momentum_z_error" && r.columns.count(name) == 0) continue;
+        // In one row of cells in which nothing moves along z there is no such column.
+        if (std::string(name) == "momentum_z_error" && r.columns.count("momentum_z") == 0) continue;
         CHECK(r.conservation(std::string("largest_") + name) <= tolerance);
         CHECK(largest(r.column(name)) <= tolerance);
     }

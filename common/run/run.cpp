@@ -350,7 +350,7 @@ int Run::finish(long step, double count) {
                     info_.program.c_str(), message.c_str(), step, clock_text(wall).c_str(),
                     command_.out_dir.c_str());
         if (!next.empty()) std::printf("%s\n", next.c_str());
-        if (fs::exists("common/plot.sh"))
+        if (std::error_code unreadable; fs::exists("common/plot.sh", unreadable))
             std::printf("pictures: make plot RUN=%s\n", shell_word(command_.out_dir).c_str());
     }
     for (const std::string& sentence : shortfalls)
