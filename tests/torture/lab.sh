@@ -55,8 +55,13 @@ goes_on() {
         fell "$2: --resume ends with $status: $(tail -1 "$folder/said")"
         return
     fi
+    newest=$(ls "$folder"/whole/checkpoint_* | tail -n 1)
     for file in "$folder"/whole/*; do
-        case $file in */summary.json) continue ;; esac
+        case $file in
+        */summary.json) continue ;;
+        # Two are kept: that of a signal may stand in the place of the last but one.
+        */checkpoint_*) [ ! -f "$1/${file##*/}" ] && [ "$file" != "$newest" ] && continue ;;
+        esac
         cmp -s "$file" "$1/${file##*/}" || { fell "$2: ${file##*/} has other bytes"; return; }
     done
     nothing_half "$1" "$2, resumed"
