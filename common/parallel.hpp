@@ -9,8 +9,30 @@
 #include <omp.h>
 
 #include <array>
+#include <exception>
 
 namespace common {
+
+/// What pieces of a parallel loop throw: no exception may leave a parallel region, so one is kept and
+/// thrown again behind it.
+class Thrown {
+   public:
+    template <class Work>
+    void keep(const Work& work) {
+        try {
+            work();
+        } catch (...) {
+#pragma omp critical
+            what = std::current_exception();
+        }
+    }
+    void throw_again() const {
+        if (what) std::rethrow_exception(what);
+    }
+
+   private:
+    std::exception_ptr what;
+};
 
 /// Number of pieces a loop over particles is cut into; any machine's threads share these.
 inline constexpr int block_count = 16;
@@ -20,12 +42,15 @@ inline constexpr long parallel_threshold = 4096;
 
 /// Calls work(block, begin, end) once for each of block_count contiguous pieces of [0, count).
 /// in: numbers, how many a loop works on, where it is known to be short
+/// errors: what one of the pieces throws, when all have ended
 template <class Work>
 void for_each_block(long count, const Work& work, long numbers = parallel_threshold) {
+    Thrown thrown;
 #pragma omp parallel for schedule(dynamic, 1) if (numbers >= parallel_threshold)
-    for (int block = 0; block < block_count; ++block) {
-        work(block, count * block / block_count, count * (block + 1) / block_count);
-    }
+    for (int block = 0; block < block_count; ++block)
+        thrown.keep(
+            [&] { work(block, count * block / block_count, count * (block + 1) / block_count); });
+    thrown.throw_again();
 }
 
 /// Sum of partial(begin, end) over the blocks of [0, count), added in block order.
@@ -47,8 +72,10 @@ double sum_over_blocks(long count, const Partial& partial, long numbers = parall
 /// in: numbers, as above
 template <class Work>
 void for_each_row(long rows, const Work& work, long numbers = parallel_threshold) {
+    Thrown thrown;
 #pragma omp parallel for schedule(dynamic, 1) if (numbers >= parallel_threshold)
-    for (long row = 0; row < rows; ++row) work(row);
+    for (long row = 0; row < rows; ++row) thrown.keep([&] { work(row); });
+    thrown.throw_again();
 }
 
 /// Calls work(row) for every row, rows three apart at the same time: a row that writes to itself
@@ -56,22 +83,26 @@ void for_each_row(long rows, const Work& work, long numbers = parallel_threshold
 /// the same order whatever the number of threads.
 template <class Work>
 void for_each_row_three_colors(long rows, const Work& work, long numbers = parallel_threshold) {
+    Thrown thrown;
 #pragma omp parallel if (numbers >= parallel_threshold)
     for (long color = 0; color < 3; ++color) {
 #pragma omp for schedule(dynamic, 1)
-        for (long row = color; row < rows; row += 3) work(row);
+        for (long row = color; row < rows; row += 3) thrown.keep([&] { work(row); });
     }
+    thrown.throw_again();
 }
 
 /// Calls work(row) for every row, first the even ones, then the odd ones: a row may write to what it
 /// shares with the next one, as long as it shares nothing with the next but one.
 template <class Work>
 void for_each_row_two_colors(long rows, const Work& work, long numbers = parallel_threshold) {
+    Thrown thrown;
 #pragma omp parallel if (numbers >= parallel_threshold)
     for (long color = 0; color < 2; ++color) {
 #pragma omp for schedule(dynamic, 1)
-        for (long row = color; row < rows; row += 2) work(row);
+        for (long row = color; row < rows; row += 2) thrown.keep([&] { work(row); });
     }
+    thrown.throw_again();
 }
 
 /// Threads that a parallel region will have.

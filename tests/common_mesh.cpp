@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
+#include <new>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -584,6 +586,30 @@ TEST_CASE("loops over blocks and rows cover everything once whatever the number 
         const double total = std::accumulate(values.begin(), values.end(), 0.0);
         CHECK(std::fabs(sums[0] - total) <= eps * real(count));
     }
+}
+
+TEST_CASE("what a piece of a parallel loop throws reaches the caller when all pieces have ended") {
+    const long before = common::thread_count();
+    for (const int threads : {1, 2}) {
+        common::set_thread_count(threads);
+        for (const long numbers : {1L, 1L << 20}) {
+            std::array<std::atomic<int>, common::block_count> seen{};
+            const auto piece = [&](long k) {
+                ++seen[static_cast<std::size_t>(k)];
+                if (k == 3) throw std::bad_alloc();
+            };
+            const long rows = common::block_count;
+            CHECK_THROWS_AS(common::for_each_row(rows, piece, numbers), std::bad_alloc);
+            CHECK_THROWS_AS(common::for_each_row_two_colors(rows, piece, numbers), std::bad_alloc);
+            CHECK_THROWS_AS(common::for_each_row_three_colors(rows, piece, numbers),
+                            std::bad_alloc);
+            CHECK_THROWS_AS(common::for_each_block(
+                                rows, [&](int block, long, long) { piece(block); }, numbers),
+                            std::bad_alloc);
+            for (const auto& times : seen) CHECK(times == 4);
+        }
+    }
+    common::set_thread_count(static_cast<int>(before));
 }
 
 TEST_CASE("the sort is stable and puts every particle at its nearest node for any threads") {

@@ -7,7 +7,10 @@ under() {  # under STATUSES COMMAND: a run in a shell that has done this
     tried=$((tried + 1))
     timeout 60 sh -c "$2" sh $run "$folder/limited" > "$folder/said" 2>&1
     status=$?
-    case " $1 127 " in  # 127 is the loader's own, before the program is there
+    # Before the program is there, its loader ends with 127, or crashes.
+    [ $status = 139 ] && ! LD_TRACE_LOADED_OBJECTS=1 sh -c "$2" sh "${run%% *}" > /dev/null 2>&1 &&
+        status=127
+    case " $1 127 " in
     *" $status "*) ;;
     *) fell "$2: status $status: $(tail -1 "$folder/said")" ;;
     esac
