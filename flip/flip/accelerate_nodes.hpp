@@ -1,91 +1,14 @@
 // on the mesh: forces on the nodes and their velocities in the Lagrangian phase, from pressure,
 // viscosity and gravity.
-//
-// Force and work are one operator and its transpose, so what the nodes gain the cells lose, to
-// round-off:  sum_g F_g . v_g = sum_c p_c V_c (div v)_c  for any v on the nodes.
 #pragma once
 
 #include <array>
 #include <cmath>
 
 #include "flip/boundaries.hpp"
-#include "flip/flip/find_pressure.hpp"
+#include "flip/flip/artificial_viscosity.hpp"
 
 namespace flip {
-
-namespace detail {
-
-// [rings]
-// The rate of change of the volume of a ring whose sides stay straight: its corners move by v, and
-// L is the length of a ring. What flows through the side between r_1 and r_2 is the integral of
-// 2 pi r v_z dr, with weights (2 r_1 + r_2)/6 and (r_1 + 2 r_2)/6: L at a third and at two thirds.
-inline double dilation_of_ring(const Grid& grid, const Field& vx, const Field& vz, long n) {
-    const long up = n + grid.stride();
-    const double i = static_cast<double>(column_of(grid, n));
-    return 0.5 * grid.z.spacing() *
-               (ring_length(grid, i + 1) * (vx[n + 1] + vx[up + 1]) -
-                ring_length(grid, i) * (vx[n] + vx[up])) +
-           0.5 * grid.x.spacing() *
-               (ring_length(grid, i + 1. / 3) * (vz[up] - vz[n]) +
-                ring_length(grid, i + 2. / 3) * (vz[up + 1] - vz[n + 1]));
-}
-
-// Its transpose. Uniform pressure pushes no node, so that there is no hoop term to balance.
-inline Eigen::Vector2d pressure_force_of_rings(const Grid& grid, const Field& p, long n) {
-    const long down = n - grid.stride();
-    const double i = static_cast<double>(column_of(grid, n));
-    return {
-        0.5 * grid.z.spacing() * ring_length(grid, i) * (p[down - 1] + p[n - 1] - p[down] - p[n]),
-        0.5 * grid.x.spacing() *
-            (ring_length(grid, i - 1. / 3) * (p[down - 1] - p[n - 1]) +
-             ring_length(grid, i + 1. / 3) * (p[down] - p[n]))};
-}
-// [/rings]
-
-}  // namespace detail
-
-// [transpose]
-/// V_c div v of a cell, from its four nodes.
-inline double dilation(const Grid& grid, const Field& vx, const Field& vz, long n) {
-    const long up = n + grid.stride();
-    if (grid.axisymmetric) return detail::dilation_of_ring(grid, vx, vz, n);
-    return 0.5 * grid.z.spacing() * (vx[n + 1] + vx[up + 1] - vx[n] - vx[up]) +
-           0.5 * grid.x.spacing() * (vz[up] + vz[up + 1] - vz[n] - vz[n + 1]);
-}
-
-/// Force of the pressures of the four cells around a node; the transpose of dilation().
-inline Eigen::Vector2d pressure_force(const Grid& grid, const Field& p, long n) {
-    const long down = n - grid.stride();
-    if (grid.axisymmetric) return detail::pressure_force_of_rings(grid, p, n);
-    return {0.5 * grid.z.spacing() * (p[down - 1] + p[n - 1] - p[down] - p[n]),
-            0.5 * grid.x.spacing() * (p[down - 1] + p[down] - p[n - 1] - p[n])};
-}
-// [/transpose]
-
-/// Artificial viscosity of every cell, from the velocity that the walls let stand.
-///   q = rho (-d) h (linear c + quadratic h (-d)),  d = div v < 0,  h = dx, or sqrt(dx dz)
-/// out:    nodes.vx0, vz0; cells.q, 0 in a cell that expands, is empty or partly void
-inline void find_viscosity(const Grid& grid, const Boundaries& boundaries,
-                           const ArtificialViscosity& q, Mesh& mesh) {
-    Nodes& g = mesh.nodes;
-    Cells& c = mesh.cells;
-    for_each_node(grid, [&](long, long, long n) {
-        g.vx0[n] = g.vx[n];
-        g.vz0[n] = g.vz[n];
-    });
-    set_walls(grid, boundaries, g.vx0, g.vz0);
-    const double area = grid.cell_area(), h = is_plane(grid) ? std::sqrt(area) : grid.x.spacing();
-    for_each_cell(grid, [&](long i, long, long n) {
-        const double V_c = area * ring_length(grid, static_cast<double>(i) + 0.5),
-                     d = dilation(grid, g.vx0, g.vz0, n) / V_c;
-        const bool squeezed = d < 0 && c.M[n] > 0 && c.surface[n] == 0;
-        const double rho = density_of(c, i, n);
-        c.q[n] = squeezed
-                     ? rho * -d * h *
-                           (q.linear * sound_speed(rho, c.compressibility[n]) - q.quadratic * h * d)
-                     : 0;
-    });
-}
 
 /// Acceleration by gravity and trap on a node.
 ///   a = g + trap (x_middle - x)
@@ -149,15 +72,17 @@ inline ViscousStress viscous_stress(double mu, const CornerGradients& d,
 
 /// Fills the ghosts of a pressure: around a periodic direction the other side, else nothing. A wall
 /// holds its nodes itself, and boundary_force() is what acts on an open boundary.
-inline void fill_pressure(const Grid& grid, Field& p) {
+template <class Values>
+void fill_pressure(const Grid& grid, Values& p) {
     const long nx = grid.x.cells, nz = grid.z.cells;
+    const typename Values::value_type none{};
     for (long j = 0; j < nz; ++j) {
-        p[grid.index(-1, j)] = grid.x.periodic ? p[grid.index(nx - 1, j)] : 0;
-        p[grid.index(nx, j)] = grid.x.periodic ? p[grid.index(0, j)] : 0;
+        p[grid.index(-1, j)] = grid.x.periodic ? p[grid.index(nx - 1, j)] : none;
+        p[grid.index(nx, j)] = grid.x.periodic ? p[grid.index(0, j)] : none;
     }
     for (long i = -1; i <= nx; ++i) {
-        p[grid.index(i, -1)] = grid.z.periodic ? p[grid.index(i, nz - 1)] : 0;
-        p[grid.index(i, nz)] = grid.z.periodic ? p[grid.index(i, 0)] : 0;
+        p[grid.index(i, -1)] = grid.z.periodic ? p[grid.index(i, nz - 1)] : none;
+        p[grid.index(i, nz)] = grid.z.periodic ? p[grid.index(i, 0)] : none;
     }
 }
 
@@ -215,7 +140,7 @@ inline void find_known_forces(const Grid& grid, const Boundaries& boundaries, do
     fill_pressure(grid, mesh.cells.q);
     for_each_node(grid, [&](long i, long j, long n) {
         const Eigen::Vector2d F =
-            pressure_force(grid, mesh.cells.q, n) + boundary_force(grid, boundaries, i, j);
+            stress_force(grid, mesh.cells.q, n) + boundary_force(grid, boundaries, i, j);
         g.fx[n] += F[0];
         g.fz[n] += F[1];
     });

@@ -33,6 +33,13 @@ struct SoftSum {
     double C = 0, Cp = 0;
 };
 
+/// A symmetric tensor of a cell: xx, zz, xz, and around the axis.
+struct CellTensor {
+    double xx = 0, zz = 0, xz = 0, hoop = 0;
+    double trace() const { return xx + zz + hoop; }
+    CellTensor operator*(double a) const { return {a * xx, a * zz, a * xz, a * hoop}; }
+};
+
 /// The nodes; all columns grid.size() long.
 struct Nodes {
     std::vector<Four> sum;         // m_g, momentum x and z, and number of particles
@@ -56,7 +63,8 @@ struct Cells {
     std::vector<double> share, de;    // of a change of volume; change of e in this step
     std::vector<double> relative_de;  // change of e by pressure, per e
     Field M;                          // mass
-    Field p, q;                       // pressure, artificial viscosity
+    Field p;                          // pressure
+    std::vector<CellTensor> q;        // artificial viscosity
     Field compressibility;            // -(dV/dp)/V; 0 in an empty cell
     Field p_step;                     // the pressure that acts in this step
     std::vector<char> surface;        // 1: partly void, p = 0 whatever happens
@@ -113,7 +121,8 @@ inline Mesh mesh_of(const Problem& problem) {
     for (auto* f : {&c.share, &c.de, &c.relative_de}) f->assign(size * mesh.materials, 0);
     c.surface.assign(size, 0);
     c.V_of_column = lattice_volumes(problem.grid, problem.per_cell_x);
-    for (Field* f : {&c.M, &c.p, &c.q, &c.compressibility, &c.p_step}) f->setZero(size);
+    for (Field* f : {&c.M, &c.p, &c.compressibility, &c.p_step}) f->setZero(size);
+    c.q.assign(size, {});
     if (scheme.particle_volumes) {
         for (Field* f : {&c.volume, &c.compliance, &c.strain, &c.work, &c.q_work, &c.room})
             f->setZero(size);

@@ -5,41 +5,14 @@
 //                     \________________/
 //                   v_bar = (v^0 + v^L)/2           at which forces work, as a square changes by
 //                                                   twice its mean times its change
-//     p_c, q_c act on nodes with D^T and work on cells with D v_bar: what nodes gain, cells lose
+//     p_c acts on nodes with D^T and works on cells with D v_bar, q_c likewise with the strain rate:
+//     what nodes gain, cells lose
 #pragma once
 
 #include "flip/flip/mass_matrix.hpp"
 #include "flip/flip/solve_pressure.hpp"
 
 namespace flip {
-
-/// Lowers the artificial viscosity of rings, and of cells with several materials, to what stops the
-/// compression of a cell within the step.
-///   q <= -D v^0/(dt D M^-1 D^T)
-/// note:   more would throw apart nodes lighter than the cell, of air by water or of a near void
-inline void limit_viscosity(const Grid& grid, double dt, Mesh& mesh) {
-    const Nodes& g = mesh.nodes;
-    const auto mixed = [&](long n) {
-        const auto first = mesh.cells.sum.begin() + n * mesh.materials,
-                   end = first + mesh.materials;
-        return std::count_if(first, end, [](const CellSum& sum) { return sum.M > 0; }) > 1;
-    };
-    const double dx = is_plane(grid) ? grid.x.spacing() : 0;  // in a row nothing moves along z
-    for_each_cell(grid, [&](long i, long, long n) {
-        double& q = mesh.cells.q[n];
-        if (q == 0 || !(grid.axisymmetric || mixed(n))) return;
-        double response = 0;  // D M^-1 D^T, of this cell alone
-        for (const long side : {0, 1}) {
-            const double node = static_cast<double>(i),
-                         along_r =
-                             grid.z.spacing() * ring_length(grid, node + static_cast<double>(side)),
-                         along_z = dx * ring_length(grid, node + static_cast<double>(1 + side) / 3);
-            for (const long corner : {n + side, n + side + grid.stride()})
-                response += 0.25 * (along_r * along_r + along_z * along_z) / g.m[corner];
-        }
-        q = std::min(q, -dilation(grid, g.vx0, g.vz0, n) / (dt * response));
-    });
-}
 
 /// Adds to the budget what comes from outside within the step: gravity, the pressure outside of open
 /// boundaries, and what walls give to the nodes that they hold, R = m (v^L - v) - dt (F + m g).
@@ -89,7 +62,7 @@ inline void add_external_work(const Problem& problem, double dt, const Nodes& g,
 }
 
 /// The work of pressure and viscosity on the cells, and what the particles need of the nodes.
-///   dE_c = -dt (p V div v_work + q V div v_bar) + viscous heating
+///   dE_c = -dt (p V div v_work + V q : grad v_bar) + viscous heating
 /// For the particles of material k pressure changes e in proportion to e, as it does at one pressure
 /// when nothing else happens, so that each keeps its entropy; viscosity by mass:
 ///   relative_de_ck = -dt share_ck p V div v_work / U_ck,   de_ck = share_ck (rest of dE_c) / M_ck
@@ -134,7 +107,8 @@ inline void work_on_cells(const Problem& problem, double dt, Mesh& mesh, Budget&
     const long count = mesh.materials;
     for_each_cell(grid, [&](long, long, long n) {
         const double work = dilation(grid, g.vx_work, g.vz_work, n),
-                     bar = dilation(grid, g.vx_bar, g.vz_bar, n), viscosity = problem.viscosity;
+                     q_power = power(grid, c.q[n], g.vx_bar, g.vz_bar, n),
+                     viscosity = problem.viscosity;
         double adiabatic = 0;
         double dE = viscosity > 0 && c.M[n] > 0
                         ? dt * viscous_heating(grid, viscosity, g, g.vx_bar, g.vz_bar, n)
@@ -145,10 +119,10 @@ inline void work_on_cells(const Problem& problem, double dt, Mesh& mesh, Budget&
             const double per_compliance = yields ? dt / c.compliance[n] : 0;
             c.strain[n] = per_compliance * dilation(grid, move_x, move_z, n);
             c.work[n] = per_compliance * work;
-            c.q_work[n] = per_compliance * (c.q[n] * bar + (c.p_step[n] - c.p[n]) * work);
+            c.q_work[n] = per_compliance * (q_power + (c.p_step[n] - c.p[n]) * work);
         } else {
             adiabatic = -dt * c.p_step[n] * work;
-            dE -= dt * c.q[n] * bar;
+            dE -= dt * q_power;
         }
         for (long ck = n * count; ck < (n + 1) * count; ++ck) {
             const double M = c.sum[ck].M, U = c.sum[ck].U;

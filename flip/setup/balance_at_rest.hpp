@@ -26,7 +26,8 @@ inline Field change_to_balance(const Problem& problem, Mesh& mesh) {
     const double dt = 1 / problem.scheme.theta;  // the matrix is theta^2 dt^2 D M^-1 D^T
     const PressureCells cells = number_cells(problem, dt, mesh);
     if (cells.count() == 0) return change;
-    for (Field* f : {&g.vx0, &g.vz0, &c.q}) f->setZero(grid.size());
+    for (Field* f : {&g.vx0, &g.vz0}) f->setZero(grid.size());
+    c.q.assign(grid.size(), {});
     c.p_step = c.p;
     find_known_forces(grid, problem.boundaries, 0, mesh);
     accelerate_nodes(problem, 1, mesh);
