@@ -10,29 +10,21 @@
 
 #include <array>
 #include <exception>
+#include <numeric>
 
 namespace common {
 
-/// What pieces of a parallel loop throw: no exception may leave a parallel region, so one is kept and
-/// thrown again behind it.
-class Thrown {
-   public:
-    template <class Work>
-    void keep(const Work& work) {
-        try {
-            work();
-        } catch (...) {
+/// Does a piece of a parallel loop, and keeps what it throws: no exception may leave the region.
+template <class Work>
+void do_piece(std::exception_ptr& thrown, const Work& work) try {
+    work();
+} catch (...) {
 #pragma omp critical
-            what = std::current_exception();
-        }
-    }
-    void throw_again() const {
-        if (what) std::rethrow_exception(what);
-    }
-
-   private:
-    std::exception_ptr what;
-};
+    thrown = std::current_exception();
+}
+inline void throw_kept(const std::exception_ptr& thrown) {
+    if (thrown) std::rethrow_exception(thrown);
+}
 
 /// Number of pieces a loop over particles is cut into; any machine's threads share these.
 inline constexpr int block_count = 16;
@@ -45,12 +37,13 @@ inline constexpr long parallel_threshold = 4096;
 /// errors: what one of the pieces throws, when all have ended
 template <class Work>
 void for_each_block(long count, const Work& work, long numbers = parallel_threshold) {
-    Thrown thrown;
+    std::exception_ptr thrown;
 #pragma omp parallel for schedule(dynamic, 1) if (numbers >= parallel_threshold)
     for (int block = 0; block < block_count; ++block)
-        thrown.keep(
-            [&] { work(block, count * block / block_count, count * (block + 1) / block_count); });
-    thrown.throw_again();
+        do_piece(thrown, [&] {
+            work(block, count * block / block_count, count * (block + 1) / block_count);
+        });
+    throw_kept(thrown);
 }
 
 /// Sum of partial(begin, end) over the blocks of [0, count), added in block order.
@@ -63,19 +56,17 @@ double sum_over_blocks(long count, const Partial& partial, long numbers = parall
             part[static_cast<std::size_t>(block)] = partial(begin, end);
         },
         numbers);
-    double total = 0;
-    for (const double p : part) total += p;
-    return total;
+    return std::accumulate(part.begin(), part.end(), 0.0);
 }
 
 /// Calls work(row) for every row in [0, rows); rows must not write to each other's data.
 /// in: numbers, as above
 template <class Work>
 void for_each_row(long rows, const Work& work, long numbers = parallel_threshold) {
-    Thrown thrown;
+    std::exception_ptr thrown;
 #pragma omp parallel for schedule(dynamic, 1) if (numbers >= parallel_threshold)
-    for (long row = 0; row < rows; ++row) thrown.keep([&] { work(row); });
-    thrown.throw_again();
+    for (long row = 0; row < rows; ++row) do_piece(thrown, [&] { work(row); });
+    throw_kept(thrown);
 }
 
 /// Calls work(row) for every row, rows three apart at the same time: a row that writes to itself
@@ -83,26 +74,26 @@ void for_each_row(long rows, const Work& work, long numbers = parallel_threshold
 /// the same order whatever the number of threads.
 template <class Work>
 void for_each_row_three_colors(long rows, const Work& work, long numbers = parallel_threshold) {
-    Thrown thrown;
+    std::exception_ptr thrown;
 #pragma omp parallel if (numbers >= parallel_threshold)
     for (long color = 0; color < 3; ++color) {
 #pragma omp for schedule(dynamic, 1)
-        for (long row = color; row < rows; row += 3) thrown.keep([&] { work(row); });
+        for (long row = color; row < rows; row += 3) do_piece(thrown, [&] { work(row); });
     }
-    thrown.throw_again();
+    throw_kept(thrown);
 }
 
 /// Calls work(row) for every row, first the even ones, then the odd ones: a row may write to what it
 /// shares with the next one, as long as it shares nothing with the next but one.
 template <class Work>
 void for_each_row_two_colors(long rows, const Work& work, long numbers = parallel_threshold) {
-    Thrown thrown;
+    std::exception_ptr thrown;
 #pragma omp parallel if (numbers >= parallel_threshold)
     for (long color = 0; color < 2; ++color) {
 #pragma omp for schedule(dynamic, 1)
-        for (long row = color; row < rows; row += 2) thrown.keep([&] { work(row); });
+        for (long row = color; row < rows; row += 2) do_piece(thrown, [&] { work(row); });
     }
-    thrown.throw_again();
+    throw_kept(thrown);
 }
 
 /// Threads that a parallel region will have.

@@ -22,19 +22,6 @@ inline double spline(int order, double x) {
     return r < 1 ? 2.0 / 3 - r * r + 0.5 * r * r * r : r < 2 ? cube(2 - r) / 6 : 0;
 }
 
-/// What a smooth distribution f(x) of particles puts on the node at x: the integral of f S^(2).
-/// exact: for constant and linear f; otherwise by the midpoint rule, to 1e-4 of what S^(2) changes.
-template <class Function>
-double spline_average(const Function& f, double x, double dx) {
-    constexpr int points = 120;
-    double sum = 0;
-    for (int k = 0; k < points; ++k) {
-        const double s = 3 * ((k + 0.5) / points - 0.5);
-        sum += spline(2, s) * f(x + s * dx) * 3 / points;
-    }
-    return sum;
-}
-
 /// The quadratic and linear weights that a particle at distance d (in cells, |d| <= 1/2) from its
 /// nearest node gives to its neighbors:
 ///     quadratic[0..2] = S^(2) to the nodes -1, 0, +1

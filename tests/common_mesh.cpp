@@ -18,6 +18,7 @@
 #include "implicit_moment/mesh_modes.hpp"
 #include "implicit_moment/smooth.hpp"
 #include "implicit_moment/sort_particles.hpp"
+#include "implicit_moment/theory/spline_average.hpp"
 #include "tests/support/any_fields.hpp"
 
 namespace {
@@ -223,12 +224,13 @@ TEST_CASE("a spline is the next lower one averaged over a cell and changes by it
 
 TEST_CASE("the spline average keeps straight lines and multiplies waves with a cubed sinc") {
     const double dx = 0.3, x = 1.7;
-    const double line = common::spline_average([](double s) { return 2 - 7 * s; }, x, dx);
+    const double line = implicit_moment::spline_average([](double s) { return 2 - 7 * s; }, x, dx);
     CHECK(std::fabs(line - (2 - 7 * x)) <= 1e-14);
     for (const double angle : {0.1, 0.5, 1.0, 2.0, 3.0}) {
         const double factor = std::pow(2 / angle * std::sin(0.5 * angle), 3);
         const auto wave = [&](double s) { return std::cos(angle / dx * (s - x)); };
-        CHECK(std::fabs(common::spline_average(wave, x, dx) - factor) <= 1e-6 * (1 - factor));
+        CHECK(std::fabs(implicit_moment::spline_average(wave, x, dx) - factor) <=
+              1e-6 * (1 - factor));
     }
 }
 

@@ -7,6 +7,7 @@
 #include <complex>
 #include <map>
 #include <memory>
+#include <numbers>
 
 #include "common/splines.hpp"
 #include "flip/theory/acoustics.hpp"
@@ -324,6 +325,63 @@ TEST_CASE("the force of pressure is the transpose of dilation") {
             CHECK(std::fabs(all_x) <= 1e-14);
             CHECK(std::fabs(all_z) <= 1e-14);
         }
+    }
+}
+
+TEST_CASE("the force of a stress is the transpose of the strain rate in the plane and in rings") {
+    for (const char* ends : {"periodic", "slip", "open"}) {
+        for (const bool rings : {false, true}) {
+            if (rings && ends == std::string("periodic")) continue;
+            Random random(4);
+            Case w = several_gases(7, 6, ends, ends);
+            w.grid.axisymmetric = rings;
+            if (rings) w.boundaries[x_low].kind = "slip";
+            w = completed(w);
+            const Grid& grid = w.grid;
+            Field vx, vz;
+            stir_nodes(grid, random, vx), stir_nodes(grid, random, vz);
+            std::vector<CellTensor> q(grid.size());
+            for_each_cell(grid, [&](long, long, long n) {
+                q[n] = {random(-1, 1), random(-1, 1), random(-1, 1), rings ? random(-1, 1) : 0};
+            });
+            fill_pressure(grid, q);
+            double by_nodes = 0, by_cells = 0, size = 0, all_x = 0, all_z = 0;
+            for_own_nodes(grid, [&](long, long, long n) {
+                const Eigen::Vector2d F = stress_force(grid, q, n);
+                by_nodes += F[0] * vx[n] + F[1] * vz[n];
+                size += F.norm(), all_x += F[0], all_z += F[1];
+            });
+            for_each_cell(grid, [&](long, long, long n) {
+                by_cells += power(grid, q[n], vx, vz, n);
+                const CellTensor rate = strain_rate(grid, vx, vz, n);
+                CHECK(std::fabs(rate.trace() - dilation(grid, vx, vz, n)) <= 1e-14);
+            });
+            CHECK(size > 0.01);
+            CHECK(std::fabs(by_nodes - by_cells) <= 1e-14 * size);
+            if (!rings) CHECK(std::fabs(all_x) <= 1e-14 * size);
+            CHECK(std::fabs(all_z) <= 1e-14 * size);
+        }
+    }
+}
+
+TEST_CASE("artificial viscosity acts in the directions that are squeezed and in no other") {
+    for (const double angle : {0.0, 0.3, std::numbers::pi / 4, 2.0}) {
+        const double x = std::cos(angle), z = std::sin(angle);
+        const auto of = [&](double a, double b, double hoop) {  // principal rates along and across
+            return share_of_squeezed(
+                {a * x * x + b * z * z, a * z * z + b * x * x, (a - b) * x * z, hoop});
+        };
+        const auto is = [&](const CellTensor& t, double a, double b, double hoop) {
+            CHECK(std::fabs(t.xx - (a * x * x + b * z * z)) <= 1e-15);
+            CHECK(std::fabs(t.zz - (a * z * z + b * x * x)) <= 1e-15);
+            CHECK(std::fabs(t.xz - (a - b) * x * z) <= 1e-15);
+            CHECK(std::fabs(t.hoop - hoop) <= 1e-15);
+        };
+        is(of(-3, 0, 0), 1, 0, 0);  // a plane shock
+        is(of(-3, 1, 1), 1, 0, 0);  // one that grows
+        is(of(-3, -1, 0), 0.75, 0.25, 0);
+        is(of(-2, -2, -2), 1. / 3, 1. / 3, 1. / 3);
+        is(of(1, 1, -4), 0, 0, 1);
     }
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "implicit_moment/setup/initial_state.hpp"
+#include "implicit_moment/theory/spline_average.hpp"
 #include "tests/support/any_particles.hpp"
 
 namespace {
@@ -91,7 +92,7 @@ TEST_CASE("particles of a Harris sheet have equal weights and start with no char
             const auto mean = [&](const Field& f) {
                 return f.segment(grid.index(0, j), grid.x.cells).mean() / n0;
             };
-            const double sech2 = common::spline_average(
+            const double sech2 = spline_average(
                 [&](double z) { return std::pow(std::cosh(z / parameters.harris.thickness), -2); },
                 grid.z.at(real(j)), grid.z.spacing());
             CHECK(std::fabs(mean(of_ions.rho) - sech2 - parameters.harris.background) <= 0.05);

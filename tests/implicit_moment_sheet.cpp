@@ -11,6 +11,7 @@
 
 #include "implicit_moment/setup/check_case.hpp"
 #include "implicit_moment/theory/compare_current_sheet.hpp"
+#include "implicit_moment/theory/spline_average.hpp"
 #include "tests/support/any_particles.hpp"
 #include "tests/support/any_summary.hpp"
 #include "tests/support/folder_of_test.hpp"
@@ -138,9 +139,8 @@ TEST_CASE("the particles of a thin sheet have its density and drifts and tempera
         for (long j = 1; j < grid.z.cells; ++j) {
             const double exact =
                 parameters.current_sheet.background +
-                common::spline_average(
-                    [&](double z) { return std::pow(std::cosh(z / h.thickness), -2); },
-                    grid.z.at(real(j)), grid.z.spacing());
+                spline_average([&](double z) { return std::pow(std::cosh(z / h.thickness), -2); },
+                               grid.z.at(real(j)), grid.z.spacing());
             CHECK(std::fabs(row_mean(grid, rho.data(), j) / n0 - exact) <= 0.06);
         }
     }

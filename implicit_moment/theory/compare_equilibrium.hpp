@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "common/run/run.hpp"
-#include "common/splines.hpp"
 #include "implicit_moment/moments.hpp"
 #include "implicit_moment/setup/load_plasma.hpp"
+#include "implicit_moment/theory/spline_average.hpp"
 
 namespace implicit_moment {
 
@@ -22,7 +22,7 @@ inline void compare_equilibrium(const Case& w, const Plasma& plasma,
     for (long j = 1; j < grid.z.cells; ++j) {
         const double z = grid.z.at(double(j)) - (grid.z.low + 0.5 * grid.z.length);
         const double in_sheet =
-            n0 * common::spline_average(
+            n0 * spline_average(
                      [&](double at) { return std::pow(std::cosh(at / w.harris.thickness), -2); }, z,
                      grid.z.spacing());
         const double n = in_sheet + n0 * w.harris.background;
