@@ -257,21 +257,21 @@ TEST_CASE("the effective case runs again to the same bytes of every kind of file
 cic streams time.end=4 output.fields_interval=1 output.particles_interval=1 \
     output.phase_interval=1
 cic floating time.end=4 output.fields_interval=1 output.particles_interval=1 \
-    output.phase_interval=1 -> 18
+    output.phase_interval=1 -> 22
 cic mirrors time.end=4 output.fields_interval=1 output.particles_interval=1 \
-    output.phase_interval=1 output.vtk=true -> 28
-cic plane_streams time.end=4 output.modes=4 output.spectrum=true -> 5
+    output.phase_interval=1 output.vtk=true -> 34
+cic plane_streams time.end=4 output.modes=4 output.spectrum=true -> 7
 fluids shock_tube -> 3
-pic channel output.fields_interval=0.08 output.particles_interval=0.08 output.vtk=true -> 16
-flip vortex output.fields_interval=0.12 output.particles_interval=0.12 output.vtk=true -> 17
-flip channel rezoned output.particles_interval=0.08 -> 5
+pic channel output.fields_interval=0.08 output.particles_interval=0.08 output.vtk=true -> 20
+flip vortex output.fields_interval=0.12 output.particles_interval=0.12 output.vtk=true -> 21
+flip channel rezoned output.particles_interval=0.08 -> 6
 mpm_explicit rebound time.end=0.2 output.particles_interval=0.1 output.grains_interval=0.1 \
     output.fringes_interval=0.1 output.pixels_per_cell=2 output.pack=true
-mpm_implicit rebound newton output.particles_interval=0.133 output.grains_interval=0.133 \
-    output.fringes_interval=0.133 output.pixels_per_cell=2 output.pack=true -> 12
+mpm_implicit rebound newton output.particles_interval=0.15 output.grains_interval=0.15 \
+    output.fringes_interval=0.15 output.pixels_per_cell=2 output.pack=true -> 12
 mpm_explicit bonded output.particles_interval=2.5 output.vtk=true -> 9
 mpm_explicit rebound time.end=0.01 grain.left.shape=polygon grain.left.angle=1e-3 \
-    material.more.nu=0.123456789012345678 grain.right.material=more -> 3
+    material.more.nu=0.123456789012345678 grain.right.material=more -> 4
 mpm_implicit press method.theta=0.7 solver.tolerance=1e-12 solver.preconditioner=diagonal \
     method.mass=lumped -> 2
 implicit_moment sheet time.end=3 output.fields_interval=3 output.particles_interval=3

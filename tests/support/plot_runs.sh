@@ -195,10 +195,10 @@ tools)
     done
     damage '$s/ [^ ]*$//' || complain "a last line that is not whole: $(cat "$folder/told")"
     # Pictures of a run that has not come to its end say so, and how far it has come.
-    for status in '' 3 130; do
-        if [ "$status" ]; then sed "s/\"status\": 0/\"status\": $status/" "$folder/32/summary.json" > "$folder/damaged/summary.json"; else rm "$folder/damaged/summary.json"; fi
+    for ending in '' 3 130; do
+        if [ "$ending" ]; then sed "s/\"status\": 0/\"status\": $ending/" "$folder/32/summary.json" > "$folder/damaged/summary.json"; else rm "$folder/damaged/summary.json"; fi
         said=$(sh common/plot.sh "$folder/damaged" 2>&1 | sed -n 's/^note: .*damaged, \(.*\) at t = 0.[12][0-9]* of 0.2[.].*/\1/p')
-        [ "$status $said" = " not ended" ] || [ "$status $said" = "3 failed" ] || [ "$status $said" = "130 stopped" ] || complain "of a run with status '$status' plot.sh says '$said'"
+        [ "$ending $said" = " not ended" ] || [ "$ending $said" = "3 failed" ] || [ "$ending $said" = "130 stopped" ] || complain "of a run with status '$ending' plot.sh says '$said'"
     done
     rm -rf out/figures/flip_*_damaged
     for script in history results; do
