@@ -30,7 +30,7 @@ function images(    i, k, fringe, f, rows, ratio, size, least, most) {
         i = varying[k]
         size = high[i] > -low[i] ? high[i] : -low[i]
         least = low[i]; most = high[i]
-        fringe = kind == "fringes" && name[i] == "stress_difference" ? high[i] / 6 : 0
+        fringe = kind == "fringes" && name[i] == "stress_difference" ? high[i] / 6.5 : 0
         if (fringe) { least = 0; most = 1; print "set palette gray; set cbrange [0:1]" }
         else if (low[i] < 0 && high[i] > 0 && (high[i] < -low[i] ? high[i] : -low[i]) > 0.05 * size) { least = -size; most = size; printf "eval signed(%.9g)\n", size }
         else printf "eval colors(%s); set cbrange [%.9g:%.9g]\n", kind == "phase" ? "inferno" : "viridis", low[i], high[i]
