@@ -604,9 +604,12 @@ out/web/code.js: $(addsuffix step.hpp,cic/ flip/pic/ flip/flip/ mpm_explicit/ mp
 	@mkdir -p $(@D)
 	awk 'BEGIN { printf "const code = {" } FNR == 1 { printf "%s\"%s\": [", (NR > 1 ? "]," : ""), FILENAME } \
 	    { gsub(/[\\"]/, "\\\\&"); printf "\"%s\",\n", $$0 } END { print "]};" }' $^ > $@
-$(web_cases:%=out/web/%.html): out/web/%.html: $(page)/page.html
+$(web_cases:%=out/web/%.html): out/web/%.html: $(page)/head.html $(page)/page.html
 	@mkdir -p $(@D)
-	sed 's/CASE/$*/' $< > $@
+	cat $^ | sed 's/CASE/$*/' > $@
+out/web/index.html: $(page)/head.html $(page)/index.html
+	@mkdir -p $(@D)
+	cat $^ > $@
 out/web/%: $(page)/%
 	@mkdir -p $(@D)
 	cp $< $@

@@ -19,8 +19,8 @@ for kind in $kinds; do
     for time in $times; do set -- "$@" "$(sh common/snapshots.sh file "$run" "$kind" "$time")"; done
     script=common/figures/fields.awk
     [ "$kind" != particles ] || script=common/figures/particles.awk
-    awk -f common/columns.awk "$1" | awk -v kind="$kind" -v quantities="${QUANTITIES:-}" -v frames="$frames" -f "$script" - "$@" > "$frames/page.gp"
-    gnuplot -e "heading='$run'" "$frames/page.gp"
+    awk -f common/columns.awk "$1" | awk -v kind="$kind" -v quantities="${QUANTITIES:-}" -v frames="$frames" -f common/figures/tables.awk -f "$script" - "$@" > "$frames/page.gp"
+    gnuplot -e "heading='$run'; ended='${ENDED:-}'" "$frames/page.gp"
     name=$plots/$kind
     if command -v ffmpeg >/dev/null; then
         movie() { ffmpeg -loglevel error -y -framerate "${RATE:-12}" -start_number 1 -i "$frames/%06d.png" "$@"; }

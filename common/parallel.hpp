@@ -22,9 +22,6 @@ void do_piece(std::exception_ptr& thrown, const Work& work) try {
 #pragma omp critical
     thrown = std::current_exception();
 }
-inline void throw_kept(const std::exception_ptr& thrown) {
-    if (thrown) std::rethrow_exception(thrown);
-}
 
 /// Number of pieces a loop over particles is cut into; any machine's threads share these.
 inline constexpr int block_count = 16;
@@ -43,7 +40,7 @@ void for_each_block(long count, const Work& work, long numbers = parallel_thresh
         do_piece(thrown, [&] {
             work(block, count * block / block_count, count * (block + 1) / block_count);
         });
-    throw_kept(thrown);
+    if (thrown) std::rethrow_exception(thrown);
 }
 
 /// Sum of partial(begin, end) over the blocks of [0, count), added in block order.
@@ -66,7 +63,7 @@ void for_each_row(long rows, const Work& work, long numbers = parallel_threshold
     std::exception_ptr thrown;
 #pragma omp parallel for schedule(dynamic, 1) if (numbers >= parallel_threshold)
     for (long row = 0; row < rows; ++row) do_piece(thrown, [&] { work(row); });
-    throw_kept(thrown);
+    if (thrown) std::rethrow_exception(thrown);
 }
 
 /// Calls work(row) for every row, rows three apart at the same time: a row that writes to itself
@@ -80,7 +77,7 @@ void for_each_row_three_colors(long rows, const Work& work, long numbers = paral
 #pragma omp for schedule(dynamic, 1)
         for (long row = color; row < rows; row += 3) do_piece(thrown, [&] { work(row); });
     }
-    throw_kept(thrown);
+    if (thrown) std::rethrow_exception(thrown);
 }
 
 /// Calls work(row) for every row, first the even ones, then the odd ones: a row may write to what it
@@ -93,7 +90,7 @@ void for_each_row_two_colors(long rows, const Work& work, long numbers = paralle
 #pragma omp for schedule(dynamic, 1)
         for (long row = color; row < rows; row += 2) do_piece(thrown, [&] { work(row); });
     }
-    throw_kept(thrown);
+    if (thrown) std::rethrow_exception(thrown);
 }
 
 /// Threads that a parallel region will have.

@@ -30,6 +30,14 @@ here=$(pwd)
 run=${run#"$here"/} other=${other#"$here"/}
 for folder in "$run" $other; do
     [ -f "$folder/case.toml" ] && [ -f "$folder/history.dat" ] || fail "$folder is not the folder of a run: it needs case.toml and history.dat"
+    # The last line may be in the making.
+    damage=$(awk 'NR == 1 { columns = NF; if ($1 != "time") { print "does not begin with the names of its columns"; exit } next }
+        /^#/ { next }
+        bad { print "is damaged: line " bad " is not " columns " numbers"; exit }
+        NF != columns { bad = NR }
+        { for (i = 1; i <= NF; i++) if ($i + 0 != $i) bad = NR }
+        END { if (!NR) print "is empty" }' "$folder/history.dat")
+    [ -z "$damage" ] || fail "$folder/history.dat $damage; make the run again with --force, or continue it from a checkpoint"
 done
 command -v gnuplot >/dev/null || fail "'gnuplot' is not installed: run 'make deps'"
 program_of() { sed -n '1s/^# \([a-z_]*\) .*/\1/p' "$1/case.toml"; }
@@ -37,6 +45,14 @@ program=$(program_of "$run")
 name_of() { echo "${1#/}" | sed "s|^out/||; s|^$(program_of "$1")/||; s|[^A-Za-z0-9._+=-]|_|g; s|^|$(program_of "$1")_|"; }
 plots=${PLOTS:-out/figures/$(name_of "$run")}
 case $run$other in *[\'\"\`]*) fail "gnuplot cannot read from a folder with quotes in its name: $run $other" ;; esac
+
+entry() { awk -v key="$2" -f common/json_lines.awk "$1/summary.json" 2>/dev/null || true; }
+# What the title of a picture says of a run that has not come to its end.
+ended() {
+    status=$(entry "$1" status)
+    case $status in 0 | 1) return ;; '') verb='not ended' ;; ??*) verb='stopped' ;; *) verb='failed' ;; esac
+    echo ", $verb at t = $(awk '$1 + 0 == $1 { t = $1 } END { printf "%.5g", t }' "$1/history.dat") of $(awk '/^\[/ { section = $1 } section == "[time]" && $1 == "end" { print $3 }' "$1/case.toml")"
+}
 
 # Does every condition of the line hold?
 fits() {
@@ -82,7 +98,7 @@ draw() {
     picture=$plots/${2:-$(basename "$1" .gp)}.png
     partial=$plots/.$$.png
     mkdir -p "$plots"
-    if gnuplot -e "run='$run'; out='$partial'${2:+; kind='$2'}" "$1" && [ -s "$partial" ]; then
+    if gnuplot -e "run='$run'; out='$partial'; ended='$(ended "$run")'${2:+; kind='$2'}" "$1" && [ -s "$partial" ]; then
         mv "$partial" "$picture"
     else
         rm -f "$partial"
@@ -94,9 +110,7 @@ draw() {
 case $mode in
 list) figures ;;
 draw)
-    status=0
-    [ ! -f "$run/summary.json" ] || status=$(awk -v key=status -f common/json_lines.awk "$run/summary.json")
-    [ "$status" = 0 ] || echo "note: the run ended with status $status: $(awk -v key=message -f common/json_lines.awk "$run/summary.json")" >&2
+    [ -z "$(ended "$run")" ] || echo "note: $run$(ended "$run"). $(entry "$run" message)" >&2
     rm -f "$plots"/*.png
     figures | {
         status=0
@@ -128,8 +142,8 @@ compare)
         echo "note: $program and $(program_of "$other") record other columns, or in other units; the axes have those of $run" >&2
     picture=${PLOTS:-out/figures}/compare_$(name_of "$run")_$(name_of "$other").png
     mkdir -p "$(dirname "$picture")"
-    gnuplot -e "run='$run'; other='$other'; out='$picture'" common/figures/compare.gp
+    gnuplot -e "run='$run'; other='$other'; heading='$run$(ended "$run") (solid) and $other$(ended "$other") (dashed)'; out='$picture'" common/figures/compare.gp
     echo "figure: $picture"
     ;;
-movie) PLOTS=$plots sh common/movie.sh "$run" ;;
+movie) PLOTS=$plots ENDED=$(ended "$run") sh common/movie.sh "$run" ;;
 esac

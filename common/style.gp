@@ -20,6 +20,12 @@ if (ending eq 'svg') {
 set encoding utf8
 set output out
 
+# A run that has not come to its end, and how far it has come (plot.sh).
+if (exists('ended') && ended ne '') {
+    if (exists('heading')) { heading = heading.ended } else { set label 99 ended[3:*] noenhanced at screen 0.995, screen 0.018 right front font ',15' textcolor rgb '#D55E00' }
+    ended = ''
+}
+
 # ---- the frame: two thin axes, a faint grid behind the data -------------------------------------
 ink = '#333333'
 faint = '#e4e4e4'

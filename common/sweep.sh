@@ -1,5 +1,5 @@
 #!/bin/sh
-# sweep.sh CASE KEY=VALUE,VALUE ... [-- KEY=VALUE ...]: runs of a case with all combinations of these values, side by side, one thread each; a table of all results, results.dat, and a figure of them.
+# sweep.sh CASE KEY=VALUE,VALUE ... [-- KEY=VALUE ...]: runs of a case with all combinations of these values, side by side, one thread each; a table of all results in the folder, results.dat, and a figure of them.
 #   sh common/sweep.sh cic/cases/thermal_heating.toml method.weighting=ngp,cic,tsc seed=1,2,3 -- time.end=200
 # A key without a section is completed (seed: plasma.seed); what follows -- is the same for all runs. Runs go to out/sweep/CASE/KEY=VALUE_KEY=VALUE; stopped, the same command goes
 # on, and what is complete is not run again. In the environment, all optional:
@@ -78,33 +78,49 @@ else
 fi
 [ $status = 0 ] || echo "not all of the $(grep -c . "$commands") runs ended as they should: see $commands.log, and what they said above" >&2
 
-# The table: keys, then every result with its error, expected value and verdict; "-" where there is none.
-echo "$combinations" | while read -r name keys; do
-    summary=$folder/$name/summary.json
-    [ -f "$summary" ] || continue
-    # shellcheck disable=SC2086
-    printf 'key %s\n' $keys
-    awk -f common/json_lines.awk "$summary" | awk -f common/figures/results.awk | sed 1d
-    echo end
-done | awk '
-    $1 == "key" { split($2, pair, "="); if (!(pair[1] in is_key)) { is_key[pair[1]] = 1; keys[++key_count] = pair[1] } cell[rows + 1, pair[1]] = substr($2, index($2, "=") + 1); next }
-    $1 == "end" { rows++; next }
+# The table, of earlier calls too: the keys of this call and those in which the runs differ, then every result with its error, expected value and verdict; "-" where there is none.
+names=$(echo "$combinations" | sed 's/ .*//')
+{ echo "$names"; find "$folder" -mindepth 1 -maxdepth 1 -type d | sed 's|.*/||' | sort -V; } | awk '!seen[$0]++' | while read -r name; do
+    [ -f "$folder/$name/summary.json" ] || continue
+    lines=$(awk -f common/json_lines.awk "$folder/$name/summary.json")
+    echo "= $folder/$name/case.toml $(printf '%s\n' "$lines" | sed -n 's/^command //p')"
+    printf '%s\n' "$lines" | awk -f common/figures/results.awk | sed 1d
+done | awk -v lists="$lists" '
+    function add_key(word) {
+        if (!match(word, /^[a-z_]+[.][A-Za-z0-9_.-]+=/)) return
+        word = substr(word, 1, RLENGTH - 1)
+        if (!(word in is_key)) { is_key[word] = 1; key[++keys] = word }
+    }
+    function read_case(file,    line, section, at) {  # the complete input of the run
+        while ((getline line < file) > 0) {
+            if (line ~ /^\[/) { gsub(/[][]/, "", line); section = line }
+            else if (at = index(line, " = ")) { given[rows, section "." substr(line, 1, at - 1)] = substr(line, at + 3) }
+        }
+        close(file)
+    }
+    function value_of(row, k,    text) { text = given[row, k]; gsub(/"/, "", text); gsub(/ /, "_", text); return text == "" ? "-" : text }
+    BEGIN { n = split(lists, list, " "); for (i = 1; i <= n; i++) { add_key(list[i]) } asked = keys }
+    $1 == "=" { rows++; read_case($2); for (i = 3; i <= NF; i++) { add_key($i) } next }
     {
         if (!($1 in is_result)) { is_result[$1] = 1; results[++result_count] = $1 }
-        cell[rows + 1, $1] = $2 " " $3 " " $4 " " $6
+        cell[rows, $1] = $2 " " $3 " " $4 " " $6
     }
     END {
-        for (k = 1; k <= key_count; k++) printf "%s ", keys[k]
+        for (k = 1; k <= keys; k++) {
+            differs = k <= asked
+            for (row = 2; row <= rows; row++) if (value_of(row, key[k]) != value_of(1, key[k])) differs = 1
+            if (differs) { shown[++columns] = key[k]; printf "%s ", key[k] }
+        }
         for (k = 1; k <= result_count; k++) printf "%s %s_error %s_expected %s_verdict ", results[k], results[k], results[k], results[k]
         print ""
         for (row = 1; row <= rows; row++) {
-            for (k = 1; k <= key_count; k++) printf "%s ", cell[row, keys[k]]
+            for (k = 1; k <= columns; k++) printf "%s ", value_of(row, shown[k])
             for (k = 1; k <= result_count; k++) printf "%s ", ((row, results[k]) in cell) ? cell[row, results[k]] : "- - - -"
             print ""
         }
     }' > "$folder/results.dat.$$"
 mv "$folder/results.dat.$$" "$folder/results.dat"
-[ -n "${SWEEP_NAME:-}" ] || echo "table: $folder/results.dat, $(($(grep -c . "$folder/results.dat") - 1)) of $(echo "$combinations" | grep -c .) runs"
+[ -n "${SWEEP_NAME:-}" ] || echo "table: $folder/results.dat, $(($(grep -c . "$folder/results.dat") - 1)) runs; this call has $(echo "$names" | grep -c .)"
 [ "$(grep -c . "$folder/results.dat")" -gt 1 ] || fail "no run has left results: there is no figure"
 if [ -z "${SWEEP_NAME:-}" ] && command -v gnuplot >/dev/null; then
     mkdir -p out/figures

@@ -44,27 +44,26 @@ int run_case(const Shape& shape, const Case& parameters, const ThetaScheme& sche
     } else {
         nodes.sort(all.grains, all.particles, state.layout);
         start_budget(all, scratch.laws, state.budget);
-        recorder.start(state, run);
     }
 
     // 3. The loop of the slide.
     while (run.not_finished(step, scales.steps)) {
         if (nodes.sort_is_due(state.layout)) nodes.sort(all.grains, all.particles, state.layout);
-        recorder.snapshot(step, state, run);
+        recorder.record(step, state, run);  // the row of t^n
         const BodyForce body = apply_loads(parameters.problem.loads(), step, dt, all.rigid,
                                            scratch.solver.force_controls);
         take_step(shape, body, dt, scratch, nodes, state, sums);  // [MPM-5 ... 8]
         add_step(scheme.theta, scheme.consistent(), body.damping, dt, nodes.tiles(), sums.tiles,
                  sums.nodes, sums.contact, state.budget);  // [MPM-13]
-        state.effort.add(sums.solver);
-        recorder.record(step, sums, nodes, state, run);
+        state.effort.add(sums);
+        recorder.refuse_failure(step, sums, nodes, state, run);
         ++step;
         run.end_of_step(step, scales.steps, static_cast<double>(step) * dt, state);
     }
 
-    // 4. The results against theory, summary.json.
+    // 4. The last row, the results against theory, summary.json.
     if (step == scales.steps) {
-        recorder.snapshot(step, state, run);
+        recorder.record(step, state, run);
         recorder.finish(step, state, run);
     }
     return run.finish(step, static_cast<double>(all.particles.count()));
@@ -83,7 +82,7 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     if (!common::start_run(info, command, table,
                            {describe_scales(parameters, scheme, scales),
                             warnings_of(parameters, scheme, scales), scales.steps, scales.bytes},
-                           {parameters.checkpoint_steps, parameters.history_steps, true}, holder))
+                           {parameters.checkpoint_steps, parameters.history_steps}, holder))
         return 0;
     return with_shape(parameters.scheme(), [&](const auto& shape) {
         return run_case(shape, parameters, scheme, scales, *holder);

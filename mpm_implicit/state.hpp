@@ -28,15 +28,25 @@ struct ActivePair {
     }
 };
 
-/// What the solvers took, summed up over the steps.
+/// What one step has summed up.
+struct StepSums {
+    std::vector<TileSums> tiles;
+    NodeWork nodes;
+    ContactSums contact;
+    SolveReport solver;
+};
+
+/// What the solvers took, summed up over the steps, and what the row of t^n says of the last.
 struct Effort {
     double iterations = 0, mass_iterations = 0, krylov = 0, loops = 0;
+    double last_iterations = 0, last_loops = 0, contacts = 0, impulse = 0;
 
-    void add(const SolveReport& step) {
-        iterations += static_cast<double>(step.iterations),
-            loops += static_cast<double>(step.loops);
-        mass_iterations += static_cast<double>(step.mass_iterations);
-        krylov += static_cast<double>(step.krylov);
+    void add(const StepSums& step) {
+        iterations += last_iterations = static_cast<double>(step.solver.iterations);
+        loops += last_loops = static_cast<double>(step.solver.loops);
+        mass_iterations += static_cast<double>(step.solver.mass_iterations);
+        krylov += static_cast<double>(step.solver.krylov);
+        contacts = step.contact.nodes, impulse = step.contact.impulse;
     }
 };
 
@@ -49,14 +59,6 @@ struct State {
     Effort effort;
 };
 
-/// What one step has summed up.
-struct StepSums {
-    std::vector<TileSums> tiles;
-    NodeWork nodes;
-    ContactSums contact;
-    SolveReport solver;
-};
-
 template <class Archive>
 void archive(Archive& a, State& state) {
     archive(a, state.assembly);
@@ -65,6 +67,8 @@ void archive(Archive& a, State& state) {
     Effort& e = state.effort;
     a("iterations", e.iterations), a("mass_iterations", e.mass_iterations);
     a("krylov", e.krylov), a("loops", e.loops);
+    a("last_iterations", e.last_iterations), a("last_loops", e.last_loops);
+    a("contacts", e.contacts), a("impulse", e.impulse);
     std::vector<double> pairs;
     for (const ActivePair& pair : state.active_pairs)
         pairs.insert(pairs.end(),

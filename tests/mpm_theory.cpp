@@ -566,6 +566,7 @@ namespace {
 
 struct Range {
     long begin, end;
+    bool has_corners = false;
 };
 
 // Four particles per cell of the mesh, where they are less than R from (x, y).
@@ -591,6 +592,19 @@ Mesh box(long cells_x, long cells_y, double h) {
     Mesh mesh;
     mesh.cells_x = cells_x, mesh.cells_y = cells_y, mesh.h = h;
     return mesh;
+}
+
+// 10 x 8 particles, 0.05 apart, with the lower left corner of the first at (x, y).
+Particles block(double x, double y) {
+    Particles particles;
+    for (int b = 0; b < 8; ++b)
+        for (int a = 0; a < 10; ++a) {
+            particles.resize(particles.x_p.size() + 1);
+            particles.x_p.back() = x + 0.05 * (a + 0.5);
+            particles.y_p.back() = y + 0.05 * (b + 0.5);
+            particles.V_p.back() = 0.05 * 0.05;
+        }
+    return particles;
 }
 
 double area_of(const FringeRaster& raster, int grain) {
@@ -664,14 +678,7 @@ TEST_CASE("the pixels of a disk have its area and their outline is round") {
 TEST_CASE("a block is drawn where it is wherever it lies on the mesh") {
     const Mesh mesh = box(12, 12, 0.1);
     for (double shift = 0; shift < 0.1; shift += 0.011) {
-        Particles particles;
-        for (int b = 0; b < 8; ++b)
-            for (int a = 0; a < 10; ++a) {
-                particles.resize(particles.x_p.size() + 1);
-                particles.x_p.back() = 0.3 + shift + 0.05 * (a + 0.5);
-                particles.y_p.back() = 0.4 - shift + 0.05 * (b + 0.5);
-                particles.V_p.back() = 0.05 * 0.05;
-            }
+        const Particles particles = block(0.3 + shift, 0.4 - shift);
         const std::vector<Range> grains{{0, particles.count()}};
         const FringeRaster raster =
             mpm::draw_fringes(particles, grains, mesh, mpm::whole(mesh), 20);
@@ -687,6 +694,23 @@ TEST_CASE("a block is drawn where it is wherever it lies on the mesh") {
             if (past_foot > 0.015 && past_head < -0.015) CHECK(g == 0);
             if (past_foot < -0.015 || past_head > 0.015) CHECK(g == -1);
         }
+    }
+}
+
+TEST_CASE("a block is drawn with its corners") {
+    const Mesh mesh = box(12, 12, 0.1);
+    for (double shift = 0; shift < 0.1; shift += 0.011) {
+        const Particles particles = block(0.3 + shift, 0.4 - shift);
+        const std::vector<Range> grains{{0, particles.count(), true}};
+        const FringeRaster raster = mpm::draw_fringes(particles, grains, mesh, mpm::whole(mesh));
+        // A pixel is 1/80 wide: none is missing that is more than two of them inside of the block.
+        for (long j = 0; j < raster.y.count; ++j)
+            for (long i = 0; i < raster.x.count; ++i) {
+                const double depth = std::min(0.25 - std::fabs(raster.x.at(i) - 0.55 - shift),
+                                              0.2 - std::fabs(raster.y.at(j) - 0.6 + shift));
+                if (depth > 0.02) CHECK(raster.grain[raster.pixel(i, j)] == 0);
+                if (depth < -0.01) CHECK(raster.grain[raster.pixel(i, j)] == -1);
+            }
     }
 }
 

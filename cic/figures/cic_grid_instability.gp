@@ -1,18 +1,18 @@
 # A cold beam, alone with a fixed background, v_0 = 0.1 omega_p dx: nothing physical can happen, but aliases of its own waves resonate with it. Above, phase space at
-# saturation (color) and late (gray). Below, growth at the rate of the dispersion relation on the mesh; then schemes that conserve momentum heat, the one that
+# saturation (color) and at the end (gray). Below, growth at the rate of the dispersion relation on the mesh; then schemes that conserve momentum heat, the one that
 # conserves energy stops the beam.
 wide = 1500; high = 1080
 load 'common/style.gp'
 folder = run
 schemes = 'ngp_momentum cic_momentum tsc_momentum cic_energy'
 titles = "ngp cic tsc 'cic, energy'"
-early = '9.5 60 144 56'; late = '190 180 192 168'
 tint = amber.' '.blue.' '.orange.' '.green
 scheme(n) = folder.'/'.word(schemes, n)
 file(n) = scheme(n).'/history.dat'
-particles(n, time) = sprintf('%s/particles_%06d.dat', scheme(n), int(real(time) / 0.1 + 0.5))
+# The k-th file of particles after the start.
+particles(n, k) = (run = scheme(n), files = times_of('particles', 1000), file_at('particles', real(word(files, k < 0 ? words(files) : k + 1))))
 t = col(file(1), 'time'); energy = col(file(1), 'energy'); kinetic = col(file(1), 'kinetic'); momentum = col(file(1), 'momentum_x')
-L = 64
+run = scheme(1); L = parameter('length_x'); end = real(given('time.end'))
 v_th(K, P) = sqrt(abs(2 * K / L - (P / L)**2))
 set multiplot title 'A cold beam heated by the mesh, v_0 = 0.1 ω_p Δx' font ',24'
 set border 15; set tics front; unset key
@@ -22,14 +22,15 @@ set xtics 0, 4, 8; set xlabel 'x / Δx'
 do for [n = 1:4] {
     left = 0.085 + (n - 1) * 0.2275
     set lmargin at screen left; set rmargin at screen left + 0.21
-    set title word(titles, n).', t ω_p = '.word(early, n) offset 0, -0.6
+    late = particles(n, -1); early = particles(n, 1)
+    set title sprintf('%s, t ω_p = %.3g', word(titles, n), time_of(early)) offset 0, -0.6
     if (n == 1) { set ylabel 'v_x / (ω_p Δx)' offset 1, 0; set ytics 0.2 } else { unset ylabel; set ytics 0.2 format '' }
     set arrow 1 from 0, 0.1 to 12, 0.1 nohead dashtype 2 linewidth 1.6 linecolor rgb ink
-    plot particles(n, word(late, n)) using "x":"v_x" with points pt 7 ps 0.4 lc rgb '#c4c4c4', particles(n, word(early, n)) using "x":"v_x" with points pt 7 ps 0.6 lc rgb word(tint, n)
+    plot late using "x":"v_x" with points pt 7 ps 0.4 lc rgb '#c4c4c4', early using "x":"v_x" with points pt 7 ps 0.6 lc rgb word(tint, n)
 }
 unset title; unset arrow 1; set border 3
 set bmargin at screen 0.1; set tmargin at screen 0.42
-set xrange [0:200]; set xtics 50; set xlabel 't ω_p'
+set xrange [0:end]; set xtics end / 4; set xlabel 't ω_p'
 # Where v_th passes 1e-3, and the rate of theory there.
 passes(n) = real(system(sprintf("LC_ALL=C awk '$1 + 0 == $1 && sqrt((2 * $%d / %g - ($%d / %g)^2)^2) > 1e-6 { print $1; exit }' '%s'", kinetic, L, momentum, L, file(n))))
 array since[4]; array rate[4]

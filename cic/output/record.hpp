@@ -170,10 +170,11 @@ class Recorder {
         return row;
     }
 
-    // Whether a snapshot of the given interval falls on this step.
+    // Whether a snapshot of the given interval falls on this step; one falls on the last.
     bool due(double interval, long step) const {
         const double every = std::max(1.0, std::round(interval / parameters_.dt));
-        return interval > 0 && std::fmod(double(step), every) == 0;
+        const bool last = step == std::lround(parameters_.end / parameters_.dt);
+        return interval > 0 && (last || std::fmod(double(step), every) == 0);
     }
 
     // Charge on the mesh less that of background and particles, relative to their sizes.

@@ -3,5 +3,4 @@ table = sprintf("sh common/figures/compare.sh '%s' '%s'", run, other)
 results = int(system(table.' | wc -l'))
 foot_high = 60 + 30 * results
 foot = 'common/figures/compare_foot.gp'
-heading = run.' (solid) and '.other.' (dashed)'
 load sprintf("< sh common/figures/history.sh '%s' '%s'", run, other)

@@ -1,5 +1,5 @@
 #!/bin/sh
-# compare.sh A B: the results of two runs as a table: name, the first's, the second's, what is expected, the verdicts.
+# compare.sh A B: the results of two runs as a table: name, the first's, the second's, what is expected, the verdicts; where the runs differ in these, both.
 set -eu
 export LC_ALL=C.UTF-8
 echo "result $(basename "$1") $(basename "$2") expected verdicts"
@@ -14,7 +14,8 @@ done | awk -v first="$1" '
         which = $1 == first
         value[which, $2] = sprintf("%.6g", $3) ($4 == "-" ? "" : "±" sprintf("%.2g", $4))
         verdict[which, $2] = $7
-        if ($5 != "-") expected[$2] = $5 ~ /^[<>]/ ? substr($5, 1, 1) sprintf("%.4g", substr($5, 2)) : sprintf("%.4g", $5) ($6 == "-" ? "" : "±" sprintf("%.2g", $6))
+        if ($5 != "-") expected[which, $2] = $5 ~ /^[<>]/ ? substr($5, 1, 1) sprintf("%.4g", substr($5, 2)) : sprintf("%.4g", $5) ($6 == "-" ? "" : "±" sprintf("%.2g", $6))
     }
     function or_dash(text) { return text == "" ? "-" : text }
-    END { for (k = 1; k <= count; k++) { n = order[k]; print n, or_dash(value[1, n]), or_dash(value[0, n]), or_dash(expected[n]), or_dash(verdict[1, n]) "," or_dash(verdict[0, n]) } }'
+    function both(of, n) { return or_dash(of[1, n]) (of[1, n] == of[0, n] ? "" : "," or_dash(of[0, n])) }
+    END { for (k = 1; k <= count; k++) { n = order[k]; print n, or_dash(value[1, n]), or_dash(value[0, n]), both(expected, n), both(verdict, n) } }'

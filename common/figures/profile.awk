@@ -1,21 +1,4 @@
-# profile.awk: the gnuplot commands of profile.gp, from what columns.awk says of the file, and the file.
-FILENAME == "-" {
-    name[$1] = $2
-    columns = $1
-    sub(/^[^ ]* [^ ]* /, "")
-    unit[columns] = $0
-    next
-}
-$1 + 0 == $1 {
-    rows++
-    for (i = 1; i <= NF; i++) {
-        if ($i + 0 != $i) continue
-        if (!(i in low) || $i < low[i]) low[i] = $i
-        if (!(i in high) || $i > high[i]) high[i] = $i
-    }
-}
-function plain(text) { gsub(/_/, "\\\\_", text); return text }
-function label(i) { return plain(name[i]) (unit[i] == 1 ? "" : " [" plain(unit[i]) "]") }
+# profile.awk: the gnuplot commands of profile.gp, after tables.awk.
 # Which column is the exact solution of column i: rho_exact of rho, v_exact of v_r.
 function exact_of(i,    j, base) {
     for (j = 2; j <= columns; j++) {
@@ -24,7 +7,7 @@ function exact_of(i,    j, base) {
     }
     return 0
 }
-END {
+function page(    i, k, e, top, bottom, panel, panels) {
     for (i = 2; i <= columns; i++) if (name[i] !~ /_exact$/) panel[++panels] = i
     printf("panels = %d; load 'common/figures/panels.gp'; set xlabel '%s'; set xrange [%.9g:%.9g]\n", panels, label(1), low[1], high[1] > low[1] ? high[1] : low[1] + 1)
     for (k = 1; k <= panels; k++) {
@@ -39,3 +22,4 @@ END {
     }
     print "unset multiplot"
 }
+END { pages() }

@@ -11,4 +11,4 @@ if [ $# = 0 ]; then
 fi
 script=common/figures/fields.awk
 [ "$kind" != particles ] || script=common/figures/particles.awk
-awk -f common/columns.awk "$1" | awk -v kind="$kind" -f $script - "$@"
+awk -f common/columns.awk "$1" | awk -v kind="$kind" -f common/figures/tables.awk -f $script - "$@"

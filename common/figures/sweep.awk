@@ -24,6 +24,9 @@ END {
     }
     if (!along) for (k = 1; k <= keys && !along; k++) if (different[k] > 1) { along = k; seed[k] = 0 }
     if (!along) along = 1
+    # Along it, numbers in their order.
+    if (!words[along]) for (k = 2; k <= different[along]; k++)
+        for (j = k; j > 1 && value[along, j - 1] + 0 > value[along, j] + 0; j--) { x = value[along, j]; value[along, j] = value[along, j - 1]; value[along, j - 1] = x }
     for (row = 1; row <= rows; row++) {
         g = ""
         for (k = 1; k <= keys; k++) if (k != along && !seed[k] && different[k] > 1) g = g (g == "" ? "" : ", ") name[k] " = " cell[row, k]
@@ -53,24 +56,26 @@ END {
     }
     for (p = 1; p <= panels; p++) {
         i = panel[p]
-        low = 1e300; high = -1e300
+        low = 1e300; high = -1e300; passed = judged = 0
+        for (row = 1; row <= rows; row++) { judged += cell[row, i + 3] != "-"; passed += cell[row, i + 3] == "PASS" }
         for (g = 1; g <= groups; g++) {
             # Mean and spread of the runs that differ in their seeds only; of one run its own error.
             printf "$r%dg%d << EOD\n", p, g
             for (k = 1; k <= different[along]; k++) {
-                n = sum = squares = error = 0
+                n = sum = squares = error = short = 0
                 expected = "NaN"
                 for (row = 1; row <= rows; row++) {
                     if (of[row] != g || cell[row, along] != value[along, k] || cell[row, i] + 0 != cell[row, i]) continue
                     n++; sum += cell[row, i]; squares += cell[row, i] ^ 2
                     x = x_of(row)
+                    short += cell[row, i + 3] !~ /^(PASS|-)$/
                     if (cell[row, i + 1] != "-") error = cell[row, i + 1]
                     if (cell[row, i + 2] != "-") { expected = cell[row, i + 2]; sub(/^[<>]/, "", expected) }
                 }
                 if (!n) continue
                 mean = sum / n
                 if (n > 1) { error = squares / n - mean ^ 2; error = error > 0 ? sqrt(error * n / (n - 1)) : 0 }
-                printf "%s %.9g %.9g %s\n", x, mean, error, expected
+                printf "%s %.9g %.9g %s %s\n", x, mean, error, expected, short ? mean : "NaN"
                 if (mean - error < low) low = mean - error
                 if (mean + error > high) high = mean + error
                 if (expected != "NaN" && expected + 0 < low) low = expected + 0
@@ -82,10 +87,11 @@ END {
         if (low > high) { low = 0; high = 1 }
         margin = 0.1 * (high - low)
         if (margin <= 1e-9 * (high < 0 ? -high : high)) margin = high != 0 ? 0.1 * (high < 0 ? -high : high) : 1
-        printf "set title '%s'; set yrange [%.9g:%.9g]\n", plain(name[i]), low - margin, high + (groups > 1 && p == 1 ? 4 : 1) * margin
+        printf "set title '%s'; set yrange [%.9g:%.9g]\n", plain(name[i]) (judged ? ", " passed " of " judged " PASS" : ""), low - margin, high + (groups > 1 && p == 1 ? 4 : 1) * margin
         print (p == 1 && groups > 1 ? "set key on" : "unset key")
         printf "plot "
         for (g = 1; g <= groups; g++) printf("%s$r%dg%d using 1:2:3 with yerrorlines lt %d ps 1.3 title '%s'", g > 1 ? ", " : "", p, g, g, plain(group[g]))
+        if (passed < judged) for (g = 1; g <= groups; g++) printf ", $r%dg%d using 1:5 with points pt 6 ps 3 lw 3 lc rgb orange notitle", p, g
         if (has_expected[p]) printf ", $r%dg1 using 1:4 with lines dt 2 lw 2 lc rgb ink notitle", p
         print ""
     }

@@ -20,9 +20,8 @@ namespace common {
 
 /// How often a run writes what, and where it ends.
 struct Schedule {
-    long checkpoint_steps = 0;    // from one to the next; 0: only when a signal stops the run
-    long history_steps = 1;       // from row to row
-    bool rows_end_steps = false;  // but for the first, rows are written after their step
+    long checkpoint_steps = 0;  // from one to the next; 0: only when a signal stops the run
+    long history_steps = 1;     // from row to row; the last row is that of the end
     double end = std::numeric_limits<double>::infinity();  // where steps are not known in number
 };
 
@@ -59,8 +58,7 @@ class Run {
         try {
             history.restore(rows);
             if (step < 1 || step > 1000000000000) throw InputError("its step cannot be");
-            if (history.rows() !=
-                (step - (schedule.rows_end_steps ? 0 : 1)) / schedule.history_steps + 1)
+            if (history.rows() != (step - 1) / schedule.history_steps + 1)
                 throw InputError("its history lacks rows, or has too many");
             validate();
         } catch (const InputError& error) {

@@ -10,7 +10,7 @@ history = run.'/history.dat'
 t = col(history, 'time'); re = col(history, 'mode_re'); im = col(history, 'mode_im')
 rate = result('theory_growth'); a0 = parameter('amplitude')
 set logscale y; set format y '10^{%T}'
-set xrange [0:4.5]; set yrange [1e-4:3]; set xtics 1
+set xrange [0:given('time.end')]; set yrange [1e-4:3]; set xtics 1
 set xlabel 'time'; set ylabel 'height of the interface' offset 0.8, 0
 set key at graph 0, 1.28 top left
 set samples 400
@@ -19,18 +19,16 @@ plot history using t:(sqrt(column(re)**2 + column(im)**2)) @measured title sprin
 unset logscale; set format y '%g'
 set xrange [0:1]; set yrange [-1:1]; unset grid; set border 15; set size ratio -1
 unset xtics; unset xlabel; unset ylabel; unset key
-file(p, at) = system(sprintf("LC_ALL=C awk -v t=%g '$1 + 0 == $1 { if ($1 >= t - 1e-9) { print NR - 3; exit } }' '%s'/%s/history.dat", at, folder, p))
-times = '1.5 2.5 3.5 4.5 0.5 1.5 2.5 3.5'
+# Four files of each, every second one up to the end.
 do for [n = 1:8] {
-    p = n < 5 ? 'flip' : 'pic'
-    k = (n - 1) % 4
+    p = n < 5 ? 'flip' : 'pic'; run = folder.'/'.p; all = times_of('particles', 1000)
+    k = (n - 1) % 4; time = word(all, words(all) - 2 * (3 - k))
     left = 0.405 + 0.152 * k; bottom = n < 5 ? 0.53 : 0.075
     set lmargin at screen left; set rmargin at screen left + 0.135
     set bmargin at screen bottom; set tmargin at screen bottom + 0.37
-    set title sprintf('%s, t = %s', p, word(times, n)) offset 0, -0.7
+    set title sprintf('%s, t = %.3g', p, real(time)) offset 0, -0.7
     if (k == 0) { set ytics 0.5 format '%g'; set ylabel 'z' offset 2.2, 0 } else { set ytics 0.5 format ''; unset ylabel }
     if (n > 4) { set xtics ('0' 0, '0.5' 0.5); set xlabel 'x' offset 0, 0.6 }
-    picture = sprintf('%s/%s/particles_%06d.dat', folder, p, int(file(p, real(word(times, n)))))
-    plot picture using 1:2:($3 == 0 ? 0x56b4e9 : 0xd55e00) with points pt 7 ps 0.26 lc rgb variable
+    plot file_at('particles', real(time)) using 1:2:($3 == 0 ? 0x56b4e9 : 0xd55e00) with points pt 7 ps 0.26 lc rgb variable
 }
 unset multiplot

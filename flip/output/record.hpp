@@ -64,9 +64,13 @@ class Recorder {
     void record(long step, const State& state, const Totals& now, const CellFields& cells,
                 common::Run& run) const {
         const common::Snapshot at{run.path("."), step, state.time, parameters_.also};
-        if (is_due(parameters_.fields_interval, state)) write_fields(at, parameters_, cells);
-        if (is_due(parameters_.particles_interval, state))
-            write_particles(at, parameters_, state.particles);
+        // At the end, too.
+        const auto due = [&](double interval) {
+            return is_due(interval, state) ||
+                   (interval > 0 && common::Run::reached(state.time, parameters_.end));
+        };
+        if (due(parameters_.fields_interval)) write_fields(at, parameters_, cells);
+        if (due(parameters_.particles_interval)) write_particles(at, parameters_, state.particles);
         const double energy = now.kinetic + now.internal;
         const bool is_first = run.history.all().empty();
         check_energy(step, state, energy, is_first ? energy : run.history.first("energy"));

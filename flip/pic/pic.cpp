@@ -44,7 +44,7 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
             info, command, table,
             {describe_scales(parameters, scales, info.program),
              resolution_warnings(parameters, scales, info.program), LONG_MAX, scales.bytes},
-            {parameters.checkpoint_steps, 1, false, parameters.end}, holder))
+            {parameters.checkpoint_steps, 1, parameters.end}, holder))
         return 0;
     common::Run& run = *holder;
 

@@ -186,9 +186,10 @@ class Recorder {
         return row;
     }
 
-    // Whether a snapshot of the given interval falls on this step.
+    // Whether a snapshot of the given interval falls on this step; one falls on the last.
     bool due(double interval, long step) const {
         if (interval <= 0) return false;
+        if (step == std::lround(parameters_.end / parameters_.dt)) return true;
         const double every = double(parameters_.history_steps),
                      rows = std::max(1.0, std::round(interval / parameters_.dt / every));
         return std::fmod(double(step), rows * every) == 0;

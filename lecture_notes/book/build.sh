@@ -32,6 +32,7 @@ cp -r lecture_notes/figures "$out/figures"
         echo "$folder/README.md program_$folder.html Programs"
     done
     echo "$work/cases.md cases.html Programs"
+    for folder in cic flip mpm_explicit mpm_implicit implicit_moment; do echo "$work/cases_$folder.md cases_$folder.html Programs"; done
     for program in $(sed -n "s/^mains := //p" Makefile) common; do
         program=$(basename "$program" .cpp)
         echo "$work/source_$program.md source_$program.html Sources"
@@ -141,10 +142,16 @@ browser=$(command -v chromium || command -v chromium-browser || command -v googl
 [ -n "$browser" ] || { echo "no PDF: 'chromium' is not installed: run 'make deps-book'" >&2; exit 2; }
 profile=$(mktemp -d)
 trap 'rm -rf "$profile"' EXIT
-"$browser" --headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking \
-    --disable-component-update --disable-sync --user-data-dir="$profile" --no-pdf-header-footer \
-    --generate-pdf-document-outline --virtual-time-budget=60000 \
-    --print-to-pdf="$PWD/out/book.pdf" "file://$PWD/$out/print.html" 2> "$work/browser" ||
-    { cat "$work/browser" >&2; exit 1; }
+print_pdf() {
+    "$browser" --headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking \
+        --disable-component-update --disable-sync --user-data-dir="$profile" --no-pdf-header-footer \
+        --generate-pdf-document-outline --virtual-time-budget=60000 \
+        --print-to-pdf="$PWD/out/book.pdf" "file://$PWD/$out/print.html" 2> "$work/browser" ||
+        { cat "$work/browser" >&2; exit 1; }
+}
+# Twice: where chapters begin is known after the first.
+print_pdf
+node "$book/page_numbers.js" out/book.pdf "$out/print.html"
+print_pdf
 rm "$out/print.html"
 echo "out/book/index.html, out/book.pdf ($(du -h out/book.pdf | cut -f1))"

@@ -96,7 +96,7 @@ for (const figure of figures)
     if (!pages.some(({html}) => html.includes(`id="figure-${figure}"`))) complain(`no page shows ${figure}`);
 
 // ---- everything on one page, without sources: links to these become text ----
-const printed = pages.filter(({page}) => !/^(source_|facts|index\.html)/.test(page));
+const printed = pages.filter(({page}) => !/^(source_|cases_|facts|index\.html)/.test(page));
 const inPrint = new Set(printed.map(({page}) => page));
 const name = (page, anchor) => page.replace('.html', '') + (anchor ? '--' + anchor : '');
 const answers = [];  // on paper they stand at the end
@@ -116,13 +116,13 @@ const chapters = printed.map(({page, html}) => {
 const front = pages.find(({page}) => page === 'index.html').html;
 const titles = new Map(fs.readFileSync('build/book/titles', 'utf8').trim().split('\n')
     .map((line) => line.split('\t')).map(([page, , title]) => [page, title]));
-const contents = printed.map(({page}) => `<li><a href="#${name(page)}">${titles.get(page)}</a></li>`).join('\n');
+const contents = printed.map(({page}) => `<li><a href="#${name(page)}">${titles.get(page)}</a><i></i></li>`).join('\n');
 fs.writeFileSync(print, front.replace(/<nav>[\s\S]*<\/nav>/, '').replace(/<script[\s\S]*?<\/script>/, '')
     .replace(/<input[^>]*>\s*<label[\s\S]*?<\/label>/, '')
     .replace(/(<main[^>]*>)[\s\S]*<\/main>/, (all, main) => `${main}<div class="cover">
 <h1>The particle-in-cell family in running code</h1>
 <p>Lecture notes to J. U. Brackbill's talk<br><em>The First Half Century of the Particle-in-Cell Method</em> (2002)</p></div>
-<section class="chapter contents"><h1>Contents</h1><ul>${contents}<li><a href="#answers">Answers</a></li></ul></section>${chapters.join('\n')}
+<section class="chapter contents"><h1>Contents</h1><ul>${contents}<li><a href="#answers">Answers</a><i></i></li></ul></section>${chapters.join('\n')}
 <section class="chapter" id="answers"><h1>Answers</h1>${answers.join('\n')}</section></main>`));
 
 for (const {page, html} of pages) fs.writeFileSync(`${out}/${page}`, html);

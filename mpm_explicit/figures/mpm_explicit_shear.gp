@@ -4,12 +4,12 @@ wide = 1500; high = 1060
 load 'common/style.gp'
 f_sigma = 2500.0
 load 'mpm_explicit/figures/polariscope.gp'
-U = 0.2; L = 1.0; height = 0.92; rigid_low = 0.1; rigid_high = 0.82
+U = given('pack.top.velocity_x') + 0; L = parameter('length_x'); height = 0.92; rigid_low = 0.1; rigid_high = 0.82
 particles = system('ls "'.run.'"/particles_*.dat | tail -n 3'); fringes = system('ls "'.run.'"/fringes_*.dat | tail -n 3')
 with_rigid = "using 1:2:($5 < 0 ? 0 : $5 < 5 || $5 > 19 ? 0.3 : dark_field($3 / f_sigma)) with image"
 panel_width = 0.268; gap = 0.018
 panel_height = panel_width * wide / high * height / L
-set multiplot title 'Equal disks in shear, explicit, α = 0.25' font ',24'
+set multiplot title sprintf('Equal disks in shear, explicit, α = %g', parameter('alpha')) font ',24'
 set xrange [0:L]; set yrange [0:height]; set xtics 0, 0.2, 0.9; set ytics 0.2
 unset key
 do for [row = 1:2] { do for [k = 1:3] {
@@ -18,7 +18,7 @@ do for [row = 1:2] { do for [k = 1:3] {
     set tmargin at screen top; set bmargin at screen top - panel_height
     if (row == 1) {
         set border 15; unset grid; set format x ''; unset xlabel
-        set title sprintf('shift %.3f L', U * 0.125 * (k + 3) / L) offset 0, -0.5
+        set title sprintf('shift %.3f L', U * time_of(word(particles, k)) / L) offset 0, -0.5
         eval colors(viridis); set cbrange [0:1]; set cbtics 0.25
         if (k == 3) { set colorbox user origin left + panel_width + 0.013, top - panel_height size 0.012, panel_height; set label 82 'v_x / U' at screen 0.985, top right offset 0, 1 } else { unset colorbox; unset label 82 }
     } else {

@@ -147,6 +147,28 @@ inline std::vector<double> cover_pixels(const Patch& patch, const Reach& in_x, c
     return covered;
 }
 
+/// The same by the particles of a grain with corners, each as large as it is: what is smooth over a
+/// cell has none.
+///   coverage = sum_p hat((x - x_p) / d) hat((y - y_p) / d),  d = V_p^1/2
+/// note:  what is far inside is covered, also where particles have parted
+inline std::vector<double> cover_by_particles(const Particles& at, long begin, long end,
+                                              const FringeRaster& raster, const Patch& patch,
+                                              const Reach& in_x, const Reach& in_y) {
+    std::vector<double> covered = cover_pixels(patch, in_x, in_y);
+    for (double& part : covered) part = part > 0.9 ? 1 : 0;
+    for (long p = begin; p < end; ++p) {
+        const double d = std::sqrt(at.V_p[p]) / raster.x.step,
+                     x = (at.x_p[p] - raster.x.first) / raster.x.step - double(in_x.first),
+                     y = (at.y_p[p] - raster.y.first) / raster.y.step - double(in_y.first);
+        const auto first = [&](double a) { return std::max(0l, long(std::ceil(a - d))); };
+        for (long m = first(y); m < in_y.count && double(m) < y + d; ++m)
+            for (long n = first(x); n < in_x.count && double(n) < x + d; ++n)
+                covered[m * in_x.count + n] +=
+                    (1 - std::fabs(double(m) - y) / d) * (1 - std::fabs(double(n) - x) / d);
+    }
+    return covered;
+}
+
 /// The coverage above which a pixel belongs to the grain: near one half, and such that its pixels
 /// have the area of its particles.
 /// note:  Coverage is smooth over a cell, so that its line of one half lies inside of a small disk.
@@ -172,9 +194,8 @@ inline NodeStress stress_at(const Patch& patch, const Weights<2>& x, const Weigh
 }
 
 /// Draws one grain. Pixel i of a periodic mesh shows also what is whole periods of pixels away.
-inline void draw_grain(const Patch& patch, int number, const Reach& in_x, const Reach& in_y,
-                       long period, FringeRaster& raster) {
-    const std::vector<double> covered = cover_pixels(patch, in_x, in_y);
+inline void draw_grain(const Patch& patch, const std::vector<double>& covered, int number,
+                       const Reach& in_x, const Reach& in_y, long period, FringeRaster& raster) {
     const double level = outline_level(covered, patch.volume / (raster.x.step * raster.y.step));
     for (long m = 0; m < in_y.count; ++m) {
         const long j = in_y.first + m;
@@ -206,8 +227,8 @@ inline void draw_grain(const Patch& patch, int number, const Reach& in_x, const 
 ///   s1 - s2 = [(s_xx - s_yy)^2 + 4 s_xy^2]^1/2
 /// of components that come from the particles to nodes and from nodes to pixels by linear weights,
 /// grain by grain. Where grains meet, a pixel shows the one that covers most of it.
-/// in:    grains, each with its particles begin ... end - 1 (a Grain, or any struct with these);
-///        x_p may lie outside of a periodic mesh; a window whose sides are whole numbers of pixels;
+/// in:    grains, each with its particles begin ... end - 1 and has_corners (a Grain, or any struct
+///        with these); x_p may lie outside of a periodic mesh; a window whose sides are whole numbers of pixels;
 ///        at 7 or more pixels per cell what the mesh resolves is smooth
 /// out:   the raster
 /// exact: uniform stress has the same s1 - s2 in all pixels of its grain
@@ -234,9 +255,14 @@ FringeRaster draw_fringes(const Particles& particles, const std::vector<Range>& 
         using namespace detail;
         if (grains[g].end <= grains[g].begin) continue;
         const Patch patch = average_on_nodes(particles, grains[g].begin, grains[g].end, mesh);
-        draw_grain(
-            patch, int(g), reach_pixels(patch.i_first, patch.nodes_x, edge_x, pixels_per_cell),
-            reach_pixels(patch.j_first, patch.nodes_y, edge_y, pixels_per_cell), period, raster);
+        const Reach in_x = reach_pixels(patch.i_first, patch.nodes_x, edge_x, pixels_per_cell),
+                    in_y = reach_pixels(patch.j_first, patch.nodes_y, edge_y, pixels_per_cell);
+        draw_grain(patch,
+                   grains[g].has_corners
+                       ? cover_by_particles(particles, grains[g].begin, grains[g].end, raster,
+                                            patch, in_x, in_y)
+                       : cover_pixels(patch, in_x, in_y),
+                   int(g), in_x, in_y, period, raster);
     }
     return raster;
 }

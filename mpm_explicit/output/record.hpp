@@ -56,7 +56,7 @@ class LeapfrogRecorder {
     }
 
     /// Writes the row of t^n, when the budget has the energies of the step and not yet its work.
-    /// errors: NumericalError as Recorder::refuse_failure
+    /// errors: NumericalError as Recorder::refuse_failure, unless the run has ended at t^n
     void record(long step, const StepSums& sums, const GrainNodes& nodes, const State& state,
                 common::Run& run) {
         const Budget& l = state.budget;
@@ -66,6 +66,7 @@ class LeapfrogRecorder {
             });
         if (finite && recorder_.row_is_due(step))
             run.history.row(row(step, l, sums.contact, state.assembly));
+        if (recorder_.is_end(step)) return;
         // Elastic energy is that of t^{n-1/2} and t^{n+1/2}: what this step puts in counts.
         const double external = l.external + sums.contact.rigid + sums.nodes.gravity;
         recorder_.refuse_failure(step, sums.tiles, nodes, state.assembly, l.start, external,
@@ -87,7 +88,7 @@ class LeapfrogRecorder {
         common::Row row;
         row.add("time", "time", double(step) * dt_);
         add_budget(l, row);
-        recorder_.add_to(row, l.momenta, contact, all);
+        recorder_.add_to(row, l.momenta, contact.nodes, contact.impulse, all);
         return row;
     }
 

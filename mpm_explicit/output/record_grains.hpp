@@ -44,22 +44,26 @@ class Recorder {
         if (parameters_.pack && step == 0) write_pack_of(run.path(""), parameters_);
     }
 
-    /// Whether a row of the history belongs to this step.
-    bool row_is_due(long step) const { return step % parameters_.history_steps == 0; }
+    bool is_end(long step) const { return step == scales_.steps; }
+
+    /// Whether a row of the history belongs to t^n; one belongs to the end.
+    bool row_is_due(long step) const {
+        return step % parameters_.history_steps == 0 || is_end(step);
+    }
 
     /// Adds what every scheme records beside its energies: momenta, contacts, tracked grains,
     /// bonds, and what the comparison with theory needs.
-    /// in: momenta of every grain; what contact did in the step
-    void add_to(common::Row& row, const std::vector<Momenta>& momenta, const ContactSums& contact,
-                const Assembly& all) const {
+    /// in: momenta of every grain; pairs that press at nodes, and the sum of their impulses
+    void add_to(common::Row& row, const std::vector<Momenta>& momenta, double contacts,
+                double impulse, const Assembly& all) const {
         Momenta sum;
         for (const Momenta& one : momenta)
             sum.x += one.x, sum.y += one.y, sum.angular += one.angular;
         row.add("momentum_x", "momentum", sum.x);
         row.add("momentum_y", "momentum", sum.y);
         row.add("angular_momentum", "momentum*length", sum.angular);
-        row.add("contacts", "1", contact.nodes);
-        row.add("contact_force", "force", contact.impulse / scales_.dt);
+        row.add("contacts", "1", contacts);
+        row.add("contact_force", "force", impulse / scales_.dt);
         for (const std::size_t g : tracked_) {
             const std::string& name = all.grains[g].name;
             if (all.grains[g].rigid) {
@@ -127,9 +131,10 @@ class Recorder {
     }
 
    private:
-    // Whether a multiple of the interval falls on this step.
+    // Whether a multiple of the interval falls on this step, or the end of the run.
     bool due(double interval, long step) const {
         if (!(interval > 0)) return false;
+        if (is_end(step)) return true;
         const double multiple = std::round(double(step) * scales_.dt / interval);
         return std::lround(multiple * interval / scales_.dt) == step;
     }

@@ -145,6 +145,7 @@ inline Assembly assemble(const Problem& w) {
         grain.begin = all.particles.count();
         detail::add_particles(plan, stretch, w, material, all.particles);
         grain.end = all.particles.count();
+        grain.has_corners = plan.outline.kind == OutlineKind::polygon;
         all.grains.push_back(grain);
 
         RigidMotion motion;

@@ -76,15 +76,15 @@ inline Scales scales_of(const Case& parameters, bool is_explicit = true) {
     refuse(s.particles > 2'000'000'000,
            std::to_string(s.particles) +
                " particles are more than 2e9: lower grid.particles_per_side");
-    // Particles and their copies while they are sorted; the nodes of each grain, with a margin; the
-    // table of all nodes.
-    // The raster of fringes.
+    // Particles and their copies while they are sorted and, in leapfrog, for the last row; the nodes
+    // of each grain, with a margin; the table of all nodes; the raster of fringes.
     const double particles = double(s.particles),
                  pixels = parameters.fringes_interval > 0
                               ? double(mesh.cells_x * mesh.cells_y) *
                                     std::pow(double(parameters.pixels_per_cell), 2)
                               : 0;
-    const long carried = parameters.transfers().kind == Transfer::none ? 12 : 16;
+    const long carried =
+        (parameters.transfers().kind == Transfer::none ? 12 : 16) * (is_explicit ? 2 : 1);
     s.bytes = particles * double(carried * sizeof(double) + 2 * sizeof(int)) +
               nodes * (sizeof(NodeSums) + sizeof(NodeMotion) + sizeof(NodeForce) + 1) +
               pixels * (3 * sizeof(double) + sizeof(int)) +

@@ -46,26 +46,20 @@ class ThetaRecorder {
                     "residual") {
         Budget none;
         none.momenta.resize(state.assembly.grains.size());
-        history.columns(row(0, none, StepSums{}, state.assembly));
+        history.columns(row(0, none, state));
     }
 
-    /// The row of t = 0.
-    void start(const State& state, common::Run& run) {
-        run.history.row(row(0, state.budget, StepSums{}, state.assembly));
-    }
-
-    /// Writes the files that are due at this step, before it.
-    void snapshot(long step, const State& state, const common::Run& run) const {
+    /// Writes the files and the row of t^n, when they are due.
+    void record(long step, const State& state, common::Run& run) const {
         recorder_.snapshot(step, state.assembly, run);
+        if (recorder_.row_is_due(step)) run.history.row(row(step, state.budget, state));
     }
 
-    /// Writes the row of the end of a step that the budget holds.
+    /// Looks at what a step has made.
     /// errors: NumericalError as Recorder::refuse_failure
-    void record(long step, const StepSums& sums, const GrainNodes& nodes, const State& state,
-                common::Run& run) {
+    void refuse_failure(long step, const StepSums& sums, const GrainNodes& nodes,
+                        const State& state, const common::Run& run) {
         const Budget& l = state.budget;
-        if (std::isfinite(l.energy()) && recorder_.row_is_due(step + 1))
-            run.history.row(row(step + 1, l, sums, state.assembly));
         recorder_.refuse_failure(step, sums.tiles, nodes, state.assembly, l.start,
                                  l.plate + l.gravity, l.energy(), run.history);
     }
@@ -87,13 +81,14 @@ class ThetaRecorder {
     }
 
    private:
-    common::Row row(long step, const Budget& l, const StepSums& sums, const Assembly& all) const {
+    common::Row row(long step, const Budget& l, const State& state) const {
         common::Row row;
         row.add("time", "time", double(step) * scales_.dt);
         add_budget(l, row);
-        row.add("iterations", "1", double(sums.solver.iterations));
-        row.add("loops", "1", double(sums.solver.loops));
-        recorder_.add_to(row, l.momenta, sums.contact, all);
+        const Effort& last = state.effort;
+        row.add("iterations", "1", last.last_iterations);
+        row.add("loops", "1", last.last_loops);
+        recorder_.add_to(row, l.momenta, last.contacts, last.impulse, state.assembly);
         return row;
     }
 

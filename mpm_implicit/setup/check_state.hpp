@@ -24,8 +24,9 @@ inline void validate_state(const Mesh& mesh, int width, State& state) {
     refuse(!closed || std::adjacent_find(pairs.begin(), pairs.end(), falls) != pairs.end(),
            "its pairs in contact are not closed, or out of order");
     const Effort& e = state.effort;
-    for (const double count : {e.iterations, e.mass_iterations, e.krylov, e.loops})
-        refuse(count < 0, "the iterations of its solvers are negative");
+    for (const double count : {e.iterations, e.mass_iterations, e.krylov, e.loops,
+                               e.last_iterations, e.last_loops, e.contacts, e.impulse})
+        refuse(count < 0, "the iterations of its solvers, or its contacts, are negative");
 }
 
 }  // namespace mpm_implicit

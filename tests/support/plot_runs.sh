@@ -172,6 +172,7 @@ tools)
     done
     PLOTS=$folder/plots sh common/plot.sh compare "$folder/32" "$folder/64" > "$folder/told" 2>&1 || complain "compare: $(cat "$folder/told")"
     is_picture "$(echo "$folder"/plots/compare_flip_*_32_flip_*_64.png)" || complain "comparing two runs drew nothing"
+    sh common/figures/compare.sh "$folder/32" "$folder/64" | grep -q '^L1_density [0-9.]* [0-9.]* 0±[0-9.]*,0±[0-9.]* PASS$' || complain "comparing does not show what is expected of each run"
     # Of a run that has ended it draws once.
     PLOTS=$folder/plots sh common/plot.sh watch "$folder/32" > "$folder/told" 2>&1 || complain "watch: $(cat "$folder/told")"
     is_picture "$folder/plots/history.png" || complain "watching drew nothing"
@@ -181,6 +182,29 @@ tools)
     [ "${found:-}" ] || complain "there is no animation"
     sh common/plot.sh "$folder" 2>/dev/null
     [ $? = 2 ] || complain "a folder that is no run was not refused"
+    # A damaged history is refused in one sentence; one whose last line is in the making is not.
+    damage() {
+        rm -rf "$folder/damaged"
+        cp -r "$folder/32" "$folder/damaged"
+        sed "$1" "$folder/32/history.dat" > "$folder/damaged/history.dat"
+        PLOTS=$folder/plots sh common/plot.sh "$folder/damaged" > "$folder/told" 2>&1
+    }
+    for edit in d 1d '5s/ [^ ]*$//' '7s/.*/lost and found/'; do
+        damage "$edit"
+        [ $? = 2 ] && [ "$(grep -c 'make the run again' "$folder/told")$(wc -l < "$folder/told")" = 11 ] || complain "history.dat after sed '$edit': $(cat "$folder/told")"
+    done
+    damage '$s/ [^ ]*$//' || complain "a last line that is not whole: $(cat "$folder/told")"
+    # Pictures of a run that has not come to its end say so, and how far it has come.
+    for ending in '' 3 130; do
+        if [ "$ending" ]; then sed "s/\"status\": 0/\"status\": $ending/" "$folder/32/summary.json" > "$folder/damaged/summary.json"; else rm "$folder/damaged/summary.json"; fi
+        said=$(sh common/plot.sh "$folder/damaged" 2>&1 | sed -n 's/^note: .*damaged, \(.*\) at t = 0.[12][0-9]* of 0.2[.].*/\1/p')
+        [ "$ending $said" = " not ended" ] || [ "$ending $said" = "3 failed" ] || [ "$ending $said" = "130 stopped" ] || complain "of a run with status '$ending' plot.sh says '$said'"
+    done
+    rm -rf out/figures/flip_*_damaged
+    for script in history results; do
+        gnuplot -e "run='$folder/32'; out='$folder/$script.svg'; ended=', stopped at t = 0.1 of 0.2'" common/figures/$script.gp
+        grep -q 'stopped at t = 0.1 of 0.2<' "$folder/$script.svg" || complain "$script.gp does not say that the run was stopped"
+    done
 
     # A sweep is the product of its lists, its table has every run, and the second time nothing is run.
     sweep() { PROGRAM=flip BUILD=$build SWEEP=$folder/sweep sh common/sweep.sh flip/cases/sod.toml "$@" > "$folder/told" 2>&1; }
@@ -194,6 +218,10 @@ tools)
     sweep cells_x=20,30 flip.transfer=flip,apic,pic -- time.end=0.05
     # shellcheck disable=SC2012
     [ "$before" = "$(ls -l --time-style=full-iso "$folder"/sweep/*/summary.json)" ] || complain "a complete sweep was run again"
+    # Another call adds to the table; the figure counts verdicts.
+    sweep cells_x=24 flip.transfer=flip -- time.end=0.05 || complain "sweep: $(cat "$folder/told")"
+    [ "$(sed -n '2,$s/^\([0-9]*\) \([a-z]*\) .*/\1\2/p' "$folder/sweep/results.dat" | sort | tr '\n' ' ')" = '20apic 20flip 20pic 24flip 30apic 30flip 30pic ' ] || complain "the table lacks the runs of an earlier call"
+    awk -f common/figures/sweep.awk "$folder/sweep/results.dat" | grep -q "energy.*, 7 of 7 PASS'" || complain "the figure of a sweep shows no verdicts"
     rm -f out/figures/sweep_sweep.png
     sweep cells_x=20,0 && complain "a run that failed was not told"
     ;;
