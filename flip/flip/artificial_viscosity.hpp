@@ -9,25 +9,37 @@
 
 namespace flip {
 
-/// How a scalar viscosity is shared among the directions that are squeezed, in proportion.
-///   N = eps^-/tr eps^-,  eps^- the strain rate without its positive principal values
-/// in:     a strain rate with a negative trace
-/// exact:  trace 1; in a plane shock n n, n its normal; the same in any frame of axes
+/// Artificial viscosity of one cell: a stress along the directions that are squeezed.
+///   sum_k w_k q(h_k) n_k n_k,  q(h) = rho (-d) h (linear c + quadratic h (-d)),  d = div v < 0,
+///   w_k = r_k^-/sum r^-,  r_k^- = min(n_k . grad v n_k, 0),  h_k the width of the cell along n_k
+/// n_k are the principal directions of grad v^T grad v: those in which the velocity changes most and
+/// least. About an axis there is a third, with r = v_r/r.
+/// in:     G, the velocity gradient, any multiple; rho c and d of the cell, d < 0
+/// exact:  in a plane front q n n, n its normal, whatever slides along it; even squeezing shares q
+///         evenly; the same in any frame of axes where the cells are squares
 /// note:   q as a pressure would push along a curved front, too: Sedov's sphere would run as if it
-///         had a seventh more energy at a radius of 50 cells
-inline CellTensor share_of_squeezed(const CellTensor& e) {
-    const double mean = 0.5 * (e.xx + e.zz), half = 0.5 * (e.xx - e.zz),
-                 apart = std::sqrt(half * half + e.xz * e.xz),  // principal values: mean +- apart
-        higher = std::min(mean + apart, 0.0), lower = std::min(mean - apart, 0.0),
-                 hoop = std::min(e.hoop, 0.0);
-    const double both = 0.5 * (higher + lower),
-                 turn = apart > 0 ? 0.5 * (higher - lower) / apart : 0;
-    const CellTensor squeezed{both + turn * half, both - turn * half, turn * e.xz, hoop};
-    return squeezed * (1 / squeezed.trace());
+///         had a seventh more energy at a radius of 50 cells. The principal directions of the strain
+///         rate would turn towards shear, and brake it.
+inline CellTensor viscous_stress_of(const Grid& grid, const ArtificialViscosity& q,
+                                    const CellGradient& G, double rho, double sound, double d) {
+    const double dx = grid.x.spacing(), dz = is_plane(grid) ? grid.z.spacing() : dx;
+    const double apart = 0.5 * (G.xx * G.xx + G.zx * G.zx - G.xz * G.xz - G.zz * G.zz),
+                 mixed = G.xx * G.xz + G.zx * G.zz, size = std::sqrt(apart * apart + mixed * mixed);
+    const double c = size > 0 ? apart / size : 1, s = size > 0 ? mixed / size : 0;
+    const double mean = 0.5 * (G.xx + G.zz), half = 0.5 * (c * (G.xx - G.zz) + s * (G.xz + G.zx));
+    const double first = std::min(mean + half, 0.0), second = std::min(mean - half, 0.0),
+                 hoop = std::min(G.hoop, 0.0), all = first + second + hoop;
+    const auto along = [&](double part, double n_x2, double n_z2) {
+        const double h = 1 / std::sqrt(n_x2 / (dx * dx) + n_z2 / (dz * dz));
+        return part == 0 ? 0 : part / all * rho * -d * h * (q.linear * sound - q.quadratic * h * d);
+    };
+    const double a = along(first, 0.5 * (1 + c), 0.5 * (1 - c)),
+                 b = along(second, 0.5 * (1 - c), 0.5 * (1 + c));
+    return {0.5 * (a + b + c * (a - b)), 0.5 * (a + b - c * (a - b)), 0.5 * s * (a - b),
+            along(hoop, 1, 0)};
 }
 
 /// Artificial viscosity of every cell, from the velocity that the walls let stand.
-///   q N,  q = rho (-d) h (linear c + quadratic h (-d)),  d = div v < 0,  h = dx, or sqrt(dx dz)
 /// out:    nodes.vx0, vz0; cells.q, 0 in a cell that expands, is empty or partly void
 inline void find_viscosity(const Grid& grid, const Boundaries& boundaries,
                            const ArtificialViscosity& q, Mesh& mesh) {
@@ -38,16 +50,14 @@ inline void find_viscosity(const Grid& grid, const Boundaries& boundaries,
         g.vz0[n] = g.vz[n];
     });
     set_walls(grid, boundaries, g.vx0, g.vz0);
-    const double h = is_plane(grid) ? std::sqrt(grid.cell_area()) : grid.x.spacing();
     for_each_cell(grid, [&](long i, long, long n) {
         c.q[n] = {};
-        CellTensor strain = strain_rate(grid, g.vx0, g.vz0, n);
-        if (!is_plane(grid)) strain.zz = strain.xz = 0;
-        const double d = strain.trace() / cell_volume(grid, i);
+        CellGradient G = velocity_gradient(grid, g.vx0, g.vz0, n);
+        if (!is_plane(grid)) G.xz = G.zx = G.zz = 0;
+        const double d = (G.xx + G.zz + G.hoop) / cell_volume(grid, i);
         if (!(d < 0) || c.M[n] <= 0 || c.surface[n] != 0) return;
         const double rho = density_of(c, i, n), sound = sound_speed(rho, c.compressibility[n]);
-        c.q[n] =
-            share_of_squeezed(strain) * (rho * -d * h * (q.linear * sound - q.quadratic * h * d));
+        c.q[n] = viscous_stress_of(grid, q, G, rho, sound, d);
     });
 }
 

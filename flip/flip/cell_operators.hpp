@@ -58,9 +58,12 @@ inline Eigen::Vector2d pressure_force(const Grid& grid, const Field& p, long n) 
 }
 // [/transpose]
 
-/// The strain rate of a cell, mean times volume: grad v + grad v^T over 2, and v_r/r about the axis.
+/// The velocity gradient of a cell, mean times volume: xz is dv_x/dz; and v_r/r about the axis.
 /// exact:  its trace is dilation()
-inline CellTensor strain_rate(const Grid& grid, const Field& vx, const Field& vz, long n) {
+struct CellGradient {
+    double xx, zz, xz, zx, hoop;
+};
+inline CellGradient velocity_gradient(const Grid& grid, const Field& vx, const Field& vz, long n) {
     const long up = n + grid.stride();
     const double i = static_cast<double>(column_of(grid, n)), dx = 0.5 * grid.x.spacing(),
                  side = 0.5 * grid.z.spacing() * ring_length(grid, i + 0.5),
@@ -75,10 +78,10 @@ inline CellTensor strain_rate(const Grid& grid, const Field& vx, const Field& vz
     const double hoop =
         grid.axisymmetric ? 0.5 * pi * grid.cell_area() * (vx[n] + vx[n + 1] + vx[up] + vx[up + 1])
                           : 0;
-    return {along_x(vx), along_z(vz), 0.5 * (along_z(vx) + along_x(vz)), hoop};
+    return {along_x(vx), along_z(vz), along_z(vx), along_x(vz), hoop};
 }
 
-/// Force of the stresses of the four cells around a node; the transpose of strain_rate().
+/// Force of the stresses of the four cells around a node; the transpose of velocity_gradient().
 inline Eigen::Vector2d stress_force(const Grid& grid, const std::vector<CellTensor>& q, long n) {
     const long down = n - grid.stride();
     const CellTensor &a = q[down - 1], &b = q[down], &c = q[n - 1], &d = q[n];
@@ -99,8 +102,8 @@ inline Eigen::Vector2d stress_force(const Grid& grid, const std::vector<CellTens
 inline double power(const Grid& grid, const CellTensor& q, const Field& vx, const Field& vz,
                     long n) {
     if (q.trace() == 0) return 0;
-    const CellTensor e = strain_rate(grid, vx, vz, n);
-    return q.xx * e.xx + q.zz * e.zz + 2 * q.xz * e.xz + q.hoop * e.hoop;
+    const CellGradient G = velocity_gradient(grid, vx, vz, n);
+    return q.xx * G.xx + q.zz * G.zz + q.xz * (G.xz + G.zx) + q.hoop * G.hoop;
 }
 
 }  // namespace flip

@@ -222,7 +222,8 @@ inline Particles load_particles(const Case& parameters) {
             particles.e_p[p] += parameters.regions[n].energy / region_mass[n];
     }
     if (parameters.transfer == "apic") {
-        const double step_x = 1e-3 * grid.x.spacing(), step_z = 1e-3 * grid.z.spacing();
+        // Across half a cell: a jump then has no more energy in C_p than between two nodes.
+        const double step_x = 0.5 * grid.x.spacing(), step_z = 0.5 * grid.z.spacing();
         for (std::size_t p = 0; p < region_of.size(); ++p) {
             const double x = particles.x_p[p], z = particles.z_p[p];
             const RegionCase& region = parameters.regions[region_of[p]];
