@@ -286,6 +286,60 @@ TEST_CASE("a figure has the same numbers where numbers are written with a comma"
     CHECK(compared >= 8);
 }
 
+TEST_CASE("a program takes the cores and the memory that its affinity and its control group leave" *
+          doctest::description("robust")) {
+    const Room room;
+    // in: enter, what the shell does before it becomes the program
+    const auto run_in = [&](const std::string& enter, const std::string& words) {
+        return room.run(enter + short_run(room.path("run"), 3) + "--quiet --force " + words);
+    };
+    const auto threads_in = [&](const std::string& enter) {
+        CHECK(run_in(enter, "").status == 0);
+        const std::string summary = read_all(room.folder / "run/summary.json");
+        std::smatch found;
+        CHECK(std::regex_search(summary, found, std::regex("\"threads\": ([0-9]+)")));
+        return found.str(1);
+    };
+    CHECK(threads_in("exec taskset -c 0 ") == "1");
+
+    // A group of either version of control groups, with limits, if one may be made here.
+    const std::string name = "particle_in_cell_" + std::to_string(getpid());
+    const auto grouped = [&](const std::string& controller, const std::string& limits) {
+        for (const std::string root :
+             {"/sys/fs/cgroup/" + controller, std::string("/sys/fs/cgroup")}) {
+            const std::string group = root + "/" + name;
+            const Outcome made =
+                room.run("mkdir " + group + " && cd " + group + " && { " + limits + "; }");
+            if (made.status == 0) return group;
+            room.run("rmdir " + group);
+        }
+        return std::string();
+    };
+    const auto enter = [](const std::string& group) {
+        return "echo $$ > " + group + "/cgroup.procs && exec ";
+    };
+    const std::string slow = grouped("cpu",
+                                     "{ [ -f cpu.max ] && echo 100000 100000 > cpu.max; } || "
+                                     "echo 100000 > cpu.cfs_quota_us");
+    if (slow.empty()) MESSAGE("skipped: no control group of processors may be made here");
+    if (!slow.empty()) {
+        CHECK(threads_in(enter(slow)) == "1");
+        room.run("rmdir " + slow);
+    }
+    const std::string small = grouped("memory",
+                                      "{ [ -f memory.max ] && echo 100000000 > memory.max; } || "
+                                      "echo 100000000 > memory.limit_in_bytes");
+    if (small.empty()) MESSAGE("skipped: no control group of memory may be made here");
+    if (!small.empty()) {
+        CHECK(run_in(enter(small), "").status == 0);
+        const Outcome large = run_in(enter(small), "species.left.particles_per_cell=1e5");
+        CHECK(large.status == 2);
+        INFO(large.err);
+        CHECK(holds(large.err, "memory"));
+        room.run("rmdir " + small);
+    }
+}
+
 TEST_CASE("the peak of memory belongs to the program and not to what started it" *
           doctest::description("robust")) {
     const Room room;

@@ -23,17 +23,24 @@ constexpr const char* short_spin = "2000";
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// The smallest of what limit(folder) says of the control group of this process and of those around
-// it.
+// The number that a file begins with; "max", a negative one and no file are no limit.
+double limit_in(const fs::path& file) {
+    double number = 0;
+    return std::ifstream(file) >> number && number >= 0 ? number : infinity;
+}
+
+// The smallest of what limit(folder) says of the control groups of this process and of those around
+// them: a line of the file is number:controllers:path, without controllers in version 2.
 template <class Limit>
 double smallest_limit(const Limit& limit) {
     double smallest = infinity;
     std::ifstream groups("/proc/self/cgroup");
-    for (std::string line; std::getline(groups, line);) {
-        if (line.rfind("0::/", 0) != 0) continue;
-        fs::path group = "/sys/fs/cgroup";
+    for (std::string number, controllers, path; std::getline(groups, number, ':') &&
+                                                std::getline(groups, controllers, ':') &&
+                                                std::getline(groups, path);) {
+        fs::path group = fs::path("/sys/fs/cgroup") / controllers;
         smallest = std::min(smallest, limit(group));
-        for (const fs::path& part : fs::path(line.substr(4)))
+        for (const fs::path& part : fs::path(path).relative_path())
             smallest = std::min(smallest, limit(group /= part));
     }
     return smallest;
@@ -62,9 +69,11 @@ void share_cores(char** argv) {
 
 int free_cores() {
     const double quota = smallest_limit([](const fs::path& group) {
-        double time = 0, period = 0;
-        std::ifstream file(group / "cpu.max");  // "max 100000" is no limit
-        return file >> time >> period && period > 0 ? time / period : infinity;
+        double time = limit_in(group / "cpu.cfs_quota_us");
+        double period = limit_in(group / "cpu.cfs_period_us");
+        if (std::ifstream file(group / "cpu.max"); !(file >> time >> period) && file.is_open())
+            time = infinity;  // "max 100000"
+        return period > 0 && time < infinity ? time / period : infinity;
     });
     return std::max(1, static_cast<int>(std::min<double>(omp_get_num_procs(), quota)));
 }
@@ -73,9 +82,8 @@ double memory_limit_bytes() {
     const double installed =
         static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
     double bytes = std::min(installed, smallest_limit([](const fs::path& group) {
-                                double limit = 0;
-                                std::ifstream file(group / "memory.max");  // "max" is no limit
-                                return file >> limit ? limit : infinity;
+                                return std::min(limit_in(group / "memory.max"),
+                                                limit_in(group / "memory.limit_in_bytes"));
                             }));
     struct rlimit shell {};
     if (getrlimit(RLIMIT_AS, &shell) == 0 && shell.rlim_cur != RLIM_INFINITY)

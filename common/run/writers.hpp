@@ -91,18 +91,11 @@ inline void begin_table(OutputFile& file, const std::vector<ScalarColumn>& colum
 
 /// Text with the four letters that mean something in XML spelled out.
 inline std::string xml_text(const std::string& plain) {
+    constexpr std::array<const char*, 4> spelled{"&amp;", "&lt;", "&gt;", "&quot;"};
     std::string escaped;
     for (const char c : plain) {
-        if (c == '&')
-            escaped += "&amp;";
-        else if (c == '<')
-            escaped += "&lt;";
-        else if (c == '>')
-            escaped += "&gt;";
-        else if (c == '"')
-            escaped += "&quot;";
-        else
-            escaped += c;
+        const std::size_t k = std::string_view("&<>\"").find(c);
+        escaped += k < spelled.size() ? spelled[k] : std::string(1, c);
     }
     return escaped;
 }
@@ -317,15 +310,15 @@ inline void write_vti(const Snapshot& at, const std::string& kind,
     for (const auto& axis : axes)
         extent += (extent.empty() ? "0 " : " 0 ") + std::to_string(axis.count - 1);
     file.text("<ImageData WholeExtent=\"" + extent + "\" Origin=\"");
-    for (std::size_t d = 0; d < 3; ++d) {
-        if (d > 0) file.text(" ");
-        file.number(axes[d].first);
-    }
+    const auto write_of_each = [&](double SampledAxis::*part) {
+        for (const auto& axis : axes) {
+            if (&axis != &axes.front()) file.text(" ");
+            file.number(axis.*part);
+        }
+    };
+    write_of_each(&SampledAxis::first);
     file.text("\" Spacing=\"");
-    for (std::size_t d = 0; d < 3; ++d) {
-        if (d > 0) file.text(" ");
-        file.number(axes[d].step);
-    }
+    write_of_each(&SampledAxis::step);
     file.text("\">\n");
     writers_detail::write_time(file, at.time);
     file.text("<Piece Extent=\"" + extent + "\">\n");

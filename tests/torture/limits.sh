@@ -8,8 +8,8 @@ under() {  # under STATUSES COMMAND: a run in a shell that has done this
     timeout 60 sh -c "$2" sh $run "$folder/limited" > "$folder/said" 2>&1
     status=$?
     # Before the program is there, its loader ends with 127, or crashes.
-    [ $status = 139 ] && ! LD_TRACE_LOADED_OBJECTS=1 sh -c "$2" sh "${run%% *}" > /dev/null 2>&1 &&
-        status=127
+    [ $status = 139 ] &&
+        ! sh -c "export LD_TRACE_LOADED_OBJECTS=1; $2" sh "${run%% *}" > /dev/null 2>&1 && status=127
     case " $1 127 " in
     *" $status "*) ;;
     *) fell "$2: status $status: $(tail -1 "$folder/said")" ;;
@@ -48,12 +48,18 @@ if $somebody test -x "$BUILD/$program"; then
     [ $? = 2 ] || fell "a folder without rights: $(tail -1 "$folder/said")"
 fi
 
-group=/sys/fs/cgroup/torture_$program
-if [ -f /sys/fs/cgroup/cgroup.controllers ] && mkdir "$group" 2> /dev/null &&
-    echo 3000000 2> /dev/null > "$group/memory.max"; then
-    under '0 2' "echo \$\$ > $group/cgroup.procs; exec \"\$@\""
+# A control group of either version; who needs more than it has may be killed by the kernel.
+for limit in memory/:memory.limit_in_bytes :memory.max; do
+    group=/sys/fs/cgroup/${limit%:*}torture_$program limit=${limit#*:}
+    grouped=no
+    mkdir "$group" 2> /dev/null || continue
+    for bytes in 3000000 10000000 30000000; do
+        echo $bytes 2> /dev/null > "$group/$limit" || continue
+        grouped=yes
+        under '0 2 137' "echo \$\$ > $group/cgroup.procs; exec \"\$@\""
+    done
     rmdir "$group"
-else
-    echo "$program: skipped: no control group may be made here"
-fi
+    [ $grouped = yes ] && break
+done
+[ "${grouped:-no}" = yes ] || echo "$program: skipped: no control group may be made here"
 say
