@@ -1,5 +1,5 @@
 # The GEM challenge with three electron masses: reconnected flux, seed 1 (left); peak rate and time of unit flux of every seed (right). A factor of 73 in mass
-# makes a third in the rate, and reconnection starts earlier: a weak dependence, as Ricci et al. (2003) say. An explicit code pays (1836/25)^{3/2} = 630 times for it.
+# makes a third in the rate, and reconnection starts earlier: a weak dependence, as Ricci et al. (2004) say. An explicit code pays (1836/25)^{3/2} = 630 times for it.
 wide = 1500; high = 700
 load 'common/style.gp'
 history(ratio) = sprintf('%s/%s_1/history.dat', run, ratio)

@@ -111,7 +111,7 @@ inline void judge_reconnection(const std::string& name, double value, double mas
         summary.result_within(name, value, window.unit, window.low, window.high, window.source);
     else if (name == "peak_reconnection_rate")
         summary.result_within(name, value, window.unit, 0.2, 0.4,
-                              "Ricci et al. 2003: the rate depends weakly on the mass ratio");
+                              "Ricci et al. 2004: the rate depends weakly on the mass ratio");
     else
         summary.result_info(name, value, window.unit, "measured; windows are for m_i/m_e = 25");
 }
