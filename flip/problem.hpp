@@ -106,11 +106,12 @@ struct Transfer {
 /// How `flip` goes about it; `pic` has no choices.
 struct Scheme {
     Transfer transfer;
-    bool consistent_mass = false;   // mass matrix of the nodes: consistent instead of lumped
-    bool particle_volumes = false;  // density from volumes that particles carry, not from cells
-    double filling = 0;             // part of its room that a gas takes in a step, with volumes
-    bool confined = false;          // a gas that fills the mesh, with volumes: no voids
-    bool implicit = false;          // pressure at the level theta
+    bool consistent_mass = false;     // mass matrix of the nodes: consistent instead of lumped
+    bool particle_volumes = false;    // density from volumes that particles carry, not from cells
+    double filling = 0;               // part of its room that a gas takes in a step, with volumes
+    bool confined = false;            // a gas that fills the mesh, with volumes: no voids
+    bool conservative_paths = false;  // particles diverge at each place as their cell does
+    bool implicit = false;            // pressure at the level theta
     double theta = 1, tolerance = 1e-8;
     long max_iterations = 1000;                  // of the conjugate gradients
     long rezone_steps = 0;                       // steps between rezonings; 0: never

@@ -169,4 +169,23 @@ inline void accelerate_nodes(const Problem& problem, double dt, Mesh& mesh) {
     set_walls(grid, problem.boundaries, g.vxL, g.vzL);
 }
 
+/// Adds what a change of the pressure does.
+///   F_g += D^T p,  v_g^L += dt D^T p/m_g
+/// in:     cells.p_step, the change inside
+/// in/out: nodes.fx, fz, vxL, vzL of accelerate_nodes()
+inline void push_nodes(const Problem& problem, double dt, Mesh& mesh) {
+    const Grid& grid = problem.grid;
+    Nodes& g = mesh.nodes;
+    fill_pressure(grid, mesh.cells.p_step);
+    for_each_node(grid, [&](long, long, long n) {
+        const Eigen::Vector2d F = pressure_force(grid, mesh.cells.p_step, n);
+        const double per_mass = g.m[n] > 0 ? dt / g.m[n] : 0;
+        g.fx[n] += F[0];
+        g.fz[n] += F[1];
+        g.vxL[n] += per_mass * F[0];
+        g.vzL[n] += per_mass * F[1];
+    });
+    set_walls(grid, problem.boundaries, g.vxL, g.vzL);
+}
+
 }  // namespace flip

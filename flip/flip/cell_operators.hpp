@@ -31,7 +31,7 @@ inline Eigen::Vector2d pressure_force_of_rings(const Grid& grid, const Field& p,
     const long down = n - grid.stride();
     const double i = static_cast<double>(column_of(grid, n));
     return {
-        0.5 * grid.z.spacing() * ring_length(grid, i) * (p[down - 1] + p[n - 1] - p[down] - p[n]),
+        0.5 * grid.z.spacing() * ring_length(grid, i) * (p[down - 1] - p[down] + (p[n - 1] - p[n])),
         0.5 * grid.x.spacing() *
             (ring_length(grid, i - 1. / 3) * (p[down - 1] - p[n - 1]) +
              ring_length(grid, i + 1. / 3) * (p[down] - p[n]))};
@@ -50,11 +50,12 @@ inline double dilation(const Grid& grid, const Field& vx, const Field& vz, long 
 }
 
 /// Force of the pressures of the four cells around a node; the transpose of dilation().
+/// exact:  differences come first, so that a pressure equal to round-off pushes by that of itself alone
 inline Eigen::Vector2d pressure_force(const Grid& grid, const Field& p, long n) {
     const long down = n - grid.stride();
     if (grid.axisymmetric) return detail::pressure_force_of_rings(grid, p, n);
-    return {0.5 * grid.z.spacing() * (p[down - 1] + p[n - 1] - p[down] - p[n]),
-            0.5 * grid.x.spacing() * (p[down - 1] + p[down] - p[n - 1] - p[n])};
+    return {0.5 * grid.z.spacing() * (p[down - 1] - p[down] + (p[n - 1] - p[n])),
+            0.5 * grid.x.spacing() * (p[down - 1] - p[n - 1] + (p[down] - p[n]))};
 }
 // [/transpose]
 

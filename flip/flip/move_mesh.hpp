@@ -157,14 +157,14 @@ inline void filter_nodes(const Problem& problem, const MassMatrix& M, Nodes& g) 
     });
 }
 
-// How many cells the fastest node crosses per time, and in a confined fluid the fastest particle.
-inline double most_cells_crossed(const Grid& grid, const Nodes& g, bool confined) {
+// How many cells the fastest node crosses per time, and on conservative paths the fastest particle.
+inline double most_cells_crossed(const Grid& grid, const Nodes& g, bool conservative) {
     const double per_dx = 1 / grid.x.spacing(), per_dz = is_plane(grid) ? 1 / grid.z.spacing() : 0;
     double most = 0;
     for_own_nodes(grid, [&](long, long, long n) {
         most = std::max({most, std::fabs(g.vxL[n]) * per_dx, std::fabs(g.vzL[n]) * per_dz});
     });
-    for (long j = 0; confined && j < grid.z.cells; ++j) {
+    for (long j = 0; conservative && j < grid.z.cells; ++j) {
         for (long i = 0; i < grid.x.cells; ++i) {
             const auto at = corners_of(grid, grid.index(i, j));
             const auto crossed = [&](const Field& v, const Field& w, double per_v, double per_w) {
@@ -200,7 +200,8 @@ inline StepReport move_mesh(const Problem& problem, double& dt, const Particles&
     if (consistent) solve_velocity(grid, M, g);
 
     find_viscosity(grid, boundaries, problem.q, mesh);
-    if (grid.axisymmetric || mesh.materials > 1) limit_viscosity(grid, dt, mesh);
+    const bool mixed_only = !grid.axisymmetric && !problem.scheme.implicit;
+    if (!mixed_only || mesh.materials > 1) limit_viscosity(grid, mixed_only, dt, mesh);
     if (consistent) stop_at_walls(problem, M, g);
     for (;; dt *= 0.5) {
         find_known_forces(grid, boundaries, problem.viscosity, mesh);
@@ -213,7 +214,7 @@ inline StepReport move_mesh(const Problem& problem, double& dt, const Particles&
         }
         if (consistent) accelerate_consistently(problem, dt, M, g);
         if (problem.limits.dt > 0 ||
-            !(dt * detail::most_cells_crossed(grid, g, problem.scheme.confined) > 1))
+            !(dt * detail::most_cells_crossed(grid, g, problem.scheme.conservative_paths) > 1))
             break;
     }
     work_on_cells(problem, dt, mesh, budget);

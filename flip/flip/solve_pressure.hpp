@@ -211,11 +211,11 @@ inline StepReport solve_pressure(const Problem& problem, double dt, Mesh& mesh) 
             std::to_string(solved.iterations) + " iterations the residual is " +
             common::format(solved.residual) + " and not " + common::format(tolerance) +
             "; raise flip.max_iterations or reduce time.cfl");
-    for (long r = 0; r < count; ++r) c.p_step[cells.index[r]] += change[r];
-
-    // What the equation for the pressure leaves of the divergence.
-    find_known_forces(grid, problem.boundaries, problem.viscosity, mesh);
-    accelerate_nodes(problem, dt, mesh);
+    // The change acts by itself: the sum is rounded to a part of p, which would push a light fluid.
+    c.p_step.setZero();
+    for (long r = 0; r < count; ++r) c.p_step[cells.index[r]] = change[r];
+    push_nodes(problem, dt, mesh);
+    c.p_step += c.p;
     find_v_theta();
     double sum = 0;
     for (long r = 0; r < count; ++r) {

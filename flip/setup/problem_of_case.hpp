@@ -52,10 +52,14 @@ inline Problem problem_of(const Case& w) {
     // What lumped masses owe the particles goes to heat; consistent masses owe nothing.
     const Transfer transfer{w.transfer == "flip", part,         w.transfer == "apic",
                             w.transfer == "xpic", w.xpic_order, w.deficit_to_heat && !consistent};
-    problem.scheme = {transfer,       consistent,      w.density == "particles",
-                      w.filling,      w.confined,      w.implicit(),
-                      w.theta,        w.tolerance,     w.max_iterations,
-                      w.rezone_steps, w.min_particles, w.max_particles};
+    // Under gravity particles must not fall together within a cell, where no pressure feels it.
+    const bool falls = w.gravity_x != 0 || w.gravity_z != 0,
+               conservative = w.confined || (falls && w.plane() && !w.grid.axisymmetric);
+    problem.scheme = {transfer,         consistent,     w.density == "particles",
+                      w.filling,        w.confined,     conservative,
+                      w.implicit(),     w.theta,        w.tolerance,
+                      w.max_iterations, w.rezone_steps, w.min_particles,
+                      w.max_particles};
     return problem;
 }
 
