@@ -25,10 +25,11 @@
 
 #include <array>
 #include <iterator>
+#include <type_traits>
 
 #include "common/splines.hpp"
 #include "implicit_moment/moments.hpp"
-#include "implicit_moment/move_one.hpp"
+#include "implicit_moment/rotate_particles.hpp"
 
 namespace implicit_moment {
 
@@ -76,55 +77,27 @@ struct NodeSums {
     }
 };
 
-// B as a deposit reads it, component by component on the mesh; stride, the distance between rows.
-struct MeshB {
-    const double *B_x, *B_y, *B_z;
-    long stride;
-
-    // B at particles of one node.
-    Velocity<SimdVector> at(long corner, const common::QuadraticWeights<SimdVector>& S_x,
-                            const common::QuadraticWeights<SimdVector>& S_z) const {
-        const auto& q_x = S_x.quadratic;
-        const auto& l_x = S_x.linear;
-        SimdVector b_x{}, b_y{}, b_z{};
-        for (int j = 0; j < 3; ++j) {
-            const double* f = B_z + corner + j * stride;
-            b_z += S_z.quadratic[j] * (l_x[0] * f[0] + l_x[1] * f[1]);
-        }
-        for (int j = 0; j < 2; ++j) {
-            const double *f = B_x + corner + j * stride, *g = B_y + corner + j * stride;
-            b_x += S_z.linear[j] * (q_x[0] * f[0] + q_x[1] * f[1] + q_x[2] * f[2]);
-            b_y += S_z.linear[j] * (l_x[0] * g[0] + l_x[1] * g[1]);
-        }
-        return {b_x, b_y, b_z};
+// The same of their response to E, where they are relativistic.
+struct ResponseSums {
+    SimdVector A[9][3][3]{};
+    void add(const common::QuadraticWeights<SimdVector>& S_x,
+             const common::QuadraticWeights<SimdVector>& S_z,
+             const std::array<SimdVector, 9>& of_particles, const SimdVector& present) {
+        for (std::size_t a = 0; a < 9; ++a)
+            for (int j = 0; j < 3; ++j)
+                for (int i = 0; i < 3; ++i)
+                    A[a][j][i] += S_x.quadratic[i] * (S_z.quadratic[j] * present * of_particles[a]);
     }
 };
-
-// The magnetic rotation R of [IMM-12], k = q dt / 2mc.
-struct MagneticRotation {
-    MeshB B;
-    double k;
-
-    // vbar = [ v + v x O + (v . O) O ] / (1 + O^2),  O = k B, with B at the particles.
-    void operator()(long corner, const common::QuadraticWeights<SimdVector>& S_x,
-                    const common::QuadraticWeights<SimdVector>& S_z,
-                    Velocity<SimdVector>& v) const {
-        const Velocity<SimdVector> b = B.at(corner, S_x, S_z);
-        v = mean_velocity<SimdVector>(v, {SimdVector{}, SimdVector{}, SimdVector{}, b.x, b.y, b.z},
-                                      k * c);
-    }
-};
-
-// The moments of the slide itself: R = 1.
-struct NoRotation {
-    void operator()(long, const common::QuadraticWeights<SimdVector>&,
-                    const common::QuadraticWeights<SimdVector>&, Velocity<SimdVector>&) const {}
-};
+struct NoResponse {};
 
 template <class Rotation>
 inline void deposit(const Particles& particles, const Grid& grid, const Rotation& rotation,
                     Images images, Moments& moments) {
+    using Dynamics = typename Rotation::Dynamics;
     for (Field* f : moments.all()) f->setZero();
+    if constexpr (Rotation::responds)
+        for (Field& f : moments.response) f.setZero(grid.size());
     const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing();
     const double q = particles.q_p / grid.cell_area();
     const long columns = nodes_x(grid), stride = grid.stride();
@@ -143,6 +116,7 @@ inline void deposit(const Particles& particles, const Grid& grid, const Rotation
             const long corner = grid.index(column - 1, row - 1);  // the node down left of this one
 
             NodeSums sums;
+            std::conditional_t<Rotation::responds, ResponseSums, NoResponse> response;
             for (long p = begin; p < end; p += common::simd_width) {
                 const long count = end - p;
                 const SimdVector present = common::first_simd(count);
@@ -151,14 +125,21 @@ inline void deposit(const Particles& particles, const Grid& grid, const Rotation
                 const SimdVector d_z =
                     (common::load_simd(&particles.z_p[p], count) - z_node) * per_dz;
                 const common::QuadraticWeights<SimdVector> S_x(d_x), S_z(d_z);
-                Velocity<SimdVector> v{common::load_simd(&particles.ux_p[p], count),
-                                       common::load_simd(&particles.uy_p[p], count),
-                                       common::load_simd(&particles.uz_p[p], count)};
-                total_x += present * v.x;
-                total_y += present * v.y;
-                total_z += present * v.z;
-                total_squared += present * (v.x * v.x + v.y * v.y + v.z * v.z);
-                rotation(corner, S_x, S_z, v);
+                const Velocity<SimdVector> u{common::load_simd(&particles.ux_p[p], count),
+                                             common::load_simd(&particles.uy_p[p], count),
+                                             common::load_simd(&particles.uz_p[p], count)};
+                total_x += present * u.x;
+                total_y += present * u.y;
+                total_z += present * u.z;
+                total_squared += present * Dynamics::twice_energy(u);
+                Velocity<SimdVector> v;
+                if constexpr (Rotation::responds) {
+                    const LinearVelocity<SimdVector> vbar = rotation(corner, S_x, S_z, u);
+                    v = vbar.free;
+                    response.add(S_x, S_z, vbar.A, present);
+                } else {
+                    v = rotation(corner, S_x, S_z, u);
+                }
                 sums.add(S_x, S_z, v.x, v.y, v.z, present);
             }
 
@@ -174,6 +155,8 @@ inline void deposit(const Particles& particles, const Grid& grid, const Rotation
             add(moments.P_xx, sums.P_xx, 1, 0), add(moments.P_zz, sums.P_zz, 0, 1);
             add(moments.P_xz, sums.P_xz), add(moments.P_xy, sums.P_xy);
             add(moments.P_yz, sums.P_yz);
+            if constexpr (Rotation::responds)
+                for (std::size_t a = 0; a < 9; ++a) add(moments.response[a], response.A[a]);
         }
         sums_of_row[row] = {common::simd_sum(total_x), common::simd_sum(total_y),
                             common::simd_sum(total_z), common::simd_sum(total_squared)};
@@ -189,6 +172,13 @@ inline void deposit(const Particles& particles, const Grid& grid, const Rotation
     // The density that answers to a field is that of the plasma and its mirror image.
     moments.plasma_density = moments.rho;
     common::fold_ghosts(grid, on_nodes, {+1, +1}, moments.plasma_density.data());
+    if constexpr (Rotation::responds) {
+        const double half_kick = rotation.half_kick;
+        for (Field& f : moments.response) {
+            f *= half_kick;
+            common::fold_ghosts(grid, on_nodes, {+1, +1}, f.data());
+        }
+    }
     fold_charge_and_current(grid, images, moments);
     fold_stress(grid, images, moments);
 }
@@ -207,7 +197,10 @@ inline void deposit(const Particles& particles, const Grid& grid, const Rotation
 ///         velocity, so J_n is odd and vanishes on the wall, and a node on the wall counts its half
 ///         cell twice.
 inline void deposit_moments(const Particles& particles, const Grid& grid, Moments& moments) {
-    detail::deposit(particles, grid, detail::NoRotation{}, Images::plasma, moments);
+    with_dynamics(particles, [&](auto dynamics) {
+        detail::deposit(particles, grid, detail::NoRotation<decltype(dynamics)>{}, Images::plasma,
+                        moments);
+    });
 }
 
 /// Deposits the moments of one species with the mean velocities vbar = R v of the coming step in
@@ -225,10 +218,14 @@ inline void deposit_moments(const Particles& particles, const Grid& grid, Moment
 ///         mesh feeds an instability (see the notes, "Rotate the particles").
 inline void deposit_moments(const Particles& particles, const Grid& grid, const VectorField& B,
                             double dt, Moments& moments) {
-    const double k = 0.5 * dt * particles.q_p / (particles.m_p * c);
-    detail::deposit(particles, grid,
-                    detail::MagneticRotation{{B.x(), B.y(), B.z(), grid.stride()}, k},
-                    Images::conductor, moments);
+    const double half_kick = 0.5 * dt * particles.q_p / particles.m_p;
+    const detail::MeshB mesh_B{B.x(), B.y(), B.z(), grid.stride()};
+    if (particles.relativistic)
+        detail::deposit(particles, grid, detail::RelativisticRotation{mesh_B, half_kick},
+                        Images::conductor, moments);
+    else
+        detail::deposit(particles, grid, detail::MagneticRotation{mesh_B, half_kick},
+                        Images::conductor, moments);
 }
 
 /// Deposits all species for the field equations, with their mean velocities, or with v^n where R turns
@@ -238,7 +235,8 @@ inline void deposit_moments(const std::vector<Particles>& species, const Grid& g
                             std::vector<Moments>& moments) {
     for (std::size_t k = 0; k < species.size(); ++k) {
         if (rotate_on_mesh)
-            detail::deposit(species[k], grid, detail::NoRotation{}, Images::conductor, moments[k]);
+            detail::deposit(species[k], grid, detail::NoRotation<Newtonian>{}, Images::conductor,
+                            moments[k]);
         else
             deposit_moments(species[k], grid, B, dt, moments[k]);
     }

@@ -67,11 +67,13 @@ inline void follow_field(const InterleavedField& field, const Grid& grid, double
         common::for_each_block(s.count(), [&](int block, long begin, long end) {
             VectorField& J = enslaved.J_of_block[std::size_t(block)];
             for (long p = begin; p < end; ++p) {
-                const Velocity<double> v{s.ux_p[p], s.uy_p[p], s.uz_p[p]};
+                const Velocity<double> u{s.ux_p[p], s.uy_p[p], s.uz_p[p]};
                 Velocity<double>& vbar = enslaved.vbar[k][std::size_t(p)];
-                if (!detail::find_path(grid, field, dt, settings, half_kick, s.x_p[p], s.z_p[p], v,
-                                       turn < free_turns, vbar,
-                                       enslaved.state[k][std::size_t(p)])) {
+                if (!with_dynamics(s, [&](auto dynamics) {
+                        return detail::find_path(dynamics, grid, field, dt, settings, half_kick,
+                                                 s.x_p[p], s.z_p[p], u, turn < free_turns, vbar,
+                                                 enslaved.state[k][std::size_t(p)]);
+                    })) {
                     ++lost[std::size_t(block)];
                     continue;
                 }
@@ -108,7 +110,7 @@ inline void follow_field(const InterleavedField& field, const Grid& grid, double
 /// Takes the step that follow_field has found: x^{n+1} where the path ends, v^{n+1} from the field along it.
 /// in:     field, that of follow_field
 /// exact:  particles gain dt sum V J . E, also where mover.tolerance stopped the iteration for a path: there
-///         2 vbar - v^n is scaled to |v^{n+1}|^2 = |v^n|^2 + 2 (q dt/m) (x^{n+1} - x^n)/dt . E_p.
+///         u^{n+1} is scaled to the energy q (x^{n+1} - x^n) . E_p that it was given.
 /// errors: NumericalError where no speed has that energy: a path was not found
 inline void move_enslaved(const InterleavedField& field, const Grid& grid, double dt,
                           const EnslavedParticles& enslaved, std::vector<Particles>& species) {
@@ -118,20 +120,23 @@ inline void move_enslaved(const InterleavedField& field, const Grid& grid, doubl
         const double lost = common::sum_over_blocks(s.count(), [&](long begin, long end) {
             double count = 0;
             for (long p = begin; p < end; ++p) {
-                const Velocity<double> v{s.ux_p[p], s.uy_p[p], s.uz_p[p]},
-                    &u = enslaved.vbar[k][std::size_t(p)];
-                const detail::PathAxis x(grid.x, s.x_p[p], dt * u.x), z(grid.z, s.z_p[p], dt * u.z);
+                const Velocity<double> u{s.ux_p[p], s.uy_p[p], s.uz_p[p]},
+                    &vbar = enslaved.vbar[k][std::size_t(p)];
+                const detail::PathAxis x(grid.x, s.x_p[p], dt * vbar.x),
+                    z(grid.z, s.z_p[p], dt * vbar.z);
                 const auto at = detail::field_along(grid, field, x, z);
-                const auto vbar = mean_velocity(v, at, half_kick);
-                const double X = 2 * vbar.x - v.x, Y = 2 * vbar.y - v.y, Z = 2 * vbar.z - v.z;
-                const double before = v.x * v.x + v.y * v.y + v.z * v.z,
-                             work = 4 * half_kick * (u.x * at.E_x + u.y * at.E_y + u.z * at.E_z),
-                             found = X * X + Y * Y + Z * Z, wanted = before + work;
+                const double before = detail::dot(u, u),
+                             work = 2 * half_kick * detail::dot(vbar, {at.E_x, at.E_y, at.E_z});
+                const auto [u_new, wanted] = with_dynamics(s, [&](auto dynamics) {
+                    return std::pair(decltype(dynamics)::mean(u, at, half_kick).u_new(u),
+                                     decltype(dynamics)::square_after(u, work));
+                });
+                const double found = detail::dot(u_new, u_new);
                 if (wanted < -1e-12 * (before + found)) ++count;
-                const double scale = wanted > 0 && found > 0 ? std::sqrt(wanted / found) : 1;
-                s.ux_p[p] = scale * X;
-                s.uy_p[p] = scale * Y;
-                s.uz_p[p] = scale * Z;
+                const Velocity<double> u_1 = with_energy(u_new, found, wanted);
+                s.ux_p[p] = u_1.x;
+                s.uy_p[p] = u_1.y;
+                s.uz_p[p] = u_1.z;
                 s.x_p[p] = x.end(grid.x, s.ux_p[p]);
                 s.z_p[p] = z.end(grid.z, s.uz_p[p]);
             }

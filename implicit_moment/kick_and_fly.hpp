@@ -5,10 +5,13 @@
 //     vbar    = v^n + q dt/2m [ E^{n+theta}(x*) + vbar x B(x*) / c ],    v^{n+1} = 2 vbar - v^n
 //     x^{n+1} = x* + dt/2 v^{n+1}
 //
+// and for a relativistic particle the vbar and u^{n+1} = gamma v of mean_velocity.hpp.
+//
 // Nothing is iterated: x* does not depend on the field. A wall reflects what reaches it in flight,
 // which costs no energy, and a plasma at rest in any B stays as it is.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -37,14 +40,16 @@ inline void land(const common::Axis& axis, double& x, double& v) {
 
 /// Moves all particles along straight lines for a time.
 /// in/out: particles, not sorted afterwards
-/// exact:  |v| stays; a flight back (v -> -v) ends where it began, to round-off.
+/// exact:  |u| stays; a flight back (v -> -v) ends where it began, to round-off.
 /// errors: NumericalError when a particle crosses more than 1000 boxes: the run has blown up
 inline void fly(const Grid& grid, double time, std::vector<Particles>& species) {
     for (Particles& s : species) {
-        const double lost = common::sum_over_blocks(s.count(), [&](long begin, long end) {
+        const auto fly_block = [&](auto dynamics, long begin, long end) {
             double count = 0;
             for (long p = begin; p < end; ++p) {
-                const double way_x = time * s.ux_p[p], way_z = time * s.uz_p[p];
+                const Velocity<double> v =
+                    decltype(dynamics)::velocity(Velocity<double>{s.ux_p[p], s.uy_p[p], s.uz_p[p]});
+                const double way_x = time * v.x, way_z = time * v.z;
                 if (!(std::fabs(way_x) < 1e3 * grid.x.length &&
                       std::fabs(way_z) < 1e3 * grid.z.length)) {
                     ++count;
@@ -56,6 +61,9 @@ inline void fly(const Grid& grid, double time, std::vector<Particles>& species) 
                 detail::land(grid.z, s.z_p[p], s.uz_p[p]);
             }
             return count;
+        };
+        const double lost = common::sum_over_blocks(s.count(), [&](long begin, long end) {
+            return with_dynamics(s, [&](auto dynamics) { return fly_block(dynamics, begin, end); });
         });
         if (lost > 0)
             throw common::NumericalError(common::format(lost) + " of the " + s.name +
@@ -64,40 +72,76 @@ inline void fly(const Grid& grid, double time, std::vector<Particles>& species) 
     }
 }
 
+namespace detail {
+
+// u of relativistic particles after a kick: the direction of the implicit midpoint rule, and the energy that the
+// field gave, q dt vbar . E with the vbar that the mass matrix has. The two differ by E times the square of E
+// less the guess. stops: whether a particle has less energy than the field would take.
+template <class Real>
+inline Velocity<Real> kicked(const Velocity<Real>& u, const LocalField<Real>& at,
+                             const LocalField<Real>& guess, double half_kick, bool& stops) {
+    const auto [A, free] = linear_mean_velocity<Real>(u, guess, half_kick);
+    const Velocity<Real> e{half_kick * at.E_x, half_kick * at.E_y, half_kick * at.E_z},
+        vbar{free.x + A[0] * e.x + A[1] * e.y + A[2] * e.z,
+             free.y + A[3] * e.x + A[4] * e.y + A[5] * e.z,
+             free.z + A[6] * e.x + A[7] * e.y + A[8] * e.z},
+        u_new = relativistic_mean_velocity<Real>(u, at, half_kick).u_new(u);
+    const Real found = dot(u_new, u_new),
+               wanted = Relativistic::square_after<Real>(u, 2.0 * dot(vbar, e));
+    stops = stops || any(wanted < -1e-12 * (dot(u, u) + found));
+    return with_energy(u_new, found, wanted);
+}
+
+}  // namespace detail
+
 /// v^n -> v^{n+1} in the field at x*.
-/// in:     field, the smoothed E^{n+theta} and B, ghosts filled; particles at x*, sorted by node there
-/// exact:  m (|v^{n+1}|^2 - |v^n|^2) / 2 = q dt vbar . E(x*), with the splines that deposit J: what
-///         particles gain is what J . E takes from the field. B does no work.
+/// in:     field, the smoothed E^{n+theta} and B, ghosts filled; guess, that of deposit_mass_matrix; particles
+///         at x*, sorted by node there
+/// out:    false where a relativistic particle has less energy than is taken from it, so far from E is the
+///         guess; the particles are then not to be used
+/// exact:  m (|v^{n+1}|^2 - |v^n|^2) / 2, or m c^2 (gamma^{n+1} - gamma^n), = q dt vbar . E(x*), with the vbar and
+///         the splines that deposit J: what particles gain is what J . E takes from the field. B does no work.
 /// source: [IMM-12] for each particle
-inline void kick_particles(const InterleavedField& field, const Grid& grid, double dt,
-                           std::vector<Particles>& species) {
+inline bool kick_particles(const InterleavedField& field, const InterleavedField& guess,
+                           const Grid& grid, double dt, std::vector<Particles>& species) {
     const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing();
     const long columns = nodes_x(grid);
+    std::vector<char> stops_in_row(std::size_t(nodes_z(grid)), 0);
     common::for_each_row(nodes_z(grid), [&](long row) {
+        bool stops = false;
         const double z_node = grid.z.at(double(row));
         for (Particles& s : species) {
             const double half_kick = 0.5 * dt * s.q_p / s.m_p;
             for (long column = 0; column < columns; ++column) {
                 const long node = row * columns + column;
                 const double x_node = grid.x.at(double(column));
-                const NodeField* corner = &field[grid.index(column - 1, row - 1)];
+                const long corner = grid.index(column - 1, row - 1);
                 const long end = s.first_of_node[node + 1];
                 for (long p = s.first_of_node[node]; p < end; p += common::simd_width) {
                     const long count = end - p;
                     const SimdVector d_x = (common::load_simd(&s.x_p[p], count) - x_node) * per_dx,
                                      d_z = (common::load_simd(&s.z_p[p], count) - z_node) * per_dz;
-                    const Velocity<SimdVector> v{common::load_simd(&s.ux_p[p], count),
+                    const Velocity<SimdVector> u{common::load_simd(&s.ux_p[p], count),
                                                  common::load_simd(&s.uy_p[p], count),
                                                  common::load_simd(&s.uz_p[p], count)};
-                    const auto at = gather_field<SimdVector>(corner, grid.stride(), d_x, d_z);
-                    const auto vbar = mean_velocity<SimdVector>(v, at, half_kick);
-                    common::store_simd(2.0 * vbar.x - v.x, &s.ux_p[p], count);
-                    common::store_simd(2.0 * vbar.y - v.y, &s.uy_p[p], count);
-                    common::store_simd(2.0 * vbar.z - v.z, &s.uz_p[p], count);
+                    const auto at =
+                        gather_field<SimdVector>(&field[corner], grid.stride(), d_x, d_z);
+                    const Velocity<SimdVector> u_new =
+                        s.relativistic
+                            ? detail::kicked(
+                                  u, at,
+                                  gather_field<SimdVector>(&guess[corner], grid.stride(), d_x, d_z),
+                                  half_kick, stops)
+                            : Newtonian::mean(u, at, half_kick).u_new(u);
+                    common::store_simd(u_new.x, &s.ux_p[p], count);
+                    common::store_simd(u_new.y, &s.uy_p[p], count);
+                    common::store_simd(u_new.z, &s.uz_p[p], count);
                 }
             }
         }
+        stops_in_row[std::size_t(row)] = stops;
     });
+    return std::find(stops_in_row.begin(), stops_in_row.end(), 1) == stops_in_row.end();
 }
 
 }  // namespace implicit_moment

@@ -23,6 +23,9 @@
 //
 // whose last column is J_hat.
 //
+// The mean velocity of a relativistic particle is not linear in E; its tangent at a guess, the field of the step
+// before, is: A of mean_velocity.hpp stands for R then.
+//
 // source: G. Lapenta, J. Comput. Phys. 334, 349 (2017), with other splines and other places.
 #pragma once
 
@@ -78,9 +81,9 @@ struct BlockFactors {
     alignas(64) double b[3][common::simd_width][columns];  // [component][particle][column]
 
     // in: weights W of the 21 places; a_scale = q / V, 0 in lanes that hold no particle; b_scale = q dt / 2m;
-    //     R and R v
+    //     R and R v, or A and what is left of vbar without E
     void set(const SimdVector (&W)[places], const SimdVector& a_scale, double b_scale,
-             const std::array<SimdVector, 9>& R, const Velocity<SimdVector>& vbar) {
+             const LinearVelocity<SimdVector>& linear) {
         for (int g = 0; g < places; ++g) {
             const SimdVector scaled = W[g] * a_scale;
             __builtin_memcpy(a[g], &scaled, sizeof scaled);
@@ -88,10 +91,10 @@ struct BlockFactors {
         for (int p = 0; p < common::simd_width; ++p) {
             double row[columns] = {};
             for (int h = 0; h < places; ++h) row[h] = b_scale * W[h][p];
-            const double v[3] = {vbar.x[p], vbar.y[p], vbar.z[p]};
+            const double v[3] = {linear.free.x[p], linear.free.y[p], linear.free.z[p]};
             for (int k = 0; k < 3; ++k) {
                 for (int component = 0; component < 3; ++component) {
-                    const double R_kc = R[3 * k + component][p];
+                    const double R_kc = linear.A[std::size_t(3 * k + component)][p];
                     for (int h = first_place[component]; h < first_place[component + 1]; ++h)
                         b[k][p][h] = R_kc * row[h];
                 }
@@ -155,15 +158,25 @@ struct BlockPlaces {
 
 /// Deposits M and J_hat of all species.
 /// in:     particles at x*, sorted by node there; B, ghosts filled, in which their velocities are
-///         rotated; dt
+///         rotated; guess, E near E^{n+theta} and B, which relativistic particles ask for; dt
 /// out:    mass, with what was deposited behind walls and periodic ends folded back in J_hat; M keeps
 ///         it and is folded where it is applied
-/// exact:  J_hat + M E is the current of kick_particles in that E, to round-off.
+/// exact:  J_hat + M E is the current of kick_particles in that E, to round-off; of relativistic particles to
+///         second order in E less the guess.
 inline void deposit_mass_matrix(const std::vector<Particles>& species, const Grid& grid,
-                                const VectorField& B, double dt, MassMatrix& mass) {
+                                const VectorField& B, const InterleavedField& guess, double dt,
+                                MassMatrix& mass) {
     const long nodes = nodes_x(grid), stride = grid.stride();
     const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing();
     const detail::MeshB mesh_B{B.x(), B.y(), B.z(), stride};
+    const auto rotated = [](const Velocity<SimdVector>& v, const Velocity<SimdVector>& b,
+                            double k) {
+        const auto R = rotation_matrix<SimdVector>(k * b.x, k * b.y, k * b.z);
+        return LinearVelocity<SimdVector>{
+            R,
+            {R[0] * v.x + R[1] * v.y + R[2] * v.z, R[3] * v.x + R[4] * v.y + R[5] * v.z,
+             R[6] * v.x + R[7] * v.y + R[8] * v.z}};
+    };
     const detail::BlockPlaces block_places(grid);
     mass.entry.assign(std::size_t((grid.z.cells + 3) * detail::offsets * stride), 0);
     mass.J_hat.all.setZero();
@@ -183,9 +196,9 @@ inline void deposit_mass_matrix(const std::vector<Particles>& species, const Gri
                 for (long p = begin; p < end; p += common::simd_width) {
                     const long count = end - p;
                     empty = false;
-                    const common::QuadraticWeights<SimdVector> S_x(
-                        (common::load_simd(&s.x_p[p], count) - x_node) * per_dx),
-                        S_z((common::load_simd(&s.z_p[p], count) - z_node) * per_dz);
+                    const SimdVector d_x = (common::load_simd(&s.x_p[p], count) - x_node) * per_dx,
+                                     d_z = (common::load_simd(&s.z_p[p], count) - z_node) * per_dz;
+                    const common::QuadraticWeights<SimdVector> S_x(d_x), S_z(d_z);
                     // [mass_matrix]
                     SimdVector W[detail::places];
                     for (int j = 0; j < 3; ++j) {
@@ -198,16 +211,17 @@ inline void deposit_mass_matrix(const std::vector<Particles>& species, const Gri
                         for (int i = 0; i < 3; ++i)
                             W[detail::first_place[2] + 3 * j + i] =
                                 S_x.quadratic[i] * S_z.linear[j];
-                    const Velocity<SimdVector> b = mesh_B.at(corner, S_x, S_z),
-                                               v{common::load_simd(&s.ux_p[p], count),
+                    const Velocity<SimdVector> u{common::load_simd(&s.ux_p[p], count),
                                                  common::load_simd(&s.uy_p[p], count),
                                                  common::load_simd(&s.uz_p[p], count)};
-                    const auto R = rotation_matrix<SimdVector>(k * b.x, k * b.y, k * b.z);
-                    const Velocity<SimdVector> R_v{R[0] * v.x + R[1] * v.y + R[2] * v.z,
-                                                   R[3] * v.x + R[4] * v.y + R[5] * v.z,
-                                                   R[6] * v.x + R[7] * v.y + R[8] * v.z};
+                    const LinearVelocity<SimdVector> linear =
+                        s.relativistic
+                            ? linear_mean_velocity<SimdVector>(
+                                  u, gather_field<SimdVector>(&guess[corner], stride, d_x, d_z),
+                                  half_kick)
+                            : rotated(u, mesh_B.at(corner, S_x, S_z), k);
                     factors.set(W, common::first_simd(count) * (s.q_p / grid.cell_area()),
-                                half_kick, R, R_v);
+                                half_kick, linear);
                     block.add(factors);
                     // [/mass_matrix]
                 }

@@ -3,54 +3,20 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
-#include "implicit_moment/interleaved_field.hpp"
-#include "implicit_moment/units.hpp"
+#include "implicit_moment/mean_velocity.hpp"
 
 namespace implicit_moment {
 
-/// How well the implicit midpoint is found.
+/// How particles move, and how well the implicit midpoint is found.
 struct MoverSettings {
     double tolerance = 1e-4;   // a midpoint is found when an iteration moves it by less [cells]
     long max_iterations = 20;  // before the step is halved
+    bool relativistic = false;
 };
 
 inline constexpr int most_bounces = 50;  // of one particle in one sub-step
-
-/// Mean velocity of a step: vbar = v_t + (v_t x O) + ... solved for vbar = v_t + vbar x O.
-///     vbar = [ v_t + v_t x O + (v_t . O) O ] / (1 + O^2)
-///     v_t = v + q dt/2m E,   O = q dt B / (2 m c)
-/// in:     v^n; local fields; half_kick = q dt / 2m.
-/// exact:  vbar - vbar x O = v_t.
-/// source: [IMM-12] for one particle.
-// [midpoint]
-template <class Real>
-inline Velocity<Real> mean_velocity(const Velocity<Real>& v, const LocalField<Real>& at,
-                                    double half_kick) {
-    const Real t_x = v.x + half_kick * at.E_x, t_y = v.y + half_kick * at.E_y,
-               t_z = v.z + half_kick * at.E_z;
-    const double per_c = half_kick / c;
-    const Real O_x = per_c * at.B_x, O_y = per_c * at.B_y, O_z = per_c * at.B_z;
-    const Real dot = t_x * O_x + t_y * O_y + t_z * O_z;
-    const Real scale = 1.0 / (1.0 + O_x * O_x + O_y * O_y + O_z * O_z);
-    return {scale * (t_x + t_y * O_z - t_z * O_y + dot * O_x),
-            scale * (t_y + t_z * O_x - t_x * O_z + dot * O_y),
-            scale * (t_z + t_x * O_y - t_y * O_x + dot * O_z)};
-}
-// [/midpoint]
-
-/// The same for E = 0 as a matrix, R v = vbar; entries xx xy xz, yx yy yz, zx zy zz.
-/// in:     O = q dt B / (2 m c)
-/// exact:  R v - (R v) x O = v;  v . R v >= 0;  |2 R v - v| = |v|.
-template <class Real>
-inline std::array<Real, 9> rotation_matrix(const Real& x, const Real& y, const Real& z) {
-    const Real scale = 1.0 / (1.0 + x * x + y * y + z * z);
-    return {scale * (1.0 + x * x), scale * (x * y + z),   scale * (x * z - y),
-            scale * (y * x - z),   scale * (1.0 + y * y), scale * (y * z + x),
-            scale * (z * x + y),   scale * (z * y - x),   scale * (1.0 + z * z)};
-}
 
 namespace detail {
 
@@ -62,12 +28,14 @@ inline double seen_at(const common::Axis& axis, double x) {
 }
 
 // Mean velocity of a step of length 2h; false when the iteration does not converge.
+template <class Dynamics>
 inline bool find_mean_velocity(const Grid& grid, const InterleavedField& field,
                                const MoverSettings& settings, double charge_over_mass, double h,
-                               double x, double z, const Velocity<double>& v,
-                               Velocity<double>& vbar) {
+                               double x, double z, const Velocity<double>& u,
+                               MeanVelocity<double>& mean) {
     const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing();
-    vbar = v;
+    Velocity<double>& vbar = mean.vbar;
+    vbar = Dynamics::velocity(u);
     for (long iteration = 0; iteration < settings.max_iterations; ++iteration) {
         // Too far for this step, or not a number: the caller halves it.
         if (!(h * std::fabs(vbar.x) * per_dx <= 1 && h * std::fabs(vbar.z) * per_dz <= 1))
@@ -77,10 +45,10 @@ inline bool find_mean_velocity(const Grid& grid, const InterleavedField& field,
         const long i = long(s + 0.5), j = long(t + 0.5);
         const auto at = gather_field(&field[grid.index(i - 1, j - 1)], grid.stride(), s - double(i),
                                      t - double(j));
-        const Velocity<double> next = mean_velocity(v, at, charge_over_mass * h);
-        const double change =
-            h * std::max(std::fabs(next.x - vbar.x) * per_dx, std::fabs(next.z - vbar.z) * per_dz);
-        vbar = next;
+        const MeanVelocity<double> next = Dynamics::mean(u, at, charge_over_mass * h);
+        const double change = h * std::max(std::fabs(next.vbar.x - vbar.x) * per_dx,
+                                           std::fabs(next.vbar.z - vbar.z) * per_dz);
+        mean = next;
         if (change <= settings.tolerance && iteration > 0) return true;
     }
     return false;
@@ -142,17 +110,19 @@ inline void arrive(const common::Axis& axis, bool at_wall, double& x, double& v)
 ///         then not to be used.
 /// note:   a reflection at the end of the step instead would rotate the velocity in the wrong sense
 ///         for the rest of the step, and drive a current along magnetized walls.
+template <class Dynamics = Newtonian>
 inline bool move_one(const Grid& grid, const InterleavedField& field, const MoverSettings& settings,
                      double charge_over_mass, double dt, int parts, double& x, double& z,
-                     Velocity<double>& v) {
+                     Velocity<double>& u) {
     const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing();
     for (int part = 0; part < parts; ++part) {
         double left = dt / parts;
         for (int bounce = 0; left > 0; ++bounce) {
-            Velocity<double> vbar;
+            MeanVelocity<double> mean;
+            Velocity<double>& vbar = mean.vbar;
             const auto step = [&](double time) {
-                return detail::find_mean_velocity(grid, field, settings, charge_over_mass,
-                                                  0.5 * time, x, z, v, vbar) &&
+                return detail::find_mean_velocity<Dynamics>(grid, field, settings, charge_over_mass,
+                                                            0.5 * time, x, z, u, mean) &&
                        time * std::fabs(vbar.x) * per_dx <= 1 &&
                        time * std::fabs(vbar.z) * per_dz <= 1;
             };
@@ -170,9 +140,9 @@ inline bool move_one(const Grid& grid, const InterleavedField& field, const Move
             }
             x += time * vbar.x;
             z += time * vbar.z;
-            v = {2 * vbar.x - v.x, 2 * vbar.y - v.y, 2 * vbar.z - v.z};
-            detail::arrive(grid.x, to_x < 1 && to_x <= to_z, x, v.x);
-            detail::arrive(grid.z, to_z < 1 && to_z <= to_x, z, v.z);
+            u = mean.u_new(u);
+            detail::arrive(grid.x, to_x < 1 && to_x <= to_z, x, u.x);
+            detail::arrive(grid.z, to_z < 1 && to_z <= to_x, z, u.z);
             left -= time;
         }
     }

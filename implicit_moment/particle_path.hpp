@@ -118,13 +118,14 @@ struct PathState {
 inline constexpr double longest_path = 1e4;  // cells along either direction
 
 // Finds the path of one particle in a field, by iteration; false where there is none.
-// in:     x, z and v at t^n; may_change, false where a path that meets a wall is to stay as it is
+// in:     x, z and u at t^n; may_change, false where a path that meets a wall is to stay as it is
 // in/out: vbar; state
 // note:   reflected paths may jump between two ways to go, and a particle that the field presses against a
 //         wall would bounce for ever: corrections become smaller, and at last it slides.
-inline bool find_path(const Grid& grid, const InterleavedField& field, double dt,
+template <class Dynamics>
+inline bool find_path(Dynamics, const Grid& grid, const InterleavedField& field, double dt,
                       const MoverSettings& settings, double half_kick, double x, double z,
-                      const Velocity<double>& v, bool may_change, Velocity<double>& vbar,
+                      const Velocity<double>& u, bool may_change, Velocity<double>& vbar,
                       PathState& state) {
     const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing();
     double change = 2 * settings.tolerance;
@@ -138,7 +139,8 @@ inline bool find_path(const Grid& grid, const InterleavedField& field, double dt
             state.settled = true;
             break;
         }
-        const auto next = mean_velocity(v, field_along(grid, field, path_x, path_z), half_kick);
+        const Velocity<double> next =
+            Dynamics::mean(u, field_along(grid, field, path_x, path_z), half_kick).vbar;
         if (i == 2 * settings.max_iterations) {
             state.slides_x = path_x.is_near_wall(std::fabs(dt * next.x * per_dx));
             state.slides_z = path_z.is_near_wall(std::fabs(dt * next.z * per_dz));

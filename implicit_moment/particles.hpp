@@ -17,12 +17,13 @@ using common::Grid;
 using common::SimdVector;
 
 /// One species, structure of arrays, kept sorted by nearest node (see sort_particles).
-/// note:   u_p is the letter of the slide: the velocity v in implicit_moment, and in explicit_em
-///         gamma v, the momentum per mass.
+/// note:   u_p is the letter of the slide: the velocity v, or where the species is relativistic gamma v, the
+///         momentum per mass.
 struct Particles {
     std::string name;
     double q_p = 0;                        // charge of one simulation particle
     double m_p = 0;                        // its mass
+    bool relativistic = false;             // u_p is gamma v
     std::vector<double> x_p, z_p;          // position [d_i]
     std::vector<double> ux_p, uy_p, uz_p;  // v or gamma v [c]
     std::vector<int> first_of_node;        // node n has [first_of_node[n], first_of_node[n + 1])

@@ -12,14 +12,14 @@
 //
 //     chi = sum_s theta/2 (omega_ps dt)^2 R_s,      omega_ps^2 = 4 pi rho_s q_s/m_s.
 //
-// In the part without E, J_hat, every particle has been rotated by itself (deposit_moments.hpp), or R
+// where a relativistic species has sum_p (4 pi theta dt) (q^2 dt / 2m) A_p S (mean_velocity.hpp). In the part
+// without E, J_hat, every particle has been rotated by itself (deposit_moments.hpp), or R
 // turns J - dt/2 div P here, as the slide has it (field.rotation = "mesh").
 #pragma once
 
 #include <vector>
 
 #include "implicit_moment/deposit_moments.hpp"
-#include "implicit_moment/move_one.hpp"
 #include "implicit_moment/smooth.hpp"
 #include "implicit_moment/units.hpp"
 
@@ -181,6 +181,12 @@ inline void predict_current(const Grid& grid, const std::vector<Moments>& moment
                          response.scratch, response.J_hat.all.data());
         }
 
+        // Relativistic particles have each their own answer.
+        if (moments[k].response[0].size() > 0) {
+            for (std::size_t a = 0; a < 9; ++a)
+                response.chi.entry[a] += 4 * pi * theta * dt * moments[k].response[a];
+            continue;
+        }
         rotation_tensor(grid, B_theta, half_kick, response.R);
         const double by_rho = 4 * pi * theta * dt * half_kick;
         const double* rho = moments[k].plasma_density.data();

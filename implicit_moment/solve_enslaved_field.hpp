@@ -61,7 +61,7 @@ inline FieldReport solve_enslaved_field(FieldSolver& solver, double dt,
         enslaved.vbar[k].resize(species[k].x_p.size());
         enslaved.state[k].assign(species[k].x_p.size(), {});
         for (std::size_t p = 0; p < species[k].x_p.size(); ++p)
-            enslaved.vbar[k][p] = {species[k].ux_p[p], species[k].uy_p[p], species[k].uz_p[p]};
+            enslaved.vbar[k][p] = velocity_of(species[k], p);
     }
 
     // The guess: the mass matrix alone. Then what is left of the field equations is corrected with it.

@@ -2,6 +2,7 @@
 // two functions: there the moments of t^n are known.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "common/step_clock.hpp"
@@ -22,6 +23,8 @@ struct StepScratch {
     FieldSolver solver;
     VectorField B_push;      // the B in which currents and particles are rotated
     InterleavedField field;  // smoothed E^{n+theta} and B_push, where particles feel them
+    InterleavedField
+        guess;  // the same with E of the step before, about which relativistic vbar are linear
     InterleaveScratch interleave;
     SortScratch sort;
     EnslavedParticles enslaved;
@@ -48,6 +51,24 @@ void find_moments(const Grid& grid, double dt, const std::vector<Particles>& par
     // [/moments]
 }
 
+/// A copy of the species where one is relativistic: what a kick leaves behind that asks for too much.
+inline std::vector<Particles> relativistic_ones(const std::vector<Particles>& species) {
+    return std::any_of(species.begin(), species.end(),
+                       [](const Particles& s) { return s.relativistic; })
+               ? species
+               : std::vector<Particles>{};
+}
+
+/// errors: NumericalError after twenty turns
+inline void take_back_kick(const std::vector<Particles>& before, int turn,
+                           std::vector<Particles>& species) {
+    if (turn == 20)
+        throw common::NumericalError(
+            "the field takes more energy from relativistic particles than they have; reduce "
+            "time.dt");
+    species = before;
+}
+
 /// From t^n to t^{n+1} with the particles' own current. The energy of particles and field changes by what
 /// field.by_theta says and by nothing else, for any step.
 /// in/out: particles, sorted by node; field
@@ -62,16 +83,23 @@ FieldReport take_mass_matrix_step(const Grid& grid, double dt, StepScratch& scra
     clock.lap("mover");
     sort_particles(grid, scratch.sort, particles);
     clock.lap("sort");
-    deposit_mass_matrix(particles, grid, scratch.B_push, dt,
-                        scratch.solver.mass);  // particles -> grid
-    clock.lap("mass");
-    const FieldReport solved =
-        solve_field(scratch.solver, dt, field, scratch.solver.settings.solved_to());  // [IMM-10]
-    interleave_field(grid, scratch.solver.settings.smoothing, field.E_theta, scratch.B_push,
-                     scratch.interleave, scratch.field);
-    clock.lap("field");
-    kick_particles(scratch.field, grid, dt, particles);  // grid -> particles
-    fly(grid, 0.5 * dt, particles);                      // from x*
+    const std::vector<Particles> before = relativistic_ones(particles);
+    FieldReport solved;
+    for (int turn = 0;; ++turn) {  // once, but where relativistic particles nearly stop
+        interleave_field(grid, scratch.solver.settings.smoothing, field.E_theta, scratch.B_push,
+                         scratch.interleave, scratch.guess);
+        deposit_mass_matrix(particles, grid, scratch.B_push, scratch.guess, dt,
+                            scratch.solver.mass);  // particles -> grid
+        clock.lap("mass");
+        solved = solve_field(scratch.solver, dt, field,
+                             scratch.solver.settings.solved_to());  // [IMM-10]
+        interleave_field(grid, scratch.solver.settings.smoothing, field.E_theta, scratch.B_push,
+                         scratch.interleave, scratch.field);
+        clock.lap("field");
+        if (kick_particles(scratch.field, scratch.guess, grid, dt, particles)) break;
+        take_back_kick(before, turn, particles);
+    }                                // grid -> particles
+    fly(grid, 0.5 * dt, particles);  // from x*
     clock.lap("mover");
     advance_field(scratch.solver, dt, field);  // [IMM-10]
     clock.lap("field");
@@ -90,7 +118,9 @@ FieldReport take_enslaved_step(const Grid& grid, double dt, const MoverSettings&
     // [enslaved_step]
     fly(grid, 0.5 * dt, particles);  // to x* and back: there the response is found
     sort_particles(grid, scratch.sort, particles);
-    deposit_mass_matrix(particles, grid, field.B, dt, scratch.solver.mass);
+    interleave_field(grid, scratch.solver.settings.smoothing, field.E_theta, field.B,
+                     scratch.interleave, scratch.guess);
+    deposit_mass_matrix(particles, grid, field.B, scratch.guess, dt, scratch.solver.mass);
     fly(grid, -0.5 * dt, particles);
     clock.lap("mass");
     const FieldReport solved =

@@ -20,18 +20,21 @@ struct AnyPlasma {
     std::vector<Particles> species;
     FieldState field;
 
-    AnyPlasma(const Grid& grid, int count, double speed, double E, double B, Random& random)
+    AnyPlasma(const Grid& grid, int count, double speed, double E, double B, Random& random,
+              bool relativistic = false)
         : field(grid) {
         for (const double sign : {1.0, -1.0}) {
             species.push_back(anywhere(grid, count, speed, random));
             Particles& s = species.back();
             const double weight = n0 * grid.x.length * grid.z.length / count;
             s.name = sign > 0 ? "ions" : "electrons";
+            s.relativistic = relativistic;
             s.q_p = sign * weight, s.m_p = sign > 0 ? weight : weight / 25;
         }
         field.E = random.field(grid, electric, E);
         keep_unknowns(grid, field.E.all.data());
         fill_ghosts(grid, electric, field.E);
+        if (relativistic) field.E_theta = field.E;
         VectorField A = random.field(grid, electric);
         curl_of_electric(grid, A.all.data(), field.B.all.data());
         field.B.all *= B / field.B.all.cwiseAbs().maxCoeff();
@@ -44,7 +47,10 @@ struct AnyPlasma {
         double sum = field_energy(grid, field.E) + field_energy(grid, field.B);
         for (const Particles& s : species)
             for (std::size_t p = 0; p < s.x_p.size(); ++p)
-                sum += 0.5 * s.m_p * velocity(s, p).squaredNorm();
+                sum += 0.5 * s.m_p * with_dynamics(s, [&](auto dynamics) {
+                           return decltype(dynamics)::twice_energy(
+                               Velocity<double>{s.ux_p[p], s.uy_p[p], s.uz_p[p]});
+                       });
         return sum;
     }
     // div E - 4 pi rho with rho smoothed as the field equations do.
@@ -107,7 +113,7 @@ TEST_CASE("J_hat and M E are the current that the kicks make") {
         for (const double dt : {0.1, 3.0}) {
             AnyPlasma plasma(grid, 200, 0.3, 0.2, 5, random);
             MassMatrix mass(grid);
-            deposit_mass_matrix(plasma.species, grid, plasma.field.B, dt, mass);
+            deposit_mass_matrix(plasma.species, grid, plasma.field.B, {}, dt, mass);
             VectorField J(grid);
             apply_mass_matrix(grid, mass, plasma.field.E.all.data(), J.all.data());
             J.all += mass.J_hat.all;
@@ -116,7 +122,7 @@ TEST_CASE("J_hat and M E are the current that the kicks make") {
             InterleavedField field;
             interleave_field(grid, {0, false}, plasma.field.E, plasma.field.B, scratch, field);
             std::vector<Particles> after = plasma.species;
-            kick_particles(field, grid, dt, after);
+            kick_particles(field, {}, grid, dt, after);
             std::vector<std::vector<Vector>> vbar(2);
             for (std::size_t k = 0; k < 2; ++k)
                 for (std::size_t p = 0; p < after[k].x_p.size(); ++p)
@@ -137,11 +143,11 @@ TEST_CASE("the mass matrix does no negative work and is symmetric where there is
         keep_unknowns(grid, v.all.data());
         fill_ghosts(grid, electric, v);
         MassMatrix mass(grid);
-        deposit_mass_matrix(plasma.species, grid, plasma.field.B, 2, mass);
+        deposit_mass_matrix(plasma.species, grid, plasma.field.B, {}, 2, mass);
         apply_mass_matrix(grid, mass, u.all.data(), M_u.all.data());
         CHECK(sum_of_products(grid, u, M_u) > 0);
         plasma.field.B.all.setZero();
-        deposit_mass_matrix(plasma.species, grid, plasma.field.B, 2, mass);
+        deposit_mass_matrix(plasma.species, grid, plasma.field.B, {}, 2, mass);
         apply_mass_matrix(grid, mass, u.all.data(), M_u.all.data());
         apply_mass_matrix(grid, mass, v.all.data(), M_v.all.data());
         const double one = sum_of_products(grid, v, M_u), other = sum_of_products(grid, u, M_v);
@@ -161,7 +167,7 @@ TEST_CASE(
     sort(grid, s);
     MassMatrix mass(grid);
     const double dt = 0.7;
-    deposit_mass_matrix({s}, grid, VectorField(grid), dt, mass);
+    deposit_mass_matrix({s}, grid, VectorField(grid), {}, dt, mass);
     const double rho = s.q_p * double(s.count()) / (grid.x.length * grid.z.length);
     const double lumped = rho * 0.5 * dt * s.q_p / s.m_p;
     for (int component = 0; component < 3; ++component)
@@ -210,7 +216,7 @@ TEST_CASE("a flight and the flight back leave particles where they were") {
 }
 
 // The theorem, for any step, field, mesh and boundary, and with it what theta takes.
-void check_energy(const std::string& solver, double longest) {
+void check_energy(const std::string& solver, double longest, bool relativistic = false) {
     Random random;
     for (const Grid& grid : meshes()) {
         for (const double theta : {0.5, 0.6, 1.0}) {
@@ -220,8 +226,9 @@ void check_energy(const std::string& solver, double longest) {
                         INFO(solver << " " << grid.x.periodic << grid.z.periodic << " theta "
                                     << theta << " passes " << passes << " dt " << dt << " count "
                                     << count);
-                        // Omega_ce dt up to 25 B dt.
-                        AnyPlasma plasma(grid, count, 0.1, 0.005, 0.4, random);
+                        // Omega_ce dt up to 25 B dt; relativistic kicks of up to 0.2 c and more.
+                        AnyPlasma plasma(grid, count, relativistic ? 2 : 0.1, 0.005, 0.4, random,
+                                         relativistic);
                         FieldSettings settings;
                         settings.response = "mass_matrix", settings.solver = solver;
                         settings.theta = theta, settings.smoothing.passes = passes;
@@ -254,6 +261,14 @@ TEST_CASE("with the mass matrix the energy changes by theta alone") { check_ener
 
 TEST_CASE("particles that follow the field keep energy and Gauss's law") {
     check_energy("newton_krylov", 0.3);
+}
+
+TEST_CASE("with the mass matrix the energy with gamma changes by theta alone") {
+    check_energy("gmres", 3, true);
+}
+
+TEST_CASE("relativistic particles that follow the field keep energy and Gauss's law") {
+    check_energy("newton_krylov", 0.3, true);
 }
 
 TEST_CASE("charge is conserved along any path") {

@@ -3,8 +3,7 @@
 #pragma once
 
 #include "common/simd.hpp"
-#include "implicit_moment/interleaved_field.hpp"
-#include "implicit_moment/units.hpp"
+#include "implicit_moment/mean_velocity.hpp"
 
 namespace implicit_moment {
 
@@ -17,17 +16,6 @@ struct LeapfrogSettings {
     /// 1/c^2, or 0 for a push that is not relativistic.
     double per_c_squared() const { return relativistic ? 1 / (c * c) : 0; }
 };
-
-/// gamma^2 = 1 + u^2/c^2. in: per_c_squared = 1/c^2, or 0, which makes gamma = 1.
-template <class Real>
-inline Real gamma_squared(const Velocity<Real>& u, double per_c_squared) {
-    return 1.0 + per_c_squared * (u.x * u.x + u.y * u.y + u.z * u.z);
-}
-/// 1/gamma, the factor from u to v.
-template <class Real>
-inline Real inverse_gamma(const Velocity<Real>& u, double per_c_squared) {
-    return 1.0 / common::square_root(gamma_squared(u, per_c_squared));
-}
 
 /// Rotation of u about B by the angle 2 atan |t|, t = k B / gamma:  u' = u + (u + u x t) x s,
 /// s = 2 t / (1 + t^2); with K = k B that is

@@ -81,7 +81,7 @@ inline void write_fields(const common::Snapshot& at, const Grid& grid, const Fie
 }
 
 /// Writes particles_NNNNNN.dat (and .vtp): every n-th particle of each species, at most
-/// most_particles_written in all; v of implicit_moment, u = gamma v of explicit_em.
+/// most_particles_written in all; v, or u = gamma v of relativistic ones.
 inline void write_particles(const common::Snapshot& at, const Plasma& plasma,
                             const Case& parameters) {
     const long every = (plasma.count() + most_particles_written - 1) / most_particles_written;
@@ -94,7 +94,7 @@ inline void write_particles(const common::Snapshot& at, const Plasma& plasma,
             for (std::size_t a = 0; a < 6; ++a) data[a].push_back(row[a]);
         }
     }
-    const bool is_u = parameters.leapfrog.chosen && parameters.leapfrog.relativistic;
+    const bool is_u = parameters.is_relativistic();
     const std::string v = is_u ? "u_" : "v_";
     common::Snapshot sample = at;
     sample.particles = plasma.count();

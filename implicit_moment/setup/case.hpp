@@ -47,7 +47,7 @@ struct SpeciesCase {
     double density = 1;                                              // [n0]
     double charge = 1;                                               // [e]
     double mass = 1;                                                 // [m_i]
-    double drift_x = 0, drift_y = 0, drift_z = 0;                    // [c]
+    double drift_x = 0, drift_y = 0, drift_z = 0;                    // v, or gamma v [c]
     double temperature_x = 0, temperature_y = 0, temperature_z = 0;  // [m_i c^2]
     double wave_x = 0, wave_y = 0, wave_z = 0;     // velocity amplitude of the seeded mode [c]
     double phase_x = 0, phase_y = 0, phase_z = 0;  // its phase [degrees]
@@ -96,6 +96,10 @@ struct Case {
     bool is_across_current() const { return setup == "harris"; }
     bool is_along_current() const { return setup == "current_sheet"; }
     bool is_uniform() const { return setup == "uniform"; }
+    // Whether u_p of the particles is gamma v.
+    bool is_relativistic() const {
+        return leapfrog.chosen ? leapfrog.relativistic : mover.relativistic;
+    }
 };
 
 /// Refuses a case for one reason. errors: InputError with the sentence, which names the cure.

@@ -27,9 +27,10 @@ struct SpeciesScales {
 
 /// The part of a drifting Maxwellian that is faster than light.
 ///     mean over directions d of  erfc(r/2^1/2) + (2/pi)^1/2 r exp(-r^2/2),  |u + r v d| = c
-/// in:     drift u, below c, and thermal speeds v, by component
+/// in:     drift u and thermal speeds v, by component
 inline double part_beyond_c(const Eigen::Array3d& u, const Eigen::Array3d& v) {
     const int rings = 32, around = 64;
+    if (u.square().sum() >= c * c) return v.square().sum() > 0 ? 1 : 0;
     double part = 0;
     for (int n = 0; n < rings * around; ++n) {
         const double up = 2 * (n / around + 0.5) / rings - 1,
@@ -176,8 +177,9 @@ inline void validate_uniform(const Case& w) {
         const double T = std::max({s.temperature_x, s.temperature_y, s.temperature_z});
         const double drift = std::hypot(s.drift_x, s.drift_y, s.drift_z);
         const double fastest = std::max(drift, std::sqrt(T / s.mass));
-        refuse(fastest >= 1, "species '" + s.name + "' has speeds of " + format(fastest) +
-                                 " c (drift or thermal speed): lower them");
+        refuse(fastest >= 1 && !w.is_relativistic(),
+               "species '" + s.name + "' has speeds of " + format(fastest) +
+                   " c (drift or thermal speed): lower them, or set particles.relativistic = true");
     }
     refuse(u.species.empty() && !seeded,
            "an empty uniform plasma: add a [species.<name>] or seed a field with uniform.wave_E_y");
@@ -201,6 +203,14 @@ inline void validate(Case& w) {
            "field.solver = \"newton_krylov\" takes B at the level theta: take out field.B_level");
     refuse(w.field.uses_mass_matrix() && w.field.rotates_on_mesh(),
            "field.rotation = \"mesh\" turns moments: it needs field.response = \"moments\"");
+    refuse(
+        w.mover.relativistic && w.field.rotates_on_mesh(),
+        "field.rotation = \"mesh\" turns the sums of all particles by one angle, and relativistic "
+        "particles turn each by its own: take field.rotation = \"particles\"");
+    refuse(
+        w.mover.relativistic && !w.field.uses_mass_matrix() && w.field.solver == "newton_krylov",
+        "field.solver = \"newton_krylov\" turns moments by one angle, and relativistic particles "
+        "turn each by its own: take \"gmres\", or field.response = \"mass_matrix\"");
     refuse(w.field.tolerance > 0 && w.field.tolerance < 1e-13,
            "field.tolerance = " + format(w.field.tolerance) +
                " is below 1e-13, what round-off leaves: raise it, or 0 for the default");
@@ -248,13 +258,12 @@ inline std::vector<std::string> tail_warnings(const Case& w, const Scales& scale
     const double each = double(scales.particles) / std::max(1.0, double(scales.species.size()));
     for (const SpeciesScales& s : scales.species) {
         if (s.beyond_c * each < 1) continue;
-        warnings.push_back(s.name + ": about " + format(std::round(s.beyond_c * each)) + " of " +
-                           format(each) + " particles, " + format(100 * s.beyond_c) +
-                           " %, are loaded " +
-                           (w.leapfrog.chosen && w.leapfrog.relativistic
-                                ? "with u = gamma v above c: they are slower than the Maxwellian "
-                                  "that theory has"
-                                : "faster than light, and the push is not relativistic"));
+        warnings.push_back(
+            s.name + ": about " + format(std::round(s.beyond_c * each)) + " of " + format(each) +
+            " particles, " + format(100 * s.beyond_c) + " %, are loaded " +
+            (w.is_relativistic() ? "with u = gamma v above c: they are slower than the Maxwellian "
+                                   "that theory has"
+                                 : "faster than light, and the push is not relativistic"));
     }
     return warnings;
 }

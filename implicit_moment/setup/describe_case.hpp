@@ -23,9 +23,9 @@ inline void describe_species(common::ParameterTable& table, const std::string& p
     real("density", s.density, "n0", above(0), "number density");
     real("charge", s.charge, "e", anything(), "charge of one particle");
     real("mass", s.mass, "m_i", above(0), "mass of one particle");
-    real("drift_x", s.drift_x, "c", between(-1, 1), "mean velocity along x");
-    real("drift_y", s.drift_y, "c", between(-1, 1), "mean velocity out of the plane");
-    real("drift_z", s.drift_z, "c", between(-1, 1), "mean velocity along z");
+    real("drift_x", s.drift_x, "c", between(-1000, 1000), "mean velocity along x, v or gamma v");
+    real("drift_y", s.drift_y, "c", between(-1000, 1000), "mean velocity out of the plane");
+    real("drift_z", s.drift_z, "c", between(-1000, 1000), "mean velocity along z");
     const auto each = [&](const std::string& name, std::array<double*, 3> values, const char* unit,
                           common::Range allowed, const std::string& what, const char* of) {
         for (std::size_t a = 0; a < 3; ++a)
@@ -202,6 +202,8 @@ inline common::ParameterTable describe(Case& w) {
                "the midpoint is found when it moves by less");
     table.whole("mover.max_iterations", w.mover.max_iterations, "", between(2, 1000),
                 "before a particle's step is halved");
+    table.flag("particles.relativistic", w.mover.relativistic,
+               "momentum m gamma v; false: m v at any speed");
 
     detail::describe_results(table, w);
     return table;

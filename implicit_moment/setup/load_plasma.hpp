@@ -52,9 +52,11 @@ struct Plasma {
 
 namespace detail {
 
-inline Particles make_particles(const std::string& name, double q_p, double m_p, long count) {
+inline Particles make_particles(const std::string& name, double q_p, double m_p, bool relativistic,
+                                long count) {
     Particles particles;
     particles.name = name, particles.q_p = q_p, particles.m_p = m_p;
+    particles.relativistic = relativistic;
     for (auto* quantity : particles.all()) quantity->resize(count);
     return particles;
 }
@@ -77,8 +79,10 @@ inline Plasma load_harris(const Case& parameters) {
     const double weight = (in_sheet + in_background) / double(pairs);
     const double z_middle = grid.z.low + 0.5 * grid.z.length;
 
-    Plasma plasma{{detail::make_particles("ions", weight, weight, pairs),
-                   detail::make_particles("electrons", -weight, weight / h.mass_ratio, pairs)}};
+    const bool relativistic = parameters.is_relativistic();
+    Plasma plasma{
+        {detail::make_particles("ions", weight, weight, relativistic, pairs),
+         detail::make_particles("electrons", -weight, weight / h.mass_ratio, relativistic, pairs)}};
     Particles &ions = plasma.species[0], &electrons = plasma.species[1];
     const common::LoadingNumbers load{parameters.loading == "quiet",
                                       static_cast<std::uint64_t>(parameters.seed)};
@@ -117,6 +121,7 @@ inline double mode_phase(const Case& parameters, double x, double z) {
 /// Loads the species of a uniform plasma; all have the same number of particles at the same
 /// positions, so that opposite charges cancel at t = 0.
 ///     v_p = drift + Maxwellian + amplitude cos(k x + phase)
+/// note:   where particles are relativistic that is u_p = gamma v.
 inline Plasma load_uniform(const Case& parameters) {
     const UniformCase& u = parameters.uniform;
     const Grid& grid = parameters.grid;
@@ -128,8 +133,8 @@ inline Plasma load_uniform(const Case& parameters) {
     Plasma plasma;
     for (const SpeciesCase& s : u.species) {
         const double weight = n0 * s.density * area / double(count);
-        Particles& particles = plasma.species.emplace_back(
-            detail::make_particles(s.name, weight * s.charge, weight * s.mass, count));
+        Particles& particles = plasma.species.emplace_back(detail::make_particles(
+            s.name, weight * s.charge, weight * s.mass, parameters.is_relativistic(), count));
         const auto purpose = static_cast<std::uint32_t>(plasma.species.size());
         const double v_x = std::sqrt(s.temperature_x / s.mass),
                      v_y = std::sqrt(s.temperature_y / s.mass),

@@ -65,6 +65,24 @@ inline std::vector<common::PlasmaSpecies> theory_species(const Case& w) {
     return plasma;
 }
 
+// The same for a wave with E along k where drifts are those of u = gamma v:
+//     d v_k = (1 - v_k^2/c^2) d u_k / gamma,   as of a mass gamma m / (1 - v_k^2/c^2) that drifts with v_k.
+// exact: for species that are cold; a spread of u much smaller than c is a spread of v.
+inline std::vector<common::PlasmaSpecies> longitudinal_species(const Case& w) {
+    std::vector<common::PlasmaSpecies> plasma = theory_species(w);
+    if (!w.is_relativistic()) return plasma;
+    for (std::size_t n = 0; n < plasma.size(); ++n) {
+        const SpeciesCase& s = w.uniform.species[n];
+        const double gamma = std::sqrt(
+            1 + (s.drift_x * s.drift_x + s.drift_y * s.drift_y + s.drift_z * s.drift_z) / (c * c));
+        plasma[n].drift /= gamma;
+        const double part = (1 - plasma[n].drift * plasma[n].drift / (c * c)) / gamma;
+        plasma[n].mass /= part;
+        plasma[n].temperature_along *= part;
+    }
+    return plasma;
+}
+
 // Of the theta scheme: omega from the complex factor of one step.
 inline Theory of_factor(const Case& w, std::complex<double> g) {
     return {std::complex<double>(std::fabs(std::arg(g)), std::log(std::abs(g))) / w.dt,
@@ -166,7 +184,7 @@ inline Theory kinetic(const Case& w, const common::DispersionRoot& root) {
     return {root.omega, "root of the kinetic dispersion relation"};
 }
 inline Theory expect_longitudinal(const Case& w) {
-    const auto plasma = theory_species(w);
+    const auto plasma = longitudinal_species(w);
     const double k = wave_vector(w).size();
     const auto D = [&](common::Complex omega) {
         return common::longitudinal_dispersion(plasma, k, omega);
@@ -234,6 +252,11 @@ inline void refuse_transverse(const Case& w, const std::string& name) {
     refuse_kinetic(w, name);
     const WaveVector k = wave_vector(w);
     for (const SpeciesCase& s : w.uniform.species) {
+        const double drift = std::hypot(s.drift_x, s.drift_y, s.drift_z);
+        refuse(w.mover.relativistic && drift > 0.1 * c,
+               "species '" + s.name + "' drifts with u = " + common::format(drift) +
+                   " c: theory.wave = \"transverse\" takes drifts below 0.1 c where particles are "
+                   "relativistic");
         refuse(k.x * k.z != 0 && s.temperature_x != s.temperature_z,
                "species '" + s.name +
                    "' has another temperature along x than along z, and a wave at an angle to both "
