@@ -14,20 +14,22 @@ struct DepositScratch {
 
 namespace detail {
 
-// Adds S of the particles [begin, end) to one mesh.
+// Adds S of up to batch_size particles to one mesh. in: z_p, null in one dimension
 template <int order, int dimensions>
-void add_weights(const Particles& particles, const Grid& grid, long begin, long end, Real* sum) {
-    const Real x_low = Real(grid.x.low), z_low = Real(grid.z.low);
-    const Real per_dx = Real(1 / grid.x.spacing()), per_dz = Real(1 / grid.z.spacing());
+void add_weights(const Real* x_p, const Real* z_p, long count, const Grid& grid, Real* sum) {
     const long stride = grid.stride();
     Real* const origin = sum + grid.index(0, 0);
+    const Clouds<order> clouds_x(grid.x, x_p, count);
     // [deposit]
-    for (long p = begin; p < end; ++p) {
-        const Weights<order> S_x((particles.x_p[p] - x_low) * per_dx);
-        if constexpr (dimensions == 1) {
+    if constexpr (dimensions == 1) {
+        for (long p = 0; p < count; ++p) {
+            const Weights<order> S_x = clouds_x[p];
             for (int i = 0; i < S_x.count; ++i) origin[S_x.first + i] += S_x.S[i];
-        } else {
-            const Weights<order> S_z((particles.z_p[p] - z_low) * per_dz);
+        }
+    } else {
+        const Clouds<order> clouds_z(grid.z, z_p, count);
+        for (long p = 0; p < count; ++p) {
+            const Weights<order> S_x = clouds_x[p], S_z = clouds_z[p];
             Real* node = origin + S_z.first * stride + S_x.first;
             for (int j = 0; j < S_z.count; ++j, node += stride)
                 for (int i = 0; i < S_x.count; ++i) node[i] += S_x.S[i] * S_z.S[j];
@@ -49,7 +51,10 @@ inline void add_charge(const Particles& particles, const Grid& grid, const Schem
         common::for_each_block(particles.count(), [&](int block, long begin, long end) {
             auto& sum = scratch.sum_of_block[block];
             sum.assign(size, 0);
-            detail::add_weights<order(), dimensions()>(particles, grid, begin, end, sum.data());
+            for (long p = begin; p < end; p += batch_size)
+                detail::add_weights<order(), dimensions()>(
+                    &particles.x_p[p], dimensions() == 2 ? &particles.z_p[p] : nullptr,
+                    std::min(batch_size, end - p), grid, sum.data());
         });
     });
     const double charge = particles.q_p / grid.cell_area();

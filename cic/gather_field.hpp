@@ -32,21 +32,24 @@ void gather_field(const MeshField& E_g, const Grid& grid, const ParticleBatch& b
                   FieldAtParticles& E_p) {
     constexpr int along = energy_conserving ? order - 1 : order;
     constexpr Real to_edge = energy_conserving ? Real(-0.5) : Real(0);
-    const Real x_low = Real(grid.x.low), z_low = Real(grid.z.low);
-    const Real per_dx = Real(1 / grid.x.spacing()), per_dz = Real(1 / grid.z.spacing());
     const long stride = grid.stride();
     const NodeField* const origin = E_g.data() + grid.index(0, 0);
     // [gather]
-    for (long p = 0; p < batch.count; ++p) {
-        const Real s_x = (batch.x_p[p] - x_low) * per_dx;
-        Real E_x = 0, E_z = 0;
-        if constexpr (dimensions == 1) {
-            const Weights<along> S_x(s_x + to_edge);
+    if constexpr (dimensions == 1) {
+        const Clouds<along> clouds_x(grid.x, batch.x_p, batch.count, to_edge);
+        for (long p = 0; p < batch.count; ++p) {
+            const Weights<along> S_x = clouds_x[p];
+            Real E_x = 0;
             for (int i = 0; i < S_x.count; ++i) E_x += S_x.S[i] * origin[S_x.first + i].x;
-        } else if constexpr (!energy_conserving) {
-            const Real s_z = (batch.z_p[p] - z_low) * per_dz;
-            const Weights<order> S_x(s_x), S_z(s_z);
+            E_p.x[p] = E_x;
+        }
+    } else if constexpr (!energy_conserving) {
+        const Clouds<order> clouds_x(grid.x, batch.x_p, batch.count),
+            clouds_z(grid.z, batch.z_p, batch.count);
+        for (long p = 0; p < batch.count; ++p) {
+            const Weights<order> S_x = clouds_x[p], S_z = clouds_z[p];
             const NodeField* node = origin + S_z.first * stride + S_x.first;
+            Real E_x = 0, E_z = 0;
             for (int j = 0; j < S_z.count; ++j, node += stride) {
                 for (int i = 0; i < S_x.count; ++i) {
                     const Real S = S_x.S[i] * S_z.S[j];
@@ -54,10 +57,17 @@ void gather_field(const MeshField& E_g, const Grid& grid, const ParticleBatch& b
                     E_z += S * node[i].z;
                 }
             }
-        } else {
-            const Real s_z = (batch.z_p[p] - z_low) * per_dz;
-            const Weights<order> S_x(s_x), S_z(s_z);
-            const Weights<along> edge_x(s_x + to_edge), edge_z(s_z + to_edge);
+            E_p.x[p] = E_x, E_p.z[p] = E_z;
+        }
+    } else {
+        const Clouds<order> clouds_x(grid.x, batch.x_p, batch.count),
+            clouds_z(grid.z, batch.z_p, batch.count);
+        const Clouds<along> edges_x(grid.x, batch.x_p, batch.count, to_edge),
+            edges_z(grid.z, batch.z_p, batch.count, to_edge);
+        for (long p = 0; p < batch.count; ++p) {
+            const Weights<order> S_x = clouds_x[p], S_z = clouds_z[p];
+            const Weights<along> edge_x = edges_x[p], edge_z = edges_z[p];
+            Real E_x = 0, E_z = 0;
             for (int j = 0; j < S_z.count; ++j)
                 for (int i = 0; i < edge_x.count; ++i)
                     E_x += edge_x.S[i] * S_z.S[j] *
@@ -66,9 +76,8 @@ void gather_field(const MeshField& E_g, const Grid& grid, const ParticleBatch& b
                 for (int i = 0; i < S_x.count; ++i)
                     E_z += S_x.S[i] * edge_z.S[j] *
                            origin[(edge_z.first + j) * stride + S_x.first + i].z;
+            E_p.x[p] = E_x, E_p.z[p] = E_z;
         }
-        E_p.x[p] = E_x;
-        if constexpr (dimensions == 2) E_p.z[p] = E_z;
     }
     // [/gather]
 }

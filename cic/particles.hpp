@@ -50,8 +50,9 @@ inline void resize(long count, bool plane, bool magnetized, Particles& particles
 }
 
 /// The most particles that are worked on together: few enough for all their numbers to stay in the
-/// nearest cache from one line of the slide to the next.
-inline constexpr long batch_size = 512;
+/// nearest cache from one line of the slide to the next, and for the next ones to come from memory
+/// meanwhile.
+inline constexpr long batch_size = 64;
 
 /// A batch of consecutive particles of one species, a view of its arrays; null where the species
 /// has no such component.

@@ -15,7 +15,8 @@ namespace cic {
 
 /// Weights of S^(order) at s, a position in cells measured from a node (or, for a field that lives
 /// half-way between nodes, from the first such place).
-/// in:     s >= -1/2
+/// in:     s >= -1/2; or the first place and the distance d of s from the middle one (S^(1): from the
+///         first), where they are known
 /// out:    the first place touched, and the weights of it and the next ones
 /// exact:  the weights sum to 1 to round-off
 template <int order>
@@ -27,7 +28,9 @@ struct Weights<0> {
     static constexpr int count = 1;
     int first;
     Real S[1];
-    explicit Weights(Real s) : first(static_cast<int>(s + Real(0.5))), S{1} {}
+    static int first_at(Real s) { return static_cast<int>(s + Real(0.5)); }
+    Weights(int first_place, Real) : first(first_place), S{1} {}
+    explicit Weights(Real s) : Weights(first_at(s), 0) {}
 };
 
 template <>
@@ -35,11 +38,9 @@ struct Weights<1> {
     static constexpr int count = 2;
     int first;
     Real S[2];
-    explicit Weights(Real s) : first(static_cast<int>(s + 1) - 1) {
-        const Real d = s - Real(first);
-        S[0] = 1 - d;
-        S[1] = d;
-    }
+    static int first_at(Real s) { return static_cast<int>(s + 1) - 1; }
+    Weights(int first_place, Real d) : first(first_place), S{1 - d, d} {}
+    explicit Weights(Real s) : Weights(first_at(s), s - Real(first_at(s))) {}
 };
 
 // The polynomials of common::QuadraticWeights, for single precision, too.
@@ -48,14 +49,37 @@ struct Weights<2> {
     static constexpr int count = 3;
     int first;
     Real S[3];
-    explicit Weights(Real s) : first(static_cast<int>(s + Real(0.5)) - 1) {
-        const Real d = s - Real(first + 1), half = Real(0.5);
+    static int first_at(Real s) { return static_cast<int>(s + Real(0.5)) - 1; }
+    Weights(int first_place, Real d) : first(first_place) {
+        const Real half = Real(0.5);
         S[0] = half * (half - d) * (half - d);
         S[1] = Real(0.75) - d * d;
         S[2] = half * (half + d) * (half + d);
     }
+    explicit Weights(Real s) : Weights(first_at(s), s - Real(first_at(s) + 1)) {}
 };
 // [/weights]
+
+/// Where the clouds of up to batch_size particles are along one direction. Found for all of them
+/// before the first is used: that loop vectorizes, and memory delivers positions ahead of time.
+/// in:     x_p, positions on the mesh; shift, 0 for nodes, -1/2 for the places half-way between
+/// out:    [p] gives the weights of particle p
+template <int order>
+struct Clouds {
+    int first[batch_size];
+    Real d[batch_size];
+
+    Clouds(const common::Axis& axis, const Real* x_p, long count, Real shift = 0) {
+        const Real low = Real(axis.low), per_spacing = Real(1 / axis.spacing());
+#pragma omp simd
+        for (long p = 0; p < count; ++p) {
+            const Real s = (x_p[p] - low) * per_spacing + shift;
+            first[p] = Weights<order>::first_at(s);
+            d[p] = s - Real(first[p] + order / 2);
+        }
+    }
+    Weights<order> operator[](long p) const { return {first[p], d[p]}; }
+};
 
 /// How charge goes to the mesh and the field comes back.
 struct Scheme {
