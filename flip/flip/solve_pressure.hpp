@@ -216,6 +216,7 @@ inline StepReport solve_pressure(const Problem& problem, double dt, Mesh& mesh) 
     for (long r = 0; r < count; ++r) c.p_step[cells.index[r]] = change[r];
     push_nodes(problem, dt, mesh);
     c.p_step += c.p;
+    fill_pressure(grid, c.p_step);
     find_v_theta();
     double sum = 0;
     for (long r = 0; r < count; ++r) {
