@@ -286,6 +286,10 @@ $(eval $(call figure,implicit_moment_magnetotail,implicit_moment,out/implicit_mo
 $(eval $(call series,implicit_moment/figures/implicit_moment_magnetotail.sh,implicit_moment,$(wildcard \
     implicit_moment/cases/magnetotail.toml),out/implicit_moment/guide_fields))
 
+$(eval $(call figure,implicit_moment_tail,implicit_moment,out/implicit_moment/tails))
+$(eval $(call series,implicit_moment/figures/implicit_moment_tail.sh,implicit_moment,$(wildcard \
+    implicit_moment/cases/lembege_pellat.toml implicit_moment/cases/thin_tail.toml),out/implicit_moment/tails))
+
 # $(call thin_sheets,ending): the thin current sheet; _quick is the same in minutes, with fewer particles and the same scripts.
 define thin_sheets
 $(call figure,fig11$(1),implicit_moment,out/implicit_moment/thin_sheets$(1))

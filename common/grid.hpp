@@ -21,6 +21,7 @@ struct Axis {
     double low = 0;     // coordinate of node 0 [length]
     double length = 0;  // [length]
     bool periodic = true;
+    bool mirrors = false;  // its walls mirror the plasma, see felt in implicit_moment
 
     /// Distance of neighboring nodes.
     double spacing() const { return length / static_cast<double>(cells); }

@@ -35,7 +35,7 @@ inline void advance_field(FieldSolver& solver, double dt, FieldState& field) {
     field.B.all -= c * dt * solver.curl_E.all;
     field.E.all = (field.E_theta.all - (1 - theta) * field.E.all) / theta;
     fill_ghosts(grid, electric, field.E);
-    fill_ghosts(grid, magnetic, field.B);
+    fill_B_ghosts(grid, field.B);
 }
 
 /// The same with a current that is known: E^{n+1} = E^n + dt (c curl B_theta - 4 pi J), so that Gauss's
@@ -52,7 +52,7 @@ inline void advance_field(FieldSolver& solver, double dt, const VectorField& J,
     field.E.all += solver.source.all;
     field.B.all -= c * dt * solver.curl_E.all;
     fill_ghosts(grid, electric, field.E);
-    fill_ghosts(grid, magnetic, field.B);
+    fill_B_ghosts(grid, field.B);
 }
 
 }  // namespace implicit_moment

@@ -61,7 +61,7 @@ inline void apply_mass_matrix(const Grid& grid, MassMatrix& mass, const double* 
         },
         detail::offsets * size);
     for (std::size_t a = 0; a < 3; ++a)
-        common::fold_ghosts(grid, electric.place[a], electric.parity[a], J + long(a) * size);
+        common::fold_ghosts(grid, electric.place[a], felt(grid).parity[a], J + long(a) * size);
 }
 
 }  // namespace implicit_moment

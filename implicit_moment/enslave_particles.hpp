@@ -103,7 +103,7 @@ inline void follow_field(const InterleavedField& field, const Grid& grid, double
     enslaved.J.all.setZero();
     for (const VectorField& J : enslaved.J_of_block) enslaved.J.all += J.all;
     for (std::size_t a = 0; a < 3; ++a)
-        common::fold_ghosts(grid, electric.place[a], electric.parity[a],
+        common::fold_ghosts(grid, electric.place[a], felt(grid).parity[a],
                             enslaved.J.all.data() + long(a) * grid.size());
 }
 

@@ -117,16 +117,17 @@ inline void apply_field_operator(FieldSolver& solver, double a, const Eigen::Vec
     curl_of_electric(grid, ghosted.all.data(), curl_E.all.data());
     fill_ghosts(grid, magnetic, curl_E);
     curl_of_magnetic(grid, curl_E.all.data(), out.data());
-    smooth(grid, electric, smoothing, ghosted.all.data(), solver.scratch);
+    if (mirrors_plasma(grid)) fill_ghosts(grid, felt(grid), ghosted);
+    smooth(grid, felt(grid), smoothing, ghosted.all.data(), solver.scratch);
     if (solver.settings.uses_mass_matrix()) {
         apply_mass_matrix(grid, solver.mass, ghosted.all.data(), chi_E.all.data());
         chi_E.all *= 4 * pi * a / c;
     } else {
         apply_tensor(grid, solver.response.chi, ghosted.all.data(), false, solver.response.scratch,
                      chi_E.all.data());
-        fill_ghosts(grid, electric, chi_E);
+        fill_ghosts(grid, felt(grid), chi_E);
     }
-    smooth(grid, electric, smoothing, chi_E.all.data(), solver.scratch);
+    smooth(grid, felt(grid), smoothing, chi_E.all.data(), solver.scratch);
     out = E + chi_E.all + a * a * out;
     keep_unknowns(grid, out.data());
 }

@@ -41,12 +41,13 @@ struct InterleaveScratch {
 inline void interleave_field(const Grid& grid, const SmoothingSettings& smoothing,
                              const VectorField& E_mesh, const VectorField& B,
                              InterleaveScratch& scratch, InterleavedField& interleaved) {
-    const bool smooth_it = smoothing.passes > 0;
-    if (smooth_it) {
+    const bool changes = smoothing.passes > 0 || mirrors_plasma(grid);
+    if (changes) {
         scratch.smoothed.all = E_mesh.all;
-        smooth(grid, electric, smoothing, scratch.smoothed.all.data(), scratch.pass);
+        if (mirrors_plasma(grid)) fill_ghosts(grid, felt(grid), scratch.smoothed);
+        smooth(grid, felt(grid), smoothing, scratch.smoothed.all.data(), scratch.pass);
     }
-    const VectorField& E = smooth_it ? scratch.smoothed : E_mesh;
+    const VectorField& E = changes ? scratch.smoothed : E_mesh;
     interleaved.resize(grid.size());
     const double *E_x = E.x(), *E_y = E.y(), *E_z = E.z(), *B_x = B.x(), *B_y = B.y(), *B_z = B.z();
     common::for_each_block(

@@ -236,7 +236,7 @@ inline void deposit_mass_matrix(const std::vector<Particles>& species, const Gri
         }
     });
     for (std::size_t a = 0; a < 3; ++a)
-        common::fold_ghosts(grid, electric.place[a], electric.parity[a],
+        common::fold_ghosts(grid, electric.place[a], felt(grid).parity[a],
                             mass.J_hat.all.data() + long(a) * grid.size());
 }
 

@@ -35,22 +35,22 @@ enum class Images { plasma, conductor };
 /// Adds what was deposited behind walls and periodic ends to the points that it belongs to.
 /// in/out: rho and J, afterwards with ghosts filled.
 inline void fold_charge_and_current(const Grid& grid, Images images, Moments& moments) {
-    const int w = images == Images::plasma ? +1 : -1;
-    common::fold_ghosts(grid, on_nodes, {w, w}, moments.rho.data());
-    common::fold_ghosts(grid, on_x_edges, {-w, w}, moments.J_x.data());
-    common::fold_ghosts(grid, on_nodes, {w, w}, moments.J_y.data());
-    common::fold_ghosts(grid, on_z_edges, {w, -w}, moments.J_z.data());
+    const Parity w = images == Images::plasma ? Parity{+1, +1} : felt_charge(grid);
+    common::fold_ghosts(grid, on_nodes, w, moments.rho.data());
+    common::fold_ghosts(grid, on_x_edges, {-w.x, w.z}, moments.J_x.data());
+    common::fold_ghosts(grid, on_nodes, w, moments.J_y.data());
+    common::fold_ghosts(grid, on_z_edges, {w.x, -w.z}, moments.J_z.data());
 }
 
 /// The same for the stress.
 /// note:   P_nn on the wall is the push of the wall on the particles that it reflects.
 inline void fold_stress(const Grid& grid, Images images, Moments& moments) {
-    const int w = images == Images::plasma ? +1 : -1;
-    common::fold_ghosts(grid, on_nodes, {+1, w}, moments.P_xx.data());
-    common::fold_ghosts(grid, on_nodes, {w, +1}, moments.P_zz.data());
-    common::fold_ghosts(grid, on_faces, {-w, -w}, moments.P_xz.data());
-    common::fold_ghosts(grid, on_x_edges, {-w, w}, moments.P_xy.data());
-    common::fold_ghosts(grid, on_z_edges, {w, -w}, moments.P_yz.data());
+    const Parity w = images == Images::plasma ? Parity{+1, +1} : felt_charge(grid);
+    common::fold_ghosts(grid, on_nodes, {+1, w.z}, moments.P_xx.data());
+    common::fold_ghosts(grid, on_nodes, {w.x, +1}, moments.P_zz.data());
+    common::fold_ghosts(grid, on_faces, {-w.x, -w.z}, moments.P_xz.data());
+    common::fold_ghosts(grid, on_x_edges, {-w.x, w.z}, moments.P_xy.data());
+    common::fold_ghosts(grid, on_z_edges, {w.x, -w.z}, moments.P_yz.data());
 }
 
 }  // namespace implicit_moment

@@ -134,7 +134,7 @@ inline void hatted_current(const Grid& grid, const Moments& moments, double dt, 
         y[n] = J_y[n] - by_dx * (P_xy[n] - P_xy[n - 1]) - by_dz * (P_yz[n] - P_yz[n - s]);
         z[n] = J_z[n] - by_dx * (P_xz[n] - P_xz[n - 1]) - by_dz * (P_zz[n + s] - P_zz[n]);
     });
-    fill_ghosts(grid, electric, J);
+    fill_ghosts(grid, felt(grid), J);
 }
 
 /// What the field equations need from the plasma.
@@ -196,7 +196,7 @@ inline void predict_current(const Grid& grid, const std::vector<Moments>& moment
             for_each_point(grid, [=](long n) { chi[n] += by_rho * rho[n] * R[n]; });
         }
     }
-    fill_ghosts(grid, electric, response.J_hat);
+    fill_ghosts(grid, felt(grid), response.J_hat);
 }
 
 }  // namespace implicit_moment

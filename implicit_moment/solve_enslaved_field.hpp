@@ -78,10 +78,10 @@ inline FieldReport solve_enslaved_field(FieldSolver& solver, double dt,
         // B at the same level: B^n - a curl E.
         curl_of_electric(grid, field.E_theta.all.data(), enslaved.curl.all.data());
         B_theta.all = field.B.all - a * enslaved.curl.all;
-        fill_ghosts(grid, magnetic, B_theta);
+        fill_B_ghosts(grid, B_theta);
         interleave_field(grid, smoothing, field.E_theta, B_theta, scratch, interleaved);
         follow_field(interleaved, grid, dt, follow, species, turn, enslaved);
-        smooth(grid, electric, smoothing, enslaved.J.all.data(), solver.scratch);
+        smooth(grid, felt(grid), smoothing, enslaved.J.all.data(), solver.scratch);
 
         // What is left: source - E + a curl (B_theta - B^n) - 4 pi theta dt J.
         VectorField& left = solver.source;

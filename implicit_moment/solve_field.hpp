@@ -101,7 +101,7 @@ inline void find_push_B(FieldSolver& solver, double dt, const FieldState& field,
     if (!solver.settings.rotates_in_the_middle()) return;
     curl_of_electric(solver.grid, field.E.all.data(), solver.curl_E.all.data());
     B_push.all -= 0.5 * c * dt * solver.curl_E.all;
-    fill_ghosts(solver.grid, magnetic, B_push);
+    fill_B_ghosts(solver.grid, B_push);
 }
 
 /// Solves for E^{n+theta}.
@@ -127,8 +127,8 @@ inline FieldReport solve_field(FieldSolver& solver, const std::vector<Moments>& 
 
     predict_current(grid, moments, charge_over_mass, rotated_in, B_push.all.data(), dt,
                     settings.theta, response);
-    smooth(grid, electric, settings.smoothing, response.J_hat.all.data(), solver.scratch);
-    smooth(grid, common::on_nodes, {-1, -1}, settings.smoothing, response.rho.data(),
+    smooth(grid, felt(grid), settings.smoothing, response.J_hat.all.data(), solver.scratch);
+    smooth(grid, common::on_nodes, felt_charge(grid), settings.smoothing, response.rho.data(),
            solver.scratch);
     prepare_preconditioner(solver, a);
     maxwell_source(solver, field, a);
@@ -150,10 +150,10 @@ inline FieldReport solve_field(FieldSolver& solver, const std::vector<Moments>& 
             fill_ghosts(grid, electric, solver.ghosted);
             curl_of_electric(grid, solver.ghosted.all.data(), B_push.all.data());
             B_push.all = field.B.all - a * B_push.all;
-            fill_ghosts(grid, magnetic, B_push);
+            fill_B_ghosts(grid, B_push);
             predict_current(grid, moments, charge_over_mass, rotated_in, B_push.all.data(), dt,
                             settings.theta, response);
-            smooth(grid, electric, settings.smoothing, response.J_hat.all.data(), solver.scratch);
+            smooth(grid, felt(grid), settings.smoothing, response.J_hat.all.data(), solver.scratch);
             apply_field_operator(solver, a, v, F);
             F += by_J * response.J_hat.all - solver.source.all;
             keep_unknowns(grid, F.data());
@@ -189,7 +189,8 @@ inline FieldReport solve_field(FieldSolver& solver, double dt, FieldState& field
     const Grid& grid = solver.grid;
     const double a = c * solver.settings.theta * dt;
     prepare_preconditioner(solver, a);
-    smooth(grid, electric, solver.settings.smoothing, solver.mass.J_hat.all.data(), solver.scratch);
+    smooth(grid, felt(grid), solver.settings.smoothing, solver.mass.J_hat.all.data(),
+           solver.scratch);
     curl_of_magnetic(grid, field.B.all.data(), solver.source.all.data());
     solver.source.all = field.E.all + a * solver.source.all -
                         4 * pi * solver.settings.theta * dt * solver.mass.J_hat.all;

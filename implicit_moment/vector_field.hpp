@@ -60,6 +60,22 @@ inline constexpr VectorKind magnetic{{common::on_z_edges, common::on_faces, comm
 inline constexpr VectorKind current{{common::on_x_edges, common::on_nodes, common::on_z_edges},
                                     {{{-1, +1}, {+1, +1}, {+1, -1}}}};
 
+/// J and the E that particles feel. Behind a conducting wall stand image charges, and both have the
+/// parities of E: what touches the wall makes no field. Behind a wall that mirrors the plasma both have those of
+/// the J of reflected particles: the current of a plasma goes on up to the wall.
+/// exact:  with the same parities in the gather as in the deposit, one is the transpose of the other.
+inline VectorKind felt(const Grid& grid) {
+    VectorKind kind = electric;
+    for (std::size_t a = 0; a < 3; ++a) {
+        if (grid.x.mirrors) kind.parity[a].x = current.parity[a].x;
+        if (grid.z.mirrors) kind.parity[a].z = current.parity[a].z;
+    }
+    return kind;
+}
+/// The parities of the charge that makes fields, which are those of J_y.
+inline Parity felt_charge(const Grid& grid) { return felt(grid).parity[1]; }
+inline bool mirrors_plasma(const Grid& grid) { return grid.x.mirrors || grid.z.mirrors; }
+
 /// Fills the ghosts of all three components. in: kind, of the vector
 inline void fill_ghosts(const Grid& grid, const VectorKind& kind, double* all) {
     for (std::size_t a = 0; a < 3; ++a)
@@ -67,6 +83,30 @@ inline void fill_ghosts(const Grid& grid, const VectorKind& kind, double* all) {
 }
 inline void fill_ghosts(const Grid& grid, const VectorKind& kind, VectorField& f) {
     fill_ghosts(grid, kind, f.all.data());
+}
+
+/// Fills the ghosts of B itself. What crosses a conducting wall is frozen into it: B_n keeps its values
+/// there, and behind the wall it goes on odd about them, so that div B = 0 holds there as well.
+inline void fill_B_ghosts(const Grid& grid, VectorField& B) {
+    const long nx = grid.x.cells, nz = grid.z.cells, stride = grid.stride();
+    for (std::size_t a = 0; a < 3; ++a) {
+        double* f = B.all.data() + long(a) * B.size();
+        const Place place = magnetic.place[a];
+        const Parity parity = magnetic.parity[a];
+        for (long j = 0; j <= nz; ++j) {
+            double* row = f + grid.index(0, j);
+            common::ghosts_along(grid.x, place.half_x, parity.x, [&](long to, long from, int sign) {
+                row[to] = sign * row[from] + (sign < 0 ? 2 * row[to < 0 ? 0 : nx] : 0);
+            });
+        }
+        common::ghosts_along(grid.z, place.half_z, parity.z, [&](long to, long from, int sign) {
+            double* target = f + grid.index(-1, to);
+            const double *source = f + grid.index(-1, from),
+                         *wall = f + grid.index(-1, to < 0 ? 0 : nz);
+            for (long i = 0; i < stride; ++i)
+                target[i] = sign * source[i] + (sign < 0 ? 2 * wall[i] : 0);
+        });
+    }
 }
 
 /// The unknowns of one component as a matrix (x, z), without ghosts.

@@ -326,19 +326,19 @@ TEST_CASE("all species together give the sum of their currents smoothed and with
         for (const long order : {1, 2}) {
             for (const SmoothingSettings smoothing : {SmoothingSettings{0, true}, {2, true}}) {
                 const InterleavedField push = random_push(grid, 0.01, 0.1, random);
+                const VectorKind kind = implicit_moment::felt(grid);
                 std::vector<Particles> species;
                 VectorField expected(grid), J(grid);
                 for (const double q : {0.7, -0.4}) {
                     species.push_back(travelers(grid, 500, dt, 0.8, true, random));
                     species.back().q_p = q;
                     Particles alone = species.back();
-                    expected.all +=
-                        current_of_step(grid, push, dt, order, true, electric, alone).all;
+                    expected.all += current_of_step(grid, push, dt, order, true, kind, alone).all;
                     sort(grid, order, species.back());
                 }
                 CurrentScratch scratch;
                 Field room;
-                smooth(grid, electric, smoothing, expected.all.data(), room);
+                smooth(grid, kind, smoothing, expected.all.data(), room);
                 for (int again = 0; again < 2; ++again) {  // what is kept between steps is no state
                     std::vector<Particles> moved = species;
                     move_particles(push, grid, dt, {true, order, true}, smoothing, moved, scratch,

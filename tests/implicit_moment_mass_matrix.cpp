@@ -39,6 +39,16 @@ struct AnyPlasma {
         curl_of_electric(grid, A.all.data(), field.B.all.data());
         field.B.all *= B / field.B.all.cwiseAbs().maxCoeff();
         fill_ghosts(grid, magnetic, field.B);
+        if (!grid.x.mirrors) return;
+        // What crosses the walls: of a linear and a bilinear A_y.
+        for (long j = -1; j <= grid.z.cells + 1; ++j)
+            for (long i = -1; i <= grid.x.cells + 1; ++i)
+                A.y()[grid.index(i, j)] = grid.x.at(real(i)) * (1 + grid.z.at(real(j)));
+        VectorField across(grid);
+        std::fill_n(A.x(), grid.size(), 0.0), std::fill_n(A.z(), grid.size(), 0.0);
+        curl_of_electric(grid, A.all.data(), across.all.data());
+        field.B.all += B / 4 * across.all;
+        fill_B_ghosts(grid, field.B);
     }
     std::vector<double> charge_over_mass() const {
         return {species[0].q_p / species[0].m_p, species[1].q_p / species[1].m_p};
@@ -61,7 +71,7 @@ struct AnyPlasma {
             deposit_moments(s, grid, field.B, 0, moments);
             rho += moments.rho;
         }
-        smooth(grid, on_nodes, {-1, -1}, smoothing, rho.data(), scratch);
+        smooth(grid, on_nodes, felt_charge(grid), smoothing, rho.data(), scratch);
         gauss_residual(grid, field.E, rho, G);
         return G;
     }
@@ -91,7 +101,7 @@ VectorField current_of(const Grid& grid, const std::vector<Particles>& species,
         }
     }
     for (std::size_t a = 0; a < 3; ++a)
-        common::fold_ghosts(grid, electric.place[a], electric.parity[a],
+        common::fold_ghosts(grid, electric.place[a], felt(grid).parity[a],
                             J.all.data() + long(a) * grid.size());
     return J;
 }
@@ -114,8 +124,9 @@ TEST_CASE("J_hat and M E are the current that the kicks make") {
             AnyPlasma plasma(grid, 200, 0.3, 0.2, 5, random);
             MassMatrix mass(grid);
             deposit_mass_matrix(plasma.species, grid, plasma.field.B, {}, dt, mass);
-            VectorField J(grid);
-            apply_mass_matrix(grid, mass, plasma.field.E.all.data(), J.all.data());
+            VectorField J(grid), E = plasma.field.E;
+            fill_ghosts(grid, felt(grid), E);
+            apply_mass_matrix(grid, mass, E.all.data(), J.all.data());
             J.all += mass.J_hat.all;
 
             InterleaveScratch scratch(grid);
@@ -138,10 +149,11 @@ TEST_CASE("the mass matrix does no negative work and is symmetric where there is
     Random random;
     for (const Grid& grid : meshes()) {
         AnyPlasma plasma(grid, 100, 0.3, 1, 4, random);
-        const VectorField u = plasma.field.E;
+        VectorField u = plasma.field.E;
+        fill_ghosts(grid, felt(grid), u);
         VectorField v = random.field(grid, electric), M_u(grid), M_v(grid);
         keep_unknowns(grid, v.all.data());
-        fill_ghosts(grid, electric, v);
+        fill_ghosts(grid, felt(grid), v);
         MassMatrix mass(grid);
         deposit_mass_matrix(plasma.species, grid, plasma.field.B, {}, 2, mass);
         apply_mass_matrix(grid, mass, u.all.data(), M_u.all.data());

@@ -258,7 +258,7 @@ TEST_CASE("lengths and meshes and speeds that a thin sheet cannot have are refus
     CHECK(holds(refusal(parameters), "grid.cells_x = 32: the first 16 modes"));
     parameters = thin_sheet();
     parameters.boundary_z = "periodic";
-    CHECK(holds(refusal(parameters), "the Harris sheet needs grid.boundary_x"));
+    CHECK(holds(refusal(parameters), "the Harris sheet needs grid.boundary_z"));
     parameters = thin_sheet();
     // T_i and v_A make ions of 10 v_A^(1/2) at T_i = 10, faster than light where c is 2 v_A.
     parameters.current_sheet.light_over_alfven = 2;

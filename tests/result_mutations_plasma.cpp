@@ -164,6 +164,17 @@ const std::vector<Mutation> implicit{
      "gauss_residual energy_drift"},
     {"implicit_moment", "light_wave", "", ""},
     {"implicit_moment", "light_wave", "field.tolerance=0.01", "energy_drift"},
+    {"implicit_moment", "lembege_pellat", "", ""},
+    {"implicit_moment", "lembege_pellat", "grid.boundary_x=wall", "flux_shift flux_reconnected"},
+    // So thin that it tears by itself.
+    {"implicit_moment", "lembege_pellat",
+     "harris.thickness=0.25 harris.normal_field=0.01 harris.particles=4e4 time.dt=0.6",
+     "density_over_noise current_over_noise density_in_the_middle flux_shift flux_reconnected "
+     "energy_drift"},
+    // Thicker, but not thicker than an ion gyrates.
+    {"implicit_moment", "thin_tail",
+     "harris.thickness=0.9 grid.cells_z=64 harris.particles=4e4 time.dt=0.6 time.end=400",
+     "flux_over_normal_flux energy_drift"},
     {"implicit_moment", "magnetotail", few_random + "grid.cells_x=32 grid.cells_z=32 time.dt=0.6",
      "energy_drift"},
     {"implicit_moment", "oblique_whistler", "", ""},

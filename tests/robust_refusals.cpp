@@ -829,8 +829,14 @@ plasmas time.dt=1e-9 time.end=2
 plasmas time.dt=1e-30 time.end=1e30
     time.end / time.dt is 1e+60 steps, more than 1e9: raise time.dt or lower time.end
 plasmas grid.boundary_z=periodic
-plasmas grid.boundary_x=wall
-    the Harris sheet needs grid.boundary_x = "periodic" and grid.boundary_z = "wall"
+plasmas grid.boundary_z=reflecting
+    the Harris sheet needs grid.boundary_z = "wall"
+plasmas harris.normal_field=0.05
+    harris.normal_field = 0.05 B0 makes a tail, which has two ends: set grid.boundary_x = "reflecting"
+plasmas grid.boundary_x=reflecting harris.normal_field=0.1
+    the field lines of the tail are turned by 1.28 at the walls, more than 1: lower harris.normal_field or
+plasmas grid.boundary_x=reflecting harris.thickness=3 harris.normal_field=0.1
+    the tail is 4.596 d_i thick at one end and does not fit between walls 12.8 d_i apart
 plasmas grid.cells_z=63
     grid.cells_z = 63 is odd: the flux is measured on the row z = 0, so make it even
 plasmas harris.thickness=4

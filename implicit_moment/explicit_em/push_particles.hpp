@@ -183,10 +183,10 @@ inline void move_particles(const InterleavedField& field, const Grid& grid, doub
         }
     }
     for (std::size_t a = 0; a < 3; ++a) {
-        common::fold_ghosts(grid, electric.place[a], electric.parity[a],
+        common::fold_ghosts(grid, electric.place[a], felt(grid).parity[a],
                             J.all.data() + a * grid.size());
     }
-    smooth(grid, electric, smoothing, J.all.data(), scratch.smoothed);
+    smooth(grid, felt(grid), smoothing, J.all.data(), scratch.smoothed);
 }
 
 }  // namespace implicit_moment

@@ -56,7 +56,7 @@ inline void advance_magnetic(const Grid& grid, double dt, const VectorField& E, 
         B_y[n] -= per_z * (E_x[n + s] - E_x[n]) - per_x * (E_z[n + 1] - E_z[n]);
         B_z[n] -= per_x * (E_y[n + 1] - E_y[n]);
     });
-    fill_ghosts(grid, magnetic, B);
+    fill_B_ghosts(grid, B);
 }
 
 // E += c dt curl B - 4 pi dt J

@@ -20,6 +20,7 @@
 #include "implicit_moment/theory/compare_equilibrium.hpp"
 #include "implicit_moment/theory/compare_kink.hpp"
 #include "implicit_moment/theory/compare_reconnection.hpp"
+#include "implicit_moment/theory/compare_tail.hpp"
 #include "implicit_moment/theory/compare_wave.hpp"
 
 namespace implicit_moment {
@@ -83,7 +84,7 @@ class Recorder {
         }
         run.history.row(row_of(time, field, state.plasma, moments, initial));
 
-        if (parameters_.is_across_current()) {
+        if (parameters_.is_across_current() && !parameters_.is_tail()) {
             const double B0 = harris_sheet(parameters_.harris).B0;
             record_profile(profile, time * B0 / c, middle_row(grid, field.B).flux / B0, grid,
                            field.B, [&] { return plasma_moments_(state); });
@@ -102,7 +103,12 @@ class Recorder {
         const Case& w = parameters_;
         const common::History& history = run.history;
         common::Summary& summary = run.summary;
-        if (w.is_across_current()) {
+        if (w.is_tail()) {
+            if (w.harris.perturbation != 0)
+                compare_tail_flux(w, history, summary);
+            else
+                compare_tail_at_rest(w, history, state.plasma, plasma_moments_(state), summary);
+        } else if (w.is_across_current()) {
             if (w.harris.perturbation != 0)
                 compare_reconnection(w, history, profile, summary);
             else
@@ -153,7 +159,7 @@ class Recorder {
             for (std::size_t a = 0; a < 3; ++a) momentum[a] += m.momentum[a];
             rho += m.rho;
         }
-        smooth(grid, on_nodes, {-1, -1}, parameters_.field.smoothing, rho.data(), scratch);
+        smooth(grid, on_nodes, felt_charge(grid), parameters_.field.smoothing, rho.data(), scratch);
         gauss_residual(grid, field.E, rho, gauss);
 
         common::Row row;
@@ -179,7 +185,10 @@ class Recorder {
             row.add("energy_residual", "1", initial > 0 ? (energy - by_theta) / initial - 1 : 0);
             row.add("iterations", "1", field.iterations);
         }
-        if (parameters_.is_across_current()) add_reconnection(parameters_, field, row);
+        if (parameters_.is_tail())
+            add_tail(parameters_, field, row);
+        else if (parameters_.is_across_current())
+            add_reconnection(parameters_, field, row);
         if (parameters_.is_along_current()) sheet_->add(field, row);
         if (parameters_.is_uniform()) add_mode(parameters_, field, row);
         if (has_uniform_E(parameters_)) add_mean_field(grid, field, row);

@@ -24,6 +24,7 @@ struct HarrisCase {
     double background = 0.2;        // n_inf/n0
     double perturbation = 0.1;      // psi0/(B0 d_i)
     double guide_field = 0;         // B_y/B0, uniform
+    double normal_field = 0;        // B_z/B0 in the middle row: a tail, see tail_sheet.hpp
     long particles = 200000;        // of both species together
 };
 
@@ -100,6 +101,8 @@ struct Case {
     bool is_relativistic() const {
         return leapfrog.chosen ? leapfrog.relativistic : mover.relativistic;
     }
+    // Whether the ends of a sheet across its current are walls.
+    bool is_tail() const { return is_across_current() && !grid.x.periodic; }
 };
 
 /// Refuses a case for one reason. errors: InputError with the sentence, which names the cure.

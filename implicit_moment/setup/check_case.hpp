@@ -72,9 +72,11 @@ inline Scales scales_of(const Case& w) {
     if (!w.is_uniform()) {
         const HarrisCase h = harris_of(w);
         const HarrisSheet sheet = harris_sheet(h);
-        s.B = std::hypot(sheet.B0, h.guide_field * sheet.B0);
-        add("ions", 1, 1, 1, sheet.T_i);
-        add("electrons", 1, -1, 1 / h.mass_ratio, sheet.T_e);
+        // A tail is F^2 times as dense at its end, and B is F times as strong.
+        const double F = tail_of(h).F(0.5 * w.grid.x.length);
+        s.B = std::hypot(F * sheet.B0, h.guide_field * sheet.B0);
+        add("ions", F * F, 1, 1, sheet.T_i);
+        add("electrons", F * F, -1, 1 / h.mass_ratio, sheet.T_e);
         for (SpeciesScales& k : s.species) {
             const double drift = k.name == "ions" ? sheet.u_i : sheet.u_e;
             k.beyond_c = part_beyond_c({0, drift, 0}, Eigen::Array3d::Constant(k.thermal_speed));
@@ -106,10 +108,29 @@ inline Scales scales_of(const Case& w) {
 
 namespace detail {
 
+inline void refuse_tail(const Case& w) {
+    const HarrisCase h = harris_of(w);
+    if (h.normal_field == 0) return;
+    refuse(w.grid.x.periodic, "harris.normal_field = " + format(h.normal_field) +
+                                  " B0 makes a tail, which has two ends: set grid.boundary_x = "
+                                  "\"reflecting\"");
+    const TailSheet tail = tail_of(h);
+    const double opens = 0.5 * h.normal_field * w.grid.z.length / h.thickness,
+                 thick = h.thickness / tail.F(-0.5 * w.grid.x.length);
+    refuse(opens > 1, "the field lines of the tail are turned by " + format(opens) +
+                          " at the walls, more than 1: lower harris.normal_field or grid.length_z");
+    refuse(thick > 0.25 * w.grid.z.length,
+           "the tail is " + format(thick) +
+               " d_i thick at one end and does not fit between walls " + format(w.grid.z.length) +
+               " d_i apart: lower harris.normal_field, grid.length_x or harris.thickness");
+}
+
 inline void validate_sheet(const Case& w) {
     const HarrisCase h = harris_of(w);
-    refuse(w.boundary_x != "periodic" || w.boundary_z != "wall",
-           "the Harris sheet needs grid.boundary_x = \"periodic\" and grid.boundary_z = \"wall\"");
+    refuse(w.is_along_current() && w.boundary_x != "periodic",
+           "a sheet along its current needs grid.boundary_x = \"periodic\"");
+    refuse(w.boundary_z != "wall", "the Harris sheet needs grid.boundary_z = \"wall\"");
+    refuse_tail(w);
     w.is_along_current() ? refuse_current_sheet(w) : refuse_reconnection(w);
     refuse(h.thickness > 0.25 * w.grid.z.length,
            "harris.thickness = " + format(h.thickness) + " d_i does not fit between walls " +
@@ -141,7 +162,7 @@ inline void validate_uniform(const Case& w) {
     const bool uniform_E = u.E_x != 0 || u.E_y != 0 || u.E_z != 0;
     const bool seeded = uniform_E || u.wave_B_x != 0 || u.wave_B_y != 0 || u.wave_B_z != 0 ||
                         u.wave_E_x != 0 || u.wave_E_y != 0 || u.wave_E_z != 0;
-    const bool walls = w.boundary_x == "wall" || w.boundary_z == "wall";
+    const bool walls = w.boundary_x != "periodic" || w.boundary_z != "periodic";
     refuse(seeded && walls,
            "seeded fields need periodic boundaries: take out uniform.E_*, uniform.wave_E_*, "
            "uniform.wave_B_* or the walls");
@@ -191,8 +212,8 @@ inline void validate_uniform(const Case& w) {
 /// Refuses what cannot run. errors: InputError, one sentence with the numbers and the cure.
 inline void validate(Case& w) {
     common::require_formats(w.also);
-    w.grid.x.periodic = w.boundary_x == "periodic";
-    w.grid.z.periodic = w.boundary_z == "periodic";
+    w.grid.x.periodic = w.boundary_x == "periodic", w.grid.x.mirrors = w.boundary_x == "reflecting";
+    w.grid.z.periodic = w.boundary_z == "periodic", w.grid.z.mirrors = w.boundary_z == "reflecting";
     if (w.is_along_current()) fit_mesh_to_sheet(w);
     w.grid.x.low = -0.5 * w.grid.x.length;
     w.grid.z.low = -0.5 * w.grid.z.length;

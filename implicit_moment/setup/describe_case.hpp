@@ -66,9 +66,10 @@ inline void describe_plasma(common::ParameterTable& table, Case& w) {
     table.whole("grid.cells_z", w.grid.z.cells, "", between(4, 4096), "cells along z");
     table.real("grid.length_x", w.grid.x.length, "d_i", above(0), "length of the box along x");
     table.real("grid.length_z", w.grid.z.length, "d_i", above(0), "length of the box along z");
-    table.choice("grid.boundary_x", w.boundary_x, {"periodic", "wall"},
-                 "ends of x; a wall conducts and reflects");
-    table.choice("grid.boundary_z", w.boundary_z, {"periodic", "wall"}, "ends of z");
+    table.choice(
+        "grid.boundary_x", w.boundary_x, {"periodic", "wall", "reflecting"},
+        "ends of x; a wall conducts and reflects; reflecting: and the plasma goes on up to it");
+    table.choice("grid.boundary_z", w.boundary_z, {"periodic", "wall", "reflecting"}, "ends of z");
 
     table.group("time");
     table.real("time.dt", w.dt, "1/omega_pi", above(0), "time step");
@@ -95,6 +96,8 @@ inline void describe_plasma(common::ParameterTable& table, Case& w) {
                "flux psi0 of the seeded island");
     table.real("harris.guide_field", w.harris.guide_field, "B0", anything(),
                "uniform B_y out of the plane, along the current");
+    table.real("harris.normal_field", w.harris.normal_field, "B0", between(0, 0.5),
+               "B_z across the sheet in its middle row, a tail; needs reflecting ends of x");
     table.whole("harris.particles", w.harris.particles, "", between(2, 4e8),
                 "simulation particles of both species");
 

@@ -15,6 +15,7 @@ namespace implicit_moment {
 /// B of a Harris sheet with the GEM perturbation, as the curl of A_y on nodes, so that div B = 0
 /// to round-off and B_n = 0 on walls; and a uniform B_y, which pushes nothing that drifts along y.
 ///     A_y = -B0 lambda ln cosh(z/lambda) - psi0 cos(2 pi x/L_x) cos(pi z/L_z)
+/// note:   with a normal field the first part is that of tail_sheet.hpp, and it crosses the walls.
 inline void harris_field(const Case& parameters, FieldState& field) {
     const Grid& grid = parameters.grid;
     const HarrisCase& h = parameters.harris;
@@ -31,15 +32,16 @@ inline void harris_field(const Case& parameters, FieldState& field) {
                                       ? 0
                                       : h.perturbation * B0 * std::cos(2 * pi * x / grid.x.length) *
                                             std::cos(pi * z / grid.z.length);
-            A_y[grid.index(i, j)] =
-                -B0 * h.thickness * std::log(std::cosh(z / h.thickness)) - island;
+            double& A = A_y[grid.index(i, j)];
+            A = -B0 * h.thickness * std::log(std::cosh(z / h.thickness)) - island;
+            if (h.normal_field != 0) A = B0 * h.thickness * tail_of(h).A_y(x, z) - island;
         }
     }
     VectorField A(grid);
     std::copy_n(A_y.data(), grid.size(), A.y());
     curl_of_electric(grid, A.all.data(), field.B.all.data());
     std::fill_n(field.B.y(), grid.size(), h.guide_field * B0);
-    fill_ghosts(grid, magnetic, field.B);
+    fill_B_ghosts(grid, field.B);
 }
 
 /// B of a current sheet along x: B_y = -B0 tanh(z/L), averaged over each row of faces.
@@ -54,7 +56,7 @@ inline void current_sheet_field(const Case& parameters, FieldState& field) {
         const double B_y = (potential(j + 1) - potential(j)) / grid.z.spacing();
         std::fill_n(field.B.y() + grid.index(0, j), grid.x.cells, B_y);
     }
-    fill_ghosts(grid, magnetic, field.B);
+    fill_B_ghosts(grid, field.B);
 }
 
 /// The uniform fields and the seeded mode; its part of B in the plane is made from A_y,
@@ -96,7 +98,7 @@ inline void uniform_field(const Case& parameters, FieldState& field) {
         }
     }
     fill_ghosts(grid, electric, field.E);
-    fill_ghosts(grid, magnetic, field.B);
+    fill_B_ghosts(grid, field.B);
 }
 
 /// Adds -grad phi with -lap phi = 4 pi rho - div E, phi = 0 on walls, so that Gauss's law holds at
@@ -161,7 +163,7 @@ inline State initial_state(const Case& parameters) {
         deposit_moments(species, grid, state.field.B, 0, moments);
         rho += moments.rho;
     }
-    smooth(grid, on_nodes, {-1, -1}, parameters.field.smoothing, rho.data(), moments.rho);
+    smooth(grid, on_nodes, felt_charge(grid), parameters.field.smoothing, rho.data(), moments.rho);
     add_electrostatic_field(grid, MeshModes(grid), rho, state.field);
     state.field.E_theta = state.field.E;
     return state;

@@ -1,13 +1,16 @@
 // Particles at t = 0: of a Harris sheet, or of a uniform plasma with one seeded mode.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/random.hpp"
 #include "implicit_moment/setup/current_sheet.hpp"
+#include "implicit_moment/setup/tail_sheet.hpp"
 
 namespace implicit_moment {
 
@@ -66,13 +69,17 @@ inline Particles make_particles(const std::string& name, double q_p, double m_p,
 /// Loads ions and electrons of a Harris sheet with equal weights; every electron starts on an
 /// ion, so that rho = 0 and E = 0.
 ///     n = n0 sech^2(z/lambda), drifting along y (a current sheet: along x);   n_inf, at rest
+/// note:   with a normal field the density is that of tail_sheet.hpp.
 inline Plasma load_harris(const Case& parameters) {
     const HarrisCase h = harris_of(parameters);
     const Grid& grid = parameters.grid;
     const HarrisSheet sheet = harris_sheet(h);
     const bool along_x = parameters.is_along_current();
     const double reach = std::tanh(0.5 * grid.z.length / h.thickness);
-    const double in_sheet = n0 * grid.x.length * 2 * h.thickness * reach;
+    std::optional<TailPlaces> tail;
+    if (h.normal_field != 0) tail.emplace(tail_of(h), grid);
+    const double in_sheet =
+        tail ? n0 * tail->content() : n0 * grid.x.length * 2 * h.thickness * reach;
     const double in_background = n0 * h.background * grid.x.length * grid.z.length;
     const long pairs = h.particles / 2;
     const long sheet_pairs = std::lround(double(pairs) * in_sheet / (in_sheet + in_background));
@@ -92,10 +99,15 @@ inline Plasma load_harris(const Case& parameters) {
             const std::uint32_t part = drifting ? 1 : 2;
             const long index = drifting ? p : p - sheet_pairs;
             const double u = 2 * load.uniform(part, 3, index) - 1;
-            const double z =
-                drifting ? h.thickness * std::atanh(u * reach) : 0.5 * u * grid.z.length;
-            ions.x_p[p] = electrons.x_p[p] =
-                grid.x.at(0) + grid.x.length * load.uniform(part, 2, index);
+            double z = drifting ? h.thickness * std::atanh(u * reach) : 0.5 * u * grid.z.length;
+            double x = grid.x.at(0) + grid.x.length * load.uniform(part, 2, index);
+            if (tail && drifting) {
+                const auto from_middle = tail->place(load.uniform(part, 2, index), 0.5 * (u + 1));
+                x = std::clamp(grid.x.at(0) + 0.5 * grid.x.length + from_middle[0], grid.x.low,
+                               grid.x.high());
+                z = from_middle[1];
+            }
+            ions.x_p[p] = electrons.x_p[p] = x;
             ions.z_p[p] = electrons.z_p[p] = z_middle + z;
             const auto set_u = [&](Particles& s, double v, double u_s,
                                    std::array<unsigned, 3> primes) {

@@ -23,6 +23,7 @@ inline std::vector<Grid> meshes() {
     for (const int ends : {0, 1, 2, 3}) {
         all.push_back({{8, -2, 4, ends % 2 == 0}, {7, 0.5, 2.1, ends < 2}});
     }
+    all.push_back({{8, -2, 4, false, true}, {7, 0.5, 2.1, false}});  // the ends of a tail
     return all;
 }
 

@@ -1,0 +1,146 @@
+// A current sheet between reflecting ends, with a field across it: what it keeps where nothing perturbs
+// it, and what of its flux closes on itself where it reconnects.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "common/run/run.hpp"
+#include "implicit_moment/moments.hpp"
+#include "implicit_moment/output/diagnostics.hpp"
+#include "implicit_moment/setup/load_plasma.hpp"
+#include "implicit_moment/theory/compare_reconnection.hpp"
+#include "implicit_moment/theory/spline_average.hpp"
+
+namespace implicit_moment {
+
+/// A_y along the middle row of a tail, where it grows with x as long as nothing reconnects.
+struct TailRow {
+    double flux =
+        0;  // of field lines that are closed in an O-line: the largest fall of A_y along x
+    double X_line = 0;  // where that fall ends, from the middle [d_i]; 0 where there is none
+    double shift = 0;   // rms of what is not A_y of the equilibrium, epsilon B0 x
+};
+
+/// in:     B; an even number of cells in z; B_z in the middle of the equilibrium
+inline TailRow tail_row(const Grid& grid, const VectorField& B, double B_z) {
+    const double* of_row = B.z() + grid.index(0, grid.z.cells / 2);
+    TailRow row;
+    double A_y = 0, high = 0, squares = 0;
+    for (long i = 1; i <= grid.x.cells; ++i) {
+        A_y += grid.x.spacing() * of_row[i - 1];
+        high = std::max(high, A_y);
+        if (high - A_y > row.flux)
+            row.flux = high - A_y,
+            row.X_line = grid.x.at(double(i)) - 0.5 * (grid.x.low + grid.x.high());
+        squares += std::pow(A_y - B_z * grid.x.spacing() * double(i), 2);
+    }
+    row.shift = std::sqrt(squares / double(grid.x.cells));
+    return row;
+}
+
+/// The columns of a tail.
+inline void add_tail(const Case& w, const FieldState& field, common::Row& row) {
+    const double B0 = harris_sheet(w.harris).B0;
+    const TailRow middle = tail_row(w.grid, field.B, w.harris.normal_field * B0);
+    row.add("flux", "B0*d_i", middle.flux / B0);
+    row.add("X_line", "d_i", middle.X_line);
+    row.add("flux_shift", "B0*d_i", middle.shift / B0);
+}
+
+/// The noise of A_y along the middle row that particles make in thermal equilibrium [B0 d_i].
+///     <|B_k|^2>/8 pi = T w/2 for every wave k between the walls, w real particles in one of the run's,
+///     so that <A_y^2> = 4 pi T w/(L_x L_z) sum 1/k^2
+/// note:   an upper bound: with k d_e > 1 the quasi-static part is smaller, and a quiet start begins at 0.
+inline double thermal_flux(const Case& w, double weight) {
+    const Grid& grid = w.grid;
+    const HarrisSheet sheet = harris_sheet(w.harris);
+    double sum = 0;
+    // Sines between walls: only odd ones across the sheet reach its middle, and are 1 there.
+    for (long l = 1; l < grid.z.cells; l += 2)
+        for (long k = 1; k < grid.x.cells; ++k)
+            sum += 1 / (std::pow(pi * double(k) / grid.x.length, 2) +
+                        std::pow(pi * double(l) / grid.z.length, 2));
+    const double squares =
+        2 * 4 * pi * (sheet.T_i + sheet.T_e) * weight * sum / (grid.x.length * grid.z.length);
+    return std::sqrt(squares) / sheet.B0;
+}
+
+/// A tail that nothing perturbs: density and current against n0 F^2/cosh^2(h) + n_inf in units of their own
+/// noise, and the flux across the middle row.
+inline void compare_tail_at_rest(const Case& w, const common::History& history,
+                                 const Plasma& plasma, const std::vector<Moments>& moments,
+                                 common::Summary& summary) {
+    const Grid& grid = w.grid;
+    const HarrisSheet sheet = harris_sheet(w.harris);
+    const TailSheet tail = tail_of(w.harris);
+    const double weight = plasma.species[0].q_p, x_middle = 0.5 * (grid.x.low + grid.x.high()),
+                 z_middle = 0.5 * (grid.z.low + grid.z.high());
+    // Blocks of eight columns: the noise of one node is not Gaussian where the lobes are empty.
+    const long columns = std::min(8L, grid.x.cells - 1);
+    double density = 0, current_y = 0, count = 0;
+    double middle = 0, expected_middle = 0, in_middle = 0;
+    for (long first = 1; first + columns <= grid.x.cells; first += columns) {
+        for (long j = 1; j < grid.z.cells; ++j) {
+            double in_sheet = 0;
+            for (long i = first; i < first + columns; ++i) {
+                const double x = grid.x.at(double(i)) - x_middle;
+                in_sheet += n0 / double(columns) *
+                            spline_average([&](double z) { return tail.density(x, z); },
+                                           grid.z.at(double(j)) - z_middle, grid.z.spacing());
+            }
+            const double n = in_sheet + n0 * w.harris.background;
+            const double in_block = n * double(columns) * grid.cell_area() / weight;
+            if (in_block < 10) continue;
+            const auto block = [&](const Field& f) {
+                return f.segment(grid.index(first, j), columns).mean();
+            };
+            for (const Moments& m : moments)
+                density += std::pow(std::fabs(block(m.rho)) / n - 1, 2) * in_block;
+            const double J = in_sheet * (sheet.u_i - sheet.u_e);
+            const double J_noise =
+                n * std::sqrt((sheet.T_i + sheet.T_e * w.harris.mass_ratio) / in_block);
+            current_y += std::pow((block(moments[0].J_y) + block(moments[1].J_y) - J) / J_noise, 2);
+            count += 1;
+            if (j == grid.z.cells / 2)
+                middle += block(moments[0].rho), expected_middle += n, in_middle += in_block;
+        }
+    }
+    summary.result_at_most("density_over_noise", std::sqrt(density / (2 * count)), "", 1.2,
+                           "n0 F^2/cosh^2(h) + n_inf");
+    summary.result_at_most("current_over_noise", std::sqrt(current_y / count), "", 1.2,
+                           "Lembege and Pellat 1982, made exact");
+    summary.result("density_in_the_middle", middle / expected_middle, "n of the equilibrium", 1,
+                   3 / std::sqrt(in_middle), "equilibrium, three times the noise of a count");
+    summary.hint("noise of few particles moves the field: raise harris.particles");
+    summary.result_at_most("flux_shift", history.column("flux_shift").back(), "B0 d_i",
+                           thermal_flux(w, weight), "thermal noise of A_y");
+    summary.result_at_most("flux_reconnected", history.largest("flux"), "B0 d_i",
+                           2 * thermal_flux(w, weight), "equilibrium: no field line closes");
+}
+
+/// A seeded tail: flux that is closed in O-lines, and how fast it grew. A sheet that is thinner than an ion
+/// gyrates and begins with an X-line closes more flux than crossed it, so that field lines of the lobes
+/// reconnect; of thicker ones the numbers are reported alone.
+inline void compare_tail_flux(const Case& w, const common::History& history,
+                              common::Summary& summary) {
+    const auto times = history.column("time_Omega_ci"), flux = history.column("flux");
+    summary.result_info("flux_final", flux.back(), "B0 d_i", "measured");
+    summary.result_info("X_line_final", history.column("X_line").back(), "d_i", "measured");
+    if (times.back() >= 4)
+        summary.result_info("peak_reconnection_rate", detail::steepest_slope(times, flux, 2),
+                            "B0 v_A", "measured");
+    const HarrisSheet sheet = harris_sheet(w.harris);
+    const double rho_i = std::sqrt(2.0) * sheet.v_i / sheet.Omega_ci,
+                 normal_flux = w.harris.normal_field * w.grid.x.length;
+    if (!(w.harris.thickness < rho_i && flux.front() > 0 && normal_flux > 0) || times.back() < 20)
+        return;
+    summary.hint(
+        "the sheet tears late where few particles make it noisy or the mesh is coarse: raise "
+        "time.end, harris.particles or grid.cells_z");
+    summary.result_at_least("flux_over_normal_flux", history.largest("flux") / normal_flux, "", 1,
+                            "a sheet thinner than rho_i tears: field lines of the lobes reconnect");
+}
+
+}  // namespace implicit_moment
