@@ -181,7 +181,7 @@ TEST_CASE(
             Moments moments(grid);
             Field scratch;
             const SmoothingSettings smoothing{passes, true};
-            deposit_mass_matrix({s}, grid, VectorField(grid), 0, mass);
+            deposit_mass_matrix({s}, grid, VectorField(grid), {}, 0, mass);
             smooth(grid, felt(grid), smoothing, mass.J_hat.all.data(), scratch);
             deposit_moments(s, grid, VectorField(grid), 0, moments);
             smooth(grid, on_nodes, felt_charge(grid), smoothing, moments.J_y.data(), scratch);
