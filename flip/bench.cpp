@@ -1,6 +1,7 @@
 // How fast the loops of pic.cpp and flip.cpp are, and where their time goes: the same calls with a
 // clock between them, on the Rayleigh-Taylor instability with nine particles per cell, by one thread
-// and by two; then the time per particle on small and large meshes. `make bench` runs it.
+// and by two; then the time per particle on small and large meshes, and about an axis. `make bench`
+// runs it.
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -16,8 +17,8 @@ namespace {
 
 using namespace flip;
 
-// Heavy gas on light gas, in a box twice as high as wide.
-Case heavy_on_light(long cells_x) {
+// Heavy gas on light gas, in a box twice as high as wide; or in a can, where it rests at first.
+Case heavy_on_light(long cells_x, bool rings = false) {
     Case parameters;
     parameters.grid = {{cells_x, 0, 1, true}, {2 * cells_x, -1, 2, false}};
     parameters.boundaries[z_low].kind = parameters.boundaries[z_high].kind = "slip";
@@ -26,7 +27,7 @@ Case heavy_on_light(long cells_x) {
     parameters.gravity_z = -1;
     RegionCase light, heavy;
     light.gas = {"light", 1, 20, 0, 0};
-    light.flow = "overturn";
+    light.flow = rings ? "uniform" : "overturn";
     light.amplitude = 0.1;
     light.hydrostatic = true;
     heavy = light;
@@ -34,6 +35,11 @@ Case heavy_on_light(long cells_x) {
     heavy.gas.material = "heavy";
     heavy.gas.density = 2;
     parameters.regions = {light, heavy};
+    if (rings) {
+        parameters.geometry = "axisymmetric";
+        parameters.grid.x.periodic = false;
+        parameters.boundaries[x_low].kind = parameters.boundaries[x_high].kind = "slip";
+    }
     return completed(parameters);
 }
 
@@ -93,13 +99,17 @@ int main() {
         }
         std::printf("\n%14s %16s %22s\n", "cells", "particles", "ns per particle-step");
         common::set_thread_count(1);
-        for (const long cells_x : {64L, 128L, 256L, 512L}) {
+        const auto time_mesh = [&](long cells_x, bool rings) {
             long count = 0;
             const long steps = std::max(4L, 20 * 256 * 256 / (cells_x * cells_x) / 4);
-            const common::StepClock clock = time_steps(pic, heavy_on_light(cells_x), steps, count);
-            std::printf("%7ld x %4ld %16ld %22.1f\n", cells_x, 2 * cells_x, count,
-                        1e9 * clock.total() / static_cast<double>(count * steps));
-        }
+            const common::StepClock clock =
+                time_steps(pic, heavy_on_light(cells_x, rings), steps, count);
+            std::printf("%7ld x %4ld %16ld %22.1f%s\n", cells_x, 2 * cells_x, count,
+                        1e9 * clock.total() / static_cast<double>(count * steps),
+                        rings ? " (r, z)" : "");
+        };
+        for (const long cells_x : {64L, 128L, 256L, 512L}) time_mesh(cells_x, false);
+        time_mesh(256, true);
         std::printf("\n");
     }
     struct rusage usage {};

@@ -20,18 +20,20 @@ inline double face_pressure(const PicCells& cells, long left, long right, double
     return cells.filled[left] * cells.filled[right] * (0.5 * (cells.p[left] + cells.p[right]) + q);
 }
 
-// Viscous pressure on the faces below row j, and between its cells.
+// Viscous pressure on the faces below row j, and between its cells, with the harmonic mean of their
+// densities: more would throw a light cell about beside a heavy one, or need short steps.
 inline void viscous_pressure(const Grid& grid, const ArtificialViscosity& given, long j,
                              PicCells& cells) {
     const long nx = grid.x.cells, stride = grid.stride();
     const ArtificialViscosity viscosity = given;
-    const double half_per_V = 0.5 / grid.cell_area();
+    const double twice_per_V = 2 / grid.cell_area();
     const double *filled = cells.filled.data(), *mass = cells.mass.data(), *c = cells.c.data();
     const CellVelocity* v = cells.v.data();
     const double* const per_ring = cells.per_ring.data() + 1;
     const long n = grid.index(0, j);
     const auto q = [=](long a, long b, long before, double du) {
-        const double rho = half_per_V * (mass[a] * per_ring[before] + mass[b] * per_ring[b - n]);
+        const double one = mass[a] * per_ring[before], other = mass[b] * per_ring[b - n],
+                     rho = twice_per_V * one * other / (one + other + 1e-300);
         return filled[a] * filled[b] * viscosity(rho, 0.5 * (c[a] + c[b]), du);
     };
     double *q_x = cells.q_x.data(), *q_z = cells.q_z.data();

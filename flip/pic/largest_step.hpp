@@ -123,9 +123,9 @@ inline double rate_of_viscosity(const Grid& grid, const ArtificialViscosity& vis
         double rate = 0;
         const auto face = [&](long m, long beside, double du, double per_distance) {
             if (!(du < 0)) return;
-            const double slope = viscosity.slope(
-                0.5 * (mass[n] * per_ring[column] + mass[m] * per_ring[beside]) / area,
-                0.5 * (c[n] + c[m]), du);
+            const double one = mass[n] * per_ring[column], other = mass[m] * per_ring[beside],
+                         slope = viscosity.slope(2 * one * other / (area * (one + other + 1e-300)),
+                                                 0.5 * (c[n] + c[m]), du);
             rate += cells.filled[m] * slope * area *
                     (per_mass[n] * ring[column] + per_mass[m] * ring[beside]) * per_distance;
         };

@@ -48,7 +48,7 @@ struct RegionCase {
     double speed = 0, width = 0, amplitude = 0;
     long mode = 1;
     double energy = 0;         // added, shared by the particles of the region
-    bool hydrostatic = false;  // pressure is that of center_z
+    bool hydrostatic = false;  // pressure is that of the center
     double noise = 0;          // random part of the velocity
 
     bool has_formula() const {

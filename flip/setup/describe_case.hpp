@@ -58,8 +58,9 @@ inline void describe_region(common::ParameterTable& table, const std::string& pr
     table.whole(prefix + ".mode", r.mode, "", between(1, 4096), "wavelengths in length_x");
     table.real(prefix + ".energy", r.energy, "energy/length", at_least(0),
                "added to the internal energy, shared by the mass of the region");
-    table.flag(prefix + ".hydrostatic", r.hydrostatic,
-               "pressure is that at center_z, and changes with depth by density times gravity");
+    table.flag(
+        prefix + ".hydrostatic", r.hydrostatic,
+        "pressure is that at center_x, center_z, and changes with depth by density times gravity");
     table.real(prefix + ".noise", r.noise, "velocity", at_least(0),
                "largest random velocity of a particle along x");
 }

@@ -139,7 +139,7 @@ inline FluidState fluid_of(const Case& parameters, const RegionCase& r, double x
     const auto at = [&](const common::Formula& f) { return f.at(x, z, distance); };
     double rho = at(r.gas.density), p = at(r.gas.pressure), heat = 1;
     double vx = at(r.gas.velocity_x), vz = at(r.gas.velocity_z);
-    if (r.hydrostatic) p += rho * parameters.gravity_z * dz;
+    if (r.hydrostatic) p += rho * (parameters.gravity_x * dx + parameters.gravity_z * dz);
     if (r.flow == "rotation") {
         vx -= r.speed * dz / r.width;
         vz += r.speed * dx / r.width;

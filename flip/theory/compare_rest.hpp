@@ -24,6 +24,15 @@ inline void validate_rest(const Case& parameters, const Refusal& refuse) {
     }
 }
 
+/// Warns of a tolerance that means nothing here.
+inline void warn_of_rest(const Case& parameters, std::vector<std::string>& warnings) {
+    warn(warnings, parameters.theory_tolerance != Case().theory_tolerance,
+         "theory.tolerance = ", parameters.theory_tolerance,
+         " means nothing to theory.compare = \"rest\", which allows ", largest_mach_at_rest,
+         " of the sound speed, or under gravity a kinetic energy of ", largest_kinetic_at_rest,
+         " m g h: take it out");
+}
+
 /// Largest speed and kinetic energy of the whole run.
 inline void compare_rest(const FinishedRun& run) {
     const Case& parameters = run.parameters;
@@ -47,7 +56,7 @@ inline void compare_rest(const FinishedRun& run) {
                                largest_kinetic_at_rest, "the pressure balances gravity");
 }
 
-inline constexpr Comparison rest_comparison{"rest",  validate_rest, nullptr,
-                                            nullptr, nullptr,       compare_rest};
+inline constexpr Comparison rest_comparison{"rest",       validate_rest, nullptr,
+                                            warn_of_rest, nullptr,       compare_rest};
 
 }  // namespace flip

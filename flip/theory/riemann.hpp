@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "common/run/parameters.hpp"
 #include "flip/theory/gas_waves.hpp"
@@ -41,13 +42,16 @@ inline void check(const GasState& s) {
 
 /// The waves between two gases that meet at x = 0, t = 0.
 ///   u_L - push_L(p) = u_R + push_R(p)  for the pressure p at the contact
-/// in:    the gases; density 0 on one side is a vacuum, whose other values do not matter
+/// in:    the gases; density 0 on one side is a vacuum, whose other values do not matter; the least
+///        pressure that they hold together: below it they part
 /// exact: mass, momentum and energy balance across shocks; entropy and u +- 2 c / (gamma - 1) are
 ///        constant through fans
 /// errors: InputError for a gas that cannot exist, and for two vacua.
-/// note:  a void has the lowest pressure that both gases allow, -p_infinity of the softer one; at
-///        a vacuum it is zero, so that a stiffened gas has a free surface of finite density there.
-inline RiemannSolution solve_riemann(GasState left, GasState right) {
+/// note:  a void has the lowest pressure that both gases allow, -p_infinity of the softer one or
+///        the least; at a vacuum it is zero, so that a stiffened gas has a free surface of finite
+///        density there.
+inline RiemannSolution solve_riemann(GasState left, GasState right,
+                                     double least = -std::numeric_limits<double>::infinity()) {
     using namespace riemann_detail;
     const auto empty_like = [](const GasState& s) {
         return GasState{0.0, s.velocity, 0.0, s.gamma, 0.0};
@@ -61,7 +65,7 @@ inline RiemannSolution solve_riemann(GasState left, GasState right) {
     const Front L{left, -1.0}, R{right, 1.0};
 
     // The unknown is the pressure above the lowest one, y, so that P is exact for both gases.
-    const double lowest = -std::min(left.p_infinity, right.p_infinity);
+    const double lowest = std::max(least, -std::min(left.p_infinity, right.p_infinity));
     const double rise_L = left.p_infinity + lowest, rise_R = right.p_infinity + lowest;
     const auto gap = [&](double y) {
         return right.velocity - left.velocity + push(L, y + rise_L) + push(R, y + rise_R);
