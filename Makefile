@@ -297,6 +297,7 @@ $(call figure,fig12$(1),implicit_moment,out/implicit_moment/lhdi$(1))
 $(call figure,fig15$(1),implicit_moment,out/implicit_moment/thin_sheets$(1))
 $(call series,implicit_moment/figures/thin_sheets$(1).sh,implicit_moment,implicit_moment/cases/lhdi$(1).toml,out/implicit_moment/thin_sheets$(1))
 $(patsubst %,out/figures/%$(1).png,fig11 fig12 fig15): implicit_moment/figures/thin_sheet.gp
+out/figures/fig12$(1).png: implicit_moment/figures/keep_modes.awk
 endef
 $(eval $(call thin_sheets,))
 $(eval $(call thin_sheets,_quick))

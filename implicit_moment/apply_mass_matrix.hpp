@@ -14,13 +14,17 @@ inline double linear_overlap(double angle) { return (2 + std::cos(angle)) / 3; }
 inline double quadratic_overlap(double angle) {
     return (33 + 26 * std::cos(angle) + std::cos(2 * angle)) / 60;
 }
+/// The same of a linear spline on midpoints and a quadratic one on nodes: cos(angle (g + 1/2)) times the
+/// integral of S1(x) S2(x - g - 1/2).
+inline double mixed_overlap(double angle) {
+    return (11 * std::cos(0.5 * angle) + std::cos(1.5 * angle)) / 12;
+}
 
-/// The mean of what M makes of a uniform E along one component: the sum of that component's entries over
-/// the cells.
-inline double mean_response(const Grid& grid, const MassMatrix& mass, int component) {
+/// The mean of what M makes of a uniform E, component a from component b: the sum of their entries over the
+/// cells. in: pair, 3 a + b
+inline double mean_response(const Grid& grid, const MassMatrix& mass, int pair) {
     const long stride = grid.stride();
-    const int first = detail::first_offset(4 * component),
-              end = detail::first_offset(4 * component + 1);
+    const int first = detail::first_offset(pair), end = detail::first_offset(pair + 1);
     double sum = 0;
     for (long row = 0; row < grid.z.cells + 3; ++row) {
         const double* entry = &mass.entry[std::size_t((row * detail::offsets + first) * stride)];

@@ -17,7 +17,8 @@
 //
 // with k = a sigma and w the smoothing factor of the mode; with the mass matrix w^2 also has what the
 // products of its splines make of the mode. So the inverse is: to modes by four small matrix products,
-// 2 x 2 and 1 x 1 solves, and back.
+// 2 x 2 and 1 x 1 solves, and back. Where a uniform magnetization turns a doubly periodic plasma, 3 x 3 solves
+// of pairs of modes take the place of these (mode_inverse.hpp).
 #pragma once
 
 #include <array>
@@ -26,7 +27,7 @@
 #include "common/gmres.hpp"
 #include "common/newton_krylov.hpp"
 #include "implicit_moment/apply_mass_matrix.hpp"
-#include "implicit_moment/mesh_modes.hpp"
+#include "implicit_moment/mode_inverse.hpp"
 #include "implicit_moment/predict_current.hpp"
 
 namespace implicit_moment {
@@ -56,13 +57,8 @@ struct FieldSettings {
     }
 };
 
-/// The inverse of the uniform field operator for every mode: 2 x 2 in the plane, one number for y.
-struct ModeInverse {
-    Eigen::ArrayXXf xx, xz, zz, yy;
-};
-
-/// The room in which the field equations are solved, kept between steps: nothing of it is state, and
-/// nothing of it is read before it is written in the same step.
+/// The room in which the field equations are solved: nothing of it is state, or is read before it is
+/// written in the same step.
 struct FieldSolver {
     Grid grid;
     FieldSettings settings;
@@ -132,17 +128,21 @@ inline void apply_field_operator(FieldSolver& solver, double a, const Eigen::Vec
     keep_unknowns(grid, out.data());
 }
 
-/// Finds the inverse of the header's matrices for the mean chi_0 of the diagonal of chi.
+/// Finds the inverse of the header's matrices for the mean of chi.
 /// out:    solver.inverse, for precondition_field.
-/// note:   the number of iterations then does not grow with omega_p dt in a uniform plasma, and is
-///         bounded by the contrasts of density and magnetization otherwise.
+/// note:   the number of iterations then does not grow with omega_p dt in a uniform plasma, and with Omega_c dt in
+///         one without walls; otherwise it is bounded by the contrasts of density and magnetization.
 inline void prepare_preconditioner(FieldSolver& solver, double a) {
     const Grid& grid = solver.grid;
-    std::array<double, 3> chi_0{};
+    Eigen::Matrix3d chi;
     const bool has_mass = solver.settings.uses_mass_matrix();
-    for (std::size_t k = 0; k < 3; ++k)
-        chi_0[k] = has_mass ? 4 * pi * a / c * mean_response(grid, solver.mass, int(k))
-                            : interior(grid, solver.response.chi.entry[4 * k].data()).mean();
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+            chi(i, j) =
+                has_mass ? 4 * pi * a / c * mean_response(grid, solver.mass, 3 * i + j)
+                         : interior(grid, solver.response.chi.entry[std::size_t(3 * i + j)].data())
+                               .mean();
+    const Eigen::Vector3d chi_0 = chi.diagonal();
     // What the overlap of splines makes of a mode, by the place of a component.
     const auto half = [&](double angle) { return has_mass ? linear_overlap(angle) : 1; };
     const auto whole = [&](double angle) { return has_mass ? quadratic_overlap(angle) : 1; };
@@ -165,13 +165,37 @@ inline void prepare_preconditioner(FieldSolver& solver, double a) {
             inverse.yy(k, l) = float(1 / yy);
         }
     }
+    const Eigen::Matrix3d mean = chi;
+    chi.diagonal().setZero();
+    inverse.turns =
+        grid.x.periodic && grid.z.periodic && chi.cwiseAbs().maxCoeff() > 0.01 * chi_0.maxCoeff();
+    if (!inverse.turns) return;
+    const auto between = [&](double angle) {
+        return has_mass ? mixed_overlap(angle) : std::cos(0.5 * angle);
+    };
+    find_wave_inverses(
+        grid,
+        [&](long k, long l) {
+            const double k_x = a * solver.modes.x.sigma[k], k_z = a * solver.modes.z.sigma[l];
+            const double x = solver.modes.x.angle[k], z = solver.modes.z.angle[l],
+                         w = solver.smoothing_x[k] * solver.smoothing_z[l];
+            const double g_xy = between(x) * whole(z), g_yz = whole(x) * between(z),
+                         g_xz = between(x) * between(z);
+            Eigen::Matrix3d g;
+            g << half(x) * whole(z), g_xy, g_xz, g_xy, whole(x) * whole(z), g_yz, g_xz, g_yz,
+                whole(x) * half(z);
+            Eigen::Matrix3d M = w * w * g.cwiseProduct(mean);
+            M.diagonal() +=
+                Eigen::Vector3d(1 + k_z * k_z, 1 + k_x * k_x + k_z * k_z, 1 + k_x * k_x);
+            return std::pair(M, k_x * k_z);
+        },
+        inverse);
 }
 
 /// out = the inverse of the operator with uniform chi_0, applied to r: the preconditioner.
 /// in:     solver.inverse, of prepare_preconditioner; r on the unknowns of E.
 /// exact:  to single precision, which flexible GMRES takes without losing the double one of its
 ///         solution.
-/// note:   each of the three components goes in two halves, so that two threads have work.
 inline void precondition_field(FieldSolver& solver, const Eigen::VectorXd& r,
                                Eigen::VectorXd& out) {
     const Grid& grid = solver.grid;
@@ -179,7 +203,7 @@ inline void precondition_field(FieldSolver& solver, const Eigen::VectorXd& r,
     // The modes of each component, along x and along z, by its place on the mesh.
     const std::array<const Eigen::MatrixXf*, 3> X{&solver.U_x, &solver.V_x, &solver.V_x};
     const std::array<const Eigen::MatrixXf*, 3> Z{&solver.V_z, &solver.V_z, &solver.U_z};
-    // Calls work(component, half, first, columns) for both halves of every component.
+    // Calls work(component, half, first, columns) for both halves of every component: work for two threads.
     const auto for_each_half = [&](const auto& work) {
         common::for_each_row(
             6,
@@ -203,10 +227,14 @@ inline void precondition_field(FieldSolver& solver, const Eigen::VectorXd& r,
     // Solve every mode alone.
     auto &e_x = solver.amplitude[0], &e_y = solver.amplitude[1], &e_z = solver.amplitude[2];
     const ModeInverse& inverse = solver.inverse;
-    e_y.array() *= inverse.yy;
-    solver.solved_x = inverse.xx * e_x.array() + inverse.xz * e_z.array();
-    e_z.array() = inverse.xz * e_x.array() + inverse.zz * e_z.array();
-    e_x.array() = solver.solved_x;
+    if (inverse.turns) {
+        solve_waves(grid, inverse, solver.amplitude);
+    } else {
+        e_y.array() *= inverse.yy;
+        solver.solved_x = inverse.xx * e_x.array() + inverse.xz * e_z.array();
+        e_z.array() = inverse.xz * e_x.array() + inverse.zz * e_z.array();
+        e_x.array() = solver.solved_x;
+    }
 
     // Go back to the mesh.
     out.resize(r.size());

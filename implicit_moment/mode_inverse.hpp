@@ -14,6 +14,7 @@
 
 #include <Eigen/Dense>
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "implicit_moment/mesh_modes.hpp"
@@ -46,6 +47,27 @@ inline std::array<float, 2> modes_of(bool half, const std::array<float, 2>& part
 }
 
 }  // namespace detail
+
+/// Inverts the matrices of all waves of a doubly periodic mesh.
+/// in:     matrix(k, l), of modes k and l that are cosines: without a^2 K_x K_z, and that product
+/// out:    inverse.wave
+template <class Matrix>
+inline void find_wave_inverses(const Grid& grid, const Matrix& matrix, ModeInverse& inverse) {
+    const long nx = grid.x.cells, nz = grid.z.cells;
+    inverse.wave.resize(std::size_t((nx / 2 + 1) * (nz / 2 + 1)));
+    for (long q = 0; q <= nz / 2; ++q) {
+        for (long p = 0; p <= nx / 2; ++p) {
+            const auto [M, product] =
+                matrix(detail::WaveModes(p, nx).cosine, detail::WaveModes(q, nz).cosine);
+            for (const int sense : {1, -1}) {
+                Eigen::Matrix3d of_wave = M;
+                of_wave(0, 2) -= sense * product, of_wave(2, 0) -= sense * product;
+                inverse.wave[std::size_t(p + (nx / 2 + 1) * q)][sense > 0 ? 0 : 1] =
+                    of_wave.inverse().cast<float>();
+            }
+        }
+    }
+}
 
 /// Solves every wave of a doubly periodic mesh.
 /// in/out: amplitudes of E_x, E_y, E_z by modes, as precondition_field has them

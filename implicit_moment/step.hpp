@@ -51,7 +51,7 @@ void find_moments(const Grid& grid, double dt, const std::vector<Particles>& par
     // [/moments]
 }
 
-/// A copy of the species where one is relativistic: what a kick leaves behind that asks for too much.
+/// A copy of the species where one is relativistic: to go back to where a kick asks for too much.
 inline std::vector<Particles> relativistic_ones(const std::vector<Particles>& species) {
     return std::any_of(species.begin(), species.end(),
                        [](const Particles& s) { return s.relativistic; })
@@ -59,7 +59,7 @@ inline std::vector<Particles> relativistic_ones(const std::vector<Particles>& sp
                : std::vector<Particles>{};
 }
 
-/// errors: NumericalError after twenty turns
+/// Takes back a kick; the field that it had is the next guess. errors: NumericalError after twenty turns
 inline void take_back_kick(const std::vector<Particles>& before, int turn,
                            std::vector<Particles>& species) {
     if (turn == 20)

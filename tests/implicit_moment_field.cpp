@@ -357,6 +357,32 @@ TEST_CASE("the number of iterations does not grow with the plasma period per ste
     for (const int count : iterations) CHECK(count <= 5);
 }
 
+TEST_CASE("of a uniform magnetized plasma without walls the preconditioner is the inverse") {
+    Random random;
+    for (const Grid& grid :
+         {Grid{{8, -2, 4, true}, {7, 0.5, 2.1, true}}, Grid{{12, 0, 3, true}, {10, 0, 2, true}}}) {
+        for (const double omega_dt : {0.3, 3.0, 40.0}) {
+            for (const long passes : {0L, 2L}) {
+                FieldSettings settings;
+                settings.smoothing.passes = passes;
+                FieldSolver solver(grid, settings);
+                const Eigen::Vector3d O = omega_dt * random.vector();
+                const auto R = rotation_matrix(O[0], O[1], O[2]);
+                for (std::size_t k = 0; k < 9; ++k)
+                    solver.response.chi.entry[k].setConstant(30 * R[k]);
+                prepare_preconditioner(solver, 0.4);
+                CHECK(solver.inverse.turns);
+                VectorField E = random.field(grid, electric);
+                keep_unknowns(grid, E.all.data());
+                Eigen::VectorXd r(E.all.size()), back;
+                apply_field_operator(solver, 0.4, E.all, r);
+                precondition_field(solver, r, back);
+                CHECK((back - E.all).norm() <= 2e-5 * E.all.norm());
+            }
+        }
+    }
+}
+
 TEST_CASE("what does not converge is never used") {
     const facts::Untrapped calm;
     const Grid grid = meshes()[2];

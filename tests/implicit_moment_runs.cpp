@@ -108,6 +108,32 @@ TEST_CASE("two cold streams grow at the rate of linear theory" * doctest::descri
     CHECK(std::fabs(value(longer, "theory_growth") / gamma - 1) <= 1e-6);
 }
 
+TEST_CASE("relativistic streams grow at the cold rate with either response" *
+          doctest::description("physics")) {
+    const std::string file = "implicit_moment/cases/relativistic_two_stream.toml";
+    for (const std::string response : {"moments", "mass_matrix"}) {
+        INFO(response);
+        const Json summary = run("relativistic_" + response, file + " field.response=" + response);
+        check_results(summary, 2);
+        // Omega / 8^(1/2) with Omega = omega_p / gamma^(3/2), gamma = 5^(1/2).
+        CHECK(std::fabs(value(summary, "theory_growth") * std::sqrt(8.0) * std::pow(5, 0.75) - 1) <=
+              1e-4);
+        CHECK(std::fabs(value(summary, "growth_over_theory") - 1) <= 0.01);
+    }
+    // Along their whole way: both laws. And warm, in a magnetic field.
+    const Json both = run("relativistic_newton", file +
+                                                     " field.response=mass_matrix time.end=10 "
+                                                     "field.solver=newton_krylov theory.wave=none");
+    CHECK(value(both, "energy_identity_per_step") <= 1e-11);
+    CHECK(value(both, "gauss_residual") <= 1e-9);
+    std::string hot =
+        "implicit_moment/cases/plasma_at_rest.toml time.end=100 "
+        "particles.relativistic=true";
+    for (const std::string axis : {"x", "y", "z"})
+        hot += " species.electrons.temperature_" + axis + "=0.04";
+    CHECK(value(run("relativistic_rest", hot), "energy_identity_per_step") <= 1e-11);
+}
+
 TEST_CASE("two cold streams of short wavelength are stable" * doctest::description("physics")) {
     // k v0 = 1.2 omega_p is beyond the cut-off: the mode must not outgrow its seed by more than
     // noise.

@@ -81,6 +81,8 @@ mpm_implicit bar_wave time.end=0.3 method.frozen=true -> 9
 implicit_moment sheet time.end=6
 implicit_moment sheet time.end=6 field.theta=0.7 plasma.loading=random
 implicit_moment sheet time.end=3 newton
+implicit_moment sheet time.end=3 particles.relativistic=true
+implicit_moment sheet time.end=3 particles.relativistic=true field.response=mass_matrix
 implicit_moment thin_sheet
 implicit_moment streams
 explicit_em sheet time.end=6 output.history_steps=2
