@@ -242,9 +242,8 @@ TEST_CASE("closed flux is the largest fall of A_y along the middle row") {
     CHECK(std::fabs(closed.X_line - grid.x.at(13)) <= 1e-13);
 }
 
-TEST_CASE(
-    "a tail at rest stays, and where images of charge hide the current of its ends it does not" *
-    doctest::description("physics")) {
+TEST_CASE("a tail at rest stays and does not where images of charge hide the current of its ends" *
+          doctest::description("physics")) {
     const std::string tail = "implicit_moment/cases/lembege_pellat.toml output.fields_interval=0";
     const auto run = [&](const std::string& name, const std::string& arguments) {
         return run_into(name, "implicit_moment", tail + arguments).summary;
