@@ -44,7 +44,7 @@ set title sprintf('thick, 1 d_i, B_z = %g B_0, t Ω_{ci} = %.3g', parameter('nor
 plot late using 1:2:(column(J) / J0) with image notitle, $before using 1:2 with lines linewidth 4 linecolor rgb '#a8cfe6' notitle, $after using 1:2 @contours notitle
 run = thin
 J0 = B0 / parameter('thickness')
-set bmargin at screen 0.14; set tmargin at screen 0.45
+set bmargin at screen 0.14; set tmargin at screen 0.46
 set colorbox user origin 0.895, 0.15 size 0.012, 0.28
 set xlabel 'x / d_i'; set format x '%g'
 set title sprintf('thin, 0.5 d_i, B_z = %g B_0, t Ω_{ci} = %.3g', parameter('normal_field'), B0 * time_of(tearing)) offset 0, -0.6 font ',20'
