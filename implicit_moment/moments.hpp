@@ -29,7 +29,8 @@ struct Moments {
 
 using common::on_faces, common::on_nodes, common::on_x_edges, common::on_z_edges;
 
-/// What stands behind a wall: the plasma's own mirror image, or the image charges of a conductor.
+/// What stands behind a wall: the plasma's own mirror image, or what the field equations have there, the
+/// image charges of a conductor (felt, in vector_field.hpp).
 enum class Images { plasma, conductor };
 
 /// Adds what was deposited behind walls and periodic ends to the points that it belongs to.

@@ -13,8 +13,8 @@
 
 namespace implicit_moment {
 
-/// Energy of one vector field, sum of f^2 / 8 pi over the mesh. Tangential E and normal B vanish
-/// on walls, so every unknown has a full cell.
+/// Energy of one vector field, sum of f^2 / 8 pi over the mesh. Tangential E vanishes on walls and normal
+/// B stays as it is there, so every unknown has a full cell.
 inline double field_energy(const Grid& grid, const VectorField& f) {
     double sum = 0;
     for (long a = 0; a < 3; ++a) {

@@ -129,15 +129,18 @@ inline void add_product(const Grid& grid, double factor, const std::vector<doubl
 }
 
 // Charge with the images of the given sign behind walls.
-inline Field charge(const Grid& grid, long order, int sign, const Particles& particles) {
+inline Field charge(const Grid& grid, long order, Parity images, const Particles& particles) {
     Field rho = Field::Zero(grid.size());
     for (std::size_t p = 0; p < particles.x_p.size(); ++p) {
         const double s = in_cells(grid.x, particles.x_p[p]), t = in_cells(grid.z, particles.z_p[p]);
         add_product(grid, particles.q_p / grid.cell_area(),
-                    spline_and_images(grid.x, order, false, sign, s),
-                    spline_and_images(grid.z, order, false, sign, t), rho.data());
+                    spline_and_images(grid.x, order, false, images.x, s),
+                    spline_and_images(grid.z, order, false, images.z, t), rho.data());
     }
     return rho;
+}
+inline Field charge(const Grid& grid, long order, int sign, const Particles& particles) {
+    return charge(grid, order, Parity{sign, sign}, particles);
 }
 
 // A straight flight seen from within the mesh: where it is, and the sign of its velocity there.
