@@ -15,9 +15,9 @@ namespace cic {
 
 /// Weights of S^(order) at s, a position in cells measured from a node (or, for a field that lives
 /// half-way between nodes, from the first such place).
-/// in:     s >= -1/2; or the first place and the distance d of s from the middle one (S^(1): from the
-///         first), where they are known
-/// out:    the first place touched, and the weights of it and the next ones
+/// in:     s >= -1/2; first = first_at(s), the first place touched; d, how far s is beyond the place
+///         first + order/2
+/// out:    the weights of the first place and the next ones
 /// exact:  the weights sum to 1 to round-off
 template <int order>
 struct Weights;
@@ -30,7 +30,6 @@ struct Weights<0> {
     Real S[1];
     static int first_at(Real s) { return static_cast<int>(s + Real(0.5)); }
     Weights(int first_place, Real) : first(first_place), S{1} {}
-    explicit Weights(Real s) : Weights(first_at(s), 0) {}
 };
 
 template <>
@@ -40,7 +39,6 @@ struct Weights<1> {
     Real S[2];
     static int first_at(Real s) { return static_cast<int>(s + 1) - 1; }
     Weights(int first_place, Real d) : first(first_place), S{1 - d, d} {}
-    explicit Weights(Real s) : Weights(first_at(s), s - Real(first_at(s))) {}
 };
 
 // The polynomials of common::QuadraticWeights, for single precision, too.
@@ -56,7 +54,6 @@ struct Weights<2> {
         S[1] = Real(0.75) - d * d;
         S[2] = half * (half + d) * (half + d);
     }
-    explicit Weights(Real s) : Weights(first_at(s), s - Real(first_at(s) + 1)) {}
 };
 // [/weights]
 

@@ -2,6 +2,7 @@
 // then one column after the other is carried there.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -14,10 +15,11 @@ template <class Number>
 struct SortScratch {
     std::vector<int> target;              // first the key of each element, then its new place
     std::vector<Number> column;           // one sorted quantity
-    std::vector<std::vector<int>> place;  // [block][key] next free place
+    std::vector<std::vector<int>> place;  // [block][key - lowest of the block] next free place
+    std::vector<int> next;                // [key] next free place of all
 };
 
-/// The new place of every element. Cost: elements + keys.
+/// The new place of every element. Cost: elements + keys; a block that meets few keys costs less.
 /// in:     key_of(p) in [0, keys)
 /// out:    scratch.target; first_of_key, if wanted: key k has [first_of_key[k],
 ///         first_of_key[k + 1])
@@ -27,51 +29,50 @@ void counting_sort(long count, long keys, const Key& key_of, SortScratch<Number>
                    std::vector<int>* first_of_key = nullptr) {
     scratch.target.resize(static_cast<std::size_t>(count));
     scratch.place.resize(block_count);
+    scratch.next.assign(static_cast<std::size_t>(keys), 0);
+    std::array<int, block_count> lowest{};
 
     // Count the elements of each key, block by block.
     int* target = scratch.target.data();
     for_each_block(count, [&](int block, long begin, long end) {
+        int low = begin < end ? int(keys) : 0, high = -1;
+        for (long p = begin; p < end; ++p) {
+            target[p] = key_of(p);
+            low = std::min(low, target[p]);
+            high = std::max(high, target[p]);
+        }
+        lowest[std::size_t(block)] = low;
         auto& place = scratch.place[static_cast<std::size_t>(block)];
-        place.assign(static_cast<std::size_t>(keys), 0);
-        for (long p = begin; p < end; ++p) target[p] = key_of(p);
-        for (long p = begin; p < end; ++p) ++place[static_cast<std::size_t>(target[p])];
+        place.assign(std::size_t(high + 1 - low), 0);
+        for (long p = begin; p < end; ++p) ++place[static_cast<std::size_t>(target[p] - low)];
     });
 
-    // Give every key its range and every block its share of that range: first the sums over
-    // stretches of keys, then the stretches themselves, side by side.
-    std::array<int, block_count + 1> first_of_stretch{};
-    for_each_block(
-        keys,
-        [&](int stretch, long begin, long end) {
-            int sum = 0;
-            for (const auto& place : scratch.place)
-                for (long key = begin; key < end; ++key) sum += place[std::size_t(key)];
-            first_of_stretch[std::size_t(stretch) + 1] = sum;
-        },
-        block_count * keys);
-    for (std::size_t k = 0; k < block_count; ++k) first_of_stretch[k + 1] += first_of_stretch[k];
+    // Give every key its range and every block its share of that range.
+    int* next = scratch.next.data();
+    const auto for_each_share = [&](const auto& work) {
+        for (std::size_t block = 0; block < block_count; ++block) {
+            int *const place = scratch.place[block].data(), *const next_here = next + lowest[block];
+            const long size = std::ssize(scratch.place[block]);
+#pragma omp simd
+            for (long k = 0; k < size; ++k) work(next_here[k], place[k]);
+        }
+    };
+    for_each_share([](int& next_of_key, int here) { next_of_key += here; });
+    std::exclusive_scan(next, next + keys, next, 0);
     if (first_of_key != nullptr) {
-        first_of_key->resize(static_cast<std::size_t>(keys) + 1);
-        first_of_key->back() = first_of_stretch.back();
+        first_of_key->assign(next, next + keys);
+        first_of_key->push_back(int(count));
     }
-    for_each_block(
-        keys,
-        [&](int stretch, long begin, long end) {
-            int next = first_of_stretch[std::size_t(stretch)];
-            for (auto key = std::size_t(begin); key < std::size_t(end); ++key) {
-                if (first_of_key != nullptr) (*first_of_key)[key] = next;
-                for (auto& place : scratch.place) {
-                    const int here = place[key];
-                    place[key] = next;
-                    next += here;
-                }
-            }
-        },
-        block_count * keys);
+    for_each_share([](int& next_of_key, int& place) {
+        const int here = place;
+        place = next_of_key;
+        next_of_key += here;
+    });
 
     for_each_block(count, [&](int block, long begin, long end) {
         int* place = scratch.place[static_cast<std::size_t>(block)].data();
-        for (long p = begin; p < end; ++p) target[p] = place[target[p]]++;
+        const int low = lowest[static_cast<std::size_t>(block)];
+        for (long p = begin; p < end; ++p) target[p] = place[target[p] - low]++;
     });
 }
 

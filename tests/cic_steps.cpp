@@ -141,20 +141,28 @@ double unevenness(const std::vector<std::vector<double>>& u) {
 
 TEST_CASE("weights are the B-splines and sum to one") {
     Random random(1);
-    for (int trial = 0; trial < 200; ++trial) {
-        const double s = -0.5 + 6 * random();
-        const auto check = [&](int order, const auto& weights) {
-            double sum = 0;
-            for (int i = 0; i < weights.count; ++i) {
-                CHECK(std::fabs(weights.S[i] - common::spline(order, s - weights.first - i)) <=
-                      4 * eps);
-                sum += weights.S[i];
-            }
-            CHECK(std::fabs(sum - 1) <= 2 * eps);
-        };
-        check(0, Weights<0>(s));
-        check(1, Weights<1>(s));
-        check(2, Weights<2>(s));
+    const common::Axis axis{6, 0.7, 1.8, true};
+    for (const long count : {1L, 7L, batch_size}) {
+        for (const double shift : {0.0, -0.5}) {
+            std::vector<Real> x_p(count);
+            for (Real& x : x_p) x = axis.low + axis.length * random();
+            const auto check = [&](int order, const auto& clouds) {
+                for (long p = 0; p < count; ++p) {
+                    const double s = (x_p[p] - axis.low) / axis.spacing() + shift;
+                    const auto weights = clouds[p];
+                    double sum = 0;
+                    for (int i = 0; i < weights.count; ++i) {
+                        const double exact = common::spline(order, s - weights.first - i);
+                        CHECK(std::fabs(weights.S[i] - exact) <= 16 * eps);
+                        sum += weights.S[i];
+                    }
+                    CHECK(std::fabs(sum - 1) <= 2 * eps);
+                }
+            };
+            check(0, Clouds<0>(axis, x_p.data(), count, shift));
+            check(1, Clouds<1>(axis, x_p.data(), count, shift));
+            check(2, Clouds<2>(axis, x_p.data(), count, shift));
+        }
     }
 }
 
