@@ -367,7 +367,7 @@ $(eval $(call figure,mpm_explicit_compressed_energy,mpm_explicit,out/mpm_explici
 $(foreach c,shear diametral_disk vibrating_bar yielding_disk column_collapse,\
     $(eval $(call figure,mpm_explicit_$c,mpm_explicit,out/mpm_explicit/$c)))
 $(eval $(call mpm_series,mpm_explicit_standing_wave,standing_wave,out/mpm_explicit/standing_waves))
-$(eval $(call mpm_series,mpm_explicit_incline,incline_block incline_cylinder,out/mpm_explicit/inclines))
+$(eval $(call mpm_series,mpm_explicit_incline,incline_block rolling_cylinder,out/mpm_explicit/inclines))
 $(eval $(call mpm_series,mpm_explicit_bonded_bar,bonded_bar,out/mpm_explicit/bonds))
 $(eval $(call mpm_series,mpm_explicit_oscillator,oscillator,out/mpm_explicit/oscillators))
 $(eval $(call mpm_series,mpm_explicit_sulsky_disks,sulsky_disks,out/mpm_explicit/collisions))
@@ -402,6 +402,8 @@ endef
 $(eval $(call both_series,mpm_implicit_energy_bound,energy_bound,out/mpm_implicit/bounces))
 $(eval $(call both_series,mpm_spin,spinning_disk,out/mpm_implicit/spins))
 out/mpm_implicit/spins/.complete: mpm_explicit/cases/spinning_disk.toml
+$(eval $(call both_series,mpm_rolling,rolling_cylinder,out/mpm_implicit/rollings))
+out/mpm_implicit/rollings/.complete: mpm_explicit/cases/rolling_cylinder.toml
 $(eval $(call both_series,mpm_implicit_billet,billet,out/mpm_implicit/billets))
 # Figures that look into runs of the explicit program, too.
 out/figures/fig03.png: out/mpm_explicit/rebounds/.complete
@@ -474,7 +476,7 @@ test: all tests $(BUILD)/CTestTestfile.cmake | $(packages_first)
 # Runs that the notes quote and no figure needs.
 quoted := out/implicit_moment/gem_1836/.complete $(patsubst %,out/cic/%/.complete,\
     plasma_wave landau upper_hybrid misprint cloud_collision cold_beam_grid_instability thermal_heating)\
-    $(patsubst %,out/mpm_explicit/%/.complete,rebound incline_block incline_cylinder sliding_block bonded_bar)\
+    $(patsubst %,out/mpm_explicit/%/.complete,rebound incline_block rolling_cylinder sliding_block bonded_bar)\
     $(patsubst %,out/mpm_implicit/%/.complete,compressed incline_block sliding_block vibrating_bar billet)
 
 test-long: all tests figures $(quoted) $(BUILD)/CTestTestfile.cmake | $(packages_first)

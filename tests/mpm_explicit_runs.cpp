@@ -32,16 +32,25 @@ void check_budget(const Run& r) {
 TEST_CASE("at a quarter of the limit two disks rebound" * doctest::description("physics")) {
     const Run r = run("rebound", "rebound", "");
     check_results(r, 5);
-    CHECK(std::fabs(r.value("energy_change")) < 0.03);
+    CHECK(std::fabs(r.value("energy_change")) < 0.006);
     CHECK(std::fabs(r.value("rebound") - 0.95) <= 0.03);
     CHECK(std::fabs(r.value("contact_begins") - 0.5) <= 0.02);
-    CHECK(std::fabs(r.value("contact_lasts") - 0.37) <= 0.03);
+    // On 48 and 64 cells in a radius the contact lasts 0.3976 (gimp) to 0.3998 (linear).
+    const double resolved = 0.399;
+    CHECK(std::fabs(r.value("contact_lasts") / resolved - 1) <= 0.07);
     // Half of the contact is 0.24 R, and R is eight cells: too few, which a warning says.
     CHECK(std::fabs(r.value("contact_half_width") / 8 - 0.24) <= 0.005);
     CHECK(r.summary["warnings"].size() == 1);
-    CHECK(run("fine", "rebound", "grid.cells_x=144 grid.cells_y=72 time.end=1")
-              .summary["warnings"]
-              .empty());
+    const Run fine = run("fine", "rebound", "grid.cells_x=144 grid.cells_y=72 time.end=1");
+    CHECK(fine.summary["warnings"].empty());
+    CHECK(std::fabs(fine.value("contact_lasts") / resolved - 1) <= 0.05);
+    CHECK(fine.summary["results"]["contact_lasts"]["pass"].get<bool>());
+    const Run smooth = run("smooth", "rebound", "method.shape=gimp");
+    CHECK(std::fabs(smooth.value("contact_lasts") / resolved - 1) <= 0.05);
+    // Grains that travel over the mesh while they press are warned of.
+    const Run travels = run("travels", "rebound",
+                            "grain.left.velocity_x=0.19 grain.right.velocity_x=-0.01 time.end=1");
+    CHECK(travels.summary["warnings"].size() == 2);
     check_budget(r);
     const double p = r.column("momentum_x_left").front();
     CHECK(largest(r.column("momentum_x")) <= 1e-12 * p);
@@ -136,6 +145,8 @@ TEST_CASE("a free disk keeps its angular momentum and its size" * doctest::descr
         const Run flip = run("spin", "spinning_disk",
                              std::string("time.end=6 method.transfer=flip method.shape=") + shape);
         CHECK(!flip.summary["results"]["angular_momentum_change"]["pass"].get<bool>());
+        // Every free run says so, whatever it is compared with.
+        CHECK(!flip.summary["results"]["angular_momentum_strays"]["pass"].get<bool>());
     }
 }
 
@@ -258,12 +269,12 @@ TEST_CASE("two blocks on one incline slide each with the friction of its materia
 TEST_CASE("a cylinder rolls on a rough incline and slips on a smooth one" *
           doctest::description("physics")) {
     for (const char* rough : {"contact.friction=0.3", "contact.friction=0.6"})
-        check_results(run("cylinder", "incline_cylinder", rough), 1);
+        facts::check_rolling(run("cylinder", "rolling_cylinder", rough));
     // FLIP with the lumped mass loses angular momentum at the surface, where it gets it.
-    const Run flip =
-        run("cylinder", "incline_cylinder", "contact.friction=0.6 method.transfer=flip");
+    const Run flip = run("cylinder", "rolling_cylinder",
+                         "contact.friction=0.6 method.transfer=flip theory.tolerance=0.07");
     CHECK(!flip.summary["results"]["acceleration"]["pass"].get<bool>());
-    const Run slips = run("cylinder", "incline_cylinder", "contact.friction=0.1");
+    const Run slips = run("cylinder", "rolling_cylinder", "contact.friction=0.1 expect.fails=");
     check_results(slips, 1);
     CHECK(std::fabs(slips.value("acceleration") / 4.13397 - 1) <= 0.01);
 }
@@ -279,6 +290,24 @@ TEST_CASE("a disk between plates has the fringes of the closed form" *
     CHECK(std::fabs(top.value("load") / 237.5 - 1) <= 0.01);
     CHECK(top.value("load") != r.value("load"));
     check_budget(r);
+}
+
+TEST_CASE("plates press a cylinder as Hertz says where the contact has four cells" *
+          doctest::description("physics")) {
+    const Run r = run("hertz", "hertz", "");
+    check_results(r, 5);
+    CHECK(r.summary["warnings"].empty());
+    CHECK(r.value("contact_half_width") >= 4);
+    check_budget(r);
+    // On half of the cells the contact has too few, the staircase is too stiff, and a warning says so.
+    const Run coarse = run("hertz", "hertz", "grid.cells_x=40 grid.cells_y=36");
+    CHECK(coarse.summary["warnings"].size() == 1);
+    CHECK(coarse.value("contact_half_width") < 3);
+    CHECK(coarse.value("approach") < 0.97);
+    // Plates that are met a fifth of a cell late press too little: far outside of the window.
+    const Run late =
+        run("hertz", "hertz", "grid.cells_x=40 grid.cells_y=36 contact.separation=0.6");
+    CHECK(late.value("approach") > 1.5);
 }
 
 TEST_CASE("two bonded halves swing as one bar" * doctest::description("physics")) {

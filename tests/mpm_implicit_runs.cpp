@@ -232,9 +232,9 @@ TEST_CASE("a block slides down an incline within a part in a thousand or sticks"
 TEST_CASE("a cylinder rolls on a rough incline and slips on a smoother one" *
           doctest::description("physics")) {
     for (const char* rough : {"contact.friction=0.3", "contact.friction=0.6"})
-        check_results(run("rolls", "incline_cylinder", rough), 3);
-    const Run slips =
-        run("slips", "incline_cylinder", "contact.friction=0.1 method.theta=1 time.alpha=4");
+        facts::check_rolling(run("rolls", "rolling_cylinder", rough));
+    const Run slips = run("slips", "rolling_cylinder",
+                          "contact.friction=0.1 expect.fails= method.theta=1 time.alpha=4");
     check_results(slips, 3);
     CHECK(std::fabs(slips.value("acceleration") / 4.13397 - 1) <= 1e-3);
 }
@@ -249,6 +249,19 @@ TEST_CASE("a disk between plates has the stress of the closed form" *
     check_results(run("disk_gimp", "diametral_disk",
                       "method.shape=gimp grid.particles_per_side=3 time.alpha=8"),
                   5);
+}
+
+TEST_CASE("plates press a cylinder as Hertz says where the contact has four cells" *
+          doctest::description("physics")) {
+    const Run r = run("hertz", "hertz", "");
+    check_results(r, 4);
+    check_theorem(r);
+    CHECK(r.summary["warnings"].empty());
+    CHECK(r.value("contact_half_width") >= 4);
+    const Run coarse =
+        run("hertz", "hertz", "grid.cells_x=40 grid.cells_y=36 contact.separation=0.6");
+    CHECK(coarse.summary["warnings"].size() == 1);
+    CHECK(coarse.value("approach") > 1.5);
 }
 
 TEST_CASE("a bar swings and decays as the exact factor of a step says" *
@@ -308,13 +321,15 @@ TEST_CASE("one free node is the exact map of its scheme" * doctest::description(
 TEST_CASE("a block between plates has the modulus of plane strain whatever the step" *
           doctest::description("physics")) {
     for (const std::string& overrides :
-         {std::string(), std::string("time.alpha=1e4 time.end=800 grain.top.velocity_y=-5e-6"),
+         {std::string(), std::string("time.alpha=4e3 time.end=320 grain.top.velocity_y=-5e-6"),
           std::string("material.default.nu=0"), std::string("material.default.nu=0.45"),
-          std::string("method.mass=lumped"), std::string("method.shape=gimp")}) {
+          std::string("method.mass=lumped"),
+          // Its wider field makes layers beside the plates softer, by some per cent.
+          std::string("method.shape=gimp expect.fails=layers_beside_plates")}) {
         const Run r = run("billet", "billet", overrides);
-        check_results(r, 3);
+        check_results(r, 4);
         check_theorem(r);
-        CHECK(r.value("strain") >= 0.009);
+        CHECK(r.value("strain") >= 0.0039);
     }
 }
 

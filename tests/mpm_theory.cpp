@@ -535,6 +535,22 @@ TEST_CASE("the theta scheme of one node has its own limits") {
                    1) <= 1e-9);
 }
 
+TEST_CASE("the force on a block that is pressed much is the sum of its small steps") {
+    // Increments of the law in the frame of the moment, with the force V sigma / l on the plate.
+    for (const bool changes : {true, false})
+        for (const double across : {0.0, 0.3 / 0.7}) {
+            const double M = 7;
+            double l = 1, s = 0, V = 1;
+            for (int n = 0; n < 100000; ++n) {
+                const double dl = 1e-6, de = dl / (l - 0.5 * dl);
+                s += M * de, l -= dl;
+                if (changes) V *= 1 - de * (1 - across);
+            }
+            CHECK(std::abs(mpm::pressed_stress(M, across, changes, 0.1) / (V * s / l) - 1) <= 1e-5);
+            CHECK(std::abs(mpm::pressed_stress(M, across, changes, 1e-6) / (M * 1e-6) - 1) <= 2e-6);
+        }
+}
+
 TEST_CASE("a pressed block has the stress of plane strain") {
     // Elastic, with the law of the programs: free along x, held along z.
     mpm::Material m;

@@ -90,6 +90,9 @@ const std::vector<Mutation> grains{
     {"mpm_explicit", "sulsky_disks", "time.alpha=1 time.energy_limit=0",
      "energy_change energy_gain"},
     {"mpm_explicit", "sulsky_disks", "time.end=2", "parted"},
+    {"mpm_explicit", "rebound",
+     "method.transfer=pic theory.compare=none grain.left.spin=5 grain.right.spin=5 time.end=1",
+     "angular_momentum_strays"},
     {"mpm_explicit", "vibrating_bar", "load.damping=0.6", "frequency energy_change"},
     {"mpm_explicit", "bonded_bar", "grain.right.amplitude=0.3", "bond_breaks"},
     {"mpm_explicit", "standing_wave", "method.flip=0.9", "velocity_error"},
@@ -99,8 +102,9 @@ const std::vector<Mutation> grains{
      "energy_gain"},
     {"mpm_explicit", "incline_block", "load.damping=2", "acceleration"},
     {"mpm_explicit", "sliding_block", "material.default.viscosity=0", "acceleration"},
-    {"mpm_explicit", "incline_cylinder", "load.damping=2 grid.cells_x=40 grid.cells_y=8",
-     "acceleration"},
+    {"mpm_explicit", "rolling_cylinder",
+     "expect.fails= method.flip=0.5 grid.cells_x=40 grid.cells_y=8 load.damping=2",
+     "acceleration vertical_speed speed_over_rim"},
     {"mpm_explicit", "spinning_disk", "method.transfer=pic time.end=1", "angular_momentum_change"},
     {"mpm_explicit", "spinning_disk", "material.default.E=2000 time.end=3", "moment_of_inertia"},
     {"mpm_explicit", "block_at_rest", "contact.levels=1 time.end=3 time.energy_limit=0",
@@ -110,6 +114,10 @@ const std::vector<Mutation> grains{
     {"mpm_explicit", "cyclic_plate", "contact.levels=1 time.energy_limit=0",
      "loop_area plastic_work"},
     {"mpm_explicit", "diametral_disk", at_once, "center_difference center_xx center_yy"},
+    {"mpm_explicit", "hertz",
+     "grid.cells_x=40 grid.cells_y=36 load.damping=0 load.rise=0.01 contact.separation=0.6 "
+     "time.end=1",
+     "approach loads_differ"},
     {"mpm_explicit", "yielding_disk", "", ""},
     {"mpm_explicit", "compressed", "grid.cells_x=40 grid.cells_y=34 time.end=0.03", ""},
     {"mpm_explicit", "shear", "grid.cells_x=30 grid.cells_y=28 time.end=0.05", ""},
@@ -117,20 +125,27 @@ const std::vector<Mutation> grains{
     {"mpm_implicit", "rebound", "solver.tolerance=1e-3",
      "energy_identity energy_growth momentum_change rebound energy_change"},
     {"mpm_implicit", "rebound", "time.end=0.7", "contact_lasts parted"},
+    {"mpm_implicit", "spinning_disk", "method.theta=1 theory.compare=none",
+     "angular_momentum_strays"},
     {"mpm_implicit", "vibrating_bar", "load.damping=0.6", "frequency damping"},
     {"mpm_implicit", "oscillator", "load.damping=0.3", "frequency damping"},
     {"mpm_implicit", "standing_wave", "method.mass=lumped time.alpha=5", "velocity_error"},
     {"mpm_implicit", "incline_block", "load.damping=2", "acceleration"},
     {"mpm_implicit", "sliding_block", "material.default.viscosity=0", "acceleration"},
-    {"mpm_implicit", "incline_cylinder", "load.damping=2 grid.cells_x=40 grid.cells_y=8",
-     "acceleration"},
+    {"mpm_implicit", "rolling_cylinder",
+     "expect.fails= method.flip=0.5 grid.cells_x=40 grid.cells_y=8 load.damping=2",
+     "acceleration vertical_speed speed_over_rim"},
     {"mpm_implicit", "spinning_disk", "material.default.E=2000 time.end=3",
      "angular_momentum_change moment_of_inertia"},
     {"mpm_implicit", "diametral_disk",
      "grid.cells_x=20 grid.cells_y=20 load.rise=0.05 time.end=0.2 method.theta=0.5",
      "center_difference center_xx center_yy"},
+    {"mpm_implicit", "hertz",
+     "grid.cells_x=40 grid.cells_y=36 load.rise=1e-3 grain.top.stop=0 time.end=1 method.theta=0.5 "
+     "contact.separation=0.6",
+     "approach loads_differ"},
     {"mpm_implicit", "bonded_bar", "grain.right.amplitude=0.3", "bond_breaks"},
-    {"mpm_implicit", "billet", "grain.top.velocity_y=-1e-3", "modulus"},
+    {"mpm_implicit", "billet", "grain.top.velocity_y=-1e-3", "modulus layers_beside_plates"},
     {"mpm_implicit", "billet_plastic", "time.end=1.2 time.alpha=20", "limit"},
     {"mpm_implicit", "compressed", "grid.cells_x=40 grid.cells_y=34 load.damping=1",
      "energy_less_work"},
@@ -143,7 +158,8 @@ const std::vector<Mutation> grains{
 // ---- what is done with the tables ---------------------------------------------------------------
 
 // Judged alike in every run of a program; one row of the program has to fail them.
-const Words everywhere{"energy_gain", "energy_identity", "energy_growth"};
+const Words everywhere{"angular_momentum_strays", "energy_gain", "energy_identity",
+                       "energy_growth"};
 
 // What no parameter breaks, and the fact that breaks it otherwise.
 const std::map<std::string, std::string> elsewhere{

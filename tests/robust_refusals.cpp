@@ -737,13 +737,20 @@ grains body theory.compare=block load.gravity_x=1 load.gravity_y=-1
 grains incline_block.toml load.gravity_x=0
     theory.compare = "block" needs one grain, a rigid plate, and an inclined gravity: load.gravity_x
     not 0, load.gravity_y below 0
-grains incline_cylinder.toml load.gravity_y=1
-    theory.compare = "cylinder" needs one grain, a rigid plate, and an inclined gravity:
+grains rolling_cylinder.toml load.gravity_y=1
+    theory.compare = "rolling" needs one grain, a rigid plate, and an inclined gravity:
     load.gravity_x not 0, load.gravity_y below 0
+grains incline_block.toml theory.compare=rolling -> theory.compare = "rolling" needs a disk
 grains mesh left theory.compare=disk
 grains disks theory.compare=disk
 grains plates theory.compare=disk grain.disk.shape=box
     theory.compare = "disk" needs a disk, first in the case, and rigid plates, at most 16
+grains hertz.toml contact.friction=0.1
+grains hertz.toml grain.cylinder.radius=0.39
+    theory.compare = "hertz" needs an elastic disk between two rigid plates that touch it below and
+    above, without friction
+grains plates theory.compare=hertz grain.disk.shape=box
+    theory.compare = "hertz" needs a disk, first in the case, and rigid plates, at most 16
 grains disks theory.compare=yield
     theory.compare = "yield" needs a grain of a material with law = "j2", and 'left' is of another:
     set theory.grain

@@ -46,7 +46,7 @@ do for [k = 1:orders * per_order + 1] {
     white_G[k] = seen((sum [n = 1:31] screen_G[n] * through(N, 390 + 10 * n)) / all_G)
     white_B[k] = seen((sum [n = 1:31] screen_B[n] * through(N, 390 + 10 * n)) / all_B)
 }
-entry_of(N) = 1 + (N < orders ? int(N * per_order + 0.5) : orders * per_order)
+entry_of(N) = N < 0 ? 1 : 1 + (N < orders ? int(N * per_order + 0.5) : orders * per_order)
 
 # ---- the clauses of a plot command; column 5 is -1 between the grains ------------------------------------
 contrast(N) = N < 60 ? exp(-2 * (pi * 0.01 * N)**2) : 0
@@ -57,3 +57,10 @@ white_light = "using 1:2:($5 < 0 ? 0 : white_R[entry_of($3 / f_sigma)]):($5 < 0 
 in_white_light = "unset grid; unset key; unset colorbox; set size ratio -1; set border 15 back; set tics out; set object 99 rectangle from graph 0, graph 0 to graph 1, graph 1 fillcolor rgb 'black' fillstyle solid noborder behind"
 in_one_color = in_white_light . "; set palette gray gamma 1.7; set cbrange [0:1]"
 daylight = "unset object 99; set border 3 front; set size noratio; set grid; set key; set colorbox"
+
+# ---- a scale of the orders N = (s1 - s2) / f_sigma, last in a multiplot: set the margins of its panel, eval scale_of_orders,
+#      and plot '++' @orders_in_one_color notitle, or @orders_in_white_light
+if (!exists("most_orders")) most_orders = 4
+scale_of_orders = "unset object 1; unset title; unset xlabel; unset ylabel; unset xtics; unset x2tics; unset ytics; set size noratio; set xrange [0:1]; set yrange [0:most_orders]; set y2range [0:most_orders]; set y2tics 1 format '%g'; set samples 2; set isosamples 2, 400"
+orders_in_one_color = "using 1:2:(dark_field($2)) with image"
+orders_in_white_light = "using 1:2:(white_R[entry_of($2)]):(white_G[entry_of($2)]):(white_B[entry_of($2)]) with rgbimage"

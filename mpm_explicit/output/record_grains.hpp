@@ -12,7 +12,7 @@
 #include "common/run/run.hpp"
 #include "mpm_explicit/contact.hpp"
 #include "mpm_explicit/output/write_output.hpp"
-#include "mpm_explicit/theory/comparison.hpp"
+#include "mpm_explicit/theory/compare_rotation.hpp"
 
 namespace mpm {
 
@@ -110,9 +110,11 @@ class Recorder {
 
     /// The results of the comparison with theory, after the last step.
     void compare_with_theory(long step, const Assembly& all, common::Run& run) const {
-        if (comparison_ == nullptr || comparison_->result == nullptr) return;
-        comparison_->result({planned_, scales_, all, run.history, double(step) * scales_.dt},
-                            run.summary);
+        const theory::FinishedRun ended{planned_, scales_, all, run.history,
+                                        double(step) * scales_.dt};
+        theory::judge_free_grains(ended, run.summary);
+        if (comparison_ != nullptr && comparison_->result != nullptr)
+            comparison_->result(ended, run.summary);
     }
 
     /// What was conserved: the budget of the energy, and momentum.

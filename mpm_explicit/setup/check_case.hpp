@@ -156,6 +156,11 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
     if (problem.contact.separation == 0)
         warnings.push_back("contact.separation = 0: grains meet where they share nodes, up to " +
                            format(2 - 1 / double(problem.per_side)) + " cells too early");
+    if (parameters.shape == "quadratic" && scales.grains > 1)
+        warnings.push_back(
+            "method.shape = \"quadratic\": grains meet about 0.2 cells late, and a plate that "
+            "moves by "
+            "less meets nothing; take \"gimp\"");
     const std::vector<std::pair<const char*, double>> intervals{
         {"output.particles_interval", parameters.particles_interval},
         {"output.fringes_interval", parameters.fringes_interval},

@@ -88,10 +88,56 @@ inline void compare_block(const FinishedRun& run, common::Summary& summary) {
                     summary);
 }
 
-/// A cylinder rolls, or slips.
-inline void compare_cylinder(const FinishedRun& run, common::Summary& summary) {
+/// How fast the target grain turns, omega = sum_p m_p (x_p - X) x v_p / sum_p m_p |x_p - X|^2.
+inline void turning_column(const PlannedCase& planned, const Assembly& all, common::Row& row) {
+    const Particles& at = all.particles;
+    const Grain& grain = all.grains[planned.target()];
+    double m = 0, x = 0, y = 0, turns = 0, squares = 0;
+    for (long p = grain.begin; p < grain.end; ++p)
+        m += at.m_p[p], x += at.m_p[p] * at.x_p[p], y += at.m_p[p] * at.y_p[p];
+    x /= m, y /= m;
+    for (long p = grain.begin; p < grain.end; ++p) {
+        const double dx = at.x_p[p] - x, dy = at.y_p[p] - y;
+        turns += at.m_p[p] * (dx * at.vy_p[p] - dy * at.vx_p[p]);
+        squares += at.m_p[p] * (dx * dx + dy * dy);
+    }
+    row.add("angular_velocity", "1/time", turns / squares);
+}
+
+/// Needs what a block needs, and a disk.
+inline void need_rolling(const PlannedCase& planned) {
+    need_incline(planned);
+    planned.refuse(planned.plans[planned.target()].outline.kind != OutlineKind::disk,
+                   " needs a disk");
+}
+
+/// A cylinder rolls, or slips. Where it rolls, v_y = 0 and U = omega R: the largest velocity of its
+/// center away from the plate or towards it, over that along the plate, and the mean velocity of the
+/// center over that of the rim, in the second half of the run.
+inline void compare_rolling(const FinishedRun& run, common::Summary& summary) {
     compare_incline(run, cylinder_acceleration,
                     "(2/3) g sin where it rolls, g (sin - mu cos) where it slips", summary);
+    const Problem& problem = run.parameters.problem;
+    if (std::fabs(problem.gravity_x) > -3 * friction_on_plate(run.planned) * problem.gravity_y)
+        return;
+    const auto times = run.history.column("time"), p_x = run.momentum_x(),
+               p_y = run.history.column("momentum_y_" + run.grain().name),
+               omega = run.history.column("angular_velocity");
+    const double R = run.planned.plans[run.planned.target()].outline.radius, m = run.mass();
+    double hops = 0, center = 0, rim = 0;
+    for (std::size_t n = 0; n < times.size(); ++n) {
+        if (times[n] < 0.5 * run.end) continue;
+        hops = std::max(hops, std::fabs(p_y[n] / p_x[n]));
+        center += std::fabs(p_x[n] / m), rim += std::fabs(omega[n]) * R;
+    }
+    summary.hint(
+        "a staircase of particles hops where a disk rolls: refine the mesh, and lengthen "
+        "load.rise");
+    summary.result_at_most("vertical_speed", hops, "1", 0.01,
+                           "of the center, over that along the plate: largest, second half of the "
+                           "run");
+    summary.result("speed_over_rim", center / rim, "1", 1, 0.01,
+                   "U over omega R, second half of the run: it rolls without slip");
 }
 
 // ---- a grain at rest on a rigid plate -----------------------------------------------------------
@@ -167,25 +213,37 @@ inline void center_columns(const PlannedCase& planned, const Assembly& all, comm
     row.add("center_xy", "stress", s.xy);
 }
 
+/// The mean of a column over the last tenth of the run.
+inline double mean_late(const FinishedRun& run, const std::string& name) {
+    const auto times = run.history.column("time"), values = run.history.column(name);
+    double sum = 0, count = 0;
+    for (std::size_t n = 0; n < times.size(); ++n)
+        if (times[n] >= 0.9 * run.end) sum += values[n], count += 1;
+    return sum / count;
+}
+
+/// The late load of the plates that count: its mean and the difference of the largest and the
+/// smallest.
+struct PlateLoad {
+    double mean = 0, spread = 0;
+};
+inline PlateLoad load_of_plates(const FinishedRun& run) {
+    double sum = 0, plates = 0, least = 1e300, most = 0;
+    for (const Grain& grain : run.all.grains) {
+        if (!grain.rigid || !(run.parameters.plate.empty() || grain.name == run.parameters.plate))
+            continue;
+        const double P = std::fabs(mean_late(run, "force_y_" + grain.name));
+        sum += P, plates += 1, least = std::min(least, P), most = std::max(most, P);
+    }
+    return {sum / plates, most - least};
+}
+
 /// The stress at the center under the mean load of the plates, against the closed form.
 inline void compare_disk(const FinishedRun& run, common::Summary& summary) {
-    const auto& grains = run.all.grains;
-    const auto times = run.history.column("time");
-    const auto mean_late = [&](const std::string& name) {
-        const auto values = run.history.column(name);
-        double sum = 0, count = 0;
-        for (std::size_t n = 0; n < times.size(); ++n)
-            if (times[n] >= 0.9 * run.end) sum += values[n], count += 1;
-        return sum / count;
-    };
-    double P = 0, plates = 0;
-    for (const Grain& grain : grains)
-        if (grain.rigid && (run.parameters.plate.empty() || grain.name == run.parameters.plate))
-            P += std::fabs(mean_late("force_y_" + grain.name)), plates += 1;
-    P /= plates;
+    const double P = load_of_plates(run).mean;
     const double R = run.planned.plans[run.planned.target()].outline.radius;
-    const double xx = mean_late("center_xx"), yy = mean_late("center_yy"),
-                 xy = mean_late("center_xy"), exact = disk_center_difference(P, R);
+    const double xx = mean_late(run, "center_xx"), yy = mean_late(run, "center_yy"),
+                 xy = mean_late(run, "center_xy"), exact = disk_center_difference(P, R);
     const Stress center = disk_stress(P, R, 0, 0);
     const std::string source = "Hertz's disk between two line loads";
     summary.result_info("load", P, "force",
@@ -204,6 +262,62 @@ inline void compare_disk(const FinishedRun& run, common::Summary& summary) {
                    source + ", over -6P/(pi D)");
     const Material& m = run.material();
     report_contact(run, contact_half_width({R, m.density, m.E, m.nu}, P), summary);
+}
+
+// ---- a cylinder between two plates (Hertz) ------------------------------------------------------
+
+/// Needs a disk without friction that touches two rigid plates, one below and one above.
+inline void need_hertz(const PlannedCase& planned) {
+    need_pressed_disk(planned);
+    const Outline& disk = planned.plans[0].outline;
+    const Problem& problem = planned.parameters.problem;
+    bool below = false, above = false;
+    for (const PlannedGrain& plan : planned.plans) {
+        const Bounds plate = bounds(plan.outline);
+        const double near = 1e-6 * problem.mesh().h;
+        below = below || std::fabs(disk.y - disk.radius - plate.y_high) < near;
+        above = above || std::fabs(plate.y_low - disk.y - disk.radius) < near;
+    }
+    planned.refuse(planned.rigid_grains() != 2 || !below || !above || problem.has_friction() ||
+                       planned.material_of(planned.plans[0]).law != Law::elastic,
+                   " needs an elastic disk between two rigid plates that touch it below and above, "
+                   "without friction");
+}
+
+/// How much closer the plates are than at the start, against line contact under the load that they
+/// bear.
+/// exact: for small strain and b much smaller than R; what is left out is at most 0.2 (b/R)^2 of it
+inline void compare_hertz(const FinishedRun& run, common::Summary& summary) {
+    const Material& m = run.material();
+    const double R = run.planned.plans[0].outline.radius, h = run.parameters.problem.mesh().h;
+    const Disk disk{R, m.density, m.E, m.nu};
+    const PlateLoad load = load_of_plates(run);
+    if (!(load.mean > 0))
+        return summary.not_measured(
+            "approach", "the plates bear nothing in the last tenth of the run: let one move");
+    const double b = contact_half_width(disk, load.mean);
+    double low = 0, high = 0;
+    for (const PlannedGrain& plan : run.planned.plans)
+        if (run.planned.is_rigid(plan))
+            (plan.outline.y < run.planned.plans[0].outline.y ? low : high) =
+                mean_late(run, "travel_y_" + plan.name);
+    summary.result_info("load", load.mean, "force",
+                        "of the plates, the mean over the last tenth of the run");
+    summary.hint(
+        "the grain is not at rest between the plates: move them more slowly, let them stop "
+        "before the last fifth of the run, and raise load.damping");
+    summary.result_at_most("loads_differ", load.spread / load.mean, "1", 0.01,
+                           "of both plates, over their mean: equal at rest");
+    summary.hint("the contact is " + format(b / h) +
+                 " cells wide at each side and the outline a staircase: refine the mesh until it "
+                 "has four or more, and take method.shape = \"gimp\", since noise of cell crossing "
+                 "softens linear shapes");
+    summary.result("approach", (low - high) / contact_approach(disk, load.mean), "1", 1,
+                   run.parameters.tolerance,
+                   "over 2 P (1 - nu^2) / (pi E) (2 ln(4 R/b) - 1), Johnson's eq. 5.57, at both "
+                   "ends; strain = " +
+                       format((low - high) / (2 * R)));
+    report_contact(run, b, summary);
 }
 
 // ---- a grain that yields ------------------------------------------------------------------------

@@ -49,7 +49,7 @@ inline void compare_oscillator(const theory::FinishedRun& run, common::Summary& 
 }
 
 /// The properties of the leapfrog that comparisons use: how far its energy strays at alpha = 1/4.
-inline constexpr theory::SchemeFacts leapfrog{.rebound_tolerance = 0.03, .bar_tolerance = 0.01};
+inline constexpr theory::SchemeFacts leapfrog{.rebound_tolerance = 0.006, .bar_tolerance = 0.01};
 
 /// What a run of mpm_explicit can be compared with.
 inline constexpr theory::Comparison comparisons[] = {
@@ -60,8 +60,9 @@ inline constexpr theory::Comparison comparisons[] = {
     {"block", theory::need_incline, theory::compare_block},
     {"rest", theory::need_rest, theory::compare_rest},
     {"spin", theory::need_spin, theory::compare_spin, theory::inertia_columns},
-    {"cylinder", theory::need_incline, theory::compare_cylinder},
+    {"rolling", theory::need_rolling, theory::compare_rolling, theory::turning_column},
     {"disk", theory::need_pressed_disk, theory::compare_disk, theory::center_columns},
+    {"hertz", theory::need_hertz, theory::compare_hertz},
     {"bond", theory::need_bond, theory::compare_bond},
     {"yield", theory::need_yielding, theory::compare_yield},
     {"billet", theory::need_billet, theory::compare_billet},

@@ -27,6 +27,7 @@ struct SchemeFacts {
     double theta = 0.5;      // level of velocities and stresses in the step
     double force_level = 1;  // in a step of a plate, of the travel whose stress it works against
     bool consistent_mass = false;
+    bool volumes_change = true;  // in forces, with the strain
 };
 
 /// A case with the outlines and materials of its grains.

@@ -240,6 +240,16 @@ inline double cylinder_acceleration(double g, double angle, double mu) {
 ///   s_yy = E/(1 - nu^2) e_yy,  s_xx = 0,  s_zz = nu s_yy
 inline double plane_strain_modulus(double E, double nu) { return E / (1 - nu * nu); }
 
+/// Its force over its width at the start, when it is shorter by a share `strain`.
+///   d s_yy = M de,  de = -dl/l, so that  s_yy = M L,  L = -ln(1 - strain): the strain of the law is
+///   logarithmic, and  force = V s_yy / l  with the volume V in which the law keeps its stress,
+///   V = V_0 exp((n - 1) L) where volumes change with  e_xx = n L across, and V_0 where they are kept
+/// in:    M, stress over strain; across, n = nu/(1 - nu) for a free block, 0 for a confined one
+inline double pressed_stress(double M, double across, bool volumes_change, double strain) {
+    const double L = -std::log(1 - strain);
+    return M * L * std::exp(volumes_change ? across * L : L);
+}
+
 /// The most that such a block bears when it yields at the von Mises stress Y and does not harden.
 ///   s_yy = 2 Y / 3^1/2, with s_zz = s_yy / 2: flow along z has come to rest
 inline double plane_strain_strength(double Y) { return 2 * Y / std::numbers::sqrt3; }

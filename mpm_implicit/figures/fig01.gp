@@ -1,9 +1,10 @@
-# Figure 1 of the talk: grain positions through the elastic rebound, implicit, with a CFL number of 1.00, where the explicit program bursts. Particles are colored by their velocity: the grains meet, come to
-# rest while their energy is that of strain, and part as they came, but for some vibration. The energy in each panel is all there is, kinetic and elastic.
+# Figure 1 of the talk: grain positions through the elastic rebound, implicit, with a CFL number of 1.00, where the explicit program bursts. Particles are colored by the stress along the line of
+# centers over E, tension red and compression blue: there is none until the grains meet, it spreads from the contact and comes to rest with them, and what remains when they part is vibration. (Their velocities
+# alternate from step to step while they press, which says nothing.) The share in each panel is that of the elastic energy in all there is.
 # fits: mpm_explicit|mpm_implicit theory.compare=rebound file:particles_*.dat file:summary.json
 wide = 1500; high = 1000
 load 'common/style.gp'
-R = real(given('grain.*.radius')); v_0 = abs(real(given('grain.*.velocity_x')))
+R = real(given('grain.*.radius'))
 file = run.'/history.dat'
 energy = col(file, 'energy'); elastic = col(file, 'elastic')
 at(what, t) = real(system(sprintf("LC_ALL=C awk -v t=%g '$1 + 0 == $1 { if ($1 <= t + 1e-9) v = $%d } END { print v }' '%s'", t, what, file)))
@@ -11,7 +12,7 @@ E_0 = at(energy, 0)
 set multiplot title sprintf('Elastic rebound, %s, α = %.2f: grain positions', entry('program') eq 'mpm_implicit' ? 'implicit' : 'explicit', parameter('alpha')) font ',24'
 set border 15; unset grid; unset key; set tics front
 set xrange [0:parameter('length_x') / R]; set yrange [0.35:2.95]; set xtics 1; set ytics 1, 1, 2
-eval signed(1); set cbtics 0.5
+eval signed(5); set cbtics 5; E = real(given('material.*.E'))
 # Before, when contact begins, in its middle, at its end, between that and the end, and the end.
 begins = entry('results.contact_begins.value'); lasts = entry('results.contact_lasts.value'); end = parameter('end')
 if (begins ne '' && lasts ne '') { b = real(begins); l = real(lasts) }
@@ -26,7 +27,8 @@ do for [panel = 0:words(times) - 1] {
     if (column == 1) { set ylabel 'y / R' offset 0.3, 0; set format y '%g' } else { unset ylabel; set format y '' }
     set label 1 sprintf('t = %.3g', t) at graph 0.02, 0.92
     set label 2 sprintf('elastic %.0f %% of E_0', 100 * at(elastic, t) / E_0) at graph 0.98, 0.92 right
-    if (row == 1 && column == 1) { set colorbox user origin 0.93, top - 3 * panel_height - 0.044 size 0.013, 3 * panel_height + 0.044; set label 3 'v_x / v_0' at screen 0.985, top right offset 0, 1 } else { unset colorbox; unset label 3 }
-    plot file_at('particles', t) using ($1 / R):($2 / R):($3 / v_0) with points pt 7 ps 0.6 lc palette
+    if (row == 1 && column == 1) { set colorbox user origin 0.93, top - 3 * panel_height - 0.044 size 0.013, 3 * panel_height + 0.044; set label 3 'σ_{xx} / E [%]' at screen 0.985, top right offset 0, 1 } else { unset colorbox; unset label 3 }
+    plot file_at('particles', t) using ($1 / R):($2 / R) with points pt 7 ps 0.75 lc rgb '#a0a0a0', \
+         '' using ($1 / R):($2 / R):(100 * $6 / E) with points pt 7 ps 0.6 lc palette
 }
 unset multiplot

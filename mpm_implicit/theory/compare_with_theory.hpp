@@ -29,6 +29,7 @@ inline bool keeps_energy(const Case& parameters, const theory::SchemeFacts& sche
 inline theory::SchemeFacts facts_of(const Case& parameters, const ThetaScheme& scheme) {
     theory::SchemeFacts facts{
         .theta = scheme.theta, .force_level = scheme.theta, .consistent_mass = scheme.consistent()};
+    facts.volumes_change = !scheme.keeps_volumes();
     const bool keeps = keeps_energy(parameters, facts) && !parameters.problem.has_friction();
     facts.bar_tolerance = keeps ? 1e-8 : std::numeric_limits<double>::infinity();
     facts.rebound_tolerance = facts.bar_tolerance;
@@ -172,8 +173,9 @@ inline constexpr theory::Comparison comparisons[] = {
     {"block", theory::need_incline, theory::compare_block},
     {"rest", theory::need_rest, theory::compare_rest},
     {"spin", theory::need_spin, theory::compare_spin, theory::inertia_columns},
-    {"cylinder", theory::need_incline, theory::compare_cylinder},
+    {"rolling", theory::need_rolling, theory::compare_rolling, theory::turning_column},
     {"disk", theory::need_pressed_disk, theory::compare_disk, theory::center_columns},
+    {"hertz", theory::need_hertz, theory::compare_hertz},
     {"bond", theory::need_bond, theory::compare_bond},
     {"yield", theory::need_yielding, theory::compare_yield},
     {"compression", nullptr, compare_compression},
