@@ -165,10 +165,9 @@ inline void prepare_preconditioner(FieldSolver& solver, double a) {
             inverse.yy(k, l) = float(1 / yy);
         }
     }
-    const Eigen::Matrix3d mean = chi;
-    chi.diagonal().setZero();
+    const Eigen::Matrix3d turn = chi - chi_0.asDiagonal().toDenseMatrix();
     inverse.turns =
-        grid.x.periodic && grid.z.periodic && chi.cwiseAbs().maxCoeff() > 0.01 * chi_0.maxCoeff();
+        grid.x.periodic && grid.z.periodic && turn.cwiseAbs().maxCoeff() > 0.01 * chi_0.maxCoeff();
     if (!inverse.turns) return;
     const auto between = [&](double angle) {
         return has_mass ? mixed_overlap(angle) : std::cos(0.5 * angle);
@@ -184,7 +183,7 @@ inline void prepare_preconditioner(FieldSolver& solver, double a) {
             Eigen::Matrix3d g;
             g << half(x) * whole(z), g_xy, g_xz, g_xy, whole(x) * whole(z), g_yz, g_xz, g_yz,
                 whole(x) * half(z);
-            Eigen::Matrix3d M = w * w * g.cwiseProduct(mean);
+            Eigen::Matrix3d M = w * w * g.cwiseProduct(chi);
             M.diagonal() +=
                 Eigen::Vector3d(1 + k_z * k_z, 1 + k_x * k_x + k_z * k_z, 1 + k_x * k_x);
             return std::pair(M, k_x * k_z);

@@ -20,7 +20,6 @@ namespace fs = std::filesystem;
 
 // How often a waiting thread of libgomp looks for work before it sleeps: some microseconds.
 constexpr const char* short_spin = "2000";
-
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // The number that a file begins with; "max", a negative one and no file are no limit.

@@ -69,8 +69,8 @@ inline double steepest_slope(const std::vector<double>& times, const std::vector
 inline bool is_gem_challenge(const Case& w) {
     const HarrisCase& h = w.harris;
     return w.is_across_current() && h.temperature_ratio == 5 && h.thickness == 0.5 &&
-           h.background == 0.2 && h.perturbation == 0.1 && h.guide_field == 0 &&
-           !w.is_tail() && w.grid.x.length == 25.6 && w.grid.z.length == 12.8;
+           h.background == 0.2 && h.perturbation == 0.1 && h.guide_field == 0 && !w.is_tail() &&
+           w.grid.x.length == 25.6 && w.grid.z.length == 12.8;
 }
 
 /// What two independent codes and the literature say about the challenge at m_i/m_e = 25.
