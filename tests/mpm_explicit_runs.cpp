@@ -49,7 +49,7 @@ TEST_CASE("at a quarter of the limit two disks rebound" * doctest::description("
     CHECK(std::fabs(smooth.value("contact_lasts") / resolved - 1) <= 0.05);
     // Grains that travel over the mesh while they press are warned of.
     const Run travels = run("travels", "rebound",
-                            "grain.left.velocity_x=0.19 grain.right.velocity_x=-0.01 time.end=1");
+                            "grain.left.velocity_x=0.18 grain.right.velocity_x=-0.02 time.end=1");
     CHECK(travels.summary["warnings"].size() == 2);
     check_budget(r);
     const double p = r.column("momentum_x_left").front();
