@@ -523,7 +523,8 @@ plasmas grid.length_x d_i time.dt 1/omega_pi uniform.phase_E_y degree
     uniform.B_x m_i*c*omega_pi/e output.fields_interval 1/omega_pi species.<name>.density n0
     species.<name>.mass m_i species.<name>.drift_x c
 implicit_moment mover.tolerance cell
-explicit_em particles.relativistic - particles.order - output.history_steps -
+plasmas particles.relativistic -
+explicit_em particles.order - output.history_steps -
 )";
     for (const Program& program : every_program()) {
         const fs::path folder = fresh_folder(program);

@@ -871,10 +871,17 @@ plasmas uniform uniform.wave_B_x=1e-3
     the seeded B is not divergence-free: k . B must be 0, so keep uniform.wave_B across
 plasmas uniform uniform.wave_E_x=1e-3
     the seeded E has a part along k: that part follows from the charge, so seed it with
-plasmas beam species.beam.drift_x=0.8 species.beam.drift_z=0.8
+plasmas beam particles.relativistic=false species.beam.drift_x=0.8 species.beam.drift_z=0.8
     species 'beam' has speeds of 1.131 c (drift or thermal speed): lower them
-plasmas beam species.beam.temperature_y=1.44
+plasmas beam particles.relativistic=false species.beam.temperature_y=1.44
     species 'beam' has speeds of 1.2 c (drift or thermal speed): lower them
+implicit_moment beam particles.relativistic=true field.rotation=mesh
+    field.rotation = "mesh" turns the sums of all particles by one angle, and relativistic
+implicit_moment beam particles.relativistic=true field.solver=newton_krylov
+    field.solver = "newton_krylov" turns moments by one angle, and relativistic particles
+implicit_moment beam particles.relativistic=true species.beam.drift_x=2 theory.wave=transverse \
+    theory.component=B_z
+    species 'beam' drifts with u = 2 c: theory.wave = "transverse" takes drifts below 0.1 c
 plasmas uniform uniform.E_x=1e-3 grid.boundary_x=wall
     seeded fields need periodic boundaries: take out uniform.E_*
 plasmas uniform uniform.mode_z=1 uniform.wave_B_x=1e-3 uniform.wave_B_z=-5e-4 uniform.phase_B_z=9

@@ -1,6 +1,6 @@
 # Figure 12 of the talk: E_y of the lower-hybrid drift instability in the plane of current (y) and gradient (z), T_i/T_e = 4. Left, when it saturates, eight
-# waves fill the box at both edges of the sheet; middle, the talk's time, t Ω_{ci} = 7, as it is, and what of it has from half to twice the wave number
-# of the largest mode; right, the growth of that mode beside local kinetic theory.
+# waves fill the box at both edges of the sheet; middle, the talk's time, t Ω_{ci} = 7, as it is, and what of it has wave numbers within
+# a quarter of that of the largest mode; right, the growth of that mode beside local kinetic theory.
 # fits: implicit_moment file:fields_*.dat result:dominant_mode result:growth_over_theory
 wide = 2100; high = 760
 load 'common/style.gp'
@@ -16,16 +16,16 @@ eval field_frame
 unset key
 set size noratio
 eval signed(2); set cbtics 1
-filtered(t) = sprintf("< LC_ALL=C awk -v column=%d -v m_low=%d -v m_high=%d -f implicit_moment/figures/keep_modes.awk '%s'", E, ceil(0.5 * m), 2 * m, file_at('fields', t))
+filtered(t) = sprintf("< LC_ALL=C awk -v column=%d -v m_low=%d -v m_high=%d -f implicit_moment/figures/keep_modes.awk '%s'", E, ceil(0.75 * m), floor(1.25 * m), file_at('fields', t))
 set xrange [0:length]; set yrange [-3:3]
-set xtics 1; set ytics 1
+set xtics 0, 1, length - 0.5; set ytics 1
 set xlabel 'y / L'
 do for [panel = 1:3] {
     t = real(word(times, panel == 1 ? 1 : words(times)))
     left = 0.037 + 0.195 * (panel - 1)
     set lmargin at screen left; set rmargin at screen left + 0.185
     set bmargin at screen 0.14; set tmargin at screen 0.83
-    set title (panel < 3 ? sprintf('E_y at t Ω_{ci} = %.2g', t * B0) : sprintf('the same, m_y = %d to %d', ceil(0.5 * m), 2 * m)) offset 0, -0.6
+    set title (panel < 3 ? sprintf('E_y at t Ω_{ci} = %.2g', t * B0) : sprintf('the same, m_y = %d to %d', ceil(0.75 * m), floor(1.25 * m))) offset 0, -0.6
     if (panel == 1) { set ylabel 'z / L' offset 1.5, 0; unset colorbox } else { unset ylabel; set format y '' }
     if (panel == 3) { set colorbox user origin 0.618, 0.14 size 0.009, 0.69; set cblabel 'E_y c / (B_0 v_A)' offset 1, 0 }
     if (panel < 3) { plot file_at('fields', t) skip 1 using ($1 / L + 0.5 * length):($2 / L):(column(E) / B0**2) with image notitle }

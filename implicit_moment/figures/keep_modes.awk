@@ -15,7 +15,7 @@ function finish(    m, i, a, b, part) {
     for (i = 0; i <= n; ++i) print x[i], z, part[i]
     count = 0
 }
-BEGIN { turn = 8 * atan2(1, 1) }
+BEGIN { turn = 8 * atan2(1, 1); count = 0 }
 $1 + 0 != $1 { next }
 count > 0 && $2 != z { finish() }
 { z = $2; x[count] = $1; f[count] = $column; ++count }
