@@ -67,7 +67,7 @@ inline void compare_incline(const FinishedRun& run,
                                         " on, when gravity is there: raise time.end");
     summary.hint(
         "friction follows the pressure, which flutters where a grain slides without "
-        "viscosity, and a round grain rolls on a staircase of particles: set "
+        "viscosity, and a round grain rolls on single nodes: set "
         "material.*.viscosity = 3e-3, refine the mesh, and lower time.alpha = " +
         format(run.parameters.alpha));
     summary.result("acceleration", measured, "acceleration", exact,
