@@ -147,7 +147,7 @@ class SurfaceRun {
     }
 
    private:
-    ContactPair pair_{.link_count = 0};
+    ContactPair pair_{};
     long key_ = 0;
     std::array<ContactBody, 2 * ContactPair::max_links> bodies_;
     std::array<ContactBody, 2> seen_;  // the two, with the surfaces that all nodes see

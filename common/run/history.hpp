@@ -24,6 +24,7 @@ struct Column {
 struct Row {
     std::vector<Column> columns;
     std::vector<double> values;
+    Row() = default;
     /// Adds a column on the right.
     void add(const std::string& name, const std::string& unit, double value) {
         columns.push_back({name, unit});
