@@ -23,7 +23,6 @@ namespace common {
 namespace {
 
 namespace fs = std::filesystem;
-
 constexpr const char* lock_name = ".lock";
 
 // Set by the signal handler, read by the loop.
