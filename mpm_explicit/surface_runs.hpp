@@ -85,6 +85,7 @@ inline Meeting meeting_of(const ContactNode& node) {
 /// The nodes of a run, put together one after the other.
 class SurfaceRun {
    public:
+    SurfaceRun() { pair_.link_count = 0; }
     bool full() const { return pair_.link_count == ContactPair::max_links; }
 
     /// in:     node, with the two bodies and their pair

@@ -295,7 +295,7 @@ TEST_CASE("a box along mesh lines is filled to its area") {
     }
 }
 
-TEST_CASE("the particles of a grain have its area, its center of mass and its outline") {
+TEST_CASE("the particles of a grain have its area and its center of mass and its outline") {
     const Mesh mesh = mesh_of(40, 40, 0.1, -2, -2);
     for (std::uint64_t k = 0; k < 80; ++k) {
         CAPTURE(k);
