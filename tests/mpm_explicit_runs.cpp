@@ -145,8 +145,11 @@ TEST_CASE("a free disk keeps its angular momentum and its size" * doctest::descr
         const Run flip = run("spin", "spinning_disk",
                              std::string("time.end=6 method.transfer=flip method.shape=") + shape);
         CHECK(!flip.summary["results"]["angular_momentum_change"]["pass"].get<bool>());
-        // Every free run says so, whatever it is compared with.
-        CHECK(!flip.summary["results"]["angular_momentum_strays"]["pass"].get<bool>());
+        // Every free run says so, whatever it is compared with, from a twentieth on.
+        const double strays = flip.value("angular_momentum_strays");
+        CHECK(strays >= 0.03);
+        CHECK(flip.summary["results"]["angular_momentum_strays"]["pass"].get<bool>() ==
+              (strays <= 0.05));
     }
 }
 
