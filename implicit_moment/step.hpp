@@ -96,9 +96,10 @@ FieldReport take_mass_matrix_step(const Grid& grid, double dt, StepScratch& scra
         interleave_field(grid, scratch.solver.settings.smoothing, field.E_theta, scratch.B_push,
                          scratch.interleave, scratch.field);
         clock.lap("field");
-        if (kick_particles(scratch.field, scratch.guess, grid, dt, particles)) break;
+        if (kick_particles(scratch.field, scratch.guess, grid, dt, particles))
+            break;  // grid -> particles
         take_back_kick(before, turn, particles);
-    }                                // grid -> particles
+    }
     fly(grid, 0.5 * dt, particles);  // from x*
     clock.lap("mover");
     advance_field(scratch.solver, dt, field);  // [IMM-10]
