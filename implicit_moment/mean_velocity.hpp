@@ -166,9 +166,10 @@ inline LinearVelocity<Real> linear_mean_velocity(const Velocity<Real>& u,
 /// What u_p of a species means, and how it moves: the letters of the steps.
 struct Newtonian {
     static constexpr bool is_relativistic = false;
+    // By component: a copy of the whole goes through memory in pieces.
     template <class Real>
     static Velocity<Real> velocity(const Velocity<Real>& u) {
-        return u;
+        return {u.x, u.y, u.z};
     }
     // 2 (gamma - 1) c^2, twice the kinetic energy per mass.
     template <class Real>

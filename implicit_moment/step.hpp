@@ -51,12 +51,25 @@ void find_moments(const Grid& grid, double dt, const std::vector<Particles>& par
     // [/moments]
 }
 
+inline bool any_relativistic(const std::vector<Particles>& species) {
+    return std::any_of(species.begin(), species.end(),
+                       [](const Particles& s) { return s.relativistic; });
+}
+
+/// The field about which vbar is linear, where a species is relativistic and asks for it.
+/// in:     E_theta of the step before, or of the turn before; B in which particles are rotated
+/// out:    scratch.guess, not touched without such a species
+inline void interleave_guess(const Grid& grid, const std::vector<Particles>& species,
+                             const VectorField& E_theta, const VectorField& B,
+                             StepScratch& scratch) {
+    if (any_relativistic(species))
+        interleave_field(grid, scratch.solver.settings.smoothing, E_theta, B, scratch.interleave,
+                         scratch.guess);
+}
+
 /// A copy of the species where one is relativistic: to go back to where a kick asks for too much.
 inline std::vector<Particles> relativistic_ones(const std::vector<Particles>& species) {
-    return std::any_of(species.begin(), species.end(),
-                       [](const Particles& s) { return s.relativistic; })
-               ? species
-               : std::vector<Particles>{};
+    return any_relativistic(species) ? species : std::vector<Particles>{};
 }
 
 /// Takes back a kick; the field that it had is the next guess. errors: NumericalError after twenty turns
@@ -86,8 +99,7 @@ FieldReport take_mass_matrix_step(const Grid& grid, double dt, StepScratch& scra
     const std::vector<Particles> before = relativistic_ones(particles);
     FieldReport solved;
     for (int turn = 0;; ++turn) {  // once, but where relativistic particles nearly stop
-        interleave_field(grid, scratch.solver.settings.smoothing, field.E_theta, scratch.B_push,
-                         scratch.interleave, scratch.guess);
+        interleave_guess(grid, particles, field.E_theta, scratch.B_push, scratch);
         deposit_mass_matrix(particles, grid, scratch.B_push, scratch.guess, dt,
                             scratch.solver.mass);  // particles -> grid
         clock.lap("mass");
@@ -119,8 +131,7 @@ FieldReport take_enslaved_step(const Grid& grid, double dt, const MoverSettings&
     // [enslaved_step]
     fly(grid, 0.5 * dt, particles);  // to x* and back: there the response is found
     sort_particles(grid, scratch.sort, particles);
-    interleave_field(grid, scratch.solver.settings.smoothing, field.E_theta, field.B,
-                     scratch.interleave, scratch.guess);
+    interleave_guess(grid, particles, field.E_theta, field.B, scratch);
     deposit_mass_matrix(particles, grid, field.B, scratch.guess, dt, scratch.solver.mass);
     fly(grid, -0.5 * dt, particles);
     clock.lap("mass");
