@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "flip/theory/acoustics.hpp"
+#include "flip/theory/collapse.hpp"
 #include "flip/theory/compare_dam_break.hpp"
 #include "flip/theory/diffusion.hpp"
 #include "flip/theory/instabilities.hpp"
@@ -594,6 +595,45 @@ TEST_CASE("all mass of Noh's problem is between the middle and where it came fro
         CHECK(imbalance({outer.density, outer.velocity, outer.pressure, 1.4},
                         {inner.density, inner.velocity, inner.pressure, 1.4}, R / t) <= 1e-12);
     }
+}
+
+TEST_CASE("an empty cavity in a liquid without end closes at Rayleigh's time") {
+    EmptyCavity cavity;
+    cavity.radius = 0.7, cavity.density = 3, cavity.pressure = 2;
+    const double exact = 0.9146813565300645 * 0.7 * std::sqrt(1.5);
+    CHECK(relative(collapse_of(cavity).time.back(), exact) <= 1e-6);
+    CHECK(collapse_of(cavity).radius_at(2 * exact) == 0);
+}
+
+TEST_CASE("an empty cavity in a drop closes as its equation of motion says") {
+    // R R'' (1 - x) + R'^2 (3/2 - 2 x + x^4/2) = -p/rho, x = R/S, by Runge and Kutta.
+    EmptyCavity cavity;
+    cavity.outer = 1.5;
+    const Collapse collapse = collapse_of(cavity);
+    const double more = std::pow(cavity.outer, 3) - 1;
+    const auto bend = [&](double R, double v) {
+        const double x = R / std::cbrt(more + R * R * R);
+        return (-1 - v * v * (1.5 - 2 * x + 0.5 * x * x * x * x)) / (R * (1 - x));
+    };
+    double R = 1, v = 0, t = 0;
+    for (const double h = 1e-4; R > 0.3; t += h) {
+        const double v2 = v + 0.5 * h * bend(R, v), v3 = v + 0.5 * h * bend(R + 0.5 * h * v, v2),
+                     v4 = v + h * bend(R + 0.5 * h * v2, v3),
+                     a = (bend(R, v) + 2 * bend(R + 0.5 * h * v, v2) +
+                          2 * bend(R + 0.5 * h * v2, v3) + bend(R + h * v3, v4)) /
+                         6;
+        R += h * (v + 2 * v2 + 2 * v3 + v4) / 6, v += h * a;
+        if (t > 0.1) CHECK(std::fabs(collapse.radius_at(t + h) - R) <= 1e-5);
+    }
+}
+
+TEST_CASE("a gas that expands presses less on a cavity") {
+    EmptyCavity cavity;
+    const double alone = collapse_of(cavity).time.back();
+    cavity.volume = 1e9;
+    CHECK(relative(collapse_of(cavity).time.back(), alone) <= 1e-8);
+    cavity.volume = 20;
+    CHECK(collapse_of(cavity).time.back() > 1.02 * alone);
 }
 
 // ---- Sedov's blast wave -------------------------------------------------------------------------

@@ -64,6 +64,10 @@ const std::vector<Mutation> fluids{
      all_of_cavity},
     {"flip", "sphere_hits_plate", "grid.cells_x=24 grid.cells_z=48 time.end=2", ""},
     {"flip", "taylor_green", "time.end=0.02", ""},
+    {"flip", "collapsing_cavity",
+     "grid.cells_x=40 grid.cells_z=40 particles.per_cell_x=1 particles.per_cell_z=1 "
+     "particles.loading=random",
+     "collapse_time radius_difference"},
     {"pic", "sod", "viscosity.linear=30 viscosity.quadratic=30 particles.per_cell_x=1",
      tube + left_fan + right_shock},
     {"pic", "free_expansion", "particles.per_cell_x=1", "L1_density left_fan_tail " + left},

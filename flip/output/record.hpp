@@ -48,10 +48,12 @@ class Recorder {
    public:
     Recorder(const Case& parameters, const std::string& program, common::History& history)
         : parameters_(parameters), program_(program) {
-        for (const RegionCase& r : parameters.regions)
+        for (const RegionCase& r : parameters.regions) {
+            if (r.is_vacuum()) continue;
             sound_speed_ =
                 std::max(sound_speed_, r.has_formula() ? scales_of(parameters, program).sound_speed
                                                        : sound_speed_of(parameters, r));
+        }
         CellFields empty;
         for (Field* f : {&empty.rho, &empty.vx, &empty.vz, &empty.p, &empty.e})
             *f = Field::Zero(parameters.grid.size());

@@ -51,6 +51,8 @@ struct RegionCase {
     bool hydrostatic = false;  // pressure is that of the center
     double noise = 0;          // random part of the velocity
 
+    /// Density 0; region_at() finds no region there.
+    bool is_vacuum() const { return gas.density.is_number() && double(gas.density) == 0; }
     bool has_formula() const {
         return !(gas.density.is_number() && gas.pressure.is_number() &&
                  gas.velocity_x.is_number() && gas.velocity_z.is_number());

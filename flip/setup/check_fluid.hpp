@@ -188,15 +188,18 @@ inline void refuse_region(const Case& parameters, const RegionCase& r) {
            (r.hydrostatic ? "hydrostatic = true" : "flow = \"" + r.flow + "\""));
 }
 
-/// Refuses pressures that the equation of state does not have, at the places of the particles.
+/// Refuses densities of 0 and pressures that the equation of state does not have, at the places of the particles.
 inline void refuse_tension(const Case& parameters) {
     for_each_place(parameters, [&](long n, const FluidState& fluid, double x, double z, double) {
         const Material& a = parameters.materials[fluid.material];
+        refuse(!(fluid.density > 0), "region.", parameters.regions[n].name, " has the density ",
+               fluid.density, " at x = ", x, ", z = ", z,
+               ": keep it above 0; a vacuum is a region of its own, density = 0");
         if (a.gamma == 1) return;
         const double stiff = a.gamma * a.p_infinity,
                      p = (a.gamma - 1) * fluid.density * fluid.e - stiff;
-        refuse(!(p >= -1e-9 * (stiff + std::fabs(p))) || !(fluid.density > 0), "region.",
-               parameters.regions[n].name, " has the pressure ", p, " at x = ", x, ", z = ", z,
+        refuse(!(p >= -1e-9 * (stiff + std::fabs(p))), "region.", parameters.regions[n].name,
+               " has the pressure ", p, " at x = ", x, ", z = ", z,
                ", and fluids here hold no tension: raise its pressure by that much");
     });
 }

@@ -90,7 +90,7 @@ inline double sound_speed_of(const Case& parameters, const RegionCase& r) {
 /// Whether all fluid begins at rest under gravity.
 inline bool all_hydrostatic(const Case& parameters) {
     return std::all_of(parameters.regions.begin(), parameters.regions.end(),
-                       [](const RegionCase& r) { return r.hydrostatic; });
+                       [](const RegionCase& r) { return r.hydrostatic || r.is_vacuum(); });
 }
 
 /// The fluid at one place.
@@ -123,11 +123,11 @@ inline void overturn(double k, double x, double z, double depth, double amplitud
 
 }  // namespace detail
 
-/// Index of the region at (x, z), the last that contains it; -1 in a void.
+/// Index of the region at (x, z), the last that contains it; -1 in a vacuum.
 inline long region_at(const Case& parameters, double x, double z) {
     long n = static_cast<long>(parameters.regions.size()) - 1;
     while (n >= 0 && !detail::contains(parameters, parameters.regions[n], x, z)) --n;
-    return n;
+    return n >= 0 && parameters.regions[n].is_vacuum() ? -1 : n;
 }
 
 /// The fluid of one region at (x, z).

@@ -17,6 +17,7 @@ namespace flip {
 /// The fluid of one region at the start.
 struct RegionScales {
     std::string name;
+    bool vacuum = false;
     double particles = 0;
     double mass = 0;
     double sound_speed = 0;  // the smallest
@@ -83,7 +84,8 @@ inline double bytes_of(const Case& parameters, const std::string& program, doubl
 /// in:     program, pic or flip, which takes more memory
 inline Scales scales_of(const Case& parameters, const std::string& program = "flip") {
     Scales s;
-    for (const RegionCase& r : parameters.regions) s.regions.push_back({.name = r.name});
+    for (const RegionCase& r : parameters.regions)
+        s.regions.push_back({.name = r.name, .vacuum = r.is_vacuum()});
     const double per_dx = 1 / parameters.grid.x.spacing(),
                  per_dz = parameters.plane() ? 1 / parameters.grid.z.spacing() : 0;
     const double both = std::hypot(per_dx, per_dz);
@@ -131,8 +133,14 @@ inline Scales scales_of(const Case& parameters, const std::string& program = "fl
                                           std::fabs(end.inflow.velocity_z) * per_dz);
     }
 
-    // A fluid at rest is limited by how fast it can begin to move.
+    // A fluid at rest is limited by how fast it can begin to move; without gravity a pressure that is
+    // not even soon moves the heaviest of it with (p/rho)^1/2.
     const double pull = std::hypot(parameters.gravity_x, parameters.gravity_z);
+    if (s.rate == 0 && pull == 0)
+        for (const RegionScales& r : s.regions) {
+            const double soon = r.particles > 0 ? std::sqrt(r.most_pressure / r.lightest) : 0;
+            if (soon > 0 && (s.rate == 0 || soon * both < s.rate)) s.rate = soon * both;
+        }
     s.dt = s.rate > 0 ? parameters.cfl / s.rate : parameters.end;
     if (pull > 0)
         s.dt = std::min(s.dt, std::sqrt(parameters.cfl / (pull * std::max(per_dx, per_dz))));
@@ -173,8 +181,9 @@ inline std::string describe_scales(const Case& parameters, const Scales& scales,
         line("method", "velocity and energy on the cells");
     }
     for (const RegionScales& r : scales.regions)
-        line(r.name, "about ", r.particles, " particles, sound speed ", r.sound_speed,
-             ", speed up to ", r.speed, (r.mach > 0 ? ", Mach " + format(r.mach) : ""));
+        if (!r.vacuum)
+            line(r.name, "about ", r.particles, " particles, sound speed ", r.sound_speed,
+                 ", speed up to ", r.speed, (r.mach > 0 ? ", Mach " + format(r.mach) : ""));
     line("particles", "about ", scales.particles);
     line("steps", (parameters.dt > 0 ? "" : "about "), scales.steps,
          (parameters.dt > 0 ? " of " : "; the first of "), scales.dt);

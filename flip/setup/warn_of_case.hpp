@@ -17,7 +17,7 @@ namespace detail {
 inline void warn_of_regions(const Case& parameters, const Scales& scales,
                             std::vector<std::string>& out) {
     for (const RegionScales& r : scales.regions)
-        warn(out, r.particles == 0, "region.", r.name,
+        warn(out, r.particles == 0 && !r.vacuum, "region.", r.name,
              " contains no particle: it is outside the mesh, narrower than the distance between "
              "particles, or replaced by a later region");
     for (std::size_t k = 0; k < parameters.materials.size(); ++k) {

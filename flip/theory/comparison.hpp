@@ -92,6 +92,7 @@ struct Comparison {
     Frame frame = Frame::at_rest;
     bool axisymmetric = false;  // stated for rings too
     bool formulas = false;      // whether regions may have them
+    bool vacuum = false;        // whether a region may be one
 };
 
 /// Refuses a case without a region that has a flow.

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "flip/theory/compare_cavity.hpp"
+#include "flip/theory/compare_collapse.hpp"
 #include "flip/theory/compare_dam_break.hpp"
 #include "flip/theory/compare_diffusion.hpp"
 #include "flip/theory/compare_impact.hpp"
@@ -19,7 +20,7 @@
 namespace flip {
 
 inline constexpr Comparison no_comparison{
-    .name = "none", .frame = Frame::moves, .axisymmetric = true, .formulas = true};
+    .name = "none", .frame = Frame::moves, .axisymmetric = true, .formulas = true, .vacuum = true};
 
 /// Every value of theory.compare.
 inline constexpr std::array comparisons{
@@ -27,7 +28,7 @@ inline constexpr std::array comparisons{
     diffusion_comparison, rotation_comparison,  sedov_comparison,      noh_comparison,
     gresho_comparison,    wave_comparison,      ringing_comparison,    interface_comparison,
     shear_comparison,     dam_break_comparison, cavity_comparison,     impact_comparison,
-    rest_comparison};
+    rest_comparison,      collapse_comparison};
 
 /// The comparison that a case asks for.
 inline const Comparison& comparison_of(const Case& parameters) {
@@ -51,6 +52,9 @@ inline void validate_comparison(const Case& parameters) {
     for (const RegionCase& r : parameters.regions)
         refuse(!c.formulas && r.has_formula(), " needs numbers, and region.", r.name,
                " has a formula: write numbers, or theory.compare = \"none\"");
+    for (const RegionCase& r : parameters.regions)
+        refuse(!c.vacuum && r.is_vacuum(), " needs fluid, and region.", r.name,
+               ".density = 0 is a vacuum: take the region out, or theory.compare = \"none\"");
     if (c.validate != nullptr) c.validate(parameters, refuse);
 }
 
