@@ -129,8 +129,10 @@ TEST_CASE("what is no formula is refused with its place and the cure") {
         {"density = true", "'region.gas.density' takes a number or a formula, not true or false"},
         {"density = \"x - 0.5\"",
          "\"x - 0.5\" is -0.4844 at x = 0.01562, z = 0.01562; allowed: "
-         "finite, > 0"},
-        {"density = \"z < .6 ? 1 : 0\"", "is 0 at x = 0.01562, z = 0.6094; allowed: finite, > 0"},
+         "finite, >= 0"},
+        {"density = \"z < .6 ? 1 : 0\"",
+         "the density 0 at x = 0.01562, z = 0.6094: keep it above 0; a vacuum is a region of its "
+         "own"},
         {"pressure = \"1/(x - .015625)\"", "is inf at x = 0.01562, z = 0.01562; allowed: finite"},
         {"velocity_x = \"sqrt(x - .5)\"", "at x = 0.01562, z = 0.01562; allowed: finite, any"},
         {"radius = \"x\"", "'region.gas.radius' takes a number, not text"},

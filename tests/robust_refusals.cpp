@@ -428,8 +428,7 @@ fluids box theory.compare=collapse
     theory.compare = "collapse" needs rings, gas everywhere, in it a disk of liquid, and in that a
     disk of density 0, in this order
 fluids box region.gas.density=x-x -> region.gas has the density 0 at x =
-fluids box theory.compare=noh region.gas.density=0
-    theory.compare = "noh" needs fluid, and region.gas.density = 0 is a vacuum: take the region out
+fluids box region.gas.density=0 -> no region contains a particle
 fluids box theory.compare=noh -> theory.compare = "noh" needs a region with flow = "radial"
 fluids box theory.compare=noh radial
     theory.compare = "noh" is for cold gas, and region.gas.pressure = 1 is above a hundredth of
