@@ -1,6 +1,7 @@
 // Walls that particles do not pass.
 #pragma once
 
+#include <cmath>
 #include <limits>
 
 #include "mpm_explicit/mesh.hpp"
@@ -15,11 +16,13 @@ struct ClampToWalls {
 
     explicit ClampToWalls(const Mesh& mesh) {
         constexpr double far = std::numeric_limits<double>::infinity();
-        const double before = 1e-9 * mesh.h;
+        const auto before = [&](double wall) {
+            return wall - 1e-9 * mesh.h - 1e-15 * std::fabs(wall);
+        };
         x_least = mesh.has(x_low, Boundary::frictional) ? mesh.x_low : -far;
-        x_most = mesh.has(x_high, Boundary::frictional) ? mesh.x_high() - before : far;
+        x_most = mesh.has(x_high, Boundary::frictional) ? before(mesh.x_high()) : far;
         y_least = mesh.has(y_low, Boundary::frictional) ? mesh.y_low : -far;
-        y_most = mesh.has(y_high, Boundary::frictional) ? mesh.y_high() - before : far;
+        y_most = mesh.has(y_high, Boundary::frictional) ? before(mesh.y_high()) : far;
     }
     double x(double at) const { return at < x_least ? x_least : at > x_most ? x_most : at; }
     double y(double at) const { return at < y_least ? y_least : at > y_most ? y_most : at; }

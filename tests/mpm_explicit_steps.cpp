@@ -8,6 +8,7 @@
 #include <functional>
 #include <numbers>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -728,6 +729,21 @@ TEST_CASE("PIC gives particles the velocity of the nodes and FLIP their change")
             CHECK(y_most == *std::max_element(y.begin(), y.end()));
         }
     });
+}
+
+TEST_CASE("what an upper frictional wall stops is in the last cell and not in the one behind") {
+    for (const auto& [low, cells, length] : {std::tuple{0.0, 30L, 1.5}, {-7.3, 7000L, 1e-3}}) {
+        Case c = case_on(cells, cells, length);
+        c.problem.origin_x = c.problem.origin_y = low;
+        c.problem.walls = {"frictional", "frictional", "frictional", "frictional"};
+        const Mesh mesh = c.problem.mesh();
+        const ClampToWalls clamp(mesh);
+        const auto cell = [&](double at) { return std::floor((at - low) / mesh.h); };
+        CHECK(cell(clamp.x(low + 2 * length)) == real(cells - 1));
+        CHECK(cell(clamp.y(low + 2 * length)) == real(cells - 1));
+        CHECK(clamp.x(low - 1) == low);
+        CHECK(clamp.y(low + 0.5 * length) == low + 0.5 * length);
+    }
 }
 
 // ---- where the energy goes ----------------------------------------------------------------------
