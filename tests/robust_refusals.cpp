@@ -640,6 +640,8 @@ grains mesh pack.p.kind=random packed
     the box larger
 grains mesh pack.p.kind=loose packed
     [pack.p]: the box is full with 10 disks and a solid fraction of 0.4363: ask for fewer
+grains mesh pack.p.kind=random pack.p.height=1e6
+    [pack.p]: a region of 1 by 1e+06 is more than a hundred times the mesh
 grains mesh pack.p.kind=random pack.p.radius_min=0.4 pack.p.radius_max=0.4 pack.p.height=0.6
     [pack.p]: a box of 1 by 0.6 is too small for disks 0.8 wide: it must be as high, and 1 times as
     wide
@@ -902,6 +904,8 @@ plasmas magnetized species.electrons.charge=-1 uniform.B_x=0.1 species.electrons
     species 'electrons' has two temperatures across uniform.B
 plasmas magnetized species.electrons.charge=-1 uniform.B_x=0.1 species.electrons.drift_y=0.1
     species 'electrons' drifts across uniform.B
+plasmas magnetized species.electrons.charge=-1 uniform.B_z=1e-9 species.electrons.temperature_x=0.01 species.electrons.temperature_y=0.01
+    theory.wave = "magnetized" sums over the harmonics of the gyration, and k times its radius is
 plasmas magnetized species.electrons.charge=-1 uniform.B_z=0.1 grid.cells_x=64 grid.cells_z=64
     theory.wave = "magnetized" needs theory.near: without temperatures this plasma has waves at
 plasmas transverse species.electrons.charge=-1 uniform.mode_z=1 species.electrons.temperature_z=0.1

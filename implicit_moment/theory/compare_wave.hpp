@@ -241,6 +241,14 @@ inline void refuse_magnetized(const Case& w, const std::string& name) {
             drift.cross(b).norm() > 1e-9 * drift.norm(),
             "species '" + s.name + "' drifts across uniform.B: " + wave + " wants drifts along it");
     }
+    for (const MagnetizedSpecies& s : magnetized_species(w)) {
+        const double gyrations = std::sqrt(gyration_squared(s, magnetized_wave(w)));
+        refuse(!(gyrations <= 1000),
+               wave + " sums over the harmonics of the gyration, and k times its radius is " +
+                   common::format(gyrations) +
+                   ", above 1000: take a stronger uniform.B, or choose " +
+                   "\"longitudinal\" or \"transverse\"");
+    }
     refuse_without_near(w, wave);
     expect_magnetized(w);
 }

@@ -43,6 +43,11 @@ struct MagnetizedWave {
     double along = 0, across = 0;
 };
 
+/// (k v_t / Omega)^2 across the field: harmonics count up to some 9 times its square root.
+inline double gyration_squared(const MagnetizedSpecies& s, const MagnetizedWave& k) {
+    return std::pow(k.across * s.v_across / s.Omega, 2);
+}
+
 /// omega^2 (1 + chi) of all species.
 /// in: plasma, Omega not 0; omega not 0
 inline Eigen::Matrix3cd dielectric_tensor(const std::vector<MagnetizedSpecies>& plasma,
@@ -51,7 +56,7 @@ inline Eigen::Matrix3cd dielectric_tensor(const std::vector<MagnetizedSpecies>& 
     const Complex i(0, 1);
     Eigen::Matrix3cd tensor = omega * omega * Eigen::Matrix3cd::Identity();
     for (const MagnetizedSpecies& s : plasma) {
-        const double lambda = std::pow(k.across * s.v_across / s.Omega, 2);
+        const double lambda = gyration_squared(s, k);
         const std::vector<double> harmonics = common::harmonics_of_maxwellian(lambda);
         const auto I_of = [&](int n) { return harmonics[std::size_t(std::abs(n))]; };
         const int count = int(harmonics.size()) - 2;
@@ -103,12 +108,14 @@ inline MagnetizedWave magnetized_wave(const Case& w) {
     const Eigen::Vector3d vector(k.x, 0, k.z), B(w.uniform.B_x, w.uniform.B_y, w.uniform.B_z);
     return {vector.dot(B) / B.norm(), vector.cross(B).norm() / B.norm()};
 }
-/// in: species that refuse_magnetized() accepts
+/// in:  species that refuse_magnetized() accepts
+/// out: those with a charge; others answer no field
 inline std::vector<MagnetizedSpecies> magnetized_species(const Case& w) {
     const UniformCase& u = w.uniform;
     const Eigen::Vector3d B(u.B_x, u.B_y, u.B_z), b = B.normalized();
     std::vector<MagnetizedSpecies> plasma;
     for (const SpeciesCase& s : u.species) {
+        if (s.charge == 0) continue;
         const Eigen::Vector3d T(s.temperature_x, s.temperature_y, s.temperature_z),
             drift(s.drift_x, s.drift_y, s.drift_z);
         const double along = T.dot(b.cwiseAbs2()), across = 0.5 * (T.sum() - along);

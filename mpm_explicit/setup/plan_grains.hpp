@@ -132,6 +132,11 @@ inline std::vector<PackedGrain> grains_of(const PackCase& p, const Problem& prob
             rows.one_less = p.shorter_rows;
             pack = hexagonal_rows(rows);
         } else {
+            const double most_x = 100 * problem.mesh().length_x(),
+                         most_y = 100 * problem.mesh().h * double(problem.cells_y);
+            refuse(p.width > most_x || p.height > most_y,
+                   "a region of " + format(p.width) + " by " + format(p.height) +
+                       " is more than a hundred times the mesh: make it smaller");
             RandomDisks disks;
             disks.box = {p.x, p.x + p.width, p.y, p.y + p.height};
             disks.periodic_x = problem.periodic_x;

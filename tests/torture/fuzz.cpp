@@ -4,9 +4,9 @@
 //   words of the command line           or  forge NAME
 //   lines of a case file, if any            lines that change a checkpoint, as in forge.hpp
 //
-// NAME is a run of tests/support/every_program.hpp. A run ends after some steps as if by SIGTERM,
-// and its memory is limited, so that each is short. What ends with a status outside the contract, or
-// as an error that nobody expected, aborts; so does whatever a sanitizer finds.
+// NAME is a run of tests/support/every_program.hpp. A run ends after some steps, or after a second and
+// the step in which that is over, as if by SIGTERM, and its memory is limited, so that each is short.
+// What ends with a status outside the contract, or as an error that nobody expected, aborts; so does whatever a sanitizer finds.
 //
 // Run: sh tests/torture/inputs.sh PROGRAM FOLDER SECONDS
 #define DOCTEST_CONFIG_DISABLE
@@ -14,6 +14,7 @@
 #include <sys/resource.h>
 
 #include <csetjmp>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -35,6 +36,7 @@ constexpr rlim_t most_memory = 4 * 1024 * 1024;
 jmp_buf end_of_program;
 bool inside = false;
 int looks_at_clock = 0;
+std::clock_t began = 0;
 
 }  // namespace
 
@@ -53,7 +55,9 @@ int __wrap_getrlimit(__rlimit_resource_t which, struct rlimit* limit) {
 }
 long __real__ZNSt6chrono3_V212steady_clock3nowEv();
 long __wrap__ZNSt6chrono3_V212steady_clock3nowEv() {
-    if (inside && ++looks_at_clock == most_looks_at_clock) common::stop_signal = SIGTERM;
+    if (inside &&
+        (++looks_at_clock == most_looks_at_clock || std::clock() - began > CLOCKS_PER_SEC))
+        common::stop_signal = SIGTERM;
     return __real__ZNSt6chrono3_V212steady_clock3nowEv();
 }
 std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);
@@ -110,7 +114,7 @@ int start(std::vector<std::string> words) {
     dup2(terminal_of_program, 1);  // libFuzzer has taken its own away, -close_fd_mask=3
     dup2(terminal_of_program, 2);
     common::stop_signal = 0;
-    looks_at_clock = 0;
+    looks_at_clock = 0, began = std::clock();
     int status = setjmp(end_of_program) - 1;
     if (status < 0) {
         inside = true;
