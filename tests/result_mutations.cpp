@@ -48,7 +48,8 @@ const std::vector<Mutation> fluids{
     {"flip", "rotating_disk", "flip.transfer=pic", "angular_momentum_kept kinetic_energy_kept"},
     {"flip", "gresho", "grid.cells_x=24 grid.cells_z=24 flip.transfer=pic time.end=0.2",
      "kinetic_energy_kept angular_momentum_kept"},
-    {"flip", "acoustic", "viscosity.linear=5", "frequency_over_ck amplitude_per_period"},
+    {"flip", "acoustic", "grid.cells_x=16 viscosity.linear=5",
+     "frequency_over_ck amplitude_per_period"},
     // Cases that expect their failure are wrong runs themselves.
     {"flip", "ringing", "expect.fails=", "growth"},
     {"flip", "noh", "expect.fails=", "plateau_density_over_theory shock_radius_over_theory"},
