@@ -188,7 +188,8 @@ inline void refuse_region(const Case& parameters, const RegionCase& r) {
            (r.hydrostatic ? "hydrostatic = true" : "flow = \"" + r.flow + "\""));
 }
 
-/// Refuses densities of 0 and pressures that the equation of state does not have, at the places of the particles.
+/// Refuses densities of 0 and pressures that the equation of state does not have, at the places of
+/// the particles.
 inline void refuse_tension(const Case& parameters) {
     for_each_place(parameters, [&](long n, const FluidState& fluid, double x, double z, double) {
         const Material& a = parameters.materials[fluid.material];

@@ -11,16 +11,23 @@ namespace flip {
 
 namespace detail {
 
-template <class Gas, bool vacuum = false>
-void describe_gas(common::ParameterTable& table, const std::string& prefix, Gas& g) {
+template <class Gas>
+void describe_gas(common::ParameterTable& table, const std::string& prefix, Gas& g,
+                  bool may_be_vacuum) {
     using common::anything, common::above, common::at_least;
     table.text(prefix + ".material", g.material, "which material; empty: the first");
-    table.real(prefix + ".density", g.density, "mass/length^3", vacuum ? at_least(0) : above(0),
-               vacuum ? "the number 0: a vacuum" : "density");
+    table.real(prefix + ".density", g.density, "mass/length^3",
+               may_be_vacuum ? at_least(0) : above(0),
+               may_be_vacuum ? "density; the number 0: a vacuum" : "density");
     table.real(prefix + ".pressure", g.pressure, "pressure", at_least(0),
                "pressure; of dust, gamma = 1, internal energy per volume");
     table.real(prefix + ".velocity_x", g.velocity_x, "velocity", anything(), "along x");
     table.real(prefix + ".velocity_z", g.velocity_z, "velocity", anything(), "along z");
+}
+
+template <class Gas>
+void describe_gas(common::ParameterTable& table, const std::string& prefix, Gas& g) {
+    describe_gas(table, prefix, g, false);
 }
 
 inline void describe_side(common::ParameterTable& table, const std::string& name, SideCase& s) {
@@ -36,7 +43,7 @@ inline void describe_side(common::ParameterTable& table, const std::string& name
 inline void describe_region(common::ParameterTable& table, const std::string& prefix,
                             RegionCase& r) {
     using common::anything, common::above, common::at_least, common::between;
-    describe_gas<GasOf<common::Formula>, true>(table, prefix, r.gas);
+    describe_gas(table, prefix, r.gas, true);
     table.choice(prefix + ".shape", r.shape, {"everywhere", "box", "disk", "above"},
                  "above: z > center_z + ripple cos(k (x - center_x)), k = 2 pi mode/length_x");
     table.real(prefix + ".center_x", r.center_x, "length", anything(), "of shape and flow");

@@ -133,8 +133,8 @@ inline Scales scales_of(const Case& parameters, const std::string& program = "fl
                                           std::fabs(end.inflow.velocity_z) * per_dz);
     }
 
-    // A fluid at rest is limited by how fast it can begin to move; without gravity a pressure that is
-    // not even soon moves the heaviest of it with (p/rho)^1/2.
+    // A fluid at rest is limited by how fast it can begin to move; without gravity a pressure that
+    // is not even soon moves the heaviest of it with (p/rho)^1/2.
     const double pull = std::hypot(parameters.gravity_x, parameters.gravity_z);
     if (s.rate == 0 && pull == 0)
         for (const RegionScales& r : s.regions) {

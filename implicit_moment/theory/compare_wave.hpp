@@ -246,8 +246,8 @@ inline void refuse_magnetized(const Case& w, const std::string& name) {
         refuse(!(gyrations <= 1000),
                wave + " sums over the harmonics of the gyration, and k times its radius is " +
                    common::format(gyrations) +
-                   ", above 1000: take a stronger uniform.B, or choose " +
-                   "\"longitudinal\" or \"transverse\"");
+                   ", above 1000: take a stronger uniform.B, or none and \"longitudinal\" or " +
+                   "\"transverse\"");
     }
     refuse_without_near(w, wave);
     expect_magnetized(w);

@@ -43,7 +43,7 @@ struct MagnetizedWave {
     double along = 0, across = 0;
 };
 
-/// (k v_t / Omega)^2 across the field: harmonics count up to some 9 times its square root.
+/// (k v_t/Omega)^2 across the field; 9 times its square root is how many harmonics count.
 inline double gyration_squared(const MagnetizedSpecies& s, const MagnetizedWave& k) {
     return std::pow(k.across * s.v_across / s.Omega, 2);
 }

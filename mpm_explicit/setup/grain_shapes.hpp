@@ -52,16 +52,16 @@ inline Outline polygon(std::vector<Point> corners) {
         "a polygon of " + count + " corners: give at least 3 and at most " + std::to_string(most));
     for (std::size_t k = 0; k < n; ++k)
         if (!usable(corners[k].x) || !usable(corners[k].y))
-            require(false, "corner " + number(k) +
-                               " is not at a finite place: give two numbers below 1e100");
+            throw common::InputError("corner " + number(k) +
+                                     " is not at a finite place: give two numbers below 1e100");
     const Bounds box = bounds(corners);
     const double size = std::hypot(box.x_high - box.x_low, box.y_high - box.y_low),
                  tolerance = resolution * size;
     for (std::size_t k = 0; k < n; ++k) {
         const std::size_t next = (k + 1) % n;
-        if (distance(corners[k], corners[next]) > tolerance) continue;
-        require(false, "corners " + number(k) + " and " + number(next) +
-                           " of a polygon are the same point: leave one out");
+        if (!(distance(corners[k], corners[next]) > tolerance))
+            throw common::InputError("corners " + number(k) + " and " + number(next) +
+                                     " of a polygon are the same point: leave one out");
     }
     require(size > 1e-100 && width(corners) > tolerance,
             "the " + count + " corners of a polygon lie on a line: it has no area");
@@ -70,11 +70,11 @@ inline Outline polygon(std::vector<Point> corners) {
         for (std::size_t m = k + 2; m < n; ++m) {
             if ((m + 1) % n == k) continue;
             const std::size_t after = (m + 1) % n;
-            if (!sides_meet(corners[k], corners[next], corners[m], corners[after], tolerance))
-                continue;
-            require(false, "the side from corner " + number(k) + " to " + number(next) +
-                               " of a polygon meets the side from corner " + number(m) + " to " +
-                               number(after) + ": list the corners in order around the grain");
+            if (sides_meet(corners[k], corners[next], corners[m], corners[after], tolerance))
+                throw common::InputError(
+                    "the side from corner " + number(k) + " to " + number(next) +
+                    " of a polygon meets the side from corner " + number(m) + " to " +
+                    number(after) + ": list the corners in order around the grain");
         }
     }
     auto [area, centroid] = area_and_centroid(corners);

@@ -4,9 +4,10 @@
 //   words of the command line           or  forge NAME
 //   lines of a case file, if any            lines that change a checkpoint, as in forge.hpp
 //
-// NAME is a run of tests/support/every_program.hpp. A run ends after some steps, or after a second and
-// the step in which that is over, as if by SIGTERM, and its memory is limited, so that each is short.
-// What ends with a status outside the contract, or as an error that nobody expected, aborts; so does whatever a sanitizer finds.
+// NAME is a run of tests/support/every_program.hpp. A run ends after some steps, or after the step
+// in which its first second is over, as if by SIGTERM, and its memory is limited, so that each is
+// short. What ends with a status outside the contract, or as an error that nobody expected, aborts;
+// so does whatever a sanitizer finds.
 //
 // Run: sh tests/torture/inputs.sh PROGRAM FOLDER SECONDS
 #define DOCTEST_CONFIG_DISABLE
