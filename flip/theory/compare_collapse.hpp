@@ -41,6 +41,13 @@ inline void validate_collapse(const Case& parameters, const Refusal& refuse) {
     refuse(r[1].gas.pressure != r[0].gas.pressure || !(r[0].gas.pressure > 0),
            " needs gas and liquid of one pressure above 0: ", r[0].gas.pressure, " and ",
            r[1].gas.pressure);
+    refuse(double(r[0].gas.density) > 0.01 * double(r[1].gas.density),
+           " knows no inertia of the gas: region.", r[0].name, ".density = ", r[0].gas.density,
+           " is above a hundredth of that of the liquid, ", r[1].gas.density);
+    for (const RegionCase& part : {r[0], r[1]})
+        refuse(double(part.gas.velocity_x) != 0 || double(part.gas.velocity_z) != 0 ||
+                   part.flow != "uniform",
+               " begins at rest, and region.", part.name, " moves");
     const double S = r[1].radius,
                  room = std::min(parameters.grid.x.length, parameters.grid.z.length);
     refuse(!(r[2].radius < S && S < room),
@@ -85,14 +92,19 @@ inline void compare_collapse(const FinishedRun& run) {
     common::write_table(run.profile, {{"time", "time", times},
                                       {"radius", "length", radius},
                                       {"radius_exact", "length", expected}});
-    const double t = common::time_at_level(times, closed, 0), end = exact.time.back();
-    if (std::isnan(t))
+    double t = common::time_at_level(times, closed, 0);
+    const double end = exact.time.back(), tolerance = 0.5 * dx / R * end;
+    if (std::isnan(t) && times.back() <= end + tolerance)
         return run.not_measured("collapse_time", "the cavity still has the radius ", radius.back(),
                                 ", and theory closes it at t = ", end, ": raise time.end");
-    run.hint("the liquid ends where a cell is full, and the cavity is ", R / dx,
-             " cells wide: refine the mesh to 20, take flip.density = \"particles\", "
-             "flip.pressure = \"implicit\", no viscosity, and a liquid with a large p_infinity");
-    run.summary.result("collapse_time", t, "time", end, 0.5 * dx / R * end,
+    run.hint(
+        std::isnan(t) ? "the cavity is still open at the end, the time that is given; " : "",
+        "the liquid ends where a cell is full, and the cavity is ", R / dx,
+        " cells wide: refine the mesh to 20, take flip.density = \"particles\", "
+        "flip.pressure = \"implicit\", flip.transfer = \"flip\", no viscosity, and a liquid with "
+        "a large p_infinity");
+    if (std::isnan(t)) t = times.back();
+    run.summary.result("collapse_time", t, "time", end, tolerance,
                        "Rayleigh 1917, in a sphere of liquid; half a cell of the radius");
     run.summary.result_at_most("radius_difference", largest / dx, "dx", 1,
                                "largest until half the radius; a cell");
