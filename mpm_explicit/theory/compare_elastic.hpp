@@ -98,9 +98,8 @@ inline void compare_rebound(const FinishedRun& run, common::Summary& summary) {
         {a.outline.radius, material.density, material.E, material.nu}, 0.5 * closing);
     const double cells = a.outline.radius / run.parameters.problem.mesh().h;
     summary.hint("the radius is " + format(cells) +
-                 " cells and a contact begins within a fifth of "
-                 "one: refine the mesh to 8 or more, keep contact.separation = 0.8, and time.alpha "
-                 "= " +
+                 " cells: refine the mesh to 8 or more, keep contact.separation = 0.02, and "
+                 "time.alpha = " +
                  format(run.parameters.alpha) + " at most 0.25 in mpm_explicit");
     summary.result("contact_begins", begin, "time", touch, 0.04 * touch + run.scales.dt,
                    "the gap over the closing velocity");
