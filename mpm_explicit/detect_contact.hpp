@@ -76,13 +76,16 @@ class ContactDetection {
             for (long n = begin; n < end; ++n) {
                 ContactNode node;
                 if (!only_bonded && meetings[n].axis != Meeting::none) {
-                    if (!gather_run(n, nodes, bonds, meetings, storage, node)) continue;
-                } else {
-                    if (!gather_bodies(n, nodes, storage, node)) continue;
-                    if (node.bodies.size() == ContactNode::max_bodies) crowded[block] = true;
-                    find_pairs(h, bonds, only_bonded, true, storage, node);
-                    if (node.pairs.empty()) continue;
+                    SurfaceRun run;
+                    gather_run(n, nodes, bonds, meetings, storage, run);
+                    for (; run.next(storage, node); visit(block, node))
+                        load_velocities(nodes, node);
+                    continue;
                 }
+                if (!gather_bodies(n, nodes, storage, node)) continue;
+                if (node.bodies.size() == ContactNode::max_bodies) crowded[block] = true;
+                find_pairs(h, bonds, only_bonded, true, storage, node);
+                if (node.pairs.empty()) continue;
                 load_velocities(nodes, node);
                 visit(block, node);
             }
@@ -145,10 +148,10 @@ class ContactDetection {
         return count > 1;
     }
 
-    // The run that begins at shared node n. out: whether one begins here, and its surfaces touch
-    bool gather_run(long n, const GrainNodes& nodes, const std::vector<Bond>& bonds,
+    // The run that begins at shared node n: empty where none does, or its surfaces do not touch.
+    void gather_run(long n, const GrainNodes& nodes, const std::vector<Bond>& bonds,
                     const std::vector<Meeting>& meetings, ContactStorage& storage,
-                    ContactNode& node) const {
+                    SurfaceRun& run) const {
         const Meeting& own = meetings[n];
         const auto step = [&](long at, bool back) -> long {
             const GrainNodes::Neighbors& beside = nodes.beside(at);
@@ -159,19 +162,16 @@ class ContactDetection {
         // Longer ones are cut, counted from their first node.
         long before = 0;
         for (long at = step(n, true); at >= 0; at = step(at, true)) ++before;
-        if (before % static_cast<long>(ContactPair::max_links) != 0) return false;
-        SurfaceRun run;
+        if (before % static_cast<long>(ContactPair::max_links) != 0) return;
         for (long at = n; at >= 0 && !run.full(); at = step(at, false)) {
             ContactNode one;
             gather_bodies(at, nodes, storage, one);
             find_pairs(nodes.mesh().h, bonds, false, false, storage, one);
             run.add(one, own.axis, nodes.mesh().h);
         }
-        return run.finish(
-            [&](const ContactBody& a, const ContactBody& b, const ContactPair& pair) {
-                return touch(a, b, pair, nodes.mesh().h);
-            },
-            storage, node);
+        run.close([&](const ContactBody& a, const ContactBody& b, const ContactPair& pair) {
+            return touch(a, b, pair, nodes.mesh().h);
+        });
     }
 
     // Shared nodes are far apart in memory: they are fetched so many members before their turn.

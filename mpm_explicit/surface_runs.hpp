@@ -82,23 +82,22 @@ inline Meeting meeting_of(const ContactNode& node) {
     return {a.id(), b.id(), x ? Meeting::along_x : Meeting::along_y, (x ? pair.nx : pair.ny) < 0};
 }
 
-/// The nodes of a run, put together one after the other.
+/// The nodes of a run, put together one after the other, and the contacts that they make.
 class SurfaceRun {
    public:
-    SurfaceRun() { pair_.link_count = 0; }
-    bool full() const { return pair_.link_count == ContactPair::max_links; }
+    bool full() const { return links_ == ContactPair::max_links; }
 
     /// in:     node, with the two bodies and their pair
     void add(const ContactNode& node, Meeting::Axis axis, double h) {
         const ContactPair& pair = node.pairs[0];
-        const std::size_t k = pair_.link_count, at = 2 * k;
+        const std::size_t k = links_++, at = 2 * k;
         bodies_[at] = node.bodies[pair.a], bodies_[at + 1] = node.bodies[pair.b];
-        if (k == 0) pair_ = pair, pair_.link_count = 0, pair_.a = 0, pair_.b = 1, key_ = node.key;
+        keys_[k] = node.key;
+        if (k == 0) pair_ = pair;
         if (!bodies_[at + 1].wall) {
             const auto [x, y] = gradient_between(bodies_[at], bodies_[at + 1]);
             gx_ += x, gy_ += y;
         }
-        pair_.links[pair_.link_count++] = {static_cast<int>(at), static_cast<int>(at + 1), 0};
         // Moments about the first node.
         const double away = static_cast<double>(k) * h, dx = axis == Meeting::along_x ? away : 0,
                      dy = axis == Meeting::along_x ? 0 : away;
@@ -109,48 +108,84 @@ class SurfaceRun {
         }
     }
 
-    /// in:     touch(a, b, pair), whether their surfaces touch, seen from all nodes of the run
-    /// out:    node, in the storage's bodies and pairs; false where they do not
-    template <class Touch, class Storage>
-    bool finish(const Touch& touch, Storage& storage, ContactNode& node) {
+    /// in:     touch(a, b, pair), whether their surfaces touch, seen from all nodes of the run; where
+    ///         they do not, the run makes no contact
+    template <class Touch>
+    void close(const Touch& touch) {
         if (!bodies_[1].wall) {
             const double size = std::hypot(gx_, gy_);
-            if (!(size > 0)) return false;
+            if (!(size > 0)) return;
             pair_.nx = gx_ / size, pair_.ny = gy_ / size;
         }
-        double sum = 0;
-        const std::span<ContactLink> links(pair_.links.data(), pair_.link_count);
-        for (ContactLink& link : links) {
-            // By the free bodies: what a fixed one feels moves nothing.
-            const auto area = [&](const ContactBody& body) {
-                return body.is_fixed() ? 0 : body.gx * pair_.nx + body.gy * pair_.ny;
-            };
-            link.weight = std::max(0.0, area(bodies_[link.a]) - area(bodies_[link.b]));
-            sum += link.weight;
+        double sum = 0, heaviest = 0;
+        for (std::size_t k = 0; k < links_; ++k) {
+            // By the free body: what a fixed one feels moves nothing.
+            const ContactBody &a = bodies_[2 * k], &b = bodies_[2 * k + 1];
+            weight_[k] = std::max(0.0, area(a) - area(b)), sum += weight_[k];
+            heaviest = std::max(heaviest, free_mass(k));
         }
-        if (!(sum > 0)) return false;
-        for (ContactLink& link : links) link.weight /= sum;
+        if (!(sum > 0)) return;
         for (const std::size_t who : {0, 1}) {
             if (seen_[who].wall) continue;
             seen_[who].vx_0 = seen_[who].vy_0 = 0;
-            for (const ContactLink& link : links) {
-                const ContactBody& body = bodies_[who == 0 ? link.a : link.b];
-                seen_[who].vx_0 += link.weight * body.vx_0,
-                    seen_[who].vy_0 += link.weight * body.vy_0;
+            for (std::size_t k = 0; k < links_; ++k) {
+                const ContactBody& body = bodies_[2 * k + who];
+                seen_[who].vx_0 += weight_[k] / sum * body.vx_0,
+                    seen_[who].vy_0 += weight_[k] / sum * body.vy_0;
             }
         }
-        if (!touch(seen_[0], seen_[1], pair_)) return false;
-        std::copy_n(bodies_.begin(), 2 * links.size(), storage.bodies.begin());
-        storage.pairs[0] = pair_;
-        node.bodies = {storage.bodies.data(), 2 * links.size()}, node.key = key_;
-        node.pairs = {storage.pairs.data(), 1};
-        return true;
+        if (!touch(seen_[0], seen_[1], pair_)) return;
+        for (std::size_t k = 0; k < links_; ++k) is_light_[k] = free_mass(k) < light * heaviest;
+        left_ = 1 + links_;
+    }
+
+    /// The next contact of the run: all heavy nodes together, then each light one by itself.
+    /// out:    node, in the storage's bodies and pairs; false when there is none left
+    template <class Storage>
+    bool next(Storage& storage, ContactNode& node) {
+        while (left_ > 0) {
+            const std::size_t turn = links_ + 1 - left_--;
+            const bool alone = turn > 0;
+            if (alone && !is_light_[turn - 1]) continue;
+            ContactPair& pair = storage.pairs[0] = pair_;
+            pair.link_count = 0;
+            double sum = 0;
+            for (std::size_t k = 0; k < links_; ++k) {
+                if (alone ? k + 1 != turn : is_light_[k]) continue;
+                const int at = static_cast<int>(2 * pair.link_count);
+                storage.bodies[at] = bodies_[2 * k], storage.bodies[at + 1] = bodies_[2 * k + 1];
+                if (at == 0) node.key = keys_[k];
+                pair.links[pair.link_count++] = {at, at + 1, alone ? 1 : weight_[k]};
+                sum += alone ? 1 : weight_[k];
+            }
+            if (!(sum > 0)) continue;
+            for (std::size_t k = 0; k < pair.link_count; ++k) pair.links[k].weight /= sum;
+            pair.a = 0, pair.b = 1;
+            node.bodies = {storage.bodies.data(), 2 * pair.link_count};
+            node.pairs = {storage.pairs.data(), 1};
+            return true;
+        }
+        return false;
     }
 
    private:
+    // Mass at a node, for the heaviest of its run, below which a step may be too long for it: a row of
+    // particles that has just crossed has stress, and nearly no mass to work on.
+    static constexpr double light = 1.0 / 32;
+
+    double area(const ContactBody& body) const {
+        return body.is_fixed() ? 0 : body.gx * pair_.nx + body.gy * pair_.ny;
+    }
+    double free_mass(std::size_t k) const {
+        return bodies_[bodies_[2 * k].is_fixed() ? 2 * k + 1 : 2 * k].m;
+    }
+
     ContactPair pair_{};
-    long key_ = 0;
+    std::size_t links_ = 0, left_ = 0;  // left_, turns of next()
     std::array<ContactBody, 2 * ContactPair::max_links> bodies_;
+    std::array<long, ContactPair::max_links> keys_{};
+    std::array<double, ContactPair::max_links> weight_{};
+    std::array<bool, ContactPair::max_links> is_light_{};
     std::array<ContactBody, 2> seen_;  // the two, with the surfaces that all nodes see
     double gx_ = 0, gy_ = 0;
 };
