@@ -113,6 +113,7 @@ class ContactDetection {
             present += members[l].is_wall() || nodes.sums[members[l].dof].m > nodes.least_mass();
         if (present < 2) return false;
         double node_x = 0, node_y = 0;
+        bool fixed_x = false, fixed_y = false;
         std::size_t count = 0;
         for (long l = begin; l < end && count < ContactNode::max_bodies; ++l) {
             const Member& member = members[l];
@@ -133,12 +134,19 @@ class ContactDetection {
             body.m = sum.m, body.per_mx = body.per_my = body.rigid ? 0 : per_m;
             body.x = sum.mx * per_m - member.x, body.y = sum.my * per_m - member.y;
             body.gx = sum.gx, body.gy = sum.gy;
+            fixed_x = fixed_x || nodes.is_fixed_x(member.dof);
+            fixed_y = fixed_y || nodes.is_fixed_y(member.dof);
             body.vx_0 = nodes.motion[member.dof].vx_0, body.vy_0 = nodes.motion[member.dof].vy_0;
             body.surface = moved(nodes.surface[member.dof], -member.x, -member.y);
             node_x = member.x, node_y = member.y;
             ++count;
         }
         node.bodies = {storage.bodies.data(), count};
+        // On a wall that holds nodes, what is beyond it takes the gradient across it away.
+        for (ContactBody& body : node.bodies) {
+            if (fixed_x) body.gx = 0;
+            if (fixed_y) body.gy = 0;
+        }
         const Mesh& mesh = nodes.mesh();
         const long i = std::lround((node_x - mesh.x_low) / mesh.h),
                    j = std::lround((node_y - mesh.y_low) / mesh.h),
