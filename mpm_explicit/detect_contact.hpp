@@ -63,6 +63,7 @@ class ContactDetection {
             ContactStorage storage;
             for (long n = begin; n < end; ++n) {
                 ContactNode node;
+                if (!has_fixed_member(n, nodes)) continue;
                 if (!gather_bodies(n, nodes, storage, node) || node.bodies.size() != 2) continue;
                 if (!node.bodies[0].is_fixed() && !node.bodies[1].is_fixed()) continue;
                 find_pairs(h, bonds, false, false, storage, node);
@@ -99,6 +100,14 @@ class ContactDetection {
 
    private:
     static constexpr long mesh_margin = 4;  // nodes beyond the mesh that grains may touch
+
+    // Whether a rigid grain or a wall may be at shared node n.
+    bool has_fixed_member(long n, const GrainNodes& nodes) const {
+        const Member* const members = nodes.members().data();
+        return std::any_of(
+            members + nodes.shared_begin()[n], members + nodes.shared_begin()[n + 1],
+            [&](const Member& one) { return one.is_wall() || is_rigid_[one.grain]; });
+    }
 
     // All bodies with mass at shared node n. out: whether there are at least two
     bool gather_bodies(long n, const GrainNodes& nodes, ContactStorage& storage,
@@ -192,6 +201,7 @@ class ContactDetection {
             if (member.is_wall()) continue;
             __builtin_prefetch(&nodes.sums[member.dof]);
             __builtin_prefetch(&nodes.motion[member.dof], 1);
+            __builtin_prefetch(&nodes.surface[member.dof]);
         }
     }
 

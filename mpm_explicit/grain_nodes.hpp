@@ -47,6 +47,7 @@ struct SurfaceSums {
         x += other.x, y += other.y;
         xx += other.xx, xy += other.xy, yx += other.yx, yy += other.yy;
     }
+    SurfaceSums times(double f) const { return {f * x, f * y, f * xx, f * xy, f * yx, f * yy}; }
 };
 /// The same of surfaces that are moved by (dx, dy).
 inline SurfaceSums moved(const SurfaceSums& s, double dx, double dy) {

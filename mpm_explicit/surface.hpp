@@ -12,12 +12,15 @@
 
 namespace mpm {
 
-/// Calls work(number of the part, particle) for the parts that the particles of a tile carry.
+/// Calls work(particle, first, end) for the particles of a tile that carry parts, with the numbers of
+/// these.
 template <class Work>
-void for_each_part(const Surface& surface, const Tile& tile, const Work& work) {
-    for (std::size_t k = surface.first_of(tile.begin);
-         k < surface.count() && surface.host[k] < tile.end; ++k)
-        work(k, static_cast<std::size_t>(surface.host[k]));
+void for_each_host(const Surface& surface, const Tile& tile, const Work& work) {
+    for (std::size_t k = surface.first_of(tile.begin), end;
+         k < surface.count() && surface.host[k] < tile.end; k = end) {
+        for (end = k + 1; end < surface.count() && surface.host[end] == surface.host[k];) ++end;
+        work(static_cast<std::size_t>(surface.host[k]), k, end);
+    }
 }
 
 /// Area vectors of the outlines and their moments.
@@ -32,16 +35,17 @@ void surface_to_grid(const Shape& shape, const Particles& particles, GrainNodes&
     const Locator at(nodes.mesh());
     const Surface& parts = particles.surface;
     nodes.for_each_tile([&](const Tile& tile, std::size_t) {
-        for_each_part(parts, tile, [&](std::size_t k, std::size_t p) {
-            const double x = particles.x_p[p], y = particles.y_p[p], x_s = x + parts.ex[k],
-                         y_s = y + parts.ey[k];
+        for_each_host(parts, tile, [&](std::size_t p, std::size_t first, std::size_t end) {
+            const double x = particles.x_p[p], y = particles.y_p[p];
+            SurfaceSums carried{};
+            for (std::size_t k = first; k < end; ++k) {
+                const double a_x = parts.ax[k], a_y = parts.ay[k], x_s = x + parts.ex[k],
+                             y_s = y + parts.ey[k];
+                carried += {a_x, a_y, a_x * x_s, a_x * y_s, a_y * x_s, a_y * y_s};
+            }
             for_each_node(shape, at, nodes.origins(tile.grain), x, y,
                           [&](long dof, double S, double, double) {
-                              SurfaceSums& sum = nodes.surface[dof];
-                              const double a_x = S * parts.ax[k], a_y = S * parts.ay[k];
-                              sum.x += a_x, sum.y += a_y;
-                              sum.xx += a_x * x_s, sum.xy += a_x * y_s;
-                              sum.yx += a_y * x_s, sum.yy += a_y * y_s;
+                              nodes.surface[dof] += carried.times(S);
                           });
         });
     });
@@ -69,7 +73,7 @@ void carry_surface(const Shape& shape, const std::vector<Grain>& grains, const G
     Surface& parts = particles.surface;
     nodes.for_each_tile([&](const Tile& tile, std::size_t) {
         if (grains[tile.grain].rigid) return;
-        for_each_part(parts, tile, [&](std::size_t k, std::size_t p) {
+        for_each_host(parts, tile, [&](std::size_t p, std::size_t first, std::size_t end) {
             double xx = 0, xy = 0, yx = 0, yy = 0;
             for_each_node(shape, at, nodes.origins(tile.grain), particles.x_p[p], particles.y_p[p],
                           [&](long dof, double, double Gx, double Gy) {
@@ -81,9 +85,11 @@ void carry_surface(const Shape& shape, const std::vector<Grain>& grains, const G
             const double per = 1 / ((1 - xx) * (1 - yy) - xy * yx), both = xx * yy - xy * yx;
             const double F_xx = per * (1 + xx - yy - both), F_xy = per * 2 * xy,
                          F_yx = per * 2 * yx, F_yy = per * (1 - xx + yy - both);
-            const double e_x = parts.ex[k], e_y = parts.ey[k], a_x = parts.ax[k], a_y = parts.ay[k];
-            parts.ex[k] = F_xx * e_x + F_xy * e_y, parts.ey[k] = F_yx * e_x + F_yy * e_y;
-            parts.ax[k] = F_yy * a_x - F_yx * a_y, parts.ay[k] = F_xx * a_y - F_xy * a_x;
+            for (std::size_t k = first; k < end; ++k) {
+                const double e_x = parts.ex[k], e_y = parts.ey[k], a_x = parts.ax[k], a_y = parts.ay[k];
+                parts.ex[k] = F_xx * e_x + F_xy * e_y, parts.ey[k] = F_yx * e_x + F_yy * e_y;
+                parts.ax[k] = F_yy * a_x - F_yx * a_y, parts.ay[k] = F_xx * a_y - F_xy * a_x;
+            }
         });
     });
 }

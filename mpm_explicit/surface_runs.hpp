@@ -37,7 +37,7 @@ inline double gap_between(const ContactBody& one, const ContactBody& two, double
         if (body.wall) return body.x * nx + body.y * ny;
         const SurfaceSums& s = body.surface;
         const double area = s.x * nx + s.y * ny;
-        return sign * area > facing * std::hypot(s.x, s.y)
+        return sign * area > facing * std::sqrt(s.x * s.x + s.y * s.y)
                    ? (nx * (s.xx * nx + s.xy * ny) + ny * (s.yx * nx + s.yy * ny)) / area
                    : sign * -std::numeric_limits<double>::infinity();
     };
@@ -61,7 +61,7 @@ inline bool normal_between(const ContactBody& one, const ContactBody& two, doubl
         return true;
     }
     const std::array<double, 2> along = gradient_between(one, two);
-    const double size = std::hypot(along[0], along[1]);
+    const double size = std::sqrt(along[0] * along[0] + along[1] * along[1]);
     nx = along[0] / size, ny = along[1] / size;
     return size > 0;
 }
