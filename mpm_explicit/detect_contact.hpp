@@ -14,20 +14,10 @@
 #include <vector>
 
 #include "common/run/parameters.hpp"
+#include "mpm_explicit/contact_rule.hpp"
 #include "mpm_explicit/contact_velocities.hpp"
-#include "mpm_explicit/surface_runs.hpp"
 
 namespace mpm {
-
-struct ContactRule {
-    double friction = 0, wall_friction = 0;  // Coulomb's coefficients
-    std::vector<double> between;  // friction of two materials, n by n; empty: one for all
-    // Grains press when their surfaces are nearer than this, in cells; 0: wherever they approach,
-    // which is too early. Where a node sees no outline, the centers of their parts around it count.
-    double separation = 0.02, center_separation = 0.8;
-    long levels = 2;   // leapfrog: contact acts on v_i^0 and v_i^1; 1: on v_i^1 alone
-    double ahead = 0;  // surfaces press that will touch so soon [time]
-};
 
 class ContactDetection {
    public:
@@ -187,7 +177,7 @@ class ContactDetection {
             run.add(one, own.axis, nodes.mesh().h);
         }
         run.close([&](const ContactBody& a, const ContactBody& b, const ContactPair& pair) {
-            return touch(a, b, pair, nodes.mesh().h);
+            return touch(rule_, a, b, pair, nodes.mesh().h);
         });
     }
 
@@ -221,7 +211,7 @@ class ContactDetection {
                 if (free && bond < 0 && light) continue;
                 ContactPair& pair = storage.pairs[count];
                 if (!normal_between(one, two, pair.nx, pair.ny)) continue;
-                if (bond < 0 && only_touching && !touch(one, two, pair, h)) continue;
+                if (bond < 0 && only_touching && !touch(rule_, one, two, pair, h)) continue;
                 pair.a = a, pair.b = b, pair.bond = bond;
                 pair.links[0] = {static_cast<int>(a), static_cast<int>(b), 1}, pair.link_count = 1;
                 pair.mu =
@@ -235,16 +225,6 @@ class ContactDetection {
             }
         }
         node.pairs = {storage.pairs.data(), count};
-    }
-
-    // Whether two bodies are near enough to press.
-    bool touch(const ContactBody& one, const ContactBody& two, const ContactPair& pair,
-               double h) const {
-        if (rule_.separation == 0) return true;
-        if (has_outline(one) && has_outline(two))
-            return gap_between(one, two, pair.nx, pair.ny, rule_.ahead) <= rule_.separation * h;
-        const double apart = (two.x - one.x) * pair.nx + (two.y - one.y) * pair.ny;
-        return apart <= rule_.center_separation * h * (two.wall ? 0.5 : 1);
     }
 
     int bond_of(const std::vector<Bond>& bonds, const ContactBody& one,

@@ -86,7 +86,8 @@ void carry_surface(const Shape& shape, const std::vector<Grain>& grains, const G
             const double F_xx = per * (1 + xx - yy - both), F_xy = per * 2 * xy,
                          F_yx = per * 2 * yx, F_yy = per * (1 - xx + yy - both);
             for (std::size_t k = first; k < end; ++k) {
-                const double e_x = parts.ex[k], e_y = parts.ey[k], a_x = parts.ax[k], a_y = parts.ay[k];
+                const double e_x = parts.ex[k], e_y = parts.ey[k], a_x = parts.ax[k],
+                             a_y = parts.ay[k];
                 parts.ex[k] = F_xx * e_x + F_xy * e_y, parts.ey[k] = F_yx * e_x + F_yy * e_y;
                 parts.ax[k] = F_yy * a_x - F_yx * a_y, parts.ay[k] = F_xx * a_y - F_xy * a_x;
             }
