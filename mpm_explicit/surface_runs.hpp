@@ -27,10 +27,11 @@ inline bool has_outline(const ContactBody& body) {
     return body.wall || body.surface.x != 0 || body.surface.y != 0;
 }
 
-/// The gap that is left between the surfaces of two bodies along n, from one to two, after some time;
-/// infinite where the outline of one of them is turned away from n.
+/// The gap that is left between the surfaces of two bodies along n, from one to two, after some time,
+/// in which it changes by so much at most; infinite where the outline of one of them is turned away
+/// from n.
 inline double gap_between(const ContactBody& one, const ContactBody& two, double nx, double ny,
-                          double ahead) {
+                          double ahead, double most) {
     // Between two that are free, the normal of a corner is a guess.
     const double facing = one.is_fixed() || two.is_fixed() ? 0 : 0.5;
     const auto place = [&](const ContactBody& body, double sign) {
@@ -41,8 +42,8 @@ inline double gap_between(const ContactBody& one, const ContactBody& two, double
                    ? (nx * (s.xx * nx + s.xy * ny) + ny * (s.yx * nx + s.yy * ny)) / area
                    : sign * -std::numeric_limits<double>::infinity();
     };
-    return place(two, -1) - place(one, 1) +
-           ahead * ((two.vx_0 - one.vx_0) * nx + (two.vy_0 - one.vy_0) * ny);
+    const double parting = (two.vx_0 - one.vx_0) * nx + (two.vy_0 - one.vy_0) * ny;
+    return place(two, -1) - place(one, 1) + std::clamp(ahead * parting, -most, most);
 }
 
 /// What the normal of two bodies is along, from one to two: the gradient of the fixed one where there
