@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -147,6 +148,8 @@ inline Assembly assemble(const Problem& w) {
         grain.begin = all.particles.count();
         detail::add_particles(plan, stretch, w, material, all.particles);
         grain.end = all.particles.count();
+        grain.mass = std::accumulate(all.particles.m_p.begin() + grain.begin,
+                                     all.particles.m_p.begin() + grain.end, 0.0);
         grain.has_corners = plan.outline.kind == OutlineKind::polygon;
         all.grains.push_back(grain);
 

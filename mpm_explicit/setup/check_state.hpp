@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -129,6 +130,12 @@ inline void validate_state(const Mesh& mesh, int width, bool affine, bool turns,
     constexpr double least = 1e-130, most = 1e130, largest = 1e90;  // products of some are numbers
     refuse(!common::all_within(p.m_p, least, most) || !common::all_within(p.V_p, least, most),
            "a particle has no mass or no volume");
+    for (const Grain& grain : all.grains) {
+        const double mass =
+            std::accumulate(p.m_p.begin() + grain.begin, p.m_p.begin() + grain.end, 0.0);
+        refuse(!(std::fabs(mass - grain.mass) <= 1e-9 * grain.mass),
+               "the mass of grain '" + grain.name + "' is not that of the case");
+    }
     refuse(!common::all_within(p.yield_p, 0, largest),
            "the plastic strain of a particle is negative");
     for (const auto* column : {&p.vx_p, &p.vy_p, &p.sxx_p, &p.syy_p, &p.sxy_p, &p.szz_p, &p.cxx_p,
