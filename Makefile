@@ -442,7 +442,7 @@ $(1): $(BUILD)/$(2) | $(packages_first)
 	@QUANTITIES='$(5)' PLOTS=out/figures/$(1) sh common/movie.sh out/movies/$(1) '$(4)'
 endef
 $(eval $(call movie,movie01,mpm_implicit,rebound.toml output.particles_interval=0.02,particles))
-$(eval $(call movie,movie02,mpm_explicit,rebound.toml time.alpha=1 contact.levels=1 time.energy_limit=0 output.particles_interval=0.02 \
+$(eval $(call movie,movie02,mpm_explicit,rebound.toml time.alpha=1 time.energy_limit=0 output.particles_interval=0.02 \
     grid.cells_x=64 grid.cells_y=32 grid.length_x=1.6 grid.low_x=-0.2 grid.low_y=-0.1,particles))
 $(eval $(call movie,movie05,mpm_explicit,compressed.toml output.fringes_interval=0.005,fringes,stress_difference))
 $(eval $(call movie,movie07,mpm_implicit,shear.toml output.particles_interval=0.01 output.fringes_interval=0.01,particles fringes,stress_difference))

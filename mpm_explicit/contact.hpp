@@ -90,12 +90,27 @@ class ContactTally {
     void add_work(const ContactNode& node, const ContactPair& pair, ContactSums& sums) const {
         const ContactBody &a = node.bodies[pair.a], &b = node.bodies[pair.b];
         const double tx = -pair.ny, ty = pair.nx, old_share = level_.old_share;
-        const auto mean = [&](const ContactBody& p, double& x, double& y) {
-            x = p.is_fixed() ? p.vx : old_share * p.vx_0 + (1 - old_share) * p.vx;
-            y = p.is_fixed() ? p.vy : old_share * p.vy_0 + (1 - old_share) * p.vy;
+        // Of the bodies at the surface, between their nodes.
+        const auto mean = [&](int ContactLink::*who, double& x, double& y) {
+            x = y = 0;
+            for (const ContactLink& link : pair.all_links()) {
+                const ContactBody& p = node.bodies[link.*who];
+                x += link.weight *
+                     (p.is_fixed() ? p.vx : old_share * p.vx_0 + (1 - old_share) * p.vx);
+                y += link.weight *
+                     (p.is_fixed() ? p.vy : old_share * p.vy_0 + (1 - old_share) * p.vy);
+            }
+        };
+        const auto change = [&](int ContactLink::*who, double& x, double& y) {
+            x = y = 0;
+            for (const ContactLink& link : pair.all_links()) {
+                const ContactBody& p = node.bodies[link.*who];
+                x += link.weight * (p.is_fixed() ? 0 : p.vx - p.vx_0);
+                y += link.weight * (p.is_fixed() ? 0 : p.vy - p.vy_0);
+            }
         };
         double ax, ay, bx, by, cax, cay, cbx, cby;
-        mean(a, ax, ay), mean(b, bx, by);
+        mean(&ContactLink::a, ax, ay), mean(&ContactLink::b, bx, by);
         const double normal = pair.lambda_n * ((bx - ax) * pair.nx + (by - ay) * pair.ny),
                      friction = pair.lambda_t * ((bx - ax) * tx + (by - ay) * ty);
         if (pair.bond >= 0) {
@@ -104,10 +119,7 @@ class ContactTally {
             sums.normal += normal, sums.friction += friction;
             if (pair.lambda_n > 0) sums.impulse += pair.lambda_n, sums.nodes += 1;
         }
-        const auto change = [](const ContactBody& p, double& x, double& y) {
-            x = p.is_fixed() ? 0 : p.vx - p.vx_0, y = p.is_fixed() ? 0 : p.vy - p.vy_0;
-        };
-        change(a, cax, cay), change(b, cbx, cby);
+        change(&ContactLink::a, cax, cay), change(&ContactLink::b, cbx, cby);
         sums.release -= pair.old_n * ((cbx - cax) * pair.nx + (cby - cay) * pair.ny) +
                         pair.old_t * ((cbx - cax) * tx + (cby - cay) * ty);
         // A fixed body takes or gives the rest.

@@ -1,8 +1,9 @@
 // Contact detection: the bodies that meet at a grid node, and which pairs of them are in contact. [MPM-4]
 //
 // Every grain has a velocity of its own at a node. Two grains a and b, with the normal n from a to
-// b, are in contact when they are close enough: fields share nodes already when more than a cell of
-// nothing lies between the surfaces.
+// b, are in contact when their surfaces touch: fields share nodes already when more than a cell of
+// nothing lies between them. Nodes at which a grain meets a rigid one or a wall, and nobody else, make
+// runs across the surface (surface_runs.hpp); the others are each for themselves.
 #pragma once
 
 #include <algorithm>
@@ -13,58 +14,10 @@
 #include <vector>
 
 #include "common/run/parameters.hpp"
-#include "mpm_explicit/grain_nodes.hpp"
-#include "mpm_explicit/solve_contact_node.hpp"
+#include "mpm_explicit/contact_rule.hpp"
+#include "mpm_explicit/contact_velocities.hpp"
 
 namespace mpm {
-
-struct ContactRule {
-    double friction = 0, wall_friction = 0;  // Coulomb's coefficients
-    std::vector<double> between;  // friction of two materials, n by n; empty: one for all
-    // Grains press when the centers of their parts around a node are nearer than this, in cells; 0:
-    // wherever they approach, which is too early.
-    double separation = 0.8;
-    long levels = 2;  // leapfrog: contact acts on v_i^0 and v_i^1; 1: on v_i^1 alone
-};
-
-/// Velocities of the bodies from nodes.motion, no mobility along directions that walls fix, and the
-/// effective masses.
-inline void load_velocities(const GrainNodes& nodes, ContactNode& node) {
-    node.isotropic = true;
-    for (ContactBody& body : node.bodies) {
-        if (body.wall) continue;
-        const NodeMotion& v = nodes.motion[body.dof];
-        body.vx_0 = v.vx_0, body.vy_0 = v.vy_0, body.vx = v.vx_1, body.vy = v.vy_1;
-        if (body.rigid) continue;
-        if (nodes.is_fixed_x(body.dof)) body.per_mx = 0, node.isotropic = false;
-        if (nodes.is_fixed_y(body.dof)) body.per_my = 0, node.isotropic = false;
-    }
-    find_effective_masses(node);
-}
-
-/// The new velocities of the bodies, back to nodes.motion.
-inline void store_velocities(const ContactNode& node, GrainNodes& nodes) {
-    for (const ContactBody& body : node.bodies) {
-        if (body.is_fixed()) continue;
-        NodeMotion& v = nodes.motion[body.dof];
-        v.vx_1 = body.vx, v.vy_1 = body.vy;
-    }
-}
-
-/// The same for v_i^0.
-inline void store_old_velocities(const ContactNode& node, GrainNodes& nodes) {
-    for (const ContactBody& body : node.bodies) {
-        if (body.is_fixed()) continue;
-        NodeMotion& v = nodes.motion[body.dof];
-        v.vx_0 = body.vx, v.vy_0 = body.vy;
-    }
-}
-
-/// Room for the bodies and pairs of one node.
-struct ContactStorage {
-    std::array<ContactBody, ContactNode::max_bodies> bodies;
-    std::array<ContactPair, ContactNode::max_pairs> pairs;
-};
 
 class ContactDetection {
    public:
@@ -94,13 +47,35 @@ class ContactDetection {
     void for_each(const GrainNodes& nodes, const std::vector<Bond>& bonds, bool only_bonded,
                   const Visit& visit) const {
         std::array<bool, common::block_count> crowded{};
+        const double h = nodes.mesh().h;
+        std::vector<Meeting> meetings(only_bonded ? 0 : nodes.shared_count());
+        const auto meet = [&](int, long begin, long end) {
+            ContactStorage storage;
+            for (long n = begin; n < end; ++n) {
+                ContactNode node;
+                if (!has_fixed_member(n, nodes)) continue;
+                if (!gather_bodies(n, nodes, storage, node) || node.bodies.size() != 2) continue;
+                if (!node.bodies[0].is_fixed() && !node.bodies[1].is_fixed()) continue;
+                find_pairs(h, bonds, false, false, storage, node);
+                if (node.pairs.size() == 1 && node.pairs[0].bond < 0)
+                    meetings[n] = meeting_of(node);
+            }
+        };
+        if (!only_bonded) common::for_each_block(nodes.shared_count(), meet);
         common::for_each_block(nodes.shared_count(), [&](int block, long begin, long end) {
             ContactStorage storage;
             for (long n = begin; n < end; ++n) {
                 ContactNode node;
+                if (!only_bonded && meetings[n].axis != Meeting::none) {
+                    SurfaceRun run;
+                    gather_run(n, nodes, bonds, meetings, storage, run);
+                    for (; run.next(storage, node); visit(block, node))
+                        load_velocities(nodes, node);
+                    continue;
+                }
                 if (!gather_bodies(n, nodes, storage, node)) continue;
                 if (node.bodies.size() == ContactNode::max_bodies) crowded[block] = true;
-                find_pairs(nodes.mesh().h, bonds, only_bonded, storage, node);
+                find_pairs(h, bonds, only_bonded, true, storage, node);
                 if (node.pairs.empty()) continue;
                 load_velocities(nodes, node);
                 visit(block, node);
@@ -116,6 +91,14 @@ class ContactDetection {
    private:
     static constexpr long mesh_margin = 4;  // nodes beyond the mesh that grains may touch
 
+    // Whether a rigid grain or a wall may be at shared node n.
+    bool has_fixed_member(long n, const GrainNodes& nodes) const {
+        const Member* const members = nodes.members().data();
+        return std::any_of(
+            members + nodes.shared_begin()[n], members + nodes.shared_begin()[n + 1],
+            [&](const Member& one) { return one.is_wall() || is_rigid_[one.grain]; });
+    }
+
     // All bodies with mass at shared node n. out: whether there are at least two
     bool gather_bodies(long n, const GrainNodes& nodes, ContactStorage& storage,
                        ContactNode& node) const {
@@ -129,6 +112,7 @@ class ContactDetection {
             present += members[l].is_wall() || nodes.sums[members[l].dof].m > nodes.least_mass();
         if (present < 2) return false;
         double node_x = 0, node_y = 0;
+        bool fixed_x = false, fixed_y = false;
         std::size_t count = 0;
         for (long l = begin; l < end && count < ContactNode::max_bodies; ++l) {
             const Member& member = members[l];
@@ -149,10 +133,19 @@ class ContactDetection {
             body.m = sum.m, body.per_mx = body.per_my = body.rigid ? 0 : per_m;
             body.x = sum.mx * per_m - member.x, body.y = sum.my * per_m - member.y;
             body.gx = sum.gx, body.gy = sum.gy;
+            fixed_x = fixed_x || nodes.is_fixed_x(member.dof);
+            fixed_y = fixed_y || nodes.is_fixed_y(member.dof);
+            body.vx_0 = nodes.motion[member.dof].vx_0, body.vy_0 = nodes.motion[member.dof].vy_0;
+            body.surface = moved(nodes.surface[member.dof], -member.x, -member.y);
             node_x = member.x, node_y = member.y;
             ++count;
         }
         node.bodies = {storage.bodies.data(), count};
+        // On a wall that holds nodes, what is beyond it takes the gradient across it away.
+        for (ContactBody& body : node.bodies) {
+            if (fixed_x) body.gx = 0;
+            if (fixed_y) body.gy = 0;
+        }
         const Mesh& mesh = nodes.mesh();
         const long i = std::lround((node_x - mesh.x_low) / mesh.h),
                    j = std::lround((node_y - mesh.y_low) / mesh.h),
@@ -160,6 +153,32 @@ class ContactDetection {
         node.key =
             (j + mesh_margin) * nx + (mesh.periodic_x ? ((i % nx) + nx) % nx : i + mesh_margin);
         return count > 1;
+    }
+
+    // The run that begins at shared node n: empty where none does, or its surfaces do not touch.
+    void gather_run(long n, const GrainNodes& nodes, const std::vector<Bond>& bonds,
+                    const std::vector<Meeting>& meetings, ContactStorage& storage,
+                    SurfaceRun& run) const {
+        const Meeting& own = meetings[n];
+        const auto step = [&](long at, bool back) -> long {
+            const GrainNodes::Neighbors& beside = nodes.beside(at);
+            const int to = own.axis == Meeting::along_x ? (back ? beside.left : beside.right)
+                                                        : (back ? beside.below : beside.above);
+            return to >= 0 && meetings[to] == own ? to : -1;
+        };
+        // Longer ones are cut, counted from their first node.
+        long before = 0;
+        for (long at = step(n, true); at >= 0; at = step(at, true)) ++before;
+        if (before % static_cast<long>(ContactPair::max_links) != 0) return;
+        for (long at = n; at >= 0 && !run.full(); at = step(at, false)) {
+            ContactNode one;
+            gather_bodies(at, nodes, storage, one);
+            find_pairs(nodes.mesh().h, bonds, false, false, storage, one);
+            run.add(one, own.axis, nodes.mesh().h);
+        }
+        run.close([&](const ContactBody& a, const ContactBody& b, const ContactPair& pair) {
+            return touch(rule_, a, b, pair, nodes.mesh().h);
+        });
     }
 
     // Shared nodes are far apart in memory: they are fetched so many members before their turn.
@@ -172,11 +191,12 @@ class ContactDetection {
             if (member.is_wall()) continue;
             __builtin_prefetch(&nodes.sums[member.dof]);
             __builtin_prefetch(&nodes.motion[member.dof], 1);
+            __builtin_prefetch(&nodes.surface[member.dof]);
         }
     }
 
-    // The pairs that are in contact, or only those that are bonded.
-    void find_pairs(double h, const std::vector<Bond>& bonds, bool only_bonded,
+    // All pairs, those that are in contact, or only those that are bonded.
+    void find_pairs(double h, const std::vector<Bond>& bonds, bool only_bonded, bool only_touching,
                     ContactStorage& storage, ContactNode& node) const {
         std::size_t count = 0;
         for (std::size_t b = 1; b < node.bodies.size(); ++b) {
@@ -190,11 +210,10 @@ class ContactDetection {
                 const bool light = std::min(one.m, two.m) < low_mass * (one.m + two.m);
                 if (free && bond < 0 && light) continue;
                 ContactPair& pair = storage.pairs[count];
-                if (!find_normal(one, two, pair.nx, pair.ny)) continue;
-                const double apart = (two.x - one.x) * pair.nx + (two.y - one.y) * pair.ny;
-                const double limit = rule_.separation * h * (two.wall ? 0.5 : 1);
-                if (bond < 0 && limit > 0 && apart > limit) continue;
+                if (!normal_between(one, two, pair.nx, pair.ny)) continue;
+                if (bond < 0 && only_touching && !touch(rule_, one, two, pair, h)) continue;
                 pair.a = a, pair.b = b, pair.bond = bond;
+                pair.links[0] = {static_cast<int>(a), static_cast<int>(b), 1}, pair.link_count = 1;
                 pair.mu =
                     two.wall ? rule_.wall_friction
                     : rule_.between.empty()
@@ -206,23 +225,6 @@ class ContactDetection {
             }
         }
         node.pairs = {storage.pairs.data(), count};
-    }
-
-    // From one to two: out of the fixed one where there is one, else between both gradients.
-    static bool find_normal(const ContactBody& one, const ContactBody& two, double& nx,
-                            double& ny) {
-        if (two.wall) {
-            nx = two.grain == x_low ? -1 : two.grain == x_high ? 1 : 0;
-            ny = two.grain == y_low ? -1 : two.grain == y_high ? 1 : 0;
-            return true;
-        }
-        nx = (two.rigid ? 0 : one.gx) - (one.rigid ? 0 : two.gx);
-        ny = (two.rigid ? 0 : one.gy) - (one.rigid ? 0 : two.gy);
-        const double squared = nx * nx + ny * ny;
-        if (!(squared > 0)) return false;
-        const double per_size = 1 / std::sqrt(squared);
-        nx *= per_size, ny *= per_size;
-        return true;
     }
 
     int bond_of(const std::vector<Bond>& bonds, const ContactBody& one,

@@ -38,6 +38,22 @@ struct alignas(64) NodeSums {
     double V;       // volume:               sum_p V_p S_ip
 };
 
+/// What the outline of a grain puts on a node (surface.hpp).
+struct SurfaceSums {
+    double x, y;            // area vectors:  sum S A
+    double xx, xy, yx, yy;  // their moments: sum S A_x x_s, A_x y_s, A_y x_s, A_y y_s
+
+    void operator+=(const SurfaceSums& other) {
+        x += other.x, y += other.y;
+        xx += other.xx, xy += other.xy, yx += other.yx, yy += other.yy;
+    }
+    SurfaceSums times(double f) const { return {f * x, f * y, f * xx, f * xy, f * yx, f * yy}; }
+};
+/// The same of surfaces that are moved by (dx, dy).
+inline SurfaceSums moved(const SurfaceSums& s, double dx, double dy) {
+    return {s.x, s.y, s.xx + s.x * dx, s.xy + s.x * dy, s.yx + s.y * dx, s.yy + s.y * dy};
+}
+
 /// Velocities before and after the step.
 struct alignas(32) NodeMotion {
     double vx_0, vy_0, vx_1, vy_1;
@@ -99,6 +115,7 @@ class GrainNodes {
     double least_mass() const { return least_mass_; }
 
     std::vector<NodeSums> sums;
+    std::vector<SurfaceSums> surface;
     std::vector<NodeMotion> motion;
     std::vector<NodeForce> force;
 
@@ -126,6 +143,11 @@ class GrainNodes {
     const std::vector<Member>& members() const { return members_; }
     /// Shared node n has the members shared_begin()[n] ... shared_begin()[n + 1].
     const std::vector<long>& shared_begin() const { return shared_begin_; }
+    /// The shared nodes beside a shared node; -1: none.
+    struct Neighbors {
+        int left = -1, right = -1, below = -1, above = -1;
+    };
+    const Neighbors& beside(long shared) const { return beside_[shared]; }
     long shared_count() const { return static_cast<long>(shared_begin_.size()) - 1; }
     /// Dofs of a grain are consecutive.
     long dof_begin(int grain) const { return dof_begin_[grain]; }
@@ -193,6 +215,7 @@ class GrainNodes {
     std::vector<unsigned char> free_;
     std::vector<Member> members_;
     std::vector<long> shared_begin_{0};
+    std::vector<Neighbors> beside_;
     common::SortScratch<double> scratch_;
 };
 

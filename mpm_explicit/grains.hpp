@@ -14,6 +14,7 @@ struct Grain {
     int material = 0;         // index into the materials of the case
     bool rigid = false;       // moves as it is told
     long begin = 0, end = 0;  // its particles
+    double mass = 0;          // theirs, per unit thickness
     bool has_corners = false;
 };
 

@@ -85,6 +85,7 @@ inline void GrainNodes::sort(const std::vector<Grain>& grains, Particles& partic
                           &layout.tile_begin);
     for (std::vector<double>* quantity : particles.all())
         common::carry_to_place(*quantity, scratch_);
+    particles.surface.follow(scratch_.target);
     if (!particles.turn_p.empty()) common::carry_to_place(particles.turn_p, scratch_);
     if (particles.has_affine())
         for (std::vector<double>* quantity : particles.affine())
@@ -154,7 +155,7 @@ inline void GrainNodes::lay_out(const std::vector<Grain>& grains, const GridLayo
     }
     row_begin_[count] = row, dof_begin_[count] = dofs;
     const auto size = static_cast<std::size_t>(dofs);
-    sums.resize(size), motion.resize(size), force.resize(size);
+    sums.resize(size), surface.resize(size), motion.resize(size), force.resize(size);
 
     // Pieces of work: so many rows that the next but one shares no node.
     constexpr long particles_per_piece = 1024;

@@ -5,7 +5,9 @@
 // a grain's particles stand next to each other, row of cells by row of cells.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <numeric>
 #include <vector>
 
 namespace mpm {
@@ -20,6 +22,39 @@ struct StrainStep {
     double xx = 0, yy = 0, xy = 0;
 };
 
+/// Parts of the outline of grains, in the order of the particles that carry them: area vector, out of
+/// the grain, and the middle of the part, from the particle. A particle may carry several, or none.
+struct Surface {
+    std::vector<int> host;       // the particle
+    std::vector<double> ax, ay;  // area vector [length]
+    std::vector<double> ex, ey;  // from the particle [length]
+
+    std::size_t count() const { return host.size(); }
+    std::array<std::vector<double>*, 4> all() { return {&ax, &ay, &ex, &ey}; }
+    void add(int particle, double area_x, double area_y, double from_x, double from_y) {
+        host.push_back(particle), ax.push_back(area_x), ay.push_back(area_y);
+        ex.push_back(from_x), ey.push_back(from_y);
+    }
+    /// The first part that a particle or one after it carries.
+    std::size_t first_of(long particle) const {
+        return std::lower_bound(host.begin(), host.end(), particle) - host.begin();
+    }
+    /// Follows the particles to other places: particle p is now target[p].
+    void follow(const std::vector<int>& target) {
+        std::vector<std::size_t> order(count());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        for (int& particle : host) particle = target[particle];
+        std::stable_sort(order.begin(), order.end(),
+                         [&](std::size_t a, std::size_t b) { return host[a] < host[b]; });
+        const auto carry = [&](auto& quantity) {
+            const auto from = quantity;
+            for (std::size_t k = 0; k < order.size(); ++k) quantity[k] = from[order[k]];
+        };
+        carry(host);
+        for (std::vector<double>* quantity : all()) carry(*quantity);
+    }
+};
+
 /// Structure of arrays, one entry per particle; per unit thickness.
 struct Particles {
     std::vector<double> x_p, y_p;                    // position
@@ -29,6 +64,8 @@ struct Particles {
     std::vector<double> sxx_p, syy_p, sxy_p, szz_p;  // stress, at half time levels
     std::vector<double> yield_p;                     // accumulated plastic strain
     std::vector<double> cxx_p, cxy_p, cyx_p, cyy_p;  // affine motion; empty: none is carried
+
+    Surface surface;  // empty: contact goes by the particles themselves
 
     std::vector<double> turn_p;  // of mpm_implicit: tan of half a step's turn; or empty
 
@@ -57,6 +94,10 @@ void archive(Archive& a, Particles& particles) {
     static constexpr std::array<const char*, 4> affine{"cxx_p", "cxy_p", "cyx_p", "cyy_p"};
     for (std::size_t k = 0; k < affine.size(); ++k) a(affine[k], *particles.affine()[k]);
     a("turn_p", particles.turn_p);
+    a("surface_host", particles.surface.host);
+    static constexpr std::array<const char*, 4> parts{"surface_ax", "surface_ay", "surface_ex",
+                                                      "surface_ey"};
+    for (std::size_t k = 0; k < parts.size(); ++k) a(parts[k], *particles.surface.all()[k]);
 }
 
 }  // namespace mpm

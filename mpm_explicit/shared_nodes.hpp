@@ -75,6 +75,25 @@ inline void GrainNodes::find_shared_nodes(const std::vector<Grain>& grains,
         members_[-1 - at] = member;
         --at;
     });
+
+    // Who stands beside whom: place has the number of a shared node, counted from 1.
+    std::fill(place.begin(), place.end(), 0);
+    beside_.assign(shared_begin_.size() - 1, {});
+    const auto for_each_shared = [&](const auto& visit) {
+        for (std::size_t n = 0; n < beside_.size(); ++n) {
+            const Member& first = members_[shared_begin_[n]];
+            visit(static_cast<int>(n), std::lround((first.x - mesh_.x_low) / mesh_.h),
+                  std::lround((first.y - mesh_.y_low) / mesh_.h));
+        }
+    };
+    for_each_shared([&](int n, long i, long j) { place[node_of(i, j)] = n + 1; });
+    for_each_shared([&](int n, long i, long j) {
+        const auto at = [&](long a, long b) {
+            const long node = node_of(a, b);
+            return node < 0 ? -1 : place[node] - 1;
+        };
+        beside_[n] = {at(i - 1, j), at(i + 1, j), at(i, j - 1), at(i, j + 1)};
+    });
 }
 
 }  // namespace mpm

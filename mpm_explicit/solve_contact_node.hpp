@@ -13,9 +13,12 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <span>
+
+#include "mpm_explicit/grain_nodes.hpp"
 
 namespace mpm {
 
@@ -33,6 +36,7 @@ struct ContactBody {
     double vx, vy;                 // after it, being corrected
     double x, y;                   // center of the body's mass around the node, from the node
     double gx, gy;                 // sum_p V_p grad S_ip, out of the body
+    SurfaceSums surface;           // its outline, with moments about the node
     int force_control = -1;        // theta scheme: the force control that moves a rigid grain ...
     bool control_along_x = false;  // ... and its direction; the velocity along it is an unknown
     bool is_fixed() const { return wall || rigid; }
@@ -40,10 +44,19 @@ struct ContactBody {
     int id() const { return wall ? -1 - grain : grain; }
 };
 
+/// What two bodies are at one of the nodes that their surface lies between.
+struct ContactLink {
+    int a, b;  // of the node's bodies
+    double weight;
+};
+
 /// Two bodies of a node in contact or bonded.
 struct ContactPair {
-    std::size_t a, b;  // of the node's bodies
-    int bond;          // number of the bond, or -1
+    static constexpr std::size_t max_links = 4;
+    std::size_t a, b;  // of the node's bodies, those of the first link
+    std::array<ContactLink, max_links> links;
+    std::size_t link_count = 1;
+    int bond;  // number of the bond, or -1
     ContactState state = ContactState::open;
     bool held_n = false, held_t = false;  // an equality along n, and across, whatever the signs
     double nx, ny;                        // normal, from a to b
@@ -56,6 +69,7 @@ struct ContactPair {
     double ty() const { return nx; }
     double impulse_x() const { return lambda_n * nx - lambda_t * ny; }
     double impulse_y() const { return lambda_n * ny + lambda_t * nx; }
+    std::span<const ContactLink> all_links() const { return {links.data(), link_count}; }
 };
 
 struct ContactNode {
@@ -69,9 +83,14 @@ struct ContactNode {
 /// Effective masses of all pairs: 1/m = n.(1/m_a + 1/m_b) n, and the same for t.
 inline void find_effective_masses(ContactNode& node) {
     for (ContactPair& pair : node.pairs) {
-        const ContactBody &one = node.bodies[pair.a], &two = node.bodies[pair.b];
-        const double per_x = one.per_mx + two.per_mx, per_y = one.per_my + two.per_my,
-                     nn = pair.nx * pair.nx, tt = pair.ny * pair.ny,
+        double per_x = 0, per_y = 0;
+        for (const ContactLink& link : pair.all_links()) {
+            const ContactBody &one = node.bodies[link.a], &two = node.bodies[link.b];
+            const double squared = link.weight * link.weight;
+            per_x += squared * (one.per_mx + two.per_mx);
+            per_y += squared * (one.per_my + two.per_my);
+        }
+        const double nn = pair.nx * pair.nx, tt = pair.ny * pair.ny,
                      per_n = per_x * nn + per_y * tt, per_t = per_x * tt + per_y * nn;
         pair.mass_n = per_n > 0 ? 1 / per_n : 0, pair.mass_t = per_t > 0 ? 1 / per_t : 0;
     }
@@ -101,21 +120,34 @@ inline void solve_contact_node(ContactNode& node, bool friction = true) {
     for (int sweep = 0; sweep < max_sweeps; ++sweep) {
         double change = 0;
         for (ContactPair& pair : node.pairs) {
-            ContactBody &a = node.bodies[pair.a], &b = node.bodies[pair.b];
             // [impulse]
             const auto exchange = [&](double jx, double jy) {
-                a.vx -= jx * a.per_mx, a.vy -= jy * a.per_my;
-                b.vx += jx * b.per_mx, b.vy += jy * b.per_my;
-                change = std::max({change, std::fabs(jx) * std::max(a.per_mx, b.per_mx),
-                                   std::fabs(jy) * std::max(a.per_my, b.per_my)});
+                for (const ContactLink& link : pair.all_links()) {
+                    ContactBody &a = node.bodies[link.a], &b = node.bodies[link.b];
+                    const double x = link.weight * jx, y = link.weight * jy;
+                    a.vx -= x * a.per_mx, a.vy -= y * a.per_my;
+                    b.vx += x * b.per_mx, b.vy += y * b.per_my;
+                    change = std::max({change, std::fabs(x) * std::max(a.per_mx, b.per_mx),
+                                       std::fabs(y) * std::max(a.per_my, b.per_my)});
+                }
             };
-            const double approach = (a.vx - b.vx) * pair.nx + (a.vy - b.vy) * pair.ny;
+            const auto apart = [&](double& x, double& y) {
+                x = y = 0;
+                for (const ContactLink& link : pair.all_links()) {
+                    const ContactBody &a = node.bodies[link.a], &b = node.bodies[link.b];
+                    x += link.weight * (b.vx - a.vx), y += link.weight * (b.vy - a.vy);
+                }
+            };
+            double wx, wy;
+            apart(wx, wy);
+            const double approach = -wx * pair.nx - wy * pair.ny;
             double n = pair.lambda_n + pair.mass_n * approach;
             if (!pair.held_n) n = std::max(0.0, n);
             exchange((n - pair.lambda_n) * pair.nx, (n - pair.lambda_n) * pair.ny);
             pair.lambda_n = n;
 
-            const double slip = (b.vx - a.vx) * pair.ny - (b.vy - a.vy) * pair.nx;
+            apart(wx, wy);
+            const double slip = wx * pair.ny - wy * pair.nx;
             double t = pair.lambda_t + pair.mass_t * slip;
             const double most = friction ? pair.mu * std::max(0.0, n) : 0;
             if (!pair.held_t) t = std::clamp(t, -most, most);

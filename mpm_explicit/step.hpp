@@ -11,6 +11,7 @@
 #include "mpm_explicit/move_particles.hpp"
 #include "mpm_explicit/state.hpp"
 #include "mpm_explicit/strain.hpp"
+#include "mpm_explicit/surface.hpp"
 #include "mpm_explicit/transfer.hpp"
 #include "mpm_explicit/update_stress.hpp"
 #include "mpm_explicit/viscosity.hpp"
@@ -32,6 +33,7 @@ void take_step(const Shape& shape, const std::vector<AnyLaw>& laws, const Contac
     std::vector<Bond>& bonds = state.assembly.bonds;
     // [step]
     particles_to_grid<WithForce>(shape, particles, nodes);  // particles -> grid
+    surface_to_grid(shape, particles, nodes);
     clock.lap("put");
     nodal_velocity(grains, rigid, nodes);                  // v_i^0
     predict_acceleration(body, grains, rigid, dt, nodes);  // v_i^1 by sigma^{-1/2}
@@ -55,6 +57,7 @@ void take_step(const Shape& shape, const std::vector<AnyLaw>& laws, const Contac
     clock.lap("nodes");
     if (particles.has_affine())
         take_affine_motion(shape, grains, nodes, transfer.kind, particles, sums.tiles);
+    if (!frozen) carry_surface(shape, grains, nodes, dt, particles);
     move_particles(shape, grains, rigid, nodes, transfer.flip, frozen, dt, particles,
                    sums.tiles);  // grid -> particles
     state.layout.moved += frozen ? 0 : dt * sums.nodes.largest_speed;

@@ -101,19 +101,26 @@ class ActiveSet {
     }
 
    private:
+    static double parting(const ContactNode& node, const ContactPair& pair) {
+        double sum = 0;
+        for (const ContactLink& link : pair.all_links()) {
+            const ContactBody &a = node.bodies[link.a], &b = node.bodies[link.b];
+            sum += link.weight * ((b.vx_0 - a.vx_0) * pair.nx + (b.vy_0 - a.vy_0) * pair.ny);
+        }
+        return sum;
+    }
     static PairUpdate guess_state(const ContactNode& node, const std::vector<ActivePair>& last,
                                   ContactPair& pair) {
         PairUpdate update;
         pair.state = ContactState::open;
-        const ContactBody &a = node.bodies[pair.a], &b = node.bodies[pair.b];
-        const ActivePair like{node.key, a.id(), b.id(), 0, 0};
+        const ActivePair like{node.key, node.bodies[pair.a].id(), node.bodies[pair.b].id(), 0, 0};
         const auto same = std::lower_bound(last.begin(), last.end(), like);
         if (pair.bond >= 0) {
             pair.state = ContactState::stick;
         } else if (same != last.end() && !(like < *same)) {
             pair.state = static_cast<ContactState>(same->state);
             update.friction = pair.state == ContactState::slip ? same->lambda_t : 0;
-        } else if ((b.vx_0 - a.vx_0) * pair.nx + (b.vy_0 - a.vy_0) * pair.ny < 0) {
+        } else if (parting(node, pair) < 0) {
             pair.state = pair.mu > 0 ? ContactState::stick : ContactState::slip;
         }
         return update;

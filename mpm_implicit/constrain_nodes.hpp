@@ -127,6 +127,7 @@ inline void constrain_nodes(std::vector<DofConstraint>& constraints, GrainNodes&
         if (one.beyond >= 0) add(nodes.sums[one.beyond], -1);
         to.V += from.V, to.gx += from.gx, to.gy += from.gy;
         from = {};
+        nodes.surface[one.master] += nodes.surface[one.dof], nodes.surface[one.dof] = {};
         nodes.constrain(one.dof, one.master, one.beyond);
     }
 }

@@ -1,9 +1,8 @@
 // Constraints of the closed pairs: the velocities that they allow, and projection on them.
 //
 // A closed pair asks for (v_b - v_a).n = 0, one that sticks for the same across. With D the
-// diagonal of the matrix and y = D^{1/2} v, the rows of all pairs of one node are made orthonormal,
-// q_k, so that projection on their null space takes a few products per node, however many bodies
-// meet there:
+// diagonal of the matrix and y = D^{1/2} v, the rows of all pairs of one node, or run of nodes, are
+// made orthonormal, q_k, so that projection on their null space takes a few products for each:
 //     y <- y - sum_k q_k (q_k . y - g_k)
 // g_k comes from bodies whose velocity is given. A grain under force control has a velocity of its
 // own, V: then g_k = g_k^0 + g_k^V V, and the space is spanned by one more vector per such grain,
@@ -98,10 +97,9 @@ class Constraints {
             pair.lambda_n = 0;
             if (pair.state != ContactState::slip) pair.lambda_t = 0;
         }
-        Local local{};
+        Local local{}, lambda{};
         for (const Block& block : blocks_) {
             load(block, r, 1, local);
-            Local lambda{};
             for (std::size_t k = block.rank; k-- > 0;) {
                 double c = -dot(q(block, k), local.data(), width(block));
                 for (std::size_t i = k + 1; i < block.rank; ++i)
@@ -124,13 +122,14 @@ class Constraints {
         std::size_t node, row, rank, basis, right, factor;
     };
 
-    bool driven(const ContactList::Node& node, std::size_t who) const {
-        return contacts_->bodies[node.body_begin + who].force_control >= 0;
+    bool driven(const ContactList::Node& at, std::size_t who) const {
+        return contacts_->bodies[at.body_begin + who].force_control >= 0;
     }
     const auto& node_of(const Block& block) const { return contacts_->nodes[block.node]; }
-    std::size_t width(const Block& block) const {
-        return 2 * (node_of(block).body_end - node_of(block).body_begin);
+    static std::size_t width(const ContactList::Node& node) {
+        return 2 * (node.body_end - node.body_begin);
     }
+    std::size_t width(const Block& block) const { return width(node_of(block)); }
     const double* q(const Block& block, std::size_t k) const {
         return basis_.data() + block.basis + k * width(block);
     }
@@ -148,25 +147,26 @@ class Constraints {
     void add_row(const ContactList::Node& node, std::size_t k, bool across, Block& block) {
         const ContactPair& pair = contacts_->pairs[k];
         const double x = across ? pair.tx() : pair.nx, y = across ? pair.ty() : pair.ny;
-        const std::size_t wide = 2 * (node.body_end - node.body_begin);
+        const std::size_t wide = width(node);
         std::vector<double> row(wide, 0.0), right(rights_, 0.0);
-        for (const auto& [who, sign] : {std::pair(pair.a, -1.0), std::pair(pair.b, 1.0)}) {
+        const auto add = [&](std::size_t who, double sign) {
             const ContactBody& body = contacts_->bodies[node.body_begin + who];
             if (body.is_fixed()) {
-                const bool drive_x = body.force_control >= 0 && body.control_along_x,
-                           drive_y = body.force_control >= 0 && !body.control_along_x;
+                const bool drive = body.force_control >= 0, drive_x = drive && body.control_along_x,
+                           drive_y = drive && !drive_x;
                 right[0] -= sign * ((drive_x ? 0 : body.vx) * x + (drive_y ? 0 : body.vy) * y);
-                if (body.force_control >= 0 &&
-                    static_cast<std::size_t>(1 + body.force_control) < rights_)
+                if (drive && static_cast<std::size_t>(1 + body.force_control) < rights_)
                     right[1 + body.force_control] -= sign * (drive_x ? x : y);
-            } else {
-                row[2 * who] = sign * x * (*scale_)[body.dof];
-                row[2 * who + 1] = sign * y * (*scale_)[size_ + body.dof];
+                return;
             }
-        }
+            row[2 * who] = sign * x * (*scale_)[body.dof];
+            row[2 * who + 1] = sign * y * (*scale_)[size_ + body.dof];
+        };
+        for (const ContactLink& link : pair.all_links())
+            add(link.a, -link.weight), add(link.b, link.weight);
         const double size = std::sqrt(dot(row.data(), row.data(), wide));
-        if (!(size > 0) || block.rank == most_rows) return;
         std::array<double, most_rows> factor{};
+        if (!(size > 0) || block.rank == most_rows) return;
         for (int round = 0; round < 2; ++round) {
             for (std::size_t i = 0; i < block.rank; ++i) {
                 const double along = dot(q(block, i), row.data(), wide);
@@ -177,8 +177,8 @@ class Constraints {
         }
         const double left = std::sqrt(dot(row.data(), row.data(), wide));
         if (!(left > 1e-10 * size)) return;
-        for (const double value : row) basis_.push_back(value / left);
-        for (const double value : right) right_.push_back(value / left);
+        for (const double one : row) basis_.push_back(one / left);
+        for (const double one : right) right_.push_back(one / left);
         factor[block.rank] = left;
         factor_.insert(factor_.end(), factor.begin(), factor.end());
         rows_.push_back({k, across});

@@ -30,8 +30,8 @@ int run_case(const Shape& shape, const Case& parameters, const ThetaScheme& sche
     // 2. Particles at t = 0.
     State state;
     Assembly& all = state.assembly = assemble(parameters.problem);
-    const Contact contact(contact_rule(parameters.problem), all.grains, all.bonds);
     const double dt = scales.dt;
+    const Contact contact(contact_rule(parameters.problem, dt), all.grains, all.bonds);
     GrainNodes nodes(parameters.problem.mesh(), Shape::width, scales.least_mass);
     StepScratch<Shape::width - 1> scratch{
         laws_of(parameters.problem), scheme, contact, parameters.flip, parameters.frozen, {}, {}};

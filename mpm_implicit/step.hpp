@@ -6,6 +6,7 @@
 
 #include "common/step_clock.hpp"
 #include "mpm_explicit/strain.hpp"
+#include "mpm_explicit/surface.hpp"
 #include "mpm_explicit/transfer.hpp"
 #include "mpm_implicit/move_particles.hpp"
 #include "mpm_implicit/solve_nodes.hpp"
@@ -36,6 +37,7 @@ void find_matrices(const Shape& shape, const BodyForce& body, double dt,
                    Clock&& clock = {}) {
     // [matrices]
     particles_to_grid(shape, state.assembly.particles, nodes);  // particles -> grid
+    surface_to_grid(shape, state.assembly.particles, nodes);
     start_turns(shape, scratch.contact, scratch.frozen, dt, nodes, state.assembly);
     clock.lap("put");
     scratch.solver.assemble(shape, scratch.laws, scratch.scheme, body, dt, state,
@@ -82,6 +84,7 @@ void move_to_new_level(const Shape& shape, const BodyForce& body, double dt,
         if (!scratch.frozen) turn_particles(batch, particles);
     });
     sums.nodes = work_on_nodes(body, scratch.scheme.theta, dt, nodes);
+    if (!scratch.frozen) carry_surface(shape, grains, nodes, dt, particles);
     move_particles(shape, grains, state.assembly.rigid, nodes, scratch.scheme.theta, scratch.flip,
                    scratch.frozen, dt, particles, sums.tiles);  // grid -> particles
     // [/particles]

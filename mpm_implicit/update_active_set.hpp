@@ -81,11 +81,14 @@ inline ActiveSetChange update_active_set(const Vector& v, const std::vector<doub
             ContactPair& pair = set.list.pairs[k];
             PairUpdate& update = set.updates[k];
             if (pair.bond >= 0) continue;
-            double ax, ay, bx, by;
-            velocity(set.list.bodies[node.body_begin + pair.a], ax, ay);
-            velocity(set.list.bodies[node.body_begin + pair.b], bx, by);
-            const double parting = (bx - ax) * pair.nx + (by - ay) * pair.ny,
-                         slip = (bx - ax) * pair.tx() + (by - ay) * pair.ty();
+            double x = 0, y = 0;
+            for (const ContactLink& link : pair.all_links()) {
+                double ax, ay, bx, by;
+                velocity(set.list.bodies[node.body_begin + link.a], ax, ay);
+                velocity(set.list.bodies[node.body_begin + link.b], bx, by);
+                x += link.weight * (bx - ax), y += link.weight * (by - ay);
+            }
+            const double parting = x * pair.nx + y * pair.ny, slip = x * pair.tx() + y * pair.ty();
             const ContactState before = pair.state;
             if (!pair.closed()) {
                 if (parting < -nearly * fastest) {
@@ -145,14 +148,16 @@ inline void add_friction(long size, ActiveSet& set, Vector& right,
             if (pair.state != ContactState::slip) continue;
             pair.lambda_t = set.updates[k].friction;
             if (pair.lambda_t == 0) continue;
-            for (const auto& [who, sign] : {std::pair(pair.a, -1.0), std::pair(pair.b, 1.0)}) {
+            const auto push = [&](std::size_t who, double part) {
                 const ContactBody& body = set.list.bodies[node.body_begin + who];
-                const double jx = sign * pair.lambda_t * pair.tx(),
-                             jy = sign * pair.lambda_t * pair.ty();
+                const double jx = part * pair.lambda_t * pair.tx(),
+                             jy = part * pair.lambda_t * pair.ty();
                 if (!body.is_fixed()) right[body.dof] += jx, right[size + body.dof] += jy;
                 if (body.force_control >= 0)
                     controlled[body.force_control] += body.control_along_x ? jx : jy;
-            }
+            };
+            for (const ContactLink& link : pair.all_links())
+                push(link.a, -link.weight), push(link.b, link.weight);
         }
     }
 }

@@ -165,7 +165,7 @@ TEST_CASE("viscosity only takes energy and the budget closes to round-off" *
                     above.control = "force_y", above.force = -300, above.damping = 100;
                     below.material = above.material = "steel";
                     c.problem.rise = 0.1;
-                    c.problem.grains = {disk_at("a", 0.5, 0.6, 0.29), below, above};
+                    c.problem.grains = {disk_at("a", 0.5, 0.6, 0.3), below, above};
                 }
                 Run run(c);
                 const Budget& l = run.budget();

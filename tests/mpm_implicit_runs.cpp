@@ -121,7 +121,7 @@ TEST_CASE("the energy never grows however long the step" * doctest::description(
     for (const char* mass : both_masses)
         for (const char* theta : {"0.5", "0.6", "1"})
             for (const auto& [alpha, end] :
-                 {std::pair{"1", "1"}, {"5", "4"}, {"25", "10"}, {"100", "40"}}) {
+                 {std::pair{"1", "1"}, {"5", "4"}, {"25", "10"}, {"50", "40"}}) {
                 const Run r = run("growth", oblique + box + " method.mass=" + mass +
                                                 " method.theta=" + theta + " time.alpha=" + alpha +
                                                 " time.end=" + end);
@@ -258,10 +258,9 @@ TEST_CASE("plates press a cylinder as Hertz says where the contact has four cell
     check_theorem(r);
     CHECK(r.summary["warnings"].empty());
     CHECK(r.value("contact_half_width") >= 4);
-    const Run coarse =
-        run("hertz", "hertz", "grid.cells_x=40 grid.cells_y=36 contact.separation=0.6");
+    const Run coarse = run("hertz", "hertz", "grid.cells_x=40 grid.cells_y=36");
     CHECK(coarse.summary["warnings"].size() == 1);
-    CHECK(coarse.value("approach") > 1.5);
+    CHECK(coarse.value("contact_half_width") < 4);
 }
 
 TEST_CASE("a bar swings and decays as the exact factor of a step says" *

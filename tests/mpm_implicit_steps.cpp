@@ -27,18 +27,19 @@ Case collision(double friction) {
     Case c = case_on(18, 12, 0.9);
     c.alpha = 2, c.problem.contact.friction = friction;
     c.problem.grains = {disk_at("left", 0.29, 0.28, 0.14, 0.1),
-                        disk_at("right", 0.6, 0.32, 0.14, -0.1)};
+                        disk_at("right", 0.5675, 0.32, 0.14, -0.1)};
     c.problem.grains[0].spin = 0.5;
     return c;
 }
 
-// Four disks thrown together in a box.
+// Four disks thrown together in a box, 0.006 cells apart.
 Case crowd(double friction) {
     Case c = case_on(16, 16, 0.8);
     c.alpha = 2, c.problem.contact.friction = c.problem.contact.wall_friction = friction;
-    c.problem.grains = {
-        disk_at("a", 0.25, 0.26, 0.13, 0.1, 0.05), disk_at("b", 0.515, 0.265, 0.13, -0.1, 0.02),
-        disk_at("c", 0.38, 0.487, 0.13, 0.02, -0.1), disk_at("d", 0.64, 0.49, 0.11, -0.1, -0.1)};
+    c.problem.grains = {disk_at("a", 0.25, 0.26, 0.13, 0.1, 0.05),
+                        disk_at("b", 0.5103, 0.265, 0.13, -0.1, 0.02),
+                        disk_at("c", 0.3758, 0.4879, 0.13, 0.02, -0.1),
+                        disk_at("d", 0.616, 0.4808, 0.11, -0.1, -0.1)};
     return c;
 }
 
@@ -352,8 +353,10 @@ TEST_CASE("the momentum of all grains stays with contact and friction and bonds"
                     shake(0.05, number, all);
                 });
                 const auto before = total_momentum(run.state.assembly);
-                run.advance(12);
-                CHECK(run.sums.contact.nodes > 0);
+                double pressed = 0;
+                for (int step = 0; step < 12; ++step)
+                    run.advance(), pressed += run.sums.contact.nodes;
+                CHECK(pressed > 0);
                 CHECK(!run.state.assembly.bonds[0].broken);
                 const auto after = total_momentum(run.state.assembly);
                 off = worst({off, std::fabs(after[0] - before[0]) / before[2],
@@ -500,7 +503,7 @@ TEST_CASE("impulses press and gaps stay open and friction is Coulomb's at the so
                 Case c = crowd(mu);
                 c.shape = shape, c.alpha = number % 2 == 0 ? 1 : 4;
                 c.problem.walls = {"frictional", "open", "frictional", "slip"};
-                for (GrainCase& g : c.problem.grains) g.x -= 0.115, g.y -= 0.12;
+                for (GrainCase& g : c.problem.grains) g.x -= 0.1197, g.y -= 0.1297;
                 ThetaRun run(
                     c, theta_scheme(number % 2 == 0 ? 0.5 : 0.8, masses[number / 2 % 2], solver),
                     [&](Assembly& all) { shake(0.1, ++number, all); });
@@ -523,9 +526,14 @@ TEST_CASE("impulses press and gaps stay open and friction is Coulomb's at the so
                                         run.nodes.motion[static_cast<std::size_t>(is.dof)];
                                     return {v.vx_1, v.vy_1};
                                 };
-                                const auto a = of(pair.a), b = of(pair.b);
-                                const double x = (b[0] - a[0]) / speed, y = (b[1] - a[1]) / speed,
-                                             parts = x * pair.nx + y * pair.ny,
+                                double x = 0, y = 0;
+                                for (const ContactLink& link : pair.all_links()) {
+                                    const auto a = of(static_cast<std::size_t>(link.a)),
+                                               b = of(static_cast<std::size_t>(link.b));
+                                    x += link.weight * (b[0] - a[0]) / speed;
+                                    y += link.weight * (b[1] - a[1]) / speed;
+                                }
+                                const double parts = x * pair.nx + y * pair.ny,
                                              slip = y * pair.nx - x * pair.ny,
                                              n = pair.lambda_n / press, t = pair.lambda_t / press;
                                 approach = worst({approach, std::max(0.0, -parts)});
@@ -569,7 +577,7 @@ TEST_CASE("both solvers find the same velocities") {
                     Case c = crowd(mu);
                     c.shape = shape, c.alpha = alpha;
                     c.problem.walls = {"frictional", "open", "slip", "open"};
-                    for (GrainCase& g : c.problem.grains) g.x -= 0.115, g.y -= 0.12;
+                    for (GrainCase& g : c.problem.grains) g.x -= 0.1197, g.y -= 0.1297;
                     ++number;
                     const auto prepare = [&](Assembly& all) {
                         disturb(0.002, 10, number, all);
@@ -588,7 +596,7 @@ TEST_CASE("both solvers find the same velocities") {
             }
         }
     }
-    CHECK(pressed >= 40);
+    CHECK(pressed >= 20);
 }
 
 // ---- the theta scheme ----------------------------------------------------------------------------
@@ -694,9 +702,11 @@ TEST_CASE("particles move and strain with v theta and take the change of velocit
 TEST_CASE("volumes stay bit for bit or grow by 1 + tr de") {
     for (const std::string& shape : shape_names) {
         ThetaRun kept(crowd(0.3), theta_scheme(0.5));
-        const double V = kept.particles().V_p[0];
+        std::vector<double> V = kept.particles().V_p;
         kept.advance(5);
-        for (const double one : kept.particles().V_p) CHECK(one == V);
+        std::vector<double> now = kept.particles().V_p;
+        std::sort(V.begin(), V.end()), std::sort(now.begin(), now.end());
+        CHECK(now == V);
         CHECK(kept.least_V == 1);
 
         Case c = collision(0.3);

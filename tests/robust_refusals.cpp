@@ -582,7 +582,8 @@ grains disks pack.p.radius=0.01 pack.p.x=0.6 pack.p.y=0.05 pack.p.rows=1
     grain 'p_g0001' is 0.4 cells thin
 grains disks polygon \
     grain.left.vertices='0.2 0.2, 0.5 0.2, 0.5 0.201, 0.201 0.201, 0.201 0.5, 0.2 0.5'
-    grain 'left' is so thin that no particle falls into it: refine the mesh, or make it wider
+    grain 'left' is so thin that it fills no quarter of what a particle stands for: refine the
+    mesh, or make it wider
 grains disks grain.left.x=0.15
     grain 'left' reaches from (-0.05, 0.1) to (0.35, 0.5), beyond the mesh from (0, 0) to (1.2,
     0.6): move the grain or widen the mesh

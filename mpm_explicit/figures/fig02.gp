@@ -1,4 +1,4 @@
-# Figure 2 of the talk: grain positions at t = 2.00, explicit. With a CFL number of 0.25 the disks part as they came. With 1.00, and contact once in a step as the slide has it (contact.levels = 1), the strains of
+# Figure 2 of the talk: grain positions at t = 2.00, explicit. With a CFL number of 0.25 the disks part as they came. With 1.00 the strains of
 # the contact do not die out but grow, and the grains run away with energy from nowhere: ten times the energy at t = 2. Dashed: disks that were 0.416 in contact, as long as a quasi-static one lasts, and lost nothing.
 wide = 1500; high = 1000
 load 'common/style.gp'
@@ -18,7 +18,7 @@ do for [row = 1:2] { do for [column = 1:2] {
     left = 0.075 + (column - 1) * (panel_width + 0.045); top = 0.85 - (row - 1) * (panel_height + 0.085)
     set lmargin at screen left; set rmargin at screen left + panel_width
     set tmargin at screen top; set bmargin at screen top - panel_height
-    if (row == 1) { set title sprintf(column == 1 ? 'α = %.2f' : 'α = %.2f, contact on v^1 alone', real(alpha)) offset 0, -0.3; set format x ''; unset xlabel } else { unset title; set format x '%g'; set xlabel 'x / R' }
+    if (row == 1) { set title sprintf('α = %.2f', real(alpha)) offset 0, -0.3; set format x ''; unset xlabel } else { unset title; set format x '%g'; set xlabel 'x / R' }
     if (column == 1) { set ylabel 'y / R' offset 0.3, 0; set format y '%g' } else { unset ylabel; set format y '' }
     set label 1 sprintf('t = %.2f', real(end)) at graph 0.02, 0.92
     set label 2 sprintf(energy < 10 ? 'energy %.2f E_0' : 'energy %.0f E_0', energy) at graph 0.98, 0.92 right

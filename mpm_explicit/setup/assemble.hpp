@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -33,8 +34,7 @@ namespace detail {
 inline void add_particles(const PlannedGrain& plan, const Stretch& stretch, const Problem& w,
                           const Material& material, Particles& particles) {
     const Mesh mesh = w.mesh();
-    const double side = mesh.h / static_cast<double>(w.per_side);
-    for (Point at : fill(plan.outline, mesh, w.per_side)) {
+    for (FilledPlace at : fill(plan.outline, mesh, w.per_side)) {
         // A grain that straddles the ends of a periodic mesh stays in one piece.
         if (mesh.periodic_x)
             at.x += mesh.length_x() * std::round((plan.outline.x - at.x) / mesh.length_x());
@@ -45,12 +45,15 @@ inline void add_particles(const PlannedGrain& plan, const Stretch& stretch, cons
         const double profile = from.profile == "bar"    ? std::sin((n - 0.5) * turn)
                                : from.profile == "wave" ? std::sin(n * turn)
                                                         : 0;
+        for (const OutlinePart& part : at.surface)
+            particles.surface.add(static_cast<int>(particles.x_p.size()), part.area_x, part.area_y,
+                                  part.x, part.y);
         particles.x_p.push_back(at.x), particles.y_p.push_back(at.y);
         particles.vx_p.push_back(from.velocity_x + from.amplitude * profile -
                                  from.spin * (at.y - plan.outline.y));
         particles.vy_p.push_back(from.velocity_y + from.spin * (at.x - plan.outline.x));
-        particles.V_p.push_back(side * side);
-        particles.m_p.push_back(material.density * side * side);
+        particles.V_p.push_back(at.volume);
+        particles.m_p.push_back(material.density * at.volume);
     }
     particles.resize(particles.x_p.size());
 }
@@ -131,7 +134,7 @@ inline std::vector<Bond> bonds_of(const Problem& w, const std::vector<PlannedGra
 }
 
 /// Fills the grains with particles.
-/// errors: InputError for a grain that does not fit on the mesh or catches no particle
+/// errors: InputError for a grain that does not fit on the mesh
 inline Assembly assemble(const Problem& w) {
     const std::vector<Material> materials = materials_of(w);
     const std::vector<PlannedGrain> plans = plan_grains(w, materials);
@@ -145,6 +148,8 @@ inline Assembly assemble(const Problem& w) {
         grain.begin = all.particles.count();
         detail::add_particles(plan, stretch, w, material, all.particles);
         grain.end = all.particles.count();
+        grain.mass = std::accumulate(all.particles.m_p.begin() + grain.begin,
+                                     all.particles.m_p.begin() + grain.end, 0.0);
         grain.has_corners = plan.outline.kind == OutlineKind::polygon;
         all.grains.push_back(grain);
 

@@ -46,11 +46,18 @@ inline void refuse_grain(const PlannedGrain& plan, const Material& material, con
         grain + " reaches from x = " + format(box.x_low) + " to " + format(box.x_high) +
             ", more than its length of " + format(length) +
             " beyond the periodic mesh: move it by whole lengths");
-    // What is two cells wide may still be a thin angle between the points of the lattice.
+    // What is two cells wide may still be a thin angle.
     const double side = mesh.h / double(per_side);
+    const auto is_thin = [&] {
+        for (const FilledPlace& p : fill(plan.outline, mesh, per_side))
+            if (p.volume >= 0.25 * side * side) return false;
+        return true;
+    };
     refuse(plan.outline.kind == OutlineKind::polygon && area(plan.outline) < 1e4 * side * side &&
-               fill(plan.outline, mesh, per_side).empty(),
-           grain + " is so thin that no particle falls into it: refine the mesh, or make it wider");
+               is_thin(),
+           grain +
+               " is so thin that it fills no quarter of what a particle stands for: refine the "
+               "mesh, or make it wider");
     const bool rigid = material.law == Law::rigid;
     refuse(!rigid && plan.from.control != "velocity", grain + " has control = \"" +
                                                           plan.from.control +
@@ -150,17 +157,9 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
         warnings.push_back("g H/c_p^2 = " + format(strain) +
                            " is above 0.05: grains at the bottom are crushed by the weight of a "
                            "full mesh; stiffen the material");
-    if (problem.per_side == 1 && problem.contact.separation > 0 && problem.contact.separation < 1)
-        warnings.push_back("contact.separation = " + format(problem.contact.separation) +
-                           " with one particle per side: grains will meet too late; take 1.07");
     if (problem.contact.separation == 0)
         warnings.push_back("contact.separation = 0: grains meet where they share nodes, up to " +
                            format(2 - 1 / double(problem.per_side)) + " cells too early");
-    if (parameters.shape == "quadratic" && scales.grains > 1)
-        warnings.push_back(
-            "method.shape = \"quadratic\": grains meet about 0.2 cells late, and a plate that "
-            "moves by "
-            "less meets nothing; take \"gimp\"");
     const std::vector<std::pair<const char*, double>> intervals{
         {"output.particles_interval", parameters.particles_interval},
         {"output.fringes_interval", parameters.fringes_interval},

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -117,10 +118,24 @@ inline void validate_state(const Mesh& mesh, int width, bool affine, bool turns,
                "its particles carry affine motion, or not, against method.transfer");
     refuse(p.turn_p.size() != (turns ? count : 0) || !common::all_within(p.turn_p, -1e3, 1e3),
            "the turns of its particles are not as many as those of the case, or too large");
+    const Surface& surface = p.surface;
+    bool fits = common::all_within(surface.host, 0, static_cast<int>(count) - 1) &&
+                std::is_sorted(surface.host.begin(), surface.host.end());
+    const double size = mesh.length_x() + mesh.y_high() - mesh.y_low;
+    for (const std::vector<double>* column : p.surface.all())
+        fits =
+            fits && column->size() == surface.count() && common::all_within(*column, -size, size);
+    refuse(!fits, "the outlines of its grains do not belong to its particles");
     refuse(momenta.size() != all.grains.size(), "its grains are not as many as those of the case");
     constexpr double least = 1e-130, most = 1e130, largest = 1e90;  // products of some are numbers
     refuse(!common::all_within(p.m_p, least, most) || !common::all_within(p.V_p, least, most),
            "a particle has no mass or no volume");
+    for (const Grain& grain : all.grains) {
+        const double mass =
+            std::accumulate(p.m_p.begin() + grain.begin, p.m_p.begin() + grain.end, 0.0);
+        refuse(!(std::fabs(mass - grain.mass) <= 1e-9 * grain.mass),
+               "the mass of grain '" + grain.name + "' is not that of the case");
+    }
     refuse(!common::all_within(p.yield_p, 0, largest),
            "the plastic strain of a particle is negative");
     for (const auto* column : {&p.vx_p, &p.vy_p, &p.sxx_p, &p.syy_p, &p.sxy_p, &p.szz_p, &p.cxx_p,

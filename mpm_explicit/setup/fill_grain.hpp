@@ -3,61 +3,157 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
 #include "mpm_explicit/mesh.hpp"
-#include "mpm_explicit/setup/grain_shapes.hpp"
+#include "mpm_explicit/setup/cut_outline.hpp"
 
 namespace mpm {
 
-namespace detail {
-
-// A place on the lattice of particles in whole numbers, so that mirror images are treated alike.
-struct LatticePoint {
-    std::int64_t x, y;
+/// A particle of a grain at the start: its place, and what of the grain it stands for.
+struct FilledPlace {
+    double x = 0, y = 0, volume = 0;
+    std::vector<OutlinePart> surface;  // the outline around it; middles from the particle
 };
 
-// An outline in units of 2^-bits of the spacing of the lattice.
-struct LatticeOutline {
-    LatticePoint center;
-    std::int64_t radius;
-    std::vector<LatticePoint> corners;
+namespace detail {
 
-    bool strictly_contains(const LatticePoint& p) const {
-        if (corners.empty()) {
-            const std::int64_t dx = p.x - center.x, dy = p.y - center.y;
-            return std::abs(dx) < radius && std::abs(dy) < radius &&
-                   dx * dx + dy * dy < radius * radius;
+/// The pieces that an outline cuts out of the squares of a lattice, in units of its spacing.
+class Pieces {
+   public:
+    /// in: center and radius, or corners, from the lower left corner of the mesh; per_side, pieces per
+    ///     cell and direction
+    Pieces(const Outline& outline, const Bounds& box, long per_side)
+        : per_side_(per_side),
+          first_i_(whole(box.x_low)),
+          first_j_(whole(box.y_low)),
+          columns_(whole(box.x_high) - first_i_ + 1),
+          rows_(whole(box.y_high) - first_j_ + 1),
+          pieces_(static_cast<std::size_t>(columns_ * rows_)) {
+        std::vector<Point> row;
+        for (long j = first_j_; j < first_j_ + rows_; ++j) {
+            const auto y = double(j);
+            if (outline.kind == OutlineKind::polygon)
+                row = cut(cut(outline.corners, &Point::y, y, 1), &Point::y, y + 1, -1);
+            for (long i = first_i_; i < first_i_ + columns_; ++i) {
+                const auto x = double(i);
+                const Piece piece =
+                    outline.kind == OutlineKind::polygon
+                        ? piece_of_polygon(row, x, y)
+                        : piece_of_disk({outline.x, outline.y}, outline.radius, x, y);
+                at(i, j) = piece.area > 1 - nothing ? Piece{1, x + 0.5, y + 0.5}
+                           : piece.area > nothing   ? piece
+                                                    : Piece{};
+            }
         }
-        bool inside = false;
-        for (std::size_t k = 0; k < corners.size(); ++k) {
-            const LatticePoint &a = corners[k], &b = corners[(k + 1) % corners.size()];
-            if ((a.y < p.y && b.y < p.y) || (a.y > p.y && b.y > p.y)) continue;
-            const std::int64_t area = (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
-            if (area == 0 && std::min(a.x, b.x) <= p.x && p.x <= std::max(a.x, b.x)) return false;
-            if ((a.y > p.y) != (b.y > p.y) && (area > 0) == (b.y > a.y)) inside = !inside;
-        }
-        return inside;
+        for_each_part(outline, [&](long i, long j, const OutlinePart& part) {
+            if (has(i, j)) surface_[number(i, j)].push_back(part);
+        });
+        share_slivers();
     }
+
+    /// Visits the pieces, cell by cell, row of cells by row of cells.
+    template <class Visit>
+    void for_each(const Visit& visit) const {
+        for (long b = cell(first_j_); b <= cell(first_j_ + rows_ - 1); ++b)
+            for (long a = cell(first_i_); a <= cell(first_i_ + columns_ - 1); ++a)
+                for (long j = b * per_side_; j < (b + 1) * per_side_; ++j)
+                    for (long i = a * per_side_; i < (a + 1) * per_side_; ++i)
+                        if (has(i, j) && at(i, j).area > 0) {
+                            const auto found = surface_.find(number(i, j));
+                            visit(at(i, j), found == surface_.end() ? none_ : found->second);
+                        }
+    }
+
+   private:
+    static constexpr double nothing = 1e-9;  // area that is round-off of an outline
+    static constexpr double sliver =
+        0.25;  // area below which others of its cell take a piece in ...
+    static constexpr double speck = 0.02;  // ... and below which those of another cell may
+
+    long cell(long k) const { return k >= 0 ? k / per_side_ : -((per_side_ - 1 - k) / per_side_); }
+    static long whole(double length) { return std::lround(std::floor(length)); }
+    bool has(long i, long j) const {
+        return i >= first_i_ && i < first_i_ + columns_ && j >= first_j_ && j < first_j_ + rows_;
+    }
+    Piece& at(long i, long j) { return pieces_[(j - first_j_) * columns_ + i - first_i_]; }
+    const Piece& at(long i, long j) const {
+        return pieces_[(j - first_j_) * columns_ + i - first_i_];
+    }
+
+    // Slivers go to the pieces beside them, to each in proportion to its area; where those are slivers
+    // as well, to the larger ones, which go on in turn. What has no larger one beside it stays. An even
+    // stress is in equilibrium, with linear shapes, where every full cell has its volume: so slivers
+    // stay in their cell.
+    void share_slivers() {
+        for (bool shared = true; shared;) {
+            shared = false;
+            const std::vector<Piece> before = pieces_;
+            for (long j = first_j_; j < first_j_ + rows_; ++j)
+                for (long i = first_i_; i < first_i_ + columns_; ++i) {
+                    const Piece small = before[number(i, j)];
+                    if (small.area > 0 && small.area < sliver)
+                        shared = share(i, j, small, before) || shared;
+                }
+        }
+    }
+    bool share(long i, long j, const Piece& small, const std::vector<Piece>& before) {
+        const LatticePoint beside[4]{{i - 1, j}, {i + 1, j}, {i, j - 1}, {i, j + 1}};
+        const auto for_each_larger = [&](const auto& visit) {
+            for (const LatticePoint& to : beside)
+                if (has(to.x, to.y) && before[number(to.x, to.y)].area > small.area &&
+                    (small.area < speck || (cell(to.x) == cell(i) && cell(to.y) == cell(j))))
+                    visit(number(to.x, to.y), before[number(to.x, to.y)].area);
+        };
+        double largest = 0, total = 0;
+        for_each_larger([&](long, double area) { largest = std::max(largest, area); });
+        const double least = std::min(largest, sliver);
+        for_each_larger([&](long, double area) { total += area >= least ? area : 0; });
+        if (!(total > 0)) return false;
+        const std::vector<OutlinePart> parts = std::move(surface_[number(i, j)]);
+        surface_.erase(number(i, j));
+        for_each_larger([&](long to, double area) {
+            if (area < least) return;
+            pieces_[to] += small.times(area / total);
+            for (OutlinePart part : parts) {
+                part.area_x *= area / total, part.area_y *= area / total;
+                surface_[to].push_back(part);
+            }
+        });
+        // Others may have given it theirs meanwhile.
+        at(i, j) += small.times(-1);
+        return true;
+    }
+
+    struct LatticePoint {
+        long x, y;
+    };
+    long number(long i, long j) const { return (j - first_j_) * columns_ + i - first_i_; }
+    long per_side_, first_i_, first_j_, columns_, rows_;
+    std::map<long, std::vector<OutlinePart>> surface_;
+    std::vector<OutlinePart> none_;
+    std::vector<Piece> pieces_;
 };
 
 }  // namespace detail
 
-/// The particles of a grain: the points of a lattice that are inside.
-///     x = x_low + (k + 1/2) h / per_side,  y likewise
+/// The particles of a grain: one for each square of a lattice, for the part of it that is inside, at
+/// the centroid of that part. Squares are h / per_side wide. A part below a quarter of a square
+/// goes to its neighbors in the cell.
 /// in:     per_side, particles per cell and direction
-/// out:    positions, cell by cell, row of cells by row of cells; none when the grain is too thin
-/// exact:  each particle stands for the area (h / per_side)^2; a box along mesh lines gets its
-///         area. Outlines that are mirror images about a mesh line get mirror images. Outlines that
-///         do not overlap share no particle: points on the outline are left out.
+/// out:    places and volumes, cell by cell, row of cells by row of cells
+/// exact:  sum of volumes and center of mass are those of the outline, to round-off; a disk's moment
+///         of inertia as well
 /// errors: InputError for an outline that reaches beyond the mesh; in a periodic direction the
 ///         particles stand inside the mesh instead, and the outline must not be longer than it
-/// note:   the outline is rounded to a millionth of the spacing, so that places that are equal on
-///         paper are equal here.
-inline std::vector<Point> fill(const Outline& outline, const Mesh& mesh, long per_side) {
-    const double n = double(per_side), spacing = mesh.h / n;
+/// note:   Points have no moment of inertia of their own: those at the surface of a disk stand farther
+///         out, by some hundredths of the spacing, to make up for it. So do the parts of its outline, by
+///         h^2/12R, as nodes see their mean over a cell. Places are rounded to 1e-9 of
+///         the spacing, so that those that are equal on paper are equal here.
+inline std::vector<FilledPlace> fill(const Outline& outline, const Mesh& mesh, long per_side) {
+    const double spacing = mesh.h / double(per_side);
     const Bounds box = bounds(outline);
     const auto require_room = [&](double low, double high, double room_low, double room_high,
                                   const std::string& axis) {
@@ -71,35 +167,49 @@ inline std::vector<Point> fill(const Outline& outline, const Mesh& mesh, long pe
     if (mesh.periodic_x) require_room(box.x_low, box.x_high, box.x_low, box.x_low + wrapped, "x");
     require_room(box.y_low, box.y_high, mesh.y_low, mesh.y_high(), "y");
 
-    // As fine as products of whole numbers of 64 bits allow, at most 2^-20.
-    int bits = 20;
-    const double size = std::max(box.x_high - box.x_low, box.y_high - box.y_low) / spacing;
-    while (bits > 1 && std::ldexp(size + 4 * n, bits) > 0x1p30) --bits;
-    const auto fine = [&](double length) -> std::int64_t {
-        return std::llround(std::ldexp(length / spacing, bits));
-    };
-    const auto fine_point = [&](double x, double y) -> detail::LatticePoint {
+    const auto lattice = [&](double x, double y) -> Point {
+        const auto fine = [&](double length) {
+            return std::ldexp(std::round(std::ldexp(length / spacing, 30)), -30);
+        };
         return {fine(x - mesh.x_low), fine(y - mesh.y_low)};
     };
-    detail::LatticeOutline lattice{fine_point(outline.x, outline.y), fine(outline.radius), {}};
-    for (const Point& p : outline.corners) lattice.corners.push_back(fine_point(p.x, p.y));
+    Outline on_lattice = outline;
+    const Point center = lattice(outline.x, outline.y);
+    on_lattice.x = center.x, on_lattice.y = center.y, on_lattice.radius /= spacing;
+    for (Point& p : on_lattice.corners) p = lattice(p.x, p.y);
+    const detail::Pieces pieces(on_lattice, bounds(on_lattice), per_side);
 
-    std::vector<Point> particles;
-    const auto cell = [&](double length) { return std::lround(std::floor(length / mesh.h)); };
-    const long i_low = cell(box.x_low - mesh.x_low), i_high = cell(box.x_high - mesh.x_low),
-               j_low = cell(box.y_low - mesh.y_low), j_high = cell(box.y_high - mesh.y_low);
-    const std::int64_t half = std::int64_t{1} << (bits - 1);
-    const auto middle = [&](long k) { return (2 * std::int64_t{k} + 1) * half; };
-    for (long j = j_low; j <= j_high; ++j)
-        for (long i = i_low; i <= i_high; ++i)
-            for (long q = j * per_side; q < (j + 1) * per_side; ++q)
-                for (long p = i * per_side; p < (i + 1) * per_side; ++p) {
-                    if (!lattice.strictly_contains({middle(p), middle(q)})) continue;
-                    const long all = mesh.cells_x * per_side,
-                               k = mesh.periodic_x ? (p % all + all) % all : p;
-                    particles.push_back({mesh.x_low + (double(k) + 0.5) * spacing,
-                                         mesh.y_low + (double(q) + 0.5) * spacing});
-                }
+    const bool round = outline.kind == OutlineKind::disk;
+    double whole = 0, parts = 0, area = 0;  // sums of area, and of area times distance squared
+    const auto away = [&](const Point& p) {
+        return (p.x - center.x) * (p.x - center.x) + (p.y - center.y) * (p.y - center.y);
+    };
+    pieces.for_each([&](const Piece& piece, const std::vector<OutlinePart>&) {
+        (piece.area == 1 ? whole : parts) += piece.area * away(piece.centroid());
+        area += piece.area;
+    });
+    const double radius = on_lattice.radius,
+                 farther = round ? std::sqrt((0.5 * area * radius * radius - whole) / parts) : 1;
+    // A node sees the mean over its neighborhood, a cell's sixth of h^2 in variance.
+    const double cells = radius / double(per_side), outward = 1 + 1 / (12 * cells * cells);
+    const auto from_center = [&](double factor, double x, double y) -> Point {
+        return {center.x + factor * (x - center.x), center.y + factor * (y - center.y)};
+    };
+    std::vector<FilledPlace> particles;
+    pieces.for_each([&](const Piece& piece, const std::vector<OutlinePart>& surface) {
+        Point p = piece.centroid();
+        if (round && piece.area != 1) p = from_center(farther, p.x, p.y);
+        FilledPlace particle{0, 0, piece.area * (spacing * spacing), {}};
+        for (const OutlinePart& part : surface) {
+            const Point at = round ? from_center(outward, part.x, part.y) : Point{part.x, part.y};
+            particle.surface.push_back({spacing * part.area_x, spacing * part.area_y,
+                                        spacing * (at.x - p.x), spacing * (at.y - p.y)});
+        }
+        const double all = double(mesh.cells_x * per_side);
+        if (mesh.periodic_x) p.x -= all * std::floor(p.x / all);
+        particle.x = mesh.x_low + p.x * spacing, particle.y = mesh.y_low + p.y * spacing;
+        particles.push_back(std::move(particle));
+    });
     return particles;
 }
 

@@ -8,6 +8,7 @@
 #include "mpm_explicit/setup/check_state.hpp"
 #include "mpm_explicit/setup/scales.hpp"
 #include "mpm_explicit/state.hpp"
+#include "mpm_explicit/surface.hpp"
 #include "mpm_explicit/update_stress.hpp"
 
 namespace mpm_explicit {
@@ -22,6 +23,7 @@ void start_leapfrog(const Shape& shape, const std::vector<AnyLaw>& laws, const C
                     State& state) {
     Assembly& all = state.assembly;
     particles_to_grid(shape, all.particles, nodes);
+    surface_to_grid(shape, all.particles, nodes);
     nodal_velocity(all.grains, all.rigid, nodes);
     predict_acceleration({}, all.grains, all.rigid, 0, nodes);
     std::vector<TileSums> sums(nodes.tiles().size());

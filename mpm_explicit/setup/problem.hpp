@@ -249,8 +249,9 @@ inline void describe_problem(common::ParameterTable& table, Problem& problem) {
     table.group("contact between grains");
     table.real("contact.friction", problem.contact.friction, "", at_least(0),
                "Coulomb's coefficient, of materials that no [pair.<name>] has");
-    table.real("contact.separation", problem.contact.separation, "h", between(0, 2),
-               "grains press when their parts around a node are nearer; 0: on approach only");
+    table.real(
+        "contact.separation", problem.contact.separation, "h", between(0, 2),
+        "grains press when their surfaces are nearer; 0: on approach only, a cell too early");
 
     table.group("loads");
     table.real("load.gravity_x", problem.gravity_x, "acceleration", anything(), "along x");

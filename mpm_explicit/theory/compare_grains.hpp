@@ -67,7 +67,7 @@ inline void compare_incline(const FinishedRun& run,
                                         " on, when gravity is there: raise time.end");
     summary.hint(
         "friction follows the pressure, which flutters where a grain slides without "
-        "viscosity, and a round grain rolls on a staircase of particles: set "
+        "viscosity, and a round grain rolls on single nodes: set "
         "material.*.viscosity = 3e-3, refine the mesh, and lower time.alpha = " +
         format(run.parameters.alpha));
     summary.result("acceleration", measured, "acceleration", exact,
@@ -131,8 +131,8 @@ inline void compare_rolling(const FinishedRun& run, common::Summary& summary) {
         center += std::fabs(p_x[n] / m), rim += std::fabs(omega[n]) * R;
     }
     summary.hint(
-        "a staircase of particles hops where a disk rolls: refine the mesh, and lengthen "
-        "load.rise");
+        "contact is at nodes, and between two of them what rolls sinks and hops: refine the mesh, "
+        "and lengthen load.rise");
     summary.result_at_most("vertical_speed", hops, "1", 0.01,
                            "of the center, over that along the plate: largest, second half of the "
                            "run");
@@ -308,10 +308,11 @@ inline void compare_hertz(const FinishedRun& run, common::Summary& summary) {
         "before the last fifth of the run, and raise load.damping");
     summary.result_at_most("loads_differ", load.spread / load.mean, "1", 0.01,
                            "of both plates, over their mean: equal at rest");
-    summary.hint("the contact is " + format(b / h) +
-                 " cells wide at each side and the outline a staircase: refine the mesh until it "
-                 "has four or more, and take method.shape = \"gimp\", since noise of cell crossing "
-                 "softens linear shapes");
+    summary.hint(
+        "the contact is " + format(b / h) +
+        " cells wide at each side, and the nodes see it coarsely: refine the mesh until it "
+        "has four or more, and take method.shape = \"gimp\", since noise of cell crossing "
+        "softens linear shapes");
     summary.result("approach", (low - high) / contact_approach(disk, load.mean), "1", 1,
                    run.parameters.tolerance,
                    "over 2 P (1 - nu^2) / (pi E) (2 ln(4 R/b) - 1), Johnson's eq. 5.57, at both "

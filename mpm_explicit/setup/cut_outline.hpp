@@ -1,0 +1,165 @@
+// What an outline cuts out of a square, its area and centroid: the volume and the place of a particle
+// at the surface of a grain.
+//
+//        __________           A piece is bounded by sides of the square and by the outline. Area and
+//       |    ___---|          first moments are sums over its boundary, of the triangles and sectors
+//       |___/      |          that each stretch of it makes with one fixed point.
+//       |   piece  |
+//       |__________|
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "mpm_explicit/setup/grain_shapes.hpp"
+
+namespace mpm {
+
+/// A part of a grain: its area and first moments, area times centroid.
+struct Piece {
+    double area = 0, x = 0, y = 0;
+
+    void operator+=(const Piece& other) { area += other.area, x += other.x, y += other.y; }
+    Piece times(double part) const { return {part * area, part * x, part * y}; }
+    Point centroid() const { return {x / area, y / area}; }
+};
+
+namespace detail {
+
+// The triangle of the origin, a and b.
+inline Piece triangle(const Point& a, const Point& b) {
+    const double area = 0.5 * (a.x * b.y - a.y * b.x);
+    return {area, area * (a.x + b.x) / 3, area * (a.y + b.y) / 3};
+}
+
+// The sector of a disk about the origin between the directions of a and b.
+inline Piece sector(const Point& a, const Point& b, double radius) {
+    const double per_a = 1 / std::hypot(a.x, a.y), per_b = 1 / std::hypot(b.x, b.y),
+                 angle = std::atan2(a.x * b.y - a.y * b.x, a.x * b.x + a.y * b.y),
+                 third = radius * radius * radius / 3;
+    return {0.5 * radius * radius * angle, third * (b.y * per_b - a.y * per_a),
+            third * (a.x * per_a - b.x * per_b)};
+}
+
+// The part of a disk about the origin in the triangle of the origin, a and b: a triangle where the
+// side is in the disk, and sectors before and after.
+inline Piece in_disk(const Point& a, const Point& b, double radius) {
+    const double dx = b.x - a.x, dy = b.y - a.y, size = dx * dx + dy * dy,
+                 middle = -(a.x * dx + a.y * dy) / size,
+                 half = middle * middle - (a.x * a.x + a.y * a.y - radius * radius) / size;
+    if (!(half > 0)) return sector(a, b, radius);
+    const double enters = std::clamp(middle - std::sqrt(half), 0.0, 1.0),
+                 leaves = std::clamp(middle + std::sqrt(half), 0.0, 1.0);
+    if (!(leaves > enters)) return sector(a, b, radius);
+    const auto at = [&](double s) { return Point{a.x + s * dx, a.y + s * dy}; };
+    Piece piece = triangle(at(enters), at(leaves));
+    if (enters > 0) piece += sector(a, at(enters), radius);
+    if (leaves < 1) piece += sector(at(leaves), b, radius);
+    return piece;
+}
+
+// The part of a polygon on one side of a line: where sign (coordinate - at) > 0.
+inline std::vector<Point> cut(const std::vector<Point>& corners, double Point::*coordinate,
+                              double at, double sign) {
+    std::vector<Point> left;
+    for_each_side(corners, [&](const Point& a, const Point& b) {
+        const double before = sign * (a.*coordinate - at), after = sign * (b.*coordinate - at);
+        if (before >= 0) left.push_back(a);
+        if ((before > 0 && after < 0) || (before < 0 && after > 0)) {
+            const double s = before / (before - after);
+            Point p{a.x + s * (b.x - a.x), a.y + s * (b.y - a.y)};
+            p.*coordinate = at;
+            left.push_back(p);
+        }
+    });
+    return left;
+}
+
+}  // namespace detail
+
+/// The part of a disk in the square of side 1 with the lower left corner (x, y).
+/// exact:  area and centroid, to round-off
+inline Piece piece_of_disk(const Point& center, double radius, double x, double y) {
+    const double u = x - center.x, v = y - center.y;
+    const Point corners[4]{{u, v}, {u + 1, v}, {u + 1, v + 1}, {u, v + 1}};
+    Piece piece;
+    for (int k = 0; k < 4; ++k) piece += detail::in_disk(corners[k], corners[(k + 1) % 4], radius);
+    return {piece.area, piece.x + piece.area * center.x, piece.y + piece.area * center.y};
+}
+
+/// The part of a polygon between x and x + 1.
+/// in:     corners of what is left of it between y and y + 1
+/// exact:  area and centroid, to round-off, of a concave one as well: where it falls apart, the
+///         stretches that join its parts are passed twice, there and back
+inline Piece piece_of_polygon(const std::vector<Point>& corners, double x, double y) {
+    using namespace detail;
+    Piece piece;
+    for_each_side(cut(cut(corners, &Point::x, x, 1), &Point::x, x + 1, -1),
+                  [&](const Point& a, const Point& b) {
+                      piece += triangle({a.x - x, a.y - y}, {b.x - x, b.y - y});
+                  });
+    return {piece.area, piece.x + piece.area * x, piece.y + piece.area * y};
+}
+
+/// A part of an outline within one square: its area vector, and its middle.
+struct OutlinePart {
+    double area_x = 0, area_y = 0, x = 0, y = 0;
+};
+
+/// Visits the parts of an outline between the lines of a lattice of spacing 1: visit(i, j, part), with
+/// the square on its inner side.
+template <class Visit>
+void for_each_part(const Outline& outline, const Visit& visit) {
+    constexpr double inward = 1e-6;
+    const auto tell = [&](const Point& middle, double area_x, double area_y) {
+        const double size = std::hypot(area_x, area_y);
+        if (!(size > 0)) return;
+        visit(std::lround(std::floor(middle.x - inward * area_x / size)),
+              std::lround(std::floor(middle.y - inward * area_y / size)),
+              OutlinePart{area_x, area_y, middle.x, middle.y});
+    };
+    std::vector<double> ends;
+    const auto crossings = [&](double from, double to, const auto& parameter) {
+        for (double line = std::ceil(std::min(from, to)); line <= std::max(from, to); ++line)
+            parameter(line);
+    };
+    if (outline.kind == OutlineKind::disk) {
+        const double r = outline.radius, turn = 2 * std::numbers::pi;
+        const auto add = [&](double angle) { ends.push_back(angle < 0 ? angle + turn : angle); };
+        crossings(outline.x - r, outline.x + r, [&](double line) {
+            const double angle = std::acos(std::clamp((line - outline.x) / r, -1.0, 1.0));
+            add(angle), add(-angle);
+        });
+        crossings(outline.y - r, outline.y + r, [&](double line) {
+            const double angle = std::asin(std::clamp((line - outline.y) / r, -1.0, 1.0));
+            add(angle), add(std::numbers::pi - angle);
+        });
+        std::sort(ends.begin(), ends.end());
+        for (std::size_t k = 0; k < ends.size(); ++k) {
+            const double from = ends[k], to = k + 1 < ends.size() ? ends[k + 1] : ends[0] + turn,
+                         middle = 0.5 * (from + to), chord = 2 * r * std::sin(0.5 * (to - from));
+            const double x = std::cos(middle), y = std::sin(middle);
+            tell({outline.x + r * x, outline.y + r * y}, chord * x, chord * y);
+        }
+        return;
+    }
+    for_each_side(outline.corners, [&](const Point& a, const Point& b) {
+        ends = {0, 1};
+        crossings(a.x, b.x, [&](double line) {
+            if (a.x != b.x) ends.push_back((line - a.x) / (b.x - a.x));
+        });
+        crossings(a.y, b.y, [&](double line) {
+            if (a.y != b.y) ends.push_back((line - a.y) / (b.y - a.y));
+        });
+        std::sort(ends.begin(), ends.end());
+        for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
+            const double part = ends[k + 1] - ends[k], s = 0.5 * (ends[k] + ends[k + 1]);
+            if (!(part > 1e-9)) continue;
+            tell({a.x + s * (b.x - a.x), a.y + s * (b.y - a.y)}, part * (b.y - a.y),
+                 -part * (b.x - a.x));
+        }
+    });
+}
+
+}  // namespace mpm
