@@ -170,9 +170,10 @@ class SurfaceRun {
     }
 
    private:
-    // Mass at a node, for the heaviest of its run, below which a step may be too long for it: a row of
-    // particles that has just crossed has stress, and nearly no mass to work on.
-    static constexpr double light = 1.0 / 32;
+    // Mass at a node, for the heaviest of its run, below which any step is too long for it: particles
+    // that have just crossed have stress, and nearly no mass to work on. A larger part would make
+    // layers rigid that slivers of a grain have beyond a line of nodes.
+    static constexpr double light = 1.0 / 4096;
 
     double area(const ContactBody& body) const {
         return body.is_fixed() ? 0 : body.gx * pair_.nx + body.gy * pair_.ny;

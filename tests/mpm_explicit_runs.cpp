@@ -131,6 +131,16 @@ TEST_CASE("a grain at rest stays at rest and bursts with contact on the new velo
         CHECK(r.value("contact_works") <= 1e-10);
     }
     run("rest", "block_at_rest", "time.end=15 contact.levels=1", 3);
+    // A block whose top reaches a little beyond a line of nodes is as stiff as on it.
+    for (const auto& [block, bottom, top] : {std::array{"0.306", "0.056", "0.556"},
+                                             {"0.312", "0.062", "0.562"},
+                                             {"0.33", "0.08", "0.58"}}) {
+        const Run held = run("held", "plate_holds",
+                             std::string("time.end=6 grid.cells_y=14 grain.block.y=") + block +
+                                 " grain.bottom.y=" + bottom + " grain.top.y=" + top);
+        check_results(held, 3);
+        CHECK(std::fabs(held.value("modulus") / 109576 - 1) <= 1e-4);
+    }
 }
 
 TEST_CASE("a free disk keeps its angular momentum and its size" * doctest::description("physics")) {

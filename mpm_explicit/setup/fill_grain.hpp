@@ -69,6 +69,7 @@ class Pieces {
 
    private:
     static constexpr double nothing = 1e-9;  // area that is round-off of an outline
+    static constexpr double even = 1e-7;     // difference of areas that are equal on paper
     static constexpr double sliver =
         0.25;  // area below which others of its cell take a piece in ...
     static constexpr double speck = 0.02;  // ... and below which those of another cell may
@@ -94,7 +95,7 @@ class Pieces {
             for (long j = first_j_; j < first_j_ + rows_; ++j)
                 for (long i = first_i_; i < first_i_ + columns_; ++i) {
                     const Piece small = before[number(i, j)];
-                    if (small.area > 0 && small.area < sliver)
+                    if (small.area > 0 && small.area < sliver - even)
                         shared = share(i, j, small, before) || shared;
                 }
         }
@@ -103,13 +104,13 @@ class Pieces {
         const LatticePoint beside[4]{{i - 1, j}, {i + 1, j}, {i, j - 1}, {i, j + 1}};
         const auto for_each_larger = [&](const auto& visit) {
             for (const LatticePoint& to : beside)
-                if (has(to.x, to.y) && before[number(to.x, to.y)].area > small.area &&
-                    (small.area < speck || (cell(to.x) == cell(i) && cell(to.y) == cell(j))))
+                if (has(to.x, to.y) && before[number(to.x, to.y)].area > small.area + even &&
+                    (small.area < speck - even || (cell(to.x) == cell(i) && cell(to.y) == cell(j))))
                     visit(number(to.x, to.y), before[number(to.x, to.y)].area);
         };
         double largest = 0, total = 0;
         for_each_larger([&](long, double area) { largest = std::max(largest, area); });
-        const double least = std::min(largest, sliver);
+        const double least = std::min(largest, sliver) - even;
         for_each_larger([&](long, double area) { total += area >= least ? area : 0; });
         if (!(total > 0)) return false;
         const std::vector<OutlinePart> parts = std::move(surface_[number(i, j)]);
