@@ -89,7 +89,7 @@ const std::vector<Mutation> grains{
     {"mpm_explicit", "rebound", "contact.separation=0", "contact_begins"},
     {"mpm_explicit", "rebound", "method.transfer=pic", "contact_lasts rebound energy_change"},
     {"mpm_explicit", "rebound", "time.end=0.9", "parted"},
-    {"mpm_explicit", "rebound", "time.alpha=1 contact.levels=1 time.energy_limit=0 time.end=1.5",
+    {"mpm_explicit", "rebound", "time.alpha=1 time.energy_limit=0 time.end=1.5",
      "rebound energy_change energy_gain"},
     {"mpm_explicit", "sulsky_disks", "contact.separation=0", "contact_begins contact_lasts"},
     {"mpm_explicit", "sulsky_disks", "time.alpha=1 time.energy_limit=0",
