@@ -22,7 +22,7 @@ struct ContactRule {
 inline bool touch(const ContactRule& rule, const ContactBody& one, const ContactBody& two,
                   const ContactPair& pair, double h) {
     if (rule.separation == 0) return true;
-    if (has_outline(one) && has_outline(two))
+    if (has_outline(one, h) && has_outline(two, h))
         return gap_between(one, two, pair.nx, pair.ny, rule.ahead, rule.most_ahead * h) <=
                rule.separation * h;
     const double apart = (two.x - one.x) * pair.nx + (two.y - one.y) * pair.ny;

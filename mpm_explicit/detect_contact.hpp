@@ -57,8 +57,7 @@ class ContactDetection {
                 if (!gather_bodies(n, nodes, storage, node) || node.bodies.size() != 2) continue;
                 if (!node.bodies[0].is_fixed() && !node.bodies[1].is_fixed()) continue;
                 find_pairs(h, bonds, false, false, storage, node);
-                if (node.pairs.size() == 1 && node.pairs[0].bond < 0)
-                    meetings[n] = meeting_of(node);
+                if (node.pairs.empty() || node.pairs[0].bond < 0) meetings[n] = meeting_of(node, h);
             }
         };
         if (!only_bonded) common::for_each_block(nodes.shared_count(), meet);
@@ -66,6 +65,7 @@ class ContactDetection {
             ContactStorage storage;
             for (long n = begin; n < end; ++n) {
                 ContactNode node;
+                if (!only_bonded && meetings[n].axis == Meeting::inside) continue;
                 if (!only_bonded && meetings[n].axis != Meeting::none) {
                     SurfaceRun run;
                     gather_run(n, nodes, bonds, meetings, storage, run);
@@ -159,23 +159,13 @@ class ContactDetection {
     void gather_run(long n, const GrainNodes& nodes, const std::vector<Bond>& bonds,
                     const std::vector<Meeting>& meetings, ContactStorage& storage,
                     SurfaceRun& run) const {
-        const Meeting& own = meetings[n];
-        const auto step = [&](long at, bool back) -> long {
-            const GrainNodes::Neighbors& beside = nodes.beside(at);
-            const int to = own.axis == Meeting::along_x ? (back ? beside.left : beside.right)
-                                                        : (back ? beside.below : beside.above);
-            return to >= 0 && meetings[to] == own ? to : -1;
-        };
-        // Longer ones are cut, counted from their first node.
-        long before = 0;
-        for (long at = step(n, true); at >= 0; at = step(at, true)) ++before;
-        if (before % static_cast<long>(ContactPair::max_links) != 0) return;
-        for (long at = n; at >= 0 && !run.full(); at = step(at, false)) {
+        RunTable(nodes, meetings).for_each_node(n, [&](long at) {
             ContactNode one;
             gather_bodies(at, nodes, storage, one);
             find_pairs(nodes.mesh().h, bonds, false, false, storage, one);
-            run.add(one, own.axis, nodes.mesh().h);
-        }
+            run.add(one, meetings[n].axis, nodes.mesh().h);
+        });
+        if (run.empty()) return;
         run.close([&](const ContactBody& a, const ContactBody& b, const ContactPair& pair) {
             return touch(rule_, a, b, pair, nodes.mesh().h);
         });
@@ -210,7 +200,8 @@ class ContactDetection {
                 const bool light = std::min(one.m, two.m) < low_mass * (one.m + two.m);
                 if (free && bond < 0 && light) continue;
                 ContactPair& pair = storage.pairs[count];
-                if (!normal_between(one, two, pair.nx, pair.ny)) continue;
+                const double least = bond < 0 ? 1e-6 * h : 0;
+                if (!normal_between(one, two, least, pair.nx, pair.ny)) continue;
                 if (bond < 0 && only_touching && !touch(rule_, one, two, pair, h)) continue;
                 pair.a = a, pair.b = b, pair.bond = bond;
                 pair.links[0] = {static_cast<int>(a), static_cast<int>(b), 1}, pair.link_count = 1;

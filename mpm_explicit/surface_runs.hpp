@@ -15,86 +15,22 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
-#include "mpm_explicit/grain_nodes.hpp"
-#include "mpm_explicit/solve_contact_node.hpp"
+#include "mpm_explicit/run_table.hpp"
 
 namespace mpm {
-
-/// Whether a body shows an outline at a node; clouds of particles without one do not.
-inline bool has_outline(const ContactBody& body) {
-    return body.wall || body.surface.x != 0 || body.surface.y != 0;
-}
-
-/// The gap that is left between the surfaces of two bodies along n, from one to two, after some time,
-/// in which it changes by so much at most; infinite where the outline of one of them is turned away
-/// from n.
-inline double gap_between(const ContactBody& one, const ContactBody& two, double nx, double ny,
-                          double ahead, double most) {
-    // Between two that are free, the normal of a corner is a guess.
-    const double facing = one.is_fixed() || two.is_fixed() ? 0 : 0.5;
-    const auto place = [&](const ContactBody& body, double sign) {
-        if (body.wall) return body.x * nx + body.y * ny;
-        const SurfaceSums& s = body.surface;
-        const double area = s.x * nx + s.y * ny;
-        return sign * area > facing * std::sqrt(s.x * s.x + s.y * s.y)
-                   ? (nx * (s.xx * nx + s.xy * ny) + ny * (s.yx * nx + s.yy * ny)) / area
-                   : sign * -std::numeric_limits<double>::infinity();
-    };
-    const double parting = (two.vx_0 - one.vx_0) * nx + (two.vy_0 - one.vy_0) * ny;
-    return place(two, -1) - place(one, 1) + std::clamp(ahead * parting, -most, most);
-}
-
-/// What the normal of two bodies is along, from one to two: the gradient of the fixed one where there
-/// is one, else between both.
-inline std::array<double, 2> gradient_between(const ContactBody& one, const ContactBody& two) {
-    return {(two.rigid ? 0 : one.gx) - (one.rigid ? 0 : two.gx),
-            (two.rigid ? 0 : one.gy) - (one.rigid ? 0 : two.gy)};
-}
-
-/// The normal from one to two: out of the fixed one where there is one, else between both gradients.
-/// out:    whether there is one
-inline bool normal_between(const ContactBody& one, const ContactBody& two, double& nx, double& ny) {
-    if (two.wall) {
-        nx = two.grain == x_low ? -1 : two.grain == x_high ? 1 : 0;
-        ny = two.grain == y_low ? -1 : two.grain == y_high ? 1 : 0;
-        return true;
-    }
-    const std::array<double, 2> along = gradient_between(one, two);
-    const double size = std::sqrt(along[0] * along[0] + along[1] * along[1]);
-    nx = along[0] / size, ny = along[1] / size;
-    return size > 0;
-}
-
-/// The two bodies that alone meet at a node, and along which axis their surface is crossed.
-struct Meeting {
-    enum Axis : signed char { none, along_x, along_y };
-    int a = 0, b = 0;  // ContactBody::id()
-    Axis axis = none;
-    bool backward = false;  // n is against the axis
-    bool operator==(const Meeting&) const = default;
-};
-inline Meeting meeting_of(const ContactNode& node) {
-    const ContactPair& pair = node.pairs[0];
-    const ContactBody &a = node.bodies[pair.a], &b = node.bodies[pair.b];
-    if (!has_outline(a) || !has_outline(b)) return {};
-    const bool x = std::fabs(pair.nx) > std::fabs(pair.ny);
-    return {a.id(), b.id(), x ? Meeting::along_x : Meeting::along_y, (x ? pair.nx : pair.ny) < 0};
-}
 
 /// The nodes of a run, put together one after the other, and the contacts that they make.
 class SurfaceRun {
    public:
-    bool full() const { return links_ == ContactPair::max_links; }
+    bool empty() const { return links_ == 0; }
 
-    /// in:     node, with the two bodies and their pair
+    /// in:     node, with the two bodies, and their pair where it has a normal
     void add(const ContactNode& node, Meeting::Axis axis, double h) {
-        const ContactPair& pair = node.pairs[0];
         const std::size_t k = links_++, at = 2 * k;
-        bodies_[at] = node.bodies[pair.a], bodies_[at + 1] = node.bodies[pair.b];
+        bodies_[at] = node.bodies[0], bodies_[at + 1] = node.bodies[1];
         keys_[k] = node.key;
-        if (k == 0) pair_ = pair;
+        if (!node.pairs.empty()) pair_ = node.pairs[0];
         if (!bodies_[at + 1].wall) {
             const auto [x, y] = gradient_between(bodies_[at], bodies_[at + 1]);
             gx_ += x, gy_ += y;
