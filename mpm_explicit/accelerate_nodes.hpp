@@ -23,8 +23,8 @@ inline void accelerate_nodes(const BodyForce& body, const std::vector<Grain>& gr
         for (long i = begin; i < end; ++i) {
             const auto n = static_cast<std::size_t>(i);
             NodeMotion& v = nodes.motion[n];
-            const bool empty = !(nodes.sums[n].m > least_mass);
-            const double dt_m = empty ? 0 : dt / nodes.sums[n].m, dt_body = empty ? 0 : dt;
+            const bool empty = !(nodes.mass[n] > least_mass);
+            const double dt_m = empty ? 0 : dt / nodes.mass[n], dt_body = empty ? 0 : dt;
             v.vx_1 = v.vx_0 + dt_m * nodes.force[n].x +
                      dt_body * (body.gravity_x - body.damping * v.vx_0);
             v.vy_1 = v.vy_0 + dt_m * nodes.force[n].y +
@@ -58,9 +58,8 @@ inline NodeWork work_on_nodes(const BodyForce& body, double dt, const GrainNodes
         for (long i = begin; i < end; ++i) {
             const auto n = static_cast<std::size_t>(i);
             const NodeMotion& v = nodes.motion[n];
-            const double m = is_free[n] * nodes.sums[n].m, dx = v.vx_1 - v.vx_0,
-                         dy = v.vy_1 - v.vy_0, mean_x = 0.5 * (v.vx_0 + v.vx_1),
-                         mean_y = 0.5 * (v.vy_0 + v.vy_1);
+            const double m = is_free[n] * nodes.mass[n], dx = v.vx_1 - v.vx_0, dy = v.vy_1 - v.vy_0,
+                         mean_x = 0.5 * (v.vx_0 + v.vx_1), mean_y = 0.5 * (v.vy_0 + v.vy_1);
             internal_work += nodes.force[n].x * mean_x + nodes.force[n].y * mean_y;
             kinetic_increment += m * (dx * dx + dy * dy);
             gravity += m * (body.gravity_x * mean_x + body.gravity_y * mean_y);

@@ -115,9 +115,14 @@ class GrainNodes {
     double least_mass() const { return least_mass_; }
 
     std::vector<NodeSums> sums;
-    std::vector<SurfaceSums> surface;
+    std::vector<double> mass;  // of sums, by itself: most of a step asks for nothing else
     std::vector<NodeMotion> motion;
     std::vector<NodeForce> force;
+    /// What outlines put on the nodes where bodies can meet: members() in their order, then the ghosts
+    /// of these.
+    std::vector<SurfaceSums> surface;
+    /// Where in surface a dof has its place; -1: nowhere.
+    int surface_of(long dof) const { return surface_of_[dof]; }
 
     /// Dof of the node in column 0 of a grain's row j; column i is that plus i.
     long origin(int grain, long j) const { return origin_[first_of_grain_[grain] + j]; }
@@ -143,12 +148,14 @@ class GrainNodes {
     const std::vector<Member>& members() const { return members_; }
     /// Shared node n has the members shared_begin()[n] ... shared_begin()[n + 1].
     const std::vector<long>& shared_begin() const { return shared_begin_; }
-    /// The shared nodes beside a shared node; -1: none.
-    struct Neighbors {
+    long shared_count() const { return static_cast<long>(shared_begin_.size()) - 1; }
+    /// A shared node that a wall or a rigid grain is at, and the others beside it, by their numbers in
+    /// the list of them; -1: none.
+    struct FixedNode {
+        long shared;
         int left = -1, right = -1, below = -1, above = -1;
     };
-    const Neighbors& beside(long shared) const { return beside_[shared]; }
-    long shared_count() const { return static_cast<long>(shared_begin_.size()) - 1; }
+    const std::vector<FixedNode>& fixed_nodes() const { return fixed_nodes_; }
     /// Dofs of a grain are consecutive.
     long dof_begin(int grain) const { return dof_begin_[grain]; }
     long dof_end(int grain) const { return dof_begin_[static_cast<std::size_t>(grain) + 1]; }
@@ -181,6 +188,7 @@ class GrainNodes {
 
     void find_ghost_nodes(const std::vector<Grain>& grains, const GridLayout& layout);
     void find_shared_nodes(const std::vector<Grain>& grains, const GridLayout& layout);
+    void place_surface();
 
     // Visits all dofs of a grain that are not ghosts: visit(dof, column, row).
     template <class Visit>
@@ -215,7 +223,8 @@ class GrainNodes {
     std::vector<unsigned char> free_;
     std::vector<Member> members_;
     std::vector<long> shared_begin_{0};
-    std::vector<Neighbors> beside_;
+    std::vector<FixedNode> fixed_nodes_;
+    std::vector<int> surface_of_;
     common::SortScratch<double> scratch_;
 };
 

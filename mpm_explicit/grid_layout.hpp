@@ -155,7 +155,7 @@ inline void GrainNodes::lay_out(const std::vector<Grain>& grains, const GridLayo
     }
     row_begin_[count] = row, dof_begin_[count] = dofs;
     const auto size = static_cast<std::size_t>(dofs);
-    sums.resize(size), surface.resize(size), motion.resize(size), force.resize(size);
+    sums.resize(size), mass.resize(size), motion.resize(size), force.resize(size);
 
     // Pieces of work: so many rows that the next but one shares no node.
     constexpr long particles_per_piece = 1024;
@@ -179,6 +179,7 @@ inline void GrainNodes::lay_out(const std::vector<Grain>& grains, const GridLayo
         pieces_.push_back(static_cast<long>(tiles_.size()));
     find_ghost_nodes(grains, layout);
     find_shared_nodes(grains, layout);
+    place_surface();
 }
 
 }  // namespace mpm

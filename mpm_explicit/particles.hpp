@@ -22,22 +22,25 @@ struct StrainStep {
     double xx = 0, yy = 0, xy = 0;
 };
 
-/// Parts of the outline of grains, in the order of the particles that carry them: area vector, out of
-/// the grain, and the middle of the part, from the particle. A particle may carry several, or none.
+/// The outline of grains, as some particles carry it, in their order: of the parts s that a particle
+/// carries, with area vectors A_s out of the grain, at e_s from the particle,
+///   A = sum_s A_s,  M = sum_s A_s e_sT
 struct Surface {
-    std::vector<int> host;       // the particle
-    std::vector<double> ax, ay;  // area vector [length]
-    std::vector<double> ex, ey;  // from the particle [length]
+    std::vector<int> host;               // the particle
+    std::vector<double> ax, ay;          // A [length]
+    std::vector<double> xx, xy, yx, yy;  // M [length^2]
 
     std::size_t count() const { return host.size(); }
-    std::array<std::vector<double>*, 4> all() { return {&ax, &ay, &ex, &ey}; }
-    void add(int particle, double area_x, double area_y, double from_x, double from_y) {
-        host.push_back(particle), ax.push_back(area_x), ay.push_back(area_y);
-        ex.push_back(from_x), ey.push_back(from_y);
-    }
-    /// The first part that a particle or one after it carries.
-    std::size_t first_of(long particle) const {
-        return std::lower_bound(host.begin(), host.end(), particle) - host.begin();
+    std::array<std::vector<double>*, 6> all() { return {&ax, &ay, &xx, &xy, &yx, &yy}; }
+    /// Adds a part to what a particle carries, which is the last one that carries any, or after it.
+    void add(int particle, double area_x, double area_y, double e_x, double e_y) {
+        if (host.empty() || host.back() != particle) {
+            host.push_back(particle);
+            for (std::vector<double>* sum : all()) sum->push_back(0);
+        }
+        ax.back() += area_x, ay.back() += area_y;
+        xx.back() += area_x * e_x, xy.back() += area_x * e_y;
+        yx.back() += area_y * e_x, yy.back() += area_y * e_y;
     }
     /// Follows the particles to other places: particle p is now target[p].
     void follow(const std::vector<int>& target) {
@@ -95,8 +98,8 @@ void archive(Archive& a, Particles& particles) {
     for (std::size_t k = 0; k < affine.size(); ++k) a(affine[k], *particles.affine()[k]);
     a("turn_p", particles.turn_p);
     a("surface_host", particles.surface.host);
-    static constexpr std::array<const char*, 4> parts{"surface_ax", "surface_ay", "surface_ex",
-                                                      "surface_ey"};
+    static constexpr std::array<const char*, 6> parts{"surface_ax", "surface_ay", "surface_xx",
+                                                      "surface_xy", "surface_yx", "surface_yy"};
     for (std::size_t k = 0; k < parts.size(); ++k) a(parts[k], *particles.surface.all()[k]);
 }
 

@@ -80,13 +80,13 @@ inline Meeting meeting_of(const ContactNode& node, double h) {
     return {a.id(), b.id(), x ? Meeting::along_x : Meeting::along_y, (x ? pair.nx : pair.ny) < 0};
 }
 
-/// Which shared nodes make which runs.
+/// Which fixed nodes make which runs.
 class RunTable {
    public:
     RunTable(const GrainNodes& nodes, const std::vector<Meeting>& meetings)
         : nodes_(nodes), meetings_(meetings) {}
 
-    /// Calls visit(shared node) for the nodes of the run that begins at shared node n, if one does.
+    /// Calls visit(shared node) for the nodes of the run that begins at fixed node n, if one does.
     /// note:   longer runs than of ContactPair::max_links are cut, counted from their first node
     template <class Visit>
     void for_each_node(long n, const Visit& visit) const {
@@ -99,7 +99,7 @@ class RunTable {
         const auto visit_inside = [&](long at, bool back) {
             const long to = beside(at, own.axis, back);
             if (to < 0 || meetings_[to].axis != Meeting::inside || owner(to) != at) return 0L;
-            visit(to);
+            visit(nodes_.fixed_nodes()[to].shared);
             return 1L;
         };
         long before = 0;
@@ -107,13 +107,13 @@ class RunTable {
         if (before % most != 0) return;
         long count = before == 0 ? visit_inside(n, true) : 0, last = n;
         for (long at = n; at >= 0 && count < most; last = at, at = next(at, false))
-            visit(at), ++count;
+            visit(nodes_.fixed_nodes()[at].shared), ++count;
         if (count < most) visit_inside(last, false);
     }
 
    private:
     long beside(long at, Meeting::Axis axis, bool back) const {
-        const GrainNodes::Neighbors& to = nodes_.beside(at);
+        const GrainNodes::FixedNode& to = nodes_.fixed_nodes()[at];
         return axis == Meeting::along_x ? (back ? to.left : to.right)
                                         : (back ? to.below : to.above);
     }

@@ -76,24 +76,46 @@ inline void GrainNodes::find_shared_nodes(const std::vector<Grain>& grains,
         --at;
     });
 
-    // Who stands beside whom: place has the number of a shared node, counted from 1.
+    // Who stands beside whom: place has the number of a fixed node, counted from 1.
     std::fill(place.begin(), place.end(), 0);
-    beside_.assign(shared_begin_.size() - 1, {});
-    const auto for_each_shared = [&](const auto& visit) {
-        for (std::size_t n = 0; n < beside_.size(); ++n) {
-            const Member& first = members_[shared_begin_[n]];
+    fixed_nodes_.clear();
+    for (long n = 0; n < shared_count(); ++n)
+        if (std::any_of(
+                members_.begin() + shared_begin_[n], members_.begin() + shared_begin_[n + 1],
+                [&](const Member& one) { return one.is_wall() || grains[one.grain].rigid; }))
+            fixed_nodes_.push_back({n});
+    const auto for_each_fixed = [&](const auto& visit) {
+        for (std::size_t n = 0; n < fixed_nodes_.size(); ++n) {
+            const Member& first = members_[shared_begin_[fixed_nodes_[n].shared]];
             visit(static_cast<int>(n), std::lround((first.x - mesh_.x_low) / mesh_.h),
                   std::lround((first.y - mesh_.y_low) / mesh_.h));
         }
     };
-    for_each_shared([&](int n, long i, long j) { place[node_of(i, j)] = n + 1; });
-    for_each_shared([&](int n, long i, long j) {
+    for_each_fixed([&](int n, long i, long j) { place[node_of(i, j)] = n + 1; });
+    for_each_fixed([&](int n, long i, long j) {
         const auto at = [&](long a, long b) {
             const long node = node_of(a, b);
             return node < 0 ? -1 : place[node] - 1;
         };
-        beside_[n] = {at(i - 1, j), at(i + 1, j), at(i, j - 1), at(i, j + 1)};
+        FixedNode& one = fixed_nodes_[n];
+        one.left = at(i - 1, j), one.right = at(i + 1, j);
+        one.below = at(i, j - 1), one.above = at(i, j + 1);
     });
+}
+
+/// Where outlines are summed up: at the members of shared nodes, and at ghosts that give to these,
+/// each after its master.
+inline void GrainNodes::place_surface() {
+    surface_of_.assign(sums.size(), -1);
+    int count = 0;
+    for (const Member& member : members_) {
+        if (!member.is_wall()) surface_of_[member.dof] = count;
+        ++count;
+    }
+    for (auto ghost = ghosts_.rbegin(); ghost != ghosts_.rend(); ++ghost)
+        if (surface_of_[ghost->master] >= 0 && surface_of_[ghost->dof] < 0)
+            surface_of_[ghost->dof] = count++;
+    surface.assign(static_cast<std::size_t>(count), {});
 }
 
 }  // namespace mpm

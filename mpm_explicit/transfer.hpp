@@ -231,6 +231,7 @@ inline void nodal_velocity(const std::vector<Grain>& grains, const std::vector<R
             const auto n = static_cast<std::size_t>(i);
             const NodeSums& sum = nodes.sums[n];
             const double per_m = sum.m > 0 ? 1 / sum.m : 0;
+            nodes.mass[n] = sum.m;
             nodes.motion[n] = {sum.px * per_m, sum.py * per_m, 0, 0};
         }
     });

@@ -127,7 +127,11 @@ inline void constrain_nodes(std::vector<DofConstraint>& constraints, GrainNodes&
         if (one.beyond >= 0) add(nodes.sums[one.beyond], -1);
         to.V += from.V, to.gx += from.gx, to.gy += from.gy;
         from = {};
-        nodes.surface[one.master] += nodes.surface[one.dof], nodes.surface[one.dof] = {};
+        if (const int k = nodes.surface_of(one.dof); k >= 0) {
+            if (const int to_k = nodes.surface_of(one.master); to_k >= 0)
+                nodes.surface[to_k] += nodes.surface[k];
+            nodes.surface[k] = {};
+        }
         nodes.constrain(one.dof, one.master, one.beyond);
     }
 }

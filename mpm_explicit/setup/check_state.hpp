@@ -121,10 +121,11 @@ inline void validate_state(const Mesh& mesh, int width, bool affine, bool turns,
     const Surface& surface = p.surface;
     bool fits = common::all_within(surface.host, 0, static_cast<int>(count) - 1) &&
                 std::is_sorted(surface.host.begin(), surface.host.end());
-    const double size = mesh.length_x() + mesh.y_high() - mesh.y_low;
+    const double size = mesh.length_x() + mesh.y_high() - mesh.y_low,
+                 most_of_M = size * size + size;
     for (const std::vector<double>* column : p.surface.all())
-        fits =
-            fits && column->size() == surface.count() && common::all_within(*column, -size, size);
+        fits = fits && column->size() == surface.count() &&
+               common::all_within(*column, -most_of_M, most_of_M);
     refuse(!fits, "the outlines of its grains do not belong to its particles");
     refuse(momenta.size() != all.grains.size(), "its grains are not as many as those of the case");
     constexpr double least = 1e-130, most = 1e130, largest = 1e90;  // products of some are numbers
