@@ -4,6 +4,8 @@
 #pragma once
 
 #include <array>
+#include <atomic>
+#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -15,7 +17,8 @@ namespace flip {
 using common::Field;
 using common::Grid;
 
-/// Structure of arrays, per unit length along y; in memory row of cells by row of cells.
+/// Structure of arrays, per unit length along y; in memory row of cells by row of cells, nearly: see
+/// keep_in_rows().
 /// In `pic` only position, mass and material; the rest is empty there.
 struct Particles {
     std::vector<double> x_p, z_p;    // position
@@ -25,8 +28,9 @@ struct Particles {
     std::vector<double> e_p;         // specific internal energy
     std::vector<double> V_p;         // volume, where the scheme has particles carry it
     std::vector<double> Cxx_p, Cxz_p, Czx_p,
-        Czz_p;                      // apic: gradient of the velocity, C_ij = dv_i/dx_j
-    std::vector<int> first_of_row;  // row j of cells has particles [first_of_row[j], [j + 1])
+        Czz_p;  // apic: gradient of the velocity, C_ij = dv_i/dx_j
+    // Row j of cells, or one beside it, has particles [first_of_row[j], [j + 1]); empty: out of order.
+    std::vector<int> first_of_row;
 
     long count() const { return static_cast<long>(x_p.size()); }
     /// Every column of numbers, in use or not.
@@ -43,12 +47,13 @@ void archive(Archive& a, Particles& particles) {
     const auto all = particles.all();
     for (std::size_t k = 0; k < all.size(); ++k) a(names[k], *all[k]);
     a("material", particles.material);
+    a("first_of_row", particles.first_of_row);
 }
 
 /// Whether a column is in use.
 inline bool has(const std::vector<double>& column) { return !column.empty(); }
 
-/// Removes the particles p for which gone(p) is true; the others keep their order.
+/// Removes the particles p for which gone(p) is true; the others keep their order, but not their rows.
 template <class Gone>
 void remove_if(Particles& particles, const Gone& gone) {
     long kept = 0;
@@ -65,6 +70,7 @@ void remove_if(Particles& particles, const Gone& gone) {
     for (std::vector<double>* column : columns)
         if (has(*column)) column->resize(kept);
     particles.material.resize(kept);
+    particles.first_of_row.clear();
 }
 
 /// The cell that a position is in; a position on the upper end of the mesh counts to the last cell.
@@ -72,6 +78,19 @@ inline long cell_along(const common::Axis& axis, double position) {
     const long cell = static_cast<long>((position - axis.low) / axis.spacing());
     return cell < axis.cells ? cell : axis.cells - 1;
 }
+
+/// The same for many positions; the same everywhere, so that a particle is never counted in one cell
+/// and looked for in another.
+struct CellAlong {
+    double low, per_cell;
+    int last;
+    explicit CellAlong(const common::Axis& axis)
+        : low(axis.low), per_cell(1 / axis.spacing()), last(static_cast<int>(axis.cells) - 1) {}
+    int operator()(double position) const {
+        const int cell = static_cast<int>((position - low) * per_cell);
+        return cell < last ? cell : last;
+    }
+};
 
 /// Room for one permutation, kept between sorts.
 struct SortScratch {
@@ -83,18 +102,58 @@ struct SortScratch {
 /// in/out: particles, every position on the mesh; first_of_row is rebuilt
 /// exact:  the order depends on the positions alone, not on the number of threads
 inline void sort_particles(const Grid& grid, SortScratch& scratch, Particles& particles) {
-    const double *z_p = particles.z_p.data(), z_low = grid.z.low, per_dz = 1 / grid.z.spacing();
-    const int last = static_cast<int>(grid.z.cells) - 1;
+    const CellAlong row(grid.z);
+    const double* z_p = particles.z_p.data();
     common::counting_sort(
-        particles.count(), grid.z.cells,
-        [=](long p) {
-            const int row = static_cast<int>((z_p[p] - z_low) * per_dz);
-            return row < last ? row : last;
-        },
-        scratch.numbers, &particles.first_of_row);
+        particles.count(), grid.z.cells, [=](long p) { return row(z_p[p]); }, scratch.numbers,
+        &particles.first_of_row);
     for (std::vector<double>* column : particles.all())
         if (has(*column)) common::carry_to_place(*column, scratch.numbers);
     common::carry_to_place(particles.material, scratch.numbers.target, scratch.labels);
+}
+
+/// Whether every particle is in the row of cells that first_of_row says, or in one beside it.
+inline bool near_their_rows(const Grid& grid, const Particles& particles) {
+    const std::vector<int>& first = particles.first_of_row;
+    if (std::ssize(first) != grid.z.cells + 1 || first.front() != 0 ||
+        first.back() != particles.count() || !std::is_sorted(first.begin(), first.end()))
+        return false;
+    const CellAlong row(grid.z);
+    const double* z_p = particles.z_p.data();
+    std::atomic<bool> near{true};
+    common::for_each_row(
+        grid.z.cells,
+        [&](long j) {
+            const int here = static_cast<int>(j);
+            int farthest = 0;
+            for (long p = first[j]; p < first[j + 1]; ++p)
+                farthest = std::max(farthest, std::abs(row(z_p[p]) - here));
+            if (farthest > 1) near = false;
+        },
+        particles.count());
+    return near;
+}
+
+/// Sorts particles when one of them is more than a row of cells from where first_of_row has it: a
+/// sort costs a third of a step, and in most steps few of them come into another row.
+/// out:    whether it has sorted
+/// exact:  the order depends on the positions, now and at earlier sorts, not on the number of threads
+inline bool keep_in_rows(const Grid& grid, SortScratch& scratch, Particles& particles) {
+    if (near_their_rows(grid, particles)) return false;
+    sort_particles(grid, scratch, particles);
+    return true;
+}
+
+/// Calls work(begin, end) for the particles of two rows of cells after the other. Those at work at the
+/// same time share no node and no cell: with a row on either side, in which they may be, and one more
+/// of the cells around them, they write to six rows.
+template <class Work>
+void for_each_band(const Grid& grid, const Particles& particles, const Work& work) {
+    const std::vector<int>& first = particles.first_of_row;
+    common::for_each_row_three_colors(
+        (grid.z.cells + 1) / 2,
+        [&](long band) { work(first[2 * band], first[std::min(2 * band + 2, grid.z.cells)]); },
+        particles.count());
 }
 
 }  // namespace flip

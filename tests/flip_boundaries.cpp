@@ -410,6 +410,56 @@ TEST_CASE("walls hold what they are to hold and nothing else") {
     }
 }
 
+TEST_CASE("particles that have come into the next row are put on the mesh as if they were sorted") {
+    Case w = flip_case(6, 13, "slip", "slip");
+    w.materials = {{"a", 1.4, 0}, {"b", 1.6, 0}};
+    w.mass = "consistent";
+    FlipRun r(w, any_cloud(w, 0.5, 4));
+    Particles& p = r.state.particles;
+    const auto shift = [&](double rows) {
+        for (std::size_t k = 0; k < p.z_p.size(); ++k) {
+            const double dz = rows * (k % 2 == 0 ? 1 : -1) * w.grid.z.spacing();
+            p.z_p[k] = std::clamp(p.z_p[k] + dz, w.grid.z.low, w.grid.z.high());
+        }
+    };
+    const int before = common::thread_count();
+    shift(0.9);
+    CHECK(near_their_rows(w.grid, p));
+    CHECK(!keep_in_rows(w.grid, r.scratch.sort, p));
+    std::vector<Field> m, M, coupled;
+    const auto put = [&] {
+        r.deposit();
+        assemble_mass_matrix(w.grid, p, r.scratch.mass_matrix);
+        m.push_back(r.nodes().m), M.push_back(r.cells().M);
+        coupled.push_back(r.scratch.mass_matrix.entry[3]);
+    };
+    for (const int threads : {1, 2, 3}) {
+        common::set_thread_count(threads);
+        put();
+        CHECK(m.back() == m[0]);
+        CHECK(M.back() == M[0]);
+        CHECK(coupled.back() == coupled[0]);
+    }
+    common::set_thread_count(before);
+    r.sort();
+    put();
+    CHECK((m.back() - m[0]).cwiseAbs().maxCoeff() <= 1e-13 * m[0].maxCoeff());
+    CHECK((M.back() - M[0]).cwiseAbs().maxCoeff() <= 1e-13 * M[0].maxCoeff());
+    CHECK((coupled.back() - coupled[0]).cwiseAbs().maxCoeff() <= 1e-13 * coupled[0].maxCoeff());
+
+    // Two rows on they are sorted, and where some have gone.
+    shift(1.8);
+    CHECK(!near_their_rows(w.grid, p));
+    CHECK(keep_in_rows(w.grid, r.scratch.sort, p));
+    CHECK(near_their_rows(w.grid, p));
+    remove_if(p, [](long k) { return k == 3; });
+    p.x_p.push_back(p.x_p[0]);
+    for (std::vector<double>* column : p.all())
+        if (has(*column) && column->size() < p.x_p.size()) column->push_back((*column)[0]);
+    p.material.push_back(0);
+    CHECK(!near_their_rows(w.grid, p));
+}
+
 TEST_CASE("sorting keeps every particle whole and finds its row") {
     Case w = flip_case(6, 5, "slip", "slip");
     w.density = "particles", w.transfer = "apic";

@@ -13,11 +13,10 @@ inline constexpr double least_mass = 1e-280;
 
 namespace detail {
 
-// What the particles [begin, end) of one row of cells leave on the mesh: two rows of nodes, three of
-// cells. A particle of apic brings to each node the velocity that its own gradient gives it there.
+// What the particles [begin, end) leave on the mesh. A particle of apic brings to each node the velocity that its own gradient gives it there.
 template <bool affine, bool volumes>
-void deposit_row(const WeightScale& scale, const Material* materials, const Particles& p,
-                 long begin, long end, const Grid& grid, Mesh& mesh) {
+void deposit_band(const WeightScale& scale, const Material* materials, const Particles& p,
+                  long begin, long end, const Grid& grid, Mesh& mesh) {
     Four* const node_sum = mesh.nodes.sum.data();
     CellSum* const cell_sum = mesh.cells.sum.data();
     const long count = mesh.materials;
@@ -67,7 +66,7 @@ void deposit_row(const WeightScale& scale, const Material* materials, const Part
 /// Mass and velocity of the nodes, mass and internal energy of the materials in the cells.
 ///   m_g = sum_p m_p S(x_p - x_g),   v_g = sum_p m_p v_p S(x_p - x_g) / m_g     [FLIP-8]
 ///   M_ck = sum_p m_p R(x_p - x_c),  U_ck = sum_p m_p e_p R(x_p - x_c), over material k
-/// in:     particles sorted by row, every position on the mesh
+/// in:     particles in rows, every position on the mesh
 /// out:    nodes.m, vx, vz (0 where no particle is near), and in nodes.sum[3] how many
 ///         particles are around a node; cells.sum, M, and the sums over volumes
 /// exact:  totals on nodes and cells are those of the particles, for mass, momentum and energy
@@ -93,15 +92,11 @@ inline void deposit_particles(const Grid& grid, std::span<const Material> materi
         grid.size());
     const WeightScale scale(grid);
     const auto deposit =
-        affine ? (volumes ? detail::deposit_row<true, true> : detail::deposit_row<true, false>)
-               : (volumes ? detail::deposit_row<false, true> : detail::deposit_row<false, false>);
-    common::for_each_row_three_colors(
-        grid.z.cells,
-        [&](long j) {
-            deposit(scale, materials.data(), particles, particles.first_of_row[j],
-                    particles.first_of_row[j + 1], grid, mesh);
-        },
-        particles.count());
+        affine ? (volumes ? detail::deposit_band<true, true> : detail::deposit_band<true, false>)
+               : (volumes ? detail::deposit_band<false, true> : detail::deposit_band<false, false>);
+    for_each_band(grid, particles, [&](long begin, long end) {
+        deposit(scale, materials.data(), particles, begin, end, grid, mesh);
+    });
     fold_nodes(grid, g.sum.data());
     fold_cells(grid, &c.sum[0].M, 2 * count);
     if (volumes) {

@@ -60,7 +60,7 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     long step = 0;
     if (run.restarting())
         run.restore(state, step, [&] { validate_state(problem, run.history, state); });
-    sort_particles(parameters.grid, scratch.sort, particles);
+    keep_in_rows(parameters.grid, scratch.sort, particles);
     if (!run.restarting() && all_hydrostatic(parameters))
         balance_at_rest(problem, particles, scratch.mesh);
 

@@ -32,28 +32,25 @@ struct MassMatrix {
 inline void assemble_mass_matrix(const Grid& grid, const Particles& p, MassMatrix& M) {
     for (Field& f : M.entry) f.setZero(grid.size());
     const WeightScale scale(grid);
-    common::for_each_row_three_colors(
-        grid.z.cells,
-        [&](long j) {
-            for (long k = p.first_of_row[j]; k < p.first_of_row[j + 1]; ++k) {
-                const Weights w = weights_at(scale, p.x_p[k], p.z_p[k]);
-                const double m = p.m_p[k];
-                const double S[4] = {w.S_x[0] * w.S_z[0], w.S_x[1] * w.S_z[0], w.S_x[0] * w.S_z[1],
-                                     w.S_x[1] * w.S_z[1]};
-                const long n = w.node, up = n + scale.stride;
-                M.entry[0][n] += m * S[0] * S[0];
-                M.entry[0][n + 1] += m * S[1] * S[1];
-                M.entry[0][up] += m * S[2] * S[2];
-                M.entry[0][up + 1] += m * S[3] * S[3];
-                M.entry[1][n] += m * S[0] * S[1];
-                M.entry[1][up] += m * S[2] * S[3];
-                M.entry[2][n] += m * S[0] * S[2];
-                M.entry[2][n + 1] += m * S[1] * S[3];
-                M.entry[3][n] += m * S[0] * S[3];
-                M.entry[4][n + 1] += m * S[1] * S[2];
-            }
-        },
-        p.count());
+    for_each_band(grid, p, [&](long begin, long end) {
+        for (long k = begin; k < end; ++k) {
+            const Weights w = weights_at(scale, p.x_p[k], p.z_p[k]);
+            const double m = p.m_p[k];
+            const double S[4] = {w.S_x[0] * w.S_z[0], w.S_x[1] * w.S_z[0], w.S_x[0] * w.S_z[1],
+                                 w.S_x[1] * w.S_z[1]};
+            const long n = w.node, up = n + scale.stride;
+            M.entry[0][n] += m * S[0] * S[0];
+            M.entry[0][n + 1] += m * S[1] * S[1];
+            M.entry[0][up] += m * S[2] * S[2];
+            M.entry[0][up + 1] += m * S[3] * S[3];
+            M.entry[1][n] += m * S[0] * S[1];
+            M.entry[1][up] += m * S[2] * S[3];
+            M.entry[2][n] += m * S[0] * S[2];
+            M.entry[2][n + 1] += m * S[1] * S[3];
+            M.entry[3][n] += m * S[0] * S[3];
+            M.entry[4][n + 1] += m * S[1] * S[2];
+        }
+    });
     // Around a periodic direction the last row or column of nodes is the first.
     const long nx = grid.x.cells, nz = grid.z.cells;
     const auto move = [](double& from, double& to) { to += from, from = 0; };

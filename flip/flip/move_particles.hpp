@@ -140,7 +140,7 @@ RowMoved move_row(const Problem& problem, const WeightScale& scale, const Mesh& 
 ///   e_p += sum_c R (de_c + e_p relative_de_c) + sum_g S dissipated_g - |sum_g S dv_g|^2/2
 ///   and what another transfer than flip makes of v_p: apply_transfer()
 /// in:     nodes.increment, dissipated, filtered; cells.de, relative_de
-/// in/out: particles, sorted by row; afterwards out of order
+/// in/out: particles in rows; afterwards perhaps not
 /// out:    how many are beyond a boundary now
 /// errors: NumericalError when the volume of a particle is not positive any more
 /// exact:  mass and momentum; total energy when the deficit goes to heat: what the lumped mass

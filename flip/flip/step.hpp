@@ -21,7 +21,7 @@ struct FlipScratch {
 };
 
 /// The fluid on the mesh at t^n.
-/// in:     particles, sorted by row
+/// in:     particles in rows
 /// out:    velocity and mass of nodes, pressure of cells
 template <class Clock = common::NoClock>
 void find_fluid(const Problem& problem, const State& state, Mesh& mesh, Clock&& clock = {}) {
@@ -52,7 +52,7 @@ void take_flip_step(const Problem& problem, long step, FlipScratch& scratch, Sta
     clock.lap("move");
     apply_particle_boundaries(problem, state.time, dt, particles, state.budget, left);
     if (rezone_is_due(problem.scheme, step)) rezone(problem, particles);
-    sort_particles(problem.grid, scratch.sort, particles);
+    keep_in_rows(problem.grid, scratch.sort, particles);
     clock.lap("sort");
     // [/step]
     state.time += dt;

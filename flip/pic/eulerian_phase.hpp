@@ -36,7 +36,28 @@ struct Contribution {
         ": use a smaller time.cfl, more particles per cell, or more viscosity");
 }
 
-// Sums over the particles of every row, cell by cell; contribution(p) says what particle p brings.
+// Calls add(p, cell) for every particle, on as many threads as share no cell.
+template <class Add>
+void for_each_in_cell(const Grid& grid, const Particles& particles, const Add& add) {
+    const CellAlong column(grid.x), row(grid.z);
+    const double *x_p = particles.x_p.data(), *z_p = particles.z_p.data();
+    const int* first = particles.first_of_row.data();
+    const long nx = grid.x.cells;
+    const auto of_row = [&]<bool plane>(long j) {
+        for (long p = first[j]; p < first[j + 1]; ++p)
+            add(p, (plane ? row(z_p[p]) : 0) * nx + column(x_p[p]));
+    };
+    // Three rows apart: a particle may be in the row beside its own.
+    common::for_each_row_three_colors(
+        grid.z.cells,
+        [&](long j) {
+            is_plane(grid) ? of_row.template operator()<true>(j)
+                           : of_row.template operator()<false>(j);
+        },
+        grid.x.cells * grid.z.cells);
+}
+
+// Sums over all particles, cell by cell; contribution(p) says what particle p brings.
 // out: cells restored. Energy below zero by less than 1e-10 of the kinetic energy is round-off.
 template <class What>
 void sum_contributions(const Problem& problem, const What& contribution, State& state,
@@ -45,24 +66,23 @@ void sum_contributions(const Problem& problem, const What& contribution, State& 
     const Particles& particles = state.particles;
     const long nx = grid.x.cells;
     const std::size_t K = cells.materials, width = 3 + 2 * K;
-    const Columns column(grid.x);
-    const double *x_p = particles.x_p.data(), *m_p = particles.m_p.data();
-    const int *material = particles.material.data(), *first = particles.first_of_row.data();
+    const double* m_p = particles.m_p.data();
+    const int* material = particles.material.data();
+    for_each_row_of_cells(
+        grid, [&](long j) { std::fill_n(&cells.sums[j * nx * width], nx * width, 0.0); });
+    for_each_in_cell(grid, particles, [&, sums = cells.sums.data()](long p, long at) {
+        const double m = m_p[p];
+        const Contribution b = contribution(p);
+        double* const cell = sums + at * width;
+        double* const of_material = cell + 3 + 2 * material[p];
+        cell[0] += m * b.vx;
+        cell[1] += m * b.vz;
+        cell[2] += 0.5 * m * (b.vx * b.vx + b.vz * b.vz);
+        of_material[0] += m;
+        of_material[1] += m * b.e;
+    });
     for_each_row_of_cells(grid, [&](long j) {
-        double* const sums = &cells.sums[j * nx * width];
-        std::fill_n(sums, nx * width, 0.0);
-        for (long p = first[j]; p < first[j + 1]; ++p) {
-            const double m = m_p[p];
-            const Contribution b = contribution(p);
-            double* const cell = sums + column(x_p[p]) * width;
-            double* const of_material = cell + 3 + 2 * material[p];
-            cell[0] += m * b.vx;
-            cell[1] += m * b.vz;
-            cell[2] += 0.5 * m * (b.vx * b.vx + b.vz * b.vz);
-            of_material[0] += m;
-            of_material[1] += m * b.e;
-        }
-
+        const double* const sums = &cells.sums[j * nx * width];
         double refused = -1;
         for (long i = 0; i < nx; ++i) {
             const long n = grid.index(i, j);
@@ -96,11 +116,10 @@ void sum_contributions(const Problem& problem, const What& contribution, State& 
         if (refused >= 0) refuse_cell(problem, state, cells, static_cast<long>(refused));
 }
 
-// Sorts by row of cells, with the donor cells where particles have some.
-inline void sort_with_donors(const Grid& grid, Particles& particles, PicCells& cells) {
+// Particles in rows of cells, with the donor cells where they have some.
+inline void keep_in_rows_with_donors(const Grid& grid, Particles& particles, PicCells& cells) {
     if (is_plane(grid)) {
-        sort_particles(grid, cells.sort, particles);
-        if (!cells.donor.empty())
+        if (keep_in_rows(grid, cells.sort, particles) && !cells.donor.empty())
             common::carry_to_place(cells.donor, cells.sort.numbers.target, cells.sort.labels);
     } else {
         particles.first_of_row = {0, static_cast<int>(particles.count())};
@@ -118,7 +137,7 @@ inline void sort_with_donors(const Grid& grid, Particles& particles, PicCells& c
 /// errors: NumericalError for a density or energy that is negative or not finite
 /// source: [PIC, Eulerian phase]
 inline void repartition(const Problem& problem, State& state, PicCells& cells) {
-    detail::sort_with_donors(problem.grid, state.particles, cells);
+    detail::keep_in_rows_with_donors(problem.grid, state.particles, cells);
     const int *donor = cells.donor.data(), *material = state.particles.material.data();
     const CellVelocity* v_tilde = cells.v_tilde.data();
     const double* e_tilde = cells.e_tilde.data();
@@ -143,7 +162,7 @@ inline State initial_state(const Problem& problem, Particles loaded, PicCells& c
     const long size = problem.grid.size();
     state.cells = {Field::Zero(size), Field::Zero(size),
                    std::vector<Field>(cells.materials, Field::Zero(size))};
-    detail::sort_with_donors(problem.grid, state.particles, cells);
+    detail::keep_in_rows_with_donors(problem.grid, state.particles, cells);
     const Particles& particles = state.particles;
     const double *vx_p = particles.vx_p.data(), *vz_p = particles.vz_p.data(),
                  *e_p = particles.e_p.data();
@@ -161,15 +180,13 @@ inline State initial_state(const Problem& problem, Particles loaded, PicCells& c
 /// exact: the same bits as repartition() had made
 inline void sum_cell_masses(const Grid& grid, State& state, PicCells& cells) {
     cells.donor.clear();
-    detail::sort_with_donors(grid, state.particles, cells);
+    detail::keep_in_rows_with_donors(grid, state.particles, cells);
     const Particles& particles = state.particles;
-    const Columns column(grid.x);
-    const long K = cells.materials;
+    const long K = cells.materials, nx = grid.x.cells;
     std::fill(cells.M.begin(), cells.M.end(), 0.0);
-    for (long j = 0; j < grid.z.cells; ++j)
-        for (long p = particles.first_of_row[j]; p < particles.first_of_row[j + 1]; ++p)
-            cells.M[grid.index(column(particles.x_p[p]), j) * K + particles.material[p]] +=
-                particles.m_p[p];
+    detail::for_each_in_cell(grid, particles, [&](long p, long at) {
+        cells.M[grid.index(at % nx, at / nx) * K + particles.material[p]] += particles.m_p[p];
+    });
     for (long n = 0; n < grid.size(); ++n) {
         double mass = 0;
         for (long k = 0; k < K; ++k) mass += cells.M[n * K + k];

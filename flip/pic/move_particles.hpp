@@ -23,31 +23,30 @@ namespace detail {
 
 inline constexpr long batch_size = 512;
 
-// New positions and donor cells of a batch, the particles [begin, end) of row j.
+// New positions and donor cells of a batch, the particles [begin, end).
 // out: how many are beyond a boundary of the mesh
 template <bool plane, bool holes>
-long move_batch(const Grid& grid, double dt, long j, long begin, long end, Particles& particles,
+long move_batch(const Grid& grid, double dt, long begin, long end, Particles& particles,
                 PicCells& cells) {
     double *const x_p = particles.x_p.data(), *const z_p = particles.z_p.data();
     int* const donor = cells.donor.data();
     const CellVelocity* const v = cells.v_tilde.data();
     const double* const filled = cells.filled.data();
-    const Columns column(grid.x);
-    const int stride = static_cast<int>(grid.stride()),
-              first = static_cast<int>(grid.index(0, plane ? j : 0));
-    const double z_low = grid.z.low, per_dz = 1 / grid.z.spacing();
-    const double to_row = static_cast<double>(j);
+    const CellAlong column(grid.x), row(grid.z);
+    const int stride = static_cast<int>(grid.stride()), first = static_cast<int>(grid.index(0, 0));
 #pragma omp simd
     for (long p = begin; p < end; ++p) {
-        const double s = (x_p[p] - column.low) * column.per_dx;
+        const double s = (x_p[p] - column.low) * column.per_cell;
         const int i = static_cast<int>(s);
         const int right = static_cast<int>(s + 0.5);  // of the two columns of cells
         const double f = s + 0.5 - right;
         donor[p] = first + (i < column.last ? i : column.last);
         if constexpr (plane) {
-            const double t = (z_p[p] - z_low) * per_dz + 0.5 - to_row;
-            const int up = t < 1 ? 0 : 1;
-            const double g = t - up;
+            const double t = (z_p[p] - row.low) * row.per_cell;
+            const int j = static_cast<int>(t);
+            const int up = static_cast<int>(t + 0.5);  // of the two rows of cells
+            const double g = t + 0.5 - up;
+            donor[p] += (j < row.last ? j : row.last) * stride;
             const int n = first + (up - 1) * stride + right - 1;
             double w00 = (1 - f) * (1 - g), w10 = f * (1 - g), w01 = (1 - f) * g, w11 = f * g;
             if constexpr (holes) {
@@ -82,11 +81,11 @@ long move_batch(const Grid& grid, double dt, long j, long begin, long end, Parti
     return count_outside(grid.x, x_p) + (plane ? count_outside(grid.z, z_p) : 0);
 }
 
-// Whether an empty cell is among those that particles of row j look at.
+// Whether an empty cell is among those that particles of row j, or one beside it, look at.
 inline bool has_holes(const Grid& grid, const Field& filled, long j) {
-    const long reach = is_plane(grid) ? 1 : 0;
+    const long reach = is_plane(grid) ? 2 : 0;
     double least = 1;
-    for (long b = j - reach; b <= j + reach; ++b) {
+    for (long b = std::max(j - reach, -1L); b <= std::min(j + reach, grid.z.cells); ++b) {
         const double* row = filled.data() + grid.index(-1, b);
         for (long i = 0; i < grid.x.cells + 2; ++i) least = std::min(least, row[i]);
     }
@@ -144,8 +143,7 @@ inline void apply_particle_boundaries(const Problem& problem, double dt, State& 
 /// Particles move with the fluid to their final position; those that leave and enter do so.
 ///   x_p += dt u~(x_p)
 /// in:     cells after accelerate_cells(); particles in rows
-/// out:    positions, all on the mesh; donor, the cell that each particle comes from; first_of_row
-///         is void until repartition()
+/// out:    positions, all on the mesh; donor, the cell that each particle comes from
 /// exact:  one velocity everywhere moves every particle by it, also beside empty cells
 /// errors: NumericalError for a particle beyond a wall, or a position that is not finite
 /// note:   in a single row of cells nothing moves along z
@@ -163,7 +161,7 @@ inline void move_particles(const Problem& problem, double dt, State& state, PicC
         const long begin = particles.first_of_row[j], end = particles.first_of_row[j + 1];
         long count = 0;
         for (long p = begin; p < end; p += detail::batch_size)
-            count += move(grid, dt, j, p, std::min(end, p + detail::batch_size), particles, cells);
+            count += move(grid, dt, p, std::min(end, p + detail::batch_size), particles, cells);
         return static_cast<double>(count);
     });
     if (outside > 0 || problem.boundaries.has(BoundaryKind::inflow))

@@ -135,17 +135,4 @@ inline void fill_ghosts(const Grid& grid, const Boundaries& boundaries, PicCells
     fill_ghosts(grid, boundaries, cells.v);
 }
 
-/// Column of cells of a position along x; the same everywhere, so that a particle is never counted
-/// in one cell and looked for in another.
-struct Columns {
-    double low, per_dx;
-    int last;
-    explicit Columns(const common::Axis& axis)
-        : low(axis.low), per_dx(1 / axis.spacing()), last(static_cast<int>(axis.cells) - 1) {}
-    int operator()(double x) const {
-        const int i = static_cast<int>((x - low) * per_dx);
-        return i < last ? i : last;
-    }
-};
-
 }  // namespace flip

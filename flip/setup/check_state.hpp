@@ -32,6 +32,7 @@ inline void validate_state(const Problem& problem, const common::History& histor
     };
     refuse(!on_mesh(problem.grid.x, p.x_p) || !on_mesh(problem.grid.z, p.z_p),
            "a particle is outside of the mesh");
+    refuse(!near_their_rows(problem.grid, p), "its particles are not in the rows that it says");
     constexpr double least = 1e-300, most = 1e300;
     refuse(!common::all_within(p.m_p, least, most) || !common::all_within(p.V_p, least, most),
            "a particle has no mass or no volume");
