@@ -403,6 +403,12 @@ inline void compare_collapse(const FinishedRun& run, common::Summary& summary) {
     const double width = high - low, a = (top - run.parameters.problem.origin_y) / width,
                  runout = (front.back() - high) / width;
     summary.result_info("aspect_ratio", a, "1", "height over width of the column");
+    const double wall = run.parameters.problem.mesh().x_high();
+    if (front.back() + 0.1 * runout * width > wall)
+        return summary.not_measured(
+            "runout", "the front is at x = " + format(front.back()) +
+                          ", and what stopped it may be the end of the mesh at " + format(wall) +
+                          ": take more cells along x");
     summary.hint(
         "grains of few cells and smooth floors run out farther, and steep or rough ones "
         "less: contact.friction = 0.5 on all, boundary.friction the same, some thousand "
