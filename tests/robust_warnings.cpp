@@ -161,6 +161,11 @@ mpm_explicit plates grain.top.swing_y=-0.01
     warning: grain 'top' has control = "force_y" and a velocity or a swing in that direction: it does
     nothing, the grain starts at rest
 mpm_explicit plates grain.top.velocity_x=-0.1 -> no warning
+grains rolling_cylinder.toml -> no warning
+grains rolling_cylinder.toml grid.cells_x=60 grid.cells_y=12
+    warning: a disk has a radius of 3 cells, below 4: on a rigid surface it hops from node to node,
+    and rolls with a fifth to five sixths of its acceleration
+grains rolling_cylinder.toml grid.cells_x=60 grid.cells_y=12 contact.friction=0 -> no warning
 mpm_implicit rebound.toml -> no warning
 mpm_implicit rebound.toml time.alpha=15 time.end=6 -> no warning
 mpm_implicit rebound.toml time.alpha=25 time.end=10 output.particles_interval=0

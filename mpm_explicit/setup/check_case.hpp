@@ -169,7 +169,16 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
             warnings.push_back(std::string(name) + " = " + format(interval) +
                                " is below the time step " + format(scales.dt) +
                                ": files are written every step");
-    for (const PlannedGrain& plan : plan_grains(problem, materials_of(problem))) {
+    const std::vector<Material> materials = materials_of(problem);
+    bool has_surface = mesh.has(y_low, Boundary::frictional) ||
+                       mesh.has(x_low, Boundary::frictional) ||
+                       mesh.has(x_high, Boundary::frictional);
+    double least = std::numeric_limits<double>::infinity();  // radius of what can roll
+    for (const PlannedGrain& plan : plan_grains(problem, materials)) {
+        if (materials[plan.material].law == Law::rigid)
+            has_surface = true;
+        else if (plan.outline.kind == OutlineKind::disk)
+            least = std::min(least, plan.outline.radius / mesh.h);
         if (plan.from.control == "velocity" && plan.from.force != 0)
             warnings.push_back("grain '" + plan.name +
                                "' has a force and control = \"velocity\": the force does nothing");
@@ -180,6 +189,10 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
                                "\" and a velocity or a swing in that direction: it does nothing, "
                                "the grain starts at rest");
     }
+    if (g > 0 && has_surface && problem.has_friction() && least < 4 * (1 - 1e-9))
+        warnings.push_back("a disk has a radius of " + format(least) +
+                           " cells, below 4: on a rigid surface it hops from node to node, and "
+                           "rolls with a fifth to five sixths of its acceleration");
     return warnings;
 }
 
