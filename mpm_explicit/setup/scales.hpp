@@ -19,6 +19,7 @@ struct Scales {
     double sound_speed = 0, speed = 0;  // largest c_p, largest |v| of a grain
     double dt = 0, shortening = 1;      // of the step, by viscosity
     long steps = 0, particles = 0, grains = 0;
+    double nodes = 0;     // of all grains, about
     double thinnest = 0;  // grain [length]
     double bytes = 0;
     double least_mass = 0;  // of a node that takes part: round-off of the lightest particle's
@@ -36,7 +37,7 @@ inline Scales scales_of(const Case& parameters, bool is_explicit = true) {
     const Problem& problem = parameters.problem;
     const Mesh mesh = problem.mesh();
     const double side = mesh.h / double(problem.per_side);
-    double lightest = 1e300, nodes = 0, shortened = 0;
+    double lightest = 1e300, shortened = 0;
     s.thinnest = 1e300;
     for (const PlannedGrain& plan : plans) {
         const Material& material = materials[plan.material];
@@ -53,7 +54,8 @@ inline Scales scales_of(const Case& parameters, bool is_explicit = true) {
         lightest = std::min(lightest, material.density * side * side);
         s.thinnest = std::min(s.thinnest, thinnest(plan.outline));
         const Bounds box = bounds(plan.outline);
-        nodes += ((box.x_high - box.x_low) / mesh.h + 5) * ((box.y_high - box.y_low) / mesh.h + 5);
+        s.nodes +=
+            ((box.x_high - box.x_low) / mesh.h + 5) * ((box.y_high - box.y_low) / mesh.h + 5);
     }
     s.grains = long(plans.size());
     // Where a smooth shape ends, its weight falls as the square of its gradient.
@@ -86,7 +88,8 @@ inline Scales scales_of(const Case& parameters, bool is_explicit = true) {
     const long carried =
         (parameters.transfers().kind == Transfer::none ? 12 : 16) * (is_explicit ? 2 : 1);
     s.bytes = particles * double(carried * sizeof(double) + 2 * sizeof(int)) +
-              nodes * (sizeof(NodeSums) + sizeof(NodeMotion) + sizeof(NodeForce) + 1) +
+              s.nodes * (sizeof(NodeSums) + sizeof(NodeMotion) + sizeof(NodeForce) +
+                         sizeof(SurfaceSums) + sizeof(double) + sizeof(int) + 1) +
               pixels * (3 * sizeof(double) + sizeof(int)) +
               sizeof(int) * double((mesh.cells_x + 8) * (mesh.cells_y + 8));
     return s;
@@ -115,7 +118,9 @@ inline Scales scales_of_run(const common::ProgramInfo& info, const common::Comma
 /// in:     scheme, what is said of the scheme; cost, of a step, over one of leapfrog
 inline std::string describe_scales(const Case& parameters, const Scales& scales,
                                    const std::string& scheme = "", double cost = 1) {
-    constexpr double particle_steps_per_second = 15e6;  // of leapfrog, on one core
+    // Of leapfrog, on one core: a particle, and a node of a grain, where others press on it.
+    const bool is_wide = parameters.shape != "linear";
+    const double particle = is_wide ? 90e-9 : 35e-9, node = is_wide ? 220e-9 : 70e-9;  // s
     const Problem& problem = parameters.problem;
     const Mesh mesh = problem.mesh();
     std::string text;
@@ -144,7 +149,7 @@ inline std::string describe_scales(const Case& parameters, const Scales& scales,
                            : ""));
     line("memory", "about " + format(scales.bytes / 1048576) + " MiB");
     const double seconds =
-        cost * double(scales.steps) * double(scales.particles) / particle_steps_per_second;
+        cost * double(scales.steps) * (particle * double(scales.particles) + node * scales.nodes);
     line("time", "about " + format(seconds) + " s on one core");
     return text;
 }
