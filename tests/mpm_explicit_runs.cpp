@@ -402,3 +402,11 @@ TEST_CASE("sheared grains resist and do not drift" * doctest::description("physi
     // What the upper plates lose, the lower ones gain, and the grains keep.
     CHECK(largest(r.column("contacts")) > 20);
 }
+
+TEST_CASE("a front that the end of the mesh has stopped is not measured" *
+          doctest::description("physics")) {
+    const Run r = run("narrow", "column_collapse",
+                      "grid.cells_x=30 grid.cells_y=50 grid.length_x=30 pack.g.width=14 "
+                      "pack.g.height=40 pack.g.count=16 time.end=12");
+    CHECK(r.summary["results"]["runout"]["verdict"] == "NOT MEASURED");
+}
