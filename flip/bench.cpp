@@ -12,6 +12,7 @@
 #include "flip/flip/step.hpp"
 #include "flip/pic/step.hpp"
 #include "flip/setup/problem_of_case.hpp"
+#include "tests/support/core_limits.hpp"
 
 namespace {
 
@@ -69,9 +70,25 @@ common::StepClock time_steps(bool pic, const Case& parameters, long steps, long&
     return clock;
 }
 
+// What a particle takes in the plane, counted in the code. Of pic: a direction 8, weights 6, a component
+// of velocity and position 9, wrap and boundaries 8; then cell 8, five sums 13. Of flip: weights_at 20,
+// products S or R of four each 4; a node takes 8 or gives 10, a cell 4; momentum, energy 3; heat 5, new
+// velocity, position and energy 7, wrap and boundaries 8.
+struct Loop {
+    const char *name, *part;
+    support::Count count;
+};
+const std::vector<Loop> loops_of_pic{
+    {"move", "move", {2 * 8 + 6 + 2 * 9 + 8, 36}},  // x, z and back, donor
+    {"repart.", "repartition", {8 + 13, 40}}};      // z, x, z, m, material, donor
+const std::vector<Loop> loops_of_flip{
+    {"deposit", "deposit", {20 + 3 + 4 + 4 * 8 + 4 + 4 * 4, 52}},  // x, z, m, vx, vz, e, material
+    {"move", "move", {20 + 4 + 4 * 10 + 4 + 4 * 4 + 5 + 7 + 8, 84}}};  // all but m, and back
+
 }  // namespace
 
 int main() {
+    const double peak = support::peak_flops<double>(), triad = support::triad_bytes();
     for (const bool pic : {true, false}) {
         std::printf("%s, Rayleigh-Taylor, 256 x 512 cells, 9 particles per cell, explicit\n\n",
                     pic ? "pic" : "flip");
@@ -80,6 +97,7 @@ int main() {
                     pic ? "" : "sort");
         const Case parameters = heavy_on_light(256);
         double one_thread = 0;
+        std::vector<double> seconds;
         for (const int threads : {1, 2}) {
             common::set_thread_count(threads);
             long count = 0;
@@ -87,7 +105,12 @@ int main() {
             const common::StepClock clock = time_steps(pic, parameters, steps, count);
             const double rate =
                 static_cast<double>(count) * static_cast<double>(steps) / clock.total();
-            if (threads == 1) one_thread = rate;
+            if (threads == 1) {
+                one_thread = rate;
+                for (const Loop& loop : pic ? loops_of_pic : loops_of_flip)
+                    seconds.push_back(clock.seconds(loop.part) /
+                                      static_cast<double>(count * steps));
+            }
             const auto percent = [&](const char* part) {
                 return 100 * clock.seconds(part) / clock.total();
             };
@@ -96,6 +119,11 @@ int main() {
                         percent("mesh"), percent("move"));
             if (!pic) std::printf(" %8.1f%%", percent("sort"));
             std::printf("\n");
+        }
+        support::print_limits(peak, triad);
+        for (std::size_t k = 0; k < seconds.size(); ++k) {
+            const Loop& loop = (pic ? loops_of_pic : loops_of_flip)[k];
+            support::print_use(loop.name, seconds[k], loop.count, peak, triad);
         }
         std::printf("\n%14s %16s %22s\n", "cells", "particles", "ns per particle-step");
         common::set_thread_count(1);

@@ -9,6 +9,7 @@
 
 #include "mpm_explicit/setup/initial_state.hpp"
 #include "mpm_explicit/step.hpp"
+#include "tests/support/core_limits.hpp"
 
 namespace {
 
@@ -79,6 +80,19 @@ common::StepClock time_steps(const Case& w, long steps, int threads, long& parti
     return clock;
 }
 
+// What a particle takes with linear shapes and Hooke's law, counted in the code; where it is in its
+// cell, 12. put: momentum and moments 4, V sigma 3; for a node its S and grad S 3, eight sums 16, force 8.
+// stress: gradient 10 per node and 4, halfway 16, two turns 18 each, law and energies 71; force 3, and 10
+// per node. move: 11 per node, FLIP and PIC 8, position 8, sums of energies and momenta 32.
+struct Loop {
+    const char* name;
+    support::Count count;
+};
+const std::vector<Loop> loops{
+    {"put", {12 + 7 + 4 * (3 + 16 + 8), 72}},  // x, v, m, V, three stresses
+    {"stress", {12 + 4 * 10 + 4 + 16 + 2 * 18 + 71 + 12 + 3 + 4 * 10, 96}},  // x; V, four and back
+    {"move", {12 + 4 * 11 + 8 + 8 + 32, 72}}};                               // m; x, v and back
+
 }  // namespace
 
 int main() {
@@ -91,7 +105,7 @@ int main() {
                 "particle-steps/s", "speed-up", "put", "stress", "nodes", "contact", "move",
                 "sort");
     long particles = 0, grains = 0;
-    std::vector<double> one_thread;
+    std::vector<double> one_thread, seconds;
     for (const auto& [columns, rows] : {std::pair(5L, 4L), std::pair(45L, 45L)}) {
         const Case w = compressed(columns, rows, 1e6);
         for (const int threads : {1, 2}) {
@@ -99,6 +113,10 @@ int main() {
             const double rate =
                 static_cast<double>(particles) * static_cast<double>(steps) / clock.total();
             if (threads == 1) one_thread.push_back(rate);
+            if (threads == 1 && seconds.empty())
+                for (const Loop& loop : loops)
+                    seconds.push_back(clock.seconds(loop.name) /
+                                      static_cast<double>(particles * steps));
             const auto percent = [&](const char* part) {
                 return 100 * clock.seconds(part) / clock.total();
             };
@@ -109,6 +127,10 @@ int main() {
                 percent("sort"));
         }
     }
+    const double peak = support::peak_flops<double>(), triad = support::triad_bytes();
+    support::print_limits(peak, triad);
+    for (std::size_t k = 0; k < seconds.size(); ++k)
+        support::print_use(loops[k].name, seconds[k], loops[k].count, peak, triad);
     struct rusage usage {};
     getrusage(RUSAGE_SELF, &usage);
     std::printf(
