@@ -178,7 +178,8 @@ class ContactDetection {
     }
 
     // Shared nodes are far apart in memory: they are fetched so many nodes before their turn.
-    // Contact of a million particles in 2000 grains takes a third less time with it.
+    // Contact of a million particles in 2000 grains takes a quarter less time with it. Without inlining
+    // GCC leaves out the calls: the function does nothing that it can see.
     static constexpr std::size_t ahead = 16;
     [[gnu::always_inline]] static void fetch(long n, const GrainNodes& nodes) {
         for (long l = nodes.shared_begin()[n]; l < nodes.shared_begin()[n + 1]; ++l) {

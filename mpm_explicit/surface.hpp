@@ -30,8 +30,8 @@ void for_each_host(const GrainNodes& nodes, const Surface& surface, const Work& 
 
 /// Area vectors of the outlines and their moments.
 ///   sum_s S_ip A_s,  sum_s S_ip A_s x_sT,  of which a particle gives S_ip A,  S_ip (A x_pT + M)
-/// out:    nodes.surface
-/// exact:  sums over all nodes are those over all parts
+/// out:    nodes.surface, of the nodes that have a place there
+/// exact:  where every node has one, sums over nodes are those over all parts
 template <class Shape>
 void surface_to_grid(const Shape& shape, const Particles& particles, GrainNodes& nodes) {
     common::for_each_block(static_cast<long>(nodes.surface.size()), [&](int, long begin, long end) {
