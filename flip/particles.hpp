@@ -73,14 +73,8 @@ void remove_if(Particles& particles, const Gone& gone) {
     particles.first_of_row.clear();
 }
 
-/// The cell that a position is in; a position on the upper end of the mesh counts to the last cell.
-inline long cell_along(const common::Axis& axis, double position) {
-    const long cell = static_cast<long>((position - axis.low) / axis.spacing());
-    return cell < axis.cells ? cell : axis.cells - 1;
-}
-
-/// The same for many positions; the same everywhere, so that a particle is never counted in one cell
-/// and looked for in another.
+/// The cell that a position is in; a position on the upper end of the mesh counts to the last cell. The
+/// same everywhere, so that a particle is never counted in one cell and looked for in another.
 struct CellAlong {
     double low, per_cell;
     int last;
@@ -91,6 +85,9 @@ struct CellAlong {
         return cell < last ? cell : last;
     }
 };
+inline long cell_along(const common::Axis& axis, double position) {
+    return CellAlong(axis)(position);
+}
 
 /// Room for one permutation, kept between sorts.
 struct SortScratch {

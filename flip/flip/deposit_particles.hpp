@@ -13,7 +13,8 @@ inline constexpr double least_mass = 1e-280;
 
 namespace detail {
 
-// What the particles [begin, end) leave on the mesh. A particle of apic brings to each node the velocity that its own gradient gives it there.
+// What the particles [begin, end) leave on the mesh. A particle of apic brings to each node the velocity
+// that its own gradient gives it there.
 template <bool affine, bool volumes>
 void deposit_band(const WeightScale& scale, const Material* materials, const Particles& p,
                   long begin, long end, const Grid& grid, Mesh& mesh) {

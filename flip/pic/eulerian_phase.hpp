@@ -43,16 +43,12 @@ void for_each_in_cell(const Grid& grid, const Particles& particles, const Add& a
     const double *x_p = particles.x_p.data(), *z_p = particles.z_p.data();
     const int* first = particles.first_of_row.data();
     const long nx = grid.x.cells;
-    const auto of_row = [&]<bool plane>(long j) {
-        for (long p = first[j]; p < first[j + 1]; ++p)
-            add(p, (plane ? row(z_p[p]) : 0) * nx + column(x_p[p]));
-    };
     // Three rows apart: a particle may be in the row beside its own.
     common::for_each_row_three_colors(
         grid.z.cells,
         [&](long j) {
-            is_plane(grid) ? of_row.template operator()<true>(j)
-                           : of_row.template operator()<false>(j);
+            for (long p = first[j]; p < first[j + 1]; ++p)
+                add(p, row(z_p[p]) * nx + column(x_p[p]));
         },
         grid.x.cells * grid.z.cells);
 }
