@@ -48,8 +48,8 @@ void time_threads(const Case& parameters, const std::string& program, long steps
             std::printf(" %8.1f%%", 100 * clock.seconds(part.c_str()) / total);
         std::printf(" %11.1f\n", iterations);
     }
-    std::printf("\n%.0f particles of %zu bytes, %zu more to sort; peak memory %.1f MiB\n", count,
-                5 * sizeof(double), sizeof(double) + sizeof(int), peak_memory() / 1048576);
+    std::printf("\n%.0f particles of %zu bytes; peak memory %.1f MiB\n", count, 5 * sizeof(double),
+                peak_memory() / 1048576);
 }
 
 }  // namespace

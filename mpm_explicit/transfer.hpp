@@ -183,14 +183,15 @@ void particles_to_grid(const Shape& shape, const Particles& particles, GrainNode
         std::fill(nodes.sums.begin() + begin, nodes.sums.begin() + end, NodeSums{});
         std::fill(nodes.force.begin() + begin, nodes.force.begin() + end, NodeForce{});
     });
-    const Locator at(nodes.mesh());
-    const double *x_p = particles.x_p.data(), *y_p = particles.y_p.data(),
-                 *vx_p = particles.vx_p.data(), *vy_p = particles.vy_p.data(),
-                 *m_p = particles.m_p.data(), *V_p = particles.V_p.data(),
-                 *sxx = particles.sxx_p.data(), *syy = particles.syy_p.data(),
-                 *sxy = particles.sxy_p.data();
     nodes.for_each_tile([&](const Tile& tile, std::size_t) {
+        // Own to the tile: what is captured would be read again after every write to a node.
+        const double *x_p = particles.x_p.data(), *y_p = particles.y_p.data(),
+                     *vx_p = particles.vx_p.data(), *vy_p = particles.vy_p.data(),
+                     *m_p = particles.m_p.data(), *V_p = particles.V_p.data(),
+                     *sxx = particles.sxx_p.data(), *syy = particles.syy_p.data(),
+                     *sxy = particles.sxy_p.data();
         const long* origin = nodes.origins(tile.grain);
+        const Locator at(nodes.mesh());
         NodeSums* sums = nodes.sums.data();
         NodeForce* force = nodes.force.data();
         for (long p = tile.begin; p < tile.end; ++p) {

@@ -394,11 +394,12 @@ TEST_CASE("a plasma at rest is hardly heated by cells of ten Debye lengths" *
                 particles.uz_p[p] += kick * felt(grid, push_z, order, s, t).E_y;
             }
             CurrentScratch scratch;
+            std::vector<Crossings> crossings;
             move_particles(pack(grid, VectorField(grid), B), grid, w.dt, w.leapfrog,
-                           w.field.smoothing, momentum.state.plasma.species, scratch,
+                           w.field.smoothing, momentum.state.plasma.species, crossings, scratch,
                            momentum.scratch.J);
             advance_field(grid, w.dt, momentum.scratch.J, momentum.state.field);
-            sort(grid, order, particles);
+            sort_after_push(grid, order, crossings[0], particles);
         }
         const double heated = conserving.energy() / start - 1,
                      much_heated = momentum.energy() / start - 1;

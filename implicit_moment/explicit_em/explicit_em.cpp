@@ -61,7 +61,8 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     long step = 0;
     Checkpoint checkpoint{state, recorder.profile, false};
     const auto sort = [&](std::vector<Particles>& all) {
-        sort_by_cell(grid, settings.order, scratch.sort, all);
+        SortScratch room;
+        sort_by_cell(grid, settings.order, room, all);
     };
     if (run.restarting())
         run.restore(checkpoint, step, [&] { validate_state(parameters, step, sort, checkpoint); });

@@ -7,7 +7,7 @@
 // Fields are gathered with the splines that deposit J: then E does on particles the work that J
 // takes from the mesh, and a plasma at rest is not heated by a mesh that does not resolve its Debye
 // length. Particles that share a cell go several at a time; the trajectories of the few that leave it
-// are cut into segments one by one (deposit_current.hpp).
+// are cut into segments one by one (deposit_current.hpp), and they are taken out (crossings.hpp).
 #pragma once
 
 #include <string>
@@ -16,6 +16,7 @@
 #include "common/parallel.hpp"
 #include "common/run/parameters.hpp"
 #include "implicit_moment/explicit_em/boris_push.hpp"
+#include "implicit_moment/explicit_em/crossings.hpp"
 #include "implicit_moment/explicit_em/deposit_current.hpp"
 #include "implicit_moment/smooth.hpp"
 
@@ -46,23 +47,44 @@ inline LocalField<Real> gather_field(const NodeField* corner, long stride, const
     return at;
 }
 
+/// Sets stays to 0 where a position is beyond an end of the mesh: behind a wall, or to be wrapped.
+inline void keep_within(const common::Axis& axis, const SimdVector& x, SimdVector& stays) {
+    stays = x >= axis.low ? stays : 0.0 * stays;
+    stays = x < axis.high() ? stays : 0.0 * stays;
+}
+
+/// The part of a way within the cell, as deposit_current finds it.
+/// in:     d and D, start and displacement in cells; low and high, the borders of the cell
+inline SimdVector first_part(const SimdVector& d_x, const SimdVector& D_x, double low_x,
+                             double high_x, const SimdVector& d_z, const SimdVector& D_z,
+                             double low_z, double high_z) {
+    const auto to_border = [](const SimdVector& d, const SimdVector& D, double low, double high) {
+        const SimdVector to = D > 0.0 ? high - d : low - d, way = D == 0.0 ? 1.0 + D : D;
+        return D == 0.0 ? 2.0 + D : to / way;
+    };
+    const SimdVector x = to_border(d_x, D_x, low_x, high_x), z = to_border(d_z, D_z, low_z, high_z);
+    SimdVector part = x <= z ? x : z;
+    part = part > 0.0 ? part : 0.0 * d_x;
+    return part < 1.0 ? part : 1.0 + 0.0 * d_x;
+}
+
 /// Room for the current, kept between steps; nothing of it is state.
 struct CurrentScratch {
     std::vector<CurrentTile> tiles;
     Field smoothed;
 };
 
-inline constexpr long rows_of_tile = 4;
-
 /// Moves every particle of one species from t^n to t^{n+1} and adds its current to J.
 /// in:     field, E^n and B^n, ghosts filled; dt [1/omega_pi], c dt below a cell.
-/// in/out: particles, sorted by cell before, not after; J^{n+1/2}, before its ghosts are folded.
-/// out:    how many particles cross more than a cell (they must be none).
+/// in/out: particles, sorted by cell; J^{n+1/2}, before its ghosts are folded.
+/// out:    crossings, those that have left their cell; of each cell, the first crossings.staying[cell] of
+///         its particles are good, the rest of its range is free. How many particles cross more than a
+///         cell (they must be none).
 /// exact:  rho^{n+1} - rho^n + dt div J = 0 on every node, to round-off.
 template <int l>
 inline long move_particles(const InterleavedField& field, const Grid& grid, double dt,
                            const LeapfrogSettings& settings, Particles& particles,
-                           CurrentScratch& scratch, VectorField& J) {
+                           Crossings& crossings, CurrentScratch& scratch, VectorField& J) {
     const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing();
     const double half_kick = 0.5 * dt * particles.q_p / particles.m_p;
     const double per_c_squared = settings.per_c_squared();
@@ -70,18 +92,20 @@ inline long move_particles(const InterleavedField& field, const Grid& grid, doub
     const long tiles = (rows + rows_of_tile - 1) / rows_of_tile;
     std::vector<long> lost(tiles, 0);
     scratch.tiles.resize(tiles);
+    crossings.clear(columns * rows, cells_of_tile<l>(grid));
 
-    common::for_each_row(tiles, [&](long part) {
-        CurrentTile& tile = scratch.tiles[part];
-        const long first_row = part * rows_of_tile,
+    common::for_each_row(tiles, [&](long number) {
+        CurrentTile& tile = scratch.tiles[number];
+        const long first_row = number * rows_of_tile,
                    last_row = std::min(rows, first_row + rows_of_tile);
+        Crossings::OfTile& crossing = crossings.tiles[number];
         tile.clear(grid, first_row, last_row);
         std::vector<long> leaving;
         for (long row = first_row; row < last_row; ++row) {
             const double z_anchor = grid.z.at(double(row));
             const double low_z = Stencil<l>::low_of(grid.z, row),
                          high_z = Stencil<l>::high_of(grid.z, row);
-            const bool wraps_z = grid.z.periodic && (row == 0 || row == rows - 1);
+            const bool at_end_z = row == 0 || row == rows - 1;
             for (long column = 0; column < columns; ++column) {
                 const long cell = row * columns + column;
                 const long begin = particles.first_of_node[cell],
@@ -90,7 +114,7 @@ inline long move_particles(const InterleavedField& field, const Grid& grid, doub
                 const double x_anchor = grid.x.at(double(column));
                 const double low_x = Stencil<l>::low_of(grid.x, column),
                              high_x = Stencil<l>::high_of(grid.x, column);
-                const bool wraps_x = grid.x.periodic && (column == 0 || column == columns - 1);
+                const bool at_end_x = column == 0 || column == columns - 1;
                 const NodeField* corner =
                     &field[grid.index(column + Stencil<l>::first, row + Stencil<l>::first)];
                 leaving.resize(end - begin + common::simd_width);
@@ -110,23 +134,33 @@ inline long move_particles(const InterleavedField& field, const Grid& grid, doub
                                      half_kick, per_c_squared);
                     const SimdVector way = dt * inverse_gamma(u, per_c_squared);  // dt / gamma
                     const SimdVector D_x = way * u.x * per_dx, D_z = way * u.z * per_dz;
-                    const SimdVector to_x = d_x + D_x, to_z = d_z + D_z;
+                    const SimdVector to_x = x + way * u.x, to_z = z + way * u.z;
+                    const SimdVector i = Stencil<l>::from_border(grid.x, per_dx, to_x),
+                                     j = Stencil<l>::from_border(grid.z, per_dz, to_z);
 
-                    // Move and deposit the particles that stay in the cell; note the others.
-                    SimdVector stays = common::first_simd(count);
-                    stays = to_x >= low_x ? stays : 0.0 * stays;
-                    stays = to_x <= high_x ? stays : 0.0 * stays;
-                    stays = to_z >= low_z ? stays : 0.0 * stays;
-                    stays = to_z <= high_z ? stays : 0.0 * stays;
-                    sums.add(d_x, d_z, stays * D_x, stays * D_z, stays * way * u.y * (1 / dt));
-                    x += stays * way * u.x;
-                    z += stays * way * u.z;
-                    if (wraps_x) wrap(grid.x, x);
-                    if (wraps_z) wrap(grid.z, z);
-                    for (int k = 0; k < common::simd_width; ++k) {
-                        leaving[leaving_count] = p + k;
-                        leaving_count += k < count && stays[k] == 0.0;
+                    // Move those that stay in the cell, note the others, and deposit all the way
+                    // that they have within the cell.
+                    const SimdVector here = common::first_simd(count);
+                    SimdVector stays = here;
+                    stays = i >= double(column) ? stays : 0.0 * stays;
+                    stays = i < double(column + 1) ? stays : 0.0 * stays;
+                    stays = j >= double(row) ? stays : 0.0 * stays;
+                    stays = j < double(row + 1) ? stays : 0.0 * stays;
+                    if (at_end_x) keep_within(grid.x, to_x, stays);
+                    if (at_end_z) keep_within(grid.z, to_z, stays);
+                    SimdVector part = stays;
+                    if (common::any_simd(stays < here)) {
+                        const SimdVector first =
+                            first_part(d_x, D_x, low_x, high_x, d_z, D_z, low_z, high_z);
+                        part = stays < here ? first : stays;
+                        for (int k = 0; k < common::simd_width; ++k) {
+                            leaving[leaving_count] = p + k;
+                            leaving_count += k < count && stays[k] == 0.0;
+                        }
                     }
+                    sums.add(d_x, d_z, part * D_x, part * D_z, part * way * u.y * (1 / dt));
+                    x = stays > 0.0 ? to_x : x;
+                    z = stays > 0.0 ? to_z : z;
                     common::store_simd(x, &particles.x_p[p], count);
                     common::store_simd(z, &particles.z_p[p], count);
                     common::store_simd(u.x, &particles.ux_p[p], count);
@@ -136,8 +170,10 @@ inline long move_particles(const InterleavedField& field, const Grid& grid, doub
                 tile.add(column, row, sums,
                          [](const SimdVector& sum) { return common::simd_sum(sum); });
 
-                // Cut the trajectories of the others where they cross from cell to cell.
-                for (long k = 0; k < leaving_count; ++k) {
+                // Cut the trajectories of the others where they cross from cell to cell, take them
+                // out, and let the last of the cell step in.
+                long last = end;
+                for (long k = leaving_count - 1; k >= 0; --k) {
                     const long p = leaving[k];
                     const Velocity<double> u{particles.ux_p[p], particles.uy_p[p],
                                              particles.uz_p[p]};
@@ -146,15 +182,17 @@ inline long move_particles(const InterleavedField& field, const Grid& grid, doub
                                  way * u.x * per_dx};
                     Trajectory z{row, (particles.z_p[p] - z_anchor) * per_dz, way * u.z * per_dz};
                     if (!(std::fabs(x.D) <= 1 && std::fabs(z.D) <= 1)) {
-                        ++lost[part];
+                        ++lost[number];
                         continue;
                     }
-                    deposit_current<l>(grid, way * u.y / dt, x, z, tile);
-                    particles.x_p[p] = x.end(grid.x);
-                    particles.z_p[p] = z.end(grid.z);
-                    particles.ux_p[p] *= x.sign;
-                    particles.uz_p[p] *= z.sign;
+                    deposit_current<l>(grid, way * u.y / dt, x, z, tile, true);
+                    const double to_x = x.end(grid.x), to_z = z.end(grid.z);
+                    crossing.to_cell.push_back(cell_of<l>(grid, to_x, to_z));
+                    crossing.quantities.push_back({to_x, to_z, x.sign * u.x, u.y, z.sign * u.z});
+                    --last;
+                    for (std::vector<double>* q : particles.all()) (*q)[p] = (*q)[last];
                 }
+                crossings.staying[cell] = int(last - begin);
             }
         }
     });
@@ -164,18 +202,21 @@ inline long move_particles(const InterleavedField& field, const Grid& grid, doub
     return total;
 }
 
-/// Moves all species. out: J^{n+1/2} of the plasma and of its images behind conducting walls,
+/// Moves all species. out: crossings of each; J^{n+1/2} of the plasma and of its images behind conducting walls,
 /// smoothed, ghosts filled.
 /// errors: NumericalError when a particle crosses more than a cell.
 inline void move_particles(const InterleavedField& field, const Grid& grid, double dt,
                            const LeapfrogSettings& settings, const SmoothingSettings& smoothing,
-                           std::vector<Particles>& species, CurrentScratch& scratch,
-                           VectorField& J) {
+                           std::vector<Particles>& species, std::vector<Crossings>& crossings,
+                           CurrentScratch& scratch, VectorField& J) {
     J.all.setZero();
-    for (Particles& particles : species) {
-        const long lost = settings.order == 1
-                              ? move_particles<1>(field, grid, dt, settings, particles, scratch, J)
-                              : move_particles<2>(field, grid, dt, settings, particles, scratch, J);
+    crossings.resize(species.size());
+    for (std::size_t k = 0; k < species.size(); ++k) {
+        Particles& particles = species[k];
+        const long lost =
+            settings.order == 1
+                ? move_particles<1>(field, grid, dt, settings, particles, crossings[k], scratch, J)
+                : move_particles<2>(field, grid, dt, settings, particles, crossings[k], scratch, J);
         if (lost > 0) {
             throw common::NumericalError(std::to_string(lost) + " of the " + particles.name +
                                          " cross more than a cell in one step: the field has "

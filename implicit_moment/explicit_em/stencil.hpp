@@ -63,6 +63,13 @@ struct Stencil {
         return l == 1 ? std::min(long(s), axis.cells - 1) : long(s + 0.5);
     }
 
+    /// A position in cells from the low border of cell 0: its whole part is the cell. in: per_spacing,
+    /// 1 over the spacing; Real is double or SimdVector
+    template <class Real>
+    static Real from_border(const common::Axis& axis, double per_spacing, const Real& x) {
+        return (x - axis.low) * per_spacing - low;
+    }
+
     /// The borders of a cell within the mesh: nothing is behind a wall.
     static double low_of(const common::Axis& axis, long cell) {
         return !axis.periodic && cell == 0 ? 0.0 : low;
@@ -71,5 +78,15 @@ struct Stencil {
         return !axis.periodic && cell == cells(axis) - 1 ? (l == 1 ? 1.0 : 0.0) : high;
     }
 };
+
+/// The cell of a particle, row by row. in: a position within the mesh
+template <int l>
+inline int cell_of(const Grid& grid, double x, double z) {
+    const int columns = int(Stencil<l>::cells(grid.x)), rows = int(Stencil<l>::cells(grid.z));
+    const int i =
+        std::min(int(Stencil<l>::from_border(grid.x, 1 / grid.x.spacing(), x)), columns - 1);
+    const int j = std::min(int(Stencil<l>::from_border(grid.z, 1 / grid.z.spacing(), z)), rows - 1);
+    return j * columns + i;
+}
 
 }  // namespace implicit_moment

@@ -17,7 +17,7 @@ struct LeapfrogScratch {
     InterleaveScratch interleave;
     VectorField J;  // J^{n+1/2}
     CurrentScratch current;
-    SortScratch sort;
+    std::vector<Crossings> crossings;  // of each species
 
     explicit LeapfrogScratch(const Grid& grid) : interleave(grid), J(grid) {}
 };
@@ -39,12 +39,12 @@ void take_step(const Grid& grid, double dt, const LeapfrogSettings& settings,
                const SmoothingSettings& smoothing, LeapfrogScratch& scratch,
                std::vector<Particles>& particles, FieldState& field, Clock&& clock = {}) {
     // [step]
-    move_particles(scratch.field, grid, dt, settings, smoothing, particles, scratch.current,
-                   scratch.J);  // u^{n+1/2}, x^{n+1}, J^{n+1/2}
+    move_particles(scratch.field, grid, dt, settings, smoothing, particles, scratch.crossings,
+                   scratch.current, scratch.J);  // u^{n+1/2}, x^{n+1}, J^{n+1/2}
     clock.lap("push");
     advance_field(grid, dt, scratch.J, field);  // E^{n+1}, B^{n+1}
     clock.lap("field");
-    sort_by_cell(grid, settings.order, scratch.sort, particles);
+    sort_by_cell(grid, settings.order, scratch.crossings, particles);
     clock.lap("sort");
     // [/step]
 }

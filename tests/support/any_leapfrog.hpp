@@ -65,16 +65,27 @@ inline Particles travelers(const Grid& grid, int count, double dt, double cells,
     return particles;
 }
 
+// The sort that ends a step.
+inline void sort_after_push(const Grid& grid, long order, Crossings& crossings,
+                            Particles& particles) {
+    sort_by_cell(order == 1 ? cells_of_tile<1>(grid) : cells_of_tile<2>(grid), crossings,
+                 particles);
+}
+
 // One step of one species; J as deposited, folded with the images of the given kind.
 inline VectorField current_of_step(const Grid& grid, const InterleavedField& push, double dt,
                                    long order, bool relativistic, const VectorKind& kind,
                                    Particles& particles) {
     const LeapfrogSettings settings{true, order, relativistic};
     CurrentScratch scratch;
+    Crossings crossings;
     VectorField J(grid);
     sort(grid, order, particles);
-    CHECK((order == 1 ? move_particles<1>(push, grid, dt, settings, particles, scratch, J)
-                      : move_particles<2>(push, grid, dt, settings, particles, scratch, J)) == 0);
+    CHECK((order == 1
+               ? move_particles<1>(push, grid, dt, settings, particles, crossings, scratch, J)
+               : move_particles<2>(push, grid, dt, settings, particles, crossings, scratch, J)) ==
+          0);
+    sort_after_push(grid, order, crossings, particles);
     for (std::size_t a = 0; a < 3; ++a) {
         common::fold_ghosts(grid, kind.place[a], kind.parity[a],
                             J.all.data() + static_cast<long>(a) * grid.size());

@@ -17,7 +17,8 @@ inline State leapfrog_state(const Case& parameters) {
     std::vector<Particles>& species = state.plasma.species;
     LeapfrogScratch scratch(grid);
 
-    sort_by_cell(grid, settings.order, scratch.sort, species);
+    SortScratch sort;
+    sort_by_cell(grid, settings.order, sort, species);
     interleave_field(grid, {0, false}, state.field, scratch);
     Field rho = Field::Zero(grid.size()), pass;
     for (const Moments& m : find_moments(grid, 0, settings, species, Images::conductor, scratch))

@@ -1,0 +1,44 @@
+// Particles on their way from one cell to another.
+//
+// In a step one particle in ten leaves its cell. The push takes those out of their cells: they wait here,
+// and the others of a cell close ranks. sort_by_cell then moves whole cells and puts those that wait
+// into the cells that they have come to; nothing is sorted anew.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "implicit_moment/explicit_em/stencil.hpp"
+
+namespace implicit_moment {
+
+/// Rows of cells that one thread works on at a time, a tile: what crosses between cells is kept by the
+/// tile that it leaves, and a cell is in tile cell / cells_of_tile.
+inline constexpr long rows_of_tile = 4;
+template <int l>
+inline long cells_of_tile(const Grid& grid) {
+    return rows_of_tile * Stencil<l>::cells(grid.x);
+}
+
+/// Of one species, between the push and sort_by_cell.
+struct Crossings {
+    struct OfTile {
+        std::vector<int> to_cell;                         // one entry per particle that crosses
+        std::vector<std::array<double, 5>> quantities;    // in the order of Particles::all()
+        std::array<std::vector<double>, 5> below, above;  // room for sort_by_cell
+
+        void clear() { to_cell.clear(), quantities.clear(); }
+    };
+    std::vector<OfTile> tiles;
+    std::vector<int> staying;     // [cell] particles that have stayed: the first of the cell
+    std::vector<int> first_next;  // [cell] where it begins after the step; one more for the end
+
+    /// Makes it that of a species of which nobody crosses.
+    void clear(long cells, long per_tile) {
+        tiles.resize(std::size_t((cells + per_tile - 1) / per_tile));
+        for (OfTile& tile : tiles) tile.clear();
+        staying.assign(std::size_t(cells), 0);
+    }
+};
+
+}  // namespace implicit_moment
