@@ -733,7 +733,7 @@ implicit_moment sheet time.end=6 field.max_iterations=1 -> .*did not converge.*
 # A beam of a few particles in a wave that throws it over cells in a step.
 explicit_em explicit_light_wave.toml uniform.wave_E_y=0 uniform.wave_E_z=1000 theory.wave=none \
     species.beam.charge=-1 particles.relativistic=false uniform.particles_per_cell=4 time.end=5
-    .*cross more than a cell in one step: the field has blown up; reduce time.dt.*
+    .*cross more than a cell in one step: they were loaded too fast, or the field has blown up; reduce time.dt.*
 # Far more charge than the mesh can hold back: the energy is not that of the start.
 explicit_em explicit_langmuir.toml time.dt=0.65 time.end=600 species.electrons.density=9.3 \
     uniform.particles_per_cell=4 species.electrons.temperature_x=1e-4 theory.wave=none \

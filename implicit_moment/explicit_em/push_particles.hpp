@@ -219,8 +219,8 @@ inline void move_particles(const InterleavedField& field, const Grid& grid, doub
                 : move_particles<2>(field, grid, dt, settings, particles, crossings[k], scratch, J);
         if (lost > 0) {
             throw common::NumericalError(std::to_string(lost) + " of the " + particles.name +
-                                         " cross more than a cell in one step: the field has "
-                                         "blown up; reduce time.dt");
+                                         " cross more than a cell in one step: they were loaded "
+                                         "too fast, or the field has blown up; reduce time.dt");
         }
     }
     for (std::size_t a = 0; a < 3; ++a) {

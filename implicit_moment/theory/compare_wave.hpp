@@ -142,7 +142,7 @@ inline Theory expect_langmuir(const Case& w) {
     const double x = k.x * w.grid.x.spacing(), z = k.z * w.grid.z.spacing();
     const double part = (K.x * K.x * seen(x, z) + K.z * K.z * seen(z, x)) / (K.size() * K.size());
     return {leapfrog_frequency(std::sqrt(omega_squared * part), w.dt),
-            "leapfrog, exact: sin(omega dt/2) = omega_p dt/2", true};
+            "leapfrog, exact: sin(omega dt/2) = omega_p dt/2, omega_p as the splines see it", true};
 }
 
 inline void refuse_without_near(const Case& w, const std::string& wave) {
