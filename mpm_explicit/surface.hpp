@@ -67,6 +67,7 @@ void surface_to_grid(const Shape& shape, const Particles& particles, GrainNodes&
 ///   e <- F e,  A <- C A,  M <- C M FT,  C = det F F^-T,  F = (1 - L/2)^-1 (1 + L/2),  L = dt grad v_p
 /// in:     nodes.motion, v_1, with which particles move
 /// exact:  a turn of the nodes is a turn of the parts, by 2 atan of half of what L says
+/// note:   |A| <= 2 h and |M| <= 2 h^2, which no part of a particle has at the start
 template <class Shape>
 void carry_surface(const Shape& shape, const std::vector<Grain>& grains, const GrainNodes& nodes,
                    double dt, Particles& particles) {
@@ -96,6 +97,15 @@ void carry_surface(const Shape& shape, const std::vector<Grain>& grains, const G
         turn_area(s.ax[k], s.ay[k]);
         turn_area(s.xx[k], s.yx[k]), turn_area(s.xy[k], s.yy[k]);
         turn_place(s.xx[k], s.xy[k]), turn_place(s.yx[k], s.yy[k]);
+
+        // Noise of the nodes would stretch a part without limit, however small the strain stays: F of
+        // many steps do not commute. None is longer than two cells, or farther than a cell away.
+        const double h = nodes.mesh().h, A = std::hypot(s.ax[k], s.ay[k]),
+                     M = std::sqrt(s.xx[k] * s.xx[k] + s.xy[k] * s.xy[k] + s.yx[k] * s.yx[k] +
+                                   s.yy[k] * s.yy[k]);
+        const double part_A = A > 2 * h ? 2 * h / A : 1, part_M = M > 2 * h * h ? 2 * h * h / M : 1;
+        s.ax[k] *= part_A, s.ay[k] *= part_A;
+        for (std::vector<double>* m : {&s.xx, &s.xy, &s.yx, &s.yy}) (*m)[k] *= part_M;
     });
 }
 

@@ -372,9 +372,7 @@ TEST_CASE("a field that is not a number or overwhelms everything is reported as 
                     move_particles(uniform(grid, E, {0, 0.1, 0}), grid, dt, {true, order, false},
                                    SmoothingSettings{0, true}, species, crossings, scratch, J),
                     "100 of the ions cross more than a cell in one step: they were loaded too "
-                    "fast, or the "
-                    "field has blown up; "
-                    "reduce time.dt",
+                    "fast, or the field has blown up; reduce time.dt",
                     common::NumericalError);
             }
         }

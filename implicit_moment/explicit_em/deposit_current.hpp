@@ -148,20 +148,20 @@ struct Trajectory {
 };
 
 /// Deposits the current of one trajectory segment by segment, cut where it crosses from cell to cell;
-/// walls reflect it.
-/// in:     v_y; x and z at the start of the step, |D| <= 1; whether the first segment is deposited already.
+/// walls reflect it. The first segment is left out: the push deposits it with those of the whole cell.
+/// in:     v_y; x and z at the start of the step, |D| <= 1.
 /// out:    x and z at the end of the step; tile.
 /// exact:  as the segments: charge to round-off.
 template <int l>
 inline void deposit_current(const Grid& grid, double v_y, Trajectory& x, Trajectory& z,
-                            CurrentTile& tile, bool first_deposited) {
+                            CurrentTile& tile) {
     double left = 1;
     // A way no longer than a cell crosses at most two borders of each direction, and ends.
     for (int segment = 0; segment < 5 && left > 0; ++segment) {
         const double to_x = x.fraction_to_crossing<l>(grid.x),
                      to_z = z.fraction_to_crossing<l>(grid.z);
         const double part = std::clamp(std::min(to_x, to_z), 0.0, 1.0);
-        if (segment > 0 || !first_deposited) {
+        if (segment > 0) {
             CurrentSums<l, double> sums;
             sums.add(x.d, z.d, part * x.D, part * z.D, part * left * v_y);
             tile.add(x.cell, z.cell, sums, [](double sum) { return sum; });

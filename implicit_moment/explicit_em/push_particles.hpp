@@ -185,7 +185,7 @@ inline long move_particles(const InterleavedField& field, const Grid& grid, doub
                         ++lost[number];
                         continue;
                     }
-                    deposit_current<l>(grid, way * u.y / dt, x, z, tile, true);
+                    deposit_current<l>(grid, way * u.y / dt, x, z, tile);
                     const double to_x = x.end(grid.x), to_z = z.end(grid.z);
                     crossing.to_cell.push_back(cell_of<l>(grid, to_x, to_z));
                     crossing.quantities.push_back({to_x, to_z, x.sign * u.x, u.y, z.sign * u.z});

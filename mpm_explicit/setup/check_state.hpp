@@ -121,9 +121,8 @@ inline void validate_state(const Mesh& mesh, int width, bool affine, bool turns,
     const Surface& surface = p.surface;
     bool fits = common::all_within(surface.host, 0, static_cast<int>(count) - 1) &&
                 std::is_sorted(surface.host.begin(), surface.host.end());
-    // Far more than the mesh: the parts of a particle whose gradient is noise are stretched without limit.
     const double size = mesh.length_x() + mesh.y_high() - mesh.y_low,
-                 most_of_M = 1e6 * (size * size + size);
+                 most_of_M = size * size + size;
     for (const std::vector<double>* column : p.surface.all())
         fits = fits && column->size() == surface.count() &&
                common::all_within(*column, -most_of_M, most_of_M);
