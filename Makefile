@@ -185,7 +185,7 @@ name_revision = @printf 'extern const char* const source_revision;\nconst char* 
     "$$(git describe --always --dirty 2>/dev/null)" | $(CXX) $(flags) -x c++ -c -o $(objects)/$(@F).revision.o -
 define link
 @mkdir -p $(@D)
-$(CXX) $(flags) -o $@ $(filter %.o %.a,$^) $(libraries) -Wl,--as-needed -lmuparser
+$(CXX) $(flags) -o $@ $(filter %.o %.a,$^) $(libraries) -Wl,--as-needed -lmuparser -lfftw3 -lfftw3f
 endef
 # The largest object first, so that the others are compiled beside it.
 $(programs:%=$(BUILD)/%): $(BUILD)/%: $$(objects)/$$(call folder_of,$$*)/$$*.o $(shared) $(formula) $(BUILD)/flags
@@ -558,7 +558,7 @@ validation:
 
 # The programs, their sources unchanged, compiled by Emscripten to out/web/: an index and a page per case, which
 # need no server and no network. Headers in instead/ come before all others. GSL and muParser have no package for
-# the browser: what the programs call of them is compiled from Debian's sources.
+# the browser: what the programs call of them is compiled from Debian's sources. FFTW has a stand-in there.
 page      := lecture_notes/page
 web       := build/web
 web_cases := two_stream landau finite_grid sod rayleigh_taylor rebound compressed gem
@@ -588,7 +588,7 @@ $(web)/sources/.complete: $(page)/get_sources.sh | $(packages_first)
 	@rm -rf $(web)/sources $(web)/include
 	sh $(page)/get_sources.sh $(web)/sources gsl muparser
 	@mkdir -p $(web)/include
-	ln -s $(EIGEN)/Eigen /usr/include/gsl /usr/include/toml++ /usr/include/nlohmann /usr/include/Random123 \
+	ln -s $(EIGEN)/Eigen $(EIGEN)/unsupported /usr/include/gsl /usr/include/toml++ /usr/include/nlohmann /usr/include/Random123 \
 	    /usr/include/xxhash.h /usr/include/muParser*.h $(web)/include
 	@printf '#define %s\n' 'HAVE_DECL_FINITE 1' 'HAVE_DECL_ISNAN 1' 'RETURN_IF_NULL(x) if (!x) { return; }' > $(web)/sources/gsl/config.h
 	@touch $@

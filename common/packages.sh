@@ -10,6 +10,7 @@ cmake                  command ctest             cmake              cmake       
 gnuplot-nox            command gnuplot           gnuplot            gnuplot        gnuplot 5.4 with pngcairo
 libeigen3-dev          header  Eigen/Dense       eigen3-devel       eigen          Eigen 3.4
 libgsl-dev             header  gsl/gsl_version.h gsl-devel          gsl            GSL, the GNU Scientific Library
+libfftw3-dev           header  fftw3.h           fftw-devel         fftw           FFTW 3, in both precisions
 libtomlplusplus-dev    header  toml++/toml.h     tomlplusplus-devel tomlplusplus   toml++ 3
 nlohmann-json3-dev     header  nlohmann/json.hpp json-devel         nlohmann-json  JSON for Modern C++
 librandom123-dev       header  Random123/philox.h Random123-devel   -              Random123

@@ -23,7 +23,7 @@
 #include <string>
 
 #include "common/run/parameters.hpp"
-#include "implicit_moment/field_operator.hpp"
+#include "implicit_moment/precondition_field.hpp"
 
 namespace implicit_moment {
 
@@ -78,7 +78,7 @@ inline void maxwell_source(FieldSolver& solver, const FieldState& field, double 
     gauss_residual(grid, field.E, solver.response.rho, solver.gauss);
     Field& G = solver.scratch;
     G = solver.gauss;
-    solve_helmholtz(grid, solver.modes, a, G);
+    solve_helmholtz(grid, solver.waves, a, G);
     VectorField& source = solver.source;
     curl_of_magnetic(grid, field.B.all.data(), source.all.data());
     const long s = grid.stride();

@@ -154,7 +154,7 @@ TEST_CASE("the field at the start obeys the law of Gauss with conducting walls")
         const VectorField any = random.field(grid, current, 1);
         const Field rho = any.all.segment(grid.size(), grid.size());
         FieldState field(grid);
-        add_electrostatic_field(grid, MeshModes(grid), rho, field);
+        add_electrostatic_field(grid, rho, field);
         Field div = Field::Zero(grid.size());
         divergence_of_electric(grid, field.E.all.data(), div);
         // In a doubly periodic box a uniform background takes the mean.

@@ -5,10 +5,10 @@
 #include <cmath>
 
 #include "implicit_moment/deposit_moments.hpp"
-#include "implicit_moment/mesh_modes.hpp"
 #include "implicit_moment/setup/load_plasma.hpp"
 #include "implicit_moment/solve_field.hpp"
 #include "implicit_moment/sort_particles.hpp"
+#include "implicit_moment/waves.hpp"
 
 namespace implicit_moment {
 
@@ -105,12 +105,12 @@ inline void uniform_field(const Case& parameters, FieldState& field) {
 /// t = 0, also on this mesh for a seeded E whose k . E is 0.
 /// in:     rho, smoothed as the field equations smooth it; E with ghosts filled.
 /// note:   in a doubly periodic box a uniform background neutralizes the mean of rho.
-inline void add_electrostatic_field(const Grid& grid, const MeshModes& modes, const Field& rho,
-                                    FieldState& field) {
+inline void add_electrostatic_field(const Grid& grid, const Field& rho, FieldState& field) {
     Field phi = Field::Zero(grid.size());
     gauss_residual(grid, field.E, rho, phi);
     phi = -phi;
-    solve_poisson(grid, modes, phi);
+    NodeWaves waves(grid);
+    solve_poisson(grid, waves, phi);
     const long s = grid.stride();
     for_each_point(grid, [&](long n) {
         field.E.x()[n] -= (phi[n + 1] - phi[n]) / grid.x.spacing();
@@ -164,7 +164,7 @@ inline State initial_state(const Case& parameters) {
         rho += moments.rho;
     }
     smooth(grid, on_nodes, felt_charge(grid), parameters.field.smoothing, rho.data(), moments.rho);
-    add_electrostatic_field(grid, MeshModes(grid), rho, state.field);
+    add_electrostatic_field(grid, rho, state.field);
     state.field.E_theta = state.field.E;
     return state;
 }
