@@ -61,7 +61,10 @@ programs  := $(basename $(notdir $(mains)))
 bench_programs := $(benches:%/bench.cpp=$(BUILD)/bench/%)
 tests     := $(basename $(notdir $(wildcard tests/*.cpp)))
 shared    := $(patsubst %.cpp,$(objects)/%.o,$(filter-out %/formula.cpp %/openpmd.cpp,$(wildcard common/*/*.cpp)) $(if $(TRAP),tests/support/trap_invalid.cpp))
-# From an archive the linker takes what a program calls: only who reads formulas needs muParser.
+# What the theory of a method compiles by itself. From an archive the linker takes what a program calls: only who
+# reads formulas needs muParser.
+theory_of  = $(patsubst %.cpp,$(objects)/%.o,$(wildcard $(1)/theory/*.cpp))
+theory    := $(BUILD)/theory.a
 formula   := $(BUILD)/formula.a
 sources   := $(wildcard */*.hpp */*/*.hpp */*/*/*.hpp */*.cpp */*/*.cpp)
 folder_of  = $(patsubst %/,%,$(dir $(filter %/$(1).cpp,$(mains))))
@@ -175,9 +178,11 @@ $(objects)/common/run/case_file.o: private defines += -DNDEBUG
 $(BUILD)/openpmd.so: common/run/openpmd.cpp $(wildcard common/run/*.hpp) $(BUILD)/flags
 	$(CXX) $(flags) $(defines) $(include_paths) -isystem $(dir $(hdf5)) -fPIC -shared -o $@ $< -l$(if $(findstring serial,$(hdf5)),hdf5_serial,hdf5)
 
+$(theory): $(foreach method,cic flip mpm_explicit mpm_implicit implicit_moment,$(call theory_of,$(method)))
 $(formula): $(objects)/common/run/formula.o
+$(theory) $(formula):
 	@rm -f $@
-	$(AR) rcs $@ $<
+	$(AR) rcs $@ $^
 
 # What a summary says of the program: its flags, and the revision of the sources when it was linked.
 $(objects)/common/run/summary.o: private defines += -DBUILD_FLAGS='"$(CXX) $(flags)"'
@@ -188,15 +193,15 @@ define link
 $(CXX) $(flags) -o $@ $(filter %.o %.a,$^) $(libraries) -Wl,--as-needed -lmuparser -lfftw3 -lfftw3f
 endef
 # The largest object first, so that the others are compiled beside it.
-$(programs:%=$(BUILD)/%): $(BUILD)/%: $$(objects)/$$(call folder_of,$$*)/$$*.o $(shared) $(formula) $(BUILD)/flags
+$(programs:%=$(BUILD)/%): $(BUILD)/%: $$(objects)/$$(call folder_of,$$*)/$$*.o $$(call theory_of,$$(call method_of,$$*)) $(shared) $(formula) $(BUILD)/flags
 	$(name_revision)
 	$(link) $(objects)/$(@F).revision.o
-$(tests:%=$(BUILD)/tests/%): $(BUILD)/tests/%: $(objects)/tests/%.o $(shared) $(formula) $(BUILD)/flags
+$(tests:%=$(BUILD)/tests/%): $(BUILD)/tests/%: $(objects)/tests/%.o $(shared) $(theory) $(formula) $(BUILD)/flags
 	$(link)
-$(bench_programs): $(BUILD)/bench/%: $(objects)/%/bench.o $(shared) $(formula) $(BUILD)/flags
+$(bench_programs): $(BUILD)/bench/%: $(objects)/%/bench.o $(shared) $(theory) $(formula) $(BUILD)/flags
 	$(link)
 
--include $(patsubst %.cpp,$(objects)/%.d,$(mains) $(benches) $(wildcard common/*/*.cpp tests/*.cpp))
+-include $(patsubst %.cpp,$(objects)/%.d,$(mains) $(benches) $(wildcard */theory/*.cpp common/run/*.cpp tests/*.cpp))
 
 # ---- runs and figures ----------------------------------------------------------------------------
 
@@ -514,10 +519,10 @@ fuzzers: $(programs:%=$(BUILD)/fuzz/%)
 $(objects)/fuzz/%.o: $$(call folder_of,$$*)/$$*.cpp $(BUILD)/flags
 	@mkdir -p $(@D)
 	$(CXX) $(flags) $(defines) -Dmain=program_main $(include_paths) -MMD -MP -c -o $@ $<
-$(BUILD)/fuzz/%: $(objects)/fuzz/%.o $(objects)/tests/torture/fuzz.o $(filter-out %/run.o,$(shared)) $(formula) $(BUILD)/flags
+$(BUILD)/fuzz/%: $(objects)/fuzz/%.o $(objects)/tests/torture/fuzz.o $(filter-out %/run.o,$(shared)) $(theory) $(formula) $(BUILD)/flags
 	@mkdir -p $(@D)
 	$(CXX) $(flags) -fsanitize=fuzzer -Wl,--wrap=exit,--wrap=getrlimit,--wrap=_ZNSt6chrono3_V212steady_clock3nowEv \
-	    -o $@ $(filter %.o %.a,$^) $(libraries) -Wl,--as-needed -lmuparser
+	    -o $@ $(filter %.o %.a,$^) $(libraries) -Wl,--as-needed -lmuparser -lfftw3 -lfftw3f
 $(BUILD)/planted_race: $(objects)/tests/torture/planted_race.o $(BUILD)/flags
 	$(link)
 -include $(programs:%=$(objects)/fuzz/%.d) $(wildcard $(objects)/tests/torture/*.d)
@@ -572,7 +577,7 @@ web_link  := -O3 -msimd128 -fexceptions -Wl,--wrap=_ZN6common3Run12not_finishedE
     -sFORCE_FILESYSTEM -sEXPORTED_RUNTIME_METHODS=callMain,FS
 web_gsl   := cdf/gaussinv fft/fft fit/linear specfunc/bessel_I0 err/error err/stream err/strerror sys/infnan
 web_muparser := muParser muParserBase muParserBytecode muParserCallback muParserError muParserTokenReader
-web_common := $(patsubst %.cpp,$(web)/%.o,$(filter-out %/openpmd.cpp,$(wildcard common/*/*.cpp)) $(page)/glue.cpp) $(web)/libraries.a
+web_common := $(patsubst %.cpp,$(web)/%.o,$(filter-out %/openpmd.cpp,$(wildcard common/run/*.cpp */theory/*.cpp)) $(page)/glue.cpp) $(web)/libraries.a
 # Emscripten looks for modules of node where Debian puts them.
 emscripten := NODE_PATH=/usr/share/nodejs em++
 

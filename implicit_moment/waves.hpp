@@ -11,11 +11,8 @@
 // and in either case the waves are e^{i (k_x x + k_z z)}, counted from where a component lives. The
 // forward difference from nodes to midpoints makes i K e^{i k x} of one, K = (2/dx) sin(k dx/2).
 //
-// Transforms along x go row by row; those along z take a few columns at a time, which stay in the cache
-// from the transform to the waves and back.
+// Transforms along z take a few columns at a time, which stay in the cache on their way to the waves and back.
 #pragma once
-
-#include <fftw3.h>
 
 #include <algorithm>
 #include <array>
@@ -26,30 +23,11 @@
 #include <vector>
 
 #include "common/parallel.hpp"
+#include "implicit_moment/fftw.hpp"
 #include "implicit_moment/units.hpp"
 #include "implicit_moment/vector_field.hpp"
 
 namespace implicit_moment {
-
-/// The functions of FFTW, which has them for every precision under other names.
-template <class Real>
-struct Fftw;
-template <>
-struct Fftw<double> {
-    static constexpr auto plan = fftw_plan_many_dft;
-    static constexpr auto plan_real = fftw_plan_many_dft_r2c, plan_back = fftw_plan_many_dft_c2r;
-    static constexpr auto run = fftw_execute_dft;
-    static constexpr auto run_real = fftw_execute_dft_r2c, run_back = fftw_execute_dft_c2r;
-    static constexpr auto destroy = fftw_destroy_plan;
-};
-template <>
-struct Fftw<float> {
-    static constexpr auto plan = fftwf_plan_many_dft;
-    static constexpr auto plan_real = fftwf_plan_many_dft_r2c, plan_back = fftwf_plan_many_dft_c2r;
-    static constexpr auto run = fftwf_execute_dft;
-    static constexpr auto run_real = fftwf_execute_dft_r2c, run_back = fftwf_execute_dft_c2r;
-    static constexpr auto destroy = fftwf_destroy_plan;
-};
 
 /// The waves of one direction: k = 0, then the positive ones, then the negative ones from the shortest.
 struct AxisWaves {

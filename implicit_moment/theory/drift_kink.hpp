@@ -5,8 +5,6 @@
 // sausage it is the other way around. One half of the sheet is enough for each.
 #pragma once
 
-#include <Eigen/Dense>
-#include <Eigen/Sparse>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -14,6 +12,7 @@
 #include <vector>
 
 #include "implicit_moment/theory/drift_dispersion.hpp"
+#include "implicit_moment/theory/eigenvalues.hpp"
 #include "implicit_moment/theory/linear_sheet.hpp"
 
 namespace implicit_moment {
@@ -72,14 +71,14 @@ inline std::vector<SheetWave> waves_near(const SheetMatrix& m, common::Complex n
     Eigen::SparseMatrix<Complex> shifted(n, n);
     shifted.setIdentity();
     shifted = m.A - near * shifted;
-    const Eigen::SparseLU<Eigen::SparseMatrix<Complex>> inverse(shifted);
-    if (inverse.info() != Eigen::Success) return {};
+    const auto inverse = sparse_inverse(shifted);
+    if (!inverse) return {};
     long steps = std::min<long>(size, n);
     Matrix V = Matrix::Zero(n, steps + 1), H = Matrix::Zero(steps + 1, steps);
     for (long row = 0; row < n; ++row) V(row, 0) = std::polar(1.0, double(row) * double(row));
     V.col(0).normalize();
     for (long j = 0; j < steps; ++j) {
-        Eigen::VectorXcd next = inverse.solve(V.col(j));
+        Eigen::VectorXcd next = inverse(V.col(j));
         for (int twice = 0; twice < 2; ++twice) {
             const Eigen::VectorXcd part = V.leftCols(j + 1).adjoint() * next;
             next -= V.leftCols(j + 1) * part;
@@ -93,12 +92,12 @@ inline std::vector<SheetWave> waves_near(const SheetMatrix& m, common::Complex n
     }
 
     std::vector<SheetWave> waves;
-    const Eigen::ComplexEigenSolver<Matrix> ritz(H.topLeftCorner(steps, steps));
+    const Eigensystem ritz = eigensystem(H.topLeftCorner(steps, steps));
     for (long j = 0; j < steps; ++j) {
         SheetWave wave;
         // Inverse iteration refines what the eigenvectors of H make.
-        const Eigen::VectorXcd x = (V.leftCols(steps) * ritz.eigenvectors().col(j)).normalized();
-        wave.x = inverse.solve(x);
+        const Eigen::VectorXcd x = (V.leftCols(steps) * ritz.vectors.col(j)).normalized();
+        wave.x = inverse(x);
         wave.x.normalize();
         const Eigen::VectorXcd Ax = m.A * wave.x;
         wave.omega = wave.x.dot(Ax);
