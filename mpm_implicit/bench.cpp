@@ -112,7 +112,7 @@ Split implicit_steps(const Case& w, const mpm_implicit::ThetaScheme& scheme, lon
         const BodyForce body = mpm_implicit::apply_loads(
             w.problem.loads(), step, dt, state.assembly.rigid, scratch.solver.force_controls);
         take_step(shape, body, dt, scratch, nodes, state, sums, split.clock);
-        add_step(scheme.theta, scheme.consistent(), 0, dt, nodes.tiles(), sums.tiles, sums.nodes,
+        add_step(scheme.theta, scheme.consistent(), nodes.tiles(), sums.tiles, sums.nodes,
                  sums.contact, state.budget);
         split.clock.lap("particles");
         const SolveReport& report = sums.solver;

@@ -35,19 +35,18 @@ struct TileSums {
     double viscous = 0;       // V^theta sigma_v : de
     double least_V = 0;       // smallest V^1/V^0
     // after particles have moved
-    double kinetic = 0;              // 1/2 m v^1 v^1
-    double twice_increment = 0;      // m dv dv
-    double twice_kinetic_theta = 0;  // m v_p^theta v_p^theta, v_p^theta = S_ip v_i^theta
-    double pic = 0;                  // what a FLIP fraction below one takes
+    double kinetic = 0;          // 1/2 m v^1 v^1
+    double twice_increment = 0;  // m dv dv
+    double pic = 0;              // what a FLIP fraction below one takes
+    double damping = 0;          // what load.damping takes
     double momentum_x = 0, momentum_y = 0, angular = 0;
     double x_least = 0, x_most = 0, y_least = 0, y_most = 0;
 };
 
 /// Sums over nodes.
 struct NodeWork {
-    double twice_increment = 0;      // m_i dv_i dv_i
-    double twice_kinetic_theta = 0;  // m_i v_i^theta v_i^theta
-    double gravity = 0;              // dt m_i g v_i^theta
+    double twice_increment = 0;  // m_i dv_i dv_i
+    double gravity = 0;          // dt m_i g v_i^theta
     double largest_speed = 0;
 };
 
@@ -101,9 +100,9 @@ inline void start_budget(const Assembly& all, const std::vector<AnyLaw>& laws, B
 }
 
 /// Enters a step.                                                                        [MPM-13]
-inline void add_step(double theta, bool consistent, double damping, double dt,
-                     const std::vector<Tile>& where, const std::vector<TileSums>& tiles,
-                     const NodeWork& nodes, const ContactSums& contact, Budget& l) {
+inline void add_step(double theta, bool consistent, const std::vector<Tile>& where,
+                     const std::vector<TileSums>& tiles, const NodeWork& nodes,
+                     const ContactSums& contact, Budget& l) {
     const double energy_before = l.energy(), work_before = l.work();
     TileSums s;
     std::fill(l.momenta.begin(), l.momenta.end(), Momenta{});
@@ -111,8 +110,7 @@ inline void add_step(double theta, bool consistent, double damping, double dt,
         const TileSums& one = tiles[k];
         s.elastic += one.elastic, s.theta_strain += one.theta_strain, s.plastic += one.plastic;
         s.volume += one.volume, s.kinetic += one.kinetic, s.twice_increment += one.twice_increment;
-        s.twice_kinetic_theta += one.twice_kinetic_theta, s.pic += one.pic;
-        s.viscous += one.viscous;
+        s.pic += one.pic, s.damping += one.damping, s.viscous += one.viscous;
         Momenta& grain = l.momenta[static_cast<std::size_t>(where[k].grain)];
         grain.x += one.momentum_x, grain.y += one.momentum_y, grain.angular += one.angular;
     }
@@ -122,8 +120,8 @@ inline void add_step(double theta, bool consistent, double damping, double dt,
     if (!consistent) l.lumped += theta * (nodes.twice_increment - s.twice_increment);
     l.contact += contact.normal, l.friction += contact.friction, l.bond += contact.bond;
     l.plate += contact.rigid, l.gravity += nodes.gravity;
-    l.damping -= dt * damping * (consistent ? s.twice_kinetic_theta : nodes.twice_kinetic_theta);
-    l.viscous -= s.viscous, l.plastic += s.plastic, l.volume += s.volume, l.pic += s.pic;
+    l.damping -= s.damping, l.viscous -= s.viscous, l.plastic += s.plastic, l.volume += s.volume,
+        l.pic += s.pic;
     const double residual = (l.energy() - energy_before) - (l.work() - work_before);
     l.largest_residual = std::max(l.largest_residual, std::fabs(residual));
 }

@@ -2,7 +2,7 @@
 //
 //     M_ij = sum_p m_p S_ip S_jp                                   consistent mass
 //     K_ij = sum_p V_p grad S_ip . T . grad S_jp                   stiffness, 2 x 2
-//     A    = (1 + theta dt c) M + theta dt (theta dt + beta) K   what v^theta is solved from [MPM-8]
+//     A    = M + theta dt (theta dt + beta) K                      what v^theta is solved from [MPM-8]
 // M and A are symmetric, of order 2 n for n dofs, and stored by diagonals of a stencil. No entry
 // couples two grains (contact does):
 //
@@ -28,14 +28,14 @@ template <int reach>
 class GrainMatrix {
    public:
     /// Sums up M and K over the particles.
-    /// in:     factor_M of A, theta dt; consistent: M in A is the consistent mass, else the
-    ///         lumped mass m_i = sum_j M_ij; particles.turn_p
+    /// in:     theta dt; consistent: M in A is the consistent mass, else the lumped mass
+    ///         m_i = sum_j M_ij; particles.turn_p
     /// exact:  A is symmetric and positive where nodes have mass; K of a rigid motion is zero
     template <class Shape>
     void assemble(const Shape& shape, const std::vector<AnyLaw>& laws,
                   const std::vector<Grain>& grains, const Particles& particles,
-                  const GrainNodes& nodes, const std::vector<GridRow>& rows, double factor_M,
-                  double theta_dt, bool consistent) {
+                  const GrainNodes& nodes, const std::vector<GridRow>& rows, double theta_dt,
+                  bool consistent) {
         static_assert(Shape::width == reach + 1);
         consistent_ = consistent;
         nodes_ = &nodes;
@@ -54,10 +54,10 @@ class GrainMatrix {
                 add_particle(shape((particles.x_p[p] - at.x_low) * at.per_h, at.per_h),
                              shape((particles.y_p[p] - at.y_low) * at.per_h, at.per_h), origin,
                              law.T.lambda, law.T.G, factor_K * particles.V_p[p],
-                             particles.turn_p[p], particles.m_p[p], factor_M);
+                             particles.turn_p[p], particles.m_p[p]);
             }
         });
-        if (!consistent) add_lumped(factor_M);
+        if (!consistent) add_lumped();
     }
 
     bool consistent() const { return consistent_; }
@@ -153,7 +153,7 @@ class GrainMatrix {
     template <class W>
     [[gnu::always_inline]] void add_particle(const W& w_x, const W& w_y, const long* origin,
                                              double lambda, double G, double V, double turn,
-                                             double m, double factor_M) {
+                                             double m) {
         constexpr int width = reach + 1;
         const double scale = 1 / (1 + turn * turn);  // G_ip of turned_gradient.hpp
         double S[width * width], Gx[width * width], Gy[width * width];
@@ -168,7 +168,7 @@ class GrainMatrix {
             }
         }
         const double P = V * (lambda + 2 * G), L = V * lambda, G_V = V * G;
-        const double m_A = consistent_ ? factor_M * m : 0;
+        const double m_A = consistent_ ? m : 0;
         for (int i = 0; i < width * width; ++i) {
             for (int j = i; j < width * width; ++j) {
                 const int diagonal =
@@ -183,10 +183,10 @@ class GrainMatrix {
         }
     }
 
-    void add_lumped(double factor_M) {
+    void add_lumped() {
         double *Axx = A_.field(0, xx), *Ayy = A_.field(0, yy);
         for_each_dof(A_.size(), [&](long i) {
-            const double mass = nodes_->is_free()[i] * factor_M * nodes_->sums[i].m;
+            const double mass = nodes_->is_free()[i] * nodes_->sums[i].m;
             Axx[i] += mass, Ayy[i] += mass;
         });
     }

@@ -53,8 +53,8 @@ int run_case(const Shape& shape, const Case& parameters, const ThetaScheme& sche
         const BodyForce body = apply_loads(parameters.problem.loads(), step, dt, all.rigid,
                                            scratch.solver.force_controls);
         take_step(shape, body, dt, scratch, nodes, state, sums);  // [MPM-5 ... 8]
-        add_step(scheme.theta, scheme.consistent(), body.damping, dt, nodes.tiles(), sums.tiles,
-                 sums.nodes, sums.contact, state.budget);  // [MPM-13]
+        add_step(scheme.theta, scheme.consistent(), nodes.tiles(), sums.tiles, sums.nodes,
+                 sums.contact, state.budget);  // [MPM-13]
         state.effort.add(sums);
         recorder.refuse_failure(step, sums, nodes, state, run);
         ++step;

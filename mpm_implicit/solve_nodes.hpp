@@ -5,9 +5,8 @@
 // sigma^theta = sigma^0 + theta T : de, de = dt sym grad v^theta [MPM-5, 7] and
 // v^theta = v^0 + theta (v^1 - v^0), put in, give a symmetric system for v^theta:
 //     A v^theta = M v^0 + theta dt (f^0 + m g) + H^T lambda,
-//     A = (1 + theta dt c) M + theta dt (theta dt + beta) K
-// with f^0 the force of the old stress, c the damping of a case, beta the viscosity of a material,
-// and impulses lambda of the closed pairs, which are found together with v^theta:
+//     A = M + theta dt (theta dt + beta) K
+// with f^0 the force of the old stress, beta the viscosity of a material, and impulses lambda of the closed pairs, which are found together with v^theta:
 //
 //     active set (open, slip, stick) -> projected conjugate gradients -> v^theta, lambda
 //           ^                                                               |
@@ -38,13 +37,12 @@ class NodeSolver {
     ///         others
     template <class Shape>
     void assemble(const Shape& shape, const std::vector<AnyLaw>& laws, const ThetaScheme& scheme,
-                  const BodyForce& body, double dt, const State& state, GrainNodes& nodes) {
+                  double dt, const State& state, GrainNodes& nodes) {
         const Assembly& all = state.assembly;
         const std::vector<GridRow> rows = grid_rows(all.grains, nodes, state.layout);
         constrain_small_mass_nodes(rows, nodes);
-        const double theta_dt = scheme.theta * dt;
-        matrix.assemble(shape, laws, all.grains, all.particles, nodes, rows,
-                        1 + theta_dt * body.damping, theta_dt, scheme.consistent());
+        matrix.assemble(shape, laws, all.grains, all.particles, nodes, rows, scheme.theta * dt,
+                        scheme.consistent());
         if (scheme.consistent())
             constrain_rank_deficient_nodes(mass_factors_.factorize(matrix, all.grains, nodes), rows,
                                            nodes);

@@ -4,7 +4,7 @@
 // Unknowns: x = D^{1/2} v^theta of all dofs (2 n numbers), and m^{1/2} V of grains under force
 // control. With R the missing momentum, and C the contact operator of the explicit program,
 //     F(v) = v - C(v + R(v)/D),
-//     R(v) = M (v^0 - v) + theta dt [f(sigma^theta(v)) + m g - c M v]
+//     R(v) = M (v^0 - v) + theta dt [f(sigma^theta(v)) + m g]
 // is zero where impulses of contact make up for R, whatever the masses D of C: here diag A.
 //     Newton           x <- x + s,  J s = -F,  J = dF/dx
 //     GMRES            for s, with J s by differences of F
@@ -122,12 +122,11 @@ class NewtonSolver {
         force_at_theta(shape, step.laws, step.scheme, step.dt, step.all.grains, step.all.particles,
                        nodes);
         step.solver.matrix.multiply_mass(v_, Mv_);
-        const double theta_dt = step.scheme.theta * step.dt,
-                     factor_M = 1 + theta_dt * step.body.damping;
+        const double theta_dt = step.scheme.theta * step.dt;
         for_each_dof(n, [&](long i) {
             if (nodes.is_free()[i] == 0) return;
             const auto pushed = [&](long at, double force) {
-                const double R = b[at] + theta_dt * force - factor_M * Mv_[at];
+                const double R = b[at] + theta_dt * force - Mv_[at];
                 return scale[at] > 0 ? v_[at] + R * scale[at] * scale[at] : 0.0;
             };
             nodes.motion[i].vx_1 = pushed(i, nodes.force[i].x);

@@ -29,18 +29,17 @@ struct StepScratch {
 };
 
 /// The matrices of the step, and the velocities of the nodes at t^n.
-/// in:     nodes, sorted for where the particles are; body and rigid motions of this step
+/// in:     nodes, sorted for where the particles are; rigid motions of this step
 /// out:    scratch.solver; nodes.motion, v_0; sums.solver
 template <class Shape, int reach, class Clock = common::NoClock>
-void find_matrices(const Shape& shape, const BodyForce& body, double dt,
-                   StepScratch<reach>& scratch, GrainNodes& nodes, State& state, StepSums& sums,
-                   Clock&& clock = {}) {
+void find_matrices(const Shape& shape, double dt, StepScratch<reach>& scratch, GrainNodes& nodes,
+                   State& state, StepSums& sums, Clock&& clock = {}) {
     // [matrices]
     particles_to_grid(shape, state.assembly.particles, nodes);  // particles -> grid
     surface_to_grid(shape, state.assembly.particles, nodes);
     start_turns(shape, scratch.contact, scratch.frozen, dt, nodes, state.assembly);
     clock.lap("put");
-    scratch.solver.assemble(shape, scratch.laws, scratch.scheme, body, dt, state,
+    scratch.solver.assemble(shape, scratch.laws, scratch.scheme, dt, state,
                             nodes);  // M, K of  [MPM-5 ... 8]
     clock.lap("matrix");
     scratch.solver.find_old_velocities(scratch.scheme, scratch.contact, state, nodes,
@@ -86,7 +85,7 @@ void move_to_new_level(const Shape& shape, const BodyForce& body, double dt,
     sums.nodes = work_on_nodes(body, scratch.scheme.theta, dt, nodes);
     if (!scratch.frozen) carry_surface(shape, grains, nodes, dt, particles);
     move_particles(shape, grains, state.assembly.rigid, nodes, scratch.scheme.theta, scratch.flip,
-                   scratch.frozen, dt, particles, sums.tiles);  // grid -> particles
+                   body.damping, scratch.frozen, dt, particles, sums.tiles);  // grid -> particles
     // [/particles]
     state.layout.moved += scratch.frozen ? 0 : dt * sums.nodes.largest_speed;
     clock.lap("particles");
@@ -99,7 +98,7 @@ void move_to_new_level(const Shape& shape, const BodyForce& body, double dt,
 template <class Shape, int reach, class Clock = common::NoClock>
 void take_step(const Shape& shape, const BodyForce& body, double dt, StepScratch<reach>& scratch,
                GrainNodes& nodes, State& state, StepSums& sums, Clock&& clock = {}) {
-    find_matrices(shape, body, dt, scratch, nodes, state, sums, clock);
+    find_matrices(shape, dt, scratch, nodes, state, sums, clock);
     find_theta_velocities(shape, body, dt, scratch, nodes, state, sums, clock);
     move_to_new_level(shape, body, dt, scratch, nodes, state, sums, clock);
 }

@@ -263,6 +263,34 @@ TEST_CASE("plates press a cylinder as Hertz says where the contact has four cell
     CHECK(coarse.value("contact_half_width") < 4);
 }
 
+TEST_CASE("what plates hold keeps pressing where something damps what rings, or the run says so" *
+          doctest::description("physics")) {
+    // Eight cells in the radius, three per cent of strain, held for 300 times the way of sound.
+    const auto held = [](const std::string& name, const std::string& overrides) {
+        return run(name, "hertz",
+                   "grid.length_x=0.5 grid.cells_x=20 grid.cells_y=20 grain.cylinder.x=0.25 "
+                   "grain.cylinder.y=0.25 grain.cylinder.radius=0.2 grain.bottom.x=0.25 "
+                   "grain.bottom.width=0.4 grain.top.x=0.25 grain.top.y=0.475 "
+                   "grain.top.width=0.4 grain.top.velocity_y=-0.01 theory.compare=none "
+                   "time.alpha=4 time.end=6 " +
+                       overrides);
+    };
+    const double right = held("held", "").column("force_y_top").back();
+    for (const char* overrides :
+         {"method.theta=0.5 load.damping=10", "method.theta=0.5 material.default.viscosity=8e-4",
+          "method.theta=0.55"}) {
+        CAPTURE(overrides);
+        const Run r = held("held_damped", overrides);
+        check_theorem(r);
+        CHECK(r.summary["results"]["held_force"]["verdict"] == "PASS");
+        CHECK(std::fabs(r.column("force_y_top").back() / right - 1) <= 2e-3);
+    }
+    const Run rings = held("held_rings", "method.theta=0.5");
+    check_theorem(rings);
+    CHECK(rings.summary["results"]["held_force"]["verdict"] == "FAIL");
+    CHECK(rings.value("held_force") < 0.1);
+}
+
 TEST_CASE("a bar swings and decays as the exact factor of a step says" *
           doctest::description("physics")) {
     double slowest = 0;

@@ -174,7 +174,7 @@ Vector stiffness_times(const Solver& solver, const ThetaRun& run, Vector v) {
     solver.matrix.multiply(v, Av);
     solver.matrix.multiply_mass(v, Mv);
     const double theta_dt = run.scheme.theta * run.dt;
-    return (Av - (1 + theta_dt * run.body.damping) * Mv) / (theta_dt * theta_dt);
+    return (Av - Mv) / (theta_dt * theta_dt);
 }
 
 // A velocity field on the nodes of all grains.

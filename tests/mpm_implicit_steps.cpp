@@ -243,6 +243,33 @@ TEST_CASE("the energy theorem holds for grains that yield and volumes that chang
     }
 }
 
+TEST_CASE("damping takes the same part of all velocities after a step and nothing else of it") {
+    for (const char* solver : solvers) {
+        CAPTURE(solver);
+        Case c = collision(0.3);
+        c.alpha = 5;
+        const double rate = 4;
+        const auto step = [&](double damping) {
+            c.problem.damping = damping;
+            ThetaRun run(c, theta_scheme(0.5, "consistent", solver),
+                         [](Assembly& all) { shake(0.05, 3, all); });
+            run.advance();
+            return run;
+        };
+        ThetaRun free = step(0), damped = step(rate);
+        const Particles &one = free.particles(), &two = damped.particles();
+        const double keeps = std::exp(-rate * free.dt);
+        CHECK(keeps < 0.9);
+        for (std::size_t p = 0; p < one.x_p.size(); ++p) {
+            CHECK(two.vx_p[p] == keeps * one.vx_p[p]);
+            CHECK(two.vy_p[p] == keeps * one.vy_p[p]);
+            CHECK(two.x_p[p] == one.x_p[p]);
+            CHECK(two.sxx_p[p] == one.sxx_p[p]);
+        }
+        CHECK(damped.identity() <= 1e-12);
+    }
+}
+
 TEST_CASE("theta one half with the consistent mass keeps the energy of grains that collide") {
     for (const std::string& shape : shape_names) {
         for (const char* solver : solvers) {

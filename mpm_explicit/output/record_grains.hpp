@@ -12,6 +12,7 @@
 #include "common/run/run.hpp"
 #include "mpm_explicit/contact.hpp"
 #include "mpm_explicit/output/write_output.hpp"
+#include "mpm_explicit/theory/compare_plates.hpp"
 #include "mpm_explicit/theory/compare_rotation.hpp"
 
 namespace mpm {
@@ -113,6 +114,7 @@ class Recorder {
         const theory::FinishedRun ended{planned_, scales_, all, run.history,
                                         double(step) * scales_.dt};
         theory::judge_free_grains(ended, run.summary);
+        theory::judge_held_grain(ended, run.summary);
         if (comparison_ != nullptr && comparison_->result != nullptr)
             comparison_->result(ended, run.summary);
     }

@@ -189,11 +189,13 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
                                "\" and a velocity or a swing in that direction: it does nothing, "
                                "the grain starts at rest");
     }
-    if (g > 0 && has_surface && problem.has_friction() && least < 4 * (1 - 1e-9))
-        warnings.push_back("a disk has a radius of " + format(least) +
-                           " cells, below 4: on a rigid surface it hops from node to node, and "
-                           "rolls too slowly, with 3 cells by up to a tenth, with 2 by 14 to 30 "
-                           "per cent, and more without method.transfer = \"spin\"");
+    if (g > 0 && has_surface && problem.has_friction() && least < 12 * (1 - 1e-9))
+        warnings.push_back(
+            "a disk has a radius of " + format(least) +
+            " cells, below 12: on a rigid surface it rolls over nodes as over cobbles, and loses "
+            "speed, over eight radii a fifth to all of it with 4 cells and 5 to 32 per cent with "
+            "8, least with method.shape = \"gimp\" and method.transfer = \"spin\"; in "
+            "mpm_implicit 6 to 18 and 2 to 6 per cent");
     return warnings;
 }
 

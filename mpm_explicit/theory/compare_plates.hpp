@@ -211,6 +211,55 @@ inline void compare_hold(const FinishedRun& run, common::Summary& summary) {
                            "over the elastic energy, the last quarter less the third");
 }
 
+// ---- any run of one grain between plates that have come to rest ---------------------------------
+
+/// Whether an elastic grain that plates hold keeps pressing on them: the mean of the forces on all of
+/// them in the last tenth of the time that they have been at rest, over that in the first. It needs
+/// tenths of three times the way there and back of sound through the grain, which is nearly at rest when
+/// the plates come to rest.
+inline void judge_held_grain(const FinishedRun& run, common::Summary& summary) {
+    const PlannedCase& planned = run.planned;
+    const Problem& problem = planned.parameters.problem;
+    const PlannedGrain& held = planned.plans[planned.target()];
+    if (planned.free_grains() != 1 || planned.rigid_grains() == 0 || problem.gravity_x != 0 ||
+        problem.gravity_y != 0 || planned.material_of(held).law != Law::elastic)
+        return;
+    const auto times = run.history.column("time");
+    std::vector<double> force(times.size(), 0.0);
+    std::size_t rest = 0;  // the row since which no plate has moved
+    long seen = 0;
+    for (const PlannedGrain& plan : planned.plans) {
+        if (!planned.is_rigid(plan) || ++seen > 16) continue;  // the history has columns of so many
+        if (plan.from.control != "velocity") return;
+        for (const char* axis : {"x_", "y_"}) {
+            const auto travel = run.history.column(std::string("travel_") + axis + plan.name),
+                       push = run.history.column(std::string("force_") + axis + plan.name);
+            for (std::size_t n = 0; n < times.size(); ++n) {
+                force[n] += std::fabs(push[n]);
+                if (travel[n] != travel.back()) rest = std::max(rest, n + 1);
+            }
+        }
+    }
+    const Bounds box = bounds(held.outline);
+    const double size = std::max(box.x_high - box.x_low, box.y_high - box.y_low),
+                 c = sound_speed(planned.material_of(held));
+    const std::size_t tenth = (times.size() - std::min(rest, times.size())) / 10;
+    if (tenth < 8 || times[rest + tenth] - times[rest] < 6 * size / c) return;
+    const double kinetic = run.history.column("kinetic")[rest],
+                 elastic = run.history.column("elastic")[rest];
+    if (!(kinetic < 0.1 * elastic)) return;
+    double first = 0, last = 0;
+    for (std::size_t n = 0; n < tenth; ++n)
+        first += force[rest + n], last += force[force.size() - 1 - n];
+    summary.hint(
+        "stress that is held turns into noise of the mesh where nothing damps what rings: set "
+        "material.<name>.viscosity = " +
+        format(0.1 * run.scales.dt) +
+        ", a tenth of a step, or in mpm_implicit method.theta = 0.55");
+    summary.result("held_force", last / first, "1", 1, 0.02,
+                   "on plates at rest: in the last tenth of that time, over the first");
+}
+
 // ---- pressed in cycles --------------------------------------------------------------------------
 
 /// When the last whole cycle of a swing begins.

@@ -120,7 +120,7 @@ struct ThetaRun {
         scratch.frozen = parameters.frozen;
         body = apply_loads(parameters.problem.loads(), step, dt, state.assembly.rigid,
                            scratch.solver.force_controls);
-        find_matrices(shape, body, dt, scratch, nodes, state, sums);
+        find_matrices(shape, dt, scratch, nodes, state, sums);
     }
     template <class Shape, int reach>
     void solve(const Shape& shape, StepScratch<reach>& scratch) {
@@ -135,8 +135,8 @@ struct ThetaRun {
             return l.energy() - l.plate - l.gravity - l.volume + std::min(l.plastic, 0.0);
         };
         const double before = given();
-        add_step(scheme.theta, scheme.consistent(), parameters.problem.damping, dt, nodes.tiles(),
-                 sums.tiles, sums.nodes, sums.contact, l);
+        add_step(scheme.theta, scheme.consistent(), nodes.tiles(), sums.tiles, sums.nodes,
+                 sums.contact, l);
         growth = std::max(growth, given() - before);
         size = worst({size, l.energy(), std::fabs(l.plate + l.gravity)});
         for (const TileSums& s : sums.tiles) least_V = std::min(least_V, s.least_V);
