@@ -50,7 +50,8 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     const std::vector<double> charge_over_mass = state.plasma.charge_over_mass();
     StepScratch scratch(grid, parameters.field, particles.size());
     Recorder recorder(
-        parameters, state, [&](const State& now) { return slide_moments(grid, now); }, run.history);
+        parameters, state, [&](const State& now) { return slide_moments(grid, now); }, stored_u,
+        run.history);
 
     // 3. The loop of the slide.
     const double dt = parameters.dt;

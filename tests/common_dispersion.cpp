@@ -337,51 +337,10 @@ TEST_CASE("the theta scheme treats vacuum light waves as tabulated") {
         }
 }
 
-TEST_CASE("the theta scheme treats cold Langmuir waves as tabulated") {
-    const double W[] = {0.1, 0.3, 1.0, 1.5, 5.0};
-    const struct {
-        double theta, size[5], frequency[5];
-    } table[] = {{0.5, {1, 1, 1, 1, 1}, {.999168, .992600, .927295, .858001, .476116}},
-                 {0.6,
-                  {.999501, .995609, .960769, .930415, .840168},
-                  {.999156, .992494, .926694, .857495, .479336}},
-                 {1.0,
-                  {.997509, .978232, .816497, .685994, .666667},
-                  {.998858, .989966, .911738, .843983, .628319}}};
-    for (const auto& row : table)
-        for (int n = 0; n < 5; ++n) {
-            const Complex g = implicit_moment::theta_langmuir_wave(row.theta, W[n]);
-            CHECK(std::abs(std::abs(g) - row.size[n]) <= 1e-6);
-            CHECK(std::abs(std::arg(g) / W[n] - row.frequency[n]) <= 1e-6);
-        }
-
-    // With theta = 1 and W = 5 both roots are real; the other one is -1/9.
-    const Complex slow = implicit_moment::theta_langmuir_wave(1.0, 5.0);
-    CHECK(std::abs(slow + 2.0 / 3.0) <= 1e-14);
-    CHECK(std::abs(1.0 / (13.5 * slow) + 1.0 / 9.0) <= 1e-14);
-}
-
 TEST_CASE("the theta scheme with one half is neutral and with more damps") {
     for (const double a : {0.01, 0.3, 1.0, 3.0, 20.0}) {
         CHECK(std::abs(std::abs(common::theta_light_wave(0.5, a)) - 1.0) <= 1e-14);
-        CHECK(std::abs(std::abs(implicit_moment::theta_langmuir_wave(0.5, a)) - 1.0) <= 1e-14);
-        CHECK(std::abs(std::tan(std::arg(implicit_moment::theta_langmuir_wave(0.5, a)) / 2) -
-                       a / 2) <= 1e-12 * (1.0 + a * a));
         CHECK(std::abs(common::theta_light_wave(0.7, a)) < 1.0);
-        CHECK(std::abs(implicit_moment::theta_langmuir_wave(0.7, a)) < 1.0);
         CHECK(std::abs(common::theta_light_wave(0.4, a)) > 1.0);
-        CHECK(std::abs(implicit_moment::theta_langmuir_wave(0.4, a)) > 1.0);
-        CHECK(std::abs(std::norm(implicit_moment::theta_langmuir_wave(1.0, a)) -
-                       1.0 / (1.0 + a * a / 2.0)) <= (a < 5.0 ? 1e-12 : 2.0));
     }
-}
-
-TEST_CASE("the theta Langmuir factor solves its quadratic equation") {
-    for (const double theta : {0.5, 0.6, 0.8, 1.0})
-        for (const double W : {0.05, 0.7, 2.0, 10.0}) {
-            const Complex g = implicit_moment::theta_langmuir_wave(theta, W);
-            const Complex left = (g - 1.0) * (g - 1.0);
-            const Complex right = -(W * W / 2.0) * (1.0 + g) * (theta * g + 1.0 - theta);
-            CHECK(std::abs(left - right) <= 1e-13 * (1.0 + W * W));
-        }
 }

@@ -244,6 +244,13 @@ TEST_CASE("what cannot be measured says why") {
     CHECK(says(reason(record_of({"", both(1.0), {1, 1}, 400, 0.1, {}}, 0, 0), 0.1,
                       {.expected = both(1.0), .begin = 39.5}),
                "rows of the history are between"));
+    // Growth that ends in a tenth of the run, and one that goes on.
+    std::vector<Complex> saturated;
+    for (int n = 0; n < 1500; ++n) saturated.push_back(1 / (1 + std::exp(-0.3 * (0.1 * n - 15))));
+    const ModeSearch growing{.expected = {{0, 0.3}}, .begin = 4, .below_maximum = 0.1};
+    CHECK(says(reason(saturated, 0.1, growing), "growth is over then"));
+    CHECK(
+        says(reason({saturated.begin(), saturated.begin() + 150}, 0.1, growing), "raise time.end"));
     std::vector<Complex> broken = record_of({"", both(1.0), {1, 1}, 400, 0.1, {}}, 0, 0);
     broken[200] = std::numeric_limits<double>::quiet_NaN();
     CHECK(says(reason(broken, 0.1, wave), "not finite"));

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <sstream>
 #include <string>
 #include <utility>
 
@@ -106,6 +107,29 @@ TEST_CASE("a sheet with a larger island reaches unit flux and keeps its profile"
     CHECK(unit > 0);
     CHECK(unit < time.back());
     CHECK(fs::file_size(out + "/profile.dat") > 1000);
+}
+
+// Electrons over a fixed background, in a field that turns them by 0.2 in half a step.
+TEST_CASE("files of particles hold the velocities of their own time") {
+    for (const std::string order : {"1", "2"}) {
+        const std::string out = folder("velocities" + order);
+        REQUIRE(run(cases +
+                        "langmuir.toml theory.wave=none time.end=1 output.particles_interval=1 "
+                        "uniform.B_z=0.8 species.electrons.wave_x=0 "
+                        "species.electrons.drift_x=0.1 species.electrons.drift_y=0.2 "
+                        "particles.order=" +
+                        order,
+                    out) == 0);
+        std::istringstream rows(read_all(out + "/particles_000000.dat"));
+        int count = 0;
+        for (std::string line; std::getline(rows, line);) {
+            double species = -1, x = 0, z = 0, u_x = 0, u_y = 0, u_z = 0;
+            if (!(std::istringstream(line) >> species >> x >> z >> u_x >> u_y >> u_z)) continue;
+            CHECK(std::hypot(u_x - 0.1, u_y - 0.2, u_z) <= 1e-6);
+            ++count;
+        }
+        CHECK(count > 1000);
+    }
 }
 
 TEST_CASE("rows and snapshots of a sparse history are those of a dense one" *

@@ -241,6 +241,41 @@ TEST_CASE("closed flux is the largest fall of A_y along the middle row") {
     CHECK(std::fabs(closed.X_line - grid.x.at(13)) <= 1e-13);
 }
 
+TEST_CASE("thermal noise moves the flux of a tail by less than its bound for 99 of 100 seeds") {
+    const Case w = tail_case(32);
+    const Grid& grid = w.grid;
+    const double weight = 1e-4, B0 = harris_sheet(w.harris).B0,
+                 T = harris_sheet(w.harris).T_i + harris_sheet(w.harris).T_e;
+    const ThermalFlux noise = thermal_flux(w, weight);
+    long above = 0;
+    double squares = 0;
+    const int seeds = 4000;
+    VectorField B(grid);
+    double* B_z = B.z() + grid.index(0, grid.z.cells / 2);
+    std::vector<double> A_y(std::size_t(grid.x.cells + 1));
+    for (int seed = 0; seed < seeds; ++seed) {
+        std::fill(A_y.begin(), A_y.end(), 0.0);
+        for (long k = 1; k < grid.x.cells; ++k) {
+            // T w/2 in each wave sin(k x) sin(l z).
+            double a = 0;
+            for (long l = 1; l < grid.z.cells; l += 2)
+                a += common::gaussian(std::uint64_t(seed), 7, std::uint64_t(k), std::uint32_t(l)) /
+                     std::hypot(real(k) / grid.x.length, real(l) / grid.z.length) / pi;
+            a *= std::sqrt(16 * pi * T * weight / (grid.x.length * grid.z.length));
+            for (long i = 0; i <= grid.x.cells; ++i)
+                A_y[std::size_t(i)] += a * std::sin(pi * real(k * i) / real(grid.x.cells));
+        }
+        for (long i = 0; i < grid.x.cells; ++i)
+            B_z[i] = (A_y[std::size_t(i + 1)] - A_y[std::size_t(i)]) / grid.x.spacing();
+        const double shift = tail_row(grid, B, 0).shift / B0;
+        squares += shift * shift / seeds;
+        above += shift > noise.most;
+    }
+    CHECK(std::fabs(std::sqrt(squares) / noise.rms - 1) <= 0.03);
+    CHECK(above >= seeds / 250);
+    CHECK(above <= seeds / 60);
+}
+
 TEST_CASE("a tail at rest stays and does not where images of charge hide the current of its ends" *
           doctest::description("physics")) {
     const std::string tail = "implicit_moment/cases/lembege_pellat.toml output.fields_interval=0";

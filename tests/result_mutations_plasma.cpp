@@ -133,7 +133,9 @@ const std::vector<Mutation> implicit{
      "field.theta=1",
      "lhdi_level energy_drift"},
     {"implicit_moment", "langmuir", "", ""},
-    {"implicit_moment", "langmuir", "grid.cells_x=16", "omega_over_theory damping energy_drift"},
+    {"implicit_moment", "langmuir",
+     "plasma.loading=random uniform.particles_per_cell=1 grid.cells_x=32", "omega_over_theory"},
+    {"implicit_moment", "langmuir", "species.electrons.wave_x=1 uniform.mode_x=4", "energy_drift"},
     {"implicit_moment", "lhdi_quick", smoothed_sheet, "dominant_mode"},
     {"implicit_moment", "lhdi_quick",
      "plasma.loading=random grid.cells_x=36 grid.cells_z=24 current_sheet.particles=1e4 "
@@ -178,7 +180,8 @@ const std::vector<Mutation> implicit{
     {"implicit_moment", "magnetotail", few_random + "grid.cells_x=32 grid.cells_z=32 time.dt=0.6",
      "energy_drift"},
     {"implicit_moment", "oblique_whistler", "", ""},
-    {"implicit_moment", "oblique_whistler", "grid.cells_x=27", "omega_over_theory damping"},
+    {"implicit_moment", "oblique_whistler",
+     "plasma.loading=random uniform.particles_per_cell=2 time.end=1200", "omega_over_theory"},
     {"implicit_moment", "oblique_whistler",
      "plasma.loading=random uniform.particles_per_cell=1 time.dt=4 time.end=160", "energy_drift"},
     {"implicit_moment", "relativistic_two_stream", "", ""},
@@ -237,6 +240,9 @@ const std::map<std::string, std::string> still_open{
     {"explicit_em explicit_light_wave", "damping energy_drift"},
     // The same; a loose solver errs in the energy, and its tolerance is allowed for.
     {"implicit_moment light_wave", "omega_over_theory damping"},
+    // The same with particles: what parameters make wrong is noise, in which damping is not measured.
+    {"implicit_moment langmuir", "damping"},
+    {"implicit_moment oblique_whistler", "damping"},
     // The mean of the momentum equation, whatever the step: theory is with the E that was measured.
     {"implicit_moment e_cross_b", "drift_over_E_cross_B"},
     // Wrong runs are noisy, and a verdict adds its error to a wide window: growth from 0.35 to 1.35

@@ -897,8 +897,6 @@ plasmas uniform uniform.mode_z=1 uniform.wave_B_x=1e-3 uniform.wave_B_z=-5e-4 un
 plasmas cold wave_E_y -> theory.wave = "cold" needs charges: it needs a [species.<name>]
 plasmas cold species.electrons.charge=-1 species.electrons.drift_y=0.1
     species 'electrons' is warm or drifts: choose "longitudinal" or "transverse"
-plasmas cold species.electrons.charge=-1 uniform.mode_z=30
-    theory.wave = "cold" takes splines for points, and the mode has
 plasmas cold species.electrons.charge=-1 grid.cells_x=64 grid.cells_z=64
     theory.wave = "cold" needs theory.near: without temperatures this plasma has waves at omega =
 plasmas longitudinal species.electrons.charge=-1 uniform.mode_z=1 uniform.B_x=0.1

@@ -202,7 +202,7 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
             summary.result(name, {value / expected, error / std::fabs(expected)}, "", 1, tolerance,
                            where);
         else
-            summary.not_measured(name, seen.reason);
+            summary.not_measured(name, seen.reason + (seen.over ? ": lower the amplitude" : ""));
     };
     if (seen.found) {
         summary.result_info("omega", {seen.frequency(), seen.frequency_error()}, omega_p_unit,

@@ -143,7 +143,6 @@ ModeList modes_of(const VectorXcd& z, const Model& model, double dt) {
     const auto share = [&](Index j) { return parts.col(j).squaredNorm() / energy; };
 
     const MatrixXcd J = model.slopes(samples);
-
     ModeList list;
     for (Index j = 0; j < order; ++j) {
         // Weak modes that do not stand far out of the noise may be noise as well: they count as such
@@ -419,10 +418,15 @@ MeasuredMode measure_mode(std::span<const double> times, std::span<const Complex
     long block = 1;
     const Rows rows = window_of(times, z, search, wanted, block);
     const double dt = times[1] - times[0];
+    // From there to its maximum growth would have taken less than the rest of the run.
+    const double left = times.back() - times[std::size_t(std::max(0L, rows.end - 1))];
+    result.over = wanted.growth * left > -1.5 * std::log(search.below_maximum);
+    const std::string cure = result.over ? "; growth is over then" : ": raise time.end";
     if (rows.count() < 8 * block)
         return cannot("only " + std::to_string(std::max(0L, rows.count())) +
                       " rows of the history are between the transient of the start and the end of "
-                      "the linear phase");
+                      "the linear phase" +
+                      (wanted.growth > 0 ? cure : std::string()));
     result.begin = times[std::size_t(rows.begin)], result.end = times[std::size_t(rows.end - 1)];
     const double length = result.end - result.begin;
 
@@ -472,9 +476,7 @@ MeasuredMode measure_mode(std::span<const double> times, std::span<const Complex
     if (!others.empty()) result.window += "; also seen: omega = " + others;
     const VectorXcd samples = Eigen::Map<const VectorXcd>(record.data(), Index(record.size()));
     const Complex s = Complex(0, -double(block) * dt) * match.mode.omega;
-    Model wave;
-    wave.s.resize(2);
-    wave.s << s, std::conj(s);
+    Model wave{Eigen::Vector2cd(s, std::conj(s)), {}};
     wave.find_amplitudes(samples);
     result.share = 1 - wave.rest / samples.squaredNorm();
     const double turns = result.frequency() * length / (2 * pi),
@@ -482,16 +484,14 @@ MeasuredMode measure_mode(std::span<const double> times, std::span<const Complex
     if (turns < search.periods && folds < search.e_foldings)
         return cannot("it has " + format(turns) + " periods and " + format(folds) +
                       " e-foldings, and " + format(search.periods) + " or " +
-                      format(search.e_foldings) + " are needed, " + result.window +
-                      ": raise time.end");
+                      format(search.e_foldings) + " are needed, " + result.window + cure);
     result.found = true;
     return result;
 }
 
 MeasuredMode measure_mode(std::span<const double> times, std::span<const double> y,
                           const ModeSearch& search) {
-    const std::vector<Complex> z(y.begin(), y.end());
-    return measure_mode(times, z, search);
+    return measure_mode(times, std::vector<Complex>(y.begin(), y.end()), search);
 }
 
 }  // namespace common

@@ -58,9 +58,9 @@ struct ModeSearch {
 struct MeasuredMode {
     std::complex<double> omega = 0, error = 0;  // as in Mode
     double begin = 0, end = 0;                  // the window in time
-    double share =
-        0;  // of the energy of the record, of the mode and of the one that runs against it
+    double share = 0;  // of the energy: of the mode and of the one that runs against it
     bool found = false;
+    bool over = false;   // what grows came to below_maximum so early that it has ended since
     std::string reason;  // "cannot be measured, because ..."; empty when found
     std::string window;  // in words: from when to when, and what else was seen
 

@@ -91,23 +91,40 @@ inline void deposit_charge_and_current(const InterleavedField& field, const Grid
     }
 }
 
+/// Fields at any point of the mesh.
+template <int l>
+inline LocalField<double> gather_field(const InterleavedField& field, const Grid& grid, double x,
+                                       double z) {
+    const double s = (x - grid.x.low) * (1 / grid.x.spacing()),
+                 t = (z - grid.z.low) * (1 / grid.z.spacing());
+    const long i = Stencil<l>::cell_of(grid.x, s), j = Stencil<l>::cell_of(grid.z, t);
+    return gather_field<l, double>(&field[grid.index(i + Stencil<l>::first, j + Stencil<l>::first)],
+                                   grid.stride(), s - double(i), t - double(j));
+}
+
+/// u of one particle at t^n, for output. in: field, E^n and B^n; u of t^{n-1/2}
+inline Velocity<double> u_at_t(const InterleavedField& field, const Grid& grid, double dt,
+                               const LeapfrogSettings& settings, const Particles& particles,
+                               long p) {
+    const double x = particles.x_p[p], z = particles.z_p[p];
+    Velocity<double> u{particles.ux_p[p], particles.uy_p[p], particles.uz_p[p]};
+    half_step(u,
+              settings.order == 1 ? gather_field<1>(field, grid, x, z)
+                                  : gather_field<2>(field, grid, x, z),
+              0.5 * dt * particles.q_p / particles.m_p, settings.per_c_squared());
+    return u;
+}
+
 /// u of one species from t^0 to t^{-1/2}. in: field, E^0 and B^0.
 template <int l>
 inline void half_step_back(const InterleavedField& field, const Grid& grid, double dt,
                            double per_c_squared, Particles& particles) {
-    const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing();
     const double half_kick = 0.5 * dt * particles.q_p / particles.m_p;
     common::for_each_block(particles.count(), [&](int, long begin, long end) {
-        for (long k = begin; k < end; ++k) {
-            const long p = k;
-            const double s = (particles.x_p[p] - grid.x.low) * per_dx,
-                         t = (particles.z_p[p] - grid.z.low) * per_dz;
-            const long i = Stencil<l>::cell_of(grid.x, s), j = Stencil<l>::cell_of(grid.z, t);
-            const auto at = gather_field<l, double>(
-                &field[grid.index(i + Stencil<l>::first, j + Stencil<l>::first)], grid.stride(),
-                s - double(i), t - double(j));
+        for (long p = begin; p < end; ++p) {
             Velocity<double> u{particles.ux_p[p], particles.uy_p[p], particles.uz_p[p]};
-            half_step_back(u, at, half_kick, per_c_squared);
+            half_step_back(u, gather_field<l>(field, grid, particles.x_p[p], particles.z_p[p]),
+                           half_kick, per_c_squared);
             particles.ux_p[p] = u.x, particles.uy_p[p] = u.y, particles.uz_p[p] = u.z;
         }
     });

@@ -54,7 +54,9 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
         return find_moments(grid, dt, settings, particles, images, scratch);
     };
     Recorder recorder(
-        parameters, state, [&](const State&) { return moments_with(Images::plasma); }, run.history);
+        parameters, state, [&](const State&) { return moments_with(Images::plasma); },
+        [&](const Particles& s, long p) { return u_at_t(scratch.field, grid, dt, settings, s, p); },
+        run.history);
 
     // 3. The loop.
     const long steps = scales.steps;

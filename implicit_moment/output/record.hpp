@@ -33,6 +33,11 @@ inline std::vector<Moments> slide_moments(const Grid& grid, const State& state) 
     return moments;
 }
 
+/// The u of a particle that has it at t^n.
+inline Velocity<double> stored_u(const Particles& s, long p) {
+    return {s.ux_p[p], s.uy_p[p], s.uz_p[p]};
+}
+
 /// What a checkpoint holds: the state of the run, and beside it what the recorder has added up.
 struct Checkpoint {
     State& state;
@@ -56,11 +61,14 @@ class Recorder {
    public:
     UnitFluxProfile profile;  // of a Harris sheet, added up so far
 
-    /// in: plasma_moments, the moments of t^n itself with the plasma's own images behind walls.
+    /// in: plasma_moments, the moments of t^n itself with the plasma's own images behind walls; u_at, the u of a
+    ///     particle at t^n.
     Recorder(const Case& parameters, const State& state,
              std::function<std::vector<Moments>(const State&)> plasma_moments,
-             common::History& history)
-        : parameters_(parameters), plasma_moments_(std::move(plasma_moments)) {
+             std::function<Velocity<double>(const Particles&, long)> u_at, common::History& history)
+        : parameters_(parameters),
+          plasma_moments_(std::move(plasma_moments)),
+          u_at_(std::move(u_at)) {
         if (parameters.is_along_current()) sheet_.emplace(parameters);
         const Grid& grid = parameters.grid;
         const std::vector<Moments> none(state.plasma.species.size(), Moments(grid));
@@ -93,7 +101,7 @@ class Recorder {
         if (due(parameters_.fields_interval, step))
             write_fields(at, grid, field, state.plasma, plasma_moments_(state));
         if (due(parameters_.particles_interval, step))
-            write_particles(at, state.plasma, parameters_);
+            write_particles(at, state.plasma, parameters_, u_at_);
         if (sheet_ && due(parameters_.profile_interval, step))
             write_profile(at, parameters_, field, plasma_moments_(state));
     }
@@ -170,7 +178,10 @@ class Recorder {
         }
         row.add("energy", of_energy, energy);
         // A cold plasma at rest has no energy to compare with.
-        row.add("energy_drift", "1", initial > 0 ? energy / initial - 1 : 0);
+        const auto change = [&](double to) {
+            return initial > 0 ? (to - initial) / usable_energy(parameters_, initial) : 0;
+        };
+        row.add("energy_drift", "1", change(energy));
         row.add("electric", of_energy, field_energy(grid, field.E) / n0);
         row.add("magnetic", of_energy, field_energy(grid, field.B) / n0);
         for (std::size_t k = 0; k < moments.size(); ++k)
@@ -182,7 +193,7 @@ class Recorder {
         if (!parameters_.leapfrog.chosen) {
             const double by_theta = field.by_theta / n0;
             row.add("energy_by_theta", of_energy, by_theta);
-            row.add("energy_residual", "1", initial > 0 ? (energy - by_theta) / initial - 1 : 0);
+            row.add("energy_residual", "1", change(energy - by_theta));
             row.add("iterations", "1", field.iterations);
         }
         if (parameters_.is_tail())
@@ -206,6 +217,7 @@ class Recorder {
 
     const Case& parameters_;
     std::function<std::vector<Moments>(const State&)> plasma_moments_;
+    std::function<Velocity<double>(const Particles&, long)> u_at_;
     std::optional<SheetDiagnostics> sheet_;
 };
 

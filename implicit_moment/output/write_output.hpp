@@ -82,15 +82,17 @@ inline void write_fields(const common::Snapshot& at, const Grid& grid, const Fie
 
 /// Writes particles_NNNNNN.dat (and .vtp): every n-th particle of each species, at most
 /// most_particles_written in all; v, or u = gamma v of relativistic ones.
+/// in:     u_at, (species, particle) -> its u at the time of the file
+template <class VelocityAt>
 inline void write_particles(const common::Snapshot& at, const Plasma& plasma,
-                            const Case& parameters) {
+                            const Case& parameters, const VelocityAt& u_at) {
     const long every = (plasma.count() + most_particles_written - 1) / most_particles_written;
     std::array<std::vector<double>, 6> data;
     for (std::size_t k = 0; k < plasma.species.size(); ++k) {
         const Particles& p = plasma.species[k];
         for (long n = 0; n < p.count(); n += every) {
-            const std::array<double, 6> row{double(k), p.x_p[n],  p.z_p[n],
-                                            p.ux_p[n], p.uy_p[n], p.uz_p[n]};
+            const Velocity<double> u = u_at(p, n);
+            const std::array<double, 6> row{double(k), p.x_p[n], p.z_p[n], u.x, u.y, u.z};
             for (std::size_t a = 0; a < 6; ++a) data[a].push_back(row[a]);
         }
     }

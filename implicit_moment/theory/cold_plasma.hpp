@@ -1,6 +1,6 @@
 // Waves of small amplitude in a cold uniform plasma at rest, at any angle to its magnetic field: the
-// step of each program itself, linearized, as a matrix for one wave number. Its eigenvalues are the
-// waves; its powers are the whole evolution.
+// step of each program itself with its mesh and splines, linearized, as a matrix for one wave number. Its
+// eigenvalues are the waves; its powers are the whole evolution.
 #pragma once
 
 #include <Eigen/Dense>
@@ -32,38 +32,126 @@ inline WaveVector mesh_wave_vector(const Case& w) {
     return {2 / dx * std::sin(0.5 * k.x * dx), 2 / dz * std::sin(0.5 * k.z * dz)};
 }
 
-/// The right-hand side for amplitudes of exp(i k x): 6 + 3 S numbers, E, B and u of each species.
-///     dE/dt = i c K x B - 4 pi sum_s n_s q_s u_s,   dB/dt = -i c K x E,
-///     du_s/dt = q_s/m_s (E + u_s x B_0/c)
-/// exact:  its eigenvalues -i omega are the roots of det[ N N - N^2 + eps(omega) ] = 0 with the cold
-///         dielectric tensor eps and N = c K/omega. Sources and pushing field are smoothed.
-/// note:   splines see a field a little smaller than it is, by a part (k dx)^2/6 or less.
+/// What the mesh makes of a mode on its way from field to particles. Where E_a is 1 on its places, particles feel
+///     sum_m weight_a(m) exp(i k_m x),   k_m = k + 2 pi m / dx,   weight: [sin(k_m dx/2) / (k_m dx/2)]^(l+1),
+/// k and its images, with l one less along the component's own direction; and with these weights they carry current.
+struct MeshOfMode {
+    static constexpr long images = 4;         // k, and as many as three components can tell apart
+    Eigen::Matrix<double, 3, images> weight;  // smoothed
+    Eigen::Matrix3d to_nodes;                 // the means with which chi goes to nodes and back
+    double smoothing;
+};
+
+/// Whether the charge has the spline of order l = 1; else it is 2.
+inline bool has_linear_splines(const Case& w) { return w.leapfrog.chosen && w.leapfrog.order == 1; }
+
+/// exact:  weight weight^T are the overlaps of the splines of two components, the sum over all images.
+inline MeshOfMode mesh_of_mode(const Case& w) {
+    const WaveVector k = wave_vector(w);
+    const double x = k.x * w.grid.x.spacing(), z = k.z * w.grid.z.spacing();
+    // Of two components in one direction: both half a cell from the nodes, none, or one.
+    const auto products = [&](const auto& half, const auto& whole, const auto& between) {
+        const double xy = between(x) * whole(z), yz = whole(x) * between(z),
+                     xz = between(x) * between(z);
+        Eigen::Matrix3d all;
+        all << half(x) * whole(z), xy, xz, xy, whole(x) * whole(z), yz, xz, yz, whole(x) * half(z);
+        return all;
+    };
+    const auto one = [](double) { return 1.0; };
+    const auto mean = [](double angle) { return std::cos(0.5 * angle); };
+    const auto sinc = [](double angle) {
+        return angle == 0 ? 1 : std::sin(0.5 * angle) / (0.5 * angle);
+    };
+    const Eigen::Matrix3d overlap =
+        has_linear_splines(w) ? products(one, linear_overlap, mean)
+                              : products(linear_overlap, quadratic_overlap, mixed_overlap);
+    const double at_nodes = std::pow(sinc(x) * sinc(z), has_linear_splines(w) ? 2 : 3);
+    MeshOfMode mesh;
+    mesh.weight.col(0) << at_nodes / sinc(x), at_nodes, at_nodes / sinc(z);
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> rest(
+        overlap - mesh.weight.col(0) * mesh.weight.col(0).transpose());
+    mesh.weight.rightCols(3) =
+        rest.eigenvectors() * rest.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
+    mesh.smoothing =
+        smoothing_factor(w.field.smoothing, x) * smoothing_factor(w.field.smoothing, z);
+    mesh.weight *= mesh.smoothing;
+    mesh.to_nodes = products(one, one, mean);
+    return mesh;
+}
+
+/// Where u of species s and image m stands among the amplitudes: E, B, rho, then these.
+inline long place_of(std::size_t s, long m) { return 7 + 3 * (MeshOfMode::images * long(s) + m); }
+
+/// v -> (x, y, z) x v.
+inline Eigen::Matrix3d cross_product(double x, double y, double z) {
+    Eigen::Matrix3d m;
+    m << 0, -z, y, z, 0, -x, -y, x, 0;
+    return m;
+}
+
+/// The right-hand side for amplitudes of exp(i k x).
+///     dE/dt = i c K x B - 4 pi J,   dB/dt = -i c K x E,   drho/dt = -i K . J,
+///     J = sum n_s q_s weight(m) u_sm,   du_sm/dt = q_s/m_s (weight(m) E + u_sm x B_0/c)
+/// exact:  for small k dx its eigenvalues -i omega are the roots of det[ N N - N^2 + eps(omega) ] = 0 with the cold
+///         dielectric tensor eps and N = c K/omega.
 /// source: Stix, Waves in Plasmas (1992), chapters 1 and 2.
 inline Eigen::MatrixXcd cold_rates(const Case& w) {
     const UniformCase& u = w.uniform;
-    const WaveVector k = wave_vector(w), K = mesh_wave_vector(w);
-    const double S = smoothing_factor(w.field.smoothing, k.x * w.grid.x.spacing()) *
-                     smoothing_factor(w.field.smoothing, k.z * w.grid.z.spacing());
-    const auto cross = [](double x, double y, double z) {
-        Eigen::Matrix3d m;
-        m << 0, -z, y, z, 0, -x, -y, x, 0;
-        return m;
-    };
+    const WaveVector K = mesh_wave_vector(w);
+    const MeshOfMode mesh = mesh_of_mode(w);
     const std::complex<double> i(0, 1);
-    const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
-    const long count = 6 + 3 * long(u.species.size());
+    const long count = place_of(u.species.size(), 0);
     Eigen::MatrixXcd rates = Eigen::MatrixXcd::Zero(count, count);
-    rates.block<3, 3>(0, 3) = i * c * cross(K.x, 0, K.z);
-    rates.block<3, 3>(3, 0) = -i * c * cross(K.x, 0, K.z);
+    rates.block<3, 3>(0, 3) = i * c * cross_product(K.x, 0, K.z);
+    rates.block<3, 3>(3, 0) = -rates.block<3, 3>(0, 3);
     for (std::size_t s = 0; s < u.species.size(); ++s) {
         const SpeciesCase& one_of = u.species[s];
-        const long at = 6 + 3 * long(s);
         const double per_mass = one_of.charge / one_of.mass;
-        rates.block<3, 3>(0, at) = -4 * pi * n0 * one_of.density * one_of.charge * S * one;
-        rates.block<3, 3>(at, 0) = per_mass * S * one;
-        rates.block<3, 3>(at, at) = -per_mass / c * cross(u.B_x, u.B_y, u.B_z);
+        for (long m = 0; m < mesh.images; ++m) {
+            const long at = place_of(s, m);
+            const Eigen::Matrix3d weight = mesh.weight.col(m).asDiagonal(),
+                                  J = n0 * one_of.density * one_of.charge * weight;
+            rates.block<3, 3>(0, at) = -4 * pi * J;
+            rates.block<1, 3>(6, at) = -i * (Eigen::RowVector3d(K.x, 0, K.z) * J);
+            rates.block<3, 3>(at, 0) = per_mass * weight;
+            rates.block<3, 3>(at, at) = -per_mass / c * cross_product(u.B_x, u.B_y, u.B_z);
+        }
     }
     return rates;
+}
+
+/// The same step with the current that moments predict in Ampere's law, where chi is on nodes and not an overlap
+/// of splines, and with Gauss's law of solve_field.hpp:
+///     J = sum n q weight R u^n + chi E^{n+theta},   chi = n q (q dt/2m) R,   and   i K c^2 theta dt G^{n+theta},
+///     (1 + c^2 theta^2 dt^2 K^2) G^{n+theta} = i K . E^n - 4 pi rho^n
+/// in/out: later f^{n+1} = now f^n
+inline void predict_cold_current(const Case& w, Eigen::MatrixXcd& later, Eigen::MatrixXcd& now) {
+    const UniformCase& u = w.uniform;
+    const WaveVector K = mesh_wave_vector(w);
+    const MeshOfMode mesh = mesh_of_mode(w);
+    const double theta = w.field.theta, a = c * theta * w.dt;
+    const std::complex<double> i(0, 1);
+    for (std::size_t s = 0; s < u.species.size(); ++s) {
+        const double half_kick = 0.5 * w.dt * u.species[s].charge / u.species[s].mass,
+                     by_J = 4 * pi * n0 * u.species[s].density * u.species[s].charge * w.dt;
+        const Eigen::Matrix3d R = (Eigen::Matrix3d::Identity() +
+                                   half_kick / c * cross_product(u.B_x, u.B_y, u.B_z))
+                                      .inverse(),
+                              lumped = mesh.to_nodes.cwiseProduct(R),
+                              chi = by_J * half_kick * mesh.smoothing * mesh.smoothing * lumped;
+        later.block<3, 3>(0, 0) += theta * chi;
+        now.block<3, 3>(0, 0) -= (1 - theta) * chi;
+        for (long m = 0; m < mesh.images; ++m) {
+            const Eigen::Matrix3d weight = by_J * mesh.weight.col(m).asDiagonal().toDenseMatrix();
+            later.block<3, 3>(0, place_of(s, m)).setZero();
+            now.block<3, 3>(0, place_of(s, m)) =
+                w.field.rotates_on_mesh() ? -lumped * weight : -weight * R;
+        }
+    }
+    const Eigen::Vector3cd gradient = i * Eigen::Vector3d(K.x, 0, K.z),
+                           by_G = c * a * w.dt / (1 + a * a * K.size() * K.size()) * gradient;
+    now.block<3, 3>(0, 0) += by_G * gradient.transpose();
+    now.block<3, 1>(0, 6) -= 4 * pi * by_G;
 }
 
 /// One step of the program on these amplitudes.
@@ -71,12 +159,14 @@ inline Eigen::MatrixXcd cold_rates(const Case& w) {
 ///     explicit_em:     u by a whole step, B by half, E by a whole step, B by the other half
 inline Eigen::MatrixXcd cold_step(const Case& w) {
     const Eigen::MatrixXcd rates = w.dt * cold_rates(w);
-    const long count = rates.rows(), velocities = count - 6;
+    const long count = rates.rows(), velocities = count - 7;
     const Eigen::MatrixXcd one = Eigen::MatrixXcd::Identity(count, count);
     if (!w.leapfrog.chosen) {
-        Eigen::MatrixXcd later = 0.5 * rates;
-        later.leftCols(6) = w.field.theta * rates.leftCols(6);
-        return (one - later).lu().solve(one + rates - later);
+        Eigen::MatrixXcd half = 0.5 * rates;
+        half.leftCols(6) = w.field.theta * rates.leftCols(6);
+        Eigen::MatrixXcd later = one - half, now = one + rates - half;
+        if (!w.field.uses_mass_matrix()) predict_cold_current(w, later, now);
+        return later.lu().solve(now);
     }
     Eigen::MatrixXcd push = one, ampere = one, faraday = one, rotation = 0 * one;
     push.bottomRows(velocities) += rates.bottomRows(velocities);
@@ -88,19 +178,53 @@ inline Eigen::MatrixXcd cold_step(const Case& w) {
     return faraday * ampere * faraday * push;
 }
 
-/// The waves of the seeded wave number, slowest first: omega + i gamma of the scheme, omega > 0.
-inline std::vector<std::complex<double>> cold_waves(const Case& w) {
-    const Eigen::VectorXcd factors = cold_step(w).eigenvalues();
-    std::vector<std::complex<double>> waves;
+/// u from t^0 to t^{-1/2} as explicit_em takes it: back half the rotation, then half the kick.
+inline void take_half_step_back(const Case& w, Eigen::VectorXcd& state) {
+    const Eigen::MatrixXcd rates = w.dt * cold_rates(w);
+    const long u = rates.rows() - place_of(0, 0);
+    const Eigen::MatrixXcd one = Eigen::MatrixXcd::Identity(u, u),
+                           turn = 0.25 * rates.bottomRightCorner(u, u);
+    const Eigen::VectorXcd turned = (one + turn).lu().solve((one - turn) * state.tail(u));
+    state.tail(u) = turned - 0.5 * rates.bottomLeftCorner(u, 3) * state.head(3);
+}
+
+/// A wave of the scheme.
+struct ColdWave {
+    std::complex<double> omega;  // omega + i gamma, omega > 0
+    double along;                // the part of |E|^2 that is along K
+};
+
+/// The waves of the seeded wave number, slowest first.
+/// note:   gyrations that the mesh hardly sees, with most of their energy in images of k, are left out.
+inline std::vector<ColdWave> cold_waves(const Case& w) {
+    const Eigen::ComplexEigenSolver<Eigen::MatrixXcd> modes(cold_step(w));
+    const WaveVector K = mesh_wave_vector(w);
+    std::vector<ColdWave> waves;
     double fastest = 0;
-    for (const std::complex<double> g : factors) {
-        waves.emplace_back(-std::arg(g) / w.dt, std::log(std::abs(g)) / w.dt);
-        fastest = std::max(fastest, waves.back().real());
+    for (long n = 0; n < modes.eigenvalues().size(); ++n) {
+        const Eigen::VectorXcd mode = modes.eigenvectors().col(n);
+        double of_k = mode.head(6).squaredNorm() / (8 * pi), of_images = 0;
+        for (std::size_t s = 0; s < w.uniform.species.size(); ++s) {
+            const SpeciesCase& one_of = w.uniform.species[s];
+            const double half = 0.5 * n0 * one_of.density * one_of.mass,
+                         of_u = half * mode.segment(place_of(s, 0), 3).squaredNorm();
+            of_k += of_u;
+            of_images +=
+                half * mode.segment(place_of(s, 0), 3 * MeshOfMode::images).squaredNorm() - of_u;
+        }
+        if (of_images > of_k) continue;
+        const std::complex<double> g = modes.eigenvalues()[n];
+        // Half a turn is one in either sense.
+        const double growth = std::log(std::abs(g)), turn = -std::arg(g);
+        waves.push_back(
+            {{(turn < 1e-9 - pi ? pi : turn) / w.dt, std::fabs(growth) < 1e-12 ? 0 : growth / w.dt},
+             std::norm(K.x * mode[0] + K.z * mode[2]) /
+                 (K.size() * K.size() * mode.head(3).squaredNorm())});
+        fastest = std::max(fastest, waves.back().omega.real());
     }
-    std::erase_if(waves, [&](std::complex<double> one) { return one.real() < 1e-7 * fastest; });
-    std::sort(waves.begin(), waves.end(), [](auto a, auto b) { return a.real() < b.real(); });
-    const auto same = [&](auto a, auto b) { return b.real() - a.real() < 1e-7 * fastest; };
-    waves.erase(std::unique(waves.begin(), waves.end(), same), waves.end());
+    std::erase_if(waves, [&](const ColdWave& one) { return one.omega.real() < 1e-7 * fastest; });
+    std::sort(waves.begin(), waves.end(),
+              [](const ColdWave& a, const ColdWave& b) { return a.omega.real() < b.omega.real(); });
     return waves;
 }
 

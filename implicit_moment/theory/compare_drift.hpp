@@ -30,21 +30,14 @@ inline void add_mean_field(const Grid& grid, const FieldState& field, common::Ro
 inline std::vector<Eigen::Vector3d> mean_field(const Case& w, long steps) {
     Case still = w;
     still.uniform.mode_x = still.uniform.mode_z = 0;
-    const Eigen::MatrixXcd step = cold_step(still), rates = w.dt * cold_rates(still);
-    const long velocities = step.rows() - 6;
+    const Eigen::MatrixXcd step = cold_step(still);
     Eigen::VectorXcd state = Eigen::VectorXcd::Zero(step.rows());
     state.head(3) << w.uniform.E_x, w.uniform.E_y, w.uniform.E_z;
     for (std::size_t s = 0; s < w.uniform.species.size(); ++s) {
         const SpeciesCase& one = w.uniform.species[s];
-        state.segment(6 + 3 * long(s), 3) << one.drift_x, one.drift_y, one.drift_z;
+        state.segment(place_of(s, 0), 3) << one.drift_x, one.drift_y, one.drift_z;
     }
-    if (w.leapfrog.chosen) {
-        // Half a step back: the rotation first, then the kick.
-        const Eigen::MatrixXcd one = Eigen::MatrixXcd::Identity(velocities, velocities),
-                               turn = 0.25 * rates.bottomRightCorner(velocities, velocities);
-        state.tail(velocities) = (one + turn).lu().solve((one - turn) * state.tail(velocities)) -
-                                 0.5 * rates.bottomLeftCorner(velocities, 3) * state.head(3);
-    }
+    if (w.leapfrog.chosen) take_half_step_back(still, state);
     std::vector<Eigen::Vector3d> means{state.head(3).real()};
     for (long n = 0; n < steps; ++n) {
         state = step * state;

@@ -92,7 +92,7 @@ inline void compare_kink(const Case& w, const common::History& history, common::
         const common::MeasuredMode seen =
             second_growth(times, a, sheet == talk_kinks.end() ? 0.1 : sheet->growth);
         if (!seen.found) {
-            if (compared) summary.not_measured(name, seen.reason + ": raise time.end");
+            if (compared) summary.not_measured(name, seen.reason);
             return;
         }
         const common::Measured rate{seen.growth(), seen.growth_error()};

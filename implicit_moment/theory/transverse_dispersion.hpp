@@ -1,9 +1,7 @@
-// Waves that only the electromagnetic programs have: E across k in a kinetic plasma, and the
-// Langmuir wave of the theta scheme.
+// Waves that only the electromagnetic programs have: E across k in a kinetic plasma.
 #pragma once
 
 #include <cmath>
-#include <complex>
 #include <numbers>
 #include <span>
 
@@ -53,22 +51,6 @@ inline common::DispersionRoot fastest_growing_transverse(
         return transverse_dispersion(plasma, k, light, sense, omega);
     };
     return common::fastest_growing_root(D, common::fan_of_guesses(plasma, k, light));
-}
-
-/// A Langmuir wave in a cold plasma whose particles are moved by E at the level theta.
-///   (g - 1)^2 = -(W^2 / 2) (1 + g) (theta g + 1 - theta),  W = omega_p dt
-/// in:    theta; W
-/// out:   the root with the larger imaginary part; of two real roots, which exist for
-///        theta > 1/2 and large W, the larger one in absolute value
-/// exact: |g| = 1 for theta = 1/2, then tan(omega dt / 2) = W / 2; |g|^2 = 1 / (1 + W^2 / 2) for
-///        theta = 1 while g is complex
-inline std::complex<double> theta_langmuir_wave(double theta, double W) {
-    // a g^2 - 2 b g + d = 0
-    const double s = 0.5 * W * W;
-    const double a = 1.0 + s * theta, b = 1.0 - 0.5 * s, d = 1.0 + s * (1.0 - theta);
-    const double discriminant = b * b - a * d;
-    if (discriminant <= 0.0) return {b / a, std::sqrt(-discriminant) / a};
-    return (b + std::copysign(std::sqrt(discriminant), b)) / a;
 }
 
 }  // namespace implicit_moment

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include "mpm_explicit/output/record_grains.hpp"
@@ -40,7 +41,7 @@ class LeapfrogRecorder {
     LeapfrogRecorder(const Case& parameters, const Scales& scales, const State& state,
                      common::History& history)
         : dt_(scales.dt),
-          alpha_(parameters.alpha),
+          gain_hint_(theory::cell_crossing_hint(parameters)),
           most_gain_(0.05 + swing_of_frozen(parameters, scales)),
           levels_(parameters.problem.contact.levels),
           frictionless_(!parameters.problem.has_friction()),
@@ -126,9 +127,7 @@ class LeapfrogRecorder {
         else
             run.summary.result_info("contact_gives", gives, "1",
                                     together + ": contact on v_i^1 alone gives");
-        run.summary.hint("with time.alpha = " + format(alpha_) +
-                         " noise of cell crossing grows: lower it (0.25), refine the mesh, take "
-                         "contact.levels = 2, method.shape = \"gimp\" or method.flip = 0.99");
+        run.summary.hint(gain_hint_);
         run.summary.result_at_most(
             "energy_gain", gain / (put_in > 0 ? put_in : 1), "1", most_gain_,
             "beyond all work, largest, over the energy put in: moving through "
@@ -145,7 +144,9 @@ class LeapfrogRecorder {
         return leapfrog_energy_bound(1, w, scales.dt) - 1;
     }
 
-    double dt_, alpha_, most_gain_;
+    double dt_;
+    std::string gain_hint_;
+    double most_gain_;
     long levels_;
     bool frictionless_;
     Recorder recorder_;

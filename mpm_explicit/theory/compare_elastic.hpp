@@ -14,13 +14,21 @@
 
 namespace mpm::theory {
 
+/// What is most likely wrong with the energy of an explicit run, and what it has not tried yet.
+inline std::string cell_crossing_hint(const Case& w) {
+    std::string hint = "noise of cell crossing gives or takes energy: refine the mesh";
+    if (w.alpha > 0.1) hint += ", lower time.alpha (" + format(w.alpha > 0.25 ? 0.25 : 0.1) + ")";
+    if (w.problem.contact.levels != 2) hint += ", take contact.levels = 2";
+    if (w.shape == "linear") hint += ", take method.shape = \"gimp\"";
+    if (w.transfer == "flip" && w.flip == 1) hint += ", or method.flip = 0.99, which takes some";
+    return hint;
+}
+
 /// What a wrong energy of a body that should keep it is due to.
 inline std::string energy_hint(const FinishedRun& run) {
-    if (run.planned.scheme.bar_tolerance < 1e-6)
-        return "the scheme keeps it as exactly as steps are solved: lower solver.tolerance";
-    return "with time.alpha = " + format(run.parameters.alpha) +
-           " noise of cell crossing gives or takes energy: lower it, refine the mesh, or take "
-           "method.shape = \"gimp\"; method.flip below 1, friction and large strains take some";
+    return run.planned.scheme.bar_tolerance < 1e-6
+               ? "the scheme keeps it as exactly as steps are solved: lower solver.tolerance"
+               : cell_crossing_hint(run.parameters) + "; friction and large strains take some";
 }
 
 /// What is left of the energy at the end.
