@@ -12,6 +12,7 @@
 
 #include "implicit_moment/setup/case.hpp"
 #include "implicit_moment/smooth.hpp"
+#include "implicit_moment/theory/eigenvalues.hpp"
 
 namespace implicit_moment {
 
@@ -197,12 +198,12 @@ struct ColdWave {
 /// The waves of the seeded wave number, slowest first.
 /// note:   gyrations that the mesh hardly sees, with most of their energy in images of k, are left out.
 inline std::vector<ColdWave> cold_waves(const Case& w) {
-    const Eigen::ComplexEigenSolver<Eigen::MatrixXcd> modes(cold_step(w));
+    const Eigensystem modes = eigensystem(cold_step(w));
     const WaveVector K = mesh_wave_vector(w);
     std::vector<ColdWave> waves;
     double fastest = 0;
-    for (long n = 0; n < modes.eigenvalues().size(); ++n) {
-        const Eigen::VectorXcd mode = modes.eigenvectors().col(n);
+    for (long n = 0; n < modes.values.size(); ++n) {
+        const Eigen::VectorXcd mode = modes.vectors.col(n);
         double of_k = mode.head(6).squaredNorm() / (8 * pi), of_images = 0;
         for (std::size_t s = 0; s < w.uniform.species.size(); ++s) {
             const SpeciesCase& one_of = w.uniform.species[s];
@@ -213,7 +214,7 @@ inline std::vector<ColdWave> cold_waves(const Case& w) {
                 half * mode.segment(place_of(s, 0), 3 * MeshOfMode::images).squaredNorm() - of_u;
         }
         if (of_images > of_k) continue;
-        const std::complex<double> g = modes.eigenvalues()[n];
+        const std::complex<double> g = modes.values[n];
         // Half a turn is one in either sense.
         const double growth = std::log(std::abs(g)), turn = -std::arg(g);
         waves.push_back(
