@@ -303,6 +303,11 @@ TEST_CASE("an end takes from its own inflow what that says and the rest from the
     CHECK(contains(refusal(row_of + ends + common + own + "[inflow.x_high]\nmaterial = \"gold\"\n"),
                    "inflow.material = \"gold\" is none of 'gas'"));
     CHECK(refusal(row_of + ends + common + own) == "nothing");
+    // The ends of a tube with two gases bring their own.
+    Case tube;
+    tube.setup = "riemann";
+    CHECK(completed(tube).boundaries[x_low].inflow.material == "left");
+    CHECK(completed(tube).boundaries[x_high].inflow.material == "right");
 }
 
 namespace {

@@ -123,7 +123,8 @@ inline double density_of(const Cells& c, long i, long n) {
 }
 
 /// The longest step that the flow allows.
-///   dt = cfl min 1/(|v_x|/dx + |v_z|/dz + c sqrt(1/dx^2 + 1/dz^2)),
+///   dt = cfl min 1/(|v_x|/dx + |v_z|/dz + c sqrt(1/dx^2 + 1/dz^2)),  c fastest_consistent for c
+///   with the consistent mass and the density of cells;
 /// after the first step without the sound of the gas when the pressure is implicit; with viscosity
 /// nu also dt <= 1/(4 nu (1/dx^2 + 1/dz^2)); at most sqrt(cfl dx/g), in which a fluid at rest begins
 /// to move, cfl/sqrt(trap), and 1.2 times the last step
@@ -139,7 +140,10 @@ inline double step_allowed(const Problem& problem, const Mesh& mesh, double last
     const Cells& c = mesh.cells;
     const bool plane = is_plane(grid), no_sound = problem.scheme.implicit && last > 0;
     const double per_dx = 1 / grid.x.spacing(), per_dz = plane ? 1 / grid.z.spacing() : 0;
-    const double per_dx2 = per_dx * per_dx + per_dz * per_dz;
+    const double per_dx2 = per_dx * per_dx + per_dz * per_dz,
+                 faster = problem.scheme.consistent_mass && !problem.scheme.particle_volumes
+                              ? fastest_consistent
+                              : 1;
     std::vector<double> of_row(grid.z.cells, 0.0);
     common::for_each_row(
         grid.z.cells,
@@ -157,7 +161,7 @@ inline double step_allowed(const Problem& problem, const Mesh& mesh, double last
                 const double sound =
                     c.surface[n] != 0 || no_sound
                         ? 0
-                        : sound_speed(rho, c.compressibility[n]) * std::sqrt(per_dx2);
+                        : faster * sound_speed(rho, c.compressibility[n]) * std::sqrt(per_dx2);
                 double rate = (vx * per_dx + vz * per_dz + sound) / limits.cfl;
                 if (problem.viscosity > 0)
                     rate = std::max(rate, 4 * problem.viscosity / rho * per_dx2);
