@@ -46,50 +46,45 @@ inline double interface_growth(const TwoLayers& s, double k) {
     return interface_frequency(s, k).imag();
 }
 
-/// The growth rate of the interface as the mesh of flip has it, in short steps and far below the speed
-/// of sound: rows of nodes with the velocities u sin k x and w cos k x, cells that keep their volume,
-/// and particles as sharp as the interface, which pull the nodes around it by its height.
-///   D a = 0,  a = R (f - D^T p),  f = g (rho_2 - rho_1) mu S at the interface;  rate^2 = f . a
+/// The growth rate of an interface between rows of cells as the mesh of flip has it, in short steps and
+/// far below the speed of sound: nodes have the velocities u sin k x and w cos k x, cells keep their
+/// volume, and the particles are as sharp as the interface.
+///   D a = 0,  a = R (f - D^T p),  rate^2 = f . a,  f = [g (rho_2 - rho_1) mu]^1/2 at its nodes
 ///   R = M^-1 of consistent masses; M_L^-1 M M_L^-1 of lumped ones, as an increment of velocity goes to
 ///   the particles and comes back smoothed;  mu = (2 + cos k dx)/3, the part of M along x
-/// in:    k dx < pi; finite depths
+/// in:    k dx < pi; finite depths of whole cells
 /// exact: interface_growth() for dx, dz -> 0, of first order, as u cannot jump at the interface
 inline double interface_growth_on_mesh(const TwoLayers& s, double k, double dx, double dz,
                                        bool consistent) {
-    const double mu = (2 + std::cos(k * dx)) / 3, at = s.lower_depth / dz;
-    const long cells = std::lround(at + s.upper_depth / dz), inside = cells - 1;
-    Eigen::MatrixXd M = Eigen::MatrixXd::Zero(cells + 1, cells + 1), D_u = M, D_w = M;
+    const double mu = (2 + std::cos(k * dx)) / 3;
+    const long below = std::lround(s.lower_depth / dz),
+               cells = below + std::lround(s.upper_depth / dz), inside = cells - 1;
+    Eigen::MatrixXd M = Eigen::MatrixXd::Zero(cells + 1, cells + 1), U = M, W = M;
     for (long j = 0; j < cells; ++j) {
-        // Masses of the part of the cell below the interface, and above it.
-        const double f = std::clamp(at - static_cast<double>(j), 0.0, 1.0), rest = 1 - f,
-                     rho_1 = s.lower_density * dz, rho_2 = s.upper_density * dz,
-                     across = f * f / 2 - f * f * f / 3;
-        M(j, j) += (rho_1 * (1 - rest * rest * rest) + rho_2 * rest * rest * rest) / 3;
-        M(j + 1, j + 1) += (rho_1 * f * f * f + rho_2 * (1 - f * f * f)) / 3;
-        M(j, j + 1) = M(j + 1, j) = rho_1 * across + rho_2 * (1. / 6 - across);
-        D_u(j, j) = D_u(j, j + 1) = dz * std::sin(0.5 * k * dx);
-        D_w(j, j + 1) = dx * std::cos(0.5 * k * dx);
-        D_w(j, j) = -D_w(j, j + 1);
+        const double m = dz * (j < below ? s.lower_density : s.upper_density);
+        M(j, j) += m / 3, M(j + 1, j + 1) += m / 3;
+        M(j, j + 1) = M(j + 1, j) = m / 6;
+        U(j, j) = U(j, j + 1) = dz * std::sin(0.5 * k * dx);
+        W(j, j + 1) = dx * std::cos(0.5 * k * dx), W(j, j) = -W(j, j + 1);
     }
-    const Eigen::MatrixXd per_m = M.rowwise().sum().cwiseInverse().asDiagonal();
+    const Eigen::MatrixXd per_m = M.rowwise().sum().cwiseInverse().asDiagonal(),
+                          trip = mu * per_m * M * per_m;
     const auto response = [&](long first, long count) -> Eigen::MatrixXd {
-        const auto block = [&](const Eigen::MatrixXd& all) -> Eigen::MatrixXd {
-            return all.block(first, first, count, count);
-        };
-        if (!consistent) return mu * block(per_m * M * per_m);
-        return block(M).llt().solve(Eigen::MatrixXd::Identity(count, count)) / mu;
+        if (!consistent) return trip.block(first, first, count, count);
+        return M.block(first, first, count, count)
+                   .llt()
+                   .solve(Eigen::MatrixXd::Identity(count, count)) /
+               mu;
     };
-    const Eigen::MatrixXd U = D_u.topRows(cells), W = D_w.block(0, 1, cells, inside),
+    // Walls hold w at both ends.
+    const Eigen::MatrixXd D_u = U.topRows(cells), D_w = W.block(0, 1, cells, inside),
                           R_u = response(0, cells + 1), R_w = response(1, inside);
-    const long below = std::clamp(static_cast<long>(at), 0L, inside);
-    Eigen::VectorXd S = Eigen::VectorXd::Zero(cells + 1);
-    S[below] = 1 - (at - static_cast<double>(below));
-    S[below + 1] = 1 - S[below];
-    const Eigen::VectorXd f = S.segment(1, inside);
-    const Eigen::MatrixXd A = U * R_u * U.transpose() + W * R_w * W.transpose();
-    const Eigen::VectorXd p = A.ldlt().solve(W * (R_w * f)), a = R_w * (f - W.transpose() * p);
-    return std::sqrt(
-        std::max(0.0, s.gravity * (s.upper_density - s.lower_density) * mu * f.dot(a)));
+    const double pull = s.gravity * (s.upper_density - s.lower_density) * mu;
+    const Eigen::VectorXd f =
+        std::sqrt(std::max(0.0, pull)) * Eigen::VectorXd::Unit(inside, below - 1);
+    const Eigen::MatrixXd A = D_u * R_u * D_u.transpose() + D_w * R_w * D_w.transpose();
+    const Eigen::VectorXd p = A.ldlt().solve(D_w * (R_w * f));
+    return std::sqrt(std::max(0.0, f.dot(R_w * (f - D_w.transpose() * p))));
 }
 
 /// A fluid of one density with U(z) = velocity_difference / 2 times z / half_width, clamped to
