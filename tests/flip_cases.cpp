@@ -403,8 +403,8 @@ const std::array<Tube, 5> toro{{
     {{1, 1000, -19.59745}, {1, 0.01, -19.59745}, 0.8, 0.012, "open", "inflow"},
 }};
 
-Case tube_of(const Tube& t) {
-    Case w = flip_case(100, 1, "slip", "periodic");
+Case tube_of(const Tube& t, long cells = 100) {
+    Case w = flip_case(cells, 1, "slip", "periodic");
     w.per_cell_x = 16;
     w.setup = "riemann", w.left = t.left, w.right = t.right, w.interface = t.interface;
     w.boundaries[x_low].kind = t.low, w.boundaries[x_low].pressure = t.left.pressure;
@@ -425,7 +425,9 @@ TEST_CASE("shock tubes of Toro end with their energy whatever the transfer" *
     for (std::size_t n = 0; n < toro.size(); ++n) {
         for (const char* transfer : {"flip", "pic", "blend", "apic", "xpic"}) {
             for (const char* density : {"cells", "particles"}) {
-                Case w = tube_of(toro[n]);
+                // Gas that is nearly a void, cold beside less cold.
+                const bool fine = n == 1 && std::string(density) == "particles";
+                Case w = tube_of(toro[n], fine ? 400 : 100);
                 w.transfer = transfer, w.density = density;
                 CAPTURE(n + 1);
                 CAPTURE(transfer);

@@ -118,11 +118,11 @@ inline void work_on_cells(const Problem& problem, double dt, Mesh& mesh, Budget&
                         : 0;
         if (volumes) {
             // Particles know their own pressure; the viscous heat goes by mass.
-            const bool yields = c.surface[n] == 0 && c.compliance[n] > 0;
-            const double per_compliance = yields ? dt / c.compliance[n] : 0;
-            c.strain[n] = per_compliance * dilation(grid, move_x, move_z, n);
-            c.work[n] = per_compliance * work;
-            c.q_work[n] = per_compliance * (q_power + (c.p_step[n] - c.p[n]) * work);
+            const bool yields = c.surface[n] == 0 && c.C[n] > 0;
+            const double per_C = yields ? dt / c.C[n] : 0;
+            c.strain[n] = per_C * dilation(grid, move_x, move_z, n);
+            c.work[n] = per_C * work;
+            c.q_work[n] = per_C * (q_power + (c.p_step[n] - c.p[n]) * work);
         } else {
             adiabatic = -dt * c.p_step[n] * work;
             dE -= dt * q_power;
