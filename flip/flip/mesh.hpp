@@ -75,7 +75,7 @@ struct Cells {
     Field volume, C, strain, work, q_work, room;
     std::vector<SoftSum> soft;
     std::vector<double> excess;
-    bool one_fluid = false;  // all materials have one equation of state
+    bool one_fluid = false;  // explicit, and all materials have one equation of state
 };
 
 /// The scratch pad.
@@ -130,6 +130,7 @@ inline Mesh mesh_of(const Problem& problem) {
         c.soft.assign(size * mesh.materials, {});
         const Material& first = problem.materials.front();
         c.one_fluid =
+            !scheme.implicit &&
             std::all_of(problem.materials.begin(), problem.materials.end(), [&](const Material& a) {
                 return a.gamma == first.gamma && a.p_infinity == first.p_infinity;
             });
