@@ -45,6 +45,16 @@ inline double compliance(const Material& a, double V, double p) {
     return K > least_stiffness ? V / K : 0;
 }
 
+/// The weight of a particle in the pressure of its cell, and in how it shares a change of volume.
+///   V/K among several fluids, which yield to one pressure, and in slow flow;  V in one fluid with an
+///   explicit pressure, which is strained alike
+/// note:   by V/K a cold particle would take all that its hot neighbors leave, and the work of that has
+///         no bound; but air beside water has to take all of it
+inline double weight_in_cell(const Material& a, double V, double p, bool one_fluid) {
+    const double C = compliance(a, V, p);
+    return one_fluid && C > 0 ? V : C;
+}
+
 /// Specific internal energy at density rho and pressure p.
 /// note:   dust has no pressure; there p stands for rho e
 inline double internal_energy(const Material& a, double rho, double p) {

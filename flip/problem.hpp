@@ -93,6 +93,11 @@ struct StepLimits {
     double cfl = 0.3, dt = 0, end = 1;
 };
 
+/// With the consistent mass and the density of cells the shortest sound of the mesh is at most this
+/// much faster than all other, as M is (1 - 1/n^2)/3 of the lumped mass there:
+///   c dt/dx [(3/2 gamma)/(1 - 1/n^2) + 1 - 1/gamma]^1/2 <= 1,  n >= 2 particles across a cell
+inline constexpr double fastest_consistent = 1.4142135623730951;
+
 /// How the velocity of a particle follows the mesh; see transfer.hpp.
 struct Transfer {
     bool flip = true;        // nothing but the velocity increment of the mesh

@@ -303,6 +303,11 @@ TEST_CASE("an end takes from its own inflow what that says and the rest from the
     CHECK(contains(refusal(row_of + ends + common + own + "[inflow.x_high]\nmaterial = \"gold\"\n"),
                    "inflow.material = \"gold\" is none of 'gas'"));
     CHECK(refusal(row_of + ends + common + own) == "nothing");
+    // The ends of a tube with two gases bring their own.
+    Case tube;
+    tube.setup = "riemann";
+    CHECK(completed(tube).boundaries[x_low].inflow.material == "left");
+    CHECK(completed(tube).boundaries[x_high].inflow.material == "right");
 }
 
 namespace {
@@ -398,8 +403,8 @@ const std::array<Tube, 5> toro{{
     {{1, 1000, -19.59745}, {1, 0.01, -19.59745}, 0.8, 0.012, "open", "inflow"},
 }};
 
-Case tube_of(const Tube& t) {
-    Case w = flip_case(100, 1, "slip", "periodic");
+Case tube_of(const Tube& t, long cells = 100) {
+    Case w = flip_case(cells, 1, "slip", "periodic");
     w.per_cell_x = 16;
     w.setup = "riemann", w.left = t.left, w.right = t.right, w.interface = t.interface;
     w.boundaries[x_low].kind = t.low, w.boundaries[x_low].pressure = t.left.pressure;
@@ -420,7 +425,9 @@ TEST_CASE("shock tubes of Toro end with their energy whatever the transfer" *
     for (std::size_t n = 0; n < toro.size(); ++n) {
         for (const char* transfer : {"flip", "pic", "blend", "apic", "xpic"}) {
             for (const char* density : {"cells", "particles"}) {
-                Case w = tube_of(toro[n]);
+                // Gas that is nearly a void, cold beside less cold.
+                const bool fine = n == 1 && std::string(density) == "particles";
+                Case w = tube_of(toro[n], fine ? 400 : 100);
                 w.transfer = transfer, w.density = density;
                 CAPTURE(n + 1);
                 CAPTURE(transfer);

@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "common/splines.hpp"
+#include "flip/setup/scales.hpp"
 #include "flip/theory/acoustics.hpp"
 #include "tests/support/any_fluid.hpp"
 #include "tests/support/exact_sound.hpp"
@@ -697,6 +698,45 @@ TEST_CASE("fluid at rest takes the step in which a trap or gravity sets it in mo
     }
     w.trap = 0, w.gravity_x = 3, w.gravity_z = -4;
     CHECK(allowed() == doctest::Approx(std::sqrt(0.125 / 5 / w.cfl)).epsilon(1e-14));
+}
+
+TEST_CASE("sound of the consistent mass neither grows nor bursts up to the largest step" *
+          doctest::description("physics")) {
+    const double gamma = 1.4, noise = 1e-7;
+    for (const char* density : {"cells", "particles"}) {
+        for (const long n : {2L, 4L, 16L}) {
+            Case w = flip_case(16, 1, "periodic", "periodic");
+            w.mass = "consistent", w.density = density, w.per_cell_x = n, w.cfl = 1;
+            w.q_linear = w.q_quadratic = 0;
+            w.regions = {fluid("", 1, 1 / gamma)};  // c = 1
+            w.regions[0].noise = noise;
+            // The part of the lumped mass that M is for nodes that move in turn.
+            const double mu = (1 - 1 / real(n * n)) / 3,
+                         fastest = std::sqrt(0.5 / gamma / mu + 1 - 1 / gamma),
+                         limit = (w.density == "cells" ? 1 / fastest : 1) / 16;
+            // The largest velocity after some steps, over that of the start.
+            const auto grown = [&](double dt, int steps) {
+                w.dt = dt;
+                FlipRun r(w);
+                try {
+                    r.steps(steps);
+                } catch (const common::NumericalError&) {
+                    return 1e300;
+                }
+                return r.nodes().vx.cwiseAbs().maxCoeff() / noise;
+            };
+            CAPTURE(density);
+            CAPTURE(n);
+            CHECK(grown(0.3 * limit, 3000) <= 3);
+            CHECK(grown(0.97 * limit, 3000) <= 3);
+            CHECK(grown(1.05 * limit, 400) >= 1e3);
+            w.dt = 0;
+            FlipRun r(w);
+            r.deposit();
+            CHECK(step_allowed(r.problem, r.scratch.mesh, 0) <= limit);
+            CHECK(scales_of(completed(w)).dt <= limit);
+        }
+    }
 }
 
 TEST_CASE("the fastest node crosses so many cells and in a row none along z") {

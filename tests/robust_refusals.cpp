@@ -336,6 +336,10 @@ fluids box boundary.x_high=inflow inflow.velocity_x=1
     boundary.x_high = "inflow" needs inflow.velocity_x below 0, into the mesh, and it is 1
 fluids box boundary.z_low=inflow inflow.velocity_x=1
     boundary.z_low = "inflow" needs inflow.velocity_z above 0, into the mesh, and it is 0
+fluids tube material.a.gamma=1.4 material.b.gamma=1.5 boundary.x_low=inflow inflow.velocity_x=1
+    inflow.x_low has no material, and there are 2: give inflow.x_low.material one of 'a', 'b'
+fluids tube boundary.x_high_pressure=1
+    unknown parameter 'boundary.x_high_pressure'; did you mean 'boundary.pressure_x_high'?
 fluids box inflow.velocity_x=1
     [inflow] needs an end with boundary = "inflow": set one, or take it out
 )");

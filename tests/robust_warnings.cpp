@@ -85,6 +85,8 @@ flip tube boundary.x_low=no_slip
 flip tube particles.per_cell_x=2 particles.per_cell_z=1
     warning: 2 particles per cell are fewer than 4: a particle that leaves a cell takes 50 % of
     its density along
+flip around flip.mass=consistent particles.per_cell_x=2
+    warning: flip.mass = "consistent" with 2 particles across a cell, below 3
 flip tube rezone.steps=5 rezone.max_particles=12
     warning: rezone.max_particles = 12 is below the 16 particles per cell of the start
 flip tube region.drop.shape=disk region.drop.radius=1e-6
@@ -105,6 +107,10 @@ flip around region.gas.velocity_x=1 time.end=1e-6 region.gas.pressure=1e10
     no warning
 flip around theory.compare=wave sound
     warning: the wave has the period 0.8452, longer than time.end = 0.1
+pic around sound
+    warning: the flow has Mach 0.01002, below 0.05
+    warning: the wave of region.gas takes 0.2037 particles across a border of cells, below 2: cells
+    do not feel that density changes, and sound is too slow; raise its amplitude above 0.09817
 pic tube region.gas.velocity_x=0.5 flip.transfer=apic
     warning: flip.transfer = "apic" means nothing to pic, whose particles are mass alone
 pic tube region.gas.velocity_x=0.5 flip.mass=consistent

@@ -14,8 +14,9 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// Number of single-letter edits between two words.
+// Number of single-letter edits between two words; their parts in another order are one.
 std::size_t edit_distance(const std::string& a, const std::string& b) {
+    if (a != b && std::is_permutation(a.begin(), a.end(), b.begin(), b.end())) return 1;
     std::vector<std::size_t> row(b.size() + 1);
     for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
     for (std::size_t i = 1; i <= a.size(); ++i) {
@@ -170,11 +171,9 @@ std::string ParameterTable::nearest(const std::string& name) const {
     std::string best = in_nearest_list(name);
     if (!best.empty()) return best;
     std::size_t least = std::max<std::size_t>(3, name.size() / 3) + 1;
-    const auto consider = [&](const std::string& candidate) {
-        const std::size_t distance = edit_distance(name, candidate);
-        if (distance < least) best = candidate, least = distance;
-    };
-    for (const Entry& entry : entries_) consider(entry.name);
+    for (const Entry& entry : entries_)
+        if (const std::size_t distance = edit_distance(name, entry.name); distance < least)
+            best = entry.name, least = distance;
     // The right key in the wrong section is the other common slip.
     const std::string key = name.substr(name.rfind('.') + 1);
     for (const Entry& entry : entries_)

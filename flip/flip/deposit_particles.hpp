@@ -50,12 +50,14 @@ void deposit_band(const WeightScale& scale, const Material* materials, const Par
         if constexpr (volumes) {
             const Material& a = materials[material];
             const double V = p.V_p[k], p_p = pressure(a, m / V, p.e_p[k]);
-            const double V_per_K = compliance(a, V, p_p);
+            const double C = weight_in_cell(a, V, p_p, mesh.cells.one_fluid),
+                         CK = C * stiffness(a, p_p);
             for_cells(scale, w, [&](long c, double R) {
                 mesh.cells.volume[c] += R * V;
                 SoftSum& soft = mesh.cells.soft[c * count + material];
-                soft.C += R * V_per_K;
-                soft.Cp += R * V_per_K * p_p;
+                soft.C += R * C;
+                soft.Cp += R * C * p_p;
+                soft.CK += R * CK;
             });
         }
     }
@@ -102,7 +104,7 @@ inline void deposit_particles(const Grid& grid, std::span<const Material> materi
     fold_cells(grid, &c.sum[0].M, 2 * count);
     if (volumes) {
         fold_cells(grid, c.volume.data());
-        fold_cells(grid, &c.soft[0].C, 2 * count);
+        fold_cells(grid, &c.soft[0].C, 3 * count);
     }
 
     for_each_node(grid, [&](long, long, long n) {

@@ -40,11 +40,11 @@ inline bool has_bare_node(const Grid& grid, const Nodes& g, long n) {
 
 /// Pressure and compressibility of every cell, and how its materials share a change of volume.
 ///   density of cells:       find_equilibrium() of masses and energies in the cell
-///   volumes of particles:   p_c = sum_p R (V_p/K_p) p_p / sum_p R V_p/K_p,  K = rho c^2
+///   volumes of particles:   p_c = sum_p R C_p p_p / sum_p R C_p,  C_p of weight_in_cell()
 /// in:     deposit_particles() has been called
 /// out:    cells.p, compressibility, share, surface (1: p = 0 whatever happens). With volumes also
 ///         excess = (p_kc - p_c)(1 - |p_c|/max_k |p_kc - p_c|), p_kc the mean pressure of material k;
-///         0 where no difference exceeds p_c, as gravity's within a cell; and room, the part by which
+///         0 in one fluid, and where no difference exceeds p_c, as gravity's within a cell; and room, the part by which
 ///         gas would have to grow to fill the cell: in 0 to 1 beside another material, in -1/2 to 1
 ///         where it is confined
 /// exact:  with volumes a state of equal pressure stays one wherever the particles are, as long as
@@ -79,22 +79,26 @@ inline void find_pressure(const Grid& grid, std::span<const Material> materials,
         c.compressibility[n] = cell.compressibility;
         bool surface = cell.surface;
         if (volumes) {
-            double C = 0, Cp = 0;
-            for (long k = 0; k < count; ++k)
-                C += c.soft[n * count + k].C, Cp += c.soft[n * count + k].Cp;
-            c.compliance[n] = C;
+            double C = 0, Cp = 0, CK = 0;
+            for (long k = 0; k < count; ++k) {
+                const SoftSum& soft = c.soft[n * count + k];
+                C += soft.C, Cp += soft.Cp, CK += soft.CK;
+            }
+            c.C[n] = C;
             const bool filled = (gas || c.volume[n] >= least_filled * V_c) && C > 0;
             c.p[n] = filled ? Cp / C : 0;
             double* const excess = &c.excess[n * count];
             double largest = 0;
             for (long k = 0; k < count; ++k) {
                 const SoftSum& soft = c.soft[n * count + k];
-                excess[k] = filled && soft.C > 0 ? soft.Cp / soft.C - c.p[n] : 0;
+                excess[k] = filled && !c.one_fluid && soft.C > 0 ? soft.Cp / soft.C - c.p[n] : 0;
                 largest = std::max(largest, std::fabs(excess[k]));
             }
             const double beyond = 1 - std::fabs(c.p[n]) / std::max(largest, 1e-300);
             for (long k = 0; k < count; ++k) excess[k] *= std::max(0.0, beyond);
-            c.compressibility[n] = c.volume[n] > 0 ? c.compliance[n] / c.volume[n] : 0;
+            // sum of V/K, or in one fluid V^2/sum of V K
+            const double yields = !c.one_fluid ? C : C > 0 ? C * C / CK : 0;
+            c.compressibility[n] = c.volume[n] > 0 ? yields / c.volume[n] : 0;
             surface = !filled;
             const double full = confined ? 1 : least_filled, least = confined ? -0.5 : 0;
             c.room[n] = (count > 1 || confined) && gas && c.volume[n] > 0
@@ -123,7 +127,8 @@ inline double density_of(const Cells& c, long i, long n) {
 }
 
 /// The longest step that the flow allows.
-///   dt = cfl min 1/(|v_x|/dx + |v_z|/dz + c sqrt(1/dx^2 + 1/dz^2)),
+///   dt = cfl min 1/(|v_x|/dx + |v_z|/dz + c sqrt(1/dx^2 + 1/dz^2)),  c fastest_consistent for c
+///   with the consistent mass and the density of cells;
 /// after the first step without the sound of the gas when the pressure is implicit; with viscosity
 /// nu also dt <= 1/(4 nu (1/dx^2 + 1/dz^2)); at most sqrt(cfl dx/g), in which a fluid at rest begins
 /// to move, cfl/sqrt(trap), and 1.2 times the last step
@@ -139,7 +144,10 @@ inline double step_allowed(const Problem& problem, const Mesh& mesh, double last
     const Cells& c = mesh.cells;
     const bool plane = is_plane(grid), no_sound = problem.scheme.implicit && last > 0;
     const double per_dx = 1 / grid.x.spacing(), per_dz = plane ? 1 / grid.z.spacing() : 0;
-    const double per_dx2 = per_dx * per_dx + per_dz * per_dz;
+    const double per_dx2 = per_dx * per_dx + per_dz * per_dz,
+                 faster = problem.scheme.consistent_mass && !problem.scheme.particle_volumes
+                              ? fastest_consistent
+                              : 1;
     std::vector<double> of_row(grid.z.cells, 0.0);
     common::for_each_row(
         grid.z.cells,
@@ -157,7 +165,7 @@ inline double step_allowed(const Problem& problem, const Mesh& mesh, double last
                 const double sound =
                     c.surface[n] != 0 || no_sound
                         ? 0
-                        : sound_speed(rho, c.compressibility[n]) * std::sqrt(per_dx2);
+                        : faster * sound_speed(rho, c.compressibility[n]) * std::sqrt(per_dx2);
                 double rate = (vx * per_dx + vz * per_dz + sound) / limits.cfl;
                 if (problem.viscosity > 0)
                     rate = std::max(rate, 4 * problem.viscosity / rho * per_dx2);

@@ -14,6 +14,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <vector>
 
 #include "common/parallel.hpp"
@@ -25,12 +26,12 @@ namespace flip {
 using Four = Eigen::Array4d;
 
 /// What the particles of one material bring to a cell: mass and internal energy, and where they carry
-/// volumes compliance C = V_p/K_p and its product with p_p.
+/// volumes C, weight_in_cell(), and its products with p_p and with K_p.
 struct CellSum {
     double M = 0, U = 0;
 };
 struct SoftSum {
-    double C = 0, Cp = 0;
+    double C = 0, Cp = 0, CK = 0;
 };
 
 /// A symmetric tensor of a cell: xx, zz, xz, and around the axis.
@@ -69,11 +70,12 @@ struct Cells {
     Field p_step;                     // the pressure that acts in this step
     std::vector<char> surface;        // 1: partly void, p = 0 whatever happens
     std::vector<double> V_of_column;  // the volume that the lattice of the start fills in a cell
-    // Only where particles carry volumes: sums of V_p and V_p/K_p; V_c div v dt, and its work, per
-    // compliance; room for gas; per material, pressure above that of the cell.
-    Field volume, compliance, strain, work, q_work, room;
+    // Only where particles carry volumes: sums of V_p and C; V_c div v dt, and its work, per C; room for
+    // gas; per material, pressure above that of the cell.
+    Field volume, C, strain, work, q_work, room;
     std::vector<SoftSum> soft;
     std::vector<double> excess;
+    bool one_fluid = false;  // explicit, and all materials have one equation of state
 };
 
 /// The scratch pad.
@@ -124,9 +126,14 @@ inline Mesh mesh_of(const Problem& problem) {
     for (Field* f : {&c.M, &c.p, &c.compressibility, &c.p_step}) f->setZero(size);
     c.q.assign(size, {});
     if (scheme.particle_volumes) {
-        for (Field* f : {&c.volume, &c.compliance, &c.strain, &c.work, &c.q_work, &c.room})
-            f->setZero(size);
+        for (Field* f : {&c.volume, &c.C, &c.strain, &c.work, &c.q_work, &c.room}) f->setZero(size);
         c.soft.assign(size * mesh.materials, {});
+        const Material& first = problem.materials.front();
+        c.one_fluid =
+            !scheme.implicit &&
+            std::all_of(problem.materials.begin(), problem.materials.end(), [&](const Material& a) {
+                return a.gamma == first.gamma && a.p_infinity == first.p_infinity;
+            });
         c.excess.assign(size * mesh.materials, 0);
     }
     return mesh;

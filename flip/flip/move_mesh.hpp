@@ -68,8 +68,10 @@ inline void add_external_work(const Problem& problem, double dt, const Nodes& g,
 ///   relative_de_ck = -dt share_ck p V div v_work / U_ck,   de_ck = share_ck (rest of dE_c) / M_ck
 ///   dissipated_g = |v^0 - v|^2/2                      of what walls stop, or with the consistent
 ///                                                     mass (v^0 - v) M (v^0 - v)/(2 m_g)
-///          + (theta - 1/2) dt F_g . (v^L - v^0)/m_g   of an implicit pressure, v_work = v^theta
+///          + (level - 1/2) dt F_g . (v^L - v^0)/m_g   of pressure, v_work = v^0 + level (v^L - v^0)
 ///          + |v^L - v|^2/2                            that the lumped mass owes the particles
+/// level is theta of an implicit pressure, 1/2 of an explicit one, and 1 with the consistent mass:
+/// it would not damp the shortest sound, which work at v_bar makes grow
 /// in:     v, v^0, v^L; p_step, q; forces
 /// out:    cells.de, relative_de, and with volumes strain, work, q_work; nodes.increment, dissipated;
 ///         budget
@@ -79,8 +81,9 @@ inline void work_on_cells(const Problem& problem, double dt, Mesh& mesh, Budget&
     const Grid& grid = problem.grid;
     Nodes& g = mesh.nodes;
     Cells& c = mesh.cells;
-    const bool implicit = problem.scheme.implicit;
-    const double theta = problem.scheme.theta, level = implicit ? theta : 0.5;
+    const bool implicit = problem.scheme.implicit,
+               late = implicit || problem.scheme.consistent_mass;
+    const double level = implicit ? problem.scheme.theta : late ? 1 : 0.5;
     const Field& move_x = implicit ? g.vx_work : g.vxL;
     const Field& move_z = implicit ? g.vz_work : g.vzL;
 
@@ -94,9 +97,9 @@ inline void work_on_cells(const Problem& problem, double dt, Mesh& mesh, Budget&
         g.dissipated[n] = g.wall_dissipation.size() > 0 ? g.wall_dissipation[n]
                                                         : 0.5 * (stop_x * stop_x + stop_z * stop_z);
         if (problem.scheme.transfer.dissipates) g.dissipated[n] += 0.5 * (dvx * dvx + dvz * dvz);
-        if (implicit && g.m[n] > 0) {
+        if (late && g.m[n] > 0) {
             const Eigen::Vector2d F = pressure_force(grid, c.p_step, n);
-            g.dissipated[n] += (theta - 0.5) * dt / g.m[n] *
+            g.dissipated[n] += (level - 0.5) * dt / g.m[n] *
                                (F[0] * (g.vxL[n] - g.vx0[n]) + F[1] * (g.vzL[n] - g.vz0[n]));
         }
         g.increment[n] = g.m[n] > 0 ? Four(dvx, dvz, move_x[n], move_z[n]) : Four::Zero();
@@ -115,11 +118,11 @@ inline void work_on_cells(const Problem& problem, double dt, Mesh& mesh, Budget&
                         : 0;
         if (volumes) {
             // Particles know their own pressure; the viscous heat goes by mass.
-            const bool yields = c.surface[n] == 0 && c.compliance[n] > 0;
-            const double per_compliance = yields ? dt / c.compliance[n] : 0;
-            c.strain[n] = per_compliance * dilation(grid, move_x, move_z, n);
-            c.work[n] = per_compliance * work;
-            c.q_work[n] = per_compliance * (q_power + (c.p_step[n] - c.p[n]) * work);
+            const bool yields = c.surface[n] == 0 && c.C[n] > 0;
+            const double per_C = yields ? dt / c.C[n] : 0;
+            c.strain[n] = per_C * dilation(grid, move_x, move_z, n);
+            c.work[n] = per_C * work;
+            c.q_work[n] = per_C * (q_power + (c.p_step[n] - c.p[n]) * work);
         } else {
             adiabatic = -dt * c.p_step[n] * work;
             dE -= dt * q_power;

@@ -27,20 +27,21 @@ inline constexpr double relaxation = 0.5;
 // the room in its cell, at constant energy: volumes follow the pressure, and where they have drifted
 // from the places of the particles, nothing else would bring them back.
 //   V_p *= growth_of_volume(s) (1 + filling sum_c R room_c)
-//   s = sum_c R (strain_c + relaxation excess_kc)/K_p,  excess of find_pressure()
+//   s = (C_p/V_p) sum_c R (strain_c + relaxation excess_kc),  C_p of weight_in_cell(), excess of
+//   find_pressure()
 // in: cells.strain, work, q_work, excess, p, room; in/out: V_p
 inline double work_on_volume(const Problem& problem, const WeightScale& scale, const Weights& at,
                              const Cells& cells, long k, Particles& p) {
     const long count = static_cast<long>(problem.materials.size()), material = p.material[k];
     const Material& a = problem.materials[material];
     const double V = p.V_p[k], p_p = pressure(a, p.m_p[k] / V, p.e_p[k]);
-    const double V_per_K = compliance(a, V, p_p);
+    const double C = weight_in_cell(a, V, p_p, cells.one_fluid);
     double strain = 0, work = 0, room = 0;
     for_cells(scale, at, [&](long c, double R) {
         strain += R * cells.strain[c];
         work += R * (p_p * cells.work[c] + cells.q_work[c]);
     });
-    if (count > 1)
+    if (!cells.one_fluid)
         for_cells(scale, at, [&](long c, double R) {
             const double push = R * relaxation * cells.excess[c * count + material];
             strain += push;
@@ -48,8 +49,8 @@ inline double work_on_volume(const Problem& problem, const WeightScale& scale, c
         });
     if (a.p_infinity == 0 && (count > 1 || problem.scheme.confined))
         for_cells(scale, at, [&](long c, double R) { room += R * cells.room[c]; });
-    p.V_p[k] *= growth_of_volume(V_per_K * strain / V) * (1 + problem.scheme.filling * room);
-    return -V_per_K * work / p.m_p[k];
+    p.V_p[k] *= growth_of_volume(C * strain / V) * (1 + problem.scheme.filling * room);
+    return -C * work / p.m_p[k];
 }
 
 // [conservative]

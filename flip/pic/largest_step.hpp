@@ -39,7 +39,7 @@ struct CellAcceleration {
 /// The state of every cell: how its materials share it, their common pressure, the speed of sound.
 ///   c^2 = 1/(rho compressibility);  of a cell with a free surface, that of the material in it
 /// in:     masses of the cells and what the state knows of them
-/// out:    mass, per_mass, filled, p, c, share, v, with ghosts
+/// out:    mass, per_mass, rho, filled, p, c, share, v, with ghosts
 inline void find_pressure(const Problem& problem, const State& state, PicCells& cells) {
     const Grid& grid = problem.grid;
     const std::vector<Material>& materials = problem.materials;
@@ -65,6 +65,7 @@ inline void find_pressure(const Problem& problem, const State& state, PicCells& 
             }
             cells.mass[n] = mass;
             cells.per_mass[n] = mass > 0 ? 1 / mass : 0.0;
+            cells.rho[n] = mass / V;
             cells.filled[n] = mass > 0 ? 1 : 0;
             cells.p[n] = cell.p;
             cells.c[n] = cell.compressibility > 0
@@ -78,13 +79,12 @@ inline void find_pressure(const Problem& problem, const State& state, PicCells& 
 
 namespace detail {
 
-// The largest of what of_cell(n, place of its column in cells.ring) says.
+// The largest of what of_cell(n) says.
 template <class OfCell>
 double largest_over_cells(const Grid& grid, PicCells& cells, const OfCell& of_cell) {
     for_each_row_of_cells(grid, [&](long j) {
         double most = 0;
-        for (long i = 0; i < grid.x.cells; ++i)
-            most = std::max(most, of_cell(grid.index(i, j), i + 1));
+        for (long i = 0; i < grid.x.cells; ++i) most = std::max(most, of_cell(grid.index(i, j)));
         cells.row[j] = most;
     });
     return *std::max_element(cells.row.begin(), cells.row.end());
@@ -95,45 +95,41 @@ double largest_over_cells(const Grid& grid, PicCells& cells, const OfCell& of_ce
 inline double rate_of_signals(const Grid& grid, PicCells& cells) {
     const bool plane = is_plane(grid);
     const double per_dx = 1 / grid.x.spacing(), per_dz = plane ? 1 / grid.z.spacing() : 0.0,
-                 both = std::sqrt(per_dx * per_dx + per_dz * per_dz), area = grid.cell_area();
+                 both = std::sqrt(per_dx * per_dx + per_dz * per_dz);
     const long stride = grid.stride();
     const Field &p = cells.p, &c = cells.c, &filled = cells.filled;
-    return largest_over_cells(grid, cells, [&](long n, long column) {
+    return largest_over_cells(grid, cells, [&](long n) {
         const CellVelocity& v = cells.v[n];
         double P = 0;
         const auto face = [&](long m) { P = std::max(P, filled[m] * 0.5 * (p[n] + p[m])); };
         face(n - 1), face(n + 1);
         if (plane) face(n - stride), face(n + stride);
-        const double c2 = std::max(c[n] * c[n], P * area * cells.ring[column] * cells.per_mass[n]);
+        const double c2 = std::max(c[n] * c[n], filled[n] * P / (cells.rho[n] + 1e-300));
         return filled[n] *
                (std::fabs(v.x) * per_dx + std::fabs(v.z) * per_dz + std::sqrt(c2) * both);
     });
 }
 
-// Rate at which viscosity takes away differences of velocity, all faces of a cell together.
+// Rate at which viscosity takes away differences of velocity, all faces of a cell together: at a face
+// q (1/rho + 1/rho_beyond)/(-du dx), whose harmonic mean of densities cancels.
 inline double rate_of_viscosity(const Grid& grid, const ArtificialViscosity& viscosity,
                                 PicCells& cells) {
-    const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing(),
-                 area = grid.cell_area();
+    const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing();
     const long stride = grid.stride();
-    const Field &mass = cells.mass, &per_mass = cells.per_mass, &c = cells.c;
+    const Field& c = cells.c;
     const std::vector<CellVelocity>& v = cells.v;
-    const std::vector<double>&ring = cells.ring, &per_ring = cells.per_ring;
-    return largest_over_cells(grid, cells, [&](long n, long column) {
+    return largest_over_cells(grid, cells, [&](long n) {
         double rate = 0;
-        const auto face = [&](long m, long beside, double du, double per_distance) {
-            if (!(du < 0)) return;
-            const double one = mass[n] * per_ring[column], other = mass[m] * per_ring[beside],
-                         slope = viscosity.slope(2 * one * other / (area * (one + other + 1e-300)),
-                                                 0.5 * (c[n] + c[m]), du);
-            rate += cells.filled[m] * slope * area *
-                    (per_mass[n] * ring[column] + per_mass[m] * ring[beside]) * per_distance;
+        const auto face = [&](long m, double du, double per_distance) {
+            if (du < 0)
+                rate += 2 * cells.filled[m] * viscosity.slope(1, 0.5 * (c[n] + c[m]), du) *
+                        per_distance;
         };
-        face(n + 1, column + 1, v[n + 1].x - v[n].x, per_dx);
-        face(n - 1, column - 1, v[n].x - v[n - 1].x, per_dx);
+        face(n + 1, v[n + 1].x - v[n].x, per_dx);
+        face(n - 1, v[n].x - v[n - 1].x, per_dx);
         if (is_plane(grid)) {
-            face(n + stride, column, v[n + stride].z - v[n].z, per_dz);
-            face(n - stride, column, v[n].z - v[n - stride].z, per_dz);
+            face(n + stride, v[n + stride].z - v[n].z, per_dz);
+            face(n - stride, v[n].z - v[n - stride].z, per_dz);
         }
         return cells.filled[n] * rate;
     });

@@ -27,8 +27,9 @@ struct CellVelocity {
 /// The scratch pad. Of several materials, those of one cell lie together: [cell * materials + k].
 struct PicCells {
     long materials = 1;
+    bool falls = false;                  // gravity acts
     std::vector<double> M;               // mass of each material
-    Field mass, per_mass;                // of all; 1/mass, 0 in an empty cell
+    Field mass, per_mass, rho;           // of all; 1/mass, 0 in an empty cell; density
     Field filled;                        // 1, or 0 in an empty cell
     Field p, c;                          // pressure, speed of sound
     std::vector<double> share;           // of the work of the pressure, that each material takes
@@ -44,9 +45,11 @@ struct PicCells {
     SortScratch sort;
 
     explicit PicCells(const Problem& problem)
-        : materials(static_cast<long>(problem.materials.size())) {
+        : materials(static_cast<long>(problem.materials.size())),
+          falls(problem.body_force.gravity_x != 0 || problem.body_force.gravity_z != 0) {
         const Grid& grid = problem.grid;
-        for (Field* f : {&mass, &per_mass, &filled, &p, &c, &q_x, &q_z}) f->setZero(grid.size());
+        for (Field* f : {&mass, &per_mass, &rho, &filled, &p, &c, &q_x, &q_z})
+            f->setZero(grid.size());
         ring.assign(grid.x.cells + 2, 1.0);
         for (long i = 0; i < grid.x.cells; ++i)
             ring[i + 1] = ring_length(grid, static_cast<double>(i) + 0.5);
@@ -121,12 +124,14 @@ inline void fill_ghosts(const Grid& grid, const Boundaries& boundaries, PicCells
                    inflow = boundaries.is(side, BoundaryKind::inflow);
         const double outside_pressure = boundaries.side[side].pressure;
         for_each_ghost(grid, side, [&](long ghost, long inside) {
-            for (Field* f : {&cells.mass, &cells.per_mass, &cells.filled, &cells.p, &cells.c})
+            for (Field* f :
+                 {&cells.mass, &cells.per_mass, &cells.rho, &cells.filled, &cells.p, &cells.c})
                 (*f)[ghost] = (*f)[inside];
             if (open) cells.p[ghost] = 2 * outside_pressure - cells.p[inside];
             if (!inflow) return;
             cells.mass[ghost] = in.rho * V * cells.ring[column_of(grid, ghost) + 1];
             cells.per_mass[ghost] = 1 / cells.mass[ghost];
+            cells.rho[ghost] = in.rho;
             cells.filled[ghost] = 1;
             cells.p[ghost] = in.p;
             cells.c[ghost] = in.c;

@@ -43,7 +43,7 @@ inline Field change_to_balance(const Problem& problem, Mesh& mesh) {
 }
 
 // The changes dp_p = sum_c R P_c of the particles' pressures that change those of the cells, which
-// are means with the weights w_p = -dV_p/dp, by a given amount.
+// are means with the weights w_p, by a given amount.
 //   sum_p R w_p dp_p = amount_c sum_p R w_p
 inline std::vector<double> particle_changes(const Problem& problem, const Particles& particles,
                                             const std::vector<double>& V_p, const Cells& c,
@@ -73,7 +73,8 @@ inline std::vector<double> particle_changes(const Problem& problem, const Partic
     for (long k = 0; k < count; ++k) {
         const Material& a = problem.materials[particles.material[k]];
         const double p = pressure(a, particles.m_p[k] / V_p[k], particles.e_p[k]);
-        w[k] = volumes ? compliance(a, V_p[k], p) : V_p[k] / (p + a.gamma * a.p_infinity);
+        w[k] = volumes ? weight_in_cell(a, V_p[k], p, c.one_fluid)
+                       : V_p[k] / (p + a.gamma * a.p_infinity);
         if (a.gamma == 1 || !std::isfinite(w[k])) w[k] = 0;
     }
     const Field W = deposit([&](long k) { return w[k]; });

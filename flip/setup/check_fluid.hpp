@@ -83,6 +83,9 @@ inline void refuse_boundaries(const Case& parameters) {
         if (end.kind != "inflow") continue;
         has_inflow = true;
         const double v = k < z_low ? end.inflow.velocity_x : end.inflow.velocity_z;
+        refuse(end.inflow.material.empty() && parameters.materials.size() > 1, "inflow.", name,
+               " has no material, and there are ", parameters.materials.size(), ": give inflow.",
+               name, ".material one of ", list_of_materials(parameters));
         refuse(material_index(parameters, end.inflow.material) < 0, "inflow.material = \"",
                end.inflow.material, "\" is none of ", list_of_materials(parameters));
         refuse_extreme("inflow." + name, end.inflow);

@@ -15,7 +15,8 @@ template <class Gas>
 void describe_gas(common::ParameterTable& table, const std::string& prefix, Gas& g,
                   bool may_be_vacuum) {
     using common::anything, common::above, common::at_least;
-    table.text(prefix + ".material", g.material, "which material; empty: the first");
+    table.text(prefix + ".material", g.material,
+               "which material; empty: the first; of an inflow, the only one");
     table.real(prefix + ".density", g.density, "mass/length^3",
                may_be_vacuum ? at_least(0) : above(0),
                may_be_vacuum ? "density; the number 0: a vacuum" : "density");

@@ -55,6 +55,12 @@ inline Case completed(Case parameters) {
                in.pressure.value_or(gas.pressure), in.velocity_x.value_or(gas.velocity_x),
                in.velocity_z.value_or(gas.velocity_z)};
     }
+    // Of a tube with two gases the end brings its own.
+    for (const Side s : {x_low, x_high}) {
+        std::string& material = parameters.boundaries[s].inflow.material;
+        if (parameters.setup == "riemann" && material.empty())
+            material = s == x_low ? "left" : "right";
+    }
     for (RegionCase& r : parameters.regions)
         for (common::Formula* f :
              {&r.gas.density, &r.gas.pressure, &r.gas.velocity_x, &r.gas.velocity_z})

@@ -88,7 +88,9 @@ inline Scales scales_of(const Case& parameters, const std::string& program = "fl
         s.regions.push_back({.name = r.name, .vacuum = r.is_vacuum()});
     const double per_dx = 1 / parameters.grid.x.spacing(),
                  per_dz = parameters.plane() ? 1 / parameters.grid.z.spacing() : 0;
-    const double both = std::hypot(per_dx, per_dz);
+    const bool faster =
+        program == "flip" && parameters.mass == "consistent" && parameters.density == "cells";
+    const double both = (faster ? fastest_consistent : 1) * std::hypot(per_dx, per_dz);
     const double place = parameters.grid.cell_area() /
                          static_cast<double>(parameters.per_cell_x * parameters.per_cell_z);
     for_each_place(parameters, [&](long n, const FluidState& fluid, double x, double,

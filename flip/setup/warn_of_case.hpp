@@ -15,7 +15,7 @@ namespace flip {
 namespace detail {
 
 inline void warn_of_regions(const Case& parameters, const Scales& scales,
-                            std::vector<std::string>& out) {
+                            const std::string& program, std::vector<std::string>& out) {
     for (const RegionScales& r : scales.regions)
         warn(out, r.particles == 0 && !r.vacuum, "region.", r.name,
              " contains no particle: it is outside the mesh, narrower than the distance between "
@@ -34,6 +34,14 @@ inline void warn_of_regions(const Case& parameters, const Scales& scales,
     warn(out, per_cell < 4, per_cell,
          " particles per cell are fewer than 4: a particle that leaves a cell takes ",
          100.0 / static_cast<double>(per_cell), " % of its density along");
+    const long across = parameters.plane() ? std::min(parameters.per_cell_x, parameters.per_cell_z)
+                                           : parameters.per_cell_x;
+    warn(out,
+         program == "flip" && parameters.mass == "consistent" && across < 3 &&
+             parameters.rezone_steps == 0,
+         "flip.mass = \"consistent\" with ", across,
+         " particles across a cell, below 3: where the flow draws them apart the mass matrix is "
+         "nearly singular, and cells burst; take 3, or rezone.steps = 20");
     warn(out, parameters.rezone_steps > 0 && per_cell > parameters.max_particles,
          "rezone.max_particles = ", parameters.max_particles, " is below the ", per_cell,
          " particles per cell of the start");
@@ -63,6 +71,22 @@ inline void warn_of_speeds(const Case& parameters, const Scales& scales, const s
          scales.mach,
          ", below 0.05: cells feel a particle only when it enters them, and what classical PIC "
          "makes of such a flow is noise; take flip");
+    for (const RegionCase& wave : parameters.regions) {
+        const double moved = particles_moved(parameters, wave);
+        warn(out, program == "pic" && wave.flow == "wave" && moved < enough_moved,
+             "the wave of region.", wave.name, " takes ", moved,
+             " particles across a border of cells, below ", enough_moved,
+             ": cells do not feel that density changes, and sound is too slow; raise its amplitude "
+             "above ",
+             std::fabs(wave.amplitude) * enough_moved / moved, ", or particles.per_cell_x");
+    }
+    const double grown =
+        parameters.compare != wave_comparison.name
+            ? 1
+            : std::pow(sound_wave_of(parameters, program, scales.dt).amplification, scales.steps);
+    warn(out, grown > 1.01, "explicit steps make sound grow, this wave by a factor ", grown,
+         " until time.end, and the comparison expects that: lower time.cfl, or take flip with "
+         "flip.mass = \"consistent\", whose sound does not");
     const RegionCase& r = parameters.regions.front();
     const double c = scales.regions.front().sound_speed,
                  M = c > 0 && !r.has_formula() ? std::fabs(r.gas.velocity_x) / c : 0;
@@ -121,7 +145,7 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
         warn(warnings, program == "pic" && a.tension > 0, "material.", a.name,
              ".tension = ", a.tension, " means nothing to pic, whose cells hold none");
     detail::warn_of_idleness(parameters, scales, warnings);
-    detail::warn_of_regions(parameters, scales, warnings);
+    detail::warn_of_regions(parameters, scales, program, warnings);
     detail::warn_of_speeds(parameters, scales, program, warnings);
     const Comparison& comparison = comparison_of(parameters);
     if (comparison.warn != nullptr) comparison.warn(parameters, warnings);

@@ -102,7 +102,7 @@ inline double growth_error(Times t, Amplitudes z, double expected) {
 inline std::string predict_growth(double growth) { return "growth rate " + format(growth); }
 
 /// Warns of a run shorter than one growth time, and of a mesh that is coarse for the wave.
-/// note:   an interface is smeared over a cell, which costs a rate 0.28 k dx of itself
+/// note:   an interface slips within a cell, which costs a rate 0.28 k dx of itself
 inline void warn_of_growth(const Case& parameters, double growth,
                            std::vector<std::string>& warnings) {
     const double cells =
@@ -114,9 +114,10 @@ inline void warn_of_growth(const Case& parameters, double growth,
          " in which the wave grows by e: its growth cannot be measured well");
 }
 
-/// The growth from the start on, while the mode is smaller than `most`.
+/// The growth from the start on, while the mode is smaller than `most`; and beside that of theory on
+/// the mesh, where it is known, else 0.
 inline void compare_growth(const FinishedRun& run, double expected, double most,
-                           const std::string& source) {
+                           const std::string& source, double on_mesh = 0) {
     const auto times = run.history.column("time");
     const std::vector<std::complex<double>> mode = mode_column(run.history, "mode");
     std::size_t count = 0;
@@ -148,6 +149,11 @@ inline void compare_growth(const FinishedRun& run, double expected, double most,
     run.summary.result(name, {rate.value / expected, rate.error / expected}, "", 1,
                        run.parameters.theory_tolerance,
                        where + "; error from the first and the last three quarters");
+    if (on_mesh > 0)
+        run.summary.result("growth_over_mesh", {rate.value / on_mesh, rate.error / on_mesh}, "", 1,
+                           0.4 * run.parameters.theory_tolerance,
+                           sentence("theory of this mesh and its masses, ", on_mesh / expected,
+                                    " of that of the fluids"));
     run.info("fit_misfit", fit.misfit, "", "what is no sum of a growing and a decaying wave, rms");
     run.info("e_foldings", expected * t.back(), "", "within the fit");
 }
@@ -191,8 +197,17 @@ inline void track_interface(const Snapshot& now, common::Row& row) {
 
 /// The growth of the interface while its crests are lower than 0.3/k.
 inline void compare_interface(const FinishedRun& run) {
-    compare_growth(run, interface_growth_of(run.parameters),
-                   0.3 / tracked_wave_number(run.parameters), "two layers between walls");
+    const Case& w = run.parameters;
+    const theory::TwoLayers layers = layers_of(w);
+    const double k = tracked_wave_number(w), dz = w.grid.z.spacing(),
+                 rows = layers.lower_depth / dz;
+    const bool known = run.program == "flip" && w.transfer == "flip" && w.density == "particles" &&
+                       !w.implicit() && w.grid.z.cells <= 1024 &&
+                       std::fabs(rows - std::round(rows)) < 1e-6;
+    compare_growth(run, interface_growth_of(w), 0.3 / k, "two layers between walls",
+                   known ? theory::interface_growth_on_mesh(layers, k, w.grid.x.spacing(), dz,
+                                                            w.mass == "consistent")
+                         : 0);
 }
 
 /// Needs a layer of shear half-way between walls, in which the mode grows.

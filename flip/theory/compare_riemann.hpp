@@ -272,7 +272,9 @@ inline void compare_riemann(const FinishedRun& run) {
                                  ", its level: refine the mesh, or raise time.end");
             else
                 judge_place(wave.side + name, found, expected, shift * dx,
-                            std::fabs(expected - parameters.interface - wave.contact * t), source);
+                            std::fabs(expected - parameters.interface - wave.contact * t),
+                            sentence(source, "; where ", 100 * part,
+                                     " % of the change of pressure is done"));
         }
     }
     if (exact.has_void) {

@@ -73,10 +73,10 @@ inline std::string predict_sedov(const Case& parameters, const std::string&, dou
 
 /// Warns of what keeps hot gas from pushing cold gas.
 inline void warn_of_sedov(const Case& parameters, std::vector<std::string>& warnings) {
-    warn(
-        warnings, parameters.density == "particles",
-        "flip.density = \"particles\" is for slow flow: where hot and cold particles share a cell, "
-        "it has the pressure of the cold ones, and a blast does not start; take \"cells\"");
+    warn(warnings, parameters.density == "particles",
+         "flip.density = \"particles\" is for slow flow: it makes this blast some per cent too "
+         "small; "
+         "take \"cells\"");
 }
 
 /// The outer radius at which the density is half-way to its peak.

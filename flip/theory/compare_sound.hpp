@@ -41,6 +41,8 @@ inline SoundWave sound_wave_of(const Case& parameters, const std::string& progra
             part.kept = 1 - std::pow(lost, static_cast<double>(parameters.xpic_order));
         // A particle of apic hands both nodes of its row what it has from them.
         if (parameters.transfer == "apic") part.increment = 1;
+        if (parameters.mass == "consistent")
+            part.increment = 1, part.response = 1 / once, part.level = 1;
         // Motion changes the mass in a cell by what crosses its ends, with the velocity around them.
         part.density = parameters.density == "cells" ? 1 - 0.75 * lost : once;
     }
@@ -48,6 +50,17 @@ inline SoundWave sound_wave_of(const Case& parameters, const std::string& progra
         theory::carried_factor(parameters.implicit() ? parameters.theta : -1, gamma, a, part);
     return {c * k, std::arg(factor), std::abs(factor)};
 }
+
+/// How many particles a sound wave takes across a border of cells: its displacement, amplitude/k, over
+/// the distance of particles. Where that is below 1/2 no cell of pic gains or loses one.
+inline double particles_moved(const Case& parameters, const RegionCase& r) {
+    return std::fabs(r.amplitude) *
+           static_cast<double>(parameters.grid.x.cells * parameters.per_cell_x) /
+           (2 * pi * static_cast<double>(r.mode));
+}
+
+/// How many it has to take for a frequency within two per cent.
+inline constexpr double enough_moved = 2;
 
 /// Needs a single region of gas with a sound wave whose mode is tracked.
 inline void validate_wave(const Case& parameters, const Refusal& refuse) {
@@ -65,8 +78,8 @@ inline void validate_wave(const Case& parameters, const Refusal& refuse) {
 /// The period, and the factor by which a step multiplies the wave.
 inline std::string predict_wave(const Case& parameters, const std::string& program, double dt) {
     const SoundWave s = sound_wave_of(parameters, program, dt);
-    return sentence("period ", 2 * pi / s.frequency, "; a step of ", dt, " multiplies the wave by ",
-                    s.amplification);
+    return sentence("period ", 2 * pi / s.frequency, "; a step of ", dt,
+                    " multiplies the wave by 1 + ", s.amplification - 1);
 }
 
 /// Warns of a run shorter than one period.
@@ -118,16 +131,28 @@ inline void compare_wave(const FinishedRun& run) {
     const auto per_period = [&](const Spiral& mode) {
         return std::exp(slope(times, mode.log_size) * period);
     };
-    const std::string scheme =
-        parameters.implicit() ? "theta scheme" : "explicit step: density follows the new velocity";
+    const std::string scheme = parameters.implicit() ? "theta scheme"
+                               : wave.amplification > 1 + 1e-12
+                                   ? "explicit step, which makes sound grow"
+                                   : "explicit step";
     run.info("frequency", frequency, "1/time", "of velocity");
-    const double cells =
-        static_cast<double>(parameters.grid.x.cells) / static_cast<double>(parameters.mode);
-    run.hint("the theory is of a weak wave without viscosity on many particles, and this one has ",
-             cells, " cells, ", steps, " steps in a period and ", times.back() / period,
-             " periods: below 16, 8 or 1 refine the mesh, shorten time.dt or raise time.end; else "
-             "set viscosity.linear = viscosity.quadratic = flip.viscosity = 0, or lower the "
-             "amplitude");
+    const RegionCase& r = region_with_flow(parameters, "wave");
+    const double cells = static_cast<double>(parameters.grid.x.cells) /
+                         static_cast<double>(parameters.mode),
+                 moved = particles_moved(parameters, r);
+    if (run.program == "pic" && moved < enough_moved)
+        run.hint("the wave takes ", moved, " particles across a border of cells, below ",
+                 enough_moved, ", and cells of pic feel no other motion: raise region.", r.name,
+                 ".amplitude to ", std::fabs(r.amplitude) * enough_moved / moved,
+                 ", or particles.per_cell_x");
+    else
+        run.hint(
+            "the theory is of a weak wave without viscosity on many particles, and this one has ",
+            cells, " cells, ", steps, " steps in a period and ", times.back() / period,
+            " periods: below 16, 8 or 1 refine the mesh, shorten time.dt or raise time.end; else "
+            "set viscosity.linear = viscosity.quadratic = flip.viscosity = 0, or lower the "
+            "amplitude: its crests are shocks after ",
+            1 / (pi * (material_of(parameters, r).gamma + 1) * std::fabs(r.amplitude)), " periods");
     run.info("theory_frequency", wave.frequency, "1/time", "c k");
     run.result("frequency_over_ck", frequency / wave.frequency, "",
                wave.phase / (wave.frequency * dt), scheme);
@@ -136,7 +161,7 @@ inline void compare_wave(const FinishedRun& run) {
     else
         run.absolute_result("amplitude_per_period", per_period(velocity), "",
                             std::pow(wave.amplification, steps),
-                            scheme + "; factor per step " + format(wave.amplification));
+                            sentence(scheme, "; in a step 1 + ", wave.amplification - 1));
     run.info("pressure_amplitude_per_period", per_period(pressure), "", "measured");
     run.info("periods", times.back() / period, "", "of c k");
 }
