@@ -9,8 +9,8 @@
 // has the full one.
 //
 // The basis of K_k is orthonormalized by classical Gram-Schmidt, done twice, which is as stable as
-// the modified form and runs at the speed of matrix-vector products. Nothing here is threaded, so
-// the result does not depend on the number of threads.
+// the modified form and runs at the speed of matrix-vector products. Sums over rows are taken in pieces
+// that the length of a vector fixes, so that the result does not depend on the number of threads.
 #pragma once
 
 #include <Eigen/Dense>
@@ -19,6 +19,8 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+
+#include "common/parallel.hpp"
 
 namespace common {
 
@@ -36,7 +38,8 @@ struct GmresWorkspace {
     Eigen::MatrixXd hessenberg;      // A M^-1 V_k = V_k+1 H, turned into triangular R as it grows
     Eigen::VectorXd cosine, sine;    // the rotations that make H triangular
     Eigen::VectorXd projected;  // rotated right-hand side |r| e_1; its last entry is the residual
-    Eigen::VectorXd y, overlap, correction;
+    Eigen::VectorXd y, overlap;
+    Eigen::MatrixXd partial;  // sums over the rows of a piece, one per column
     Eigen::VectorXd r, w, z, x_before;
     double operator_size = 0.0;  // largest |A M^-1 v| seen for a unit vector v
 };
@@ -63,32 +66,45 @@ inline void prepare(GmresWorkspace& work, Eigen::Index n, int restart) {
     work.preconditioned.resize(n, restart);
     work.hessenberg.resize(restart + 1, restart);
     for (auto* v : {&work.cosine, &work.sine, &work.y}) v->resize(restart);
-    for (auto* v : {&work.projected, &work.overlap, &work.correction}) v->resize(restart + 1);
+    work.projected.resize(restart + 1);
     for (auto* v : {&work.r, &work.w, &work.z, &work.x_before}) v->resize(n);
     work.operator_size = 0.0;
+}
+
+/// Calls work(part, row, rows) for all parts of a vector of n rows.
+constexpr Eigen::Index part_rows = 2048;
+template <class Work>
+void for_each_part(Eigen::Index n, const Work& work) {
+    for_each_piece((n + part_rows - 1) / part_rows,
+                   [&](long k) { work(k, k * part_rows, std::min(part_rows, n - k * part_rows)); },
+                   n);
 }
 
 /// Takes out of w its part in the span of the first k basis vectors, twice.
 ///   h = V^T w;  w <- w - V h;  h' = V^T w;  w <- w - V h'
 /// in:    work.basis (n x k used), work.w
 /// out:   work.w orthogonal to the basis; work.overlap = h + h'
-/// note:  rows are taken in blocks that stay in the cache between w <- w - V h and h' = V^T w.
 inline void orthogonalize(GmresWorkspace& work, Eigen::Index k) {
     constexpr Eigen::Index block = 512;
     const Eigen::Index n = work.w.size();
-    auto h = work.overlap.head(k);
-    auto again = work.correction.head(k);
-    h.noalias() = work.basis.leftCols(k).transpose() * work.w;
-    again.setZero();
-    for (Eigen::Index row = 0; row < n; row += block) {
-        const Eigen::Index rows = std::min(block, n - row);
-        const auto V = work.basis.block(row, 0, rows, k);
-        auto w = work.w.segment(row, rows);
-        w.noalias() -= V * h;
-        again.noalias() += V.transpose() * w;
-    }
-    work.w.noalias() -= work.basis.leftCols(k) * again;
-    h += again;
+    work.partial.setZero(k, n / part_rows + 1);
+    // Takes V h from w, where there is an h, and adds up V^T w, where that is asked for.
+    const auto sweep = [&](const Eigen::VectorXd* h, bool sums) -> Eigen::VectorXd {
+        for_each_part(n, [&](long part, Eigen::Index first, Eigen::Index size) {
+            auto sum = work.partial.col(part);
+            sum.setZero();
+            for (Eigen::Index row = first; row < first + size; row += block) {
+                const auto V = work.basis.block(row, 0, std::min(block, first + size - row), k);
+                auto w = work.w.segment(row, V.rows());
+                if (h != nullptr) w.noalias() -= V * *h;
+                if (sums) sum.noalias() += V.transpose() * w;
+            }
+        });
+        return work.partial.rowwise().sum();
+    };
+    const Eigen::VectorXd h = sweep(nullptr, true), again = sweep(&h, true);
+    sweep(&again, false);
+    work.overlap = h + again;
 }
 
 /// Makes column k of the Hessenberg matrix triangular, and rotates the right-hand side with it.
@@ -117,7 +133,9 @@ template <class Operator, class Preconditioner>
 Growth grow(const Operator& apply, const Preconditioner& precondition, GmresWorkspace& work,
             Eigen::Index k) {
     precondition(work.w, work.z);
-    work.preconditioned.col(k) = work.z;
+    for_each_part(work.z.size(), [&](long, Eigen::Index row, Eigen::Index rows) {
+        work.preconditioned.col(k).segment(row, rows) = work.z.segment(row, rows);
+    });
     apply(work.z, work.w);
     const double before = safe_norm(work.w);
     if (!std::isfinite(before)) return Growth::not_finite;
@@ -130,8 +148,10 @@ Growth grow(const Operator& apply, const Preconditioner& precondition, GmresWork
     rotate_column(work, k);
     if (!(work.hessenberg(k, k) > negligible * work.operator_size)) return Growth::dependent;
     if (length == 0.0) return Growth::complete;
-    work.w /= length;
-    work.basis.col(k + 1) = work.w;
+    for_each_part(work.w.size(), [&](long, Eigen::Index row, Eigen::Index rows) {
+        work.w.segment(row, rows) /= length;
+        work.basis.col(k + 1).segment(row, rows) = work.w.segment(row, rows);
+    });
     return Growth::grown;
 }
 
@@ -255,15 +275,6 @@ KrylovResult gmres(const Operator& apply, const Preconditioner& precondition,
     }
     if (!result.converged) result.reason = "the limit of iterations is reached";
     return result;
-}
-
-/// The same without a preconditioner and without a kept workspace.
-template <class Operator>
-KrylovResult gmres(const Operator& apply, const Eigen::VectorXd& b, Eigen::VectorXd& x,
-                   double tolerance, int max_iterations, int restart) {
-    GmresWorkspace work;
-    const auto leave = [](const Eigen::VectorXd& v, Eigen::VectorXd& w) { w = v; };
-    return gmres(apply, leave, b, x, tolerance, max_iterations, restart, work);
 }
 
 }  // namespace common

@@ -29,18 +29,45 @@ inline constexpr int block_count = 16;
 /// Loops over fewer numbers than this are over before another thread has woken up.
 inline constexpr long parallel_threshold = 4096;
 
-/// Calls work(block, begin, end) once for each of block_count contiguous pieces of [0, count).
+/// Calls work(row) for every row in [0, rows), those at the same time that are `colors` apart: a row that
+/// writes to what it shares with the next one (two colors), or to both its neighbors (three), then meets
+/// nobody else's writes, and every sum on the mesh is added in the same order whatever the number of threads.
 /// in: numbers, how many a loop works on, where it is known to be short
 /// errors: what one of the pieces throws, when all have ended
 template <class Work>
-void for_each_block(long count, const Work& work, long numbers = parallel_threshold) {
+void for_each_row_colored(long colors, long rows, const Work& work,
+                          long numbers = parallel_threshold) {
     std::exception_ptr thrown;
-#pragma omp parallel for schedule(dynamic, 1) if (numbers >= parallel_threshold)
-    for (int block = 0; block < block_count; ++block)
-        do_piece(thrown, [&] {
-            work(block, count * block / block_count, count * (block + 1) / block_count);
-        });
+#pragma omp parallel if (numbers >= parallel_threshold)
+    for (long color = 0; color < colors; ++color) {
+#pragma omp for schedule(dynamic, 1)
+        for (long row = color; row < rows; row += colors) do_piece(thrown, [&] { work(row); });
+    }
     if (thrown) std::rethrow_exception(thrown);
+}
+
+/// The same for rows that do not write to each other's data.
+template <class Work>
+void for_each_row(long rows, const Work& work, long numbers = parallel_threshold) {
+    for_each_row_colored(1, rows, work, numbers);
+}
+
+/// Calls work(piece) for every piece in [0, pieces); a thread takes neighboring pieces, and the same ones in
+/// every loop of as many: what they left in its cache is there when it comes back.
+template <class Work>
+void for_each_piece(long pieces, const Work& work, long numbers = parallel_threshold) {
+    std::exception_ptr thrown;
+#pragma omp parallel for schedule(static) if (numbers >= parallel_threshold)
+    for (long piece = 0; piece < pieces; ++piece) do_piece(thrown, [&] { work(piece); });
+    if (thrown) std::rethrow_exception(thrown);
+}
+
+/// Calls work(block, begin, end) once for each of block_count contiguous pieces of [0, count).
+template <class Work>
+void for_each_block(long count, const Work& work, long numbers = parallel_threshold) {
+    const auto first = [&](long block) { return count * block / block_count; };
+    for_each_row(
+        block_count, [&](long k) { work(int(k), first(k), first(k + 1)); }, numbers);
 }
 
 /// Sum of partial(begin, end) over the blocks of [0, count), added in block order.
@@ -54,43 +81,6 @@ double sum_over_blocks(long count, const Partial& partial, long numbers = parall
         },
         numbers);
     return std::accumulate(part.begin(), part.end(), 0.0);
-}
-
-/// Calls work(row) for every row in [0, rows); rows must not write to each other's data.
-/// in: numbers, as above
-template <class Work>
-void for_each_row(long rows, const Work& work, long numbers = parallel_threshold) {
-    std::exception_ptr thrown;
-#pragma omp parallel for schedule(dynamic, 1) if (numbers >= parallel_threshold)
-    for (long row = 0; row < rows; ++row) do_piece(thrown, [&] { work(row); });
-    if (thrown) std::rethrow_exception(thrown);
-}
-
-/// Calls work(row) for every row, rows three apart at the same time: a row that writes to itself
-/// and its two neighbors then meets nobody else's writes, and every sum on the mesh is added in
-/// the same order whatever the number of threads.
-template <class Work>
-void for_each_row_three_colors(long rows, const Work& work, long numbers = parallel_threshold) {
-    std::exception_ptr thrown;
-#pragma omp parallel if (numbers >= parallel_threshold)
-    for (long color = 0; color < 3; ++color) {
-#pragma omp for schedule(dynamic, 1)
-        for (long row = color; row < rows; row += 3) do_piece(thrown, [&] { work(row); });
-    }
-    if (thrown) std::rethrow_exception(thrown);
-}
-
-/// Calls work(row) for every row, first the even ones, then the odd ones: a row may write to what it
-/// shares with the next one, as long as it shares nothing with the next but one.
-template <class Work>
-void for_each_row_two_colors(long rows, const Work& work, long numbers = parallel_threshold) {
-    std::exception_ptr thrown;
-#pragma omp parallel if (numbers >= parallel_threshold)
-    for (long color = 0; color < 2; ++color) {
-#pragma omp for schedule(dynamic, 1)
-        for (long row = color; row < rows; row += 2) do_piece(thrown, [&] { work(row); });
-    }
-    if (thrown) std::rethrow_exception(thrown);
 }
 
 /// Threads that a parallel region will have.

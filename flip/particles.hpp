@@ -147,8 +147,8 @@ inline bool keep_in_rows(const Grid& grid, SortScratch& scratch, Particles& part
 template <class Work>
 void for_each_band(const Grid& grid, const Particles& particles, const Work& work) {
     const std::vector<int>& first = particles.first_of_row;
-    common::for_each_row_three_colors(
-        (grid.z.cells + 1) / 2,
+    common::for_each_row_colored(
+        3, (grid.z.cells + 1) / 2,
         [&](long band) { work(first[2 * band], first[std::min(2 * band + 2, grid.z.cells)]); },
         particles.count());
 }

@@ -3,6 +3,7 @@
 // `make bench` runs it.
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -82,6 +83,41 @@ void time_threads(const Case& parameters, const std::string& program, long steps
                 peak_memory() / 1048576);
 }
 
+// Prints what the field takes per node on finer meshes of the same box, by one thread and by two, with as many
+// particles in each cell.
+void time_field(Case parameters) {
+    std::printf("\nfield solve, response = %s, 12 particles per cell\n\n%12s %11s %25s %25s\n",
+                parameters.field.response.c_str(), "cells", "iterations", "us per node, one thread",
+                "two threads");
+    for (const long cells : {64L, 128L, 256L, 512L}) {
+        parameters.grid.x.cells = parameters.grid.z.cells = cells;
+        parameters.harris.particles = 12 * cells * cells;
+        State state = initial_state(parameters);
+        const auto charge_over_mass = state.plasma.charge_over_mass();
+        const long steps = std::max(4L, 40 * 64 / cells);
+        double iterations = 0;
+        std::printf("%5ld x %4ld", cells, cells);
+        for (const int threads : {1, 2}) {
+            common::set_thread_count(threads);
+            StepScratch scratch(parameters.grid, parameters.field, state.plasma.species.size());
+            common::StepClock clock;
+            iterations = 0;
+            for (long step = -2; step < steps; ++step) {  // two to begin with
+                if (step == 0) clock.restart(), iterations = 0;
+                find_moments(parameters.grid, parameters.dt, state.plasma.species, state.field,
+                             scratch, clock);
+                iterations +=
+                    take_step(parameters.grid, parameters.dt, parameters.mover, charge_over_mass,
+                              scratch, state.plasma.species, state.field, clock)
+                        .iterations;
+            }
+            if (threads == 1) std::printf(" %11.1f", iterations / double(steps));
+            std::printf(" %25.2f", 1e6 * clock.seconds("field") / double(steps * cells * cells));
+        }
+        std::printf("\n");
+    }
+}
+
 }  // namespace
 
 int main() {
@@ -107,6 +143,8 @@ int main() {
     };
     time_response("moments", 400, {"moments", "field", "mover", "sort"}, of_moments);
     time_response("mass_matrix", 200, {"moments", "mass", "field", "mover", "sort"}, of_mass);
+    w.field.response = "moments";
+    time_field(w);
     Case e;
     describe_explicit(e);
     time_threads(e, "explicit_em", 20, {"push", "field", "sort"}, of_push, leapfrog_state,

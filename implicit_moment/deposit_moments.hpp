@@ -104,7 +104,7 @@ inline void deposit(const Particles& particles, const Grid& grid, const Rotation
     // Per row of nodes: sums of v_x, v_y, v_z and v^2.
     std::vector<std::array<double, 4>> sums_of_row(nodes_z(grid));
 
-    common::for_each_row_three_colors(nodes_z(grid), [&](long row) {
+    common::for_each_row_colored(3, nodes_z(grid), [&](long row) {
         const double z_node = grid.z.at(double(row));
         SimdVector total_x{}, total_y{}, total_z{}, total_squared{};
         for (long column = 0; column < columns; ++column) {

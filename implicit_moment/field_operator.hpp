@@ -101,12 +101,12 @@ inline void apply_field_operator(FieldSolver& solver, double a, const Eigen::Vec
         fill_ghosts(grid, felt(grid), chi_E);
     }
     smooth(grid, felt(grid), smoothing, chi_E.all.data(), solver.scratch);
-    for (long k = 0; k < 3; ++k) {
-        const double *E_k = E.data() + k * grid.size(),
-                     *chi_E_k = chi_E.all.data() + k * grid.size();
-        double* out_k = out.data() + k * grid.size();
-        for_each_point(grid, [=](long n) { out_k[n] = E_k[n] + chi_E_k[n] + a * a * out_k[n]; });
-    }
+    const long m = grid.size();
+    const double *e = E.data(), *driven = chi_E.all.data();
+    double* sum = out.data();
+    for_each_point(grid, [=](long n) {
+        for (long k = n; k < n + 3 * m; k += m) sum[k] = e[k] + driven[k] + a * a * sum[k];
+    });
     keep_unknowns(grid, out.data());
 }
 

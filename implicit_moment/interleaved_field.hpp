@@ -57,7 +57,7 @@ inline void interleave_field(const Grid& grid, const SmoothingSettings& smoothin
                 interleaved[n] = {E_x[n], E_y[n], E_z[n], B_x[n], B_y[n], B_z[n]};
             }
         },
-        numbers_to_share(grid));
+        grid.size());
 }
 
 /// Fields at a particle that lies (d_x, d_z) cells from its nearest node, |d| <= 1/2.

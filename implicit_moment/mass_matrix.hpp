@@ -182,7 +182,7 @@ inline void deposit_mass_matrix(const std::vector<Particles>& species, const Gri
     mass.J_hat.all.setZero();
     double* J_hat = mass.J_hat.all.data();
 
-    common::for_each_row_three_colors(nodes_z(grid), [&](long row) {
+    common::for_each_row_colored(3, nodes_z(grid), [&](long row) {
         const double z_node = grid.z.at(double(row));
         detail::BlockFactors factors;
         for (long column = 0; column < nodes; ++column) {

@@ -82,7 +82,7 @@ inline void prepare_preconditioner(FieldSolver& solver, double a) {
                         inverse(k / 3, k % 3);
             }
         },
-        numbers_to_share(grid));
+        grid.size());
 }
 
 /// out = the inverse of the operator with uniform chi, applied to r: the preconditioner.

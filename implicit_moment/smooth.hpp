@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <utility>
+#include <vector>
 
 #include "common/parallel.hpp"
 #include "implicit_moment/vector_field.hpp"
@@ -19,47 +21,81 @@ struct SmoothingSettings {
 
 namespace detail {
 
-// One pass of (side, middle, side) in both directions, out of place: across the rows into the row
-// `across`, then along them.
-inline void stencil_rows(const Grid& grid, double side, double middle, const double* f,
-                         double* across, double* out) {
+// The interior point that a point of a row stands for, however far outside it is, and the sign of the image.
+struct Image {
+    long index;
+    int sign;
+};
+inline Image image(const common::Axis& axis, bool half, int parity, long i) {
+    const long n = axis.cells, period = axis.periodic ? n : 2 * n,
+               within = (i % period + period) % period;
+    if (axis.periodic || within < n || (within == n && !half)) return {within, 1};
+    return {2 * n - half - within, parity};
+}
+
+// One pass of (side, middle, side) in both directions over some rows of `from`, first across the rows and
+// then along them; their ghosts along x are filled.
+inline void smooth_rows(const Grid& grid, Place place, Parity parity, double side, double middle,
+                        long rows, const double* from, double* to) {
     const long s = grid.stride(), points = grid.x.cells + 1;
-    const double* a = across + 1;
-    for (long j = 0; j <= grid.z.cells; ++j) {
-        const double* row = f + grid.index(-1, j);
-        double* target = out + grid.index(0, j);
+    std::vector<double> room(std::size_t(grid.stride()));
+    double *across = room.data(), *a = across + 1;
+    for (long j = 0; j < rows; ++j) {
+        const double* row = from + j * s;
+        double* target = to + j * s + 1;
 #pragma omp simd
         for (long i = 0; i < points + 2; ++i)
             across[i] = middle * row[i] + side * (row[i - s] + row[i + s]);
 #pragma omp simd
         for (long i = 0; i < points; ++i) target[i] = middle * a[i] + side * (a[i - 1] + a[i + 1]);
+        common::ghosts_along(grid.x, place.half_x, parity.x, [&](long ghost, long of, int sign) {
+            target[ghost] = sign * target[of];
+        });
     }
 }
 
-// All passes over several quantities that are stored one behind the other, each on one thread: a
-// quantity stays in its cache, and no thread waits between passes. scratch holds a copy and a row of
-// each quantity.
+// All passes over several quantities that are stored one behind the other. A piece is a band of rows with as
+// many beyond as the passes reach, or their images behind the ends; each pass leaves out the outermost two, so that
+// no piece waits for another and a band stays in the cache. scratch holds the bands.
 inline void smooth_all(const Grid& grid, long count, const Place* place, const Parity* parity,
                        const SmoothingSettings& settings, double* f, Field& scratch) {
     if (settings.passes == 0) return;
-    const long size = grid.size(), row = grid.stride();
-    if (scratch.size() < count * (size + row)) scratch.setZero(count * (size + row));
-    common::for_each_row(
-        count,
-        [&](long k) {
-            double *from = f + k * size, *to = scratch.data() + k * size,
-                   *across = scratch.data() + count * size + k * row;
-            const auto pass = [&](double side, double middle) {
-                stencil_rows(grid, side, middle, from, across, to);
-                common::fill_ghosts(grid, place[k], parity[k], to);
-                std::swap(from, to);
-            };
-            for (long n = 0; n < settings.passes; ++n) pass(0.25, 0.5);
-            const double a = 0.25 * double(settings.passes);
-            if (settings.compensate) pass(-a, 1 + 2 * a);
-            if (from != f + k * size) std::copy_n(from, size, f + k * size);
-        },
-        numbers_to_share(grid));
+    const long size = grid.size(), s = grid.stride(), reach = settings.passes + settings.compensate,
+               rows = grid.z.cells + 1, bands = (rows + 31) / 32, room = (34 + 2 * reach) * s;
+    if (scratch.size() < count * bands * room) scratch.resize(count * bands * room);
+    const auto for_each_band = [&](const auto& work) {
+        common::for_each_piece(
+            count * bands,
+            [&](long piece) {
+                const long band = piece % bands, first = rows * band / bands;
+                work(piece / bands, first, rows * (band + 1) / bands - first,
+                     scratch.data() + piece * room);
+            },
+            grid.size());
+    };
+    for_each_band([&](long k, long first, long band_rows, double* band) {
+        for (long j = -reach; j < band_rows + reach; ++j) {
+            const Image row = image(grid.z, place[k].half_z, parity[k].z, first + j);
+            const double* from = f + k * size + grid.index(-1, row.index);
+            double* to = band + (reach + j) * s;
+            for (long i = 0; i < s; ++i) to[i] = row.sign * from[i];
+        }
+    });
+    for_each_band([&](long k, long first, long band_rows, double* band) {
+        const auto other = std::make_unique_for_overwrite<double[]>(std::size_t(room));
+        double *from = band, *to = other.get();
+        long left = band_rows + 2 * reach;  // rows of from
+        const auto pass = [&](double side, double middle) {
+            left -= 2;
+            smooth_rows(grid, place[k], parity[k], side, middle, left, from + s, to);
+            std::swap(from, to);
+        };
+        for (long n = 0; n < settings.passes; ++n) pass(0.25, 0.5);
+        const double a = 0.25 * double(settings.passes);
+        if (settings.compensate) pass(-a, 1 + 2 * a);
+        std::copy_n(from, band_rows * s, f + k * size + grid.index(-1, first));
+    });
+    for (long k = 0; k < count; ++k) common::fill_ghosts(grid, place[k], parity[k], f + k * size);
 }
 
 }  // namespace detail

@@ -11,9 +11,11 @@
 // operator averages, so none has a checkerboard null space.
 #pragma once
 
+#include <algorithm>
 #include <array>
 
 #include "common/grid.hpp"
+#include "common/parallel.hpp"
 
 namespace implicit_moment {
 
@@ -119,19 +121,22 @@ inline ConstBlock interior(const Grid& grid, const double* f) {
     return {f + grid.index(0, 0), grid.x.cells, grid.z.cells, Eigen::OuterStride<>(grid.stride())};
 }
 
-/// A mesh as the loops of common/parallel.hpp count numbers: below 32768 points threads lose more than they
-/// gain, since what they work on moves from the cache of one core to that of another in every loop.
-inline long numbers_to_share(const Grid& grid) { return grid.size() / 8; }
-
 /// Calls work(n) for the storage index n of rows and columns 0..N, of all points whose neighbors
-/// are stored.
+/// are stored; work(n) writes to point n alone.
 template <class Work>
 inline void for_each_point(const Grid& grid, const Work& work) {
-    for (long j = 0; j <= grid.z.cells; ++j) {
-        const long begin = grid.index(0, j), end = begin + grid.x.cells + 1;
+    constexpr long at_once = 8;
+    const long rows = grid.z.cells + 1;
+    common::for_each_piece(
+        (rows + at_once - 1) / at_once,
+        [&](long piece) {
+            for (long j = piece * at_once; j < std::min(rows, (piece + 1) * at_once); ++j) {
+                const long begin = grid.index(0, j), end = begin + grid.x.cells + 1;
 #pragma omp simd
-        for (long n = begin; n < end; ++n) work(n);
-    }
+                for (long n = begin; n < end; ++n) work(n);
+            }
+        },
+        grid.size());
 }
 
 /// curl E on the places of B:  x: -dE_y/dz   y: dE_x/dz - dE_z/dx   z: dE_y/dx

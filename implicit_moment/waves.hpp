@@ -103,7 +103,7 @@ class MeshWaves {
                     for (long j = first; j < std::min(n_z, first + at_once); ++j)
                         work(std::size_t(piece / pieces), j, line.reals());
                 },
-                numbers_to_share(grid_));
+                grid_.size());
         };
         for_each_line([&](std::size_t k, long j, Real* line) {
             const double* from = parts[k].from + grid_.index(0, j);
@@ -139,7 +139,7 @@ class MeshWaves {
                     for (long j = 0; j < n_z; ++j)
                         for (long m = 0; m < count; ++m) along_x(k, j)[first + m] = column(k, m)[j];
             },
-            numbers_to_share(grid_));
+            grid_.size());
         for_each_line([&](std::size_t k, long j, Real* line) {
             Fftw<Real>::run_back(from_x_.get(), as_pairs(along_x(k, j)), line);
             double* to = parts[k].to + grid_.index(0, j);

@@ -176,7 +176,7 @@ class GrainNodes {
     /// sums on nodes are added in the same order whatever the number of threads.
     template <class Work>
     void for_each_tile(const Work& work) const {
-        common::for_each_row_two_colors(static_cast<long>(pieces_.size()) - 1, [&](long piece) {
+        common::for_each_row_colored(2, static_cast<long>(pieces_.size()) - 1, [&](long piece) {
             const auto k = static_cast<std::size_t>(piece);
             for (long s = pieces_[k]; s < pieces_[k + 1]; ++s)
                 work(tiles_[s], static_cast<std::size_t>(s));

@@ -34,6 +34,15 @@ MatrixXd random_matrix(int n, unsigned seed) {
     return A;
 }
 
+// GMRES without a preconditioner and without a workspace that is kept.
+template <class Operator>
+common::KrylovResult gmres(const Operator& apply, const VectorXd& b, VectorXd& x, double tolerance,
+                           int max_iterations, int restart) {
+    common::GmresWorkspace work;
+    const auto leave = [](const VectorXd& v, VectorXd& w) { w = v; };
+    return common::gmres(apply, leave, b, x, tolerance, max_iterations, restart, work);
+}
+
 double true_residual(const MatrixXd& A, const VectorXd& x, const VectorXd& b) {
     return (b - A * x).norm() / b.norm();
 }
@@ -46,7 +55,7 @@ TEST_CASE("GMRES agrees with dense LU and with BiCGSTAB and GMRES of Eigen") {
         const VectorXd b = VectorXd::Random(80);
         const VectorXd exact = A.partialPivLu().solve(b);
         VectorXd x = VectorXd::Zero(80);
-        const auto result = common::gmres(times(A), b, x, 1e-12, 400, 40);
+        const auto result = gmres(times(A), b, x, 1e-12, 400, 40);
         CHECK(result.converged);
         CHECK((x - exact).norm() <= 1e-10 * exact.norm());
         CHECK(std::abs(result.residual - true_residual(A, x, b)) <= 1e-14);
@@ -68,7 +77,7 @@ TEST_CASE("GMRES ends within as many iterations as there are distinct eigenvalue
     for (int i = 0; i < 60; ++i) d[i] = 1.0 + i % 4;
     const MatrixXd A = d.asDiagonal();
     VectorXd x = VectorXd::Zero(60);
-    const auto result = common::gmres(times(A), VectorXd::Ones(60), x, 1e-13, 100, 30);
+    const auto result = gmres(times(A), VectorXd::Ones(60), x, 1e-13, 100, 30);
     CHECK(result.converged);
     CHECK(result.iterations == 4);
 }
@@ -92,7 +101,7 @@ TEST_CASE("GMRES never needs fewer iterations with a shorter restart") {
     int before = 0;
     for (const int restart : {120, 12, 6, 3, 1}) {
         VectorXd x = VectorXd::Zero(120);
-        const auto result = common::gmres(times(A), b, x, 1e-10, 2000, restart);
+        const auto result = gmres(times(A), b, x, 1e-10, 2000, restart);
         CHECK(result.converged);
         CHECK(result.residual <= 1e-10);
         CHECK(result.iterations >= before);
@@ -115,7 +124,7 @@ TEST_CASE("GMRES with a kept workspace repeats its answer bit for bit") {
 TEST_CASE("GMRES returns zero for a zero right-hand side whatever the guess") {
     const MatrixXd A = random_matrix(20, 1);
     VectorXd x = VectorXd::Random(20);
-    const auto result = common::gmres(times(A), VectorXd::Zero(20), x, 1e-10, 100, 10);
+    const auto result = gmres(times(A), VectorXd::Zero(20), x, 1e-10, 100, 10);
     CHECK(result.converged);
     CHECK(result.iterations == 0);
     CHECK(result.residual == 0.0);
@@ -127,7 +136,7 @@ TEST_CASE("GMRES leaves a good enough guess untouched") {
     const VectorXd b = VectorXd::Random(40);
     VectorXd x = A.partialPivLu().solve(b);
     const VectorXd guess = x;
-    const auto result = common::gmres(times(A), b, x, 1e-10, 100, 10);
+    const auto result = gmres(times(A), b, x, 1e-10, 100, 10);
     CHECK(result.converged);
     CHECK(result.iterations == 0);
     CHECK((x.array() == guess.array()).all());
@@ -138,7 +147,7 @@ TEST_CASE("GMRES takes a lucky breakdown for success") {
     A.topLeftCorner(3, 3) << 2, 1, 0, 0, 3, 1, 1, 0, 4;
     VectorXd b = VectorXd::Zero(30), x = VectorXd::Zero(30);
     b.head(3) << 1, 2, 3;
-    const auto result = common::gmres(times(A), b, x, 1e-14, 100, 30);
+    const auto result = gmres(times(A), b, x, 1e-14, 100, 30);
     CHECK(result.converged);
     CHECK(result.iterations <= 3);
     CHECK(true_residual(A, x, b) <= 1e-14);
@@ -147,7 +156,7 @@ TEST_CASE("GMRES takes a lucky breakdown for success") {
 TEST_CASE("GMRES reports a zero operator and keeps a finite solution") {
     const MatrixXd A = MatrixXd::Zero(10, 10);
     VectorXd x = VectorXd::Ones(10);
-    const auto result = common::gmres(times(A), VectorXd::Ones(10), x, 1e-8, 100, 10);
+    const auto result = gmres(times(A), VectorXd::Ones(10), x, 1e-8, 100, 10);
     CHECK_FALSE(result.converged);
     CHECK(result.residual == 1.0);
     CHECK(x.allFinite());
@@ -160,7 +169,7 @@ TEST_CASE("GMRES reports a singular system that has no solution") {
     const MatrixXd A = d.asDiagonal();
     const VectorXd b = VectorXd::Ones(12);
     VectorXd x = VectorXd::Zero(12);
-    const auto result = common::gmres(times(A), b, x, 1e-8, 500, 30);
+    const auto result = gmres(times(A), b, x, 1e-8, 500, 30);
     CHECK_FALSE(result.converged);
     CHECK(x.allFinite());
     CHECK(x.norm() <= 1e3);
@@ -173,7 +182,7 @@ TEST_CASE("GMRES solves a singular system whose right-hand side can be reached")
     d[5] = b[5] = 0.0;
     const MatrixXd A = d.asDiagonal();
     VectorXd x = VectorXd::Zero(12);
-    const auto result = common::gmres(times(A), b, x, 1e-12, 100, 30);
+    const auto result = gmres(times(A), b, x, 1e-12, 100, 30);
     CHECK(result.converged);
     CHECK(true_residual(A, x, b) <= 1e-12);
 }
@@ -184,13 +193,13 @@ TEST_CASE("GMRES stops at once when the right-hand side or the guess is not fini
     for (const double bad : {not_a_number, infinity, -infinity}) {
         VectorXd b = VectorXd::Ones(10), x = VectorXd::Ones(10);
         b[3] = bad;
-        auto result = common::gmres(times(A), b, x, 1e-8, 1000, 10);
+        auto result = gmres(times(A), b, x, 1e-8, 1000, 10);
         CHECK_FALSE(result.converged);
         CHECK(result.iterations == 0);
         CHECK((x.array() == 1.0).all());
         b[3] = 1.0;
         x[7] = bad;
-        result = common::gmres(times(A), b, x, 1e-8, 1000, 10);
+        result = gmres(times(A), b, x, 1e-8, 1000, 10);
         CHECK_FALSE(result.converged);
         CHECK(result.iterations == 0);
         CHECK(x.allFinite());
@@ -208,7 +217,7 @@ TEST_CASE("GMRES stops at once when the operator or the preconditioner is not fi
             if (calls++ >= last) w[9] = not_a_number;
         };
         VectorXd x = VectorXd::Zero(40);
-        const auto result = common::gmres(fails, b, x, 1e-12, 1000, 10);
+        const auto result = gmres(fails, b, x, 1e-12, 1000, 10);
         CHECK_FALSE(result.converged);
         CHECK(result.iterations == last + 1);
         CHECK(x.allFinite());
@@ -228,24 +237,24 @@ TEST_CASE("GMRES survives numbers whose squares overflow or underflow") {
     const MatrixXd A = random_matrix(30, 8);
     const VectorXd b = VectorXd::Random(30);
     VectorXd plain = VectorXd::Zero(30);
-    const auto expected = common::gmres(times(A), b, plain, 1e-10, 100, 30);
+    const auto expected = gmres(times(A), b, plain, 1e-10, 100, 30);
     for (const double factor : {1e160, 1e-200}) {
         const VectorXd scaled = factor * b;
         VectorXd x = VectorXd::Zero(30);
-        const auto result = common::gmres(times(A), scaled, x, 1e-10, 100, 30);
+        const auto result = gmres(times(A), scaled, x, 1e-10, 100, 30);
         CHECK(result.converged);
         CHECK(result.iterations == expected.iterations);
         CHECK((x / factor - plain).norm() <= 1e-9 * plain.norm());
 
         const MatrixXd large = factor * A;
         x.setZero();
-        const auto other = common::gmres(times(large), b, x, 1e-10, 100, 30);
+        const auto other = gmres(times(large), b, x, 1e-10, 100, 30);
         CHECK(other.converged);
         CHECK((x * factor - plain).norm() <= 1e-9 * plain.norm());
     }
     const MatrixXd too_large = 1e308 * A;
     VectorXd x = VectorXd::Zero(30);
-    const auto result = common::gmres(times(too_large), b, x, 1e-10, 100, 30);
+    const auto result = gmres(times(too_large), b, x, 1e-10, 100, 30);
     CHECK_FALSE(result.converged);
     CHECK(x.allFinite());
 }
@@ -256,7 +265,7 @@ TEST_CASE("GMRES without convergence returns the best solution and its true resi
     double before = 1.0;
     for (const int limit : {0, 1, 2, 5, 9}) {
         VectorXd x = VectorXd::Zero(100);
-        const auto result = common::gmres(times(A), b, x, 1e-14, limit, 30);
+        const auto result = gmres(times(A), b, x, 1e-14, limit, 30);
         CHECK_FALSE(result.converged);
         CHECK(result.iterations == limit);
         CHECK(result.residual <= before);
@@ -270,10 +279,10 @@ TEST_CASE("GMRES reports the stagnation of a cyclic shift and solves it with a f
     for (int i = 0; i < 20; ++i) A(i, (i + 1) % 20) = 1.0;
     VectorXd b = VectorXd::Zero(20), x = VectorXd::Zero(20);
     b[0] = 1.0;
-    const auto shorter = common::gmres(times(A), b, x, 1e-10, 10000, 10);
+    const auto shorter = gmres(times(A), b, x, 1e-10, 10000, 10);
     CHECK_FALSE(shorter.converged);
     CHECK(shorter.iterations == 10);
-    const auto full = common::gmres(times(A), b, x, 1e-10, 10000, 20);
+    const auto full = gmres(times(A), b, x, 1e-10, 10000, 20);
     CHECK(full.converged);
     CHECK(full.iterations == 20);
 }

@@ -631,7 +631,7 @@ TEST_CASE("loops over blocks and rows cover everything once whatever the number 
                     if (row % count * 3 + row / count < count) give(row % count * 3 + row / count);
                 }
             } else {
-                common::for_each_row_three_colors(count, give);
+                common::for_each_row_colored(3, count, give);
             }
             CHECK(sums.back() == sums[0]);
             CHECK(rows.back() == rows[0]);
@@ -653,9 +653,8 @@ TEST_CASE("what a piece of a parallel loop throws reaches the caller when all pi
             };
             const long rows = common::block_count;
             CHECK_THROWS_AS(common::for_each_row(rows, piece, numbers), std::bad_alloc);
-            CHECK_THROWS_AS(common::for_each_row_two_colors(rows, piece, numbers), std::bad_alloc);
-            CHECK_THROWS_AS(common::for_each_row_three_colors(rows, piece, numbers),
-                            std::bad_alloc);
+            CHECK_THROWS_AS(common::for_each_row_colored(2, rows, piece, numbers), std::bad_alloc);
+            CHECK_THROWS_AS(common::for_each_row_colored(3, rows, piece, numbers), std::bad_alloc);
             CHECK_THROWS_AS(common::for_each_block(
                                 rows, [&](int block, long, long) { piece(block); }, numbers),
                             std::bad_alloc);

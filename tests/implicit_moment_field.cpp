@@ -382,6 +382,29 @@ TEST_CASE("of a uniform magnetized plasma without walls the preconditioner is th
     }
 }
 
+TEST_CASE("threads that share the field solve give the same bits") {
+    Random random;
+    for (const bool periodic : {true, false}) {
+        const Grid grid{{72, -2, 4, true}, {67, 0.5, 2.1, periodic}};
+        Loaded plasma = any_plasma(grid, 4, 0.1, random);
+        FieldState start(grid);
+        any_state(grid, 0.02, 0.05, random, start);
+        deposit_moments(plasma.species, grid, start.B, 0.3, false, plasma.moments);
+        const int before = common::thread_count();
+        std::vector<Eigen::VectorXd> solutions;
+        for (const int threads : {1, 2, 3}) {
+            common::set_thread_count(threads);
+            FieldState field = start;
+            FieldSolver solver(grid, {});
+            CHECK(solve(solver, plasma.moments, plasma.charge_over_mass, 0.3, field).iterations >=
+                  2);
+            solutions.push_back(field.E_theta.all);
+        }
+        common::set_thread_count(before);
+        for (const Eigen::VectorXd& E : solutions) CHECK(E == solutions[0]);
+    }
+}
+
 TEST_CASE("what does not converge is never used") {
     const facts::Untrapped calm;
     const Grid grid = meshes()[2];

@@ -93,7 +93,7 @@ inline void add_viscous_force(const Grid& grid, double viscosity, Mesh& mesh) {
     if (viscosity == 0) return;
     Nodes& g = mesh.nodes;
     const double area = 0.25 * grid.cell_area();
-    common::for_each_row_two_colors(grid.z.cells, [&](long j) {
+    common::for_each_row_colored(2, grid.z.cells, [&](long j) {
         for (long i = 0; i < grid.x.cells; ++i) {
             const long n = grid.index(i, j);
             if (has_bare_node(grid, g, n)) continue;

@@ -44,8 +44,8 @@ void for_each_in_cell(const Grid& grid, const Particles& particles, const Add& a
     const int* first = particles.first_of_row.data();
     const long nx = grid.x.cells;
     // Three rows apart: a particle may be in the row beside its own.
-    common::for_each_row_three_colors(
-        grid.z.cells,
+    common::for_each_row_colored(
+        3, grid.z.cells,
         [&](long j) {
             for (long p = first[j]; p < first[j + 1]; ++p)
                 add(p, row(z_p[p]) * nx + column(x_p[p]));

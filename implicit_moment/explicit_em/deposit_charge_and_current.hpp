@@ -22,7 +22,7 @@ inline void deposit_charge_and_current(const InterleavedField& field, const Grid
     const long columns = Stencil<l>::cells(grid.x), rows = Stencil<l>::cells(grid.z);
     std::vector<std::array<double, 4>> sums_of_row(rows);
 
-    common::for_each_row_three_colors(rows, [&](long row) {
+    common::for_each_row_colored(3, rows, [&](long row) {
         std::array<double, 4>& sums = sums_of_row[row];
         const double z_anchor = grid.z.at(double(row));
         for (long column = 0; column < columns; ++column) {
