@@ -263,7 +263,7 @@ TEST_CASE("plates press a cylinder as Hertz says where the contact has four cell
     CHECK(coarse.value("contact_half_width") < 4);
 }
 
-TEST_CASE("what plates hold keeps pressing where something damps what rings, or the run says so" *
+TEST_CASE("what plates hold keeps pressing or the run says that it does not" *
           doctest::description("physics")) {
     // Eight cells in the radius, three per cent of strain, held for 300 times the way of sound.
     const auto held = [](const std::string& name, const std::string& overrides) {
