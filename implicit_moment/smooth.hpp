@@ -48,6 +48,7 @@ inline void smooth_rows(const Grid& grid, Place place, Parity parity, double sid
             across[i] = middle * row[i] + side * (row[i - s] + row[i + s]);
 #pragma omp simd
         for (long i = 0; i < points; ++i) target[i] = middle * a[i] + side * (a[i - 1] + a[i + 1]);
+        target[points] = 0;  // the last number of a row may be the image of none
         common::ghosts_along(grid.x, place.half_x, parity.x, [&](long ghost, long of, int sign) {
             target[ghost] = sign * target[of];
         });
