@@ -19,6 +19,7 @@
 #include <cmath>
 #include <complex>
 #include <memory>
+#include <new>
 #include <type_traits>
 #include <vector>
 
@@ -163,7 +164,11 @@ class MeshWaves {
         Complex* numbers() const { return reinterpret_cast<Complex*>(reals()); }
     };
 
-    static Plan keep(typename Plan::element_type* plan) { return {plan, Fftw<Real>::destroy}; }
+    // errors: bad_alloc where FFTW has no room for a plan
+    static Plan keep(typename Plan::element_type* plan) {
+        if (plan == nullptr) throw std::bad_alloc();
+        return {plan, Fftw<Real>::destroy};
+    }
     template <class Number>
     static Pair* as_pairs(Number* waves) {
         return reinterpret_cast<Pair*>(waves);
