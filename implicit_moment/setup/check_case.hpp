@@ -96,10 +96,10 @@ inline Scales scales_of(const Case& w) {
             long(u.species.size()) * u.particles_per_cell * w.grid.x.cells * w.grid.z.cells;
     }
     s.steps = std::lround(w.end / w.dt);
-    const double krylov = 45 * 3 * 8, tensors = 40 * 8, moments = 85 * 8;
+    const double krylov = 45 * 3 * 8, tensors = 40 * 8, waves = 30 * 8, moments = 85 * 8;
     const bool follow = w.field.uses_mass_matrix() && w.field.solver == "newton_krylov";
     s.bytes = (w.leapfrog.chosen ? 46.0 : 60.0) * double(s.particles) +
-              double(w.grid.size()) * (w.leapfrog.chosen ? moments : krylov + tensors);
+              double(w.grid.size()) * (w.leapfrog.chosen ? moments : krylov + tensors + waves);
     if (w.field.uses_mass_matrix()) s.bytes += double(w.grid.size()) * (detail::offsets + 10) * 8;
     // Paths, and currents of blocks with room for Anderson's acceleration.
     if (follow) s.bytes += 32 * double(s.particles) + double(w.grid.size()) * (48 + 75) * 8;
