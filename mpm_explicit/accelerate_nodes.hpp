@@ -15,25 +15,25 @@ namespace mpm_explicit {
 
 using namespace mpm;
 
-/// v_i^1 without contact, damped halfway before the force and halfway after it.
-///   v_i^1 = d [d v_i^0 + dt (f_i/m_i + g)],  d = exp(-c dt/2)
-/// exact:  a free velocity falls by exp(-c dt); a wave by exp(-c dt/2), without the error c dt of a
-///         force - c v_i^0
+/// The part of the velocity that damping takes in a step, per time: [1 - exp(-c dt)]/dt.
+inline double damping_rate(double c, double dt) { return dt > 0 ? -std::expm1(-c * dt) / dt : c; }
+
+/// v_i^1 without contact. What damping takes depends on v_i^0 alone, so that it bears no load at rest.
+///   v_i^1 = exp(-c dt) v_i^0 + dt (f_i/m_i + g)
+/// exact:  a free velocity falls by exp(-c dt); a wave of frequency w by exp(-c dt/2), as if w^2
+///         were larger by exp(c dt/2), to second order
 inline void accelerate_nodes(const BodyForce& body, const std::vector<Grain>& grains,
                              const std::vector<RigidMotion>& rigid, double dt, GrainNodes& nodes) {
-    const double least_mass = nodes.least_mass(), d = std::exp(-0.5 * body.damping * dt),
-                 taken = dt > 0 ? (1 - d * d) / dt : 0;
+    const double least_mass = nodes.least_mass(), c = damping_rate(body.damping, dt);
     reduce_ghost_force(nodes);
     common::for_each_block(nodes.size(), [&](int, long begin, long end) {
         for (long i = begin; i < end; ++i) {
             const auto n = static_cast<std::size_t>(i);
             NodeMotion& v = nodes.motion[n];
             const bool empty = !(nodes.mass[n] > least_mass);
-            const double dt_m = empty ? 0 : d * dt / nodes.mass[n], dt_body = empty ? 0 : dt;
-            v.vx_1 =
-                v.vx_0 + dt_m * nodes.force[n].x + dt_body * (d * body.gravity_x - taken * v.vx_0);
-            v.vy_1 =
-                v.vy_0 + dt_m * nodes.force[n].y + dt_body * (d * body.gravity_y - taken * v.vy_0);
+            const double dt_m = empty ? 0 : dt / nodes.mass[n], dt_body = empty ? 0 : dt;
+            v.vx_1 = v.vx_0 + dt_m * nodes.force[n].x + dt_body * (body.gravity_x - c * v.vx_0);
+            v.vy_1 = v.vy_0 + dt_m * nodes.force[n].y + dt_body * (body.gravity_y - c * v.vy_0);
         }
     });
     prescribe_rigid_velocity(grains, rigid, nodes);
@@ -56,7 +56,6 @@ inline void predict_acceleration(const BodyForce& body, const std::vector<Grain>
 /// Work on the nodes in this step, and their largest speed; after contact.
 inline NodeWork work_on_nodes(const BodyForce& body, double dt, const GrainNodes& nodes) {
     std::array<NodeWork, common::block_count> part;
-    const double d = std::exp(-0.5 * body.damping * dt), of_v = d * d - 1, of_force = dt * (d - 1);
     common::for_each_block(nodes.size(), [&](int block, long begin, long end) {
         double internal_work = 0, kinetic_increment = 0, gravity = 0, damping = 0, speed = 0;
         const unsigned char* is_free = nodes.is_free().data();
@@ -69,15 +68,12 @@ inline NodeWork work_on_nodes(const BodyForce& body, double dt, const GrainNodes
             internal_work += nodes.force[n].x * mean_x + nodes.force[n].y * mean_y;
             kinetic_increment += m * (dx * dx + dy * dy);
             gravity += m * (body.gravity_x * mean_x + body.gravity_y * mean_y);
-            damping += mean_x * (m * (of_v * v.vx_0 + of_force * body.gravity_x) +
-                                 of_force * nodes.force[n].x) +
-                       mean_y * (m * (of_v * v.vy_0 + of_force * body.gravity_y) +
-                                 of_force * nodes.force[n].y);
+            damping -= m * (v.vx_0 * mean_x + v.vy_0 * mean_y);
             const double squared = v.vx_1 * v.vx_1 + v.vy_1 * v.vy_1;
             speed = squared > speed ? squared : speed;
         }
-        part[block] = {dt * internal_work, 0.5 * kinetic_increment, dt * gravity, damping,
-                       std::sqrt(speed)};
+        part[block] = {dt * internal_work, 0.5 * kinetic_increment, dt * gravity,
+                       dt * damping_rate(body.damping, dt) * damping, std::sqrt(speed)};
     });
     NodeWork total;
     for (const NodeWork& one : part) total += one;

@@ -186,9 +186,11 @@ inline Bar bar_of(const FinishedRun& run) {
     const Material& m = run.material();
     const bool held = planned.has_wall(y_low, "slip") && planned.has_wall(y_high, "slip");
     const GrainCase& from = planned.plans.front().from;
+    const double stiffness =
+        run.stiffening() * (held ? moduli(m).lambda + 2 * moduli(m).G : m.E / (1 - m.nu * m.nu));
     return {profile_bounds(planned.plans).length(),
             m.density,
-            held ? moduli(m).lambda + 2 * moduli(m).G : m.E / (1 - m.nu * m.nu),
+            stiffness,
             int(from.mode),
             from.amplitude,
             run.parameters.problem.damping};
@@ -307,6 +309,7 @@ inline void compare_standing_wave(const FinishedRun& run, common::Summary& summa
     const GrainCase& from = problem.grains.front();
     StandingWave wave{problem.length_x, 1,           m.density,      moduli(m),
                       int(from.mode),   m.viscosity, problem.damping};
+    wave.moduli.lambda *= run.stiffening(), wave.moduli.G *= run.stiffening();
     wave.amplitude = from.amplitude / wave.frequency();
     const Particles& at = run.all.particles;
     // The wave is compared where the particles started: x_p less the displacement of theory.

@@ -89,13 +89,13 @@ inline std::complex<double> step_factor(double a, double bc, double d) {
 }
 
 /// The factor of a step of that leapfrog, in which damping leaves the part `keeps` of velocities.
-///   v^1 = keeps v^0 + keeps^1/2 dt f/m, and the node has back the part M_11/m of the change:
-///   next v^0 = d v^0 - keeps^1/2 w^2 dt x,  d = 1 - (M_11/m) (1 - keeps),  x += dt (next v^0)
+///   v^1 = keeps v^0 + dt f/m, and the node has back the part M_11/m of the change:
+///   next v^0 = d v^0 - w^2 dt x,  d = 1 - (M_11/m) (1 - keeps),  x += dt (next v^0)
 /// in:    z = w dt; keeps, exp(-c dt) for load.damping = c; filter, M_11/m (1: of a long wave)
 /// exact: without damping  cos(arg g) = 1 - z^2/2, leapfrog_frequency
 inline std::complex<double> leapfrog_factor(double z, double keeps, double filter) {
-    const double d = 1 - filter * (1 - keeps), z2 = std::sqrt(keeps) * z * z;
-    return step_factor(d, -d * z2, 1 - z2);
+    const double d = 1 - filter * (1 - keeps);
+    return step_factor(d, -d * z * z, 1 - z * z);
 }
 
 /// The same oscillator by the theta scheme: the factor g by which it is multiplied in one step.
