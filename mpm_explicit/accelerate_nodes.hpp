@@ -5,6 +5,8 @@
 // summed up in mpm_explicit/strain.hpp.
 #pragma once
 
+#include <cmath>
+
 #include "mpm_explicit/apply_loads.hpp"
 #include "mpm_explicit/budget.hpp"
 #include "mpm_explicit/transfer.hpp"
@@ -13,11 +15,16 @@ namespace mpm_explicit {
 
 using namespace mpm;
 
-/// v_i^1 without contact.
-///   v_i^1 = v_i^0 + dt (f_i/m_i + g - c v_i^0)
+/// The part of the velocity that damping takes in a step, per time: [1 - exp(-c dt)]/dt.
+inline double damping_rate(double c, double dt) { return dt > 0 ? -std::expm1(-c * dt) / dt : c; }
+
+/// v_i^1 without contact. What damping takes depends on v_i^0 alone, so that it bears no load at rest.
+///   v_i^1 = exp(-c dt) v_i^0 + dt (f_i/m_i + g)
+/// exact:  a free velocity falls by exp(-c dt); a wave of frequency w by exp(-c dt/2), as if w^2
+///         were larger by exp(c dt/2), to second order
 inline void accelerate_nodes(const BodyForce& body, const std::vector<Grain>& grains,
                              const std::vector<RigidMotion>& rigid, double dt, GrainNodes& nodes) {
-    const double least_mass = nodes.least_mass();
+    const double least_mass = nodes.least_mass(), c = damping_rate(body.damping, dt);
     reduce_ghost_force(nodes);
     common::for_each_block(nodes.size(), [&](int, long begin, long end) {
         for (long i = begin; i < end; ++i) {
@@ -25,10 +32,8 @@ inline void accelerate_nodes(const BodyForce& body, const std::vector<Grain>& gr
             NodeMotion& v = nodes.motion[n];
             const bool empty = !(nodes.mass[n] > least_mass);
             const double dt_m = empty ? 0 : dt / nodes.mass[n], dt_body = empty ? 0 : dt;
-            v.vx_1 = v.vx_0 + dt_m * nodes.force[n].x +
-                     dt_body * (body.gravity_x - body.damping * v.vx_0);
-            v.vy_1 = v.vy_0 + dt_m * nodes.force[n].y +
-                     dt_body * (body.gravity_y - body.damping * v.vy_0);
+            v.vx_1 = v.vx_0 + dt_m * nodes.force[n].x + dt_body * (body.gravity_x - c * v.vx_0);
+            v.vy_1 = v.vy_0 + dt_m * nodes.force[n].y + dt_body * (body.gravity_y - c * v.vy_0);
         }
     });
     prescribe_rigid_velocity(grains, rigid, nodes);
@@ -68,7 +73,7 @@ inline NodeWork work_on_nodes(const BodyForce& body, double dt, const GrainNodes
             speed = squared > speed ? squared : speed;
         }
         part[block] = {dt * internal_work, 0.5 * kinetic_increment, dt * gravity,
-                       dt * body.damping * damping, std::sqrt(speed)};
+                       dt * damping_rate(body.damping, dt) * damping, std::sqrt(speed)};
     });
     NodeWork total;
     for (const NodeWork& one : part) total += one;

@@ -315,12 +315,17 @@ TEST_CASE("a blast follows Sedov and falling gas is dense but not as dense as No
     const Run blast = run("flip", "blast", "sedov", "grid.cells_x=48 grid.cells_z=48");
     check_results(blast, 1);  // within 1 %
     check_conserved(blast);
-    // With volumes on particles, hot and cold ones in a cell are strained alike.
-    const Run volumes =
-        run("flip", "blast", "sedov",
-            "grid.cells_x=24 grid.cells_z=24 flip.density=particles theory.tolerance=0.1");
-    check_results(volumes, 1);
-    check_conserved(volumes);
+    // With volumes on particles, hot and cold ones in a cell are strained alike: 8 % too small where
+    // the energy starts in less than a cell, 1 % in three.
+    const std::string volumes = "grid.cells_x=24 grid.cells_z=24 flip.density=particles ";
+    const Run apart =
+        run("flip", "blast", "sedov", volumes + "theory.tolerance=0.02 region.hot.radius=0.125");
+    check_results(apart, 1);
+    check_conserved(apart);
+    const Run mixed = run("flip", "blast", "sedov", volumes + "theory.tolerance=0.1");
+    check_results(mixed, 1);
+    check_conserved(mixed);
+    CHECK(mixed.value("shock_radius") < 0.95 * apart.value("shock_radius"));
     CHECK(blast.value("peak_density_ratio") >= 4);
     CHECK(blast.value("peak_density_ratio") <= 6);
     // In the plane all such methods pile up heat in the middle; what comes of it is on record.

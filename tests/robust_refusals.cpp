@@ -528,8 +528,6 @@ grains disks time.alpha=1e-9
 mpm_explicit disks time.dt=1
     time.dt = 1 is above alpha h/(c_p + |v|) = 0.003317: lower it, or raise time.alpha
 grains disks time.end=1e30 -> steps, more than 1e9: raise time.alpha or lower time.end
-mpm_explicit disks load.damping=400
-    load.damping = 400 takes all velocity in a step of 0.003226: lower it below 310
 grains body grid.cells_x=16000 grid.cells_y=8000 grid.particles_per_side=16
     32768000000 particles are more than 2e9: lower grid.particles_per_side
 grains body grid.cells_x=1600 output.fringes_interval=1 grid.cells_y=800 output.pixels_per_cell=64

@@ -97,6 +97,9 @@ flip tube output.fields_interval=1e-6 output.particles_interval=1
     written every step
 flip sod theory.compare=riemann time.end=0.4
     warning: at time.end the waves are at x = 0.02671 and 1.201, beyond the ends
+fluids sod theory.compare=riemann left.velocity=-2 left.pressure=0.4 right.density=1 \
+    right.pressure=0.4 right.velocity=2 time.end=0.15
+    warning: between the waves a cell will have
 fluids around region.gas.velocity_x=1 time.end=1e-6
     warning: until time.end = 1e-06 sound or the flow crosses 8.555e-05 cells, below 0.1: the run is
     over before anything happens; raise time.end

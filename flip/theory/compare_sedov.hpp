@@ -73,10 +73,11 @@ inline std::string predict_sedov(const Case& parameters, const std::string&, dou
 
 /// Warns of what keeps hot gas from pushing cold gas.
 inline void warn_of_sedov(const Case& parameters, std::vector<std::string>& warnings) {
-    warn(warnings, parameters.density == "particles",
-         "flip.density = \"particles\" is for slow flow: it makes this blast some per cent too "
-         "small; "
-         "take \"cells\"");
+    const double cells = hot_region(parameters).radius / parameters.grid.x.spacing();
+    warn(warnings, parameters.density == "particles" && cells < 3, "the energy starts in ", cells,
+         " cells, below 3, and with flip.density = \"particles\" hot and cold gas in a cell are "
+         "strained alike: the blast will be too small, by 8 % with 0.75; raise the radius, or take "
+         "\"cells\"");
 }
 
 /// The outer radius at which the density is half-way to its peak.

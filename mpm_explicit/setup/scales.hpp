@@ -28,8 +28,7 @@ struct Scales {
 /// The scales of a case.
 ///   dt <= alpha h / (c_p + |v|), for an explicit scheme c_p times viscous_shortening(), and
 ///   steps dt = time.end where time.dt is not given
-/// errors: InputError for too many steps or particles, a time.dt that alpha does not allow, or a
-///         damping that takes all velocity
+/// errors: InputError for too many steps or particles, or a time.dt that alpha does not allow
 inline Scales scales_of(const Case& parameters, bool is_explicit = true) {
     const std::vector<Material> materials = materials_of(parameters.problem);
     const std::vector<PlannedGrain> plans = plan_grains(parameters.problem, materials);
@@ -72,9 +71,6 @@ inline Scales scales_of(const Case& parameters, bool is_explicit = true) {
                                 " steps, more than 1e9: raise time.alpha or lower time.end");
     s.steps = is_given ? std::lround(steps) : long(std::ceil(steps - 1e-9));
     if (!is_given && s.steps > 0) s.dt = parameters.end / double(s.steps);
-    refuse(!(problem.damping * s.dt < 1), "load.damping = " + format(problem.damping) +
-                                              " takes all velocity in a step of " + format(s.dt) +
-                                              ": lower it below " + format(1 / s.dt));
     refuse(s.particles > 2'000'000'000,
            std::to_string(s.particles) +
                " particles are more than 2e9: lower grid.particles_per_side");

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <string>
 #include <tuple>
@@ -27,6 +28,7 @@ struct SchemeFacts {
     double theta = 0.5;      // level of velocities and stresses in the step
     double force_level = 1;  // in a step of a plate, of the travel whose stress it works against
     bool consistent_mass = false;
+    bool damps_first = false;    // load.damping, before forces act: then waves see a stiffer body
     bool volumes_change = true;  // in forces, with the strain
 };
 
@@ -87,6 +89,11 @@ struct FinishedRun {
     double end;  // time
     const Case& parameters = planned.parameters;
 
+    /// By how much stiffer: exp(c dt/2).
+    double stiffening() const {
+        return planned.scheme.damps_first ? std::exp(0.5 * parameters.problem.damping * scales.dt)
+                                          : 1;
+    }
     /// The target grain, its material, mass, and momentum along x in every row.
     const Grain& grain() const { return all.grains[planned.target()]; }
     const Material& material() const { return planned.materials[grain().material]; }

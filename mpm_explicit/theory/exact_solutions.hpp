@@ -126,86 +126,105 @@ inline Impact quasi_static_impact(const Disk& disk, double speed) {
 
 // ---- bars and waves -----------------------------------------------------------------------------
 
+/// What swings about rest: how it goes in time, and how fast.
+///   q'' + 2 gamma q' + omega^2 q = 0,  q(0) = 0, q'(0) = omega
+///   q = omega/(2s) [exp(-slow t) - exp(-fast t)],  s^2 = gamma^2 - omega^2,  fast = gamma + s,
+///   slow = gamma - s = omega^2/fast
+struct Swing {
+    double omega, gamma = 0;
+
+    std::complex<double> s() const {
+        return std::sqrt(std::complex<double>(gamma * gamma - omega * omega));
+    }
+    std::complex<double> slow() const { return omega * omega / (gamma + s()); }
+    double at(double t) const {
+        if (gamma == omega) return omega * t * std::exp(-gamma * t);
+        return std::real(omega / (2. * s()) *
+                         (std::exp(-slow() * t) - std::exp(-(gamma + s()) * t)));
+    }
+    double rate(double t) const {
+        const std::complex<double> fast = gamma + s();
+        if (gamma == omega) return omega * (1 - gamma * t) * std::exp(-gamma * t);
+        return std::real(omega / (2. * s()) *
+                         (fast * std::exp(-fast * t) - slow() * std::exp(-slow() * t)));
+    }
+    /// When it first turns, q' = 0; if it swings, it turns again a time pi/|s| later.
+    ///   tanh(s t) = s/gamma
+    double first_turn() const {
+        if (gamma == omega) return 1 / gamma;
+        return gamma < omega ? std::atan2(std::abs(s()), gamma) / std::abs(s())
+                             : 0.5 * std::log(std::real((gamma + s()) / slow())) / std::real(s());
+    }
+};
+
 /// A bar held at x = 0 and free at x = length, which starts with v = speed sin(k x).
 struct Bar {
     double length, density;
     double modulus;  // stress per strain: E; E / (1 - nu^2) or lambda + 2G in plane strain
     int mode = 1;
-    double speed = 0;  // of the free end
+    double speed = 0;    // of the free end
+    double damping = 0;  // c: every velocity falls by exp(-c t)
 
     double wave_speed() const { return std::sqrt(modulus / density); }
     double wave_number() const { return (mode - 0.5) * std::numbers::pi / length; }
-    double frequency() const { return wave_number() * wave_speed(); }  // angular
+    double frequency() const { return wave_number() * wave_speed(); }  // angular, without damping
+    Swing swing() const { return {frequency(), 0.5 * damping}; }
 };
 
-///   v = speed sin(k x) cos(omega t)
+///   v = speed sin(k x) q'(t)/omega
 inline double bar_velocity(const Bar& bar, double x, double t) {
-    return bar.speed * std::sin(bar.wave_number() * x) * std::cos(bar.frequency() * t);
+    return bar.speed * std::sin(bar.wave_number() * x) * bar.swing().rate(t) / bar.frequency();
 }
 
-///   sigma = (modulus density)^1/2 speed cos(k x) sin(omega t)
-/// exact: density dv/dt = d sigma/dx, d sigma/dt = modulus dv/dx, sigma = 0 at x = length
+///   sigma = (modulus density)^1/2 speed cos(k x) q(t)
+/// exact: density (dv/dt + c v) = d sigma/dx, d sigma/dt = modulus dv/dx, sigma = 0 at x = length
 inline double bar_stress(const Bar& bar, double x, double t) {
     return std::sqrt(bar.modulus * bar.density) * bar.speed * std::cos(bar.wave_number() * x) *
-           std::sin(bar.frequency() * t);
+           bar.swing().at(t);
 }
 
-/// The velocity of the center of mass, speed / (k length) cos(omega t).
-inline double bar_mean_velocity(const Bar& bar, double t) {
-    return bar.speed / (bar.wave_number() * bar.length) * std::cos(bar.frequency() * t);
-}
-
-/// Kinetic and elastic energy per cross-section, density speed^2 length / 4 at all times.
-inline double bar_energy(const Bar& bar) {
-    return 0.25 * bar.density * bar.speed * bar.speed * bar.length;
-}
-
-/// When the tension at a joint at x first reaches the strength N > 0 that breaks it.
+/// When the tension at a joint at x first reaches the strength N > 0 that breaks it: on the way to
+/// the first turn, or to the second.
 /// out:   time; infinite where it never does
 inline double bar_breaking_time(const Bar& bar, double x, double N) {
-    const double peak = bar_stress(bar, x, 0.5 * std::numbers::pi / bar.frequency());
-    if (!(std::abs(peak) >= N)) return std::numeric_limits<double>::infinity();
-    const double phase = std::asin(N / std::abs(peak));
-    return (peak > 0 ? phase : std::numbers::pi + phase) / bar.frequency();
+    const Swing swing = bar.swing();
+    const auto left = [&](double t) { return N - bar_stress(bar, x, t); };
+    double low = 0, high = swing.first_turn();
+    if (left(high) > 0 && swing.gamma < swing.omega)
+        low = high, high += std::numbers::pi / std::abs(swing.s());
+    if (left(high) > 0) return std::numeric_limits<double>::infinity();
+    for (int n = 0; n < 100; ++n) (left(0.5 * (low + high)) > 0 ? low : high) = 0.5 * (low + high);
+    return high;
 }
 
 /// A standing compression wave between rollers at x = 0 and x = length (and along y).
-///   u_x = amplitude sin(k x) sin(c k t),  k = mode pi / length,  c^2 = (lambda + 2G) / density
+///   u_x = amplitude sin(k x) q(t),  k = mode pi / length
 /// exact: for linear elasticity; finite strain changes it by about amplitude k
 struct StandingWave {
     double length, amplitude, density;
     Moduli moduli;
     int mode = 1;
     double viscosity = 0;  // beta
+    double damping = 0;    // c
 
     double wave_number() const { return mode * std::numbers::pi / length; }
     double frequency() const {
         return wave_number() * std::sqrt((moduli.lambda + 2 * moduli.G) / density);
     }
+    ///   gamma = (c + beta omega^2)/2,  omega^2 = k^2 (lambda + 2G) / density
+    Swing swing() const {
+        return {frequency(), 0.5 * (damping + viscosity * frequency() * frequency())};
+    }
 };
-
-/// How it goes in time, and how fast: sin(omega t) and its rate without viscosity.
-///   q'' + beta omega^2 q' + omega^2 q = 0,  q(0) = 0, q'(0) = omega
-///   q = (omega/s) sinh(s t) exp(-c t),  c = beta omega^2/2, s^2 = c^2 - omega^2
-inline double wave_swing(const StandingWave& w, double t) {
-    const double omega = w.frequency(), c = 0.5 * w.viscosity * omega * omega;
-    const std::complex<double> s = std::sqrt(std::complex<double>(c * c - omega * omega));
-    return std::exp(-c * t) * std::real(omega * std::sinh(s * t) / s);
-}
-inline double wave_swing_rate(const StandingWave& w, double t) {
-    const double omega = w.frequency(), c = 0.5 * w.viscosity * omega * omega;
-    const std::complex<double> s = std::sqrt(std::complex<double>(c * c - omega * omega));
-    return std::exp(-c * t) * omega * std::real(std::cosh(s * t) - c * std::sinh(s * t) / s);
-}
 
 ///   u_x = amplitude sin(k x) q(t)
 inline double wave_displacement(const StandingWave& w, double x, double t) {
-    return w.amplitude * std::sin(w.wave_number() * x) * wave_swing(w, t);
+    return w.amplitude * std::sin(w.wave_number() * x) * w.swing().at(t);
 }
 
 ///   v_x = amplitude sin(k x) q'(t)
 inline double wave_velocity(const StandingWave& w, double x, double t) {
-    return w.amplitude * std::sin(w.wave_number() * x) * wave_swing_rate(w, t);
+    return w.amplitude * std::sin(w.wave_number() * x) * w.swing().rate(t);
 }
 
 /// The elastic stress.
@@ -213,7 +232,7 @@ inline double wave_velocity(const StandingWave& w, double x, double t) {
 ///   s_xx = (lambda + 2G) e_xx,  s_yy = s_zz = lambda e_xx
 inline Stress wave_stress(const StandingWave& w, double x, double t) {
     const double k = w.wave_number();
-    const double e = w.amplitude * k * std::cos(k * x) * wave_swing(w, t);
+    const double e = w.amplitude * k * std::cos(k * x) * w.swing().at(t);
     const double side = w.moduli.lambda * e;
     return {side + 2 * w.moduli.G * e, side, 0, side};
 }

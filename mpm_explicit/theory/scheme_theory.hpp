@@ -79,24 +79,41 @@ inline double node_oscillator_frequency(int per_side) {
 /// out:   M_11 / m = 2/3 - 1 / (6 per_side^2)
 inline double node_filter(int per_side) { return 2.0 / 3 - 1.0 / (6.0 * per_side * per_side); }
 
+/// The factor by which two numbers by two are multiplied in a step: of the two of a turn the one with
+/// positive frequency; where nothing turns, the real one that lasts.
+///   (a - g) (d - g) = b c
+inline std::complex<double> step_factor(double a, double bc, double d) {
+    const double half = 0.5 * (a + d), apart = -bc - 0.25 * (a - d) * (a - d);
+    if (apart < 0) return half + std::copysign(std::sqrt(-apart), half);
+    return {half, std::sqrt(apart)};
+}
+
+/// The factor of a step of that leapfrog, in which damping leaves the part `keeps` of velocities.
+///   v^1 = keeps v^0 + dt f/m, and the node has back the part M_11/m of the change:
+///   next v^0 = d v^0 - w^2 dt x,  d = 1 - (M_11/m) (1 - keeps),  x += dt (next v^0)
+/// in:    z = w dt; keeps, exp(-c dt) for load.damping = c; filter, M_11/m (1: of a long wave)
+/// exact: without damping  cos(arg g) = 1 - z^2/2, leapfrog_frequency
+inline std::complex<double> leapfrog_factor(double z, double keeps, double filter) {
+    const double d = 1 - filter * (1 - keeps);
+    return step_factor(d, -d * z * z, 1 - z * z);
+}
+
 /// The same oscillator by the theta scheme: the factor g by which it is multiplied in one step.
 ///   v^theta = v^0 - theta z x^theta,  x^theta = x^0 + theta z v^theta,  z = w dt
 ///   x^1 = x^0 + z v^theta
-///   next v^0 = v^0 + f (v^1 - v^0),  v^1 - v^0 = -z x^theta
+///   next v^0 = keeps [v^0 + f (v^1 - v^0)],  v^1 - v^0 = -z x^theta
 /// with x times w for length: v and x are multiplied by a matrix of
-///   trace/2 = 1 - (1 + f) theta z^2 / (2 D),  D = 1 + theta^2 z^2
-///   determinant - (trace/2)^2 = (z / D)^2 [f - (1 - f)^2 theta^2 z^2 / 4]
+///   keeps (1 - f theta z^2/D)   -keeps f z/D
+///              z/D             1 - theta z^2/D,   D = 1 + theta^2 z^2
 /// in:    theta; z = w dt; f: 1 for the consistent mass, then w^2 = k / M_11, and node_filter() for
-///        the lumped mass, then w^2 = k / m
-/// out:   g with positive frequency; from theta z = 2 f^1/2 / (1 - f) on nothing oscillates, and g
-///        is that of two real factors with the larger size
-/// exact: f = 1 makes it [1 + i (1 - theta) z] / (1 - i theta z), of size 1 for theta = 1/2;
-///        |g|^2 = 1 - [theta - f (1 - theta)] z^2 / D where it oscillates, never above 1
-inline std::complex<double> theta_node_oscillation(double theta, double z, double f) {
-    const double D = 1 + theta * theta * z * z, half_trace = 1 - 0.5 * (1 + f) * theta * z * z / D,
-                 apart = f - 0.25 * (1 - f) * (1 - f) * theta * theta * z * z;
-    if (apart < 0) return half_trace + std::copysign(z / D * std::sqrt(-apart), half_trace);
-    return {half_trace, z / D * std::sqrt(apart)};
+///        the lumped mass, then w^2 = k / m; keeps, what damping leaves, exp(-c dt)
+/// out:   g with positive frequency; without damping nothing oscillates from theta z =
+///        2 f^1/2 / (1 - f) on, and g is that of two real factors with the larger size
+/// exact: f = keeps = 1 makes it [1 + i (1 - theta) z] / (1 - i theta z), of size 1 for theta = 1/2
+inline std::complex<double> theta_node_oscillation(double theta, double z, double f,
+                                                   double keeps = 1) {
+    const double D = 1 + theta * theta * z * z, z2 = z * z / D;
+    return step_factor(keeps * (1 - f * theta * z2), -keeps * f * z2 / D, 1 - theta * z2);
 }
 
 // ---- the run-out of a collapsing column ---------------------------------------------------------
