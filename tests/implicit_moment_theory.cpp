@@ -267,6 +267,16 @@ TEST_CASE("a seeded wave at an angle obeys both constraints of the mesh") {
     const Amplitudes seeded = amplitudes(w, state.field);
     CHECK(std::abs(seeded[0] - 1e-3) <= 3e-6);
     CHECK(std::abs(seeded[2] - 1.25e-3) <= 3e-6);
+    // The same seed with one component against the other, and half a turn between them.
+    Case opposite = w;
+    opposite.uniform.wave_B_x *= -1, opposite.uniform.phase_B_x = 180;
+    opposite.uniform.wave_E_z *= -1, opposite.uniform.phase_E_z = -180;
+    validate(opposite);
+    const State same = initial_state(opposite);
+    CHECK((same.field.B.all - state.field.B.all).norm() <= 1e-13 * state.field.B.all.norm());
+    CHECK((same.field.E.all - state.field.E.all).norm() <= 1e-13 * state.field.E.all.norm());
+    opposite.uniform.phase_B_x = 0;
+    CHECK_THROWS_AS(validate(opposite), common::InputError);
     w.uniform.phase_E_x = 90;
     CHECK_THROWS_AS(validate(w), common::InputError);
 }

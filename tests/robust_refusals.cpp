@@ -898,6 +898,8 @@ plasmas uniform uniform.E_x=1e-3 grid.boundary_x=wall
     seeded fields need periodic boundaries: take out uniform.E_*
 plasmas uniform uniform.mode_z=1 uniform.wave_B_x=1e-3 uniform.wave_B_z=-5e-4 uniform.phase_B_z=9
     the two components in the plane of a wave at an angle to x and z have different phases
+plasmas uniform uniform.mode_z=1 uniform.wave_B_x=1e-3 uniform.wave_B_z=1e-3 uniform.phase_B_z=-90
+    the two components in the plane of a wave at an angle to x and z have different phases
 plasmas cold wave_E_y -> theory.wave = "cold" needs charges: it needs a [species.<name>]
 plasmas cold species.electrons.charge=-1 species.electrons.drift_y=0.1
     species 'electrons' is warm or drifts: choose "longitudinal" or "transverse"
