@@ -281,6 +281,25 @@ TEST_CASE("a seeded wave at an angle obeys both constraints of the mesh") {
     CHECK_THROWS_AS(validate(w), common::InputError);
 }
 
+TEST_CASE("of waves with nearly one frequency theory takes the one that is in the component") {
+    // At an angle the mesh tells two polarizations apart that without it have one frequency.
+    Case w = magnetized(true);
+    w.grid.x.cells = w.grid.z.cells = 8;
+    w.uniform.B_x = w.uniform.B_y = w.uniform.B_z = 0;
+    w.uniform.species.erase(w.uniform.species.begin());
+    w.near = 3;
+    w.component = "E_y";
+    const double y = detail::expect_cold(w).omega.real();
+    w.component = "B_y";
+    const double in_plane = detail::expect_cold(w).omega.real();
+    CHECK(std::fabs(y / in_plane - 1) >= 1e-3);
+    for (const ColdWave& one : cold_waves(w)) {
+        CHECK((one.followed > 1e-3) == (std::fabs(one.omega.real() - in_plane) <= 1e-9));
+    }
+    w.uniform.mode_z = 0, w.component = "B_x";
+    CHECK_THROWS_AS(detail::refuse_cold(w, "cold"), common::InputError);
+}
+
 TEST_CASE("the part of a Maxwellian beyond the speed of light is that of its particles") {
     // Isotropic, at rest: erfc(r/2^1/2) + (2/pi)^1/2 r exp(-r^2/2) with r = c/v.
     for (const double v : {0.2, 0.3, 0.5}) {

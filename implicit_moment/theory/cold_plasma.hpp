@@ -193,6 +193,7 @@ inline void take_half_step_back(const Case& w, Eigen::VectorXcd& state) {
 struct ColdWave {
     std::complex<double> omega;  // omega + i gamma, omega > 0
     double along;                // the part of |E|^2 that is along K
+    double followed;             // the part of |E|^2 + |B|^2 that is in theory.component
 };
 
 /// The waves of the seeded wave number, slowest first.
@@ -200,6 +201,7 @@ struct ColdWave {
 inline std::vector<ColdWave> cold_waves(const Case& w) {
     const Eigensystem modes = eigensystem(cold_step(w));
     const WaveVector K = mesh_wave_vector(w);
+    const long component = w.component[2] - 'x' + (w.component[0] == 'B' ? 3 : 0);
     std::vector<ColdWave> waves;
     double fastest = 0;
     for (long n = 0; n < modes.values.size(); ++n) {
@@ -220,7 +222,8 @@ inline std::vector<ColdWave> cold_waves(const Case& w) {
         waves.push_back(
             {{(turn < 1e-9 - pi ? pi : turn) / w.dt, std::fabs(growth) < 1e-12 ? 0 : growth / w.dt},
              std::norm(K.x * mode[0] + K.z * mode[2]) /
-                 (K.size() * K.size() * mode.head(3).squaredNorm())});
+                 (K.size() * K.size() * mode.head(3).squaredNorm()),
+             std::norm(mode[component]) / mode.head(6).squaredNorm()});
         fastest = std::max(fastest, waves.back().omega.real());
     }
     std::erase_if(waves, [&](const ColdWave& one) { return one.omega.real() < 1e-7 * fastest; });
@@ -232,10 +235,11 @@ inline std::vector<ColdWave> cold_waves(const Case& w) {
 /// Refuses what is not cold and at rest. errors: InputError with the cure.
 inline void refuse_warm(const Case& w, const std::string& wave) {
     for (const SpeciesCase& s : w.uniform.species) {
-        refuse(s.temperature_x > 0 || s.temperature_y > 0 || s.temperature_z > 0 ||
-                   s.drift_x != 0 || s.drift_y != 0 || s.drift_z != 0,
-               wave + " is exact for a cold plasma at rest, and species '" + s.name +
-                   "' is warm or drifts: choose \"longitudinal\" or \"transverse\"");
+        refuse(
+            s.temperature_x > 0 || s.temperature_y > 0 || s.temperature_z > 0 || s.drift_x != 0 ||
+                s.drift_y != 0 || s.drift_z != 0,
+            wave + " is exact for a cold plasma at rest, and species '" + s.name +
+                "' is warm or drifts: choose \"longitudinal\", \"transverse\" or \"magnetized\"");
     }
 }
 

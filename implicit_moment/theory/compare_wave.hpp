@@ -138,23 +138,30 @@ inline Theory expect_langmuir(const Case& w) {
             "cold plasma, exact for the step of the program", true};
 }
 
+// The waves of the cold plasma that the component which is followed has a part in.
+inline std::vector<ColdWave> followed_waves(const Case& w) {
+    std::vector<ColdWave> waves = cold_waves(w);
+    std::erase_if(waves, [](const ColdWave& one) { return !(one.followed > 1e-9); });
+    return waves;
+}
+
 inline void refuse_without_near(const Case& w, const std::string& wave) {
     if (w.near > 0) return;
     std::string found;
     double last = 0;
-    for (const ColdWave& one : cold_waves(w)) {
+    for (const ColdWave& one : followed_waves(w)) {
         if (one.omega.real() > (1 + 1e-7) * last)
             found += (found.empty() ? "" : ", ") + common::format(one.omega.real());
         last = one.omega.real();
     }
     refuse(true, wave +
                      " needs theory.near: without temperatures this plasma has waves at omega = " +
-                     found);
+                     (found.empty() ? "none in theory.component" : found));
 }
 
 // The wave of the cold plasma that is nearest to theory.near.
 inline Theory expect_cold(const Case& w) {
-    const auto waves = cold_waves(w);
+    const auto waves = followed_waves(w);
     const auto distance = [&](const ColdWave& one) { return std::fabs(one.omega.real() - w.near); };
     return {std::min_element(waves.begin(), waves.end(),
                              [&](auto a, auto b) { return distance(a) < distance(b); })
@@ -165,6 +172,10 @@ inline void refuse_cold(const Case& w, const std::string& name) {
     const std::string wave = "theory.wave = \"" + name + "\"";
     refuse_uncharged(w, wave);
     refuse_warm(w, wave);
+    refuse(followed_waves(w).empty(),
+           "no wave of the seeded mode has a part in theory.component "
+           "= \"" +
+               w.component + "\": choose another one");
     refuse_without_near(w, wave);
 }
 
@@ -332,6 +343,57 @@ inline void add_mode(const Case& w, const FieldState& field, common::Row& row) {
     row.add("mode_im", w.component, mode.imag());
 }
 
+/// How far particles of a seeded wave swing, in cells.
+///     u/omega,   u of the seed, or (q/m) E/omega or the drift c E/B of its E, whatever is less
+inline double swing_in_cells(const Case& w, double omega) {
+    const UniformCase& u = w.uniform;
+    const double B = std::hypot(u.B_x, u.B_y, u.B_z);
+    double cells = 0;
+    for (const SpeciesCase& s : u.species) {
+        const double by_E =
+                         std::min(std::fabs(s.charge / s.mass) / omega, B > 0 ? c / B : HUGE_VAL),
+                     u_x = std::max(std::fabs(s.wave_x), by_E * std::fabs(u.wave_E_x)),
+                     u_z = std::max(std::fabs(s.wave_z), by_E * std::fabs(u.wave_E_z));
+        cells = std::max(
+            {cells, u_x / (omega * w.grid.x.spacing()), u_z / (omega * w.grid.z.spacing())});
+    }
+    return cells;
+}
+
+/// Why a wave may differ from theory, and what to change.
+inline std::string likely_cause(const Case& w, const Theory& theory, bool grows, bool over) {
+    if (over)
+        return "growth is over before it tells enough: lower the seed, and where that is below "
+               "the noise raise the particles per cell";
+    double heat = 0;
+    for (const SpeciesCase& s : w.uniform.species)
+        heat = std::max(
+            {heat, s.temperature_x / s.mass, s.temperature_y / s.mass, s.temperature_z / s.mass});
+    // An electron of mass gamma m answers less, by the same part.
+    if (!theory.of_scheme && w.is_relativistic() && heat > 0.003)
+        return "theory is without Lorentz factor, and particles with thermal speeds of " +
+               common::format(std::sqrt(heat)) + " c are heavier by some " + common::format(heat) +
+               " of their mass: set particles.relativistic = false, or lower the temperatures";
+    const double damping =
+        w.leapfrog.chosen ? 0 : 0.5 * (w.field.theta - 0.5) * std::norm(theory.omega) * w.dt;
+    if (!theory.of_scheme && damping > 1e-3 * std::abs(theory.omega))
+        return "field.theta = " + common::format(w.field.theta) + " damps by some " +
+               common::format(damping) +
+               ", which this theory of short steps does not have: set field.theta = 0.5, or lower "
+               "time.dt";
+    const double swing = swing_in_cells(w, std::abs(theory.omega));
+    if (theory.of_scheme && w.wave != "light" && has_linear_splines(w) && swing > 0.01)
+        return "particles swing by " + common::format(swing) +
+               " of a cell, and the force of linear splines jumps between cells, so that the wave "
+               "is not linear: lower the seed to " +
+               common::format(0.01 / swing) + " of it, or take particles.order = 2";
+    return grows ? "the seed may be below the noise, the run too short, or a step too long: raise "
+                   "the particles per cell or the seed, or time.end, or lower time.dt"
+                 : "noise, a seed so large that the wave is not linear, a step that changes it, or "
+                   "a field that this wave does not have are likely causes: raise the particles "
+                   "per cell, lower the seed or time.dt, or change theory.component";
+}
+
 /// The seeded mode against theory, by measure_mode(): growth rate of an instability, up to a tenth of
 /// its maximum; frequency and damping of a wave.
 inline void compare_wave(const Case& w, const common::History& history, common::Summary& summary) {
@@ -354,21 +416,7 @@ inline void compare_wave(const Case& w, const common::History& history, common::
     if (grows) search.begin = 1 / growth, search.below_maximum = 0.1;
     const common::MeasuredMode seen = common::measure_mode(times, mode, search);
     const std::string where = theory.source + "; measured " + seen.window;
-    std::string cause =
-        "noise, a seed so large that the wave is not linear, a step or a mesh that changes it, or "
-        "a "
-        "field that this wave does not have are likely causes: raise the particles per cell, lower "
-        "the seed or time.dt, raise grid.cells_x or cells_z, or change theory.component";
-    if (grows)
-        cause = seen.over ? "growth is over before it tells enough: lower the seed, and where that "
-                            "is below the noise raise the particles per cell"
-                          : "the seed may be below the noise, or the run too short: raise the "
-                            "particles per cell or the seed, or time.end";
-    else if (theory.of_scheme && w.wave != "light" && has_linear_splines(w))
-        cause +=
-            "; the force of linear splines jumps between cells, and where particles move by "
-            "more than a hundredth of one particles.order = 2 is linear longer";
-    summary.hint(cause);
+    summary.hint(likely_cause(w, theory, grows, seen.over));
     const auto report = [&](const std::string& name, common::Measured value) {
         if (seen.found)
             summary.result(name, value, "", 1, tolerance, where);
