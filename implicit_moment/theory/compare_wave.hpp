@@ -29,6 +29,7 @@ struct Theory {
     std::complex<double> omega;
     std::string source;
     bool of_scheme = false;  // exact for the scheme at this dt, not for dt -> 0
+    common::DispersionRoot without_mesh = {};
 };
 
 /// A wave of theory.wave.
@@ -40,13 +41,17 @@ struct Wave {
 
 namespace detail {
 
-// The species of a uniform case as the dispersion relation wants them, with k along the mode.
+// Whether it is E_y, with B in the plane, that is followed.
+inline bool has_E_along_y(const Case& w) {
+    return w.component == "E_y" || w.component == "B_x" || w.component == "B_z";
+}
+
+// The species of a uniform case as the dispersion relation wants them, with k along a mode.
 //     T_k = T_x k_x^2/k^2 + T_z k_z^2/k^2
-inline std::vector<common::PlasmaSpecies> theory_species(const Case& w) {
+inline std::vector<common::PlasmaSpecies> theory_species(const Case& w, WaveVector k) {
     const UniformCase& u = w.uniform;
-    const WaveVector k = wave_vector(w);
     const double along_x = k.x / k.size(), along_z = k.z / k.size();
-    const bool across_is_y = w.component == "E_y" || w.component == "B_x" || w.component == "B_z";
+    const bool across_is_y = has_E_along_y(w);
     std::vector<common::PlasmaSpecies> plasma;
     for (const SpeciesCase& s : u.species) {
         common::PlasmaSpecies p;
@@ -68,8 +73,8 @@ inline std::vector<common::PlasmaSpecies> theory_species(const Case& w) {
 // The same for a wave with E along k where drifts are those of u = gamma v:
 //     d v_k = (1 - v_k^2/c^2) d u_k / gamma,   as of a mass gamma m / (1 - v_k^2/c^2) that drifts with v_k.
 // exact: for species that are cold; a spread of u much smaller than c is a spread of v.
-inline std::vector<common::PlasmaSpecies> longitudinal_species(const Case& w) {
-    std::vector<common::PlasmaSpecies> plasma = theory_species(w);
+inline std::vector<common::PlasmaSpecies> longitudinal_species(const Case& w, WaveVector k) {
+    std::vector<common::PlasmaSpecies> plasma = theory_species(w, k);
     if (!w.is_relativistic()) return plasma;
     for (std::size_t n = 0; n < plasma.size(); ++n) {
         const SpeciesCase& s = w.uniform.species[n];
@@ -179,26 +184,68 @@ inline void refuse_cold(const Case& w, const std::string& name) {
     refuse_without_near(w, wave);
 }
 
+// The root of D on the mesh that is next to theory.near, or to the one of D without a mesh.
 // errors: InputError when no root was found.
-inline Theory kinetic(const Case& w, const common::DispersionRoot& root) {
+template <class Dispersion>
+Theory kinetic(const Case& w, const common::DispersionRoot& without, const Dispersion& on_mesh) {
+    common::DispersionRoot root;
+    if (w.near != 0 || without.found)
+        root = common::root_near(on_mesh, w.near != 0 ? w.near : without.omega);
     refuse(!root.found, "no root of the " + w.wave + " dispersion relation was found" +
                             (w.near != 0 ? " near " + common::format(w.near) : std::string()) +
                             ": change theory.near, or set theory.wave = \"none\"");
-    return {root.omega, "root of the kinetic dispersion relation"};
+    return {root.omega, "root of the kinetic dispersion relation on this mesh", false, without};
+}
+
+// D = 1 + S^2 sum_m |weight(m) K|^2/K^2 chi(k_m).
+inline common::Complex longitudinal_dispersion_on_mesh(const Case& w, common::Complex omega) {
+    const WaveVector K = mesh_wave_vector(w);
+    const double S = smoothing_of_mode(w);
+    common::Complex D = 1;
+    for (const ImageOfMode& image : images_of_mode(w)) {
+        const double weight =
+            S * image.weight.cwiseProduct(Eigen::Vector3d(K.x, 0, K.z)).norm() / K.size();
+        D += weight * weight *
+             (common::longitudinal_dispersion(longitudinal_species(w, image.k), image.k.size(),
+                                              omega) -
+              1.0);
+    }
+    return D;
 }
 inline Theory expect_longitudinal(const Case& w) {
-    const auto plasma = longitudinal_species(w);
+    const auto plasma = longitudinal_species(w, wave_vector(w));
     const double k = wave_vector(w).size();
     const auto D = [&](common::Complex omega) {
         return common::longitudinal_dispersion(plasma, k, omega);
     };
-    return kinetic(w, w.near != 0 ? common::root_near(D, w.near)
-                                  : common::fastest_growing_longitudinal(plasma, k));
+    return kinetic(w,
+                   w.near != 0 ? common::root_near(D, w.near)
+                               : common::fastest_growing_longitudinal(plasma, k),
+                   [&](auto omega) { return longitudinal_dispersion_on_mesh(w, omega); });
+}
+
+// D = omega^2 - c^2 K^2 + S sum_m |weight(m) e|^2 omega^2 chi(k_m), e across K.
+// note:   an image at an angle to k answers as one along it.
+inline common::Complex transverse_dispersion_on_mesh(const Case& w, int sense,
+                                                     common::Complex omega) {
+    const WaveVector k = wave_vector(w), K = mesh_wave_vector(w);
+    const auto plasma = theory_species(w, k);
+    const double S = smoothing_of_mode(w);
+    const Eigen::Vector3d e =
+        has_E_along_y(w) ? Eigen::Vector3d(0, 1, 0) : Eigen::Vector3d(K.z, 0, -K.x) / K.size();
+    common::Complex D = omega * omega - c * c * K.size() * K.size();
+    for (const ImageOfMode& image : images_of_mode(w)) {
+        const double k_m = std::copysign(image.k.size(), k.x * image.k.x + k.z * image.k.z),
+                     weight = S * image.weight.cwiseProduct(e).squaredNorm();
+        for (const auto& s : plasma) D += weight * transverse_response(s, k_m, sense, omega, S);
+    }
+    return D;
 }
 inline Theory expect_transverse(const Case& w) {
-    const auto plasma = theory_species(w);
     const double k = wave_vector(w).size();
+    const auto plasma = theory_species(w, wave_vector(w));
     common::DispersionRoot root;
+    int sense_of_root = 1;
     for (const int sense : {+1, -1}) {
         const auto D = [&](common::Complex omega) {
             return transverse_dispersion(plasma, k, c, sense, omega);
@@ -208,18 +255,21 @@ inline Theory expect_transverse(const Case& w) {
         const bool better = w.near != 0
                                 ? std::abs(found.omega - w.near) < std::abs(root.omega - w.near)
                                 : found.omega.imag() > root.omega.imag() + 1e-12;
-        if (found.found && (!root.found || better)) root = found;
+        if (found.found && (!root.found || better)) root = found, sense_of_root = sense;
     }
-    return kinetic(w, root);
+    return kinetic(w, root, [&](auto omega) {
+        return transverse_dispersion_on_mesh(w, sense_of_root, omega);
+    });
 }
 
 inline Theory expect_magnetized(const Case& w) {
     const auto plasma = magnetized_species(w);
-    const MagnetizedWave k = magnetized_wave(w);
+    const MagnetizedWave k = magnetized_wave(w, wave_vector(w));
     const auto D = [&](common::Complex omega) {
         return magnetized_dispersion(plasma, k, c, omega);
     };
-    return kinetic(w, common::root_near(D, w.near));
+    return kinetic(w, common::root_near(D, w.near),
+                   [&](auto omega) { return magnetized_dispersion_on_mesh(w, omega); });
 }
 
 // These need a root, too.
@@ -245,7 +295,7 @@ inline void refuse_magnetized(const Case& w, const std::string& name) {
             "species '" + s.name + "' drifts across uniform.B: " + wave + " wants drifts along it");
     }
     for (const MagnetizedSpecies& s : magnetized_species(w)) {
-        const double gyrations = std::sqrt(gyration_squared(s, magnetized_wave(w)));
+        const double gyrations = std::sqrt(gyration_squared(s, magnetized_wave(w, wave_vector(w))));
         refuse(!(gyrations <= 1000),
                wave + " sums over the harmonics of the gyration, and k times its radius is " +
                    common::format(gyrations) +
@@ -406,6 +456,12 @@ inline void compare_wave(const Case& w, const common::History& history, common::
     const double growth = theory.omega.imag(), frequency = std::fabs(theory.omega.real());
     summary.result_info("theory_omega", frequency, "omega_pi", theory.source);
     summary.result_info("theory_growth", growth, "omega_pi", theory.source);
+    if (const auto& without = theory.without_mesh; without.found) {
+        const std::string source = "root of the kinetic dispersion relation";
+        summary.result_info("theory_omega_without_mesh", std::fabs(without.omega.real()),
+                            "omega_pi", source);
+        summary.result_info("theory_growth_without_mesh", without.omega.imag(), "omega_pi", source);
+    }
 
     std::vector<std::complex<double>> mode;
     for (std::size_t n = 0; n < re.size(); ++n) mode.emplace_back(re[n], im[n]);
