@@ -896,11 +896,15 @@ plasmas uniform uniform.E_x=1e-3 grid.boundary_x=wall
     seeded fields need periodic boundaries: take out uniform.E_*
 plasmas uniform uniform.mode_z=1 uniform.wave_B_x=1e-3 uniform.wave_B_z=-5e-4 uniform.phase_B_z=9
     the two components in the plane of a wave at an angle to x and z have different phases
+plasmas uniform uniform.mode_z=1 uniform.wave_B_x=1e-3 uniform.wave_B_z=1e-3 uniform.phase_B_z=-90
+    the two components in the plane of a wave at an angle to x and z have different phases
 plasmas cold wave_E_y -> theory.wave = "cold" needs charges: it needs a [species.<name>]
 plasmas cold species.electrons.charge=-1 species.electrons.drift_y=0.1
-    species 'electrons' is warm or drifts: choose "longitudinal" or "transverse"
+    species 'electrons' is warm or drifts: choose "longitudinal", "transverse" or "magnetized"
 plasmas cold species.electrons.charge=-1 grid.cells_x=64 grid.cells_z=64
     theory.wave = "cold" needs theory.near: without temperatures this plasma has waves at omega =
+plasmas cold species.electrons.charge=-1 theory.component=B_x theory.near=1
+    no wave of the seeded mode has a part in theory.component = "B_x": choose another one
 plasmas longitudinal species.electrons.charge=-1 uniform.mode_z=1 uniform.B_x=0.1
     the dispersion relation is solved for B along k or zero
 plasmas magnetized species.electrons.charge=-1 uniform.mode_z=1
@@ -926,7 +930,7 @@ plasmas langmuir wave_E_y -> theory.wave = "langmuir" needs charges: it needs a 
 plasmas transverse wave_E_y -> theory.wave = "transverse" needs a [species.<name>]
 plasmas langmuir species.electrons.charge=-1 species.electrons.temperature_x=1e-4
     theory.wave = "langmuir" is exact for a cold plasma at rest, and species 'electrons' is warm or
-    drifts: choose "longitudinal" or "transverse"
+    drifts: choose "longitudinal", "transverse" or "magnetized"
 plasmas langmuir species.electrons.charge=-1 species.electrons.drift_z=0.1
     species 'electrons' is warm or drifts: choose "longitudinal"
 plasmas langmuir species.electrons.charge=0 species.electrons.wave_x=1e-5 time.end=3 few

@@ -10,41 +10,20 @@
 #include <string>
 #include <vector>
 
-#include "implicit_moment/setup/case.hpp"
-#include "implicit_moment/smooth.hpp"
+#include "implicit_moment/apply_mass_matrix.hpp"
 #include "implicit_moment/theory/eigenvalues.hpp"
+#include "implicit_moment/theory/images_of_mode.hpp"
 
 namespace implicit_moment {
 
-/// The wave vector of the seeded mode.
-struct WaveVector {
-    double x, z;
-    double size() const { return std::hypot(x, z); }
-};
-inline WaveVector wave_vector(const Case& w) {
-    return {2 * pi * double(w.uniform.mode_x) / w.grid.x.length,
-            2 * pi * double(w.uniform.mode_z) / w.grid.z.length};
-}
-
-/// What the differences of the mesh see of it: K = (2/dx) sin(k dx/2).
-inline WaveVector mesh_wave_vector(const Case& w) {
-    const WaveVector k = wave_vector(w);
-    const double dx = w.grid.x.spacing(), dz = w.grid.z.spacing();
-    return {2 / dx * std::sin(0.5 * k.x * dx), 2 / dz * std::sin(0.5 * k.z * dz)};
-}
-
-/// What the mesh makes of a mode on its way from field to particles. Where E_a is 1 on its places, particles feel
-///     sum_m weight_a(m) exp(i k_m x),   k_m = k + 2 pi m / dx,   weight: [sin(k_m dx/2) / (k_m dx/2)]^(l+1),
-/// k and its images, with l one less along the component's own direction; and with these weights they carry current.
+/// A mode and all its images: as many as three components can tell apart do for those without end, since cold
+/// particles at rest answer them alike.
 struct MeshOfMode {
     static constexpr long images = 4;         // k, and as many as three components can tell apart
     Eigen::Matrix<double, 3, images> weight;  // smoothed
     Eigen::Matrix3d to_nodes;                 // the means with which chi goes to nodes and back
     double smoothing;
 };
-
-/// Whether the charge has the spline of order l = 1; else it is 2.
-inline bool has_linear_splines(const Case& w) { return w.leapfrog.chosen && w.leapfrog.order == 1; }
 
 /// exact:  weight weight^T are the overlaps of the splines of two components, the sum over all images.
 inline MeshOfMode mesh_of_mode(const Case& w) {
@@ -73,8 +52,7 @@ inline MeshOfMode mesh_of_mode(const Case& w) {
         overlap - mesh.weight.col(0) * mesh.weight.col(0).transpose());
     mesh.weight.rightCols(3) =
         rest.eigenvectors() * rest.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
-    mesh.smoothing =
-        smoothing_factor(w.field.smoothing, x) * smoothing_factor(w.field.smoothing, z);
+    mesh.smoothing = smoothing_of_mode(w);
     mesh.weight *= mesh.smoothing;
     mesh.to_nodes = products(one, one, mean);
     return mesh;
@@ -193,6 +171,7 @@ inline void take_half_step_back(const Case& w, Eigen::VectorXcd& state) {
 struct ColdWave {
     std::complex<double> omega;  // omega + i gamma, omega > 0
     double along;                // the part of |E|^2 that is along K
+    double followed;             // the part of |E|^2 + |B|^2 that is in theory.component
 };
 
 /// The waves of the seeded wave number, slowest first.
@@ -200,6 +179,7 @@ struct ColdWave {
 inline std::vector<ColdWave> cold_waves(const Case& w) {
     const Eigensystem modes = eigensystem(cold_step(w));
     const WaveVector K = mesh_wave_vector(w);
+    const long component = w.component[2] - 'x' + (w.component[0] == 'B' ? 3 : 0);
     std::vector<ColdWave> waves;
     double fastest = 0;
     for (long n = 0; n < modes.values.size(); ++n) {
@@ -220,7 +200,8 @@ inline std::vector<ColdWave> cold_waves(const Case& w) {
         waves.push_back(
             {{(turn < 1e-9 - pi ? pi : turn) / w.dt, std::fabs(growth) < 1e-12 ? 0 : growth / w.dt},
              std::norm(K.x * mode[0] + K.z * mode[2]) /
-                 (K.size() * K.size() * mode.head(3).squaredNorm())});
+                 (K.size() * K.size() * mode.head(3).squaredNorm()),
+             std::norm(mode[component]) / mode.head(6).squaredNorm()});
         fastest = std::max(fastest, waves.back().omega.real());
     }
     std::erase_if(waves, [&](const ColdWave& one) { return one.omega.real() < 1e-7 * fastest; });
@@ -232,10 +213,11 @@ inline std::vector<ColdWave> cold_waves(const Case& w) {
 /// Refuses what is not cold and at rest. errors: InputError with the cure.
 inline void refuse_warm(const Case& w, const std::string& wave) {
     for (const SpeciesCase& s : w.uniform.species) {
-        refuse(s.temperature_x > 0 || s.temperature_y > 0 || s.temperature_z > 0 ||
-                   s.drift_x != 0 || s.drift_y != 0 || s.drift_z != 0,
-               wave + " is exact for a cold plasma at rest, and species '" + s.name +
-                   "' is warm or drifts: choose \"longitudinal\" or \"transverse\"");
+        refuse(
+            s.temperature_x > 0 || s.temperature_y > 0 || s.temperature_z > 0 || s.drift_x != 0 ||
+                s.drift_y != 0 || s.drift_z != 0,
+            wave + " is exact for a cold plasma at rest, and species '" + s.name +
+                "' is warm or drifts: choose \"longitudinal\", \"transverse\" or \"magnetized\"");
     }
 }
 

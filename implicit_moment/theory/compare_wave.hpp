@@ -29,6 +29,7 @@ struct Theory {
     std::complex<double> omega;
     std::string source;
     bool of_scheme = false;  // exact for the scheme at this dt, not for dt -> 0
+    common::DispersionRoot without_mesh = {};
 };
 
 /// A wave of theory.wave.
@@ -40,13 +41,17 @@ struct Wave {
 
 namespace detail {
 
-// The species of a uniform case as the dispersion relation wants them, with k along the mode.
+// Whether it is E_y, with B in the plane, that is followed.
+inline bool has_E_along_y(const Case& w) {
+    return w.component == "E_y" || w.component == "B_x" || w.component == "B_z";
+}
+
+// The species of a uniform case as the dispersion relation wants them, with k along a mode.
 //     T_k = T_x k_x^2/k^2 + T_z k_z^2/k^2
-inline std::vector<common::PlasmaSpecies> theory_species(const Case& w) {
+inline std::vector<common::PlasmaSpecies> theory_species(const Case& w, WaveVector k) {
     const UniformCase& u = w.uniform;
-    const WaveVector k = wave_vector(w);
     const double along_x = k.x / k.size(), along_z = k.z / k.size();
-    const bool across_is_y = w.component == "E_y" || w.component == "B_x" || w.component == "B_z";
+    const bool across_is_y = has_E_along_y(w);
     std::vector<common::PlasmaSpecies> plasma;
     for (const SpeciesCase& s : u.species) {
         common::PlasmaSpecies p;
@@ -68,8 +73,8 @@ inline std::vector<common::PlasmaSpecies> theory_species(const Case& w) {
 // The same for a wave with E along k where drifts are those of u = gamma v:
 //     d v_k = (1 - v_k^2/c^2) d u_k / gamma,   as of a mass gamma m / (1 - v_k^2/c^2) that drifts with v_k.
 // exact: for species that are cold; a spread of u much smaller than c is a spread of v.
-inline std::vector<common::PlasmaSpecies> longitudinal_species(const Case& w) {
-    std::vector<common::PlasmaSpecies> plasma = theory_species(w);
+inline std::vector<common::PlasmaSpecies> longitudinal_species(const Case& w, WaveVector k) {
+    std::vector<common::PlasmaSpecies> plasma = theory_species(w, k);
     if (!w.is_relativistic()) return plasma;
     for (std::size_t n = 0; n < plasma.size(); ++n) {
         const SpeciesCase& s = w.uniform.species[n];
@@ -138,23 +143,30 @@ inline Theory expect_langmuir(const Case& w) {
             "cold plasma, exact for the step of the program", true};
 }
 
+// The waves of the cold plasma that the component which is followed has a part in.
+inline std::vector<ColdWave> followed_waves(const Case& w) {
+    std::vector<ColdWave> waves = cold_waves(w);
+    std::erase_if(waves, [](const ColdWave& one) { return !(one.followed > 1e-9); });
+    return waves;
+}
+
 inline void refuse_without_near(const Case& w, const std::string& wave) {
     if (w.near > 0) return;
     std::string found;
     double last = 0;
-    for (const ColdWave& one : cold_waves(w)) {
+    for (const ColdWave& one : followed_waves(w)) {
         if (one.omega.real() > (1 + 1e-7) * last)
             found += (found.empty() ? "" : ", ") + common::format(one.omega.real());
         last = one.omega.real();
     }
     refuse(true, wave +
                      " needs theory.near: without temperatures this plasma has waves at omega = " +
-                     found);
+                     (found.empty() ? "none in theory.component" : found));
 }
 
 // The wave of the cold plasma that is nearest to theory.near.
 inline Theory expect_cold(const Case& w) {
-    const auto waves = cold_waves(w);
+    const auto waves = followed_waves(w);
     const auto distance = [&](const ColdWave& one) { return std::fabs(one.omega.real() - w.near); };
     return {std::min_element(waves.begin(), waves.end(),
                              [&](auto a, auto b) { return distance(a) < distance(b); })
@@ -165,29 +177,75 @@ inline void refuse_cold(const Case& w, const std::string& name) {
     const std::string wave = "theory.wave = \"" + name + "\"";
     refuse_uncharged(w, wave);
     refuse_warm(w, wave);
+    refuse(followed_waves(w).empty(),
+           "no wave of the seeded mode has a part in theory.component "
+           "= \"" +
+               w.component + "\": choose another one");
     refuse_without_near(w, wave);
 }
 
+// The root of D on the mesh that is next to theory.near, or to the one of D without a mesh.
 // errors: InputError when no root was found.
-inline Theory kinetic(const Case& w, const common::DispersionRoot& root) {
+template <class Dispersion>
+Theory kinetic(const Case& w, const common::DispersionRoot& without, const Dispersion& on_mesh) {
+    common::DispersionRoot root;
+    if (w.near != 0 || without.found)
+        root = common::root_near(on_mesh, w.near != 0 ? w.near : without.omega);
     refuse(!root.found, "no root of the " + w.wave + " dispersion relation was found" +
                             (w.near != 0 ? " near " + common::format(w.near) : std::string()) +
                             ": change theory.near, or set theory.wave = \"none\"");
-    return {root.omega, "root of the kinetic dispersion relation"};
+    return {root.omega, "root of the kinetic dispersion relation on this mesh", false, without};
+}
+
+// D = 1 + S^2 sum_m |weight(m) K|^2/K^2 chi(k_m).
+inline common::Complex longitudinal_dispersion_on_mesh(const Case& w, common::Complex omega) {
+    const WaveVector K = mesh_wave_vector(w);
+    const double S = smoothing_of_mode(w);
+    common::Complex D = 1;
+    for (const ImageOfMode& image : images_of_mode(w)) {
+        const double weight =
+            S * image.weight.cwiseProduct(Eigen::Vector3d(K.x, 0, K.z)).norm() / K.size();
+        D += weight * weight *
+             (common::longitudinal_dispersion(longitudinal_species(w, image.k), image.k.size(),
+                                              omega) -
+              1.0);
+    }
+    return D;
 }
 inline Theory expect_longitudinal(const Case& w) {
-    const auto plasma = longitudinal_species(w);
+    const auto plasma = longitudinal_species(w, wave_vector(w));
     const double k = wave_vector(w).size();
     const auto D = [&](common::Complex omega) {
         return common::longitudinal_dispersion(plasma, k, omega);
     };
-    return kinetic(w, w.near != 0 ? common::root_near(D, w.near)
-                                  : common::fastest_growing_longitudinal(plasma, k));
+    return kinetic(w,
+                   w.near != 0 ? common::root_near(D, w.near)
+                               : common::fastest_growing_longitudinal(plasma, k),
+                   [&](auto omega) { return longitudinal_dispersion_on_mesh(w, omega); });
+}
+
+// D = omega^2 - c^2 K^2 + S sum_m |weight(m) e|^2 omega^2 chi(k_m), e across K.
+// note:   an image at an angle to k answers as one along it.
+inline common::Complex transverse_dispersion_on_mesh(const Case& w, int sense,
+                                                     common::Complex omega) {
+    const WaveVector k = wave_vector(w), K = mesh_wave_vector(w);
+    const auto plasma = theory_species(w, k);
+    const double S = smoothing_of_mode(w);
+    const Eigen::Vector3d e =
+        has_E_along_y(w) ? Eigen::Vector3d(0, 1, 0) : Eigen::Vector3d(K.z, 0, -K.x) / K.size();
+    common::Complex D = omega * omega - c * c * K.size() * K.size();
+    for (const ImageOfMode& image : images_of_mode(w)) {
+        const double k_m = std::copysign(image.k.size(), k.x * image.k.x + k.z * image.k.z),
+                     weight = S * image.weight.cwiseProduct(e).squaredNorm();
+        for (const auto& s : plasma) D += weight * transverse_response(s, k_m, sense, omega, S);
+    }
+    return D;
 }
 inline Theory expect_transverse(const Case& w) {
-    const auto plasma = theory_species(w);
     const double k = wave_vector(w).size();
+    const auto plasma = theory_species(w, wave_vector(w));
     common::DispersionRoot root;
+    int sense_of_root = 1;
     for (const int sense : {+1, -1}) {
         const auto D = [&](common::Complex omega) {
             return transverse_dispersion(plasma, k, c, sense, omega);
@@ -197,18 +255,21 @@ inline Theory expect_transverse(const Case& w) {
         const bool better = w.near != 0
                                 ? std::abs(found.omega - w.near) < std::abs(root.omega - w.near)
                                 : found.omega.imag() > root.omega.imag() + 1e-12;
-        if (found.found && (!root.found || better)) root = found;
+        if (found.found && (!root.found || better)) root = found, sense_of_root = sense;
     }
-    return kinetic(w, root);
+    return kinetic(w, root, [&](auto omega) {
+        return transverse_dispersion_on_mesh(w, sense_of_root, omega);
+    });
 }
 
 inline Theory expect_magnetized(const Case& w) {
     const auto plasma = magnetized_species(w);
-    const MagnetizedWave k = magnetized_wave(w);
+    const MagnetizedWave k = magnetized_wave(w, wave_vector(w));
     const auto D = [&](common::Complex omega) {
         return magnetized_dispersion(plasma, k, c, omega);
     };
-    return kinetic(w, common::root_near(D, w.near));
+    return kinetic(w, common::root_near(D, w.near),
+                   [&](auto omega) { return magnetized_dispersion_on_mesh(w, omega); });
 }
 
 // These need a root, too.
@@ -234,7 +295,7 @@ inline void refuse_magnetized(const Case& w, const std::string& name) {
             "species '" + s.name + "' drifts across uniform.B: " + wave + " wants drifts along it");
     }
     for (const MagnetizedSpecies& s : magnetized_species(w)) {
-        const double gyrations = std::sqrt(gyration_squared(s, magnetized_wave(w)));
+        const double gyrations = std::sqrt(gyration_squared(s, magnetized_wave(w, wave_vector(w))));
         refuse(!(gyrations <= 1000),
                wave + " sums over the harmonics of the gyration, and k times its radius is " +
                    common::format(gyrations) +
@@ -332,6 +393,57 @@ inline void add_mode(const Case& w, const FieldState& field, common::Row& row) {
     row.add("mode_im", w.component, mode.imag());
 }
 
+/// How far particles of a seeded wave swing, in cells.
+///     u/omega,   u of the seed, or (q/m) E/omega or the drift c E/B of its E, whatever is less
+inline double swing_in_cells(const Case& w, double omega) {
+    const UniformCase& u = w.uniform;
+    const double B = std::hypot(u.B_x, u.B_y, u.B_z);
+    double cells = 0;
+    for (const SpeciesCase& s : u.species) {
+        const double by_E =
+                         std::min(std::fabs(s.charge / s.mass) / omega, B > 0 ? c / B : HUGE_VAL),
+                     u_x = std::max(std::fabs(s.wave_x), by_E * std::fabs(u.wave_E_x)),
+                     u_z = std::max(std::fabs(s.wave_z), by_E * std::fabs(u.wave_E_z));
+        cells = std::max(
+            {cells, u_x / (omega * w.grid.x.spacing()), u_z / (omega * w.grid.z.spacing())});
+    }
+    return cells;
+}
+
+/// Why a wave may differ from theory, and what to change.
+inline std::string likely_cause(const Case& w, const Theory& theory, bool grows, bool over) {
+    if (over)
+        return "growth is over before it tells enough: lower the seed, and where that is below "
+               "the noise raise the particles per cell";
+    double heat = 0;
+    for (const SpeciesCase& s : w.uniform.species)
+        heat = std::max(
+            {heat, s.temperature_x / s.mass, s.temperature_y / s.mass, s.temperature_z / s.mass});
+    // An electron of mass gamma m answers less, by the same part.
+    if (!theory.of_scheme && w.is_relativistic() && heat > 0.003)
+        return "theory is without Lorentz factor, and particles with thermal speeds of " +
+               common::format(std::sqrt(heat)) + " c are heavier by some " + common::format(heat) +
+               " of their mass: set particles.relativistic = false, or lower the temperatures";
+    const double damping =
+        w.leapfrog.chosen ? 0 : 0.5 * (w.field.theta - 0.5) * std::norm(theory.omega) * w.dt;
+    if (!theory.of_scheme && damping > 1e-3 * std::abs(theory.omega))
+        return "field.theta = " + common::format(w.field.theta) + " damps by some " +
+               common::format(damping) +
+               ", which this theory of short steps does not have: set field.theta = 0.5, or lower "
+               "time.dt";
+    const double swing = swing_in_cells(w, std::abs(theory.omega));
+    if (theory.of_scheme && w.wave != "light" && has_linear_splines(w) && swing > 0.01)
+        return "particles swing by " + common::format(swing) +
+               " of a cell, and the force of linear splines jumps between cells, so that the wave "
+               "is not linear: lower the seed to " +
+               common::format(0.01 / swing) + " of it, or take particles.order = 2";
+    return grows ? "the seed may be below the noise, the run too short, or a step too long: raise "
+                   "the particles per cell or the seed, or time.end, or lower time.dt"
+                 : "noise, a seed so large that the wave is not linear, a step that changes it, or "
+                   "a field that this wave does not have are likely causes: raise the particles "
+                   "per cell, lower the seed or time.dt, or change theory.component";
+}
+
 /// The seeded mode against theory, by measure_mode(): growth rate of an instability, up to a tenth of
 /// its maximum; frequency and damping of a wave.
 inline void compare_wave(const Case& w, const common::History& history, common::Summary& summary) {
@@ -344,6 +456,12 @@ inline void compare_wave(const Case& w, const common::History& history, common::
     const double growth = theory.omega.imag(), frequency = std::fabs(theory.omega.real());
     summary.result_info("theory_omega", frequency, "omega_pi", theory.source);
     summary.result_info("theory_growth", growth, "omega_pi", theory.source);
+    if (const auto& without = theory.without_mesh; without.found) {
+        const std::string source = "root of the kinetic dispersion relation";
+        summary.result_info("theory_omega_without_mesh", std::fabs(without.omega.real()),
+                            "omega_pi", source);
+        summary.result_info("theory_growth_without_mesh", without.omega.imag(), "omega_pi", source);
+    }
 
     std::vector<std::complex<double>> mode;
     for (std::size_t n = 0; n < re.size(); ++n) mode.emplace_back(re[n], im[n]);
@@ -354,21 +472,7 @@ inline void compare_wave(const Case& w, const common::History& history, common::
     if (grows) search.begin = 1 / growth, search.below_maximum = 0.1;
     const common::MeasuredMode seen = common::measure_mode(times, mode, search);
     const std::string where = theory.source + "; measured " + seen.window;
-    std::string cause =
-        "noise, a seed so large that the wave is not linear, a step or a mesh that changes it, or "
-        "a "
-        "field that this wave does not have are likely causes: raise the particles per cell, lower "
-        "the seed or time.dt, raise grid.cells_x or cells_z, or change theory.component";
-    if (grows)
-        cause = seen.over ? "growth is over before it tells enough: lower the seed, and where that "
-                            "is below the noise raise the particles per cell"
-                          : "the seed may be below the noise, or the run too short: raise the "
-                            "particles per cell or the seed, or time.end";
-    else if (theory.of_scheme && w.wave != "light" && has_linear_splines(w))
-        cause +=
-            "; the force of linear splines jumps between cells, and where particles move by "
-            "more than a hundredth of one particles.order = 2 is linear longer";
-    summary.hint(cause);
+    summary.hint(likely_cause(w, theory, grows, seen.over));
     const auto report = [&](const std::string& name, common::Measured value) {
         if (seen.found)
             summary.result(name, value, "", 1, tolerance, where);

@@ -9,13 +9,36 @@
 
 namespace implicit_moment {
 
+/// What a species adds to D below, where its particles feel a part S of E and the whole B:
+///     omega_s^2 { (omega - k u_s) / (2^1/2 k v_s) Z(zeta_s) + (T_across / T_along - 1) [1 + zeta_s Z(zeta_s)]
+///                 - (1 - S) omega / (2^1/2 k v_s) Z(zeta_s) },
+///     zeta_s = w / (2^1/2 k v_s),   w = omega - k u_s + sense Omega_s
+/// and where it is cold along k
+///     -omega_s^2 { (omega - k u_s) / w + k^2 T_across / (m w^2) - (1 - S) omega / w }
+/// note:   the programs smooth E for the particles, and not B.
+inline common::Complex transverse_response(const common::PlasmaSpecies& s, double k, int sense,
+                                           common::Complex omega, double part_of_E = 1) {
+    const common::Complex doppler = omega - k * s.drift,
+                          shifted = doppler + sense * s.gyrofrequency,
+                          felt = doppler - (1 - part_of_E) * omega;
+    const double kv = std::abs(k) * s.speed_along();
+    common::Complex response;
+    if (kv == 0.0) {
+        const double kv_across_squared = k * k * s.temperature_across / s.mass;
+        if (shifted * shifted == 0.0) return common::no_value;
+        response = felt == shifted ? common::Complex(-1.0) : -felt / shifted;
+        if (kv_across_squared > 0.0) response -= kv_across_squared / (shifted * shifted);
+    } else {
+        const double root2_kv = std::numbers::sqrt2 * kv;
+        const auto f = common::plasma_dispersion_detail::values(shifted / root2_kv);
+        const double anisotropy = s.temperature_across / s.temperature_along - 1.0;
+        response = felt / root2_kv * f.Z + anisotropy * f.one_plus_zeta_Z;
+    }
+    return s.frequency_squared() * response;
+}
+
 /// Waves with E across k, circularly polarized, with B_0 along k or zero.
-///   D = omega^2 - c^2 k^2 + sum_s omega_s^2 { (omega - k u_s) / (2^1/2 k v_s) Z(zeta_s)
-///                                             + (T_across / T_along - 1) [1 + zeta_s Z(zeta_s)] },
-///   zeta_s = (omega - k u_s + sense Omega_s) / (2^1/2 k v_s),
-///   and for a species that is cold along k
-///   - omega_s^2 { (omega - k u_s) / w + k^2 T_across / (m w^2) },
-///   w = omega - k u_s + sense Omega_s
+///     D = omega^2 - c^2 k^2 + sum_s transverse_response
 /// in:    light, the speed c; sense +1: electrons resonate at omega = |Omega_e|, the whistler; -1: ions at Omega_i.
 ///        Without B_0 both are the same, and any polarization has this relation.
 /// source: Stix, Waves in Plasmas (1992), chapter 10; Weibel, Phys. Rev. Lett. 2, 83 (1959).
@@ -23,24 +46,7 @@ inline common::Complex transverse_dispersion(std::span<const common::PlasmaSpeci
                                              double k, double light, int sense,
                                              common::Complex omega) {
     common::Complex D = omega * omega - light * light * k * k;
-    for (const auto& s : plasma) {
-        const common::Complex doppler = omega - k * s.drift;
-        const common::Complex shifted = doppler + sense * s.gyrofrequency;
-        const double kv = std::abs(k) * s.speed_along();
-        common::Complex response;
-        if (kv == 0.0) {
-            const double kv_across_squared = k * k * s.temperature_across / s.mass;
-            if (shifted * shifted == 0.0) return common::no_value;
-            response = s.gyrofrequency == 0.0 ? common::Complex(-1.0) : -doppler / shifted;
-            if (kv_across_squared > 0.0) response -= kv_across_squared / (shifted * shifted);
-        } else {
-            const double root2_kv = std::numbers::sqrt2 * kv;
-            const auto f = common::plasma_dispersion_detail::values(shifted / root2_kv);
-            const double anisotropy = s.temperature_across / s.temperature_along - 1.0;
-            response = doppler / root2_kv * f.Z + anisotropy * f.one_plus_zeta_Z;
-        }
-        D += s.frequency_squared() * response;
-    }
+    for (const auto& s : plasma) D += transverse_response(s, k, sense, omega);
     return D;
 }
 
