@@ -39,6 +39,7 @@ double ms_per_picture = 0;  // 0: as fast as the program goes, with some of its 
 long pictures_to_show = 1;  // although it is paused
 double last_picture = -1e9, last_wait = -1e9;
 bool picture_is_new = false;    // since the last wait
+bool at_the_end = false;        // what is written after the loop is shown in any case
 std::size_t numbers_shown = 0;  // of the history
 
 // Between two steps.
@@ -51,6 +52,7 @@ void show_and_wait(const common::Run& run, bool more, double done) {
     if (rows.size() > numbers_shown)
         page_add_rows(rows.data() + numbers_shown, int(rows.size() - numbers_shown), done);
     numbers_shown = rows.size();
+    at_the_end = !more;
     if (!more) return;
     do {
         page_wait(last_picture + ms_per_picture - emscripten_get_now());
@@ -67,7 +69,7 @@ void show_columns(const std::string& kind, const std::vector<ScalarColumn>& colu
                   const SampledAxis& x, const SampledAxis& z) {
     const double now = emscripten_get_now();
     if (!page_wants(kind.c_str())) return;
-    if (ms_per_picture == 0 && !paused && now - last_picture < shortest_ms) return;
+    if (ms_per_picture == 0 && !paused && !at_the_end && now - last_picture < shortest_ms) return;
     last_picture = now;
     picture_is_new = true;
     if (pictures_to_show > 0) --pictures_to_show;

@@ -10,11 +10,11 @@ set multiplot title 'Sliding with friction flutters; viscosity ends it' font ',2
 set bmargin at screen 0.16; set tmargin at screen 0.82
 array left[2] = [0.085, 0.39]
 set logscale y; set format y '10^{%L}'
-set xrange [0:0.5]; set yrange [1e-8:20]; set xtics 0.1; set ytics 100
+set xrange [0:0.5]; set yrange [1e-8:1e3]; set xtics 0.1; set ytics 100
 set xlabel 't [s]'
 unset key
-set label 1 'μ = 0.55' at 0.335, 2.2 textcolor rgb orange; set label 2 'μ = 0.3' at 0.335, 0.025 textcolor rgb blue
-set label 3 'β = 3 ms' at 0.335, 2e-7 textcolor rgb ink; set label 4 'finite elements' at 0.27, 4.5 right textcolor rgb ink
+set label 1 'μ = 0.55' at 0.495, 30 right textcolor rgb orange; set label 2 'μ = 0.3' at 0.495, 0.006 right textcolor rgb blue
+set label 3 'β = 3 ms' at 0.495, 5e-7 right textcolor rgb ink; set label 4 'finite elements' at 0.25, 30 right textcolor rgb ink
 do for [k = 1:2] {
     scheme = word('explicit implicit', k)
     set lmargin at screen left[k]; set rmargin at screen left[k] + 0.245
