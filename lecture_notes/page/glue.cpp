@@ -5,6 +5,8 @@
 // left there and entered again (Asyncify), so that its worker can listen to the page.
 #include <emscripten.h>
 
+#include <cmath>
+
 #include "common/run/run.hpp"
 #include "common/run/writers.hpp"
 
@@ -91,6 +93,20 @@ int main(int argc, char** argv) {
 }
 
 extern "C" {
+
+// The x that chi-square with f degrees of freedom stays below with the probability P. GSL's own has the half of GSL
+// behind it; this is the series of the incomplete gamma function, and bisection.
+double gsl_cdf_chisq_Pinv(double P, double f) {
+    const auto below = [f](double x) {
+        double term = 1, sum = 1;
+        for (double n = 0.5 * f + 1; term > 1e-17 * sum; ++n) sum += term *= 0.5 * x / n;
+        return sum * std::exp(0.5 * f * std::log(0.5 * x) - 0.5 * x - std::lgamma(0.5 * f + 1));
+    };
+    double low = 0, high = 1;
+    while (below(high) < P) high *= 2;
+    for (int n = 0; n < 100; ++n) (below(0.5 * (low + high)) < P ? low : high) = 0.5 * (low + high);
+    return low;
+}
 
 // For the page: whether to pause, and how long a picture stays; one more picture in a pause.
 EMSCRIPTEN_KEEPALIVE void set_pace(int pause, double ms) {
