@@ -122,7 +122,8 @@ The particle-in-cell family in running code
   make exercise E=1-3    its question, its runs, and whether they give what is expected
                          (with ANSWER=0.9239: is the answer right?)
   make bench             particle-steps per second on 1 and 2 threads, and where the time goes
-  make web               the programs in the browser, a page per case, in out/web/ (packages: make deps-web)
+  make web               the programs in the browser, a page per case, in out/web/ (packages: make deps-web);
+                         CASES='two_stream': one of them, in a quarter of the time
   make test-web          every page run in Chromium, beside the native programs; CASES='gem': some of them
   make notes             refresh the code and the numbers in the lecture notes
   make book              the notes as out/book/index.html and out/book.pdf   (packages: make deps-book)
@@ -584,9 +585,12 @@ emscripten := NODE_PATH=/usr/share/nodejs em++
 .PHONY: web deps-web test-web
 deps-web: deps
 	@sh common/packages.sh emscripten chromium
-web: $(web_cases:%=out/web/%.html) $(addprefix out/web/,index.html page.css cases.js page.js pictures.js code.js) \
-    $(web_programs:%=out/web/programs/%.js)
-	@echo "open out/web/index.html in a browser"
+# With CASES only these, and the programs that they run.
+web_wanted = $(or $(CASES),$(web_cases))
+web_needed = $(sort $(foreach c,$(web_wanted),$(shell sed -n '/^    $c: {/,/^    }/p' $(page)/cases.js | grep -o 'program: "[a-z_]*' | cut -d'"' -f2)))
+web: $(web_wanted:%=out/web/%.html) $(addprefix out/web/,index.html page.css cases.js page.js pictures.js code.js) \
+    $(web_needed:%=out/web/programs/%.js)
+	@echo "open out/web/$(or $(firstword $(CASES)),index).html in a browser"
 
 $(web)/sources/.complete: $(page)/get_sources.sh | $(packages_first)
 	@command -v em++ >/dev/null || { echo "'em++' is not installed: run 'make deps-web'" >&2; exit 2; }

@@ -11,7 +11,7 @@ rate = result('theory_growth')
 fitted = system(sprintf("echo '%s' | sed 's/.*up to t = \\([0-9.]*\\).*/\\1/'", entry('results.growth.source')))
 height = real(system(sprintf("LC_ALL=C awk '$1 + 0 == $1 && $1 > 0.5 * ".fitted." { print sqrt($%d^2 + $%d^2) * exp(-%.10g * $1); exit }' '%s'", re, im, rate, history)))
 set bmargin at screen 0.64; set tmargin at screen 0.865
-set lmargin at screen 0.095; set rmargin at screen 0.335
+set lmargin at screen 0.095; set rmargin at screen 0.325
 set logscale y; set format y '10^{%T}'
 set xrange [0:given('time.end')]; set yrange [0.001:10]; set xtics 0.5
 set xlabel 'time' offset 0, 0.3; set ylabel 'v_z of the wave' offset 0.8, 0
@@ -30,7 +30,7 @@ do for [n = 1:5] {
     set bmargin at screen bottom; set tmargin at screen bottom + 0.255 * wide / high
     set title sprintf('%s, t = %.3g', p, time) offset 0, -0.7
     if (n > 2) { set xtics 0.5 format '%g'; set xlabel 'x' offset 0, 0.5 } else { set xtics 0.5 format ''; unset xlabel }
-    if (n == 1 || n == 3) { set ylabel 'z' offset 1.8, 0; set format y '%g' } else { unset ylabel; set format y '' }
+    if (n == 1 || n == 3) { set ylabel 'z' offset 3.2, 0; set format y '%g' } else { unset ylabel; set format y '' }
     plot file_at('particles', time) using 1:2:($3 == 0 ? 0x56b4e9 : 0xd55e00) with points pt 7 ps 0.5 lc rgb variable
 }
 unset multiplot

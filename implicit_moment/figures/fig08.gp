@@ -25,7 +25,7 @@ do for [k = 1:words(times)] {
     set lmargin at screen left; set rmargin at screen left + 0.39
     set bmargin at screen bottom; set tmargin at screen bottom + 0.33
     set title sprintf('t Ω_{ci} = %.3g', B0 * real(word(times, k))) offset 0, -0.6
-    if (k > words(times) - 2) { set xlabel 'x / d_i' } else { set xlabel '' }
+    if (k > words(times) - 2) { set xlabel 'x / d_i'; set format x '%g' } else { set xlabel ''; set format x '' }
     if (k % 2 == 1) { set ylabel 'z / d_i' offset 1, 0; set format y '%g' } else { set ylabel ''; set format y '' }
     if (k == 2 || words(times) == 1) { set colorbox user origin 0.895, 0.25 size 0.014, 0.48; set cblabel 'J_y / J_0' offset -0.5, 0 } else { unset colorbox }
     plot file(k) using 1:2:(column(J) / J0) with image notitle, $lines using 1:2 @contours notitle

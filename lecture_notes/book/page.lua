@@ -150,7 +150,7 @@ local function caption_of(name)
     if file then
       lines = {}
       for line in file:lines() do
-        if not line:match("^#") then break end
+        if not line:match("^#") or line:match("^# fits:") then break end
         lines[#lines + 1] = line:gsub("^#%s*", "")
       end
       file:close()

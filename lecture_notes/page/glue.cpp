@@ -5,6 +5,8 @@
 // left there and entered again (Asyncify), so that its worker can listen to the page.
 #include <emscripten.h>
 
+#include <cmath>
+
 #include "common/run/run.hpp"
 #include "common/run/writers.hpp"
 
@@ -39,6 +41,7 @@ double ms_per_picture = 0;  // 0: as fast as the program goes, with some of its 
 long pictures_to_show = 1;  // although it is paused
 double last_picture = -1e9, last_wait = -1e9;
 bool picture_is_new = false;    // since the last wait
+bool at_the_end = false;        // what is written after the loop is shown in any case
 std::size_t numbers_shown = 0;  // of the history
 
 // Between two steps.
@@ -51,6 +54,7 @@ void show_and_wait(const common::Run& run, bool more, double done) {
     if (rows.size() > numbers_shown)
         page_add_rows(rows.data() + numbers_shown, int(rows.size() - numbers_shown), done);
     numbers_shown = rows.size();
+    at_the_end = !more;
     if (!more) return;
     do {
         page_wait(last_picture + ms_per_picture - emscripten_get_now());
@@ -67,7 +71,7 @@ void show_columns(const std::string& kind, const std::vector<ScalarColumn>& colu
                   const SampledAxis& x, const SampledAxis& z) {
     const double now = emscripten_get_now();
     if (!page_wants(kind.c_str())) return;
-    if (ms_per_picture == 0 && !paused && now - last_picture < shortest_ms) return;
+    if (ms_per_picture == 0 && !paused && !at_the_end && now - last_picture < shortest_ms) return;
     last_picture = now;
     picture_is_new = true;
     if (pictures_to_show > 0) --pictures_to_show;
@@ -89,6 +93,20 @@ int main(int argc, char** argv) {
 }
 
 extern "C" {
+
+// The x that chi-square with f degrees of freedom stays below with the probability P. GSL's own has the half of GSL
+// behind it; this is the series of the incomplete gamma function, and bisection.
+double gsl_cdf_chisq_Pinv(double P, double f) {
+    const auto below = [f](double x) {
+        double term = 1, sum = 1;
+        for (double n = 0.5 * f + 1; term > 1e-17 * sum; ++n) sum += term *= 0.5 * x / n;
+        return sum * std::exp(0.5 * f * std::log(0.5 * x) - 0.5 * x - std::lgamma(0.5 * f + 1));
+    };
+    double low = 0, high = 1;
+    while (below(high) < P) high *= 2;
+    for (int n = 0; n < 100; ++n) (below(0.5 * (low + high)) < P ? low : high) = 0.5 * (low + high);
+    return low;
+}
 
 // For the page: whether to pause, and how long a picture stays; one more picture in a pause.
 EMSCRIPTEN_KEEPALIVE void set_pace(int pause, double ms) {

@@ -87,6 +87,9 @@ function receive(run, data) {
 
 function end(run, {status, summary, history}) {
     Object.assign(run, {status, done: 1, text: history, summary: summary ? JSON.parse(summary) : null});
+    // With the row that the program writes after its loop.
+    if (run.history.names && history)
+        run.history.values = history.trim().split("\n").slice(1).filter((row) => !row.startsWith("#")).flatMap((row) => row.split(" ").map(Number));
     if (run.summary) show_results(run);
     if (runs.some((one) => one.status === null)) return;
     const words = runs.map((one) => {

@@ -35,11 +35,17 @@ function ticks(low, high, count) {
     return all;
 }
 
+// At a tick: 4e-4 is shorter than 0.0004, for which there is no room.
+function number_at_tick(v) {
+    const plain = String(v), short = v.toExponential().replace("e+", "e");
+    return (plain.length > 5 && short.length < plain.length ? short : plain).replaceAll("-", "−");
+}
+
 /// A canvas as large as it is shown, with two axes. out: context, the rectangle of the data, and where x and y are in it
 function frame(canvas, x, y, {log = false, equal = false} = {}) {
     const scale = window.devicePixelRatio || 1;
     if (equal) {  // no higher than the data
-        const needed = (canvas.clientWidth - 65) * (y.high - y.low) / (x.high - x.low) + 50;
+        const needed = (canvas.clientWidth - 70) * (y.high - y.low) / (x.high - x.low) + 50;
         if (needed < canvas.clientHeight - 1) canvas.style.height = `${needed}px`;
     }
     const width = Math.round(canvas.clientWidth * scale), height = Math.round(canvas.clientHeight * scale);
@@ -47,7 +53,7 @@ function frame(canvas, x, y, {log = false, equal = false} = {}) {
     const to = canvas.getContext("2d");
     to.clearRect(0, 0, width, height);
     const em = 13 * scale, ink = css("--ink");
-    const box = {left: 4.2 * em, top: 0.8 * em, width: width - 5 * em, height: height - 3.6 * em};
+    const box = {left: 4.6 * em, top: 0.8 * em, width: width - 5.4 * em, height: height - 3.6 * em};
     if (equal) {  // one length for both
         const unit = Math.min(box.width / (x.high - x.low), box.height / (y.high - y.low));
         box.width = unit * (x.high - x.low);
@@ -60,14 +66,14 @@ function frame(canvas, x, y, {log = false, equal = false} = {}) {
     to.font = `${em}px system-ui, "DejaVu Sans", sans-serif`;
     to.fillStyle = ink, to.strokeStyle = css("--faint"), to.lineWidth = scale;
     const label = (text, px, py, align, base) => Object.assign(to, {textAlign: align, textBaseline: base}) && to.fillText(text, px, py);
-    for (const v of ticks(x.low, x.high, Math.max(2, box.width / (4.5 * em)))) label(String(v).replace("-", "−"), at_x(v), box.top + box.height + 0.5 * em, "center", "top");
+    for (const v of ticks(x.low, x.high, Math.max(2, box.width / (4.5 * em)))) label(number_at_tick(v), at_x(v), box.top + box.height + 0.5 * em, "center", "top");
     const decades = () => ticks(f(y.low), f(y.high), Math.max(2, box.height / (3 * em))).filter(Number.isInteger).map((k) => 10 ** k);
     for (const v of log ? decades() : ticks(y.low, y.high, Math.max(2, box.height / (3 * em)))) {
-        label(log ? v.toExponential(0).replace("e+", "e") : String(v).replace("-", "−"), box.left - 0.5 * em, at_y(v), "right", "middle");
+        label(log ? v.toExponential(0).replace("e+", "e") : number_at_tick(v), box.left - 0.5 * em, at_y(v), "right", "middle");
         to.beginPath(), to.moveTo(box.left, at_y(v)), to.lineTo(box.left + box.width, at_y(v)), to.stroke();
     }
     label(x.label, box.left + box.width / 2, box.top + box.height + 1.8 * em, "center", "top");
-    to.save(), to.translate(Math.max(0.2 * em, box.left - 4 * em), box.top + box.height / 2), to.rotate(-Math.PI / 2);
+    to.save(), to.translate(Math.max(0.2 * em, box.left - 4.4 * em), box.top + box.height / 2), to.rotate(-Math.PI / 2);
     label(y.label, 0, 0, "center", "top");
     to.restore();
     to.strokeStyle = ink;
@@ -77,7 +83,7 @@ function frame(canvas, x, y, {log = false, equal = false} = {}) {
 
 // Names and units as they are printed: omega_p^2 with Greek letters and powers.
 const print = (text) => text.replaceAll("omega", "ω").replaceAll("Omega", "Ω").replaceAll("^2", "²").replaceAll("^3", "³").replaceAll("*", " ");
-const with_unit = (name, unit) => unit && unit !== "1" ? `${name} [${print(unit)}]` : name;
+const with_unit = (name, unit) => unit && unit !== "1" && unit !== name ? `${name} [${print(unit)}]` : name;
 
 function range_of(numbers) {
     let low = Infinity, high = -Infinity;

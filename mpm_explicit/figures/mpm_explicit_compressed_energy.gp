@@ -29,16 +29,15 @@ set lmargin at screen 0.085; set rmargin at screen 0.48
 set tmargin at screen 0.42; set bmargin at screen 0.12
 set title 'energy / work of the plate'
 set yrange [0.8:1.8]; set ytics 0.2
-set key top left maxrows 2
+set key top left maxrows 4
 # The ratio of two small numbers at the start is left out.
 ratio = '($'.col(one, 'travel_y_plate').' < -1e-3 ? column(energy) / column(work) : NaN)'
 plot file('alpha_0.7') using @travel:@ratio with lines lt 5 title 'α = 0.70', file('alpha_0.5') using @travel:@ratio with lines lt 3 title 'α = 0.50', \
      one using @travel:@ratio with lines lt 1 title 'α = 0.25', file('gimp') using @travel:@ratio with lines lt 1 dt 2 title '0.25, gimp'
 set lmargin at screen 0.585; set rmargin at screen 0.98
-set title 'rest of the ledger / final work'
-set yrange [-2e-14:2e-14]
-set ytics ('−2·10^{−14}' -2e-14, '−10^{−14}' -1e-14, '0' 0, '10^{−14}' 1e-14, '2·10^{−14}' 2e-14)
+set title 'rest of the ledger / (10^{−14} of the final work)'
+set yrange [-2:2]; set ytics 1
 end = real(system(sprintf("LC_ALL=C awk 'END { print $%d }' '%s'", work, one)))
 unset key
-plot one using @travel:(column(budget) / end) with lines lt 8 lw 1.5
+plot one using @travel:(1e14 * column(budget) / end) with lines lt 8 lw 1.5
 unset multiplot

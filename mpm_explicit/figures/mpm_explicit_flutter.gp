@@ -10,11 +10,11 @@ set multiplot title 'Sliding with friction flutters; viscosity ends it' font ',2
 set bmargin at screen 0.16; set tmargin at screen 0.82
 array left[2] = [0.085, 0.39]
 set logscale y; set format y '10^{%L}'
-set xrange [0:0.5]; set yrange [1e-8:20]; set xtics 0.1; set ytics 100
+set xrange [0:0.5]; set yrange [1e-8:1e3]; set xtics 0.1; set ytics 100
 set xlabel 't [s]'
 unset key
-set label 1 'μ = 0.55' at 0.335, 2.2 textcolor rgb orange; set label 2 'μ = 0.3' at 0.335, 0.025 textcolor rgb blue
-set label 3 'β = 3 ms' at 0.335, 2e-7 textcolor rgb ink; set label 4 'finite elements' at 0.27, 4.5 right textcolor rgb ink
+set label 1 'μ = 0.55' at 0.495, 30 right textcolor rgb orange; set label 2 'μ = 0.3' at 0.495, 0.006 right textcolor rgb blue
+set label 3 'β = 3 ms' at 0.495, 3e-8 right textcolor rgb ink; set label 4 'finite elements' at 0.015, 30 left textcolor rgb ink
 do for [k = 1:2] {
     scheme = word('explicit implicit', k)
     set lmargin at screen left[k]; set rmargin at screen left[k] + 0.245
@@ -32,8 +32,8 @@ unset label 1; unset label 2; unset label 3; unset label 4
 set lmargin at screen 0.725; set rmargin at screen 0.985
 set title 'acceleration' offset 0, -0.3
 set xlabel 'μ'; set ylabel 'acceleration / g' offset 0.5, 0
-set xrange [0:0.65]; set yrange [0:0.5]; set xtics 0.2; set ytics 0.1
-set key on inside vertical bottom left reverse Left samplen 1.5 font ',17'
+set xrange [0:0.65]; set yrange [0:0.8]; set xtics 0.2; set ytics 0.2
+set key on inside vertical top right reverse Left samplen 1.5 font ',17'
 plot folder.'/explicit_0.dat' using 1:($2 / g) with points pt 5 ps 1.6 lc rgb amber title 'explicit', folder.'/implicit_0.dat' using 1:($2 / g) with points pt 9 ps 1.6 lc rgb sky title 'implicit', \
      folder.'/explicit_3e-3.dat' using 1:($2 / g) with points pt 4 ps 1.8 lc rgb orange title 'explicit, β = 3 ms', folder.'/implicit_3e-3.dat' using 1:($2 / g) with points pt 2 ps 1.2 lc rgb blue title 'implicit, β = 3 ms', \
      sin(angle) - x * cos(angle) with lines lw 2 dt 2 lc rgb ink title 'theory'

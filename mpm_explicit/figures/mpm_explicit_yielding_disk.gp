@@ -33,7 +33,7 @@ unset object 1; unset label 82; unset title; set border 3; set grid; set format 
 end = parameter('end')
 set xrange [0:end * v_0 / R]; set xtics 0.1; set xlabel 't / (R/v_0)'
 set tmargin at screen 0.39; set bmargin at screen 0.1
-set lmargin at screen 0.075; set rmargin at screen 0.72
+set lmargin at screen 0.095; set rmargin at screen 0.72
 set yrange [0:1.05]; set ytics 0.25
 set ylabel 'energy / initial'
 # The work of contact is negative: what it took.

@@ -9,7 +9,7 @@ set style fill solid 0.15 noborder
 set samples 100
 set bmargin at screen 0.2; set tmargin at screen 0.78
 set key bottom right
-set title 'acceleration / (2/3) g sin'; set yrange [0.86:1.06]
+set title 'acceleration / (⅔ g sin 30°)'; set yrange [0.86:1.06]
 plot '+' using 1:(1 - 0.12 / $1):(1 + 0.12 / $1) with filledcurves lc rgb ink title 'window', \
      1 with lines lw 2 dt 2 lc rgb ink notitle, \
      file('mpm_explicit') using 1:($2 / $3) with linespoints pt 7 ps 1.6 lc rgb blue title 'explicit', \

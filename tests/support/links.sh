@@ -1,6 +1,6 @@
 #!/bin/sh
 # links.sh: every relative link of the documents leads to a file, and every #anchor to a heading,
-# named as GitHub names it. Every figure of the talk is shown in a chapter.
+# named as GitHub names it; what is cited by its DOI is in the bibliography. Every figure of the talk is shown in a chapter.
 set -eu
 export LC_ALL=C
 cd "$(dirname "$0")/../.."
@@ -54,6 +54,12 @@ fenced { next }
     while (match(line, /\]\([^) ]+\)/)) {
         target = substr(line, RSTART + 2, RLENGTH - 3)
         line = substr(line, RSTART + RLENGTH)
+        if (sub(/^https:..doi.org./, "", target)) {
+            gsub(/%28/, "(", target)
+            gsub(/%29/, ")", target)
+            if (system("grep -qF \"{" target "}\" lecture_notes/book/references.bib")) fail("the bibliography has no " target)
+            continue
+        }
         if (target ~ /^https?:/) continue
         links++
         anchor = ""
