@@ -247,14 +247,26 @@ $(eval $(call figure,implicit_moment_dispersion,implicit_moment,out/implicit_mom
 $(eval $(call series,implicit_moment/figures/implicit_moment_dispersion.sh,implicit_moment,$(wildcard \
     implicit_moment/cases/light_wave.toml implicit_moment/cases/langmuir.toml),out/implicit_moment/dispersion))
 
-# The kink of the thin current sheet, three runs; the same in minutes.
-$(foreach f,fig13 fig14,$(eval $(call figure,$f,implicit_moment,out/implicit_moment/kinks)))
-$(foreach f,fig13_quick fig14_quick,$(eval $(call figure,$f,implicit_moment,out/implicit_moment/kinks_quick)))
-$(eval $(call series,implicit_moment/figures/kinks.sh,implicit_moment,implicit_moment/cases/kink.toml,out/implicit_moment/kinks))
-$(eval $(call series,implicit_moment/figures/kinks_quick.sh,implicit_moment,implicit_moment/cases/kink_quick.toml,out/implicit_moment/kinks_quick))
-# Scripts that they share.
-$(patsubst %,out/figures/%.png,fig13 fig14 fig13_quick fig14_quick): $(wildcard implicit_moment/figures/kink.gp implicit_moment/figures/fig1[34].gp)
-out/implicit_moment/kinks_quick/.complete: implicit_moment/figures/kinks.sh
+# The thin current sheets, ten runs of which data/ keeps what their figures need: `make fig14` draws it, `make fig14 RERUN=1` runs them again first, side
+# by side, which takes three hours on two cores and goes on where it was stopped.
+sheets := implicit_moment/data/thin_sheet_runs.csv
+define figure_of_sheets
+.PHONY: $(1)
+figures += $(1)
+$(1): out/figures/$(1).png
+	@echo "figure: out/figures/$(1).png"
+out/figures/$(1).png: implicit_moment/figures/$(1).gp $(sheets) $(wildcard implicit_moment/data/thin_sheet_* common/style.gp) | $(packages_first)
+	$$(call need,gnuplot)
+	@mkdir -p $$(@D)
+	gnuplot -e "out='$$@'" $$<
+	@test -s $$@
+endef
+$(foreach f,fig11 fig13 fig14 fig15,$(eval $(call figure_of_sheets,$f)))
+$(eval $(call series,implicit_moment/figures/thin_sheets.sh,implicit_moment,implicit_moment/cases/kink.toml,out/implicit_moment/thin_sheets))
+ifneq ($(RERUN),)
+$(sheets): out/implicit_moment/thin_sheets/.complete implicit_moment/data/keep_thin_sheets.sh
+	sh implicit_moment/data/keep_thin_sheets.sh out/implicit_moment/thin_sheets implicit_moment/data
+endif
 
 # The cost slide: both programs, by  sh SCRIPT IMPLICIT EXPLICIT FOLDER .
 $(eval $(call figure,fig_cost,implicit_moment,out/implicit_moment/cost))
@@ -296,19 +308,14 @@ $(eval $(call figure,implicit_moment_tail,implicit_moment,out/implicit_moment/ta
 $(eval $(call series,implicit_moment/figures/implicit_moment_tail.sh,implicit_moment,$(wildcard \
     implicit_moment/cases/lembege_pellat.toml implicit_moment/cases/thin_tail.toml),out/implicit_moment/tails))
 
-# $(call thin_sheets,ending): the thin current sheet; _quick is the same in minutes, with fewer particles and the same scripts.
-define thin_sheets
-$(call figure,fig11$(1),implicit_moment,out/implicit_moment/thin_sheets$(1))
+# The lower-hybrid drift instability; _quick is the same in a minute, with fewer particles and the same script.
+define drift_instability
 $(call figure,fig12$(1),implicit_moment,out/implicit_moment/lhdi$(1))
-$(call figure,fig15$(1),implicit_moment,out/implicit_moment/thin_sheets$(1))
-$(call series,implicit_moment/figures/thin_sheets$(1).sh,implicit_moment,implicit_moment/cases/lhdi$(1).toml,out/implicit_moment/thin_sheets$(1))
-$(patsubst %,out/figures/%$(1).png,fig11 fig12 fig15): implicit_moment/figures/thin_sheet.gp
 out/figures/fig12$(1).png: implicit_moment/figures/keep_modes.awk
 endef
-$(eval $(call thin_sheets,))
-$(eval $(call thin_sheets,_quick))
-$(patsubst %,out/figures/%_quick.png,fig11 fig12 fig15): out/figures/%_quick.png: implicit_moment/figures/%.gp
-out/implicit_moment/thin_sheets_quick/.complete: implicit_moment/figures/thin_sheets.sh
+$(eval $(call drift_instability,))
+$(eval $(call drift_instability,_quick))
+out/figures/fig12_quick.png: implicit_moment/figures/fig12.gp
 
 # $(call cic_series,figure,cases,folder): a figure of several runs of cic.
 define cic_series

@@ -4,8 +4,9 @@
 # fits: implicit_moment file:fields_*.dat result:dominant_mode result:growth_over_theory
 wide = 2100; high = 760
 load 'common/style.gp'
-load 'implicit_moment/figures/thin_sheet.gp'
-B0 = 1 / sheet('light_over_alfven'); L = half_width(sheet('temperature_ratio'), sheet('drift')); length = sheet('length_x')
+# The talk's letters: y along the current, z across the sheet; in files y is called x.
+sheet(name) = real(given('current_sheet.'.name))
+B0 = 1 / sheet('light_over_alfven'); L = sqrt(sheet('temperature_ratio') / (1 + sheet('temperature_ratio'))) / sheet('drift'); length = sheet('length_x')
 history = run.'/history.dat'
 m = int(result('dominant_mode') + 0.5)
 times = near('fields', sprintf('%g %g', result('time_of_saturation') / B0, 7 / B0))   # 7/Ω_{ci} is the talk's time

@@ -1,15 +1,18 @@
 #!/bin/sh
-# thin_sheets.sh PROGRAM FOLDER [CASE]: the thin current sheet with T_i/T_e = 10, 4, 2 and 1 to t Omega_ci = 12, each in FOLDER/ratio_...
-# Electrons are the faster against L the warmer they are, v_the/L ~ (T_e/T_i)^(1/2), and the warmest take shorter steps: v_the dt/dx < 1.
+# thin_sheets.sh PROGRAM FOLDER [END [NAME=VALUE ...]]: the thin current sheets of figures 11 and 13 to 15, each in FOLDER/ratio_..._seed_...: kink.toml with
+# T_i/T_e = 4, 2 and 1, three seeds each, and with 10 to t Omega_ci = 12. They run side by side, one thread each, JOBS at a time (default: as
+# many as there are processors). What is complete stays, and what was stopped goes on.
 set -eu
-export LC_ALL=C.UTF-8
-program=$1
-folder=$2
-case=implicit_moment/cases/${3:-lhdi}.toml
-
-dt=$(awk '$1 == "dt" { print $3 }' "$case")
-for ratio_and_part in '10 1' '4 1' '2 0.85' '1 0.6'; do
-    set -- $ratio_and_part
-    "$program" "$case" current_sheet.temperature_ratio="$1" time.dt="$(awk "BEGIN { print $dt * $2 }")" \
-        output.fields_interval=0 --out "$folder/ratio_$1" --resume --quiet
-done
+export LC_ALL=C.UTF-8 program="$1" folder="$2"
+end=${3:-$(awk '$1 == "end" { print $3 }' implicit_moment/cases/kink.toml)}
+[ $# -lt 3 ] || shift
+shift 2
+export settings="$*"
+{
+    echo "2 1 $end"
+    for seed in 1 2 3; do
+        for ratio in 4 1 2; do [ "$ratio $seed" = '2 1' ] || echo "$ratio $seed $end"; done
+    done
+    echo '10 1 480'
+} | xargs -P "${JOBS:-$(getconf _NPROCESSORS_ONLN)}" -L 1 sh -c 'exec "$program" implicit_moment/cases/kink.toml time.end="$3" \
+        current_sheet.temperature_ratio="$1" plasma.seed="$2" $settings --out "$folder/ratio_$1_seed_$2" --threads 1 --resume --quiet' thin_sheet

@@ -1,1 +1,0 @@
-load 'implicit_moment/figures/fig13.gp'   # figure 13 from kink_quick.toml
