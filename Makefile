@@ -248,7 +248,7 @@ $(eval $(call series,implicit_moment/figures/implicit_moment_dispersion.sh,impli
     implicit_moment/cases/light_wave.toml implicit_moment/cases/langmuir.toml),out/implicit_moment/dispersion))
 
 # The thin current sheets, ten runs of which data/ keeps what their figures need: `make fig14` draws it, `make fig14 RERUN=1` runs them again first, side
-# by side, which takes three hours on two cores and goes on where it was stopped.
+# by side, which takes two hours on two cores and goes on where it was stopped.
 sheets := implicit_moment/data/thin_sheet_runs.csv
 define figure_of_sheets
 .PHONY: $(1)

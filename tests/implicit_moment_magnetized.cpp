@@ -160,7 +160,7 @@ TEST_CASE("along the field the determinant on the mesh is the product of its thr
         }
 }
 
-TEST_CASE("of a smoothed E particles answer the part that is left, where its B does not matter") {
+TEST_CASE("of a smoothed E particles answer the part that is left where its B does not matter") {
     const double S = 0.83;
     const std::vector<MagnetizedSpecies> at_rest{{1.0, -0.7, 0, 0.2, 0.2},
                                                  {0.3, 0.21, 0, 0.1, 0.1}};

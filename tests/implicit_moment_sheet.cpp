@@ -303,6 +303,20 @@ TEST_CASE("noise at the edges of a thin sheet grows in the modes that theory nam
     CHECK(level(6, 10, 2, 2.5) >= 2 * level(14, 16, 2, 2.5));
 }
 
+TEST_CASE("a sheet whose mesh has the length of its box resumes to nothing when it is complete" *
+          doctest::description("robust")) {
+    const std::string folder = facts::folder_of_test() + "/sheet_resumed",
+                      command =
+                          BUILD_FOLDER
+                          "/implicit_moment implicit_moment/cases/kink_quick.toml --quiet --resume "
+                          "current_sheet.particles=2000 time.end=10 --out " +
+                          folder + " 2> /dev/null";
+    REQUIRE(std::system(command.c_str()) == 0);
+    const auto first = std::filesystem::last_write_time(folder + "/summary.json");
+    REQUIRE(std::system(command.c_str()) == 0);
+    CHECK(std::filesystem::last_write_time(folder + "/summary.json") == first);
+}
+
 TEST_CASE("the quick sheet has the mode and growth and frequency of its theory" *
           doctest::description("long")) {
     const Run sheet = run("lhdi_quick",

@@ -80,9 +80,8 @@ void refuse_case_of_another_method(const ProgramInfo& info, const std::string& p
     }
 }
 
-// What a run that is to be resumed has left in its folder: it may be complete, it may have a
-// checkpoint, or it has to begin again. Nothing counts that is older than the program or that
-// belongs to another input.
+// What a run that is to be resumed has left in its folder: all, a checkpoint, or nothing that counts. What is
+// older than the program or belongs to another input does not.
 void look_for_earlier_run(const ProgramInfo& info, const ParameterTable& table,
                           CommandLine& command) {
     std::error_code error;
@@ -236,8 +235,8 @@ void print_help(const ProgramInfo& info, const ParameterTable& table) {
         "  without a case file: %s\n"
         "  --out DIR       folder of the results; default out/%s/<case name>\n"
         "  --force         replace an earlier run in that folder\n"
-        "  --resume        go on with an earlier run of the same input in that folder; if there is\n"
-        "                  none, or the program is newer, begin; if it is complete, do nothing\n"
+        "  --resume        go on with an earlier run of the same input in that folder; if there\n"
+        "                  is none, or the program is newer, begin; if complete, do nothing\n"
         "  --restart FILE  continue from a checkpoint\n"
         "  --verify FILE   say whether a checkpoint is whole, and of what it is\n"
         "  --refine N      run the case on N meshes, each of twice the cells, in DIR/1, 2 ...,\n"
@@ -397,6 +396,7 @@ CommandLine read_command_line(int argc, char** argv, const ProgramInfo& info,
         apply_override(one, restarting, table);
     }
     if (command.refine > 0) refine(table, command, overrides);
+    table.derive();
     if (command.resume) look_for_earlier_run(info, table, command);
     return command;
 }

@@ -117,8 +117,7 @@ class ParameterTable {
         pattern_ = nullptr;
     }
 
-    /// Names, or beginnings that end in '.', that may differ between a checkpoint's case and a
-    /// restart.
+    /// Names, or beginnings that end in '.', that a restart may give another value.
     void may_change_on_restart(const std::vector<std::string>& names) { changeable_ = names; }
     bool is_changeable(const std::string& name) const;
 
@@ -128,17 +127,18 @@ class ParameterTable {
         renamed_ = names;
     }
 
-    /// Whether a parameter takes this value as text, which needs no quotes on the command line; nothing
-    /// for a name that set() refuses.
+    /// Whether a parameter takes this value as text, without quotes; nothing where set() refuses its name.
     std::optional<bool> takes_text(const std::string& name, const std::string& value = "");
 
     /// Gives a parameter its value.
-    /// errors: InputError for an unknown name, a wrong type or a value out of range, with the place
-    ///         and the cure.
+    /// errors: InputError for a wrong name, type or value, with the place and the cure.
     void set(const Setting& setting);
 
     /// All parameters with unit, range and default, under their headings.
     std::string help() const;
+
+    /// Sets what follows from other parameters, before anything compares cases.
+    std::function<void()> derive = [] {};
 
     /// Complete TOML text of all values.
     /// exact:  reading it gives the same values and the same text.

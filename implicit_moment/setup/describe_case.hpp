@@ -38,8 +38,12 @@ inline void describe_species(common::ParameterTable& table, const std::string& p
     each("phase_", {&s.phase_x, &s.phase_y, &s.phase_z}, "degree", anything(), "phase", seeded);
 }
 
-inline void describe_current_sheet(common::ParameterTable& table, CurrentSheetCase& s) {
+inline void describe_current_sheet(common::ParameterTable& table, Case& w) {
     using common::at_least, common::above, common::between;
+    CurrentSheetCase& s = w.current_sheet;
+    table.derive = [&w] {
+        if (w.is_along_current()) fit_mesh_to_sheet(w);
+    };
     table.group("thin current sheet, current along x (plasma.setup = current_sheet)");
     table.real("current_sheet.mass_ratio", s.mass_ratio, "", between(1, 1e6), "m_i/m_e");
     table.real("current_sheet.light_over_alfven", s.light_over_alfven, "", between(1, 1e6),
@@ -101,7 +105,7 @@ inline void describe_plasma(common::ParameterTable& table, Case& w) {
     table.whole("harris.particles", w.harris.particles, "", between(2, 4e8),
                 "simulation particles of both species");
 
-    detail::describe_current_sheet(table, w.current_sheet);
+    detail::describe_current_sheet(table, w);
 
     table.group(
         "uniform plasma (plasma.setup = uniform); the seeded mode is amplitude * cos(k x + phase)");
