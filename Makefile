@@ -123,7 +123,7 @@ The particle-in-cell family in running code
                          (with ANSWER=0.9239: is the answer right?)
   make bench             particle-steps per second on 1 and 2 threads, and where the time goes
   make web               the programs in the browser, a page per case, in out/web/ (packages: make deps-web);
-                         CASES='two_stream': one of them, in a quarter of the time
+                         CASES='two_stream': one of them
   make test-web          every page run in Chromium, beside the native programs; CASES='gem': some of them
   make notes             refresh the code and the numbers in the lecture notes
   make book              the notes as out/book/index.html and out/book.pdf   (packages: make deps-book)
@@ -583,7 +583,8 @@ web_link  := -O3 -msimd128 -fexceptions -Wl,--wrap=_ZN6common3Run12not_finishedE
     -sASYNCIFY_STACK_SIZE=65536 -sASYNCIFY_ONLY="main,*run_*,*__function::*,__wrap_*,dynCall_*" \
     -sMODULARIZE -sEXPORT_NAME=program -sINVOKE_RUN=0 -sALLOW_MEMORY_GROWTH -sINITIAL_MEMORY=64MB -sENVIRONMENT=worker,node \
     -sFORCE_FILESYSTEM -sEXPORTED_RUNTIME_METHODS=callMain,FS
-web_gsl   := cdf/gaussinv fft/fft fit/linear specfunc/bessel_I0 err/error err/stream err/strerror sys/infnan
+web_gsl   := $(addprefix cdf/,gauss gaussinv tdist tdistinv) randist/tdist fft/fft fit/linear err/error err/stream err/strerror sys/infnan sys/pow_int \
+    $(addprefix specfunc/,bessel_I0 beta elementary erfc exp expint gamma gamma_inc log psi trig zeta)
 web_muparser := muParser muParserBase muParserBytecode muParserCallback muParserError muParserTokenReader
 web_common := $(patsubst %.cpp,$(web)/%.o,$(filter-out %/openpmd.cpp,$(wildcard common/run/*.cpp */theory/*.cpp)) $(page)/glue.cpp) $(web)/libraries.a
 # Emscripten looks for modules of node where Debian puts them.
@@ -608,13 +609,13 @@ $(web)/sources/.complete: $(page)/get_sources.sh | $(packages_first)
 	    /usr/include/xxhash.h /usr/include/muParser*.h $(web)/include
 	@printf '#define %s\n' 'HAVE_DECL_FINITE 1' 'HAVE_DECL_ISNAN 1' 'RETURN_IF_NULL(x) if (!x) { return; }' > $(web)/sources/gsl/config.h
 	@touch $@
-$(web)/libraries.a: $(web)/sources/.complete
+$(web)/libraries.a: $(web)/sources/.complete $(web)/flags
 	@rm -f $@
-	cd $(web)/sources/gsl && for f in $(web_gsl); do emcc -O3 -w -I. -I../../include -c -o $$(basename $$f).o $$f.c || exit; done
+	cd $(web)/sources/gsl && for f in $(web_gsl); do emcc -O3 -w -I. -I../../include -c -o $$(echo $$f | tr / _).o $$f.c || exit; done
 	cd $(web)/sources/muparser && for f in $(web_muparser); do emcc -O2 -w -std=c++17 -fexceptions -Iinclude -c -o $$f.o src/$$f.cpp || exit; done
 	emar rcs $@ $(web)/sources/*/*.o
 $(web)/flags: FORCE $(web)/sources/.complete
-	@echo '$(web_flags) $(web_link)' | cmp -s - $@ || echo '$(web_flags) $(web_link)' > $@
+	@echo '$(web_flags) $(web_link) $(web_gsl)' | cmp -s - $@ || echo '$(web_flags) $(web_link) $(web_gsl)' > $@
 $(web)/%.o: %.cpp $(web)/flags
 	@mkdir -p $(@D)
 	$(emscripten) $(web_flags) $(if $(filter $<,$(mains)),-Dmain=program_main) -MMD -MP -c -o $@ $<
