@@ -13,7 +13,7 @@ where="# implicit_moment $(entry "$first" version), implicit_moment/cases/kink.t
 # Growth of the kink and level of m_y = 4, run by run, and how the runs were.
 {
     echo "$where"
-    echo '# rates in Omega_ci, times in 1/Omega_ci, levels in B0; of the displacement the rate in brackets of chapter 6'
+    echo '# rates in Omega_ci, times in 1/Omega_ci, levels in B0; nan where no e-folding stands out'
     echo '# T_i/T_e,seed,t_end,growth,error,begin,end,growth_of_displacement,error,level,error,energy_drift'
     for ratio in 4 2 1; do
         for run in "$runs/ratio_$ratio"_seed_*/; do

@@ -25,7 +25,7 @@ plot every(0.5, 12) using 1:2:3 with image notitle
 set lmargin at screen 0.345; set rmargin at screen 0.605
 unset ylabel; set format y ''
 set xrange [-1:time_max + 1]; set xtics 0, 20, 120
-set title 'the whole run' offset 0, -0.6
+set title sprintf('the run, to t Ω_{ci} = %.0f', time_max) offset 0, -0.6
 set colorbox user origin 0.613, 0.15 size 0.01, 0.71; set cblabel 'J_y / J_0' offset -1, 0
 plot every(2, time_max) using 1:2:3 with image notitle
 

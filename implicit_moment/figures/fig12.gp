@@ -44,11 +44,12 @@ part(edge) = col(history, sprintf('%s_%d_re', edge, m))
 u = part('upper'); l = part('lower')
 gamma = result('growth_over_theory') * result('theory_growth')
 omega = result('omega_over_theory') * result('theory_omega')
-t0 = result('time_of_saturation')
 size(a, b, c, d) = sqrt(0.5 * (a**2 + b**2 + c**2 + d**2))
-top = real(system(sprintf("LC_ALL=C awk '$1 + 0 == $1 { a = sqrt(0.5*($%d^2+$%d^2+$%d^2+$%d^2)); if ($%d <= 7 && a > top) top = a } END { print top }' '%s'", u, u + 1, l, l + 1, t, history)))
+# Largest amplitude, and when half of it is first reached: there the slope of theory is drawn.
+largest = system(sprintf("LC_ALL=C awk '$1 + 0 == $1 && $%d <= 7 { t[++n] = $%d; a[n] = sqrt(0.5*($%d^2+$%d^2+$%d^2+$%d^2)); if (a[n] > top) top = a[n] } END { for (k = 1; a[k] < top / 2; ++k); print top, t[k] }' '%s'", t, t, u, u + 1, l, l + 1, history))
+top = real(word(largest, 1)); half = real(word(largest, 2))
 set label 1 sprintf('γ = %.1f Ω_{ci}  (local theory %.1f)', gamma, result('theory_growth')) at 1.75, 0.0078 textcolor rgb ink font ',17'
 set label 2 sprintf('ω = %.1f Ω_{ci}  (local theory %.1f)', omega, result('theory_omega')) at 1.75, 0.0046 textcolor rgb ink font ',17'
 plot history using t:(size(column(u), column(u + 1), column(l), column(l + 1))) @measured title sprintf('m_y = %d', m), \
-     [0.3:t0 - 0.2] top * exp(result('theory_growth') * (x - t0 + 0.3)) @theory title 'slope of local theory'
+     [half - 1.5:half + 0.5] top * exp(result('theory_growth') * (x - half - 0.2)) @theory title 'slope of local theory'
 unset multiplot

@@ -83,7 +83,7 @@ struct Case {
     LeapfrogSettings leapfrog;
 
     // What a uniform run is compared with.
-    std::string wave = "none";      // which of compare_wave.hpp
+    std::string wave = "none";      // which of wave_theory.hpp
     std::string component = "E_x";  // the field component whose seeded mode is followed
     double near = 0;  // frequency near which the root is looked for; 0: the fastest growing root
 

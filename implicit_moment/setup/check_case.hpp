@@ -11,7 +11,7 @@
 #include "implicit_moment/setup/initial_state.hpp"
 #include "implicit_moment/theory/compare_current_sheet.hpp"
 #include "implicit_moment/theory/compare_reconnection.hpp"
-#include "implicit_moment/theory/compare_wave.hpp"
+#include "implicit_moment/theory/wave_theory.hpp"
 
 namespace implicit_moment {
 

@@ -7,7 +7,7 @@
 
 #include "common/run/parameters.hpp"
 #include "implicit_moment/setup/case.hpp"
-#include "implicit_moment/theory/compare_wave.hpp"
+#include "implicit_moment/theory/wave_theory.hpp"
 
 namespace implicit_moment {
 

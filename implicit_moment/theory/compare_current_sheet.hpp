@@ -54,13 +54,14 @@ struct EdgeWave {
 
 /// Mode, growth rate and frequency of the largest wave beside the fastest growing local wave of
 /// the same wave number.
-///     dominant_mode   the largest at the edges before t Omega_ci = 7, the time of figure 12
+///     dominant_mode   the largest at the edges before t Omega_ci = 7, the time of figure 12; beside
+///                     the talk's for its sheet, T_i/T_e = 4
 ///     growth, omega   of that mode, from its way up there
 /// note:   local theory is an upper bound: a wave must be one over all the heights that it covers,
 ///         and at most of them it would grow more slowly. A run starts from noise, three e-foldings
 ///         below saturation, and realizations differ: three seeds of lhdi_quick.toml give modes 8,
 ///         8 and 9 with 0.79, 0.6 and 0.90 of the growth, known to 0.15, 0.4 and 0.21, and 0.92,
-///         1.03 and 0.98 of the frequency of local theory, lhdi.toml gives 8 with 0.70 and 1.07.
+///         1.03 and 0.98 of the frequency of local theory, lhdi.toml 9 with 1.10 and 0.95.
 ///         Theory with the wider gyrations of the quick case's long step has 12 % less growth.
 inline void compare_current_sheet(const Case& w, const common::History& history,
                                   common::Summary& summary) {
@@ -82,8 +83,12 @@ inline void compare_current_sheet(const Case& w, const common::History& history,
         largest = *at, dominant = m, top = at - a.begin();
     }
     const double k = 2 * pi * double(dominant) / w.current_sheet.length_x;
-    const double all = w.current_sheet.length_x / 4;  // figure 12 has 4 L
-    summary.result_within("dominant_mode", double(dominant), "", 7 * all, 11 * all, talk);
+    const CurrentSheetCase& s = w.current_sheet;
+    const double all = s.length_x / 4;  // figure 12 has 4 L
+    if (s.mass_ratio == 180 && s.drift == 1 && s.temperature_ratio == 4)
+        summary.result_within("dominant_mode", double(dominant), "", 7 * all, 11 * all, talk);
+    else
+        summary.result_info("dominant_mode", double(dominant), "", "measured");
     summary.result_info("dominant_k_L", k, "1/L", "measured");
     summary.result_info("time_of_saturation", times[top], "1/Omega_ci", "measured");
 

@@ -7,7 +7,7 @@
 
 #include "common/run/run.hpp"
 #include "implicit_moment/theory/compare_drift.hpp"
-#include "implicit_moment/theory/compare_wave.hpp"
+#include "implicit_moment/theory/wave_theory.hpp"
 
 namespace implicit_moment {
 

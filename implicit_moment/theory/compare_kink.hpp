@@ -14,7 +14,7 @@
 #include "implicit_moment/setup/current_sheet.hpp"
 #include "implicit_moment/theory/compare_current_sheet.hpp"
 #include "implicit_moment/theory/drift_kink.hpp"
-#include "implicit_moment/theory/second_phase.hpp"
+#include "implicit_moment/theory/fit_ramp.hpp"
 
 namespace implicit_moment {
 

@@ -112,7 +112,7 @@ class LogRecord {
 /// out:    the error is what 98 of 100 fits stay within, to the fit with its residuals drawn anew in
 ///         blocks that are twice as long as they remember; of noisy rises whose rate is known nine of
 ///         ten are nearer
-/// exact:  to half a percent for such a record, whose corners lie within a part of it; nobody needs more
+/// exact:  to half a percent for such a record, because its corners lie within one of 200 parts
 /// errors: `reason` where less than one e-folding lies between the levels
 /// source: blocks: Kuensch, Ann. Statist. 17, 1217 (1989)
 inline Ramp fit_ramp(std::span<const double> times, std::span<const double> a, double begin) {
