@@ -358,7 +358,8 @@ inline void need_bond(const PlannedCase& planned) {
 /// One bar as long as the bond holds, and when it breaks.
 inline void compare_bond(const FinishedRun& run, common::Summary& summary) {
     const double part = run.parameters.tolerance, stiffer = run.stiffening();
-    if (!knows_damping(run, run.planned.scheme.damps_first ? 0.2 : part, "bond_breaks", summary))
+    if (!knows_damping(run, run.planned.scheme.damps_first ? 0.2 : 1.5 * part, "bond_breaks",
+                       summary))
         return;
     const Bar bar = bar_of(run);
     const auto times = run.history.column("time"), broken = run.history.column("broken_bonds"),
