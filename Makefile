@@ -24,12 +24,13 @@ OPTIMIZE ?= $(if $(SANITIZE),-O1 -g,-O3)
 SANITIZE ?=
 TRAP     ?=
 REAL     ?= double
+MPI      ?=
 JOBS     ?= 2
 ARGS     ?=
 CLANG_FORMAT ?= clang-format
 
 # Other kinds of build have a folder of their own.
-BUILD   := build$(if $(SANITIZE),/sanitize)$(if $(TRAP),/trap)$(if $(filter float,$(REAL)),/float)
+BUILD   := build$(if $(SANITIZE),/sanitize)$(if $(TRAP),/trap)$(if $(filter float,$(REAL)),/float)$(if $(MPI),/mpi)
 objects := $(BUILD)/objects
 
 warnings := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wno-psabi
@@ -44,15 +45,21 @@ machine = $(eval machine := $(shell $(CXX) $(ARCH) -dM -E -x c++ /dev/null 2>/de
 
 # Nobody asks errno of a square root, and without it loops over plastic particles vectorize.
 flags   = -std=c++20 $(OPTIMIZE) $(ARCH) -fopenmp -fno-math-errno $(sanitize) $(warnings) $(machine) $(CXXFLAGS)
-defines = -DEIGEN_DONT_PARALLELIZE -DREAL=$(REAL) -DPROGRAM_VERSION=\"$(VERSION)\" -DBUILD_FOLDER=\"$(BUILD)\"
+defines = -DEIGEN_DONT_PARALLELIZE -DREAL=$(REAL) -DRANKS=$(if $(MPI),true,false) -DPROGRAM_VERSION=\"$(VERSION)\" -DBUILD_FOLDER=\"$(BUILD)\"
 include_paths = -I. -isystem $(EIGEN) $(CPPFLAGS)
 libraries = -lgsl -lgslcblas -lm $(LDLIBS)
 # HDF5 files where the library is; without it everything else is the same.
 hdf5 = $(firstword $(wildcard /usr/include/hdf5/serial/hdf5.h /usr/include/hdf5.h))
 openpmd = $(if $(hdf5),$(BUILD)/openpmd.so)
 
+# With MPI its own compiler, which calls ours, compiles what calls it and links; and these programs have ranks.
+mpi_cxx = env OMPI_CXX='$(CXX)' MPICH_CXX='$(CXX)' mpicxx
+ifneq ($(MPI),)
+mains := implicit_moment/explicit_em/explicit_em.cpp
+endif
+
 # With `make deps fig09`, also with -j, everything waits until the packages are there.
-packages_first := $(filter deps deps-dev deps-sweep deps-web,$(MAKECMDGOALS))
+packages_first := $(filter deps deps-dev deps-sweep deps-mpi deps-web,$(MAKECMDGOALS))
 
 # $(call need,command): stop with a cure where a tool is missing.
 need = @command -v $(1) >/dev/null || { echo "'$(1)' is not installed: run 'make deps'" >&2; exit 2; }
@@ -60,7 +67,7 @@ need = @command -v $(1) >/dev/null || { echo "'$(1)' is not installed: run 'make
 programs  := $(basename $(notdir $(mains)))
 bench_programs := $(benches:%/bench.cpp=$(BUILD)/bench/%)
 tests     := $(basename $(notdir $(wildcard tests/*.cpp)))
-shared    := $(patsubst %.cpp,$(objects)/%.o,$(filter-out %/formula.cpp %/openpmd.cpp,$(wildcard common/*/*.cpp)) $(if $(TRAP),tests/support/trap_invalid.cpp))
+shared    := $(patsubst %.cpp,$(objects)/%.o,$(filter-out %/formula.cpp %/openpmd.cpp,$(wildcard common/*/*.cpp)) $(if $(TRAP),tests/support/trap_invalid.cpp) $(if $(MPI),common/ranks.cpp))
 # What the theory of a method compiles by itself. From an archive the linker takes what a program calls: only who
 # reads formulas needs muParser.
 theory_of  = $(patsubst %.cpp,$(objects)/%.o,$(wildcard $(1)/theory/*.cpp))
@@ -80,7 +87,7 @@ one_at_a_time = $(if $(shell command -v flock),flock out)
 .DELETE_ON_ERROR:
 .SECONDEXPANSION:
 .PRECIOUS: $(objects)/%.o $(objects)/fuzz/%.o out/%/.complete
-.PHONY: menu deps deps-dev deps-sweep plot watch movie movies compare sweep all install dist figures cost explicit_gem test tests test-long exercise exercises torture mutate fuzzers bench \
+.PHONY: menu deps deps-dev deps-sweep deps-mpi plot watch movie movies compare sweep all install dist figures cost explicit_gem test tests test-long exercise exercises torture mutate fuzzers bench \
         notes format clean FORCE $(programs)
 
 # ---- the menu ------------------------------------------------------------------------------------
@@ -135,6 +142,8 @@ The particle-in-cell family in running code
 
   make SANITIZE=address,undefined test     the facts under the sanitizers, in build/sanitize/
   make TRAP=1 test                         the facts, ended where 0/0 or inf - inf arises, in build/trap/
+  make MPI=1 all         programs that share a case among machines, in build/mpi/ (packages: make deps-mpi):
+                         mpirun -n 4 build/mpi/explicit_em
   make REAL=float bench                    particles of cic in single precision, in build/float/
   make CXX=clang++-14 all                  another compiler; also ARCH=, OPTIMIZE=, EIGEN=, CXXFLAGS=
   make OPTIMIZE=-O0 BUILD=build/quick cic  compiled in less than half the time
@@ -155,6 +164,9 @@ deps-dev: | $(filter deps,$(MAKECMDGOALS))
 deps-sweep: | $(filter deps,$(MAKECMDGOALS))
 	@sh common/packages.sh parallel ffmpeg
 
+deps-mpi: | $(filter deps,$(MAKECMDGOALS))
+	@sh common/packages.sh libopenmpi-dev openmpi-bin
+
 # ---- programs ------------------------------------------------------------------------------------
 
 all: $(programs) $$(openpmd)
@@ -172,6 +184,11 @@ $(BUILD)/flags: FORCE | $(packages_first)
 $(objects)/%.o: %.cpp $(BUILD)/flags
 	@mkdir -p $(@D)
 	$(CXX) $(flags) $(defines) $(include_paths) -MMD -MP -c -o $@ $<
+
+$(objects)/common/ranks.o: common/ranks.cpp $(BUILD)/flags
+	@command -v mpicxx >/dev/null || { echo "'mpicxx' is not installed: run 'make deps-mpi'" >&2; exit 2; }
+	@mkdir -p $(@D)
+	$(mpi_cxx) $(flags) $(defines) -DOMPI_SKIP_MPICXX -DMPICH_SKIP_MPICXX $(include_paths) -MMD -MP -c -o $@ $<
 
 # The reader of case files must refuse bad input with a message, never with an assertion of its library.
 $(objects)/common/run/case_file.o: private defines += -DNDEBUG
@@ -191,7 +208,7 @@ name_revision = @printf 'extern const char* const source_revision;\nconst char* 
     "$$(git describe --always --dirty 2>/dev/null)" | $(CXX) $(flags) -x c++ -c -o $(objects)/$(@F).revision.o -
 define link
 @mkdir -p $(@D)
-$(CXX) $(flags) -o $@ $(filter %.o %.a,$^) $(libraries) -Wl,--as-needed -lmuparser -lfftw3 -lfftw3f
+$(if $(MPI),$(mpi_cxx),$(CXX)) $(flags) -o $@ $(filter %.o %.a,$^) $(libraries) -Wl,--as-needed -lmuparser -lfftw3 -lfftw3f
 endef
 # The largest object first, so that the others are compiled beside it.
 $(programs:%=$(BUILD)/%): $(BUILD)/%: $$(objects)/$$(call folder_of,$$*)/$$*.o $$(call theory_of,$$(call method_of,$$*)) $(shared) $(formula) $(BUILD)/flags
@@ -202,7 +219,7 @@ $(tests:%=$(BUILD)/tests/%): $(BUILD)/tests/%: $(objects)/tests/%.o $(shared) $(
 $(bench_programs): $(BUILD)/bench/%: $(objects)/%/bench.o $(shared) $(theory) $(formula) $(BUILD)/flags
 	$(link)
 
--include $(patsubst %.cpp,$(objects)/%.d,$(mains) $(benches) $(wildcard */theory/*.cpp common/run/*.cpp tests/*.cpp))
+-include $(patsubst %.cpp,$(objects)/%.d,$(mains) $(benches) $(wildcard */theory/*.cpp common/*.cpp common/run/*.cpp tests/*.cpp))
 
 # ---- runs and figures ----------------------------------------------------------------------------
 

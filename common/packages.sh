@@ -26,6 +26,8 @@ llvm                   command llvm-symbolizer   llvm               llvm        
 strace                 command strace            strace             -              strace 5, which can inject errors
 libhdf5-dev            header  hdf5.h            hdf5-devel         hdf5           HDF5 1.10, for output.openpmd
 hdf5-tools             command h5dump            hdf5               hdf5           h5dump, which reads such files
+libopenmpi-dev         header  mpi.h             openmpi-devel      open-mpi       Open MPI 4, for make MPI=1 (MPICH does as well)
+openmpi-bin            command mpirun            openmpi            open-mpi       mpirun
 parallel               command parallel          parallel           parallel       GNU parallel, for make sweep
 ffmpeg                 command ffmpeg            ffmpeg             ffmpeg         ffmpeg, for make movie
 pandoc                 command pandoc            pandoc             pandoc         pandoc 2.17, for the book

@@ -33,7 +33,7 @@ struct CheckpointWriter::File {
     File& operator=(const File&) = delete;
     ~File() {
         if (stream != nullptr) std::fclose(stream);
-        if (!partial.empty()) unlink(partial.c_str());
+        if (!partial.empty() && is_first_rank()) unlink(partial.c_str());
     }
 };
 
@@ -59,19 +59,31 @@ void CheckpointWriter::write(const void* from, std::size_t bytes) {
 }
 
 void CheckpointWriter::write_block(const std::string& name, char type, const void* from,
-                                   std::size_t count, std::size_t size) {
-    const std::uint64_t letters = name.size(), numbers = count;
+                                   std::size_t count, std::size_t size, std::size_t all) {
+    const std::uint64_t letters = name.size(), numbers = all > 0 ? all : count;
     write(&letters, sizeof letters);
     write(name.data(), name.size());
     write(&type, 1);
     write(&numbers, sizeof numbers);
-    write(from, count * size);
+    if (all == 0) {
+        write(from, count * size);
+    } else {
+        // The checksum of a block is that of its numbers in one piece.
+        XXH3_state_t state;
+        XXH3_64bits_reset_withSeed(&state, checksum_);
+        gather_in_turn(from, count * size, [&](const void* piece, std::size_t bytes) {
+            if (bytes > 0 && std::fwrite(piece, 1, bytes, file_->stream) != bytes) fail("write");
+            XXH3_64bits_update(&state, piece, bytes);
+        });
+        checksum_ = XXH3_64bits_digest(&state);
+    }
     const std::uint64_t sum = checksum_;
     write(&sum, sizeof sum);
 }
 
 void CheckpointWriter::finish() {
     (*this)(end_of_file, std::string());
+    if (!is_first_rank()) return;
     std::FILE* stream = std::exchange(file_->stream, nullptr);
     const bool flushed = std::fflush(stream) == 0 && fsync(fileno(stream)) == 0;
     if (std::fclose(stream) != 0 || !flushed) fail("write");

@@ -16,6 +16,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "common/ranks.hpp"
 #include "common/run/parameters.hpp"
 
 namespace common {
@@ -56,18 +57,31 @@ class CheckpointWriter {
                                                              const Numbers& values) {
         block(name, values.data(), static_cast<std::size_t>(values.size()));
     }
+    /// Adds a list of which every rank has a part.
+    template <class Number>
+    void operator()(const std::string& name, const OfAllRanks<Number>& part) {
+        block(name, part.values.data(), part.values.size(),
+              std::size_t(sum_over_ranks(std::ssize(part.values))));
+    }
+    void operator()(const std::string& name, const SumOverRanks& part) {
+        std::vector<long> sum(part.values.begin(), part.values.end());
+        sum_over_ranks(sum);
+        (*this)(name, std::vector<int>(sum.begin(), sum.end()));
+    }
 
     /// Ends the file, flushes it to the disk and renames it: `path` is the old file or the whole new
     /// one at any time.
     void finish();
 
    private:
+    // in: all, the numbers of all ranks where each has some; 0: every rank has all
     template <class Number>
-    void block(const std::string& name, const Number* from, std::size_t count) {
-        write_block(name, letter_of<Number>(), from, count, sizeof(Number));
+    void block(const std::string& name, const Number* from, std::size_t count,
+               std::size_t all = 0) {
+        write_block(name, letter_of<Number>(), from, count, sizeof(Number), all);
     }
     void write_block(const std::string& name, char type, const void* from, std::size_t count,
-                     std::size_t size);
+                     std::size_t size, std::size_t all);
     void write(const void* from, std::size_t bytes);
     [[noreturn]] void fail(const std::string& what);
 
@@ -103,6 +117,12 @@ class CheckpointReader {
         values.resize(begin_block(name, letter_of<Number>(), sizeof(Number)));
         end_block(name, values.data(), values.size());
     }
+    /// The same for a list of which ranks have parts: each reads all of it.
+    template <class Number>
+    void operator()(const std::string& name, const OfAllRanks<Number>& part) {
+        (*this)(name, part.values);
+    }
+    void operator()(const std::string& name, const SumOverRanks& sum) { (*this)(name, sum.values); }
     /// Reads a list of numbers whose length is known: a dense vector of Eigen.
     template <class Numbers>
     requires(!std::is_arithmetic_v<Numbers>) void operator()(const std::string& name, Numbers& v) {

@@ -395,6 +395,8 @@ CommandLine read_command_line(int argc, char** argv, const ProgramInfo& info,
         }
         apply_override(one, restarting, table);
     }
+    if (command.refine > 0 && rank_count() > 1)
+        throw InputError("--refine begins programs of its own: leave out mpirun, or it");
     if (command.refine > 0) refine(table, command, overrides);
     table.derive();
     if (command.resume) look_for_earlier_run(info, table, command);

@@ -9,6 +9,7 @@
 namespace common {
 
 void refuse_special_file(const std::string& path) {
+    if (!is_first_rank()) return;
     std::error_code ignored;
     const auto status = std::filesystem::symlink_status(path, ignored);
     if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
@@ -16,6 +17,7 @@ void refuse_special_file(const std::string& path) {
 }
 
 std::FILE* open_for_writing(const std::string& path) {
+    if (!is_first_rank()) return std::fopen("/dev/null", "wb");
     refuse_special_file(path);
     // What has come into its place since is refused as well: a link, or a pipe without a reader.
     const int file =

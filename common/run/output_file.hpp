@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "common/ranks.hpp"
 #include "common/run/parameters.hpp"
 
 namespace common {
@@ -16,7 +17,8 @@ namespace common {
 ///         folder, a device
 void refuse_special_file(const std::string& path);
 
-/// Opens a regular file, empty, and never what a symbolic link points at.
+/// Opens a regular file, empty, and never what a symbolic link points at; a rank that does not write
+/// for all gets the null device.
 /// errors: InputError that says why it cannot be written
 std::FILE* open_for_writing(const std::string& path);
 
@@ -47,7 +49,7 @@ class OutputFile {
     OutputFile& operator=(const OutputFile&) = delete;
     ~OutputFile() {
         if (file_ != nullptr) std::fclose(file_);
-        if (!finished_) std::remove(partial_.c_str());
+        if (!finished_ && is_first_rank()) std::remove(partial_.c_str());
     }
 
     /// Writes words as they are.
@@ -65,7 +67,8 @@ class OutputFile {
         std::FILE* file = file_;
         file_ = nullptr;
         if (std::fclose(file) != 0) fail("cannot be written");
-        if (std::rename(partial_.c_str(), path_.c_str()) != 0) fail("cannot be renamed into place");
+        if (is_first_rank() && std::rename(partial_.c_str(), path_.c_str()) != 0)
+            fail("cannot be renamed into place");
         finished_ = true;
     }
 

@@ -27,6 +27,8 @@ constexpr const char* lock_name = ".lock";
 
 // Set by the signal handler, read by the loop.
 volatile std::sig_atomic_t stop_signal = 0;
+// What the loop goes by: what any of the ranks has seen when they ended the last step.
+int agreed_signal = 0;
 
 // What a signal before the first step has to take away, and to say; a handler cannot allocate.
 struct Beginning {
@@ -114,6 +116,19 @@ std::string printable(const std::string& text) {
     return result;
 }
 
+// Does what one does for all. errors: what it throws there, everywhere
+template <class Work>
+void on_first_rank(const Work& work) {
+    std::optional<InputError> refused;
+    try {
+        if (is_first_rank()) work();
+    } catch (const InputError& error) {
+        refused = error;
+    }
+    if (largest_over_ranks(refused.has_value()) != 0)
+        throw refused.value_or(InputError("the first rank cannot begin"));
+}
+
 std::string clock_text(double seconds) {
     char text[32];
     const long s = std::lround(seconds);
@@ -125,7 +140,9 @@ std::string clock_text(double seconds) {
 
 }  // namespace
 
-bool Run::asked_to_stop() { return stop_signal != 0; }
+bool Run::asked_to_stop() { return agreed_signal != 0; }
+
+void Run::agree_to_stop() { agreed_signal = int(largest_over_ranks(stop_signal)); }
 
 std::string Run::checkpoint_name(long step) {
     char name[64];
@@ -150,18 +167,20 @@ Run::Run(const ProgramInfo& info, const CommandLine& command, const ParameterTab
       shown_(start_) {
     summary.expectation = table.expectation;
     std::error_code error;
-    is_new_ = !fs::exists(command_.out_dir, error);
+    is_new_ = is_first_rank() && !fs::exists(command_.out_dir, error);
     const std::string stopped =
         info_.program + ": stopped by a signal before the first step; " +
         (restarting() ? "continue with: " + command_to_continue(command_.restart_path)
                       : "there is nothing to continue");
     // What is there already stays, until it is known that it may be replaced.
-    const std::vector<std::string> begun{path("case.toml"), path("case.toml.partial"),
-                                         path(lock_name), is_new_ ? command_.out_dir : ""};
+    std::vector<std::string> begun;
+    if (is_first_rank())
+        begun = {path("case.toml"), path("case.toml.partial"), path(lock_name),
+                 is_new_ ? command_.out_dir : ""};
     forget_on_signal(stopped, is_new_ ? begun : std::vector<std::string>{});
     listen_to(SIGINT);
     listen_to(SIGTERM);
-    prepare_folder();
+    on_first_rank([&] { prepare_folder(); });
     terminal_ = isatty(STDERR_FILENO) != 0 && std::getenv("NO_PROGRESS") == nullptr;
     if (restarting()) return;
     forget_on_signal(stopped, begun);
@@ -254,7 +273,7 @@ void Run::lock_folder() {
 bool Run::go_on(bool more) {
     beginning.is_all = 0;
     complete_ = !more;
-    return more && !(asked_to_stop() && stepped_);
+    return more && !asked_to_stop();
 }
 
 bool Run::not_finished(long step, long steps) {
@@ -302,6 +321,7 @@ void Run::show_progress(long step, long steps, double time, double done) {
 }
 
 void Run::keep_two_checkpoints() const {
+    if (!is_first_rank()) return;
     const std::string last = fs::path(last_checkpoint_).filename();
     std::error_code error;
     std::vector<std::string> names;
@@ -326,13 +346,17 @@ int Run::finish(long step, double count) {
     summary.performance("particle_steps", steps * count);
     summary.performance("particle_steps_per_s", wall > 0 ? steps * count / wall : 0);
     summary.performance("threads", thread_count());
+    if (has_ranks) {
+        summary.performance("ranks", rank_count());
+        summary.performance("communication_s", communication_seconds());
+    }
     summary.performance("peak_memory_bytes", peak_memory_bytes());
 
     int status = 0;
     std::string message = "done", next;
     const std::vector<std::string> shortfalls = summary.shortfalls();
     if (asked_to_stop() && !complete_) {
-        status = 128 + stop_signal;
+        status = 128 + agreed_signal;
         message = "stopped by a signal at step " + std::to_string(step);
         next = "continue with: " + command_to_continue(last_checkpoint_);
     } else if (!summary.is_finite()) {
@@ -393,17 +417,22 @@ int run_and_report_errors(const ProgramInfo& info, char** argv,
                           const std::function<int(std::optional<Run>&)>& program) {
     open_standard_descriptors();
     share_cores(argv);
+    start_ranks();
     std::signal(SIGPIPE, SIG_IGN);
     std::signal(SIGXFSZ, SIG_IGN);
     std::optional<Run> run;
     const auto end = [&](int status, const std::string& message) {
         if (run) run->fail(status, message);
         run.reset();
-        std::fprintf(stderr, "%s: %s\n", info.program.c_str(), printable(message).c_str());
-        return status;
+        beginning.is_all = 0;  // ranks that end first may have the others stopped
+        const std::string sentence = info.program + ": " + printable(message);
+        std::fprintf(stderr, "%s\n", sentence.c_str());
+        return end_ranks(status, sentence);
     };
     try {
-        return program(run);
+        const int status = program(run);
+        run.reset();
+        return end_ranks(status, "");
     } catch (const InputError& error) {
         return end(2, error.what());
     } catch (const NumericalError& error) {

@@ -116,7 +116,7 @@ class Run {
     void checkpoint_if_due(long step, bool last, State& state) {
         const long every = schedule.checkpoint_steps;
         const bool due = every > 0 && (step % every == 0 || last);
-        stepped_ = true;
+        agree_to_stop();
         if (!due && !asked_to_stop()) return;
         history.flush();
         last_checkpoint_ = path(checkpoint_name(step));
@@ -128,6 +128,7 @@ class Run {
         keep_two_checkpoints();
     }
     static bool asked_to_stop();
+    static void agree_to_stop();
     static std::string checkpoint_name(long step);
     bool go_on(bool more);
     void lock_folder();
@@ -148,7 +149,6 @@ class Run {
     long step_ = -1;  // that is being taken
     long tenths_shown_ = 0;
     bool terminal_ = false, line_open_ = false;
-    bool stepped_ = false;   // a step has ended since the start
     bool complete_ = false;  // the end of the run is reached
     bool is_new_ = false;    // the folder was not there
     bool begun_ = false;     // something was written into it

@@ -32,6 +32,9 @@ inline bool start_run(const ProgramInfo& info, const CommandLine& command,
     for (const std::string& warning : prepared.warnings)
         std::fprintf(stderr, "warning: %s\n", warning.c_str());
     if (!command.quiet) std::printf("%s", prepared.description.c_str());
+    if (rank_count() > 1 && !command.quiet)
+        std::printf("  %-33s %d, each with that memory while all load all, then with its share\n",
+                    "ranks", rank_count());
     if (command.dry_run) return false;
     if (command.complete) {
         if (!command.quiet)
@@ -42,10 +45,13 @@ inline bool start_run(const ProgramInfo& info, const CommandLine& command,
                          info.program.c_str(), command.out_dir.c_str());
         return false;
     }
-    refuse_before_start(command, prepared.steps, prepared.bytes);
-    // OMP_NUM_THREADS is obeyed, and so is --threads before it.
+    // Ranks of one machine share its memory; and what they have read, nobody changes while others read it.
+    refuse_before_start(command, prepared.steps, prepared.bytes * ranks_here());
+    largest_over_ranks(0);
+    // OMP_NUM_THREADS is obeyed, and so is --threads before it; a rank beside others has one thread.
     const bool unsaid = command.threads == 0 && std::getenv("OMP_NUM_THREADS") == nullptr;
-    set_thread_count(unsaid ? free_cores() : command.threads);
+    const int unsaid_threads = ranks_here() > 1 ? 1 : free_cores();
+    set_thread_count(unsaid ? unsaid_threads : command.threads);
     Run& run = holder.emplace(info, command, table);
     for (const std::string& warning : prepared.warnings) run.summary.warning(warning);
     run.schedule = schedule;

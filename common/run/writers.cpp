@@ -31,6 +31,7 @@ void* function_of_library(const char* name) {
 template <class... Arguments>
 void write_by(const char* name, const Snapshot& at, const std::string& kind,
               const Arguments&... arguments) {
+    if (!is_first_rank()) return;
     using Function =
         std::string(const std::string&, const Snapshot&, const std::string&, const Arguments&...);
     const std::string path = at.path(kind, "h5"), partial = path + ".partial";

@@ -8,6 +8,7 @@
 #include <array>
 #include <vector>
 
+#include "common/ranks.hpp"
 #include "implicit_moment/explicit_em/stencil.hpp"
 
 namespace implicit_moment {
@@ -15,6 +16,7 @@ namespace implicit_moment {
 /// Rows of cells that one thread works on at a time, a tile: what crosses between cells is kept by the
 /// tile that it leaves, and a cell is in tile cell / cells_of_tile.
 inline constexpr long rows_of_tile = 4;
+inline long tiles_of(long rows) { return (rows + rows_of_tile - 1) / rows_of_tile; }
 template <int l>
 inline long cells_of_tile(const Grid& grid) {
     return rows_of_tile * Stencil<l>::cells(grid.x);
@@ -30,11 +32,13 @@ struct Crossings {
         void clear() { to_cell.clear(), quantities.clear(); }
     };
     std::vector<OfTile> tiles;
+    common::Division of_ranks;    // the tiles of each rank
     std::vector<int> staying;     // [cell] particles that have stayed: the first of the cell
     std::vector<int> first_next;  // [cell] where it begins after the step; one more for the end
 
     /// Makes it that of a species of which nobody crosses.
-    void clear(long cells, long per_tile) {
+    void clear(long cells, long per_tile, const common::Division& division) {
+        of_ranks = division;
         tiles.resize(std::size_t((cells + per_tile - 1) / per_tile));
         for (OfTile& tile : tiles) tile.clear();
         staying.assign(std::size_t(cells), 0);

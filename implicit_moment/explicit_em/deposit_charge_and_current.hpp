@@ -14,7 +14,7 @@ namespace implicit_moment {
 template <int l>
 inline void deposit_charge_and_current(const InterleavedField& field, const Grid& grid, double dt,
                                        const LeapfrogSettings& settings, const Particles& particles,
-                                       Images images, Moments& moments) {
+                                       Images images, const Division& of_ranks, Moments& moments) {
     for (Field* f : moments.all()) f->setZero();
     const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing();
     const double half_kick = 0.5 * dt * particles.q_p / particles.m_p;
@@ -22,7 +22,10 @@ inline void deposit_charge_and_current(const InterleavedField& field, const Grid
     const long columns = Stencil<l>::cells(grid.x), rows = Stencil<l>::cells(grid.z);
     std::vector<std::array<double, 4>> sums_of_row(rows);
 
-    common::for_each_row_colored(3, rows, [&](long row) {
+    const long first_row = of_ranks.begin() * rows_of_tile,
+               end_row = of_ranks.end(tiles_of(rows)) * rows_of_tile;
+    const auto deposit_row = [&](long row) {
+        if (row < first_row || row >= end_row) return;
         std::array<double, 4>& sums = sums_of_row[row];
         const double z_anchor = grid.z.at(double(row));
         for (long column = 0; column < columns; ++column) {
@@ -64,7 +67,15 @@ inline void deposit_charge_and_current(const InterleavedField& field, const Grid
                 }
             }
         }
-    });
+    };
+    for (long color = 0; color < 3; ++color) {
+        common::for_each_row((rows - color + 2) / 3, [&](long k) { deposit_row(color + 3 * k); });
+        exchange_sums(grid, of_ranks, rows, color, Stencil<l>::first, Stencil<l>::first + l,
+                      {&moments.rho, &moments.J_x, &moments.J_y, &moments.J_z});
+    }
+    for (Field* f : {&moments.rho, &moments.J_x, &moments.J_y, &moments.J_z})
+        gather_rows(grid, of_ranks, f->data());
+    gather_sums(of_ranks, sums_of_row);
 
     moments.kinetic_energy = 0;
     moments.momentum = {};
@@ -77,17 +88,18 @@ inline void deposit_charge_and_current(const InterleavedField& field, const Grid
 
 /// The moments of all species at t^n, with the splines of move_particles.
 /// in:     field, E^n and B^n; particles sorted by cell, u of t^{n-1/2}; images, what is behind a
-///         wall: a conductor's for Gauss's law, the plasma's own for what is shown.
+///         wall: a conductor's for Gauss's law, the plasma's own for what is shown; of_ranks, their tiles.
 /// out:    rho, J, kinetic energy m c^2 (gamma - 1) and momentum m u; no stress.
 inline void deposit_charge_and_current(const InterleavedField& field, const Grid& grid, double dt,
                                        const LeapfrogSettings& settings,
                                        const std::vector<Particles>& species, Images images,
-                                       std::vector<Moments>& moments) {
+                                       std::vector<Moments>& moments,
+                                       const Division& of_ranks = {}) {
     for (std::size_t k = 0; k < species.size(); ++k) {
         settings.order == 1 ? deposit_charge_and_current<1>(field, grid, dt, settings, species[k],
-                                                            images, moments[k])
+                                                            images, of_ranks, moments[k])
                             : deposit_charge_and_current<2>(field, grid, dt, settings, species[k],
-                                                            images, moments[k]);
+                                                            images, of_ranks, moments[k]);
     }
 }
 

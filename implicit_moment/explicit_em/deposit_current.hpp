@@ -86,12 +86,13 @@ struct CurrentTile {
         add_to(J_x, sums.J_x), add_to(J_y, sums.J_y), add_to(J_z, sums.J_z);
     }
 
-    /// Adds the tile to the mesh, with the factors of J; what lies beyond the ghosts of a periodic
-    /// mesh goes to its image.
+    /// What lies beyond the ghosts of a periodic mesh goes to its image.
+    static long image(const common::Axis& axis, long k) {
+        return k < -1 ? k + axis.cells : k > axis.cells + 1 ? k - axis.cells : k;
+    }
+
+    /// Adds the tile to the mesh, with the factors of J.
     void add_to_mesh(const Grid& grid, double q, double dt, VectorField& J) const {
-        const auto image = [](const common::Axis& axis, long k) {
-            return k < -1 ? k + axis.cells : k > axis.cells + 1 ? k - axis.cells : k;
-        };
         const double per_x = q / (grid.z.spacing() * dt), per_y = q / grid.cell_area(),
                      per_z = q / (grid.x.spacing() * dt);
         for (long row = first_row; row < first_row + rows; ++row) {

@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "common/run/start.hpp"
+#include "implicit_moment/explicit_em/balance_rows.hpp"
 #include "implicit_moment/explicit_em/setup/check_leapfrog.hpp"
 #include "implicit_moment/explicit_em/setup/leapfrog_state.hpp"
 #include "implicit_moment/explicit_em/step.hpp"
@@ -68,13 +69,15 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     };
     if (run.restarting())
         run.restore(checkpoint, step, [&] { validate_state(parameters, step, sort, checkpoint); });
+    Division& of_ranks = scratch.current.of_ranks;
+    double imbalance = balance_rows(grid, settings.order, of_ranks, particles);
     while (run.not_finished(step, steps)) {
         interleave_field(grid, parameters.field.smoothing, state.field, scratch);  // E^n, B^n
         if (step % parameters.history_steps == 0)                                  // the row of t^n
             recorder.record(step, state, moments_with(Images::conductor), run);
         take_step(grid, dt, settings, parameters.field.smoothing, scratch, particles,
                   state.field);  // u, J^{n+1/2}; x, E, B^{n+1}
-        ++step;
+        if (++step % 10 == 0) imbalance = balance_rows(grid, settings.order, of_ranks, particles);
         run.end_of_step(step, steps, double(step) * dt, checkpoint);
     }
 
@@ -84,7 +87,8 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
         recorder.record(step, state, moments_with(Images::conductor), run);
         recorder.finish(state, run);
     }
-    return run.finish(step, double(state.plasma.count()));
+    if (common::rank_count() > 1) run.summary.performance("imbalance", imbalance);
+    return run.finish(step, double(scales.particles));
 }
 
 }  // namespace

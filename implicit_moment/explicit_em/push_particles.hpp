@@ -18,6 +18,7 @@
 #include "implicit_moment/explicit_em/boris_push.hpp"
 #include "implicit_moment/explicit_em/crossings.hpp"
 #include "implicit_moment/explicit_em/deposit_current.hpp"
+#include "implicit_moment/explicit_em/exchange_borders.hpp"
 #include "implicit_moment/smooth.hpp"
 
 namespace implicit_moment {
@@ -71,6 +72,7 @@ inline SimdVector first_part(const SimdVector& d_x, const SimdVector& D_x, doubl
 /// Room for the current, kept between steps; nothing of it is state.
 struct CurrentScratch {
     std::vector<CurrentTile> tiles;
+    Division of_ranks;  // the tiles of each rank
     Field smoothed;
 };
 
@@ -89,12 +91,14 @@ inline long move_particles(const InterleavedField& field, const Grid& grid, doub
     const double half_kick = 0.5 * dt * particles.q_p / particles.m_p;
     const double per_c_squared = settings.per_c_squared();
     const long columns = Stencil<l>::cells(grid.x), rows = Stencil<l>::cells(grid.z);
-    const long tiles = (rows + rows_of_tile - 1) / rows_of_tile;
+    const long tiles = tiles_of(rows);
     std::vector<long> lost(tiles, 0);
     scratch.tiles.resize(tiles);
-    crossings.clear(columns * rows, cells_of_tile<l>(grid));
+    const Division& of_ranks = scratch.of_ranks;
+    crossings.clear(columns * rows, cells_of_tile<l>(grid), of_ranks);
 
-    common::for_each_row(tiles, [&](long number) {
+    common::for_each_row(of_ranks.end(tiles) - of_ranks.begin(), [&](long mine) {
+        const long number = of_ranks.begin() + mine;
         CurrentTile& tile = scratch.tiles[number];
         const long first_row = number * rows_of_tile,
                    last_row = std::min(rows, first_row + rows_of_tile);
@@ -196,10 +200,11 @@ inline long move_particles(const InterleavedField& field, const Grid& grid, doub
             }
         }
     });
+    exchange_current(grid, of_ranks, rows, scratch.tiles);
     for (const CurrentTile& tile : scratch.tiles) tile.add_to_mesh(grid, particles.q_p, dt, J);
     long total = 0;
     for (const long n : lost) total += n;
-    return total;
+    return of_ranks.is_whole() ? total : common::sum_over_ranks(total);
 }
 
 /// Moves all species. out: crossings of each; J^{n+1/2} of the plasma and of its images behind conducting walls,
@@ -224,6 +229,7 @@ inline void move_particles(const InterleavedField& field, const Grid& grid, doub
         }
     }
     for (std::size_t a = 0; a < 3; ++a) {
+        gather_rows(grid, scratch.of_ranks, J.all.data() + a * grid.size());
         common::fold_ghosts(grid, electric.place[a], felt(grid).parity[a],
                             J.all.data() + a * grid.size());
     }

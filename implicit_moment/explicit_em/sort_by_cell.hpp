@@ -19,7 +19,7 @@
 #include <numeric>
 #include <vector>
 
-#include "implicit_moment/explicit_em/crossings.hpp"
+#include "implicit_moment/explicit_em/exchange_borders.hpp"
 #include "implicit_moment/sort_particles.hpp"
 
 namespace implicit_moment {
@@ -108,21 +108,28 @@ inline void move_cells(long begin, long end, const std::vector<int>& first,
 inline void sort_by_cell(long per_tile, Crossings& crossings, Particles& particles) {
     const long cells = std::ssize(crossings.staying), tiles = std::ssize(crossings.tiles);
     std::vector<int>&first = particles.first_of_node, &next = crossings.first_next;
+    const Division& of_ranks = crossings.of_ranks;
     const auto for_each_tile = [&](const auto& work) {
-        common::for_each_row(tiles, [&](long tile) {
+        common::for_each_row(of_ranks.end(tiles) - of_ranks.begin(), [&](long k) {
+            const long tile = of_ranks.begin() + k;
             work(tile, tile * per_tile, std::min(cells, (tile + 1) * per_tile));
         });
     };
-    next.resize(std::size_t(cells + 1));
+    exchange_crossings(per_tile, crossings);
+    next.assign(std::size_t(cells + 1), 0);
     for_each_tile([&](long tile, long begin, long end) {
         std::copy_n(&crossings.staying[begin], end - begin, &next[begin]);
         detail::for_each_arrival(crossings, tile, begin, end,
                                  [&](int cell, const auto&) { ++next[cell]; });
     });
-    next[cells] = 0;
     std::exclusive_scan(next.begin(), next.end(), next.begin(), 0);
 
     const auto quantities = particles.all();
+    const std::size_t most = std::max(first[cells], next[cells]);
+    for (std::vector<double>* q : quantities) {
+        if (most > q->capacity()) q->reserve(most + most / 10);
+        q->resize(most);
+    }
     for_each_tile([&](long tile, long begin, long end) {
         const long end_below = std::min(first[end], next[begin]),
                    begin_above = std::max(first[begin], next[end]);
@@ -146,6 +153,7 @@ inline void sort_by_cell(long per_tile, Crossings& crossings, Particles& particl
                                  });
     });
     first.swap(next);
+    for (std::vector<double>* q : quantities) q->resize(first[cells]);
 }
 
 /// Sorts all species after the push.

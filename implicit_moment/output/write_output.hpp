@@ -86,20 +86,28 @@ inline void write_fields(const common::Snapshot& at, const Grid& grid, const Fie
 template <class VelocityAt>
 inline void write_particles(const common::Snapshot& at, const Plasma& plasma,
                             const Case& parameters, const VelocityAt& u_at) {
-    const long every = (plasma.count() + most_particles_written - 1) / most_particles_written;
+    const long all = common::sum_over_ranks(plasma.count()),
+               every = std::max(1L, (all + most_particles_written - 1) / most_particles_written);
     std::array<std::vector<double>, 6> data;
     for (std::size_t k = 0; k < plasma.species.size(); ++k) {
         const Particles& p = plasma.species[k];
-        for (long n = 0; n < p.count(); n += every) {
+        std::array<std::vector<double>, 6> of_rank;
+        // The first of ours whose number among all is a multiple.
+        const long before = common::sum_before_rank(p.count());
+        for (long n = (every - before % every) % every; n < p.count(); n += every) {
             const Velocity<double> u = u_at(p, n);
             const std::array<double, 6> row{double(k), p.x_p[n], p.z_p[n], u.x, u.y, u.z};
-            for (std::size_t a = 0; a < 6; ++a) data[a].push_back(row[a]);
+            for (std::size_t a = 0; a < 6; ++a) of_rank[a].push_back(row[a]);
+        }
+        for (std::size_t a = 0; a < 6; ++a) {
+            const std::vector<double> of_all = common::gather_in_turn(of_rank[a]);
+            data[a].insert(data[a].end(), of_all.begin(), of_all.end());
         }
     }
     const bool is_u = parameters.is_relativistic();
     const std::string v = is_u ? "u_" : "v_";
     common::Snapshot sample = at;
-    sample.particles = plasma.count();
+    sample.particles = all;
     common::write_table(sample, "particles",
                         {{"species", "", data[0]},
                          {"x", "d_i", data[1]},

@@ -129,12 +129,12 @@ struct State {
 template <class Archive>
 void archive(Archive& a, State& state) {
     for (Particles& s : state.plasma.species) {
-        a(s.name + ".x_p", s.x_p);
-        a(s.name + ".z_p", s.z_p);
-        a(s.name + ".ux_p", s.ux_p);
-        a(s.name + ".uy_p", s.uy_p);
-        a(s.name + ".uz_p", s.uz_p);
-        a(s.name + ".first_of_node", s.first_of_node);
+        a(s.name + ".x_p", common::OfAllRanks{s.x_p});
+        a(s.name + ".z_p", common::OfAllRanks{s.z_p});
+        a(s.name + ".ux_p", common::OfAllRanks{s.ux_p});
+        a(s.name + ".uy_p", common::OfAllRanks{s.uy_p});
+        a(s.name + ".uz_p", common::OfAllRanks{s.uz_p});
+        a(s.name + ".first_of_node", common::SumOverRanks{s.first_of_node});
     }
     a("E", state.field.E.all);
     a("B", state.field.B.all);

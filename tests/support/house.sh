@@ -27,6 +27,6 @@ for program in cic/cic.cpp flip/pic/pic.cpp flip/flip/flip.cpp mpm_explicit/mpm_
     [ "$(wc -l < "$program")" -le 100 ] || complain "$program is longer than 100 lines"
 done
 
-lines=$(cat common/*.hpp common/*/*.hpp common/*/*.cpp | wc -l)
-[ "$lines" -le 5665 ] || complain "common/ has $lines lines, more than 5665"
+lines=$(cat common/*.hpp common/*.cpp common/*/*.hpp common/*/*.cpp | wc -l)
+[ "$lines" -le 6044 ] || complain "common/ has $lines lines, more than 6044"
 exit $status

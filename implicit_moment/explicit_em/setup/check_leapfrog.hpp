@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "implicit_moment/explicit_em/crossings.hpp"
 #include "implicit_moment/explicit_em/yee_field.hpp"
 #include "implicit_moment/setup/check_case.hpp"
 
@@ -21,11 +22,18 @@ inline double omega_p_dt(const Case& w, const Scales& scales) {
 
 }  // namespace detail
 
-/// Refuses what is unstable: c dt >= (1/dx^2 + 1/dz^2)^(-1/2) and omega_p dt >= 2.
+/// Refuses what is unstable: c dt >= (1/dx^2 + 1/dz^2)^(-1/2) and omega_p dt >= 2; and more ranks than tiles.
 /// errors: InputError, one sentence with the numbers and the cure.
 /// source: Courant, Friedrichs and Lewy (1928) for Yee's mesh; Birdsall and Langdon (1985),
 ///         section 4-2.
 inline void refuse_unstable(const Case& w) {
+    const long tiles =
+        tiles_of(w.leapfrog.order == 1 ? Stencil<1>::cells(w.grid.z) : Stencil<2>::cells(w.grid.z));
+    if (common::rank_count() > tiles)
+        throw common::InputError(std::to_string(common::rank_count()) +
+                                 " ranks, and the mesh has " + std::to_string(tiles) +
+                                 " strips of " + std::to_string(rows_of_tile) +
+                                 " rows, of which each rank needs one: start fewer");
     const double limit = courant_limit(w.grid);
     if (!(w.dt < limit)) {
         throw common::InputError(

@@ -1,0 +1,151 @@
+// Several processes, the ranks of MPI, that take the steps of one case together, on one machine or on
+// many. All MPI of the project lives here and in ranks.cpp; a program built without it has one rank.
+//
+// Every rank goes through the same program with the same case, and does what concerns the mesh and the
+// records as one process would; only particles are divided. So ranks meet in the same calls, decide the
+// same, and what the others say or write goes nowhere: the first one speaks and writes for all.
+//
+// The bytes are those of one process because the sums are the same sums: a number is added where, and in
+// the order in which, one process adds it, and what crosses a border are the terms, or what has come out
+// so far, never a sum of a rank's own.
+#pragma once
+
+#include <functional>
+#include <numeric>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace common {
+
+/// Whether the program was built with `make MPI=1`.
+inline constexpr bool has_ranks = RANKS;
+
+namespace mpi {  // what ranks.cpp does for those that have ranks
+
+int rank();
+int rank_count();
+int ranks_here();
+double communication_seconds();
+void start();
+int end(int status, const std::string& message);
+void sum(std::span<long> numbers);
+long largest(long number);
+void gather_pieces(double* all, std::span<const long> first);
+void exchange(std::span<const int> peers, const std::vector<std::vector<double>>& to,
+              std::vector<std::vector<double>>& from);
+void gather_in_turn(const void* own, std::size_t bytes,
+                    const std::function<void(const void*, std::size_t)>& take);
+
+}  // namespace mpi
+
+/// Which of the ranks this process is, how many there are, and how many of them share its machine.
+inline int rank() { return has_ranks ? mpi::rank() : 0; }
+inline int rank_count() { return has_ranks ? mpi::rank_count() : 1; }
+inline int ranks_here() { return has_ranks ? mpi::ranks_here() : 1; }
+/// Whether this process speaks and writes for all.
+inline bool is_first_rank() { return rank() == 0; }
+/// The time that this rank has given to others or waited for them so far.
+inline double communication_seconds() { return has_ranks ? mpi::communication_seconds() : 0; }
+
+/// The beginning of main: from here on nobody hears the others.
+inline void start_ranks() {
+    if (has_ranks) mpi::start();
+}
+/// The end of main. Ranks that end together end well; one that ends alone, with an error, ends all within
+/// seconds. in: the status and what a rank that ends alone has to say. out: the status
+inline int end_ranks(int status, const std::string& message) {
+    return has_ranks ? mpi::end(status, message) : status;
+}
+
+/// Adds numbers of all ranks, each with those in the same place; exact, they are whole.
+inline void sum_over_ranks(std::span<long> numbers) {
+    if (has_ranks) mpi::sum(numbers);
+}
+inline long sum_over_ranks(long number) {
+    sum_over_ranks(std::span(&number, 1));
+    return number;
+}
+/// The sum of the numbers of the ranks before this one.
+inline long sum_before_rank(long number) {
+    std::vector<long> of_rank(rank_count(), 0);
+    of_rank[rank()] = number;
+    sum_over_ranks(of_rank);
+    return std::accumulate(of_rank.begin(), of_rank.begin() + rank(), 0L);
+}
+/// The largest of the numbers of all ranks; nobody goes on before all have come here.
+inline long largest_over_ranks(long number) { return has_ranks ? mpi::largest(number) : number; }
+
+/// Which pieces of a row of pieces each rank has: neighbors.
+struct Division {
+    std::vector<long> first;  // [rank], one more for the end; empty: every process has all pieces
+
+    bool is_whole() const { return !has_ranks || first.empty(); }
+    long begin() const { return is_whole() ? 0 : first[rank()]; }
+    long end(long pieces) const { return is_whole() ? pieces : first[rank() + 1]; }
+    int owner(long piece) const {
+        int k = 0;
+        while (piece >= first[k + 1]) ++k;
+        return k;
+    }
+
+    /// Cuts where the work of the pieces before is next to the share of the ranks before.
+    /// in: the work of each piece, at least as many pieces as ranks; every rank gets one
+    static Division of(std::span<const long> work) {
+        const long ranks = rank_count(), pieces = std::ssize(work);
+        const double all = double(std::reduce(work.begin(), work.end()));
+        Division division{{0}};
+        double before = 0;
+        for (long k = 1, piece = 0; k < ranks; ++k) {
+            const double share = all * double(k) / double(ranks);
+            const long least = division.first.back() + 1, most = pieces - (ranks - k);
+            while (piece < least || (piece < most && before + 0.5 * double(work[piece]) < share))
+                before += double(work[piece++]);
+            division.first.push_back(piece);
+        }
+        division.first.push_back(pieces);
+        return division;
+    }
+};
+
+/// Gives every rank the pieces of all. in/out: all; rank r has made the numbers from first[r] to first[r + 1]
+inline void gather_pieces(double* all, std::span<const long> first) {
+    if (has_ranks) mpi::gather_pieces(all, first);
+}
+
+/// Gives to[k] to the rank peers[k] and takes from[k] from it, which calls it with this rank as a peer.
+inline void exchange(std::span<const int> peers, const std::vector<std::vector<double>>& to,
+                     std::vector<std::vector<double>>& from) {
+    if (has_ranks) mpi::exchange(peers, to, from);
+}
+
+/// Hands the bytes of all ranks to the first one, piece by piece, in the order of the ranks: take(piece,
+/// bytes) is called by the first rank alone.
+inline void gather_in_turn(const void* own, std::size_t bytes,
+                           const std::function<void(const void*, std::size_t)>& take) {
+    has_ranks ? mpi::gather_in_turn(own, bytes, take) : take(own, bytes);
+}
+
+/// The numbers of all ranks one after the other, with the first rank; the others get none.
+inline std::vector<double> gather_in_turn(const std::vector<double>& own) {
+    std::vector<double> all;
+    gather_in_turn(own.data(), own.size() * sizeof(double),
+                   [&](const void* piece, std::size_t bytes) {
+                       const double* from = static_cast<const double*>(piece);
+                       all.insert(all.end(), from, from + bytes / sizeof(double));
+                   });
+    return all;
+}
+
+/// Numbers of the particles, of which each rank has some, in the order of the ranks: what an archive
+/// that writes takes for one list.
+template <class Number>
+struct OfAllRanks {
+    std::vector<Number>& values;
+};
+/// Where the parts of a list begin, as each rank counts its own; in one list, the sum of all counts.
+struct SumOverRanks {
+    std::vector<int>& values;
+};
+
+}  // namespace common

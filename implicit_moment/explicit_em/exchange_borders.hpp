@@ -1,0 +1,176 @@
+// The particles of explicit_em divided among ranks (common/ranks.hpp): each has whole tiles of rows of
+// cells and what is in them; all have the whole mesh. What goes over the borders, and why the bytes are
+// those of one process:
+//
+//     J          rows of the tiles beside a border; who has a row of the mesh adds them tile by tile,
+//                species by species, as one process does; then all rows go to all
+//     particles  those that cross, in the order of the tiles that they leave: the order in which
+//                sort_by_cell takes them from there
+//     moments    where both sides of a border add to one row, the sum so far, color after color: each
+//                term is added to the number to which one process adds it
+//
+// A process with all particles goes through the same functions, and nothing of this happens.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "common/ranks.hpp"
+#include "implicit_moment/explicit_em/crossings.hpp"
+#include "implicit_moment/explicit_em/deposit_current.hpp"
+
+namespace implicit_moment {
+
+using common::Division;
+
+namespace detail {
+
+/// Whether a tile of another rank is up to two away from one of ours: what leaves it comes to no others.
+inline bool is_near(const Division& tiles, long tile) {
+    const long count = tiles.first.back(), begin = tiles.begin(), end = tiles.end(count);
+    const long least = tile < begin ? begin - tile : tile - end + 1,
+               most = tile < begin ? end - 1 - tile : tile - begin;
+    return (tile < begin || tile >= end) && (least <= 2 || most >= count - 2);
+}
+
+/// The ranks that have such tiles; we have such tiles of theirs.
+inline std::vector<int> neighbors_of(const Division& tiles) {
+    std::vector<int> neighbors;
+    for (int k = 0; k < common::rank_count(); ++k) {
+        bool near = false;
+        for (long tile = tiles.first[k]; tile < tiles.first[k + 1]; ++tile)
+            near = near || is_near(tiles, tile);
+        if (near) neighbors.push_back(k);
+    }
+    return neighbors;
+}
+
+/// Where the rows of nodes of each rank begin in a field, the ghosts with the first and the last.
+inline std::vector<long> begin_of_rows(const Grid& grid, const Division& tiles) {
+    std::vector<long> first;
+    for (const long tile : tiles.first) first.push_back(grid.index(-1, tile * rows_of_tile));
+    first.front() = 0, first.back() = grid.size();
+    return first;
+}
+
+}  // namespace detail
+
+/// Brings the rows of tiles that belong to rows of other ranks there.
+/// in:     rows, of cells
+/// in/out: of_tile, ours filled; those of others get what they add to our rows, or no rows
+inline void exchange_current(const Grid& grid, const Division& tiles, long rows,
+                             std::vector<CurrentTile>& of_tile) {
+    if (tiles.is_whole()) return;
+    for (long k = 0; k < std::ssize(of_tile); ++k) {
+        const long first = k * rows_of_tile;
+        if (tiles.owner(k) == common::rank()) continue;
+        if (detail::is_near(tiles, k))
+            of_tile[k].clear(grid, first, std::min(rows, first + rows_of_tile));
+        else
+            of_tile[k].rows = 0;
+    }
+    // Visits the rows of the tiles of one rank that belong to another.
+    const auto for_each_row_between = [&](int from, int to, const auto& work) {
+        for (long k = tiles.first[from]; k < tiles.first[from + 1]; ++k) {
+            CurrentTile& tile = of_tile[k];
+            for (long row = tile.first_row; row < tile.first_row + tile.rows; ++row) {
+                const long j = CurrentTile::image(grid.z, row), last = tiles.first.back() - 1;
+                if (tiles.owner(std::clamp(j / rows_of_tile, 0L, last)) != to) continue;
+                for (auto* J : {&tile.J_x, &tile.J_y, &tile.J_z})
+                    work(J->data() + tile.index(-CurrentTile::margin, row), tile.columns);
+            }
+        }
+    };
+    const std::vector<int> peers = detail::neighbors_of(tiles);
+    std::vector<std::vector<double>> to(peers.size()), from;
+    for (std::size_t k = 0; k < peers.size(); ++k)
+        for_each_row_between(common::rank(), peers[k], [&](const double* row, long count) {
+            to[k].insert(to[k].end(), row, row + count);
+        });
+    common::exchange(peers, to, from);
+    for (std::size_t k = 0; k < peers.size(); ++k) {
+        const double* next = from[k].data();
+        for_each_row_between(peers[k], common::rank(), [&](double* row, long count) {
+            std::copy_n(next, count, row), next += count;
+        });
+    }
+}
+
+/// Gives every rank all rows of nodes of a field. in/out: f, our rows filled
+inline void gather_rows(const Grid& grid, const Division& tiles, double* f) {
+    if (!tiles.is_whole()) common::gather_pieces(f, detail::begin_of_rows(grid, tiles));
+}
+
+/// The same for sums of rows of cells.
+inline void gather_sums(const Division& tiles, std::vector<std::array<double, 4>>& of_row) {
+    if (tiles.is_whole()) return;
+    std::vector<long> first;
+    for (const long tile : tiles.first)
+        first.push_back(4 * std::min(std::ssize(of_row), tile * rows_of_tile));
+    common::gather_pieces(of_row.front().data(), first);
+}
+
+/// Brings the particles that cross to those who have the cells to which they come.
+/// in/out: crossings of our tiles; those of others get what comes to us
+inline void exchange_crossings(long per_tile, Crossings& crossings) {
+    const Division& tiles = crossings.of_ranks;
+    if (tiles.is_whole()) return;
+    constexpr long size = 7;  // tile, cell and five quantities
+    const std::vector<int> peers = detail::neighbors_of(tiles);
+    std::vector<std::vector<double>> to(peers.size()), from;
+    for (long tile = tiles.begin(); tile < tiles.end(tiles.first.back()); ++tile) {
+        const Crossings::OfTile& left = crossings.tiles[tile];
+        for (std::size_t p = 0; p < left.to_cell.size(); ++p) {
+            const int owner = tiles.owner(left.to_cell[p] / per_tile);
+            if (owner == common::rank()) continue;
+            auto& message = to[std::find(peers.begin(), peers.end(), owner) - peers.begin()];
+            message.insert(message.end(), {double(tile), double(left.to_cell[p])});
+            message.insert(message.end(), left.quantities[p].begin(), left.quantities[p].end());
+        }
+    }
+    common::exchange(peers, to, from);
+    for (const std::vector<double>& message : from) {
+        for (const double* p = message.data(); p < message.data() + message.size(); p += size) {
+            Crossings::OfTile& left = crossings.tiles[long(p[0])];
+            left.to_cell.push_back(int(p[1]));
+            left.quantities.push_back({p[2], p[3], p[4], p[5], p[6]});
+        }
+    }
+}
+
+/// Brings the sums so far of nodes to which both sides of a border add to the side that has not added
+/// to them in this color.
+/// in:     rows, of cells; a row adds to its nodes from low to high rows away
+/// in/out: fields
+inline void exchange_sums(const Grid& grid, const Division& tiles, long rows, long color, long low,
+                          long high, const std::array<Field*, 4>& fields) {
+    if (tiles.is_whole()) return;
+    const int me = common::rank();
+    // Visits the rows of nodes of the border before a rank to which one side of it has added.
+    const auto for_each_row_from = [&](bool below, int above, const auto& work) {
+        const long first = tiles.first[above] * rows_of_tile;  // row of cells
+        for (long j = first + low; j < first + high; ++j) {
+            for (long row = std::max(0L, j - high); row <= std::min(rows - 1, j - low); ++row)
+                if (row % 3 == color && (row < first) == below)
+                    for (Field* f : fields) work(f->data() + grid.index(-1, j), grid.stride());
+        }
+    };
+    std::vector<int> peers;
+    if (me > 0) peers.push_back(me - 1);
+    if (me + 1 < common::rank_count()) peers.push_back(me + 1);
+    std::vector<std::vector<double>> to(peers.size()), from;
+    for (std::size_t k = 0; k < peers.size(); ++k)
+        for_each_row_from(peers[k] > me, std::max(me, peers[k]), [&](const double* f, long count) {
+            to[k].insert(to[k].end(), f, f + count);
+        });
+    common::exchange(peers, to, from);
+    for (std::size_t k = 0; k < peers.size(); ++k) {
+        const double* next = from[k].data();
+        for_each_row_from(peers[k] < me, std::max(me, peers[k]), [&](double* f, long count) {
+            std::copy_n(next, count, f), next += count;
+        });
+    }
+}
+
+}  // namespace implicit_moment
