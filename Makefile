@@ -500,9 +500,16 @@ $(BUILD)/CTestTestfile.cmake: Makefile | $(packages_first)
 	@printf '%s\n' 'set(build_folder "$(BUILD)")' 'set(patience $(if $(SANITIZE),10,1))' \
 	    'subdirs($(to_root)tests)' > $@
 
+# With MPI=1 the facts about ranks; `make test` has them, too, where build/mpi is not empty.
+ifneq ($(MPI),)
+test: all
+	@$(MAKE) MPI= $(programs)
+	@set -e; for fact in bytes restart refuse stop; do echo $$fact; sh tests/support/ranks.sh $(BUILD:/mpi=) $$fact; done
+else
 test: all tests $(BUILD)/CTestTestfile.cmake | $(packages_first)
 	$(call need,ctest)
 	$(ctest) -LE long
+endif
 
 # Runs that the notes quote and no figure needs.
 quoted := out/implicit_moment/gem_1836/.complete $(patsubst %,out/cic/%/.complete,\

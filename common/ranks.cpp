@@ -129,22 +129,27 @@ void exchange(std::span<const int> peers, const std::vector<std::vector<double>>
 
 void gather_in_turn(const void* own, std::size_t bytes,
                     const std::function<void(const void*, std::size_t)>& take) {
-    const Watch watch;
+    const auto send = [](const void* from, std::size_t count) {
+        const Watch watch;
+        MPI_Send(from, int(count), MPI_BYTE, 0, 1, MPI_COMM_WORLD);
+    };
+    const auto receive = [](void* to, std::size_t count, int from) {
+        const Watch watch;
+        MPI_Recv(to, int(count), MPI_BYTE, from, 1, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+    };
     if (here.rank > 0) {
-        const char* from = static_cast<const char*>(own);
-        MPI_Send(&bytes, sizeof bytes, MPI_BYTE, 0, 1, MPI_COMM_WORLD);
+        send(&bytes, sizeof bytes);
         for (std::size_t done = 0; done < bytes; done += piece_bytes)
-            MPI_Send(from + done, int(std::min(piece_bytes, bytes - done)), MPI_BYTE, 0, 1,
-                     MPI_COMM_WORLD);
+            send(static_cast<const char*>(own) + done, std::min(piece_bytes, bytes - done));
         return;
     }
     take(own, bytes);
     std::vector<char> piece(piece_bytes);
     for (int k = 1; k < here.count; ++k) {
-        MPI_Recv(&bytes, sizeof bytes, MPI_BYTE, k, 1, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+        receive(&bytes, sizeof bytes, k);
         for (std::size_t done = 0; done < bytes; done += piece_bytes) {
             const std::size_t part = std::min(piece_bytes, bytes - done);
-            MPI_Recv(piece.data(), int(part), MPI_BYTE, k, 1, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+            receive(piece.data(), part, k);
             take(piece.data(), part);
         }
     }

@@ -103,6 +103,13 @@ describe_test(plot.all long)
 add_test(pages.runs_and_sliders_are_those_of_the_programs sh tests/support/pages.sh ${build_folder})
 describe_test(pages.runs_and_sliders_are_those_of_the_programs physics)
 
+# ---- ranks (with the programs of make MPI=1 all) ---------------------------------------------------
+foreach(what bytes restart refuse stop)
+    add_test(ranks.${what} sh tests/support/ranks.sh "${build_folder}" ${what})
+    describe_test(ranks.${what} robust)
+    set_tests_properties(ranks.${what} PROPERTIES SKIP_RETURN_CODE 77)
+endforeach()
+
 # ---- the exercises -------------------------------------------------------------------------------
 # Each that runs something. Those with a patch build in one and the same copy of the sources.
 add_test(exercises.each_has_a_solution sh common/exercise.sh check)

@@ -14,9 +14,9 @@ complain() { echo "$*" >&2; status=1; }
 
 # A sheet that reconnects; a beam through the periodic ends of a mesh of four strips, of which the last has one row, .93 cells per step; a plasma
 # thrown at a wall, which leaves rows empty behind it.
+short_sheet="implicit_moment/cases/gem_explicit.toml grid.cells_x=32 grid.cells_z=32 time.dt=0.2 harris.particles=5e4 output.history_steps=2"
 records='output.history_steps=2 output.checkpoint_steps=30'
-sheet="explicit_em implicit_moment/cases/gem_explicit.toml grid.cells_x=32 grid.cells_z=32 time.dt=0.2 harris.particles=1e4 $records
-    time.end=12 output.fields_interval=3 output.particles_interval=3"
+sheet="explicit_em $short_sheet time.end=12 output.checkpoint_steps=30 output.fields_interval=6 output.particles_interval=6"
 neutral='[plasma]\nsetup = "uniform"\nloading = "random"\n[uniform]\nparticles_per_cell = %s\n[species.ions]\ncharge = 1\nmass = 1\ndrift_z = %s\ntemperature_x = 1e-3
     \ntemperature_z = 1e-3\n[species.electrons]\ncharge = -1\nmass = 0.5\ndrift_z = %s\n[grid]\ncells_x = 8\ncells_z = %s\nlength_x = 8\nlength_z = %s\nboundary_z = "%s"
     \n[time]\ndt = %s\nend = %s\n[particles]\norder = %s\n[theory]\nwave = "none"\n'
@@ -74,6 +74,92 @@ restart)
             same "$scratch/$name" "$out"
         done
     done
+    ;;
+refuse)
+    # refused N STATUS SENTENCE ...: ends with the status, and with the sentence once
+    refused() {
+        n=$1 wanted=$2 sentence=$3; shift 3
+        begin=$(date +%s)
+        start "$n" "$scratch/refused" "$@"
+        found=$?
+        [ $found = "$wanted" ] || complain "$sentence: status $found"
+        [ "$(grep -c "$sentence" "$said")" = 1 ] || complain "not once '$sentence': $(cat "$said")"
+        [ $(($(date +%s) - begin)) -le 10 ] || complain "$sentence: after $(($(date +%s) - begin)) s"
+    }
+    # shellcheck disable=SC2086
+    set -- $beam
+    program=$1; shift
+    refused 5 2 '5 ranks, and the mesh has 4 strips of 4 rows' "$@"
+    refused 4 2 "unknown parameter 'grid.cells_w'" "$@" grid.cells_w=3
+    refused 2 2 'leave out mpirun' "$@" --refine 2
+    [ -e "$scratch/refused" ] && complain "a refused case has left a folder"
+    start 4 "$scratch/refused" "$@" --dry-run > "$scratch/words"
+    [ -e "$scratch/refused" ] && complain "a dry run has left a folder"
+    timeout 120 mpirun -n 3 "$many/$program" --version > "$scratch/words"
+    [ "$(wc -l < "$scratch/words")" = 1 ] || complain "the version: $(cat "$scratch/words")"
+    # All fail alike, each having met some of what is counted.
+    blown_up="particles.relativistic=false species.ions.drift_z=0.5 species.electrons.drift_z=0.5 uniform.wave_E_z=1e3 uniform.mode_x=1"
+    # shellcheck disable=SC2086
+    start 0 "$scratch/alone" "$@" $blown_up
+    # shellcheck disable=SC2086
+    refused 3 3 "$(grep 'cross more than a cell' "$said")" "$@" $blown_up
+    refused 2 2 'holds an earlier run' "$@"
+    # One fails alone: for want of memory, and where the folder is taken away from the first.
+    cat > "$scratch/poor" <<- end
+	#!/bin/sh
+	[ "\${OMPI_COMM_WORLD_RANK:-\$PMI_RANK}" = 1 ] && ulimit -v 300000
+	exec "$(realpath "$many/$program")" "\$@"
+	end
+    chmod +x "$scratch/poor"
+    mpi=$many many=$scratch program=poor
+    refused 3 2 'memory, and there is' implicit_moment/cases/gem_explicit.toml harris.particles=1e7 --force
+    many=$mpi program=explicit_em
+    (sleep 4; mv "$scratch/refused" "$scratch/gone") &
+    refused 3 2 'cannot be opened for writing' "$@" --force time.end=1e6
+    ;;
+stop)
+    # begin N: N ranks in the background; they have taken some steps
+    begin() {
+        out=$scratch/stopped
+        mpirun -n "$1" "$many/$program" $long --quiet --out "$out" --resume > "$scratch/words" 2>&1 &
+        mpirun=$!
+        for _ in $(seq 100); do ls "$out"/checkpoint_* > /dev/null 2>&1 && pgrep -f "^$many/$program.*$out" > /dev/null && break; sleep 0.1; done
+        sleep "0.$(($(od -An -N1 -tu1 /dev/urandom) % 10))"
+    }
+    # ended STATUS: how mpirun has ended, and that within ten seconds and with nothing left; the last checkpoint is whole
+    ended() {
+        before=$(date +%s)
+        wait $mpirun
+        found=$?
+        [ $(($(date +%s) - before)) -le 10 ] || complain "$1: after $(($(date +%s) - before)) s"
+        case " $1 " in *" $found "*) ;; *) complain "status $found, not one of $1: $(cat "$scratch/words")" ;; esac
+        sleep 0.2
+        pgrep -f "^$many/$program.*$out" && complain "$1: some still run"
+        last=$(ls "$out"/checkpoint_*.bin | tail -n 1)
+        "$one/$program" --verify "$last" > /dev/null || complain "$1: $last is not whole"
+    }
+    program=explicit_em
+    long="$short_sheet time.end=$((60 * (${KILLS:-3} + 3))) output.checkpoint_steps=20 output.fields_interval=0 --threads 1"
+    # shellcheck disable=SC2086
+    start 0 "$scratch/whole" $long
+    # A signal to mpirun, which Open MPI answers with a status of its own; one to a rank; and the worst one.
+    for signal in TERM INT; do
+        begin 2
+        kill -$signal $mpirun
+        ended '1 130 143'
+        grep -q '"status": 1[34]' "$out/summary.json" || complain "$signal: $(grep status "$out/summary.json")"
+    done
+    begin 3
+    kill -INT "$(pgrep -f "^$many/$program.*$out" | sed -n 2p)"
+    ended 130
+    for _ in $(seq "${KILLS:-3}"); do
+        begin 3
+        kill -KILL "$(pgrep -f "^$many/$program.*$out" | shuf -n 1)"
+        ended '137'
+    done
+    # shellcheck disable=SC2086
+    start 4 "$out" $long --resume
+    same "$scratch/whole" "$out"
     ;;
 *) complain "no such fact: $2" ;;
 esac
