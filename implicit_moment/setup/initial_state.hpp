@@ -129,11 +129,11 @@ struct State {
 template <class Archive>
 void archive(Archive& a, State& state) {
     for (Particles& s : state.plasma.species) {
-        a(s.name + ".x_p", common::OfAllRanks{s.x_p});
-        a(s.name + ".z_p", common::OfAllRanks{s.z_p});
-        a(s.name + ".ux_p", common::OfAllRanks{s.ux_p});
-        a(s.name + ".uy_p", common::OfAllRanks{s.uy_p});
-        a(s.name + ".uz_p", common::OfAllRanks{s.uz_p});
+        a(s.name + ".x_p", common::OfAllRanks<double>{s.x_p});
+        a(s.name + ".z_p", common::OfAllRanks<double>{s.z_p});
+        a(s.name + ".ux_p", common::OfAllRanks<double>{s.ux_p});
+        a(s.name + ".uy_p", common::OfAllRanks<double>{s.uy_p});
+        a(s.name + ".uz_p", common::OfAllRanks<double>{s.uz_p});
         a(s.name + ".first_of_node", common::SumOverRanks{s.first_of_node});
     }
     a("E", state.field.E.all);
