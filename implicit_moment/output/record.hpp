@@ -144,7 +144,7 @@ class Recorder {
                                      kinetic.back() / kinetic.front() - 1, "1");
         }
         conserved("gauss_residual", "4pi*e*n0");
-        summary.performance("particles", double(scales_of(w).particles));
+        summary.performance("particles", double(common::sum_over_ranks(state.plasma.count())));
     }
 
    private:

@@ -41,7 +41,7 @@ performance() { sed -n "s/.*\"$2\": *\([0-9.]*\).*/\1/p" "$1/summary.json"; }
 # start N OUT ...: N ranks, 0: the program without ranks
 start() {
     n=$1 out=$2 said=$2.said; shift 2
-    if [ "$n" = 0 ]; then set -- "$one/$program" "$@"; else set -- timeout 120 mpirun -n "$n" "$many/$program" "$@"; fi
+    if [ "$n" = 0 ]; then set -- "$one/$program" "$@"; else set -- timeout "${PATIENCE:-120}" mpirun -n "$n" "$many/$program" "$@"; fi
     "$@" --quiet --out "$out" 2> "$said"
 }
 
@@ -139,7 +139,7 @@ stop)
         "$one/$program" --verify "$last" > /dev/null || complain "$1: $last is not whole"
     }
     program=explicit_em
-    long="$short_sheet time.end=$((60 * (${KILLS:-3} + 3))) output.checkpoint_steps=20 output.fields_interval=0 --threads 1"
+    long="$short_sheet time.end=$((40 * (${KILLS:-3} + 3))) output.checkpoint_steps=20 output.fields_interval=0 --threads 1"
     # shellcheck disable=SC2086
     start 0 "$scratch/whole" $long
     # A signal to mpirun, which Open MPI answers with a status of its own; one to a rank; and the worst one.
@@ -158,7 +158,7 @@ stop)
         ended '137'
     done
     # shellcheck disable=SC2086
-    start 4 "$out" $long --resume
+    start 4 "$out" $long --resume || complain "resumed: $(cat "$said")"
     same "$scratch/whole" "$out"
     ;;
 *) complain "no such fact: $2" ;;
