@@ -13,7 +13,6 @@
 #include "implicit_moment/output/sheet_diagnostics.hpp"
 #include "implicit_moment/output/unit_flux_profile.hpp"
 #include "implicit_moment/output/write_output.hpp"
-#include "implicit_moment/setup/check_case.hpp"
 #include "implicit_moment/solve_field.hpp"
 #include "implicit_moment/theory/compare_current_sheet.hpp"
 #include "implicit_moment/theory/compare_drift.hpp"
