@@ -139,7 +139,13 @@ stop)
         "$one/$program" --verify "$last" > /dev/null || complain "$1: $last is not whole"
     }
     program=explicit_em
-    long="$short_sheet time.end=$((40 * (${KILLS:-3} + 3))) output.checkpoint_steps=20 output.fields_interval=0 --threads 1"
+    # Two seconds for each signal, as fast as this machine is now.
+    long="$short_sheet output.checkpoint_steps=20 output.fields_interval=0 --threads 1"
+    since=$(date +%s%N)
+    # shellcheck disable=SC2086
+    start 3 "$scratch/probe" $long time.end=200
+    milliseconds=$((($(date +%s%N) - since) / 1000000))
+    long="$long time.end=$((200 * 2000 * (${KILLS:-3} + 3) / milliseconds))"
     # shellcheck disable=SC2086
     start 0 "$scratch/whole" $long
     # A signal to mpirun, which Open MPI answers with a status of its own; one to a rank; and the worst one.
