@@ -17,7 +17,7 @@ namespace {
 // What MPI is asked once, where the program starts.
 struct Here {
     int rank = 0, count = 1, on_machine = 1;
-    int error_stream = STDERR_FILENO;  // of a rank that nobody hears, for its last words
+    int error_stream = STDERR_FILENO;  // kept for the message of a rank that fails alone
     MPI_Comm last = MPI_COMM_NULL;     // on which ranks meet at the end
     double communication = 0;
 } here;
@@ -67,8 +67,8 @@ void start() {
     close(nowhere);
 }
 
-// Who has failed waits a little, in case the others have failed alike, and the first rank least: it has
-// said already what others would say again.
+// The others may have failed with the same message, so a rank that has failed waits for them before it ends
+// all. The first rank waits least, because it has printed that message already.
 int end(int status, const std::string& message) {
     const bool failed = status == 2 || status == 3;
     const double until = MPI_Wtime() + (failed ? 2 + 0.1 * std::min(here.rank, 10) : 1e9);

@@ -2,8 +2,8 @@
 // many. All MPI of the project lives here and in ranks.cpp; a program built without it has one rank.
 //
 // Every rank goes through the same program with the same case, and does what concerns the mesh and the
-// records as one process would; only particles are divided. So ranks meet in the same calls, decide the
-// same, and what the others say or write goes nowhere: the first one speaks and writes for all.
+// records as one process would; only particles are divided. So all ranks make the same calls and take the
+// same decisions. Only the first rank prints and writes files.
 //
 // The bytes are those of one process because the sums are the same sums: a number is added where, and in
 // the order in which, one process adds it, and what crosses a border are the terms, or what has come out
@@ -43,17 +43,17 @@ void gather_in_turn(const void* own, std::size_t bytes,
 inline int rank() { return has_ranks ? mpi::rank() : 0; }
 inline int rank_count() { return has_ranks ? mpi::rank_count() : 1; }
 inline int ranks_here() { return has_ranks ? mpi::ranks_here() : 1; }
-/// Whether this process speaks and writes for all.
+/// Whether this process prints and writes the files.
 inline bool is_first_rank() { return rank() == 0; }
 /// The time that this rank has given to others or waited for them so far.
 inline double communication_seconds() { return has_ranks ? mpi::communication_seconds() : 0; }
 
-/// The beginning of main: from here on nobody hears the others.
+/// Starts MPI, at the beginning of main; from here on only the first rank prints.
 inline void start_ranks() {
     if (has_ranks) mpi::start();
 }
-/// The end of main. Ranks that end together end well; one that ends alone, with an error, ends all within
-/// seconds. in: the status and what a rank that ends alone has to say. out: the status
+/// The end of main. Waits until all ranks are there. A rank that has failed waits two seconds, and then
+/// prints its message and ends all. in: the status and that message. out: the status
 inline int end_ranks(int status, const std::string& message) {
     return has_ranks ? mpi::end(status, message) : status;
 }

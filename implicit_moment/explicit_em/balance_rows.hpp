@@ -17,7 +17,8 @@ inline void hand_over(const Division& before, const Division& after, long per_ti
                       Particles& particles) {
     const int me = common::rank();
     const long cells = std::ssize(particles.first_of_node) - 1;
-    // The cells that one rank had and another is to have; where all had all, everybody keeps his own.
+    // The cells that go from one rank to another. Before the first division every rank has all cells, and
+    // keeps those that it is to have.
     const auto cells_between = [&](int from, int to) {
         const bool whole = before.is_whole();
         const long begin = std::max(whole ? 0 : before.first[from], after.first[to]),

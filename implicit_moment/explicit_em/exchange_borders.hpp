@@ -9,7 +9,7 @@
 //     moments    where both sides of a border add to one row, the sum so far, color after color: each
 //                term is added to the number to which one process adds it
 //
-// A process with all particles goes through the same functions, and nothing of this happens.
+// In one process these functions return at once.
 #pragma once
 
 #include <algorithm>
