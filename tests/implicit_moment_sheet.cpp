@@ -206,7 +206,7 @@ TEST_CASE("the displacement of a bent sheet is found to the cube of the row dist
 }
 
 TEST_CASE("growth rate and frequency and mode are read off a history that has them") {
-    const Case parameters = thin_sheet();
+    Case parameters = thin_sheet();
     const std::string folder = room("sheet_history");
     common::History history(folder + "/history.dat");
     std::vector<common::Column> columns{{"time_Omega_ci", "1/Omega_ci"}};
@@ -241,6 +241,16 @@ TEST_CASE("growth rate and frequency and mode are read off a history that has th
                  frequency = found.value("omega_over_theory") * found.value("theory_omega");
     CHECK(std::fabs(growth / gamma - 1) <= 1e-3);
     CHECK(std::fabs(frequency / omega - 1) <= 1e-9);
+
+    // The talk speaks of one sheet, and no other is held to its mode.
+    for (const double ratio : {4, 2}) {
+        parameters.current_sheet.temperature_ratio = ratio;
+        common::Summary of_sheet;
+        compare_current_sheet(parameters, history, of_sheet);
+        of_sheet.write(folder + "/summary.json", {"implicit_moment", "1", "", ""}, "", 0, "done");
+        const Run sheet_run = finished_run(folder);
+        CHECK(sheet_run.summary["results"]["dominant_mode"].contains("verdict") == (ratio == 4));
+    }
 }
 
 TEST_CASE("lengths and meshes and speeds that a thin sheet cannot have are refused") {

@@ -91,11 +91,15 @@ TEST_CASE("what damping leaves no theory of is not measured and says so") {
         const Run disks = run(program, "rebound", "load.damping=0.3"),
                   rare =
                       run(program, "oscillator", "output.history_steps=4 time.alpha=1 time.end=80"),
-                  flat = run(program, "bonded_bar", "load.damping=0.3");
+                  flat = run(program, "bonded_bar", "load.damping=0.3"),
+                  stopped = run(program, "vibrating_bar", "load.damping=1000"),
+                  slowed = run(program, "bonded_bar", "load.damping=50");
         for (const auto& [r, name, says] :
              {std::tuple(&disks, "contact_lasts", "load.damping slows them down"),
               {&rare, "frequency", "rows of the history"},
-              {&flat, "bond_breaks", "hardly grows"}}) {
+              {&flat, "bond_breaks", "hardly grows"},
+              {&stopped, "frequency", "of a velocity"},
+              {&slowed, "bond_breaks", "of a velocity"}}) {
             const auto& result = r->summary["results"][name];
             INFO(program << " " << name << " = " << result.dump());
             CHECK(result["verdict"] == "NOT MEASURED");
