@@ -561,8 +561,17 @@ $(BUILD)/planted_race: $(objects)/tests/torture/planted_race.o $(BUILD)/flags
 
 # ---- speed ---------------------------------------------------------------------------------------
 
+# With MPI=1 two ranks beside one, and what messages cost.
+ifneq ($(MPI),)
+$(BUILD)/bench/message_times: $(objects)/tests/support/message_times.o $(objects)/common/ranks.o
+	$(link)
+-include $(objects)/tests/support/message_times.d
+bench: all $(BUILD)/bench/message_times
+	@sh tests/support/ranks_bench.sh $(BUILD)
+else
 bench: $(bench_programs)
 	@set -e; for b in $^; do $$b; done
+endif
 
 # ---- to others -----------------------------------------------------------------------------------
 

@@ -10,6 +10,7 @@
 // so far, never a sum of a rank's own.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <numeric>
 #include <span>
@@ -89,22 +90,33 @@ struct Division {
         return k;
     }
 
-    /// Cuts where the work of the pieces before is next to the share of the ranks before.
+    /// Cuts such that the rank with the most work has as little as it can.
     /// in: the work of each piece, at least as many pieces as ranks; every rank gets one
-    static Division of(std::span<const long> work) {
-        const long ranks = rank_count(), pieces = std::ssize(work);
-        const double all = double(std::reduce(work.begin(), work.end()));
-        Division division{{0}};
-        double before = 0;
-        for (long k = 1, piece = 0; k < ranks; ++k) {
-            const double share = all * double(k) / double(ranks);
-            const long least = division.first.back() + 1, most = pieces - (ranks - k);
-            while (piece < least || (piece < most && before + 0.5 * double(work[piece]) < share))
-                before += double(work[piece++]);
-            division.first.push_back(piece);
+    static Division of(std::span<const long> work, long ranks = rank_count()) {
+        const long pieces = std::ssize(work);
+        // Rank after rank is filled to a bound; the last one takes what is left.
+        long of_last = 0;
+        const auto fill = [&](long bound) {
+            Division division{{0}};
+            of_last = 0;
+            for (long piece = 0; piece < pieces; ++piece) {
+                const long ranks_left = ranks - std::ssize(division.first);
+                const bool full = of_last + work[piece] > bound || pieces - piece <= ranks_left;
+                if (full && piece > division.first.back() && ranks_left > 0)
+                    division.first.push_back(piece), of_last = 0;
+                of_last += work[piece];
+            }
+            division.first.push_back(pieces);
+            return division;
+        };
+        long low = *std::max_element(work.begin(), work.end()),
+             high = std::reduce(work.begin(), work.end());
+        while (low < high) {
+            const long bound = low + (high - low) / 2;
+            fill(bound);
+            of_last <= bound ? high = bound : low = bound + 1;
         }
-        division.first.push_back(pieces);
-        return division;
+        return fill(low);
     }
 };
 
