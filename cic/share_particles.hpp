@@ -59,9 +59,15 @@ inline void share_runs(const std::vector<int>& first, Particles& particles) {
         for (std::size_t k = 0; k < peers.size() && !q->empty(); ++k)
             to[k].assign(q->begin() + goes[peers[k]], q->begin() + goes[peers[k] + 1]);
         common::exchange(peers, to, from);
-        for (std::size_t k = 0; k < peers.size(); ++k) of_rank[peers[k]].swap(from[k]);
-        // From nobody comes a component that the species lacks.
+        // A component that the species lacks is empty here, and nobody sends it.
+        bool lacking = q->empty();
+        for (std::size_t k = 0; k < peers.size(); ++k) {
+            lacking = lacking && from[k].empty();
+            of_rank[peers[k]].swap(from[k]);
+        }
+        if (lacking) continue;
         std::vector<Real> column;
+        column.reserve(begin_of_rank(all, me + 1) - begin_of_rank(all, me));
         std::vector<long> next(ranks, 0);
         next[me] = goes[me];
         const auto add_from = [&](const auto& list, long& at, long count) {

@@ -140,8 +140,8 @@ refuse)
     many=$mpi program=explicit_em
     (sleep 4; mv "$scratch/refused" "$scratch/gone") &
     refused 3 2 'cannot be opened for writing' "$@" --force time.end=1e6
-    # The same of cic: the one rank that meets a leap tells the others, and the summary says so.
-    program=cic leap='boundary.potential_z_low=1e6 boundary.particles_z_high=reflect'
+    # The same of cic: the one rank that meets a leap, not the first, tells the others, and the summary says so.
+    program=cic leap='species.electrons.loading=random species.electrons.temperature_z=2e4 boundary.particles_z_high=reflect plasma.seed=8'
     # shellcheck disable=SC2086
     start 0 "$scratch/leap" ${box#* } $leap
     # shellcheck disable=SC2086
