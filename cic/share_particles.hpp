@@ -66,6 +66,15 @@ inline void share_runs(const std::vector<int>& first, Particles& particles) {
             of_rank[peers[k]].swap(from[k]);
         }
         if (lacking) continue;
+        if (keys == 1) {  // what stays is in the middle
+            q->resize(goes[me + 1]);
+            q->erase(q->begin(), q->begin() + goes[me]);
+            for (int k = me - 1; k >= 0; --k)
+                q->insert(q->begin(), of_rank[k].begin(), of_rank[k].end());
+            for (int k = me + 1; k < ranks; ++k)
+                q->insert(q->end(), of_rank[k].begin(), of_rank[k].end());
+            continue;
+        }
         std::vector<Real> column;
         column.reserve(begin_of_rank(all, me + 1) - begin_of_rank(all, me));
         std::vector<long> next(ranks, 0);
