@@ -155,4 +155,30 @@ void gather_in_turn(const void* own, std::size_t bytes,
     }
 }
 
+void in_turn(void* numbers, std::size_t size, std::span<const long> first,
+             const std::function<void(long)>& work) {
+    const auto begin = [&](std::size_t k) {
+        return static_cast<char*>(numbers) + std::size_t(first[k]) * size;
+    };
+    const std::size_t pieces = first.size() - 1;
+    const int last = here.count - 1;
+    std::vector<MPI_Request> sent(here.rank < last ? pieces : 0);
+    for (std::size_t k = 0; k < pieces; ++k) {
+        const int bytes = as_int(std::size_t(begin(k + 1) - begin(k)));
+        if (here.rank > 0) {
+            const Watch watch;
+            MPI_Recv(begin(k), bytes, MPI_BYTE, here.rank - 1, 2, MPI_COMM_WORLD,
+                     MPI_STATUS_IGNORE);
+        }
+        work(long(k));
+        const Watch watch;
+        if (here.rank < last)
+            MPI_Isend(begin(k), bytes, MPI_BYTE, here.rank + 1, 2, MPI_COMM_WORLD, &sent[k]);
+    }
+    const Watch watch;
+    MPI_Waitall(int(sent.size()), sent.data(), MPI_STATUSES_IGNORE);
+    for (std::size_t k = 0; k < pieces; ++k)
+        MPI_Bcast(begin(k), int(begin(k + 1) - begin(k)), MPI_BYTE, last, MPI_COMM_WORLD);
+}
+
 }  // namespace common::mpi

@@ -15,6 +15,7 @@
 #include <numeric>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace common {
@@ -37,6 +38,8 @@ void exchange(std::span<const int> peers, const std::vector<std::vector<double>>
               std::vector<std::vector<double>>& from);
 void gather_in_turn(const void* own, std::size_t bytes,
                     const std::function<void(const void*, std::size_t)>& take);
+void in_turn(void* numbers, std::size_t size, std::span<const long> first,
+             const std::function<void(long)>& work);
 
 }  // namespace mpi
 
@@ -147,6 +150,29 @@ inline std::vector<double> gather_in_turn(const std::vector<double>& own) {
                        all.insert(all.end(), from, from + bytes / sizeof(double));
                    });
     return all;
+}
+
+/// The same with every rank.
+inline std::vector<double> gather_with_all(const std::vector<double>& own) {
+    if (rank_count() == 1) return own;
+    std::vector<long> first(std::size_t(rank_count() + 1), 0);
+    first[rank() + 1] = std::ssize(own);
+    sum_over_ranks(first);
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    std::vector<double> all(std::size_t(first.back()));
+    std::copy(own.begin(), own.end(), all.begin() + first[rank()]);
+    gather_pieces(all.data(), first);
+    return all;
+}
+
+/// The ranks take turns at numbers, piece by piece: each works on what the one before has left there.
+/// In the end all have what the last one has left.
+/// in: first, where the pieces begin, one more for the end; work(piece)
+template <class Number>
+void in_turn(Number* numbers, std::span<const long> first, const std::function<void(long)>& work) {
+    static_assert(std::is_trivially_copyable_v<Number>);
+    if (has_ranks) return mpi::in_turn(numbers, sizeof(Number), first, work);
+    for (long k = 0; k + 1 < std::ssize(first); ++k) work(k);
 }
 
 /// Numbers of the particles, of which each rank has some, in the order of the ranks: what an archive

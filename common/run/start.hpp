@@ -33,8 +33,7 @@ inline bool start_run(const ProgramInfo& info, const CommandLine& command,
         std::fprintf(stderr, "warning: %s\n", warning.c_str());
     if (!command.quiet) std::printf("%s", prepared.description.c_str());
     if (rank_count() > 1 && !command.quiet)
-        std::printf("  %-33s %d, each with that memory while all load all, then with its share\n",
-                    "ranks", rank_count());
+        std::printf("  %-33s %d, each with at most that memory\n", "ranks", rank_count());
     if (command.dry_run) return false;
     if (command.complete) {
         if (!command.quiet)

@@ -5,7 +5,7 @@ set -u
 export LC_ALL=C.UTF-8
 one=$1 many=$1/mpi
 command -v mpirun > /dev/null || { echo "there is no mpirun (make deps-mpi): not tested"; exit 77; }
-[ -x "$many/explicit_em" ] || { echo "build/mpi is empty (make MPI=1 all): not tested"; exit 77; }
+for program in explicit_em cic; do [ -x "$many/$program" ] || { echo "there is no build/mpi/$program (make MPI=1 all): not tested"; exit 77; }; done
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=none
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
@@ -28,6 +28,26 @@ neutral='[plasma]\nsetup = "uniform"\nloading = "random"\n[uniform]\nparticles_p
 beam="explicit_em $scratch/beam.toml field.smoothing_passes=2 $records"
 crowd="explicit_em $scratch/crowd.toml $records"
 
+# Of cic: two streams in the plane, warm and loaded in no order, which cross the mesh along z in four steps and are sorted often; the same in one dimension; a
+# source and an absorbing wall in a magnetic field, the ions crossing the mesh along them; a plasma in a box that leaves it through one wall, to the last ion.
+files='output.fields_interval=3 output.particles_interval=3 output.phase_interval=3 output.checkpoint_steps=30'
+for s in right left; do warm="${warm-} species.$s.loading=random species.$s.temperature_x=0.1 species.$s.temperature_z=0.1 species.$s.particles_per_cell=10"; done
+streams="cic/cases/two_stream_2d.toml grid.cells_x=16 grid.cells_z=16$warm species.right.drift_z=26 species.left.drift_z=-25 method.sort_interval=4 theory.compare=none"
+plane="cic $streams time.end=6 $files"
+line="cic cic/cases/two_stream.toml time.dt=0.1 time.end=6 $files"
+between='[grid]\ndimensions = 2\ncells_x = 16\ncells_z = 16\nlength_x = 16\nlength_z = 16\nboundary_x = "wall"\n%b[time]\ndt = 0.1\nend = 6\n[method]\nsort_interval = 4
+    \n[plasma]\nB_y = %b\n[species.electrons]\n%b\n[species.ions]\ncharge = 1\nmass = 4\n%b\n[theory]\ncompare = "none"\n'
+warm='loading = "random"\ntemperature_x = 1\ntemperature_y = 1\ntemperature_z = 1\nparticles_per_cell = 9\nemission = 3'
+disk='profile = "disk"\ncenter_x = 6\ncenter_z = 9\nhalf_width = 4\nparticles_per_cell = 20'
+# shellcheck disable=SC2059
+{
+    printf "$between" '[boundary]\nx_low = "floating"\nparticles_x_low = "source"\nx_high = "floating"\n' 0.5 "$warm" "$warm\ndrift_z = 24" > "$scratch/source.toml"
+    printf "$between" 'boundary_z = "wall"\n[boundary]\nparticles_x_low = "reflect"\nparticles_z_low = "reflect"\n' 0 "$disk\ndrift_x = 3.5\ndrift_z = 9\ntemperature_x = 0.1" \
+        "$disk\ndrift_x = 5" > "$scratch/box.toml"
+}
+source="cic $scratch/source.toml $files"
+box="cic $scratch/box.toml $files"
+
 # same A B: the files of two runs, and their results; what a summary says of ranks and times is theirs.
 same() {
     for file in "$1"/*; do
@@ -47,7 +67,7 @@ start() {
 
 case $2 in
 bytes)
-    for name in sheet beam crowd; do
+    for name in sheet beam crowd plane line source box; do
         eval "set -- \$$name"
         program=$1; shift
         start 0 "$scratch/$name" "$@" --threads 1 || complain "$name: $(cat "$said")"
@@ -63,7 +83,7 @@ bytes)
     awk "BEGIN { exit !($(performance "$scratch/crowd.2.1" imbalance) <= 1.2) }" || complain "most of the crowd is with one rank"
     ;;
 restart)
-    for name in sheet beam; do
+    for name in sheet beam plane source; do
         eval "set -- \$$name"
         program=$1; shift
         start 0 "$scratch/$name" "$@" --threads 1
@@ -86,6 +106,10 @@ refuse)
         [ "$(grep -c "$sentence" "$said")" = 1 ] || complain "not once '$sentence': $(cat "$said")"
         [ $(($(date +%s) - begin)) -le 10 ] || complain "$sentence: after $(($(date +%s) - begin)) s"
     }
+    # shellcheck disable=SC2086
+    set -- $box
+    program=$1; shift
+    refused 17 2 '17 ranks, and the particles are in 16 blocks' "$@"
     # shellcheck disable=SC2086
     set -- $beam
     program=$1; shift
@@ -116,11 +140,21 @@ refuse)
     many=$mpi program=explicit_em
     (sleep 4; mv "$scratch/refused" "$scratch/gone") &
     refused 3 2 'cannot be opened for writing' "$@" --force time.end=1e6
+    # The same of cic: the one rank that meets a leap, not the first, tells the others, and the summary says so.
+    program=cic leap='species.electrons.loading=random species.electrons.temperature_z=2e4 boundary.particles_z_high=reflect plasma.seed=8'
+    # shellcheck disable=SC2086
+    start 0 "$scratch/leap" ${box#* } $leap
+    # shellcheck disable=SC2086
+    refused 3 3 "$(grep 'farther than the box' "$said")" ${box#* } --force $leap
+    grep -q '"status": 3' "$scratch/refused/summary.json" || complain "no summary of a leap"
+    (sleep 4; mv "$scratch/refused" "$scratch/gone.cic") &
+    # shellcheck disable=SC2086
+    refused 3 2 'cannot be .*No such file' $streams --force output.fields_interval=1 time.end=1e6
     ;;
 stop)
     # begin N: N ranks in the background; they have taken some steps
     begin() {
-        out=$scratch/stopped
+        out=$scratch/stopped.$program
         mpirun -n "$1" "$many/$program" $long --quiet --out "$out" --resume > "$scratch/words" 2>&1 &
         mpirun=$!
         for _ in $(seq 100); do ls "$out"/checkpoint_* > /dev/null 2>&1 && pgrep -f "^$many/$program.*$out" > /dev/null && break; sleep 0.1; done
@@ -138,34 +172,36 @@ stop)
         last=$(ls "$out"/checkpoint_*.bin | tail -n 1)
         "$one/$program" --verify "$last" > /dev/null || complain "$1: $last is not whole"
     }
-    program=explicit_em
-    # Two seconds for each signal, as fast as this machine is now.
-    long="$short_sheet output.checkpoint_steps=20 output.fields_interval=0 --threads 1"
-    since=$(date +%s%N)
-    # shellcheck disable=SC2086
-    start 3 "$scratch/probe" $long time.end=200
-    milliseconds=$((($(date +%s%N) - since) / 1000000))
-    long="$long time.end=$((200 * 2000 * (${KILLS:-3} + 3) / milliseconds))"
-    # shellcheck disable=SC2086
-    start 0 "$scratch/whole" $long
-    # A signal to mpirun, which Open MPI answers with a status of its own; one to a rank; and the worst one.
-    for signal in TERM INT; do
-        begin 2
-        kill -$signal $mpirun
-        ended '1 130 143'
-        grep -q '"status": 1[34]' "$out/summary.json" || complain "$signal: $(grep status "$out/summary.json")"
-    done
-    begin 3
-    kill -INT "$(pgrep -f "^$many/$program.*$out" | sed -n 2p)"
-    ended 130
-    for _ in $(seq "${KILLS:-3}"); do
+    for long in "explicit_em $short_sheet" "cic $streams output.particles_interval=0 time.energy_limit=0"; do
+        program=${long%% *}
+        # Two seconds for each signal, as fast as this machine is now.
+        long="${long#* } output.checkpoint_steps=20 output.fields_interval=0 --threads 1"
+        since=$(date +%s%N)
+        # shellcheck disable=SC2086
+        start 3 "$scratch/probe.$program" $long time.end=200
+        milliseconds=$((($(date +%s%N) - since) / 1000000))
+        long="$long time.end=$((200 * 2000 * (${KILLS:-3} + 3) / milliseconds))"
+        # shellcheck disable=SC2086
+        start 0 "$scratch/whole.$program" $long
+        # A signal to mpirun, which Open MPI answers with a status of its own; one to a rank; and the worst one.
+        for signal in TERM INT; do
+            begin 2
+            kill -$signal $mpirun
+            ended '1 130 143'
+            grep -q '"status": 1[34]' "$out/summary.json" || complain "$signal: $(grep status "$out/summary.json")"
+        done
         begin 3
-        kill -KILL "$(pgrep -f "^$many/$program.*$out" | shuf -n 1)"
-        ended '137'
+        kill -INT "$(pgrep -f "^$many/$program.*$out" | sed -n 2p)"
+        ended 130
+        for _ in $(seq "${KILLS:-3}"); do
+            begin 3
+            kill -KILL "$(pgrep -f "^$many/$program.*$out" | shuf -n 1)"
+            ended '137'
+        done
+        # shellcheck disable=SC2086
+        start 4 "$out" $long --resume || complain "resumed: $(cat "$said")"
+        same "$scratch/whole.$program" "$out"
     done
-    # shellcheck disable=SC2086
-    start 4 "$out" $long --resume || complain "resumed: $(cat "$said")"
-    same "$scratch/whole" "$out"
     ;;
 *) complain "no such fact: $2" ;;
 esac
