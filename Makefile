@@ -313,6 +313,15 @@ out/implicit_moment/energy/.complete: implicit_moment/figures/implicit_moment_en
 	$(one_at_a_time) sh $< $(BUILD)/implicit_moment $(BUILD)/explicit_em $(@D)
 	@touch $@
 
+# What ranks are worth, from pieces that were measured: nothing runs.
+$(eval $(call figure,implicit_moment_ranks,implicit_moment,out/implicit_moment/ranks))
+out/implicit_moment/ranks/.complete: implicit_moment/figures/implicit_moment_ranks.sh implicit_moment/data/ranks_pieces.csv \
+    implicit_moment/data/explicit_gem_strips.csv
+	@rm -f $@
+	@mkdir -p $(@D)
+	sh $< $(@D)
+	@touch $@
+
 $(eval $(call figure,implicit_moment_mass_ratio,implicit_moment,out/implicit_moment/mass_ratios))
 $(eval $(call series,implicit_moment/figures/implicit_moment_mass_ratio.sh,implicit_moment,$(wildcard \
     implicit_moment/cases/gem.toml implicit_moment/cases/gem_1836.toml),out/implicit_moment/mass_ratios))

@@ -4,7 +4,7 @@
 #     T(n) = particle N f(n)/n + mesh M + gather M (1/network + min(n, node)/memory) + latency (log2 n + 4),    efficiency = T(1)/n T(n)
 #
 # N particles on M cells; f, the most particles of a rank over the mean; every rank has the whole mesh, so that each core of a node gets and steps all of it.
-# What would be next: patches in both directions, whose rank has M/n cells and sends its rim to eight neighbors.
+# explicit_em has strips of four rows of cells, implicit_moment rows of nodes. What would be next: patches in both directions, M/n cells to a rank.
 #     efficiency.dat  cores, and for each run: T, efficiency, with patches: T, efficiency
 #     balance.dat     ranks, and for t Omega_ci = 0, 15, 30: f with the borders of then, f with those of t = 0
 set -eu
@@ -47,11 +47,13 @@ awk -F, -v balance="$1/balance.dat" -v efficiency="$1/efficiency.dat" '
             + gather * M * ((n > piece["cores_of_node"] ? 1 / piece["network"] : 0) \
                 + (n < piece["cores_of_node"] ? n : piece["cores_of_node"]) / piece["memory"]) + piece["latency"] * (log(n) / log(2) + 4)
     }
-    # The rim of a patch: two cells wide, four sides; the bytes that cross per cell are those that all get before.
-    function patch_time(kind, N, M, n, gather, iterations) {
+    # In patches of equal work: the rims, two cells wide, go to eight neighbors; and in each iteration of a solver twice all of a patch goes to
+    # those of its row, for the transforms, and sums go to all.
+    function patch_time(kind, N, M, n, gather, iterations,    of_core) {
         if (n == 1) return step_time(kind, N, M, 1, 1, gather)
-        return (piece["particle_" kind] * N + piece["mesh_" kind] * M) / n + iterations * (8 * piece["latency"] \
-            + 8 * sqrt(M / n) * gather / (piece["network"] / piece["cores_of_node"]))  + iterations * piece["latency"] * log(n) / log(2)
+        of_core = (n > piece["cores_of_node"] ? piece["network"] : piece["memory"]) / piece["cores_of_node"]
+        return (piece["particle_" kind] * N + piece["mesh_" kind] * M) / n + 8 * piece["latency"] + 8 * sqrt(M / n) * gather / of_core \
+            + iterations * 2 * (24 * M / n / of_core + piece["latency"] * (sqrt(n) + log(n) / log(2)))
     }
     END {
         print "ranks t0 t15 t30 t15_borders_of_t0 t30_borders_of_t0" > balance
@@ -70,20 +72,16 @@ awk -F, -v balance="$1/balance.dat" -v efficiency="$1/efficiency.dat" '
             if (n == last) continue
             last = n
             line = n
-            split("9.12e6 1e10 2e5", N, " "); split("131072 8388608 4096", M, " "); split("64 512 16", most, " ")
-            split("explicit explicit implicit", kind, " "); split("24 24 160", gather, " "); split("1 1 16", iterations, " ")
+            split("9.12e6 1e10 2e5", N, " "); split("131072 8388608 4096", M, " "); split("64 512 64", most, " ")
+            split("explicit explicit implicit", kind, " "); split("24 24 304", gather, " "); split("0 0 8", iterations, " ")
             for (r = 1; r <= 3; r++) {
                 one = step_time(kind[r], N[r], M[r], 1, 1, gather[r])
                 f = 0
                 if (n <= most[r]) {
-                    if (r == 2) { cut(fine, 512, n, first); f = imbalance(fine, n, first) }
-                    if (r == 1) { cut(t15, 64, n, first); f = imbalance(t15, n, first) }
-                    if (r == 3) { for (s = 0; s < 16; s++) coarse[s] = t15[4 * s] + t15[4 * s + 1] + t15[4 * s + 2] + t15[4 * s + 3]
-                        cut(coarse, 16, n, first); f = imbalance(coarse, n, first) }
+                    if (r == 2) { cut(fine, 512, n, first); f = imbalance(fine, n, first) } else { cut(t15, 64, n, first); f = imbalance(t15, n, first) }
                 }
                 line = line " " (f ? one / n / step_time(kind[r], N[r], M[r], f, n, gather[r]) : "nan") " " one / n / patch_time(kind[r], N[r], M[r], n, gather[r], iterations[r])
             }
             print line > efficiency
         }
     }' implicit_moment/data/explicit_gem_strips.csv implicit_moment/data/ranks_pieces.csv
-touch "$1/.complete"
