@@ -60,13 +60,10 @@ inline void share_runs(const std::vector<int>& first, Particles& particles) {
             to[k].assign(q->begin() + goes[peers[k]], q->begin() + goes[peers[k] + 1]);
         common::exchange(peers, to, from);
         // A component that the species lacks is empty here, and nobody sends it.
-        bool lacking = q->empty();
-        for (std::size_t k = 0; k < peers.size(); ++k) {
-            lacking = lacking && from[k].empty();
-            of_rank[peers[k]].swap(from[k]);
-        }
-        if (lacking) continue;
-        if (keys == 1) {  // what stays is in the middle
+        std::size_t size = q->empty() ? 0 : goes[me + 1] - goes[me];
+        for (std::size_t k = 0; k < peers.size(); ++k)
+            size += from[k].size(), of_rank[peers[k]].swap(from[k]);
+        if (keys == 1 && size > 0) {  // what stays is in the middle
             q->resize(goes[me + 1]);
             q->erase(q->begin(), q->begin() + goes[me]);
             for (int k = me - 1; k >= 0; --k)
@@ -75,20 +72,16 @@ inline void share_runs(const std::vector<int>& first, Particles& particles) {
                 q->insert(q->end(), of_rank[k].begin(), of_rank[k].end());
             continue;
         }
-        std::vector<Real> column;
-        column.reserve(begin_of_rank(all, me + 1) - begin_of_rank(all, me));
-        std::vector<long> next(ranks, 0);
-        next[me] = goes[me];
-        const auto add_from = [&](const auto& list, long& at, long count) {
-            if (!list.empty())
-                column.insert(column.end(), list.begin() + at, list.begin() + at + count);
-            at += count;
-        };
-        for (std::size_t n = 0; n < comes.size(); ++n) {
-            const int k = int(n) % ranks;
-            k == me ? add_from(*q, next[k], comes[n]) : add_from(of_rank[k], next[k], comes[n]);
+        if (!q->empty()) of_rank[me].assign(q->begin() + goes[me], q->begin() + goes[me + 1]);
+        std::vector<const double*> next;
+        for (const std::vector<double>& list : of_rank) next.push_back(list.data());
+        q->resize(size);
+        auto place = q->begin();
+        for (std::size_t n = 0; n < comes.size() && size > 0; ++n) {
+            const double*& here = next[n % ranks];
+            place = std::copy_n(here, comes[n], place);
+            here += comes[n];
         }
-        q->swap(column);
     }
 }
 
