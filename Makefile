@@ -55,7 +55,7 @@ openpmd = $(if $(hdf5),$(BUILD)/openpmd.so)
 # With MPI its own compiler, which calls ours, compiles what calls it and links; and these programs have ranks.
 mpi_cxx = env OMPI_CXX='$(CXX)' MPICH_CXX='$(CXX)' mpicxx
 ifneq ($(MPI),)
-mains := implicit_moment/explicit_em/explicit_em.cpp
+mains := implicit_moment/implicit_moment.cpp implicit_moment/explicit_em/explicit_em.cpp
 endif
 
 # With `make deps fig09`, also with -j, everything waits until the packages are there.
@@ -504,7 +504,7 @@ $(BUILD)/CTestTestfile.cmake: Makefile | $(packages_first)
 ifneq ($(MPI),)
 test: all
 	@$(MAKE) MPI= $(programs)
-	@set -e; for fact in bytes restart refuse stop; do echo $$fact; sh tests/support/ranks.sh $(BUILD:/mpi=) $$fact; done
+	@set -e; for fact in bytes restart refuse stop implicit_bytes implicit_restart implicit_stop; do echo $$fact; sh tests/support/ranks.sh $(BUILD:/mpi=) $$fact; done
 else
 test: all tests $(BUILD)/CTestTestfile.cmake | $(packages_first)
 	$(call need,ctest)

@@ -90,15 +90,15 @@ struct Division {
     }
 
     /// Cuts where the work of the pieces before is next to the share of the ranks before.
-    /// in: the work of each piece, at least as many pieces as ranks; every rank gets one
-    static Division of(std::span<const long> work) {
+    /// in: the work of each piece; how many pieces every rank gets at least, which must be there
+    static Division of(std::span<const long> work, long few = 1) {
         const long ranks = rank_count(), pieces = std::ssize(work);
         const double all = double(std::reduce(work.begin(), work.end()));
         Division division{{0}};
         double before = 0;
         for (long k = 1, piece = 0; k < ranks; ++k) {
             const double share = all * double(k) / double(ranks);
-            const long least = division.first.back() + 1, most = pieces - (ranks - k);
+            const long least = division.first.back() + few, most = pieces - few * (ranks - k);
             while (piece < least || (piece < most && before + 0.5 * double(work[piece]) < share))
                 before += double(work[piece++]);
             division.first.push_back(piece);

@@ -1,5 +1,5 @@
 #!/bin/sh
-# ranks.sh BUILD FACT: facts about the programs of `make MPI=1 all`, beside those of `make all`. Status 77, for "not tested", where there are
+# ranks.sh BUILD FACT: facts about the programs of `make MPI=1 all`, beside those of `make all`; implicit_FACT, the same about implicit_moment. Status 77, for "not tested", where there are
 # none. Ranks share the cores of this machine.
 set -u
 export LC_ALL=C.UTF-8
@@ -27,6 +27,19 @@ neutral='[plasma]\nsetup = "uniform"\nloading = "random"\n[uniform]\nparticles_p
 }
 beam="explicit_em $scratch/beam.toml field.smoothing_passes=2 $records"
 crowd="explicit_em $scratch/crowd.toml $records"
+# The same of implicit_moment, each way of it: a beam of gamma v = 5 c in a magnetic field that goes around half of the mesh in a step; the crowd.
+short_gem="implicit_moment/cases/gem.toml grid.cells_x=24 grid.cells_z=24 harris.particles=6e3"
+records='output.checkpoint_steps=30 output.fields_interval=6 output.particles_interval=6'
+moments="implicit_moment $short_gem time.end=18 $records"
+mass="$moments field.response=mass_matrix"
+newton="implicit_moment $short_gem time.end=3 field.solver=newton_krylov field.rotation=mesh harris.guide_field=0.3 $records"
+paths="implicit_moment $short_gem time.end=1.5 field.solver=newton_krylov field.response=mass_matrix $records"
+tail="implicit_moment implicit_moment/cases/magnetotail.toml grid.cells_x=24 grid.cells_z=24 harris.particles=6e3 time.end=6"
+sed 's/order = .*/relativistic = true/' "$scratch/beam.toml" > "$scratch/sweep.toml"
+sed '/order = /d' "$scratch/crowd.toml" > "$scratch/wall.toml"
+sweep="implicit_moment $scratch/sweep.toml uniform.B_x=2 time.dt=0.6 time.end=36 uniform.particles_per_cell=6 $records"
+sweep_mass="$sweep field.response=mass_matrix"
+wall="implicit_moment $scratch/wall.toml uniform.particles_per_cell=10 time.end=2.4 $records"
 
 # same A B: the files of two runs, and their results; what a summary says of ranks and times is theirs.
 same() {
@@ -45,9 +58,18 @@ start() {
     "$@" --quiet --out "$out" 2> "$said"
 }
 
-case $2 in
+fact=${2#implicit_} program=explicit_em
+[ "$fact" = "$2" ] || program=implicit_moment
+case $program.$fact in
+explicit_em.bytes) names='sheet beam crowd' ;;
+explicit_em.restart) names='sheet beam' ;;
+implicit_moment.bytes) names='moments mass newton paths tail sweep sweep_mass wall' ;;
+implicit_moment.restart) names='moments mass sweep' ;;
+esac
+
+case $fact in
 bytes)
-    for name in sheet beam crowd; do
+    for name in $names; do
         eval "set -- \$$name"
         program=$1; shift
         start 0 "$scratch/$name" "$@" --threads 1 || complain "$name: $(cat "$said")"
@@ -60,10 +82,10 @@ bytes)
         done
     done
     # Borders have moved: with those of the start one of two ranks would have three quarters of the crowd.
-    awk "BEGIN { exit !($(performance "$scratch/crowd.2.1" imbalance) <= 1.2) }" || complain "most of the crowd is with one rank"
+    [ $program = implicit_moment ] || awk "BEGIN { exit !($(performance "$scratch/crowd.2.1" imbalance) <= 1.2) }" || complain "most of the crowd is with one rank"
     ;;
 restart)
-    for name in sheet beam; do
+    for name in $names; do
         eval "set -- \$$name"
         program=$1; shift
         start 0 "$scratch/$name" "$@" --threads 1
@@ -92,6 +114,10 @@ refuse)
     refused 5 2 '5 ranks, and the mesh has 4 strips of 4 rows' "$@"
     refused 4 2 "unknown parameter 'grid.cells_w'" "$@" grid.cells_w=3
     refused 2 2 'leave out mpirun' "$@" --refine 2
+    program=implicit_moment
+    # shellcheck disable=SC2086
+    refused 7 2 '7 ranks, and the mesh has 13 rows of nodes' ${sweep#* }
+    program=explicit_em
     [ -e "$scratch/refused" ] && complain "a refused case has left a folder"
     start 4 "$scratch/refused" "$@" --dry-run > "$scratch/words"
     [ -e "$scratch/refused" ] && complain "a dry run has left a folder"
@@ -103,6 +129,13 @@ refuse)
     start 0 "$scratch/alone" "$@" $blown_up
     # shellcheck disable=SC2086
     refused 3 3 "$(grep 'cross more than a cell' "$said")" "$@" $blown_up
+    blown_up="${sweep_mass#* } --force"
+    program=implicit_moment
+    # shellcheck disable=SC2086
+    start 0 "$scratch/alone" $(echo "$blown_up" | sed 's/dt=0.6/dt=1e4/; s/end=36/end=1e4/')
+    # shellcheck disable=SC2046
+    refused 3 3 "$(grep 'cross more than 1000 boxes' "$said")" $(echo "$blown_up" | sed 's/dt=0.6/dt=1e4/; s/end=36/end=1e4/')
+    program=explicit_em
     refused 2 2 'holds an earlier run' "$@"
     # One fails alone: for want of memory, and where the folder is taken away from the first.
     cat > "$scratch/poor" <<- end
@@ -138,7 +171,7 @@ stop)
         last=$(ls "$out"/checkpoint_*.bin | tail -n 1)
         "$one/$program" --verify "$last" > /dev/null || complain "$1: $last is not whole"
     }
-    program=explicit_em
+    [ $program = implicit_moment ] && short_sheet=$short_gem
     # Two seconds for each signal, as fast as this machine is now.
     long="$short_sheet output.checkpoint_steps=20 output.fields_interval=0 --threads 1"
     since=$(date +%s%N)
