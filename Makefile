@@ -55,7 +55,7 @@ openpmd = $(if $(hdf5),$(BUILD)/openpmd.so)
 # With MPI its own compiler, which calls ours, compiles what calls it and links; and these programs have ranks.
 mpi_cxx = env OMPI_CXX='$(CXX)' MPICH_CXX='$(CXX)' mpicxx
 ifneq ($(MPI),)
-mains := cic/cic.cpp implicit_moment/explicit_em/explicit_em.cpp
+mains := cic/cic.cpp implicit_moment/implicit_moment.cpp implicit_moment/explicit_em/explicit_em.cpp
 endif
 
 # With `make deps fig09`, also with -j, everything waits until the packages are there.
@@ -143,7 +143,7 @@ The particle-in-cell family in running code
   make SANITIZE=address,undefined test     the facts under the sanitizers, in build/sanitize/
   make TRAP=1 test                         the facts, ended where 0/0 or inf - inf arises, in build/trap/
   make MPI=1 all         programs that share a case among machines, in build/mpi/ (packages: make deps-mpi):
-                         mpirun -n 4 build/mpi/explicit_em, cic too
+                         mpirun -n 4 build/mpi/explicit_em; implicit_moment, cic
   make REAL=float bench                    particles of cic in single precision, in build/float/
   make CXX=clang++-14 all                  another compiler; also ARCH=, OPTIMIZE=, EIGEN=, CXXFLAGS=
   make OPTIMIZE=-O0 BUILD=build/quick cic  compiled in less than half the time
@@ -513,7 +513,8 @@ $(BUILD)/CTestTestfile.cmake: Makefile | $(packages_first)
 ifneq ($(MPI),)
 test: all
 	@$(MAKE) MPI= $(programs)
-	@set -e; for fact in bytes restart refuse stop; do echo $$fact; sh tests/support/ranks.sh $(BUILD:/mpi=) $$fact; done
+	@set -e; facts() { echo $$*; sh tests/support/ranks.sh $(BUILD:/mpi=) $$*; }; facts refuse; facts memory; \
+	    for p in $(programs); do for fact in bytes restart stop; do facts $$fact $$p; done; done
 else
 test: all tests $(BUILD)/CTestTestfile.cmake | $(packages_first)
 	$(call need,ctest)

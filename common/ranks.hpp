@@ -93,21 +93,21 @@ struct Division {
         return k;
     }
 
-    /// Cuts such that the rank with the most work has as little as it can.
-    /// in: the work of each piece, at least as many pieces as ranks; every rank gets one
-    static Division of(std::span<const long> work, long ranks = rank_count()) {
+    /// Cuts such that the rank with the most work has as little as it can (few = 1; else about as little).
+    /// in: the work of each piece; how many pieces every rank gets at least, which must be there
+    static Division of(std::span<const long> work, long few = 1, long ranks = rank_count()) {
         const long pieces = std::ssize(work);
         // Rank after rank is filled to a bound; the last one takes what is left.
-        long of_last = 0;
+        long most = 0;
         const auto fill = [&](long bound) {
             Division division{{0}};
-            of_last = 0;
+            long sum = most = 0;
             for (long piece = 0; piece < pieces; ++piece) {
                 const long ranks_left = ranks - std::ssize(division.first);
-                const bool full = of_last + work[piece] > bound || pieces - piece <= ranks_left;
-                if (full && piece > division.first.back() && ranks_left > 0)
-                    division.first.push_back(piece), of_last = 0;
-                of_last += work[piece];
+                const bool full = sum + work[piece] > bound || pieces - piece <= few * ranks_left;
+                if (full && piece >= few + division.first.back() && ranks_left > 0)
+                    division.first.push_back(piece), sum = 0;
+                most = std::max(most, sum += work[piece]);
             }
             division.first.push_back(pieces);
             return division;
@@ -117,7 +117,7 @@ struct Division {
         while (low < high) {
             const long bound = low + (high - low) / 2;
             fill(bound);
-            of_last <= bound ? high = bound : low = bound + 1;
+            most <= bound ? high = bound : low = bound + 1;
         }
         return fill(low);
     }

@@ -758,7 +758,7 @@ TEST_CASE("borders between ranks leave as little as possible to the one with mos
             first.push_back(pieces);
             best = std::min(best, most_of(first));
         }
-        const common::Division division = common::Division::of(work, ranks);
+        const common::Division division = common::Division::of(work, 1, ranks);
         CHECK(std::ssize(division.first) == ranks + 1);
         CHECK(std::adjacent_find(division.first.begin(), division.first.end(),
                                  std::greater_equal<>()) == division.first.end());

@@ -11,7 +11,7 @@
 #include <optional>
 
 #include "common/run/start.hpp"
-#include "implicit_moment/explicit_em/balance_rows.hpp"
+#include "implicit_moment/balance_rows.hpp"
 #include "implicit_moment/explicit_em/setup/check_leapfrog.hpp"
 #include "implicit_moment/explicit_em/setup/leapfrog_state.hpp"
 #include "implicit_moment/explicit_em/step.hpp"
@@ -69,15 +69,15 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     };
     if (run.restarting())
         run.restore(checkpoint, step, [&] { validate_state(parameters, step, sort, checkpoint); });
-    Division& of_ranks = scratch.current.of_ranks;
-    double imbalance = balance_rows(grid, settings.order, of_ranks, particles);
+    const long per_tile = settings.order == 1 ? cells_of_tile<1>(grid) : cells_of_tile<2>(grid);
+    double imbalance = balance_rows(per_tile, 1, particles);
     while (run.not_finished(step, steps)) {
         interleave_field(grid, parameters.field.smoothing, state.field, scratch);  // E^n, B^n
         if (step % parameters.history_steps == 0)                                  // the row of t^n
             recorder.record(step, state, moments_with(Images::conductor), run);
         take_step(grid, dt, settings, parameters.field.smoothing, scratch, particles,
                   state.field);  // u, J^{n+1/2}; x, E, B^{n+1}
-        if (++step % 10 == 0) imbalance = balance_rows(grid, settings.order, of_ranks, particles);
+        if (++step % 10 == 0) imbalance = balance_rows(per_tile, 1, particles);
         run.end_of_step(step, steps, double(step) * dt, checkpoint);
     }
 

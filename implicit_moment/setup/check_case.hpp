@@ -339,6 +339,14 @@ inline std::vector<std::string> closure_warnings(const Case& w, const Scales& sc
     return warnings;
 }
 
+/// Refuses more ranks than implicit_moment has rows for.
+inline void refuse_ranks(const Case& w) {
+    const long rows = nodes_z(w.grid);
+    refuse(common::rank_count() > std::max(1L, rows / rows_of_rank),
+           std::to_string(common::rank_count()) + " ranks, and the mesh has " +
+               std::to_string(rows) + " rows of nodes, of which each rank needs two: start fewer");
+}
+
 /// The resolved scales as text, for --dry-run and the head of a run.
 inline std::string describe_scales(const Case& w, const Scales& scales) {
     const double dx = w.grid.x.spacing(), dz = w.grid.z.spacing();

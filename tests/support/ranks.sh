@@ -1,5 +1,5 @@
 #!/bin/sh
-# ranks.sh BUILD FACT: facts about the programs of `make MPI=1 all`, beside those of `make all`. Status 77, for "not tested", where there are
+# ranks.sh BUILD FACT: facts about the programs of `make MPI=1 all`, beside those of `make all`; implicit_FACT, the same about implicit_moment. Status 77, for "not tested", where there are
 # none. Ranks share the cores of this machine.
 set -u
 export LC_ALL=C.UTF-8
@@ -27,6 +27,19 @@ neutral='[plasma]\nsetup = "uniform"\nloading = "random"\n[uniform]\nparticles_p
 }
 beam="explicit_em $scratch/beam.toml field.smoothing_passes=2 $records"
 crowd="explicit_em $scratch/crowd.toml $records"
+# The same of implicit_moment, each way of it: a beam of gamma v = 5 c in a magnetic field that goes around half of the mesh in a step; the crowd.
+short_gem="implicit_moment/cases/gem.toml grid.cells_x=24 grid.cells_z=24 harris.particles=6e3"
+records='output.checkpoint_steps=30 output.fields_interval=6 output.particles_interval=6'
+moments="implicit_moment $short_gem time.end=18 $records"
+mass="$moments field.response=mass_matrix"
+newton="implicit_moment $short_gem time.end=3 field.solver=newton_krylov field.rotation=mesh harris.guide_field=0.3 $records"
+paths="implicit_moment $short_gem time.end=1.5 field.solver=newton_krylov field.response=mass_matrix $records"
+tail="implicit_moment implicit_moment/cases/magnetotail.toml grid.cells_x=24 grid.cells_z=24 harris.particles=6e3 time.end=6"
+sed 's/order = .*/relativistic = true/' "$scratch/beam.toml" > "$scratch/sweep.toml"
+sed '/order = /d' "$scratch/crowd.toml" > "$scratch/wall.toml"
+sweep="implicit_moment $scratch/sweep.toml uniform.B_x=2 time.dt=0.6 time.end=36 uniform.particles_per_cell=6 $records"
+sweep_mass="$sweep field.response=mass_matrix"
+wall="implicit_moment $scratch/wall.toml uniform.particles_per_cell=10 time.end=2.4 $records"
 
 # Of cic: two streams in the plane, warm and loaded in no order, which cross the mesh along z in four steps and are sorted often; the same in one dimension; a
 # source and an absorbing wall in a magnetic field, the ions crossing the mesh along them; a plasma in a box that leaves it through one wall, to the last ion.
@@ -65,11 +78,24 @@ start() {
     "$@" --quiet --out "$out" 2> "$said"
 }
 
+program=${3:-explicit_em}
+case $program.$2 in
+explicit_em.bytes) names='sheet beam crowd' ;;
+explicit_em.restart) names='sheet beam' ;;
+cic.bytes) names='plane line source box' ;;
+cic.restart) names='plane source' ;;
+implicit_moment.bytes) names='moments mass newton paths tail sweep sweep_mass wall' ;;
+implicit_moment.restart) names='moments mass sweep' ;;
+explicit_em.stop) long="$short_sheet" ;;
+cic.stop) long="$streams output.particles_interval=0 time.energy_limit=0" ;;
+implicit_moment.stop) long="$short_gem" ;;
+esac
+
 case $2 in
 bytes)
-    for name in sheet beam crowd plane line source box; do
+    for name in $names; do
         eval "set -- \$$name"
-        program=$1; shift
+        shift
         start 0 "$scratch/$name" "$@" --threads 1 || complain "$name: $(cat "$said")"
         for n in 1 2 3 4; do
             for threads in 1 2; do
@@ -80,12 +106,12 @@ bytes)
         done
     done
     # Borders have moved: with those of the start one of two ranks would have three quarters of the crowd.
-    awk "BEGIN { exit !($(performance "$scratch/crowd.2.1" imbalance) <= 1.2) }" || complain "most of the crowd is with one rank"
+    [ $program != explicit_em ] || awk "BEGIN { exit !($(performance "$scratch/crowd.2.1" imbalance) <= 1.2) }" || complain "most of the crowd is with one rank"
     ;;
 restart)
-    for name in sheet beam plane source; do
+    for name in $names; do
         eval "set -- \$$name"
-        program=$1; shift
+        shift
         start 0 "$scratch/$name" "$@" --threads 1
         for pair in '4 0' '4 1' '0 3' '2 4' '3 2'; do
             start "${pair% *}" "$scratch/$name.${pair% *}${pair#* }" "$@" --threads 1
@@ -116,6 +142,10 @@ refuse)
     refused 5 2 '5 ranks, and the mesh has 4 strips of 4 rows' "$@"
     refused 4 2 "unknown parameter 'grid.cells_w'" "$@" grid.cells_w=3
     refused 2 2 'leave out mpirun' "$@" --refine 2
+    program=implicit_moment
+    # shellcheck disable=SC2086
+    refused 7 2 '7 ranks, and the mesh has 13 rows of nodes' ${sweep#* }
+    program=explicit_em
     [ -e "$scratch/refused" ] && complain "a refused case has left a folder"
     start 4 "$scratch/refused" "$@" --dry-run > "$scratch/words"
     [ -e "$scratch/refused" ] && complain "a dry run has left a folder"
@@ -127,6 +157,13 @@ refuse)
     start 0 "$scratch/alone" "$@" $blown_up
     # shellcheck disable=SC2086
     refused 3 3 "$(grep 'cross more than a cell' "$said")" "$@" $blown_up
+    blown_up="${sweep_mass#* } --force"
+    program=implicit_moment
+    # shellcheck disable=SC2086
+    start 0 "$scratch/alone" $(echo "$blown_up" | sed 's/dt=0.6/dt=1e4/; s/end=36/end=1e4/')
+    # shellcheck disable=SC2046
+    refused 3 3 "$(grep 'cross more than 1000 boxes' "$said")" $(echo "$blown_up" | sed 's/dt=0.6/dt=1e4/; s/end=36/end=1e4/')
+    program=explicit_em
     refused 2 2 'holds an earlier run' "$@"
     # One fails alone: for want of memory, and where the folder is taken away from the first.
     cat > "$scratch/poor" <<- end
@@ -154,7 +191,7 @@ refuse)
 stop)
     # begin N: N ranks in the background; they have taken some steps
     begin() {
-        out=$scratch/stopped.$program
+        out=$scratch/stopped
         mpirun -n "$1" "$many/$program" $long --quiet --out "$out" --resume > "$scratch/words" 2>&1 &
         mpirun=$!
         for _ in $(seq 100); do ls "$out"/checkpoint_* > /dev/null 2>&1 && pgrep -f "^$many/$program.*$out" > /dev/null && break; sleep 0.1; done
@@ -172,36 +209,33 @@ stop)
         last=$(ls "$out"/checkpoint_*.bin | tail -n 1)
         "$one/$program" --verify "$last" > /dev/null || complain "$1: $last is not whole"
     }
-    for long in "explicit_em $short_sheet" "cic $streams output.particles_interval=0 time.energy_limit=0"; do
-        program=${long%% *}
-        # Two seconds for each signal, as fast as this machine is now.
-        long="${long#* } output.checkpoint_steps=20 output.fields_interval=0 --threads 1"
-        since=$(date +%s%N)
-        # shellcheck disable=SC2086
-        start 3 "$scratch/probe.$program" $long time.end=200
-        milliseconds=$((($(date +%s%N) - since) / 1000000))
-        long="$long time.end=$((200 * 2000 * (${KILLS:-3} + 3) / milliseconds))"
-        # shellcheck disable=SC2086
-        start 0 "$scratch/whole.$program" $long
-        # A signal to mpirun, which Open MPI answers with a status of its own; one to a rank; and the worst one.
-        for signal in TERM INT; do
-            begin 2
-            kill -$signal $mpirun
-            ended '1 130 143'
-            grep -q '"status": 1[34]' "$out/summary.json" || complain "$signal: $(grep status "$out/summary.json")"
-        done
-        begin 3
-        kill -INT "$(pgrep -f "^$many/$program.*$out" | sed -n 2p)"
-        ended 130
-        for _ in $(seq "${KILLS:-3}"); do
-            begin 3
-            kill -KILL "$(pgrep -f "^$many/$program.*$out" | shuf -n 1)"
-            ended '137'
-        done
-        # shellcheck disable=SC2086
-        start 4 "$out" $long --resume || complain "resumed: $(cat "$said")"
-        same "$scratch/whole.$program" "$out"
+    # Two seconds for each signal, as fast as this machine is now.
+    long="$long output.checkpoint_steps=20 output.fields_interval=0 --threads 1"
+    since=$(date +%s%N)
+    # shellcheck disable=SC2086
+    start 3 "$scratch/probe" $long time.end=200
+    milliseconds=$((($(date +%s%N) - since) / 1000000))
+    long="$long time.end=$((200 * 2000 * (${KILLS:-3} + 3) / milliseconds))"
+    # shellcheck disable=SC2086
+    start 0 "$scratch/whole" $long
+    # A signal to mpirun, which Open MPI answers with a status of its own; one to a rank; and the worst one.
+    for signal in TERM INT; do
+        begin 2
+        kill -$signal $mpirun
+        ended '1 130 143'
+        grep -q '"status": 1[34]' "$out/summary.json" || complain "$signal: $(grep status "$out/summary.json")"
     done
+    begin 3
+    kill -INT "$(pgrep -f "^$many/$program.*$out" | sed -n 2p)"
+    ended 130
+    for _ in $(seq "${KILLS:-3}"); do
+        begin 3
+        kill -KILL "$(pgrep -f "^$many/$program.*$out" | shuf -n 1)"
+        ended '137'
+    done
+    # shellcheck disable=SC2086
+    start 4 "$out" $long --resume || complain "resumed: $(cat "$said")"
+    same "$scratch/whole" "$out"
     ;;
 *) complain "no such fact: $2" ;;
 esac

@@ -1,5 +1,5 @@
-// Who has which rows: the particles of explicit_em are divided among ranks, and divided anew when one has
-// too many. What goes over the borders in a step is in exchange_borders.hpp.
+// Who has which rows: particles are divided among ranks by rows of the mesh, or by strips of rows, and divided
+// anew when one has too many. What goes over the borders in a step is in exchange_rows.hpp.
 #pragma once
 
 #include <algorithm>
@@ -7,14 +7,16 @@
 #include <numeric>
 #include <vector>
 
-#include "implicit_moment/explicit_em/exchange_borders.hpp"
+#include "implicit_moment/exchange_rows.hpp"
+#include "implicit_moment/particles.hpp"
 
 namespace implicit_moment {
 
-/// Gives the particles of one species to the ranks that are to have their tiles.
-/// in/out: particles, sorted by cell: those of the division before, then those of the one after
-inline void hand_over(const Division& before, const Division& after, long per_tile,
-                      Particles& particles) {
+/// Gives the particles of one species to the ranks that are to have their rows.
+/// in:     per_piece, cells or nodes of a piece
+/// in/out: particles, sorted: those of the division before, then those of the one after
+inline void hand_over(const Division& after, long per_piece, Particles& particles) {
+    const Division& before = particles.of_ranks;
     const int me = common::rank();
     const long cells = std::ssize(particles.first_of_node) - 1;
     // The cells that go from one rank to another. Before the first division every rank has all cells, and
@@ -26,8 +28,8 @@ inline void hand_over(const Division& before, const Division& after, long per_ti
                                   : whole             ? 0
                                                       : before.first[from + 1],
                                   after.first[to + 1]);
-        return std::array<long, 2>{std::min(cells, begin * per_tile),
-                                   std::min(cells, std::max(begin, end) * per_tile)};
+        return std::array<long, 2>{std::min(cells, begin * per_piece),
+                                   std::min(cells, std::max(begin, end) * per_piece)};
     };
     const std::vector<int>& first = particles.first_of_node;
     std::vector<int> peers;
@@ -53,23 +55,24 @@ inline void hand_over(const Division& before, const Division& after, long per_ti
     }
     std::exclusive_scan(particles.first_of_node.begin(), particles.first_of_node.end(),
                         particles.first_of_node.begin(), 0);
+    particles.of_ranks = after;
 }
 
 /// Divides the particles among the ranks, or anew where a rank has 10 % more of them than the mean and other
 /// borders take a twentieth off that.
-/// in/out: tiles and species; the first time, every rank has all particles
+/// in:     per_piece, cells or nodes of a piece: one row or more; least, the pieces that a rank needs
+/// in/out: species, sorted; the first time, every rank has all particles
 /// out:    the most particles of a rank over the mean
-template <int l>
-inline double balance_rows(const Grid& grid, Division& tiles, std::vector<Particles>& species) {
-    if (common::rank_count() == 1) return 1;
-    const long per_tile = cells_of_tile<l>(grid), rows = Stencil<l>::cells(grid.z),
-               cells = rows * Stencil<l>::cells(grid.x);
-    std::vector<long> work(tiles_of(rows), 0);
-    for (long k = tiles.begin(); k < tiles.end(std::ssize(work)); ++k)
+inline double balance_rows(long per_piece, long least, std::vector<Particles>& species) {
+    if (common::rank_count() == 1 || species.empty()) return 1;
+    const Division of_ranks = species.front().of_ranks;
+    const long cells = std::ssize(species.front().first_of_node) - 1;
+    std::vector<long> work((cells + per_piece - 1) / per_piece, 0);
+    for (long k = of_ranks.begin(); k < of_ranks.end(std::ssize(work)); ++k)
         for (const Particles& s : species)
-            work[k] += s.first_of_node[std::min(cells, (k + 1) * per_tile)] -
-                       s.first_of_node[k * per_tile];
-    if (!tiles.is_whole()) common::sum_over_ranks(work);
+            work[k] += s.first_of_node[std::min(cells, (k + 1) * per_piece)] -
+                       s.first_of_node[k * per_piece];
+    if (!of_ranks.is_whole()) common::sum_over_ranks(work);
     const auto imbalance = [&](const Division& division) {
         double most = 0, all = 0;
         for (int k = 0; k < common::rank_count(); ++k) {
@@ -79,20 +82,13 @@ inline double balance_rows(const Grid& grid, Division& tiles, std::vector<Partic
         }
         return all > 0 ? most * common::rank_count() / all : 1;
     };
-    if (!tiles.is_whole() && imbalance(tiles) <= 1.1) return imbalance(tiles);
-    const Division even = Division::of(work);
-    if (!tiles.is_whole() && imbalance(even) > 0.95 * imbalance(tiles)) return imbalance(tiles);
-    if (even.first != tiles.first)
-        for (Particles& s : species) hand_over(tiles, even, per_tile, s);
-    tiles = even;
-    return imbalance(tiles);
-}
-
-/// The same for either order of the splines.
-inline double balance_rows(const Grid& grid, long order, Division& tiles,
-                           std::vector<Particles>& species) {
-    return order == 1 ? balance_rows<1>(grid, tiles, species)
-                      : balance_rows<2>(grid, tiles, species);
+    if (!of_ranks.is_whole() && imbalance(of_ranks) <= 1.1) return imbalance(of_ranks);
+    const Division even = Division::of(work, least);
+    if (!of_ranks.is_whole() && imbalance(even) > 0.95 * imbalance(of_ranks))
+        return imbalance(of_ranks);
+    if (even.first != of_ranks.first)
+        for (Particles& s : species) hand_over(even, per_piece, s);
+    return imbalance(even);
 }
 
 }  // namespace implicit_moment
