@@ -28,7 +28,8 @@ int rank_count();
 int ranks_here();
 double communication_seconds();
 void start();
-int end(int status, const std::string& message);
+bool writes();
+int end(int status, const std::string& message, const std::function<void()>& alone);
 void sum(std::span<long> numbers);
 long largest(long number);
 void gather_pieces(double* all, std::span<const long> first);
@@ -43,8 +44,8 @@ void gather_in_turn(const void* own, std::size_t bytes,
 inline int rank() { return has_ranks ? mpi::rank() : 0; }
 inline int rank_count() { return has_ranks ? mpi::rank_count() : 1; }
 inline int ranks_here() { return has_ranks ? mpi::ranks_here() : 1; }
-/// Whether this process prints and writes the files.
-inline bool is_first_rank() { return rank() == 0; }
+/// Whether this process prints and writes the files: the first rank, until another has failed alone.
+inline bool is_first_rank() { return has_ranks ? mpi::writes() : true; }
 /// The time that this rank has given to others or waited for them so far.
 inline double communication_seconds() { return has_ranks ? mpi::communication_seconds() : 0; }
 
@@ -53,9 +54,10 @@ inline void start_ranks() {
     if (has_ranks) mpi::start();
 }
 /// The end of main. Waits until all ranks are there. A rank that has failed waits two seconds, and then
-/// prints its message and ends all. in: the status and that message. out: the status
-inline int end_ranks(int status, const std::string& message) {
-    return has_ranks ? mpi::end(status, message) : status;
+/// prints its message, writes what is to be written in place of the first one, and ends all.
+/// in: the status, that message and what writes. out: the status
+inline int end_ranks(int status, const std::string& message, const std::function<void()>& alone) {
+    return has_ranks ? mpi::end(status, message, alone) : status;
 }
 
 /// Adds numbers of all ranks, each with those in the same place; exact, they are whole.
