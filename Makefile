@@ -504,7 +504,7 @@ $(BUILD)/CTestTestfile.cmake: Makefile | $(packages_first)
 ifneq ($(MPI),)
 test: all
 	@$(MAKE) MPI= $(programs)
-	@set -e; for fact in bytes restart refuse stop; do echo $$fact; sh tests/support/ranks.sh $(BUILD:/mpi=) $$fact; done
+	@set -e; for fact in bytes restart refuse memory stop; do echo $$fact; sh tests/support/ranks.sh $(BUILD:/mpi=) $$fact; done
 else
 test: all tests $(BUILD)/CTestTestfile.cmake | $(packages_first)
 	$(call need,ctest)

@@ -75,6 +75,15 @@ inline long sum_before_rank(long number) {
     sum_over_ranks(of_rank);
     return std::accumulate(of_rank.begin(), of_rank.begin() + rank(), 0L);
 }
+/// A part of a list that is cut into as many parts, evenly and by number: of one part, all of it.
+struct Share {
+    long part = 0, parts = 1;
+
+    long begin(long count) const { return count * part / parts; }
+    long end(long count) const { return count * (part + 1) / parts; }
+};
+inline Share share_of_rank() { return {rank(), rank_count()}; }
+
 /// The largest of the numbers of all ranks; nobody goes on before all have come here.
 inline long largest_over_ranks(long number) { return has_ranks ? mpi::largest(number) : number; }
 
@@ -140,10 +149,11 @@ inline std::vector<double> gather_in_turn(const std::vector<double>& own) {
 }
 
 /// Numbers of the particles, of which each rank has some, in the order of the ranks: what an archive
-/// that writes takes for one list.
+/// that writes takes for one list. One that reads leaves each rank its share.
 template <class Number>
 struct OfAllRanks {
     std::vector<Number>& values;
+    Share share = {};
 };
 /// Where the parts of a list begin, as each rank counts its own; in one list, the sum of all counts.
 struct SumOverRanks {

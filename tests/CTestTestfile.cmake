@@ -104,7 +104,7 @@ add_test(pages.runs_and_sliders_are_those_of_the_programs sh tests/support/pages
 describe_test(pages.runs_and_sliders_are_those_of_the_programs physics)
 
 # ---- ranks (with the programs of make MPI=1 all) ---------------------------------------------------
-foreach(what bytes restart refuse stop)
+foreach(what bytes restart refuse memory stop)
     add_test(ranks.${what} sh tests/support/ranks.sh "${build_folder}" ${what})
     describe_test(ranks.${what} robust)
     set_tests_properties(ranks.${what} PROPERTIES SKIP_RETURN_CODE 77)

@@ -350,7 +350,7 @@ int Run::finish(long step, double count) {
         summary.performance("ranks", rank_count());
         summary.performance("communication_s", communication_seconds());
     }
-    summary.performance("peak_memory_bytes", peak_memory_bytes());
+    summary.performance("peak_memory_bytes", double(largest_over_ranks(long(peak_memory_bytes()))));
 
     int status = 0;
     std::string message = "done", next;

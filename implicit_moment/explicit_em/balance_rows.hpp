@@ -11,52 +11,46 @@
 
 namespace implicit_moment {
 
-/// Gives the particles of one species to the ranks that are to have their tiles.
-/// in/out: particles, sorted by cell: those of the division before, then those of the one after
-inline void hand_over(const Division& before, const Division& after, long per_tile,
-                      Particles& particles) {
-    const int me = common::rank();
-    const long cells = std::ssize(particles.first_of_node) - 1;
-    // The cells that go from one rank to another. Before the first division every rank has all cells, and
-    // keeps those that it is to have.
-    const auto cells_between = [&](int from, int to) {
-        const bool whole = before.is_whole();
-        const long begin = std::max(whole ? 0 : before.first[from], after.first[to]),
-                   end = std::min(whole && from == to ? cells
-                                  : whole             ? 0
-                                                      : before.first[from + 1],
-                                  after.first[to + 1]);
-        return std::array<long, 2>{std::min(cells, begin * per_tile),
-                                   std::min(cells, std::max(begin, end) * per_tile)};
-    };
-    const std::vector<int>& first = particles.first_of_node;
-    std::vector<int> peers;
-    std::vector<std::vector<double>> to, from;
-    for (int k = 0; k < common::rank_count(); ++k) {
-        peers.push_back(k), to.emplace_back();
-        const auto [begin, end] = cells_between(me, k);
-        for (long cell = begin; cell < end; ++cell) to[k].push_back(first[cell + 1] - first[cell]);
-        for (const std::vector<double>* q : particles.all())
-            to[k].insert(to[k].end(), q->begin() + first[begin], q->begin() + first[end]);
-    }
-    common::exchange(peers, to, from);
+/// Gives the particles of one species to the ranks that are to have their tiles, quantity after quantity.
+/// in/out: particles, sorted by cell; those of a cell come in the order of the ranks that had them
+inline void hand_over(const Division& tiles, long per_tile, Particles& particles) {
+    const std::vector<int> first = particles.first_of_node;
+    const long cells = std::ssize(first) - 1;
+    const auto cell_of = [&](long tile) { return std::min(cells, tile * per_tile); };
+    const long begin = cell_of(tiles.begin()), end = cell_of(tiles.end(tiles.first.back()));
+    std::vector<int> peers(common::rank_count());
+    std::iota(peers.begin(), peers.end(), 0);
+    std::vector<std::vector<double>> to(peers.size()), counts, from;
+    for (const int k : peers)
+        for (long cell = cell_of(tiles.first[k]); cell < cell_of(tiles.first[k + 1]); ++cell)
+            to[k].push_back(first[cell + 1] - first[cell]);
+    common::exchange(peers, to, counts);
+    std::vector<int>& next = particles.first_of_node;
+    next.assign(cells + 1, 0);
+    for (const std::vector<double>& of_rank : counts)
+        for (long cell = begin; cell < end; ++cell) next[cell] += int(of_rank[cell - begin]);
+    std::exclusive_scan(next.begin(), next.end(), next.begin(), 0);
 
-    for (std::vector<double>* q : particles.all()) std::vector<double>().swap(*q);
-    particles.first_of_node.assign(cells + 1, 0);
-    for (int k = 0; k < common::rank_count(); ++k) {
-        const auto [begin, end] = cells_between(k, me);
-        const long count = (std::ssize(from[k]) - (end - begin)) / 5;
-        const double* next = from[k].data();
-        for (long cell = begin; cell < end; ++cell) particles.first_of_node[cell] = int(*next++);
-        for (std::vector<double>* q : particles.all())
-            q->insert(q->end(), next, next + count), next += count;
+    for (std::vector<double>* q : particles.all()) {
+        for (const int k : peers)
+            to[k].assign(q->begin() + first[cell_of(tiles.first[k])],
+                         q->begin() + first[cell_of(tiles.first[k + 1])]);
+        std::vector<double>().swap(*q);
+        common::exchange(peers, to, from);
+        q->reserve(next[cells]);
+        std::vector<long> taken(peers.size(), 0);
+        for (long cell = begin; cell < end; ++cell) {
+            for (const int k : peers) {
+                const double* numbers = from[k].data() + taken[k];
+                const long count = long(counts[k][cell - begin]);
+                q->insert(q->end(), numbers, numbers + count), taken[k] += count;
+            }
+        }
     }
-    std::exclusive_scan(particles.first_of_node.begin(), particles.first_of_node.end(),
-                        particles.first_of_node.begin(), 0);
 }
 
 /// Divides the particles among the ranks, or anew where a rank has 10 % more of them than the mean.
-/// in/out: tiles and species; the first time, every rank has all particles
+/// in/out: tiles and species, sorted by cell; the first time, with no tiles, every rank has any share of them
 /// out:    the most particles of a rank over the mean
 template <int l>
 inline double balance_rows(const Grid& grid, Division& tiles, std::vector<Particles>& species) {
@@ -68,7 +62,7 @@ inline double balance_rows(const Grid& grid, Division& tiles, std::vector<Partic
         for (const Particles& s : species)
             work[k] += s.first_of_node[std::min(cells, (k + 1) * per_tile)] -
                        s.first_of_node[k * per_tile];
-    if (!tiles.is_whole()) common::sum_over_ranks(work);
+    common::sum_over_ranks(work);
     const auto imbalance = [&](const Division& division) {
         double most = 0, all = 0;
         for (int k = 0; k < common::rank_count(); ++k) {
@@ -81,7 +75,7 @@ inline double balance_rows(const Grid& grid, Division& tiles, std::vector<Partic
     if (!tiles.is_whole() && imbalance(tiles) <= 1.1) return imbalance(tiles);
     const Division even = Division::of(work);
     if (even.first != tiles.first)
-        for (Particles& s : species) hand_over(tiles, even, per_tile, s);
+        for (Particles& s : species) hand_over(even, per_tile, s);
     tiles = even;
     return imbalance(tiles);
 }

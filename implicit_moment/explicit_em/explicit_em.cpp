@@ -37,10 +37,11 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     validate(parameters);
     refuse_unstable(parameters);
     const Scales scales = scales_of(parameters);
-    if (!common::start_run(info, command, table,
-                           {describe_scales(parameters, scales),
-                            leapfrog_warnings(parameters, scales), scales.steps, scales.bytes},
-                           {parameters.checkpoint_steps, parameters.history_steps}, holder))
+    if (!common::start_run(
+            info, command, table,
+            {describe_scales(parameters, scales), leapfrog_warnings(parameters, scales),
+             scales.steps, scales.bytes, scales.seconds, scales.of_mesh},
+            {parameters.checkpoint_steps, parameters.history_steps}, holder))
         return 0;
     common::Run& run = *holder;
 
@@ -48,9 +49,9 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     const Grid& grid = parameters.grid;
     const LeapfrogSettings& settings = parameters.leapfrog;
     const double dt = parameters.dt;
-    State state = leapfrog_state(parameters);
-    std::vector<Particles>& particles = state.plasma.species;
     LeapfrogScratch scratch(grid);
+    State state = leapfrog_state(parameters, scratch);
+    std::vector<Particles>& particles = state.plasma.species;
     const auto moments_with = [&](Images images) {
         return find_moments(grid, dt, settings, particles, images, scratch);
     };
@@ -62,14 +63,13 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     // 3. The loop.
     const long steps = scales.steps;
     long step = 0;
-    Checkpoint checkpoint{state, recorder.profile, false};
-    const auto sort = [&](std::vector<Particles>& all) {
-        SortScratch room;
-        sort_by_cell(grid, settings.order, room, all);
-    };
-    if (run.restarting())
-        run.restore(checkpoint, step, [&] { validate_state(parameters, step, sort, checkpoint); });
+    Checkpoint checkpoint{state, recorder.profile, false, common::share_of_rank()};
     Division& of_ranks = scratch.current.of_ranks;
+    const auto sort = [&](std::vector<Particles>& all) { sort_by_cell(grid, settings.order, all); };
+    if (run.restarting()) {
+        of_ranks = {};
+        run.restore(checkpoint, step, [&] { validate_state(parameters, step, sort, checkpoint); });
+    }
     double imbalance = balance_rows(grid, settings.order, of_ranks, particles);
     while (run.not_finished(step, steps)) {
         interleave_field(grid, parameters.field.smoothing, state.field, scratch);  // E^n, B^n

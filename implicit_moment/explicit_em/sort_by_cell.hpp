@@ -38,8 +38,8 @@ inline void sort_by_cell(const Grid& grid, SortScratch& scratch, Particles& part
 }
 
 /// Sorts all species. in: order, of the spline of the charge.
-inline void sort_by_cell(const Grid& grid, long order, SortScratch& scratch,
-                         std::vector<Particles>& species) {
+inline void sort_by_cell(const Grid& grid, long order, std::vector<Particles>& species) {
+    SortScratch scratch;
     for (Particles& particles : species) {
         order == 1 ? sort_by_cell<1>(grid, scratch, particles)
                    : sort_by_cell<2>(grid, scratch, particles);

@@ -128,6 +128,29 @@ refuse)
     (sleep 4; mv "$scratch/refused" "$scratch/gone") &
     refused 3 2 'cannot be opened for writing' "$@" --force time.end=1e6
     ;;
+memory)
+    # What a rank has of memory beyond what it has without particles is its share of them, at the start and when it restarts.
+    program=explicit_em least=0
+    # rise N OUT ...: the most of one of N ranks
+    rise() {
+        start "$@" || complain "$out: $(cat "$said")"
+        bytes=$(performance "$out" peak_memory_bytes)
+        bytes=$((${bytes%.*} - least))
+    }
+    thin="${short_sheet% harris.*} time.end=0.8 output.checkpoint_steps=2 output.fields_interval=0 --threads 1"
+    # shellcheck disable=SC2086
+    rise 1 "$scratch/few" $thin harris.particles=5e3
+    least=$bytes begun='' restarted=''
+    for n in 1 4; do
+        # shellcheck disable=SC2086
+        rise $n "$scratch/memory$n" $thin harris.particles=2e6
+        begun="$begun $bytes"
+        rise $n "$scratch/memory$n" --restart "$scratch/memory$n/checkpoint_0000000002.bin" --threads 1
+        restarted="$restarted $bytes"
+    done
+    echo "$begun $restarted" | awk '{ exit !(NF == 4 && $1 > 8e7 && $2 <= 0.35 * $1 && $3 > 8e7 && $4 <= 0.35 * $3) }' ||
+        complain "bytes of one rank and of one of four, begun$begun and restarted$restarted"
+    ;;
 stop)
     # begin N: N ranks in the background; they have taken some steps
     begin() {

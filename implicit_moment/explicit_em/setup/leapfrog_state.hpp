@@ -2,23 +2,25 @@
 // explicit_em's own splines, and u half a step back.
 #pragma once
 
+#include "implicit_moment/explicit_em/balance_rows.hpp"
 #include "implicit_moment/explicit_em/step.hpp"
 #include "implicit_moment/setup/initial_state.hpp"
 
 namespace implicit_moment {
 
-/// Particles at x^0, u^{-1/2} and fields at t = 0; particles sorted by cell.
+/// Particles at x^0, u^{-1/2} and fields at t = 0; particles sorted by cell. Every rank loads its share of them by
+/// number, and hands them over to those who are to have their rows.
+/// out:    scratch.current.of_ranks, the rows of each rank
 /// exact:  div E = 4 pi rho with rho smoothed as J will be, on every node inside.
 /// note:   the loaded velocities are taken for u = gamma v.
-inline State leapfrog_state(const Case& parameters) {
+inline State leapfrog_state(const Case& parameters, LeapfrogScratch& scratch) {
     const Grid& grid = parameters.grid;
     const LeapfrogSettings& settings = parameters.leapfrog;
-    State state = loaded_state(parameters);
+    State state = loaded_state(parameters, common::share_of_rank());
     std::vector<Particles>& species = state.plasma.species;
-    LeapfrogScratch scratch(grid);
 
-    SortScratch sort;
-    sort_by_cell(grid, settings.order, sort, species);
+    sort_by_cell(grid, settings.order, species);
+    balance_rows(grid, settings.order, scratch.current.of_ranks, species);
     interleave_field(grid, {0, false}, state.field, scratch);
     Field rho = Field::Zero(grid.size()), pass;
     for (const Moments& m : find_moments(grid, 0, settings, species, Images::conductor, scratch))
@@ -33,6 +35,10 @@ inline State leapfrog_state(const Case& parameters) {
                             : half_step_back<2>(scratch.field, grid, dt, per_c_squared, particles);
     }
     return state;
+}
+inline State leapfrog_state(const Case& parameters) {
+    LeapfrogScratch scratch(parameters.grid);
+    return leapfrog_state(parameters, scratch);
 }
 
 }  // namespace implicit_moment
