@@ -17,6 +17,7 @@ namespace {
 // What MPI is asked once, where the program starts.
 struct Here {
     int rank = 0, count = 1, on_machine = 1;
+    bool writes = true;
     int error_stream = STDERR_FILENO;  // kept for the message of a rank that fails alone
     MPI_Comm last = MPI_COMM_NULL;     // on which ranks meet at the end
     double communication = 0;
@@ -41,6 +42,7 @@ constexpr std::size_t piece_bytes = 1 << 20;
 int rank() { return here.rank; }
 int rank_count() { return here.count; }
 int ranks_here() { return here.on_machine; }
+bool writes() { return here.writes; }
 double communication_seconds() { return here.communication; }
 
 // A rank of Open MPI that waits gives its core away, as threads do (share_cores), unless the user says otherwise.
@@ -59,7 +61,8 @@ void start() {
         int over = 0;
         if (MPI_Finalized(&over); over == 0) MPI_Finalize();
     });
-    if (here.rank == 0) return;
+    here.writes = here.rank == 0;
+    if (here.writes) return;
     here.error_stream = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 3);
     const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
     dup2(nowhere, STDOUT_FILENO);
@@ -69,14 +72,18 @@ void start() {
 
 // The others may have failed with the same message, so a rank that has failed waits for them before it ends
 // all. The first rank waits least, because it has printed that message already.
-int end(int status, const std::string& message) {
+int end(int status, const std::string& message, const std::function<void()>& alone) {
     const bool failed = status == 2 || status == 3;
     const double until = MPI_Wtime() + (failed ? 2 + 0.1 * std::min(here.rank, 10) : 1e9);
     MPI_Request meeting;
     MPI_Ibarrier(here.last, &meeting);
     for (int met = 0; MPI_Test(&meeting, &met, MPI_STATUS_IGNORE), met == 0;) {
         if (MPI_Wtime() > until) {
-            if (here.rank > 0) dprintf(here.error_stream, "%s\n", message.c_str());
+            if (here.rank > 0) {
+                dprintf(here.error_stream, "%s\n", message.c_str());
+                here.writes = true;
+                alone();
+            }
             MPI_Abort(MPI_COMM_WORLD, status);
         }
         usleep(1000);

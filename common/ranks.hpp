@@ -30,7 +30,8 @@ int rank_count();
 int ranks_here();
 double communication_seconds();
 void start();
-int end(int status, const std::string& message);
+bool writes();
+int end(int status, const std::string& message, const std::function<void()>& alone);
 void sum(std::span<long> numbers);
 long largest(long number);
 void gather_pieces(double* all, std::span<const long> first);
@@ -47,8 +48,8 @@ void in_turn(void* numbers, std::size_t size, std::span<const long> first,
 inline int rank() { return has_ranks ? mpi::rank() : 0; }
 inline int rank_count() { return has_ranks ? mpi::rank_count() : 1; }
 inline int ranks_here() { return has_ranks ? mpi::ranks_here() : 1; }
-/// Whether this process prints and writes the files.
-inline bool is_first_rank() { return rank() == 0; }
+/// Whether this process prints and writes the files: the first rank, until another has failed alone.
+inline bool is_first_rank() { return has_ranks ? mpi::writes() : true; }
 /// The time that this rank has given to others or waited for them so far.
 inline double communication_seconds() { return has_ranks ? mpi::communication_seconds() : 0; }
 
@@ -57,9 +58,10 @@ inline void start_ranks() {
     if (has_ranks) mpi::start();
 }
 /// The end of main. Waits until all ranks are there. A rank that has failed waits two seconds, and then
-/// prints its message and ends all. in: the status and that message. out: the status
-inline int end_ranks(int status, const std::string& message) {
-    return has_ranks ? mpi::end(status, message) : status;
+/// prints its message, writes what is to be written in place of the first one, and ends all.
+/// in: the status, that message and what writes. out: the status
+inline int end_ranks(int status, const std::string& message, const std::function<void()>& alone) {
+    return has_ranks ? mpi::end(status, message, alone) : status;
 }
 
 /// Adds numbers of all ranks, each with those in the same place; exact, they are whole.
@@ -77,6 +79,15 @@ inline long sum_before_rank(long number) {
     sum_over_ranks(of_rank);
     return std::accumulate(of_rank.begin(), of_rank.begin() + rank(), 0L);
 }
+/// A part of a list that is cut into as many parts, evenly and by number: of one part, all of it.
+struct Share {
+    long part = 0, parts = 1;
+
+    long begin(long count) const { return count * part / parts; }
+    long end(long count) const { return count * (part + 1) / parts; }
+};
+inline Share share_of_rank() { return {rank(), rank_count()}; }
+
 /// The largest of the numbers of all ranks; nobody goes on before all have come here.
 inline long largest_over_ranks(long number) { return has_ranks ? mpi::largest(number) : number; }
 
@@ -176,10 +187,11 @@ void in_turn(Number* numbers, std::span<const long> first, const std::function<v
 }
 
 /// Numbers of the particles, of which each rank has some, in the order of the ranks: what an archive
-/// that writes takes for one list.
+/// that writes takes for one list. One that reads leaves each rank its share.
 template <class Number>
 struct OfAllRanks {
     std::vector<Number>& values;
+    Share share = {};
 };
 /// Where the parts of a list begin, as each rank counts its own; in one list, the sum of all counts.
 struct SumOverRanks {

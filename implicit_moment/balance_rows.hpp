@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <numeric>
 #include <vector>
 
@@ -12,56 +11,50 @@
 
 namespace implicit_moment {
 
-/// Gives the particles of one species to the ranks that are to have their rows.
+/// Gives the particles of one species to the ranks that are to have their rows, quantity after quantity.
 /// in:     per_piece, cells or nodes of a piece
-/// in/out: particles, sorted: those of the division before, then those of the one after
+/// in/out: particles, sorted by cell; those of a cell come in the order of the ranks that had them
 inline void hand_over(const Division& after, long per_piece, Particles& particles) {
-    const Division& before = particles.of_ranks;
-    const int me = common::rank();
-    const long cells = std::ssize(particles.first_of_node) - 1;
-    // The cells that go from one rank to another. Before the first division every rank has all cells, and
-    // keeps those that it is to have.
-    const auto cells_between = [&](int from, int to) {
-        const bool whole = before.is_whole();
-        const long begin = std::max(whole ? 0 : before.first[from], after.first[to]),
-                   end = std::min(whole && from == to ? cells
-                                  : whole             ? 0
-                                                      : before.first[from + 1],
-                                  after.first[to + 1]);
-        return std::array<long, 2>{std::min(cells, begin * per_piece),
-                                   std::min(cells, std::max(begin, end) * per_piece)};
-    };
-    const std::vector<int>& first = particles.first_of_node;
-    std::vector<int> peers;
-    std::vector<std::vector<double>> to, from;
-    for (int k = 0; k < common::rank_count(); ++k) {
-        peers.push_back(k), to.emplace_back();
-        const auto [begin, end] = cells_between(me, k);
-        for (long cell = begin; cell < end; ++cell) to[k].push_back(first[cell + 1] - first[cell]);
-        for (const std::vector<double>* q : particles.all())
-            to[k].insert(to[k].end(), q->begin() + first[begin], q->begin() + first[end]);
-    }
-    common::exchange(peers, to, from);
+    const std::vector<int> first = particles.first_of_node;
+    const long cells = std::ssize(first) - 1;
+    const auto cell_of = [&](long piece) { return std::min(cells, piece * per_piece); };
+    const long begin = cell_of(after.begin()), end = cell_of(after.end(after.first.back()));
+    std::vector<int> peers(common::rank_count());
+    std::iota(peers.begin(), peers.end(), 0);
+    std::vector<std::vector<double>> to(peers.size()), counts, from;
+    for (const int k : peers)
+        for (long cell = cell_of(after.first[k]); cell < cell_of(after.first[k + 1]); ++cell)
+            to[k].push_back(first[cell + 1] - first[cell]);
+    common::exchange(peers, to, counts);
+    std::vector<int>& next = particles.first_of_node;
+    next.assign(cells + 1, 0);
+    for (const std::vector<double>& of_rank : counts)
+        for (long cell = begin; cell < end; ++cell) next[cell] += int(of_rank[cell - begin]);
+    std::exclusive_scan(next.begin(), next.end(), next.begin(), 0);
 
-    for (std::vector<double>* q : particles.all()) std::vector<double>().swap(*q);
-    particles.first_of_node.assign(cells + 1, 0);
-    for (int k = 0; k < common::rank_count(); ++k) {
-        const auto [begin, end] = cells_between(k, me);
-        const long count = (std::ssize(from[k]) - (end - begin)) / 5;
-        const double* next = from[k].data();
-        for (long cell = begin; cell < end; ++cell) particles.first_of_node[cell] = int(*next++);
-        for (std::vector<double>* q : particles.all())
-            q->insert(q->end(), next, next + count), next += count;
+    for (std::vector<double>* q : particles.all()) {
+        for (const int k : peers)
+            to[k].assign(q->begin() + first[cell_of(after.first[k])],
+                         q->begin() + first[cell_of(after.first[k + 1])]);
+        std::vector<double>().swap(*q);
+        common::exchange(peers, to, from);
+        q->reserve(next[cells]);
+        std::vector<long> taken(peers.size(), 0);
+        for (long cell = begin; cell < end; ++cell) {
+            for (const int k : peers) {
+                const double* numbers = from[k].data() + taken[k];
+                const long count = long(counts[k][cell - begin]);
+                q->insert(q->end(), numbers, numbers + count), taken[k] += count;
+            }
+        }
     }
-    std::exclusive_scan(particles.first_of_node.begin(), particles.first_of_node.end(),
-                        particles.first_of_node.begin(), 0);
     particles.of_ranks = after;
 }
 
 /// Divides the particles among the ranks, or anew where a rank has 10 % more of them than the mean and other
 /// borders take a twentieth off that.
 /// in:     per_piece, cells or nodes of a piece: one row or more; least, the pieces that a rank needs
-/// in/out: species, sorted; the first time, every rank has all particles
+/// in/out: species, sorted; the first time, undivided, every rank has any share of them
 /// out:    the most particles of a rank over the mean
 inline double balance_rows(long per_piece, long least, std::vector<Particles>& species) {
     if (common::rank_count() == 1 || species.empty()) return 1;
@@ -72,7 +65,7 @@ inline double balance_rows(long per_piece, long least, std::vector<Particles>& s
         for (const Particles& s : species)
             work[k] += s.first_of_node[std::min(cells, (k + 1) * per_piece)] -
                        s.first_of_node[k * per_piece];
-    if (!of_ranks.is_whole()) common::sum_over_ranks(work);
+    common::sum_over_ranks(work);
     const auto imbalance = [&](const Division& division) {
         double most = 0, all = 0;
         for (int k = 0; k < common::rank_count(); ++k) {

@@ -38,10 +38,11 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     refuse_ranks(parameters);
     const Scales scales = scales_of(parameters);
     // Where the closure of the moments does not hold is a warning.                [IMM-13]
-    if (!common::start_run(info, command, table,
-                           {describe_scales(parameters, scales),
-                            closure_warnings(parameters, scales), scales.steps, scales.bytes},
-                           {parameters.checkpoint_steps}, holder))
+    if (!common::start_run(
+            info, command, table,
+            {describe_scales(parameters, scales), closure_warnings(parameters, scales),
+             scales.steps, scales.bytes, scales.seconds, scales.of_mesh},
+            {parameters.checkpoint_steps}, holder))
         return 0;
     common::Run& run = *holder;
 
@@ -59,7 +60,7 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     const double dt = parameters.dt;
     const long steps = scales.steps;
     long step = 0;
-    Checkpoint checkpoint{state, recorder.profile};
+    Checkpoint checkpoint{state, recorder.profile, true, common::share_of_rank()};
     const auto sort = [&](std::vector<Particles>& all) { sort_particles(grid, scratch.sort, all); };
     if (run.restarting())
         run.restore(checkpoint, step, [&] { validate_state(parameters, step, sort, checkpoint); });

@@ -100,8 +100,7 @@ inline Theory expect_light(const Case& w) {
     const WaveVector k = wave_vector(w);
     if (w.leapfrog.chosen)
         return {yee_frequency(w.grid, w.dt, k.x, k.z), "exact dispersion on Yee's mesh", true};
-    return of_factor(
-        w, theta_light_wave(w.field.theta, c * w.dt * mesh_wave_vector(w).size()));
+    return of_factor(w, theta_light_wave(w.field.theta, c * w.dt * mesh_wave_vector(w).size()));
 }
 
 inline void refuse_kinetic(const Case& w, const std::string& name) {

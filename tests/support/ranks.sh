@@ -175,6 +175,17 @@ refuse)
     mpi=$many many=$scratch program=poor
     refused 3 2 'memory, and there is' implicit_moment/cases/gem_explicit.toml harris.particles=1e7 --force
     many=$mpi program=explicit_em
+    # One fails later, when no more memory is to be had: it leaves the summary that the first cannot write.
+    MALLOC_MMAP_THRESHOLD_=4096
+    export MALLOC_MMAP_THRESHOLD_
+    (
+        for _ in $(seq 100); do ls "$scratch"/refused/checkpoint_* > /dev/null 2>&1 && break; sleep 0.1; done
+        prlimit --as=1000000 --pid "$(pgrep -f "^$many/$program.*$scratch/refused" | sed -n 2p)"
+    ) &
+    # shellcheck disable=SC2086
+    refused 3 2 'not enough memory for this case' $short_sheet --force time.end=1e6 output.checkpoint_steps=20
+    grep -q '"message": "not enough memory' "$scratch/refused/summary.json" || complain "no summary of the one that failed alone"
+    unset MALLOC_MMAP_THRESHOLD_
     (sleep 4; mv "$scratch/refused" "$scratch/gone") &
     refused 3 2 'cannot be opened for writing' "$@" --force time.end=1e6
     # The same of cic: the one rank that meets a leap, not the first, tells the others, and the summary says so.
@@ -187,6 +198,30 @@ refuse)
     (sleep 4; mv "$scratch/refused" "$scratch/gone.cic") &
     # shellcheck disable=SC2086
     refused 3 2 'cannot be .*No such file' $streams --force output.fields_interval=1 time.end=1e6
+    ;;
+memory)
+    # What a rank has of memory beyond what it has without particles is its share of them, at the start and when it restarts: of four, less than half of
+    # all, because for a moment a list is there twice.
+    program=explicit_em least=0
+    # rise N OUT ...: the most of one of N ranks
+    rise() {
+        start "$@" || complain "$out: $(cat "$said")"
+        bytes=$(performance "$out" peak_memory_bytes)
+        bytes=$((${bytes%.*} - least))
+    }
+    thin="${short_sheet% harris.*} time.end=0.8 output.checkpoint_steps=2 output.fields_interval=0 --threads 1"
+    # shellcheck disable=SC2086
+    rise 1 "$scratch/few" $thin harris.particles=5e3
+    least=$bytes begun='' restarted=''
+    for n in 1 4; do
+        # shellcheck disable=SC2086
+        rise $n "$scratch/memory$n" $thin harris.particles=2e6
+        begun="$begun $bytes"
+        rise $n "$scratch/memory$n" --restart "$scratch/memory$n/checkpoint_0000000002.bin" --threads 1
+        restarted="$restarted $bytes"
+    done
+    echo "$begun $restarted" | awk '{ exit !(NF == 4 && $1 > 8e7 && $2 <= 0.5 * $1 && $3 > 8e7 && $4 <= 0.5 * $3) }' ||
+        complain "bytes of one rank and of one of four, begun$begun and restarted$restarted"
     ;;
 stop)
     # begin N: N ranks in the background; they have taken some steps
