@@ -120,7 +120,7 @@ The particle-in-cell family in running code
   make sweep CASE=cic/cases/thermal_heating.toml KEYS='method.weighting=ngp,cic,tsc seed=1,2,3'
                          all combinations side by side (make deps-sweep), a table and a figure
   make cost              the cost slide, measured: explicit over implicit, against the mass ratio
-  make explicit_gem      the full explicit run of that slide, to the plateau, two hours; resumable
+  make explicit_gem      the full explicit run of that slide, to the plateau, an hour; resumable
   make test              the facts, at most ten minutes   (make test ARGS='-R gmres': some of them)
   make test-long         every figure at full length, its numbers checked
   make torture           half an hour of kills, failing disks, forged files and fuzzing; resumable
@@ -296,8 +296,7 @@ out/implicit_moment/cost/.complete: implicit_moment/figures/fig_cost.sh $(BUILD)
 cost: fig_cost
 	@sh implicit_moment/figures/show_cost.sh out/implicit_moment/cost/cost.dat
 
-# The full explicit run of the cost slide, carried to t Omega_ci = 40 as the implicit one, two hours on two cores, and what is kept of it for figures 9
-# and 10. It goes on where it was stopped.
+# The full explicit run of the cost slide, carried to t Omega_ci = 40 as the implicit one, three quarters of an hour on two idle cores, and what is kept of it for figures. It goes on where it was stopped.
 explicit_gem: $(BUILD)/explicit_em
 	@mkdir -p out/explicit_em/gem_explicit
 	$(one_at_a_time) $(BUILD)/explicit_em implicit_moment/cases/gem_explicit.toml time.end=800 \

@@ -60,7 +60,8 @@ inline void start_ranks() {
 /// The end of main. Waits until all ranks are there. A rank that has failed waits two seconds, and then
 /// prints its message, writes what is to be written in place of the first one, and ends all.
 /// in: the status, that message and what writes. out: the status
-inline int end_ranks(int status, const std::string& message, const std::function<void()>& alone) {
+inline int end_ranks(
+    int status, const std::string& message = "", const std::function<void()>& alone = [] {}) {
     return has_ranks ? mpi::end(status, message, alone) : status;
 }
 

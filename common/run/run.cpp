@@ -435,7 +435,7 @@ int run_and_report_errors(const ProgramInfo& info, char** argv,
     try {
         const int status = program(run);
         run.reset();
-        return end_ranks(status, "", [] {});
+        return end_ranks(status);
     } catch (const InputError& error) {
         return end(2, error.what());
     } catch (const NumericalError& error) {

@@ -32,7 +32,7 @@ int main() {
                 common::ranks_here() == 2 ? " of one machine, through its memory" : "");
     std::printf("%10s %14s %10s %14s %10s\n", "bytes", "message, us", "GB/s", "gather, us", "GB/s");
     double shortest = 0, longest = 0;
-    constexpr long most = 1 << 20;
+    constexpr long most = 1 << 21;
     for (long count = 1; count <= most; count *= 8) {
         const long calls = std::clamp(most / count / 8, 4L, 2000L), bytes = 8 * count;
         const std::vector<std::vector<double>> message{std::vector<double>(count, 1.0)}, nothing(1);
@@ -51,5 +51,5 @@ int main() {
     }
     std::printf("\nlatency %.2f us, bandwidth %.2f GB/s\n", 1e6 * shortest,
                 8e-9 * double(most) / longest);
-    return common::end_ranks(0, "");
+    return common::end_ranks(0);
 }

@@ -28,3 +28,4 @@ measure 'explicit_em, the slide: 512 x 256, 9.12e6 particles' explicit_em implic
 measure 'cic, 128 x 64 cells, 1e6 particles' cic cic/cases/two_stream_2d.toml species.right.particles_per_cell=64 \
     species.left.particles_per_cell=64 time.end=20 output.fields_interval=0 output.particles_interval=0
 measure 'implicit_moment, GEM, 64 x 64 cells, 2e5 particles' implicit_moment implicit_moment/cases/gem.toml time.end=60 output.fields_interval=0
+measure 'the same, with the mass matrix' implicit_moment implicit_moment/cases/gem.toml field.response=mass_matrix time.end=30 output.fields_interval=0
