@@ -55,7 +55,7 @@ openpmd = $(if $(hdf5),$(BUILD)/openpmd.so)
 # With MPI its own compiler, which calls ours, compiles what calls it and links; and these programs have ranks.
 mpi_cxx = env OMPI_CXX='$(CXX)' MPICH_CXX='$(CXX)' mpicxx
 ifneq ($(MPI),)
-mains := implicit_moment/explicit_em/explicit_em.cpp
+mains := cic/cic.cpp implicit_moment/implicit_moment.cpp implicit_moment/explicit_em/explicit_em.cpp
 endif
 
 # With `make deps fig09`, also with -j, everything waits until the packages are there.
@@ -120,7 +120,7 @@ The particle-in-cell family in running code
   make sweep CASE=cic/cases/thermal_heating.toml KEYS='method.weighting=ngp,cic,tsc seed=1,2,3'
                          all combinations side by side (make deps-sweep), a table and a figure
   make cost              the cost slide, measured: explicit over implicit, against the mass ratio
-  make explicit_gem      the full explicit run of that slide, to the plateau, two hours; resumable
+  make explicit_gem      the full explicit run of that slide, to the plateau, an hour; resumable
   make test              the facts, at most ten minutes   (make test ARGS='-R gmres': some of them)
   make test-long         every figure at full length, its numbers checked
   make torture           half an hour of kills, failing disks, forged files and fuzzing; resumable
@@ -143,7 +143,7 @@ The particle-in-cell family in running code
   make SANITIZE=address,undefined test     the facts under the sanitizers, in build/sanitize/
   make TRAP=1 test                         the facts, ended where 0/0 or inf - inf arises, in build/trap/
   make MPI=1 all         programs that share a case among machines, in build/mpi/ (packages: make deps-mpi):
-                         mpirun -n 4 build/mpi/explicit_em
+                         mpirun -n 4 build/mpi/explicit_em; implicit_moment, cic
   make REAL=float bench                    particles of cic in single precision, in build/float/
   make CXX=clang++-14 all                  another compiler; also ARCH=, OPTIMIZE=, EIGEN=, CXXFLAGS=
   make OPTIMIZE=-O0 BUILD=build/quick cic  compiled in less than half the time
@@ -296,8 +296,7 @@ out/implicit_moment/cost/.complete: implicit_moment/figures/fig_cost.sh $(BUILD)
 cost: fig_cost
 	@sh implicit_moment/figures/show_cost.sh out/implicit_moment/cost/cost.dat
 
-# The full explicit run of the cost slide, carried to t Omega_ci = 40 as the implicit one, two hours on two cores, and what is kept of it for figures 9
-# and 10. It goes on where it was stopped.
+# The full explicit run of the cost slide, carried to t Omega_ci = 40 as the implicit one, three quarters of an hour on two idle cores, and what is kept of it for figures. It goes on where it was stopped.
 explicit_gem: $(BUILD)/explicit_em
 	@mkdir -p out/explicit_em/gem_explicit
 	$(one_at_a_time) $(BUILD)/explicit_em implicit_moment/cases/gem_explicit.toml time.end=800 \
@@ -311,6 +310,15 @@ out/implicit_moment/energy/.complete: implicit_moment/figures/implicit_moment_en
 	@rm -f $@
 	@mkdir -p $(@D)
 	$(one_at_a_time) sh $< $(BUILD)/implicit_moment $(BUILD)/explicit_em $(@D)
+	@touch $@
+
+# What ranks are worth, from pieces that were measured: nothing runs.
+$(eval $(call figure,implicit_moment_ranks,implicit_moment,out/implicit_moment/ranks))
+out/implicit_moment/ranks/.complete: implicit_moment/figures/implicit_moment_ranks.sh implicit_moment/data/ranks_pieces.csv \
+    implicit_moment/data/explicit_gem_strips.csv
+	@rm -f $@
+	@mkdir -p $(@D)
+	sh $< $(@D)
 	@touch $@
 
 $(eval $(call figure,implicit_moment_mass_ratio,implicit_moment,out/implicit_moment/mass_ratios))
@@ -504,7 +512,8 @@ $(BUILD)/CTestTestfile.cmake: Makefile | $(packages_first)
 ifneq ($(MPI),)
 test: all
 	@$(MAKE) MPI= $(programs)
-	@set -e; for fact in bytes restart refuse stop; do echo $$fact; sh tests/support/ranks.sh $(BUILD:/mpi=) $$fact; done
+	@set -e; facts() { echo $$*; sh tests/support/ranks.sh $(BUILD:/mpi=) $$*; }; facts refuse; facts memory; \
+	    for p in $(programs); do for fact in bytes restart stop; do facts $$fact $$p; done; done
 else
 test: all tests $(BUILD)/CTestTestfile.cmake | $(packages_first)
 	$(call need,ctest)
@@ -561,8 +570,17 @@ $(BUILD)/planted_race: $(objects)/tests/torture/planted_race.o $(BUILD)/flags
 
 # ---- speed ---------------------------------------------------------------------------------------
 
+# With MPI=1 two ranks beside one, and what messages cost.
+ifneq ($(MPI),)
+$(BUILD)/bench/message_times: $(objects)/tests/support/message_times.o $(objects)/common/ranks.o
+	$(link)
+-include $(objects)/tests/support/message_times.d
+bench: all $(BUILD)/bench/message_times
+	@sh tests/support/ranks_bench.sh $(BUILD)
+else
 bench: $(bench_programs)
 	@set -e; for b in $^; do $$b; done
+endif
 
 # ---- to others -----------------------------------------------------------------------------------
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "cic/particles.hpp"
 #include "cic/poisson.hpp"
+#include "cic/share_particles.hpp"
 #include "common/random.hpp"
 #include "common/run/parameters.hpp"
 
@@ -88,6 +88,7 @@ inline std::vector<long> particles_outside(const Grid& grid, const Particles& s)
 
 // Takes particles out, given their indices in order; the last ones fill the gaps.
 inline void remove(Particles& s, const std::vector<long>& indices) {
+    if (common::rank_count() > 1) return remove_among_ranks(indices, s);
     for (std::vector<Real>* quantity : s.all()) {
         if (quantity->empty()) continue;
         for (auto p = indices.rbegin(); p != indices.rend(); ++p) {
@@ -122,34 +123,46 @@ inline void apply_at_walls(const Grid& grid, const ParticleBoundaries& condition
                            std::uint32_t purpose, long step, Particles& s, Walls& walls,
                            long& emitted_again) {
     const std::vector<Boundary> boundaries = boundaries_around(grid, s);
+    const std::vector<long> outside = particles_outside(grid, s);
     std::vector<long> absorbed;
-    for (const long p : particles_outside(grid, s)) {
-        for (int bounces = 0; const Boundary* wall = crossed_wall(boundaries, p); ++bounces) {
-            if (bounces > 2)
-                throw common::NumericalError(
-                    s.name + ": a particle moves farther than the box in one step, at step " +
-                    std::to_string(step) + ": reduce time.dt");
-            const AtWall does = conditions.walls[wall->name];
-            if (does == AtWall::absorb) {
-                absorbed.push_back(p);
-                if (walls[wall->name].floating)
-                    walls[wall->name].charge += s.q_p / wall->area(grid);
-                break;
-            }
-            if (does == AtWall::source) {
-                const auto count = static_cast<std::uint64_t>(emitted_again++);
-                emit(grid, conditions.dt, v_th, {conditions.seed, purpose, count}, s, p);
-            } else {
-                Real &x = (*wall->x_p)[p], &v = (*wall->v_p)[p];
-                x = Real(2 * wall->at - double(x));
-                v = -v;
+    // The order of the list is that of the charges on the walls and of the emissions: ranks take turns.
+    struct {
+        Walls walls;
+        long emitted_again;
+        bool leapt;
+    } now{walls, emitted_again, false};
+    common::in_turn(&now, std::array{0L, 1L}, [&](long) {
+        for (const long p : outside) {
+            for (int bounces = 0; const Boundary* wall = crossed_wall(boundaries, p); ++bounces) {
+                now.leapt = now.leapt || bounces > 2;
+                if (now.leapt) return;
+                const AtWall does = conditions.walls[wall->name];
+                if (does == AtWall::absorb) {
+                    absorbed.push_back(p);
+                    if (now.walls[wall->name].floating)
+                        now.walls[wall->name].charge += s.q_p / wall->area(grid);
+                    break;
+                }
+                if (does == AtWall::source) {
+                    const auto count = static_cast<std::uint64_t>(now.emitted_again++);
+                    emit(grid, conditions.dt, v_th, {conditions.seed, purpose, count}, s, p);
+                } else {
+                    Real &x = (*wall->x_p)[p], &v = (*wall->v_p)[p];
+                    x = Real(2 * wall->at - double(x));
+                    v = -v;
+                }
             }
         }
-    }
+    });
+    if (now.leapt)
+        throw common::NumericalError(
+            s.name + ": a particle moves farther than the box in one step, at step " +
+            std::to_string(step) + ": reduce time.dt");
+    walls = now.walls, emitted_again = now.emitted_again;
     remove(s, absorbed);
 }
 
-// Lets the source wall emit what is due in this step, at an even rate.
+// Lets the source wall emit what is due in this step, at an even rate; the last rank gets it.
 inline void emit_new(const Grid& grid, const ParticleBoundaries& conditions,
                      const Emission& emission, std::uint32_t purpose, long step, Particles& s,
                      Wall& source) {
@@ -157,18 +170,20 @@ inline void emit_new(const Grid& grid, const ParticleBoundaries& conditions,
         return static_cast<long>(std::floor(emission.per_step * double(steps)));
     };
     const long first = emitted_before(step), last = emitted_before(step + 1);
-    const long old_count = s.count(), new_count = old_count + last - first;
-    if (new_count > 2000000000)
+    const bool is_ours = common::rank() + 1 == common::rank_count();
+    const long old_count = s.count();
+    if (s.count_of_all() + last - first > 2000000000)
         throw common::NumericalError(
             s.name + ": the source has filled the box with more than 2e9 particles, at step " +
             std::to_string(step) + ": lower its emission, or let a wall absorb them");
-    resize(new_count, conditions.plane, conditions.magnetized, s);
+    if (is_ours) resize(old_count + last - first, conditions.plane, conditions.magnetized, s);
     for (long k = first; k < last; ++k) {
+        source.charge -= s.q_p / grid.z.length;
+        if (!is_ours) continue;
         const long p = old_count + k - first;
         const EmissionNumbers random{conditions.seed, purpose, static_cast<std::uint64_t>(k)};
         emit(grid, conditions.dt, emission.thermal_speed, random, s, p);
         if (conditions.plane) s.z_p[p] = Real(grid.z.low + grid.z.length * random.uniform(4));
-        source.charge -= s.q_p / grid.z.length;
     }
 }
 
@@ -197,6 +212,7 @@ inline void apply_particle_boundaries(const Grid& grid, const ParticleBoundaries
         if (emission.per_step > 0)
             detail::emit_new(grid, conditions, emission, purpose + 1, step, species[k],
                              walls[x_low]);
+        share(species[k]);
     }
 }
 

@@ -64,7 +64,7 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     const long steps = scales.steps;
     long step = 0;
     if (run.restarting())
-        run.restore(state, step, [&] { validate_state(parameters, step, state); });
+        run.restore(state, step, [&] { validate_state(parameters, step, state), keep_own(state); });
     while (run.not_finished(step, steps)) {
         field.walls = state.walls;
         find_field(particles, grid, scheme, background, deposit_scratch, solver, rho_g,

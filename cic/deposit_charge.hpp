@@ -10,6 +10,7 @@ namespace cic {
 /// Room for one mesh per block of particles, kept between steps.
 struct DepositScratch {
     std::vector<std::vector<Real>> sum_of_block;
+    std::vector<double> sum;  // of all blocks
 };
 
 namespace detail {
@@ -45,10 +46,10 @@ void add_weights(const Real* x_p, const Real* z_p, long count, const Grid& grid,
 /// in/out: rho_g, grid.size() values; what falls on ghost nodes stays there
 inline void add_charge(const Particles& particles, const Grid& grid, const Scheme& scheme,
                        DepositScratch& scratch, Field& rho_g) {
-    const long size = grid.size();
-    scratch.sum_of_block.resize(common::block_count, std::vector<Real>(size));
+    const long size = grid.size(), rows = grid.z.cells + 3, stride = grid.stride();
+    scratch.sum_of_block.resize(common::block_count);
     with_order_and_dimensions(scheme, [&](auto order, auto dimensions) {
-        common::for_each_block(particles.count(), [&](int block, long begin, long end) {
+        for_each_own_block(particles.count_of_all(), [&](int block, long begin, long end) {
             auto& sum = scratch.sum_of_block[block];
             sum.assign(size, 0);
             for (long p = begin; p < end; p += batch_size)
@@ -57,13 +58,20 @@ inline void add_charge(const Particles& particles, const Grid& grid, const Schem
                     std::min(batch_size, end - p), grid, sum.data());
         });
     });
-    const double charge = particles.q_p / grid.cell_area();
-    common::for_each_row(grid.z.cells + 3, [&](long row) {
-        for (long n = row * grid.stride(); n < (row + 1) * grid.stride(); ++n) {
-            double sum = 0;
-            for (const auto& block : scratch.sum_of_block) sum += double(block[n]);
-            rho_g[n] += charge * sum;
+    // Block after block, and where there are ranks, rank after rank.
+    scratch.sum.assign(size, 0);
+    for_each_row_in_turn(rows, stride, scratch.sum.data(), [&](long row) {
+        double* const of_row = scratch.sum.data() + row * stride;
+        for (int k = first_block(common::rank()); k < first_block(common::rank() + 1); ++k) {
+            const Real* const of_block = scratch.sum_of_block[k].data() + row * stride;
+            for (long n = 0; n < stride; ++n) of_row[n] += double(of_block[n]);
         }
+    });
+    const double charge = particles.q_p / grid.cell_area();
+    const double* const sum = scratch.sum.data();
+    double* const rho = rho_g.data();
+    common::for_each_row(rows, [&](long row) {
+        for (long n = row * stride; n < (row + 1) * stride; ++n) rho[n] += charge * sum[n];
     });
 }
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "cic/own_blocks.hpp"
 #include "cic/units.hpp"
 #include "common/grid.hpp"
-#include "common/parallel.hpp"
 
 namespace cic {
 
@@ -35,8 +35,10 @@ struct Particles {
     std::vector<Real> x_p, z_p;          // at t^n
     std::vector<Real> vx_p, vy_p, vz_p;  // at t^(n-1/2), after accelerate() at t^(n+1/2)
     ParticleSums sums;                   // of the last step
+    long among_ranks = 0;                // where there are several, how many they have together
 
     long count() const { return static_cast<long>(x_p.size()); }
+    long count_of_all() const { return common::rank_count() > 1 ? among_ranks : count(); }
     std::array<std::vector<Real>*, 5> all() { return {&x_p, &z_p, &vx_p, &vy_p, &vz_p}; }
 };
 
@@ -74,7 +76,7 @@ template <class Work>
 void for_each_batch(std::vector<Particles>& species, const Work& work) {
     for (Particles& s : species) {
         std::array<ParticleSums, common::block_count> sums{};
-        common::for_each_block(s.count(), [&](int block, long begin, long end) {
+        for_each_own_block(s.count_of_all(), [&](int block, long begin, long end) {
             const auto from = [](std::vector<Real>& values, long p) {
                 return values.empty() ? nullptr : values.data() + p;
             };
@@ -86,6 +88,7 @@ void for_each_batch(std::vector<Particles>& species, const Work& work) {
                 sums[block].add(batch.sums);
             }
         });
+        gather_blocks(sums);
         s.sums = {};
         for (const ParticleSums& block : sums) s.sums.add(block);
     }

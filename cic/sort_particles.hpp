@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "cic/particles.hpp"
+#include "cic/share_particles.hpp"
 #include "common/counting_sort.hpp"
 
 namespace cic {
@@ -17,15 +17,17 @@ inline bool sort_is_due(long interval, long step) { return interval > 0 && step 
 /// in/out: particles, every position on the mesh; nothing happens in one dimension
 inline void sort_particles(const Grid& grid, common::SortScratch<Real>& scratch,
                            std::vector<Particles>& species) {
+    if (grid.z.cells == 1) return;
     const double z_low = grid.z.low, per_dz = 1 / grid.z.spacing();
+    std::vector<int> first_of_row;
     for (Particles& s : species) {
-        if (s.z_p.empty()) continue;
         const auto row = [&](long p) {
             return static_cast<int>((double(s.z_p[p]) - z_low) * per_dz);
         };
-        common::counting_sort(s.count(), grid.z.cells + 1, row, scratch);
+        common::counting_sort(s.count(), grid.z.cells + 1, row, scratch, &first_of_row);
         for (std::vector<Real>* quantity : s.all())
             if (!quantity->empty()) common::carry_to_place(*quantity, scratch);
+        share_runs(first_of_row, s);
     }
 }
 

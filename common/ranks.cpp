@@ -17,6 +17,7 @@ namespace {
 // What MPI is asked once, where the program starts.
 struct Here {
     int rank = 0, count = 1, on_machine = 1;
+    bool writes = true;
     int error_stream = STDERR_FILENO;  // kept for the message of a rank that fails alone
     MPI_Comm last = MPI_COMM_NULL;     // on which ranks meet at the end
     double communication = 0;
@@ -41,6 +42,7 @@ constexpr std::size_t piece_bytes = 1 << 20;
 int rank() { return here.rank; }
 int rank_count() { return here.count; }
 int ranks_here() { return here.on_machine; }
+bool writes() { return here.writes; }
 double communication_seconds() { return here.communication; }
 
 // A rank of Open MPI that waits gives its core away, as threads do (share_cores), unless the user says otherwise.
@@ -59,7 +61,8 @@ void start() {
         int over = 0;
         if (MPI_Finalized(&over); over == 0) MPI_Finalize();
     });
-    if (here.rank == 0) return;
+    here.writes = here.rank == 0;
+    if (here.writes) return;
     here.error_stream = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 3);
     const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
     dup2(nowhere, STDOUT_FILENO);
@@ -69,14 +72,18 @@ void start() {
 
 // The others may have failed with the same message, so a rank that has failed waits for them before it ends
 // all. The first rank waits least, because it has printed that message already.
-int end(int status, const std::string& message) {
+int end(int status, const std::string& message, const std::function<void()>& alone) {
     const bool failed = status == 2 || status == 3;
     const double until = MPI_Wtime() + (failed ? 2 + 0.1 * std::min(here.rank, 10) : 1e9);
     MPI_Request meeting;
     MPI_Ibarrier(here.last, &meeting);
     for (int met = 0; MPI_Test(&meeting, &met, MPI_STATUS_IGNORE), met == 0;) {
         if (MPI_Wtime() > until) {
-            if (here.rank > 0) dprintf(here.error_stream, "%s\n", message.c_str());
+            if (here.rank > 0) {
+                dprintf(here.error_stream, "%s\n", message.c_str());
+                here.writes = true;
+                alone();
+            }
             MPI_Abort(MPI_COMM_WORLD, status);
         }
         usleep(1000);
@@ -153,6 +160,32 @@ void gather_in_turn(const void* own, std::size_t bytes,
             take(piece.data(), part);
         }
     }
+}
+
+void in_turn(void* numbers, std::size_t size, std::span<const long> first,
+             const std::function<void(long)>& work) {
+    const auto begin = [&](std::size_t k) {
+        return static_cast<char*>(numbers) + std::size_t(first[k]) * size;
+    };
+    const std::size_t pieces = first.size() - 1;
+    const int last = here.count - 1;
+    std::vector<MPI_Request> sent(here.rank < last ? pieces : 0);
+    for (std::size_t k = 0; k < pieces; ++k) {
+        const int bytes = as_int(std::size_t(begin(k + 1) - begin(k)));
+        if (here.rank > 0) {
+            const Watch watch;
+            MPI_Recv(begin(k), bytes, MPI_BYTE, here.rank - 1, 2, MPI_COMM_WORLD,
+                     MPI_STATUS_IGNORE);
+        }
+        work(long(k));
+        const Watch watch;
+        if (here.rank < last)
+            MPI_Isend(begin(k), bytes, MPI_BYTE, here.rank + 1, 2, MPI_COMM_WORLD, &sent[k]);
+    }
+    const Watch watch;
+    MPI_Waitall(int(sent.size()), sent.data(), MPI_STATUSES_IGNORE);
+    for (std::size_t k = 0; k < pieces; ++k)
+        MPI_Bcast(begin(k), int(begin(k + 1) - begin(k)), MPI_BYTE, last, MPI_COMM_WORLD);
 }
 
 }  // namespace common::mpi

@@ -10,10 +10,12 @@
 // so far, never a sum of a rank's own.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <numeric>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace common {
@@ -28,7 +30,8 @@ int rank_count();
 int ranks_here();
 double communication_seconds();
 void start();
-int end(int status, const std::string& message);
+bool writes();
+int end(int status, const std::string& message, const std::function<void()>& alone);
 void sum(std::span<long> numbers);
 long largest(long number);
 void gather_pieces(double* all, std::span<const long> first);
@@ -36,6 +39,8 @@ void exchange(std::span<const int> peers, const std::vector<std::vector<double>>
               std::vector<std::vector<double>>& from);
 void gather_in_turn(const void* own, std::size_t bytes,
                     const std::function<void(const void*, std::size_t)>& take);
+void in_turn(void* numbers, std::size_t size, std::span<const long> first,
+             const std::function<void(long)>& work);
 
 }  // namespace mpi
 
@@ -43,8 +48,8 @@ void gather_in_turn(const void* own, std::size_t bytes,
 inline int rank() { return has_ranks ? mpi::rank() : 0; }
 inline int rank_count() { return has_ranks ? mpi::rank_count() : 1; }
 inline int ranks_here() { return has_ranks ? mpi::ranks_here() : 1; }
-/// Whether this process prints and writes the files.
-inline bool is_first_rank() { return rank() == 0; }
+/// Whether this process prints and writes the files: the first rank, until another has failed alone.
+inline bool is_first_rank() { return has_ranks ? mpi::writes() : true; }
 /// The time that this rank has given to others or waited for them so far.
 inline double communication_seconds() { return has_ranks ? mpi::communication_seconds() : 0; }
 
@@ -53,9 +58,11 @@ inline void start_ranks() {
     if (has_ranks) mpi::start();
 }
 /// The end of main. Waits until all ranks are there. A rank that has failed waits two seconds, and then
-/// prints its message and ends all. in: the status and that message. out: the status
-inline int end_ranks(int status, const std::string& message) {
-    return has_ranks ? mpi::end(status, message) : status;
+/// prints its message, writes what is to be written in place of the first one, and ends all.
+/// in: the status, that message and what writes. out: the status
+inline int end_ranks(
+    int status, const std::string& message = "", const std::function<void()>& alone = [] {}) {
+    return has_ranks ? mpi::end(status, message, alone) : status;
 }
 
 /// Adds numbers of all ranks, each with those in the same place; exact, they are whole.
@@ -73,6 +80,15 @@ inline long sum_before_rank(long number) {
     sum_over_ranks(of_rank);
     return std::accumulate(of_rank.begin(), of_rank.begin() + rank(), 0L);
 }
+/// A part of a list that is cut into as many parts, evenly and by number: of one part, all of it.
+struct Share {
+    long part = 0, parts = 1;
+
+    long begin(long count) const { return count * part / parts; }
+    long end(long count) const { return count * (part + 1) / parts; }
+};
+inline Share share_of_rank() { return {rank(), rank_count()}; }
+
 /// The largest of the numbers of all ranks; nobody goes on before all have come here.
 inline long largest_over_ranks(long number) { return has_ranks ? mpi::largest(number) : number; }
 
@@ -89,22 +105,33 @@ struct Division {
         return k;
     }
 
-    /// Cuts where the work of the pieces before is next to the share of the ranks before.
-    /// in: the work of each piece, at least as many pieces as ranks; every rank gets one
-    static Division of(std::span<const long> work) {
-        const long ranks = rank_count(), pieces = std::ssize(work);
-        const double all = double(std::reduce(work.begin(), work.end()));
-        Division division{{0}};
-        double before = 0;
-        for (long k = 1, piece = 0; k < ranks; ++k) {
-            const double share = all * double(k) / double(ranks);
-            const long least = division.first.back() + 1, most = pieces - (ranks - k);
-            while (piece < least || (piece < most && before + 0.5 * double(work[piece]) < share))
-                before += double(work[piece++]);
-            division.first.push_back(piece);
+    /// Cuts such that the rank with the most work has as little as it can (few = 1; else about as little).
+    /// in: the work of each piece; how many pieces every rank gets at least, which must be there
+    static Division of(std::span<const long> work, long few = 1, long ranks = rank_count()) {
+        const long pieces = std::ssize(work);
+        // Rank after rank is filled to a bound; the last one takes what is left.
+        long most = 0;
+        const auto fill = [&](long bound) {
+            Division division{{0}};
+            long sum = most = 0;
+            for (long piece = 0; piece < pieces; ++piece) {
+                const long ranks_left = ranks - std::ssize(division.first);
+                const bool full = sum + work[piece] > bound || pieces - piece <= few * ranks_left;
+                if (full && piece >= few + division.first.back() && ranks_left > 0)
+                    division.first.push_back(piece), sum = 0;
+                most = std::max(most, sum += work[piece]);
+            }
+            division.first.push_back(pieces);
+            return division;
+        };
+        long low = *std::max_element(work.begin(), work.end()),
+             high = std::reduce(work.begin(), work.end());
+        while (low < high) {
+            const long bound = low + (high - low) / 2;
+            fill(bound);
+            most <= bound ? high = bound : low = bound + 1;
         }
-        division.first.push_back(pieces);
-        return division;
+        return fill(low);
     }
 };
 
@@ -137,11 +164,35 @@ inline std::vector<double> gather_in_turn(const std::vector<double>& own) {
     return all;
 }
 
+/// The same with every rank.
+inline std::vector<double> gather_with_all(const std::vector<double>& own) {
+    if (rank_count() == 1) return own;
+    std::vector<long> first(std::size_t(rank_count() + 1), 0);
+    first[rank() + 1] = std::ssize(own);
+    sum_over_ranks(first);
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    std::vector<double> all(std::size_t(first.back()));
+    std::copy(own.begin(), own.end(), all.begin() + first[rank()]);
+    gather_pieces(all.data(), first);
+    return all;
+}
+
+/// The ranks take turns at numbers, piece by piece: each works on what the one before has left there.
+/// In the end all have what the last one has left.
+/// in: first, where the pieces begin, one more for the end; work(piece)
+template <class Number>
+void in_turn(Number* numbers, std::span<const long> first, const std::function<void(long)>& work) {
+    static_assert(std::is_trivially_copyable_v<Number>);
+    if (has_ranks) return mpi::in_turn(numbers, sizeof(Number), first, work);
+    for (long k = 0; k + 1 < std::ssize(first); ++k) work(k);
+}
+
 /// Numbers of the particles, of which each rank has some, in the order of the ranks: what an archive
-/// that writes takes for one list.
+/// that writes takes for one list. One that reads leaves each rank its share.
 template <class Number>
 struct OfAllRanks {
     std::vector<Number>& values;
+    Share share = {};
 };
 /// Where the parts of a list begin, as each rank counts its own; in one list, the sum of all counts.
 struct SumOverRanks {

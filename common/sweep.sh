@@ -6,8 +6,8 @@
 #   PROGRAM           the program, where the folder of the case does not say it
 #   SWEEP             folder of the runs;  SWEEP_NAME: their names, e.g. '{2}_{1}' of the first and the second value
 #   PARALLEL_OPTIONS  of GNU parallel, e.g. '-j 4', or '--sshloginfile hosts --workdir .' for hosts that share this folder
-#   SWEEP_ONLY=K/N    only every Nth run, beginning with the Kth: one element of a Slurm array,
-#                     sbatch --array=1-8 --wrap 'SWEEP_ONLY=$SLURM_ARRAY_TASK_ID/8 make sweep CASE=... KEYS=...'
+#   SWEEP_ONLY=K/N    only every Nth run, beginning with the Kth: one element of a Slurm array, when the program is built (make would build it in each),
+#                     sbatch --array=1-8 --wrap 'SWEEP_ONLY=$SLURM_ARRAY_TASK_ID/8 sh common/sweep.sh CASE KEY=VALUE,VALUE ...'
 # Without GNU parallel (make deps-sweep) one run follows the other. Who publishes what came out of it is asked by GNU parallel to cite it: parallel --citation.
 set -eu
 export LC_ALL=C.UTF-8

@@ -25,12 +25,18 @@ inline double mixed_overlap(double angle) {
 inline double mean_response(const Grid& grid, const MassMatrix& mass, int pair) {
     const long stride = grid.stride();
     const int first = detail::first_offset(pair), end = detail::first_offset(pair + 1);
-    double sum = 0;
-    for (long row = 0; row < grid.z.cells + 3; ++row) {
-        const double* entry = &mass.entry[std::size_t((row * detail::offsets + first) * stride)];
-        for (long n = 0; n < (end - first) * stride; ++n) sum += entry[n];
-    }
-    return sum / double(grid.x.cells * grid.z.cells);
+    const Division rows = stored_rows(grid, mass.of_ranks);
+    std::vector<double> total{0};
+    in_turn(rows, total, [&] {
+        double sum = total[0];
+        for (long row = rows.begin(); row < rows.end(grid.z.cells + 3); ++row) {
+            const double* entry =
+                &mass.entry[std::size_t((row * detail::offsets + first) * stride)];
+            for (long n = 0; n < (end - first) * stride; ++n) sum += entry[n];
+        }
+        total[0] = sum;
+    });
+    return total[0] / double(grid.x.cells * grid.z.cells);
 }
 
 /// J = M E.
@@ -38,14 +44,16 @@ inline double mean_response(const Grid& grid, const MassMatrix& mass, int pair) 
 /// out:    J, ghosts filled
 /// exact:  sum_g J_g . E_g V over the unknowns is the work of the kicks on the particles, >= 0.
 inline void apply_mass_matrix(const Grid& grid, MassMatrix& mass, const double* E, double* J) {
-    const long stride = grid.stride(), size = grid.size(), rows = grid.z.cells + 3;
+    const long stride = grid.stride(), size = grid.size();
     const long margin = 2 * stride + 2, room = size + 2 * margin;
     mass.padded.assign(std::size_t(3 * room), 0);
     double* padded = mass.padded.data();
     for (long a = 0; a < 3; ++a) std::copy_n(E + a * size, size, padded + a * room + margin);
+    const Division rows = stored_rows(grid, mass.of_ranks);
     common::for_each_row(
-        rows,
-        [&](long row) {
+        rows.end(grid.z.cells + 3) - rows.begin(),
+        [&](long k) {
+            const long row = rows.begin() + k;
             const double* entry = &mass.entry[std::size_t(row * detail::offsets * stride)];
             for (int a = 0; a < 3; ++a) {
                 double* sum = J + a * size + row * stride;
@@ -64,6 +72,7 @@ inline void apply_mass_matrix(const Grid& grid, MassMatrix& mass, const double* 
             }
         },
         detail::offsets * size);
+    gather_rows(grid, mass.of_ranks, {{J, stride}, {J + size, stride}, {J + 2 * size, stride}});
     for (std::size_t a = 0; a < 3; ++a)
         common::fold_ghosts(grid, electric.place[a], felt(grid).parity[a], J + long(a) * size);
 }

@@ -28,6 +28,7 @@
 #include <type_traits>
 
 #include "common/splines.hpp"
+#include "implicit_moment/exchange_rows.hpp"
 #include "implicit_moment/moments.hpp"
 #include "implicit_moment/rotate_particles.hpp"
 
@@ -95,16 +96,19 @@ template <class Rotation>
 inline void deposit(const Particles& particles, const Grid& grid, const Rotation& rotation,
                     Images images, Moments& moments) {
     using Dynamics = typename Rotation::Dynamics;
-    for (Field* f : moments.all()) f->setZero();
+    std::vector<MeshRows> mesh;
+    const auto begin_with = [&](Field& f) {
+        mesh.push_back({f.setZero(grid.size()).data(), grid.stride()});
+    };
+    for (Field* f : moments.all()) begin_with(*f);
     if constexpr (Rotation::responds)
-        for (Field& f : moments.response) f.setZero(grid.size());
+        for (Field& f : moments.response) begin_with(f);
     const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing();
     const double q = particles.q_p / grid.cell_area();
     const long columns = nodes_x(grid), stride = grid.stride();
-    // Per row of nodes: sums of v_x, v_y, v_z and v^2.
-    std::vector<std::array<double, 4>> sums_of_row(nodes_z(grid));
+    std::vector<std::array<double, 4>> sums_of_row(nodes_z(grid) + 2);  // of v_x, v_y, v_z, v^2
 
-    common::for_each_row_colored(3, nodes_z(grid), [&](long row) {
+    deposit_rows(particles.of_ranks, nodes_z(grid), -1, 1, mesh, [&](long row) {
         const double z_node = grid.z.at(double(row));
         SimdVector total_x{}, total_y{}, total_z{}, total_squared{};
         for (long column = 0; column < columns; ++column) {
@@ -158,9 +162,11 @@ inline void deposit(const Particles& particles, const Grid& grid, const Rotation
             if constexpr (Rotation::responds)
                 for (std::size_t a = 0; a < 9; ++a) add(moments.response[a], response.A[a]);
         }
-        sums_of_row[row] = {common::simd_sum(total_x), common::simd_sum(total_y),
-                            common::simd_sum(total_z), common::simd_sum(total_squared)};
+        sums_of_row[row + 1] = {common::simd_sum(total_x), common::simd_sum(total_y),
+                                common::simd_sum(total_z), common::simd_sum(total_squared)};
     });
+    mesh.push_back({sums_of_row.front().data(), 4});
+    gather_rows(grid, particles.of_ranks, mesh);
 
     moments.kinetic_energy = 0;
     moments.momentum = {};
@@ -173,9 +179,8 @@ inline void deposit(const Particles& particles, const Grid& grid, const Rotation
     moments.plasma_density = moments.rho;
     common::fold_ghosts(grid, on_nodes, {+1, +1}, moments.plasma_density.data());
     if constexpr (Rotation::responds) {
-        const double half_kick = rotation.half_kick;
         for (Field& f : moments.response) {
-            f *= half_kick;
+            f *= rotation.half_kick;
             common::fold_ghosts(grid, on_nodes, {+1, +1}, f.data());
         }
     }

@@ -21,11 +21,13 @@
 //         as the Jacobian here.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
 #include <vector>
 
+#include "implicit_moment/exchange_rows.hpp"
 #include "implicit_moment/particle_path.hpp"
 
 namespace implicit_moment {
@@ -34,7 +36,7 @@ namespace implicit_moment {
 struct EnslavedParticles {
     std::vector<std::vector<Velocity<double>>> vbar;  // [species][particle]
     std::vector<std::vector<detail::PathState>> state;
-    std::vector<VectorField> J_of_block;  // made when first needed
+    std::vector<double> J_of_block;  // [block of particles][component][point]
     VectorField J, curl;
     explicit EnslavedParticles(const Grid& grid) : J(grid), curl(grid) {}
 };
@@ -43,9 +45,9 @@ inline constexpr int free_turns = 4;  // after which a path that meets a wall st
 
 /// Ends the run where particles of a species have no path. errors: NumericalError
 inline void refuse_lost(const Particles& s, double lost) {
-    if (lost > 0)
-        throw common::NumericalError("the paths of " + common::format(lost) + " of the " + s.name +
-                                     " are not found; reduce time.dt");
+    if (const long of_all = common::sum_over_ranks(long(lost)); of_all > 0)
+        throw common::NumericalError("the paths of " + common::format(double(of_all)) + " of the " +
+                                     s.name + " are not found; reduce time.dt");
 }
 
 /// Finds every particle's path in a field, and the current along the paths.
@@ -57,19 +59,22 @@ inline void refuse_lost(const Particles& s, double lost) {
 inline void follow_field(const InterleavedField& field, const Grid& grid, double dt,
                          const MoverSettings& settings, const std::vector<Particles>& species,
                          int turn, EnslavedParticles& enslaved) {
-    enslaved.J_of_block.resize(common::block_count, VectorField(grid));
-    for (VectorField& J : enslaved.J_of_block) J.all.setZero();
-    const long stride = grid.stride();
+    const long stride = grid.stride(), size = grid.size();
+    enslaved.J_of_block.assign(std::size_t(common::block_count * 3 * size), 0);
     for (std::size_t k = 0; k < species.size(); ++k) {
         const Particles& s = species[k];
         const double half_kick = 0.5 * dt * s.q_p / s.m_p, q = s.q_p / grid.cell_area();
         std::array<long, common::block_count> lost{};
-        common::for_each_block(s.count(), [&](int block, long begin, long end) {
-            VectorField& J = enslaved.J_of_block[std::size_t(block)];
-            for (long p = begin; p < end; ++p) {
+        const long before = common::sum_before_rank(s.count()),
+                   all = common::sum_over_ranks(s.count());
+        // Finds paths, deposits along them, or both. in: begin and end among the particles of all ranks
+        const auto follow = [&](bool finds, bool deposits, int block, long begin, long end) {
+            double* J = &enslaved.J_of_block[std::size_t(block * 3 * size)];
+            for (long p = std::max(0L, begin - before); p < std::min(s.count(), end - before);
+                 ++p) {
                 const Velocity<double> u{s.ux_p[p], s.uy_p[p], s.uz_p[p]};
                 Velocity<double>& vbar = enslaved.vbar[k][std::size_t(p)];
-                if (!with_dynamics(s, [&](auto dynamics) {
+                if (finds && !with_dynamics(s, [&](auto dynamics) {
                         return detail::find_path(dynamics, grid, field, dt, settings, half_kick,
                                                  s.x_p[p], s.z_p[p], u, turn < free_turns, vbar,
                                                  enslaved.state[k][std::size_t(p)]);
@@ -77,6 +82,7 @@ inline void follow_field(const InterleavedField& field, const Grid& grid, double
                     ++lost[std::size_t(block)];
                     continue;
                 }
+                if (!deposits) continue;
                 detail::along_path(
                     grid, {grid.x, s.x_p[p], dt * vbar.x}, {grid.z, s.z_p[p], dt * vbar.z},
                     [&](double w, long corner, double d_x, double d_z, double m_x, double m_z) {
@@ -85,23 +91,33 @@ inline void follow_field(const InterleavedField& field, const Grid& grid, double
                                      j_z = q * w * m_z * vbar.z;
                         for (int j = 0; j < 3; ++j) {
                             const double w_x = j_x * S_z.quadratic[j], w_y = j_y * S_z.quadratic[j];
-                            double *J_x = J.x() + corner + j * stride,
-                                   *J_y = J.y() + corner + j * stride;
+                            double *J_x = J + corner + j * stride, *J_y = J_x + size;
                             for (int i = 0; i < 2; ++i) J_x[i] += w_x * S_x.linear[i];
                             for (int i = 0; i < 3; ++i) J_y[i] += w_y * S_x.quadratic[i];
                         }
                         for (int j = 0; j < 2; ++j) {
                             const double w_z = j_z * S_z.linear[j];
-                            double* J_z = J.z() + corner + j * stride;
+                            double* J_z = J + 2 * size + corner + j * stride;
                             for (int i = 0; i < 3; ++i) J_z[i] += w_z * S_x.quadratic[i];
                         }
                     });
             }
-        });
+        };
+        const auto for_each_block = [&](bool finds, bool deposits) {
+            common::for_each_block(all, [&](int block, long begin, long end) {
+                follow(finds, deposits, block, begin, end);
+            });
+        };
+        // The sum of a block goes on from rank to rank, so there paths are found before.
+        const bool alone = s.of_ranks.is_whole();
+        for_each_block(true, alone);
         refuse_lost(s, double(std::accumulate(lost.begin(), lost.end(), 0L)));
+        if (!alone) in_turn(s.of_ranks, enslaved.J_of_block, [&] { for_each_block(false, true); });
     }
     enslaved.J.all.setZero();
-    for (const VectorField& J : enslaved.J_of_block) enslaved.J.all += J.all;
+    for (long block = 0; block < common::block_count; ++block)
+        enslaved.J.all += Eigen::Map<const Eigen::VectorXd>(
+            &enslaved.J_of_block[std::size_t(block * 3 * size)], 3 * size);
     for (std::size_t a = 0; a < 3; ++a)
         common::fold_ghosts(grid, electric.place[a], felt(grid).parity[a],
                             enslaved.J.all.data() + long(a) * grid.size());

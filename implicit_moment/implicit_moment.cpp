@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "common/run/start.hpp"
+#include "implicit_moment/balance_rows.hpp"
 #include "implicit_moment/output/record.hpp"
 #include "implicit_moment/setup/check_case.hpp"
 #include "implicit_moment/setup/check_state.hpp"
@@ -34,12 +35,14 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     common::ParameterTable table = describe(parameters);
     const common::CommandLine command = common::read_command_line(argc, argv, info, table);
     validate(parameters);
+    refuse_ranks(parameters);
     const Scales scales = scales_of(parameters);
     // Where the closure of the moments does not hold is a warning.                [IMM-13]
-    if (!common::start_run(info, command, table,
-                           {describe_scales(parameters, scales),
-                            closure_warnings(parameters, scales), scales.steps, scales.bytes},
-                           {parameters.checkpoint_steps}, holder))
+    if (!common::start_run(
+            info, command, table,
+            {describe_scales(parameters, scales), closure_warnings(parameters, scales),
+             scales.steps, scales.bytes, scales.seconds, scales.of_mesh},
+            {parameters.checkpoint_steps}, holder))
         return 0;
     common::Run& run = *holder;
 
@@ -57,15 +60,16 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     const double dt = parameters.dt;
     const long steps = scales.steps;
     long step = 0;
-    Checkpoint checkpoint{state, recorder.profile};
+    Checkpoint checkpoint{state, recorder.profile, true, common::share_of_rank()};
     const auto sort = [&](std::vector<Particles>& all) { sort_particles(grid, scratch.sort, all); };
     if (run.restarting())
         run.restore(checkpoint, step, [&] { validate_state(parameters, step, sort, checkpoint); });
+    double imbalance = balance_rows(nodes_x(grid), rows_of_rank, particles);
     while (run.not_finished(step, steps)) {
         find_moments(grid, dt, particles, state.field, scratch);  // particles -> grid  [IMM-9]
         recorder.record(step, state, scratch.moments, run);       // the row of t^n
         take_step(grid, dt, parameters.mover, charge_over_mass, scratch, particles, state.field);
-        ++step;
+        if (++step % 10 == 0) imbalance = balance_rows(nodes_x(grid), rows_of_rank, particles);
         run.end_of_step(step, steps, double(step) * dt, checkpoint);
     }
 
@@ -75,7 +79,8 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
         recorder.record(step, state, scratch.moments, run);
         recorder.finish(state, run);
     }
-    return run.finish(step, double(state.plasma.count()));
+    if (common::rank_count() > 1) run.summary.performance("imbalance", imbalance);
+    return run.finish(step, double(scales.particles));
 }
 
 }  // namespace

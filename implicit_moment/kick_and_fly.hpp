@@ -65,8 +65,8 @@ inline void fly(const Grid& grid, double time, std::vector<Particles>& species) 
         const double lost = common::sum_over_blocks(s.count(), [&](long begin, long end) {
             return with_dynamics(s, [&](auto dynamics) { return fly_block(dynamics, begin, end); });
         });
-        if (lost > 0)
-            throw common::NumericalError(common::format(lost) + " of the " + s.name +
+        if (const long of_all = common::sum_over_ranks(long(lost)); of_all > 0)
+            throw common::NumericalError(common::format(double(of_all)) + " of the " + s.name +
                                          " cross more than 1000 boxes in a step: the field has "
                                          "blown up; reduce time.dt");
     }
@@ -141,7 +141,8 @@ inline bool kick_particles(const InterleavedField& field, const InterleavedField
         }
         stops_in_row[std::size_t(row)] = stops;
     });
-    return std::find(stops_in_row.begin(), stops_in_row.end(), 1) == stops_in_row.end();
+    return common::largest_over_ranks(
+               *std::max_element(stops_in_row.begin(), stops_in_row.end())) == 0;
 }
 
 }  // namespace implicit_moment

@@ -66,6 +66,7 @@ struct MassMatrix {
     std::vector<double> entry;
     VectorField J_hat;           // ghosts filled
     std::vector<double> padded;  // E with room around it
+    Division of_ranks;           // the rows of each rank, which has no others of M
 
     explicit MassMatrix(const Grid& grid) : J_hat(grid) {}
 };
@@ -181,8 +182,11 @@ inline void deposit_mass_matrix(const std::vector<Particles>& species, const Gri
     mass.entry.assign(std::size_t((grid.z.cells + 3) * detail::offsets * stride), 0);
     mass.J_hat.all.setZero();
     double* J_hat = mass.J_hat.all.data();
+    mass.of_ranks = species.empty() ? Division{} : species.front().of_ranks;
+    std::vector<MeshRows> mesh = rows_of_vector(grid, mass.J_hat);
+    mesh.push_back({mass.entry.data(), detail::offsets * stride});
 
-    common::for_each_row_colored(3, nodes_z(grid), [&](long row) {
+    deposit_rows(mass.of_ranks, nodes_z(grid), -1, 1, mesh, [&](long row) {
         const double z_node = grid.z.at(double(row));
         detail::BlockFactors factors;
         for (long column = 0; column < nodes; ++column) {
@@ -235,6 +239,7 @@ inline void deposit_mass_matrix(const std::vector<Particles>& species, const Gri
             }
         }
     });
+    gather_rows(grid, mass.of_ranks, rows_of_vector(grid, mass.J_hat));
     for (std::size_t a = 0; a < 3; ++a)
         common::fold_ghosts(grid, electric.place[a], felt(grid).parity[a],
                             mass.J_hat.all.data() + long(a) * grid.size());

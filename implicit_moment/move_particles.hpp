@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "common/parallel.hpp"
+#include "common/ranks.hpp"
 #include "common/run/parameters.hpp"
 #include "implicit_moment/move_one.hpp"
 
@@ -174,9 +175,9 @@ inline void move_particles(const InterleavedField& field, const Grid& grid, doub
                            const MoverSettings& settings, std::vector<Particles>& species) {
     for (Particles& particles : species) {
         const MoverReport report = move_particles(field, grid, dt, settings, particles);
-        if (report.lost > 0) {
+        if (const long lost = common::sum_over_ranks(report.lost); lost > 0) {
             throw common::NumericalError(
-                std::to_string(report.lost) + " of the " + particles.name +
+                std::to_string(lost) + " of the " + particles.name +
                 " cannot be followed in 1024 sub-steps: the field has blown up; reduce time.dt");
         }
     }

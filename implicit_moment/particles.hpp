@@ -8,6 +8,7 @@
 
 #include "common/grid.hpp"
 #include "common/parallel.hpp"
+#include "common/ranks.hpp"
 #include "common/simd.hpp"
 
 namespace implicit_moment {
@@ -27,6 +28,7 @@ struct Particles {
     std::vector<double> x_p, z_p;          // position [d_i]
     std::vector<double> ux_p, uy_p, uz_p;  // v or gamma v [c]
     std::vector<int> first_of_node;        // node n has [first_of_node[n], first_of_node[n + 1])
+    common::Division of_ranks;  // the rows of each rank, or tiles of them, as it has theirs
 
     long count() const { return long(x_p.size()); }
     std::array<std::vector<double>*, 5> all() { return {&x_p, &z_p, &ux_p, &uy_p, &uz_p}; }

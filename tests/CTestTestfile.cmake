@@ -104,8 +104,10 @@ add_test(pages.runs_and_sliders_are_those_of_the_programs sh tests/support/pages
 describe_test(pages.runs_and_sliders_are_those_of_the_programs physics)
 
 # ---- ranks (with the programs of make MPI=1 all) ---------------------------------------------------
-foreach(what bytes restart refuse stop)
-    add_test(ranks.${what} sh tests/support/ranks.sh "${build_folder}" ${what})
+foreach(what refuse memory bytes.cic bytes.explicit_em bytes.implicit_moment restart.cic restart.explicit_em restart.implicit_moment
+        stop.cic stop.explicit_em stop.implicit_moment)
+    string(REPLACE "." ";" fact ${what})
+    add_test(ranks.${what} sh tests/support/ranks.sh "${build_folder}" ${fact})
     describe_test(ranks.${what} robust)
     set_tests_properties(ranks.${what} PROPERTIES SKIP_RETURN_CODE 77)
 endforeach()

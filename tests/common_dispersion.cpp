@@ -10,7 +10,7 @@
 
 #include "common/theory/kinetic_dispersion.hpp"
 #include "common/theory/plasma_dispersion.hpp"
-#include "common/theory/theta_scheme.hpp"
+#include "implicit_moment/theory/theta_light_wave.hpp"
 #include "implicit_moment/theory/transverse_dispersion.hpp"
 
 namespace {
@@ -331,7 +331,7 @@ TEST_CASE("the theta scheme treats vacuum light waves as tabulated") {
                   {.996687, .927295, .785398, .553574, .274680}}};
     for (const auto& row : table)
         for (int n = 0; n < 5; ++n) {
-            const Complex g = common::theta_light_wave(row.theta, a_0[n]);
+            const Complex g = implicit_moment::theta_light_wave(row.theta, a_0[n]);
             CHECK(std::abs(std::abs(g) - row.size[n]) <= 1e-6);
             CHECK(std::abs(std::arg(g) / a_0[n] - row.frequency[n]) <= 1e-6);
         }
@@ -339,8 +339,8 @@ TEST_CASE("the theta scheme treats vacuum light waves as tabulated") {
 
 TEST_CASE("the theta scheme with one half is neutral and with more damps") {
     for (const double a : {0.01, 0.3, 1.0, 3.0, 20.0}) {
-        CHECK(std::abs(std::abs(common::theta_light_wave(0.5, a)) - 1.0) <= 1e-14);
-        CHECK(std::abs(common::theta_light_wave(0.7, a)) < 1.0);
-        CHECK(std::abs(common::theta_light_wave(0.4, a)) > 1.0);
+        CHECK(std::abs(std::abs(implicit_moment::theta_light_wave(0.5, a)) - 1.0) <= 1e-14);
+        CHECK(std::abs(implicit_moment::theta_light_wave(0.7, a)) < 1.0);
+        CHECK(std::abs(implicit_moment::theta_light_wave(0.4, a)) > 1.0);
     }
 }

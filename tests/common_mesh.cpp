@@ -6,13 +6,17 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <new>
 #include <numeric>
 #include <utility>
 #include <vector>
 
+#include "common/random.hpp"
+#include "common/ranks.hpp"
 #include "common/simd.hpp"
 #include "common/splines.hpp"
 #include "implicit_moment/smooth.hpp"
@@ -726,4 +730,38 @@ TEST_CASE("the sort is stable and puts every particle at its nearest node for an
     CHECK(far == 0);
     CHECK(unordered == 0);
     CHECK(torn == 0);
+}
+
+TEST_CASE("borders between ranks leave as little as possible to the one with most") {
+    // Against all ways to cut at most eight pieces, some of them empty.
+    for (std::uint32_t trial = 0; trial < 2000; ++trial) {
+        const auto below = [&](long bound, std::uint32_t k) {
+            return long(double(bound) * common::uniform(7, 1, trial, k));
+        };
+        std::vector<long> work(1 + below(8, 100));
+        for (std::size_t k = 0; k < work.size(); ++k)
+            work[k] = std::max(0L, below(12, std::uint32_t(k)) - 2);
+        const long pieces = std::ssize(work), ranks = 1 + below(pieces, 101);
+        const auto most_of = [&](const std::vector<long>& first) {
+            long most = 0;
+            for (std::size_t k = 0; k + 1 < first.size(); ++k)
+                most = std::max(most, std::accumulate(work.begin() + first[k],
+                                                      work.begin() + first[k + 1], 0L));
+            return most;
+        };
+        long best = std::accumulate(work.begin(), work.end(), 0L);
+        for (unsigned cuts = 0; cuts < 1U << (pieces - 1); ++cuts) {
+            if (std::popcount(cuts) != ranks - 1) continue;
+            std::vector<long> first{0};
+            for (long piece = 1; piece < pieces; ++piece)
+                if ((cuts >> (piece - 1) & 1U) != 0) first.push_back(piece);
+            first.push_back(pieces);
+            best = std::min(best, most_of(first));
+        }
+        const common::Division division = common::Division::of(work, 1, ranks);
+        CHECK(std::ssize(division.first) == ranks + 1);
+        CHECK(std::adjacent_find(division.first.begin(), division.first.end(),
+                                 std::greater_equal<>()) == division.first.end());
+        CHECK(most_of(division.first) == best);
+    }
 }

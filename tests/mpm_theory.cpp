@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/theory/theta_scheme.hpp"
+#include "implicit_moment/theory/theta_light_wave.hpp"
 #include "mpm_explicit/output/write_output.hpp"
 #include "mpm_explicit/theory/exact_solutions.hpp"
 #include "mpm_explicit/theory/scheme_theory.hpp"
@@ -551,7 +551,7 @@ TEST_CASE("the theta scheme of one node has its own limits") {
         for (const double theta : {0.5, 0.6, 1.0}) {
             // A consistent mass filters nothing: the factor of a light wave.
             const std::complex<double> g = mpm::theta_node_oscillation(theta, z, 1);
-            CHECK(std::abs(g - common::theta_light_wave(theta, z)) <= 1e-15);
+            CHECK(std::abs(g - implicit_moment::theta_light_wave(theta, z)) <= 1e-15);
             // The closed form of its size, and nothing grows.
             for (const double f : {0.5, 0.625, 0.9}) {
                 const double D = 1 + theta * theta * z * z;

@@ -79,6 +79,7 @@ class Recorder {
         const auto p_x = history.column("momentum_x");
         summary.conservation("momentum_x_change", p_x.back() - p_x.front(), "n0*m*velocity*volume");
         summary.performance("particles", double(state.count()));
+        if (common::rank_count() > 1) summary.performance("imbalance", imbalance(state));
         if (parameters_.spectrum) write_spectrum(run.path("spectrum.dat"), parameters_, history);
     }
 
@@ -153,7 +154,7 @@ class Recorder {
         add_amplitude(0);
         if (parameters_.has_walls()) {
             for (const Particles& s : state.species)
-                row.add("count_" + s.name, "1", double(s.count()));
+                row.add("count_" + s.name, "1", double(s.count_of_all()));
             for (std::size_t k = 0; k < 4; ++k) {
                 row.add(std::string("charge_") + wall_names[k], "e/area", field.walls[k].charge);
                 row.add(std::string("potential_") + wall_names[k], "m*velocity^2/e",
@@ -181,8 +182,8 @@ class Recorder {
     double charge_error(double on_mesh, const State& state) const {
         double expected = background_, size = std::fabs(background_);
         for (const Particles& s : state.species) {
-            expected += s.q_p * double(s.count());
-            size += std::fabs(s.q_p) * double(s.count());
+            expected += s.q_p * double(s.count_of_all());
+            size += std::fabs(s.q_p) * double(s.count_of_all());
         }
         return size > 0 ? (on_mesh - expected) / size : 0;
     }

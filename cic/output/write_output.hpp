@@ -68,13 +68,20 @@ inline void write_particles(const common::Snapshot& at_time, const Case& paramet
         const auto at = [](const std::vector<Real>& values, long p) {
             return values.empty() ? 0.0 : double(values[p]);
         };
+        const long before = begin_of_rank(s.count_of_all(), common::rank());
+        std::array<std::vector<double>, 6> own;
         // Radical inverses repeat themselves: a stride of many particles would draw a pattern.
         for (long p = 0; p < s.count(); ++p) {
-            if (every > 1 && common::uniform(7, 7, std::uint64_t(p), 0) * double(every) >= 1)
+            if (every > 1 &&
+                common::uniform(7, 7, std::uint64_t(before + p), 0) * double(every) >= 1)
                 continue;
             const std::array<double, 6> row{double(k),     at(s.x_p, p),  at(s.z_p, p),
                                             at(s.vx_p, p), at(s.vy_p, p), at(s.vz_p, p)};
-            for (std::size_t a = 0; a < 6; ++a) data[a].push_back(row[a]);
+            for (std::size_t a = 0; a < 6; ++a) own[a].push_back(row[a]);
+        }
+        for (std::size_t a = 0; a < 6; ++a) {
+            const std::vector<double> of_all = common::gather_in_turn(own[a]);
+            data[a].insert(data[a].end(), of_all.begin(), of_all.end());
         }
     }
     const bool plane = parameters.dimensions == 2, magnetized = parameters.magnetized();
@@ -119,21 +126,24 @@ inline void write_phase_space(const common::Snapshot& at_time, const Case& param
         v{"v_x", "velocity", -v_max + 0.5 * dv, dv, nv};
     std::vector<std::vector<double>> f, f_v;
     for (const Particles& s : state.species) {
-        f.emplace_back(static_cast<std::size_t>(nx * nv), 0.0);
-        f_v.emplace_back(static_cast<std::size_t>(nv), 0.0);
+        std::vector<double> bins(static_cast<std::size_t>(nx * nv + nv), 0.0);  // f(x, v), f(v)
         const SpeciesCase* from = nullptr;
         for (const SpeciesCase& c : parameters.species)
             if (c.name == s.name) from = &c;
         const double weight = s.m_p / from->mass / (dx * dv * L_z);
-        for (std::size_t n = 0; n < s.x_p.size(); ++n) {
-            const long i = std::min(
-                nx - 1, static_cast<long>((double(s.x_p[n]) - parameters.grid.x.low) / dx));
-            const double bin = std::floor((double(s.vx_p[n]) + v_max) / dv);
-            if (!(bin >= 0 && bin < double(nv))) continue;
-            const long l = static_cast<long>(bin);
-            f.back()[static_cast<std::size_t>(l * nx + i)] += weight;
-            f_v.back()[l] += weight / double(nx);
-        }
+        common::in_turn(bins.data(), std::array{0L, std::ssize(bins)}, [&](long) {
+            for (std::size_t n = 0; n < s.x_p.size(); ++n) {
+                const long i = std::min(
+                    nx - 1, static_cast<long>((double(s.x_p[n]) - parameters.grid.x.low) / dx));
+                const double bin = std::floor((double(s.vx_p[n]) + v_max) / dv);
+                if (!(bin >= 0 && bin < double(nv))) continue;
+                const long l = static_cast<long>(bin);
+                bins[static_cast<std::size_t>(l * nx + i)] += weight;
+                bins[static_cast<std::size_t>(nx * nv + l)] += weight / double(nx);
+            }
+        });
+        f.emplace_back(bins.begin(), bins.begin() + nx * nv);
+        f_v.emplace_back(bins.begin() + nx * nv, bins.end());
     }
     std::vector<double> speeds;
     for (long l = 0; l < nv; ++l) speeds.push_back(v.at(l));

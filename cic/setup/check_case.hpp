@@ -17,6 +17,9 @@ namespace cic {
 ///         formulas their tables.
 inline void validate(Case& parameters) {
     common::require_formats(parameters.also);
+    refuse(common::rank_count() > common::block_count, common::rank_count(),
+           " ranks, and the particles are in ", common::block_count,
+           " blocks, of which each rank needs one: start fewer");
     Grid& grid = parameters.grid;
     grid.x.periodic = parameters.boundary_x == "periodic";
     grid.z.periodic = parameters.boundary_z == "periodic";

@@ -16,23 +16,43 @@ struct State {
     Walls walls;
     std::vector<long> emitted_again;  // by the source wall, per species
 
-    long count() const {
+    long count() const {  // of all ranks
         long total = 0;
-        for (const Particles& s : species) total += s.count();
+        for (const Particles& s : species) total += s.count_of_all();
         return total;
     }
 };
+
+/// Leaves of lists that every rank has its own range of each.
+inline void keep_own(State& state) {
+    if (common::rank_count() == 1) return;
+    for (Particles& s : state.species) {
+        s.among_ranks = s.count();
+        const long begin = begin_of_rank(s.among_ranks, common::rank()),
+                   end = begin_of_rank(s.among_ranks, common::rank() + 1);
+        for (std::vector<Real>* q : s.all())
+            if (!q->empty()) *q = std::vector<Real>(q->begin() + begin, q->begin() + end);
+    }
+}
+
+/// The most particles of a rank over the mean.
+inline double imbalance(const State& state) {
+    long own = 0;
+    for (const Particles& s : state.species) own += s.count();
+    const double most = double(common::largest_over_ranks(own)), all = double(state.count());
+    return all > 0 ? most * common::rank_count() / all : 1;
+}
 
 /// Names every number of the state, for writing and for reading alike.
 template <class Archive>
 void archive(Archive& a, State& state) {
     for (std::size_t k = 0; k < state.species.size(); ++k) {
         Particles& s = state.species[k];
-        a(s.name + ".x_p", s.x_p);
-        a(s.name + ".z_p", s.z_p);
-        a(s.name + ".vx_p", s.vx_p);
-        a(s.name + ".vy_p", s.vy_p);
-        a(s.name + ".vz_p", s.vz_p);
+        a(s.name + ".x_p", common::OfAllRanks<Real>{s.x_p});
+        a(s.name + ".z_p", common::OfAllRanks<Real>{s.z_p});
+        a(s.name + ".vx_p", common::OfAllRanks<Real>{s.vx_p});
+        a(s.name + ".vy_p", common::OfAllRanks<Real>{s.vy_p});
+        a(s.name + ".vz_p", common::OfAllRanks<Real>{s.vz_p});
         a(s.name + ".emitted_again", state.emitted_again[k]);
     }
     for (std::size_t k = 0; k < 4; ++k)

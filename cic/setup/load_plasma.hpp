@@ -79,7 +79,7 @@ inline Position position_of(const Case& parameters, const SpeciesCase& s, std::u
 
 }  // namespace detail
 
-/// Loads one species.
+/// Loads one species, its range of it where there are ranks.
 ///     x_p = even or random + displacements,  each -(A/k) sin(k x) along its k
 ///     and, for the ripple of a layer, z_p + ripple cos(k_x x)
 ///     v_p = drift + Maxwellian, and for a traveling wave + (omega/k - u) A cos(k x) along k
@@ -95,7 +95,10 @@ inline Particles load_species(const Case& parameters, const SpeciesCase& s, std:
     const double weight = s.mean_density() * filled_volume(parameters, s) / double(count);
     particles.q_p = weight * s.charge;
     particles.m_p = weight * s.mass;
-    resize(count, plane, parameters.magnetized(), particles);
+    const long before = begin_of_rank(count, common::rank()),
+               own = begin_of_rank(count, common::rank() + 1) - before;
+    resize(own, plane, parameters.magnetized(), particles);
+    particles.among_ranks = count;
 
     struct Seed {
         WaveVector k;
@@ -122,19 +125,20 @@ inline Particles load_species(const Case& parameters, const SpeciesCase& s, std:
     const std::size_t across_a = parameters.axis() == 0 ? 2 : 0,
                       across_b = parameters.axis() == 1 ? 2 : 1;
     const std::uint32_t velocities = 100 + purpose;
-    common::for_each_block(count, [&](int, long begin, long end) {
+    for_each_own_block(count, [&](int, long begin, long end) {
         for (long p = begin; p < end; ++p) {
-            detail::Position at = detail::position_of(parameters, s, purpose, load, p, count);
+            const long n = before + p;  // its place among all
+            detail::Position at = detail::position_of(parameters, s, purpose, load, n, count);
             std::array<double, 3> u = s.drift();
             for (std::size_t a = 0; a < 3; ++a) {
-                if (thermal[a] > 0) u[a] += thermal[a] * load.gaussian(velocities, base[a], p);
+                if (thermal[a] > 0) u[a] += thermal[a] * load.gaussian(velocities, base[a], n);
                 if (s.tables.v[a].given())
-                    u[a] += s.tables.v[a].inverse(load.uniform(velocities, base[a], p));
+                    u[a] += s.tables.v[a].inverse(load.uniform(velocities, base[a], n));
             }
             if (s.tables.speed.given()) {
                 const double speed = s.tables.speed.inverse(
-                                 load.uniform(velocities, base[across_a], p)),
-                             angle = 2 * pi * load.uniform(velocities, base[across_b], p);
+                                 load.uniform(velocities, base[across_a], n)),
+                             angle = 2 * pi * load.uniform(velocities, base[across_b], n);
                 u[across_a] += speed * std::cos(angle), u[across_b] += speed * std::sin(angle);
             }
             const detail::Position unperturbed = at;

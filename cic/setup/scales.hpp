@@ -57,11 +57,14 @@ inline Scales scales_of(const Case& parameters) {
     long sorted = 0;
     if (parameters.dimensions == 2 && parameters.sort_interval > 0)
         for (const SpeciesScales& one : s.species) sorted = std::max(sorted, one.particles);
+    // A rank has the blocks of its share; what a sort gives to others comes and goes through lists.
+    const int ranks = common::rank_count(), blocks = (common::block_count + ranks - 1) / ranks;
+    const double share = double(blocks) / common::block_count;
     // The density of every species is deposited once more where fields are written.
-    const double meshes =
-        (common::block_count + 8) + (parameters.fields_interval > 0 ? common::block_count + 6 : 0);
-    s.bytes = double(components * s.particles) * sizeof(Real) +
-              double(sorted) * (sizeof(Real) + sizeof(int)) +
+    const double meshes = (blocks + 9) + (parameters.fields_interval > 0 ? blocks + 7 : 0);
+    s.bytes = share * double(components * s.particles) * sizeof(Real) +
+              share * double(sorted) *
+                  (sizeof(Real) + sizeof(int) + (ranks > 1 ? 2 * sizeof(double) : 0)) +
               double(parameters.grid.size()) * meshes * sizeof(double);
     // The factors of the matrix of a box.
     if (parameters.is_box()) {

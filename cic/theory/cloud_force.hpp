@@ -193,8 +193,10 @@ inline void validate_clouds(const Case& parameters) {
 /// Adds the distance of the two clouds along x, to the nearest image.
 inline void add_separation(const Case& parameters, const std::vector<Particles>& species,
                            common::Row& row) {
-    const double length = parameters.grid.x.length,
-                 d = double(species[1].x_p[0]) - double(species[0].x_p[0]);
+    const auto x_of = [&](std::size_t k) {  // with the rank that has it
+        return common::gather_with_all({species[k].x_p.begin(), species[k].x_p.end()})[0];
+    };
+    const double length = parameters.grid.x.length, d = x_of(1) - x_of(0);
     row.add("separation_x", "length", d - length * std::floor(d / length + 0.5));
 }
 

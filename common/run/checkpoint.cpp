@@ -167,6 +167,23 @@ void CheckpointReader::check_sum() {
     if (found != expected) refuse("is damaged (its checksum is wrong)");
 }
 
+void CheckpointReader::read_in_pieces(std::uint64_t bytes,
+                                      const std::function<void(const void*, std::size_t)>& take) {
+    // The checksum of a block is that of its numbers in one piece.
+    XXH3_state_t state;
+    XXH3_64bits_reset_withSeed(&state, checksum_);
+    std::vector<char> piece(std::min<std::uint64_t>(bytes, 1 << 20));
+    while (bytes > 0) {
+        const std::size_t part = std::min<std::uint64_t>(bytes, piece.size());
+        read_plain(piece.data(), part);
+        XXH3_64bits_update(&state, piece.data(), part);
+        take(piece.data(), part);
+        bytes -= part;
+    }
+    checksum_ = XXH3_64bits_digest(&state);
+    check_sum();
+}
+
 std::size_t CheckpointReader::begin_block(const std::string& name, char type, std::size_t size) {
     const Header header = read_header();
     if (header.name == end_of_file && name != end_of_file) refuse("ends too early");
@@ -200,23 +217,12 @@ long CheckpointReader::verify() {
     const long begin = std::ftell(file_.get());
     const std::uint64_t left = left_, checksum = checksum_;
     long blocks = 0;
-    std::vector<char> piece(1 << 20);
     for (bool more = true; more; ++blocks) {
         const Header header = read_header();
         const std::string types = "dflic";
         const std::size_t sizes[] = {8, 4, 8, 4, 1}, kind = types.find(header.type);
         if (kind == std::string::npos || header.count > left_ / sizes[kind]) refuse("is damaged");
-        // The checksum of a block is that of its numbers in one piece.
-        XXH3_state_t state;
-        XXH3_64bits_reset_withSeed(&state, checksum_);
-        for (std::uint64_t bytes = header.count * sizes[kind]; bytes > 0;) {
-            const std::size_t part = std::min<std::uint64_t>(bytes, piece.size());
-            read_plain(piece.data(), part);
-            XXH3_64bits_update(&state, piece.data(), part);
-            bytes -= part;
-        }
-        checksum_ = XXH3_64bits_digest(&state);
-        check_sum();
+        read_in_pieces(header.count * sizes[kind], [](const void*, std::size_t) {});
         more = header.name != end_of_file;
     }
     if (left_ > 0) refuse("is cut off or too long");

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <functional>
 #include <memory>
 #include <string>
 #include <type_traits>
@@ -114,13 +115,25 @@ class CheckpointReader {
     /// Reads a list of numbers of any length.
     template <class Number>
     void operator()(const std::string& name, std::vector<Number>& values) {
-        values.resize(begin_block(name, letter_of<Number>(), sizeof(Number)));
-        end_block(name, values.data(), values.size());
+        (*this)(name, OfAllRanks<Number>{values});
     }
-    /// The same for a list of which ranks have parts: each reads all of it.
+    /// The same for a list of which a rank keeps its share.
     template <class Number>
     void operator()(const std::string& name, const OfAllRanks<Number>& part) {
-        (*this)(name, part.values);
+        const long count = long(begin_block(name, letter_of<Number>(), sizeof(Number))),
+                   begin = part.share.begin(count), end = part.share.end(count);
+        std::vector<Number>().swap(part.values);
+        part.values.reserve(std::size_t(end - begin));
+        long before = 0;
+        read_in_pieces(std::uint64_t(count) * sizeof(Number), [&](const void* piece,
+                                                                  std::size_t bytes) {
+            const Number* from = static_cast<const Number*>(piece);
+            const long numbers = long(bytes / sizeof(Number));
+            require_finite(name, from, numbers);
+            part.values.insert(part.values.end(), from + std::clamp(begin - before, 0L, numbers),
+                               from + std::clamp(end - before, 0L, numbers));
+            before += numbers;
+        });
     }
     void operator()(const std::string& name, const SumOverRanks& sum) { (*this)(name, sum.values); }
     /// Reads a list of numbers whose length is known: a dense vector of Eigen.
@@ -142,7 +155,11 @@ class CheckpointReader {
     void end_block(const std::string& name, Number* to, std::size_t count) {
         read(to, count * sizeof(Number));
         check_sum();
-        if (!std::all_of(to, to + count, [](Number x) { return std::isfinite(double(x)); }))
+        require_finite(name, to, long(count));
+    }
+    template <class Number>
+    void require_finite(const std::string& name, const Number* from, long count) {
+        if (!std::all_of(from, from + count, [](Number x) { return std::isfinite(double(x)); }))
             refuse("has numbers in '" + name + "' that are not finite");
     }
     struct Header {
@@ -155,6 +172,9 @@ class CheckpointReader {
     Header read_header();
     std::size_t begin_block(const std::string& name, char type, std::size_t size);
     void check_sum();
+    // Reads the numbers of a block, of which take(piece, bytes) gets some at a time, and its checksum.
+    void read_in_pieces(std::uint64_t bytes,
+                        const std::function<void(const void*, std::size_t)>& take);
     [[noreturn]] void refuse(const std::string& why) const;
     void require_length(const std::string& name, std::size_t found, std::size_t wanted) const;
     std::string text(const std::string& name);

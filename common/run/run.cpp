@@ -350,7 +350,7 @@ int Run::finish(long step, double count) {
         summary.performance("ranks", rank_count());
         summary.performance("communication_s", communication_seconds());
     }
-    summary.performance("peak_memory_bytes", peak_memory_bytes());
+    summary.performance("peak_memory_bytes", double(largest_over_ranks(long(peak_memory_bytes()))));
 
     int status = 0;
     std::string message = "done", next;
@@ -422,17 +422,20 @@ int run_and_report_errors(const ProgramInfo& info, char** argv,
     std::signal(SIGXFSZ, SIG_IGN);
     std::optional<Run> run;
     const auto end = [&](int status, const std::string& message) {
-        if (run) run->fail(status, message);
-        run.reset();
+        const auto leave_summary = [&] {
+            if (run) run->fail(status, message);
+        };
+        leave_summary();
+        if (is_first_rank()) run.reset();
         beginning.is_all = 0;  // ranks that end first may have the others stopped
         const std::string sentence = info.program + ": " + printable(message);
         std::fprintf(stderr, "%s\n", sentence.c_str());
-        return end_ranks(status, sentence);
+        return end_ranks(status, sentence, leave_summary);
     };
     try {
         const int status = program(run);
         run.reset();
-        return end_ranks(status, "");
+        return end_ranks(status);
     } catch (const InputError& error) {
         return end(2, error.what());
     } catch (const NumericalError& error) {

@@ -1,6 +1,9 @@
 // What every main does between the case and the first step.
 #pragma once
 
+#include <unistd.h>
+
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <optional>
@@ -17,8 +20,10 @@ namespace common {
 struct Preparation {
     std::string description;  // scales, memory and time in words
     std::vector<std::string> warnings;
-    long steps = 0;    // to be run; a run until a time does not know them
-    double bytes = 0;  // of memory
+    long steps = 0;      // to be run; a run until a time does not know them
+    double bytes = 0;    // of memory, in each rank
+    double seconds = 0;  // on one core
+    double of_mesh = 0;  // of these, on the mesh, which every rank has
 };
 
 /// Says what the case is and what may mislead in it, and opens the run.
@@ -32,9 +37,20 @@ inline bool start_run(const ProgramInfo& info, const CommandLine& command,
     for (const std::string& warning : prepared.warnings)
         std::fprintf(stderr, "warning: %s\n", warning.c_str());
     if (!command.quiet) std::printf("%s", prepared.description.c_str());
-    if (rank_count() > 1 && !command.quiet)
-        std::printf("  %-33s %d, each with that memory while all load all, then with its share\n",
-                    "ranks", rank_count());
+    // OMP_NUM_THREADS is obeyed, and so is --threads before it; a rank beside others has one thread.
+    const bool unsaid = command.threads == 0 && std::getenv("OMP_NUM_THREADS") == nullptr;
+    const int unsaid_threads = ranks_here() > 1 ? 1 : free_cores();
+    set_thread_count(unsaid ? unsaid_threads : command.threads);
+    if (rank_count() > 1 && !command.quiet) {
+        const double cores = std::min({double(thread_count()), double(free_cores()),
+                                       double(sysconf(_SC_NPROCESSORS_ONLN)) / ranks_here()});
+        const double seconds =
+            prepared.of_mesh + (prepared.seconds - prepared.of_mesh) / rank_count();
+        std::printf("  %-33s %d, each with at most that memory\n", "ranks", rank_count());
+        if (seconds > 0)
+            std::printf("  %-33s about %.4g s, with %.2g core(s) each\n", "time with them",
+                        seconds / cores, cores);
+    }
     if (command.dry_run) return false;
     if (command.complete) {
         if (!command.quiet)
@@ -48,10 +64,6 @@ inline bool start_run(const ProgramInfo& info, const CommandLine& command,
     // Ranks of one machine share its memory; and what they have read, nobody changes while others read it.
     refuse_before_start(command, prepared.steps, prepared.bytes * ranks_here());
     largest_over_ranks(0);
-    // OMP_NUM_THREADS is obeyed, and so is --threads before it; a rank beside others has one thread.
-    const bool unsaid = command.threads == 0 && std::getenv("OMP_NUM_THREADS") == nullptr;
-    const int unsaid_threads = ranks_here() > 1 ? 1 : free_cores();
-    set_thread_count(unsaid ? unsaid_threads : command.threads);
     Run& run = holder.emplace(info, command, table);
     for (const std::string& warning : prepared.warnings) run.summary.warning(warning);
     run.schedule = schedule;

@@ -1,5 +1,6 @@
 #!/bin/sh
-# keep_explicit_gem.sh RUN FOLDER: keeps what figures 9 and 10 need of a full explicit GEM run: the flux every half of 1/Omega_ci, and the profiles at unit flux.
+# keep_explicit_gem.sh RUN FOLDER: keeps what figures need of a full explicit GEM run: the flux every half of 1/Omega_ci, the profiles at unit flux (9 and 10), and
+# where its particles are (implicit_moment_ranks).
 # What FOLDER has already stays as long as the run is shorter.
 set -eu
 export LC_ALL=C.UTF-8
@@ -30,3 +31,23 @@ mv "$folder/new.csv" "$folder/explicit_gem_flux.csv"
     echo '# x,v_x_electrons,rho_ions,v_x_ions,B_z'
     awk '$1 + 0 == $1 { printf "%.3f,%.4f,%.4f,%.4f,%.5f\n", $1, $2, $3, $4, $5 }' "$run/profile.dat"
 } > "$folder/explicit_gem_profile.csv"
+# Strips of four rows of cells are what ranks divide. in: the field files of t Omega_ci = 0, 15, 30
+for step in 0 10000 20000; do
+    file=$(printf '%s/fields_%06d.dat' "$run" "$step")
+    [ -f "$file" ] || exit 0
+    awk -v cells="$(sed -n 's/^cells_z *= *//p' "$run/case.toml")" '
+        NR == 1 { for (k = 1; k <= NF; k++) { if ($k == "z") z = k; if ($k == "rho_ions") i = k; if ($k == "rho_electrons") e = k } }
+        $1 + 0 == $1 { if (!($z in row)) { row[$z] = rows++ } of_row[row[$z]] += $i - $e }
+        # A row of cells has half of what is on the rows of nodes on both sides.
+        END {
+            for (j = 0; j < cells; j++) { strip[int(j / 4)] += of_row[j] + of_row[j + 1]; all += of_row[j] + of_row[j + 1] }
+            for (k = 0; k < cells / 4; k++) printf "%.6f\n", strip[k] / all
+        }' "$file" > "$folder/strips_$step"
+done
+{
+    echo "# $where"
+    echo '# share of all particles in each strip of four rows of cells, at t Omega_ci = 0, 15, 30'
+    echo '# t0,t15,t30'
+    paste -d , "$folder/strips_0" "$folder/strips_10000" "$folder/strips_20000"
+} > "$folder/explicit_gem_strips.csv"
+rm "$folder/strips_0" "$folder/strips_10000" "$folder/strips_20000"

@@ -21,6 +21,10 @@ template <int l>
 inline long cells_of_tile(const Grid& grid) {
     return rows_of_tile * Stencil<l>::cells(grid.x);
 }
+/// The same for either order of the splines.
+inline long cells_of_tile(const Grid& grid, long order) {
+    return order == 1 ? cells_of_tile<1>(grid) : cells_of_tile<2>(grid);
+}
 
 /// Of one species, between the push and sort_by_cell.
 struct Crossings {

@@ -14,19 +14,17 @@ namespace implicit_moment {
 template <int l>
 inline void deposit_charge_and_current(const InterleavedField& field, const Grid& grid, double dt,
                                        const LeapfrogSettings& settings, const Particles& particles,
-                                       Images images, const Division& of_ranks, Moments& moments) {
+                                       Images images, Moments& moments) {
     for (Field* f : moments.all()) f->setZero();
     const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing();
     const double half_kick = 0.5 * dt * particles.q_p / particles.m_p;
     const double per_c2 = settings.per_c_squared(), q = particles.q_p / grid.cell_area();
     const long columns = Stencil<l>::cells(grid.x), rows = Stencil<l>::cells(grid.z);
-    std::vector<std::array<double, 4>> sums_of_row(rows);
+    std::vector<std::array<double, 4>> sums_of_row(nodes_z(grid) + 2);
 
-    const long first_row = of_ranks.begin() * rows_of_tile,
-               end_row = of_ranks.end(tiles_of(rows)) * rows_of_tile;
+    const Division our_rows = rows_of(particles.of_ranks, rows);
     const auto deposit_row = [&](long row) {
-        if (row < first_row || row >= end_row) return;
-        std::array<double, 4>& sums = sums_of_row[row];
+        std::array<double, 4>& sums = sums_of_row[row + 1];
         const double z_anchor = grid.z.at(double(row));
         for (long column = 0; column < columns; ++column) {
             const long cell = row * columns + column;
@@ -68,14 +66,12 @@ inline void deposit_charge_and_current(const InterleavedField& field, const Grid
             }
         }
     };
-    for (long color = 0; color < 3; ++color) {
-        common::for_each_row((rows - color + 2) / 3, [&](long k) { deposit_row(color + 3 * k); });
-        exchange_sums(grid, of_ranks, rows, color, Stencil<l>::first, Stencil<l>::first + l,
-                      {&moments.rho, &moments.J_x, &moments.J_y, &moments.J_z});
-    }
+    std::vector<MeshRows> mesh;
     for (Field* f : {&moments.rho, &moments.J_x, &moments.J_y, &moments.J_z})
-        gather_rows(grid, of_ranks, f->data());
-    gather_sums(of_ranks, sums_of_row);
+        mesh.push_back({f->data(), grid.stride()});
+    deposit_rows(our_rows, rows, Stencil<l>::first, Stencil<l>::first + l, mesh, deposit_row);
+    mesh.push_back({sums_of_row.front().data(), 4});
+    gather_rows(grid, our_rows, mesh);
 
     moments.kinetic_energy = 0;
     moments.momentum = {};
@@ -88,18 +84,17 @@ inline void deposit_charge_and_current(const InterleavedField& field, const Grid
 
 /// The moments of all species at t^n, with the splines of move_particles.
 /// in:     field, E^n and B^n; particles sorted by cell, u of t^{n-1/2}; images, what is behind a
-///         wall: a conductor's for Gauss's law, the plasma's own for what is shown; of_ranks, their tiles.
+///         wall: a conductor's for Gauss's law, the plasma's own for what is shown.
 /// out:    rho, J, kinetic energy m c^2 (gamma - 1) and momentum m u; no stress.
 inline void deposit_charge_and_current(const InterleavedField& field, const Grid& grid, double dt,
                                        const LeapfrogSettings& settings,
                                        const std::vector<Particles>& species, Images images,
-                                       std::vector<Moments>& moments,
-                                       const Division& of_ranks = {}) {
+                                       std::vector<Moments>& moments) {
     for (std::size_t k = 0; k < species.size(); ++k) {
         settings.order == 1 ? deposit_charge_and_current<1>(field, grid, dt, settings, species[k],
-                                                            images, of_ranks, moments[k])
+                                                            images, moments[k])
                             : deposit_charge_and_current<2>(field, grid, dt, settings, species[k],
-                                                            images, of_ranks, moments[k]);
+                                                            images, moments[k]);
     }
 }
 

@@ -1,13 +1,11 @@
 // The particles of explicit_em divided among ranks (common/ranks.hpp): each has whole tiles of rows of
 // cells and what is in them; all have the whole mesh. What goes over the borders, and why the bytes are
-// those of one process:
+// those of one process (of the sums of charge and current at t^n: exchange_rows.hpp):
 //
 //     J          rows of the tiles beside a border; who has a row of the mesh adds them tile by tile,
 //                species by species, as one process does; then all rows go to all
 //     particles  those that cross, in the order of the tiles that they leave: the order in which
 //                sort_by_cell takes them from there
-//     moments    where both sides of a border add to one row, the sum so far, color after color: each
-//                term is added to the number to which one process adds it
 //
 // In one process these functions return at once.
 #pragma once
@@ -17,12 +15,18 @@
 #include <vector>
 
 #include "common/ranks.hpp"
+#include "implicit_moment/exchange_rows.hpp"
 #include "implicit_moment/explicit_em/crossings.hpp"
 #include "implicit_moment/explicit_em/deposit_current.hpp"
 
 namespace implicit_moment {
 
-using common::Division;
+/// The rows of cells of each rank, of its tiles.
+inline Division rows_of(const Division& tiles, long rows) {
+    Division division = tiles;
+    for (long& first : division.first) first = std::min(rows, first * rows_of_tile);
+    return division;
+}
 
 namespace detail {
 
@@ -44,14 +48,6 @@ inline std::vector<int> neighbors_of(const Division& tiles) {
         if (near) neighbors.push_back(k);
     }
     return neighbors;
-}
-
-/// Where the rows of nodes of each rank begin in a field, the ghosts with the first and the last.
-inline std::vector<long> begin_of_rows(const Grid& grid, const Division& tiles) {
-    std::vector<long> first;
-    for (const long tile : tiles.first) first.push_back(grid.index(-1, tile * rows_of_tile));
-    first.front() = 0, first.back() = grid.size();
-    return first;
 }
 
 }  // namespace detail
@@ -97,20 +93,6 @@ inline void exchange_current(const Grid& grid, const Division& tiles, long rows,
     }
 }
 
-/// Gives every rank all rows of nodes of a field. in/out: f, our rows filled
-inline void gather_rows(const Grid& grid, const Division& tiles, double* f) {
-    if (!tiles.is_whole()) common::gather_pieces(f, detail::begin_of_rows(grid, tiles));
-}
-
-/// The same for sums of rows of cells.
-inline void gather_sums(const Division& tiles, std::vector<std::array<double, 4>>& of_row) {
-    if (tiles.is_whole()) return;
-    std::vector<long> first;
-    for (const long tile : tiles.first)
-        first.push_back(4 * std::min(std::ssize(of_row), tile * rows_of_tile));
-    common::gather_pieces(of_row.front().data(), first);
-}
-
 /// Brings the particles that cross to those who have the cells to which they come.
 /// in/out: crossings of our tiles; those of others get what comes to us
 inline void exchange_crossings(long per_tile, Crossings& crossings) {
@@ -136,40 +118,6 @@ inline void exchange_crossings(long per_tile, Crossings& crossings) {
             left.to_cell.push_back(int(p[1]));
             left.quantities.push_back({p[2], p[3], p[4], p[5], p[6]});
         }
-    }
-}
-
-/// Brings the sums so far of nodes to which both sides of a border add to the side that has not added
-/// to them in this color.
-/// in:     rows, of cells; a row adds to its nodes from low to high rows away
-/// in/out: fields
-inline void exchange_sums(const Grid& grid, const Division& tiles, long rows, long color, long low,
-                          long high, const std::array<Field*, 4>& fields) {
-    if (tiles.is_whole()) return;
-    const int me = common::rank();
-    // Visits the rows of nodes of the border before a rank to which one side of it has added.
-    const auto for_each_row_from = [&](bool below, int above, const auto& work) {
-        const long first = tiles.first[above] * rows_of_tile;  // row of cells
-        for (long j = first + low; j < first + high; ++j) {
-            for (long row = std::max(0L, j - high); row <= std::min(rows - 1, j - low); ++row)
-                if (row % 3 == color && (row < first) == below)
-                    for (Field* f : fields) work(f->data() + grid.index(-1, j), grid.stride());
-        }
-    };
-    std::vector<int> peers;
-    if (me > 0) peers.push_back(me - 1);
-    if (me + 1 < common::rank_count()) peers.push_back(me + 1);
-    std::vector<std::vector<double>> to(peers.size()), from;
-    for (std::size_t k = 0; k < peers.size(); ++k)
-        for_each_row_from(peers[k] > me, std::max(me, peers[k]), [&](const double* f, long count) {
-            to[k].insert(to[k].end(), f, f + count);
-        });
-    common::exchange(peers, to, from);
-    for (std::size_t k = 0; k < peers.size(); ++k) {
-        const double* next = from[k].data();
-        for_each_row_from(peers[k] < me, std::max(me, peers[k]), [&](double* f, long count) {
-            std::copy_n(next, count, f), next += count;
-        });
     }
 }
 

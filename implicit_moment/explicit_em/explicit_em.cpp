@@ -11,7 +11,7 @@
 #include <optional>
 
 #include "common/run/start.hpp"
-#include "implicit_moment/explicit_em/balance_rows.hpp"
+#include "implicit_moment/balance_rows.hpp"
 #include "implicit_moment/explicit_em/setup/check_leapfrog.hpp"
 #include "implicit_moment/explicit_em/setup/leapfrog_state.hpp"
 #include "implicit_moment/explicit_em/step.hpp"
@@ -37,10 +37,11 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     validate(parameters);
     refuse_unstable(parameters);
     const Scales scales = scales_of(parameters);
-    if (!common::start_run(info, command, table,
-                           {describe_scales(parameters, scales),
-                            leapfrog_warnings(parameters, scales), scales.steps, scales.bytes},
-                           {parameters.checkpoint_steps, parameters.history_steps}, holder))
+    if (!common::start_run(
+            info, command, table,
+            {describe_scales(parameters, scales), leapfrog_warnings(parameters, scales),
+             scales.steps, scales.bytes, scales.seconds, scales.of_mesh},
+            {parameters.checkpoint_steps, parameters.history_steps}, holder))
         return 0;
     common::Run& run = *holder;
 
@@ -62,22 +63,19 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     // 3. The loop.
     const long steps = scales.steps;
     long step = 0;
-    Checkpoint checkpoint{state, recorder.profile, false};
-    const auto sort = [&](std::vector<Particles>& all) {
-        SortScratch room;
-        sort_by_cell(grid, settings.order, room, all);
-    };
+    Checkpoint checkpoint{state, recorder.profile, false, common::share_of_rank()};
+    const auto sort = [&](std::vector<Particles>& all) { sort_by_cell(grid, settings.order, all); };
     if (run.restarting())
         run.restore(checkpoint, step, [&] { validate_state(parameters, step, sort, checkpoint); });
-    Division& of_ranks = scratch.current.of_ranks;
-    double imbalance = balance_rows(grid, settings.order, of_ranks, particles);
+    double imbalance = balance_rows(cells_of_tile(grid, settings.order), 1, particles);
     while (run.not_finished(step, steps)) {
         interleave_field(grid, parameters.field.smoothing, state.field, scratch);  // E^n, B^n
         if (step % parameters.history_steps == 0)                                  // the row of t^n
             recorder.record(step, state, moments_with(Images::conductor), run);
         take_step(grid, dt, settings, parameters.field.smoothing, scratch, particles,
                   state.field);  // u, J^{n+1/2}; x, E, B^{n+1}
-        if (++step % 10 == 0) imbalance = balance_rows(grid, settings.order, of_ranks, particles);
+        if (++step % 10 == 0)
+            imbalance = balance_rows(cells_of_tile(grid, settings.order), 1, particles);
         run.end_of_step(step, steps, double(step) * dt, checkpoint);
     }
 

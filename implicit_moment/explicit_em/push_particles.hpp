@@ -72,7 +72,6 @@ inline SimdVector first_part(const SimdVector& d_x, const SimdVector& D_x, doubl
 /// Room for the current, kept between steps; nothing of it is state.
 struct CurrentScratch {
     std::vector<CurrentTile> tiles;
-    Division of_ranks;  // the tiles of each rank
     Field smoothed;
 };
 
@@ -94,7 +93,7 @@ inline long move_particles(const InterleavedField& field, const Grid& grid, doub
     const long tiles = tiles_of(rows);
     std::vector<long> lost(tiles, 0);
     scratch.tiles.resize(tiles);
-    const Division& of_ranks = scratch.of_ranks;
+    const Division& of_ranks = particles.of_ranks;
     crossings.clear(columns * rows, cells_of_tile<l>(grid), of_ranks);
 
     common::for_each_row(of_ranks.end(tiles) - of_ranks.begin(), [&](long mine) {
@@ -228,8 +227,10 @@ inline void move_particles(const InterleavedField& field, const Grid& grid, doub
                                          "too fast, or the field has blown up; reduce time.dt");
         }
     }
+    if (!species.empty())
+        gather_rows(grid, rows_of(species.front().of_ranks, nodes_z(grid)),
+                    rows_of_vector(grid, J));
     for (std::size_t a = 0; a < 3; ++a) {
-        gather_rows(grid, scratch.of_ranks, J.all.data() + a * grid.size());
         common::fold_ghosts(grid, electric.place[a], felt(grid).parity[a],
                             J.all.data() + a * grid.size());
     }

@@ -38,8 +38,8 @@ inline void sort_by_cell(const Grid& grid, SortScratch& scratch, Particles& part
 }
 
 /// Sorts all species. in: order, of the spline of the charge.
-inline void sort_by_cell(const Grid& grid, long order, SortScratch& scratch,
-                         std::vector<Particles>& species) {
+inline void sort_by_cell(const Grid& grid, long order, std::vector<Particles>& species) {
+    SortScratch scratch;
     for (Particles& particles : species) {
         order == 1 ? sort_by_cell<1>(grid, scratch, particles)
                    : sort_by_cell<2>(grid, scratch, particles);
@@ -160,8 +160,7 @@ inline void sort_by_cell(long per_tile, Crossings& crossings, Particles& particl
 inline void sort_by_cell(const Grid& grid, long order, std::vector<Crossings>& crossings,
                          std::vector<Particles>& species) {
     for (std::size_t k = 0; k < species.size(); ++k)
-        sort_by_cell(order == 1 ? cells_of_tile<1>(grid) : cells_of_tile<2>(grid), crossings[k],
-                     species[k]);
+        sort_by_cell(cells_of_tile(grid, order), crossings[k], species[k]);
 }
 
 }  // namespace implicit_moment

@@ -56,8 +56,7 @@ inline std::vector<Moments> find_moments(const Grid& grid, double dt,
                                          const std::vector<Particles>& particles, Images images,
                                          const LeapfrogScratch& scratch) {
     std::vector<Moments> moments(particles.size(), Moments(grid));
-    deposit_charge_and_current(scratch.field, grid, dt, settings, particles, images, moments,
-                               scratch.current.of_ranks);
+    deposit_charge_and_current(scratch.field, grid, dt, settings, particles, images, moments);
     return moments;
 }
 

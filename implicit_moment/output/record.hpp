@@ -42,13 +42,14 @@ inline Velocity<double> stored_u(const Particles& s, long p) {
 struct Checkpoint {
     State& state;
     UnitFluxProfile& profile;
-    bool is_implicit = true;  // explicit_em has no level theta and solves for nothing
+    bool is_implicit = true;   // explicit_em has no level theta and solves for nothing
+    common::Share share = {};  // of the particles, that this rank reads
 };
 
 /// Names every number of the checkpoint, for writing and for reading alike.
 template <class Archive>
 void archive(Archive& a, Checkpoint& checkpoint) {
-    archive(a, checkpoint.state);
+    archive(a, checkpoint.state, checkpoint.share);
     archive(a, checkpoint.profile);
     if (!checkpoint.is_implicit) return;
     a("by_theta", checkpoint.state.field.by_theta);

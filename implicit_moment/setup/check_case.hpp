@@ -50,7 +50,8 @@ struct Scales {
     std::vector<SpeciesScales> species;
     double B = 0;  // largest B at the start
     long steps = 0, particles = 0;
-    double bytes = 0;  // memory that the run will take
+    double bytes = 0;                 // memory that the run will take, each rank of explicit_em
+    double seconds = 0, of_mesh = 0;  // on one core; of these, what is done on the mesh
 };
 
 using common::format;
@@ -96,13 +97,25 @@ inline Scales scales_of(const Case& w) {
             long(u.species.size()) * u.particles_per_cell * w.grid.x.cells * w.grid.z.cells;
     }
     s.steps = std::lround(w.end / w.dt);
-    const double krylov = 45 * 3 * 8, tensors = 40 * 8, waves = 30 * 8, moments = 85 * 8;
+    const double krylov = 45 * 3 * 8, tensors = 40 * 8, waves = 30 * 8;
     const bool follow = w.field.uses_mass_matrix() && w.field.solver == "newton_krylov";
-    s.bytes = (w.leapfrog.chosen ? 46.0 : 60.0) * double(s.particles) +
-              double(w.grid.size()) * (w.leapfrog.chosen ? moments : krylov + tensors + waves);
+    const double ranks = double(common::rank_count()), share = double(s.particles) / ranks;
+    s.bytes = 60 * share + double(w.grid.size()) * (krylov + tensors + waves);
+    if (w.leapfrog.chosen) {
+        // As measured: the particles and room to sort or to hand over, the mesh and its snapshots, the program.
+        const double moments = w.fields_interval > 0 ? 85 : 60;
+        s.bytes = (ranks > 1 ? 51 : 46) * share + 8 * moments * double(w.grid.size()) +
+                  (common::has_ranks ? 22 : 10) * 1048576;
+    }
     if (w.field.uses_mass_matrix()) s.bytes += double(w.grid.size()) * (detail::offsets + 10) * 8;
     // Paths, and currents of blocks with room for Anderson's acceleration.
-    if (follow) s.bytes += 32 * double(s.particles) + double(w.grid.size()) * (48 + 75) * 8;
+    if (follow) s.bytes += 32 * share + double(w.grid.size()) * (48 + 75) * 8;
+    const double per_second = w.leapfrog.chosen                   ? 40e6
+                              : !w.field.uses_mass_matrix()       ? 15e6
+                              : w.field.solver == "newton_krylov" ? 4e5
+                                                                  : 7e6;
+    s.of_mesh = double(s.steps) * 10 * double(w.grid.size()) / per_second;
+    s.seconds = s.of_mesh + double(s.steps) * double(s.particles) / per_second;
     return s;
 }
 
@@ -339,6 +352,14 @@ inline std::vector<std::string> closure_warnings(const Case& w, const Scales& sc
     return warnings;
 }
 
+/// Refuses more ranks than implicit_moment has rows for.
+inline void refuse_ranks(const Case& w) {
+    const long rows = nodes_z(w.grid);
+    refuse(common::rank_count() > std::max(1L, rows / rows_of_rank),
+           std::to_string(common::rank_count()) + " ranks, and the mesh has " +
+               std::to_string(rows) + " rows of nodes, of which each rank needs two: start fewer");
+}
+
 /// The resolved scales as text, for --dry-run and the head of a run.
 inline std::string describe_scales(const Case& w, const Scales& scales) {
     const double dx = w.grid.x.spacing(), dz = w.grid.z.spacing();
@@ -378,13 +399,7 @@ inline std::string describe_scales(const Case& w, const Scales& scales) {
                                      " times the time, by the slide's formula [COST]");
     }
     line("memory", "about " + format(scales.bytes / 1048576) + " MiB");
-    const double work =
-        double(scales.steps) * (double(scales.particles) + 10.0 * double(w.grid.size()));
-    const double per_second = w.leapfrog.chosen                   ? 40e6
-                              : !w.field.uses_mass_matrix()       ? 15e6
-                              : w.field.solver == "newton_krylov" ? 4e5
-                                                                  : 7e6;
-    line("time", "about " + format(work / per_second) + " s on one core");
+    line("time", "about " + format(scales.seconds) + " s on one core");
     return text;
 }
 

@@ -36,22 +36,32 @@ void validate_state(const Case& parameters, long step, const Sort& sort, Checkpo
     const auto on_mesh = [](const common::Axis& axis, const std::vector<double>& positions) {
         return common::all_within(positions, axis.low, axis.high());
     };
+    // What ranks have of the particles, all together, so that all refuse or none.
+    const auto of_all = [&](std::vector<long> of_share) {
+        if (checkpoint.share.parts > 1) common::sum_over_ranks(of_share);
+        return of_share;
+    };
     Plasma& plasma = checkpoint.state.plasma;
-    const long expected = scales_of(parameters).particles;
-    refuse(plasma.count() != expected, "it has " + std::to_string(plasma.count()) +
-                                           " particles, and the case " + std::to_string(expected));
+    for (Particles& s : plasma.species) s.of_ranks = {};  // read by number, not by rows
+    const long expected = scales_of(parameters).particles, count = of_all({plasma.count()})[0];
+    refuse(count != expected, "it has " + std::to_string(count) + " particles, and the case " +
+                                  std::to_string(expected));
     for (Particles& s : plasma.species) {
         for (const std::vector<double>* column : s.all())
-            refuse(column->size() != s.x_p.size(), s.name + ": its particles lack components");
-        refuse(!on_mesh(grid.x, s.x_p) || !on_mesh(grid.z, s.z_p),
+            refuse(of_all({column->size() != s.x_p.size()})[0] > 0,
+                   s.name + ": its particles lack components");
+        refuse(of_all({!on_mesh(grid.x, s.x_p) || !on_mesh(grid.z, s.z_p)})[0] > 0,
                s.name + ": a particle is outside of the mesh");
     }
-    std::vector<std::vector<int>> read;
-    for (const Particles& s : plasma.species) read.push_back(s.first_of_node);
+    std::vector<std::vector<long>> read;
+    for (const Particles& s : plasma.species)
+        read.emplace_back(s.first_of_node.begin(), s.first_of_node.end());
     sort(plasma.species);
-    for (std::size_t k = 0; k < read.size(); ++k)
-        refuse(plasma.species[k].first_of_node != read[k],
+    for (std::size_t k = 0; k < read.size(); ++k) {
+        const std::vector<int>& first = plasma.species[k].first_of_node;
+        refuse(of_all({first.begin(), first.end()}) != read[k],
                plasma.species[k].name + ": its particles are not sorted");
+    }
     detail::validate_profile(parameters, step, checkpoint.profile);
     const FieldState& field = checkpoint.state.field;
     refuse(field.by_theta > 0, "the level theta takes energy and gives none");

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "implicit_moment/balance_rows.hpp"
 #include "implicit_moment/deposit_moments.hpp"
 #include "implicit_moment/setup/load_plasma.hpp"
 #include "implicit_moment/solve_field.hpp"
@@ -125,15 +126,15 @@ struct State {
     FieldState field;
 };
 
-/// Names every number of the state, for writing and for reading alike.
+/// Names every number of the state, for writing and for reading alike. in: share, of the particles, to be read
 template <class Archive>
-void archive(Archive& a, State& state) {
+void archive(Archive& a, State& state, common::Share share) {
     for (Particles& s : state.plasma.species) {
-        a(s.name + ".x_p", common::OfAllRanks<double>{s.x_p});
-        a(s.name + ".z_p", common::OfAllRanks<double>{s.z_p});
-        a(s.name + ".ux_p", common::OfAllRanks<double>{s.ux_p});
-        a(s.name + ".uy_p", common::OfAllRanks<double>{s.uy_p});
-        a(s.name + ".uz_p", common::OfAllRanks<double>{s.uz_p});
+        a(s.name + ".x_p", common::OfAllRanks<double>{s.x_p, share});
+        a(s.name + ".z_p", common::OfAllRanks<double>{s.z_p, share});
+        a(s.name + ".ux_p", common::OfAllRanks<double>{s.ux_p, share});
+        a(s.name + ".uy_p", common::OfAllRanks<double>{s.uy_p, share});
+        a(s.name + ".uz_p", common::OfAllRanks<double>{s.uz_p, share});
         a(s.name + ".first_of_node", common::SumOverRanks{s.first_of_node});
     }
     a("E", state.field.E.all);
@@ -142,21 +143,24 @@ void archive(Archive& a, State& state) {
 }
 
 /// Particles and fields of the set-up, before E has its part that follows from the charge.
-inline State loaded_state(const Case& parameters) {
-    State state{parameters.is_uniform() ? load_uniform(parameters) : load_harris(parameters),
-                FieldState(parameters.grid)};
+inline State loaded_state(const Case& parameters, common::Share share = {}) {
+    State state{
+        parameters.is_uniform() ? load_uniform(parameters, share) : load_harris(parameters, share),
+        FieldState(parameters.grid)};
     if (parameters.is_across_current()) harris_field(parameters, state.field);
     if (parameters.is_along_current()) current_sheet_field(parameters, state.field);
     if (parameters.is_uniform()) uniform_field(parameters, state.field);
     return state;
 }
 
-/// Particles and fields at t = 0, sorted, with E from Gauss's law.
+/// Particles and fields at t = 0, sorted, with E from Gauss's law. Every rank loads its share of the particles by
+/// number, and hands them over to those who are to have their rows.
 inline State initial_state(const Case& parameters) {
     const Grid& grid = parameters.grid;
-    State state = loaded_state(parameters);
+    State state = loaded_state(parameters, common::share_of_rank());
     SortScratch scratch;
     sort_particles(grid, scratch, state.plasma.species);
+    balance_rows(nodes_x(grid), rows_of_rank, state.plasma.species);
     Field rho = Field::Zero(grid.size());
     Moments moments(grid);
     for (const Particles& species : state.plasma.species) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/random.hpp"
+#include "common/ranks.hpp"
 #include "implicit_moment/setup/current_sheet.hpp"
 #include "implicit_moment/setup/tail_sheet.hpp"
 
@@ -69,8 +70,9 @@ inline Particles make_particles(const std::string& name, double q_p, double m_p,
 /// Loads ions and electrons of a Harris sheet with equal weights; every electron starts on an
 /// ion, so that rho = 0 and E = 0.
 ///     n = n0 sech^2(z/lambda), drifting along y (a current sheet: along x);   n_inf, at rest
+/// in:     share, which of the pairs
 /// note:   with a normal field the density is that of tail_sheet.hpp.
-inline Plasma load_harris(const Case& parameters) {
+inline Plasma load_harris(const Case& parameters, common::Share share = {}) {
     const HarrisCase h = harris_of(parameters);
     const Grid& grid = parameters.grid;
     const HarrisSheet sheet = harris_sheet(h);
@@ -85,19 +87,23 @@ inline Plasma load_harris(const Case& parameters) {
     const long sheet_pairs = std::lround(double(pairs) * in_sheet / (in_sheet + in_background));
     const double weight = (in_sheet + in_background) / double(pairs);
     const double z_middle = grid.z.low + 0.5 * grid.z.length;
+    const long first = share.begin(pairs), here = share.end(pairs) - first;
 
     const bool relativistic = parameters.is_relativistic();
-    Plasma plasma{
-        {detail::make_particles("ions", weight, weight, relativistic, pairs),
-         detail::make_particles("electrons", -weight, weight / h.mass_ratio, relativistic, pairs)}};
+    Plasma plasma;
+    const auto add = [&](const std::string& name, double charge, double mass) {
+        plasma.species.push_back(detail::make_particles(name, charge, mass, relativistic, here));
+    };
+    add("ions", weight, weight), add("electrons", -weight, weight / h.mass_ratio);
     Particles &ions = plasma.species[0], &electrons = plasma.species[1];
     const common::LoadingNumbers load{parameters.loading == "quiet",
                                       static_cast<std::uint64_t>(parameters.seed)};
-    common::for_each_block(pairs, [&](int, long begin, long end) {
+    common::for_each_block(here, [&](int, long begin, long end) {
         for (long p = begin; p < end; ++p) {
-            const bool drifting = p < sheet_pairs;
+            const long pair = first + p;
+            const bool drifting = pair < sheet_pairs;
             const std::uint32_t part = drifting ? 1 : 2;
-            const long index = drifting ? p : p - sheet_pairs;
+            const long index = drifting ? pair : pair - sheet_pairs;
             const double u = 2 * load.uniform(part, 3, index) - 1;
             double z = drifting ? h.thickness * std::atanh(u * reach) : 0.5 * u * grid.z.length;
             double x = grid.x.at(0) + grid.x.length * load.uniform(part, 2, index);
@@ -133,11 +139,13 @@ inline double mode_phase(const Case& parameters, double x, double z) {
 /// Loads the species of a uniform plasma; all have the same number of particles at the same
 /// positions, so that opposite charges cancel at t = 0.
 ///     v_p = drift + Maxwellian + amplitude cos(k x + phase)
+/// in:     share, which particles of each species
 /// note:   where particles are relativistic that is u_p = gamma v.
-inline Plasma load_uniform(const Case& parameters) {
+inline Plasma load_uniform(const Case& parameters, common::Share share = {}) {
     const UniformCase& u = parameters.uniform;
     const Grid& grid = parameters.grid;
     const long count = u.particles_per_cell * grid.x.cells * grid.z.cells;
+    const long first = share.begin(count), here = share.end(count) - first;
     const double area = grid.x.length * grid.z.length;
     const common::LoadingNumbers load{parameters.loading == "quiet",
                                       static_cast<std::uint64_t>(parameters.seed)};
@@ -146,24 +154,25 @@ inline Plasma load_uniform(const Case& parameters) {
     for (const SpeciesCase& s : u.species) {
         const double weight = n0 * s.density * area / double(count);
         Particles& particles = plasma.species.emplace_back(detail::make_particles(
-            s.name, weight * s.charge, weight * s.mass, parameters.is_relativistic(), count));
+            s.name, weight * s.charge, weight * s.mass, parameters.is_relativistic(), here));
         const auto purpose = static_cast<std::uint32_t>(plasma.species.size());
         const double v_x = std::sqrt(s.temperature_x / s.mass),
                      v_y = std::sqrt(s.temperature_y / s.mass),
                      v_z = std::sqrt(s.temperature_z / s.mass), degree = pi / 180;
-        common::for_each_block(count, [&](int, long begin, long end) {
+        common::for_each_block(here, [&](int, long begin, long end) {
             for (long p = begin; p < end; ++p) {
-                const double x = grid.x.low + grid.x.length * load.uniform(0, 2, p);
-                const double z = grid.z.low + grid.z.length * load.uniform(0, 3, p);
+                const long number = first + p;
+                const double x = grid.x.low + grid.x.length * load.uniform(0, 2, number);
+                const double z = grid.z.low + grid.z.length * load.uniform(0, 3, number);
                 const double phase = mode_phase(parameters, x, z);
                 particles.x_p[p] = x;
                 particles.z_p[p] = z;
                 particles.ux_p[p] = s.drift_x + s.wave_x * std::cos(phase + s.phase_x * degree);
                 particles.uy_p[p] = s.drift_y + s.wave_y * std::cos(phase + s.phase_y * degree);
                 particles.uz_p[p] = s.drift_z + s.wave_z * std::cos(phase + s.phase_z * degree);
-                if (v_x > 0) particles.ux_p[p] += v_x * load.gaussian(purpose, 5, p);
-                if (v_y > 0) particles.uy_p[p] += v_y * load.gaussian(purpose, 7, p);
-                if (v_z > 0) particles.uz_p[p] += v_z * load.gaussian(purpose, 11, p);
+                if (v_x > 0) particles.ux_p[p] += v_x * load.gaussian(purpose, 5, number);
+                if (v_y > 0) particles.uy_p[p] += v_y * load.gaussian(purpose, 7, number);
+                if (v_z > 0) particles.uz_p[p] += v_z * load.gaussian(purpose, 11, number);
             }
         });
     }

@@ -11,11 +11,11 @@
 
 #include "common/run/run.hpp"
 #include "common/theory/kinetic_dispersion.hpp"
-#include "common/theory/theta_scheme.hpp"
 #include "implicit_moment/explicit_em/yee_field.hpp"
 #include "implicit_moment/setup/case.hpp"
 #include "implicit_moment/theory/cold_plasma.hpp"
 #include "implicit_moment/theory/magnetized_plasma.hpp"
+#include "implicit_moment/theory/theta_light_wave.hpp"
 #include "implicit_moment/theory/transverse_dispersion.hpp"
 
 namespace implicit_moment {
@@ -100,8 +100,7 @@ inline Theory expect_light(const Case& w) {
     const WaveVector k = wave_vector(w);
     if (w.leapfrog.chosen)
         return {yee_frequency(w.grid, w.dt, k.x, k.z), "exact dispersion on Yee's mesh", true};
-    return of_factor(
-        w, common::theta_light_wave(w.field.theta, c * w.dt * mesh_wave_vector(w).size()));
+    return of_factor(w, theta_light_wave(w.field.theta, c * w.dt * mesh_wave_vector(w).size()));
 }
 
 inline void refuse_kinetic(const Case& w, const std::string& name) {

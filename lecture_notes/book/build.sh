@@ -33,7 +33,7 @@ cp -r lecture_notes/figures "$out/figures"
     done
     echo "$work/cases.md cases.html Programs"
     for folder in cic flip mpm_explicit mpm_implicit implicit_moment; do echo "$work/cases_$folder.md cases_$folder.html Programs"; done
-    for program in $(sed -n "s/^mains := //p" Makefile) common; do
+    for program in $(sed -n "/^mains := /{s///p;q;}" Makefile) common; do
         program=$(basename "$program" .cpp)
         echo "$work/source_$program.md source_$program.html Sources"
     done

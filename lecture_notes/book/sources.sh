@@ -71,7 +71,7 @@ program() {  # name, main
     page "source_$1" "$1: the source" < "$folder/reading_order"
 }
 
-for main in $(sed -n 's/^mains := //p' Makefile); do
+for main in $(sed -n '/^mains := /{s///p;q;}' Makefile); do
     program "$(basename "$main" .cpp)" "$main"
 done
 { ls common/*.hpp

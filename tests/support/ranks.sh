@@ -1,11 +1,11 @@
 #!/bin/sh
-# ranks.sh BUILD FACT: facts about the programs of `make MPI=1 all`, beside those of `make all`. Status 77, for "not tested", where there are
+# ranks.sh BUILD FACT: facts about the programs of `make MPI=1 all`, beside those of `make all`; implicit_FACT, the same about implicit_moment. Status 77, for "not tested", where there are
 # none. Ranks share the cores of this machine.
 set -u
 export LC_ALL=C.UTF-8
 one=$1 many=$1/mpi
 command -v mpirun > /dev/null || { echo "there is no mpirun (make deps-mpi): not tested"; exit 77; }
-[ -x "$many/explicit_em" ] || { echo "build/mpi is empty (make MPI=1 all): not tested"; exit 77; }
+for program in explicit_em cic; do [ -x "$many/$program" ] || { echo "there is no build/mpi/$program (make MPI=1 all): not tested"; exit 77; }; done
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=none
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
@@ -27,6 +27,39 @@ neutral='[plasma]\nsetup = "uniform"\nloading = "random"\n[uniform]\nparticles_p
 }
 beam="explicit_em $scratch/beam.toml field.smoothing_passes=2 $records"
 crowd="explicit_em $scratch/crowd.toml $records"
+# The same of implicit_moment, each way of it: a beam of gamma v = 5 c in a magnetic field that goes around half of the mesh in a step; the crowd.
+short_gem="implicit_moment/cases/gem.toml grid.cells_x=24 grid.cells_z=24 harris.particles=6e3"
+records='output.checkpoint_steps=30 output.fields_interval=6 output.particles_interval=6'
+moments="implicit_moment $short_gem time.end=18 $records"
+mass="$moments field.response=mass_matrix"
+newton="implicit_moment $short_gem time.end=3 field.solver=newton_krylov field.rotation=mesh harris.guide_field=0.3 $records"
+paths="implicit_moment $short_gem time.end=1.5 field.solver=newton_krylov field.response=mass_matrix $records"
+tail="implicit_moment implicit_moment/cases/magnetotail.toml grid.cells_x=24 grid.cells_z=24 harris.particles=6e3 time.end=6"
+sed 's/order = .*/relativistic = true/' "$scratch/beam.toml" > "$scratch/sweep.toml"
+sed '/order = /d' "$scratch/crowd.toml" > "$scratch/wall.toml"
+sweep="implicit_moment $scratch/sweep.toml uniform.B_x=2 time.dt=0.6 time.end=36 uniform.particles_per_cell=6 $records"
+sweep_mass="$sweep field.response=mass_matrix"
+wall="implicit_moment $scratch/wall.toml uniform.particles_per_cell=10 time.end=2.4 $records"
+
+# Of cic: two streams in the plane, warm and loaded in no order, which cross the mesh along z in four steps and are sorted often; the same in one dimension; a
+# source and an absorbing wall in a magnetic field, the ions crossing the mesh along them; a plasma in a box that leaves it through one wall, to the last ion.
+files='output.fields_interval=3 output.particles_interval=3 output.phase_interval=3 output.checkpoint_steps=30'
+for s in right left; do warm="${warm-} species.$s.loading=random species.$s.temperature_x=0.1 species.$s.temperature_z=0.1 species.$s.particles_per_cell=10"; done
+streams="cic/cases/two_stream_2d.toml grid.cells_x=16 grid.cells_z=16$warm species.right.drift_z=26 species.left.drift_z=-25 method.sort_interval=4 theory.compare=none"
+plane="cic $streams time.end=6 $files"
+line="cic cic/cases/two_stream.toml time.dt=0.1 time.end=6 $files"
+between='[grid]\ndimensions = 2\ncells_x = 16\ncells_z = 16\nlength_x = 16\nlength_z = 16\nboundary_x = "wall"\n%b[time]\ndt = 0.1\nend = 6\n[method]\nsort_interval = 4
+    \n[plasma]\nB_y = %b\n[species.electrons]\n%b\n[species.ions]\ncharge = 1\nmass = 4\n%b\n[theory]\ncompare = "none"\n'
+warm='loading = "random"\ntemperature_x = 1\ntemperature_y = 1\ntemperature_z = 1\nparticles_per_cell = 9\nemission = 3'
+disk='profile = "disk"\ncenter_x = 6\ncenter_z = 9\nhalf_width = 4\nparticles_per_cell = 20'
+# shellcheck disable=SC2059
+{
+    printf "$between" '[boundary]\nx_low = "floating"\nparticles_x_low = "source"\nx_high = "floating"\n' 0.5 "$warm" "$warm\ndrift_z = 24" > "$scratch/source.toml"
+    printf "$between" 'boundary_z = "wall"\n[boundary]\nparticles_x_low = "reflect"\nparticles_z_low = "reflect"\n' 0 "$disk\ndrift_x = 3.5\ndrift_z = 9\ntemperature_x = 0.1" \
+        "$disk\ndrift_x = 5" > "$scratch/box.toml"
+}
+source="cic $scratch/source.toml $files"
+box="cic $scratch/box.toml $files"
 
 # same A B: the files of two runs, and their results; what a summary says of ranks and times is theirs.
 same() {
@@ -45,11 +78,24 @@ start() {
     "$@" --quiet --out "$out" 2> "$said"
 }
 
+program=${3:-explicit_em}
+case $program.$2 in
+explicit_em.bytes) names='sheet beam crowd' ;;
+explicit_em.restart) names='sheet beam' ;;
+cic.bytes) names='plane line source box' ;;
+cic.restart) names='plane source' ;;
+implicit_moment.bytes) names='moments mass newton paths tail sweep sweep_mass wall' ;;
+implicit_moment.restart) names='moments mass sweep' ;;
+explicit_em.stop) long="$short_sheet" ;;
+cic.stop) long="$streams output.particles_interval=0 time.energy_limit=0" ;;
+implicit_moment.stop) long="$short_gem" ;;
+esac
+
 case $2 in
 bytes)
-    for name in sheet beam crowd; do
+    for name in $names; do
         eval "set -- \$$name"
-        program=$1; shift
+        shift
         start 0 "$scratch/$name" "$@" --threads 1 || complain "$name: $(cat "$said")"
         for n in 1 2 3 4; do
             for threads in 1 2; do
@@ -60,12 +106,12 @@ bytes)
         done
     done
     # Borders have moved: with those of the start one of two ranks would have three quarters of the crowd.
-    awk "BEGIN { exit !($(performance "$scratch/crowd.2.1" imbalance) <= 1.2) }" || complain "most of the crowd is with one rank"
+    [ $program != explicit_em ] || awk "BEGIN { exit !($(performance "$scratch/crowd.2.1" imbalance) <= 1.2) }" || complain "most of the crowd is with one rank"
     ;;
 restart)
-    for name in sheet beam; do
+    for name in $names; do
         eval "set -- \$$name"
-        program=$1; shift
+        shift
         start 0 "$scratch/$name" "$@" --threads 1
         for pair in '4 0' '4 1' '0 3' '2 4' '3 2'; do
             start "${pair% *}" "$scratch/$name.${pair% *}${pair#* }" "$@" --threads 1
@@ -87,11 +133,19 @@ refuse)
         [ $(($(date +%s) - begin)) -le 10 ] || complain "$sentence: after $(($(date +%s) - begin)) s"
     }
     # shellcheck disable=SC2086
+    set -- $box
+    program=$1; shift
+    refused 17 2 '17 ranks, and the particles are in 16 blocks' "$@"
+    # shellcheck disable=SC2086
     set -- $beam
     program=$1; shift
     refused 5 2 '5 ranks, and the mesh has 4 strips of 4 rows' "$@"
     refused 4 2 "unknown parameter 'grid.cells_w'" "$@" grid.cells_w=3
     refused 2 2 'leave out mpirun' "$@" --refine 2
+    program=implicit_moment
+    # shellcheck disable=SC2086
+    refused 7 2 '7 ranks, and the mesh has 13 rows of nodes' ${sweep#* }
+    program=explicit_em
     [ -e "$scratch/refused" ] && complain "a refused case has left a folder"
     start 4 "$scratch/refused" "$@" --dry-run > "$scratch/words"
     [ -e "$scratch/refused" ] && complain "a dry run has left a folder"
@@ -103,6 +157,13 @@ refuse)
     start 0 "$scratch/alone" "$@" $blown_up
     # shellcheck disable=SC2086
     refused 3 3 "$(grep 'cross more than a cell' "$said")" "$@" $blown_up
+    blown_up="${sweep_mass#* } --force"
+    program=implicit_moment
+    # shellcheck disable=SC2086
+    start 0 "$scratch/alone" $(echo "$blown_up" | sed 's/dt=0.6/dt=1e4/; s/end=36/end=1e4/')
+    # shellcheck disable=SC2046
+    refused 3 3 "$(grep 'cross more than 1000 boxes' "$said")" $(echo "$blown_up" | sed 's/dt=0.6/dt=1e4/; s/end=36/end=1e4/')
+    program=explicit_em
     refused 2 2 'holds an earlier run' "$@"
     # One fails alone: for want of memory, and where the folder is taken away from the first.
     cat > "$scratch/poor" <<- end
@@ -114,8 +175,53 @@ refuse)
     mpi=$many many=$scratch program=poor
     refused 3 2 'memory, and there is' implicit_moment/cases/gem_explicit.toml harris.particles=1e7 --force
     many=$mpi program=explicit_em
+    # One fails later, when no more memory is to be had: it leaves the summary that the first cannot write.
+    MALLOC_MMAP_THRESHOLD_=4096
+    export MALLOC_MMAP_THRESHOLD_
+    (
+        for _ in $(seq 100); do ls "$scratch"/refused/checkpoint_* > /dev/null 2>&1 && break; sleep 0.1; done
+        prlimit --as=1000000 --pid "$(pgrep -f "^$many/$program.*$scratch/refused" | sed -n 2p)"
+    ) &
+    # shellcheck disable=SC2086
+    refused 3 2 'not enough memory for this case' $short_sheet --force time.end=1e6 output.checkpoint_steps=20
+    grep -q '"message": "not enough memory' "$scratch/refused/summary.json" || complain "no summary of the one that failed alone"
+    unset MALLOC_MMAP_THRESHOLD_
     (sleep 4; mv "$scratch/refused" "$scratch/gone") &
     refused 3 2 'cannot be opened for writing' "$@" --force time.end=1e6
+    # The same of cic: the one rank that meets a leap, not the first, tells the others, and the summary says so.
+    program=cic leap='species.electrons.loading=random species.electrons.temperature_z=2e4 boundary.particles_z_high=reflect plasma.seed=8'
+    # shellcheck disable=SC2086
+    start 0 "$scratch/leap" ${box#* } $leap
+    # shellcheck disable=SC2086
+    refused 3 3 "$(grep 'farther than the box' "$said")" ${box#* } --force $leap
+    grep -q '"status": 3' "$scratch/refused/summary.json" || complain "no summary of a leap"
+    (sleep 4; mv "$scratch/refused" "$scratch/gone.cic") &
+    # shellcheck disable=SC2086
+    refused 3 2 'cannot be .*No such file' $streams --force output.fields_interval=1 time.end=1e6
+    ;;
+memory)
+    # What a rank has of memory beyond what it has without particles is its share of them, at the start and when it restarts: of four, less than half of
+    # all, because for a moment a list is there twice.
+    program=explicit_em least=0
+    # rise N OUT ...: the most of one of N ranks
+    rise() {
+        start "$@" || complain "$out: $(cat "$said")"
+        bytes=$(performance "$out" peak_memory_bytes)
+        bytes=$((${bytes%.*} - least))
+    }
+    thin="${short_sheet% harris.*} time.end=0.8 output.checkpoint_steps=2 output.fields_interval=0 --threads 1"
+    # shellcheck disable=SC2086
+    rise 1 "$scratch/few" $thin harris.particles=5e3
+    least=$bytes begun='' restarted=''
+    for n in 1 4; do
+        # shellcheck disable=SC2086
+        rise $n "$scratch/memory$n" $thin harris.particles=2e6
+        begun="$begun $bytes"
+        rise $n "$scratch/memory$n" --restart "$scratch/memory$n/checkpoint_0000000002.bin" --threads 1
+        restarted="$restarted $bytes"
+    done
+    echo "$begun $restarted" | awk '{ exit !(NF == 4 && $1 > 8e7 && $2 <= 0.5 * $1 && $3 > 8e7 && $4 <= 0.5 * $3) }' ||
+        complain "bytes of one rank and of one of four, begun$begun and restarted$restarted"
     ;;
 stop)
     # begin N: N ranks in the background; they have taken some steps
@@ -138,9 +244,8 @@ stop)
         last=$(ls "$out"/checkpoint_*.bin | tail -n 1)
         "$one/$program" --verify "$last" > /dev/null || complain "$1: $last is not whole"
     }
-    program=explicit_em
     # Two seconds for each signal, as fast as this machine is now.
-    long="$short_sheet output.checkpoint_steps=20 output.fields_interval=0 --threads 1"
+    long="$long output.checkpoint_steps=20 output.fields_interval=0 --threads 1"
     since=$(date +%s%N)
     # shellcheck disable=SC2086
     start 3 "$scratch/probe" $long time.end=200

@@ -7,18 +7,19 @@
 
 namespace implicit_moment {
 
-/// Particles at x^0, u^{-1/2} and fields at t = 0; particles sorted by cell.
+/// Particles at x^0, u^{-1/2} and fields at t = 0; particles sorted by cell. Every rank loads its share of them by
+/// number, and hands them over to those who are to have their rows.
 /// exact:  div E = 4 pi rho with rho smoothed as J will be, on every node inside.
 /// note:   the loaded velocities are taken for u = gamma v.
 inline State leapfrog_state(const Case& parameters) {
     const Grid& grid = parameters.grid;
     const LeapfrogSettings& settings = parameters.leapfrog;
-    State state = loaded_state(parameters);
+    State state = loaded_state(parameters, common::share_of_rank());
     std::vector<Particles>& species = state.plasma.species;
-    LeapfrogScratch scratch(grid);
 
-    SortScratch sort;
-    sort_by_cell(grid, settings.order, sort, species);
+    LeapfrogScratch scratch(grid);
+    sort_by_cell(grid, settings.order, species);
+    balance_rows(cells_of_tile(grid, settings.order), 1, species);
     interleave_field(grid, {0, false}, state.field, scratch);
     Field rho = Field::Zero(grid.size()), pass;
     for (const Moments& m : find_moments(grid, 0, settings, species, Images::conductor, scratch))

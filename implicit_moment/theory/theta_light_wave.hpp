@@ -5,7 +5,7 @@
 #include <cmath>
 #include <complex>
 
-namespace common {
+namespace implicit_moment {
 
 /// A light wave in vacuum, E and B taken at the level theta in both of Maxwell's equations.
 ///   g = [1 + i a_0 (1 - theta)] / (1 - i a_0 theta),  a_0 = c dt K
@@ -16,4 +16,4 @@ inline std::complex<double> theta_light_wave(double theta, double a_0) {
     return std::complex<double>(1.0, a_0 * (1.0 - theta)) / std::complex<double>(1.0, -a_0 * theta);
 }
 
-}  // namespace common
+}  // namespace implicit_moment

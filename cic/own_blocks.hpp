@@ -1,0 +1,55 @@
+// What the loops of cic work on where ranks share a run (common/ranks.hpp): sums over particles are
+// those of block_count blocks of a list (common/parallel.hpp), added in their order, and each rank has
+// some of the blocks. One process has all of them.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <type_traits>
+#include <vector>
+
+#include "common/parallel.hpp"
+#include "common/ranks.hpp"
+
+namespace cic {
+
+/// The blocks of a list that a rank has, as many as the others or one more, and where
+/// in a list of so many numbers they begin. in: the rank, or their number for the end
+inline int first_block(int of_rank) { return common::block_count * of_rank / common::rank_count(); }
+inline long begin_of_rank(long count, int of_rank) {
+    return count * first_block(of_rank) / common::block_count;
+}
+/// Calls work(block, begin, end) for each block of a list that this rank has; it has these alone,
+/// and counts from 0 what it has. in: count, of all ranks
+template <class Work>
+void for_each_own_block(long count, const Work& work) {
+    const auto first = [&](long block) { return count * block / common::block_count; };
+    const long own = first_block(common::rank()), begin = first(own);
+    common::for_each_row(first_block(common::rank() + 1) - own, [&](long k) {
+        work(int(own + k), first(own + k) - begin, first(own + k + 1) - begin);
+    });
+}
+/// Gives every rank what the others have made of their blocks. in: sums of doubles
+template <class Sums>
+void gather_blocks(std::array<Sums, common::block_count>& sums) {
+    static_assert(std::is_trivially_copyable_v<Sums> && sizeof(Sums) % sizeof(double) == 0);
+    std::vector<long> first;
+    for (int k = 0; k <= common::rank_count(); ++k)
+        first.push_back(first_block(k) * long(sizeof(Sums) / sizeof(double)));
+    common::gather_pieces(reinterpret_cast<double*>(sums.data()), first);
+}
+
+/// Calls work(row) for the rows of a mesh, of each on one rank after the other; in the end all have the
+/// numbers. It is done in pieces so short that the next rank soon has its turn.
+template <class Work>
+void for_each_row_in_turn(long rows, long stride, double* numbers, const Work& work) {
+    const long pieces = common::rank_count() > 1 ? std::clamp(rows * stride / 4096, 1L, rows) : 1;
+    std::vector<long> first;
+    for (long k = 0; k <= pieces; ++k) first.push_back(rows * k / pieces * stride);
+    common::in_turn(numbers, first, [&](long k) {
+        const long begin = first[k] / stride, end = first[k + 1] / stride;
+        common::for_each_row(end - begin, [&](long row) { work(begin + row); });
+    });
+}
+
+}  // namespace cic
