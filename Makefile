@@ -120,7 +120,7 @@ The particle-in-cell family in running code
   make sweep CASE=cic/cases/thermal_heating.toml KEYS='method.weighting=ngp,cic,tsc seed=1,2,3'
                          all combinations side by side (make deps-sweep), a table and a figure
   make cost              the cost slide, measured: explicit over implicit, against the mass ratio
-  make explicit_gem      the full explicit run of that slide, to the plateau, an hour; resumable
+  make explicit_gem      the full explicit run of that slide, to the plateau, forty minutes; resumable
   make test              the facts, at most ten minutes   (make test ARGS='-R gmres': some of them)
   make test-long         every figure at full length, its numbers checked
   make torture           half an hour of kills, failing disks, forged files and fuzzing; resumable
@@ -128,7 +128,7 @@ The particle-in-cell family in running code
   make exercises         the exercises of the lecture notes, each with its title and its time
   make exercise E=1-3    its question, its runs, and whether they give what is expected
                          (with ANSWER=0.9239: is the answer right?)
-  make bench             particle-steps per second on 1 and 2 threads, and where the time goes
+  make bench             particle-steps per second on 1 and 2 threads, and where the time goes; MPI=1: on 1 and 2 ranks
   make web               the programs in the browser, a page per case, in out/web/ (packages: make deps-web);
                          CASES='two_stream': one of them
   make test-web          every page run in Chromium, beside the native programs; CASES='gem': some of them
@@ -296,7 +296,7 @@ out/implicit_moment/cost/.complete: implicit_moment/figures/fig_cost.sh $(BUILD)
 cost: fig_cost
 	@sh implicit_moment/figures/show_cost.sh out/implicit_moment/cost/cost.dat
 
-# The full explicit run of the cost slide, carried to t Omega_ci = 40 as the implicit one, three quarters of an hour on two idle cores, and what is kept of it for figures. It goes on where it was stopped.
+# The full explicit run of the cost slide, carried to t Omega_ci = 40 as the implicit one, forty minutes on two idle cores, and what is kept of it for figures. It goes on where it was stopped.
 explicit_gem: $(BUILD)/explicit_em
 	@mkdir -p out/explicit_em/gem_explicit
 	$(one_at_a_time) $(BUILD)/explicit_em implicit_moment/cases/gem_explicit.toml time.end=800 \
@@ -509,11 +509,11 @@ $(BUILD)/CTestTestfile.cmake: Makefile | $(packages_first)
 	    'subdirs($(to_root)tests)' > $@
 
 # With MPI=1 the facts about ranks, five minutes; `make test` has them, too, where build/mpi is not empty.
-FACTS = refuse memory bytes restart stop
+FACTS = refuse bytes restart memory stop
 ifneq ($(MPI),)
 test: all
 	@$(MAKE) MPI= $(programs)
-	@set -e; for fact in $(FACTS); do case $$fact in refuse | memory) of=explicit_em ;; *) of='$(programs)' ;; esac; \
+	@set -e; for fact in $(FACTS); do case $$fact in refuse) of=explicit_em ;; *) of='$(programs)' ;; esac; \
 	    for p in $$of; do echo $$fact $$p; sh tests/support/ranks.sh $(BUILD:/mpi=) $$fact $$p; done; done
 else
 test: all tests $(BUILD)/CTestTestfile.cmake | $(packages_first)

@@ -8,10 +8,11 @@
 //                one, or where a wall has taken others out of the list
 //
 // So all ranks have equally many particles, to one block, whatever the plasma does. In one process
-// these functions return at once.
+// share_runs returns at once.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <vector>
 

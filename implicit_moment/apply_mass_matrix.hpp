@@ -1,6 +1,7 @@
 // on the grid: the current that a field drives, J = M E, and what M makes of a uniform plasma.
 #pragma once
 
+#include <array>
 #include <cmath>
 
 #include "common/parallel.hpp"
@@ -26,17 +27,15 @@ inline double mean_response(const Grid& grid, const MassMatrix& mass, int pair) 
     const long stride = grid.stride();
     const int first = detail::first_offset(pair), end = detail::first_offset(pair + 1);
     const Division rows = stored_rows(grid, mass.of_ranks);
-    std::vector<double> total{0};
-    in_turn(rows, total, [&] {
-        double sum = total[0];
+    double sum = 0;
+    common::in_turn(&sum, std::array{0L, 1L}, [&](long) {
         for (long row = rows.begin(); row < rows.end(grid.z.cells + 3); ++row) {
             const double* entry =
                 &mass.entry[std::size_t((row * detail::offsets + first) * stride)];
             for (long n = 0; n < (end - first) * stride; ++n) sum += entry[n];
         }
-        total[0] = sum;
     });
-    return total[0] / double(grid.x.cells * grid.z.cells);
+    return sum / double(grid.x.cells * grid.z.cells);
 }
 
 /// J = M E.

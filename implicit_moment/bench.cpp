@@ -147,8 +147,7 @@ int main() {
     time_field(w);
     Case e;
     describe_explicit(e);
-    time_threads(e, "explicit_em", 20, {"push", "field", "sort"}, of_push,
-                 static_cast<State (*)(const Case&)>(leapfrog_state),
+    time_threads(e, "explicit_em", 20, {"push", "field", "sort"}, of_push, leapfrog_state,
                  [&](State& state, common::StepClock& clock) {
                      LeapfrogScratch scratch(e.grid);
                      clock.resume();

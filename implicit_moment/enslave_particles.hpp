@@ -103,16 +103,18 @@ inline void follow_field(const InterleavedField& field, const Grid& grid, double
                     });
             }
         };
-        const auto for_each_block = [&](bool finds, bool deposits) {
-            common::for_each_block(all, [&](int block, long begin, long end) {
-                follow(finds, deposits, block, begin, end);
-            });
-        };
         // The sum of a block goes on from rank to rank, so there paths are found before.
         const bool alone = s.of_ranks.is_whole();
-        for_each_block(true, alone);
+        common::for_each_block(
+            all, [&](int block, long begin, long end) { follow(true, alone, block, begin, end); });
         refuse_lost(s, double(std::accumulate(lost.begin(), lost.end(), 0L)));
-        if (!alone) in_turn(s.of_ranks, enslaved.J_of_block, [&] { for_each_block(false, true); });
+        if (alone) continue;
+        std::array<long, common::block_count + 1> first;
+        for (long n = 0; n <= common::block_count; ++n) first[std::size_t(n)] = n * 3 * size;
+        common::in_turn(enslaved.J_of_block.data(), first, [&](long block) {
+            follow(false, true, int(block), all * block / common::block_count,
+                   all * (block + 1) / common::block_count);
+        });
     }
     enslaved.J.all.setZero();
     for (long block = 0; block < common::block_count; ++block)

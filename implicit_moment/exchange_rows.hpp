@@ -117,22 +117,4 @@ inline void deposit_rows(const Division& rows, long count, long low, long high,
     }
 }
 
-/// Each rank in turn calls work(), which goes on with numbers as the rank before has left them; in the end
-/// all have those of the last one.
-template <class Work>
-inline void in_turn(const Division& rows, std::vector<double>& numbers, const Work& work) {
-    if (rows.is_whole()) return work();
-    const int me = common::rank(), last = common::rank_count() - 1;
-    std::vector<std::vector<double>> from;
-    if (me > 0) {
-        common::exchange(std::vector{me - 1}, {{}}, from);
-        numbers = from[0];
-    }
-    work();
-    if (me < last) common::exchange(std::vector{me + 1}, {numbers}, from);
-    std::vector<long> first(std::size_t(last + 1), 0);
-    first.push_back(std::ssize(numbers));
-    common::gather_pieces(numbers.data(), first);
-}
-
 }  // namespace implicit_moment

@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "common/ranks.hpp"
 #include "common/run/parameters.hpp"
 #include "implicit_moment/mass_matrix.hpp"
 

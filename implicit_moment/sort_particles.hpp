@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/counting_sort.hpp"
+#include "common/ranks.hpp"
 #include "implicit_moment/particles.hpp"
 
 namespace implicit_moment {

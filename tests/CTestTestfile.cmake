@@ -104,7 +104,7 @@ add_test(pages.runs_and_sliders_are_those_of_the_programs sh tests/support/pages
 describe_test(pages.runs_and_sliders_are_those_of_the_programs physics)
 
 # ---- ranks (with the programs of make MPI=1 all) ---------------------------------------------------
-foreach(what refuse memory bytes.cic bytes.explicit_em bytes.implicit_moment restart.cic restart.explicit_em restart.implicit_moment
+foreach(what refuse memory.cic memory.explicit_em memory.implicit_moment bytes.cic bytes.explicit_em bytes.implicit_moment restart.cic restart.explicit_em restart.implicit_moment
         stop.cic stop.explicit_em stop.implicit_moment)
     string(REPLACE "." ";" fact ${what})
     add_test(ranks.${what} sh tests/support/ranks.sh "${build_folder}" ${fact})

@@ -23,16 +23,9 @@ struct State {
     }
 };
 
-/// Leaves of lists that every rank has its own range of each.
+/// Gives every rank its own range of the lists of which each has read a share.
 inline void keep_own(State& state) {
-    if (common::rank_count() == 1) return;
-    for (Particles& s : state.species) {
-        s.among_ranks = s.count();
-        const long begin = begin_of_rank(s.among_ranks, common::rank()),
-                   end = begin_of_rank(s.among_ranks, common::rank() + 1);
-        for (std::vector<Real>* q : s.all())
-            if (!q->empty()) *q = std::vector<Real>(q->begin() + begin, q->begin() + end);
-    }
+    for (Particles& s : state.species) share(s);
 }
 
 /// The most particles of a rank over the mean.
@@ -48,11 +41,11 @@ template <class Archive>
 void archive(Archive& a, State& state) {
     for (std::size_t k = 0; k < state.species.size(); ++k) {
         Particles& s = state.species[k];
-        a(s.name + ".x_p", common::OfAllRanks<Real>{s.x_p});
-        a(s.name + ".z_p", common::OfAllRanks<Real>{s.z_p});
-        a(s.name + ".vx_p", common::OfAllRanks<Real>{s.vx_p});
-        a(s.name + ".vy_p", common::OfAllRanks<Real>{s.vy_p});
-        a(s.name + ".vz_p", common::OfAllRanks<Real>{s.vz_p});
+        a(s.name + ".x_p", common::OfAllRanks<Real>{s.x_p, common::share_of_rank()});
+        a(s.name + ".z_p", common::OfAllRanks<Real>{s.z_p, common::share_of_rank()});
+        a(s.name + ".vx_p", common::OfAllRanks<Real>{s.vx_p, common::share_of_rank()});
+        a(s.name + ".vy_p", common::OfAllRanks<Real>{s.vy_p, common::share_of_rank()});
+        a(s.name + ".vz_p", common::OfAllRanks<Real>{s.vz_p, common::share_of_rank()});
         a(s.name + ".emitted_again", state.emitted_again[k]);
     }
     for (std::size_t k = 0; k < 4; ++k)

@@ -46,7 +46,8 @@ inline bool start_run(const ProgramInfo& info, const CommandLine& command,
                                        double(sysconf(_SC_NPROCESSORS_ONLN)) / ranks_here()});
         const double seconds =
             prepared.of_mesh + (prepared.seconds - prepared.of_mesh) / rank_count();
-        std::printf("  %-33s %d, each with at most that memory\n", "ranks", rank_count());
+        std::printf("  %-33s %d, each with about that memory, if particles divide evenly\n",
+                    "ranks", rank_count());
         if (seconds > 0)
             std::printf("  %-33s about %.4g s, with %.2g core(s) each\n", "time with them",
                         seconds / cores, cores);

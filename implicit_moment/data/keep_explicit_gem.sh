@@ -32,9 +32,9 @@ mv "$folder/new.csv" "$folder/explicit_gem_flux.csv"
     awk '$1 + 0 == $1 { printf "%.3f,%.4f,%.4f,%.4f,%.5f\n", $1, $2, $3, $4, $5 }' "$run/profile.dat"
 } > "$folder/explicit_gem_profile.csv"
 # Strips of four rows of cells are what ranks divide. in: the field files of t Omega_ci = 0, 15, 30
+[ -f "$run/fields_020000.dat" ] || exit 0
 for step in 0 10000 20000; do
     file=$(printf '%s/fields_%06d.dat' "$run" "$step")
-    [ -f "$file" ] || exit 0
     awk -v cells="$(sed -n 's/^cells_z *= *//p' "$run/case.toml")" '
         NR == 1 { for (k = 1; k <= NF; k++) { if ($k == "z") z = k; if ($k == "rho_ions") i = k; if ($k == "rho_electrons") e = k } }
         $1 + 0 == $1 { if (!($z in row)) { row[$z] = rows++ } of_row[row[$z]] += $i - $e }

@@ -2,7 +2,7 @@
 // do it. Nothing is predicted and nothing is solved; every electron scale must be resolved.
 //
 // The default case is the explicit run of the talk's cost slide: the GEM challenge on 512 x 256
-// cells. Its full length takes the better part of an hour on two cores, `time.end=10` a minute.
+// cells. Its full length takes half an hour on two cores, `time.end=10` a minute.
 // Run:   build/explicit_em
 // Run:   build/explicit_em implicit_moment/cases/explicit_two_stream.toml particles.order=2
 //

@@ -4,9 +4,9 @@
 #     T(n) = particle N f(n)/n + mesh M + gather M (1/network + min(n, node)/memory) + latency (log2 n + 4),    efficiency = T(1)/n T(n)
 #
 # N particles on M cells; f, the most particles of a rank over the mean; every rank has the whole mesh, so that each core of a node gets and steps all of it.
-# explicit_em has strips of four rows of cells, implicit_moment rows of nodes. What would be next: patches in both directions, M/n cells to a rank.
-#     efficiency.dat  cores, and for each run: T, efficiency, with patches: T, efficiency
-#     balance.dat     ranks, and for t Omega_ci = 0, 15, 30: f with the borders of then, f with those of t = 0
+# explicit_em has strips of four rows of cells, implicit_moment rows of nodes, two at least. What would be next: patches in both directions, M/n cells to a rank.
+#     efficiency.dat  cores, and for each run the efficiency, and that with patches
+#     balance.dat     ranks, and f at t Omega_ci = 0, 15 and 30, and at 15 and 30 with the borders of t = 0
 set -eu
 export LC_ALL=C.UTF-8
 mkdir -p "$1"
@@ -20,21 +20,22 @@ awk -F, -v balance="$1/balance.dat" -v efficiency="$1/efficiency.dat" '
         }
         return most * ranks
     }
-    # Fills ranks up to a bound, and gives what the last has; cut() finds the least bound, as Division::of of common/ranks.hpp does.
-    function fill(share, strips, ranks, bound, first,    k, s, sum) {
-        first[0] = k = sum = 0
+    # Fills ranks, of at least few strips each, up to a bound, and gives the most of one; cut() finds the least bound, as Division::of of common/ranks.hpp does.
+    function fill(share, strips, ranks, few, bound, first,    k, s, sum, most) {
+        first[0] = k = sum = most = 0
         for (s = 0; s < strips; s++) {
-            if (s > first[k] && k < ranks - 1 && (sum + share[s] > bound || strips - s <= ranks - 1 - k)) { first[++k] = s; sum = 0 }
+            if (s >= first[k] + few && k < ranks - 1 && (sum + share[s] > bound || strips - s <= few * (ranks - 1 - k))) { first[++k] = s; sum = 0 }
             sum += share[s]
+            if (sum > most) most = sum
         }
         first[ranks] = strips
-        return sum
+        return most
     }
-    function cut(share, strips, ranks, first,    s, low, high, bound) {
+    function cut(share, strips, ranks, few, first,    s, low, high, bound) {
         low = 0; high = 1.01
         for (s = 0; s < strips; s++) if (share[s] > low) low = share[s]
-        while (high - low > 1e-9) { bound = (low + high) / 2; if (fill(share, strips, ranks, bound, first) <= bound) high = bound; else low = bound }
-        fill(share, strips, ranks, high, first)
+        while (high - low > 1e-9) { bound = (low + high) / 2; if (fill(share, strips, ranks, few, bound, first) <= bound) high = bound; else low = bound }
+        fill(share, strips, ranks, few, high, first)
     }
     BEGIN { strips = 0 }
     /^#/ { next }
@@ -58,10 +59,10 @@ awk -F, -v balance="$1/balance.dat" -v efficiency="$1/efficiency.dat" '
     END {
         print "ranks t0 t15 t30 t15_borders_of_t0 t30_borders_of_t0" > balance
         for (n = 1; n <= strips; n++) {
-            cut(t0, strips, n, first)
+            cut(t0, strips, n, 1, first)
             a = imbalance(t0, n, first); d = imbalance(t15, n, first); e = imbalance(t30, n, first)
-            cut(t15, strips, n, first); b = imbalance(t15, n, first)
-            cut(t30, strips, n, first); c = imbalance(t30, n, first)
+            cut(t15, strips, n, 1, first); b = imbalance(t15, n, first)
+            cut(t30, strips, n, 1, first); c = imbalance(t30, n, first)
             print n, a, b, c, d, e > balance
         }
         # The large run has the same plasma on eight times as many strips.
@@ -72,13 +73,13 @@ awk -F, -v balance="$1/balance.dat" -v efficiency="$1/efficiency.dat" '
             if (n == last) continue
             last = n
             line = n
-            split("9.12e6 1e10 2e5", N, " "); split("131072 8388608 4096", M, " "); split("64 512 64", most, " ")
+            split("9.12e6 1e10 2e5", N, " "); split("131072 8388608 4096", M, " "); split("64 512 32", most, " ")
             split("explicit explicit implicit", kind, " "); split("24 24 304", gather, " "); split("0 0 8", iterations, " ")
             for (r = 1; r <= 3; r++) {
                 one = step_time(kind[r], N[r], M[r], 1, 1, gather[r])
                 f = 0
                 if (n <= most[r]) {
-                    if (r == 2) { cut(fine, 512, n, first); f = imbalance(fine, n, first) } else { cut(t15, 64, n, first); f = imbalance(t15, n, first) }
+                    if (r == 2) { cut(fine, 512, n, 1, first); f = imbalance(fine, n, first) } else { cut(t15, 64, n, r == 3 ? 2 : 1, first); f = imbalance(t15, n, first) }
                 }
                 line = line " " (f ? one / n / step_time(kind[r], N[r], M[r], f, n, gather[r]) : "nan") " " one / n / patch_time(kind[r], N[r], M[r], n, gather[r], iterations[r])
             }

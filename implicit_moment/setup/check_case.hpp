@@ -50,7 +50,7 @@ struct Scales {
     std::vector<SpeciesScales> species;
     double B = 0;  // largest B at the start
     long steps = 0, particles = 0;
-    double bytes = 0;                 // memory that the run will take, each rank of explicit_em
+    double bytes = 0;                 // memory that the run will take, each rank
     double seconds = 0, of_mesh = 0;  // on one core; of these, what is done on the mesh
 };
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "common/ranks.hpp"
 #include "implicit_moment/balance_rows.hpp"
 #include "implicit_moment/deposit_moments.hpp"
 #include "implicit_moment/setup/load_plasma.hpp"

@@ -15,7 +15,7 @@ measure() {
     for _ in 1 2 3; do
         for ranks in 1 2; do
             mpirun -n $ranks "$build/$program" "$@" --threads 1 --quiet --force --out "$scratch/run" > "$scratch/words" 2>&1 || { cat "$scratch/words"; exit 1; }
-            echo "$ranks $(performance particle_steps_per_s) $(performance communication_s) $(performance wall_s) $(performance imbalance)" >> "$scratch/all"
+            echo "$ranks $(performance particle_steps_per_s) $(performance communication_s) $(performance wall_s)" >> "$scratch/all"
         done
     done
     awk -v title="$title" '$2 > best[$1] { best[$1] = $2; share[$1] = $4 > 0 ? $3 / $4 : 0 }
