@@ -1,6 +1,5 @@
 // Clouds-in-cells: charged particles in the electric field of their own charge, which is computed
-// on a mesh. One dimension, x, or the plane (x, z); a uniform magnetic field; periodic or between
-// walls.
+// on a mesh. One dimension, x, or the plane (x, z); a uniform magnetic field; periodic or with walls.
 //
 // The default case is the two-stream instability: two cold beams pass through each other, roll up
 // into vortices in phase space and turn their energy into heat.
@@ -39,10 +38,11 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     const common::CommandLine command = common::read_command_line(argc, argv, info, table);
     validate(parameters);
     const Scales scales = scales_of(parameters);
-    if (!common::start_run(info, command, table,
-                           {describe_scales(parameters, scales),
-                            resolution_warnings(parameters, scales), scales.steps, scales.bytes},
-                           {parameters.checkpoint_steps}, holder))
+    if (!common::start_run(
+            info, command, table,
+            {describe_scales(parameters, scales), resolution_warnings(parameters, scales),
+             scales.steps, scales.bytes, scales.seconds, scales.of_mesh},
+            {parameters.checkpoint_steps}, holder))
         return 0;
     common::Run& run = *holder;
 

@@ -26,7 +26,9 @@ struct Scales {
     double omega_p = 0;       // of all mobile species together
     double debye_length = 0;  // of all warm ones together; 0 when all are cold
     long steps = 0, particles = 0;
-    double bytes = 0;  // memory that the run will take
+    double bytes = 0;    // memory that the run will take, of a rank
+    double seconds = 0;  // on one core
+    double of_mesh = 0;  // of these, on the mesh
 };
 
 /// The scales of a case whose mesh has its boundaries.
@@ -71,6 +73,8 @@ inline Scales scales_of(const Case& parameters) {
         const double points = double(parameters.grid.size());
         s.bytes += 30 * points * std::log2(points);
     }
+    s.of_mesh = double(s.steps) * 30 * double(parameters.grid.size()) / 80e6;
+    s.seconds = s.of_mesh + double(s.steps) * double(s.particles) / 80e6;
     return s;
 }
 
@@ -236,9 +240,7 @@ inline std::string describe_scales(const Case& parameters, const Scales& scales)
     for (const auto& [name, value] : comparison_of(parameters).describe(parameters))
         line(name, value);
     line("memory", "about ", scales.bytes / 1048576, " MiB");
-    const double work =
-        double(scales.steps) * (double(scales.particles) + 30.0 * double(grid.size()));
-    line("time", "about ", work / 80e6, " s on one core");
+    line("time", "about ", scales.seconds, " s on one core");
     return text;
 }
 

@@ -15,6 +15,7 @@
 #include <optional>
 #include <set>
 
+#include "common/ranks.hpp"
 #include "common/run/checkpoint.hpp"
 #include "common/run/machine.hpp"
 #include "common/run/parameters.hpp"
@@ -249,9 +250,14 @@ void print_help(const ProgramInfo& info, const ParameterTable& table) {
         "status: 0 done; 1 only with --strict; 2 bad input; 3 numerical failure; 130 or 143\n"
         "        stopped by Ctrl-C or SIGTERM after a checkpoint; a second Ctrl-C kills at once\n"
         "A folder takes one run at a time. --dry-run tells the memory, and a case that needs more\n"
-        "than there is (machine, control group, ulimit) is refused.\n%s",
+        "than there is (machine, control group, ulimit) is refused.\n%s%s",
         info.program.c_str(), info.version.c_str(), info.one_line.c_str(), info.program.c_str(),
-        info.default_case.c_str(), info.program.c_str(), table.help().c_str());
+        info.default_case.c_str(), info.program.c_str(),
+        has_ranks ? "mpirun -n N: N ranks share the particles, with the same bytes; a signal to "
+                    "one of them\n"
+                    "checkpoints and ends all.\n"
+                  : "",
+        table.help().c_str());
 }
 
 }  // namespace

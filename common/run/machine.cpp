@@ -77,13 +77,14 @@ int free_cores() {
     return std::max(1, static_cast<int>(std::min<double>(omp_get_num_procs(), quota)));
 }
 
-double memory_limit_bytes() {
+double memory_limit_bytes(int processes) {
     const double installed =
         static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
     double bytes = std::min(installed, smallest_limit([](const fs::path& group) {
                                 return std::min(limit_in(group / "memory.max"),
                                                 limit_in(group / "memory.limit_in_bytes"));
-                            }));
+                            })) /
+                   processes;
     struct rlimit shell {};
     if (getrlimit(RLIMIT_AS, &shell) == 0 && shell.rlim_cur != RLIM_INFINITY)
         bytes = std::min(bytes, static_cast<double>(shell.rlim_cur));

@@ -20,9 +20,9 @@ void share_cores(char** argv);
 /// control group; at least 1.
 int free_cores();
 
-/// Memory that this process may take: that of the machine, and not more than the limits of its
-/// control group and of its shell.
-double memory_limit_bytes();
+/// Memory that one of several alike processes may take: its share of that of the machine and of its control
+/// group, and not more than the limit of its shell.
+double memory_limit_bytes(int processes);
 
 /// Largest memory that this program had at a time, not counting the program that started it.
 double peak_memory_bytes();

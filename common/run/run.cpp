@@ -151,7 +151,8 @@ std::string Run::checkpoint_name(long step) {
 }
 
 std::string Run::command_to_continue(const std::string& checkpoint) const {
-    std::string command = shell_word(command_.program) + " --restart " + shell_word(checkpoint);
+    std::string command = rank_count() > 1 ? "mpirun -n " + std::to_string(rank_count()) + " " : "";
+    command += shell_word(command_.program) + " --restart " + shell_word(checkpoint);
     if (fs::path(checkpoint).parent_path() != fs::path(command_.out_dir))
         command += " --out " + shell_word(command_.out_dir);
     if (command_.threads > 0) command += " --threads " + std::to_string(command_.threads);
@@ -404,7 +405,8 @@ void refuse_before_start(const CommandLine& command, long steps, double bytes) {
                          std::to_string(command.restart_step) + ", and the run ends at step " +
                          std::to_string(steps) + ": raise time.end");
     }
-    const double there = memory_limit_bytes();
+    // Ranks of one machine share its memory, and each has its own limit of the shell.
+    const double there = memory_limit_bytes(ranks_here());
     if (bytes > there) {
         char sizes[80];
         std::snprintf(sizes, sizeof sizes, "the case needs %.3g GiB of memory, and there is %.3g",

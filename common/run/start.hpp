@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,6 +27,26 @@ struct Preparation {
     double of_mesh = 0;  // of these, on the mesh, which every rank has
 };
 
+/// Refuses ranks that would not do the same, because they see other files; and warns where several processes
+/// are started of a program that has no ranks.
+inline void refuse_unlike_ranks(const CommandLine& command, const ParameterTable& table) {
+    const char* started = std::getenv("OMPI_COMM_WORLD_SIZE");
+    if (!has_ranks && started != nullptr && std::atol(started) > 1)
+        std::fprintf(
+            stderr,
+            "warning: mpirun starts this program %s times, and it has no ranks, so each is "
+            "a run of its own; build/mpi/ has those with ranks (make MPI=1 all)\n",
+            started);
+    const std::string all = table.effective_case() + "\n" + command.restart_path + "\n" +
+                            std::to_string(command.restart_step) + (command.complete ? "+" : "-") +
+                            (command.dry_run ? "+" : "-");
+    const long sum = long(std::hash<std::string>()(all) >> 1);
+    if (const long most = largest_over_ranks(sum); sum_over_ranks(long(sum != most)) > 0)
+        throw InputError(
+            "ranks have read different cases, or see different output folders: give all the same "
+            "files, in a folder that all machines share");
+}
+
 /// Says what the case is and what may mislead in it, and opens the run.
 /// in:     prepared and schedule, of a case that was not refused
 /// out:    holder, the run; false with --dry-run, where the words are all, and where --resume finds
@@ -34,6 +55,7 @@ struct Preparation {
 inline bool start_run(const ProgramInfo& info, const CommandLine& command,
                       const ParameterTable& table, const Preparation& prepared,
                       const Schedule& schedule, std::optional<Run>& holder) {
+    refuse_unlike_ranks(command, table);
     for (const std::string& warning : prepared.warnings)
         std::fprintf(stderr, "warning: %s\n", warning.c_str());
     if (!command.quiet) std::printf("%s", prepared.description.c_str());
@@ -62,8 +84,8 @@ inline bool start_run(const ProgramInfo& info, const CommandLine& command,
                          info.program.c_str(), command.out_dir.c_str());
         return false;
     }
-    // Ranks of one machine share its memory; and what they have read, nobody changes while others read it.
-    refuse_before_start(command, prepared.steps, prepared.bytes * ranks_here());
+    // What ranks have read, nobody changes while others read it.
+    refuse_before_start(command, prepared.steps, prepared.bytes);
     largest_over_ranks(0);
     Run& run = holder.emplace(info, command, table);
     for (const std::string& warning : prepared.warnings) run.summary.warning(warning);

@@ -146,6 +146,10 @@ refuse)
     # shellcheck disable=SC2086
     refused 7 2 '7 ranks, and the mesh has 13 rows of nodes' ${sweep#* }
     program=explicit_em
+    # shellcheck disable=SC2086
+    timeout 120 mpirun -n 1 "$many/cic" ${line#* } --quiet --out "$scratch/refused" : -n 1 "$many/cic" ${line#* } theory.compare=none --quiet \
+        --out "$scratch/refused" 2> "$said"
+    [ $? = 2 ] && grep -q 'ranks have read different cases' "$said" || complain "ranks with different cases: $(cat "$said")"
     [ -e "$scratch/refused" ] && complain "a refused case has left a folder"
     start 4 "$scratch/refused" "$@" --dry-run > "$scratch/words"
     [ -e "$scratch/refused" ] && complain "a dry run has left a folder"
