@@ -177,7 +177,7 @@ refuse)
 	end
     chmod +x "$scratch/poor"
     mpi=$many many=$scratch program=poor
-    refused 3 2 'memory, and there is' implicit_moment/cases/gem_explicit.toml harris.particles=1e7 --force
+    refused 3 2 'memory, and there is' implicit_moment/cases/gem_explicit.toml harris.particles=3e7 --force
     many=$mpi program=explicit_em
     # One fails later, when no more memory is to be had: it leaves the summary that the first cannot write.
     MALLOC_MMAP_THRESHOLD_=4096
