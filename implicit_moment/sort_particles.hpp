@@ -70,7 +70,8 @@ inline void sort_among_ranks(const NearestNode& node_at, SortScratch& scratch,
     }
     common::exchange(peers, to, from);
 
-    // Those of the ranks before, ours, those of the ranks behind; who leaves is sorted behind all nodes.
+    // One list for the sort: particles from the ranks before, our own, particles from the ranks behind. Our own that
+    // leave get a key behind those of all nodes, and are cut off.
     std::vector<double> coming;
     long before = 0;
     for (int k = 0; k < common::rank_count(); ++k) {

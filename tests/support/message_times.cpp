@@ -1,4 +1,4 @@
-// What goes from one rank to another costs a latency and time per byte, measured with the functions that the programs call.
+// How long messages between two ranks take, by the functions with which the programs exchange them.
 // Run:   mpirun -n 2 build/mpi/bench/message_times      (make MPI=1 bench)
 #include <algorithm>
 #include <chrono>
