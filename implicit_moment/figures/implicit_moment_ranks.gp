@@ -1,4 +1,4 @@
-# What ranks are worth: particles of the GEM challenge are divided by strips of four rows, and the current sheet has six times as many as the rest. Left: the most
+# What ranks are worth: particles of the GEM challenge are divided by strips of four rows, and one in the current sheet has six times as many as one outside. Left: the most
 # particles of a rank over the mean, in a real run. Right: the model of implicit_moment_ranks.sh: as built (full), and with patches of equal work (dashed).
 wide = 1500; high = 720
 load 'common/style.gp'
