@@ -67,7 +67,8 @@ inline Scales scales_of(const Case& parameters) {
     s.bytes = share * double(components * s.particles) * sizeof(Real) +
               share * double(sorted) *
                   (sizeof(Real) + sizeof(int) + (ranks > 1 ? 2 * sizeof(double) : 0)) +
-              double(parameters.grid.size()) * meshes * sizeof(double);
+              double(parameters.grid.size()) * meshes * sizeof(double) +
+              (ranks > 1 ? 10 * 1048576 : 0);  // of MPI
     // The factors of the matrix of a box.
     if (parameters.is_box()) {
         const double points = double(parameters.grid.size());
