@@ -76,11 +76,11 @@ signed(range) = sprintf("%s; set cbrange [%g:%g]", colors(diverging), -range, ra
 #   eval field_frame; plot 'fields_000100.dat' using 1:2:3 with image notitle
 field_frame = "unset grid; set border 15; set size ratio -1; set tics out"
 
-# Contours of a field file (columns x z f...) as lines to draw over an image:
+# Contours of a field file (columns x z f...) as lines to draw over an image (axes without numbers would leave no numbers in the lines):
 #   eval contours_of(run.'/fields_000100.dat', '1:2:5', 'levels incremental -2, 0.2, 2', '$lines')
 #   plot ... with image, $lines using 1:2 @contours notitle
 contours_of(file, columns, levels, block) = \
-    "set contour base; unset surface; set cntrparam " . levels . "; set table " . block . \
+    "set format xy '%g'; set contour base; unset surface; set cntrparam " . levels . "; set table " . block . \
     "; splot '" . file . "' using " . columns . "; unset table; unset contour; set surface"
 
 # ---- numbers of the run ----------------------------------------------------------------------------

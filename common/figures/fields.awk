@@ -36,7 +36,7 @@ function images(    i, k, fringe, f, rows, ratio, size, least, most) {
         else printf "eval colors(%s); set cbrange [%.9g:%.9g]\n", kind == "phase" ? "inferno" : "viridis", low[i], high[i]
         for (f = from; f <= to; f++) {
             # Field lines over the current.
-            if (name[i] == "J_y" && number["A_y"]) printf "set format '%%g'; eval contours_of('%s', '1:2:%d', 'levels 20', '$lines')\n", file[f], number["A_y"]
+            if (name[i] == "J_y" && number["A_y"]) printf "eval contours_of('%s', '1:2:%d', 'levels 20', '$lines')\n", file[f], number["A_y"]
             begin_panel(f, k, rows, 1, 2, fringe ? sprintf("fringe: %.3g", fringe) : label(i), least, most)
             printf "set title '%s'\n", time[f] == "" ? plain(name[i]) : plain(name[i]) sprintf(", time %.5g", time[f])
             # Grains as in a polariscope: dark where the stress difference is 0, 1, 2 ... fringes.

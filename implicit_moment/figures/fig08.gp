@@ -17,7 +17,6 @@ set xtics 4; set ytics 3
 set cbrange [0:1.4]
 set multiplot title 'GEM challenge: field lines and out-of-plane current' font ',22'
 do for [k = 1:words(times)] {
-    set format y '%g'
     # 16 lines to the side in steps of 0.4 B0 d_i
     eval contours_of(file(k), sprintf('1:2:%d', A), sprintf('levels incremental %g, %g, %g', -8 * B0, 0.4 * B0, 8 * B0), '$lines')
     left = k % 2 == 1 ? 0.07 : 0.48

@@ -206,6 +206,11 @@ tools)
         grep -q 'stopped at t = 0.1 of 0.2<' "$folder/$script.svg" || complain "$script.gp does not say that the run was stopped"
     done
 
+    # Lines of a field have places where the axes show no numbers.
+    for x in 0 1 2; do for z in 0 1 2; do echo "$x $z $((x + z))"; done; echo; done > "$folder/plane"
+    gnuplot -e "out='$folder/plane.svg'" -e "load 'common/style.gp'; set format ''; eval contours_of('$folder/plane', '1:2:3', 'levels discrete 1.5', '\$lines'); set print '-'; print \$lines" |
+        awk 'NF > 1 && $1 + $2 == 1.5 { ++there } END { exit there < 3 }' || complain "contours over axes without numbers have no places"
+
     # A sweep is the product of its lists, its table has every run, and the second time nothing is run.
     sweep() { PROGRAM=flip BUILD=$build SWEEP=$folder/sweep sh common/sweep.sh flip/cases/sod.toml "$@" > "$folder/told" 2>&1; }
     SWEEP_ONLY=2/3 sweep cells_x=20,30 flip.transfer=flip,apic,pic -- time.end=0.05
