@@ -204,8 +204,8 @@ answer:3)
     if holds "$3" = "$expected"; then
         echo "$expected" | awk -F' *[+]- *' '
             $1 == 0 || $2 + 0 == 0 { print "right"; exit }
-            $2 ~ /%$/ { print "right within " $2; exit }
-            { printf "right within %.2g %%\n", 100 * $2 / ($1 < 0 ? -$1 : $1) }'
+            $2 ~ /%$/ { print "right: it may be off by " $2; exit }
+            { printf "right: it may be off by %.2g %%\n", 100 * $2 / ($1 < 0 ? -$1 : $1) }'
     elif ! holds "$3" = "$3 +- 0" || ! echo "$3" | grep -q '[0-9]'; then
         stop "an answer is a number, like ANSWER=0.6"
     elif holds "$3" ">=" "${expected%% *}"; then
