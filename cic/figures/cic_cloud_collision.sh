@@ -7,7 +7,7 @@ program=$1
 folder=$2
 for weighting in ngp cic tsc; do
     clouds() { "$program" cic/cases/cloud_collision.toml method.weighting=$weighting --threads 1 --resume --quiet --out "$@"; }
-    clouds "$folder/${weighting}_swinging"
+    clouds "$folder/${weighting}_swinging" time.end=4200  # three periods with tsc
     for place in 0 1 2 3 4 5 6 7; do
         # Eight places within a cell.
         x=$(awk -v n=$place 'BEGIN { print 20 + n / 8 }')

@@ -1,5 +1,5 @@
 # growth.gp: a panel with the growth of a wave against theory, to be loaded within a multiplot. The line of theory goes through the predicted onset: nothing is fitted. Where
-# a run predicts none, the line has the predicted slope and the height of the run within the times of the fit. A script sets growth_floor, growth_top and marks,
+# a run predicts none, the line has the predicted slope and the height of the run within the times of the fit, of a growing wave within their later half. A script sets growth_floor, growth_top and marks,
 # times to mark above the frame, and may set field_label, growth_key, other, the folder of a run to compare with, and other_title, in its color.
 if (!exists('field_label')) field_label = '|E_k| / (m v_0 ω_p/e)'
 if (!exists('other')) { other = ''; other_title = '' }
@@ -18,8 +18,9 @@ if (onset ne '') {
 } else {
     fitted = entry('results.growth.source')
     fitted = fitted[strstrt(fitted, 'from t = ') + 9 :]
-    height = real(system(sprintf("LC_ALL=C awk '$%d >= %s && $%d <= %s { sum += 0.5 * log($%d^2 + $%d^2) - %.15g * $%d; n++ } END { print sum / n }' '%s'", \
-        t, word(fitted, 1), t, word(fitted, 3), re, im, rate, t, history)))
+    begin = real(word(fitted, 1)); end = real(word(fitted, 3)); if (rate > 0) { begin = 0.5 * (begin + end) }
+    height = real(system(sprintf("LC_ALL=C awk '$%d >= %.9g && $%d <= %.9g { sum += 0.5 * log($%d^2 + $%d^2) - %.15g * $%d; n++ } END { print sum / n }' '%s'", \
+        t, begin, t, end, re, im, rate, t, history)))
 }
 if (!exists('growth_floor')) {
     growth_top = real(system(sprintf("LC_ALL=C awk '$1 + 0 == $1 { E = $%d^2 + $%d^2; if (E > m) m = E } END { print 10 * sqrt(m) }' '%s'", re, im, history)))

@@ -3,7 +3,8 @@
 # Panels: the energies; what should be 0 and the amplitudes of modes, on a logarithmic scale; all else, one panel for each unit, at most nine. A column that is
 # always 0 is not drawn, and of many in a panel the largest. theory: growth of the column mode by theory, and the times where it was measured.
 # A second history after the first is drawn dashed, where it has the same columns.
-BEGIN { split(theory, growth) }
+# The start of a wave that grows may be above what grows: its line touches the later half.
+BEGIN { split(theory, growth); if (growth[1] > 0) growth[2] = 0.5 * (growth[2] + growth[3]) }
 
 FILENAME == "-" {
     name[$1] = $2

@@ -102,6 +102,13 @@ EOD
     draws "$folder/beams" history results particles instability
     [ "$(sh common/snapshots.sh near "$folder/beams" particles '20 33 50 1000' 2>/dev/null | awk '{ print NF, ($2 - 33 < 1), ($4 > 90) }')" = '4 1 1' ] ||
         complain "beams: the times of the snapshots are not those of the run"
+    # The line of theory lies on the wave at the end of the fit.
+    until=$(awk -v key=results.growth.source -f common/json_lines.awk "$folder/beams/summary.json" | sed 's/.* to \([0-9.]*\).*/\1/')
+    sh common/figures/history.sh "$folder/beams" | sed -n 's/.*exp(\([^ ]*\) + \([^ ]*\) [*] x).*/\1 \2/p' | awk -v until="$until" '
+        NR == FNR { height = $1; rate = $2; next }
+        FNR == 1 { for (i = 1; i <= NF; i++) place[$i] = i }
+        $1 + 0 == $1 && $1 <= until { off = height + rate * $1 - 0.5 * log($place["mode_re"] ^ 2 + $place["mode_im"] ^ 2) }
+        END { exit !(off && off ^ 2 < 0.01) }' - "$folder/beams/history.dat" || complain "beams: the line of theory is beside the wave"
     # A Riemann problem.
     cat > "$folder/tube.toml" <<'EOD'
 [grid]
