@@ -426,13 +426,14 @@ TEST_CASE("formulas that cannot be loaded or compared are refused with the place
         {electrons(f + ends) + "[theory]\ncompare = \"heating\"\n",
          "theory.compare = \"heating\" is for species without formulas"},
         {electrons(cusp + "amplitude = 0.01") + wave,
-         "and of distributions with steps none that is damped is known"},
+         "and of distributions with steps or steep slopes none that is damped is known"},
         {"[grid]\nlength_x = 20\n[species.ions]\ncharge = 1\nmotion = \"fixed\"\n"
          "[species.electrons]\n" +
-             std::string("distribution_x = \"abs(v) < 3 ? exp(-v^2) : 1e-4*abs(v)\"\n") +
-             ends + wave,
-         "theory of species.electrons, whose distribution is a formula with steps, is for waves "
-         "that grow"},
+             std::string("distribution_x = \"abs(v) < 3 ? exp(-v^2) : 1e-4*abs(v)\"\n") + ends +
+             wave,
+         "theory of species.electrons, whose distribution is a formula with steps or steep slopes, "
+         "is for "
+         "waves that grow"},
     };
     for (const auto& [text, message] : wrong) {
         CAPTURE(text);

@@ -40,7 +40,7 @@ class SmoothDistribution {
             const std::vector<Complex> all = terms(f, L * width, backward);
             for (const std::size_t N : {24, 48, 96}) {
                 const SmoothDistribution one(mean_, L * width, {all.begin(), all.begin() + N + 1});
-                const double error = worst(one, -0.3);
+                const double error = worst(one, -0.1);
                 if (error < least) least = error, L_ = one.L_, b_ = one.b_;
             }
         }

@@ -304,9 +304,10 @@ inline void refuse_resonance(const Case& parameters, const WaveVector& k, const 
         refuse(
             of_s.error ? of_s.error(theory.omega) > 1e-3 : resonant && theory.omega.imag() < least,
             "theory of species.", s.name, ", whose distribution is a formula",
-            of_s.error ? ", does not reach so far down"
-                       : sentence(" with steps, is for waves that grow faster than ", least,
-                                  " or have no particles at their phase velocity"),
+            of_s.error
+                ? ", does not reach so far down"
+                : sentence(" with steps or steep slopes, is for waves that grow faster than ",
+                           least, " or have no particles at their phase velocity"),
             ", and ", mode_text(theory.mode_x, theory.mode_z), " has omega = ", theory.omega.real(),
             ", growth = ", theory.omega.imag(), ": set theory.compare = \"none\"");
     }
@@ -353,7 +354,9 @@ inline Theory theory_of_wave(const Case& parameters, long mode_x, long mode_z) {
         if (!root.found)
             throw common::InputError(sentence(
                 "no root of the dispersion relation was found for ", mode_text(mode_x, mode_z),
-                by_formula ? ", and of distributions with steps none that is damped is known" : "",
+                by_formula ? ", and of distributions with steps or steep slopes none that is "
+                             "damped is known"
+                           : "",
                 parameters.near != 0 ? sentence(" near theory.near = ", parameters.near,
                                                 ": change it or take it out")
                                      : ": give theory.near a frequency to look at",
