@@ -80,10 +80,10 @@ class SmoothDistribution {
     // b_n = (L / pi) int f Z^-n dv, n >= 0. Where the table ends a tail like a power goes on.
     static std::vector<Complex> terms(const Distribution& f, double L, bool backward) {
         std::vector<Complex> b(97);
-        const double mean = f.mean(), pi = std::numbers::pi, sense = backward ? 1 : -1;
+        const double mean = f.mean(), sense = backward ? 1 : -1;
         const auto add = [&](double part, double angle) {
             const Complex back = std::polar(1.0, sense * angle);
-            Complex term = L / pi * part;
+            Complex term = L / std::numbers::pi * part;
             for (Complex& one : b) one += term, term *= back;
         };
         const auto angle_of = [&](double w) { return 2 * std::atan(w / L); };
@@ -95,7 +95,7 @@ class SmoothDistribution {
             const double power = (before / last - 1) * std::fabs(end) / f.step;
             if (!(power > 2 && power < 100)) continue;
             const int pieces = 1024;
-            const double from = angle_of(std::fabs(end)), step = (pi - from) / pieces;
+            const double from = angle_of(std::fabs(end)), step = (std::numbers::pi - from) / pieces;
             for (int j = 0; j < pieces; ++j) {
                 const double angle = from + (j + 0.5) * step, w = L * std::tan(0.5 * angle);
                 add(last * std::pow(std::fabs(end) / w, power) * (L * L + w * w) / (2 * L) * step,
