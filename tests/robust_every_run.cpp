@@ -378,7 +378,7 @@ mpm_implicit bar_wave time.dt=8e-3 -> 8e-3 143
 implicit_moment sheet -> 0.3 143
 implicit_moment sheet -> 0.3 130
 explicit_em sheet -> 0.2 143
-explicit_em sheet -> 0.2 130
+explicit_em sheet -> 0.2 129
 )")) {
         const std::string stopped = folder("stopped"), unstopped = folder("unstopped");
         INFO(command.program->name << " " << command.words);

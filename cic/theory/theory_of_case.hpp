@@ -12,6 +12,7 @@
 #include "cic/setup/case.hpp"
 #include "cic/theory/magnetized_dispersion.hpp"
 #include "cic/theory/mesh_dispersion.hpp"
+#include "cic/theory/smooth_distribution.hpp"
 #include "common/theory/kinetic_dispersion.hpp"
 
 namespace cic {
@@ -105,9 +106,21 @@ inline std::complex<double> tabulated_free_response(const Distribution& table, d
 
 /// What one mobile species does in a wave.
 ///   D = 1 + sum_s chi_s;  G_s = int f_s dv / (omega - k v): of a seed in free particles
+///   error: of chi, over it, of a smooth distribution by formula; others have none
 struct SpeciesResponse {
     std::function<std::complex<double>(std::complex<double>)> chi, G;
+    std::function<double(std::complex<double>)> error = {};
 };
+
+/// The response of a smooth distribution by formula, damped waves included.
+///   chi = -(omega_s / k)^2 dH/dc,  G = -H / k,  c = omega / k - u,  k > 0
+inline SpeciesResponse smooth_response(const SmoothDistribution& f, double omega2, double k,
+                                       double drift) {
+    const auto at = [f, k, drift](std::complex<double> omega) { return f.at(omega / k - drift); };
+    return {[=](auto omega) { return -omega2 / (k * k) * at(omega).slope; },
+            [=](auto omega) { return -at(omega).H / k; },
+            [=](auto omega) { return at(omega).error; }};
+}
 
 /// The table along k of a distribution by formula, where the species has one; k along an axis.
 inline const Distribution& table_along(const SpeciesCase& s, const WaveVector& k) {
@@ -131,12 +144,16 @@ inline std::vector<SpeciesResponse> responses_of(const Case& parameters, const W
         } else if (const Distribution& f = table_along(s, k); f.given()) {
             const double omega2 = s.mean_density() * s.charge * s.charge / s.mass,
                          drift = p.drift * size / along;
-            all.push_back({[&f, omega2, along, drift](auto omega) {
-                               return tabulated_susceptibility(f, omega2, along, drift, omega);
-                           },
-                           [&f, along, drift](auto omega) {
-                               return tabulated_free_response(f, along, drift, omega);
-                           }});
+            const SmoothDistribution smooth(f, along < 0);
+            if (smooth.holds())
+                all.push_back(smooth_response(smooth, omega2, size, p.drift));
+            else
+                all.push_back({[&f, omega2, along, drift](auto omega) {
+                                   return tabulated_susceptibility(f, omega2, along, drift, omega);
+                               },
+                               [&f, along, drift](auto omega) {
+                                   return tabulated_free_response(f, along, drift, omega);
+                               }});
         } else {
             const double kv = std::numbers::sqrt2 * size * p.speed_along();
             all.push_back({[p, size](auto omega) {
@@ -269,25 +286,30 @@ void find_magnetized_wave(const Case& parameters, const WaveVector& k,
             if (root != best) theory.others.push_back(root.real());
 }
 
-/// Refuses a root at which some distribution by formula has particles that move with the wave: the
-/// integral over its table is not continued below the real axis.
-inline void refuse_resonance(const Case& parameters, const WaveVector& k, const Theory& theory) {
+/// Refuses a root that distributions by formula do not tell: for a smooth one where its series ends, for
+/// another one where particles move with the wave or it is damped.
+inline void refuse_resonance(const Case& parameters, const WaveVector& k, const Theory& theory,
+                             const std::vector<SpeciesResponse>& responses) {
+    auto response = responses.begin();
     for (const SpeciesCase& s : parameters.species) {
+        if (!s.mobile()) continue;
+        const SpeciesResponse& of_s = *response++;
         const Distribution& f = table_along(s, k);
-        if (!s.mobile() || !f.given()) continue;
-        const double along = k.z == 0 ? k.x : k.z;
+        if (!f.given()) continue;
+        const double along = k.z == 0 ? k.x : k.z, least = 4 * f.step * std::fabs(along);
         const std::complex<double> c = theory.omega / along - (k.z == 0 ? s.drift_x : s.drift_z);
-        bool resonant = false;
+        bool resonant = theory.omega.imag() < 0;
         for (std::size_t j = 0; j < f.rise.size(); ++j)
             resonant = resonant || (f.rise[j] != 0 && std::abs(c.real() - f.edge(j)) < 4 * f.step);
-        const bool damped = theory.omega.imag() < 0;
-        refuse((damped || resonant) && theory.omega.imag() < 4 * f.step * std::fabs(along),
-               "theory of species.", s.name,
-               ", whose distribution is a formula, is for waves that grow faster than ",
-               4 * f.step * std::fabs(along),
-               " or have no particles at their phase velocity, and the one of ",
-               mode_text(theory.mode_x, theory.mode_z), " has omega = ", theory.omega.real(),
-               ", growth = ", theory.omega.imag(), ": set theory.compare = \"none\"");
+        refuse(
+            of_s.error ? of_s.error(theory.omega) > 1e-3 : resonant && theory.omega.imag() < least,
+            "theory of species.", s.name, ", whose distribution is a formula",
+            of_s.error
+                ? ", does not reach so far down"
+                : sentence(" with steps or steep slopes, is for waves that grow faster than ",
+                           least, " or have no particles at their phase velocity"),
+            ", and ", mode_text(theory.mode_x, theory.mode_z), " has omega = ", theory.omega.real(),
+            ", growth = ", theory.omega.imag(), ": set theory.compare = \"none\"");
     }
 }
 
@@ -332,7 +354,8 @@ inline Theory theory_of_wave(const Case& parameters, long mode_x, long mode_z) {
         if (!root.found)
             throw common::InputError(sentence(
                 "no root of the dispersion relation was found for ", mode_text(mode_x, mode_z),
-                by_formula ? ", and with distributions by formula none that is damped is known"
+                by_formula ? ", and of distributions with steps or steep slopes none that is "
+                             "damped is known"
                            : "",
                 parameters.near != 0 ? sentence(" near theory.near = ", parameters.near,
                                                 ": change it or take it out")
@@ -347,7 +370,7 @@ inline Theory theory_of_wave(const Case& parameters, long mode_x, long mode_z) {
     const std::complex<double> mirror = -std::conj(theory.omega);
     const common::DispersionRoot other = common::root_near(D, mirror);
     theory.mirrored = other.found && std::abs(other.omega - mirror) < 1e-6 * std::abs(mirror);
-    if (!on_mesh) refuse_resonance(parameters, k, theory);
+    if (!on_mesh) refuse_resonance(parameters, k, theory, responses);
     if (!on_mesh) theory.seed = seeded_field(parameters, theory, responses, D);
     return theory;
 }

@@ -179,8 +179,7 @@ Run::Run(const ProgramInfo& info, const CommandLine& command, const ParameterTab
         begun = {path("case.toml"), path("case.toml.partial"), path(lock_name),
                  is_new_ ? command_.out_dir : ""};
     forget_on_signal(stopped, is_new_ ? begun : std::vector<std::string>{});
-    listen_to(SIGINT);
-    listen_to(SIGTERM);
+    for (const int signal : {SIGHUP, SIGINT, SIGTERM}) listen_to(signal);
     on_first_rank([&] { prepare_folder(); });
     terminal_ = isatty(STDERR_FILENO) != 0 && std::getenv("NO_PROGRESS") == nullptr;
     if (restarting()) return;

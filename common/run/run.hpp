@@ -27,7 +27,7 @@ struct Schedule {
 
 class Run {
    public:
-    /// Prepares the output folder, locks it and listens to SIGINT and SIGTERM. Until the first step
+    /// Prepares the output folder, locks it and listens to SIGHUP, SIGINT and SIGTERM. Until the first step
     /// begins, a signal ends the program at once and takes away what it has begun; afterwards the
     /// step is finished and a checkpoint is written. A restart writes nothing before restore().
     /// errors: InputError when another run writes into the folder, or it holds something else, or an
@@ -98,7 +98,7 @@ class Run {
     /// Writes summary.json and prints the results.
     /// in:     step, how many steps the run has come to; count, particles (or what else is
     ///         advanced) in each.
-    /// out:    the exit status: 0 done, 1 with --strict where a result fell short, 130 or 143
+    /// out:    the exit status: 0 done, 1 with --strict where a result fell short, 129, 130 or 143
     ///         stopped by a signal, 3 for a result that is not finite.
     int finish(long step, double count);
 

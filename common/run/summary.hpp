@@ -80,7 +80,7 @@ class Summary {
 
     /// Writes the file. Numbers that are not finite are null, with "finite": false and
     /// "pass": false; so are those that were not measured, whose verdict says so.
-    /// in: status 0 done, 3 failed, 130 or 143 stopped by a signal; message, how the run ended.
+    /// in: status 0 done, 3 failed, 129, 130 or 143 stopped by a signal; message, how the run ended.
     void write(const std::string& path, const ProgramInfo& info, const std::string& case_name,
                int status, const std::string& message) const;
 

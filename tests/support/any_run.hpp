@@ -84,6 +84,7 @@ inline std::vector<double> column(const std::string& out, const std::string& nam
 inline pid_t started(const std::string& command, const std::string& out) {
     const pid_t child = fork();
     if (child == 0) {
+        std::signal(SIGHUP, SIG_DFL);  // which nohup would have it ignore
         if (std::freopen((out + ".stderr").c_str(), "w", stderr) == nullptr) _exit(98);
         execl("/bin/sh", "sh", "-c", ("exec " + command + " --quiet --out " + out).c_str(),
               static_cast<char*>(nullptr));
