@@ -113,9 +113,12 @@ const std::vector<Mutation> implicit{
      "grid.cells_x=8 grid.cells_z=16 harris.particles=1e4 time.dt=1.2 field.theta=1",
      "electron_outflow ion_outflow time_at_unit_flux quadrupole_at_unit_flux flux_at_t30 "
      "energy_drift"},
+    {"implicit_moment", "gem", "grid.cells_z=8 harris.particles=1e4 time.dt=0.6 time.end=500",
+     "density_at_X_line energy_drift"},
     {"implicit_moment", "gem",
-     "grid.cells_z=16 harris.particles=1e4 time.dt=0.6 time.end=400 field.smoothing_passes=0",
-     "ion_over_electron_outflow density_at_X_line energy_drift"},
+     "grid.cells_x=16 grid.cells_z=16 harris.particles=1e4 time.dt=0.4 time.end=500 "
+     "field.smoothing_passes=60",
+     "ion_over_electron_outflow"},
     {"implicit_moment", "gem",
      "plasma.loading=random harris.particles=5e3 grid.cells_x=16 grid.cells_z=32 time.dt=1.2 "
      "field.theta=1",

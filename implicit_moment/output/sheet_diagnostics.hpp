@@ -18,10 +18,10 @@ namespace implicit_moment {
 ///     a_m(z) = (2/N) sum_x f(x, z) exp(-i k_m x),  k_m = 2 pi m/length_x
 class RowModes {
    public:
-    explicit RowModes(const Grid& grid) : waves_(sheet_modes, grid.x.cells) {
+    explicit RowModes(const Grid& grid) : waves_(sheet_modes(grid), grid.x.cells) {
         const double cells = double(grid.x.cells);
         for (long i = 0; i < grid.x.cells; ++i) {
-            for (long m = 1; m <= sheet_modes; ++m) {
+            for (long m = 1; m <= waves_.rows(); ++m) {
                 const double turns = double(m) * (double(i) + 0.5) / cells;
                 waves_(m - 1, i) = std::polar(2 / cells, -2 * pi * turns);
             }
@@ -68,7 +68,7 @@ inline Eigen::VectorXd displacement(const Grid& grid, const double* B_y) {
 }
 
 /// The columns that the history of a current sheet has beyond those of every run.
-///     E_m    rms over z of mode m of E_x   [B0 v_A/c]      m = 1 .. 16
+///     E_m    rms over z of mode m of E_x   [B0 v_A/c]      m = 1 .. sheet_modes
 ///     B_m    the same of B_y               [B0]
 ///     displacement_m   amplitude of mode m of the displacement of the sheet   [L]   m = 1 .. 4
 ///     upper_m_re, upper_m_im, lower_m_re, lower_m_im   complex amplitude of E_x, its mean over the
@@ -96,13 +96,13 @@ class SheetDiagnostics {
         const Eigen::VectorXd E_rms = rms_over_rows(E), B_rms = rms_over_rows(B);
         const Eigen::VectorXcd moved = modes_(displacement(grid_, field.B.y())) / L_;
         const auto mode = [](const char* name, long m) { return name + std::to_string(m + 1); };
-        for (long m = 0; m < sheet_modes; ++m) row.add(mode("E_", m), E_unit, E_rms[m]);
-        for (long m = 0; m < sheet_modes; ++m) row.add(mode("B_", m), "B0", B_rms[m]);
+        for (long m = 0; m < E.rows(); ++m) row.add(mode("E_", m), E_unit, E_rms[m]);
+        for (long m = 0; m < B.rows(); ++m) row.add(mode("B_", m), "B0", B_rms[m]);
         for (long m = 0; m < displacement_modes; ++m)
             row.add(mode("displacement_", m), "L", std::abs(moved[m]));
         const auto add_edge = [&](const char* name, long first) {
             const Eigen::VectorXcd mean = E.middleCols(first, rows_).rowwise().mean();
-            for (long m = 0; m < sheet_modes; ++m) {
+            for (long m = 0; m < E.rows(); ++m) {
                 row.add(mode(name, m) + "_re", E_unit, mean[m].real());
                 row.add(mode(name, m) + "_im", E_unit, mean[m].imag());
             }

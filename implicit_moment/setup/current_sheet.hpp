@@ -6,6 +6,7 @@
 // (right-handed: the talk's x points into the plane). In figures the talk's letters are used.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -15,8 +16,11 @@
 
 namespace implicit_moment {
 
-/// Modes along the current that the history follows: wavelengths length_x/m, m = 1 .. sheet_modes.
-inline constexpr long sheet_modes = 16;
+/// Modes along the current that the history follows: wavelengths length_x/m, m = 1 .. sheet_modes,
+/// 16 or what a coarser mesh has.
+inline long sheet_modes(const Grid& grid) { return std::min(16L, (grid.x.cells - 1) / 2); }
+/// Comparisons read modes 1 to 4: fewer cells along the current are refused.
+inline constexpr long least_cells_along_current = 9;
 
 /// What the waves need to be seen: cells in one of them, particles of a species in a cell.
 inline constexpr double least_cells_in_wave = 6, least_particles_in_cell = 50;

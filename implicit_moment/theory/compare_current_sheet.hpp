@@ -17,10 +17,10 @@ namespace implicit_moment {
 
 /// Refuses a mesh on which the modes along the current do not fit. errors: InputError with the cure.
 inline void refuse_current_sheet(const Case& w) {
-    refuse(w.grid.x.cells <= 2 * sheet_modes,
-           "grid.cells_x = " + std::to_string(w.grid.x.cells) + ": the first " +
-               std::to_string(sheet_modes) + " modes along the current are followed, so take " +
-               std::to_string(2 * sheet_modes + 1) + " or more");
+    refuse(w.grid.x.cells < least_cells_along_current,
+           "grid.cells_x = " + std::to_string(w.grid.x.cells) +
+               ": the first 4 modes along the current are compared, so take " +
+               std::to_string(least_cells_along_current) + " or more");
 }
 
 /// The sheet as local theory wants it: lengths in L, times in 1/Omega_ci; guiding centers drift in
@@ -76,7 +76,7 @@ inline void compare_current_sheet(const Case& w, const common::History& history,
     long dominant = 1;
     double largest = -1;
     std::size_t top = 0;
-    for (long m = 1; m <= sheet_modes; ++m) {
+    for (long m = 1; m <= sheet_modes(w.grid); ++m) {
         const auto a = EdgeWave(history, m).amplitude;
         const auto at = std::max_element(a.begin(), a.begin() + long(last));
         if (*at <= largest) continue;
