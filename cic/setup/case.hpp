@@ -22,6 +22,12 @@ struct PerturbationCase {
     long mode_x = 1, mode_z = 0;
     double amplitude = 0;
     std::string wave = "standing";  // or traveling
+
+    /// Whether it is of this mode; a standing wave is one of the opposite mode as well.
+    bool is_of(long x, long z) const {
+        return (mode_x == x && mode_z == z) ||
+               (wave != "traveling" && mode_x == -x && mode_z == -z);
+    }
 };
 
 /// What read_formulas() has made of the formulas of a species.

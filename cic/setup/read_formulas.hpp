@@ -58,6 +58,21 @@ inline void read_formulas(Case& parameters) {
             table = tabulate(low, s.distribution_max, velocity_pieces, speeds,
                              [&](double v) { return f.at(v); });
             refuse_nothing(table, what);
+            // What is narrower than a piece is not in the table, or is there by chance.
+            const auto mass = [&](long pieces) {
+                const double step = (s.distribution_max - low) / double(pieces);
+                double sum = 0;
+                for (long j = 0; j < pieces; ++j) {
+                    const double v = low + (double(j) + 0.5) * step;
+                    sum += f.at(v) * step * (speeds ? v : 1);
+                }
+                return sum;
+            };
+            const double coarse = mass(velocity_pieces), fine = mass(64 * velocity_pieces);
+            refuse(std::fabs(coarse - fine) > 0.01 * fine, name, ".", what,
+                   " is narrower than the pieces of its table, which are ", table.step,
+                   " wide: lower ", name,
+                   ".distribution_max, or make a narrow beam a species of its own");
         };
         const double lowest = -s.distribution_max;
         read(s.distribution_x, "distribution_x", lowest, false, s.tables.v[0]);

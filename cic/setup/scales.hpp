@@ -185,12 +185,10 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
     bool followed = false;
     for (const SpeciesCase& s : parameters.species) {
         emission += s.emission;
-        const auto follow = [&](long mode_x, long mode_z) {
-            followed = followed || (mode_x == parameters.mode_x && mode_z == parameters.mode_z);
-        };
-        if (s.ripple != 0) follow(s.mode_x, s.mode_z);
+        followed = followed || (s.ripple != 0 && s.mode_x == parameters.mode_x &&
+                                s.mode_z == parameters.mode_z);
         for (const PerturbationCase& p : perturbations_of(parameters, s))
-            follow(p.mode_x, p.mode_z);
+            followed = followed || p.is_of(parameters.mode_x, parameters.mode_z);
     }
     if (parameters.walls[x_low].particles == "source" && emission == 0)
         warn(

@@ -106,20 +106,22 @@ inline std::complex<double> tabulated_free_response(const Distribution& table, d
 
 /// What one mobile species does in a wave.
 ///   D = 1 + sum_s chi_s;  G_s = int f_s dv / (omega - k v): of a seed in free particles
-///   error: of chi, over it, of a smooth distribution by formula; others have none
 struct SpeciesResponse {
     std::function<std::complex<double>(std::complex<double>)> chi, G;
-    std::function<double(std::complex<double>)> error = {};
+    bool table_only = false;  // of a distribution by formula that is not smooth: no damped waves
 };
 
-/// The response of a smooth distribution by formula, damped waves included.
+/// The response of a smooth distribution by formula, damped waves included; no value where the series does not
+/// have it to 1e-3.
 ///   chi = -(omega_s / k)^2 dH/dc,  G = -H / k,  c = omega / k - u,  k > 0
 inline SpeciesResponse smooth_response(const SmoothDistribution& f, double omega2, double k,
                                        double drift) {
     const auto at = [f, k, drift](std::complex<double> omega) { return f.at(omega / k - drift); };
-    return {[=](auto omega) { return -omega2 / (k * k) * at(omega).slope; },
-            [=](auto omega) { return -at(omega).H / k; },
-            [=](auto omega) { return at(omega).error; }};
+    return {[=](auto omega) {
+                const auto value = at(omega);
+                return value.error <= 1e-3 ? -omega2 / (k * k) * value.slope : common::no_value;
+            },
+            [=](auto omega) { return -at(omega).H / k; }};
 }
 
 /// The table along k of a distribution by formula, where the species has one; k along an axis.
@@ -153,7 +155,8 @@ inline std::vector<SpeciesResponse> responses_of(const Case& parameters, const W
                                },
                                [&f, along, drift](auto omega) {
                                    return tabulated_free_response(f, along, drift, omega);
-                               }});
+                               },
+                               true});
         } else {
             const double kv = std::numbers::sqrt2 * size * p.speed_along();
             all.push_back({[p, size](auto omega) {
@@ -198,7 +201,7 @@ double seeded_field(const Case& parameters, const Theory& theory,
         if (!s.mobile()) continue;
         double seed = uniformly ? std::fabs(s.charge) * s.mean_density() : 0;
         for (const PerturbationCase& p : perturbations_of(parameters, s)) {
-            if (uniformly || p.mode_x != theory.mode_x || p.mode_z != theory.mode_z) continue;
+            if (uniformly || !p.is_of(theory.mode_x, theory.mode_z)) continue;
             if (p.wave == "traveling") return 0;
             seed += s.charge * s.mean_density() * p.amplitude;
         }
@@ -286,30 +289,29 @@ void find_magnetized_wave(const Case& parameters, const WaveVector& k,
             if (root != best) theory.others.push_back(root.real());
 }
 
-/// Refuses a root that distributions by formula do not tell: for a smooth one where its series ends, for
-/// another one where particles move with the wave or it is damped.
+/// Refuses a root at which some distribution by formula that is not smooth has particles that move with the
+/// wave: the integral over its table is not continued below the real axis.
 inline void refuse_resonance(const Case& parameters, const WaveVector& k, const Theory& theory,
                              const std::vector<SpeciesResponse>& responses) {
     auto response = responses.begin();
     for (const SpeciesCase& s : parameters.species) {
-        if (!s.mobile()) continue;
-        const SpeciesResponse& of_s = *response++;
+        if (!s.mobile() || !(response++)->table_only) continue;
         const Distribution& f = table_along(s, k);
-        if (!f.given()) continue;
-        const double along = k.z == 0 ? k.x : k.z, least = 4 * f.step * std::fabs(along);
+        const double along = k.z == 0 ? k.x : k.z;
         const std::complex<double> c = theory.omega / along - (k.z == 0 ? s.drift_x : s.drift_z);
         bool resonant = theory.omega.imag() < 0;
         for (std::size_t j = 0; j < f.rise.size(); ++j)
             resonant = resonant || (f.rise[j] != 0 && std::abs(c.real() - f.edge(j)) < 4 * f.step);
         refuse(
-            of_s.error ? of_s.error(theory.omega) > 1e-3 : resonant && theory.omega.imag() < least,
-            "theory of species.", s.name, ", whose distribution is a formula",
-            of_s.error
-                ? ", does not reach so far down"
-                : sentence(" with steps or steep slopes, is for waves that grow faster than ",
-                           least, " or have no particles at their phase velocity"),
-            ", and ", mode_text(theory.mode_x, theory.mode_z), " has omega = ", theory.omega.real(),
-            ", growth = ", theory.omega.imag(), ": set theory.compare = \"none\"");
+            resonant && theory.omega.imag() < 4 * f.step * std::fabs(along), "theory of species.",
+            s.name,
+            ", whose distribution is a formula that is not smooth to 1e-6, or cut before it is as "
+            "small, is for waves that grow faster than ",
+            4 * f.step * std::fabs(along),
+            " or have no particles at their phase velocity, and the one of ",
+            mode_text(theory.mode_x, theory.mode_z), " has omega = ", theory.omega.real(),
+            ", growth = ", theory.omega.imag(),
+            ": take another distribution_max, or set theory.compare = \"none\"");
     }
 }
 
@@ -354,9 +356,10 @@ inline Theory theory_of_wave(const Case& parameters, long mode_x, long mode_z) {
         if (!root.found)
             throw common::InputError(sentence(
                 "no root of the dispersion relation was found for ", mode_text(mode_x, mode_z),
-                by_formula ? ", and of distributions with steps or steep slopes none that is "
-                             "damped is known"
-                           : "",
+                by_formula
+                    ? ", and where a distribution by formula has steps or steep slopes, or is "
+                      "cut before it is 1e-6 of its largest, none that is damped is known"
+                    : "",
                 parameters.near != 0 ? sentence(" near theory.near = ", parameters.near,
                                                 ": change it or take it out")
                                      : ": give theory.near a frequency to look at",
@@ -380,10 +383,15 @@ inline Theory theory_of_wave(const Case& parameters) {
     if (parameters.mode_x != 0 || parameters.mode_z != 0)
         return theory_of_wave(parameters, parameters.mode_x, parameters.mode_z);
     Theory best;
-    for (long m = 1; 2 * m < parameters.grid.x.cells; ++m) {
-        const Theory theory = theory_of_wave(parameters, m, 0);
-        if (m == 1 || theory.omega.imag() > best.omega.imag()) best = theory;
-    }
+    const bool by_formula = std::any_of(parameters.species.begin(), parameters.species.end(),
+                                        [](const SpeciesCase& s) { return s.has_distribution(); });
+    for (long m = 1; 2 * m < parameters.grid.x.cells; ++m) try {
+            const Theory theory = theory_of_wave(parameters, m, 0);
+            if (best.mode_x == 0 || theory.omega.imag() > best.omega.imag()) best = theory;
+        } catch (const common::InputError&) {
+            // A wave that is too damped to be known does not grow fastest; one at least is known.
+            if (!by_formula || (best.mode_x == 0 && 2 * m + 2 >= parameters.grid.x.cells)) throw;
+        }
     return best;
 }
 

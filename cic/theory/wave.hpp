@@ -131,8 +131,17 @@ inline std::string likely_cause(const Case& parameters, const Theory& theory, do
     const double bounce = bounce_frequency(parameters, theory, field),
                  rate = std::fabs(theory.omega.imag()),
                  step = std::abs(theory.omega) * parameters.dt,
-                 cell = wave_vector(parameters, theory.mode_x, theory.mode_z).size() *
-                        parameters.grid.x.spacing();
+                 k_dx =
+                     wave_vector(parameters, theory.mode_x, 0).size() * parameters.grid.x.spacing(),
+                 k_dz =
+                     wave_vector(parameters, 0, theory.mode_z).size() * parameters.grid.z.spacing();
+    const bool by_formula = std::any_of(parameters.species.begin(), parameters.species.end(),
+                                        [](const SpeciesCase&s) { return s.has_distribution(); }),
+               oblique = theory.mode_x != 0 && theory.mode_z != 0;
+    const char* exact =
+        by_formula || oblique || parameters.magnetized() || parameters.gauss_sign < 0
+            ? ""
+            : ", or take theory.model = \"mesh\"";
     if (noise > 0.1 * field)
         return sentence("random particles have up to ", noise / field,
                         " of the seeded field in this mode: raise amplitude or "
@@ -141,14 +150,13 @@ inline std::string likely_cause(const Case& parameters, const Theory& theory, do
         return sentence("particles bounce in the wave with ", bounce, ", faster than the rate ",
                         rate, ", and linear theory does not hold: lower the amplitude ",
                         common::format(rate * rate / (bounce * bounce)), " times");
-    if (parameters.model != "mesh" && cell > 0.5)
-        return sentence("k dx is ", cell,
-                        ", and the mesh changes the wave: raise grid.cells_x, or take theory.model "
-                        "= \"mesh\"");
+    if (parameters.model != "mesh" && std::max(k_dx, k_dz) > 0.5)
+        return sentence(k_dx > k_dz ? "k dx is " : "k dz is ", std::max(k_dx, k_dz),
+                        ", and the mesh changes the wave: raise grid.cells_",
+                        k_dx > k_dz ? "x" : "z", exact);
     if (parameters.model != "mesh" && step > 0.3)
         return sentence("|omega| dt is ", step,
-                        ", and the leapfrog changes the wave: lower time.dt, or take theory.model "
-                        "= \"mesh\"");
+                        ", and the leapfrog changes the wave: lower time.dt", exact);
     return noise > 0 ? "the noise of particles is the most likely cause: raise particles_per_cell, "
                        "or take loading = \"quiet\""
                      : "another wave beside it, or too short a record, is the most likely cause: "
