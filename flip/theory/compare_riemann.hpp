@@ -57,9 +57,32 @@ inline WaveEnds wave_ends(const Case& parameters, double t) {
                      time(parameters.grid.x.high() - at, right))};
 }
 
-/// Warns where the waves leave the mesh before the end, and where they leave so little between them
-/// that cells are empty, whose pressure is 0.
+/// Warns of an end of the mesh that sends a wave into a gas: a wall where the gas moves, an open end
+/// where it comes in, and one where it leaves slower than sound towards another pressure.
+inline void warn_of_end(const Case& parameters, bool low, std::vector<std::string>& warnings) {
+    const SideCase& s = low ? parameters.left : parameters.right;
+    const BoundaryCase& end = parameters.boundaries[low ? x_low : x_high];
+    if (s.density == 0 || end.kind == "inflow") return;
+    const double c = theory::sound_speed(
+                     {s.density, s.velocity, s.pressure, s.gamma, s.p_infinity}),
+                 outward = low ? -s.velocity : s.velocity, much = 1e-3;
+    const bool open = end.kind == "open", comes_in = outward < -much * c;
+    const std::string name = low ? "x_low" : "x_high",
+                      wave = ", sends a wave into the mesh that the exact solution does not know: ";
+    warn(warnings, open ? comes_in : std::fabs(outward) > much * c, "boundary.", name, " = \"",
+         end.kind, "\", where the gas moves with ", s.velocity, wave, "take \"",
+         comes_in ? "inflow" : "open", "\"");
+    warn(warnings,
+         open && !comes_in && outward < c &&
+             std::fabs(end.pressure - s.pressure) > much * s.density * c * c,
+         "boundary.pressure_", name, " = ", end.pressure, ", where the gas has ", s.pressure, wave,
+         "take that");
+}
+
+/// Warns of ends that send waves, where the waves leave the mesh before the end, and where they leave so
+/// little between them that cells are empty, whose pressure is 0.
 inline void warn_of_riemann(const Case& parameters, std::vector<std::string>& warnings) {
+    for (const bool low : {true, false}) warn_of_end(parameters, low, warnings);
     const WaveEnds ends = wave_ends(parameters, parameters.end);
     warn(warnings, ends.beyond(parameters), "at time.end the waves are at x = ", ends.left, " and ",
          ends.right,
