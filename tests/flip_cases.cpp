@@ -425,9 +425,9 @@ TEST_CASE("shock tubes of Toro end with their energy whatever the transfer" *
     for (std::size_t n = 0; n < toro.size(); ++n) {
         for (const char* transfer : {"flip", "pic", "blend", "apic", "xpic"}) {
             for (const char* density : {"cells", "particles"}) {
-                // Gas that is nearly a void, cold beside less cold.
-                const bool fine = n == 1 && std::string(density) == "particles";
-                Case w = tube_of(toro[n], fine ? 400 : 100);
+                // Gas that is nearly a void: light nodes, which no viscosity must throw apart.
+                Case w = tube_of(toro[n], n != 1 ? 100 : *density == 'c' ? 200 : 400);
+                if (n == 1) w.boundaries[x_low].pressure = w.boundaries[x_high].pressure = 0;
                 w.transfer = transfer, w.density = density;
                 CAPTURE(n + 1);
                 CAPTURE(transfer);

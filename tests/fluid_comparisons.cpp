@@ -214,6 +214,13 @@ TEST_CASE("the pressure between two strong fans is judged by its own size") {
         CAPTURE(wrong);
         CHECK((part(run, "star_pressure") <= 1) == (wrong < 2));
     }
+    // All of the gas in one cell of three, which has three times the pressure.
+    const auto run = tube_of(tube, 200, [&](long n, std::size_t i, double x, CellFields& c) {
+        const double xi = (x - tube.interface) / tube.end;
+        if (xi > s.left_tail && xi < s.right_tail)
+            c.p[n] = i % 3 ? 0 : 3 * star, c.rho[n] *= i % 3 ? 0 : 3;
+    });
+    CHECK(run.value("star_pressure") == doctest::Approx(star));
 }
 
 TEST_CASE("a tube whose light gas is scrambled beside a heavy one does not pass") {

@@ -95,10 +95,19 @@ flip tube material.a.gamma=1.4 material.b.gamma=1.4 -> warning: material.b is no
 flip tube output.fields_interval=1e-6 output.particles_interval=1
     warning: output.fields_interval = 1e-06 is below the first time step, 0.002535: files are
     written every step
+flip sod theory.compare=riemann left.velocity=-0.3
+    warning: boundary.x_low = "slip", where the gas moves with -0.3, sends a wave into the mesh that
+    the exact solution does not know: take "open"
+flip sod theory.compare=riemann boundary.x_low=open left.velocity=0.3
+    warning: boundary.x_low = "open", where the gas moves with 0.3, sends a wave into the mesh that
+    the exact solution does not know: take "inflow"
+flip sod theory.compare=riemann boundary.x_low=open
+    warning: boundary.pressure_x_low = 0, where the gas has 1, sends a wave into the mesh that the
+    exact solution does not know: take that
 flip sod theory.compare=riemann time.end=0.4
     warning: at time.end the waves are at x = 0.02671 and 1.201, beyond the ends
 fluids sod theory.compare=riemann left.velocity=-2 left.pressure=0.4 right.density=1 \
-    right.pressure=0.4 right.velocity=2 time.end=0.15
+    right.pressure=0.4 right.velocity=2 boundary.x_low=open boundary.x_high=open time.end=0.15
     warning: between the waves a cell will have
 fluids around region.gas.velocity_x=1 time.end=1e-6
     warning: until time.end = 1e-06 sound or the flow crosses 8.555e-05 cells, below 0.1: the run is

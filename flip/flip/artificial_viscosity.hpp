@@ -63,20 +63,15 @@ inline void find_viscosity(const Grid& grid, const Boundaries& boundaries,
 
 /// Lowers the artificial viscosity of cells to what stops their compression within the step.
 ///   q <= -D v^0/(dt D M^-1 D^T),  D that of dilation()
-/// in:     mixed_only: of no other cells than those with several materials
-/// note:   more would throw apart nodes lighter than the cell, of air by water or of a near void; and
-///         where sound crosses many cells in an implicit step, any nodes
-inline void limit_viscosity(const Grid& grid, bool mixed_only, double dt, Mesh& mesh) {
+/// note:   more would throw apart nodes lighter than the cell, of air by water or of a near void, and
+///         pay for it with energy that the cell may not have; and where sound crosses many cells in an
+///         implicit step, any nodes
+inline void limit_viscosity(const Grid& grid, double dt, Mesh& mesh) {
     const Nodes& g = mesh.nodes;
-    const auto mixed = [&](long n) {
-        const auto first = mesh.cells.sum.begin() + n * mesh.materials,
-                   end = first + mesh.materials;
-        return std::count_if(first, end, [](const CellSum& sum) { return sum.M > 0; }) > 1;
-    };
     const double dx = is_plane(grid) ? grid.x.spacing() : 0;  // in a row nothing moves along z
     for_each_cell(grid, [&](long i, long, long n) {
         CellTensor& q = mesh.cells.q[n];
-        if (q.trace() == 0 || (mixed_only && !mixed(n))) return;
+        if (q.trace() == 0) return;
         double response = 0;  // D M^-1 D^T, of this cell alone
         for (const long side : {0, 1}) {
             const double node = static_cast<double>(i),

@@ -203,8 +203,7 @@ inline StepReport move_mesh(const Problem& problem, double& dt, const Particles&
     if (consistent) solve_velocity(grid, M, g);
 
     find_viscosity(grid, boundaries, problem.q, mesh);
-    const bool mixed_only = !grid.axisymmetric && !problem.scheme.implicit;
-    if (!mixed_only || mesh.materials > 1) limit_viscosity(grid, mixed_only, dt, mesh);
+    limit_viscosity(grid, dt, mesh);
     if (consistent) stop_at_walls(problem, M, g);
     for (;; dt *= 0.5) {
         find_known_forces(grid, boundaries, problem.viscosity, mesh);
