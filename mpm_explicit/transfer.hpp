@@ -28,6 +28,7 @@ auto with_shape(const Scheme& scheme, const Work& work) {
 struct Transfer {
     enum Affine { none, spin, affine } kind = none;  // mpm_explicit/affine_motion.hpp
     double flip = 1;                                 // the part of FLIP in their velocity
+    double crossing = 0;                             // mpm_explicit/crossing.hpp
 };
 
 /// Which velocity of a node is meant: before the step, or after it.

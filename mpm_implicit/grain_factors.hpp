@@ -13,8 +13,8 @@
 // positive.
 #pragma once
 
-#include "mpm_implicit/constrain_nodes.hpp"
 #include "mpm_implicit/grain_matrix.hpp"
+#include "mpm_implicit/master_dofs.hpp"
 
 namespace mpm_implicit {
 

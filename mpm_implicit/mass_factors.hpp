@@ -6,8 +6,8 @@
 // the signs of walls, and single precision make it a preconditioner.
 #pragma once
 
-#include "mpm_implicit/constrain_nodes.hpp"
 #include "mpm_implicit/grain_matrix.hpp"
+#include "mpm_implicit/master_dofs.hpp"
 
 namespace mpm_implicit {
 

@@ -15,34 +15,11 @@
 #include <utility>
 #include <vector>
 
-#include "mpm_explicit/grain_nodes.hpp"
+#include "mpm_explicit/constrain_nodes.hpp"
 
 namespace mpm_implicit {
 
 using namespace mpm;
-
-/// A row of dofs of one grain, and its rows below and above.
-struct GridRow {
-    long origin;         // dof of column i: origin + i
-    long first, end;     // columns
-    long lowest, above;  // rows of the same grain: from the lowest to below `above`
-};
-
-/// The rows of all grains that are not rigid.
-inline std::vector<GridRow> grid_rows(const std::vector<Grain>& grains, const GrainNodes& nodes,
-                                      const GridLayout& layout) {
-    std::vector<GridRow> rows;
-    std::size_t at = 0;
-    for (std::size_t g = 0; g < grains.size(); ++g) {
-        const long lowest = static_cast<long>(rows.size());
-        for (int r = 0; r < layout.rows[g]; ++r, ++at)
-            if (!grains[g].rigid)
-                rows.push_back({nodes.origin(static_cast<int>(g), layout.first_row[g] + r),
-                                layout.first_column[at], layout.end_column[at], lowest,
-                                lowest + layout.rows[g]});
-    }
-    return rows;
-}
 
 /// The rows of a grain: from the first to below the second.
 inline std::pair<long, long> rows_of_grain(const std::vector<GridRow>& rows, int grain,

@@ -594,6 +594,31 @@ TEST_CASE("with frozen particles the energies of MPM-14 and MPM-15 stay to round
     }
 }
 
+TEST_CASE("what crosses a line is strained by both cells and hovering gains nothing") {
+    // A particle whose neighbors rest, pressed more than they are, on a line of nodes of its grain.
+    for (const double crossing : {0.0, 0.5}) {
+        CAPTURE(crossing);
+        Case c = case_on(20, 20, 1);
+        c.alpha = 0.25, c.crossing = crossing;
+        c.problem.grains = {box_at("a", 0.5, 0.5, 0.4, 0.4)};
+        Run run(c, [](Assembly& all) {
+            Particles& p = all.particles;
+            std::size_t one = 0;
+            for (std::size_t k = 0; k < p.x_p.size(); ++k)
+                if (std::hypot(p.x_p[k] - 0.5, p.y_p[k] - 0.5) <
+                    std::hypot(p.x_p[one] - 0.5, p.y_p[one] - 0.5))
+                    one = k;
+            p.x_p[one] = 0.5 + 1e-6, p.sxx_p[one] = -100;
+        });
+        run.advance();
+        const double start = run.budget().energy_14;
+        run.advance(3000);
+        if (crossing == 0) CHECK(run.budget().energy_14 >= 2 * start);
+        if (crossing > 0) CHECK(run.budget().energy_14 <= 1.01 * start);
+        CHECK(run.largest_budget <= 1e-11 * run.largest_energy);
+    }
+}
+
 TEST_CASE("energies of a time are those of the particles between the stresses of half steps") {
     for (const std::string& shape : shapes) {
         CAPTURE(shape);
@@ -785,6 +810,8 @@ std::vector<Menu> menu() {
          }},
         {"less than all FLIP", with([=](Case& c) { hit(c), c.flip = 0.95; }), 150,
          [](const Run& r) { return r.budget().pic < 0; }},
+        {"strain of both cells", with([=](Case& c) { hit(c), c.crossing = 0.5; }), 150,
+         [](const Run& r) { return r.budget().contact != 0 && r.budget().remap != 0; }},
         {"gravity and damping on slip walls", with([](Case& c) {
              c.problem.walls = {"slip", "slip", "slip", "open"};
              c.problem.gravity_x = 2, c.problem.gravity_y = -5, c.problem.damping = 3;

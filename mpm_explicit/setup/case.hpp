@@ -19,7 +19,7 @@ struct Case {
     double energy_limit = 10;
 
     std::string shape = "linear", transfer = "flip";
-    double flip = 1;
+    double flip = 1, crossing = 0;
     bool frozen = false;
 
     // What the run is compared with.
@@ -47,7 +47,7 @@ struct Case {
         return {transfer == "apic"   ? Transfer::affine
                 : transfer == "spin" ? Transfer::spin
                                      : Transfer::none,
-                transfer == "pic" || transfer == "apic" ? 0 : flip};
+                transfer == "pic" || transfer == "apic" ? 0 : flip, crossing};
     }
 };
 
@@ -131,6 +131,10 @@ inline common::ParameterTable describe(Case& parameters,
     table.choice("method.transfer", parameters.transfer, {"flip", "pic", "apic", "spin"},
                  "what particles take from nodes: changes of velocity (flip), velocities (pic), "
                  "with their gradients (apic); changes, and the spin around them (spin)");
+    table.real(
+        "method.crossing", parameters.crossing, "", common::between(0, 1),
+        "share of the cell that it leaves in the strain of a particle that crosses a line of "
+        "nodes; 0: the slide's; above, nodes of small mass are held; 0.5: no energy is made");
     table.whole(
         "contact.levels", parameters.problem.contact.levels, "", common::between(1, 2),
         "2: contact acts on v_i^0 and v_i^1; 1: on v_i^1 alone, which bursts grains at rest");

@@ -215,6 +215,11 @@ inline void validate_explicit(const Case& parameters) {
                " with linear shapes bursts: their gradient at a node does not fall with the "
                "mass there; set method.shape to \"gimp\" or \"quadratic\", or "
                "method.transfer = \"spin\"");
+    refuse(
+        parameters.crossing > 0 && parameters.shape != "linear",
+        "method.crossing is for linear shapes, whose gradients jump where particles cross: leave "
+        "it 0 with method.shape = \"" +
+            parameters.shape + "\"");
 }
 
 /// Warnings with the number and the limit, for choices that run but may mislead.

@@ -47,6 +47,13 @@ void start_leapfrog(const Shape& shape, const std::vector<AnyLaw>& laws, const C
 inline void validate_state(const Mesh& mesh, int width, const Transfer& transfer, State& state) {
     mpm::validate_state(mesh, width, transfer.kind != Transfer::none, false, state.assembly,
                         state.layout, state.budget.momenta_next);
+    Particles& p = state.assembly.particles;
+    for (const std::vector<double>* column : p.left())
+        refuse(
+            column->size() != p.lxx_p.size() ||
+                (!column->empty() && (transfer.crossing == 0 || column->size() != p.x_p.size())) ||
+                !common::all_within(*column, -1e90, 1e90),
+            "what its particles saw in cells that they left is not of this case");
 }
 
 }  // namespace mpm_explicit
