@@ -523,3 +523,12 @@ TEST_CASE("an ion acoustic wave has its frequency and its damping" *
     CHECK(std::fabs(nearest.real() / exact.real() - 1) <= 0.01);
     CHECK(std::fabs(nearest.imag() / exact.imag() - 1) <= 0.15);
 }
+
+TEST_CASE("a damped wave that nothing but noise starts is not judged" *
+          doctest::description("physics")) {
+    const facts::Run noise =
+        facts::run_into("cic_unseeded", "cic",
+                        "cic/cases/landau.toml species.electrons.amplitude=0 "
+                        "species.electrons.particles_per_cell=256 theory.mode_x=1 time.end=20");
+    CHECK(noise.summary["results"]["damping_over_theory"]["verdict"] == "NOT MEASURED");
+}

@@ -262,9 +262,19 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
     }
     report("omega_over_theory", seen.frequency(), seen.frequency_error(), frequency,
            parameters.frequency_tolerance);
-    if (growth < -1e-3 * frequency)
+    if (!(growth < -1e-3 * frequency)) return;
+    bool seeded = false;
+    for (const SpeciesCase& s : parameters.species)
+        for (const PerturbationCase& p : perturbations_of(parameters, s))
+            seeded = seeded || p.is_of(theory.mode_x, theory.mode_z);
+    if (seeded)
         report("damping_over_theory", seen.growth(), seen.growth_error(), growth,
                parameters.growth_tolerance);
+    else
+        summary.not_measured(
+            "damping_over_theory",
+            "no species is perturbed in this mode, and the noise of particles keeps "
+            "a damped wave up: give one an amplitude");
 }
 
 /// Frequency, growth and onset of the followed mode in words, before the run.
