@@ -11,6 +11,7 @@
 #include <cmath>
 #include <vector>
 
+#include "common/parallel.hpp"
 #include "mpm_explicit/grain_nodes.hpp"
 
 namespace mpm {

@@ -61,6 +61,7 @@ void see_cells_left(const Shape& shape, const std::vector<Grain>& grains, const 
 /// The part w of what strains those that have crossed is of the cell that they have left.
 /// in/out: batch, velocity gradients times dt
 /// exact:  a turn of the nodes by any angle stays one
+/// note:   one that left a cell without any gradient counts as one that has not crossed.
 inline void strain_in_both_cells(double w, const Particles& particles, ParticleBatch& batch) {
     if (particles.lxx_p.empty()) return;
     for (long k = 0; k < batch.count; ++k) {

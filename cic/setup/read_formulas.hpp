@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "cic/setup/case.hpp"
@@ -58,19 +59,24 @@ inline void read_formulas(Case& parameters) {
             table = tabulate(low, s.distribution_max, velocity_pieces, speeds,
                              [&](double v) { return f.at(v); });
             refuse_nothing(table, what);
-            // What is narrower than a piece is not in the table, or is there by chance.
-            const auto mass = [&](long pieces) {
-                const double step = (s.distribution_max - low) / double(pieces);
-                double sum = 0;
-                for (long j = 0; j < pieces; ++j) {
-                    const double v = low + (double(j) + 0.5) * step;
-                    sum += f.at(v) * step * (speeds ? v : 1);
-                }
-                return sum;
+            // What is narrower than a piece is in the table by chance, or not at all.
+            constexpr long fine = 64;  // points in a piece
+            const auto at = [&](long j) {
+                return f.at(low + (double(j) + 0.5) * table.step / double(fine));
             };
-            const double coarse = mass(velocity_pieces), fine = mass(64 * velocity_pieces);
-            refuse(std::fabs(coarse - fine) > 0.01 * fine, name, ".", what,
-                   " is narrower than the pieces of its table, which are ", table.step,
+            double all = 0, missed = 0, before = 0, here = f.at(table.middle(0));
+            for (long piece = 0; piece < velocity_pieces; ++piece) {
+                const double after =
+                    piece + 1 < velocity_pieces ? f.at(table.middle(std::size_t(piece + 1))) : 0;
+                double mass = 0, most = 0;
+                for (long j = piece * fine; j < (piece + 1) * fine; ++j)
+                    most = std::max(most, at(j)), mass += at(j);
+                all += mass;
+                if (most > 2 * std::max(before, after)) missed += mass;
+                before = here, here = after;
+            }
+            refuse(missed > 1e-6 * all, name, ".", what,
+                   " has parts narrower than the pieces of its table, which are ", table.step,
                    " wide: lower ", name,
                    ".distribution_max, or make a narrow beam a species of its own");
         };

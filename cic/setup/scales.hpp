@@ -188,7 +188,8 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
         followed = followed || (s.ripple != 0 && s.mode_x == parameters.mode_x &&
                                 s.mode_z == parameters.mode_z);
         for (const PerturbationCase& p : perturbations_of(parameters, s))
-            followed = followed || p.is_of(parameters.mode_x, parameters.mode_z);
+            followed = followed || p.is_of(parameters.mode_x, parameters.mode_z) ||
+                       p.is_of(-parameters.mode_x, -parameters.mode_z);
     }
     if (parameters.walls[x_low].particles == "source" && emission == 0)
         warn(

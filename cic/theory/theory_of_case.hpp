@@ -289,8 +289,14 @@ void find_magnetized_wave(const Case& parameters, const WaveVector& k,
             if (root != best) theory.others.push_back(root.real());
 }
 
-/// Refuses a root at which some distribution by formula that is not smooth has particles that move with the
-/// wave: the integral over its table is not continued below the real axis.
+/// A damped wave of which nothing is known, because a distribution by formula is not smooth.
+struct DampedWave : common::InputError {
+    using InputError::InputError;
+};
+
+/// Refuses a root at which some distribution by formula that is not smooth has particles that move
+/// with the wave: the integral over its table is not continued below the real axis.
+/// errors: DampedWave, or InputError where the wave grows
 inline void refuse_resonance(const Case& parameters, const WaveVector& k, const Theory& theory,
                              const std::vector<SpeciesResponse>& responses) {
     auto response = responses.begin();
@@ -302,16 +308,19 @@ inline void refuse_resonance(const Case& parameters, const WaveVector& k, const 
         bool resonant = theory.omega.imag() < 0;
         for (std::size_t j = 0; j < f.rise.size(); ++j)
             resonant = resonant || (f.rise[j] != 0 && std::abs(c.real() - f.edge(j)) < 4 * f.step);
-        refuse(
-            resonant && theory.omega.imag() < 4 * f.step * std::fabs(along), "theory of species.",
-            s.name,
-            ", whose distribution is a formula that is not smooth to 1e-6, or cut before it is as "
-            "small, is for waves that grow faster than ",
-            4 * f.step * std::fabs(along),
-            " or have no particles at their phase velocity, and the one of ",
-            mode_text(theory.mode_x, theory.mode_z), " has omega = ", theory.omega.real(),
-            ", growth = ", theory.omega.imag(),
-            ": take another distribution_max, or set theory.compare = \"none\"");
+        const double least = 4 * f.step * std::fabs(along);
+        if (!resonant || theory.omega.imag() >= least) continue;
+        const std::string why =
+            sentence("theory of species.", s.name,
+                     ", whose distribution by formula has steps or steep slopes, or is cut before "
+                     "it is 1e-8 "
+                     "of its largest, is for waves that grow faster than ",
+                     least, " or have no particles at their phase velocity, and the one of ",
+                     mode_text(theory.mode_x, theory.mode_z), " has omega = ", theory.omega.real(),
+                     ", growth = ", theory.omega.imag(),
+                     ": raise distribution_max where it is cut, or set theory.compare = \"none\"");
+        if (theory.omega.imag() > 0) throw common::InputError(why);
+        throw DampedWave(why);
     }
 }
 
@@ -353,17 +362,22 @@ inline Theory theory_of_wave(const Case& parameters, long mode_x, long mode_z) {
             parameters.near != 0 ? common::root_near(D, {parameters.near, 1e-3 * parameters.near})
             : on_mesh            ? fastest_growing_on_mesh(plasma, k.size(), scheme)
                       : common::fastest_growing_root(D, common::fan_of_guesses(plasma, k.size()));
-        if (!root.found)
-            throw common::InputError(sentence(
+        if (!root.found) {
+            const bool table_only = std::any_of(responses.begin(), responses.end(),
+                                                [](const auto& one) { return one.table_only; });
+            const std::string why = sentence(
                 "no root of the dispersion relation was found for ", mode_text(mode_x, mode_z),
-                by_formula
+                table_only
                     ? ", and where a distribution by formula has steps or steep slopes, or is "
-                      "cut before it is 1e-6 of its largest, none that is damped is known"
-                    : "",
-                parameters.near != 0 ? sentence(" near theory.near = ", parameters.near,
-                                                ": change it or take it out")
-                                     : ": give theory.near a frequency to look at",
-                ", or set theory.compare = \"none\""));
+                      "cut before it is 1e-8 of its largest, none that is damped is known: "
+                      "raise distribution_max where it is cut"
+                : parameters.near != 0 ? sentence(" near theory.near = ", parameters.near,
+                                                  ": change it or take it out")
+                                       : ": give theory.near a frequency to look at",
+                ", or set theory.compare = \"none\"");
+            if (by_formula) throw DampedWave(why);
+            throw common::InputError(why);
+        }
         theory.omega = root.omega;
     }
     // What is only round-off is zero.
@@ -383,14 +397,12 @@ inline Theory theory_of_wave(const Case& parameters) {
     if (parameters.mode_x != 0 || parameters.mode_z != 0)
         return theory_of_wave(parameters, parameters.mode_x, parameters.mode_z);
     Theory best;
-    const bool by_formula = std::any_of(parameters.species.begin(), parameters.species.end(),
-                                        [](const SpeciesCase& s) { return s.has_distribution(); });
     for (long m = 1; 2 * m < parameters.grid.x.cells; ++m) try {
             const Theory theory = theory_of_wave(parameters, m, 0);
             if (best.mode_x == 0 || theory.omega.imag() > best.omega.imag()) best = theory;
-        } catch (const common::InputError&) {
-            // A wave that is too damped to be known does not grow fastest; one at least is known.
-            if (!by_formula || (best.mode_x == 0 && 2 * m + 2 >= parameters.grid.x.cells)) throw;
+        } catch (const DampedWave&) {
+            // A damped wave that is not known does not grow fastest; one at least is known.
+            if (best.mode_x == 0 && 2 * m + 2 >= parameters.grid.x.cells) throw;
         }
     return best;
 }

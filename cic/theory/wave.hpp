@@ -137,9 +137,10 @@ inline std::string likely_cause(const Case& parameters, const Theory& theory, do
                      wave_vector(parameters, 0, theory.mode_z).size() * parameters.grid.z.spacing();
     const bool by_formula = std::any_of(parameters.species.begin(), parameters.species.end(),
                                         [](const SpeciesCase&s) { return s.has_distribution(); }),
-               oblique = theory.mode_x != 0 && theory.mode_z != 0;
+               oblique = theory.mode_x != 0 && theory.mode_z != 0,
+               searched = parameters.mode_x == 0 && parameters.mode_z == 0;
     const char* exact =
-        by_formula || oblique || parameters.magnetized() || parameters.gauss_sign < 0
+        by_formula || oblique || searched || parameters.magnetized() || parameters.gauss_sign < 0
             ? ""
             : ", or take theory.model = \"mesh\"";
     if (noise > 0.1 * field)
@@ -266,7 +267,8 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
     bool seeded = false;
     for (const SpeciesCase& s : parameters.species)
         for (const PerturbationCase& p : perturbations_of(parameters, s))
-            seeded = seeded || p.is_of(theory.mode_x, theory.mode_z);
+            seeded = seeded || p.is_of(theory.mode_x, theory.mode_z) ||
+                     p.is_of(-theory.mode_x, -theory.mode_z);
     if (seeded)
         report("damping_over_theory", seen.growth(), seen.growth_error(), growth,
                parameters.growth_tolerance);

@@ -1,6 +1,7 @@
 // on the mesh: artificial viscosity, which makes of a shock a layer of a few cells.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "flip/boundaries.hpp"

@@ -70,8 +70,9 @@ inline void warn_of_end(const Case& parameters, bool low, std::vector<std::strin
     const std::string name = low ? "x_low" : "x_high",
                       wave = ", sends a wave into the mesh that the exact solution does not know: ";
     warn(warnings, open ? comes_in : std::fabs(outward) > much * c, "boundary.", name, " = \"",
-         end.kind, "\", where the gas moves with ", s.velocity, wave, "take \"",
-         comes_in ? "inflow" : "open", "\"");
+         end.kind, "\", where the gas moves with ", s.velocity, wave,
+         comes_in ? sentence("take \"inflow\" with the gas of ", low ? "left" : "right")
+                  : std::string("take \"open\""));
     warn(warnings,
          open && !comes_in && outward < c &&
              std::fabs(end.pressure - s.pressure) > much * s.density * c * c,
