@@ -685,7 +685,7 @@ fluids falling theory.compare=none gravity.x=100 walls_x
 pic wall_shock.toml time.dt=0.005 viscosity.linear=0 viscosity.quadratic=0
     a particle has gone through the wall to x = NUMBER, z = NUMBER at t = NUMBER: reduce time.cfl
     \(in step NUMBER\)
-flip shock_tube time.cfl=1 viscosity.linear=20
+flip noh.toml grid.cells_x=24 grid.cells_z=24 time.cfl=1 viscosity.linear=0 viscosity.quadratic=0 flip.mass=consistent theory.compare=none
     density or internal energy is negative in the cell at x = NUMBER, z = NUMBER at t = NUMBER:
     reduce time.cfl, raise viscosity.linear, or take more particles per cell \(in step NUMBER\)
 flip vortex flip.max_iterations=1
