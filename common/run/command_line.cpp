@@ -248,8 +248,8 @@ void print_help(const ProgramInfo& info, const ParameterTable& table) {
         "  --strict        status 1 where a result fell short\n"
         "  --help, --version\n\n"
         "status: 0 done; 1 only with --strict; 2 bad input; 3 numerical failure; 129, 130 or\n"
-        "        143 stopped after a checkpoint by a terminal that closes, Ctrl-C or SIGTERM; a second\n"
-        "        Ctrl-C kills at once\n"
+        "        143 stopped after a checkpoint by a terminal that closes, Ctrl-C or SIGTERM; a\n"
+        "        second Ctrl-C kills at once\n"
         "A folder takes one run at a time. --dry-run tells the memory, and a case that needs more\n"
         "than there is (machine, control group, ulimit) is refused.\n%s%s",
         info.program.c_str(), info.version.c_str(), info.one_line.c_str(), info.program.c_str(),
