@@ -43,7 +43,7 @@ class SmoothDistribution {
             for (const std::size_t N : {24, 48, 96}) {
                 const SmoothDistribution one(mean_, L * width, {all.begin(), all.begin() + N + 1});
                 const double error = worst(one, -0.1);
-                if (error < least) least = error, L_ = one.L_, b_ = one.b_;
+                if (b_.empty() || error < least) least = error, L_ = one.L_, b_ = one.b_;
             }
         }
         holds_ = worst(*this, 0) < 1e-4 && agrees_with(f, backward);
@@ -85,7 +85,7 @@ class SmoothDistribution {
         const double mean = f.mean(), pi = std::numbers::pi;
         const int pieces = 1024;  // of a tail
         const long count = std::ssize(f.f);
-        Eigen::ArrayXd angle(count + 2 * pieces), part = 0 * angle;
+        Eigen::ArrayXd angle(count + 2 * pieces), part = Eigen::ArrayXd::Zero(angle.size());
         for (long j = 0; j < count; ++j)
             angle[j] = 2 * std::atan((f.middle(j) - mean) / L), part[j] = f.within(j);
         for (const bool upper : {false, true}) {
