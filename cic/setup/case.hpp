@@ -2,6 +2,7 @@
 // species are in the case file. What each value means stands in describe_case.hpp.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <type_traits>
@@ -132,6 +133,11 @@ struct Case {
                 static_cast<int>(dimensions)};
     }
     bool magnetized() const { return B.size() > 0; }
+    /// Whether some species has its velocities by formula.
+    bool has_distributions() const {
+        return std::any_of(species.begin(), species.end(),
+                           [](const SpeciesCase& s) { return s.has_distribution(); });
+    }
     /// The axis of gyration, 0, 1 or 2: the largest component of B, and y without a field.
     std::size_t axis() const {
         const double x = std::fabs(B.x), y = std::fabs(B.y), z = std::fabs(B.z);

@@ -69,8 +69,10 @@ inline void read_formulas(Case& parameters) {
                 const double after =
                     piece + 1 < velocity_pieces ? f.at(table.middle(std::size_t(piece + 1))) : 0;
                 double mass = 0, most = 0;
-                for (long j = piece * fine; j < (piece + 1) * fine; ++j)
-                    most = std::max(most, at(j)), mass += at(j);
+                for (long j = piece * fine; j < (piece + 1) * fine; ++j) {
+                    const double value = at(j);
+                    most = std::max(most, value), mass += value;
+                }
                 all += mass;
                 if (most > 2 * std::max(before, after)) missed += mass;
                 before = here, here = after;

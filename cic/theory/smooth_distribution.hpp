@@ -22,6 +22,7 @@
 
 namespace cic {
 
+/// The series of one distribution. holds() says whether it may be used in the place of the table.
 class SmoothDistribution {
    public:
     using Complex = std::complex<double>;
@@ -82,7 +83,7 @@ class SmoothDistribution {
 
     // b_n = (L / pi) int f Z^-n dv, n >= 0. Where the table ends a tail like a power goes on.
     static std::vector<Complex> terms(const Distribution& f, double L, bool backward) {
-        const double mean = f.mean(), pi = std::numbers::pi;
+        const double mean = f.mean();
         const int pieces = 1024;  // of a tail
         const long count = std::ssize(f.f);
         Eigen::ArrayXd angle(count + 2 * pieces), part = Eigen::ArrayXd::Zero(angle.size());
@@ -92,8 +93,8 @@ class SmoothDistribution {
             const double last = upper ? f.f[count - 1] : f.f[0],
                          before = upper ? f.f[count - 2] : f.f[1],
                          end = std::fabs(f.edge(upper ? count : 0) - mean),
-                         power = (before / last - 1) * end / f.step, from = 2 * std::atan(end / L),
-                         step = (pi - from) / pieces;
+                         power = last > 0 ? (before / last - 1) * end / f.step : 0,
+                         from = 2 * std::atan(end / L), step = (std::numbers::pi - from) / pieces;
             const bool falls = power > 2 && power < 100;
             for (long j = 0; j < pieces; ++j) {
                 const double turn = from + (double(j) + 0.5) * step, w = L * std::tan(0.5 * turn);
@@ -104,7 +105,7 @@ class SmoothDistribution {
             }
         }
         const Eigen::ArrayXcd back = (Complex(0, backward ? 1 : -1) * angle).exp();
-        Eigen::ArrayXcd term = L / pi * part;
+        Eigen::ArrayXcd term = L / std::numbers::pi * part;
         std::vector<Complex> b;
         for (int n = 0; n <= 96; ++n) b.push_back(term.sum()), term *= back;
         return b;

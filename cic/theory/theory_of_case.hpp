@@ -289,14 +289,14 @@ void find_magnetized_wave(const Case& parameters, const WaveVector& k,
             if (root != best) theory.others.push_back(root.real());
 }
 
-/// A damped wave of which nothing is known, because a distribution by formula is not smooth.
+/// No root is known of a mode whose distributions by formula are smooth: it is damped, and too much for
+/// their series.
 struct DampedWave : common::InputError {
     using InputError::InputError;
 };
 
 /// Refuses a root at which some distribution by formula that is not smooth has particles that move
 /// with the wave: the integral over its table is not continued below the real axis.
-/// errors: DampedWave, or InputError where the wave grows
 inline void refuse_resonance(const Case& parameters, const WaveVector& k, const Theory& theory,
                              const std::vector<SpeciesResponse>& responses) {
     auto response = responses.begin();
@@ -309,18 +309,13 @@ inline void refuse_resonance(const Case& parameters, const WaveVector& k, const 
         for (std::size_t j = 0; j < f.rise.size(); ++j)
             resonant = resonant || (f.rise[j] != 0 && std::abs(c.real() - f.edge(j)) < 4 * f.step);
         const double least = 4 * f.step * std::fabs(along);
-        if (!resonant || theory.omega.imag() >= least) continue;
-        const std::string why =
-            sentence("theory of species.", s.name,
-                     ", whose distribution by formula has steps or steep slopes, or is cut before "
-                     "it is 1e-8 "
-                     "of its largest, is for waves that grow faster than ",
-                     least, " or have no particles at their phase velocity, and the one of ",
-                     mode_text(theory.mode_x, theory.mode_z), " has omega = ", theory.omega.real(),
-                     ", growth = ", theory.omega.imag(),
-                     ": raise distribution_max where it is cut, or set theory.compare = \"none\"");
-        if (theory.omega.imag() > 0) throw common::InputError(why);
-        throw DampedWave(why);
+        refuse(resonant && theory.omega.imag() < least, "theory of species.", s.name,
+               ", whose distribution by formula has steps or steep slopes, or is cut before it is "
+               "1e-8 of its largest, is for waves that grow faster than ",
+               least, " or have no particles at their phase velocity, and the one of ",
+               mode_text(theory.mode_x, theory.mode_z), " has omega = ", theory.omega.real(),
+               ", growth = ", theory.omega.imag(),
+               ": raise distribution_max where it is cut, or set theory.compare = \"none\"");
     }
 }
 
@@ -339,8 +334,6 @@ inline Theory theory_of_wave(const Case& parameters, long mode_x, long mode_z) {
     const MeshScheme scheme{axis.spacing(), parameters.dt, parameters.scheme().order,
                             parameters.scheme().energy_conserving};
     const bool on_mesh = parameters.model == "mesh";
-    const bool by_formula = std::any_of(parameters.species.begin(), parameters.species.end(),
-                                        [](const SpeciesCase& s) { return s.has_distribution(); });
     const auto D = [&](std::complex<double> omega) {
         if (on_mesh) return mesh_dispersion(plasma, k.size(), scheme, omega);
         // 1 + chi, and 1 - chi where like charges attract.
@@ -375,7 +368,7 @@ inline Theory theory_of_wave(const Case& parameters, long mode_x, long mode_z) {
                                                   ": change it or take it out")
                                        : ": give theory.near a frequency to look at",
                 ", or set theory.compare = \"none\"");
-            if (by_formula) throw DampedWave(why);
+            if (parameters.has_distributions() && !table_only) throw DampedWave(why);
             throw common::InputError(why);
         }
         theory.omega = root.omega;
@@ -401,7 +394,7 @@ inline Theory theory_of_wave(const Case& parameters) {
             const Theory theory = theory_of_wave(parameters, m, 0);
             if (best.mode_x == 0 || theory.omega.imag() > best.omega.imag()) best = theory;
         } catch (const DampedWave&) {
-            // A damped wave that is not known does not grow fastest; one at least is known.
+            // It does not grow fastest; one at least is known.
             if (best.mode_x == 0 && 2 * m + 2 >= parameters.grid.x.cells) throw;
         }
     return best;

@@ -135,14 +135,12 @@ inline std::string likely_cause(const Case& parameters, const Theory& theory, do
                      wave_vector(parameters, theory.mode_x, 0).size() * parameters.grid.x.spacing(),
                  k_dz =
                      wave_vector(parameters, 0, theory.mode_z).size() * parameters.grid.z.spacing();
-    const bool by_formula = std::any_of(parameters.species.begin(), parameters.species.end(),
-                                        [](const SpeciesCase&s) { return s.has_distribution(); }),
-               oblique = theory.mode_x != 0 && theory.mode_z != 0,
-               searched = parameters.mode_x == 0 && parameters.mode_z == 0;
-    const char* exact =
-        by_formula || oblique || searched || parameters.magnetized() || parameters.gauss_sign < 0
-            ? ""
-            : ", or take theory.model = \"mesh\"";
+    // Where validate() takes that model.
+    const bool takes_mesh = !parameters.has_distributions() && !parameters.magnetized() &&
+                            parameters.gauss_sign > 0 &&
+                            (theory.mode_x == 0 || theory.mode_z == 0) &&
+                            (parameters.mode_x != 0 || parameters.mode_z != 0);
+    const char* exact = takes_mesh ? ", or take theory.model = \"mesh\"" : "";
     if (noise > 0.1 * field)
         return sentence("random particles have up to ", noise / field,
                         " of the seeded field in this mode: raise amplitude or "

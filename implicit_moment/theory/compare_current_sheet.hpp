@@ -86,10 +86,13 @@ inline void compare_current_sheet(const Case& w, const common::History& history,
     const CurrentSheetCase& s = w.current_sheet;
     const double all = s.length_x / 4;  // figure 12 has 4 L
     const bool of_the_talk = s.mass_ratio == 180 && s.drift == 1 && s.temperature_ratio == 4;
-    if (of_the_talk && double(sheet_modes(w.grid)) < 11 * all)
-        summary.not_measured("dominant_mode", "the mesh has " +
-                                                  std::to_string(sheet_modes(w.grid)) +
-                                                  " modes along the current: raise grid.cells_x");
+    const long followed = sheet_modes(w.grid);
+    if (of_the_talk && double(followed) < 11 * all)
+        summary.not_measured(
+            "dominant_mode",
+            std::to_string(followed) + " modes along the current are followed, " +
+                "and the talk's may be beyond: " +
+                (followed < 16 ? "raise grid.cells_x" : "lower current_sheet.length_x"));
     else if (of_the_talk)
         summary.result_within("dominant_mode", double(dominant), "", 7 * all, 11 * all, talk);
     else
