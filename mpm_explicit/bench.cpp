@@ -60,7 +60,7 @@ common::StepClock time_steps(const Case& w, long steps, int threads, long& parti
     const Contact contact(w.problem.contact, grains, state.assembly.bonds);
     GrainNodes nodes(w.problem.mesh(), LinearShape::width, scales.least_mass);
     nodes.sort(grains, particles, state.layout);
-    start_leapfrog(shape, laws, contact, Transfer::none, false, dt, nodes, state);
+    start_leapfrog(shape, laws, contact, w.transfers(), false, dt, nodes, state);
     StepSums sums;
 
     common::StepClock clock;

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "common/parallel.hpp"
@@ -42,6 +43,7 @@ inline std::vector<GridRow> grid_rows(const std::vector<Grain>& grains, const Gr
 /// A node constrained to its master, and the node beyond it or -1.
 struct DofConstraint {
     long dof, master, beyond;
+    signed char along = 0;  // 1, 2: gradients are shared along x, along y, as forces are
 };
 
 /// Which neighbors a node may be constrained to: also those across a corner of a cell, or only those
@@ -50,9 +52,10 @@ enum class Neighbors { all, along_lines };
 
 /// The constraint of the dof in row r, column i: its heaviest neighbor of those that walls hold alike,
 /// one that has a node beyond it if there is; the master is the dof itself where there is none.
+/// in:     nodes.mass
 inline DofConstraint constraint_of(const std::vector<GridRow>& rows, long r, long i,
                                    Neighbors neighbors, const GrainNodes& nodes) {
-    const auto mass = [&](long dof) { return nodes.sums[dof].m; };
+    const auto mass = [&](long dof) { return nodes.mass[dof]; };
     const GridRow& row = rows[r];
     const long dof = row.origin + i;
     const auto heavier = [&](long q, long j, double times) {
@@ -76,7 +79,12 @@ inline DofConstraint constraint_of(const std::vector<GridRow>& rows, long r, lon
             const bool alike = (beyond >= 0) == (found.beyond >= 0) &&
                                std::fabs(mass(master) - mass(found.master)) < 1e-9 * mass(master);
             tie = alike || (tie && !better);
-            if (better) found = {dof, master, beyond};
+            const bool on_line = neighbors == Neighbors::along_lines && beyond >= 0;
+            if (better)
+                found = {dof, master, beyond,
+                         static_cast<signed char>(!on_line ? 0
+                                                  : a != 0 ? 1
+                                                           : 2)};
         }
     }
     // Which of two that weigh the same would break a symmetry; and across a corner nothing is driven.
@@ -84,32 +92,63 @@ inline DofConstraint constraint_of(const std::vector<GridRow>& rows, long r, lon
 }
 
 /// Constrains dofs, the lightest first: a master may be constrained as well.
-/// in/out: nodes.sums, which move along; nodes.ghosts()
+/// in/out: nodes.sums and nodes.mass, which move along; nodes.ghosts()
 /// exact:  total mass and momentum of a grain stay
 inline void constrain_nodes(std::vector<DofConstraint>& constraints, GrainNodes& nodes) {
-    const auto mass = [&](long dof) { return nodes.sums[dof].m; };
+    const auto mass = [&](long dof) { return nodes.mass[dof]; };
     std::stable_sort(
         constraints.begin(), constraints.end(),
         [&](const DofConstraint& a, const DofConstraint& b) { return mass(a.dof) < mass(b.dof); });
     for (DofConstraint one : constraints) {
-        NodeSums &from = nodes.sums[one.dof], &to = nodes.sums[one.master];
+        NodeSums& from = nodes.sums[one.dof];
         // Others may have taken mass from it, or it may have become a ghost.
-        if (one.beyond >= 0 && !(mass(one.beyond) > 3 * from.m)) one.beyond = -1;
-        const auto add = [&](NodeSums& node, double part) {
+        if (one.beyond >= 0 && !(mass(one.beyond) > 3 * mass(one.dof)))
+            one.beyond = -1, one.along = 0;
+        const auto add = [&](long dof, double part) {
+            NodeSums& node = nodes.sums[dof];
+            nodes.mass[dof] += part * mass(one.dof);
             node.m += part * from.m, node.px += part * from.px, node.py += part * from.py;
             node.mx += part * from.mx, node.my += part * from.my;
+            if (one.along != 0) node.gx += part * from.gx, node.gy += part * from.gy;
         };
-        add(to, one.beyond < 0 ? 1 : 2);
-        if (one.beyond >= 0) add(nodes.sums[one.beyond], -1);
-        to.V += from.V, to.gx += from.gx, to.gy += from.gy;
-        from = {};
+        add(one.master, one.beyond < 0 ? 1 : 2);
+        if (one.beyond >= 0) add(one.beyond, -1);
+        NodeSums& to = nodes.sums[one.master];
+        to.V += from.V;
+        if (one.along == 0) to.gx += from.gx, to.gy += from.gy;
+        from = {}, nodes.mass[one.dof] = 0;
         if (const int k = nodes.surface_of(one.dof); k >= 0) {
             if (const int to_k = nodes.surface_of(one.master); to_k >= 0)
                 nodes.surface[to_k] += nodes.surface[k];
             nodes.surface[k] = {};
         }
-        nodes.constrain(one.dof, one.master, one.beyond);
+        nodes.constrain(one.dof, one.master, one.beyond, one.along);
     }
+}
+
+/// nodes.mass, what every grain has at its nodes; bonded grains, all that they have together. Where one
+/// of these has none, its node shows the velocity of the other.
+inline void find_masses(const std::vector<Bond>& bonds, GrainNodes& nodes) {
+    common::for_each_block(nodes.size(), [&](int, long begin, long end) {
+        for (long i = begin; i < end; ++i) nodes.mass[i] = nodes.sums[i].m;
+    });
+    std::vector<std::pair<int, int>> joined;
+    for (const Bond& bond : bonds)
+        if (!bond.broken) joined.emplace_back(bond.a, bond.b), joined.emplace_back(bond.b, bond.a);
+    if (joined.empty()) return;
+    std::sort(joined.begin(), joined.end());
+    for (long n = 0; n < nodes.shared_count(); ++n)
+        for (long a = nodes.shared_begin()[n]; a < nodes.shared_begin()[n + 1]; ++a)
+            for (long b = nodes.shared_begin()[n]; b < nodes.shared_begin()[n + 1]; ++b) {
+                const Member &one = nodes.members()[a], &two = nodes.members()[b];
+                if (one.is_wall() || two.is_wall() ||
+                    !std::binary_search(joined.begin(), joined.end(),
+                                        std::pair(one.grain, two.grain)))
+                    continue;
+                const double m = nodes.sums[two.dof].m;
+                if (!(nodes.mass[one.dof] > 0) && m > 0) nodes.constrain(one.dof, two.dof, -1);
+                nodes.mass[one.dof] += m;
+            }
 }
 
 /// Constrains nodes that have less than a part of the mass of their neighbor.
@@ -117,10 +156,13 @@ inline void constrain_nodes(std::vector<DofConstraint>& constraints, GrainNodes&
 /// and gradients that some of their motions feel with d only: stress would drive those with 1/d,
 /// and round-off with them. The theorem holds with any constraints: they make a smaller space of
 /// velocities.
-/// in:     light, that part
-inline void constrain_small_mass_nodes(const std::vector<GridRow>& rows, double light,
+/// in:     light, that part; bonds, whose grains are held alike where they are joined
+/// in/out: nodes.sums, which move along; nodes.ghosts()
+inline void constrain_small_mass_nodes(const std::vector<GridRow>& rows,
+                                       const std::vector<Bond>& bonds, double light,
                                        Neighbors neighbors, GrainNodes& nodes) {
-    const auto mass = [&](long dof) { return nodes.sums[dof].m; };
+    find_masses(bonds, nodes);
+    const auto mass = [&](long dof) { return nodes.mass[dof]; };
     const auto for_each_mass = [&](const auto& visit) {
         common::for_each_block(
             static_cast<long>(rows.size()),
@@ -147,19 +189,48 @@ inline void constrain_small_mass_nodes(const std::vector<GridRow>& rows, double 
     constrain_nodes(all, nodes);
 }
 
+/// Dofs at nodes where a grain meets another body.
+inline std::vector<bool> joint_dofs(std::size_t grains, const std::vector<Bond>& bonds,
+                                    const GrainNodes& nodes) {
+    static const int mode = std::getenv("HOLD") ? std::atoi(std::getenv("HOLD")) : 1;
+    std::vector<bool> is_bonded(grains, false), found;
+    bool any = false;
+    for (const Bond& bond : bonds)
+        if (!bond.broken) is_bonded[bond.a] = is_bonded[bond.b] = any = true;
+    if (!any && mode < 2) return found;
+    found.assign(static_cast<std::size_t>(nodes.size()), mode == 4);
+    for (long n = 0; n < nodes.shared_count(); ++n) {
+        const std::span members(nodes.members().data() + nodes.shared_begin()[n],
+                                nodes.members().data() + nodes.shared_begin()[n + 1]);
+        const auto has_mass = [&](const Member& one) {
+            return one.is_wall() || nodes.sums[one.dof].m > 0;
+        };
+        if (std::count_if(members.begin(), members.end(), has_mass) < 2) continue;
+        const bool fixed =
+            mode == 3 && std::any_of(members.begin(), members.end(), [&](const Member& one) {
+                return one.is_wall() ||
+                       (nodes.is_free()[one.dof] == 0 && nodes.sums[one.dof].m > 0);
+            });
+        for (const Member& one : members)
+            if (!one.is_wall() && (mode == 2 || mode == 4 || fixed || is_bonded[one.grain]))
+                found[one.dof] = true;
+    }
+    return found;
+}
+
 /// Holds nodes with less than 1/64 of the mass of their neighbor, as an estimate of what the explicit
 /// step is too long for: particles that have just crossed a line of nodes move those beyond it with
 /// all their stress, and where these have the mass m_i, the neighbor m,
 ///   w = (c/h) (m/m_i)^1/2,  w dt = alpha (m/m_i)^1/2 > 2 below (alpha/2)^2 m: m/64 at a quarter
 /// in/out: nodes.sums, nodes.surface, which move along; nodes.ghosts()
-/// note:   An even stress beside a rigid plate, and a bond, do not know what is held.
-///         Not with smooth shapes, whose gradients vanish where mass does, as those of linear shapes
-///         do across a corner.
+/// note:   Not with smooth shapes, whose gradients vanish where mass does, as those of linear shapes do
+///         across a corner.
 template <class Shape>
-void hold_small_mass_nodes(const Shape&, const std::vector<Grain>& grains, const GridLayout& layout,
+void hold_small_mass_nodes(const Shape&, const std::vector<Grain>& grains,
+                           const std::vector<Bond>& bonds, const GridLayout& layout,
                            GrainNodes& nodes) {
     if constexpr (Shape::width == 2)
-        constrain_small_mass_nodes(grid_rows(grains, nodes, layout), 1.0 / 64,
+        constrain_small_mass_nodes(grid_rows(grains, nodes, layout), bonds, 1.0 / 64,
                                    Neighbors::along_lines, nodes);
 }
 

@@ -18,13 +18,18 @@ struct ContactRule {
     double ahead = 0, most_ahead = 0.1;
 };
 
+/// The gap between the surfaces of two bodies at a node, as much nearer as they will soon come.
+inline double gap_of(const ContactRule& rule, const ContactBody& one, const ContactBody& two,
+                     const ContactPair& pair, double h) {
+    return gap_between(one, two, pair.nx, pair.ny, rule.ahead, rule.most_ahead * h);
+}
+
 /// Whether the surfaces of two bodies touch at a node; h, the width of a cell.
 inline bool touch(const ContactRule& rule, const ContactBody& one, const ContactBody& two,
                   const ContactPair& pair, double h) {
     if (rule.separation == 0) return true;
     if (has_outline(one, h) && has_outline(two, h))
-        return gap_between(one, two, pair.nx, pair.ny, rule.ahead, rule.most_ahead * h) <=
-               rule.separation * h;
+        return gap_of(rule, one, two, pair, h) <= rule.separation * h;
     const double apart = (two.x - one.x) * pair.nx + (two.y - one.y) * pair.ny;
     return apart <= rule.center_separation * h * (two.wall ? 0.5 : 1);
 }

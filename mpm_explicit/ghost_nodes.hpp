@@ -63,6 +63,7 @@ inline void GrainNodes::find_ghost_nodes(const std::vector<Grain>& grains,
     fixed_.assign(sums.size(), 0);
     for (const long dof : fixed_x_) fixed_[dof] |= 1;
     for (const long dof : fixed_y_) fixed_[dof] |= 2;
+    for (const GhostNode& ghost : ghosts_) fixed_[ghost.dof] |= 4;
 }
 
 }  // namespace mpm

@@ -5,9 +5,8 @@
 // and memory is proportional to the area that the grains cover. Two grains that touch the same node
 // have two dofs there: what they do to each other is the business of contact.hpp.
 //
-//      o   o---o---o---o   o        a grain's rows: every row as long as it needs to be, and half
-//    o---o---o---o---o---o---o      a cell wider than the grain, so that the table stays good until
-//    o---o---o---o---o---o---o      a particle has moved by that
+//      o   o---o---o---o   o        a grain's rows: as long as they need to be, and half a cell wider than
+//    o---o---o---o---o---o---o      the grain, so that they stay good until a particle has moved by that
 //      o   o---o---o---o   o
 //
 // Columns are counted on without end: a grain that straddles the ends of a periodic mesh keeps its
@@ -18,6 +17,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "common/counting_sort.hpp"
@@ -79,6 +79,7 @@ struct GhostNode {
     // The node beyond the master, for a velocity on the line through both, v = 2 v_master - v_beyond;
     // or -1.
     long beyond = -1;
+    signed char along = 0;  // 1, 2: that is along x, along y
 };
 
 /// A grain's field at a node that others may touch, too; or a frictional wall that the node is on
@@ -132,13 +133,21 @@ class GrainNodes {
 
     const std::vector<Tile>& tiles() const { return tiles_; }
     const std::vector<GhostNode>& ghosts() const { return ghosts_; }
-    /// Until particles_to_grid() is called again, a dof has the velocity of its master, or that of
-    /// the line through master and beyond.
-    void constrain(long dof, long master, long beyond) {
+    /// Until particles_to_grid() is called again, a dof has the velocity of its master, or of its line.
+    void constrain(long dof, long master, long beyond, signed char along = 0) {
         const double part = beyond < 0 ? 1 : 2;
-        ghosts_.push_back({dof, master, part, part, false, false, 0, beyond});
+        ghosts_.push_back({dof, master, part, part, false, false, 0, beyond, along});
+        fixed_[dof] |= 4;
     }
-    void drop_constraints() { ghosts_.resize(boundary_ghosts_); }
+    std::span<const GhostNode> constraints() const {
+        return std::span(ghosts_).subspan(boundary_ghosts_);
+    }
+    void drop_constraints() {
+        for (const GhostNode& one : constraints()) fixed_[one.dof] &= 3;
+        ghosts_.resize(boundary_ghosts_);
+    }
+    /// Whether a dof has a velocity: particles around it, or a master.
+    bool moves(long dof) const { return mass[dof] > least_mass_ || (fixed_[dof] & 4) != 0; }
     const std::vector<long>& fixed_x() const { return fixed_x_; }
     const std::vector<long>& fixed_y() const { return fixed_y_; }
     bool is_fixed_x(long dof) const { return (fixed_[dof] & 1) != 0; }
@@ -149,8 +158,7 @@ class GrainNodes {
     /// Shared node n has the members shared_begin()[n] ... shared_begin()[n + 1].
     const std::vector<long>& shared_begin() const { return shared_begin_; }
     long shared_count() const { return static_cast<long>(shared_begin_.size()) - 1; }
-    /// A shared node that a wall or a rigid grain is at, and the others beside it, by their numbers in
-    /// the list of them; -1: none.
+    /// A shared node that a wall or a rigid grain is at, and those beside it, by number; -1: none.
     struct FixedNode {
         long shared;
         int left = -1, right = -1, below = -1, above = -1;
@@ -164,9 +172,9 @@ class GrainNodes {
     bool sort_is_due(const GridLayout& layout) const { return layout.moved > sorted_within(mesh_); }
     /// How far a particle may come before it is sorted again.
     static double sorted_within(const Mesh& mesh) { return 0.99 * reach * mesh.h; }
+    static constexpr double reach = 0.5;  // how far particles may move between sorts, in cells
 
-    /// Sorts the particles by grain and row of cells, and lays out the nodes around them.
-    /// in/out: particles, of each grain together; grains' ranges stay as they are
+    /// Sorts the particles of each grain by row of cells, and lays out the nodes around them.
     void sort(const std::vector<Grain>& grains, Particles& particles, GridLayout& layout);
 
     /// Lays out the nodes of a layout that a checkpoint has kept.
@@ -184,8 +192,6 @@ class GrainNodes {
     }
 
    private:
-    static constexpr double reach = 0.5;  // how far particles may move between sorts, in cells
-
     void find_ghost_nodes(const std::vector<Grain>& grains, const GridLayout& layout);
     void find_shared_nodes(const std::vector<Grain>& grains, const GridLayout& layout);
     void place_surface();
@@ -219,7 +225,7 @@ class GrainNodes {
     std::vector<GhostNode> ghosts_;
     std::size_t boundary_ghosts_ = 0;  // those of walls and periodic ends come first
     std::vector<long> fixed_x_, fixed_y_;
-    std::vector<unsigned char> fixed_;  // per dof: 1 for x, 2 for y
+    std::vector<unsigned char> fixed_;  // per dof: 1 for x, 2 for y; 4 for a ghost
     std::vector<unsigned char> free_;
     std::vector<Member> members_;
     std::vector<long> shared_begin_{0};

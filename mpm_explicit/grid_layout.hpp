@@ -87,7 +87,7 @@ inline void GrainNodes::sort(const std::vector<Grain>& grains, Particles& partic
         common::carry_to_place(*quantity, scratch_);
     particles.surface.follow(scratch_.target);
     if (!particles.turn_p.empty()) common::carry_to_place(particles.turn_p, scratch_);
-    for (std::vector<double>* quantity : particles.left())
+    for (std::vector<double>* quantity : particles.from())
         if (!quantity->empty()) common::carry_to_place(*quantity, scratch_);
     if (particles.has_affine())
         for (std::vector<double>* quantity : particles.affine())

@@ -7,6 +7,7 @@
 
 #include "mpm_explicit/budget.hpp"
 #include "mpm_explicit/clamp_to_walls.hpp"
+#include "mpm_explicit/crossing.hpp"
 #include "mpm_explicit/move_tiles.hpp"
 #include "mpm_explicit/transfer.hpp"
 
@@ -25,6 +26,8 @@ void move_particles(const Shape& shape, const std::vector<Grain>& grains,
     double *x_p = particles.x_p.data(), *y_p = particles.y_p.data(), *vx_p = particles.vx_p.data(),
            *vy_p = particles.vy_p.data();
     const double* m_p = particles.m_p.data();
+    double *from_x = particles.from_x_p.data(), *from_y = particles.from_y_p.data();
+    const bool crossing = !particles.from_x_p.empty();
     const NodeMotion* motion = nodes.motion.data();
     const double dt_move = frozen ? 0 : dt, pic = 1 - flip;
     const ClampToWalls clamp(nodes.mesh());
@@ -47,6 +50,7 @@ void move_particles(const Shape& shape, const std::vector<Grain>& grains,
             vx_p[p] = new_x, vy_p[p] = new_y;
             const double x = clamp.x(x_p[p] + dt_move * ux),
                          y = clamp.y(y_p[p] + dt_move * uy);  // [FLIP-7]
+            if (crossing) remember_crossing(at, x_p[p] - x, y_p[p] - y, x, y, from_x[p], from_y[p]);
             x_p[p] = x, y_p[p] = y;
 
             const double now = new_x * new_x + new_y * new_y;

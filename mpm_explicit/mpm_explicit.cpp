@@ -45,7 +45,7 @@ int run_case(const Shape& shape, const Case& parameters, const Scales& scales, c
         nodes.lay_out(grains, state.layout);
     } else {
         nodes.sort(grains, particles, state.layout);
-        start_leapfrog(shape, laws, contact, transfer.kind, parameters.frozen, dt, nodes, state);
+        start_leapfrog(shape, laws, contact, transfer, parameters.frozen, dt, nodes, state);
     }
 
     // 3. The loop of the slide.

@@ -68,7 +68,8 @@ struct Particles {
     std::vector<double> yield_p;                     // accumulated plastic strain
     std::vector<double> cxx_p, cxy_p, cyx_p, cyy_p;  // affine motion; empty: none is carried
 
-    std::vector<double> lxx_p, lxy_p, lyx_p, lyy_p;  // seen in a cell that was left; or empty
+    // Where it came from, if over a line of nodes, from where it is [length]; or empty.
+    std::vector<double> from_x_p, from_y_p;
 
     Surface surface;  // empty: contact goes by the particles themselves
 
@@ -80,7 +81,7 @@ struct Particles {
         return {&x_p, &y_p, &vx_p, &vy_p, &m_p, &V_p, &sxx_p, &syy_p, &sxy_p, &szz_p, &yield_p};
     }
     std::array<std::vector<double>*, 4> affine() { return {&cxx_p, &cxy_p, &cyx_p, &cyy_p}; }
-    std::array<std::vector<double>*, 4> left() { return {&lxx_p, &lxy_p, &lyx_p, &lyy_p}; }
+    std::array<std::vector<double>*, 2> from() { return {&from_x_p, &from_y_p}; }
     bool has_affine() const { return !cxx_p.empty(); }
     void resize(std::size_t count) {
         for (std::vector<double>* quantity : all()) quantity->resize(count, 0.0);
@@ -99,8 +100,7 @@ void archive(Archive& a, Particles& particles) {
     for (std::size_t k = 0; k < all.size(); ++k) a(names[k], *all[k]);
     static constexpr std::array<const char*, 4> affine{"cxx_p", "cxy_p", "cyx_p", "cyy_p"};
     for (std::size_t k = 0; k < affine.size(); ++k) a(affine[k], *particles.affine()[k]);
-    static constexpr std::array<const char*, 4> left{"lxx_p", "lxy_p", "lyx_p", "lyy_p"};
-    for (std::size_t k = 0; k < left.size(); ++k) a(left[k], *particles.left()[k]);
+    a("from_x_p", particles.from_x_p), a("from_y_p", particles.from_y_p);
     a("turn_p", particles.turn_p);
     a("surface_host", particles.surface.host);
     static constexpr std::array<const char*, 6> parts{"surface_ax", "surface_ay", "surface_xx",

@@ -87,15 +87,12 @@ class RunTable {
         : nodes_(nodes), meetings_(meetings) {}
 
     /// Calls visit(shared node) for the nodes of the run that begins at fixed node n, if one does.
-    /// note:   longer runs than of ContactPair::max_links are cut, counted from their first node
+    /// note:   longer runs than of RunTable::longest are cut, counted from their first node
     template <class Visit>
     void for_each_node(long n, const Visit& visit) const {
-        constexpr long most = ContactPair::max_links;
+        constexpr long most = longest;
         const Meeting& own = meetings_[n];
-        const auto next = [&](long at, bool back) {
-            const long to = beside(at, own.axis, back);
-            return to >= 0 && meetings_[to] == own ? to : -1;
-        };
+        const auto next = [&](long at, bool back) { return following(at, own, back); };
         const auto visit_inside = [&](long at, bool back) {
             const long to = beside(at, own.axis, back);
             if (to < 0 || meetings_[to].axis != Meeting::inside || owner(to) != at) return 0L;
@@ -111,7 +108,31 @@ class RunTable {
         if (count < most) visit_inside(last, false);
     }
 
+    static constexpr long longest = ContactPair::max_links / 2;
+
+    /// The fixed node at which the run in the next column begins, of the same two bodies; -1: none.
+    long next_column(long n, bool back) const {
+        const Meeting& own = meetings_[n];
+        const long to =
+            beside(n, own.axis == Meeting::along_x ? Meeting::along_y : Meeting::along_x, back);
+        if (to < 0) return -1;
+        for (const long at : {to, beside(to, own.axis, true), beside(to, own.axis, false)})
+            if (at >= 0 && meetings_[at] == own) return start_of(at);
+        return -1;
+    }
+
    private:
+    long following(long at, const Meeting& own, bool back) const {
+        const long to = beside(at, own.axis, back);
+        return to >= 0 && meetings_[to] == own ? to : -1;
+    }
+    long start_of(long at) const {
+        long before = 0, start = at;
+        for (long to = at; (to = following(to, meetings_[at], true)) >= 0;) start = to, ++before;
+        for (long k = before - before % longest; k > 0; --k)
+            start = following(start, meetings_[at], false);
+        return start;
+    }
     long beside(long at, Meeting::Axis axis, bool back) const {
         const GrainNodes::FixedNode& to = nodes_.fixed_nodes()[at];
         return axis == Meeting::along_x ? (back ? to.left : to.right)

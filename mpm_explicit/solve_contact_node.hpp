@@ -52,7 +52,7 @@ struct ContactLink {
 
 /// Two bodies of a node in contact or bonded.
 struct ContactPair {
-    static constexpr std::size_t max_links = 4;
+    static constexpr std::size_t max_links = 8;
     std::size_t a, b;  // of the node's bodies, those of the first link
     std::array<ContactLink, max_links> links;
     std::size_t link_count = 1;

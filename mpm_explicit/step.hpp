@@ -36,7 +36,7 @@ void take_step(const Shape& shape, const std::vector<AnyLaw>& laws, const Contac
     // [step]
     particles_to_grid<WithForce>(shape, particles, nodes);  // particles -> grid
     surface_to_grid(shape, particles, nodes);
-    if (transfer.crossing > 0) hold_small_mass_nodes(shape, grains, state.layout, nodes);
+    if (transfer.crossing > 0) hold_small_mass_nodes(shape, grains, bonds, state.layout, nodes);
     clock.lap("put");
     nodal_velocity(grains, rigid, nodes);                  // v_i^0
     predict_acceleration(body, grains, rigid, dt, nodes);  // v_i^1 by sigma^{-1/2}
@@ -45,7 +45,7 @@ void take_step(const Shape& shape, const std::vector<AnyLaw>& laws, const Contac
     clock.lap("contact");
     for_each_batch(grains, nodes, sums.tiles, [&](ParticleBatch& batch) {
         velocity_gradient(shape, particles, nodes, OldVelocity{}, dt, batch);  // [MPM-11]
-        strain_in_both_cells(transfer.crossing, particles, batch);
+        strain_in_both_cells(shape, transfer.crossing, particles, nodes, dt, batch);
         if (!frozen) turn_halfway(batch, particles);
         update_stress(laws, frozen, batch, grains, particles, sums.tiles);  // [MPM-9, 10]
         if (!frozen) rotate_stress(batch, 0.5, particles);
@@ -61,7 +61,6 @@ void take_step(const Shape& shape, const std::vector<AnyLaw>& laws, const Contac
     clock.lap("nodes");
     if (particles.has_affine())
         take_affine_motion(shape, grains, nodes, transfer.kind, particles, sums.tiles);
-    if (transfer.crossing > 0 && !frozen) see_cells_left(shape, grains, nodes, dt, particles);
     if (!frozen) carry_surface(shape, grains, nodes, dt, particles);
     move_particles(shape, grains, rigid, nodes, transfer.flip, frozen, dt, particles,
                    sums.tiles);  // grid -> particles

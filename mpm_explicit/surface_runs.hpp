@@ -45,34 +45,61 @@ class SurfaceRun {
         }
     }
 
-    /// in:     touch(a, b, pair), whether their surfaces touch, seen from all nodes of the run; where
-    ///         they do not, the run makes no contact
-    template <class Touch>
-    void close(const Touch& touch) {
+    /// Takes in what a node of the run shows, with the node beyond it, to one that is held to both.
+    /// in:     beyond, the node's body; its partner is that of the last node that was added
+    void add_beyond(const ContactBody& beyond) {
+        if (links_ == RunTable::longest) return;
+        const std::size_t k = links_++, at = 2 * k, free = bodies_[at - 2].is_fixed() ? 1 : 0;
+        bodies_[at + free] = beyond, bodies_[at + 1 - free] = bodies_[at - 1 - free];
+        keys_[k] = keys_[k - 1], may_pull_[k] = true;
+    }
+
+    /// The weights of its nodes. out: whether it has any, and so makes a contact
+    bool weigh() {
+        if (empty()) return false;
         if (!bodies_[1].wall) {
             const double size = std::hypot(gx_, gy_);
-            if (!(size > 0)) return;
+            if (!(size > 0)) return false;
             pair_.nx = gx_ / size, pair_.ny = gy_ / size;
         }
         double sum = 0, heaviest = 0;
         for (std::size_t k = 0; k < links_; ++k) {
             // By the free body: what a fixed one feels moves nothing.
             const ContactBody &a = bodies_[2 * k], &b = bodies_[2 * k + 1];
-            weight_[k] = std::max(0.0, area(a) - area(b)), sum += weight_[k];
+            const double along = area(a) - area(b);
+            weight_[k] = may_pull_[k] ? along : std::max(0.0, along), sum += weight_[k];
             heaviest = std::max(heaviest, free_mass(k));
         }
-        if (!(sum > 0)) return;
+        if (!(sum > 0)) return false;
+        for (std::size_t k = 0; k < links_; ++k)
+            weight_[k] /= sum, is_light_[k] = free_mass(k) < light * heaviest;
         for (const std::size_t who : {0, 1}) {
             if (seen_[who].wall) continue;
             seen_[who].vx_0 = seen_[who].vy_0 = 0;
             for (std::size_t k = 0; k < links_; ++k) {
                 const ContactBody& body = bodies_[2 * k + who];
-                seen_[who].vx_0 += weight_[k] / sum * body.vx_0,
-                    seen_[who].vy_0 += weight_[k] / sum * body.vy_0;
+                seen_[who].vx_0 += weight_[k] * body.vx_0,
+                    seen_[who].vy_0 += weight_[k] * body.vy_0;
             }
         }
-        if (!touch(seen_[0], seen_[1], pair_)) return;
-        for (std::size_t k = 0; k < links_; ++k) is_light_[k] = free_mass(k) < light * heaviest;
+        left_ = 1 + links_;
+        return true;
+    }
+
+    /// The two bodies as all nodes of the run see them, and their normal.
+    const ContactBody& seen(std::size_t who) const { return seen_[who]; }
+    const ContactPair& pair() const { return pair_; }
+
+    /// Makes one contact of this run and of that in the next column, at a point between them.
+    /// in:     part, the share of the next one
+    void join(const SurfaceRun& next, double part) {
+        for (std::size_t k = 0; k < links_; ++k) weight_[k] *= 1 - part;
+        for (std::size_t k = 0; k < next.links_; ++k, ++links_) {
+            bodies_[2 * links_] = next.bodies_[2 * k],
+                        bodies_[2 * links_ + 1] = next.bodies_[2 * k + 1];
+            keys_[links_] = next.keys_[k], weight_[links_] = part * next.weight_[k];
+            is_light_[links_] = next.is_light_[k];
+        }
         left_ = 1 + links_;
     }
 
@@ -123,7 +150,7 @@ class SurfaceRun {
     std::array<ContactBody, 2 * ContactPair::max_links> bodies_;
     std::array<long, ContactPair::max_links> keys_{};
     std::array<double, ContactPair::max_links> weight_{};
-    std::array<bool, ContactPair::max_links> is_light_{};
+    std::array<bool, ContactPair::max_links> is_light_{}, may_pull_{};
     std::array<ContactBody, 2> seen_;  // the two, with the surfaces that all nodes see
     double gx_ = 0, gy_ = 0;
 };

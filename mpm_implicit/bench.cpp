@@ -68,7 +68,7 @@ double explicit_step(Case w, long first, long steps) {
     const Contact contact(w.problem.contact, grains, state.assembly.bonds);
     GrainNodes nodes(w.problem.mesh(), LinearShape::width, scales.least_mass);
     nodes.sort(grains, particles, state.layout);
-    start_leapfrog(shape, laws, contact, Transfer::none, false, dt, nodes, state);
+    start_leapfrog(shape, laws, contact, w.transfers(), false, dt, nodes, state);
     StepSums sums;
     common::StepClock clock;
     for (long step = 0; step < first + steps; ++step) {

@@ -40,7 +40,7 @@ class NodeSolver {
                   double dt, const State& state, GrainNodes& nodes) {
         const Assembly& all = state.assembly;
         const std::vector<GridRow> rows = grid_rows(all.grains, nodes, state.layout);
-        constrain_small_mass_nodes(rows, 1e-2, Neighbors::all, nodes);
+        constrain_small_mass_nodes(rows, {}, 1e-2, Neighbors::all, nodes);
         matrix.assemble(shape, laws, all.grains, all.particles, nodes, rows, scheme.theta * dt,
                         scheme.consistent());
         if (scheme.consistent())

@@ -790,6 +790,65 @@ TEST_CASE("an even stress is in equilibrium with rigid plates wherever they are 
     }
 }
 
+TEST_CASE("the lowest point of a parabola has the same gap wherever it is between columns") {
+    const double separation = 0.02, lowest = 0.013;
+    for (const double radius : {2.0, 4.0, 6.0, 8.0}) {  // in cells
+        for (const double place : {2.0001, 2.1, 2.37, 2.5, 2.9, 3.0}) {
+            std::vector<ContactColumn> columns(6);
+            for (int k = 0; k < 6; ++k)
+                columns[k] = {lowest + (k - place) * (k - place) / (2 * radius), k - 1,
+                              k == 5 ? -1 : k + 1};
+            int found = 0;
+            for (int k = 0; k < 6; ++k) {
+                const LowestPoint point = lowest_point(columns, k, separation);
+                if (!point.exists) continue;
+                ++found;
+                CHECK(k == 2);
+                CHECK(point.gap == doctest::Approx(lowest).epsilon(1e-12));
+                CHECK(point.part == doctest::Approx(place - 2).epsilon(1e-9));
+            }
+            // With the fall between columns, 1/8R, below the separation, both columns touch.
+            CHECK(found == (radius < 6.25 ? 1 : 0));
+            CHECK(!lowest_point(columns, 2, 0).exists);
+            // The mirror image.
+            for (int k = 0; k < 6; ++k) std::swap(columns[k].before, columns[k].next);
+            const LowestPoint mirrored = lowest_point(columns, 3, separation);
+            CHECK(mirrored.exists == (radius < 6.25 && place < 3));
+            if (mirrored.exists) CHECK(mirrored.part == doctest::Approx(3 - place).epsilon(1e-9));
+        }
+    }
+}
+
+TEST_CASE("a disk on a plate presses once and as much wherever it is on the mesh") {
+    for (const bool wall : {false, true}) {
+        for (const double cells : {0.0, 0.1, 0.25, 0.4, 0.5, 0.7, 0.95}) {
+            for (const double high : {0.0, 0.3, 0.8}) {
+                if (wall && high > 0) continue;
+                CAPTURE(cells);
+                CAPTURE(high);
+                Case c = case_on(32, 24, 1.6);
+                const double top = wall ? 0 : 0.2 + 0.05 * high;
+                c.problem.grains = {disk_at("disk", 0.8 + 0.05 * cells, top + 0.2, 0.2, 0, -0.01)};
+                c.problem.contact.friction = 0;
+                if (wall) {
+                    c.problem.walls[y_low] = "frictional";
+                } else {
+                    c.problem.materials.push_back({});
+                    c.problem.materials.back().name = "plate";
+                    c.problem.materials.back().law = "rigid";
+                    c.problem.grains.push_back(box_at("plate", 0.8, 0.5 * top, 1.2, top));
+                    c.problem.grains.back().material = "plate";
+                }
+                Run run(c);
+                run.advance();
+                // One contact in every place: the disk has four cells in its radius.
+                CHECK(run.sums.contact.nodes == 1);
+                CHECK(run.sums.contact.impulse > 0);
+            }
+        }
+    }
+}
+
 TEST_CASE("grains press when their surfaces touch whatever the shape and wherever they are") {
     for (const std::string& shape : shapes) {
         for (const double cells : {0.0, 0.11, 0.25, 0.5, 0.83}) {

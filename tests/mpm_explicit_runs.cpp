@@ -143,6 +143,55 @@ TEST_CASE("a grain at rest stays at rest and bursts with contact on the new velo
     }
 }
 
+TEST_CASE("a disk rests wherever it is in its cells and gains nothing" *
+          doctest::description("physics")) {
+    // Six cells in its radius. Of 60 places at random none gains more than .024; as the slide strains it,
+    // 13 gain more than .05, and in the first two places here it has several times its energy.
+    const auto rest = [](double across, double up, const char* changes) {
+        const auto number = [](double x) { return std::to_string(x); };
+        return run(
+            "places", "block_at_rest",
+            "grid.cells_x=24 grid.cells_y=20 grid.length_x=1.2 time.end=4 theory.compare=none "
+            "grain.block.shape=disk grain.block.radius=0.3 grain.plate.width=1.2 "
+            "grain.plate.x=0.6 grain.block.x=" +
+                number(0.6 + across) + " grain.block.y=" + number(0.4502 + up) +
+                " grain.plate.height=" + number(0.15 + up) +
+                " grain.plate.y=" + number(0.075 + 0.5 * up) + " " + changes);
+    };
+    for (const auto& [across, up] : {std::pair(0.0122, 0.0287),
+                                     {0.0382, 0.0287},
+                                     {0.0263, 0.0438},
+                                     {0.0429, 0.0145},
+                                     {0.003, 0.0103}}) {
+        const Run r = rest(across, up, "");
+        CHECK(r.value("energy_gain") <= 0.03);
+        check_budget(r);
+    }
+    CHECK(rest(0.0122, 0.0287, "method.crossing=0").value("energy_gain") > 1);
+    CHECK(rest(0.0382, 0.0287, "method.crossing=0").value("energy_gain") > 1);
+}
+
+TEST_CASE("a pack keeps its energy with the talk's linear shape" *
+          doctest::description("physics")) {
+    // Half of the work of the plate is done by particles that cross lines, as the slide strains them.
+    for (const char* alpha : {"0.25", "0.7"}) {
+        const Run r =
+            run("pack", "compressed",
+                std::string("method.crossing=0.5 output.fringes_interval=0 time.alpha=") + alpha);
+        CHECK(r.value("energy_gain") <= 0.01);
+        CHECK(std::fabs(r.column("energy").back() / r.column("external").back() - 1) <= 0.02);
+        check_budget(r);
+    }
+    // The rebound loses and gains a fifth of a per cent at most, and keeps it where the slide's bursts.
+    for (const auto& [alpha, most] : {std::pair("0.25", 0.002), {"0.7", 0.006}, {"1", 0.03}}) {
+        const Run r =
+            run("crossing", "rebound", std::string("method.crossing=0.5 time.alpha=") + alpha);
+        CHECK(std::fabs(r.value("energy_change")) <= most);
+        CHECK(std::fabs(r.value("rebound") - 0.95) <= 0.03);
+        check_budget(r);
+    }
+}
+
 TEST_CASE("corners that fall on a plate mirror each other" * doctest::description("physics")) {
     // Within a plate gradients are round-off, and so would be their normals.
     const auto fall = [](const std::string& x) {
@@ -306,10 +355,14 @@ TEST_CASE("two blocks on one incline slide each with the friction of its materia
 
 TEST_CASE("a cylinder rolls on a rough incline and slips on a smooth one" *
           doctest::description("physics")) {
-    // 2.5 and 3.1 % too slow.
-    for (const char* rough :
-         {"contact.friction=0.3", "contact.friction=0.6 theory.tolerance=0.035"})
-        facts::check_rolling(run("cylinder", "rolling_cylinder", rough));
+    // 2.4 and 2.3 % too slow; it swings on its contact by .06 of its speed and does not part from it.
+    for (const char* rough : {"contact.friction=0.3", "contact.friction=0.6",
+                              "contact.friction=0.3 grid.cells_x=100 grid.cells_y=20"}) {
+        const Run rolls = run("cylinder", "rolling_cylinder", rough);
+        facts::check_rolling(rolls);
+        CHECK(rolls.value("contact_time_share") >= 0.9);
+        CHECK(rolls.value("vertical_speed") <= 0.08);
+    }
     // FLIP with the lumped mass loses angular momentum at the surface, where it gets it.
     const Run flip = run("cylinder", "rolling_cylinder",
                          "contact.friction=0.6 method.transfer=flip theory.tolerance=0.07");

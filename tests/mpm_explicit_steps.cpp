@@ -1076,6 +1076,8 @@ TEST_CASE("a velocity of one cell per step changes nothing but any other does") 
     for (const std::string& shape : shapes) {
         CAPTURE(shape);
         Case c = case_on(32, 24, 0.8);
+        // Whoever moves by more than half a cell counts as one that has not crossed.
+        c.crossing = 0;
         c.shape = shape, c.problem.contact.friction = 0.2, c.problem.periodic_x = true;
         c.problem.grains = {disk_at("a", 0.2, 0.3, 0.12, 0.4, 0.05),
                             disk_at("b", 0.46, 0.32, 0.12, -0.4)};

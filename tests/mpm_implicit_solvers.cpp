@@ -627,7 +627,7 @@ TEST_CASE("tying light nodes keeps mass and momentum") {
         const NodeSums before = total();
         double least = 1e300, most = 0;
         const std::size_t ghosts = run.nodes.ghosts().size();
-        constrain_small_mass_nodes(grid_rows(run.grains(), run.nodes, run.state.layout), 1e-2,
+        constrain_small_mass_nodes(grid_rows(run.grains(), run.nodes, run.state.layout), {}, 1e-2,
                                    Neighbors::all, run.nodes);
         const NodeSums after = total();
         const double m = before.m;

@@ -180,10 +180,9 @@ mpm_explicit plates grain.top.swing_y=-0.01
     nothing, the grain starts at rest
 mpm_explicit plates grain.top.velocity_x=-0.1 -> no warning
 grains rolling_cylinder.toml
-    warning: a disk has a radius of 4 cells, below 12: on a rigid surface it rolls over nodes as
-    over cobbles, and loses speed, over eight radii a fifth to all of it with 4 cells and 5 to 32
-    per cent with 8, least with method.shape = "gimp" and method.transfer = "spin"; in
-    mpm_implicit 6 to 18 and 2 to 6 per cent
+    warning: a disk has a radius of 4 cells, below 12: where it rolls on a rigid surface it loses
+    speed to vibration, over eight radii 5 to 22 per cent with 4 cells and 4 to 10 with 8, least
+    with method.transfer = "spin"; in mpm_implicit 1 to 6 per cent
 grains rolling_cylinder.toml grid.cells_x=220 grid.cells_y=44
     warning: a disk has a radius of 11 cells, below 12
 grains rolling_cylinder.toml grid.cells_x=240 grid.cells_y=48 -> no warning

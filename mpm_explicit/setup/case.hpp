@@ -19,7 +19,7 @@ struct Case {
     double energy_limit = 10;
 
     std::string shape = "linear", transfer = "flip";
-    double flip = 1, crossing = 0;
+    double flip = 1, crossing = 0.5;
     bool frozen = false;
 
     // What the run is compared with.
@@ -47,7 +47,8 @@ struct Case {
         return {transfer == "apic"   ? Transfer::affine
                 : transfer == "spin" ? Transfer::spin
                                      : Transfer::none,
-                transfer == "pic" || transfer == "apic" ? 0 : flip, crossing};
+                transfer == "pic" || transfer == "apic" ? 0 : flip,
+                shape == "linear" ? crossing : 0};
     }
 };
 
@@ -133,8 +134,8 @@ inline common::ParameterTable describe(Case& parameters,
                  "with their gradients (apic); changes, and the spin around them (spin)");
     table.real(
         "method.crossing", parameters.crossing, "", common::between(0, 1),
-        "share of the cell that it leaves in the strain of a particle that crosses a line of "
-        "nodes; 0: the slide's; above, nodes of small mass are held; 0.5: no energy is made");
+        "linear shapes: share of the cell that it leaves in the strain of a particle that crosses "
+        "a line of nodes, and nodes of small mass are held; 0: the slide's, which makes energy");
     table.whole(
         "contact.levels", parameters.problem.contact.levels, "", common::between(1, 2),
         "2: contact acts on v_i^0 and v_i^1; 1: on v_i^1 alone, which bursts grains at rest");

@@ -192,10 +192,9 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
     if (g > 0 && has_surface && problem.has_friction() && least < 12 * (1 - 1e-9))
         warnings.push_back(
             "a disk has a radius of " + format(least) +
-            " cells, below 12: on a rigid surface it rolls over nodes as over cobbles, and loses "
-            "speed, over eight radii a fifth to all of it with 4 cells and 5 to 32 per cent with "
-            "8, least with method.shape = \"gimp\" and method.transfer = \"spin\"; in "
-            "mpm_implicit 6 to 18 and 2 to 6 per cent");
+            " cells, below 12: where it rolls on a rigid surface it loses speed to vibration, over "
+            "eight radii 5 to 22 per cent with 4 cells and 4 to 10 with 8, least with "
+            "method.transfer = \"spin\"; in mpm_implicit 1 to 6 per cent");
     return warnings;
 }
 
@@ -215,11 +214,6 @@ inline void validate_explicit(const Case& parameters) {
                " with linear shapes bursts: their gradient at a node does not fall with the "
                "mass there; set method.shape to \"gimp\" or \"quadratic\", or "
                "method.transfer = \"spin\"");
-    refuse(
-        parameters.crossing > 0 && parameters.shape != "linear",
-        "method.crossing is for linear shapes, whose gradients jump where particles cross: leave "
-        "it 0 with method.shape = \"" +
-            parameters.shape + "\"");
 }
 
 /// Warnings with the number and the limit, for choices that run but may mislead.

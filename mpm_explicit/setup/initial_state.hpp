@@ -15,22 +15,25 @@ namespace mpm_explicit {
 
 /// Stresses are taken half a step back with the velocities of the start, as leapfrog needs them:
 ///   sigma^{-1/2} = sigma^0 - T : e(v^0) dt/2
-/// in:     affine, what particles carry of the motion of the nodes around them
+/// in:     transfer, which says what particles carry
 /// note:   positions stay where they are: they belong to t = 0 as the case gives them
 template <class Shape>
 void start_leapfrog(const Shape& shape, const std::vector<AnyLaw>& laws, const Contact& contact,
-                    Transfer::Affine affine, bool frozen, double dt, GrainNodes& nodes,
+                    const Transfer& transfer, bool frozen, double dt, GrainNodes& nodes,
                     State& state) {
     Assembly& all = state.assembly;
+    if (transfer.crossing > 0)
+        for (std::vector<double>* one : all.particles.from())
+            one->assign(static_cast<std::size_t>(all.particles.count()), 0.0);
     particles_to_grid(shape, all.particles, nodes);
     surface_to_grid(shape, all.particles, nodes);
     nodal_velocity(all.grains, all.rigid, nodes);
     predict_acceleration({}, all.grains, all.rigid, 0, nodes);
     std::vector<TileSums> sums(nodes.tiles().size());
-    if (affine != Transfer::none) {
+    if (transfer.kind != Transfer::none) {
         for (std::vector<double>* one : all.particles.affine())
             one->resize(static_cast<std::size_t>(all.particles.count()), 0.0);
-        take_affine_motion(shape, all.grains, nodes, affine, all.particles, sums);
+        take_affine_motion(shape, all.grains, nodes, transfer.kind, all.particles, sums);
     }
     start_budget(all, nodes.tiles(), sums, state.budget);
     ContactList list;
@@ -48,12 +51,11 @@ inline void validate_state(const Mesh& mesh, int width, const Transfer& transfer
     mpm::validate_state(mesh, width, transfer.kind != Transfer::none, false, state.assembly,
                         state.layout, state.budget.momenta_next);
     Particles& p = state.assembly.particles;
-    for (const std::vector<double>* column : p.left())
-        refuse(
-            column->size() != p.lxx_p.size() ||
-                (!column->empty() && (transfer.crossing == 0 || column->size() != p.x_p.size())) ||
-                !common::all_within(*column, -1e90, 1e90),
-            "what its particles saw in cells that they left is not of this case");
+    const double most = GrainNodes::reach * mesh.h;
+    for (const std::vector<double>* column : p.from())
+        refuse(column->size() != (transfer.crossing > 0 ? p.x_p.size() : 0) ||
+                   !common::all_within(*column, -most, most),
+               "where its particles came from is not of this case");
 }
 
 }  // namespace mpm_explicit

@@ -20,6 +20,7 @@ inline std::string cell_crossing_hint(const Case& w) {
     std::string hint = "noise of cell crossing gives or takes energy: refine the mesh";
     if (w.alpha > 0.1) hint += ", lower time.alpha (" + format(w.alpha > 0.25 ? 0.25 : 0.1) + ")";
     if (w.problem.contact.levels != 2) hint += ", take contact.levels = 2";
+    if (w.shape == "linear" && w.crossing == 0) hint += ", take method.crossing = 0.5";
     if (w.shape == "linear") hint += ", take method.shape = \"gimp\"";
     if (w.transfer == "flip" && w.flip == 1) hint += ", or method.flip = 0.99, which takes some";
     return hint;

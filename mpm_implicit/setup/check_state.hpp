@@ -15,8 +15,8 @@ namespace mpm_implicit {
 inline void validate_state(const Mesh& mesh, int width, State& state) {
     mpm::validate_state(mesh, width, false, true, state.assembly, state.layout,
                         state.budget.momenta);
-    for (const std::vector<double>* column : state.assembly.particles.left())
-        refuse(!column->empty(), "its particles have strain of cells that they left");
+    for (const std::vector<double>* column : state.assembly.particles.from())
+        refuse(!column->empty(), "its particles have places that they came from");
     const std::vector<ActivePair>& pairs = state.active_pairs;
     const bool closed = std::all_of(pairs.begin(), pairs.end(), [](const ActivePair& pair) {
         return pair.state == static_cast<int>(ContactState::slip) ||

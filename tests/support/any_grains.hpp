@@ -47,7 +47,7 @@ struct Run {
         prepare(state.assembly);
         nodes.sort(state.assembly.grains, p, state.layout);
         with_shape(c.scheme(), [&](const auto& shape) {
-            start_leapfrog(shape, laws, contact, parameters.transfers().kind, parameters.frozen, dt,
+            start_leapfrog(shape, laws, contact, parameters.transfers(), parameters.frozen, dt,
                            nodes, state);
         });
     }
