@@ -173,7 +173,7 @@ TEST_CASE("a disk rests wherever it is in its cells and gains nothing" *
 
 TEST_CASE("a pack keeps its energy with the talk's linear shape" *
           doctest::description("physics")) {
-    // Half of the work of the plate is done by particles that cross lines, as the slide strains them.
+    // As the slide strains them, particles that cross lines do three times the work of the plate at 0.7.
     for (const char* alpha : {"0.25", "0.7"}) {
         const Run r =
             run("pack", "compressed",
@@ -365,7 +365,7 @@ TEST_CASE("a cylinder rolls on a rough incline and slips on a smooth one" *
     }
     // FLIP with the lumped mass loses angular momentum at the surface, where it gets it.
     const Run flip = run("cylinder", "rolling_cylinder",
-                         "contact.friction=0.6 method.transfer=flip theory.tolerance=0.07");
+                         "contact.friction=0.6 method.transfer=flip theory.tolerance=0.05");
     CHECK(!flip.summary["results"]["acceleration"]["pass"].get<bool>());
     const Run slips = run("cylinder", "rolling_cylinder", "contact.friction=0.1 expect.fails=");
     check_results(slips, 1);
