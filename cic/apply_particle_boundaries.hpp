@@ -3,13 +3,12 @@
 
 #include <cmath>
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "cic/poisson.hpp"
 #include "cic/share_particles.hpp"
 #include "common/random.hpp"
-#include "common/run/parameters.hpp"
+#include "common/run/sentence.hpp"
 
 namespace cic {
 
@@ -144,7 +143,7 @@ inline void apply_at_walls(const Grid& grid, const ParticleBoundaries& condition
                     break;
                 }
                 if (does == AtWall::source) {
-                    const auto count = static_cast<std::uint64_t>(now.emitted_again++);
+                    const auto count = std::uint64_t(now.emitted_again++);
                     emit(grid, conditions.dt, v_th, {conditions.seed, purpose, count}, s, p);
                 } else {
                     Real &x = (*wall->x_p)[p], &v = (*wall->v_p)[p];
@@ -155,9 +154,8 @@ inline void apply_at_walls(const Grid& grid, const ParticleBoundaries& condition
         }
     });
     if (now.leapt)
-        throw common::NumericalError(
-            s.name + ": a particle moves farther than the box in one step, at step " +
-            std::to_string(step) + ": reduce time.dt");
+        common::fail(s.name, ": a particle moves farther than the box in one step, at step ", step,
+                     ": reduce time.dt");
     walls = now.walls, emitted_again = now.emitted_again;
     remove(s, absorbed);
 }
@@ -167,21 +165,21 @@ inline void emit_new(const Grid& grid, const ParticleBoundaries& conditions,
                      const Emission& emission, std::uint32_t purpose, long step, Particles& s,
                      Wall& source) {
     const auto emitted_before = [&](long steps) {
-        return static_cast<long>(std::floor(emission.per_step * double(steps)));
+        return long(std::floor(emission.per_step * double(steps)));
     };
     const long first = emitted_before(step), last = emitted_before(step + 1);
     const bool is_ours = common::rank() + 1 == common::rank_count();
     const long old_count = s.count();
     if (s.count_of_all() + last - first > 2000000000)
-        throw common::NumericalError(
-            s.name + ": the source has filled the box with more than 2e9 particles, at step " +
-            std::to_string(step) + ": lower its emission, or let a wall absorb them");
+        common::fail(s.name,
+                     ": the source has filled the box with more than 2e9 particles, at step ", step,
+                     ": lower its emission, or let a wall absorb them");
     if (is_ours) resize(old_count + last - first, conditions.plane, conditions.magnetized, s);
     for (long k = first; k < last; ++k) {
         source.charge -= s.q_p / grid.z.length;
         if (!is_ours) continue;
         const long p = old_count + k - first;
-        const EmissionNumbers random{conditions.seed, purpose, static_cast<std::uint64_t>(k)};
+        const EmissionNumbers random{conditions.seed, purpose, std::uint64_t(k)};
         emit(grid, conditions.dt, emission.thermal_speed, random, s, p);
         if (conditions.plane) s.z_p[p] = Real(grid.z.low + grid.z.length * random.uniform(4));
     }
@@ -206,7 +204,7 @@ inline void apply_particle_boundaries(const Grid& grid, const ParticleBoundaries
     if (grid.x.periodic && grid.z.periodic) return;
     for (std::size_t k = 0; k < species.size(); ++k) {
         const Emission& emission = conditions.emission[k];
-        const auto purpose = static_cast<std::uint32_t>(1000 + 2 * k);
+        const auto purpose = std::uint32_t(1000 + 2 * k);
         detail::apply_at_walls(grid, conditions, emission.thermal_speed, purpose, step, species[k],
                                walls, emitted_again[k]);
         if (emission.per_step > 0)

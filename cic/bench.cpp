@@ -1,14 +1,12 @@
 // How fast the loop of cic.cpp is, and where its time goes: the same calls with a clock between
 // them, on a warm plasma in two dimensions, by one thread and by two. `make bench` runs it, and
 // `make REAL=float bench` in single precision.
-#include <sys/resource.h>
-
 #include <cstdio>
-#include <vector>
 
 #include "cic/setup/initial_state.hpp"
 #include "cic/sort_particles.hpp"
 #include "cic/step.hpp"
+#include "common/run/machine.hpp"
 #include "tests/support/core_limits.hpp"
 
 namespace {
@@ -98,11 +96,9 @@ int main() {
     print("deposit", of_one.seconds("deposit"), deposit);
     print("push", of_one.seconds("push"), push);
     print("step", of_one.total(), {deposit.flops + push.flops, deposit.bytes + push.bytes});
-    struct rusage usage {};
-    getrusage(RUSAGE_SELF, &usage);
     const double carried = 4 * sizeof(Real), scratch = sizeof(Real) + sizeof(int);
     std::printf(
         "\n%ld particles, %.0f bytes each (%.0f carried, %.0f to sort); peak memory %.1f MiB\n",
-        particles, carried + scratch, carried, scratch, double(usage.ru_maxrss) / 1024);
+        particles, carried + scratch, carried, scratch, common::peak_memory_bytes() / 1048576);
     return 0;
 }

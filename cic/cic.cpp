@@ -25,11 +25,10 @@ namespace {
 
 using namespace cic;
 
-const common::ProgramInfo info{
-    "cic", PROGRAM_VERSION,
-    "clouds-in-cells, the electrostatic plasma method; the default case is "
-    "the two-stream instability",
-    "cic/cases/two_stream.toml"};
+const common::ProgramInfo info{"cic", PROGRAM_VERSION,
+                               "clouds-in-cells, the electrostatic plasma method; the default case "
+                               "is the two-stream instability",
+                               "cic/cases/two_stream.toml"};
 
 int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     // 1. The case: defaults, file, command line; refuse, warn, or only describe.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <type_traits>
 #include <vector>
 
@@ -37,6 +38,19 @@ void gather_blocks(std::array<Sums, common::block_count>& sums) {
     for (int k = 0; k <= common::rank_count(); ++k)
         first.push_back(first_block(k) * long(sizeof(Sums) / sizeof(double)));
     common::gather_pieces(reinterpret_cast<double*>(sums.data()), first);
+}
+
+/// The numbers of all ranks one after the other, with every rank.
+inline std::vector<double> gather_with_all(const std::vector<double>& own) {
+    if (common::rank_count() == 1) return own;
+    std::vector<long> first(std::size_t(common::rank_count() + 1), 0);
+    first[common::rank() + 1] = std::ssize(own);
+    common::sum_over_ranks(first);
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    std::vector<double> all(std::size_t(first.back()));
+    std::ranges::copy(own, all.begin() + first[common::rank()]);
+    common::gather_pieces(all.data(), first);
+    return all;
 }
 
 /// Calls work(row) for the rows of a mesh, of each on one rank after the other; in the end all have the

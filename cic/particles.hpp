@@ -37,7 +37,7 @@ struct Particles {
     ParticleSums sums;                   // of the last step
     long among_ranks = 0;                // where there are several, how many they have together
 
-    long count() const { return static_cast<long>(x_p.size()); }
+    long count() const { return long(x_p.size()); }
     long count_of_all() const { return common::rank_count() > 1 ? among_ranks : count(); }
     std::array<std::vector<Real>*, 5> all() { return {&x_p, &z_p, &vx_p, &vy_p, &vz_p}; }
 };

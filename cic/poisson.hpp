@@ -11,7 +11,6 @@
 
 #include <Eigen/SparseCholesky>
 #include <array>
-#include <cmath>
 #include <vector>
 
 #include "cic/real_transform.hpp"
@@ -185,8 +184,7 @@ class PoissonSolver {
             for (long i = 1; i < grid_.x.cells; ++i)
                 visit_stencil(i, j, [&](long k, long l, double factor) {
                     if (inside(k, l) && factor != 0)
-                        entries.emplace_back(static_cast<int>(unknown(i, j)),
-                                             static_cast<int>(unknown(k, l)), factor);
+                        entries.emplace_back(int(unknown(i, j)), int(unknown(k, l)), factor);
                 });
         Eigen::SparseMatrix<double> matrix(unknowns, unknowns);
         matrix.setFromTriplets(entries.begin(), entries.end());

@@ -30,7 +30,7 @@ inline void share_runs(const std::vector<int>& first, Particles& particles) {
     const std::size_t keys = first.size() - 1;
     std::vector<double> lengths;
     for (std::size_t key = 0; key < keys; ++key) lengths.push_back(first[key + 1] - first[key]);
-    lengths = common::gather_with_all(lengths);  // [rank][key]
+    lengths = gather_with_all(lengths);  // [rank][key]
     const long all = long(std::accumulate(lengths.begin(), lengths.end(), 0.0));
 
     // Run after run of the list of all: how much of it comes here; and where what goes to a rank begins.
@@ -97,7 +97,7 @@ inline void remove_among_ranks(const std::vector<long>& indices, Particles& part
     const long begin = begin_of_rank(particles.among_ranks, common::rank());
     std::vector<double> gaps;
     for (const long p : indices) gaps.push_back(double(begin + p));
-    gaps = common::gather_with_all(gaps);
+    gaps = gather_with_all(gaps);
     const long left = particles.among_ranks - std::ssize(gaps),
                kept = std::clamp(left - begin, 0L, particles.count());
     constexpr long width = std::tuple_size_v<decltype(particles.all())>;
@@ -105,7 +105,7 @@ inline void remove_among_ranks(const std::vector<long>& indices, Particles& part
     for (long p = kept; p < particles.count(); ++p)
         for (const std::vector<Real>* q : particles.all())
             last.push_back(q->empty() ? 0 : double((*q)[p]));
-    last = common::gather_with_all(last);
+    last = gather_with_all(last);
 
     for (auto gap = gaps.rbegin(); gap != gaps.rend(); ++gap) {
         const long place = long(*gap), p = place - begin, from = std::ssize(last) - width;

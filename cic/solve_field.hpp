@@ -1,7 +1,7 @@
 // on the mesh: the electric field of the charge density, Gauss's law.  [CIC-2]
 #pragma once
 
-#include <algorithm>
+#include <array>
 
 #include "cic/gather_field.hpp"
 #include "cic/poisson.hpp"

@@ -21,9 +21,7 @@ inline void sort_particles(const Grid& grid, common::SortScratch<Real>& scratch,
     const double z_low = grid.z.low, per_dz = 1 / grid.z.spacing();
     std::vector<int> first_of_row;
     for (Particles& s : species) {
-        const auto row = [&](long p) {
-            return static_cast<int>((double(s.z_p[p]) - z_low) * per_dz);
-        };
+        const auto row = [&](long p) { return int((double(s.z_p[p]) - z_low) * per_dz); };
         common::counting_sort(s.count(), grid.z.cells + 1, row, scratch, &first_of_row);
         for (std::vector<Real>* quantity : s.all())
             if (!quantity->empty()) common::carry_to_place(*quantity, scratch);

@@ -28,7 +28,7 @@ struct Weights<0> {
     static constexpr int count = 1;
     int first;
     Real S[1];
-    static int first_at(Real s) { return static_cast<int>(s + Real(0.5)); }
+    static int first_at(Real s) { return int(s + Real(0.5)); }
     Weights(int first_place, Real) : first(first_place), S{1} {}
 };
 
@@ -37,17 +37,17 @@ struct Weights<1> {
     static constexpr int count = 2;
     int first;
     Real S[2];
-    static int first_at(Real s) { return static_cast<int>(s + 1) - 1; }
+    static int first_at(Real s) { return int(s + 1) - 1; }
     Weights(int first_place, Real d) : first(first_place), S{1 - d, d} {}
 };
 
-// The polynomials of common::QuadraticWeights, for single precision, too.
+// The polynomials of QuadraticWeights of implicit_moment, for single precision, too.
 template <>
 struct Weights<2> {
     static constexpr int count = 3;
     int first;
     Real S[3];
-    static int first_at(Real s) { return static_cast<int>(s + Real(0.5)) - 1; }
+    static int first_at(Real s) { return int(s + Real(0.5)) - 1; }
     Weights(int first_place, Real d) : first(first_place) {
         const Real half = Real(0.5);
         S[0] = half * (half - d) * (half - d);

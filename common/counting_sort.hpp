@@ -28,9 +28,9 @@ struct SortScratch {
 template <class Number, class Key>
 void counting_sort(long count, long keys, const Key& key_of, SortScratch<Number>& scratch,
                    std::vector<int>* first_of_key = nullptr) {
-    scratch.target.resize(static_cast<std::size_t>(count));
+    scratch.target.resize(std::size_t(count));
     scratch.place.resize(block_count);
-    scratch.next.assign(static_cast<std::size_t>(keys), 0);
+    scratch.next.assign(std::size_t(keys), 0);
     std::array<int, block_count> lowest{};
 
     // Count the elements of each key, block by block.
@@ -43,9 +43,9 @@ void counting_sort(long count, long keys, const Key& key_of, SortScratch<Number>
             high = std::max(high, target[p]);
         }
         lowest[std::size_t(block)] = low;
-        auto& place = scratch.place[static_cast<std::size_t>(block)];
+        auto& place = scratch.place[std::size_t(block)];
         place.assign(std::size_t(high + 1 - low), 0);
-        for (long p = begin; p < end; ++p) ++place[static_cast<std::size_t>(target[p] - low)];
+        for (long p = begin; p < end; ++p) ++place[std::size_t(target[p] - low)];
     });
 
     // Give every key its range and every block its share of that range.
@@ -71,8 +71,8 @@ void counting_sort(long count, long keys, const Key& key_of, SortScratch<Number>
     });
 
     for_each_block(count, [&](int block, long begin, long end) {
-        int* place = scratch.place[static_cast<std::size_t>(block)].data();
-        const int low = lowest[static_cast<std::size_t>(block)];
+        int* place = scratch.place[std::size_t(block)].data();
+        const int low = lowest[std::size_t(block)];
         for (long p = begin; p < end; ++p) target[p] = place[target[p] - low]++;
     });
 }
@@ -85,7 +85,7 @@ void carry_to_place(std::vector<Number>& quantity, const std::vector<int>& targe
     const Number* from = quantity.data();
     Number* to = column.data();
     const int* place = target.data();
-    for_each_block(static_cast<long>(quantity.size()), [&](int, long begin, long end) {
+    for_each_block(long(quantity.size()), [&](int, long begin, long end) {
         for (long p = begin; p < end; ++p) to[place[p]] = from[p];
     });
     quantity.swap(column);

@@ -24,7 +24,7 @@ struct Axis {
     bool mirrors = false;  // its walls mirror the plasma, see felt in implicit_moment
 
     /// Distance of neighboring nodes.
-    double spacing() const { return length / static_cast<double>(cells); }
+    double spacing() const { return length / double(cells); }
     /// Coordinate of the upper boundary.
     double high() const { return low + length; }
     /// Coordinate of a node; a fraction lies between nodes.

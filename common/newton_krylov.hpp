@@ -166,13 +166,4 @@ NewtonResult newton_krylov(const Residual& residual, const Preconditioner& preco
     return result;
 }
 
-/// The same without a preconditioner and without a kept workspace.
-template <class Residual>
-NewtonResult newton_krylov(const Residual& residual, Eigen::VectorXd& x, double scale,
-                           double tolerance, int max_newton, int max_linear) {
-    NewtonWorkspace work;
-    const auto leave = [](const Eigen::VectorXd& v, Eigen::VectorXd& w) { w = v; };
-    return newton_krylov(residual, leave, x, scale, tolerance, max_newton, max_linear, work);
-}
-
 }  // namespace common

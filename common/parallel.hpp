@@ -76,9 +76,7 @@ double sum_over_blocks(long count, const Partial& partial, long numbers = parall
     std::array<double, block_count> part{};
     for_each_block(
         count,
-        [&](int block, long begin, long end) {
-            part[static_cast<std::size_t>(block)] = partial(begin, end);
-        },
+        [&](int block, long begin, long end) { part[std::size_t(block)] = partial(begin, end); },
         numbers);
     return std::accumulate(part.begin(), part.end(), 0.0);
 }

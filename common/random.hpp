@@ -20,13 +20,13 @@ namespace common {
 inline double uniform(std::uint64_t seed, std::uint32_t purpose, std::uint64_t particle,
                       std::uint32_t draw) {
     using Philox = r123::Philox4x32;
-    const auto low = [](std::uint64_t bits) { return static_cast<std::uint32_t>(bits); };
-    const auto high = [](std::uint64_t bits) { return static_cast<std::uint32_t>(bits >> 32); };
+    const auto low = [](std::uint64_t bits) { return std::uint32_t(bits); };
+    const auto high = [](std::uint64_t bits) { return std::uint32_t(bits >> 32); };
     const Philox::ctr_type counter = {{low(particle), high(particle), purpose, draw}};
     const Philox::key_type key = {{low(seed), high(seed)}};
     const Philox::ctr_type words = Philox()(counter, key);
     const std::uint64_t bits = (std::uint64_t{words[1]} << 32) | words[0];
-    return (static_cast<double>(bits >> 11) + 0.5) * 0x1p-53;
+    return (double(bits >> 11) + 0.5) * 0x1p-53;
 }
 
 /// A normal number of mean 0 and variance 1, by inverting the distribution function.
@@ -46,7 +46,7 @@ inline double radical_inverse(std::uint64_t i, unsigned base) {
     const double digit = 1.0 / base;
     double place = digit, sum = 0.0;
     for (std::uint64_t rest = i + 1; rest > 0; rest /= base) {
-        sum += static_cast<double>(rest % base) * place;
+        sum += double(rest % base) * place;
         place *= digit;
     }
     return std::min(sum, 1.0 - 0x1p-53);
@@ -72,7 +72,7 @@ struct LoadingNumbers {
     std::uint64_t seed;
     /// Uniform in (0, 1): the radical inverse in `base` when quiet, else random.
     double uniform(std::uint32_t purpose, unsigned base, long particle) const {
-        const auto p = static_cast<std::uint64_t>(particle);
+        const auto p = std::uint64_t(particle);
         return quiet ? shifted_radical_inverse(p, base, seed + 1000 * purpose)
                      : common::uniform(seed, purpose, p, base);
     }

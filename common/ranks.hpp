@@ -10,9 +10,7 @@
 // so far, never a sum of a rank's own.
 #pragma once
 
-#include <algorithm>
 #include <functional>
-#include <numeric>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -73,13 +71,6 @@ inline long sum_over_ranks(long number) {
     sum_over_ranks(std::span(&number, 1));
     return number;
 }
-/// The sum of the numbers of the ranks before this one.
-inline long sum_before_rank(long number) {
-    std::vector<long> of_rank(rank_count(), 0);
-    of_rank[rank()] = number;
-    sum_over_ranks(of_rank);
-    return std::accumulate(of_rank.begin(), of_rank.begin() + rank(), 0L);
-}
 /// A part of a list that is cut into as many parts, evenly and by number: of one part, all of it.
 struct Share {
     long part = 0, parts = 1;
@@ -91,49 +82,6 @@ inline Share share_of_rank() { return {rank(), rank_count()}; }
 
 /// The largest of the numbers of all ranks; nobody goes on before all have come here.
 inline long largest_over_ranks(long number) { return has_ranks ? mpi::largest(number) : number; }
-
-/// Which pieces of a row of pieces each rank has: neighbors.
-struct Division {
-    std::vector<long> first;  // [rank], one more for the end; empty: every process has all pieces
-
-    bool is_whole() const { return !has_ranks || first.empty(); }
-    long begin() const { return is_whole() ? 0 : first[rank()]; }
-    long end(long pieces) const { return is_whole() ? pieces : first[rank() + 1]; }
-    int owner(long piece) const {
-        int k = 0;
-        while (piece >= first[k + 1]) ++k;
-        return k;
-    }
-
-    /// Cuts such that the rank with the most work has as little as it can (few = 1; else about as little).
-    /// in: the work of each piece; how many pieces every rank gets at least, which must be there
-    static Division of(std::span<const long> work, long few = 1, long ranks = rank_count()) {
-        const long pieces = std::ssize(work);
-        // Rank after rank is filled to a bound; the last one takes what is left.
-        long most = 0;
-        const auto fill = [&](long bound) {
-            Division division{{0}};
-            long sum = most = 0;
-            for (long piece = 0; piece < pieces; ++piece) {
-                const long ranks_left = ranks - std::ssize(division.first);
-                const bool full = sum + work[piece] > bound || pieces - piece <= few * ranks_left;
-                if (full && piece >= few + division.first.back() && ranks_left > 0)
-                    division.first.push_back(piece), sum = 0;
-                most = std::max(most, sum += work[piece]);
-            }
-            division.first.push_back(pieces);
-            return division;
-        };
-        long low = *std::max_element(work.begin(), work.end()),
-             high = std::reduce(work.begin(), work.end());
-        while (low < high) {
-            const long bound = low + (high - low) / 2;
-            fill(bound);
-            most <= bound ? high = bound : low = bound + 1;
-        }
-        return fill(low);
-    }
-};
 
 /// Gives every rank the pieces of all. in/out: all; rank r has made the numbers from first[r] to first[r + 1]
 inline void gather_pieces(double* all, std::span<const long> first) {
@@ -161,19 +109,6 @@ inline std::vector<double> gather_in_turn(const std::vector<double>& own) {
                        const double* from = static_cast<const double*>(piece);
                        all.insert(all.end(), from, from + bytes / sizeof(double));
                    });
-    return all;
-}
-
-/// The same with every rank.
-inline std::vector<double> gather_with_all(const std::vector<double>& own) {
-    if (rank_count() == 1) return own;
-    std::vector<long> first(std::size_t(rank_count() + 1), 0);
-    first[rank() + 1] = std::ssize(own);
-    sum_over_ranks(first);
-    std::partial_sum(first.begin(), first.end(), first.begin());
-    std::vector<double> all(std::size_t(first.back()));
-    std::copy(own.begin(), own.end(), all.begin() + first[rank()]);
-    gather_pieces(all.data(), first);
     return all;
 }
 

@@ -22,20 +22,4 @@ inline double spline(int order, double x) {
     return r < 1 ? 2.0 / 3 - r * r + 0.5 * r * r * r : r < 2 ? cube(2 - r) / 6 : 0;
 }
 
-/// The quadratic and linear weights that a particle at distance d (in cells, |d| <= 1/2) from its
-/// nearest node gives to its neighbors:
-///     quadratic[0..2] = S^(2) to the nodes -1, 0, +1
-///     linear[0..1]    = S^(1) to the midpoints -1/2, +1/2
-/// Real is double, or SimdVector for several particles at once. S^(0) to the nearest node is 1.
-template <class Real>
-struct QuadraticWeights {
-    Real quadratic[3];
-    Real linear[2];
-
-    /// in: d, distance from the nearest node in cells, -1/2 <= d <= 1/2
-    explicit QuadraticWeights(const Real& d)
-        : quadratic{0.5 * (0.5 - d) * (0.5 - d), 0.75 - d * d, 0.5 * (0.5 + d) * (0.5 + d)},
-          linear{0.5 - d, 0.5 + d} {}
-};
-
 }  // namespace common

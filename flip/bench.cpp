@@ -2,13 +2,11 @@
 // clock between them, on the Rayleigh-Taylor instability with nine particles per cell, by one thread
 // and by two; then the time per particle on small and large meshes, and about an axis. `make bench`
 // runs it.
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <cstdio>
-#include <string>
 #include <vector>
 
+#include "common/run/machine.hpp"
 #include "flip/flip/step.hpp"
 #include "flip/pic/step.hpp"
 #include "flip/setup/problem_of_case.hpp"
@@ -103,13 +101,11 @@ int main() {
             long count = 0;
             const long steps = 20;
             const common::StepClock clock = time_steps(pic, parameters, steps, count);
-            const double rate =
-                static_cast<double>(count) * static_cast<double>(steps) / clock.total();
+            const double rate = double(count) * double(steps) / clock.total();
             if (threads == 1) {
                 one_thread = rate;
                 for (const Loop& loop : pic ? loops_of_pic : loops_of_flip)
-                    seconds.push_back(clock.seconds(loop.part) /
-                                      static_cast<double>(count * steps));
+                    seconds.push_back(clock.seconds(loop.part) / double(count * steps));
             }
             const auto percent = [&](const char* part) {
                 return 100 * clock.seconds(part) / clock.total();
@@ -133,18 +129,15 @@ int main() {
             const common::StepClock clock =
                 time_steps(pic, heavy_on_light(cells_x, rings), steps, count);
             std::printf("%7ld x %4ld %16ld %22.1f%s\n", cells_x, 2 * cells_x, count,
-                        1e9 * clock.total() / static_cast<double>(count * steps),
-                        rings ? " (r, z)" : "");
+                        1e9 * clock.total() / double(count * steps), rings ? " (r, z)" : "");
         };
         for (const long cells_x : {64L, 128L, 256L, 512L}) time_mesh(cells_x, false);
         time_mesh(256, true);
         std::printf("\n");
     }
-    struct rusage usage {};
-    getrusage(RUSAGE_SELF, &usage);
     const double label = 2 * sizeof(int), sorted = sizeof(double) + sizeof(int);
     std::printf("bytes per particle: pic %.0f, flip %.0f; peak memory %.1f MiB\n",
                 3 * sizeof(double) + label + sorted, 6 * sizeof(double) + label + sorted,
-                static_cast<double>(usage.ru_maxrss) / 1024);
+                common::peak_memory_bytes() / 1048576);
     return 0;
 }

@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 #include <cmath>
 
-#include "common/run/parameters.hpp"
+#include "common/run/sentence.hpp"
 #include "flip/particles.hpp"
 #include "flip/problem.hpp"
 
@@ -52,9 +52,8 @@ void remove_outflow(const Problem& problem, double time, Particles& particles, c
         if (side < 0) return false;
         const BoundaryKind kind = problem.boundaries.side[side].kind;
         if ((kind != BoundaryKind::open && kind != BoundaryKind::inflow) || !std::isfinite(x + z))
-            throw common::NumericalError("a particle has gone through the wall to x = " +
-                                         common::format(x) + ", z = " + common::format(z) +
-                                         " at t = " + common::format(time) + ": reduce time.cfl");
+            common::fail("a particle has gone through the wall to x = ", x, ", z = ", z,
+                         " at t = ", time, ": reduce time.cfl");
         left(p);
         return true;
     });
@@ -76,20 +75,20 @@ inline std::array<long, 4> add_inflow(const Problem& problem, double t, double d
         const common::Axis &across = along_x ? grid.x : grid.z, &aside = along_x ? grid.z : grid.x;
         const double speed = (low ? 1 : -1) * (along_x ? in.vx : in.vz);
         if (speed <= 0) continue;
-        const double step = across.spacing() /
-                            static_cast<double>(along_x ? problem.per_cell_x : problem.per_cell_z);
+        const double step =
+            across.spacing() / double(along_x ? problem.per_cell_x : problem.per_cell_z);
         const long per_cell = along_x ? problem.per_cell_z : problem.per_cell_x,
                    count = per_cell * aside.cells;
-        const double width = aside.spacing() / static_cast<double>(per_cell);
+        const double width = aside.spacing() / double(per_cell);
         const auto columns_crossed = [&](double time) {
-            return static_cast<long>(std::floor(time * speed / step + 0.5));
+            return long(std::floor(time * speed / step + 0.5));
         };
         for (long n = columns_crossed(t); n < columns_crossed(t + dt); ++n) {
-            const double depth = (t + dt) * speed - (static_cast<double>(n) + 0.5) * step;
+            const double depth = (t + dt) * speed - (double(n) + 0.5) * step;
             const double at = low ? across.low + depth : across.high() - depth;
             for (long k = 0; k < count; ++k) {
                 const auto [beside, ring] =
-                    along_x ? LatticeColumn{aside.low + (static_cast<double>(k) + 0.5) * width, 1}
+                    along_x ? LatticeColumn{aside.low + (double(k) + 0.5) * width, 1}
                             : lattice_column(grid, per_cell, k);
                 const auto add = [](std::vector<double>& column, bool used, double value) {
                     if (used) column.push_back(value);
@@ -173,9 +172,7 @@ inline Eigen::Vector2d boundary_force(const Grid& grid, const Boundaries& bounda
     const auto pressure = [&](Side side, bool here) {
         return here && boundaries.is(side, BoundaryKind::open) ? boundaries.side[side].pressure : 0;
     };
-    const auto ring = [&](double offset) {
-        return ring_length(grid, static_cast<double>(i) + offset);
-    };
+    const auto ring = [&](double offset) { return ring_length(grid, double(i) + offset); };
     return {reach(grid.z, j, ring(0), ring(0)) *
                 (pressure(x_low, i == 0) - pressure(x_high, i == grid.x.cells)),
             reach(grid.x, i, ring(-1. / 3), ring(1. / 3)) *

@@ -6,7 +6,6 @@
 #include <array>
 #include <atomic>
 #include <cstdlib>
-#include <string>
 #include <vector>
 
 #include "common/counting_sort.hpp"
@@ -32,7 +31,7 @@ struct Particles {
     // Row j of cells, or one beside it, has particles [first_of_row[j], [j + 1]); empty: out of order.
     std::vector<int> first_of_row;
 
-    long count() const { return static_cast<long>(x_p.size()); }
+    long count() const { return long(x_p.size()); }
     /// Every column of numbers, in use or not.
     std::array<std::vector<double>*, 11> all() {
         return {&x_p, &z_p, &m_p, &vx_p, &vz_p, &e_p, &V_p, &Cxx_p, &Cxz_p, &Czx_p, &Czz_p};
@@ -79,9 +78,9 @@ struct CellAlong {
     double low, per_cell;
     int last;
     explicit CellAlong(const common::Axis& axis)
-        : low(axis.low), per_cell(1 / axis.spacing()), last(static_cast<int>(axis.cells) - 1) {}
+        : low(axis.low), per_cell(1 / axis.spacing()), last(int(axis.cells) - 1) {}
     int operator()(double position) const {
-        const int cell = static_cast<int>((position - low) * per_cell);
+        const int cell = int((position - low) * per_cell);
         return cell < last ? cell : last;
     }
 };
@@ -121,7 +120,7 @@ inline bool near_their_rows(const Grid& grid, const Particles& particles) {
     common::for_each_row(
         grid.z.cells,
         [&](long j) {
-            const int here = static_cast<int>(j);
+            const int here = int(j);
             int farthest = 0;
             for (long p = first[j]; p < first[j + 1]; ++p)
                 farthest = std::max(farthest, std::abs(row(z_p[p]) - here));

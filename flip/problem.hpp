@@ -25,7 +25,7 @@ inline double ring_length(const Grid& grid, double node) {
 }
 /// The volume of a cell in column i.
 inline double cell_volume(const Grid& grid, long i) {
-    return grid.cell_area() * ring_length(grid, static_cast<double>(i) + 0.5);
+    return grid.cell_area() * ring_length(grid, double(i) + 0.5);
 }
 /// The column of the cell or node with index n.
 inline long column_of(const Grid& grid, long n) { return n % grid.stride() - 1; }
@@ -61,8 +61,7 @@ struct Boundaries {
 
     bool is(Side s, BoundaryKind kind) const { return side[s].kind == kind; }
     bool has(BoundaryKind kind) const {
-        return std::any_of(side.begin(), side.end(),
-                           [&](const Boundary& b) { return b.kind == kind; });
+        return std::ranges::any_of(side, [&](const Boundary& b) { return b.kind == kind; });
     }
 };
 
@@ -145,10 +144,9 @@ struct LatticeColumn {
 ///         what they would get from the fluid; at random, any part of its volume is as likely
 inline LatticeColumn lattice_column(const Grid& grid, long per_cell, long n, bool random = false,
                                     double u = 0.5) {
-    const double dx = grid.x.spacing() / static_cast<double>(per_cell),
-                 x = grid.x.low + dx * (static_cast<double>(n) + u);
+    const double dx = grid.x.spacing() / double(per_cell), x = grid.x.low + dx * (double(n) + u);
     if (!grid.axisymmetric) return {x, 1};
-    const double r = dx * (static_cast<double>(n) + 0.5);
+    const double r = dx * (double(n) + 0.5);
     return {
         random ? std::sqrt(r * r + 0.25 * dx * dx + (2 * u - 1) * dx * r) : r + dx * dx / (12 * r),
         2 * pi * r};

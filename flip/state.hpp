@@ -17,6 +17,14 @@ namespace flip {
 /// exact: what the particles have now, minus this, does not change
 struct Budget {
     double mass = 0, momentum_x = 0, momentum_z = 0, energy = 0;
+
+    /// Adds what comes in with the mass m, negative for what leaves; e per mass.
+    void enter(double m, double vx, double vz, double e) {
+        mass += m;
+        momentum_x += m * vx;
+        momentum_z += m * vz;
+        energy += m * (0.5 * (vx * vx + vz * vz) + e);
+    }
 };
 
 /// What the cells of `pic` keep from step to step, on_faces, ghosts not filled.
@@ -73,8 +81,7 @@ struct CellFields {
 
 /// Where and when a cell is, for messages.
 inline std::string cell_and_time(const Grid& grid, long n, double time) {
-    const double i = static_cast<double>(n % grid.stride()) - 0.5,
-                 j = static_cast<double>(n / grid.stride()) - 0.5;
+    const double i = double(n % grid.stride()) - 0.5, j = double(n / grid.stride()) - 0.5;
     return "in the cell at x = " + common::format(grid.x.at(i)) +
            ", z = " + common::format(grid.z.at(j)) + " at t = " + common::format(time);
 }

@@ -1,13 +1,12 @@
 // How fast the steps of implicit_moment and explicit_em are, and where their time goes: the same calls
 // with a clock between them, on the two runs of the talk's cost slide, by one thread and by two.
 // `make bench` runs it.
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <string>
 #include <vector>
 
+#include "common/run/machine.hpp"
 #include "implicit_moment/explicit_em/setup/leapfrog_state.hpp"
 #include "implicit_moment/explicit_em/step.hpp"
 #include "implicit_moment/setup/describe_case.hpp"
@@ -18,12 +17,6 @@
 namespace {
 
 using namespace implicit_moment;
-
-double peak_memory() {
-    struct rusage usage {};
-    getrusage(RUSAGE_SELF, &usage);
-    return double(usage.ru_maxrss) * 1024;
-}
 
 // What a particle takes, counted in the code. Where it is in its cell, 4; quadratic splines, 16; B there, 39,
 // and E, 50; the midpoint rule, 42. moments: sums of a species 13, of a node 126. mover: twice (as in
@@ -80,7 +73,7 @@ void time_threads(const Case& parameters, const std::string& program, long steps
     for (std::size_t k = 0; k < loops.size(); ++k)
         support::print_use(loops[k].name, seconds[k], loops[k].count, peak, triad);
     std::printf("\n%.0f particles of %zu bytes; peak memory %.1f MiB\n", count, 5 * sizeof(double),
-                peak_memory() / 1048576);
+                common::peak_memory_bytes() / 1048576);
 }
 
 // Prints what the field takes per node on finer meshes of the same box, by one thread and by two, with as many

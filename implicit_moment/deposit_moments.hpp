@@ -27,9 +27,9 @@
 #include <iterator>
 #include <type_traits>
 
-#include "common/splines.hpp"
 #include "implicit_moment/exchange_rows.hpp"
 #include "implicit_moment/moments.hpp"
+#include "implicit_moment/quadratic_weights.hpp"
 #include "implicit_moment/rotate_particles.hpp"
 
 namespace implicit_moment {
@@ -45,9 +45,9 @@ struct NodeSums {
     SimdVector P_xx[3][1]{}, P_zz[1][3]{};
 
     // Adds particles of velocity v with the splines S; present is 0 for lanes that hold none.
-    void add(const common::QuadraticWeights<SimdVector>& S_x,
-             const common::QuadraticWeights<SimdVector>& S_z, const SimdVector& v_x,
-             const SimdVector& v_y, const SimdVector& v_z, const SimdVector& present) {
+    void add(const QuadraticWeights<SimdVector>& S_x, const QuadraticWeights<SimdVector>& S_z,
+             const SimdVector& v_x, const SimdVector& v_y, const SimdVector& v_z,
+             const SimdVector& present) {
         // [splines]
         for (int j = 0; j < 3; ++j) {
             const SimdVector S = S_z.quadratic[j] * present;
@@ -81,8 +81,7 @@ struct NodeSums {
 // The same of their response to E, where they are relativistic.
 struct ResponseSums {
     SimdVector A[9][3][3]{};
-    void add(const common::QuadraticWeights<SimdVector>& S_x,
-             const common::QuadraticWeights<SimdVector>& S_z,
+    void add(const QuadraticWeights<SimdVector>& S_x, const QuadraticWeights<SimdVector>& S_z,
              const std::array<SimdVector, 9>& of_particles, const SimdVector& present) {
         for (std::size_t a = 0; a < 9; ++a)
             for (int j = 0; j < 3; ++j)
@@ -121,17 +120,15 @@ inline void deposit(const Particles& particles, const Grid& grid, const Rotation
 
             NodeSums sums;
             std::conditional_t<Rotation::responds, ResponseSums, NoResponse> response;
-            for (long p = begin; p < end; p += common::simd_width) {
+            for (long p = begin; p < end; p += simd_width) {
                 const long count = end - p;
-                const SimdVector present = common::first_simd(count);
-                const SimdVector d_x =
-                    (common::load_simd(&particles.x_p[p], count) - x_node) * per_dx;
-                const SimdVector d_z =
-                    (common::load_simd(&particles.z_p[p], count) - z_node) * per_dz;
-                const common::QuadraticWeights<SimdVector> S_x(d_x), S_z(d_z);
-                const Velocity<SimdVector> u{common::load_simd(&particles.ux_p[p], count),
-                                             common::load_simd(&particles.uy_p[p], count),
-                                             common::load_simd(&particles.uz_p[p], count)};
+                const SimdVector present = first_simd(count);
+                const SimdVector d_x = (load_simd(&particles.x_p[p], count) - x_node) * per_dx;
+                const SimdVector d_z = (load_simd(&particles.z_p[p], count) - z_node) * per_dz;
+                const QuadraticWeights<SimdVector> S_x(d_x), S_z(d_z);
+                const Velocity<SimdVector> u{load_simd(&particles.ux_p[p], count),
+                                             load_simd(&particles.uy_p[p], count),
+                                             load_simd(&particles.uz_p[p], count)};
                 total_x += present * u.x;
                 total_y += present * u.y;
                 total_z += present * u.z;
@@ -151,7 +148,7 @@ inline void deposit(const Particles& particles, const Grid& grid, const Rotation
             const auto add = [&](Field& f, const auto& sum, long i = 0, long j = 0) {
                 for (long m = 0; m < std::ssize(sum); ++m) {
                     for (long l = 0; l < std::ssize(sum[0]); ++l)
-                        f[corner + (j + m) * stride + i + l] += q * common::simd_sum(sum[m][l]);
+                        f[corner + (j + m) * stride + i + l] += q * simd_sum(sum[m][l]);
                 }
             };
             add(moments.rho, sums.rho);
@@ -162,8 +159,8 @@ inline void deposit(const Particles& particles, const Grid& grid, const Rotation
             if constexpr (Rotation::responds)
                 for (std::size_t a = 0; a < 9; ++a) add(moments.response[a], response.A[a]);
         }
-        sums_of_row[row + 1] = {common::simd_sum(total_x), common::simd_sum(total_y),
-                                common::simd_sum(total_z), common::simd_sum(total_squared)};
+        sums_of_row[row + 1] = {simd_sum(total_x), simd_sum(total_y), simd_sum(total_z),
+                                simd_sum(total_squared)};
     });
     mesh.push_back({sums_of_row.front().data(), 4});
     gather_rows(grid, particles.of_ranks, mesh);

@@ -23,10 +23,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <numeric>
 #include <vector>
 
+#include "common/run/sentence.hpp"
 #include "implicit_moment/exchange_rows.hpp"
 #include "implicit_moment/particle_path.hpp"
 
@@ -46,8 +46,8 @@ inline constexpr int free_turns = 4;  // after which a path that meets a wall st
 /// Ends the run where particles of a species have no path. errors: NumericalError
 inline void refuse_lost(const Particles& s, double lost) {
     if (const long of_all = common::sum_over_ranks(long(lost)); of_all > 0)
-        throw common::NumericalError("the paths of " + common::format(double(of_all)) + " of the " +
-                                     s.name + " are not found; reduce time.dt");
+        common::fail("the paths of ", double(of_all), " of the ", s.name,
+                     " are not found; reduce time.dt");
 }
 
 /// Finds every particle's path in a field, and the current along the paths.
@@ -65,8 +65,7 @@ inline void follow_field(const InterleavedField& field, const Grid& grid, double
         const Particles& s = species[k];
         const double half_kick = 0.5 * dt * s.q_p / s.m_p, q = s.q_p / grid.cell_area();
         std::array<long, common::block_count> lost{};
-        const long before = common::sum_before_rank(s.count()),
-                   all = common::sum_over_ranks(s.count());
+        const long before = sum_before_rank(s.count()), all = common::sum_over_ranks(s.count());
         // Finds paths, deposits along them, or both. in: begin and end among the particles of all ranks
         const auto follow = [&](bool finds, bool deposits, int block, long begin, long end) {
             double* J = &enslaved.J_of_block[std::size_t(block * 3 * size)];
@@ -86,7 +85,7 @@ inline void follow_field(const InterleavedField& field, const Grid& grid, double
                 detail::along_path(
                     grid, {grid.x, s.x_p[p], dt * vbar.x}, {grid.z, s.z_p[p], dt * vbar.z},
                     [&](double w, long corner, double d_x, double d_z, double m_x, double m_z) {
-                        const common::QuadraticWeights<double> S_x(d_x), S_z(d_z);
+                        const QuadraticWeights<double> S_x(d_x), S_z(d_z);
                         const double j_x = q * w * m_x * vbar.x, j_y = q * w * vbar.y,
                                      j_z = q * w * m_z * vbar.z;
                         for (int j = 0; j < 3; ++j) {

@@ -11,12 +11,10 @@
 #include <vector>
 
 #include "common/parallel.hpp"
-#include "common/ranks.hpp"
+#include "implicit_moment/division.hpp"
 #include "implicit_moment/vector_field.hpp"
 
 namespace implicit_moment {
-
-using common::Division;
 
 /// Rows of nodes that a rank of implicit_moment needs: to a row of the mesh then no more than two ranks add.
 inline constexpr long rows_of_rank = 2;

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "common/parallel.hpp"
-#include "common/splines.hpp"
 #include "implicit_moment/particles.hpp"
+#include "implicit_moment/quadratic_weights.hpp"
 #include "implicit_moment/smooth.hpp"
 
 namespace implicit_moment {
@@ -72,7 +72,7 @@ inline void interleave_field(const Grid& grid, const SmoothingSettings& smoothin
 template <class Real>
 inline LocalField<Real> gather_field(const NodeField* corner, long stride, const Real& d_x,
                                      const Real& d_z) {
-    const common::QuadraticWeights<Real> S_x(d_x), S_z(d_z);
+    const QuadraticWeights<Real> S_x(d_x), S_z(d_z);
     const auto& q_x = S_x.quadratic;
     const auto& l_x = S_x.linear;
     LocalField<Real> at{};

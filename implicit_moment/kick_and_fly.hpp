@@ -13,11 +13,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 #include <vector>
 
 #include "common/ranks.hpp"
-#include "common/run/parameters.hpp"
+#include "common/run/sentence.hpp"
 #include "implicit_moment/mass_matrix.hpp"
 
 namespace implicit_moment {
@@ -67,9 +66,9 @@ inline void fly(const Grid& grid, double time, std::vector<Particles>& species) 
             return with_dynamics(s, [&](auto dynamics) { return fly_block(dynamics, begin, end); });
         });
         if (const long of_all = common::sum_over_ranks(long(lost)); of_all > 0)
-            throw common::NumericalError(common::format(double(of_all)) + " of the " + s.name +
-                                         " cross more than 1000 boxes in a step: the field has "
-                                         "blown up; reduce time.dt");
+            common::fail(
+                double(of_all), " of the ", s.name,
+                " cross more than 1000 boxes in a step: the field has blown up; reduce time.dt");
     }
 }
 
@@ -118,13 +117,13 @@ inline bool kick_particles(const InterleavedField& field, const InterleavedField
                 const double x_node = grid.x.at(double(column));
                 const long corner = grid.index(column - 1, row - 1);
                 const long end = s.first_of_node[node + 1];
-                for (long p = s.first_of_node[node]; p < end; p += common::simd_width) {
+                for (long p = s.first_of_node[node]; p < end; p += simd_width) {
                     const long count = end - p;
-                    const SimdVector d_x = (common::load_simd(&s.x_p[p], count) - x_node) * per_dx,
-                                     d_z = (common::load_simd(&s.z_p[p], count) - z_node) * per_dz;
-                    const Velocity<SimdVector> u{common::load_simd(&s.ux_p[p], count),
-                                                 common::load_simd(&s.uy_p[p], count),
-                                                 common::load_simd(&s.uz_p[p], count)};
+                    const SimdVector d_x = (load_simd(&s.x_p[p], count) - x_node) * per_dx,
+                                     d_z = (load_simd(&s.z_p[p], count) - z_node) * per_dz;
+                    const Velocity<SimdVector> u{load_simd(&s.ux_p[p], count),
+                                                 load_simd(&s.uy_p[p], count),
+                                                 load_simd(&s.uz_p[p], count)};
                     const auto at =
                         gather_field<SimdVector>(&field[corner], grid.stride(), d_x, d_z);
                     const Velocity<SimdVector> u_new =
@@ -134,16 +133,15 @@ inline bool kick_particles(const InterleavedField& field, const InterleavedField
                                   gather_field<SimdVector>(&guess[corner], grid.stride(), d_x, d_z),
                                   half_kick, stops)
                             : Newtonian::mean(u, at, half_kick).u_new(u);
-                    common::store_simd(u_new.x, &s.ux_p[p], count);
-                    common::store_simd(u_new.y, &s.uy_p[p], count);
-                    common::store_simd(u_new.z, &s.uz_p[p], count);
+                    store_simd(u_new.x, &s.ux_p[p], count);
+                    store_simd(u_new.y, &s.uy_p[p], count);
+                    store_simd(u_new.z, &s.uz_p[p], count);
                 }
             }
         }
         stops_in_row[std::size_t(row)] = stops;
     });
-    return common::largest_over_ranks(
-               *std::max_element(stops_in_row.begin(), stops_in_row.end())) == 0;
+    return common::largest_over_ranks(std::ranges::max(stops_in_row)) == 0;
 }
 
 }  // namespace implicit_moment

@@ -78,8 +78,8 @@ inline constexpr int columns = 24, J_column = places;  // 21 places, J_hat, two 
 // A few particles on both sides of a block. Plain numbers, so that the loops over columns take the width of
 // the machine's registers by themselves.
 struct BlockFactors {
-    alignas(64) double a[places][common::simd_width];      // [g][particle]
-    alignas(64) double b[3][common::simd_width][columns];  // [component][particle][column]
+    alignas(64) double a[places][simd_width];      // [g][particle]
+    alignas(64) double b[3][simd_width][columns];  // [component][particle][column]
 
     // in: weights W of the 21 places; a_scale = q / V, 0 in lanes that hold no particle; b_scale = q dt / 2m;
     //     R and R v, or A and what is left of vbar without E
@@ -89,7 +89,7 @@ struct BlockFactors {
             const SimdVector scaled = W[g] * a_scale;
             __builtin_memcpy(a[g], &scaled, sizeof scaled);
         }
-        for (int p = 0; p < common::simd_width; ++p) {
+        for (int p = 0; p < simd_width; ++p) {
             double row[columns] = {};
             for (int h = 0; h < places; ++h) row[h] = b_scale * W[h][p];
             const double v[3] = {linear.free.x[p], linear.free.y[p], linear.free.z[p]};
@@ -112,9 +112,9 @@ struct NodeBlock {
 
     // Adds a b^T of the particles, at most four at a time.
     void add(const BlockFactors& factors) {
-        constexpr int together = std::min(common::simd_width, 4);
+        constexpr int together = std::min(simd_width, 4);
         for (int component = 0; component < 3; ++component) {
-            for (int first = 0; first < common::simd_width; first += together) {
+            for (int first = 0; first < simd_width; first += together) {
                 const double(*b)[columns] = &factors.b[component][first];
                 for (int g = first_place[component]; g < first_place[component + 1]; ++g) {
                     const double* a = &factors.a[g][first];
@@ -197,12 +197,12 @@ inline void deposit_mass_matrix(const std::vector<Particles>& species, const Gri
             for (const Particles& s : species) {
                 const double half_kick = 0.5 * dt * s.q_p / s.m_p, k = half_kick / c;
                 const long begin = s.first_of_node[node], end = s.first_of_node[node + 1];
-                for (long p = begin; p < end; p += common::simd_width) {
+                for (long p = begin; p < end; p += simd_width) {
                     const long count = end - p;
                     empty = false;
-                    const SimdVector d_x = (common::load_simd(&s.x_p[p], count) - x_node) * per_dx,
-                                     d_z = (common::load_simd(&s.z_p[p], count) - z_node) * per_dz;
-                    const common::QuadraticWeights<SimdVector> S_x(d_x), S_z(d_z);
+                    const SimdVector d_x = (load_simd(&s.x_p[p], count) - x_node) * per_dx,
+                                     d_z = (load_simd(&s.z_p[p], count) - z_node) * per_dz;
+                    const QuadraticWeights<SimdVector> S_x(d_x), S_z(d_z);
                     // [mass_matrix]
                     SimdVector W[detail::places];
                     for (int j = 0; j < 3; ++j) {
@@ -215,17 +215,17 @@ inline void deposit_mass_matrix(const std::vector<Particles>& species, const Gri
                         for (int i = 0; i < 3; ++i)
                             W[detail::first_place[2] + 3 * j + i] =
                                 S_x.quadratic[i] * S_z.linear[j];
-                    const Velocity<SimdVector> u{common::load_simd(&s.ux_p[p], count),
-                                                 common::load_simd(&s.uy_p[p], count),
-                                                 common::load_simd(&s.uz_p[p], count)};
+                    const Velocity<SimdVector> u{load_simd(&s.ux_p[p], count),
+                                                 load_simd(&s.uy_p[p], count),
+                                                 load_simd(&s.uz_p[p], count)};
                     const LinearVelocity<SimdVector> linear =
                         s.relativistic
                             ? linear_mean_velocity<SimdVector>(
                                   u, gather_field<SimdVector>(&guess[corner], stride, d_x, d_z),
                                   half_kick)
                             : rotated(u, mesh_B.at(corner, S_x, S_z), k);
-                    factors.set(W, common::first_simd(count) * (s.q_p / grid.cell_area()),
-                                half_kick, linear);
+                    factors.set(W, first_simd(count) * (s.q_p / grid.cell_area()), half_kick,
+                                linear);
                     block.add(factors);
                     // [/mass_matrix]
                 }

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 
 #include "implicit_moment/interleaved_field.hpp"
 #include "implicit_moment/units.hpp"
@@ -51,7 +50,7 @@ inline Real gamma_squared(const Velocity<Real>& u, double per_c_squared) {
 /// 1/gamma, the factor from u to v.
 template <class Real>
 inline Real inverse_gamma(const Velocity<Real>& u, double per_c_squared) {
-    return 1.0 / common::square_root(gamma_squared(u, per_c_squared));
+    return 1.0 / square_root(gamma_squared(u, per_c_squared));
 }
 
 /// The mean velocity of a step, and the mean gamma: u^{n+1} = 2 gamma vbar - u^n.
@@ -75,7 +74,7 @@ inline Velocity<Real> cross(const Velocity<Real>& a, const Velocity<Real>& b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 inline bool any(bool holds) { return holds; }
-inline bool any(const common::SimdMask& holds) { return common::any_simd(holds); }
+inline bool any(const SimdMask& holds) { return any_simd(holds); }
 
 }  // namespace detail
 
@@ -97,10 +96,10 @@ inline MeanVelocity<Real> relativistic_mean_velocity(const Velocity<Real>& u,
     const Velocity<Real> e{k * at.E_x, k * at.E_y, k * at.E_z},
         O{k * at.B_x, k * at.B_y, k * at.B_z}, t{u.x / c + e.x, u.y / c + e.y, u.z / c + e.z};
     const Velocity<Real> t_O = detail::cross(t, O);
-    const Real gamma = common::square_root(gamma_squared(u, 1 / (c * c))), OO = detail::dot(O, O),
+    const Real gamma = square_root(gamma_squared(u, 1 / (c * c))), OO = detail::dot(O, O),
                along = detail::dot(t, O), two = OO - detail::dot(e, t),
                one = gamma * OO + detail::dot(e, t_O), none = along * detail::dot(e, O);
-    Real G = gamma + common::square_root(detail::dot(e, e)), step = G;
+    Real G = gamma + square_root(detail::dot(e, e)), step = G;
     for (int n = 0; n < 50 && detail::any(step > 1e-15 * G); ++n) {
         const Real value = (((G - gamma) * G + two) * G - one) * G - none,
                    slope = ((4.0 * G - 3.0 * gamma) * G + 2.0 * two) * G - one;
@@ -119,7 +118,7 @@ inline MeanVelocity<Real> relativistic_mean_velocity(const Velocity<Real>& u,
 template <class Real>
 inline Velocity<Real> with_energy(const Velocity<Real>& u, const Real& found, const Real& wanted) {
     const Real one = Real{} + 1.0, kept = wanted > 0.0 ? wanted : 0.0 * one;
-    const Real scale = common::square_root(found > 0.0 ? kept / found : one);
+    const Real scale = square_root(found > 0.0 ? kept / found : one);
     return {scale * u.x, scale * u.y, scale * u.z};
 }
 
@@ -197,7 +196,7 @@ struct Relativistic {
     // Without cancellation.
     template <class Real>
     static Real twice_energy(const Velocity<Real>& u) {
-        const Real gamma = common::square_root(gamma_squared(u, 1 / (c * c)));
+        const Real gamma = square_root(gamma_squared(u, 1 / (c * c)));
         return 2.0 * (u.x * u.x + u.y * u.y + u.z * u.z) / (1.0 + gamma);
     }
     template <class Real>
@@ -207,7 +206,7 @@ struct Relativistic {
     }
     template <class Real>
     static Real square_after(const Velocity<Real>& u, const Real& work) {
-        const Real gamma = common::square_root(gamma_squared(u, 1 / (c * c)));
+        const Real gamma = square_root(gamma_squared(u, 1 / (c * c)));
         const Real left = gamma + work / (c * c),
                    square = detail::dot(u, u) + 2.0 * gamma * work + work * work / (c * c);
         return left > 0.0 ? square : -c * c * (1.0 + left * left);

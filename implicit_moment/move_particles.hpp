@@ -13,12 +13,11 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "common/parallel.hpp"
 #include "common/ranks.hpp"
-#include "common/run/parameters.hpp"
+#include "common/run/sentence.hpp"
 #include "implicit_moment/move_one.hpp"
 
 namespace implicit_moment {
@@ -45,7 +44,7 @@ struct Cell {
 // How far a coordinate is behind a wall, in cells; not positive inside, 0 in a periodic direction.
 inline SimdVector behind_wall(const common::Axis& axis, const SimdVector& x, double per_dx) {
     if (axis.periodic) return SimdVector{};
-    return common::larger(axis.low - x, x - axis.high()) * per_dx;
+    return larger(axis.low - x, x - axis.high()) * per_dx;
 }
 
 template <class Dynamics>
@@ -69,13 +68,13 @@ inline MoverReport move_particles(Dynamics, const InterleavedField& field, const
             const detail::Cell cell_x(grid.x, column);
             const NodeField* corner = &field[grid.index(column - 1, row - 1)];
 
-            for (long p = begin; p < end; p += common::simd_width) {
-                const long count = std::min<long>(end - p, common::simd_width);
-                SimdVector x = common::load_simd(&particles.x_p[p], count);
-                SimdVector z = common::load_simd(&particles.z_p[p], count);
-                Velocity<SimdVector> u{common::load_simd(&particles.ux_p[p], count),
-                                       common::load_simd(&particles.uy_p[p], count),
-                                       common::load_simd(&particles.uz_p[p], count)};
+            for (long p = begin; p < end; p += simd_width) {
+                const long count = std::min<long>(end - p, simd_width);
+                SimdVector x = load_simd(&particles.x_p[p], count);
+                SimdVector z = load_simd(&particles.z_p[p], count);
+                Velocity<SimdVector> u{load_simd(&particles.ux_p[p], count),
+                                       load_simd(&particles.uy_p[p], count),
+                                       load_simd(&particles.uz_p[p], count)};
                 const SimdVector from_x = (x - x_node) * per_dx, from_z = (z - z_node) * per_dz;
 
                 // Iterate all midpoints; note how far each strays beyond the node's cell.
@@ -84,25 +83,21 @@ inline MoverReport move_particles(Dynamics, const InterleavedField& field, const
                 for (long iteration = 0; iteration < settings.max_iterations; ++iteration) {
                     const SimdVector d_x = from_x + (h * per_dx) * vbar.x,
                                      d_z = from_z + (h * per_dz) * vbar.z;
-                    outside = common::larger(
-                        outside,
-                        common::larger(common::magnitude(d_x - cell_x.center) - cell_x.half,
-                                       common::magnitude(d_z - cell_z.center) - cell_z.half));
+                    outside = larger(outside, larger(magnitude(d_x - cell_x.center) - cell_x.half,
+                                                     magnitude(d_z - cell_z.center) - cell_z.half));
                     const auto at = gather_field<SimdVector>(corner, grid.stride(), d_x, d_z);
                     const auto [next, next_gamma] =
                         Dynamics::template mean<SimdVector>(u, at, half_kick);
-                    change = common::larger(common::magnitude(next.x - vbar.x) * (h * per_dx),
-                                            common::magnitude(next.z - vbar.z) * (h * per_dz));
+                    change = larger(magnitude(next.x - vbar.x) * (h * per_dx),
+                                    magnitude(next.z - vbar.z) * (h * per_dz));
                     change = outside > 0.0 ? 0.0 * change : change;
                     // By component: a copy of the whole goes through memory in pieces.
                     vbar.x = next.x, vbar.y = next.y, vbar.z = next.z, gamma = next_gamma;
-                    if (iteration > 0 && !common::any_simd(change > settings.tolerance)) break;
+                    if (iteration > 0 && !any_simd(change > settings.tolerance)) break;
                 }
 
-                outside =
-                    common::larger(outside, detail::behind_wall(grid.x, x + dt * vbar.x, per_dx));
-                outside =
-                    common::larger(outside, detail::behind_wall(grid.z, z + dt * vbar.z, per_dz));
+                outside = larger(outside, detail::behind_wall(grid.x, x + dt * vbar.x, per_dx));
+                outside = larger(outside, detail::behind_wall(grid.z, z + dt * vbar.z, per_dz));
 
                 // Move the others one by one.
                 for (long l = 0; l < count; ++l) {
@@ -134,11 +129,11 @@ inline MoverReport move_particles(Dynamics, const InterleavedField& field, const
                 z += dt * vbar.z;
                 wrap(grid.x, x);
                 wrap(grid.z, z);
-                common::store_simd(x, &particles.x_p[p], count);
-                common::store_simd(z, &particles.z_p[p], count);
-                common::store_simd(2.0 * gamma * vbar.x - u.x, &particles.ux_p[p], count);
-                common::store_simd(2.0 * gamma * vbar.y - u.y, &particles.uy_p[p], count);
-                common::store_simd(2.0 * gamma * vbar.z - u.z, &particles.uz_p[p], count);
+                store_simd(x, &particles.x_p[p], count);
+                store_simd(z, &particles.z_p[p], count);
+                store_simd(2.0 * gamma * vbar.x - u.x, &particles.ux_p[p], count);
+                store_simd(2.0 * gamma * vbar.y - u.y, &particles.uy_p[p], count);
+                store_simd(2.0 * gamma * vbar.z - u.z, &particles.uz_p[p], count);
             }
         }
     });
@@ -176,8 +171,8 @@ inline void move_particles(const InterleavedField& field, const Grid& grid, doub
     for (Particles& particles : species) {
         const MoverReport report = move_particles(field, grid, dt, settings, particles);
         if (const long lost = common::sum_over_ranks(report.lost); lost > 0) {
-            throw common::NumericalError(
-                std::to_string(lost) + " of the " + particles.name +
+            common::fail(
+                lost, " of the ", particles.name,
                 " cannot be followed in 1024 sub-steps: the field has blown up; reduce time.dt");
         }
     }

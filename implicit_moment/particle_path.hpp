@@ -2,7 +2,6 @@
 // their polynomials, through periodic ends, reflected by walls.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 
 #include "implicit_moment/kick_and_fly.hpp"

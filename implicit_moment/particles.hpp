@@ -7,15 +7,13 @@
 #include <vector>
 
 #include "common/grid.hpp"
-#include "common/parallel.hpp"
-#include "common/ranks.hpp"
-#include "common/simd.hpp"
+#include "implicit_moment/division.hpp"
+#include "implicit_moment/simd.hpp"
 
 namespace implicit_moment {
 
 using common::Field;
 using common::Grid;
-using common::SimdVector;
 
 /// One species, structure of arrays, kept sorted by nearest node (see sort_particles).
 /// note:   u_p is the letter of the slide: the velocity v, or where the species is relativistic gamma v, the
@@ -28,7 +26,7 @@ struct Particles {
     std::vector<double> x_p, z_p;          // position [d_i]
     std::vector<double> ux_p, uy_p, uz_p;  // v or gamma v [c]
     std::vector<int> first_of_node;        // node n has [first_of_node[n], first_of_node[n + 1])
-    common::Division of_ranks;  // the rows of each rank, or tiles of them, as it has theirs
+    Division of_ranks;  // the rows of each rank, or tiles of them, as it has theirs
 
     long count() const { return long(x_p.size()); }
     std::array<std::vector<double>*, 5> all() { return {&x_p, &z_p, &ux_p, &uy_p, &uz_p}; }

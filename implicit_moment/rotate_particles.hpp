@@ -2,8 +2,8 @@
 // without E, and for relativistic particles what E will make of it.
 #pragma once
 
-#include "common/splines.hpp"
 #include "implicit_moment/mean_velocity.hpp"
+#include "implicit_moment/quadratic_weights.hpp"
 
 namespace implicit_moment::detail {
 
@@ -13,8 +13,8 @@ struct MeshB {
     long stride;
 
     // B at particles of one node.
-    Velocity<SimdVector> at(long corner, const common::QuadraticWeights<SimdVector>& S_x,
-                            const common::QuadraticWeights<SimdVector>& S_z) const {
+    Velocity<SimdVector> at(long corner, const QuadraticWeights<SimdVector>& S_x,
+                            const QuadraticWeights<SimdVector>& S_z) const {
         const auto& q_x = S_x.quadratic;
         const auto& l_x = S_x.linear;
         SimdVector b_x{}, b_y{}, b_z{};
@@ -36,8 +36,8 @@ template <class D>
 struct NoRotation {
     using Dynamics = D;
     static constexpr bool responds = false;
-    Velocity<SimdVector> operator()(long, const common::QuadraticWeights<SimdVector>&,
-                                    const common::QuadraticWeights<SimdVector>&,
+    Velocity<SimdVector> operator()(long, const QuadraticWeights<SimdVector>&,
+                                    const QuadraticWeights<SimdVector>&,
                                     const Velocity<SimdVector>& u) const {
         return D::velocity(u);
     }
@@ -51,8 +51,8 @@ struct MagneticRotation {
     double half_kick;
 
     // vbar = [ v + v x O + (v . O) O ] / (1 + O^2),  O = half_kick B / c, with B at the particles.
-    Velocity<SimdVector> operator()(long corner, const common::QuadraticWeights<SimdVector>& S_x,
-                                    const common::QuadraticWeights<SimdVector>& S_z,
+    Velocity<SimdVector> operator()(long corner, const QuadraticWeights<SimdVector>& S_x,
+                                    const QuadraticWeights<SimdVector>& S_z,
                                     const Velocity<SimdVector>& v) const {
         const Velocity<SimdVector> b = B.at(corner, S_x, S_z);
         return mean_velocity<SimdVector>(
@@ -68,9 +68,8 @@ struct RelativisticRotation {
     MeshB B;
     double half_kick;
 
-    LinearVelocity<SimdVector> operator()(long corner,
-                                          const common::QuadraticWeights<SimdVector>& S_x,
-                                          const common::QuadraticWeights<SimdVector>& S_z,
+    LinearVelocity<SimdVector> operator()(long corner, const QuadraticWeights<SimdVector>& S_x,
+                                          const QuadraticWeights<SimdVector>& S_z,
                                           const Velocity<SimdVector>& u) const {
         const Velocity<SimdVector> b = B.at(corner, S_x, S_z);
         return linear_mean_velocity<SimdVector>(

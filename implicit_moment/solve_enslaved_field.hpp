@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/run/sentence.hpp"
 #include "implicit_moment/advance_field.hpp"
 #include "implicit_moment/enslave_particles.hpp"
 
@@ -95,10 +96,8 @@ inline FieldReport solve_enslaved_field(FieldSolver& solver, double dt,
         if (report.residual < 0.5 * best) best = report.residual, best_turn = turn;
         if (turn >= best_turn + 6 && report.residual <= round_off) break;
         if (turn == 100 || !std::isfinite(report.residual))
-            throw common::NumericalError(
-                "field and particles did not converge together (relative "
-                "residual " +
-                common::format(report.residual) + "); reduce time.dt");
+            common::fail("field and particles did not converge together (relative residual ",
+                         report.residual, "); reduce time.dt");
         follow.tolerance = std::min(settings.tolerance, std::max(1e-14, 0.1 * report.residual));
         correction.setZero(left.all.size());
         report.iterations += detail::solve_linear_field(solver, a, 1e-3, correction).iterations;

@@ -22,7 +22,7 @@
 #include <cmath>
 #include <string>
 
-#include "common/run/parameters.hpp"
+#include "common/run/sentence.hpp"
 #include "implicit_moment/precondition_field.hpp"
 
 namespace implicit_moment {
@@ -38,9 +38,8 @@ namespace detail {
 // errors: NumericalError, with what the solver says
 template <class Result>
 [[noreturn]] inline void refuse_solution(const std::string& which, const Result& result) {
-    throw common::NumericalError("the " + which + " did not converge: " + result.reason +
-                                 " (relative residual " + common::format(result.residual) +
-                                 "); reduce time.dt or raise field.max_iterations");
+    common::fail("the ", which, " did not converge: ", result.reason, " (relative residual ",
+                 result.residual, "); reduce time.dt or raise field.max_iterations");
 }
 
 // Solves A E = solver.source. in/out: E, the guess and the solution
@@ -160,8 +159,7 @@ inline FieldReport solve_field(FieldSolver& solver, const std::vector<Moments>& 
         };
         const double scale = std::max(common::safe_norm(solver.source.all),
                                       by_J * common::safe_norm(response.J_hat.all));
-        if (!std::isfinite(scale))
-            throw common::NumericalError("the source of the field equations is not finite");
+        if (!std::isfinite(scale)) common::fail("the source of the field equations is not finite");
         if (scale > 0) {
             const auto result =
                 common::newton_krylov(residual, precondition, E, scale, settings.solved_to(), 30,

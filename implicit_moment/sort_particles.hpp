@@ -49,7 +49,7 @@ inline void sort_among_ranks(const NearestNode& node_at, SortScratch& scratch,
                              Particles& particles) {
     const auto quantities = particles.all();
     const double *x_p = particles.x_p.data(), *z_p = particles.z_p.data();
-    const common::Division& of_ranks = particles.of_ranks;
+    const Division& of_ranks = particles.of_ranks;
     const long count = particles.count(), rows = of_ranks.first.back();
     const auto is_ours = [begin = of_ranks.begin(), end = of_ranks.end(rows)](long row) {
         return begin <= row && row < end;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "common/run/sentence.hpp"
 #include "common/step_clock.hpp"
 #include "implicit_moment/advance_field.hpp"
 #include "implicit_moment/deposit_moments.hpp"
@@ -52,8 +53,7 @@ void find_moments(const Grid& grid, double dt, const std::vector<Particles>& par
 }
 
 inline bool any_relativistic(const std::vector<Particles>& species) {
-    return std::any_of(species.begin(), species.end(),
-                       [](const Particles& s) { return s.relativistic; });
+    return std::ranges::any_of(species, &Particles::relativistic);
 }
 
 /// The field about which vbar is linear, where a species is relativistic and asks for it.
@@ -76,7 +76,7 @@ inline std::vector<Particles> relativistic_ones(const std::vector<Particles>& sp
 inline void take_back_kick(const std::vector<Particles>& before, int turn,
                            std::vector<Particles>& species) {
     if (turn == 20)
-        throw common::NumericalError(
+        common::fail(
             "the field takes more energy from relativistic particles than they have; reduce "
             "time.dt");
     species = before;

@@ -22,7 +22,6 @@
 
 #include "common/counting_sort.hpp"
 #include "common/parallel.hpp"
-#include "common/simd.hpp"
 #include "mpm_explicit/grains.hpp"
 #include "mpm_explicit/mesh.hpp"
 #include "mpm_explicit/particles.hpp"

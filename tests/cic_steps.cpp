@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <complex>
-#include <random>
 #include <string>
 #include <vector>
 
@@ -25,12 +24,7 @@ using facts::eps;
 using facts::real;
 using facts::worst;
 
-// Numbers in [0, 1).
-struct Random {
-    std::mt19937_64 engine;
-    explicit Random(std::uint64_t seed) : engine(seed) {}
-    double operator()() { return 0x1p-53 * static_cast<double>(engine() >> 11); }
-};
+using Random = facts::UnitRandom;
 
 struct Mesh {
     Grid grid;
@@ -107,7 +101,7 @@ std::vector<std::array<double, 2>> gathered(const Mesh& m, const MeshField& E_g,
 }
 
 double mean_charge(const Mesh& m, const Particles& s) {
-    return s.q_p * static_cast<double>(s.count()) / (m.grid.x.length * m.grid.z.length);
+    return s.q_p * double(s.count()) / (m.grid.x.length * m.grid.z.length);
 }
 
 ParticleBatch whole(Particles& s) {
@@ -124,7 +118,7 @@ double unevenness(const std::vector<std::vector<double>>& u) {
         std::complex<double> sum = 0;
         for (std::size_t p = 0; p < a.size(); ++p)
             sum += std::polar(1.0, 2 * pi * (a[p] + (sign != 0 ? sign * b[p] : 0)));
-        return a.empty() ? 0 : std::abs(sum) / static_cast<double>(a.size());
+        return a.empty() ? 0 : std::abs(sum) / double(a.size());
     };
     for (std::size_t a = 0; a < u.size(); ++a) {
         most = worst({most, mean(u[a], u[a], 0)});
@@ -193,8 +187,8 @@ TEST_CASE("the gather is the transpose of the deposit") {
             for (long i = 0; i <= m.grid.x.cells; ++i) {
                 const long a = m.grid.x.periodic ? i % m.grid.x.cells : i,
                            b = m.grid.z.periodic ? j % m.grid.z.cells : j;
-                any.field.E_g[static_cast<std::size_t>(m.grid.index(i, j))] =
-                    any.field.E_g[static_cast<std::size_t>(m.grid.index(a, b))];
+                any.field.E_g[std::size_t(m.grid.index(i, j))] =
+                    any.field.E_g[std::size_t(m.grid.index(a, b))];
             }
         }
         cic::fill_ghosts(m.grid, false, any.field.E_g);
@@ -206,7 +200,7 @@ TEST_CASE("the gather is the transpose of the deposit") {
             on_particles += -0.3 * (E[0] + 2 * E[1]);
         const bool plane = m.scheme.dimensions == 2;
         for_each_node(m.grid, [&](long n, double volume) {
-            const NodeField& E = any.field.E_g[static_cast<std::size_t>(n)];
+            const NodeField& E = any.field.E_g[std::size_t(n)];
             on_mesh += rho_g[n] * volume * (E.x + (plane ? 2 * E.z : 0));
         });
         CHECK(std::fabs(on_particles - on_mesh) <= 1e-14 * 60);
@@ -377,7 +371,7 @@ TEST_CASE("a floating wall carries its charge and a row of floating walls no net
         const long n = m.grid.index(N, j);
         sigma += cic::surface_charge(s.field.phi[n], s.field.phi[n - 1], s.rho_g[n],
                                      m.grid.x.spacing()) /
-                 static_cast<double>(m.grid.z.cells);
+                 double(m.grid.z.cells);
         spread = worst({spread, std::fabs(s.field.phi[n] - s.field.phi[m.grid.index(N, 0)])});
     }
     CHECK(std::fabs(sigma + 0.35) <= 1e-13);  // the charge that it was given
@@ -535,9 +529,9 @@ TEST_CASE("walls take charge reflect speed and lose nothing") {
         return std::find(after.x_p.begin(), after.x_p.end(), x) - after.x_p.begin();
     };
     REQUIRE(at(7.5) < 4);
-    CHECK(after.vx_p[static_cast<std::size_t>(at(7.5))] == -3);
+    CHECK(after.vx_p[std::size_t(at(7.5))] == -3);
     REQUIRE(at(7.875) < 4);
-    CHECK(after.vz_p[static_cast<std::size_t>(at(7.875))] == -3);
+    CHECK(after.vz_p[std::size_t(at(7.875))] == -3);
 }
 
 TEST_CASE("a source emits its rate with the flux of a half Maxwellian") {
@@ -561,7 +555,7 @@ TEST_CASE("a source emits its rate with the flux of a half Maxwellian") {
         apply_particle_boundaries(parameters.grid, boundaries, step, state.species, state.walls,
                                   state.emitted_again);
     const Particles& after = state.species[0];
-    const double N = static_cast<double>(after.count());
+    const double N = double(after.count());
     CHECK(after.count() == 125000);  // 2.5 / 0.001 per unit of time for 50
     CHECK(std::fabs(state.walls[x_low].charge - 0.001 * N) <= 1e-9);
     // <v> = (pi T / 2 m)^1/2 and <v^2> = 2 T/m, within four standard errors of N numbers.
@@ -681,7 +675,7 @@ TEST_CASE("what is loaded is spread evenly and each quantity independently of th
                 u[4].push_back(maxwellian(loaded.vz_p[p], 0.4, 1.5));
             }
             // Of N independent numbers the mean wave is larger than this once in e^16 trials.
-            const double N = static_cast<double>(loaded.count());
+            const double N = double(loaded.count());
             CHECK(unevenness(u) <= 4 / std::sqrt(N));
             if (loading == "quiet" && profile == "line")
                 CHECK(worst({std::fabs(u[0].front() - 0.5 / N),
@@ -712,7 +706,7 @@ TEST_CASE("a lattice has one particle in the middle of each of its cells") {
                      row = (loaded.z_p[p] - 0.5) / 3 * 8 - 0.5;
         CHECK(std::fabs(column - std::round(column)) <= 32 * eps);
         CHECK(std::fabs(row - std::round(row)) <= 32 * eps);
-        ++held[static_cast<std::size_t>(std::lround(column) + 15 * std::lround(row))];
+        ++held[std::size_t(std::lround(column) + 15 * std::lround(row))];
     }
     CHECK(held == std::vector<int>(120, 1));
 }
@@ -726,14 +720,14 @@ TEST_CASE("every particle is in one batch and its work leaves the others alone")
         for_each_batch(species, [&](ParticleBatch& batch) {
             CHECK(batch.count <= batch_size);
             for (long k = 0; k < batch.count; ++k) batch.vz_p[k] += 1;
-            batch.sums.kinetic = static_cast<double>(batch.count);
+            batch.sums.kinetic = double(batch.count);
             batch.sums.momentum = {1.0 * batch.sums.kinetic, 2 * batch.sums.kinetic,
                                    3 * batch.sums.kinetic};
         });
-        CHECK(species[0].vz_p == std::vector<Real>(static_cast<std::size_t>(count), 1));
-        CHECK(species[0].sums.kinetic == static_cast<double>(count));
+        CHECK(species[0].vz_p == std::vector<Real>(std::size_t(count), 1));
+        CHECK(species[0].sums.kinetic == double(count));
         for (std::size_t a = 0; a < 3; ++a)
-            CHECK(species[0].sums.momentum[a] == (real(static_cast<long>(a)) + 1) * real(count));
+            CHECK(species[0].sums.momentum[a] == (real(long(a)) + 1) * real(count));
     }
     for (const bool magnetized : {false, true}) {
         for (Mesh m : meshes(false)) {
@@ -741,7 +735,7 @@ TEST_CASE("every particle is in one batch and its work leaves the others alone")
             Particles s = scattered(m, 5, -1, 14);
             if (magnetized) resize(5, m.scheme.dimensions == 2, true, s);
             Particles before = s;
-            const MeshField E_g(static_cast<std::size_t>(m.grid.size()), {0.3, -0.2});
+            const MeshField E_g(std::size_t(m.grid.size()), {0.3, -0.2});
             FieldAtParticles E_p;
             std::fill_n(E_p.x, 5, 7), std::fill_n(E_p.z, 5, 7);
             ParticleBatch batch = whole(s);
@@ -830,7 +824,7 @@ TEST_CASE(
     const WaveVector k = wave_vector(parameters, 2, -1);
     parameters.near = k.x * 0.2 + k.z * 0.3 + 1;  // of the two waves the one that runs along k
     const Particles loaded = load_species(parameters, s, 1);
-    const double N = static_cast<double>(loaded.count());
+    const double N = double(loaded.count());
     std::complex<double> along = 0, across = 0, density = 0;
     for (std::size_t p = 0; p < loaded.x_p.size(); ++p) {
         const double u_x = loaded.vx_p[p] - 0.2, u_z = loaded.vz_p[p] - 0.3;
@@ -912,7 +906,7 @@ TEST_CASE("who starts with the drift in E and B keeps it") {
     parameters.dimensions = 2;
     parameters.grid = {{4, 0, 1, true}, {4, 0, 1, true}};
     parameters.B = {0.3, -2, 0.4};
-    const MeshField E_g(static_cast<std::size_t>(parameters.grid.size()), {0.3, -0.2});
+    const MeshField E_g(std::size_t(parameters.grid.size()), {0.3, -0.2});
     Particles s;
     s.q_p = -1, s.m_p = 0.5;
     resize(2, true, true, s);

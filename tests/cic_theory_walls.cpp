@@ -19,21 +19,34 @@ namespace {
 
 using cic::ChargedLayer;
 using cic::Sheath;
+using facts::integral;
 using Complex = std::complex<double>;
 
 const double infinity = std::numeric_limits<double>::infinity();
 
-// Gauss's rule of three points on each of many panels.
-template <class Function>
-double integral(const Function& f, double low, double high) {
-    constexpr int panels = 2000;
-    const double h = (high - low) / panels, aside = 0.5 * h * std::sqrt(0.6);
-    double sum = 0.0;
-    for (int n = 0; n < panels; ++n) {
-        const double middle = low + (n + 0.5) * h;
-        sum += 5.0 * f(middle - aside) + 8.0 * f(middle) + 5.0 * f(middle + aside);
-    }
-    return sum * h / 18.0;
+// The density of ions where the potential is phi.
+//   n_i = g(-phi / tau) / g(-phi_P / tau),  g(y) = exp(y) erfc(y^1/2)
+// in:    phi, from phi_C to 0
+// exact: 1 at phi_P
+double ion_density(const Sheath& s, double phi) {
+    return cic::detail::scaled_erfc(-phi / s.temperature_ratio) /
+           cic::detail::scaled_erfc(-s.plasma_potential / s.temperature_ratio);
+}
+
+// The field where the potential is phi, in T_e / (e lambda_D): what Maxwell's stress adds to the
+// momentum of the particles.
+//   E^2 / 2 = P(phi) - P(phi_P),  the first integral of phi'' = n_e - n_i
+// in:    phi, from phi_C to 0
+// exact: zero at phi_P, and at the source, whose plane carries no charge
+double electric_field(const Sheath& s, double phi) {
+    const double stress = cic::momentum_flux(s, phi) - cic::momentum_flux(s, s.plasma_potential);
+    return std::sqrt(2.0 * std::max(stress, 0.0));
+}
+
+// The drift v_x along the undisturbed layer.
+//   v_x = -E_z / B,  E_z = rho_0 z in the layer and rho_0 d sign z outside
+double layer_drift(const ChargedLayer& layer, double z) {
+    return -layer.shear_rate * std::clamp(z, -layer.half_width, layer.half_width);
 }
 
 std::vector<Sheath> sheaths() {
@@ -59,7 +72,7 @@ std::vector<SheathPoint> sheath_profile(const Sheath& s, double edge, int sample
     };
     const auto slope = [&](double u) {
         const double dphi = 2.0 * std::abs(height) * std::tanh(u) / (std::cosh(u) * std::cosh(u));
-        return dphi / cic::electric_field(s, potential(u));
+        return dphi / electric_field(s, potential(u));
     };
     std::vector<SheathPoint> points{{0.0, edge}};
     double x = 0.0;
@@ -104,9 +117,9 @@ Complex mismatch_at_wall(const ChargedLayer& layer, double k, Complex omega) {
         slope = phi_old * k * s + slope * c;
     };
     advance(b - d);
-    slope += k * S * phi / (omega - k * cic::layer_drift(layer, -d));
+    slope += k * S * phi / (omega - k * layer_drift(layer, -d));
     advance(2.0 * d);
-    slope -= k * S * phi / (omega - k * cic::layer_drift(layer, d));
+    slope -= k * S * phi / (omega - k * layer_drift(layer, d));
     advance(b - d);
     return phi * k / std::sinh(2.0 * k * b);
 }
@@ -126,7 +139,7 @@ Eigen::MatrixXd poisson_matrix(const ChargedLayer& layer, double k, int cells) {
 // that has the edges on nodes.
 double fastest_growth_on_mesh(const ChargedLayer& layer, double k, int cells) {
     const double h = 2.0 * layer.wall_distance / cells;
-    const int offset = static_cast<int>(std::lround(layer.half_width / h));
+    const int offset = int(std::lround(layer.half_width / h));
     Eigen::MatrixXd omega = poisson_matrix(layer, k, cells).inverse();
     for (int j = 0; j < cells - 1; ++j) {
         const int from_middle = j + 1 - cells / 2;
@@ -134,7 +147,7 @@ double fastest_growth_on_mesh(const ChargedLayer& layer, double k, int cells) {
         if (from_middle == -offset) jump = layer.shear_rate / h;
         if (from_middle == offset) jump = -layer.shear_rate / h;
         omega.row(j) *= -k * jump;
-        omega(j, j) += k * cic::layer_drift(layer, from_middle * h);
+        omega(j, j) += k * layer_drift(layer, from_middle * h);
     }
     return Eigen::EigenSolver<Eigen::MatrixXd>(omega, false).eigenvalues().imag().maxCoeff();
 }
@@ -147,7 +160,7 @@ TEST_CASE("the densities of a sheath are integrals over the distributions") {
             const double phi = part * s.collector_potential;
             const double n_e = electron_moment(s, phi, 0), n_i = ion_moment(s, phi, 0);
             CHECK(std::abs(cic::electron_density(s, phi) / n_e - 1.0) <= 3e-14);
-            CHECK(std::abs(cic::ion_density(s, phi) / n_i - 1.0) <= 3e-14);
+            CHECK(std::abs(ion_density(s, phi) / n_i - 1.0) <= 3e-14);
         }
 }
 
@@ -177,12 +190,12 @@ TEST_CASE("the plasma between two sheaths is neutral and free of field") {
         const double phi_P = s.plasma_potential;
         CHECK(std::abs(electron_moment(s, phi_P, 0) - 1.0) <= 3e-14);
         CHECK(std::abs(ion_moment(s, phi_P, 0) - 1.0) <= 3e-14);
-        CHECK(cic::electric_field(s, phi_P) == 0.0);
+        CHECK(electric_field(s, phi_P) == 0.0);
 
         // With phi = phi_P r^2 the integrand is smooth at the source.
         const auto charge = [&](double r) {
             const double phi = phi_P * r * r;
-            return 2.0 * phi_P * r * (cic::ion_density(s, phi) - cic::electron_density(s, phi));
+            return 2.0 * phi_P * r * (ion_density(s, phi) - cic::electron_density(s, phi));
         };
         CHECK(std::abs(integral(charge, 0.0, 1.0)) <= 1e-14);
         CHECK(std::abs(cic::momentum_flux(s, 0.0) - cic::momentum_flux(s, phi_P)) <= 1e-14);
@@ -194,9 +207,9 @@ TEST_CASE("the potential falls all the way from the source to the collector") {
         CHECK(s.collector_potential < s.plasma_potential);
         CHECK(s.plasma_potential < 0.0);
         for (int n = 1; n < 100; ++n) {
-            CHECK(cic::electric_field(s, 0.01 * n * s.plasma_potential) > 0.0);
+            CHECK(electric_field(s, 0.01 * n * s.plasma_potential) > 0.0);
             const double drop = s.collector_potential - s.plasma_potential;
-            CHECK(cic::electric_field(s, s.plasma_potential + 0.01 * n * drop) > 0.0);
+            CHECK(electric_field(s, s.plasma_potential + 0.01 * n * drop) > 0.0);
         }
     }
 }
@@ -239,9 +252,9 @@ TEST_CASE("the profile of a sheath obeys Poisson's equation") {
             const double sense = edge == 0.0 ? -1.0 : 1.0;
             const auto curvature = [&](double phi) {
                 phi = std::clamp(phi, s.collector_potential, 0.0);
-                return cic::electron_density(s, phi) - cic::ion_density(s, phi);
+                return cic::electron_density(s, phi) - ion_density(s, phi);
             };
-            double phi = edge, slope = sense * cic::electric_field(s, edge);
+            double phi = edge, slope = sense * electric_field(s, edge);
             double x = 0.0, worst = 0.0;
             for (const auto& point : points) {
                 if (point.distance > 4.0) break;
@@ -290,7 +303,7 @@ TEST_CASE("the drift of a charged layer is E across B of its charge between grou
     for (int j = 1; j < cells - 2; ++j) {
         // v_x = -E_z / B = (d phi / dz) / B
         const double v_x = (phi(j + 1) - phi(j - 1)) / (2.0 * h);
-        CHECK(std::abs(v_x - cic::layer_drift(layer, (j + 1) * h - 1.0)) <= 1e-14);
+        CHECK(std::abs(v_x - layer_drift(layer, (j + 1) * h - 1.0)) <= 1e-14);
     }
 }
 

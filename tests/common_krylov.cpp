@@ -43,6 +43,16 @@ common::KrylovResult gmres(const Operator& apply, const VectorXd& b, VectorXd& x
     return common::gmres(apply, leave, b, x, tolerance, max_iterations, restart, work);
 }
 
+// Newton and Krylov in the same way.
+template <class Residual>
+common::NewtonResult newton_krylov(const Residual& residual, VectorXd& x, double scale,
+                                   double tolerance, int max_newton, int max_linear) {
+    common::NewtonWorkspace work;
+    const auto leave = [](const VectorXd& v, VectorXd& w) { w = v; };
+    return common::newton_krylov(residual, leave, x, scale, tolerance, max_newton, max_linear,
+                                 work);
+}
+
 double true_residual(const MatrixXd& A, const VectorXd& x, const VectorXd& b) {
     return (b - A * x).norm() / b.norm();
 }
@@ -320,7 +330,7 @@ TEST_CASE("Newton converges quadratically on a smooth problem") {
     CHECK(error <= 1e-5);
 
     x = VectorXd::Zero(n);
-    const auto result = common::newton_krylov(residual, x, c.norm(), 1e-12, 20, 100);
+    const auto result = newton_krylov(residual, x, c.norm(), 1e-12, 20, 100);
     CHECK(result.converged);
     CHECK(result.newton_iterations <= 7);
     CHECK((x - solution).norm() <= 1e-11 * solution.norm());
@@ -331,7 +341,7 @@ TEST_CASE("Newton shortens its steps where the full step diverges") {
     const auto residual = [](const VectorXd& x, VectorXd& F) { F = x.array().atan(); };
     VectorXd x(2);
     x << 10.0, -3.0;
-    const auto result = common::newton_krylov(residual, x, 1.0, 1e-12, 30, 10);
+    const auto result = newton_krylov(residual, x, 1.0, 1e-12, 30, 10);
     CHECK(result.converged);
     CHECK(x.norm() <= 1e-11);
 }
@@ -339,7 +349,7 @@ TEST_CASE("Newton shortens its steps where the full step diverges") {
 TEST_CASE("Newton leaves a good enough guess untouched") {
     const auto residual = [](const VectorXd& x, VectorXd& F) { F = x.array().square() - 4.0; };
     VectorXd x = VectorXd::Constant(5, 2.0);
-    const auto result = common::newton_krylov(residual, x, 1.0, 1e-12, 30, 10);
+    const auto result = newton_krylov(residual, x, 1.0, 1e-12, 30, 10);
     CHECK(result.converged);
     CHECK(result.newton_iterations == 0);
     CHECK(result.linear_iterations == 0);
@@ -351,7 +361,7 @@ TEST_CASE("Newton stops at once when the residual of the guess is not finite") {
     const auto residual = [](const VectorXd& x, VectorXd& F) { F = x.array().log(); };
     VectorXd x = VectorXd::Constant(3, -1.0);
     for (const double scale : {1.0, std::nan("")}) {
-        const auto result = common::newton_krylov(residual, x, scale, 1e-12, 30, 10);
+        const auto result = newton_krylov(residual, x, scale, 1e-12, 30, 10);
         CHECK_FALSE(result.converged);
         CHECK(result.newton_iterations == 0);
         CHECK((x.array() == -1.0).all());
@@ -363,7 +373,7 @@ TEST_CASE("Newton steps back from where the residual is not finite") {
     // From x = 4 the full step for log x = 0 leads to a negative x.
     const auto residual = [](const VectorXd& x, VectorXd& F) { F = x.array().log(); };
     VectorXd x = VectorXd::Constant(3, 4.0);
-    const auto result = common::newton_krylov(residual, x, 1.0, 1e-12, 30, 10);
+    const auto result = newton_krylov(residual, x, 1.0, 1e-12, 30, 10);
     CHECK(result.converged);
     CHECK((x.array() - 1.0).abs().maxCoeff() <= 1e-11);
 }
@@ -371,7 +381,7 @@ TEST_CASE("Newton steps back from where the residual is not finite") {
 TEST_CASE("Newton reports a problem without solution and keeps a finite point") {
     const auto residual = [](const VectorXd& x, VectorXd& F) { F = x.array().square() + 1.0; };
     VectorXd x = VectorXd::Constant(3, 0.7);
-    const auto result = common::newton_krylov(residual, x, 1.0, 1e-10, 50, 10);
+    const auto result = newton_krylov(residual, x, 1.0, 1e-10, 50, 10);
     CHECK_FALSE(result.converged);
     CHECK(x.allFinite());
     CHECK(result.residual >= std::sqrt(3.0));
@@ -381,7 +391,7 @@ TEST_CASE("Newton reports a problem without solution and keeps a finite point") 
 TEST_CASE("Newton reports the limit of its steps with the true residual") {
     const auto residual = [](const VectorXd& x, VectorXd& F) { F = x.array().cube() - 8.0; };
     VectorXd x = VectorXd::Constant(4, 20.0), F(4);
-    const auto result = common::newton_krylov(residual, x, 2.0, 1e-12, 2, 10);
+    const auto result = newton_krylov(residual, x, 2.0, 1e-12, 2, 10);
     CHECK_FALSE(result.converged);
     CHECK(result.newton_iterations == 2);
     residual(x, F);

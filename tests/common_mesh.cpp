@@ -8,7 +8,6 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <new>
 #include <numeric>
@@ -16,9 +15,10 @@
 #include <vector>
 
 #include "common/random.hpp"
-#include "common/ranks.hpp"
-#include "common/simd.hpp"
 #include "common/splines.hpp"
+#include "implicit_moment/division.hpp"
+#include "implicit_moment/quadratic_weights.hpp"
+#include "implicit_moment/simd.hpp"
 #include "implicit_moment/smooth.hpp"
 #include "implicit_moment/sort_particles.hpp"
 #include "implicit_moment/theory/spline_average.hpp"
@@ -29,7 +29,9 @@ namespace {
 
 using namespace facts;
 using common::on_faces, common::on_nodes, common::on_x_edges, common::on_z_edges, common::spline;
-using common::SimdVector, common::simd_width;
+using implicit_moment::QuadraticWeights, implicit_moment::SimdVector, implicit_moment::simd_width,
+    implicit_moment::load_simd, implicit_moment::store_simd, implicit_moment::first_simd,
+    implicit_moment::simd_sum, implicit_moment::any_simd, implicit_moment::magnitude;
 constexpr Parity even{+1, +1}, odd{-1, -1};
 
 // Every pair of ends, with few cells and with more than a loop is cut into.
@@ -243,9 +245,9 @@ TEST_CASE("several lanes and one number get the weights of the splines") {
     for (int sample = 0; sample < 100; ++sample) {
         SimdVector d{0.5, -0.5};
         for (int l = 2; l < simd_width; ++l) d[l] = 0.5 * random();
-        const common::QuadraticWeights<SimdVector> lanes(d);
+        const QuadraticWeights<SimdVector> lanes(d);
         for (int l = 0; l < simd_width; ++l) {
-            const common::QuadraticWeights<double> one(d[l]);
+            const QuadraticWeights<double> one(d[l]);
             for (int g = 0; g < 3; ++g) {
                 CHECK(std::fabs(one.quadratic[g] - spline(2, d[l] - (g - 1))) <= eps);
                 CHECK(std::fabs(lanes.quadratic[g][l] - one.quadratic[g]) <= eps);
@@ -263,15 +265,15 @@ TEST_CASE("a few lanes are loaded and added and stored without their neighbors")
     for (std::size_t count = 1; count <= simd_width; ++count) {
         std::vector<double> from(count), to(12, 7);
         for (double& value : from) value = random();
-        const long few = static_cast<long>(count);
-        const SimdVector lanes = common::load_simd(from.data(), few);
+        const long few = long(count);
+        const SimdVector lanes = load_simd(from.data(), few);
         for (std::size_t l = 0; l < simd_width; ++l) CHECK(lanes[l] == from[l < count ? l : 0]);
-        const double sum = common::simd_sum(common::first_simd(few) * lanes);
+        const double sum = simd_sum(first_simd(few) * lanes);
         CHECK(std::fabs(sum - std::accumulate(from.begin(), from.end(), 0.0)) <= 4 * eps);
         const double largest = *std::max_element(from.begin(), from.end());
-        CHECK(!common::any_simd(lanes > largest));
-        CHECK(common::any_simd(lanes >= largest));
-        common::store_simd(lanes, to.data(), few);
+        CHECK(!any_simd(lanes > largest));
+        CHECK(any_simd(lanes >= largest));
+        store_simd(lanes, to.data(), few);
         for (std::size_t l = 0; l < to.size(); ++l) CHECK(to[l] == (l < count ? from[l] : 7));
     }
 }
@@ -279,10 +281,10 @@ TEST_CASE("a few lanes are loaded and added and stored without their neighbors")
 TEST_CASE("a comparison holds in some lane where it holds in one") {
     for (int l = 0; l < simd_width; ++l) {
         SimdVector lanes{};
-        CHECK(!common::any_simd(lanes > 0.5));
+        CHECK(!any_simd(lanes > 0.5));
         lanes[l] = -1;
-        CHECK(common::any_simd(common::magnitude(lanes) > 0.5));
-        CHECK(!common::any_simd(lanes > 0.5));
+        CHECK(any_simd(magnitude(lanes) > 0.5));
+        CHECK(!any_simd(lanes > 0.5));
     }
 }
 
@@ -623,7 +625,7 @@ TEST_CASE("smoothing commutes with curl and divergence also at walls") {
 TEST_CASE("loops over blocks and rows cover everything once whatever the number of threads") {
     Random random;
     for (const long count : {0L, 1L, 15L, 16L, 1000L}) {
-        std::vector<double> values(static_cast<std::size_t>(count)), sums;
+        std::vector<double> values(count), sums;
         for (double& value : values) value = random();
         std::vector<std::vector<double>> rows;
         for (const int threads : {0, 1, 2, 3}) {  // 0: row after row as it is meant
@@ -633,16 +635,16 @@ TEST_CASE("loops over blocks and rows cover everything once whatever the number 
             }));
             std::vector<int> seen(values.size(), 0);
             common::for_each_block(count, [&](int, long begin, long end) {
-                for (long p = begin; p < end; ++p) ++seen[static_cast<std::size_t>(p)];
+                for (long p = begin; p < end; ++p) ++seen[std::size_t(p)];
             });
-            common::for_each_row(count, [&](long row) { ++seen[static_cast<std::size_t>(row)]; });
+            common::for_each_row(count, [&](long row) { ++seen[std::size_t(row)]; });
             CHECK(std::count(seen.begin(), seen.end(), 2) == count);
 
             // A sum that depends on the order in which a row meets its neighbors.
             rows.emplace_back(values.size() + 2, 1);
             const auto give = [&](long row) {
                 for (const long n : {row, row + 1, row + 2}) {
-                    double& value = rows.back()[static_cast<std::size_t>(n)];
+                    double& value = rows.back()[std::size_t(n)];
                     value = 0.7 * value + real(row);
                 }
             };
@@ -668,7 +670,7 @@ TEST_CASE("what a piece of a parallel loop throws reaches the caller when all pi
         for (const long numbers : {1L, 1L << 20}) {
             std::array<std::atomic<int>, common::block_count> seen{};
             const auto piece = [&](long k) {
-                ++seen[static_cast<std::size_t>(k)];
+                ++seen[std::size_t(k)];
                 if (k == 3) throw std::bad_alloc();
             };
             const long rows = common::block_count;
@@ -681,7 +683,7 @@ TEST_CASE("what a piece of a parallel loop throws reaches the caller when all pi
             for (const auto& times : seen) CHECK(times == 4);
         }
     }
-    common::set_thread_count(static_cast<int>(before));
+    common::set_thread_count(int(before));
 }
 
 TEST_CASE("the sort is stable and puts every particle at its nearest node for any threads") {
@@ -708,18 +710,17 @@ TEST_CASE("the sort is stable and puts every particle at its nearest node for an
         CHECK(sorted.back().ux_p == sorted[0].ux_p);
     }
     const Particles& s = sorted[0];
-    const auto nodes = static_cast<std::size_t>(nodes_x(grid) * nodes_z(grid));
+    const auto nodes = std::size_t(nodes_x(grid) * nodes_z(grid));
     REQUIRE(s.first_of_node.size() == nodes + 1);
     CHECK(s.first_of_node.front() == 0);
     CHECK(s.first_of_node.back() == 5000);
     long far = 0, unordered = 0, torn = 0;
     for (std::size_t node = 0; node < nodes; ++node) {
-        const double i = real(static_cast<long>(node) % nodes_x(grid)),
-                     j = real(static_cast<long>(node) / nodes_x(grid));
-        const auto first = static_cast<std::size_t>(s.first_of_node[node]),
-                   end = static_cast<std::size_t>(s.first_of_node[node + 1]);
+        const double i = real(long(node) % nodes_x(grid)), j = real(long(node) / nodes_x(grid));
+        const auto first = std::size_t(s.first_of_node[node]),
+                   end = std::size_t(s.first_of_node[node + 1]);
         for (std::size_t p = first; p < end; ++p) {
-            const auto from = static_cast<std::size_t>(s.ux_p[p]);
+            const auto from = std::size_t(s.ux_p[p]);
             far += !(std::fabs(s.x_p[p] - grid.x.at(i)) <= (0.5 + 4 * eps) * grid.x.spacing() &&
                      std::fabs(s.z_p[p] - grid.z.at(j)) <= (0.5 + 4 * eps) * grid.z.spacing());
             unordered += p > first && !(s.ux_p[p - 1] < s.ux_p[p]);
@@ -758,7 +759,7 @@ TEST_CASE("borders between ranks leave as little as possible to the one with mos
             first.push_back(pieces);
             best = std::min(best, most_of(first));
         }
-        const common::Division division = common::Division::of(work, 1, ranks);
+        const auto division = implicit_moment::Division::of(work, 1, ranks);
         CHECK(std::ssize(division.first) == ranks + 1);
         CHECK(std::adjacent_find(division.first.begin(), division.first.end(),
                                  std::greater_equal<>()) == division.first.end());

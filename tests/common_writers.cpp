@@ -389,7 +389,7 @@ TEST_CASE("a number that is not finite is never hidden") {
     CHECK(results["good"]["verdict"] == "PASS");
 
     common::History history(folder.file("history.dat"));
-    history.columns({{"time", "s"}, {"x", "m"}});
+    history.columns({{{"time", "s"}, {"x", "m"}}, {}});
     const std::vector<double> fine{0, 1}, broken{1, std::nan("")}, more{1, 2, 3};
     history.row(fine);
     CHECK_THROWS_AS(history.row(broken), common::NumericalError);

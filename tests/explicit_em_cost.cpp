@@ -25,7 +25,7 @@ Case explicit_case() {
 }
 
 // Particle-steps that a case takes for a time of 1/omega_pi.
-double particle_steps(const Case& w) { return static_cast<double>(scales_of(w).particles) / w.dt; }
+double particle_steps(const Case& w) { return double(scales_of(w).particles) / w.dt; }
 
 // The explicit case for another mass ratio by its own rule: the same number of cells in d_e, steps
 // in 1/omega_pe, and particles per cell.

@@ -169,7 +169,7 @@ TEST_CASE("a vacuum field keeps its leapfrogged energy") {
             before.all += 0.5 * c * dt * curl.all, after.all -= 0.5 * c * dt * curl.all;
             double product = 0;
             for (std::size_t a = 0; a < 3; ++a) {
-                const long from = static_cast<long>(a) * grid.size();
+                const long from = long(a) * grid.size();
                 product += total(grid, magnetic.place[a],
                                  before.all.segment(from, grid.size())
                                      .cwiseProduct(after.all.segment(from, grid.size())));
@@ -296,7 +296,7 @@ TEST_CASE("at the start velocities are half a step back and moments bring them f
                 }
                 CHECK(std::fabs(moments[s].kinetic_energy / energy - 1) <= 1e-13);
                 for (std::size_t a = 0; a < 3; ++a)
-                    CHECK(std::fabs(moments[s].momentum[a] - momentum[static_cast<long>(a)]) <=
+                    CHECK(std::fabs(moments[s].momentum[a] - momentum[long(a)]) <=
                           1e-14 * energy * real(particles.count()));
             }
         }

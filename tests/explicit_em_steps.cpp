@@ -7,9 +7,9 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <utility>
 #include <vector>
 
+#include "common/splines.hpp"
 #include "tests/support/any_leapfrog.hpp"
 
 namespace {
@@ -70,7 +70,7 @@ TEST_CASE("sorted particles lie between the borders of their cells in their old 
     for (const Grid& grid : meshes()) {
         const auto check = [&]<int l>(std::integral_constant<int, l>) {
             Particles particles = travelers(grid, 2000, dt, 0.9, false, random);
-            for (std::size_t p = 0; p < 2000; ++p) particles.uy_p[p] = real(static_cast<long>(p));
+            for (std::size_t p = 0; p < 2000; ++p) particles.uy_p[p] = real(long(p));
             const Particles start = particles;
             sort(grid, l, particles);
             const long columns = Stencil<l>::cells(grid.x), rows = Stencil<l>::cells(grid.z);
@@ -83,8 +83,7 @@ TEST_CASE("sorted particles lie between the borders of their cells in their old 
                 const long i = cell % columns, j = cell / columns;
                 for (int k = particles.first_of_node[index(cell)];
                      k < particles.first_of_node[index(cell + 1)]; ++k) {
-                    const auto p = static_cast<std::size_t>(k),
-                               from = static_cast<std::size_t>(particles.uy_p[p]);
+                    const auto p = std::size_t(k), from = std::size_t(particles.uy_p[p]);
                     wrong += particles.x_p[p] != start.x_p[from] ||
                              particles.z_p[p] != start.z_p[from] ||
                              particles.ux_p[p] != start.ux_p[from] ||
@@ -130,7 +129,7 @@ TEST_CASE("the current of a path is its integral by definition also behind walls
                 const VectorField integral =
                     current_of_flight(grid, dt, order, 3, relativistic, sign, start);
                 for (std::size_t a : {0, 2}) {  // J_y is that of the rule's points
-                    const long from = static_cast<long>(a) * grid.size();
+                    const long from = long(a) * grid.size();
                     CHECK(largest(grid, kind.place[a],
                                   (J.all - integral.all).segment(from, grid.size())) <= tolerance);
                 }
@@ -178,9 +177,8 @@ TEST_CASE("the mesh holds the total current of all paths") {
             // What flows into a wall flows back.
             if (a == 0 && !grid.x.periodic) continue;
             if (a == 2 && !grid.z.periodic) continue;
-            const Field part = J.all.segment(static_cast<long>(a) * grid.size(), grid.size());
-            CHECK(std::fabs(total(grid, electric.place[a], part) -
-                            expected[static_cast<long>(a)]) <= 1e-13);
+            const Field part = J.all.segment(long(a) * grid.size(), grid.size());
+            CHECK(std::fabs(total(grid, electric.place[a], part) - expected[long(a)]) <= 1e-13);
         }
     });
 }
@@ -258,7 +256,7 @@ TEST_CASE("free particles end where the images of their straight flights do") {
     for_each_setting([&](const Grid& grid, long order, bool relativistic) {
         Particles particles = travelers(grid, 400, dt, 0.8, relativistic, random);
         for (std::size_t p = 0; p < 400; ++p) {
-            particles.uy_p[p] = 1e-3 * real(static_cast<long>(p));  // a name that stays
+            particles.uy_p[p] = 1e-3 * real(long(p));  // a name that stays
             if (p % 16 == 0) particles.z_p[p] = grid.z.low, particles.x_p[p] = grid.x.low;
             if (p % 9 == 0) particles.ux_p[p] = 0;
             if (p % 16 == 8) particles.uz_p[p] = 0;
@@ -269,7 +267,7 @@ TEST_CASE("free particles end where the images of their straight flights do") {
         for (int step = 1; step <= 30; ++step) {
             current_of_step(grid, nothing(grid), dt, order, relativistic, electric, particles);
             for (std::size_t p = 0; p < 400; ++p) {
-                const auto s = static_cast<std::size_t>(std::lround(1e3 * particles.uy_p[p]));
+                const auto s = std::size_t(std::lround(1e3 * particles.uy_p[p]));
                 const Vector v = true_velocity(start, s, relativistic);
                 const auto check = [&](const common::Axis& axis, double from, double v_0,
                                        double u_0, double x, double u) {
@@ -631,16 +629,7 @@ TEST_CASE("the gathered gradient is the gradient of the gathered potential and d
     Random random;
     for (const Grid& grid : meshes()) {
         const double dx = grid.x.spacing(), dz = grid.z.spacing(), h = 0.05;
-        // A potential in the place of E_y, for both live on nodes and vanish on walls.
-        VectorField E = random.field(grid, electric, 1), B(grid);
-        const VectorField A = random.field(grid, electric, 1);
-        for_each_point(grid, [&](long n) {
-            E.x()[n] = -(E.y()[n + 1] - E.y()[n]) / dx;
-            E.z()[n] = -(E.y()[n + grid.stride()] - E.y()[n]) / dz;
-        });
-        curl_of_electric(grid, A.all.data(), B.all.data());
-        fill_ghosts(grid, electric, E);
-        fill_ghosts(grid, magnetic, B);
+        const auto [E, B] = gradient_and_curl(grid, random);
         const InterleavedField push = pack(grid, E, B);
         for (const long order : {1, 2}) {
             for (int sample = 0; sample < 300; ++sample) {
@@ -681,7 +670,7 @@ TEST_CASE("the work of the current is that of the field gathered along the paths
                 });
         }
         for (std::size_t a = 0; a < 3; ++a) {
-            const long from = static_cast<long>(a) * grid.size();
+            const long from = long(a) * grid.size();
             const Field product =
                 J.all.segment(from, grid.size()).cwiseProduct(E.all.segment(from, grid.size()));
             work -= total(grid, electric.place[a], product);
@@ -735,7 +724,7 @@ TEST_CASE("kicks do the work of the current in a uniform field and within cells 
             const VectorField J = current_of_step(grid, push, dt, order, false, current, particles);
             double work = 0;
             for (std::size_t a = 0; a < 3; ++a) {
-                const long from = static_cast<long>(a) * grid.size();
+                const long from = long(a) * grid.size();
                 const Field product =
                     J.all.segment(from, grid.size()).cwiseProduct(E.all.segment(from, grid.size()));
                 work += dt * total(grid, electric.place[a], product);
@@ -821,7 +810,7 @@ TEST_CASE("moments are the sums over particles and images with the velocities of
             CHECK(largest(grid, on_z_edges, m.J_z - J.all.tail(size)) <= tolerance);
             CHECK(std::fabs(m.kinetic_energy / energy - 1) <= 64 * eps);
             for (std::size_t a = 0; a < 3; ++a)
-                CHECK(std::fabs(m.momentum[a] - momentum[static_cast<long>(a)]) <= 1e-13);
+                CHECK(std::fabs(m.momentum[a] - momentum[long(a)]) <= 1e-13);
             // Ghosts are filled.
             Field rho = m.rho;
             common::fill_ghosts(grid, on_nodes, {sign_at(grid.x), sign_at(grid.z)}, rho.data());

@@ -116,8 +116,7 @@ TEST_CASE("particles at the boundaries and on mesh lines and denormally near the
                     // One at a time in the void, or all together in a crowd.
                     for (std::size_t k = 0; k < places.size(); ++k) {
                         const double x = places[k],
-                                     z = places[static_cast<std::size_t>(
-                                         random(0, real(static_cast<long>(places.size()))))];
+                                     z = places[std::size_t(random(0, real(long(places.size()))))];
                         FlipRun one = alone(w, x, z, 0.2, -0.1);
                         const Particles& q = one.particles();
                         if (!crowded) {
@@ -189,7 +188,7 @@ TEST_CASE("no particle of a confined gas passes a wall however rough the flow") 
         w.density = "particles", w.confined = true, w.filling = 0;
         w.cfl = 0.95;
         for (int n = 0; n < 1000; ++n) {
-            FlipRun r(w, any_cloud(w, 20, static_cast<std::uint64_t>(n), 1));
+            FlipRun r(w, any_cloud(w, 20, std::uint64_t(n), 1));
             r.state.dt = 1;
             CHECK(message_of([&] { r.step(); }) == "nothing");
         }
@@ -474,9 +473,9 @@ TEST_CASE("sorting keeps every particle whole and finds its row") {
     Particles a = p, b = q;
     const auto in_a = a.all(), in_b = b.all();
     for (std::size_t row = 0; row < 5; ++row) {
-        for (auto k = static_cast<std::size_t>(q.first_of_row[row]);
-             k < static_cast<std::size_t>(q.first_of_row[row + 1]); ++k) {
-            CHECK(cell_along(w.grid.z, q.z_p[k]) == static_cast<long>(row));
+        for (auto k = std::size_t(q.first_of_row[row]); k < std::size_t(q.first_of_row[row + 1]);
+             ++k) {
+            CHECK(cell_along(w.grid.z, q.z_p[k]) == long(row));
             const std::size_t was = by_mass.at(q.m_p[k]);
             for (std::size_t c = 0; c < in_a.size(); ++c) CHECK((*in_a[c])[was] == (*in_b[c])[k]);
             CHECK(p.material[was] == q.material[k]);

@@ -3,7 +3,6 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <string>
 #include <vector>
 
 #include "flip/flip/deposit_particles.hpp"
@@ -82,8 +81,7 @@ struct Cloud {
         for (long j = 0; j < w.grid.z.cells; ++j) {
             for (long i = 0; i < w.grid.x.cells; ++i) {
                 for (std::size_t k = 0; k < w.materials.size(); ++k) {
-                    const auto n =
-                        static_cast<std::size_t>(w.grid.index(i, j)) * w.materials.size() + k;
+                    const auto n = std::size_t(w.grid.index(i, j)) * w.materials.size() + k;
                     const CellSum &a = before.cells.sum[n], &b = after.cells.sum[n];
                     worst = std::max(worst, std::fabs(energy ? a.U - b.U : a.M - b.M));
                 }
@@ -93,12 +91,12 @@ struct Cloud {
     }
     // Particles of one material in one cell: the fewest and the most of all that are not empty.
     std::array<long, 2> range() const {
-        std::vector<long> number(
-            static_cast<std::size_t>(w.grid.x.cells * w.grid.z.cells) * w.materials.size(), 0);
+        std::vector<long> number(std::size_t(w.grid.x.cells * w.grid.z.cells) * w.materials.size(),
+                                 0);
         for (std::size_t k = 0; k < p.x_p.size(); ++k)
-            ++number[static_cast<std::size_t>(
+            ++number[std::size_t(
                 (cell_along(w.grid.z, p.z_p[k]) * w.grid.x.cells + cell_along(w.grid.x, p.x_p[k])) *
-                    static_cast<long>(w.materials.size()) +
+                    long(w.materials.size()) +
                 p.material[k])];
         std::array<long, 2> found{1000000, 0};
         for (const long n : number) {

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -488,7 +487,7 @@ TEST_CASE("the vortex of Gresho does not feel how slow it is" * doctest::descrip
         const std::vector<double>& count = r.column("iterations");
         double sum = 0;
         for (const double n : count) sum += n;
-        steps.push_back(facts::real(static_cast<long>(count.size()) - 1));
+        steps.push_back(facts::real(long(count.size()) - 1));
         iterations.push_back(sum / steps.back());
         kept.push_back(r.value("kinetic_energy_kept"));
         CHECK(kept.back() >= 0.965);

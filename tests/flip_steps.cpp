@@ -6,7 +6,6 @@
 #include <Eigen/Dense>
 #include <complex>
 #include <map>
-#include <memory>
 #include <numbers>
 
 #include "common/splines.hpp"
@@ -90,7 +89,7 @@ Case several_gases(long nx, long nz, const char* ends_x = "periodic",
 Eigen::MatrixXd shape_matrix(const FlipRun& r, const std::vector<long>& nodes) {
     const Grid& grid = r.grid();
     const Particles& p = r.state.particles;
-    Eigen::MatrixXd S(p.count(), static_cast<long>(nodes.size()));
+    Eigen::MatrixXd S(p.count(), long(nodes.size()));
     const auto hat = [](const common::Axis& axis, double x, long node) {
         double sum = common::spline(1, (x - axis.low) / axis.spacing() - real(node));
         if (axis.periodic && node == 0)
@@ -98,10 +97,10 @@ Eigen::MatrixXd shape_matrix(const FlipRun& r, const std::vector<long>& nodes) {
         return sum;
     };
     for (long k = 0; k < p.count(); ++k) {
-        const auto at = static_cast<std::size_t>(k);
+        const auto at = std::size_t(k);
         for (std::size_t c = 0; c < nodes.size(); ++c)
-            S(k, static_cast<long>(c)) = hat(grid.x, p.x_p[at], nodes[c] % grid.stride() - 1) *
-                                         hat(grid.z, p.z_p[at], nodes[c] / grid.stride() - 1);
+            S(k, long(c)) = hat(grid.x, p.x_p[at], nodes[c] % grid.stride() - 1) *
+                            hat(grid.z, p.z_p[at], nodes[c] / grid.stride() - 1);
     }
     return S;
 }
@@ -111,11 +110,11 @@ std::vector<long> own_nodes(const Grid& grid) {
     return all;
 }
 Eigen::VectorXd column(const std::vector<double>& a) {
-    return Eigen::Map<const Eigen::VectorXd>(a.data(), static_cast<long>(a.size()));
+    return Eigen::Map<const Eigen::VectorXd>(a.data(), long(a.size()));
 }
 Eigen::VectorXd on(const std::vector<long>& nodes, const Field& f) {
-    Eigen::VectorXd v(static_cast<long>(nodes.size()));
-    for (std::size_t k = 0; k < nodes.size(); ++k) v[static_cast<long>(k)] = f[nodes[k]];
+    Eigen::VectorXd v(long(nodes.size()));
+    for (std::size_t k = 0; k < nodes.size(); ++k) v[long(k)] = f[nodes[k]];
     return v;
 }
 
@@ -164,8 +163,8 @@ Particles at_one_pressure(const Case& parameters, double p, std::uint64_t seed) 
     const Case w = completed(parameters);
     Particles all = any_cloud(w, 0, seed, 10);
     for (std::size_t k = 0; k < all.m_p.size(); ++k)
-        all.e_p[k] = internal_energy(w.materials[static_cast<std::size_t>(all.material[k])],
-                                     all.m_p[k] / all.V_p[k], p);
+        all.e_p[k] =
+            internal_energy(w.materials[std::size_t(all.material[k])], all.m_p[k] / all.V_p[k], p);
     return all;
 }
 
@@ -246,8 +245,8 @@ TEST_CASE("the mesh has the mass and momentum and energy and angular momentum of
                     });
                     for_each_cell(r.grid(), [&](long, long, long n) {
                         for (std::size_t k = 0; k < 2; ++k) {
-                            U += r.cells().sum[2 * static_cast<std::size_t>(n) + k].U;
-                            M += r.cells().sum[2 * static_cast<std::size_t>(n) + k].M;
+                            U += r.cells().sum[2 * std::size_t(n) + k].U;
+                            M += r.cells().sum[2 * std::size_t(n) + k].M;
                         }
                     });
                     CHECK(std::fabs(m - t.mass) <= 1e-14);
@@ -799,7 +798,7 @@ TEST_CASE(
             for (double& de : r.cells().de) de = 0;
             for (double& part : r.cells().relative_de) part = 0;
             for_each_node(r.grid(), [&](long, long, long n) {
-                Four& dv = r.nodes().increment[static_cast<std::size_t>(n)];
+                Four& dv = r.nodes().increment[std::size_t(n)];
                 r.nodes().dissipated[n] = 0.5 * (dv[0] * dv[0] + dv[1] * dv[1]);
             });
             const std::vector<long> nodes = own_nodes(r.grid());
@@ -816,7 +815,7 @@ TEST_CASE(
             double heat = 0, coldest = 0;
             for (std::size_t k = 0; k < e.size(); ++k) {
                 const double de = r.particles().e_p[k] - e[k];
-                heat += m[static_cast<long>(k)] * de;
+                heat += m[long(k)] * de;
                 coldest = std::min(coldest, de);
             }
             CHECK(owed > 1e-7);
@@ -899,7 +898,7 @@ TEST_CASE("the consistent mass gives the velocity whose momentum the particles h
             const long i = nodes[k] % r.grid().stride() - 1;
             const bool wall = !r.grid().x.periodic && (i == 0 || i == 6);
             if (wall) CHECK(r.nodes().vxL[nodes[k]] == 0);
-            if (!wall) CHECK(std::fabs(pushed[static_cast<long>(k)]) <= 1e-13);
+            if (!wall) CHECK(std::fabs(pushed[long(k)]) <= 1e-13);
         }
     }
 }
@@ -1330,7 +1329,7 @@ TEST_CASE("with volumes a state of one pressure stays at rest wherever the parti
                 const Particles& p = r.particles();
                 double fastest = 0, apart = 0;
                 for (std::size_t k = 0; k < p.x_p.size(); ++k) {
-                    const Material& a = r.w.materials[static_cast<std::size_t>(p.material[k])];
+                    const Material& a = r.w.materials[std::size_t(p.material[k])];
                     fastest = worst({fastest, std::fabs(p.vx_p[k]), std::fabs(p.vz_p[k])});
                     apart = worst({apart, std::fabs(pressure_of(a, p, k) - 1.3)});
                 }
@@ -1357,7 +1356,7 @@ TEST_CASE("volumes change as the nodes say to round-off") {
                         &vz = r.w.implicit() ? g.vz_work : g.vzL;
             double grown = 0, size = 0;
             for_each_cell(r.grid(), [&](long, long, long n) {
-                if (r.cells().surface[static_cast<std::size_t>(n)] != 0) return;
+                if (r.cells().surface[std::size_t(n)] != 0) return;
                 grown += dt * dilation(r.grid(), vx, vz, n);
                 size += std::fabs(dt * dilation(r.grid(), vx, vz, n));
             });
@@ -1388,8 +1387,7 @@ TEST_CASE("the paths of a confined gas diverge in each quarter of a cell as the 
         // Four particles of a quarter, a quarter of a cell apart: how fast their square grows.
         std::map<std::pair<long, long>, double> divergence;
         for (std::size_t k = 0; k < before.m_p.size(); ++k) {
-            const auto a = static_cast<long>(before.x_p[k] / dx * 4),
-                       b = static_cast<long>(before.z_p[k] / dz * 4);
+            const auto a = long(before.x_p[k] / dx * 4), b = long(before.z_p[k] / dz * 4);
             const auto moved = [](const common::Axis& axis, double d) {
                 return axis.periodic ? d - axis.length * std::round(d / axis.length) : d;
             };
@@ -1436,7 +1434,7 @@ TEST_CASE("gas takes a tenth of the room beside a liquid and the liquid none") {
         Particles p = load_particles(completed(w));
         // Half full, and 0.7 of a cell is what a liquid fills.
         for (std::size_t k = 0; k < p.V_p.size(); ++k) {
-            p.V_p[k] *= 0.5, p.material[k] = static_cast<int>(k % 2);
+            p.V_p[k] *= 0.5, p.material[k] = int(k % 2);
             const Material& a = w.materials[k % 2];
             p.e_p[k] = internal_energy(a, p.m_p[k] / p.V_p[k], 1);
         }
@@ -1444,7 +1442,7 @@ TEST_CASE("gas takes a tenth of the room beside a liquid and the liquid none") {
         r.step();
         std::array<double, 2> V{};
         for (std::size_t k = 0; k < p.V_p.size(); ++k)
-            V[static_cast<std::size_t>(r.particles().material[k])] += r.particles().V_p[k];
+            V[std::size_t(r.particles().material[k])] += r.particles().V_p[k];
         CHECK(V[0] == doctest::Approx(0.25 * (1 + 0.1 * (0.7 / 0.5 - 1))).epsilon(1e-12));
         CHECK(V[1] == doctest::Approx(0.25).epsilon(1e-12));
     }

@@ -29,21 +29,9 @@ namespace {
 using namespace flip::theory;
 using flip::column_time;
 using Complex = std::complex<double>;
-using facts::worst;
+using facts::integral, facts::worst;
 
 const double infinity = std::numeric_limits<double>::infinity(), pi = std::numbers::pi;
-
-// Gauss's rule of three points on each of many panels.
-template <class Function>
-double integral(const Function& f, double low, double high, int panels = 2000) {
-    const double h = (high - low) / panels, aside = 0.5 * h * std::sqrt(0.6);
-    double sum = 0.0;
-    for (int n = 0; n < panels; ++n) {
-        const double middle = low + (n + 0.5) * h;
-        sum += 5.0 * f(middle - aside) + 8.0 * f(middle) + 5.0 * f(middle + aside);
-    }
-    return sum * h / 18.0;
-}
 
 double relative(double a, double b) { return std::abs(a / b - 1.0); }
 
@@ -112,7 +100,7 @@ double distance(const GasState& a, const GasState& b, const RiemannSolution& sca
 // walls, with the interface on a node.
 double rayleigh_taylor_on_mesh(const TwoLayers& s, double k, int cells) {
     const double h = (s.lower_depth + s.upper_depth) / cells;
-    const int at = static_cast<int>(std::lround(s.lower_depth / h)) - 1;
+    const int at = int(std::lround(s.lower_depth / h)) - 1;
     const auto density = [&](int face) { return face <= at ? s.lower_density : s.upper_density; };
     Eigen::MatrixXd A = Eigen::MatrixXd::Zero(cells - 1, cells - 1);
     for (int j = 0; j < cells - 1; ++j) {
@@ -157,17 +145,17 @@ struct Weights {
 Weights spline(double x, int order) {
     if (order == 1) {
         const double cell = std::floor(x), f = x - cell;
-        return {static_cast<int>(cell), {1.0 - f, f, 0.0}};
+        return {int(cell), {1.0 - f, f, 0.0}};
     }
     const double node = std::floor(x + 0.5), f = x - node;
-    return {static_cast<int>(node) - 1,
+    return {int(node) - 1,
             {0.5 * (0.5 - f) * (0.5 - f), 0.75 - f * f, 0.5 * (0.5 + f) * (0.5 + f)}};
 }
 
 // The part of its angular momentum that a rigidly turning disk of fine particles loses on the way
 // to the mesh and back; lengths in cells, the middle at (x0, y0).
 double loss_of_disk(double R, int order, double x0, double y0) {
-    const int size = 2 * static_cast<int>(R) + 10, per_cell = 12;
+    const int size = 2 * int(R) + 10, per_cell = 12;
     Eigen::MatrixXd m = Eigen::MatrixXd::Zero(size, size), px = m, py = m;
     const double middle_x = 0.5 * size + x0, middle_y = 0.5 * size + y0;
     double L_old = 0.0, L_new = 0.0;
@@ -838,7 +826,7 @@ TEST_CASE("layers between walls grow as on a fine mesh") {
         for (const double k : {1.0, 3.0, 8.0}) {
             const TwoLayers s{1.0, 2.7, 0.6, 0.0, 0.0, below, above};
             const double exact = interface_growth(s, k);
-            const int cells = static_cast<int>(std::lround((below + above) / 0.0125));
+            const int cells = int(std::lround((below + above) / 0.0125));
             const double coarse = rayleigh_taylor_on_mesh(s, k, cells) / exact - 1.0;
             const double fine = rayleigh_taylor_on_mesh(s, k, 2 * cells) / exact - 1.0;
             CHECK(std::abs(fine) <= 1e-3);
@@ -1113,15 +1101,15 @@ TEST_CASE("particles on a lattice that share cell values diffuse them by Harlow'
             const int steps = 400;
             long entered_before = 0;
             for (int step = 1; step <= steps; ++step) {
-                const long entered = static_cast<long>(std::floor(step * C * n + 0.5 - 1e-9));
-                const double phi = static_cast<double>(entered - entered_before) / n;
+                const long entered = long(std::floor(step * C * n + 0.5 - 1e-9));
+                const double phi = double(entered - entered_before) / n;
                 entered_before = entered;
                 for (std::size_t i = value.size() - 1; i > 0; --i)
                     value[i] = (1.0 - phi) * value[i] + phi * value[i - 1];
             }
             double mean = 0.0, square = 0.0;
             for (std::size_t i = 0; i < value.size(); ++i) {
-                const double x = static_cast<double>(i) - 100.0;
+                const double x = double(i) - 100.0;
                 mean += value[i] * x;
                 square += value[i] * x * x;
             }

@@ -155,7 +155,7 @@ facts::Run tube_of(const Tube& tube, long cells, const Fill& fill) {
             f.cells.rho[n] = q.mass;
             f.cells.vx[n] = q.momentum / q.mass;
             f.cells.p[n] = theory::sample(s, xi).pressure;
-            fill(n, static_cast<std::size_t>(x * static_cast<double>(cells)), x, f.cells);
+            fill(n, std::size_t(x * double(cells)), x, f.cells);
         });
     });
 }

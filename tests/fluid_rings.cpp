@@ -3,8 +3,6 @@
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
-#include "flip/output/pic_diagnostics.hpp"
-#include "flip/pic/step.hpp"
 #include "tests/support/any_fluid.hpp"
 
 namespace {
@@ -17,26 +15,6 @@ Case rings(long nr, long nz, const char* high = "slip", const char* ends_z = "sl
     w.geometry = "axisymmetric";
     return w;
 }
-
-// The loop of pic.cpp.
-struct PicRun {
-    Case w;
-    Problem problem;
-    PicCells cells;
-    State state;
-    explicit PicRun(const Case& parameters)
-        : w(completed(parameters)),
-          problem(problem_of(w)),
-          cells(problem),
-          state(initial_state(problem, load_particles(w), cells)) {}
-    void steps(int count) {
-        for (int n = 0; n < count; ++n) {
-            find_pressure(problem, state, cells);
-            take_pic_step(problem, state, cells);
-        }
-    }
-    Totals totals() { return totals_of(problem.grid, state, cells); }
-};
 
 // The leak of a step, without the momentum that points outward, which no ring keeps.
 Leak leak_along(Totals a, Totals b, Budget before, Budget after) {
@@ -86,8 +64,8 @@ TEST_CASE("the dilation of a ring is how fast the volume between its corners cha
             std::array<Eigen::Vector2d, 4> at;
             for (const long k : {0, 1, 2, 3}) {
                 const long a = i + (k == 1 || k == 2), b = j + (k > 1), m = grid.index(a, b);
-                at[static_cast<std::size_t>(k)] = {grid.x.at(real(a)) + t * vx[m],
-                                                   grid.z.at(real(b)) + t * vz[m]};
+                at[std::size_t(k)] = {grid.x.at(real(a)) + t * vx[m],
+                                      grid.z.at(real(b)) + t * vz[m]};
             }
             return volume_of(at);
         };
@@ -157,7 +135,7 @@ TEST_CASE("the cells of rings have their volumes and the density of the fluid") 
         for_each_cell(r.grid(), [&](long i, long, long n) {
             CHECK(std::fabs(f.rho[n] - 2) <= 1e-13);
             CHECK(std::fabs(f.p[n] - 1) <= 1e-13);
-            const double V_i = r.cells().V_of_column[static_cast<std::size_t>(i)];
+            const double V_i = r.cells().V_of_column[std::size_t(i)];
             V += V_i, most = worst({most, std::fabs(V_i / cell_volume(r.grid(), i) - 1)});
         });
         CHECK(std::fabs(V - pi) <= 1e-13);
@@ -184,7 +162,7 @@ TEST_CASE("regions of rings hold the energies that they are given beside those o
         const double before = internal();
         for (const auto& [region, energy] : {std::pair(0, 5.0), {1, 7.0}}) {
             w.regions[0].energy = w.regions[1].energy = 0;
-            w.regions[static_cast<std::size_t>(region)].energy = energy;
+            w.regions[std::size_t(region)].energy = energy;
             CHECK(std::fabs(internal() - before - energy) <= 1e-13 * (before + energy));
         }
     }

@@ -158,7 +158,7 @@ void check_forged(long share) {
         CHECK(read_all(good + "/history.dat") == history);
 
         Count& count = counts[program];
-        const long total = static_cast<long>(all.size()), tried = share > 0 ? share : total;
+        const long total = long(all.size()), tried = share > 0 ? share : total;
         for (long k = 0; k < tried; ++k) {
             const Forgery& forgery = all[k * total / tried];
             std::vector<Block> forged = blocks;
@@ -197,8 +197,7 @@ TEST_CASE("a history with a row too few or too many is refused" * doctest::descr
         REQUIRE(run(command, out, "output.checkpoint_steps=4") == 0);
         const std::string header = read_all(out + "/history.dat").substr(0, 10000);
         const std::size_t columns =
-            1 +
-            std::count(header.begin(), header.begin() + static_cast<long>(header.find('\n')), ' ');
+            1 + std::count(header.begin(), header.begin() + long(header.find('\n')), ' ');
         for (const std::string& checkpoint : checkpoints(out)) {
             std::vector<Block> blocks = blocks_of(read_all(checkpoint));
             std::string& rows = blocks[5].bytes;

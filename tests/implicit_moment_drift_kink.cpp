@@ -25,6 +25,23 @@ CurrentSheet thin_sheet(double temperature_ratio, double mass_ratio = 180,
     return {mass_ratio, temperature_ratio, 1, 40 / std::sqrt(mass_ratio), background};
 }
 
+// The wave with most of a magnetic field, which is the drift kink where there is one: waves of the
+// edges are nearly electrostatic.
+// in:     waves, one or more
+const SheetWave& drift_kink(const std::vector<SheetWave>& waves) {
+    return *std::ranges::max_element(
+        waves, [](const SheetWave& a, const SheetWave& b) { return a.magnetic < b.magnetic; });
+}
+
+// The wave of long wavelength: both species are shifted as a whole, nothing but their inertia acts,
+//     m_i (omega - k u_i)^2 + m_e (omega - k u_e)^2 = 0
+// exact:  for k L << 1
+Complex rigid_kink(const CurrentSheet& sheet, double k) {
+    const double M = sheet.mass_ratio, u_i = sheet.drift * sheet.drift;
+    const double u_e = -u_i / sheet.temperature_ratio;
+    return k / (M + 1) * Complex(M * u_i + u_e, std::sqrt(M) * (u_i - u_e));
+}
+
 // All eigenvalues, of matrices that are small.
 std::vector<Complex> spectrum(const SheetMatrix& m) {
     const Eigen::VectorXcd all = Eigen::MatrixXcd(m.A).eigenvalues();

@@ -101,7 +101,7 @@ Complex Z_by_quadrature(Complex zeta) {
     const double h = std::min(0.25, zeta.imag() / 6);
     Complex sum = 0;
     for (long n = -std::lround(7 / h); n <= std::lround(7 / h); ++n) {
-        const double t = static_cast<double>(n) * h;
+        const double t = double(n) * h;
         sum += h * std::exp(-t * t) / (t - zeta);
     }
     return sum / std::sqrt(pi);

@@ -4,7 +4,6 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "implicit_moment/advance_field.hpp"
@@ -67,7 +66,7 @@ Loaded any_plasma(const Grid& grid, double mass_ratio, double v, Random& random)
     for (const double sign : {1.0, -1.0}) {
         Particles p;
         p.name = sign > 0 ? "ions" : "electrons";
-        const double weight = n0 * grid.x.length * grid.z.length / static_cast<double>(count);
+        const double weight = n0 * grid.x.length * grid.z.length / double(count);
         p.q_p = sign * weight, p.m_p = sign > 0 ? weight : weight / mass_ratio;
         for (long n = 0; n < count; ++n) {
             p.x_p.push_back(grid.x.low + 0.4999 * (1 + random()) * grid.x.length);
@@ -156,8 +155,8 @@ TEST_CASE("the rotation on the mesh is the rotation of a particle in each sense"
     const LocalField<double> at{0, 0, 0, 1.1, -0.6, 2.3};
     const std::array<double, 3> speeds{speed.x, speed.y, speed.z}, fields{1.1, -0.6, 2.3};
     for (std::size_t a = 0; a < 3; ++a) {
-        B.all.segment(static_cast<long>(a) * grid.size(), grid.size()).setConstant(fields[a]);
-        v.all.segment(static_cast<long>(a) * grid.size(), grid.size()).setConstant(speeds[a]);
+        B.all.segment(long(a) * grid.size(), grid.size()).setConstant(fields[a]);
+        v.all.segment(long(a) * grid.size(), grid.size()).setConstant(speeds[a]);
     }
     Tensor R(grid);
     rotation_tensor(grid, B.all.data(), half_kick, R);
@@ -339,8 +338,8 @@ TEST_CASE("the number of iterations does not grow with the plasma period per ste
         p.q_p = -n0 * grid.x.length * grid.z.length / (4.0 * 32 * 32), p.m_p = -p.q_p / 100;
         for (long j = 0; j < 64; ++j) {
             for (long i = 0; i < 64; ++i) {
-                p.x_p.push_back((static_cast<double>(i) + 0.5) * 0.125);
-                p.z_p.push_back((static_cast<double>(j) + 0.5) * 0.125);
+                p.x_p.push_back((double(i) + 0.5) * 0.125);
+                p.z_p.push_back((double(j) + 0.5) * 0.125);
                 for (auto* f : {&p.ux_p, &p.uy_p, &p.uz_p}) f->push_back(1e-3 / dt * random());
             }
         }
@@ -516,7 +515,7 @@ TEST_CASE("the current predicted with rotated particles moves the charge to thir
         B.all.tail(grid.size()).setConstant(-0.8 * Omega_dt);
         deposit_moments(p, grid, B, dt, rotated);
         deposit_moments(p, grid, plain);
-        InterleavedField push(static_cast<std::size_t>(grid.size()),
+        InterleavedField push(std::size_t(grid.size()),
                               {0, 0, 0, 0.6 * Omega_dt, 0, -0.8 * Omega_dt});
         const MoverReport report = move_particles(push, grid, dt, {1e-13, 100}, p);
         CHECK(report.lost == 0);
@@ -555,10 +554,9 @@ TEST_CASE("continuity of the deposited moments holds to second order in dt") {
         keep_off_kinks(grid, p);
         Moments before(grid), after(grid);
         deposit_moments(p, grid, field.B, dt, before);
-        InterleavedField push(static_cast<std::size_t>(grid.size()));
+        InterleavedField push(std::size_t(grid.size()));
         for (long n = 0; n < grid.size(); ++n) {
-            push[static_cast<std::size_t>(n)] = {
-                0, 0, 0, field.B.x()[n], field.B.y()[n], field.B.z()[n]};
+            push[std::size_t(n)] = {0, 0, 0, field.B.x()[n], field.B.y()[n], field.B.z()[n]};
         }
         move_particles(push, grid, dt, {1e-13, 100}, p);
         SortScratch sorted;

@@ -113,13 +113,13 @@ TEST_CASE("a profile averages from the first step of unit flux over its time and
     const long X_point = std::lround(columns.X_line + 6);
     double off = 0;
     for (long k = 0; k < 12; ++k) {
-        const auto row = static_cast<std::size_t>(k);
+        const auto row = std::size_t(k);
         const long i = (k + 6 + X_point) % 12;
-        off = worst({off, std::fabs(columns.x[row] - (static_cast<double>(k) - 5.5)),
+        off = worst({off, std::fabs(columns.x[row] - (double(k) - 5.5)),
                      std::fabs(columns.rho_ions[row] - sum[0][i] / 4 * 4 * pi),
                      std::fabs(columns.v_x_ions[row] - sum[1][i] / sum[0][i] / B0),
                      std::fabs(columns.v_x_electrons[row] - sum[3][i] / sum[2][i] / B0),
-                     std::fabs(columns.B_z[row] - first_B_z[static_cast<std::size_t>(i)] / B0)});
+                     std::fabs(columns.B_z[row] - first_B_z[std::size_t(i)] / B0)});
     }
     CHECK(off <= 64 * eps / B0);
 }

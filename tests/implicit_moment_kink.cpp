@@ -50,11 +50,12 @@ nlohmann::json results(const CurrentSheetCase& sheet, const Record& record) {
     Case parameters;
     parameters.current_sheet = sheet;
     common::History history(room("record") + "/history.dat");
-    history.columns({{"time_Omega_ci", ""},
-                     {"energy_drift", ""},
-                     {"B_1", ""},
-                     {"B_4", ""},
-                     {"displacement_1", ""}});
+    history.columns({{{"time_Omega_ci", ""},
+                      {"energy_drift", ""},
+                      {"B_1", ""},
+                      {"B_4", ""},
+                      {"displacement_1", ""}},
+                     {}});
     for (std::size_t n = 0; n < record.times.size(); ++n) {
         const double a = record.amplitude[n];
         history.row(std::vector<double>{record.times[n], 0, a, 0.005, 2 * a});

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <string>
-#include <vector>
 
 #include "implicit_moment/setup/initial_state.hpp"
 #include "implicit_moment/theory/spline_average.hpp"

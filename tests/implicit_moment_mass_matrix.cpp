@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "common/splines.hpp"
 #include "implicit_moment/output/diagnostics.hpp"
 #include "implicit_moment/step.hpp"
 #include "tests/support/any_particles.hpp"

@@ -4,8 +4,8 @@
 
 #include <array>
 #include <cmath>
-#include <utility>
 
+#include "common/splines.hpp"
 #include "tests/support/any_particles.hpp"
 
 namespace {
@@ -102,9 +102,9 @@ TEST_CASE("the mesh holds the total charge and current and the sums of energy an
         if (grid.x.periodic) CHECK(std::fabs(J[0] - q * sum[0]) <= eps * n);
         if (grid.z.periodic) CHECK(std::fabs(J[2] - q * sum[2]) <= eps * n);
         for (std::size_t a = 0; a < 3; ++a) {
-            CHECK(std::fabs(moments.momentum[a] - m * sum[static_cast<long>(a)]) <= eps * n);
+            CHECK(std::fabs(moments.momentum[a] - m * sum[long(a)]) <= eps * n);
         }
-        const double energy = 0.5 * m * static_cast<double>(squares);
+        const double energy = 0.5 * m * double(squares);
         CHECK(std::fabs(moments.kinetic_energy / energy - 1) <= 8 * eps);
     }
 }
@@ -230,7 +230,7 @@ TEST_CASE("the work done on particles is the work of the deposited current also 
             }
             const std::array J{&moments.J_x, &moments.J_y, &moments.J_z};
             for (std::size_t a = 0; a < 3; ++a) {
-                const Field part = E.all.segment(static_cast<long>(a) * grid.size(), grid.size());
+                const Field part = E.all.segment(long(a) * grid.size(), grid.size());
                 work -= total(grid, kind.place[a], J[a]->cwiseProduct(part));
             }
             CHECK(std::fabs(work) <= 0.2 * eps * real(particles.count()));
@@ -243,16 +243,7 @@ TEST_CASE("the gathered gradient is the gradient of the gathered potential and d
     Random random;
     for (const Grid& grid : meshes()) {
         const double dx = grid.x.spacing(), dz = grid.z.spacing(), h = 0.1;
-        // A potential in the place of E_y, for both live on nodes and vanish on walls.
-        VectorField E = random.field(grid, electric, 1), B(grid);
-        const VectorField A = random.field(grid, electric, 1);
-        for_each_point(grid, [&](long n) {
-            E.x()[n] = -(E.y()[n + 1] - E.y()[n]) / dx;
-            E.z()[n] = -(E.y()[n + grid.stride()] - E.y()[n]) / dz;
-        });
-        curl_of_electric(grid, A.all.data(), B.all.data());
-        fill_ghosts(grid, electric, E);
-        fill_ghosts(grid, magnetic, B);
+        const auto [E, B] = gradient_and_curl(grid, random);
         const InterleavedField push = pack(grid, E, B);
         const double tolerance = 2 * eps / h / dz / dz;
         for (int sample = 0; sample < 300; ++sample) {

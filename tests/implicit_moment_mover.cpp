@@ -212,7 +212,7 @@ TEST_CASE("without fields particles bounce between walls like light between mirr
         for (std::size_t p = 0; p < 400; ++p) {  // some in corners, some along walls
             if (p % 16 == 0) particles.z_p[p] = grid.z.low, particles.x_p[p] = grid.x.high();
             if (p % 9 == 0) particles.ux_p[p] = 0;
-            particles.uy_p[p] = static_cast<double>(p);  // a name that stays
+            particles.uy_p[p] = double(p);  // a name that stays
         }
         const Particles start = particles;
         double error = 0;
@@ -229,7 +229,7 @@ TEST_CASE("without fields particles bounce between walls like light between mirr
                 wrong += !(x >= axis.low && x <= axis.high() && std::fabs(v) == std::fabs(v_0));
             };
             for (std::size_t p = 0; p < 400; ++p) {
-                const auto s = static_cast<std::size_t>(particles.uy_p[p]);
+                const auto s = std::size_t(particles.uy_p[p]);
                 check(grid.x, start.x_p[s], start.ux_p[s], particles.x_p[p], particles.ux_p[p]);
                 check(grid.z, start.z_p[s], start.uz_p[s], particles.z_p[p], particles.uz_p[p]);
             }

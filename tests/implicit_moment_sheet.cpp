@@ -219,7 +219,7 @@ TEST_CASE("growth rate and frequency and mode are read off a history that has th
     common::Row sheet;
     SheetDiagnostics(parameters).add(FieldState(parameters.grid), sheet);
     for (const common::Column& column : sheet.columns) columns.push_back(column);
-    history.columns(columns);
+    history.columns({columns, {}});
     const double gamma = 1.7, omega = 6.5;
     for (int n = 0; n <= 800; ++n) {
         const double t = 0.005 * n;

@@ -379,8 +379,7 @@ TEST_CASE("a uniform plasma whose energy changes by more than 5 percent fails") 
     const auto verdict = [&](std::vector<double> drift, const Case& of, double what_else = 0) {
         common::History history(folder_of_test() + "/energy/history.dat");
         std::filesystem::create_directories(folder_of_test() + "/energy");
-        history.columns(std::vector<common::Column>{
-            {"energy", ""}, {"energy_drift", "1"}, {"energy_residual", "1"}});
+        history.columns({{{"energy", ""}, {"energy_drift", "1"}, {"energy_residual", "1"}}, {}});
         for (const double one : drift) history.row(std::vector<double>{1, one, what_else});
         common::Summary summary;
         compare_energy(of, history, summary);

@@ -4,76 +4,15 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <functional>
-#include <random>
 #include <string>
 #include <vector>
 
-#include "flip/output/pic_diagnostics.hpp"
-#include "flip/pic/step.hpp"
-#include "flip/setup/problem_of_case.hpp"
-#include "tests/support/any_numbers.hpp"
+#include "tests/support/any_fluid.hpp"
 
 namespace {
 
-using namespace flip;
-using facts::eps;
-using facts::real;
-using facts::worst;
-
-struct Random {
-    std::mt19937_64 engine;
-    explicit Random(std::uint64_t seed) : engine(seed) {}
-    double operator()() { return 0x1p-53 * static_cast<double>(engine() >> 11); }
-};
-
-template <class Visit>
-void for_each_cell(const Grid& grid, const Visit& visit) {
-    for (long j = 0; j < grid.z.cells; ++j)
-        for (long i = 0; i < grid.x.cells; ++i) visit(grid.index(i, j));
-}
-
-// The loop of pic.cpp.
-struct Run {
-    Case w;
-    Problem problem;
-    PicCells cells;
-    State state;
-    explicit Run(const Case& parameters)
-        : w(completed(parameters)),
-          problem(problem_of(w)),
-          cells(problem),
-          state(initial_state(problem, load_particles(w), cells)) {}
-    double step() {
-        find_pressure(problem, state, cells);
-        take_pic_step(problem, state, cells);
-        return state.dt;
-    }
-    void steps(int count) {
-        for (int n = 0; n < count; ++n) step();
-    }
-    void to_the_end() {
-        while (state.time < w.end) step();
-    }
-    Totals totals() { return totals_of(problem.grid, state, cells); }
-};
-
-Case mesh(long nx, long nz, const char* ends_x, const char* ends_z) {
-    Case w;
-    w.grid = {{nx, 0, 1, true}, {nz, 0, nz > 1 ? 1.0 : 1.0 / real(nx), true}};
-    w.boundaries[x_low].kind = w.boundaries[x_high].kind = ends_x;
-    w.boundaries[z_low].kind = w.boundaries[z_high].kind = ends_z;
-    w.per_cell_z = nz > 1 ? 4 : 1;
-    w.end = 1e3;
-    return w;
-}
-
-RegionCase fluid(const std::string& material, double density, double p, double vx = 0,
-                 double vz = 0) {
-    RegionCase r;
-    r.gas = {material, density, p, vx, vz};
-    return r;
-}
+using namespace facts;
+using Run = facts::PicRun;
 
 RegionCase disk(RegionCase r, double x, double z, double radius) {
     r.shape = "disk";
@@ -82,7 +21,7 @@ RegionCase disk(RegionCase r, double x, double z, double radius) {
 }
 
 Case sod() {
-    Case w = mesh(100, 1, "slip", "periodic");
+    Case w = flip_case(100, 1, "slip", "periodic");
     w.setup = "riemann";
     w.per_cell_x = 16;
     w.end = 0.2;
@@ -91,7 +30,7 @@ Case sod() {
 
 // A disk of something like metal hits a plate of something like another, in a void.
 Case impact(long cells = 32) {
-    Case w = mesh(cells, cells, "slip", "slip");
+    Case w = flip_case(cells, cells, "slip", "slip");
     w.materials = {{"ball", 4, 1}, {"plate", 3, 0.5}, {"dust", 1, 0}};
     w.regions = {fluid("plate", 1, 0.1), disk(fluid("ball", 2, 0.05, 1.1, 0.2), 0.3, 0.45, 0.15),
                  disk(fluid("dust", 0.3, 0, 0.5, -0.9), 0.2, 0.85, 0.1)};
@@ -103,7 +42,7 @@ Case impact(long cells = 32) {
 
 // Gases at random everywhere.
 Case turbulence(long nx, long nz, const char* ends_x, const char* ends_z) {
-    Case w = mesh(nx, nz, ends_x, ends_z);
+    Case w = flip_case(nx, nz, ends_x, ends_z);
     w.materials = {{"air", 1.4, 0}, {"helium", 5.0 / 3, 0}};
     w.loading = "random";
     w.regions = {fluid("air", 1, 1, 0.3, -0.2), disk(fluid("helium", 0.4, 1.5), 0.4, 0.6, 0.25)};
@@ -134,7 +73,7 @@ Change change_of(Run& r) {
     for (long j = 0; j < r.w.grid.z.cells; ++j) {
         for (long i = 0; i < r.w.grid.x.cells; ++i) {
             const long n = r.w.grid.index(i, j);
-            const auto at = static_cast<std::size_t>(n);
+            const auto at = std::size_t(n);
             const CellVelocity& b = r.cells.v_tilde[at];
             const double ax = r.state.cells.vx[n], az = r.state.cells.vz[n];
             const double K_change =
@@ -261,7 +200,7 @@ TEST_CASE("mass and momentum and energy are exact for gases at random") {
 
 TEST_CASE("a blast into gas without any heat keeps mass and momentum and energy") {
     // The precursor that the repartition sends ahead falls below the smallest of numbers.
-    Case w = mesh(40, 40, "slip", "open");
+    Case w = flip_case(40, 40, "slip", "open");
     w.loading = "random";
     w.regions = {fluid("", 1, 0), disk(fluid("", 1, 0), 0.5, 0.5, 0.06)};
     w.regions[1].energy = 0.3;
@@ -327,7 +266,7 @@ TEST_CASE("the work of the velocity at the end of the step instead of the mean l
 
 TEST_CASE("a light gas that meets a heavy one needs no shorter steps than its sound") {
     // A face of mean density would press on the light cell as on one of that density.
-    Case w = mesh(8, 1, "slip", "slip");
+    Case w = flip_case(8, 1, "slip", "slip");
     w.materials = {{"light", 1.4, 0}, {"heavy", 1.4, 0}};
     w.regions = {fluid("light", 1, 1), fluid("heavy", 1000, 1)};
     w.regions[1].shape = "box";
@@ -350,7 +289,7 @@ TEST_CASE("fluids of any density rest on each other under gravity and fall alike
         for (const bool row : {true, false}) {
             CAPTURE(ratio);
             CAPTURE(row);
-            Case w = mesh(row ? 12 : 5, row ? 1 : 12, "slip", "slip");
+            Case w = flip_case(row ? 12 : 5, row ? 1 : 12, "slip", "slip");
             if (row)
                 w.gravity_x = -1, w.boundaries[z_low].kind = w.boundaries[z_high].kind = "periodic";
             if (!row) w.gravity_z = -1;
@@ -372,7 +311,7 @@ TEST_CASE("fluids of any density rest on each other under gravity and fall alike
             find_pressure(falling.problem, falling.state, falling.cells);
             accelerate_cells(falling.problem, 0.01, falling.state, falling.cells);
             for (long k = 1; k < 11; ++k) {
-                const auto n = static_cast<std::size_t>(w.grid.index(row ? k : 2, row ? 0 : k));
+                const auto n = std::size_t(w.grid.index(row ? k : 2, row ? 0 : k));
                 const CellVelocity& v = falling.cells.v_tilde[n];
                 CHECK(std::fabs((row ? v.x : v.z) + 0.01) <= 1e-12 * ratio);
             }
@@ -382,7 +321,7 @@ TEST_CASE("fluids of any density rest on each other under gravity and fall alike
 
 TEST_CASE("an interior cell is pushed by the pressures beside it and works with its own") {
     for (const double q : {0.0, 1.0}) {
-        Case w = mesh(8, 1, "periodic", "periodic");
+        Case w = flip_case(8, 1, "periodic", "periodic");
         w.regions = {fluid("", 1, 1)};
         w.q_linear = 0.5 * q, w.q_quadratic = q;
         Run s(w);
@@ -394,7 +333,7 @@ TEST_CASE("an interior cell is pushed by the pressures beside it and works with 
         const auto n = [&](long i) { return s.w.grid.index((i + 8) % 8, 0); };
         const auto u = [&](long i) { return s.state.cells.vx[n(i)]; };
         const auto ubar = [&](long i) {
-            return 0.5 * (u(i) + s.cells.v_tilde[static_cast<std::size_t>(n(i))].x);
+            return 0.5 * (u(i) + s.cells.v_tilde[std::size_t(n(i))].x);
         };
         const auto p = [&](long i) { return 0.4 * 1.0 * s.state.cells.e[0][n(i)]; };
         const auto c = [&](long i) { return std::sqrt(1.4 * p(i)); };
@@ -405,7 +344,7 @@ TEST_CASE("an interior cell is pushed by the pressures beside it and works with 
         const auto P = [&](long i) { return 0.5 * (p(i) + p(i + 1)) + viscous(i); };
         const double M = s.cells.mass[n(0)];
         for (long i = 0; i < 8; ++i) {
-            const auto at = static_cast<std::size_t>(n(i));
+            const auto at = std::size_t(n(i));
             CHECK(std::fabs(s.cells.v_tilde[at].x - (u(i) - dt * A / M * (P(i) - P(i - 1)))) <=
                   1e-14);
             const double right = 0.5 * (ubar(i) + ubar(i + 1)),
@@ -419,7 +358,7 @@ TEST_CASE("an interior cell is pushed by the pressures beside it and works with 
 }
 
 TEST_CASE("gases in one cell share the pressure and the work by their stiffness") {
-    Case w = mesh(2, 1, "periodic", "periodic");
+    Case w = flip_case(2, 1, "periodic", "periodic");
     w.materials = {{"air", 1.4, 0}, {"helium", 5.0 / 3, 0}};
     w.per_cell_x = 2;
     w.regions = {fluid("air", 1, 1), fluid("helium", 0.3, 2)};
@@ -431,7 +370,7 @@ TEST_CASE("gases in one cell share the pressure and the work by their stiffness"
     CHECK(std::fabs(r.cells.p[n] - 1.5) <= 1e-14);  // half a cell of each
     CHECK(std::fabs(r.cells.p[m] - 1.0) <= 1e-14);
     // V_k/(gamma_k p) with V_k of the partial pressures 1/2 and 1.
-    const auto at = static_cast<std::size_t>(n);
+    const auto at = std::size_t(n);
     CHECK(std::fabs(r.cells.share[2 * at] - (0.5 / 1.4) / (0.5 / 1.4 + 1 / (5.0 / 3))) <= 1e-14);
     CHECK(std::fabs(r.cells.share[2 * at] + r.cells.share[2 * at + 1] - 1) <= 1e-15);
     r.state.cells.vx[n] = 1;
@@ -446,13 +385,13 @@ TEST_CASE("gases in one cell share the pressure and the work by their stiffness"
 }
 
 TEST_CASE("the speed of sound is that of the material also where it does not fill its cell") {
-    Case w = mesh(8, 8, "slip", "slip");
+    Case w = flip_case(8, 8, "slip", "slip");
     w.materials = {{"metal", 4, 3}};
     w.regions = {fluid("metal", 2, 0)};
     Run r(w);
     for (const double left : {1.0, 0.25}) {  // of the mass in one cell
         const long n = r.w.grid.index(3, 3);
-        r.cells.M[static_cast<std::size_t>(n)] *= left;
+        r.cells.M[std::size_t(n)] *= left;
         find_pressure(r.problem, r.state, r.cells);
         CHECK(r.cells.p[n] <= 1e-14);
         CHECK(std::fabs(r.cells.c[n] - std::sqrt(4 * 3 / 2.0)) <= 1e-13);
@@ -462,7 +401,7 @@ TEST_CASE("the speed of sound is that of the material also where it does not fil
 TEST_CASE("the heat of mixing is that of an inelastic impact") {
     // Dust of mass m runs into dust of mass M that rests in the next cell.
     const double m = 0.3, M = 0.8, u = 1.7;
-    Case w = mesh(8, 1, "slip", "periodic");
+    Case w = flip_case(8, 1, "slip", "periodic");
     w.materials = {{"dust", 1, 0}};
     w.q_linear = w.q_quadratic = 0;
     w.dt = 0.06;
@@ -486,11 +425,10 @@ TEST_CASE("the heat of mixing is that of an inelastic impact") {
 TEST_CASE("a cell that all particles have left is empty to the last bit") {
     Case w = impact();
     Run r(w);
-    std::vector<bool> was(static_cast<std::size_t>(w.grid.size()));
+    std::vector<bool> was(std::size_t(w.grid.size()));
     long emptied = 0;
     for (int step = 0; step < 80; ++step) {
-        for (std::size_t n = 0; n < was.size(); ++n)
-            was[n] = r.cells.mass[static_cast<long>(n)] > 0;
+        for (std::size_t n = 0; n < was.size(); ++n) was[n] = r.cells.mass[long(n)] > 0;
         r.step();
         for (long j = 0; j < w.grid.z.cells; ++j) {
             for (long i = 0; i < w.grid.x.cells; ++i) {
@@ -500,7 +438,7 @@ TEST_CASE("a cell that all particles have left is empty to the last bit") {
                     anyone = cell_along(w.grid.x, r.state.particles.x_p[p]) == i &&
                              cell_along(w.grid.z, r.state.particles.z_p[p]) == j;
                 if (anyone) continue;
-                emptied += was[static_cast<std::size_t>(n)] ? 1 : 0;
+                emptied += was[std::size_t(n)] ? 1 : 0;
                 double sum = std::fabs(r.cells.mass[n]) + std::fabs(r.state.cells.vx[n]) +
                              std::fabs(r.state.cells.vz[n]);
                 for (const Field& e : r.state.cells.e) sum += std::fabs(e[n]);
@@ -513,7 +451,7 @@ TEST_CASE("a cell that all particles have left is empty to the last bit") {
 
 TEST_CASE("a body in a void flies with one velocity and stays cold") {
     for (const long rows : {1L, 24L}) {
-        Case w = mesh(24, rows, "periodic", "periodic");
+        Case w = flip_case(24, rows, "periodic", "periodic");
         w.materials = {{"metal", 4, 1}};
         w.regions = {disk(fluid("metal", 1, 0, 0.7, rows > 1 ? -0.4 : 0.0), 0.3, 0.5, 0.2)};
         if (rows == 1) w.regions[0].center_z = 0;
@@ -523,7 +461,7 @@ TEST_CASE("a body in a void flies with one velocity and stays cold") {
         r.steps(100);
         CHECK(std::fabs(r.totals().internal - before.internal) <= 1e-13 * before.internal);
         double most = 0;
-        for_each_cell(w.grid, [&](long n) {
+        for_each_cell(w.grid, [&](long, long, long n) {
             if (r.cells.mass[n] > 0) most = worst({most, std::fabs(r.state.cells.vx[n] - 0.7)});
         });
         CHECK(most <= 1e-13);
@@ -531,7 +469,7 @@ TEST_CASE("a body in a void flies with one velocity and stays cold") {
 }
 
 TEST_CASE("gas in a periodic box falls as one body") {
-    Case w = mesh(12, 10, "periodic", "periodic");
+    Case w = flip_case(12, 10, "periodic", "periodic");
     w.regions = {fluid("", 1, 1, 0.1, 0.2)};
     w.gravity_x = 0.3, w.gravity_z = -0.5;
     w.dt = 0.01;
@@ -543,7 +481,7 @@ TEST_CASE("gas in a periodic box falls as one body") {
 }
 
 TEST_CASE("the trap pulls every cell towards the middle of the mesh") {
-    Case w = mesh(6, 5, "slip", "slip");
+    Case w = flip_case(6, 5, "slip", "slip");
     w.grid.x.low = -2, w.grid.z.low = 1;
     w.materials = {{"dust", 1, 0}};
     w.regions = {fluid("dust", 1, 0)};
@@ -553,7 +491,7 @@ TEST_CASE("the trap pulls every cell towards the middle of the mesh") {
     accelerate_cells(r.problem, 0.01, r.state, r.cells);
     for (long j = 0; j < 5; ++j) {
         for (long i = 0; i < 6; ++i) {
-            const CellVelocity& v = r.cells.v_tilde[static_cast<std::size_t>(w.grid.index(i, j))];
+            const CellVelocity& v = r.cells.v_tilde[std::size_t(w.grid.index(i, j))];
             const double x = w.grid.x.at(real(i) + 0.5) + 1.5, z = w.grid.z.at(real(j) + 0.5) - 1.5;
             CHECK(std::fabs(v.x - 0.01 * (0.2 - 3 * x)) <= 1e-16);
             CHECK(std::fabs(v.z - 0.01 * (0.1 - 3 * z)) <= 1e-16);
@@ -611,7 +549,7 @@ TEST_CASE("left and right and up and down are alike") {
     exchange(exchanged);
     for (Run* r : {&mirrored, &exchanged}) {
         double most = 0;
-        for_each_cell(w.grid, [&](long n) {
+        for_each_cell(w.grid, [&](long, long, long n) {
             most = worst({most, std::fabs(r->state.cells.vx[n] - plain.state.cells.vx[n]),
                           std::fabs(r->state.cells.vz[n] - plain.state.cells.vz[n]),
                           std::fabs(r->cells.mass[n] - plain.cells.mass[n]),
@@ -665,7 +603,7 @@ TEST_CASE("the method diffuses what it carries by half the velocity and what is 
     for (const Expected& e :
          {Expected{0.05, 0.475, 64}, Expected{0.2, 0.4, 64}, Expected{0.5, 0.25, 64},
           Expected{0.9, 0.05, 64}, Expected{0.05, 0.375, 4}, Expected{0.5, 0.25, 16}}) {
-        Case w = mesh(200, 1, "periodic", "periodic");
+        Case w = flip_case(200, 1, "periodic", "periodic");
         w.materials = {{"dust", 1, 0}};
         w.regions = {fluid("dust", 1, 1, 1)};
         w.regions[0].flow = "gaussian";
@@ -699,7 +637,7 @@ TEST_CASE("the centered velocity in the work lets sound grow weakly" *
     const long N = 16;
     const double gamma = 1.4, c = std::sqrt(gamma), kappa = real(N) * std::sin(2 * pi / real(N)),
                  amplitude = 0.02;
-    Case w = mesh(N, 1, "periodic", "periodic");
+    Case w = flip_case(N, 1, "periodic", "periodic");
     w.regions = {fluid("", 1, 1)};
     w.regions[0].flow = "wave", w.regions[0].amplitude = amplitude;
     w.per_cell_x = 64;
@@ -724,7 +662,7 @@ TEST_CASE("the centered velocity in the work lets sound grow weakly" *
 
 TEST_CASE("gas that runs against a wall is compressed six times" *
           doctest::description("physics")) {
-    Case w = mesh(200, 1, "slip", "periodic");
+    Case w = flip_case(200, 1, "slip", "periodic");
     w.regions = {fluid("", 1, 1e-4, -1)};
     w.per_cell_x = 16;
     w.end = 0.5;
@@ -774,7 +712,7 @@ TEST_CASE("the shock tube of Sod comes close to its exact solution" *
 
 TEST_CASE("gas expands into the void at a good part of five times its speed of sound" *
           doctest::description("physics")) {
-    Case w = mesh(400, 1, "slip", "periodic");
+    Case w = flip_case(400, 1, "slip", "periodic");
     w.regions = {fluid("", 1, 1 / 1.4)};
     w.regions[0].shape = "box";
     w.regions[0].center_x = 0.1, w.regions[0].half_x = 0.1, w.regions[0].half_z = 1;
@@ -791,7 +729,7 @@ TEST_CASE("gas expands into the void at a good part of five times its speed of s
 }
 
 TEST_CASE("a uniform stream through both ends stays uniform") {
-    Case w = mesh(12, 6, "open", "periodic");
+    Case w = flip_case(12, 6, "open", "periodic");
     w.boundaries[x_low].kind = "inflow";
     w.inflow = {"", 1, 1, 2, 0};
     w.boundaries[x_high].pressure = 1;
@@ -812,7 +750,7 @@ TEST_CASE("a uniform stream through both ends stays uniform") {
 }
 
 TEST_CASE("fluid enters a mesh that was empty") {
-    Case w = mesh(10, 4, "open", "periodic");
+    Case w = flip_case(10, 4, "open", "periodic");
     w.boundaries[x_low].kind = "inflow";
     w.inflow = {"", 1, 0.1, 1, 0};
     Run r(w);
@@ -864,7 +802,7 @@ TEST_CASE("totals and fields are those of the fluid") {
 }
 
 TEST_CASE("the time step follows flow and sound and not where the run ends") {
-    Case w = mesh(10, 5, "periodic", "periodic");
+    Case w = flip_case(10, 5, "periodic", "periodic");
     w.regions = {fluid("", 1, 1, 0.3, -0.2)};
     w.q_linear = w.q_quadratic = 0;
     Run r(w);
@@ -880,7 +818,7 @@ TEST_CASE("the time step follows flow and sound and not where the run ends") {
     CHECK(largest_step(r.problem, r.state, r.cells) == 0.07);
 
     // Dust at rest has no speed to go by.
-    Case still = mesh(10, 5, "periodic", "periodic");
+    Case still = flip_case(10, 5, "periodic", "periodic");
     still.materials = {{"dust", 1, 0}};
     still.regions = {fluid("dust", 1, 0)};
     still.end = 3;
@@ -893,7 +831,7 @@ TEST_CASE("the time step follows flow and sound and not where the run ends") {
 }
 
 TEST_CASE("viscosity does not throw back cold streams that meet") {
-    Case w = mesh(20, 1, "slip", "periodic");
+    Case w = flip_case(20, 1, "slip", "periodic");
     w.materials = {{"dust", 1, 0}};
     w.regions = {fluid("dust", 1, 0, 1), fluid("dust", 0.05, 0, -1)};
     w.regions[1].shape = "box";
@@ -907,7 +845,7 @@ TEST_CASE("viscosity does not throw back cold streams that meet") {
         const double dt = largest_step(r.problem, r.state, r.cells);
         accelerate_cells(r.problem, dt, r.state, r.cells);
         do_work(r.problem, dt, r.state, r.cells);
-        const auto n = static_cast<std::size_t>(w.grid.index(9, 0));
+        const auto n = std::size_t(w.grid.index(9, 0));
         CHECK(r.cells.v_tilde[n].x < 1);
         CHECK(r.cells.v_tilde[n].x >= r.cells.v_tilde[n + 1].x);
         CHECK(r.cells.v_tilde[n].x - r.cells.v_tilde[n + 1].x <= 1);  // and not for nothing
@@ -933,7 +871,7 @@ TEST_CASE("a step that is much too long ends the run with a word on where and wh
     CAPTURE(about_energy);
     CHECK(about_energy.find("t = 0") != std::string::npos);
     CHECK(about_energy.find("time.cfl") != std::string::npos);
-    Case fast = mesh(10, 1, "slip", "periodic");
+    Case fast = flip_case(10, 1, "slip", "periodic");
     fast.materials = {{"dust", 1, 0}};
     fast.regions = {fluid("dust", 1, 0, 1)};
     fast.dt = 0.2;

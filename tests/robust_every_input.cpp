@@ -226,7 +226,7 @@ TEST_CASE("every range and every choice that is listed by --help is enforced" *
             for (const double value : outside) wrong.push_back(std::to_string(value));
             for (const std::string& value : wrong)
                 check_refused(program, {{p.name, {}, name + "=" + value, message}});
-            ranges += static_cast<int>(outside.size());
+            ranges += int(outside.size());
         }
         INFO(program.name);
         CHECK(ranges >= 40);

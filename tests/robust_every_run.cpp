@@ -5,7 +5,6 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <functional>
 #include <regex>
 #include <string>
 #include <vector>
@@ -405,7 +404,7 @@ explicit_em sheet -> 0.2 129
         const auto steps = std::stol(kept[0].substr(kept[0].size() - 14, 10));
         CHECK(steps > 0);
         // Ten more steps in the same folder end as without the interruption.
-        const std::string end = until(static_cast<double>(steps + 10));
+        const std::string end = until(double(steps + 10));
         REQUIRE(run(command.program->name, "--restart " + kept[0] + end, stopped) == 0);
         REQUIRE(run(command, unstopped, end) == 0);
         CHECK(read_all(stopped + "/history.dat") == read_all(unstopped + "/history.dat"));
@@ -484,8 +483,8 @@ TEST_CASE("of files that are due after the end only those of the start are there
             const std::string key =
                 program.item == "grain" ? "output.particles_interval" : "output.fields_interval";
             REQUIRE(run({&program, "run " + key + "=" + interval, {}}, out) == 0);
-            counts.push_back(static_cast<std::size_t>(
-                std::distance(fs::directory_iterator(out), fs::directory_iterator())));
+            counts.push_back(
+                std::size_t(std::distance(fs::directory_iterator(out), fs::directory_iterator())));
         }
         INFO(program.name);
         CHECK(counts[1] == counts[0]);

@@ -200,7 +200,7 @@ TEST_CASE("materials that share a cell come to one pressure volume for volume") 
     for (long j = 0; j < n; ++j) {
         for (long i = 0; i < n; ++i) {
             const int material = (i + j) % 2 == 0 ? 1 : 0;
-            const Material a = w.materials[static_cast<std::size_t>(material)];
+            const Material a = w.materials[std::size_t(material)];
             const double rho = material == 1 ? 1000 : 1, V = 1 / real(n * n);
             p.x_p.push_back((real(i) + 0.5) / real(n)), p.z_p.push_back((real(j) + 0.5) / real(n));
             p.m_p.push_back(rho * V), p.V_p.push_back(V), p.material.push_back(material);
@@ -214,8 +214,8 @@ TEST_CASE("materials that share a cell come to one pressure volume for volume") 
         double most = 0;
         r.deposit();
         for_each_cell(r.grid(), [&](long, long, long c) {
-            most = std::max(most, std::fabs(r.cells().excess[2 * static_cast<std::size_t>(c)] -
-                                            r.cells().excess[2 * static_cast<std::size_t>(c) + 1]));
+            most = std::max(most, std::fabs(r.cells().excess[2 * std::size_t(c)] -
+                                            r.cells().excess[2 * std::size_t(c) + 1]));
         });
         return most;
     };
@@ -234,8 +234,7 @@ TEST_CASE("materials that share a cell come to one pressure volume for volume") 
     r.steps(30);
     r.deposit();
     for_each_cell(r.grid(), [&](long, long, long c) {  // water is within one p_c of the cell
-        CHECK(std::fabs(r.cells().excess[2 * static_cast<std::size_t>(c) + 1]) <=
-              1e-2 * r.cells().p[c]);
+        CHECK(std::fabs(r.cells().excess[2 * std::size_t(c) + 1]) <= 1e-2 * r.cells().p[c]);
     });
     CHECK(apart() <= 0.05 * before);
     CHECK(std::fabs(r.totals().internal / energy - 1) <= 1e-13);

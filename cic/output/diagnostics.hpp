@@ -68,7 +68,7 @@ class FourierMode {
         std::complex<double> sum = 0;
         for (std::size_t j = 0; j < along_z_.size(); ++j) {
             std::complex<double> row = 0;
-            const double* values = phi.data() + grid.index(0, static_cast<long>(j));
+            const double* values = phi.data() + grid.index(0, long(j));
             for (std::size_t i = 0; i < along_x_.size(); ++i) row += values[i] * along_x_[i];
             sum += row * along_z_[j];
         }

@@ -11,6 +11,7 @@
 #include "cic/output/write_output.hpp"
 #include "cic/theory/comparisons.hpp"
 #include "common/run/run.hpp"
+#include "common/run/sentence.hpp"
 
 namespace cic {
 
@@ -147,9 +148,7 @@ class Recorder {
         if (magnetized || plane) row.add("momentum_z", momentum, all.momentum[2]);
         const auto add_amplitude = [&](std::size_t m) {
             const auto& [name, mode] = modes_[m];
-            const std::complex<double> E_k = mode.amplitude(grid, field.phi);
-            row.add(name + "_re", "m*velocity*omega_p/e", E_k.real());
-            row.add(name + "_im", "m*velocity*omega_p/e", E_k.imag());
+            row.add(name, "m*velocity*omega_p/e", mode.amplitude(grid, field.phi));
         };
         add_amplitude(0);
         if (parameters_.has_walls()) {
@@ -197,10 +196,9 @@ class Recorder {
                               change > (parameters_.energy_limit - 1) * now.at_start &&
                               change > 0.5 * now.size();
         if (std::isfinite(now.sum()) && !exceeded) return;
-        throw common::NumericalError(
-            sentence("the energy is ", now.sum(), " and was ", now.sum() - now.change,
+        common::fail("the energy is ", now.sum(), " and was ", now.sum() - now.change,
                      " at the start, at step ", step, ", t = ", double(step) * parameters_.dt,
-                     ": reduce time.dt, refine the mesh, or allow more with time.energy_limit"));
+                     ": reduce time.dt, refine the mesh, or allow more with time.energy_limit");
     }
 
     void record_positions(const State& state) {

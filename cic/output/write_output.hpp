@@ -15,9 +15,6 @@
 
 namespace cic {
 
-/// About how many particles a file holds at most.
-inline constexpr long most_particles_written = 40000;
-
 /// Writes fields_NNNNNN.dat (and .vti): rho, phi, E_x, E_z on nodes, density of every species; E of
 /// the energy-conserving scheme is that of the edge behind the node.
 inline void write_fields(const common::Snapshot& at_time, const Case& parameters,
@@ -60,8 +57,7 @@ inline void write_fields(const common::Snapshot& at_time, const Case& parameters
 /// there are no columns of what particles do not have.
 inline void write_particles(const common::Snapshot& at_time, const Case& parameters,
                             const State& state) {
-    const long every =
-        std::max(1L, (state.count() + most_particles_written - 1) / most_particles_written);
+    const long every = common::every_nth_written(state.count());
     std::array<std::vector<double>, 6> data;
     for (std::size_t k = 0; k < state.species.size(); ++k) {
         const Particles& s = state.species[k];
@@ -126,20 +122,20 @@ inline void write_phase_space(const common::Snapshot& at_time, const Case& param
         v{"v_x", "velocity", -v_max + 0.5 * dv, dv, nv};
     std::vector<std::vector<double>> f, f_v;
     for (const Particles& s : state.species) {
-        std::vector<double> bins(static_cast<std::size_t>(nx * nv + nv), 0.0);  // f(x, v), f(v)
+        std::vector<double> bins(std::size_t(nx * nv + nv), 0.0);  // f(x, v), f(v)
         const SpeciesCase* from = nullptr;
         for (const SpeciesCase& c : parameters.species)
             if (c.name == s.name) from = &c;
         const double weight = s.m_p / from->mass / (dx * dv * L_z);
         common::in_turn(bins.data(), std::array{0L, std::ssize(bins)}, [&](long) {
             for (std::size_t n = 0; n < s.x_p.size(); ++n) {
-                const long i = std::min(
-                    nx - 1, static_cast<long>((double(s.x_p[n]) - parameters.grid.x.low) / dx));
+                const long i =
+                    std::min(nx - 1, long((double(s.x_p[n]) - parameters.grid.x.low) / dx));
                 const double bin = std::floor((double(s.vx_p[n]) + v_max) / dv);
                 if (!(bin >= 0 && bin < double(nv))) continue;
-                const long l = static_cast<long>(bin);
-                bins[static_cast<std::size_t>(l * nx + i)] += weight;
-                bins[static_cast<std::size_t>(nx * nv + l)] += weight / double(nx);
+                const long l = long(bin);
+                bins[std::size_t(l * nx + i)] += weight;
+                bins[std::size_t(nx * nv + l)] += weight / double(nx);
             }
         });
         f.emplace_back(bins.begin(), bins.begin() + nx * nv);
@@ -168,13 +164,12 @@ inline void write_spectrum(const std::string& path, const Case& parameters,
     const auto workspace = gsl_fft_complex_workspace_alloc(count);
     std::vector<double> power;
     for (long m = 1; m <= parameters.modes; ++m) {
-        const auto re = history.column("E_" + std::to_string(m) + "_re"),
-                   im = history.column("E_" + std::to_string(m) + "_im");
+        const auto E_k = history.complex_column("E_" + std::to_string(m));
         std::vector<double> z;
         for (std::size_t n = 0; n < count; ++n) {
             const double h = 1 - std::cos(2 * pi * double(n) / double(count));
-            z.push_back(h * re[n] * parameters.dt);
-            z.push_back(h * im[n] * parameters.dt);
+            z.push_back(h * E_k[n].real() * parameters.dt);
+            z.push_back(h * E_k[n].imag() * parameters.dt);
         }
         gsl_fft_complex_inverse(z.data(), 1, count, wavetable, workspace);
         // From the lowest frequency up; the transform divides by count.
@@ -189,9 +184,9 @@ inline void write_spectrum(const std::string& path, const Case& parameters,
 
     const double d_omega = 2 * pi / (double(count) * parameters.dt);
     const double k_1 = 2 * pi / parameters.grid.x.length;
-    common::write_fields(
-        path, {"omega", "omega_p", -d_omega * double(count / 2), d_omega, static_cast<long>(count)},
-        {"k", "1/length", k_1, k_1, parameters.modes}, {{"power", "E^2", power}});
+    common::write_fields(path,
+                         {"omega", "omega_p", -d_omega * double(count / 2), d_omega, long(count)},
+                         {"k", "1/length", k_1, k_1, parameters.modes}, {{"power", "E^2", power}});
 }
 
 }  // namespace cic

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <string>
-#include <type_traits>
 #include <vector>
 
 #include "cic/gather_field.hpp"
@@ -14,8 +13,11 @@
 #include "cic/setup/distribution.hpp"
 #include "common/run/formula.hpp"
 #include "common/run/output_file.hpp"
+#include "common/run/sentence.hpp"
 
 namespace cic {
+
+using common::format, common::refuse, common::sentence;
 
 /// A perturbation of the density in one mode.
 struct PerturbationCase {
@@ -130,13 +132,12 @@ struct Case {
     /// The weighting, the scheme and the dimensions as numbers.
     Scheme scheme() const {
         return {weighting == "ngp" ? 0 : (weighting == "cic" ? 1 : 2), conserving == "energy",
-                static_cast<int>(dimensions)};
+                int(dimensions)};
     }
     bool magnetized() const { return B.size() > 0; }
     /// Whether some species has its velocities by formula.
     bool has_distributions() const {
-        return std::any_of(species.begin(), species.end(),
-                           [](const SpeciesCase& s) { return s.has_distribution(); });
+        return std::ranges::any_of(species, &SpeciesCase::has_distribution);
     }
     /// The axis of gyration, 0, 1 or 2: the largest component of B, and y without a field.
     std::size_t axis() const {
@@ -159,29 +160,6 @@ inline std::vector<PerturbationCase> perturbations_of(const Case& parameters,
         all.back().name = "perturbation." + p.name;
     }
     return all;
-}
-
-using common::format;
-
-/// Words and numbers as one sentence.
-template <class... Pieces>
-std::string sentence(const Pieces&... pieces) {
-    const auto text = [](const auto& piece) {
-        using Piece = std::decay_t<decltype(piece)>;
-        if constexpr (std::is_integral_v<Piece>)
-            return std::to_string(piece);
-        else if constexpr (std::is_floating_point_v<Piece>)
-            return common::format(piece);
-        else
-            return std::string(piece);
-    };
-    return (text(pieces) + ...);
-}
-
-/// Ends the program with a sentence about impossible input.
-template <class... Pieces>
-void refuse(bool is_impossible, const Pieces&... pieces) {
-    if (is_impossible) throw common::InputError(sentence(pieces...));
 }
 
 }  // namespace cic

@@ -46,8 +46,7 @@ inline void validate(Case& parameters) {
     read_formulas(parameters);
     for (const SpeciesCase& s : parameters.species) refuse_species(parameters, s);
     refuse_unused(parameters);
-    const auto mobile = [](const SpeciesCase& s) { return s.mobile(); };
-    refuse(std::none_of(parameters.species.begin(), parameters.species.end(), mobile),
+    refuse(std::ranges::none_of(parameters.species, &SpeciesCase::mobile),
            "every species is fixed, so nothing can happen: make one mobile");
 
     const auto mixed = [&](std::size_t low) {

@@ -71,9 +71,8 @@ inline void refuse_unused(const Case& parameters) {
     refuse(!parameters.constants.empty() && !formulas,
            "[constant.*] needs a formula in a species: write one, or take it out");
     for (const PerturbationCase& p : parameters.perturbations) {
-        const auto named = [&](const SpeciesCase& s) { return s.name == p.species; };
-        refuse(std::none_of(parameters.species.begin(), parameters.species.end(), named),
-               "perturbation.", p.name, ".species = \"", p.species,
+        const auto of = std::ranges::find(parameters.species, p.species, &SpeciesCase::name);
+        refuse(of == parameters.species.end(), "perturbation.", p.name, ".species = \"", p.species,
                "\" is the name of no species: write one of [species.<name>]");
         refuse(p.amplitude == 0, "perturbation.", p.name,
                ".amplitude = 0 perturbs nothing: set it, or take the perturbation out");

@@ -82,11 +82,6 @@ inline void describe_perturbation(common::ParameterTable& table, const std::stri
                  "traveling: with the velocities of the wave of theory");
 }
 
-inline void describe_constant(common::ParameterTable& table, const std::string& prefix,
-                              common::Constant& c) {
-    table.real(prefix + ".value", c.value, "", common::anything(), "of the name");
-}
-
 }  // namespace detail
 
 /// The table of all parameters: names, units, ranges and meanings of the fields of a Case, which
@@ -151,7 +146,7 @@ inline common::ParameterTable describe(Case& parameters) {
                "a species of the plasma, [species.<name>]");
     table.list("perturbation", parameters.perturbations, detail::describe_perturbation,
                "one more perturbed mode of a species, [perturbation.<name>]");
-    table.list("constant", parameters.constants, detail::describe_constant,
+    table.list("constant", parameters.constants, common::describe_constant,
                "a name for a number, for formulas");
 
     table.group("comparison with theory");

@@ -22,7 +22,7 @@ struct Distribution {
     /// The place below which the part u of all particles is.
     double inverse(double u) const {
         const auto above = std::upper_bound(cumulative.begin() + 1, cumulative.end() - 1, u);
-        const auto j = static_cast<std::size_t>(above - cumulative.begin()) - 1;
+        const auto j = std::size_t(above - cumulative.begin()) - 1;
         return edge(j) + step * std::clamp((u - cumulative[j]) / within(j), 0.0, 1.0);
     }
     double mean() const {
@@ -47,9 +47,8 @@ struct Distribution {
 template <class Function>
 Distribution tabulate(double low, double high, long pieces, bool speeds, const Function& f) {
     Distribution table{low, (high - low) / double(pieces), {}, {0}, {}};
-    for (long j = 0; j < pieces; ++j)
-        table.f.push_back(f(table.middle(static_cast<std::size_t>(j))));
-    const double least = 1e-16 * *std::max_element(table.f.begin(), table.f.end());
+    for (long j = 0; j < pieces; ++j) table.f.push_back(f(table.middle(std::size_t(j))));
+    const double least = 1e-16 * std::ranges::max(table.f);
     if (!(least > 0)) return {};
     for (std::size_t j = 0; j < table.f.size(); ++j) {
         if (table.f[j] < least) table.f[j] = 0;

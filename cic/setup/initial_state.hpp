@@ -82,7 +82,7 @@ inline ParticleBoundaries particle_boundaries(const Case& parameters,
             {std::sqrt(s.emission_temperature / s.mass), emitted_per_step(parameters, s, weight)});
     }
     conditions.dt = parameters.dt;
-    conditions.seed = static_cast<std::uint64_t>(parameters.seed);
+    conditions.seed = std::uint64_t(parameters.seed);
     conditions.plane = parameters.dimensions == 2;
     conditions.magnetized = parameters.magnetized();
     return conditions;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cmath>
-#include <string>
 #include <vector>
 
 #include "cic/theory/theory_of_case.hpp"
@@ -39,7 +38,7 @@ namespace detail {
 
 // Rows and columns of a lattice in each cell, as square as the number allows.
 inline long lattice_columns(long per_cell) {
-    long columns = static_cast<long>(std::sqrt(double(per_cell)));
+    long columns = long(std::sqrt(double(per_cell)));
     while (per_cell % columns != 0) --columns;
     return per_cell / columns;
 }
@@ -66,7 +65,7 @@ inline Position position_of(const Case& parameters, const SpeciesCase& s, std::u
     if (parameters.dimensions == 1) return {x, 0};
     const double v = load.uniform(purpose, s.loading == "random" ? 3 : 2, p);
     if (along_x.given()) {
-        const auto piece = static_cast<std::size_t>((x - along_x.low) / along_x.step);
+        const auto piece = std::size_t((x - along_x.low) / along_x.step);
         return {x, s.tables.z[std::min(piece, s.tables.z.size() - 1)].inverse(v)};
     }
     if (s.profile == "layer") return {x, s.center_z + s.half_width * (2 * v - 1)};
@@ -115,8 +114,7 @@ inline Particles load_species(const Case& parameters, const SpeciesCase& s, std:
         seeds.push_back({k, from.amplitude, speed});
     }
     const double k_ripple = wave_vector(parameters, s.mode_x, 0).x;
-    const common::LoadingNumbers load{s.loading != "random",
-                                      static_cast<std::uint64_t>(parameters.seed)};
+    const common::LoadingNumbers load{s.loading != "random", std::uint64_t(parameters.seed)};
     const std::array<double, 3> thermal{std::sqrt(s.temperature_x / s.mass),
                                         std::sqrt(s.temperature_y / s.mass),
                                         std::sqrt(s.temperature_z / s.mass)};

@@ -43,7 +43,7 @@ inline Scales scales_of(const Case& parameters) {
         const double omega2 = k.mean_density() * k.charge * k.charge / k.mass;
         scale.omega_p = std::sqrt(omega2);
         const std::array<double, 3> T = k.temperatures(parameters.axis());
-        scale.thermal_speed = std::sqrt(*std::max_element(T.begin(), T.end()) / k.mass);
+        scale.thermal_speed = std::sqrt(std::ranges::max(T) / k.mass);
         scale.drift = std::hypot(k.drift_x, k.drift_y, k.drift_z);
         scale.Omega_c = std::fabs(k.charge) * parameters.B.size() / k.mass;
         scale.debye_length = omega2 > 0 ? scale.thermal_speed / scale.omega_p : 0;
@@ -102,24 +102,21 @@ inline void warn_of_idleness(const Case& parameters, const Scales& scales,
     }
     for (const SpeciesCase& s : parameters.species) driven = driven || s.emission > 0;
     for (const WallCase& wall : parameters.walls) driven = driven || wall.potential != 0;
-    if (scales.steps == 0)
-        warnings.push_back(sentence("time.end = ", parameters.end, " is below half of time.dt = ",
-                                    parameters.dt, ": no step is taken"));
+    common::warn(warnings, scales.steps == 0, "time.end = ", parameters.end,
+                 " is below half of time.dt = ", parameters.dt, ": no step is taken");
     if (omega_p == 0 || driven || Omega_c * parameters.end > 0.1) return;
-    if (omega_p * parameters.end < 0.1)
-        warnings.push_back(
-            sentence("omega_p time.end = ", omega_p * parameters.end,
-                     " is below 0.1: particles fly straight on, their field has no time to act; "
-                     "raise time.end, which is in units of 1/omega_p of density 1, charge 1, "
-                     "mass 1"));
+    common::warn(warnings, omega_p * parameters.end < 0.1,
+                 "omega_p time.end = ", omega_p * parameters.end,
+                 " is below 0.1: particles fly straight on, their field has no time to act; raise "
+                 "time.end, which is in units of 1/omega_p of density 1, charge 1, mass 1");
     const Grid& grid = parameters.grid;
     const double box =
         parameters.dimensions == 2 ? std::max(grid.x.length, grid.z.length) : grid.x.length;
-    if (!cold && box < scales.debye_length)
-        warnings.push_back(sentence("the box has ", box / scales.debye_length,
-                                    " Debye lengths, below 1: particles cross it before their "
-                                    "field can act; make it longer than ",
-                                    scales.debye_length));
+    common::warn(warnings, !cold && box < scales.debye_length, "the box has ",
+                 box / scales.debye_length,
+                 " Debye lengths, below 1: particles cross it before their field can act; make it "
+                 "longer than ",
+                 scales.debye_length);
 }
 
 }  // namespace detail

@@ -107,23 +107,6 @@ inline CloudPair make_cloud_pair(const common::Axis& x, const common::Axis& z, i
     return {x, z, order, along_x.cosine * phi_k * along_z.cosine.transpose()};
 }
 
-/// The force on cloud 2 at a distance r = x_2 - x_1 from cloud 1.
-///   F_x = [Phi(r_x - dx, r_z) - Phi(r_x + dx, r_z)] / (2 dx), and the same along z
-/// out:    (F_x, F_z) for charges q_1 = q_2 = 1: multiply by q_1 q_2
-/// exact:  the mean over all positions of the pair on the mesh, to round-off. F(-r) = -F(r), so
-///         clouds on top of each other exert no force. A few cells away F is that of points,
-///         1 / (2 pi r) less the share of the background, to (dx / r)^2 of it.
-/// note:   Near r = 0 the mean rises in proportion to r with any order, and falls short of a
-///         straight line like r^2 with cic and tsc. With ngp it is linear between nodes along x and
-///         along z, with kinks there, also at r = 0; and only the mean is. A single pair sees a
-///         staircase: no force while both are in one cell, a jump whenever one changes cells.
-inline Eigen::Vector2d mean_force(const CloudPair& pair, double r_x, double r_z) {
-    using detail::potential;
-    const double dx = pair.x.spacing(), dz = pair.z.spacing();
-    return {(potential(pair, r_x - dx, r_z) - potential(pair, r_x + dx, r_z)) / (2.0 * dx),
-            (potential(pair, r_x, r_z - dz) - potential(pair, r_x, r_z + dz)) / (2.0 * dz)};
-}
-
 /// How fast the force rises when two clouds are pulled apart from r = 0.
 /// out:    (dF_x/dr_x, dF_z/dr_z) at r = 0, per q_1 q_2; by symmetry there are no others
 /// exact:  for square cells in a large box, in units of 1 / dx^2, 1/2 - 1/pi = 0.1817 with ngp,
@@ -156,16 +139,15 @@ inline void compare_clouds(const Case& parameters, const History& history, Summa
         0.0, overlap_frequency_squared(pair, a.mean_density() * a.charge, a.mean_density() * a.mass,
                                        b.mean_density() * b.charge, b.mean_density() * b.mass)[0]));
     if (expected == 0) {
-        summary.result_info("largest_separation",
-                            *std::max_element(separation.begin(), separation.end()), "length",
+        summary.result_info("largest_separation", std::ranges::max(separation), "length",
                             "measured");
         return;
     }
     const common::MeasuredMode seen = common::measure_mode(history.column("time"), separation,
                                                            {.expected = {expected, -expected}});
     summary.hint(
-        "the pair may swing beyond the linear part of the force: bring the clouds closer "
-        "together, or lower time.dt");
+        "the pair may swing beyond the linear part of the force: bring the clouds closer together, "
+        "or lower time.dt");
     if (!seen.found) return summary.not_measured("omega_over_theory", seen.reason);
     summary.result("omega_over_theory",
                    {seen.frequency() / expected, seen.frequency_error() / expected}, "", 1,
@@ -194,7 +176,7 @@ inline void validate_clouds(const Case& parameters) {
 inline void add_separation(const Case& parameters, const std::vector<Particles>& species,
                            common::Row& row) {
     const auto x_of = [&](std::size_t k) {  // with the rank that has it
-        return common::gather_with_all({species[k].x_p.begin(), species[k].x_p.end()})[0];
+        return gather_with_all({species[k].x_p.begin(), species[k].x_p.end()})[0];
     };
     const double length = parameters.grid.x.length, d = x_of(1) - x_of(0);
     row.add("separation_x", "length", d - length * std::floor(d / length + 0.5));

@@ -3,7 +3,6 @@
 // list of all is in comparisons.hpp.
 #pragma once
 
-#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -57,14 +56,6 @@ inline long count_with_profile(const Case& parameters, const char* profile) {
     long count = 0;
     for (const SpeciesCase& s : parameters.species) count += s.profile == profile;
     return count;
-}
-
-/// |E_k| of the recorded mode, at all times.
-inline std::vector<double> amplitude_of_mode(const History& history) {
-    const auto re = history.column("mode_re"), im = history.column("mode_im");
-    std::vector<double> amplitude;
-    for (std::size_t n = 0; n < re.size(); ++n) amplitude.push_back(std::hypot(re[n], im[n]));
-    return amplitude;
 }
 
 /// Mean over the second half of a run.

@@ -48,8 +48,7 @@ inline void validate_comparison(const Case& parameters) {
     const auto by_formula = [](const SpeciesCase& s) {
         return !s.density.is_number() || s.has_distribution();
     };
-    refuse(!comparison.formulas &&
-               std::any_of(parameters.species.begin(), parameters.species.end(), by_formula),
+    refuse(!comparison.formulas && std::ranges::any_of(parameters.species, by_formula),
            asked_for(parameters), " is for species without formulas: write numbers");
     comparison.validate(parameters);
 }

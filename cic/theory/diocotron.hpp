@@ -8,11 +8,9 @@
 // exp(i k x - i omega t): Im omega is a growth rate.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <string>
-#include <vector>
 
 #include "cic/theory/comparison.hpp"
 #include "cic/theory/theory_of_case.hpp"
@@ -26,12 +24,6 @@ struct ChargedLayer {
     double half_width;     // d
     double wall_distance;  // b, from the middle of the layer; infinite without walls
 };
-
-/// The drift v_x along the undisturbed layer.
-///   v_x = -E_z / B,  E_z = rho_0 z in the layer and rho_0 d sign z outside
-inline double layer_drift(const ChargedLayer& layer, double z) {
-    return -layer.shear_rate * std::clamp(z, -layer.half_width, layer.half_width);
-}
 
 /// The frequency of the ripples of wave number k.
 /// The edges z = +-d are displaced by eta_+-, and charge +-rho_0 eta_+- on them disturbs phi:
@@ -70,17 +62,15 @@ inline double diocotron_growth(const Case& parameters) {
 /// The rate at which the edges of a charged layer wind up.
 inline void compare_diocotron(const Case& parameters, const History& history, Summary& summary) {
     const double growth = diocotron_growth(parameters);
-    std::vector<std::complex<double>> mode;
-    const auto re = history.column("mode_re"), im = history.column("mode_im");
-    for (std::size_t n = 0; n < re.size(); ++n) mode.emplace_back(re[n], im[n]);
-    const common::MeasuredMode seen = common::measure_mode(
-        history.column("time"), mode, {.expected = {{0, growth}}, .below_maximum = 0.2});
+    const common::MeasuredMode seen =
+        common::measure_mode(history.column("time"), history.complex_column("mode"),
+                             {.expected = {{0, growth}}, .below_maximum = 0.2});
     const std::string where =
         "guiding centers, two edges between grounded walls; measured " + seen.window;
     summary.result_info("theory_growth", growth, omega_p_unit, where);
     summary.hint(
-        "inertia changes the drift where omega_p is not far below Omega_c, and so does a "
-        "coarse layer: lower the density, or raise grid.cells_z");
+        "inertia changes the drift where omega_p is not far below Omega_c, and so does a coarse "
+        "layer: lower the density, or raise grid.cells_z");
     if (!seen.found) return summary.not_measured("growth_over_theory", seen.reason);
     summary.result_info("growth", {seen.growth(), seen.growth_error()}, omega_p_unit, where);
     summary.result("growth_over_theory", {seen.growth() / growth, seen.growth_error() / growth}, "",

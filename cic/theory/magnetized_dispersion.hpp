@@ -48,7 +48,7 @@ inline std::vector<double> bessel_functions(double x, std::size_t count) {
     J[0] = 1, J[1] = 0.5 * x;
     if (x < 1e-8) return J;
     // Where they would overflow, higher ones are nothing.
-    const auto top = std::min(count, static_cast<std::size_t>(20 + 1.3 * x));
+    const auto top = std::min(count, std::size_t(20 + 1.3 * x));
     double above = 0, here = 1e-280, sum = 0;
     for (std::size_t n = top; n > 0; --n) {
         J[n] = here;
@@ -66,7 +66,7 @@ inline std::vector<double> bessel_functions(double x, std::size_t count) {
 inline Harmonics tabulated_harmonics(double k_across, const Distribution& speeds, double Omega) {
     const std::size_t pieces = speeds.f.size();
     const double per_speed = std::fabs(k_across / Omega);
-    const auto count = static_cast<std::size_t>(20 + 1.3 * per_speed * speeds.edge(pieces));
+    const auto count = std::size_t(20 + 1.3 * per_speed * speeds.edge(pieces));
     Harmonics h{std::vector<double>(count + 1, 0.0), std::vector<double>(count + 1, 0.0)};
     const auto add = [&](double v, double factor, std::vector<double>& to) {
         if (factor == 0) return;
@@ -133,7 +133,7 @@ inline std::vector<double> bernstein_roots(const std::vector<MagnetizedSpecies>&
             if (2 * s.omega2 * double(n) * s.Omega * s.harmonics.gain[n] >
                 1e-9 * omega2 * s.k * s.k)
                 poles.push_back(double(n) * std::fabs(s.Omega));
-    std::sort(poles.begin(), poles.end());
+    std::ranges::sort(poles);
     std::vector<double> roots;
     for (std::size_t p = 0; p < poles.size(); ++p) {
         const bool last = p + 1 == poles.size();

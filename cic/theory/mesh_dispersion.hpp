@@ -23,7 +23,6 @@
 #include <array>
 #include <cmath>
 #include <complex>
-#include <limits>
 #include <numbers>
 #include <span>
 #include <vector>
@@ -221,22 +220,6 @@ inline common::DispersionRoot fastest_growing_on_mesh(std::span<const common::Pl
     }
     const auto D = [&](Complex omega) { return mesh_dispersion(plasma, k, scheme, omega); };
     return common::fastest_growing_root(D, roots);
-}
-
-/// The frequency of a cold plasma at rest.
-///   omega_g = omega_p times
-///     cos(theta)                                 momentum conserving, ngp and cic
-///     cos(theta) [(2 + cos^2(theta)) / 3]^1/2    momentum conserving, tsc
-///     1                                          energy conserving, cic
-///     [(1 + 2 cos^2(theta)) / 3]^1/2             energy conserving, tsc
-///   omega = (2 / dt) asin(omega_g dt / 2)
-/// out:    not a number where the leapfrog is unstable, omega_g dt > 2
-/// exact:  D = 0
-inline double cold_mesh_frequency(double k, const MeshScheme& scheme, double omega_p) {
-    const double omega_g =
-        omega_p * std::sqrt(detail::sum_of_alias_weights(scheme, 0.5 * k * scheme.dx));
-    if (scheme.dt * omega_g > 2.0) return std::numeric_limits<double>::quiet_NaN();
-    return scheme.dt > 0.0 ? 2.0 / scheme.dt * std::asin(0.5 * scheme.dt * omega_g) : omega_g;
 }
 
 /// The drift u / (omega_p dx) below which the energy-conserving scheme makes a cold beam unstable.

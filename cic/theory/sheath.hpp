@@ -20,7 +20,6 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
-#include <string>
 #include <vector>
 
 #include "cic/theory/comparison.hpp"
@@ -72,15 +71,6 @@ inline double electron_density(const Sheath& s, double phi) {
            detail::one_plus_erf(drop);
 }
 
-/// The density of ions where the potential is phi.
-///   n_i = g(-phi / tau) / g(-phi_P / tau),  g(y) = exp(y) erfc(y^1/2)
-/// in:    phi, from phi_C to 0
-/// exact: 1 at phi_P
-inline double ion_density(const Sheath& s, double phi) {
-    return detail::scaled_erfc(-phi / s.temperature_ratio) /
-           detail::scaled_erfc(-s.plasma_potential / s.temperature_ratio);
-}
-
 /// The momentum that both species carry through a plane per area and time, in n_P T_e.
 ///   P = n_e - (2 / pi^1/2) exp(phi_C - phi_P) (phi - phi_C)^1/2 / (1 + erf (phi_P - phi_C)^1/2)
 ///     + tau [g(y) + 2 (y / pi)^1/2] / g(-phi_P / tau),  y = -phi / tau
@@ -97,16 +87,6 @@ inline double momentum_flux(const Sheath& s, double phi) {
                         (detail::scaled_erfc(y) + two_over_root_pi * std::sqrt(y)) /
                         detail::scaled_erfc(-s.plasma_potential / s.temperature_ratio);
     return electron_density(s, phi) - absorbed + ions;
-}
-
-/// The field where the potential is phi, in T_e / (e lambda_D): what Maxwell's stress adds to the
-/// momentum of the particles.
-///   E^2 / 2 = P(phi) - P(phi_P),  the first integral of phi'' = n_e - n_i
-/// in:    phi, from phi_C to 0
-/// exact: zero at phi_P, and at the source, whose plane carries no charge
-inline double electric_field(const Sheath& s, double phi) {
-    const double stress = momentum_flux(s, phi) - momentum_flux(s, s.plasma_potential);
-    return std::sqrt(2.0 * std::max(stress, 0.0));
 }
 
 namespace detail {

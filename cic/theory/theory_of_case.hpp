@@ -221,8 +221,7 @@ std::vector<std::complex<double>> all_roots(const Dispersion& D,
         const auto same = [&](std::complex<double> other) {
             return std::abs(other - root.omega) <= 1e-7 * std::abs(root.omega);
         };
-        if (root.found && std::none_of(roots.begin(), roots.end(), same))
-            roots.push_back(root.omega);
+        if (root.found && std::ranges::none_of(roots, same)) roots.push_back(root.omega);
     }
     return roots;
 }
@@ -356,14 +355,12 @@ inline Theory theory_of_wave(const Case& parameters, long mode_x, long mode_z) {
             : on_mesh            ? fastest_growing_on_mesh(plasma, k.size(), scheme)
                       : common::fastest_growing_root(D, common::fan_of_guesses(plasma, k.size()));
         if (!root.found) {
-            const bool table_only = std::any_of(responses.begin(), responses.end(),
-                                                [](const auto& one) { return one.table_only; });
+            const bool table_only = std::ranges::any_of(responses, &SpeciesResponse::table_only);
             const std::string why = sentence(
                 "no root of the dispersion relation was found for ", mode_text(mode_x, mode_z),
-                table_only
-                    ? ", and where a distribution by formula has steps or steep slopes, or is "
-                      "cut before it is 1e-8 of its largest, none that is damped is known: "
-                      "raise distribution_max where it is cut"
+                table_only ? ", and where a distribution by formula has steps or steep slopes, or "
+                             "is cut before it is 1e-8 of its largest, none that is damped is "
+                             "known: raise distribution_max where it is cut"
                 : parameters.near != 0 ? sentence(" near theory.near = ", parameters.near,
                                                   ": change it or take it out")
                                        : ": give theory.near a frequency to look at",

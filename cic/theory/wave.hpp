@@ -27,8 +27,7 @@ inline void refuse_magnetized(const Case& parameters, const SpeciesCase& s, cons
     refuse(std::fabs(T[a] - T[b]) > 1e-9 * most ||
                (!aligned && std::fabs(T[axis] - T[a]) > 1e-9 * most),
            what,
-           " with a magnetic field needs the same temperature in all directions across it, "
-           "and '",
+           " with a magnetic field needs the same temperature in all directions across it, and '",
            s.name, "' has temperature_x = ", T[0], ", y: ", T[1], ", z: ", T[2]);
     refuse(std::hypot(u[1] * B[2] - u[2] * B[1], u[2] * B[0] - u[0] * B[2],
                       u[0] * B[1] - u[1] * B[0]) >
@@ -47,8 +46,7 @@ inline void refuse_magnetized(const Case& parameters, const SpeciesCase& s, cons
            "' has none: make it fixed or take it out");
     refuse(orbit > 100, what, ": the orbits of '", s.name, "' are ", orbit,
            " times the length 1/k across the field, more than the 100 to which harmonics are "
-           "summed: raise the magnetic field, "
-           "or take it out");
+           "summed: raise the magnetic field, or take it out");
 }
 
 /// Refuses a case for which the dispersion relations of theory_of_case.hpp do not hold.
@@ -68,11 +66,10 @@ inline void refuse_wave(const Case& parameters, const std::string& what, long mo
         if (parameters.magnetized())
             refuse_magnetized(parameters, s, what, k);
         else
-            refuse(
-                s.tables.speed.given() || (s.has_distribution() && k.x != 0 && k.z != 0), what,
-                " is for distributions by formula of the velocity along x or along z, and a mode "
-                "along the same axis: change the mode or distribution of '",
-                s.name, "'");
+            refuse(s.tables.speed.given() || (s.has_distribution() && k.x != 0 && k.z != 0), what,
+                   " is for distributions by formula of the velocity along x or along z, and a "
+                   "mode along the same axis: change the mode or distribution of '",
+                   s.name, "'");
     }
     refuse(parameters.model == "mesh" && mode_x != 0 && mode_z != 0,
            "theory.model = \"mesh\" needs a mode along x or along z, and not ",
@@ -143,12 +140,12 @@ inline std::string likely_cause(const Case& parameters, const Theory& theory, do
     const char* exact = takes_mesh ? ", or take theory.model = \"mesh\"" : "";
     if (noise > 0.1 * field)
         return sentence("random particles have up to ", noise / field,
-                        " of the seeded field in this mode: raise amplitude or "
-                        "particles_per_cell, or take loading = \"quiet\"");
+                        " of the seeded field in this mode: raise amplitude or particles_per_cell, "
+                        "or take loading = \"quiet\"");
     if (bounce > rate && rate > 1e-3 * std::abs(theory.omega))
         return sentence("particles bounce in the wave with ", bounce, ", faster than the rate ",
                         rate, ", and linear theory does not hold: lower the amplitude ",
-                        common::format(rate * rate / (bounce * bounce)), " times");
+                        format(rate * rate / (bounce * bounce)), " times");
     if (parameters.model != "mesh" && std::max(k_dx, k_dz) > 0.5)
         return sentence(k_dx > k_dz ? "k dx is " : "k dz is ", std::max(k_dx, k_dz),
                         ", and the mesh changes the wave: raise grid.cells_",
@@ -168,15 +165,14 @@ inline std::string likely_cause(const Case& parameters, const Theory& theory, do
 ///   what grows ends at a tenth of its maximum
 inline void compare_wave(const Case& parameters, const History& history, Summary& summary) {
     const Theory theory = theory_of_wave(parameters);
-    const auto times = history.column("time"), re = history.column("mode_re"),
-               im = history.column("mode_im");
-    const std::vector<double> amplitude = amplitude_of_mode(history);
+    const auto times = history.column("time");
+    const std::vector<std::complex<double>> mode = history.complex_column("mode");
+    std::vector<double> amplitude;
+    for (const std::complex<double> E_k : mode) amplitude.push_back(std::abs(E_k));
     const double growth = theory.omega.imag(), frequency = std::fabs(theory.omega.real());
     summary.result_info("theory_omega", theory.omega.real(), omega_p_unit, theory.source);
     summary.result_info("theory_growth", growth, omega_p_unit, theory.source);
     summary.result_info("mode_x", double(theory.mode_x), "", "followed");
-    std::vector<std::complex<double>> mode;
-    for (std::size_t n = 0; n < re.size(); ++n) mode.emplace_back(re[n], im[n]);
     const double start = *std::max_element(
         amplitude.begin(),
         amplitude.begin() + static_cast<std::ptrdiff_t>(1 + amplitude.size() / 10));
@@ -240,7 +236,7 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
     }
 
     // Where nothing should grow, nothing may; but a quiet start does not stay quieter than noise.
-    const double largest = *std::max_element(amplitude.begin(), amplitude.end()) / start,
+    const double largest = std::ranges::max(amplitude) / start,
                  level = noise_field(parameters, theory) / start;
     if (!(start > 0))
         summary.not_measured("largest_over_start",
@@ -248,9 +244,9 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
     else if (largest > 1.2 && largest < 1.2 + 3 * level)
         summary.not_measured(
             "largest_over_start",
-            sentence("the noise of particles, of which a quiet start shows more and "
-                     "more, may become ",
-                     level, " of the wave: raise amplitude or particles_per_cell"));
+            sentence(
+                "the noise of particles, of which a quiet start shows more and more, may become ",
+                level, " of the wave: raise amplitude or particles_per_cell"));
     else
         summary.result_at_most("largest_over_start", largest, "", 1.2, "no growing root");
     if (!swings) {
@@ -271,10 +267,9 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
         report("damping_over_theory", seen.growth(), seen.growth_error(), growth,
                parameters.growth_tolerance);
     else
-        summary.not_measured(
-            "damping_over_theory",
-            "no species is perturbed in this mode, and the noise of particles keeps "
-            "a damped wave up: give one an amplitude");
+        summary.not_measured("damping_over_theory",
+                             "no species is perturbed in this mode, and the noise of particles "
+                             "keeps a damped wave up: give one an amplitude");
 }
 
 /// Frequency, growth and onset of the followed mode in words, before the run.
@@ -314,10 +309,11 @@ inline constexpr Comparison wave_comparison{
         [](const Case& parameters, std::vector<std::string>& warnings) {
             const std::complex<double> omega = theory_of_wave(parameters).omega;
             const double period = 2 * pi / std::fabs(omega.real());
-            if (omega.imag() <= 0 && omega.real() != 0 && period > parameters.end)
-                warnings.push_back(sentence("the wave of theory has the period ", period,
-                                            ", longer than time.end = ", parameters.end,
-                                            ": its frequency cannot be measured well"));
+            common::warn(warnings,
+                         omega.imag() <= 0 && omega.real() != 0 && period > parameters.end,
+                         "the wave of theory has the period ", period,
+                         ", longer than time.end = ", parameters.end,
+                         ": its frequency cannot be measured well");
         },
     .add_results = compare_wave};
 

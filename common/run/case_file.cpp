@@ -1,6 +1,7 @@
 // Case files: TOML, read by toml++ after the bytes have been looked at. The only source that
 // includes toml++.
 #include <algorithm>
+#include <cctype>
 #include <utility>
 
 #include "common/run/parameters.hpp"
@@ -92,10 +93,7 @@ struct Placed {
     std::pair<std::size_t, std::size_t> position;
 };
 
-bool is_name_letter(char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-           c == '-';
-}
+bool is_name_letter(unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; }
 
 bool is_override(const std::string& source) { return source.starts_with("command line:"); }
 
@@ -110,7 +108,7 @@ void flatten(const toml::table& table, const std::string& prefix, const std::str
         const auto add = [&](const auto& value) {
             settings.push_back({{name, value, place}, {begin.line, begin.column}});
         };
-        if (!std::all_of(word.begin(), word.end(), is_name_letter))
+        if (!std::ranges::all_of(word, is_name_letter))
             throw InputError(place + ": '" + word +
                              "' is not a name: use letters, digits and '_', and dots only between "
                              "section and key");
@@ -122,7 +120,7 @@ void flatten(const toml::table& table, const std::string& prefix, const std::str
         } else if (const auto* truth = node.as_boolean()) {
             add(truth->get());
         } else if (const auto* whole = node.as_integer()) {
-            add(static_cast<long>(whole->get()));
+            add(long(whole->get()));
         } else if (const auto* real = node.as_floating_point()) {
             add(real->get());
         } else if (const auto* text = node.as_string()) {
@@ -147,8 +145,7 @@ std::vector<Setting> read_case(const std::string& text, const std::string& sourc
             is_override(source) ? source : at(source, begin.line, begin.column);
         throw InputError(place + ": " + std::string(error.description()));
     }
-    std::stable_sort(placed.begin(), placed.end(),
-                     [](const Placed& a, const Placed& b) { return a.position < b.position; });
+    std::ranges::stable_sort(placed, {}, &Placed::position);
     std::vector<Setting> settings;
     for (Placed& one : placed) settings.push_back(std::move(one.setting));
     return settings;

@@ -9,8 +9,6 @@
 #include <cstring>
 #include <filesystem>
 
-#include "common/run/output_file.hpp"
-
 #define XXH_INLINE_ALL 1
 #include <xxhash.h>
 
@@ -23,25 +21,9 @@ constexpr char end_of_file[] = "end";
 
 }  // namespace
 
-struct CheckpointWriter::File {
-    std::string partial;
-    std::FILE* stream = nullptr;
-
-    explicit File(const std::string& path)
-        : partial(path + ".partial"), stream(open_for_writing(partial)) {}
-    File(const File&) = delete;
-    File& operator=(const File&) = delete;
-    ~File() {
-        if (stream != nullptr) std::fclose(stream);
-        if (!partial.empty() && is_first_rank()) unlink(partial.c_str());
-    }
-};
-
 CheckpointWriter::CheckpointWriter(const ProgramInfo& info, const std::string& path,
                                    const std::string& case_name, const std::string& effective_case)
-    : path_(path) {
-    refuse_special_file(path);
-    file_ = std::make_shared<File>(path);
+    : file_(path), path_(path) {
     write(magic, 8);
     (*this)("program", info.program);
     (*this)("version", info.version);
@@ -49,12 +31,8 @@ CheckpointWriter::CheckpointWriter(const ProgramInfo& info, const std::string& p
     (*this)("case", effective_case);
 }
 
-void CheckpointWriter::fail(const std::string& what) {
-    throw InputError(path_ + ": cannot " + what + " the checkpoint: " + std::strerror(errno));
-}
-
 void CheckpointWriter::write(const void* from, std::size_t bytes) {
-    if (bytes > 0 && std::fwrite(from, 1, bytes, file_->stream) != bytes) fail("write");
+    file_.bytes(from, bytes);
     checksum_ = XXH3_64bits_withSeed(from, bytes, checksum_);
 }
 
@@ -72,7 +50,7 @@ void CheckpointWriter::write_block(const std::string& name, char type, const voi
         XXH3_state_t state;
         XXH3_64bits_reset_withSeed(&state, checksum_);
         gather_in_turn(from, count * size, [&](const void* piece, std::size_t bytes) {
-            if (bytes > 0 && std::fwrite(piece, 1, bytes, file_->stream) != bytes) fail("write");
+            file_.bytes(piece, bytes);
             XXH3_64bits_update(&state, piece, bytes);
         });
         checksum_ = XXH3_64bits_digest(&state);
@@ -83,12 +61,8 @@ void CheckpointWriter::write_block(const std::string& name, char type, const voi
 
 void CheckpointWriter::finish() {
     (*this)(end_of_file, std::string());
+    file_.finish(true);
     if (!is_first_rank()) return;
-    std::FILE* stream = std::exchange(file_->stream, nullptr);
-    const bool flushed = std::fflush(stream) == 0 && fsync(fileno(stream)) == 0;
-    if (std::fclose(stream) != 0 || !flushed) fail("write");
-    if (rename(file_->partial.c_str(), path_.c_str()) != 0) fail("rename");
-    file_->partial.clear();
     // The new name is on the disk when the folder is.
     const std::string folder = std::filesystem::path(path_).parent_path().string();
     const int directory =
@@ -107,14 +81,14 @@ CheckpointReader::CheckpointReader(const ProgramInfo& info, const std::string& p
     struct stat status {};
     if (file_ == nullptr || fstat(fileno(file_.get()), &status) != 0)
         throw InputError(path + ": cannot be read: " + std::strerror(errno));
-    left_ = static_cast<std::uint64_t>(status.st_size);
+    left_ = std::uint64_t(status.st_size);
 
     char found[8] = {};
     if (left_ >= 8) read(found, 8);
     if (std::memcmp(found, "PICSTATE", 8) == 0) {
         throw InputError(path +
-                         ": was written by an earlier version of the program; continue it "
-                         "with the program that wrote it");
+                         ": was written by an earlier version of the program; continue it with the "
+                         "program that wrote it");
     }
     if (std::memcmp(found, magic, 8) != 0) throw InputError(path + ": is not a checkpoint");
     blocks_ = verify();

@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "common/ranks.hpp"
-#include "common/run/parameters.hpp"
+#include "common/run/output_file.hpp"
 
 namespace common {
 
@@ -35,8 +35,7 @@ constexpr char letter_of() {
 /// Whether all numbers of a list lie in [low, high]; what is not a number does not.
 template <class Numbers>
 bool all_within(const Numbers& values, double low, double high) {
-    return std::all_of(values.begin(), values.end(),
-                       [=](double x) { return x >= low && x <= high; });
+    return std::ranges::all_of(values, [=](double x) { return x >= low && x <= high; });
 }
 
 /// An archive that writes named numbers into a file beside `path`; finish() gives it that name.
@@ -56,7 +55,7 @@ class CheckpointWriter {
     template <class Numbers>
     requires(!std::is_arithmetic_v<Numbers>) void operator()(const std::string& name,
                                                              const Numbers& values) {
-        block(name, values.data(), static_cast<std::size_t>(values.size()));
+        block(name, values.data(), std::size_t(values.size()));
     }
     /// Adds a list of which every rank has a part.
     template <class Number>
@@ -84,10 +83,8 @@ class CheckpointWriter {
     void write_block(const std::string& name, char type, const void* from, std::size_t count,
                      std::size_t size, std::size_t all);
     void write(const void* from, std::size_t bytes);
-    [[noreturn]] void fail(const std::string& what);
 
-    struct File;  // open, and removed unless it was finished
-    std::shared_ptr<File> file_;
+    OutputFile file_;
     std::string path_;
     std::uint64_t checksum_ = 0;
 };
@@ -139,7 +136,7 @@ class CheckpointReader {
     /// Reads a list of numbers whose length is known: a dense vector of Eigen.
     template <class Numbers>
     requires(!std::is_arithmetic_v<Numbers>) void operator()(const std::string& name, Numbers& v) {
-        block(name, v.data(), static_cast<std::size_t>(v.size()));
+        block(name, v.data(), std::size_t(v.size()));
     }
 
     /// Nothing may follow. errors: InputError where something does.

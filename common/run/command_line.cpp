@@ -60,9 +60,9 @@ std::string list_cases(const ProgramInfo& info, const std::string& wrong) {
     std::error_code error;
     for (const auto& entry : fs::directory_iterator(folder, error))
         if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
-    std::sort(names.begin(), names.end());
+    std::ranges::sort(names);
     const std::string name = fs::path(wrong).stem().string();
-    if (std::find(names.begin(), names.end(), name) != names.end())
+    if (std::ranges::find(names, name) != names.end())
         return "; did you mean " + (folder / name).string() + ".toml?";
     std::string list;
     for (const std::string& one : names) list += (list.empty() ? "" : ", ") + one;
@@ -199,7 +199,7 @@ void apply_override(const std::string& argument, bool restarting, ParameterTable
     const std::size_t equals = argument.find('=');
     const std::string name = argument.substr(0, equals);
     std::string value = argument.substr(equals + 1);
-    const bool is_name = !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
+    const bool is_name = !name.empty() && std::ranges::all_of(name, [](char c) {
         return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '.' || c == '-';
     });
     if (!is_name) throw InputError(place + ": write section.key=value");
@@ -226,7 +226,7 @@ int whole_number(const std::string& option, const std::string& text, long low, l
     if (text.empty() || *end != '\0' || errno != 0 || number < low || number > high)
         throw InputError(option + " takes a whole number from " + std::to_string(low) + " to " +
                          std::to_string(high) + ", not '" + text + "'");
-    return static_cast<int>(number);
+    return int(number);
 }
 
 void print_help(const ProgramInfo& info, const ParameterTable& table) {
@@ -277,7 +277,7 @@ std::string read_file(const std::string& path) {
     std::string content;
     for (char piece[4096]; file.good();) {
         file.read(piece, sizeof piece);
-        content.append(piece, static_cast<std::size_t>(file.gcount()));
+        content.append(piece, std::size_t(file.gcount()));
     }
     if (!file.eof()) throw InputError(path + ": cannot be read: " + std::strerror(errno));
     return content;

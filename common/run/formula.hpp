@@ -15,6 +15,9 @@ struct Constant {
     std::string name;
     double value = 0;
 };
+inline void describe_constant(ParameterTable& table, const std::string& prefix, Constant& c) {
+    table.real(prefix + ".value", c.value, "", anything(), "of the name");
+}
 
 class Formula {
    public:

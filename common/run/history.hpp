@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <complex>
 #include <cstdio>
 #include <span>
 #include <string>
@@ -24,11 +25,15 @@ struct Column {
 struct Row {
     std::vector<Column> columns;
     std::vector<double> values;
-    Row() = default;
     /// Adds a column on the right.
     void add(const std::string& name, const std::string& unit, double value) {
         columns.push_back({name, unit});
         values.push_back(value);
+    }
+    /// Adds two columns, name_re and name_im.
+    void add(const std::string& name, const std::string& unit, std::complex<double> value) {
+        add(name + "_re", unit, value.real());
+        add(name + "_im", unit, value.imag());
     }
 };
 
@@ -42,9 +47,8 @@ class History {
         if (file_ != nullptr) std::fclose(file_);
     }
 
-    /// Names the columns, once, before the first row: names_and_units() begins the file.
-    void columns(const std::vector<Column>& columns) { columns_ = columns; }
-    /// The same from a row whose values do not count.
+    /// Names the columns, once, before the first row, as those of a row whose values do not count:
+    /// names_and_units() begins the file.
     void columns(const Row& row) { columns_ = row.columns; }
 
     /// Adds a row.
@@ -95,6 +99,14 @@ class History {
         throw std::logic_error("history: no column '" + name + "'");
     }
 
+    /// The columns name_re and name_im.
+    std::vector<std::complex<double>> complex_column(const std::string& name) const {
+        const std::vector<double> re = column(name + "_re"), im = column(name + "_im");
+        std::vector<std::complex<double>> result;
+        for (std::size_t n = 0; n < re.size(); ++n) result.emplace_back(re[n], im[n]);
+        return result;
+    }
+
     /// Largest magnitude in a column; 0 without a row.
     double largest(const std::string& name) const {
         double most = 0;
@@ -110,7 +122,7 @@ class History {
         flushed_ = std::chrono::steady_clock::now();
     }
 
-    long rows() const { return static_cast<long>(values_.size() / columns_.size()); }
+    long rows() const { return long(values_.size() / columns_.size()); }
     /// All rows, for a checkpoint.
     const std::vector<double>& all() const { return values_; }
     /// Takes the rows of a checkpoint. errors: InputError for other columns or times that fall
@@ -158,6 +170,19 @@ inline double time_at_level(const std::vector<double>& times, const std::vector<
         }
     }
     return std::nan("");
+}
+
+/// Slope of the straight line of least squares; 0 for fewer than two different times.
+inline double slope(std::span<const double> times, std::span<const double> values) {
+    const double count = double(times.size());
+    double mean_t = 0, mean_y = 0, along = 0, product = 0;
+    for (std::size_t n = 0; n < times.size(); ++n)
+        mean_t += times[n] / count, mean_y += values[n] / count;
+    for (std::size_t n = 0; n < times.size(); ++n) {
+        along += (times[n] - mean_t) * (times[n] - mean_t);
+        product += (times[n] - mean_t) * (values[n] - mean_y);
+    }
+    return along > 0 ? product / along : 0;
 }
 
 }  // namespace common

@@ -74,12 +74,11 @@ int free_cores() {
             time = infinity;  // "max 100000"
         return period > 0 && time < infinity ? time / period : infinity;
     });
-    return std::max(1, static_cast<int>(std::min<double>(omp_get_num_procs(), quota)));
+    return std::max(1, int(std::min<double>(omp_get_num_procs(), quota)));
 }
 
 double memory_limit_bytes(int processes) {
-    const double installed =
-        static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+    const double installed = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
     double bytes = std::min(installed, smallest_limit([](const fs::path& group) {
                                 return std::min(limit_in(group / "memory.max"),
                                                 limit_in(group / "memory.limit_in_bytes"));
@@ -87,7 +86,7 @@ double memory_limit_bytes(int processes) {
                    processes;
     struct rlimit shell {};
     if (getrlimit(RLIMIT_AS, &shell) == 0 && shell.rlim_cur != RLIM_INFINITY)
-        bytes = std::min(bytes, static_cast<double>(shell.rlim_cur));
+        bytes = std::min(bytes, double(shell.rlim_cur));
     return bytes;
 }
 
@@ -99,14 +98,14 @@ double peak_memory_bytes() {
     }
     struct rusage usage {};
     getrusage(RUSAGE_SELF, &usage);
-    return 1024.0 * static_cast<double>(usage.ru_maxrss);
+    return 1024.0 * double(usage.ru_maxrss);
 }
 
 std::string shell_word(const std::string& text) {
     const auto plain = [](unsigned char c) {
         return std::isalnum(c) || c == '/' || c == '.' || c == '_' || c == '-' || c == '=';
     };
-    if (!text.empty() && std::all_of(text.begin(), text.end(), plain)) return text;
+    if (!text.empty() && std::ranges::all_of(text, plain)) return text;
     std::string word = "'";
     for (const char letter : text)
         word += letter == '\'' ? std::string("'\\''") : std::string(1, letter);

@@ -111,7 +111,7 @@ void write_records(hid_t parent, const std::vector<hsize_t>& shape,
             describe(data.id, column.name), describe_component(data.id);
             continue;
         }
-        if (std::find(done.begin(), done.end(), vector) != done.end()) continue;
+        if (std::ranges::find(done, vector) != done.end()) continue;
         done.push_back(vector);
         const Handle record = group(parent, vector);
         describe(record.id, vector);

@@ -1,12 +1,15 @@
 // A text or binary file that is there whole or not at all.
 #pragma once
 
+#include <unistd.h>
+
 #include <cerrno>
 #include <charconv>
 #include <cstdio>
 #include <cstring>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "common/ranks.hpp"
 #include "common/run/parameters.hpp"
@@ -61,12 +64,19 @@ class OutputFile {
     void number(double value) { print(value); }
     void number(long value) { print(value); }
 
-    /// Gives the file its name. errors: InputError where the disk is full.
-    void finish() {
+    /// Writes bytes as they are, without a copy.
+    void bytes(const void* from, std::size_t count) {
         flush();
-        std::FILE* file = file_;
-        file_ = nullptr;
-        if (std::fclose(file) != 0) fail("cannot be written");
+        write(from, count);
+    }
+
+    /// Gives the file its name. errors: InputError where the disk is full.
+    /// in: on_disk, whether its bytes are to be on the disk before it has this name
+    void finish(bool on_disk = false) {
+        flush();
+        if (on_disk && is_first_rank() && (std::fflush(file_) != 0 || fsync(fileno(file_)) != 0))
+            fail("cannot be written");
+        if (std::fclose(std::exchange(file_, nullptr)) != 0) fail("cannot be written");
         if (is_first_rank() && std::rename(partial_.c_str(), path_.c_str()) != 0)
             fail("cannot be renamed into place");
         finished_ = true;
@@ -77,11 +87,13 @@ class OutputFile {
     void print(Number value) {
         char digits[32];
         const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
-        text({digits, static_cast<std::size_t>(end - digits)});
+        text({digits, std::size_t(end - digits)});
+    }
+    void write(const void* from, std::size_t count) {
+        if (count > 0 && std::fwrite(from, 1, count, file_) != count) fail("cannot be written");
     }
     void flush() {
-        if (std::fwrite(buffer_.data(), 1, buffer_.size(), file_) != buffer_.size())
-            fail("cannot be written");
+        write(buffer_.data(), buffer_.size());
         buffer_.clear();
     }
     [[noreturn]] void fail(const std::string& what) const {

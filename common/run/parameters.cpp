@@ -1,10 +1,12 @@
 #include "common/run/parameters.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <map>
 
 #include "common/run/formula.hpp"
 
@@ -60,15 +62,9 @@ std::string kind_of(const Setting& setting) {
 }
 
 bool is_word(const std::string& text) {
-    const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
-    return !text.empty() && letter(text[0]) && std::all_of(text.begin(), text.end(), [&](char c) {
-        return letter(c) || (c >= '0' && c <= '9') || c == '_';
-    });
-}
-
-bool is_control(char letter) {
-    const auto byte = static_cast<unsigned char>(letter);
-    return byte < 0x20 || byte == 0x7F;
+    const auto allowed = [](unsigned char c) { return std::isalnum(c) || c == '_'; };
+    const auto first = static_cast<unsigned char>(text[0]);  // 0 of no text
+    return std::isalpha(first) && std::ranges::all_of(text, allowed);
 }
 
 std::string padded(const std::string& text, std::size_t width) {
@@ -126,7 +122,7 @@ void ParameterTable::describe_expectation() {
 
 bool ParameterTable::is_changeable(const std::string& name) const {
     if (name.starts_with("expect.")) return true;
-    return std::any_of(changeable_.begin(), changeable_.end(), [&](const std::string& allowed) {
+    return std::ranges::any_of(changeable_, [&](const std::string& allowed) {
         return allowed.back() == '.' ? name.starts_with(allowed) : name == allowed;
     });
 }
@@ -204,7 +200,7 @@ void ParameterTable::make_item(const Setting& setting) {
                              ".<name>] above its parameters");
         }
         const std::string item = setting.name.substr(start.size(), dot - start.size());
-        if (std::find(list.items.begin(), list.items.end(), item) != list.items.end()) return;
+        if (std::ranges::find(list.items, item) != list.items.end()) return;
         if (!is_word(item))
             throw InputError(setting.place + ": '" + item +
                              "' cannot name an item: use letters, digits and '_', a letter first");
@@ -223,10 +219,9 @@ void ParameterTable::accept_empty_section(const Setting& setting) {
     const std::string start = setting.name + ".";
     make_item({start, {}, setting.place});
     const bool known =
-        std::any_of(entries_.begin(), entries_.end(),
-                    [&](const Entry& entry) { return entry.name.starts_with(start); }) ||
-        std::any_of(lists_.begin(), lists_.end(),
-                    [&](const List& list) { return list.name == setting.name; });
+        std::ranges::any_of(entries_,
+                            [&](const Entry& entry) { return entry.name.starts_with(start); }) ||
+        std::ranges::any_of(lists_, [&](const List& list) { return list.name == setting.name; });
     if (known) return;
     if (const std::string now = new_name(start); !now.empty())
         throw InputError(setting.place + ": [" + setting.name + "] has a new name: write [" +
@@ -264,9 +259,7 @@ void ParameterTable::set(const Setting& setting) {
     const double* number = std::get_if<double>(&setting.value);
     const std::string* text = std::get_if<std::string>(&setting.value);
     const bool is_number = integer != nullptr || number != nullptr;
-    const double value = number != nullptr    ? *number
-                         : integer != nullptr ? static_cast<double>(*integer)
-                                              : 0;
+    const double value = number != nullptr ? *number : integer != nullptr ? double(*integer) : 0;
     const auto require = [&](bool right_type, const std::string& type) {
         if (!right_type) refuse(" takes " + type + ", not " + kind_of(setting));
         if (!is_number) return;
@@ -294,7 +287,7 @@ void ParameterTable::set(const Setting& setting) {
         number_of("a whole number");
         if (value != std::floor(value) || std::fabs(value) > 9007199254740992.0)
             refuse(" takes a whole number, not " + number_text(value));
-        **whole = static_cast<long>(value);
+        **whole = long(value);
     } else if (auto real = std::get_if<double*>(&entry->target)) {
         **real = number_of("a number");
     } else if (auto optional = std::get_if<std::optional<double>*>(&entry->target)) {
@@ -309,9 +302,9 @@ void ParameterTable::set(const Setting& setting) {
         require(text != nullptr, formula        ? "a number or a formula"
                                  : list.empty() ? "text"
                                                 : "text, one of " + list);
-        if (std::any_of(text->begin(), text->end(), is_control))
+        if (std::ranges::any_of(*text, [](unsigned char c) { return std::iscntrl(c); }))
             refuse(" holds a control character; write plain text");
-        if (!choices.empty() && std::find(choices.begin(), choices.end(), *text) == choices.end())
+        if (!choices.empty() && std::ranges::find(choices, *text) == choices.end())
             refuse(" = " + quoted(*text) + " is not one of " + list);
         if (text->size() > longest_text) {
             refuse(" has " + std::to_string(text->size()) + " letters; write at most " +

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -45,8 +46,8 @@ extern "C" void ask_to_stop(int signal) {
     struct timespec now {};
     clock_gettime(CLOCK_MONOTONIC, &now);
     if (stop_signal != 0) {
-        const double later = static_cast<double>(now.tv_sec - first_signal.tv_sec) +
-                             1e-9 * static_cast<double>(now.tv_nsec - first_signal.tv_nsec);
+        const double later = double(now.tv_sec - first_signal.tv_sec) +
+                             1e-9 * double(now.tv_nsec - first_signal.tv_nsec);
         if (later < 0.1) return;
         std::signal(signal, SIG_DFL);
         raise(signal);
@@ -298,7 +299,7 @@ void Run::show_progress(long step, long steps, double time, double done) {
     const auto now = std::chrono::steady_clock::now();
     const double elapsed = std::chrono::duration<double>(now - start_).count();
     const double left = elapsed * (1 - done) / std::max(1e-9, done - first_done_);
-    const long percent = static_cast<long>(100 * done);
+    const long percent = long(100 * done);
     const std::string of_all = steps > 0 ? " of " + std::to_string(steps) : "";
     char note[160];
     std::snprintf(note, sizeof note, "%s %3ld %%  step %ld%s  t = %.4g  %s elapsed  %s left",
@@ -330,7 +331,7 @@ void Run::keep_two_checkpoints() const {
         if (found.starts_with("checkpoint_") && entry.path().extension() == ".bin" && found <= last)
             names.push_back(entry.path().string());
     }
-    std::sort(names.begin(), names.end());
+    std::ranges::sort(names);
     for (std::size_t k = 0; k + 2 < names.size(); ++k) fs::remove(names[k], error);
 }
 
@@ -340,7 +341,7 @@ int Run::finish(long step, double count) {
     history.flush();
     const double wall =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    const double steps = static_cast<double>(step - first_step_);
+    const double steps = double(step - first_step_);
     summary.performance("wall_s", wall);
     summary.performance("steps", steps);
     summary.performance("particle_steps", steps * count);

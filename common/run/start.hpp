@@ -32,11 +32,10 @@ struct Preparation {
 inline void refuse_unlike_ranks(const CommandLine& command, const ParameterTable& table) {
     const char* started = std::getenv("OMPI_COMM_WORLD_SIZE");
     if (!has_ranks && started != nullptr && std::atol(started) > 1)
-        std::fprintf(
-            stderr,
-            "warning: mpirun starts this program %s times, and it has no ranks, so each is "
-            "a run of its own; build/mpi/ has those with ranks (make MPI=1 all)\n",
-            started);
+        std::fprintf(stderr,
+                     "warning: mpirun starts this program %s times, and it has no ranks, so each "
+                     "is a run of its own; build/mpi/ has those with ranks (make MPI=1 all)\n",
+                     started);
     const std::string all = table.effective_case() + "\n" + command.restart_path + "\n" +
                             std::to_string(command.restart_step) + (command.complete ? "+" : "-") +
                             (command.dry_run ? "+" : "-");

@@ -57,7 +57,7 @@ std::string text_of(const Measured& number) {
 
 bool Expectation::names(const std::string& result) const {
     const std::vector<std::string> all = list();
-    return std::find(all.begin(), all.end(), result) != all.end();
+    return std::ranges::find(all, result) != all.end();
 }
 
 std::vector<std::string> Expectation::list() const {
@@ -99,14 +99,11 @@ const char* Summary::verdict(const Entry& entry) const {
     return expectation.names(entry.name) ? "EXPECTED FAILURE" : "FAIL";
 }
 
-bool Summary::has_verdict() const {
-    return std::any_of(results_.begin(), results_.end(), [](auto& one) { return one.is_judged(); });
-}
+bool Summary::has_verdict() const { return std::ranges::any_of(results_, &Entry::is_judged); }
 
 bool Summary::is_finite() const {
     const auto finite = [](const Entry& entry) { return std::isfinite(entry.value.value); };
-    return std::all_of(results_.begin(), results_.end(), finite) &&
-           std::all_of(conservation_.begin(), conservation_.end(), finite);
+    return std::ranges::all_of(results_, finite) && std::ranges::all_of(conservation_, finite);
 }
 
 void Summary::write(const std::string& path, const ProgramInfo& info, const std::string& case_name,
@@ -177,8 +174,7 @@ std::vector<std::string> Summary::shortfalls() const {
                                 entry.wanted() + ": " + expectation.because);
     }
     for (const std::string& name : expectation.list()) {
-        const auto is_named = [&](const Entry& entry) { return entry.name == name; };
-        const auto found = std::find_if(results_.begin(), results_.end(), is_named);
+        const auto found = std::ranges::find(results_, name, &Entry::name);
         if (name != "status 3" && (found == results_.end() || found->meets()))
             sentences.push_back("expect.fails names '" + name +
                                 (found == results_.end() ? "', and this run has no such result"
@@ -188,7 +184,7 @@ std::vector<std::string> Summary::shortfalls() const {
 }
 
 bool Summary::fell_short() const {
-    return std::any_of(results_.begin(), results_.end(), [&](const Entry& entry) {
+    return std::ranges::any_of(results_, [&](const Entry& entry) {
         const std::string word = entry.is_judged() ? verdict(entry) : "PASS";
         return word == "FAIL" || word == "NOT MEASURED";
     });

@@ -34,6 +34,12 @@ struct Snapshot {
     std::string path(const std::string& kind, const std::string& ending) const;
 };
 
+/// About how many particles a file holds at most; so of so many it holds every n-th.
+inline constexpr long most_particles_written = 40000;
+inline long every_nth_written(long count) {
+    return std::max(1L, (count + most_particles_written - 1) / most_particles_written);
+}
+
 /// The evenly spaced coordinates of one direction of a mesh; one without a name has a single point
 /// and no column.
 struct SampledAxis {
@@ -42,7 +48,7 @@ struct SampledAxis {
     long count = 1;
 
     /// Coordinate of point i.
-    double at(long i) const { return first + static_cast<double>(i) * step; }
+    double at(long i) const { return first + double(i) * step; }
 };
 
 /// One number per point.
@@ -67,7 +73,7 @@ inline void require(bool condition, const std::string& path, const std::string& 
 /// errors: InputError where a list does not have `count` values
 inline void require_length(std::span<const double> values, long count, const std::string& path,
                            const std::string& name) {
-    require(static_cast<long>(values.size()) == count, path,
+    require(long(values.size()) == count, path,
             "column '" + name + "' has " + std::to_string(values.size()) + " values for " +
                 std::to_string(count) + " points");
 }
@@ -239,11 +245,11 @@ void write_openpmd_particles(const Snapshot& at, const std::string& kind,
 /// exact: numbers read back have the same bits; on failure nothing appears under `path`
 inline void write_table(const std::string& path, const std::vector<ScalarColumn>& columns,
                         const Snapshot* at = nullptr) {
-    const long rows = columns.empty() ? 0 : static_cast<long>(columns.front().values.size());
+    const long rows = columns.empty() ? 0 : long(columns.front().values.size());
     for (const auto& c : columns) writers_detail::require_length(c.values, rows, path, c.name);
     OutputFile file(path);
     writers_detail::begin_table(file, columns, at);
-    for (std::size_t row = 0; row < static_cast<std::size_t>(rows); ++row) {
+    for (std::size_t row = 0; row < std::size_t(rows); ++row) {
         for (std::size_t k = 0; k < columns.size(); ++k) {
             if (k > 0) file.text(" ");
             file.number(columns[k].values[row]);
@@ -280,7 +286,7 @@ inline void write_fields(const std::string& path, const SampledAxis& x, const Sa
             }
             for (const auto& f : fields) {
                 file.text(" ");
-                file.number(f.values[static_cast<std::size_t>(j * x.count + i)]);
+                file.number(f.values[std::size_t(j * x.count + i)]);
             }
             file.text("\n");
         }
@@ -336,7 +342,7 @@ inline void write_vtp(const Snapshot& at, const std::string& kind, const VectorC
                       const std::vector<ScalarColumn>& scalars,
                       const std::vector<VectorColumn>& vectors) {
     const std::string path = at.path(kind, "vtp");
-    const long points = static_cast<long>(position.x.size());
+    const long points = long(position.x.size());
     for (const auto& part : {position.x, position.y, position.z})
         writers_detail::require_length(part, points, path, position.name);
     OutputFile file(path);

@@ -67,9 +67,9 @@ inline Complex longitudinal_dispersion(std::span<const PlasmaSpecies> plasma, do
 ///   The ratios I_n / I_(n-1) = x / (2 n + x I_(n+1) / I_n) are taken downward, and
 ///   exp(-x) (I_0 + 2 I_1 + 2 I_2 + ...) = 1 gives the first.
 inline std::vector<double> harmonics_of_maxwellian(double x) {
-    const auto count = static_cast<std::size_t>(20 + 9 * std::sqrt(x));
+    const auto count = std::size_t(20 + 9 * std::sqrt(x));
     std::vector<double> I(count + 2, 0.0);
-    for (std::size_t n = count; n > 0; --n) I[n] = x / (2 * static_cast<double>(n) + x * I[n + 1]);
+    for (std::size_t n = count; n > 0; --n) I[n] = x / (2 * double(n) + x * I[n + 1]);
     I[0] = 1;
     double sum = 1;
     for (std::size_t n = 1; n <= count; ++n) sum += 2 * (I[n] *= I[n - 1]);
@@ -152,7 +152,7 @@ inline std::vector<Complex> fan_of_guesses(std::span<const PlasmaSpecies> plasma
     }
     frequencies.push_back(std::sqrt(total_squared));
     frequencies.push_back(std::abs(c * k));
-    std::sort(frequencies.begin(), frequencies.end());
+    std::ranges::sort(frequencies);
     const auto close = [](double a, double b) { return b - a <= 0.05 * b; };
     frequencies.erase(std::unique(frequencies.begin(), frequencies.end(), close),
                       frequencies.end());

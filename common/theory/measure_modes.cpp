@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -173,8 +174,7 @@ ModeList modes_of(const VectorXcd& z, const Model& model, double dt) {
         list.modes.push_back(mode);
     }
     list.noise = std::sqrt(model.rest / energy);
-    std::sort(list.modes.begin(), list.modes.end(),
-              [](const Mode& a, const Mode& b) { return a.share > b.share; });
+    std::ranges::sort(list.modes, std::greater{}, &Mode::share);
     return list;
 }
 
@@ -228,7 +228,7 @@ ModeList find_modes(std::span<const Complex> record, double dt, int most) {
             const auto is_nearer = [&](const Mode& one) {
                 return std::abs(mode.omega + off - one.omega) < std::abs(off);
             };
-            if (std::any_of(list.modes.begin(), list.modes.end(), is_nearer)) continue;
+            if (std::ranges::any_of(list.modes, is_nearer)) continue;
             real = std::max(real, std::abs(off.real())),
             imag = std::max(imag, std::abs(off.imag()));
         }

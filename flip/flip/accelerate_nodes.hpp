@@ -17,8 +17,7 @@ namespace flip {
 inline Eigen::Vector2d node_acceleration(const Grid& grid, const BodyForce& force, long n) {
     const auto along = [&](const common::Axis& axis, double gravity, long k) {
         const bool seam = axis.periodic && (k == 0 || k == axis.cells);
-        const double x =
-            axis.at(seam ? 0.5 * static_cast<double>(axis.cells) : static_cast<double>(k));
+        const double x = axis.at(seam ? 0.5 * double(axis.cells) : double(k));
         return gravity + force.trap * (axis.low + 0.5 * axis.length - x);
     };
     const long stride = grid.stride();
@@ -39,8 +38,7 @@ inline std::array<CornerGradients, 4> corner_gradients(const Grid& grid, long i)
     std::array<CornerGradients, 4> all;
     for (std::size_t k = 0; k < 4; ++k) {
         const double fx = k & 1 ? 1 - near : near, fz = k & 2 ? 1 - near : near;
-        const double node = static_cast<double>(i) + fx,
-                     per_r = grid.axisymmetric ? 1 / grid.x.at(node) : 0;
+        const double node = double(i) + fx, per_r = grid.axisymmetric ? 1 / grid.x.at(node) : 0;
         all[k] = {{-(1 - fz) / dx, (1 - fz) / dx, -fz / dx, fz / dx},
                   {-(1 - fx) / dz, -fx / dz, (1 - fx) / dz, fx / dz},
                   {per_r * (1 - fx) * (1 - fz), per_r * fx * (1 - fz), per_r * (1 - fx) * fz,

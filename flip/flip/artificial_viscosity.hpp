@@ -75,10 +75,9 @@ inline void limit_viscosity(const Grid& grid, double dt, Mesh& mesh) {
         if (q.trace() == 0) return;
         double response = 0;  // D M^-1 D^T, of this cell alone
         for (const long side : {0, 1}) {
-            const double node = static_cast<double>(i),
-                         along_r =
-                             grid.z.spacing() * ring_length(grid, node + static_cast<double>(side)),
-                         along_z = dx * ring_length(grid, node + static_cast<double>(1 + side) / 3);
+            const double node = double(i),
+                         along_r = grid.z.spacing() * ring_length(grid, node + double(side)),
+                         along_z = dx * ring_length(grid, node + double(1 + side) / 3);
             for (const long corner : {n + side, n + side + grid.stride()})
                 response += 0.25 * (along_r * along_r + along_z * along_z) / g.m[corner];
         }

@@ -17,7 +17,7 @@ namespace detail {
 // 2 pi r v_z dr, with weights (2 r_1 + r_2)/6 and (r_1 + 2 r_2)/6: L at a third and at two thirds.
 inline double dilation_of_ring(const Grid& grid, const Field& vx, const Field& vz, long n) {
     const long up = n + grid.stride();
-    const double i = static_cast<double>(column_of(grid, n));
+    const double i = double(column_of(grid, n));
     return 0.5 * grid.z.spacing() *
                (ring_length(grid, i + 1) * (vx[n + 1] + vx[up + 1]) -
                 ring_length(grid, i) * (vx[n] + vx[up])) +
@@ -29,7 +29,7 @@ inline double dilation_of_ring(const Grid& grid, const Field& vx, const Field& v
 // Its transpose. Uniform pressure pushes no node, so that there is no hoop term to balance.
 inline Eigen::Vector2d pressure_force_of_rings(const Grid& grid, const Field& p, long n) {
     const long down = n - grid.stride();
-    const double i = static_cast<double>(column_of(grid, n));
+    const double i = double(column_of(grid, n));
     return {
         0.5 * grid.z.spacing() * ring_length(grid, i) * (p[down - 1] - p[down] + (p[n - 1] - p[n])),
         0.5 * grid.x.spacing() *
@@ -66,7 +66,7 @@ struct CellGradient {
 };
 inline CellGradient velocity_gradient(const Grid& grid, const Field& vx, const Field& vz, long n) {
     const long up = n + grid.stride();
-    const double i = static_cast<double>(column_of(grid, n)), dx = 0.5 * grid.x.spacing(),
+    const double i = double(column_of(grid, n)), dx = 0.5 * grid.x.spacing(),
                  side = 0.5 * grid.z.spacing() * ring_length(grid, i + 0.5),
                  left = dx * ring_length(grid, i + 1. / 3),
                  right = dx * ring_length(grid, i + 2. / 3);
@@ -86,7 +86,7 @@ inline CellGradient velocity_gradient(const Grid& grid, const Field& vx, const F
 inline Eigen::Vector2d stress_force(const Grid& grid, const std::vector<CellTensor>& q, long n) {
     const long down = n - grid.stride();
     const CellTensor &a = q[down - 1], &b = q[down], &c = q[n - 1], &d = q[n];
-    const double i = static_cast<double>(column_of(grid, n)), dx = 0.5 * grid.x.spacing(),
+    const double i = double(column_of(grid, n)), dx = 0.5 * grid.x.spacing(),
                  dz = 0.5 * grid.z.spacing(), side_left = dz * ring_length(grid, i - 0.5),
                  side_right = dz * ring_length(grid, i + 0.5),
                  left = dx * ring_length(grid, i - 1. / 3),

@@ -33,8 +33,7 @@ void deposit_band(const WeightScale& scale, const Material* materials, const Par
             const double fx = w.S_x[1], fz = w.S_z[1];
             long corner = 0;
             for_nodes(scale, w, [&](long n, double S) {
-                const double right = static_cast<double>(corner & 1),
-                             above = static_cast<double>(corner >> 1);
+                const double right = double(corner & 1), above = double(corner >> 1);
                 node_sum[n] += S * (momentum + (right - fx) * along_x + (above - fz) * along_z);
                 ++corner;
             });

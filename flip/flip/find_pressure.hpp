@@ -7,6 +7,7 @@
 #include <cmath>
 #include <span>
 
+#include "common/run/sentence.hpp"
 #include "flip/flip/mesh.hpp"
 #include "flip/state.hpp"
 
@@ -110,10 +111,9 @@ inline void find_pressure(const Grid& grid, std::span<const Material> materials,
         if (surface) c.p[n] = 0;
     });
     if (bad < 0) return;
-    throw common::NumericalError(
-        "density or internal energy is negative " + cell_and_time(grid, bad, time) +
-        ": reduce time.cfl, raise viscosity.linear, or take more particles per cell" +
-        (volumes ? "; where cold gas meets hot gas, flip.density = \"cells\"" : ""));
+    common::fail("density or internal energy is negative ", cell_and_time(grid, bad, time),
+                 ": reduce time.cfl, raise viscosity.linear, or take more particles per cell",
+                 (volumes ? "; where cold gas meets hot gas, flip.density = \"cells\"" : ""));
 }
 
 /// Sound speed of a cell, c^2 = 1/(rho x compressibility); of a mixture, Wood's.
@@ -174,7 +174,7 @@ inline double step_allowed(const Problem& problem, const Mesh& mesh, double last
             of_row[j] = most;
         },
         grid.size());
-    const double most = *std::max_element(of_row.begin(), of_row.end());
+    const double most = std::ranges::max(of_row);
 
     const BodyForce& force = problem.body_force;
     const double gravity = std::hypot(force.gravity_x, force.gravity_z),
@@ -185,9 +185,9 @@ inline double step_allowed(const Problem& problem, const Mesh& mesh, double last
     if (force.trap > 0) dt = std::min(dt, limits.cfl / std::sqrt(force.trap));
     if (last > 0) dt = std::min(dt, 1.2 * last);
     if (!(dt > 1e-10 * limits.end))
-        throw common::NumericalError("the time step has fallen to " + common::format(dt) +
-                                     ": some cell has become very fast, hot or light; use more "
-                                     "particles per cell or more viscosity");
+        common::fail("the time step has fallen to ", dt,
+                     ": some cell has become very fast, hot or light; use more particles per cell "
+                     "or more viscosity");
     return dt;
 }
 

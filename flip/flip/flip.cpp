@@ -27,11 +27,10 @@ namespace {
 
 using namespace flip;
 
-const common::ProgramInfo info{
-    "flip", PROGRAM_VERSION,
-    "FLIP, particles that keep their momentum: compressible fluids at all "
-    "speeds; the default case is Sod's shock tube",
-    "flip/cases/sod.toml"};
+const common::ProgramInfo info{"flip", PROGRAM_VERSION,
+                               "FLIP, particles that keep their momentum: compressible fluids at "
+                               "all speeds; the default case is Sod's shock tube",
+                               "flip/cases/sod.toml"};
 
 int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     // 1. The case: defaults, file, command line; refuse, warn, or only describe.
@@ -82,7 +81,7 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
         recorder.record(step, state, totals, cells, run);
         recorder.finish(state, totals, cells, run);
     }
-    return run.finish(step, static_cast<double>(particles.count()));
+    return run.finish(step, double(particles.count()));
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 
 #include <array>
 
+#include "common/run/sentence.hpp"
 #include "flip/conjugate_gradients.hpp"
 #include "flip/flip/accelerate_nodes.hpp"
 
@@ -109,7 +110,7 @@ inline void solve_mass(const Grid& grid, const MassMatrix& M, const Field& m,
     for_own_nodes(grid, [&](long, long, long n) {
         if (m[n] > 0 && held[n] == 0 && M.entry[0][n] > 0) free.push_back(n);
     });
-    const auto count = static_cast<long>(free.size());
+    const auto count = long(free.size());
     Eigen::VectorXd scale(count), load(count), y = Eigen::VectorXd::Zero(count);
     Field d = Field::Zero(grid.size()), Md;
     multiply(grid, M, x, Md);
@@ -130,10 +131,9 @@ inline void solve_mass(const Grid& grid, const MassMatrix& M, const Field& m,
     const common::KrylovResult solved =
         conjugate_gradients(multiply_free, load, y, tolerance, 2000);
     if (!solved.converged)
-        throw common::NumericalError(
-            "the consistent mass matrix cannot be solved with: " + solved.reason +
-            "; the nodes have too few particles: take more per cell, or "
-            "flip.mass = \"lumped\"");
+        common::fail(
+            "the consistent mass matrix cannot be solved with: ", solved.reason,
+            "; the nodes have too few particles: take more per cell, or flip.mass = \"lumped\"");
     for (long k = 0; k < count; ++k) x[free[k]] += scale[k] * y[k];
     fill_nodes(grid, x.data());
 }

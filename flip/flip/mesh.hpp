@@ -96,7 +96,7 @@ inline std::vector<double> lattice_volumes(const Grid& grid, long per_cell) {
     for (long n = 0; n < nx * per_cell; ++n) {
         const LatticeColumn column = lattice_column(grid, per_cell, n);
         const Weights w = weights_at(scale, column.x, grid.z.low);
-        const double part = column.ring * grid.cell_area() / static_cast<double>(per_cell);
+        const double part = column.ring * grid.cell_area() / double(per_cell);
         for (const long side : {0, 1})
             V[std::clamp(column_of(grid, w.cell + side), 0L, nx - 1)] += part * w.R_x[side];
     }
@@ -118,7 +118,7 @@ inline Mesh mesh_of(const Problem& problem) {
         for (Field* f : {&g.reaction_x, &g.reaction_z, &g.wall_dissipation}) f->setZero(size);
     if (!scheme.transfer.flip) g.filtered.assign(size, Four::Zero());
     Cells& c = mesh.cells;
-    mesh.materials = static_cast<long>(problem.materials.size());
+    mesh.materials = long(problem.materials.size());
     c.sum.assign(size * mesh.materials, {});
     for (auto* f : {&c.share, &c.de, &c.relative_de}) f->assign(size * mesh.materials, 0);
     c.surface.assign(size, 0);
@@ -130,8 +130,7 @@ inline Mesh mesh_of(const Problem& problem) {
         c.soft.assign(size * mesh.materials, {});
         const Material& first = problem.materials.front();
         c.one_fluid =
-            !scheme.implicit &&
-            std::all_of(problem.materials.begin(), problem.materials.end(), [&](const Material& a) {
+            !scheme.implicit && std::ranges::all_of(problem.materials, [&](const Material& a) {
                 return a.gamma == first.gamma && a.p_infinity == first.p_infinity;
             });
         c.excess.assign(size * mesh.materials, 0);

@@ -4,6 +4,7 @@
 
 #include <atomic>
 
+#include "common/run/sentence.hpp"
 #include "flip/boundaries.hpp"
 #include "flip/flip/transfer.hpp"
 #include "flip/state.hpp"
@@ -32,7 +33,7 @@ inline constexpr double relaxation = 0.5;
 // in: cells.strain, work, q_work, excess, p, room; in/out: V_p
 inline double work_on_volume(const Problem& problem, const WeightScale& scale, const Weights& at,
                              const Cells& cells, long k, Particles& p) {
-    const long count = static_cast<long>(problem.materials.size()), material = p.material[k];
+    const long count = long(problem.materials.size()), material = p.material[k];
     const Material& a = problem.materials[material];
     const double V = p.V_p[k], p_p = pressure(a, p.m_p[k] / V, p.e_p[k]);
     const double C = weight_in_cell(a, V, p_p, cells.one_fluid);
@@ -168,10 +169,9 @@ inline long move_particles(const Problem& problem, double dt, const Mesh& mesh,
         },
         particles.count());
     if (const long k = inverted; k >= 0)
-        throw common::NumericalError(
-            "the step turns the particle at x = " + common::format(particles.x_p[k]) +
-            ", z = " + common::format(particles.z_p[k]) + " inside out: its volume would be " +
-            common::format(particles.V_p[k]) + "; reduce time.cfl");
+        common::fail("the step turns the particle at x = ", particles.x_p[k],
+                     ", z = ", particles.z_p[k], " inside out: its volume would be ",
+                     particles.V_p[k], "; reduce time.cfl");
     return left;
 }
 
@@ -185,11 +185,8 @@ inline void apply_particle_boundaries(const Problem& problem, double t, double d
                                       Budget& budget, long left = 1) {
     const WeightScale scale(problem.grid);
     const auto enter = [&](long k, double sign) {
-        const double m = sign * p.m_p[k], vx = p.vx_p[k], vz = p.vz_p[k];
-        budget.mass += m;
-        budget.momentum_x += m * vx;
-        budget.momentum_z += m * vz;
-        budget.energy += m * (0.5 * (vx * vx + vz * vz) + p.e_p[k]);
+        const double m = sign * p.m_p[k];
+        budget.enter(m, p.vx_p[k], p.vz_p[k], p.e_p[k]);
         if (!has(p.Cxx_p)) return;
         const double C[4] = {p.Cxx_p[k], p.Cxz_p[k], p.Czx_p[k], p.Czz_p[k]};
         budget.energy += m * affine_energy(problem.grid, weights_at(scale, p.x_p[k], p.z_p[k]), C);

@@ -50,8 +50,8 @@ inline Quarter quarter_of(const Grid& grid, long materials, const Particles& p, 
     const long i = cell_along(grid.x, p.x_p[k]), j = cell_along(grid.z, p.z_p[k]);
     Quarter q;
     q.cell = (j * grid.x.cells + i) * materials + p.material[k];
-    q.x = (p.x_p[k] - grid.x.low) / grid.x.spacing() - static_cast<double>(i) - 0.5;
-    q.z = (p.z_p[k] - grid.z.low) / grid.z.spacing() - static_cast<double>(j) - 0.5;
+    q.x = (p.x_p[k] - grid.x.low) / grid.x.spacing() - double(i) - 0.5;
+    q.z = (p.z_p[k] - grid.z.low) / grid.z.spacing() - double(j) - 0.5;
     q.part = (q.x >= 0 ? 1 : 0) + (q.z >= 0 ? 2 : 0);
     return q;
 }
@@ -66,9 +66,8 @@ inline double room(double from_center) {
 inline bool split(const Problem& problem, const Quarter& q, long k, Particles& p) {
     const Grid& grid = problem.grid;
     const bool plane = is_plane(grid);
-    const double a = std::min(0.25 / static_cast<double>(problem.per_cell_x), room(q.x)),
-                 b = plane ? std::min(0.25 / static_cast<double>(problem.per_cell_z), room(q.z))
-                           : 0;
+    const double a = std::min(0.25 / double(problem.per_cell_x), room(q.x)),
+                 b = plane ? std::min(0.25 / double(problem.per_cell_z), room(q.z)) : 0;
     if (a < 0.01 || (plane && b < 0.01)) return false;
     const double x = p.x_p[k], z = p.z_p[k], dx = a * grid.x.spacing(), dz = b * grid.z.spacing(),
                  part = plane ? 0.25 : 0.5;
@@ -91,7 +90,7 @@ inline bool split(const Problem& problem, const Quarter& q, long k, Particles& p
 // its own mass or volume, below 0.3.
 inline std::vector<double> parts_of(const std::vector<Quarter>& q, const Particles& p, long i,
                                     const std::vector<long>& others, bool plane, double& worst) {
-    const auto count = static_cast<long>(others.size());
+    const auto count = long(others.size());
     Eigen::MatrixXd phi(count, count);
     Eigen::VectorXd phi_i(count);
     const auto fill = [&](long k, auto&& column) {
@@ -192,7 +191,7 @@ inline RezoneReport rezone(const Problem& problem, Particles& p) {
     RezoneReport report;
     const Grid& grid = problem.grid;
     const Scheme& scheme = problem.scheme;
-    const long materials = static_cast<long>(problem.materials.size()), count = p.count(),
+    const long materials = long(problem.materials.size()), count = p.count(),
                cells = grid.x.cells * grid.z.cells;
     std::vector<detail::Quarter> q(count);
     std::vector<long> in_cell(cells * materials, 0L), order(count);

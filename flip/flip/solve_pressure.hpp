@@ -21,6 +21,7 @@
 #include <limits>
 #include <vector>
 
+#include "common/run/sentence.hpp"
 #include "flip/conjugate_gradients.hpp"
 #include "flip/flip/accelerate_nodes.hpp"
 #include "flip/state.hpp"
@@ -49,7 +50,7 @@ inline NodeStencil stencil_at(const Problem& problem, const Cells& c, long i, lo
             const long ia = inside(grid.x, a), jb = inside(grid.z, b);
             const long n = ia < 0 || jb < 0 ? -1 : grid.index(ia, jb);
             stencil.cell[k] = n >= 0 && c.M[n] > 0 && c.surface[n] == 0 ? n : -1;
-            const double node = static_cast<double>(i), side = a < i ? -1. / 3 : 1. / 3;
+            const double node = double(i), side = a < i ? -1. / 3 : 1. / 3;
             stencil.x[k] =
                 held.x ? 0 : (a < i ? 0.5 : -0.5) * grid.z.spacing() * ring_length(grid, node);
             stencil.z[k] =
@@ -75,7 +76,7 @@ void for_each_stencil(const Problem& problem, double dt, const Mesh& mesh, const
 struct PressureCells {
     std::vector<long> index;  // of each one on the mesh
     std::vector<int> number;  // of each cell of the mesh, -1: none
-    long count() const { return static_cast<long>(index.size()); }
+    long count() const { return long(index.size()); }
 };
 
 // Leaves out cells without pressure, and those so compressible that all which the change of their
@@ -100,7 +101,7 @@ inline PressureCells number_cells(const Problem& problem, double dt, const Mesh&
             if (c.M[n] <= 0 || c.surface[n] != 0 || inertia <= 0 ||
                 response[n] <= round_off * inertia)
                 continue;
-            cells.number[n] = static_cast<int>(cells.count());
+            cells.number[n] = int(cells.count());
             cells.index.push_back(n);
         }
     }
@@ -197,7 +198,7 @@ inline StepReport solve_pressure(const Problem& problem, double dt, Mesh& mesh) 
                   [&](long, long, long n) { speed = std::max(speed, std::hypot(vx[n], vz[n])); });
     const double h = is_plane(grid) ? std::sqrt(grid.cell_area()) : grid.x.spacing(),
                  V = cell_volume(grid, grid.x.cells / 2),
-                 scale = theta * dt * V * speed / h * std::sqrt(static_cast<double>(count));
+                 scale = theta * dt * V * speed / h * std::sqrt(double(count));
     if (!(load.norm() > scheme.tolerance * scale))
         return {0, load.norm() / std::max(scale, 1e-300)};
     const auto A = detail::pressure_matrix(problem, dt, mesh, cells, inertia);
@@ -206,11 +207,9 @@ inline StepReport solve_pressure(const Problem& problem, double dt, Mesh& mesh) 
     const common::KrylovResult solved =
         detail::solve_cells(A, load, tolerance, scheme.max_iterations, change);
     if (!solved.converged)
-        throw common::NumericalError(
-            "the implicit pressure has not converged: " + solved.reason + "; after " +
-            std::to_string(solved.iterations) + " iterations the residual is " +
-            common::format(solved.residual) + " and not " + common::format(tolerance) +
-            "; raise flip.max_iterations or reduce time.cfl");
+        common::fail("the implicit pressure has not converged: ", solved.reason, "; after ",
+                     solved.iterations, " iterations the residual is ", solved.residual,
+                     " and not ", tolerance, "; raise flip.max_iterations or reduce time.cfl");
     // The change acts by itself: the sum is rounded to a part of p, which would push a light fluid.
     c.p_step.setZero();
     for (long r = 0; r < count; ++r) c.p_step[cells.index[r]] = change[r];

@@ -51,8 +51,8 @@ inline double lost_on_mesh(const Grid& grid, const WeightScale& scale, const Wei
     double sum = 0;
     long corner = 0;
     for_nodes(scale, w, [&](long n, double S) {
-        const double dx = (static_cast<double>(corner & 1) - w.S_x[1]) * grid.x.spacing(),
-                     dz = (static_cast<double>(corner >> 1) - w.S_z[1]) * grid.z.spacing();
+        const double dx = (double(corner & 1) - w.S_x[1]) * grid.x.spacing(),
+                     dz = (double(corner >> 1) - w.S_z[1]) * grid.z.spacing();
         const Four& g = filtered[n];
         const double ax = v.x + C[0] * dx + C[1] * dz - g[0],
                      az = v.z + C[2] * dx + C[3] * dz - g[1],

@@ -41,22 +41,21 @@ struct WeightScale {
 [[gnu::always_inline]] inline Weights weights_at(const WeightScale& a, double x, double z) {
     Weights w;
     const double s = (x - a.x_low) * a.per_dx, t = (z - a.z_low) * a.per_dz;
-    const long i = std::min(static_cast<long>(s), a.last_x),
-               j = std::min(static_cast<long>(t), a.last_z);
-    const double fx = s - static_cast<double>(i), fz = t - static_cast<double>(j);
+    const long i = std::min(long(s), a.last_x), j = std::min(long(t), a.last_z);
+    const double fx = s - double(i), fz = t - double(j);
     w.S_x[0] = 1 - fx, w.S_x[1] = fx;
     w.S_z[0] = 1 - fz, w.S_z[1] = fz;
     long right = fx >= 0.5;
     const long above = fz >= 0.5;
-    w.R_x[1] = fx + 0.5 - static_cast<double>(right);
+    w.R_x[1] = fx + 0.5 - double(right);
     if (a.rings) {
-        const double r2 = s * s, inner = static_cast<double>(i);
+        const double r2 = s * s, inner = double(i);
         right = r2 >= inner * (inner + 1);
-        const double outer = static_cast<double>(i + right);
+        const double outer = double(i + right);
         w.R_x[1] = 0.5 * (r2 / outer - (outer - 1));
     }
     w.R_x[0] = 1 - w.R_x[1];
-    w.R_z[1] = fz + 0.5 - static_cast<double>(above), w.R_z[0] = 1 - w.R_z[1];
+    w.R_z[1] = fz + 0.5 - double(above), w.R_z[0] = 1 - w.R_z[1];
     w.node = a.origin + j * a.stride + i;
     w.cell = w.node + (above - 1) * a.stride + right - 1;
     return w;

@@ -25,8 +25,7 @@ inline Totals totals_of(const Grid& grid, const State& state, PicCells& cells) {
     t.momentum_x = sum([&](long n, long, long) { return M[n] * vx[n]; });
     t.momentum_z = sum([&](long n, long, long) { return M[n] * vz[n]; });
     t.angular_momentum = sum([&](long n, long i, long j) {
-        const double x = x_first + dx * static_cast<double>(i),
-                     z = z_first + dz * static_cast<double>(j);
+        const double x = x_first + dx * double(i), z = z_first + dz * double(j);
         return M[n] * (x * vz[n] - z * vx[n]);
     });
     t.kinetic =

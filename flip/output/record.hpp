@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/run/run.hpp"
+#include "common/run/sentence.hpp"
 #include "flip/output/write_output.hpp"
 #include "flip/setup/scales.hpp"
 #include "flip/theory/comparisons.hpp"
@@ -97,7 +98,7 @@ class Recorder {
         if (parameters_.moves_along_z()) errors.insert(errors.begin() + 2, "momentum_z_error");
         for (const std::string& name : errors)
             summary.conservation("largest_" + name, history.largest(name), "1");
-        summary.performance("particles", static_cast<double>(state.particles.count()));
+        summary.performance("particles", double(state.particles.count()));
     }
 
    private:
@@ -143,7 +144,7 @@ class Recorder {
                 relative(energy - budget.energy - gross, gross, budget.energy));
         row.add("largest_speed", "velocity", most.speed);
         row.add("largest_mach", "1", most.mach);
-        row.add("iterations", "1", static_cast<double>(state.report.iterations));
+        row.add("iterations", "1", double(state.report.iterations));
         row.add("divergence", "speed/dx", state.report.divergence);
         const Comparison& comparison = comparison_of(parameters_);
         if (comparison.track != nullptr) comparison.track({parameters_, state, now, cells}, row);
@@ -154,8 +155,7 @@ class Recorder {
     // transfer to particles takes becomes heat; where it does not, the transfer only takes.
     void judge_energy(const common::History& history, common::Summary& summary) const {
         // A part in 1e12, and ten units in the last place in a step, of the largest energy.
-        const double steps = static_cast<double>(history.rows() - 1),
-                     first = history.first("energy"),
+        const double steps = double(history.rows() - 1), first = history.first("energy"),
                      times = first > 0 ? history.largest("energy") / first : 1,
                      round_off =
                          times * (1e-12 + 10 * std::numeric_limits<double>::epsilon() * steps);
@@ -179,11 +179,9 @@ class Recorder {
         const bool beyond = parameters_.energy_limit > 0 &&
                             std::fabs(energy) > parameters_.energy_limit * accounted;
         if (std::isfinite(energy) && !beyond) return;
-        throw common::NumericalError(
-            "the energy is " + format(energy) + " where the start and the work done are " +
-            format(accounted) + ", at step " + std::to_string(step) +
-            ", t = " + format(state.time) +
-            ": reduce time.cfl, refine the mesh, or allow more with time.energy_limit");
+        common::fail("the energy is ", energy, " where the start and the work done are ", accounted,
+                     ", at step ", step, ", t = ", state.time,
+                     ": reduce time.cfl, refine the mesh, or allow more with time.energy_limit");
     }
 
     const Case parameters_;

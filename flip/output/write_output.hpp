@@ -13,8 +13,6 @@
 
 namespace flip {
 
-inline constexpr long most_particles_written = 40000;
-
 /// Writes fields_NNNNNN.dat (and .vti): rho, v_x, v_z, p, e at the middles of the cells, and the
 /// density of each material; without z and v_z on a mesh of one row.
 /// in:     cells, zero where there is no fluid
@@ -55,13 +53,13 @@ inline void write_particles(const common::Snapshot& at, const Case& parameters,
                             const Particles& particles) {
     const bool plane = parameters.moves_along_z();
     const long count = particles.count();
-    const long every = std::max(1L, (count + most_particles_written - 1) / most_particles_written);
+    const long every = common::every_nth_written(count);
     const bool moving = has(particles.vx_p);
     std::vector<double> x, z, material, vx, vz, e;
     for (long from = 0; from < count; from += every) {
-        const auto group = static_cast<double>(std::min(every, count - from));
-        const double draw = common::uniform(7, 7, static_cast<std::uint64_t>(from), 0);
-        const auto p = static_cast<std::size_t>(from + static_cast<long>(draw * group));
+        const auto group = double(std::min(every, count - from));
+        const double draw = common::uniform(7, 7, std::uint64_t(from), 0);
+        const auto p = std::size_t(from + long(draw * group));
         x.push_back(particles.x_p[p]);
         z.push_back(particles.z_p[p]);
         material.push_back(particles.material[p]);

@@ -10,6 +10,7 @@
 
 #include <string>
 
+#include "common/run/sentence.hpp"
 #include "flip/pic/move_particles.hpp"
 
 namespace flip {
@@ -31,9 +32,8 @@ struct Contribution {
         if (!(e >= 0))
             what = "the internal energy of " + problem.materials[k].name + ", " + common::format(e);
     }
-    throw common::NumericalError(
-        what + ", is negative or not finite " + cell_and_time(grid, n, state.time) +
-        ": use a smaller time.cfl, more particles per cell, or more viscosity");
+    common::fail(what, ", is negative or not finite ", cell_and_time(grid, n, state.time),
+                 ": use a smaller time.cfl, more particles per cell, or more viscosity");
 }
 
 // Calls add(p, cell) for every particle, on as many threads as share no cell.
@@ -104,12 +104,12 @@ void sum_contributions(const Problem& problem, const What& contribution, State& 
             state.cells.vx[n] = vx;
             state.cells.vz[n] = vz;
             cells.mass[n] = mass;
-            if (!sound && refused < 0) refused = static_cast<double>(n);
+            if (!sound && refused < 0) refused = double(n);
         }
         cells.row[j] = refused;
     });
     for (const double refused : cells.row)
-        if (refused >= 0) refuse_cell(problem, state, cells, static_cast<long>(refused));
+        if (refused >= 0) refuse_cell(problem, state, cells, long(refused));
 }
 
 // Particles in rows of cells, with the donor cells where they have some.
@@ -118,7 +118,7 @@ inline void keep_in_rows_with_donors(const Grid& grid, Particles& particles, Pic
         if (keep_in_rows(grid, cells.sort, particles) && !cells.donor.empty())
             common::carry_to_place(cells.donor, cells.sort.numbers.target, cells.sort.labels);
     } else {
-        particles.first_of_row = {0, static_cast<int>(particles.count())};
+        particles.first_of_row = {0, int(particles.count())};
     }
 }
 

@@ -3,9 +3,8 @@
 #pragma once
 
 #include <array>
-#include <span>
 
-#include "common/run/parameters.hpp"
+#include "common/run/sentence.hpp"
 #include "flip/pic/pic_cells.hpp"
 
 namespace flip {
@@ -27,8 +26,8 @@ struct CellAcceleration {
         z_first = plane ? first(grid.z, force.gravity_z) : 0.0;
         z_change = plane ? -force.trap * grid.z.spacing() : 0.0;
     }
-    double x(long i) const { return x_first + x_change * static_cast<double>(i); }
-    double z(long j) const { return z_first + z_change * static_cast<double>(j); }
+    double x(long i) const { return x_first + x_change * double(i); }
+    double z(long j) const { return z_first + z_change * double(j); }
     /// The largest of both, over the mesh.
     double largest(const Grid& grid) const {
         return std::max({std::fabs(x(0)), std::fabs(x(grid.x.cells - 1)), std::fabs(z(0)),
@@ -87,7 +86,7 @@ double largest_over_cells(const Grid& grid, PicCells& cells, const OfCell& of_ce
         for (long i = 0; i < grid.x.cells; ++i) most = std::max(most, of_cell(grid.index(i, j)));
         cells.row[j] = most;
     });
-    return *std::max_element(cells.row.begin(), cells.row.end());
+    return std::ranges::max(cells.row);
 }
 
 // Rate at which the fastest signal crosses a cell. The speed of sound counts as no less than
@@ -157,10 +156,9 @@ inline double largest_step(const Problem& problem, const State& state, PicCells&
     if (viscous > 0) dt = std::min(dt, 1 / viscous);
     if (state.dt > 0) dt = std::min(dt, 1.2 * state.dt);
     if (!(dt > 1e-10 * limits.end)) {
-        throw common::NumericalError("the time step has fallen to " + common::format(dt) +
-                                     " at t = " + common::format(state.time) +
-                                     ": some cell has become very fast, hot or light; use more "
-                                     "particles per cell or more viscosity");
+        common::fail("the time step has fallen to ", dt, " at t = ", state.time,
+                     ": some cell has become very fast, hot or light; use more particles per cell "
+                     "or more viscosity");
     }
     return dt;
 }

@@ -33,18 +33,18 @@ long move_batch(const Grid& grid, double dt, long begin, long end, Particles& pa
     const CellVelocity* const v = cells.v_tilde.data();
     const double* const filled = cells.filled.data();
     const CellAlong column(grid.x), row(grid.z);
-    const int stride = static_cast<int>(grid.stride()), first = static_cast<int>(grid.index(0, 0));
+    const int stride = int(grid.stride()), first = int(grid.index(0, 0));
 #pragma omp simd
     for (long p = begin; p < end; ++p) {
         const double s = (x_p[p] - column.low) * column.per_cell;
-        const int i = static_cast<int>(s);
-        const int right = static_cast<int>(s + 0.5);  // of the two columns of cells
+        const int i = int(s);
+        const int right = int(s + 0.5);  // of the two columns of cells
         const double f = s + 0.5 - right;
         donor[p] = first + (i < column.last ? i : column.last);
         if constexpr (plane) {
             const double t = (z_p[p] - row.low) * row.per_cell;
-            const int j = static_cast<int>(t);
-            const int up = static_cast<int>(t + 0.5);  // of the two rows of cells
+            const int j = int(t);
+            const int up = int(t + 0.5);  // of the two rows of cells
             const double g = t + 0.5 - up;
             donor[p] += (j < row.last ? j : row.last) * stride;
             const int n = first + (up - 1) * stride + right - 1;
@@ -109,17 +109,11 @@ inline void clear_motion(Particles& particles) {
 inline void apply_particle_boundaries(const Problem& problem, double dt, State& state,
                                       PicCells& cells) {
     Particles& particles = state.particles;
-    Budget& budget = state.budget;
-    const auto enter = [&](double m, const CellVelocity& v, double e) {
-        budget.mass += m;
-        budget.momentum_x += m * v.x;
-        budget.momentum_z += m * v.z;
-        budget.energy += m * (e + 0.5 * (v.x * v.x + v.z * v.z));
-    };
     remove_outflow(problem, state.time + dt, particles, [&](long p) {
         const long A = cells.donor[p];
-        enter(-particles.m_p[p], cells.v_tilde[A],
-              cells.e_tilde[A * cells.materials + particles.material[p]]);
+        const CellVelocity& v = cells.v_tilde[A];
+        state.budget.enter(-particles.m_p[p], v.x, v.z,
+                           cells.e_tilde[A * cells.materials + particles.material[p]]);
         cells.donor[p] = -1;
     });
     std::erase(cells.donor, -1);
@@ -134,8 +128,8 @@ inline void apply_particle_boundaries(const Problem& problem, double dt, State& 
         for (long k = 0; k < cells.materials; ++k)
             cells.e_tilde[corner * cells.materials + k] = in.e;
         for (long k = 0; k < added[side]; ++k) {
-            enter(particles.m_p[cells.donor.size()], {in.vx, in.vz}, in.e);
-            cells.donor.push_back(static_cast<int>(corner));
+            state.budget.enter(particles.m_p[cells.donor.size()], in.vx, in.vz, in.e);
+            cells.donor.push_back(int(corner));
         }
     }
 }
@@ -162,7 +156,7 @@ inline void move_particles(const Problem& problem, double dt, State& state, PicC
         long count = 0;
         for (long p = begin; p < end; p += detail::batch_size)
             count += move(grid, dt, p, std::min(end, p + detail::batch_size), particles, cells);
-        return static_cast<double>(count);
+        return double(count);
     });
     if (outside > 0 || problem.boundaries.has(BoundaryKind::inflow))
         apply_particle_boundaries(problem, dt, state, cells);

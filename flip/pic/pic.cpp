@@ -25,11 +25,10 @@ namespace {
 
 using namespace flip;
 
-const common::ProgramInfo info{
-    "pic", PROGRAM_VERSION,
-    "Harlow's particle-in-cell method for compressible flow; the default case "
-    "is a sphere that hits a plate",
-    "flip/cases/sphere_hits_plate.toml"};
+const common::ProgramInfo info{"pic", PROGRAM_VERSION,
+                               "Harlow's particle-in-cell method for compressible flow; the "
+                               "default case is a sphere that hits a plate",
+                               "flip/cases/sphere_hits_plate.toml"};
 
 int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     // 1. The case: defaults, file, command line; refuse, warn, or only describe.
@@ -78,7 +77,7 @@ int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
         recorder.record(step, state, totals, fields, run);
         recorder.finish(state, totals, fields, run);
     }
-    return run.finish(step, static_cast<double>(state.particles.count()));
+    return run.finish(step, double(state.particles.count()));
 }
 
 }  // namespace

@@ -10,8 +10,6 @@
 //     +-------+-------+      Around the mesh stands one ring of ghost cells.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "common/parallel.hpp"
@@ -45,14 +43,13 @@ struct PicCells {
     SortScratch sort;
 
     explicit PicCells(const Problem& problem)
-        : materials(static_cast<long>(problem.materials.size())),
+        : materials(long(problem.materials.size())),
           falls(problem.body_force.gravity_x != 0 || problem.body_force.gravity_z != 0) {
         const Grid& grid = problem.grid;
         for (Field* f : {&mass, &per_mass, &rho, &filled, &p, &c, &q_x, &q_z})
             f->setZero(grid.size());
         ring.assign(grid.x.cells + 2, 1.0);
-        for (long i = 0; i < grid.x.cells; ++i)
-            ring[i + 1] = ring_length(grid, static_cast<double>(i) + 0.5);
+        for (long i = 0; i < grid.x.cells; ++i) ring[i + 1] = ring_length(grid, double(i) + 0.5);
         ring.front() = ring[1], ring.back() = ring[grid.x.cells];
         for (const double length : ring) per_ring.push_back(1 / length);
         for (auto* f : {&M, &share, &e_tilde}) f->assign(grid.size() * materials, 0.0);

@@ -108,8 +108,8 @@ inline void balance_at_rest(const Problem& problem, Particles& particles, Mesh& 
     const Cells& c = mesh.cells;
     std::vector<double> V_p = particles.V_p;
     if (V_p.empty()) {  // of a place on the lattice; rings to a per cent, which the loop mends
-        const double A_p = grid.x.spacing() * grid.z.spacing() /
-                           static_cast<double>(problem.per_cell_x * problem.per_cell_z);
+        const double A_p =
+            grid.x.spacing() * grid.z.spacing() / double(problem.per_cell_x * problem.per_cell_z);
         for (const double x : particles.x_p)
             V_p.push_back(A_p * (grid.axisymmetric ? 2 * pi * x : 1));
     }

@@ -11,9 +11,12 @@
 #include "common/grid.hpp"
 #include "common/run/formula.hpp"
 #include "common/run/output_file.hpp"
+#include "common/run/sentence.hpp"
 #include "flip/problem.hpp"
 
 namespace flip {
+
+using common::format, common::refuse, common::sentence, common::warn;
 
 /// A state of the gas: of numbers, or of formulas of the place.
 template <class Number>
@@ -130,10 +133,8 @@ struct Case {
             const common::Formula& v = r.gas.velocity_z;
             return !v.is_number() || double(v) != 0;
         };
-        return plane() || inflow.velocity_z != 0 ||
-               std::any_of(boundaries.begin(), boundaries.end(), at_end) ||
-               std::any_of(inflows.begin(), inflows.end(), at_inflow) ||
-               std::any_of(regions.begin(), regions.end(), in_region);
+        return plane() || inflow.velocity_z != 0 || std::ranges::any_of(boundaries, at_end) ||
+               std::ranges::any_of(inflows, at_inflow) || std::ranges::any_of(regions, in_region);
     }
     bool is(Side e, const char* kind) const { return boundaries[e].kind == kind; }
 };

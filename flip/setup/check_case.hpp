@@ -3,7 +3,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "flip/setup/check_fluid.hpp"
 #include "flip/setup/describe_case.hpp"
@@ -50,8 +49,7 @@ inline void reject_unused(const Case& parameters) {
     refuse(riemann && !(parameters.regions.empty() && parameters.materials.empty()),
            "setup.kind = \"riemann\" makes its regions and materials from [left] and [right]: take "
            "out [region.*] and [material.*]");
-    const bool formulas = std::any_of(parameters.regions.begin(), parameters.regions.end(),
-                                      [](const RegionCase& r) { return r.has_formula(); });
+    const bool formulas = std::ranges::any_of(parameters.regions, &RegionCase::has_formula);
     refuse(!parameters.constants.empty() && !formulas,
            "[constant.*] needs a formula in a region: write one, or take it out");
     refuse(!riemann && sides, "[left], [right] and setup.interface need setup.kind = \"riemann\"");

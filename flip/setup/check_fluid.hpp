@@ -6,9 +6,7 @@
 #include <cmath>
 #include <string>
 #include <utility>
-#include <vector>
 
-#include "flip/setup/refuse.hpp"
 #include "flip/setup/scales.hpp"
 
 namespace flip {
@@ -34,10 +32,8 @@ void refuse_extreme(const std::string& prefix, const GasOf<Number>& gas) {
 
 /// Refuses too many particles, and numbers that lose precision.
 inline void refuse_sizes(const Case& parameters) {
-    const double cells = static_cast<double>(parameters.grid.x.cells) *
-                         static_cast<double>(parameters.grid.z.cells),
-                 places =
-                     cells * static_cast<double>(parameters.per_cell_x * parameters.per_cell_z);
+    const double cells = double(parameters.grid.x.cells) * double(parameters.grid.z.cells),
+                 places = cells * double(parameters.per_cell_x * parameters.per_cell_z);
     refuse(places > 2e9, cells, " cells with ", parameters.per_cell_x * parameters.per_cell_z,
            " places for particles in each are ", places,
            ", more than 2e9: lower particles.per_cell_x and per_cell_z, or take fewer cells");
@@ -97,7 +93,7 @@ inline void refuse_boundaries(const Case& parameters) {
     refuse(!has_inflow && !(parameters.inflow == GasCase()),
            "[inflow] needs an end with boundary = \"inflow\": set one, or take it out");
     for (const InflowCase& in : parameters.inflows) {
-        const auto end = std::find(side_names.begin(), side_names.end(), in.name);
+        const auto end = std::ranges::find(side_names, in.name);
         refuse(end == side_names.end(), "[inflow.", in.name,
                "] names no end: write inflow.x_low, x_high, z_low or z_high");
         refuse(parameters.boundaries[end - side_names.begin()].kind != "inflow", "[inflow.",
@@ -120,10 +116,9 @@ inline void refuse_around_axis(const Case& parameters) {
            "uniform; let it come in along z");
     refuse(parameters.gravity_x != 0 || parameters.trap != 0, geometry,
            "has no direction x: take out gravity.x and gravity.trap");
-    refuse(
-        parameters.rezone_steps > 0, geometry,
-        "and rezone.steps do not go together: splitting and merging keep weights that are linear "
-        "in r, and rings weigh by r^2; take rezone.steps = 0");
+    refuse(parameters.rezone_steps > 0, geometry,
+           "and rezone.steps do not go together: splitting and merging keep weights that are "
+           "linear in r, and rings weigh by r^2; take rezone.steps = 0");
     refuse(parameters.confined, geometry,
            "and flip.confined do not go together: its paths are those of a plane");
     for (const RegionCase& r : parameters.regions)
@@ -175,8 +170,7 @@ inline void refuse_region(const Case& parameters, const RegionCase& r) {
     const bool waves = r.flow == "wave" || r.flow == "shear" || r.flow == "overturn";
     refuse((waves || r.ripple != 0) && 2 * r.mode >= parameters.grid.x.cells, region,
            ".mode = ", r.mode, " is not below the cut-off of the mesh, ",
-           0.5 * static_cast<double>(parameters.grid.x.cells),
-           " wavelengths: lower it or refine the mesh");
+           0.5 * double(parameters.grid.x.cells), " wavelengths: lower it or refine the mesh");
     refuse(r.flow == "wave" && std::fabs(r.amplitude) >= 1, region, ".amplitude = ", r.amplitude,
            " makes densities negative: take less than 1");
     refuse(r.flow == "gaussian" && r.amplitude < -1, region, ".amplitude = ", r.amplitude,
@@ -210,11 +204,10 @@ inline void refuse_tension(const Case& parameters) {
 
 /// Refuses a run without particles, and a time step that is too long.
 inline void refuse_steps(const Case& parameters, const Scales& s) {
-    refuse(
-        s.particles == 0 && !std::any_of(parameters.boundaries.begin(), parameters.boundaries.end(),
-                                         [](const BoundaryCase& e) { return e.kind == "inflow"; }),
-        "no region contains a particle, so nothing can happen: put one on the mesh, from x = ",
-        parameters.grid.x.low, " to ", parameters.grid.x.high());
+    const auto inflows = std::ranges::count(parameters.boundaries, "inflow", &BoundaryCase::kind);
+    refuse(s.particles == 0 && inflows == 0,
+           "no region contains a particle, so nothing can happen: put one on the mesh, from x = ",
+           parameters.grid.x.low, " to ", parameters.grid.x.high());
     refuse(s.steps > 1e9, "time.end = ", parameters.end, " is ", s.steps, " steps of ", s.dt,
            ", more than 1e9: lower time.end or ",
            (parameters.dt > 0 ? "raise time.dt" : "take larger cells"));

@@ -6,7 +6,7 @@
 
 #include "common/run/checkpoint.hpp"
 #include "common/run/history.hpp"
-#include "flip/setup/refuse.hpp"
+#include "flip/setup/case.hpp"
 #include "flip/state.hpp"
 
 namespace flip {

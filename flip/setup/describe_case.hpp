@@ -74,11 +74,6 @@ inline void describe_region(common::ParameterTable& table, const std::string& pr
                "largest random velocity of a particle along x");
 }
 
-inline void describe_constant(common::ParameterTable& table, const std::string& prefix,
-                              common::Constant& c) {
-    table.real(prefix + ".value", c.value, "", common::anything(), "of the name");
-}
-
 inline void describe_material(common::ParameterTable& table, const std::string& prefix,
                               Material& m) {
     table.real(prefix + ".gamma", m.gamma, "", common::between(1, 100),
@@ -146,7 +141,7 @@ inline common::ParameterTable describe(Case& parameters) {
     detail::describe_side(table, "right", parameters.right);
     table.list("region", parameters.regions, detail::describe_region,
                "fluid at the start, [region.<name>]; later ones replace earlier ones");
-    table.list("constant", parameters.constants, detail::describe_constant,
+    table.list("constant", parameters.constants, common::describe_constant,
                "a name for a number, for formulas of x, z and r, the distance from the center");
     table.whole("particles.per_cell_x", parameters.per_cell_x, "", between(1, 64),
                 "in a cell along x");

@@ -34,7 +34,7 @@ inline Case completed(Case parameters) {
             r.shape = "box";
             r.center_x = 0.5 * (from + to);
             r.half_x = 0.5 * (to - from);
-            r.center_z = parameters.grid.z.at(0.5 * static_cast<double>(parameters.grid.z.cells));
+            r.center_z = parameters.grid.z.at(0.5 * double(parameters.grid.z.cells));
             r.half_z = parameters.grid.z.length;
             return r;
         };
@@ -48,7 +48,7 @@ inline Case completed(Case parameters) {
     if (parameters.materials.empty()) parameters.materials = {{"gas", 1.4, 0}};
     for (BoundaryCase& end : parameters.boundaries) end.inflow = parameters.inflow;
     for (const InflowCase& in : parameters.inflows) {
-        const auto end = std::find(side_names.begin(), side_names.end(), in.name);
+        const auto end = std::ranges::find(side_names, in.name);
         if (end == side_names.end()) continue;  // refuse_boundaries() says so
         GasCase& gas = parameters.boundaries[end - side_names.begin()].inflow;
         gas = {in.material.empty() ? gas.material : in.material, in.density.value_or(gas.density),
@@ -72,7 +72,7 @@ inline Case completed(Case parameters) {
 inline int material_index(const Case& parameters, const std::string& name) {
     if (name.empty()) return 0;
     for (std::size_t k = 0; k < parameters.materials.size(); ++k)
-        if (parameters.materials[k].name == name) return static_cast<int>(k);
+        if (parameters.materials[k].name == name) return int(k);
     return -1;
 }
 
@@ -95,8 +95,8 @@ inline double sound_speed_of(const Case& parameters, const RegionCase& r) {
 
 /// Whether all fluid begins at rest under gravity.
 inline bool all_hydrostatic(const Case& parameters) {
-    return std::all_of(parameters.regions.begin(), parameters.regions.end(),
-                       [](const RegionCase& r) { return r.hydrostatic || r.is_vacuum(); });
+    return std::ranges::all_of(parameters.regions,
+                               [](const RegionCase& r) { return r.hydrostatic || r.is_vacuum(); });
 }
 
 /// The fluid at one place.
@@ -112,7 +112,7 @@ inline bool contains(const Case& parameters, const RegionCase& r, double x, doub
     if (r.shape == "box") return std::fabs(dx) <= r.half_x && std::fabs(dz) <= r.half_z;
     if (r.shape == "disk") return dx * dx + dz * dz <= r.radius * r.radius;
     if (r.shape == "above") {
-        const double k = 2 * pi * static_cast<double>(r.mode) / parameters.grid.x.length;
+        const double k = 2 * pi * double(r.mode) / parameters.grid.x.length;
         return dz > r.ripple * std::cos(k * dx);
     }
     return true;
@@ -131,7 +131,7 @@ inline void overturn(double k, double x, double z, double depth, double amplitud
 
 /// Index of the region at (x, z), the last that contains it; -1 in a vacuum.
 inline long region_at(const Case& parameters, double x, double z) {
-    long n = static_cast<long>(parameters.regions.size()) - 1;
+    long n = long(parameters.regions.size()) - 1;
     while (n >= 0 && !detail::contains(parameters, parameters.regions[n], x, z)) --n;
     return n >= 0 && parameters.regions[n].is_vacuum() ? -1 : n;
 }
@@ -141,7 +141,7 @@ inline FluidState fluid_of(const Case& parameters, const RegionCase& r, double x
     const int index = material_index(parameters, r.gas.material);
     const Material& a = parameters.materials[index];
     const double dx = x - r.center_x, dz = z - r.center_z, distance = std::hypot(dx, dz);
-    const double k = 2 * pi * static_cast<double>(r.mode) / parameters.grid.x.length;
+    const double k = 2 * pi * double(r.mode) / parameters.grid.x.length;
     const auto at = [&](const common::Formula& f) { return f.at(x, z, distance); };
     double rho = at(r.gas.density), p = at(r.gas.pressure), heat = 1;
     double vx = at(r.gas.velocity_x), vz = at(r.gas.velocity_z);
@@ -190,21 +190,21 @@ inline Particles load_particles(const Case& parameters) {
     constexpr std::uint32_t where = 1, how_fast = 2;
     Particles particles;
     const Grid& grid = parameters.grid;
-    const double dx = grid.x.spacing() / static_cast<double>(parameters.per_cell_x),
-                 dz = grid.z.spacing() / static_cast<double>(parameters.per_cell_z);
+    const double dx = grid.x.spacing() / double(parameters.per_cell_x),
+                 dz = grid.z.spacing() / double(parameters.per_cell_z);
     const long columns = grid.x.cells * parameters.per_cell_x,
                rows = grid.z.cells * parameters.per_cell_z;
-    const auto seed = static_cast<std::uint64_t>(parameters.seed);
+    const auto seed = std::uint64_t(parameters.seed);
     std::vector<double> region_mass(parameters.regions.size(), 0.0);
     std::vector<long> region_of;
     for (long j = 0; j < rows; ++j) {
         for (long i = 0; i < columns; ++i) {
-            const auto place = static_cast<std::uint64_t>(j * columns + i);
+            const auto place = std::uint64_t(j * columns + i);
             const bool random = parameters.loading == "random";
             const double u = random ? common::uniform(seed, where, place, 0) : 0.5,
                          v = random ? common::uniform(seed, where, place, 1) : 0.5;
             const auto [x, ring] = lattice_column(grid, parameters.per_cell_x, i, random, u);
-            const double z = grid.z.low + dz * (static_cast<double>(j) + v);
+            const double z = grid.z.low + dz * (double(j) + v);
             const long n = region_at(parameters, x, z);
             if (n < 0) continue;
             const RegionCase& region = parameters.regions[n];

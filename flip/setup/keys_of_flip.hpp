@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "flip/setup/case.hpp"
-#include "flip/setup/refuse.hpp"
 
 namespace flip {
 

@@ -49,9 +49,8 @@ inline Problem problem_of(const Case& w) {
 
     const bool consistent = w.mass == "consistent";
     const double part = w.transfer == "flip" ? 0 : (w.transfer == "blend" ? 1 - w.blend : 1);
-    // What lumped masses owe the particles goes to heat; consistent masses owe nothing.
     const Transfer transfer{w.transfer == "flip", part,         w.transfer == "apic",
-                            w.transfer == "xpic", w.xpic_order, w.deficit_to_heat && !consistent};
+                            w.transfer == "xpic", w.xpic_order, w.heats()};
     // Under gravity particles must not fall together within a cell, where no pressure feels it.
     const bool falls = w.gravity_x != 0 || w.gravity_z != 0,
                conservative = w.confined || (falls && w.plane() && !w.grid.axisymmetric);

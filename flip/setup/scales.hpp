@@ -3,10 +3,8 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "common/parallel.hpp"
@@ -49,19 +47,18 @@ void for_each_place(const Case& parameters, const Visit& visit) {
     const Grid& grid = parameters.grid;
     const long columns = grid.x.cells * parameters.per_cell_x,
                rows = grid.z.cells * parameters.per_cell_z;
-    const double places = static_cast<double>(columns) * static_cast<double>(rows);
-    const long stride = std::max(1L, static_cast<long>(std::ceil(std::sqrt(places / 1e6))));
+    const double places = double(columns) * double(rows);
+    const long stride = std::max(1L, long(std::ceil(std::sqrt(places / 1e6))));
     const long stride_x = std::min(stride, columns), stride_z = std::min(stride, rows);
-    const double dx = grid.x.length / static_cast<double>(columns),
-                 dz = grid.z.length / static_cast<double>(rows);
+    const double dx = grid.x.length / double(columns), dz = grid.z.length / double(rows);
     for (long j = stride_z / 2; j < rows; j += stride_z) {
         for (long i = stride_x / 2; i < columns; i += stride_x) {
-            const double x = grid.x.low + dx * (static_cast<double>(i) + 0.5),
-                         z = grid.z.low + dz * (static_cast<double>(j) + 0.5);
+            const double x = grid.x.low + dx * (double(i) + 0.5),
+                         z = grid.z.low + dz * (double(j) + 0.5);
             const long n = region_at(parameters, x, z);
             if (n < 0) continue;
             visit(n, fluid_of(parameters, parameters.regions[n], x, z), x, z,
-                  static_cast<double>(stride_x * stride_z));
+                  double(stride_x * stride_z));
         }
     }
 }
@@ -74,10 +71,9 @@ inline double bytes_of(const Case& parameters, const std::string& program, doubl
         if (parameters.density == "particles") per_particle += sizeof(double);
         if (parameters.transfer == "apic") per_particle += 4 * sizeof(double);
     }
-    const double fields = 40 + 2 * static_cast<double>(parameters.materials.size()) +
+    const double fields = 40 + 2 * double(parameters.materials.size()) +
                           (parameters.implicit() || parameters.mass == "consistent" ? 60 : 0);
-    return per_particle * particles +
-           fields * sizeof(double) * static_cast<double>(parameters.grid.size());
+    return per_particle * particles + fields * sizeof(double) * double(parameters.grid.size());
 }
 
 /// The scales of a completed case.
@@ -91,8 +87,8 @@ inline Scales scales_of(const Case& parameters, const std::string& program = "fl
     const bool faster =
         program == "flip" && parameters.mass == "consistent" && parameters.density == "cells";
     const double both = (faster ? fastest_consistent : 1) * std::hypot(per_dx, per_dz);
-    const double place = parameters.grid.cell_area() /
-                         static_cast<double>(parameters.per_cell_x * parameters.per_cell_z);
+    const double place =
+        parameters.grid.cell_area() / double(parameters.per_cell_x * parameters.per_cell_z);
     for_each_place(parameters, [&](long n, const FluidState& fluid, double x, double,
                                    double weight) {
         RegionScales& r = s.regions[n];
@@ -195,7 +191,7 @@ inline std::string describe_scales(const Case& parameters, const Scales& scales,
     line("memory", "about ", scales.bytes / 1048576, " MiB");
     const double per_second = program == "pic" ? 30e6 : 12e6;
     const double work =
-        scales.steps * (scales.particles + 2.0 * static_cast<double>(grid.x.cells * grid.z.cells));
+        scales.steps * (scales.particles + 2.0 * double(grid.x.cells * grid.z.cells));
     line("time", "about ", work / per_second, " s on one core");
     return text;
 }

@@ -22,18 +22,18 @@ inline void warn_of_regions(const Case& parameters, const Scales& scales,
              "particles, or replaced by a later region");
     for (std::size_t k = 0; k < parameters.materials.size(); ++k) {
         const auto is_here = [&](const auto& gas) {
-            return material_index(parameters, gas.material) == static_cast<int>(k);
+            return material_index(parameters, gas.material) == int(k);
         };
-        bool used =
-            std::any_of(parameters.boundaries.begin(), parameters.boundaries.end(),
-                        [&](auto& end) { return end.kind == "inflow" && is_here(end.inflow); });
+        bool used = std::ranges::any_of(parameters.boundaries, [&](auto& end) {
+            return end.kind == "inflow" && is_here(end.inflow);
+        });
         for (const RegionCase& r : parameters.regions) used = used || is_here(r.gas);
         warn(out, !used, "material.", parameters.materials[k].name, " is nowhere");
     }
     const long per_cell = parameters.per_cell_x * parameters.per_cell_z;
     warn(out, per_cell < 4, per_cell,
          " particles per cell are fewer than 4: a particle that leaves a cell takes ",
-         100.0 / static_cast<double>(per_cell), " % of its density along");
+         100.0 / double(per_cell), " % of its density along");
     const long across = parameters.plane() ? std::min(parameters.per_cell_x, parameters.per_cell_z)
                                            : parameters.per_cell_x;
     warn(out,
@@ -105,8 +105,7 @@ inline void warn_of_speeds(const Case& parameters, const Scales& scales, const s
                             "rests: behind a shock at a wall, density scatters by tens of percent"
                           : "without artificial viscosity particles pile up at shocks: set "
                             "viscosity.linear = 0.5 and viscosity.quadratic = 1");
-    const bool held = std::any_of(parameters.boundaries.begin(), parameters.boundaries.end(),
-                                  [](const BoundaryCase& end) { return end.kind == "no_slip"; });
+    const bool held = std::ranges::count(parameters.boundaries, "no_slip", &BoundaryCase::kind) > 0;
     warn(out, held && parameters.viscosity == 0,
          "a no_slip wall holds fluid without viscosity only through the mesh: set flip.viscosity, "
          "or make the wall slip");

@@ -53,11 +53,11 @@ inline Midlines midlines(const Case& parameters, const CellFields& cells) {
 
 /// Linear between the middles of the cells and the walls at s = 0 and 1.
 inline double between_walls(const std::vector<double>& values, double low, double high, double s) {
-    const double n = static_cast<double>(values.size()), at = s * n - 0.5;
+    const double n = double(values.size()), at = s * n - 0.5;
     if (at <= 0) return low + (values.front() - low) * 2 * s * n;
     if (at >= n - 1) return high + (values.back() - high) * 2 * (1 - s) * n;
-    const auto i = static_cast<std::size_t>(at);
-    const double part = at - static_cast<double>(i);
+    const auto i = std::size_t(at);
+    const double part = at - double(i);
     return (1 - part) * values[i] + part * values[i + 1];
 }
 
@@ -68,8 +68,8 @@ struct VortexCenter {
 /// The center from the stream function -integral u dz, with a parabola through three nodes.
 inline VortexCenter vortex_center(const Case& parameters, const CellFields& cells) {
     const Grid& grid = parameters.grid;
-    const double U = parameters.boundaries[z_high].slide, nx = static_cast<double>(grid.x.cells),
-                 nz = static_cast<double>(grid.z.cells);
+    const double U = parameters.boundaries[z_high].slide, nx = double(grid.x.cells),
+                 nz = double(grid.z.cells);
     const auto flux = [&](long i, long j) {
         double sum = 0;
         for (long row = 0; row < j; ++row) sum += cells.vx[grid.index(i, row)] / (U * nz);
@@ -92,8 +92,7 @@ inline VortexCenter vortex_center(const Case& parameters, const CellFields& cell
     const double here = flux(at_i, at_j);
     const double di = top(flux(at_i - 1, at_j), here, flux(at_i + 1, at_j)),
                  dj = top(flux(at_i, at_j - 1), here, flux(at_i, at_j + 1));
-    return {(static_cast<double>(at_i) + 0.5 + di) / nx, (static_cast<double>(at_j) + dj) / nz,
-            here};
+    return {(double(at_i) + 0.5 + di) / nx, (double(at_j) + dj) / nz, here};
 }
 
 /// Where the vortex is.
@@ -129,14 +128,14 @@ inline void compare_cavity(const FinishedRun& run) {
     run.summary.result_at_most("largest_v_difference", v_most, "lid speed",
                                parameters.theory_tolerance, source);
     // The last turn of the vortex, whose core turns in 4 pi/vorticity, and how steady the flow is then.
-    long first = static_cast<long>(times.size()) - 1;
+    long first = long(times.size()) - 1;
     while (first > 0 && times[first - 1] >= times.back() - turn) --first;
     const auto of_turn = [&](const char* name) {
         const auto column = run.history.column(name);
         return std::vector<double>(column.begin() + first, column.end());
     };
     const auto mean = [](const std::vector<double>& f) {
-        return std::accumulate(f.begin(), f.end(), 0.0) / static_cast<double>(f.size());
+        return std::accumulate(f.begin(), f.end(), 0.0) / double(f.size());
     };
     const std::string of_last_turn = source + "; mean of the last turn, 4 length/lid speed";
     run.absolute_result("vortex_x", mean(of_turn("vortex_x")), "length_x", 0.6172, of_last_turn);

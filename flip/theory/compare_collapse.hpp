@@ -51,9 +51,8 @@ inline void validate_collapse(const Case& parameters, const Refusal& refuse) {
     const double S = r[1].radius,
                  room = std::min(parameters.grid.x.length, parameters.grid.z.length);
     refuse(!(r[2].radius < S && S < room),
-           " needs the cavity in the liquid and the liquid on the "
-           "mesh: radii ",
-           r[2].radius, " and ", S, ", and the mesh ends at ", room);
+           " needs the cavity in the liquid and the liquid on the mesh: radii ", r[2].radius,
+           " and ", S, ", and the mesh ends at ", room);
 }
 
 /// When it is closed.
@@ -97,12 +96,11 @@ inline void compare_collapse(const FinishedRun& run) {
     if (std::isnan(t) && times.back() <= end + tolerance)
         return run.not_measured("collapse_time", "the cavity still has the radius ", radius.back(),
                                 ", and theory closes it at t = ", end, ": raise time.end");
-    run.hint(
-        std::isnan(t) ? "the cavity is still open at the end, the time that is given; " : "",
-        "the liquid ends where a cell is full, and the cavity is ", R / dx,
-        " cells wide: refine the mesh to 20, take flip.density = \"particles\", "
-        "flip.pressure = \"implicit\", flip.transfer = \"flip\", no viscosity, and a liquid with "
-        "a large p_infinity");
+    run.hint(std::isnan(t) ? "the cavity is still open at the end, the time that is given; " : "",
+             "the liquid ends where a cell is full, and the cavity is ", R / dx,
+             " cells wide: refine the mesh to 20, take flip.density = \"particles\", flip.pressure "
+             "= \"implicit\", flip.transfer = \"flip\", no viscosity, and a liquid with a large "
+             "p_infinity");
     if (std::isnan(t)) t = times.back();
     run.summary.result("collapse_time", t, "time", end, tolerance,
                        "Rayleigh 1917, in a sphere of liquid; half a cell of the radius");

@@ -61,7 +61,7 @@ inline void track_dam_break(const Snapshot& now, common::Row& row) {
     const double beyond = inside > outside ? (inside - 0.5) / (inside - outside) : 0.5;
     double height = 0;
     for (long j = 0; j < grid.z.cells; ++j) height += filled(0, j) * grid.z.spacing();
-    row.add("front_x", "length", grid.x.at(std::max(0.0, static_cast<double>(i) - 0.5 + beyond)));
+    row.add("front_x", "length", grid.x.at(std::max(0.0, double(i) - 0.5 + beyond)));
     row.add("wall_height", "length", height);
 }
 
@@ -80,8 +80,8 @@ inline void compare_dam_break(const FinishedRun& run) {
     run.info("wall_height", height.back() / water.height, "H", "at the same time");
     if (std::fabs(water.height / water.width - 2) > 0.05)
         return run.not_measured("front_speed", "the column is ", water.height / water.width,
-                                " times as high as wide, and that of the laboratory was twice: "
-                                "set half_z to twice half_x, and center_z to half_z");
+                                " times as high as wide, and that of the laboratory was twice: set "
+                                "half_z to twice half_x, and center_z to half_z");
     const auto table = theory::read_table(dam_table);
     const std::vector<double>&T_lab = table.at("T"), &Z_lab = table.at("Z");
     const double from = 2, to = 3.5;
@@ -89,9 +89,9 @@ inline void compare_dam_break(const FinishedRun& run) {
                  L1 = common::time_at_level(T_lab, Z_lab, from),
                  L2 = common::time_at_level(T_lab, Z_lab, to);
     if (std::isnan(T1) || std::isnan(T2))
-        return run.not_measured("front_speed", "the front has come to x = ", Z.back(),
-                                " a, and its speed is that from 2 a to 3.5 a: raise time.end, or "
-                                "lengthen the mesh");
+        return run.not_measured(
+            "front_speed", "the front has come to x = ", Z.back(),
+            " a, and its speed is that from 2 a to 3.5 a: raise time.end, or lengthen the mesh");
     const std::string source = "Martin and Moyce 1952, column twice as high as wide";
     run.hint("the front is a wedge, thinner than a cell at its tip, and the column is ",
              water.width / run.parameters.grid.x.spacing(),

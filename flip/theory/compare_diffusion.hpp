@@ -39,7 +39,7 @@ inline Blob blob_of(const Case& parameters, const CellFields& cells) {
         cells.rho.cwiseProduct(cells.e - Field::Constant(parameters.grid.size(), background));
     const std::vector<double> heat = mean_over_z(parameters.grid, above);
     const common::Axis& axis = parameters.grid.x;
-    const auto at = [&](std::size_t n) { return axis.at(static_cast<double>(n) + 0.5); };
+    const auto at = [&](std::size_t n) { return axis.at(double(n) + 0.5); };
     std::complex<double> turn = 0;
     for (std::size_t n = 0; n < heat.size(); ++n)
         turn += heat[n] * std::polar(1.0, 2 * pi * at(n) / axis.length);
@@ -67,7 +67,8 @@ inline void compare_diffusion(const FinishedRun& run) {
     const double u = region_with_flow(parameters, "gaussian").gas.velocity_x,
                  dx = parameters.grid.x.spacing();
     const double unit = std::fabs(u) * dx, tolerance = parameters.theory_tolerance * 0.5;
-    const double D = 0.5 * slope(run.history.column("time"), run.history.column("variance")) / unit;
+    const double D =
+        0.5 * common::slope(run.history.column("time"), run.history.column("variance")) / unit;
     if (run.history.rows() < 3)
         return run.not_measured("diffusivity", "the run has fewer than two steps: raise time.end");
     run.hint("the blob is ", region_with_flow(parameters, "gaussian").width / dx,
@@ -80,8 +81,8 @@ inline void compare_diffusion(const FinishedRun& run) {
     }
     const double many = theory::harlow_diffusivity(u, dx, parameters.dt),
                  expected = parameters.loading == "lattice"
-                                ? theory::harlow_lattice_diffusivity(
-                                      u, dx, parameters.dt, static_cast<int>(parameters.per_cell_x))
+                                ? theory::harlow_lattice_diffusivity(u, dx, parameters.dt,
+                                                                     int(parameters.per_cell_x))
                                 : many;
     run.summary.result("diffusivity", D, "u dx", expected / unit, tolerance,
                        "cells mix what enters them");

@@ -84,7 +84,7 @@ inline void compare_impact(const FinishedRun& run) {
     run.info("momentum_given", momentum != 0 ? given / momentum : 0, "",
              "part of all that the target has at the end");
     const auto depth = run.history.column("depth");
-    run.info("depth", *std::max_element(depth.begin(), depth.end()), "length",
+    run.info("depth", std::ranges::max(depth), "length",
              "of the foremost particle behind the face of the target");
     run.info("kinetic_energy_left", run.totals.kinetic / run.history.first("kinetic"), "",
              "relative to the start");

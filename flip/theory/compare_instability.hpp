@@ -105,8 +105,7 @@ inline std::string predict_growth(double growth) { return "growth rate " + forma
 /// note:   an interface slips within a cell, which costs a rate 0.28 k dx of itself
 inline void warn_of_growth(const Case& parameters, double growth,
                            std::vector<std::string>& warnings) {
-    const double cells =
-        static_cast<double>(parameters.grid.x.cells) / static_cast<double>(parameters.mode);
+    const double cells = double(parameters.grid.x.cells) / double(parameters.mode);
     warn(warnings, cells < 32, "theory.mode = ", parameters.mode, " has ", cells,
          " cells in a wavelength, below 32: it grows too slowly by 2/cells; refine the mesh");
     warn(warnings, growth * parameters.end < 1, "theory has the growth rate ", growth,
@@ -119,7 +118,7 @@ inline void warn_of_growth(const Case& parameters, double growth,
 inline void compare_growth(const FinishedRun& run, double expected, double most,
                            const std::string& source, double on_mesh = 0) {
     const auto times = run.history.column("time");
-    const std::vector<std::complex<double>> mode = mode_column(run.history, "mode");
+    const std::vector<std::complex<double>> mode = run.history.complex_column("mode");
     std::size_t count = 0;
     while (count < mode.size() && std::abs(mode[count]) < most) ++count;
     run.info("theory_growth", expected, "1/time", source);
@@ -129,13 +128,12 @@ inline void compare_growth(const FinishedRun& run, double expected, double most,
                                 ", and that of theory ends at ", most,
                                 ": lower the amplitude or the ripple");
     if (count < 8)
-        return run.not_measured(name, "only ", count, " rows before the wave was as large as ",
-                                most,
-                                ", where that of theory ends: start with a smaller one, or "
-                                "raise time.end");
+        return run.not_measured(
+            name, "only ", count, " rows before the wave was as large as ", most,
+            ", where that of theory ends: start with a smaller one, or raise time.end");
     const Times t = Times(times).first(count);
     const Amplitudes z = Amplitudes(mode).first(count);
-    if (std::all_of(z.begin(), z.end(), [](const auto& one) { return std::norm(one) == 0; }))
+    if (std::ranges::all_of(z, [](const auto& one) { return std::norm(one) == 0; }))
         return run.not_measured(name, "there is no wave: give a region an amplitude, or a ripple");
     const HyperbolicFit fit = fit_hyperbolic(t, z, expected);
     const common::Measured rate(fit.rate, growth_error(t, z, expected));
@@ -189,10 +187,10 @@ inline void warn_of_interface(const Case& parameters, std::vector<std::string>& 
 inline void track_interface(const Snapshot& now, common::Row& row) {
     const Case& parameters = now.parameters;
     const theory::TwoLayers layers = layers_of(parameters);
-    add_mode(row, "mode", "length",
-             parameters.grid.z.length / (layers.lower_density - layers.upper_density) *
-                 mode_of(parameters, now.cells.rho, 0, parameters.grid.z.cells,
-                         parameters.regions.back().center_x));
+    row.add("mode", "length",
+            parameters.grid.z.length / (layers.lower_density - layers.upper_density) *
+                mode_of(parameters, now.cells.rho, 0, parameters.grid.z.cells,
+                        parameters.regions.back().center_x));
 }
 
 /// The growth of the interface while its crests are lower than 0.3/k.
@@ -246,10 +244,10 @@ inline void track_shear(const Snapshot& now, common::Row& row) {
     const common::Axis& axis = parameters.grid.z;
     const double node = (r.center_z - axis.low) / axis.spacing(), nearest = std::floor(node + 0.5);
     const bool between = std::fabs(node - nearest) < 0.25;
-    const long j = static_cast<long>(between ? nearest - 1 : std::floor(node)),
+    const long j = long(between ? nearest - 1 : std::floor(node)),
                j_low = std::clamp(j, 0L, axis.cells - 1),
                j_high = std::clamp(j + (between ? 2 : 1), 1L, axis.cells);
-    add_mode(row, "mode", "velocity", mode_of(parameters, now.cells.vz, j_low, j_high, r.center_x));
+    row.add("mode", "velocity", mode_of(parameters, now.cells.vz, j_low, j_high, r.center_x));
 }
 
 /// The growth of the layer while its crests, velocity over growth rate, are lower than 0.3/k.

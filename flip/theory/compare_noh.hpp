@@ -75,9 +75,9 @@ inline void compare_noh(const FinishedRun& run) {
     run.result("plateau_density_over_theory", plateau / behind.density, "", 1,
                sentence(source, ": ", behind.density));
     if (R_then > 0 && !(radius > 0))
-        run.summary.not_measured("shock_radius_over_theory",
-                                 "the density does not reach its level: raise time.end, or refine "
-                                 "the mesh");
+        run.summary.not_measured(
+            "shock_radius_over_theory",
+            "the density does not reach its level: raise time.end, or refine the mesh");
     else if (R_then > 0)
         run.result("shock_radius_over_theory", radius / R_then, "", 1,
                    sentence(source, ": ", R_then));

@@ -43,8 +43,8 @@ inline void compare_rest(const FinishedRun& run) {
         run.totals.mass * std::hypot(parameters.gravity_x * parameters.grid.x.length,
                                      parameters.gravity_z * parameters.grid.z.length);
     run.hint(
-        "something is out of balance: begin with pressures that balance across interfaces, "
-        "put them between cells, and take flip.density = \"particles\" for liquids");
+        "something is out of balance: begin with pressures that balance across interfaces, put "
+        "them between cells, and take flip.density = \"particles\" for liquids");
     const double fastest = run.history.largest("largest_speed") / sound;
     if (!(weight > 0)) {
         run.summary.result_at_most("largest_speed", fastest, "c", largest_mach_at_rest,

@@ -93,11 +93,11 @@ inline void warn_of_riemann(const Case& parameters, std::vector<std::string>& wa
     const theory::RiemannSolution s = riemann_of(parameters);
     const double left = s.left_of_contact.density / parameters.left.density,
                  right = s.right_of_contact.density / parameters.right.density,
-                 along = static_cast<double>(parameters.per_cell_x) * std::min(left, right);
+                 along = double(parameters.per_cell_x) * std::min(left, right);
     warn(warnings, !s.has_void && along < 1, "between the waves a cell will have ", along,
          " particles along x, and one without any has no pressure: raise particles.per_cell_x "
          "above ",
-         static_cast<double>(parameters.per_cell_x) / along);
+         double(parameters.per_cell_x) / along);
 }
 
 /// A wave of the exact solution, and the gas that it has swept.
@@ -186,7 +186,7 @@ inline void compare_riemann(const FinishedRun& run) {
     double L1_rho_of[2] = {0, 0}, L1_p_of[2] = {0, 0};
     const int soft = waves[1].pressure() <= waves[0].pressure();
     for (std::size_t n = 0; n < rho.size(); ++n) {
-        x.push_back(parameters.grid.x.at(static_cast<double>(n) + 0.5) - parameters.frame_x * t);
+        x.push_back(parameters.grid.x.at(double(n) + 0.5) - parameters.frame_x * t);
         u.push_back(vx[n] - parameters.frame_x);
         const double xi = (x[n] - parameters.interface) / t, half = 0.5 * dx / t;
         const theory::Conserved mean = theory::mean_between(exact, xi - half, xi + half);
@@ -216,8 +216,8 @@ inline void compare_riemann(const FinishedRun& run) {
     const std::string cells_swept = sentence("the waves have swept ", waves[0].swept / dx, " and ",
                                              waves[1].swept / dx, " cells");
     run.hint(cells_swept,
-             ": below 15 raise time.end or refine the mesh; else take viscosity.linear "
-             "= 0.5 and viscosity.quadratic = 1, which are ",
+             ": below 15 raise time.end or refine the mesh; else take viscosity.linear = 0.5 and "
+             "viscosity.quadratic = 1, which are ",
              parameters.q_linear, " and ", parameters.q_quadratic, ", and more than ",
              parameters.per_cell_x, " particles per cell along x");
     const auto judge_L1 = [&](const std::string& name, double value, double allowed,
@@ -232,8 +232,7 @@ inline void compare_riemann(const FinishedRun& run) {
         if (2 * shift < way)
             return run.summary.result(name, found, "length", expected, shift, what);
         run.not_measured(name, "it is ", way / dx,
-                         " cells away from where it would be confused, "
-                         "and may be off by ",
+                         " cells away from where it would be confused, and may be off by ",
                          shift / dx, ": raise time.end, or refine the mesh");
     };
     const double at_contact[] = {exact.left_of_contact.density, exact.right_of_contact.density};
@@ -319,7 +318,7 @@ inline void compare_riemann(const FinishedRun& run) {
         }
     }
     if (exact.has_void) {
-        const auto [first, last] = std::minmax_element(particles.x_p.begin(), particles.x_p.end());
+        const auto [first, last] = std::ranges::minmax_element(particles.x_p);
         const double foremost = exact.left.density > 0 ? *last : *first;
         run.info("foremost_particle", (foremost - parameters.interface) / t - parameters.frame_x,
                  "velocity", "mean, from the interface");

@@ -43,8 +43,8 @@ inline Blast blast_of(const Case& parameters) {
 /// Needs one region with an energy in cold gas, and room for the shock until the end.
 inline void validate_sedov(const Case& parameters, const Refusal& refuse) {
     const RegionCase& cold = parameters.regions.front();
-    const auto hot = std::count_if(parameters.regions.begin(), parameters.regions.end(),
-                                   [](const RegionCase& r) { return r.energy > 0; });
+    const auto hot =
+        std::ranges::count_if(parameters.regions, [](const RegionCase& r) { return r.energy > 0; });
     refuse(hot != 1 || parameters.regions.size() < 2 || cold.energy > 0,
            " needs a cold region first, and one with an energy inside it; ", hot, " have one");
     refuse(parameters.grid.axisymmetric && hot_region(parameters).center_x != 0,
@@ -84,7 +84,7 @@ inline void warn_of_sedov(const Case& parameters, std::vector<std::string>& warn
 inline void track_sedov(const Snapshot& now, common::Row& row) {
     const Blast blast = blast_of(now.parameters);
     const RadialProfile profile = radial_profile(now.parameters.grid, now.cells, blast.x, blast.z);
-    const double most = *std::max_element(profile.rho.begin(), profile.rho.end());
+    const double most = std::ranges::max(profile.rho);
     row.add("shock_radius", "length",
             outermost(profile.r, profile.rho, 0.5 * (blast.density + most)));
 }
@@ -110,7 +110,7 @@ inline void compare_sedov(const FinishedRun& run) {
         v_exact.push_back(D * at.velocity);
         p_exact.push_back(blast.density * D * D * at.pressure);
     }
-    const double peak = *std::max_element(profile.rho.begin(), profile.rho.end());
+    const double peak = std::ranges::max(profile.rho);
     run.info("peak_density_ratio", peak / blast.density, "",
              sentence("exact: ", (blast.wave.gamma + 1) / (blast.wave.gamma - 1)));
     common::write_table(run.profile, {{"r", "length", profile.r},

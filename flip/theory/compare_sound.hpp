@@ -38,7 +38,7 @@ inline SoundWave sound_wave_of(const Case& parameters, const std::string& progra
         if (parameters.transfer == "blend")
             part.kept = parameters.blend + (1 - parameters.blend) * once;
         if (parameters.transfer == "xpic")
-            part.kept = 1 - std::pow(lost, static_cast<double>(parameters.xpic_order));
+            part.kept = 1 - std::pow(lost, double(parameters.xpic_order));
         // A particle of apic hands both nodes of its row what it has from them.
         if (parameters.transfer == "apic") part.increment = 1;
         if (parameters.mass == "consistent")
@@ -54,9 +54,8 @@ inline SoundWave sound_wave_of(const Case& parameters, const std::string& progra
 /// How many particles a sound wave takes across a border of cells: its displacement, amplitude/k, over
 /// the distance of particles. Where that is below 1/2 no cell of pic gains or loses one.
 inline double particles_moved(const Case& parameters, const RegionCase& r) {
-    return std::fabs(r.amplitude) *
-           static_cast<double>(parameters.grid.x.cells * parameters.per_cell_x) /
-           (2 * pi * static_cast<double>(r.mode));
+    return std::fabs(r.amplitude) * double(parameters.grid.x.cells * parameters.per_cell_x) /
+           (2 * pi * double(r.mode));
 }
 
 /// How many it has to take for a frequency within two per cent.
@@ -94,10 +93,10 @@ inline void warn_of_wave(const Case& parameters, std::vector<std::string>& warni
 inline void track_wave(const Snapshot& now, common::Row& row) {
     const Case& parameters = now.parameters;
     const double from = parameters.grid.x.low + parameters.frame_x * now.state.time;
-    add_mode(row, "mode", "velocity",
-             mode_of(parameters, now.cells.vx, 0, parameters.grid.z.cells, from));
-    add_mode(row, "pressure", "pressure",
-             mode_of(parameters, now.cells.p, 0, parameters.grid.z.cells, from));
+    row.add("mode", "velocity",
+            mode_of(parameters, now.cells.vx, 0, parameters.grid.z.cells, from));
+    row.add("pressure", "pressure",
+            mode_of(parameters, now.cells.p, 0, parameters.grid.z.cells, from));
 }
 
 /// Phase and logarithm of the size of a mode that turns by less than half a turn between samples.
@@ -122,14 +121,14 @@ inline void compare_wave(const FinishedRun& run) {
     const auto times = run.history.column("time");
     if (times.size() < 3)
         return run.summary.not_measured("frequency_over_ck", "the run has fewer than two steps");
-    const double dt = times.back() / static_cast<double>(times.size() - 1);
+    const double dt = times.back() / double(times.size() - 1);
     const SoundWave wave = sound_wave_of(parameters, run.program, dt);
-    const Spiral velocity = unwound(mode_column(run.history, "mode")),
-                 pressure = unwound(mode_column(run.history, "pressure"));
-    const double frequency = -slope(times, velocity.phase);
+    const Spiral velocity = unwound(run.history.complex_column("mode")),
+                 pressure = unwound(run.history.complex_column("pressure"));
+    const double frequency = -common::slope(times, velocity.phase);
     const double period = 2 * pi / wave.frequency, steps = period / dt;
     const auto per_period = [&](const Spiral& mode) {
-        return std::exp(slope(times, mode.log_size) * period);
+        return std::exp(common::slope(times, mode.log_size) * period);
     };
     const std::string scheme = parameters.implicit() ? "theta scheme"
                                : wave.amplification > 1 + 1e-12
@@ -137,8 +136,7 @@ inline void compare_wave(const FinishedRun& run) {
                                    : "explicit step";
     run.info("frequency", frequency, "1/time", "of velocity");
     const RegionCase& r = region_with_flow(parameters, "wave");
-    const double cells = static_cast<double>(parameters.grid.x.cells) /
-                         static_cast<double>(parameters.mode),
+    const double cells = double(parameters.grid.x.cells) / double(parameters.mode),
                  moved = particles_moved(parameters, r);
     if (run.program == "pic" && moved < enough_moved)
         run.hint("the wave takes ", moved, " particles across a border of cells, below ",
@@ -180,9 +178,9 @@ inline void validate_ringing(const Case& parameters, const Refusal& refuse) {
 inline void track_ringing(const Snapshot& now, common::Row& row) {
     const std::vector<double> vx = mean_over_z(now.parameters.grid, now.cells.vx);
     double mean = 0, squares = 0;
-    for (const double v : vx) mean += v / static_cast<double>(vx.size());
+    for (const double v : vx) mean += v / double(vx.size());
     for (const double v : vx) squares += (v - mean) * (v - mean);
-    row.add("noise", "velocity", std::sqrt(squares / static_cast<double>(vx.size())));
+    row.add("noise", "velocity", std::sqrt(squares / double(vx.size())));
 }
 
 /// A uniform flow should stay one: how fast its noise grows, within a tenth of the tolerance.
@@ -192,7 +190,7 @@ inline void compare_ringing(const FinishedRun& run) {
     const double c = sound_speed_of(parameters, r), dx = parameters.grid.x.spacing();
     const auto times = run.history.column("time"), noise = run.history.column("noise");
     const double level = 0.2 * run.history.largest("noise");
-    const auto end = std::find_if(noise.begin(), noise.end(), [&](double a) { return a >= level; });
+    const auto end = std::ranges::find_if(noise, [&](double a) { return a >= level; });
     std::vector<double> t, log_noise;
     auto begin = std::min_element(noise.begin(), end);
     // The noise of the start stays what it is until that which grows comes out of it.
@@ -202,11 +200,11 @@ inline void compare_ringing(const FinishedRun& run) {
             if (*at <= 3 * least) begin = at;
     for (auto at = begin; at != end; ++at)
         if (*at > 0) t.push_back(times[at - noise.begin()]), log_noise.push_back(std::log(*at));
-    const double rate = t.size() < 8 ? 0 : slope(t, log_noise);
+    const double rate = t.size() < 8 ? 0 : common::slope(t, log_noise);
     const double crossed = run.state.time * c / dx;
     run.hint(
-        "the mesh does not see how particles lie in its cells: take flip.pressure = "
-        "\"implicit\", or a frame in which the flow is slower than Mach 0.07");
+        "the mesh does not see how particles lie in its cells: take flip.pressure = \"implicit\", "
+        "or a frame in which the flow is slower than Mach 0.07");
     if (crossed < 100)
         run.not_measured("growth", "sound has crossed ", crossed,
                          " cells, below 100, in which ringing grows by 20 to 150: raise time.end");

@@ -65,9 +65,9 @@ struct FromWall {
 /// The means over z, turned around where the wall is x_high.
 inline FromWall from_wall(const Case& parameters, const CellFields& cells) {
     FromWall s{{}, mean_over_z(parameters.grid, cells.rho)};
-    if (!struck_wall(parameters).at_low) std::reverse(s.rho.begin(), s.rho.end());
+    if (!struck_wall(parameters).at_low) std::ranges::reverse(s.rho);
     for (std::size_t n = 0; n < s.rho.size(); ++n)
-        s.distance.push_back((static_cast<double>(n) + 0.5) * parameters.grid.x.spacing());
+        s.distance.push_back((double(n) + 0.5) * parameters.grid.x.spacing());
     return s;
 }
 
@@ -85,10 +85,10 @@ inline void compare_wall_shock(const FinishedRun& run) {
     const StruckWall wall = struck_wall(parameters);
     const double dx = parameters.grid.x.spacing(), R = wall.shock.speed_from_wall * run.state.time;
     const std::string source = "balance of mass, momentum and energy across the shock";
-    run.hint("the shock has come ", R / dx,
-             " cells, of which the first six are the wall's heat and four are its width: below 40 "
-             "raise time.end or refine the mesh; else set viscosity.linear = 0.5 and "
-             "viscosity.quadratic = 1");
+    run.hint(
+        "the shock has come ", R / dx,
+        " cells, of which the first six are the wall's heat and four are its width: below 40 raise "
+        "time.end or refine the mesh; else set viscosity.linear = 0.5 and viscosity.quadratic = 1");
     const FromWall profile = from_wall(parameters, run.cells);
     const double from = std::max(0.2 * R, 6 * dx), to = R - std::max(0.15 * R, 5 * dx);
     double count = 0, sum = 0, squares = 0;
@@ -107,15 +107,18 @@ inline void compare_wall_shock(const FinishedRun& run) {
             "rms over the cells behind the shock, where it is uniform: a twentieth of the jump");
         const auto times = run.history.column("time"),
                    distance = run.history.column("shock_distance");
-        run.result("shock_speed", slope(times, distance, times.size() / 2), "velocity",
+        const auto later = [&](std::span<const double> rows) {
+            return rows.subspan(rows.size() / 2);
+        };
+        run.result("shock_speed", common::slope(later(times), later(distance)), "velocity",
                    wall.shock.speed_from_wall, source + "; from the wall, in the second half");
         run.summary.result("shock_distance", distance.back(), "length",
                            wall.shock.speed_from_wall * times.back(),
                            std::max(3 * dx, parameters.theory_tolerance * R), source);
     } else {
-        run.not_measured("density_behind_shock", "the shock is ", R / dx,
-                         " cells from the wall, and 12 are needed: raise time.end, or refine the "
-                         "mesh");
+        run.not_measured(
+            "density_behind_shock", "the shock is ", R / dx,
+            " cells from the wall, and 12 are needed: raise time.end, or refine the mesh");
     }
     run.info("wall_density_over_theory", profile.rho[0] / wall.shock.density, "",
              "wall heating: the cell at the wall");

@@ -80,8 +80,8 @@ inline void compare_gresho(const FinishedRun& run) {
     };
     run.hint("the core is ", region.width / parameters.grid.x.spacing(),
              " cells wide, and an explicit step makes noise at low Mach numbers: refine the mesh, "
-             "or take flip.pressure = \"implicit\", flip.density = \"particles\", "
-             "flip.transfer = \"flip\", and no viscosity");
+             "or take flip.pressure = \"implicit\", flip.density = \"particles\", flip.transfer = "
+             "\"flip\", and no viscosity");
     run.result("kinetic_energy_kept", kept("kinetic_in_frame"), "", 1, source);
     run.result("angular_momentum_kept", kept("swirl"), "", 1, source);
     run.info("turns", t / turn, "", "of the core");
@@ -125,7 +125,7 @@ inline void compare_rotation(const FinishedRun& run) {
              "\"flip\" in flip");
     std::string source = "exact: rigid rotation for ever";
     if (run.program == "flip" && parameters.transfer == "pic" && region.shape == "disk") {
-        const double steps = static_cast<double>(run.history.column("time").size()) - 1;
+        const double steps = double(run.history.column("time").size()) - 1;
         const double once = 1 - theory::round_trip_loss(h, region.radius);
         source += "; 2 h^2/(3 R^2) lost in each step leave " + format(std::pow(once, steps));
     }

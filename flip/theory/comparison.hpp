@@ -1,7 +1,6 @@
 // A comparison of a run with theory: one object that says what it needs, tracks and finds.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -10,7 +9,6 @@
 #include "common/run/summary.hpp"
 #include "common/run/writers.hpp"
 #include "flip/setup/initial_state.hpp"
-#include "flip/setup/refuse.hpp"
 #include "flip/theory/profiles.hpp"
 
 namespace flip {
@@ -67,7 +65,7 @@ struct Refusal {
     std::string what;
     template <class... Part>
     void operator()(bool bad, const Part&... parts) const {
-        flip::refuse(bad, what, parts...);
+        common::refuse(bad, what, parts...);
     }
 };
 
@@ -100,21 +98,6 @@ inline void validate_flow(const Case& parameters, const Refusal& refuse, const s
     bool found = false;
     for (const RegionCase& r : parameters.regions) found = found || r.flow == flow;
     refuse(!found, " needs a region with flow = \"", flow, "\"");
-}
-
-/// Slope of the straight line of least squares.
-/// out:    0 for fewer than two different times
-inline double slope(const std::vector<double>& t, const std::vector<double>& y,
-                    std::size_t begin = 0) {
-    if (begin + 2 > t.size()) return 0;
-    const double count = static_cast<double>(t.size() - begin);
-    double mean_t = 0, mean_y = 0, along = 0, product = 0;
-    for (std::size_t n = begin; n < t.size(); ++n) mean_t += t[n] / count, mean_y += y[n] / count;
-    for (std::size_t n = begin; n < t.size(); ++n) {
-        along += (t[n] - mean_t) * (t[n] - mean_t);
-        product += (t[n] - mean_t) * (y[n] - mean_y);
-    }
-    return along > 0 ? product / along : 0;
 }
 
 }  // namespace flip

@@ -10,7 +10,7 @@ namespace flip {
 /// The tracked wave number.
 ///   k = 2 pi mode/length_x
 inline double tracked_wave_number(const Case& parameters) {
-    return 2 * pi * static_cast<double>(parameters.mode) / parameters.grid.x.length;
+    return 2 * pi * double(parameters.mode) / parameters.grid.x.length;
 }
 
 /// Refuses a mesh that has no such mode, and a region whose flow has another.
@@ -36,23 +36,7 @@ inline std::complex<double> mode_of(const Case& parameters, const Field& f, long
         for (long i = 0; i < parameters.grid.x.cells; ++i)
             sum += f[parameters.grid.index(i, j)] *
                    std::polar(1.0, -k * (middle(parameters.grid.x, i) - from));
-    return 2.0 / static_cast<double>(parameters.grid.x.cells * (j_high - j_low)) * sum;
-}
-
-/// Adds name_re and name_im to a row of the history.
-inline void add_mode(common::Row& row, const std::string& name, const std::string& unit,
-                     const std::complex<double>& z) {
-    row.add(name + "_re", unit, z.real());
-    row.add(name + "_im", unit, z.imag());
-}
-
-/// The columns name_re and name_im of a history.
-inline std::vector<std::complex<double>> mode_column(const common::History& history,
-                                                     const std::string& name) {
-    const auto re = history.column(name + "_re"), im = history.column(name + "_im");
-    std::vector<std::complex<double>> z;
-    for (std::size_t n = 0; n < re.size(); ++n) z.emplace_back(re[n], im[n]);
-    return z;
+    return 2.0 / double(parameters.grid.x.cells * (j_high - j_low)) * sum;
 }
 
 }  // namespace flip

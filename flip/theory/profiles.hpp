@@ -11,9 +11,7 @@
 namespace flip {
 
 /// The middle of cell i along an axis.
-inline double middle(const common::Axis& axis, long i) {
-    return axis.at(static_cast<double>(i) + 0.5);
-}
+inline double middle(const common::Axis& axis, long i) { return axis.at(double(i) + 0.5); }
 
 /// Calls visit(c, x, z) for each cell, row by row: its index on_faces and its middle.
 template <class Visit>
@@ -28,7 +26,7 @@ inline std::vector<double> mean_over_z(const Grid& grid, const Field& f) {
     std::vector<double> mean(grid.x.cells, 0.0);
     for (long j = 0; j < grid.z.cells; ++j)
         for (long i = 0; i < grid.x.cells; ++i)
-            mean[i] += f[grid.index(i, j)] / static_cast<double>(grid.z.cells);
+            mean[i] += f[grid.index(i, j)] / double(grid.z.cells);
     return mean;
 }
 
@@ -54,7 +52,7 @@ inline RadialProfile radial_profile(const Grid& grid, const CellFields& cells, d
     visit_cells(grid, [&](long c, double x, double z) {
         const double dx = apart(grid.x, x0, x), dz = plane ? apart(grid.z, z0, z) : 0.0,
                      r = std::hypot(dx, dz);
-        const auto n = static_cast<std::size_t>(r / step);
+        const auto n = std::size_t(r / step);
         if (n >= volume.size())
             for (auto* column :
                  {&volume, &mass, &sums.r, &sums.rho, &sums.v_r, &sums.v_phi, &sums.p, &sums.e})

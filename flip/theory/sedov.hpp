@@ -10,7 +10,6 @@
 
 #include <cmath>
 #include <numbers>
-#include <vector>
 
 #include "common/run/parameters.hpp"
 

@@ -2,8 +2,8 @@
 // half a step.
 #pragma once
 
-#include "common/simd.hpp"
 #include "implicit_moment/mean_velocity.hpp"
+#include "implicit_moment/simd.hpp"
 
 namespace implicit_moment {
 
@@ -27,7 +27,7 @@ template <class Real>
 inline void rotate(Velocity<Real>& u, const LocalField<Real>& at, double k, double per_c_squared) {
     const Real K_x = k * at.B_x, K_y = k * at.B_y, K_z = k * at.B_z;
     const Real gamma_2 = gamma_squared(u, per_c_squared);
-    const Real gamma = common::square_root(gamma_2);
+    const Real gamma = square_root(gamma_2);
     const Real part = 2.0 / (gamma_2 + K_x * K_x + K_y * K_y + K_z * K_z);
     const Real w_x = u.y * K_z - u.z * K_y, w_y = u.z * K_x - u.x * K_z,
                w_z = u.x * K_y - u.y * K_x;

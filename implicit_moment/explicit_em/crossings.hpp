@@ -8,7 +8,7 @@
 #include <array>
 #include <vector>
 
-#include "common/ranks.hpp"
+#include "implicit_moment/division.hpp"
 #include "implicit_moment/explicit_em/stencil.hpp"
 
 namespace implicit_moment {
@@ -36,12 +36,12 @@ struct Crossings {
         void clear() { to_cell.clear(), quantities.clear(); }
     };
     std::vector<OfTile> tiles;
-    common::Division of_ranks;    // the tiles of each rank
+    Division of_ranks;            // the tiles of each rank
     std::vector<int> staying;     // [cell] particles that have stayed: the first of the cell
     std::vector<int> first_next;  // [cell] where it begins after the step; one more for the end
 
     /// Makes it that of a species of which nobody crosses.
-    void clear(long cells, long per_tile, const common::Division& division) {
+    void clear(long cells, long per_tile, const Division& division) {
         of_ranks = division;
         tiles.resize(std::size_t((cells + per_tile - 1) / per_tile));
         for (OfTile& tile : tiles) tile.clear();

@@ -15,7 +15,6 @@
 // of Umeda et al., Comput. Phys. Commun. 156, 73 (2003), who cut other trajectories differently.
 #pragma once
 
-#include <cmath>
 #include <iterator>
 #include <vector>
 

@@ -11,7 +11,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <vector>
 
 #include "common/ranks.hpp"
@@ -106,7 +105,7 @@ inline void exchange_crossings(long per_tile, Crossings& crossings) {
         for (std::size_t p = 0; p < left.to_cell.size(); ++p) {
             const int owner = tiles.owner(left.to_cell[p] / per_tile);
             if (owner == common::rank()) continue;
-            auto& message = to[std::find(peers.begin(), peers.end(), owner) - peers.begin()];
+            auto& message = to[std::ranges::find(peers, owner) - peers.begin()];
             message.insert(message.end(), {double(tile), double(left.to_cell[p])});
             message.insert(message.end(), left.quantities[p].begin(), left.quantities[p].end());
         }

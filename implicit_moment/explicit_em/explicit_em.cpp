@@ -23,11 +23,10 @@ namespace {
 
 using namespace implicit_moment;
 
-const common::ProgramInfo info{
-    "explicit_em", PROGRAM_VERSION,
-    "explicit electromagnetic particle-in-cell in 2.5 dimensions; the default case is the explicit "
-    "run of the talk's cost slide",
-    "implicit_moment/cases/gem_explicit.toml"};
+const common::ProgramInfo info{"explicit_em", PROGRAM_VERSION,
+                               "explicit electromagnetic particle-in-cell in 2.5 dimensions; the "
+                               "default case is the explicit run of the talk's cost slide",
+                               "implicit_moment/cases/gem_explicit.toml"};
 
 int run_program(int argc, char** argv, std::optional<common::Run>& holder) {
     // 1. The case: defaults, file, command line; refuse, warn, or only describe.

@@ -10,11 +10,10 @@
 // are cut into segments one by one (deposit_current.hpp), and they are taken out (crossings.hpp).
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "common/parallel.hpp"
-#include "common/run/parameters.hpp"
+#include "common/run/sentence.hpp"
 #include "implicit_moment/explicit_em/boris_push.hpp"
 #include "implicit_moment/explicit_em/crossings.hpp"
 #include "implicit_moment/explicit_em/deposit_current.hpp"
@@ -120,17 +119,17 @@ inline long move_particles(const InterleavedField& field, const Grid& grid, doub
                 const bool at_end_x = column == 0 || column == columns - 1;
                 const NodeField* corner =
                     &field[grid.index(column + Stencil<l>::first, row + Stencil<l>::first)];
-                leaving.resize(end - begin + common::simd_width);
+                leaving.resize(end - begin + simd_width);
                 long leaving_count = 0;
 
                 CurrentSums<l, SimdVector> sums;
-                for (long p = begin; p < end; p += common::simd_width) {
-                    const long count = std::min<long>(end - p, common::simd_width);
-                    SimdVector x = common::load_simd(&particles.x_p[p], count);
-                    SimdVector z = common::load_simd(&particles.z_p[p], count);
-                    Velocity<SimdVector> u{common::load_simd(&particles.ux_p[p], count),
-                                           common::load_simd(&particles.uy_p[p], count),
-                                           common::load_simd(&particles.uz_p[p], count)};
+                for (long p = begin; p < end; p += simd_width) {
+                    const long count = std::min<long>(end - p, simd_width);
+                    SimdVector x = load_simd(&particles.x_p[p], count);
+                    SimdVector z = load_simd(&particles.z_p[p], count);
+                    Velocity<SimdVector> u{load_simd(&particles.ux_p[p], count),
+                                           load_simd(&particles.uy_p[p], count),
+                                           load_simd(&particles.uz_p[p], count)};
                     const SimdVector d_x = (x - x_anchor) * per_dx, d_z = (z - z_anchor) * per_dz;
                     push<SimdVector>(u,
                                      gather_field<l, SimdVector>(corner, grid.stride(), d_x, d_z),
@@ -143,7 +142,7 @@ inline long move_particles(const InterleavedField& field, const Grid& grid, doub
 
                     // Move those that stay in the cell, note the others, and deposit all the way
                     // that they have within the cell.
-                    const SimdVector here = common::first_simd(count);
+                    const SimdVector here = first_simd(count);
                     SimdVector stays = here;
                     stays = i >= double(column) ? stays : 0.0 * stays;
                     stays = i < double(column + 1) ? stays : 0.0 * stays;
@@ -152,11 +151,11 @@ inline long move_particles(const InterleavedField& field, const Grid& grid, doub
                     if (at_end_x) keep_within(grid.x, to_x, stays);
                     if (at_end_z) keep_within(grid.z, to_z, stays);
                     SimdVector part = stays;
-                    if (common::any_simd(stays < here)) {
+                    if (any_simd(stays < here)) {
                         const SimdVector first =
                             first_part(d_x, D_x, low_x, high_x, d_z, D_z, low_z, high_z);
                         part = stays < here ? first : stays;
-                        for (int k = 0; k < common::simd_width; ++k) {
+                        for (int k = 0; k < simd_width; ++k) {
                             leaving[leaving_count] = p + k;
                             leaving_count += k < count && stays[k] == 0.0;
                         }
@@ -164,14 +163,13 @@ inline long move_particles(const InterleavedField& field, const Grid& grid, doub
                     sums.add(d_x, d_z, part * D_x, part * D_z, part * way * u.y * (1 / dt));
                     x = stays > 0.0 ? to_x : x;
                     z = stays > 0.0 ? to_z : z;
-                    common::store_simd(x, &particles.x_p[p], count);
-                    common::store_simd(z, &particles.z_p[p], count);
-                    common::store_simd(u.x, &particles.ux_p[p], count);
-                    common::store_simd(u.y, &particles.uy_p[p], count);
-                    common::store_simd(u.z, &particles.uz_p[p], count);
+                    store_simd(x, &particles.x_p[p], count);
+                    store_simd(z, &particles.z_p[p], count);
+                    store_simd(u.x, &particles.ux_p[p], count);
+                    store_simd(u.y, &particles.uy_p[p], count);
+                    store_simd(u.z, &particles.uz_p[p], count);
                 }
-                tile.add(column, row, sums,
-                         [](const SimdVector& sum) { return common::simd_sum(sum); });
+                tile.add(column, row, sums, [](const SimdVector& sum) { return simd_sum(sum); });
 
                 // Cut the trajectories of the others where they cross from cell to cell, take them
                 // out, and let the last of the cell step in.
@@ -222,9 +220,9 @@ inline void move_particles(const InterleavedField& field, const Grid& grid, doub
                 ? move_particles<1>(field, grid, dt, settings, particles, crossings[k], scratch, J)
                 : move_particles<2>(field, grid, dt, settings, particles, crossings[k], scratch, J);
         if (lost > 0) {
-            throw common::NumericalError(std::to_string(lost) + " of the " + particles.name +
-                                         " cross more than a cell in one step: they were loaded "
-                                         "too fast, or the field has blown up; reduce time.dt");
+            common::fail(lost, " of the ", particles.name,
+                         " cross more than a cell in one step: they were loaded too fast, or the "
+                         "field has blown up; reduce time.dt");
         }
     }
     if (!species.empty())

@@ -16,8 +16,8 @@
 
 #include <algorithm>
 
-#include "common/splines.hpp"
 #include "implicit_moment/particles.hpp"
+#include "implicit_moment/quadratic_weights.hpp"
 
 namespace implicit_moment {
 
@@ -41,7 +41,7 @@ struct StencilWeights<1, Real> {
 
 template <class Real>
 struct StencilWeights<2, Real> {
-    common::QuadraticWeights<Real> S;
+    QuadraticWeights<Real> S;
 
     explicit StencilWeights(const Real& d) : S(d) {}
     const Real& node(int k) const { return S.quadratic[k]; }

@@ -20,7 +20,7 @@ awk -F, -v balance="$1/balance.dat" -v efficiency="$1/efficiency.dat" '
         }
         return most * ranks
     }
-    # Fills ranks, of at least few strips each, up to a bound, and gives the most of one; cut() finds the least bound, as Division::of of common/ranks.hpp does.
+    # Fills ranks, of at least few strips each, up to a bound, and gives the most of one; cut() finds the least bound, as Division::of of division.hpp does.
     function fill(share, strips, ranks, few, bound, first,    k, s, sum, most) {
         first[0] = k = sum = most = 0
         for (s = 0; s < strips; s++) {

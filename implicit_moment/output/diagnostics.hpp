@@ -6,7 +6,6 @@
 #include <cmath>
 #include <complex>
 #include <string>
-#include <vector>
 
 #include "implicit_moment/setup/case.hpp"
 #include "implicit_moment/setup/initial_state.hpp"

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/run/run.hpp"
+#include "common/run/sentence.hpp"
 #include "implicit_moment/deposit_moments.hpp"
 #include "implicit_moment/output/sheet_diagnostics.hpp"
 #include "implicit_moment/output/unit_flux_profile.hpp"
@@ -86,10 +87,8 @@ class Recorder {
         const double energy = total_energy(field, moments),
                      initial = step == 0 ? energy : run.history.first("energy");
         if (!std::isfinite(energy) || (initial > 0 && !(energy / initial <= 10))) {
-            throw common::NumericalError("the energy is " + common::format(energy / initial) +
-                                         " times the initial energy at step " +
-                                         std::to_string(step) + ", t = " + common::format(time) +
-                                         ": reduce time.dt or refine the mesh");
+            common::fail("the energy is ", energy / initial, " times the initial energy at step ",
+                         step, ", t = ", time, ": reduce time.dt or refine the mesh");
         }
         run.history.row(row_of(time, field, state.plasma, moments, initial));
 

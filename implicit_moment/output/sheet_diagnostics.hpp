@@ -102,10 +102,7 @@ class SheetDiagnostics {
             row.add(mode("displacement_", m), "L", std::abs(moved[m]));
         const auto add_edge = [&](const char* name, long first) {
             const Eigen::VectorXcd mean = E.middleCols(first, rows_).rowwise().mean();
-            for (long m = 0; m < E.rows(); ++m) {
-                row.add(mode(name, m) + "_re", E_unit, mean[m].real());
-                row.add(mode(name, m) + "_im", E_unit, mean[m].imag());
-            }
+            for (long m = 0; m < E.rows(); ++m) row.add(mode(name, m), E_unit, mean[m]);
         };
         add_edge("upper_", grid_.z.cells - edge_ - rows_ + 1);
         add_edge("lower_", edge_);

@@ -9,8 +9,6 @@
 
 namespace implicit_moment {
 
-inline constexpr long most_particles_written = 40000;
-
 /// One quantity brought to the nodes 0..N of both directions by averaging the places beside each
 /// node, x fastest.
 /// in:     f, ghosts filled.
@@ -86,14 +84,13 @@ inline void write_fields(const common::Snapshot& at, const Grid& grid, const Fie
 template <class VelocityAt>
 inline void write_particles(const common::Snapshot& at, const Plasma& plasma,
                             const Case& parameters, const VelocityAt& u_at) {
-    const long all = common::sum_over_ranks(plasma.count()),
-               every = std::max(1L, (all + most_particles_written - 1) / most_particles_written);
+    const long all = common::sum_over_ranks(plasma.count()), every = common::every_nth_written(all);
     std::array<std::vector<double>, 6> data;
     for (std::size_t k = 0; k < plasma.species.size(); ++k) {
         const Particles& p = plasma.species[k];
         std::array<std::vector<double>, 6> of_rank;
         // The first of ours whose number among all is a multiple.
-        const long before = common::sum_before_rank(p.count());
+        const long before = sum_before_rank(p.count());
         for (long n = (every - before % every) % every; n < p.count(); n += every) {
             const Velocity<double> u = u_at(p, n);
             const std::array<double, 6> row{double(k), p.x_p[n], p.z_p[n], u.x, u.y, u.z};

@@ -7,12 +7,14 @@
 
 #include "common/grid.hpp"
 #include "common/run/output_file.hpp"
-#include "common/run/parameters.hpp"
+#include "common/run/sentence.hpp"
 #include "implicit_moment/explicit_em/boris_push.hpp"
 #include "implicit_moment/move_particles.hpp"
 #include "implicit_moment/solve_field.hpp"
 
 namespace implicit_moment {
+
+using common::format, common::refuse, common::sentence, common::warn;
 
 /// A Harris current sheet, from which every plasma parameter follows; lengths in d_i, and
 /// B0 = 1/(c/v_A).
@@ -104,10 +106,5 @@ struct Case {
     // Whether the ends of a sheet across its current are walls.
     bool is_tail() const { return is_across_current() && !grid.x.periodic; }
 };
-
-/// Refuses a case for one reason. errors: InputError with the sentence, which names the cure.
-inline void refuse(bool bad, const std::string& sentence) {
-    if (bad) throw common::InputError(sentence);
-}
 
 }  // namespace implicit_moment

@@ -54,8 +54,6 @@ struct Scales {
     double seconds = 0, of_mesh = 0;  // on one core; of these, what is done on the mesh
 };
 
-using common::format;
-
 /// The scales of a case, with densities in the middle of a sheet.
 inline Scales scales_of(const Case& w) {
     Scales s;
@@ -126,18 +124,16 @@ namespace detail {
 inline void refuse_tail(const Case& w) {
     const HarrisCase h = harris_of(w);
     if (h.normal_field == 0) return;
-    refuse(w.grid.x.periodic, "harris.normal_field = " + format(h.normal_field) +
-                                  " B0 makes a tail, which has two ends: set grid.boundary_x = "
-                                  "\"reflecting\"");
+    refuse(w.grid.x.periodic, "harris.normal_field = ", h.normal_field,
+           " B0 makes a tail, which has two ends: set grid.boundary_x = \"reflecting\"");
     const TailSheet tail = tail_of(h);
     const double opens = 0.5 * h.normal_field * w.grid.z.length / h.thickness,
                  thick = h.thickness / tail.F(-0.5 * w.grid.x.length);
-    refuse(opens > 1, "the field lines of the tail are turned by " + format(opens) +
-                          " at the walls, more than 1: lower harris.normal_field or grid.length_z");
-    refuse(thick > 0.25 * w.grid.z.length,
-           "the tail is " + format(thick) +
-               " d_i thick at one end and does not fit between walls " + format(w.grid.z.length) +
-               " d_i apart: lower harris.normal_field, grid.length_x or harris.thickness");
+    refuse(opens > 1, "the field lines of the tail are turned by ", opens,
+           " at the walls, more than 1: lower harris.normal_field or grid.length_z");
+    refuse(thick > 0.25 * w.grid.z.length, "the tail is ", thick,
+           " d_i thick at one end and does not fit between walls ", w.grid.z.length,
+           " d_i apart: lower harris.normal_field, grid.length_x or harris.thickness");
 }
 
 inline void validate_sheet(const Case& w) {
@@ -147,29 +143,28 @@ inline void validate_sheet(const Case& w) {
     refuse(w.boundary_z != "wall", "the Harris sheet needs grid.boundary_z = \"wall\"");
     refuse_tail(w);
     w.is_along_current() ? refuse_current_sheet(w) : refuse_reconnection(w);
-    refuse(h.thickness > 0.25 * w.grid.z.length,
-           "harris.thickness = " + format(h.thickness) + " d_i does not fit between walls " +
-               format(w.grid.z.length) + " d_i apart: at most a quarter of grid.length_z");
+    refuse(h.thickness > 0.25 * w.grid.z.length, "harris.thickness = ", h.thickness,
+           " d_i does not fit between walls ", w.grid.z.length,
+           " d_i apart: at most a quarter of grid.length_z");
     const HarrisSheet sheet = harris_sheet(h);
     const double fastest = std::max({sheet.u_i, std::fabs(sheet.u_e), sheet.v_e, sheet.v_i});
-    refuse(fastest >= 1, "the sheet has speeds of " + format(fastest) +
-                             " c (drift or thermal speed): raise " + w.setup +
-                             ".light_over_alfven above " + format(h.light_over_alfven * fastest));
+    refuse(fastest >= 1, "the sheet has speeds of ", fastest, " c (drift or thermal speed): raise ",
+           w.setup, ".light_over_alfven above ", h.light_over_alfven * fastest);
     if (!w.uniform.species.empty()) {
-        refuse(true, "[species." + w.uniform.species.front().name +
-                         "] belongs to plasma.setup = \"uniform\"; the Harris sheet makes its "
-                         "own ions and electrons");
+        refuse(true, "[species.", w.uniform.species.front().name,
+               "] belongs to plasma.setup = \"uniform\"; the Harris sheet makes its own ions and "
+               "electrons");
     }
-    refuse(wave_of(w) != nullptr,
-           "theory.wave = \"" + w.wave + "\" needs plasma.setup = \"uniform\"");
+    refuse(wave_of(w) != nullptr, "theory.wave = \"", w.wave,
+           "\" needs plasma.setup = \"uniform\"");
     // Pressure and current balance hold by construction; a wrong edit of harris_sheet ends
     // here.
     const double pressure = n0 * (sheet.T_i + sheet.T_e) / (sheet.B0 * sheet.B0 / (8 * pi));
     const double current_balance =
         n0 * (sheet.u_i - sheet.u_e) / (c * sheet.B0 / (4 * pi * h.thickness));
     refuse(!(std::fabs(pressure - 1) < 1e-12 && std::fabs(current_balance - 1) < 1e-12),
-           "the Harris sheet is out of balance: pressure " + format(pressure) + ", current " +
-               format(current_balance));
+           "the Harris sheet is out of balance: pressure ", pressure, ", current ",
+           current_balance);
 }
 
 inline void validate_uniform(const Case& w) {
@@ -181,18 +176,16 @@ inline void validate_uniform(const Case& w) {
     refuse(seeded && walls,
            "seeded fields need periodic boundaries: take out uniform.E_*, uniform.wave_E_*, "
            "uniform.wave_B_* or the walls");
-    refuse(w.boundary_x == "wall" && u.B_x != 0,
-           "uniform.B_x = " + format(u.B_x) +
-               " would cross the conducting walls normal to x: make it 0");
-    refuse(w.boundary_z == "wall" && u.B_z != 0,
-           "uniform.B_z = " + format(u.B_z) +
-               " would cross the conducting walls normal to z: make it 0");
+    refuse(w.boundary_x == "wall" && u.B_x != 0, "uniform.B_x = ", u.B_x,
+           " would cross the conducting walls normal to x: make it 0");
+    refuse(w.boundary_z == "wall" && u.B_z != 0, "uniform.B_z = ", u.B_z,
+           " would cross the conducting walls normal to z: make it 0");
     const double k_x = double(u.mode_x) / w.grid.x.length, k_z = double(u.mode_z) / w.grid.z.length;
     refuse(u.mode_x == 0 && u.mode_z == 0,
            "uniform.mode_x and uniform.mode_z are both 0: a mode needs a wave number");
     refuse(2 * std::labs(u.mode_x) > w.grid.x.cells || 2 * std::labs(u.mode_z) > w.grid.z.cells,
-           "the seeded mode (" + std::to_string(u.mode_x) + ", " + std::to_string(u.mode_z) +
-               ") has more than one wavelength per two cells: refine the mesh or lower the mode");
+           "the seeded mode (", u.mode_x, ", ", u.mode_z,
+           ") has more than one wavelength per two cells: refine the mesh or lower the mode");
     // Components in the plane that have one phase, or opposite ones: the sign of the second. Else 0.
     const auto in_step = [](double a, double b, double phase_a, double phase_b) {
         const double apart = std::fabs(std::remainder(phase_a - phase_b, 360));
@@ -200,10 +193,10 @@ inline void validate_uniform(const Case& w) {
     };
     const int sign_B = in_step(u.wave_B_x, u.wave_B_z, u.phase_B_x, u.phase_B_z),
               sign_E = in_step(u.wave_E_x, u.wave_E_z, u.phase_E_x, u.phase_E_z);
-    refuse(sign_B == 0 || sign_E == 0,
-           "the two components in the plane of a wave at an angle to x and z have different "
-           "phases: make uniform.phase_B_x and phase_B_z equal or 180 apart, and phase_E_x and "
-           "phase_E_z");
+    refuse(
+        sign_B == 0 || sign_E == 0,
+        "the two components in the plane of a wave at an angle to x and z have different phases: "
+        "make uniform.phase_B_x and phase_B_z equal or 180 apart, and phase_E_x and phase_E_z");
     const double size_B = std::hypot(u.wave_B_x, u.wave_B_z) * std::hypot(k_x, k_z);
     refuse(std::fabs(k_x * u.wave_B_x + sign_B * k_z * u.wave_B_z) > 1e-9 * size_B,
            "the seeded B is not divergence-free: k . B must be 0, so keep uniform.wave_B across "
@@ -216,9 +209,9 @@ inline void validate_uniform(const Case& w) {
         const double T = std::max({s.temperature_x, s.temperature_y, s.temperature_z});
         const double drift = std::hypot(s.drift_x, s.drift_y, s.drift_z);
         const double fastest = std::max(drift, std::sqrt(T / s.mass));
-        refuse(fastest >= 1 && !w.is_relativistic(),
-               "species '" + s.name + "' has speeds of " + format(fastest) +
-                   " c (drift or thermal speed): lower them, or set particles.relativistic = true");
+        refuse(fastest >= 1 && !w.is_relativistic(), "species '", s.name, "' has speeds of ",
+               fastest,
+               " c (drift or thermal speed): lower them, or set particles.relativistic = true");
     }
     refuse(u.species.empty() && !seeded,
            "an empty uniform plasma: add a [species.<name>] or seed a field with uniform.wave_E_y");
@@ -235,24 +228,22 @@ inline void validate(Case& w) {
     if (w.is_along_current()) fit_mesh_to_sheet(w);
     w.grid.x.low = -0.5 * w.grid.x.length;
     w.grid.z.low = -0.5 * w.grid.z.length;
-    refuse(w.end / w.dt > 1e9, "time.end / time.dt is " + format(w.end / w.dt) +
-                                   " steps, more than 1e9: raise time.dt or lower time.end");
+    refuse(w.end / w.dt > 1e9, "time.end / time.dt is ", w.end / w.dt,
+           " steps, more than 1e9: raise time.dt or lower time.end");
 
     refuse(w.field.B_level != "by_response" && w.field.solver == "newton_krylov",
            "field.solver = \"newton_krylov\" takes B at the level theta: take out field.B_level");
     refuse(w.field.uses_mass_matrix() && w.field.rotates_on_mesh(),
            "field.rotation = \"mesh\" turns moments: it needs field.response = \"moments\"");
-    refuse(
-        w.mover.relativistic && w.field.rotates_on_mesh(),
-        "field.rotation = \"mesh\" turns the sums of all particles by one angle, and relativistic "
-        "particles turn each by its own: take field.rotation = \"particles\"");
-    refuse(
-        w.mover.relativistic && !w.field.uses_mass_matrix() && w.field.solver == "newton_krylov",
-        "field.solver = \"newton_krylov\" turns moments by one angle, and relativistic particles "
-        "turn each by its own: take \"gmres\", or field.response = \"mass_matrix\"");
+    refuse(w.mover.relativistic && w.field.rotates_on_mesh(),
+           "field.rotation = \"mesh\" turns the sums of all particles by one angle, and "
+           "relativistic particles turn each by its own: take field.rotation = \"particles\"");
+    refuse(w.mover.relativistic && !w.field.uses_mass_matrix() && w.field.solver == "newton_krylov",
+           "field.solver = \"newton_krylov\" turns moments by one angle, and relativistic "
+           "particles turn each by its own: take \"gmres\", or field.response = \"mass_matrix\"");
     refuse(w.field.tolerance > 0 && w.field.tolerance < 1e-13,
-           "field.tolerance = " + format(w.field.tolerance) +
-               " is below 1e-13, what round-off leaves: raise it, or 0 for the default");
+           "field.tolerance = ", w.field.tolerance,
+           " is below 1e-13, what round-off leaves: raise it, or 0 for the default");
     w.is_uniform() ? detail::validate_uniform(w) : detail::validate_sheet(w);
 }
 
@@ -273,21 +264,18 @@ inline std::vector<std::string> idleness_warnings(const Case& w, const Scales& s
                  field = std::hypot(std::hypot(u.wave_B_x, u.wave_B_y, u.wave_B_z),
                                     std::hypot(u.wave_E_x, u.wave_E_y, u.wave_E_z)),
                  light = w.is_uniform() && field > 0 ? c * k : 0;
-    if (scales.steps == 0)
-        warnings.push_back("time.end = " + format(w.end) +
-                           " is below half of time.dt = " + format(w.dt) + ": no step is taken");
+    warn(warnings, scales.steps == 0, "time.end = ", w.end, " is below half of time.dt = ", w.dt,
+         ": no step is taken");
     if (std::max(Omega_c, light) * w.end > 0.1) return warnings;
-    if (omega_p * w.end < 0.1)
-        warnings.push_back("omega_p time.end = " + format(omega_p * w.end) +
-                           " and Omega_c time.end = " + format(Omega_c * w.end) +
-                           " are below 0.1: fields have no time to act; raise time.end, which is "
-                           "in units of 1/omega_pi");
+    warn(warnings, omega_p * w.end < 0.1, "omega_p time.end = ", omega_p * w.end,
+         " and Omega_c time.end = ", Omega_c * w.end,
+         " are below 0.1: fields have no time to act; raise time.end, which is in units of "
+         "1/omega_pi");
     const double box = std::max(w.grid.x.length, w.grid.z.length) * inverse_debye;
-    if (inverse_debye > 0 && box < 1)
-        warnings.push_back("the box has " + format(box) +
-                           " Debye lengths, below 1: particles cross it before their field can "
-                           "act; make it longer than " +
-                           format(1 / inverse_debye));
+    warn(warnings, inverse_debye > 0 && box < 1, "the box has ", box,
+         " Debye lengths, below 1: particles cross it before their field can act; make it longer "
+         "than ",
+         1 / inverse_debye);
     return warnings;
 }
 
@@ -296,13 +284,11 @@ inline std::vector<std::string> tail_warnings(const Case& w, const Scales& scale
     std::vector<std::string> warnings;
     const double each = double(scales.particles) / std::max(1.0, double(scales.species.size()));
     for (const SpeciesScales& s : scales.species) {
-        if (s.beyond_c * each < 1) continue;
-        warnings.push_back(
-            s.name + ": about " + format(std::round(s.beyond_c * each)) + " of " + format(each) +
-            " particles, " + format(100 * s.beyond_c) + " %, are loaded " +
-            (w.is_relativistic() ? "with u = gamma v above c: they are slower than the Maxwellian "
-                                   "that theory has"
-                                 : "faster than light, and the push is not relativistic"));
+        warn(warnings, s.beyond_c * each >= 1, s.name, ": about ", std::round(s.beyond_c * each),
+             " of ", each, " particles, ", 100 * s.beyond_c, " %, are loaded ",
+             w.is_relativistic()
+                 ? "with u = gamma v above c: they are slower than the Maxwellian that theory has"
+                 : "faster than light, and the push is not relativistic");
     }
     return warnings;
 }
@@ -320,36 +306,28 @@ inline std::vector<std::string> closure_warnings(const Case& w, const Scales& sc
     for (const SpeciesScales& s : scales.species) {
         const double most = s.thermal_speed * w.dt / std::min(dx, dz);
         const bool moments = !w.field.uses_mass_matrix() || w.leapfrog.chosen;
-        if (most > 1 && !moments && w.field.solver == "gmres")
-            warnings.push_back(s.name + ": v_th dt/dx = " + format(most) +
-                               " is above 1: a particle deposits its current far from most of its "
-                               "path, watch the Gauss residual or lower time.dt to " +
-                               format(w.dt / most));
-        if (most > 1 && moments) {
-            warnings.push_back(
-                s.name + ": v_th dt/dx = " + format(most) +
-                " is above 1, where the moment closure fails [IMM-13]: lower time.dt to " +
-                format(w.dt / most));
-        }
+        warn(warnings, most > 1 && !moments && w.field.solver == "gmres", s.name,
+             ": v_th dt/dx = ", most,
+             " is above 1: a particle deposits its current far from most of its path, watch the "
+             "Gauss residual or lower time.dt to ",
+             w.dt / most);
+        warn(warnings, most > 1 && moments, s.name, ": v_th dt/dx = ", most,
+             " is above 1, where the moment closure fails [IMM-13]: lower time.dt to ",
+             w.dt / most);
         const bool unresolved = s.debye_length > 0 && s.debye_length < 0.3 * std::min(dx, dz);
-        if (most < 0.05 && unresolved && s.thermal_speed > 0 && s.omega_p_dt > 0.5) {
-            warnings.push_back(s.name + ": v_th dt/dx = " + format(most) +
-                               " is below 0.05 and the Debye length is " +
-                               format(s.debye_length / std::min(dx, dz)) +
-                               (moments
-                                    ? " cells: finite-grid heating is possible, watch the energy"
-                                    : " cells: the mesh may turn drifts into heat, watch kinetic_" +
-                                          s.name + " and the momentum"));
-        }
+        warn(warnings, most < 0.05 && unresolved && s.thermal_speed > 0 && s.omega_p_dt > 0.5,
+             s.name, ": v_th dt/dx = ", most, " is below 0.05 and the Debye length is ",
+             s.debye_length / std::min(dx, dz),
+             moments ? " cells: finite-grid heating is possible, watch the energy"
+                     : " cells: the mesh may turn drifts into heat, watch kinetic_" + s.name +
+                           " and the momentum");
     }
     if (w.is_along_current()) {
         for (const std::string& warning : sheet_warnings(w)) warnings.push_back(warning);
     }
     for (const SpeciesScales& s : scales.species) {
-        if (s.Omega_c_dt > 2 * pi) {
-            warnings.push_back(s.name + ": Omega_c dt = " + format(s.Omega_c_dt) +
-                               " is above 2 pi, gyration is not followed");
-        }
+        warn(warnings, s.Omega_c_dt > 2 * pi, s.name, ": Omega_c dt = ", s.Omega_c_dt,
+             " is above 2 pi, gyration is not followed");
     }
     return warnings;
 }
@@ -357,51 +335,43 @@ inline std::vector<std::string> closure_warnings(const Case& w, const Scales& sc
 /// Refuses more ranks than implicit_moment has rows for.
 inline void refuse_ranks(const Case& w) {
     const long rows = nodes_z(w.grid);
-    refuse(common::rank_count() > std::max(1L, rows / rows_of_rank),
-           std::to_string(common::rank_count()) + " ranks, and the mesh has " +
-               std::to_string(rows) + " rows of nodes, of which each rank needs two: start fewer");
+    refuse(common::rank_count() > std::max(1L, rows / rows_of_rank), common::rank_count(),
+           " ranks, and the mesh has ", rows,
+           " rows of nodes, of which each rank needs two: start fewer");
 }
 
 /// The resolved scales as text, for --dry-run and the head of a run.
 inline std::string describe_scales(const Case& w, const Scales& scales) {
     const double dx = w.grid.x.spacing(), dz = w.grid.z.spacing();
     std::string text;
-    const auto line = [&](const std::string& name, const std::string& value) {
-        text +=
-            "  " + name + std::string(name.size() < 34 ? 34 - name.size() : 1, ' ') + value + "\n";
+    const auto line = [&](const std::string& name, const auto&... pieces) {
+        const std::string gap(name.size() < 34 ? 34 - name.size() : 1, ' ');
+        text += sentence("  ", name, gap, pieces..., "\n");
     };
-    line("mesh", std::to_string(w.grid.x.cells) + " x " + std::to_string(w.grid.z.cells) +
-                     " cells of " + format(dx) + " x " + format(dz) + " d_i, " + w.boundary_x +
-                     " in x, " + w.boundary_z + " in z");
-    line("steps", std::to_string(scales.steps) + " of " + format(w.dt) + " / omega_pi, c dt/dx = " +
-                      format(c * w.dt / dx) + ", c dt/dz = " + format(c * w.dt / dz));
-    line("particles",
-         std::to_string(scales.particles) + ", " +
-             format(double(scales.particles) / double(w.grid.x.cells * w.grid.z.cells)) +
-             " per cell");
+    line("mesh", w.grid.x.cells, " x ", w.grid.z.cells, " cells of ", dx, " x ", dz, " d_i, ",
+         w.boundary_x, " in x, ", w.boundary_z, " in z");
+    line("steps", scales.steps, " of ", w.dt, " / omega_pi, c dt/dx = ", c * w.dt / dx,
+         ", c dt/dz = ", c * w.dt / dz);
+    line("particles", scales.particles, ", ",
+         double(scales.particles) / double(w.grid.x.cells * w.grid.z.cells), " per cell");
     if (scales.B > 0)
-        line("magnetic field",
-             format(scales.B) + " m_i c omega_pi/e, Omega_ci dt = " + format(scales.B * w.dt));
-    for (const SpeciesScales& s : scales.species) {
-        line(s.name, "omega_p dt = " + format(s.omega_p_dt) + ", Omega_c dt = " +
-                         format(s.Omega_c_dt) + ", v_th = " + format(s.thermal_speed) +
-                         " c, v_th dt/dx = " + format(s.thermal_speed * w.dt / dx) + " and " +
-                         format(s.thermal_speed * w.dt / dz) +
-                         ", Debye length = " + format(s.debye_length) + " d_i");
-    }
+        line("magnetic field", scales.B, " m_i c omega_pi/e, Omega_ci dt = ", scales.B * w.dt);
+    for (const SpeciesScales& s : scales.species)
+        line(s.name, "omega_p dt = ", s.omega_p_dt, ", Omega_c dt = ", s.Omega_c_dt,
+             ", v_th = ", s.thermal_speed, " c, v_th dt/dx = ", s.thermal_speed * w.dt / dx,
+             " and ", s.thermal_speed * w.dt / dz, ", Debye length = ", s.debye_length, " d_i");
     if (w.is_uniform() && w.grid.x.periodic && w.grid.z.periodic) {
         double charge = 0;
         for (const SpeciesCase& s : w.uniform.species) charge += s.density * s.charge;
         if (std::fabs(charge) > 1e-12)
-            line("fixed background",
-                 "of charge " + format(-charge) + " e n0, which makes the periodic box neutral");
+            line("fixed background", "of charge ", -charge,
+                 " e n0, which makes the periodic box neutral");
     }
-    if (!w.is_uniform() && !w.leapfrog.chosen) {
-        line("explicit instead", "about " + format(cost_ratio(harris_of(w).mass_ratio, 2)) +
-                                     " times the time, by the slide's formula [COST]");
-    }
-    line("memory", "about " + format(scales.bytes / 1048576) + " MiB");
-    line("time", "about " + format(scales.seconds) + " s on one core");
+    if (!w.is_uniform() && !w.leapfrog.chosen)
+        line("explicit instead", "about ", cost_ratio(harris_of(w).mass_ratio, 2),
+             " times the time, by the slide's formula [COST]");
+    line("memory", "about ", scales.bytes / 1048576, " MiB");
+    line("time", "about ", scales.seconds, " s on one core");
     return text;
 }
 

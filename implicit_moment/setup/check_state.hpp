@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cmath>
-#include <string>
 #include <vector>
 
 #include "common/run/checkpoint.hpp"
@@ -15,8 +14,7 @@ namespace detail {
 
 // Refuses sums of a profile that are not those of its steps.
 inline void validate_profile(const Case& parameters, long step, const UnitFluxProfile& profile) {
-    const std::size_t count =
-        profile.steps > 0 ? static_cast<std::size_t>(parameters.grid.x.cells) : 0;
+    const std::size_t count = profile.steps > 0 ? std::size_t(parameters.grid.x.cells) : 0;
     bool fits = profile.steps >= 0 && profile.steps <= step + 1 && profile.begin >= 0 &&
                 profile.begin <= profile.end;
     for (const auto* sum : {&profile.rho_ions, &profile.J_x_ions, &profile.rho_electrons,
@@ -44,14 +42,13 @@ void validate_state(const Case& parameters, long step, const Sort& sort, Checkpo
     Plasma& plasma = checkpoint.state.plasma;
     for (Particles& s : plasma.species) s.of_ranks = {};  // read by number, not by rows
     const long expected = scales_of(parameters).particles, count = of_all({plasma.count()})[0];
-    refuse(count != expected, "it has " + std::to_string(count) + " particles, and the case " +
-                                  std::to_string(expected));
+    refuse(count != expected, "it has ", count, " particles, and the case ", expected);
     for (Particles& s : plasma.species) {
         for (const std::vector<double>* column : s.all())
-            refuse(of_all({column->size() != s.x_p.size()})[0] > 0,
-                   s.name + ": its particles lack components");
-        refuse(of_all({!on_mesh(grid.x, s.x_p) || !on_mesh(grid.z, s.z_p)})[0] > 0,
-               s.name + ": a particle is outside of the mesh");
+            refuse(of_all({column->size() != s.x_p.size()})[0] > 0, s.name,
+                   ": its particles lack components");
+        refuse(of_all({!on_mesh(grid.x, s.x_p) || !on_mesh(grid.z, s.z_p)})[0] > 0, s.name,
+               ": a particle is outside of the mesh");
     }
     std::vector<std::vector<long>> read;
     for (const Particles& s : plasma.species)
@@ -59,8 +56,8 @@ void validate_state(const Case& parameters, long step, const Sort& sort, Checkpo
     sort(plasma.species);
     for (std::size_t k = 0; k < read.size(); ++k) {
         const std::vector<int>& first = plasma.species[k].first_of_node;
-        refuse(of_all({first.begin(), first.end()}) != read[k],
-               plasma.species[k].name + ": its particles are not sorted");
+        refuse(of_all({first.begin(), first.end()}) != read[k], plasma.species[k].name,
+               ": its particles are not sorted");
     }
     detail::validate_profile(parameters, step, checkpoint.profile);
     const FieldState& field = checkpoint.state.field;

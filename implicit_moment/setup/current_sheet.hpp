@@ -53,12 +53,9 @@ inline void fit_mesh_to_sheet(Case& parameters) {
     const Case initial;
     const auto fit = [&](const std::string& letter, double in_L, double untouched, double& length) {
         const double fitting = in_L * L;
-        if (length != untouched && std::fabs(length / fitting - 1) > 1e-12) {
-            throw common::InputError("grid.length_" + letter + " = " + common::format(length) +
-                                     " d_i, but current_sheet.length_" + letter + " makes it " +
-                                     common::format(in_L) + " L = " + common::format(fitting) +
-                                     " d_i: take grid.length_" + letter + " out");
-        }
+        refuse(length != untouched && std::fabs(length / fitting - 1) > 1e-12, "grid.length_",
+               letter, " = ", length, " d_i, but current_sheet.length_", letter, " makes it ", in_L,
+               " L = ", fitting, " d_i: take grid.length_", letter, " out");
         length = fitting;
     };
     fit("x", s.length_x, initial.grid.x.length, parameters.grid.x.length);
@@ -72,23 +69,16 @@ inline std::vector<std::string> sheet_warnings(const Case& parameters) {
     std::vector<std::string> warnings;
     const double wavelength = 2 * pi / 12.5;  // [L]
     const double cells = wavelength * double(parameters.grid.x.cells) / s.length_x;
-    if (cells < least_cells_in_wave) {
-        warnings.push_back(
-            "the waves of the talk, k L = 12.5, are " + common::format(cells) +
-            " cells long, and want " + common::format(least_cells_in_wave) +
-            ": raise grid.cells_x to " +
-            common::format(std::ceil(least_cells_in_wave / wavelength * s.length_x)));
-    }
+    warn(warnings, cells < least_cells_in_wave, "the waves of the talk, k L = 12.5, are ", cells,
+         " cells long, and want ", least_cells_in_wave, ": raise grid.cells_x to ",
+         std::ceil(least_cells_in_wave / wavelength * s.length_x));
     const double area = s.length_x * (2 + s.background * s.length_z);  // at density n0 [L^2]
     const double in_cell = 0.5 * double(s.particles) / area * s.length_x * s.length_z /
                            double(parameters.grid.x.cells * parameters.grid.z.cells);
-    if (in_cell < least_particles_in_cell) {
-        warnings.push_back("there are " + common::format(in_cell) +
-                           " particles of a species in a cell in the middle of the sheet, and "
-                           "their noise hides the waves below " +
-                           common::format(least_particles_in_cell) +
-                           ": raise current_sheet.particles");
-    }
+    warn(warnings, in_cell < least_particles_in_cell, "there are ", in_cell,
+         " particles of a species in a cell in the middle of the sheet, and their noise hides the "
+         "waves below ",
+         least_particles_in_cell, ": raise current_sheet.particles");
     return warnings;
 }
 

@@ -191,10 +191,9 @@ inline common::ParameterTable describe(Case& w) {
     table.choice(
         "field.rotation", w.field.rotation, {"particles", "mesh"},
         "moments: what R turns, each particle before it is deposited, or the sums, as the slide");
-    table.choice(
-        "field.B_level", w.field.B_level, {"by_response", "start", "middle"},
-        "time of the B that rotates particles: t^n (moments), or t^n + dt/2, of second order "
-        "(mass_matrix)");
+    table.choice("field.B_level", w.field.B_level, {"by_response", "start", "middle"},
+                 "time of the B that rotates particles: t^n (moments), or t^n + dt/2, of second "
+                 "order (mass_matrix)");
     table.choice("field.solver", w.field.solver, {"gmres", "newton_krylov"},
                  "newton_krylov: moments, B of the rotation at the theta level; mass_matrix, "
                  "particles felt along their whole path, which keeps Gauss's law as well");

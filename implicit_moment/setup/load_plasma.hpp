@@ -97,7 +97,7 @@ inline Plasma load_harris(const Case& parameters, common::Share share = {}) {
     add("ions", weight, weight), add("electrons", -weight, weight / h.mass_ratio);
     Particles &ions = plasma.species[0], &electrons = plasma.species[1];
     const common::LoadingNumbers load{parameters.loading == "quiet",
-                                      static_cast<std::uint64_t>(parameters.seed)};
+                                      std::uint64_t(parameters.seed)};
     common::for_each_block(here, [&](int, long begin, long end) {
         for (long p = begin; p < end; ++p) {
             const long pair = first + p;
@@ -148,14 +148,14 @@ inline Plasma load_uniform(const Case& parameters, common::Share share = {}) {
     const long first = share.begin(count), here = share.end(count) - first;
     const double area = grid.x.length * grid.z.length;
     const common::LoadingNumbers load{parameters.loading == "quiet",
-                                      static_cast<std::uint64_t>(parameters.seed)};
+                                      std::uint64_t(parameters.seed)};
 
     Plasma plasma;
     for (const SpeciesCase& s : u.species) {
         const double weight = n0 * s.density * area / double(count);
         Particles& particles = plasma.species.emplace_back(detail::make_particles(
             s.name, weight * s.charge, weight * s.mass, parameters.is_relativistic(), here));
-        const auto purpose = static_cast<std::uint32_t>(plasma.species.size());
+        const auto purpose = std::uint32_t(plasma.species.size());
         const double v_x = std::sqrt(s.temperature_x / s.mass),
                      v_y = std::sqrt(s.temperature_y / s.mass),
                      v_z = std::sqrt(s.temperature_z / s.mass), degree = pi / 180;

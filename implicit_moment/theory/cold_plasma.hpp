@@ -205,19 +205,17 @@ inline std::vector<ColdWave> cold_waves(const Case& w) {
         fastest = std::max(fastest, waves.back().omega.real());
     }
     std::erase_if(waves, [&](const ColdWave& one) { return one.omega.real() < 1e-7 * fastest; });
-    std::sort(waves.begin(), waves.end(),
-              [](const ColdWave& a, const ColdWave& b) { return a.omega.real() < b.omega.real(); });
+    std::ranges::sort(waves, {}, [](const ColdWave& one) { return one.omega.real(); });
     return waves;
 }
 
 /// Refuses what is not cold and at rest. errors: InputError with the cure.
 inline void refuse_warm(const Case& w, const std::string& wave) {
     for (const SpeciesCase& s : w.uniform.species) {
-        refuse(
-            s.temperature_x > 0 || s.temperature_y > 0 || s.temperature_z > 0 || s.drift_x != 0 ||
-                s.drift_y != 0 || s.drift_z != 0,
-            wave + " is exact for a cold plasma at rest, and species '" + s.name +
-                "' is warm or drifts: choose \"longitudinal\", \"transverse\" or \"magnetized\"");
+        refuse(s.temperature_x > 0 || s.temperature_y > 0 || s.temperature_z > 0 ||
+                   s.drift_x != 0 || s.drift_y != 0 || s.drift_z != 0,
+               wave, " is exact for a cold plasma at rest, and species '", s.name,
+               "' is warm or drifts: choose \"longitudinal\", \"transverse\" or \"magnetized\"");
     }
 }
 

@@ -17,10 +17,9 @@ namespace implicit_moment {
 
 /// Refuses a mesh on which the modes along the current do not fit. errors: InputError with the cure.
 inline void refuse_current_sheet(const Case& w) {
-    refuse(w.grid.x.cells < least_cells_along_current,
-           "grid.cells_x = " + std::to_string(w.grid.x.cells) +
-               ": the first 4 modes along the current are compared, so take " +
-               std::to_string(least_cells_along_current) + " or more");
+    refuse(w.grid.x.cells < least_cells_along_current, "grid.cells_x = ", w.grid.x.cells,
+           ": the first 4 modes along the current are compared, so take ",
+           least_cells_along_current, " or more");
 }
 
 /// The sheet as local theory wants it: lengths in L, times in 1/Omega_ci; guiding centers drift in
@@ -37,16 +36,9 @@ struct EdgeWave {
     std::vector<std::complex<double>> upper, lower;
     std::vector<double> amplitude;  // root mean square of both
 
-    EdgeWave(const common::History& history, long m) {
-        const auto read = [&](const std::string& edge) {
-            const std::string name = edge + std::to_string(m);
-            const auto re = history.column(name + "_re"), im = history.column(name + "_im");
-            std::vector<std::complex<double>> wave;
-            for (std::size_t n = 0; n < re.size(); ++n) wave.emplace_back(re[n], im[n]);
-            return wave;
-        };
-        upper = read("upper_");
-        lower = read("lower_");
+    EdgeWave(const common::History& history, long m)
+        : upper(history.complex_column("upper_" + std::to_string(m))),
+          lower(history.complex_column("lower_" + std::to_string(m))) {
         for (std::size_t n = 0; n < upper.size(); ++n)
             amplitude.push_back(std::sqrt(0.5 * (std::norm(upper[n]) + std::norm(lower[n]))));
     }

@@ -121,8 +121,8 @@ inline void compare_theorem(const Case& w, const common::History& history,
     if (std::isnan(change)) return;
     summary.hint(w.field.rotates_in_the_middle()
                      ? "the mesh brakes the drift: resolve the Debye length"
-                     : "the mesh brakes the drift: take B in the middle of the step, "
-                       "field.B_level = \"middle\", or resolve the Debye length");
+                     : "the mesh brakes the drift: take B in the middle of the step, field.B_level "
+                       "= \"middle\", or resolve the Debye length");
     summary.result_at_most("momentum_change", change, "", 0.05, "conservation");
 }
 
@@ -136,10 +136,9 @@ inline void compare_energy(const Case& w, const common::History& history,
         energy_window(w, damps && (w.wave == "langmuir" || w.wave == "cold")
                              ? drift.back() - history.column("energy_residual").back()
                              : 0);
-    summary.hint(
-        damps ? "field.theta above 0.5 damps fast waves and noise: set it to 0.5"
-              : "noise of few particles, or scales that are not resolved, heat or cool: raise "
-                "the number of particles, lower time.dt, or refine the mesh");
+    summary.hint(damps ? "field.theta above 0.5 damps fast waves and noise: set it to 0.5"
+                       : "noise of few particles, or scales that are not resolved, heat or cool: "
+                         "raise the number of particles, lower time.dt, or refine the mesh");
     if (std::fabs(window.change) > 1e-3)
         return summary.result("energy_drift", drift.back(), "", window.change, window.tolerance,
                               window.source);

@@ -37,7 +37,7 @@ inline common::Measured level_after(std::span<const double> times, std::span<con
     constexpr int parts = 8;
     std::array<double, parts> sum{}, length{};
     const auto start =
-        std::find_if(times.begin(), times.end(), [&](double t) { return t >= begin * (1 - 1e-9); });
+        std::ranges::find_if(times, [&](double t) { return t >= begin * (1 - 1e-9); });
     for (std::size_t n = start - times.begin() + 1; n < times.size(); ++n) {
         const double dt = times[n] - times[n - 1],
                      passed = (times[n - 1] - *start) / (times.back() - *start);
@@ -84,7 +84,7 @@ inline void compare_kink(const Case& w, const common::History& history, common::
                displacement = history.column("displacement_1");
     const CurrentSheetCase& s = w.current_sheet;
     const bool of_the_talk = s.mass_ratio == 180 && s.drift == 1 && s.length_x == 2;
-    const auto sheet = std::find_if(talk_kinks.begin(), talk_kinks.end(), [&](const TalkKink& k) {
+    const auto sheet = std::ranges::find_if(talk_kinks, [&](const TalkKink& k) {
         return of_the_talk && k.temperature_ratio == s.temperature_ratio;
     });
     const auto report = [&](const std::string& name, common::Measured value,
@@ -93,9 +93,9 @@ inline void compare_kink(const Case& w, const common::History& history, common::
         if (sheet == talk_kinks.end())
             summary.result_info(name, value, unit, source);
         else
-            summary.result_within(name, value, unit, (*sheet).*talk / 1.5, 1.5 * (*sheet).*talk,
-                                  "talk, figure 14: " + common::format((*sheet).*talk) +
-                                      ", within a factor 1.5; " + source);
+            summary.result_within(
+                name, value, unit, (*sheet).*talk / 1.5, 1.5 * (*sheet).*talk,
+                "talk, figure 14: " + format((*sheet).*talk) + ", within a factor 1.5; " + source);
     };
     const auto growth = [&](const std::string& name, const std::vector<double>& a, bool compared) {
         const auto rows = std::size_t(
@@ -129,8 +129,8 @@ inline void compare_kink(const Case& w, const common::History& history, common::
         summary.result_info("kink_theory_omega", fastest.omega.real(), "Omega_ci", linear);
         summary.result_info("kink_theory_z", fastest.height, "L", linear);
     }
-    summary.result_info("kink_largest", *std::max_element(displacement.begin(), displacement.end()),
-                        "L", "amplitude of the displacement");
+    summary.result_info("kink_largest", std::ranges::max(displacement), "L",
+                        "amplitude of the displacement");
     report("lhdi_level", level_after(times, B_4, second_phase), "B0", &TalkKink::level,
            "root mean square over z and time, from t Omega_ci = 10");
     summary.result_info("energy_drift_at_end", history.column("energy_drift").back(), "",

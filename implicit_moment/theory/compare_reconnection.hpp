@@ -14,9 +14,8 @@ namespace implicit_moment {
 
 /// Refuses a mesh on which the flux cannot be measured. errors: InputError with the cure.
 inline void refuse_reconnection(const Case& w) {
-    refuse(w.grid.z.cells % 2 != 0,
-           "grid.cells_z = " + std::to_string(w.grid.z.cells) +
-               " is odd: the flux is measured on the row z = 0, so make it even");
+    refuse(w.grid.z.cells % 2 != 0, "grid.cells_z = ", w.grid.z.cells,
+           " is odd: the flux is measured on the row z = 0, so make it even");
 }
 
 /// The columns of a sheet across its current: reconnected flux and quadrupole of B_y.
@@ -50,15 +49,8 @@ inline double steepest_slope(const std::vector<double>& times, const std::vector
     for (std::size_t last = 1; last < times.size(); ++last) {
         while (times[last] - times[first] > window * (1 + 1e-9)) ++first;
         if (times[last] - times[first] < 0.9 * window) continue;
-        double t_mean = 0, v_mean = 0, tt = 0, tv = 0;
-        const auto count = double(last - first + 1);
-        for (std::size_t n = first; n <= last; ++n)
-            t_mean += times[n] / count, v_mean += values[n] / count;
-        for (std::size_t n = first; n <= last; ++n) {
-            tt += (times[n] - t_mean) * (times[n] - t_mean);
-            tv += (times[n] - t_mean) * (values[n] - v_mean);
-        }
-        steepest = std::max(steepest, tv / tt);
+        const std::size_t rows = last - first + 1;
+        steepest = std::max(steepest, common::slope({&times[first], rows}, {&values[first], rows}));
     }
     return steepest;
 }
@@ -100,8 +92,7 @@ inline const std::vector<ReconnectionWindow>& reconnection_windows() {
 inline void judge_reconnection(const std::string& name, double value, double mass_ratio,
                                common::Summary& summary) {
     const auto& all = reconnection_windows();
-    const auto& window =
-        *std::find_if(all.begin(), all.end(), [&](const auto& one) { return one.name == name; });
+    const auto& window = *std::ranges::find(all, name, &ReconnectionWindow::name);
     summary.hint(
         "noise decides when the sheet lets go, and the mesh how: try plasma.seed, "
         "harris.particles, or another mesh and time.dt");
@@ -177,7 +168,7 @@ inline void compare_reconnection(const Case& w, const common::History& history,
     };
     if (std::isnan(unit)) {
         summary.not_measured("time_at_unit_flux",
-                             "the flux is " + common::format(flux.back()) +
+                             "the flux is " + format(flux.back()) +
                                  " B0 d_i at the end: raise time.end, or look whether it grows");
         return;
     }

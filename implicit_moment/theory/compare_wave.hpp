@@ -6,7 +6,6 @@
 #include <cmath>
 #include <complex>
 #include <string>
-#include <vector>
 
 #include "common/run/run.hpp"
 #include "common/theory/measure_modes.hpp"
@@ -17,10 +16,8 @@ namespace implicit_moment {
 
 /// The columns of a uniform plasma: the complex amplitude of the seeded mode in one component.
 inline void add_mode(const Case& w, const FieldState& field, common::Row& row) {
-    const auto mode =
-        mode_amplitude(w.grid, field, w.component, w.uniform.mode_x, w.uniform.mode_z);
-    row.add("mode_re", w.component, mode.real());
-    row.add("mode_im", w.component, mode.imag());
+    row.add("mode", w.component,
+            mode_amplitude(w.grid, field, w.component, w.uniform.mode_x, w.uniform.mode_z));
 }
 
 /// How far particles of a seeded wave swing, in cells.
@@ -43,8 +40,8 @@ inline double swing_in_cells(const Case& w, double omega) {
 /// Why a wave may differ from theory, and what to change.
 inline std::string likely_cause(const Case& w, const Theory& theory, bool grows, bool over) {
     if (over)
-        return "growth is over before it tells enough: lower the seed, and where that is below "
-               "the noise raise the particles per cell";
+        return "growth is over before it tells enough: lower the seed, and where that is below the "
+               "noise raise the particles per cell";
     double heat = 0;
     for (const SpeciesCase& s : w.uniform.species)
         heat = std::max(
@@ -52,21 +49,20 @@ inline std::string likely_cause(const Case& w, const Theory& theory, bool grows,
     // An electron of mass gamma m answers less, by the same part.
     if (!theory.of_scheme && w.is_relativistic() && heat > 0.003)
         return "theory is without Lorentz factor, and particles with thermal speeds of " +
-               common::format(std::sqrt(heat)) + " c are heavier by some " + common::format(heat) +
+               format(std::sqrt(heat)) + " c are heavier by some " + format(heat) +
                " of their mass: set particles.relativistic = false, or lower the temperatures";
     const double damping =
         w.leapfrog.chosen ? 0 : 0.5 * (w.field.theta - 0.5) * std::norm(theory.omega) * w.dt;
     if (!theory.of_scheme && damping > 1e-3 * std::abs(theory.omega))
-        return "field.theta = " + common::format(w.field.theta) + " damps by some " +
-               common::format(damping) +
+        return "field.theta = " + format(w.field.theta) + " damps by some " + format(damping) +
                ", which this theory of short steps does not have: set field.theta = 0.5, or lower "
                "time.dt";
     const double swing = swing_in_cells(w, std::abs(theory.omega));
     if (theory.of_scheme && w.wave != "light" && has_linear_splines(w) && swing > 0.01)
-        return "particles swing by " + common::format(swing) +
+        return "particles swing by " + format(swing) +
                " of a cell, and the force of linear splines jumps between cells, so that the wave "
                "is not linear: lower the seed to " +
-               common::format(0.01 / swing) + " of it, or take particles.order = 2";
+               format(0.01 / swing) + " of it, or take particles.order = 2";
     return grows ? "the seed may be below the noise, the run too short, or a step too long: raise "
                    "the particles per cell or the seed, or time.end, or lower time.dt"
                  : "noise, a seed so large that the wave is not linear, a step that changes it, or "
@@ -81,8 +77,7 @@ inline void compare_wave(const Case& w, const common::History& history, common::
     if (wave == nullptr) return;
     const Theory theory = wave->expect(w);
     const double tolerance = theory.of_scheme ? exact_to(w) : 0.03;
-    const auto times = history.column("time"), re = history.column("mode_re"),
-               im = history.column("mode_im");
+    const auto times = history.column("time");
     const double growth = theory.omega.imag(), frequency = std::fabs(theory.omega.real());
     summary.result_info("theory_omega", frequency, "omega_pi", theory.source);
     summary.result_info("theory_growth", growth, "omega_pi", theory.source);
@@ -93,14 +88,13 @@ inline void compare_wave(const Case& w, const common::History& history, common::
         summary.result_info("theory_growth_without_mesh", without.omega.imag(), "omega_pi", source);
     }
 
-    std::vector<std::complex<double>> mode;
-    for (std::size_t n = 0; n < re.size(); ++n) mode.emplace_back(re[n], im[n]);
     const bool grows = !theory.of_scheme && growth > 1e-3 * std::abs(theory.omega);
     common::ModeSearch search;
     // Fields are real, and the seed may run either way.
     search.expected = {theory.omega, -std::conj(theory.omega)};
     if (grows) search.begin = 1 / growth, search.below_maximum = 0.1;
-    const common::MeasuredMode seen = common::measure_mode(times, mode, search);
+    const common::MeasuredMode seen =
+        common::measure_mode(times, history.complex_column("mode"), search);
     const std::string where = theory.source + "; measured " + seen.window;
     summary.hint(likely_cause(w, theory, grows, seen.over));
     const auto report = [&](const std::string& name, common::Measured value) {

@@ -57,6 +57,7 @@ struct SheetWave {
     double residual = 0;  // |A x - omega x| / |omega x|
     double height = 0;    // mean of |z| over |B_y|^2 [L]
     double magnetic = 0;  // B_y / E_z, root mean squares
+    double growth() const { return omega.imag(); }
 };
 
 /// The waves whose frequencies are nearest to `near`, from a Krylov space of (A - near)^-1.
@@ -113,9 +114,7 @@ inline std::vector<SheetWave> waves_near(const SheetMatrix& m, common::Complex n
         if (E2 > 0) wave.magnetic = std::sqrt(B2 / E2);
         waves.push_back(wave);
     }
-    std::sort(waves.begin(), waves.end(), [](const SheetWave& a, const SheetWave& b) {
-        return a.omega.imag() > b.omega.imag();
-    });
+    std::ranges::sort(waves, std::greater{}, &SheetWave::growth);
     return waves;
 }
 
@@ -129,32 +128,12 @@ inline std::vector<SheetWave> growing_waves(const LinearSheet& sheet, double lea
     for (const double part : {0.5, 0.75, 1.0})
         for (SheetWave& wave : waves_near(m, {part * k_u_i, 0.2 + 0.1 * part * sheet.k}, 50))
             if (wave.omega.imag() > least &&
-                std::none_of(waves.begin(), waves.end(), [&](const SheetWave& known) {
+                std::ranges::none_of(waves, [&](const SheetWave& known) {
                     return std::abs(known.omega - wave.omega) < 1e-6 * k_u_i;
                 }))
                 waves.push_back(std::move(wave));
-    std::sort(waves.begin(), waves.end(), [](const SheetWave& a, const SheetWave& b) {
-        return a.omega.imag() > b.omega.imag();
-    });
+    std::ranges::sort(waves, std::greater{}, &SheetWave::growth);
     return waves;
-}
-
-/// The wave with most of a magnetic field, which is the drift kink where there is one: waves of the
-/// edges are nearly electrostatic.
-/// in:     waves, one or more
-inline const SheetWave& drift_kink(const std::vector<SheetWave>& waves) {
-    return *std::max_element(
-        waves.begin(), waves.end(),
-        [](const SheetWave& a, const SheetWave& b) { return a.magnetic < b.magnetic; });
-}
-
-/// The wave of long wavelength: both species are shifted as a whole, nothing but their inertia acts,
-///     m_i (omega - k u_i)^2 + m_e (omega - k u_e)^2 = 0
-/// exact:  for k L << 1
-inline common::Complex rigid_kink(const CurrentSheet& sheet, double k) {
-    const double M = sheet.mass_ratio, u_i = sheet.drift * sheet.drift;
-    const double u_e = -u_i / sheet.temperature_ratio;
-    return k / (M + 1) * common::Complex(M * u_i + u_e, std::sqrt(M) * (u_i - u_e));
 }
 
 }  // namespace implicit_moment

@@ -146,12 +146,12 @@ inline Ramp fit_ramp(std::span<const double> times, std::span<const double> a, d
         }
         misses.push_back(std::fabs(record.best(drawn).growth.value - found.growth.value));
     }
-    std::sort(misses.begin(), misses.end());
+    std::ranges::sort(misses);
     found.growth.error = tails * misses[196];
     const double e_foldings = found.growth.value * (found.end - found.begin);
     if (!(e_foldings >= 1))
         found.reason = "cannot be measured, because only " +
-                       common::format(std::round(100 * e_foldings) / 100) +
+                       format(std::round(100 * e_foldings) / 100) +
                        " e-foldings lie between the level before and what follows";
     return found;
 }

@@ -26,7 +26,6 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
-#include <string>
 #include <vector>
 
 #include "common/theory/kinetic_dispersion.hpp"

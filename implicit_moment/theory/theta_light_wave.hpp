@@ -2,7 +2,6 @@
 // multiplied in one step, so that |g| is its damping and arg g its frequency times dt.
 #pragma once
 
-#include <cmath>
 #include <complex>
 
 namespace implicit_moment {

@@ -92,9 +92,8 @@ inline Theory of_factor(const Case& w, std::complex<double> g) {
 }
 
 inline void refuse_light(const Case& w, const std::string& name) {
-    refuse(!w.uniform.species.empty(),
-           "theory.wave = \"" + name +
-               "\" is a wave in vacuum: take out the species or choose \"transverse\"");
+    refuse(!w.uniform.species.empty(), "theory.wave = \"", name,
+           "\" is a wave in vacuum: take out the species or choose \"transverse\"");
 }
 inline Theory expect_light(const Case& w) {
     const WaveVector k = wave_vector(w);
@@ -106,7 +105,7 @@ inline Theory expect_light(const Case& w) {
 inline void refuse_kinetic(const Case& w, const std::string& name) {
     const UniformCase& u = w.uniform;
     const WaveVector k = wave_vector(w);
-    refuse(u.species.empty(), "theory.wave = \"" + name + "\" needs a [species.<name>]");
+    refuse(u.species.empty(), "theory.wave = \"", name, "\" needs a [species.<name>]");
     refuse(u.B_y != 0 ||
                std::fabs(u.B_x * k.z - u.B_z * k.x) > 1e-9 * std::hypot(u.B_x, u.B_z) * k.size(),
            "the dispersion relation is solved for B along k or zero: take out the part of "
@@ -115,10 +114,9 @@ inline void refuse_kinetic(const Case& w, const std::string& name) {
 
 inline void refuse_uncharged(const Case& w, const std::string& wave) {
     const auto& species = w.uniform.species;
-    refuse(std::all_of(species.begin(), species.end(),
-                       [](const SpeciesCase& s) { return s.charge == 0; }),
-           wave + " needs charges: " +
-               (species.empty() ? "it needs a [species.<name>]" : "give a species a charge"));
+    refuse(std::ranges::all_of(species, [](const SpeciesCase& s) { return s.charge == 0; }), wave,
+           " needs charges: ",
+           (species.empty() ? "it needs a [species.<name>]" : "give a species a charge"));
 }
 
 inline void refuse_langmuir(const Case& w, const std::string& name) {
@@ -133,9 +131,7 @@ inline Theory expect_langmuir(const Case& w) {
     const auto value = [](const ColdWave& one) {
         return one.along > 0.5 ? one.omega.imag() : -HUGE_VAL;
     };
-    return {std::max_element(waves.begin(), waves.end(),
-                             [&](auto a, auto b) { return value(a) < value(b); })
-                ->omega,
+    return {std::ranges::max_element(waves, {}, value)->omega,
             "cold plasma, exact for the step of the program", true};
 }
 
@@ -152,21 +148,18 @@ inline void refuse_without_near(const Case& w, const std::string& wave) {
     double last = 0;
     for (const ColdWave& one : followed_waves(w)) {
         if (one.omega.real() > (1 + 1e-7) * last)
-            found += (found.empty() ? "" : ", ") + common::format(one.omega.real());
+            found += (found.empty() ? "" : ", ") + format(one.omega.real());
         last = one.omega.real();
     }
-    refuse(true, wave +
-                     " needs theory.near: without temperatures this plasma has waves at omega = " +
-                     (found.empty() ? "none in theory.component" : found));
+    refuse(true, wave, " needs theory.near: without temperatures this plasma has waves at omega = ",
+           (found.empty() ? "none in theory.component" : found));
 }
 
 // The wave of the cold plasma that is nearest to theory.near.
 inline Theory expect_cold(const Case& w) {
     const auto waves = followed_waves(w);
     const auto distance = [&](const ColdWave& one) { return std::fabs(one.omega.real() - w.near); };
-    return {std::min_element(waves.begin(), waves.end(),
-                             [&](auto a, auto b) { return distance(a) < distance(b); })
-                ->omega,
+    return {std::ranges::min_element(waves, {}, distance)->omega,
             "cold plasma, exact for the step of the program", true};
 }
 inline void refuse_cold(const Case& w, const std::string& name) {
@@ -174,9 +167,8 @@ inline void refuse_cold(const Case& w, const std::string& name) {
     refuse_uncharged(w, wave);
     refuse_warm(w, wave);
     refuse(followed_waves(w).empty(),
-           "no wave of the seeded mode has a part in theory.component "
-           "= \"" +
-               w.component + "\": choose another one");
+           "no wave of the seeded mode has a part in theory.component = \"", w.component,
+           "\": choose another one");
     refuse_without_near(w, wave);
 }
 
@@ -187,9 +179,9 @@ Theory kinetic(const Case& w, const common::DispersionRoot& without, const Dispe
     common::DispersionRoot root;
     if (w.near != 0 || without.found)
         root = common::root_near(on_mesh, w.near != 0 ? w.near : without.omega);
-    refuse(!root.found, "no root of the " + w.wave + " dispersion relation was found" +
-                            (w.near != 0 ? " near " + common::format(w.near) : std::string()) +
-                            ": change theory.near, or set theory.wave = \"none\"");
+    refuse(!root.found, "no root of the ", w.wave, " dispersion relation was found",
+           (w.near != 0 ? " near " + format(w.near) : std::string()),
+           ": change theory.near, or set theory.wave = \"none\"");
     return {root.omega, "root of the kinetic dispersion relation on this mesh", false, without};
 }
 
@@ -274,29 +266,27 @@ inline void refuse_magnetized(const Case& w, const std::string& name) {
     const UniformCase& u = w.uniform;
     const Eigen::Vector3d B(u.B_x, u.B_y, u.B_z), b = B.normalized();
     refuse_uncharged(w, wave);
-    refuse(B.norm() == 0, wave +
-                              " needs a field: give uniform.B_x, B_y or B_z, or choose "
-                              "\"longitudinal\" or \"transverse\"");
+    refuse(B.norm() == 0, wave,
+           " needs a field: give uniform.B_x, B_y or B_z, or choose \"longitudinal\" or "
+           "\"transverse\"");
     for (const SpeciesCase& s : u.species) {
         const Eigen::Vector3d T(s.temperature_x, s.temperature_y, s.temperature_z),
             drift(s.drift_x, s.drift_y, s.drift_z);
         const double along = T.dot(b.cwiseAbs2()), across = 0.5 * (T.sum() - along);
         const Eigen::Matrix3d turned =
             across * Eigen::Matrix3d::Identity() + (along - across) * b * b.transpose();
-        refuse((turned - Eigen::Matrix3d(T.asDiagonal())).norm() > 1e-9 * T.norm(),
-               "species '" + s.name + "' has two temperatures across uniform.B: " + wave +
-                   " wants one across it and one along it");
-        refuse(
-            drift.cross(b).norm() > 1e-9 * drift.norm(),
-            "species '" + s.name + "' drifts across uniform.B: " + wave + " wants drifts along it");
+        refuse((turned - Eigen::Matrix3d(T.asDiagonal())).norm() > 1e-9 * T.norm(), "species '",
+               s.name, "' has two temperatures across uniform.B: ", wave,
+               " wants one across it and one along it");
+        refuse(drift.cross(b).norm() > 1e-9 * drift.norm(), "species '", s.name,
+               "' drifts across uniform.B: ", wave, " wants drifts along it");
     }
     for (const MagnetizedSpecies& s : magnetized_species(w)) {
         const double gyrations = std::sqrt(gyration_squared(s, magnetized_wave(w, wave_vector(w))));
-        refuse(!(gyrations <= 1000),
-               wave + " sums over the harmonics of the gyration, and k times its radius is " +
-                   common::format(gyrations) +
-                   ", above 1000: take a stronger uniform.B, or none and \"longitudinal\" or " +
-                   "\"transverse\"");
+        refuse(!(gyrations <= 1000), wave,
+               " sums over the harmonics of the gyration, and k times its radius is ", gyrations,
+               ", above 1000: take a stronger uniform.B, or none and \"longitudinal\" or ",
+               "\"transverse\"");
     }
     refuse_without_near(w, wave);
     expect_magnetized(w);
@@ -310,14 +300,13 @@ inline void refuse_transverse(const Case& w, const std::string& name) {
     const WaveVector k = wave_vector(w);
     for (const SpeciesCase& s : w.uniform.species) {
         const double drift = std::hypot(s.drift_x, s.drift_y, s.drift_z);
-        refuse(w.mover.relativistic && drift > 0.1 * c,
-               "species '" + s.name + "' drifts with u = " + common::format(drift) +
-                   " c: theory.wave = \"transverse\" takes drifts below 0.1 c where particles are "
-                   "relativistic");
-        refuse(k.x * k.z != 0 && s.temperature_x != s.temperature_z,
-               "species '" + s.name +
-                   "' has another temperature along x than along z, and a wave at an angle to both "
-                   "is not transverse: make them equal, or the mode along x or z");
+        refuse(w.mover.relativistic && drift > 0.1 * c, "species '", s.name,
+               "' drifts with u = ", drift,
+               " c: theory.wave = \"transverse\" takes drifts below 0.1 c where particles are "
+               "relativistic");
+        refuse(k.x * k.z != 0 && s.temperature_x != s.temperature_z, "species '", s.name,
+               "' has another temperature along x than along z, and a wave at an angle to both is "
+               "not transverse: make them equal, or the mode along x or z");
     }
     expect_transverse(w);
 }
@@ -339,8 +328,7 @@ inline const std::array<Wave, 6>& waves() {
 /// The wave that a case is compared with, or none. in: parameters of a case
 inline const Wave* wave_of(const Case& w) {
     const auto& all = waves();
-    const auto* wave =
-        std::find_if(all.begin(), all.end(), [&](const Wave& one) { return one.name == w.wave; });
+    const auto* wave = std::ranges::find(all, w.wave, &Wave::name);
     return wave == all.end() ? nullptr : wave;
 }
 
@@ -350,8 +338,7 @@ inline void refuse_wave(const Case& w) {
     const Wave* wave = wave_of(w);
     if (wave == nullptr) return;
     refuse(w.end < 10 * w.dt,
-           "theory.wave needs at least 10 steps to measure: raise time.end above " +
-               common::format(10 * w.dt));
+           "theory.wave needs at least 10 steps to measure: raise time.end above ", 10 * w.dt);
     refuse(w.uniform.mode_x == 0 && w.uniform.mode_z == 0,
            "theory.wave needs a mode: set uniform.mode_x or uniform.mode_z");
     wave->refuse(w, wave->name);
@@ -360,14 +347,12 @@ inline void refuse_wave(const Case& w) {
     const bool is_longitudinal = wave->name == "longitudinal" || wave->name == "langmuir",
                has_k = (axis == 'x' && k.x != 0) || (axis == 'z' && k.z != 0),
                only_k = (axis == 'x' && k.z == 0) || (axis == 'z' && k.x == 0);
-    refuse(is_longitudinal && (w.component.front() != 'E' || !has_k),
-           "theory.wave = \"" + wave->name + "\" has E along the mode, and theory.component = \"" +
-               w.component + "\" has no part along it: choose E_" + (k.x != 0 ? "x" : "z"));
-    refuse((wave->name == "light" || wave->name == "transverse") && only_k,
-           "theory.wave = \"" + wave->name +
-               "\" has its fields across the mode, and theory.component "
-               "= \"" +
-               w.component + "\" is along it: choose another one");
+    refuse(is_longitudinal && (w.component.front() != 'E' || !has_k), "theory.wave = \"",
+           wave->name, "\" has E along the mode, and theory.component = \"", w.component,
+           "\" has no part along it: choose E_", (k.x != 0 ? "x" : "z"));
+    refuse((wave->name == "light" || wave->name == "transverse") && only_k, "theory.wave = \"",
+           wave->name, "\" has its fields across the mode, and theory.component = \"", w.component,
+           "\" is along it: choose another one");
 }
 
 /// How exact a wave is for which theory is the scheme: without particles to what the solver leaves, and with them

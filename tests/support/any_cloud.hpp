@@ -2,9 +2,7 @@
 // particles on a mesh, and cases made without files.
 #pragma once
 
-#include <cmath>
 #include <cstdint>
-#include <random>
 #include <string>
 #include <vector>
 
@@ -16,13 +14,7 @@ namespace facts {
 
 using namespace mpm;
 
-/// Numbers in [0, 1), and between two ends.
-struct Random {
-    std::mt19937_64 engine;
-    explicit Random(std::uint64_t seed = 1) : engine(seed) {}
-    double operator()() { return 0x1p-53 * static_cast<double>(engine() >> 11); }
-    double operator()(double low, double high) { return low + (high - low) * (*this)(); }
-};
+using Random = UnitRandom;
 
 /// Calls work(shape, name) for every shape function.
 template <class Work>

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <random>
+#include <utility>
 
 #include "implicit_moment/vector_field.hpp"
 #include "tests/support/any_numbers.hpp"
@@ -21,7 +22,7 @@ inline double largest(const Eigen::VectorXd& v) {
 /// Numbers between -1 and 1, and fields of them with ghosts filled.
 struct Random {
     std::mt19937_64 engine{1};
-    double operator()() { return 0x1p-52 * static_cast<double>(engine() >> 11) - 1; }
+    double operator()() { return 0x1p-52 * double(engine() >> 11) - 1; }
     Eigen::Vector3d vector() {
         const double x = (*this)(), y = (*this)();
         return {x, y, (*this)()};
@@ -41,6 +42,21 @@ struct Random {
         return f;
     }
 };
+
+/// E with a potential in the place of E_y, for both live on nodes and vanish on walls, and its gradient in
+/// the plane, E = -grad E_y; and B that is a curl.
+inline std::pair<VectorField, VectorField> gradient_and_curl(const Grid& grid, Random& random) {
+    VectorField E = random.field(grid, electric, 1), B(grid);
+    const VectorField A = random.field(grid, electric, 1);
+    for_each_point(grid, [&](long n) {
+        E.x()[n] = -(E.y()[n + 1] - E.y()[n]) / grid.x.spacing();
+        E.z()[n] = -(E.y()[n + grid.stride()] - E.y()[n]) / grid.z.spacing();
+    });
+    curl_of_electric(grid, A.all.data(), B.all.data());
+    fill_ghosts(grid, electric, E);
+    fill_ghosts(grid, magnetic, B);
+    return {E, B};
+}
 
 /// Distinct points along one direction; a node on a wall has half a cell inside the mesh.
 inline long points(const common::Axis& axis, bool half) {

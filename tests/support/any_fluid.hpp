@@ -1,18 +1,16 @@
-// What the tests of flip share: the loop of its main without files, clouds of particles anywhere on
+// What the tests of flip and pic share: the loops of their mains without files, clouds of particles anywhere on
 // the mesh, and sums that know nothing of the code under test.
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
-#include <functional>
-#include <random>
 #include <string>
-#include <vector>
 
 #include "flip/flip/step.hpp"
 #include "flip/output/flip_diagnostics.hpp"
+#include "flip/output/pic_diagnostics.hpp"
+#include "flip/pic/step.hpp"
 #include "flip/setup/problem_of_case.hpp"
 #include "tests/support/any_numbers.hpp"
 
@@ -20,13 +18,7 @@ namespace facts {
 
 using namespace flip;
 
-/// Numbers in [0, 1), and between two ends.
-struct Random {
-    std::mt19937_64 engine;
-    explicit Random(std::uint64_t seed = 1) : engine(seed) {}
-    double operator()() { return 0x1p-53 * static_cast<double>(engine() >> 11); }
-    double operator()(double low, double high) { return low + (high - low) * (*this)(); }
-};
+using Random = UnitRandom;
 
 /// The steps of flip, whole and in parts.
 struct FlipRun {
@@ -68,6 +60,31 @@ struct FlipRun {
     Totals totals() const { return particle_totals(problem.grid, state.particles); }
 };
 
+/// The steps of pic.
+struct PicRun {
+    Case w;
+    Problem problem;
+    PicCells cells;
+    State state;
+    explicit PicRun(const Case& parameters)
+        : w(completed(parameters)),
+          problem(problem_of(w)),
+          cells(problem),
+          state(initial_state(problem, load_particles(w), cells)) {}
+    double step() {
+        find_pressure(problem, state, cells);
+        take_pic_step(problem, state, cells);
+        return state.dt;
+    }
+    void steps(int count) {
+        for (int n = 0; n < count; ++n) step();
+    }
+    void to_the_end() {
+        while (state.time < w.end) step();
+    }
+    Totals totals() { return totals_of(problem.grid, state, cells); }
+};
+
 /// A mesh on (0, 1) in x; a plane of unit height or a row of cells.
 inline Case flip_case(long nx, long nz, const char* ends_x, const char* ends_z) {
     Case w;
@@ -96,8 +113,8 @@ inline void add_cloud(const Case& w, long count, const CloudBox& box, double den
                       Random& random, Particles& p, int material = -1) {
     const double area = (box.x_high - box.x_low) * (box.z_high - box.z_low);
     for (long k = 0; k < count; ++k) {
-        const int kind = material >= 0 ? material : static_cast<int>(k % w.materials.size());
-        const Material& a = w.materials[static_cast<std::size_t>(kind)];
+        const int kind = material >= 0 ? material : int(k % w.materials.size());
+        const Material& a = w.materials[std::size_t(kind)];
         const double V = area / real(count), rho = density * random(0.5, 1.5);
         p.x_p.push_back(random(box.x_low, box.x_high));
         p.z_p.push_back(random(box.z_low, box.z_high));

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/splines.hpp"
 #include "implicit_moment/explicit_em/deposit_charge_and_current.hpp"
 #include "implicit_moment/explicit_em/push_particles.hpp"
 #include "implicit_moment/explicit_em/sort_by_cell.hpp"
@@ -38,8 +39,8 @@ inline Vector true_velocity(const Particles& particles, std::size_t p, bool rela
 // What round-off may leave of a sum over particles on a node when each of so many, anywhere on the
 // mesh, gives at most so much: positions are known to eps of the length of the mesh, sums to eps.
 inline double round_off(const Grid& grid, long order, std::size_t count, double each) {
-    const double n = real(static_cast<long>(count) * (order + 1) * (order + 1)) /
-                     real(grid.x.cells * grid.z.cells);
+    const double n =
+        real(long(count) * (order + 1) * (order + 1)) / real(grid.x.cells * grid.z.cells);
     return n * (n + real(std::max(grid.x.cells, grid.z.cells))) * eps * each;
 }
 
@@ -88,7 +89,7 @@ inline VectorField current_of_step(const Grid& grid, const InterleavedField& pus
     sort_after_push(grid, order, crossings, particles);
     for (std::size_t a = 0; a < 3; ++a) {
         common::fold_ghosts(grid, kind.place[a], kind.parity[a],
-                            J.all.data() + static_cast<long>(a) * grid.size());
+                            J.all.data() + long(a) * grid.size());
     }
     return J;
 }
@@ -96,9 +97,8 @@ inline VectorField current_of_step(const Grid& grid, const InterleavedField& pus
 inline double largest(const Grid& grid, const VectorKind& kind, const VectorField& f) {
     double most = 0;
     for (std::size_t a = 0; a < 3; ++a) {
-        most =
-            worst({most, largest(grid, kind.place[a],
-                                 f.all.segment(static_cast<long>(a) * grid.size(), grid.size()))});
+        most = worst({most, largest(grid, kind.place[a],
+                                    f.all.segment(long(a) * grid.size(), grid.size()))});
     }
     return most;
 }
@@ -123,7 +123,7 @@ inline std::vector<double> spline_and_images(const common::Axis& axis, long orde
     const double n = real(axis.cells);
     for (long i = 0; i < points(axis, half); ++i) {
         const auto S = [&](double at) {
-            return common::spline(static_cast<int>(order), at - real(i) - 0.5 * half);
+            return common::spline(int(order), at - real(i) - 0.5 * half);
         };
         all.push_back(S(s) +
                       (axis.periodic ? S(s - n) + S(s + n) : parity * (S(-s) + S(2 * n - s))));
@@ -135,7 +135,7 @@ inline void add_product(const Grid& grid, double factor, const std::vector<doubl
                         const std::vector<double>& z, double* f) {
     for (std::size_t j = 0; j < z.size(); ++j) {
         for (std::size_t i = 0; i < x.size(); ++i)
-            f[grid.index(static_cast<long>(i), static_cast<long>(j))] += factor * x[i] * z[j];
+            f[grid.index(long(i), long(j))] += factor * x[i] * z[j];
     }
 }
 

@@ -16,7 +16,7 @@ namespace facts {
 using Vector = Eigen::Vector3d;
 constexpr MoverSettings tight{1e-14, 100};
 
-inline std::size_t index(long n) { return static_cast<std::size_t>(n); }
+inline std::size_t index(long n) { return std::size_t(n); }
 
 inline std::vector<Grid> meshes() {
     std::vector<Grid> all;

@@ -207,8 +207,7 @@ inline void check_warnings(const std::string& table) {
         REQUIRE(!command.expected.empty());
         const Outcome outcome = check_described(command);
         INFO(command.words << ": " << outcome.err);
-        CHECK(std::count(outcome.err.begin(), outcome.err.end(), '\n') ==
-              static_cast<long>(warnings.size()));
+        CHECK(std::count(outcome.err.begin(), outcome.err.end(), '\n') == long(warnings.size()));
         for (const std::string& warning : warnings) {
             INFO(warning);
             CHECK(holds(outcome.err, warning));

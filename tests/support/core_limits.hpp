@@ -7,7 +7,7 @@
 #include <ctime>
 #include <vector>
 
-#include "common/simd.hpp"
+#include "implicit_moment/simd.hpp"
 
 namespace support {
 
@@ -34,7 +34,7 @@ double fastest(const Work& work) {
 /// latency of one.
 template <class Real>
 double peak_flops() {
-    using Vector [[gnu::vector_size(common::simd_width * sizeof(double))]] = Real;
+    using Vector [[gnu::vector_size(implicit_moment::simd_width * sizeof(double))]] = Real;
     constexpr int strands = 12;
     constexpr long lanes = sizeof(Vector) / sizeof(Real), count = 1000000;
     Vector sum[strands] = {}, a = Vector{} + Real(0.5), b = Vector{} + Real(1);

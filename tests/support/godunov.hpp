@@ -26,7 +26,7 @@ inline GodunovTube godunov_tube(const flip::theory::GasState& left,
                                 long cells, double interface, double end, double cfl = 0.9) {
     using namespace flip::theory;
     const long N = cells + 2;
-    const double dx = length / static_cast<double>(cells);
+    const double dx = length / double(cells);
     struct Cell {
         double q[5];  // mass, momentum, energy, and both G
         GasState gas;
@@ -38,8 +38,7 @@ inline GodunovTube godunov_tube(const flip::theory::GasState& left,
     };
     std::vector<Cell> cell;
     for (long i = 0; i < N; ++i)
-        cell.push_back(
-            filled(low + (static_cast<double>(i) - 0.5) * dx < interface ? left : right));
+        cell.push_back(filled(low + (double(i) - 0.5) * dx < interface ? left : right));
     struct Flux {
         double F[3], u;
     };

@@ -100,12 +100,11 @@ inline std::string forged(const std::string& file, const std::string& edits) {
         std::string what, where, first, second;
         words >> what >> where >> first >> second;
         const auto place = [](const std::string& word) {
-            return static_cast<std::size_t>(std::strtoull(word.c_str(), nullptr, 10));
+            return std::size_t(std::strtoull(word.c_str(), nullptr, 10));
         };
         auto block = std::find_if(blocks.begin(), blocks.end(),
                                   [&](const Block& one) { return one.name == where; });
-        if (block == blocks.end())
-            block = blocks.begin() + static_cast<long>(place(where) % blocks.size());
+        if (block == blocks.end()) block = blocks.begin() + long(place(where) % blocks.size());
         if (what == "number") put(*block, place(first), second);
         if (what == "length" && !block->bytes.empty()) {
             const std::size_t size = size_of(block->type), old = block->bytes.size();

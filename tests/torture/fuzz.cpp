@@ -119,7 +119,7 @@ int start(std::vector<std::string> words) {
     int status = setjmp(end_of_program) - 1;
     if (status < 0) {
         inside = true;
-        status = program_main(static_cast<int>(words.size()), argv.data());
+        status = program_main(int(words.size()), argv.data());
     }
     inside = false;
     std::fflush(nullptr);
@@ -181,7 +181,7 @@ std::string any_value(const Parameter& parameter) {
     char text[32];
     if (!parameter.choices.empty() && roll < 7) return any_of(parameter.choices);
     if (roll < 4) {
-        const double factor = std::exp2(static_cast<double>(below(9)) - 4);
+        const double factor = std::exp2(double(below(9)) - 4);
         std::snprintf(text, sizeof text, "%.3g",
                       std::strtod(parameter.initial.c_str(), nullptr) * factor);
         return text;

@@ -29,25 +29,16 @@ inline double omega_p_dt(const Case& w, const Scales& scales) {
 inline void refuse_unstable(const Case& w) {
     const long tiles =
         tiles_of(w.leapfrog.order == 1 ? Stencil<1>::cells(w.grid.z) : Stencil<2>::cells(w.grid.z));
-    if (common::rank_count() > tiles)
-        throw common::InputError(std::to_string(common::rank_count()) +
-                                 " ranks, and the mesh has " + std::to_string(tiles) +
-                                 " strips of " + std::to_string(rows_of_tile) +
-                                 " rows, of which each rank needs one: start fewer");
+    refuse(common::rank_count() > tiles, common::rank_count(), " ranks, and the mesh has ", tiles,
+           " strips of ", rows_of_tile, " rows, of which each rank needs one: start fewer");
     const double limit = courant_limit(w.grid);
-    if (!(w.dt < limit)) {
-        throw common::InputError(
-            "time.dt = " + format(w.dt) + " is not below the limit of light on this mesh, " +
-            format(limit) + " / omega_pi (c dt < (1/dx^2 + 1/dz^2)^(-1/2)): lower time.dt to " +
-            format(0.85 * limit) + " or use larger cells");
-    }
+    refuse(!(w.dt < limit), "time.dt = ", w.dt, " is not below the limit of light on this mesh, ",
+           limit, " / omega_pi (c dt < (1/dx^2 + 1/dz^2)^(-1/2)): lower time.dt to ", 0.85 * limit,
+           " or use larger cells");
     const double omega_p_dt = detail::omega_p_dt(w, scales_of(w));
-    if (!(omega_p_dt < 2)) {
-        throw common::InputError("omega_p dt = " + format(omega_p_dt) +
-                                 " is not below 2, the limit of leapfrogged plasma oscillations: "
-                                 "lower time.dt to " +
-                                 format(w.dt * 1.5 / omega_p_dt) + " or use implicit_moment");
-    }
+    refuse(!(omega_p_dt < 2), "omega_p dt = ", omega_p_dt,
+           " is not below 2, the limit of leapfrogged plasma oscillations: lower time.dt to ",
+           w.dt * 1.5 / omega_p_dt, " or use implicit_moment");
 }
 
 /// Warnings with the number and the limit, for choices that run but may mislead.
@@ -57,24 +48,16 @@ inline std::vector<std::string> leapfrog_warnings(const Case& w, const Scales& s
     for (const std::string& warning : tail_warnings(w, scales)) warnings.push_back(warning);
     const double cell = std::min(w.grid.x.spacing(), w.grid.z.spacing());
     const double omega_p_dt = detail::omega_p_dt(w, scales);
-    if (omega_p_dt > 1.62) {
-        warnings.push_back("omega_p dt = " + format(omega_p_dt) +
-                           " is above 1.62, where oscillations of a warm plasma may grow: lower "
-                           "time.dt to " +
-                           format(w.dt * 1.5 / omega_p_dt));
-    }
+    warn(warnings, omega_p_dt > 1.62, "omega_p dt = ", omega_p_dt,
+         " is above 1.62, where oscillations of a warm plasma may grow: lower time.dt to ",
+         w.dt * 1.5 / omega_p_dt);
     for (const SpeciesScales& s : scales.species) {
-        if (s.debye_length > 0 && s.debye_length < 0.2 * cell) {
-            warnings.push_back(s.name + ": the Debye length is " + format(s.debye_length / cell) +
-                               " cells, below 0.2: where the plasma drifts the mesh may heat it, "
-                               "watch the energy");
-        }
-        if (s.Omega_c_dt > 0.5) {
-            warnings.push_back(s.name + ": Omega_c dt = " + format(s.Omega_c_dt) +
-                               " is above 0.5, gyration is too slow by more than 2 %: lower "
-                               "time.dt to " +
-                               format(w.dt * 0.5 / s.Omega_c_dt));
-        }
+        warn(warnings, s.debye_length > 0 && s.debye_length < 0.2 * cell, s.name,
+             ": the Debye length is ", s.debye_length / cell,
+             " cells, below 0.2: where the plasma drifts the mesh may heat it, watch the energy");
+        warn(warnings, s.Omega_c_dt > 0.5, s.name, ": Omega_c dt = ", s.Omega_c_dt,
+             " is above 0.5, gyration is too slow by more than 2 %: lower time.dt to ",
+             w.dt * 0.5 / s.Omega_c_dt);
     }
     return warnings;
 }

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace common {
+namespace implicit_moment {
 
 #if defined __AVX512F__
 inline constexpr int simd_width = 8;
@@ -77,4 +77,4 @@ inline bool any_simd(const SimdMask& mask) {
     return bits[0] != 0;
 }
 
-}  // namespace common
+}  // namespace implicit_moment

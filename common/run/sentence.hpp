@@ -7,9 +7,7 @@
 
 #include "common/run/parameters.hpp"
 
-namespace flip {
-
-using common::format;
+namespace common {
 
 /// Words and numbers in one text; real numbers with four digits.
 template <class... Part>
@@ -27,11 +25,16 @@ std::string sentence(const Part&... parts) {
     return text;
 }
 
-/// Ends the program with a sentence where the input is bad.
-/// errors: InputError
+/// Ends the program with a sentence where the input is bad. errors: InputError
 template <class... Part>
 void refuse(bool bad, const Part&... parts) {
-    if (bad) throw common::InputError(sentence(parts...));
+    if (bad) throw InputError(sentence(parts...));
+}
+
+/// Ends the program with a sentence about a computation that failed. errors: NumericalError
+template <class... Part>
+[[noreturn]] void fail(const Part&... parts) {
+    throw NumericalError(sentence(parts...));
 }
 
 /// Adds a sentence to the warnings where the input may mislead.
@@ -40,4 +43,4 @@ void warn(std::vector<std::string>& warnings, bool doubtful, const Part&... part
     if (doubtful) warnings.push_back(sentence(parts...));
 }
 
-}  // namespace flip
+}  // namespace common
