@@ -116,11 +116,11 @@ fluids toro_4.toml inflow.x_low.pressure=400
     warning: inflow.x_low with density 5.999, pressure 400, velocity 19.6, where the gas has
     density 5.999, pressure 460.9, velocity 19.6, sends a wave into the mesh that the exact solution
     does not know: take that
-fluids box gas material.air.gamma=1.4 material.water.gamma=4.4 material.water.p_infinity=600 \
+flip box gas material.air.gamma=1.4 material.water.gamma=4.4 material.water.p_infinity=600 \
     region.gas.material=air boundary.z_high=inflow inflow.velocity_z=-1 inflow.material=water
     warning: inflow.z_high brings material.water, gamma = 4.4 and p_infinity = 600, and region.gas at
     that end is material.air, gamma = 1.4 and p_infinity = 0
-fluids box gas material.air.gamma=1.4 material.smoke.gamma=1.4 region.gas.material=air \
+flip box gas material.air.gamma=1.4 material.smoke.gamma=1.4 region.gas.material=air \
     boundary.z_high=inflow inflow.velocity_z=-1 inflow.material=smoke
     no warning
 flip sod theory.compare=riemann time.end=0.4

@@ -12,6 +12,7 @@
 #include "cic/setup/case.hpp"
 #include "cic/theory/magnetized_dispersion.hpp"
 #include "cic/theory/mesh_dispersion.hpp"
+#include "cic/theory/search_roots.hpp"
 #include "cic/theory/smooth_distribution.hpp"
 #include "common/theory/kinetic_dispersion.hpp"
 
@@ -214,22 +215,6 @@ double seeded_field(const Case& parameters, const Theory& theory,
     return std::abs(charge / slope) / k;
 }
 
-/// The roots that are reached from all guesses, without repetition.
-template <class Dispersion>
-std::vector<std::complex<double>> all_roots(const Dispersion& D,
-                                            const std::vector<std::complex<double>>& guesses) {
-    std::vector<std::complex<double>> roots;
-    for (const std::complex<double> guess : guesses) {
-        const common::DispersionRoot root = common::root_near(D, guess);
-        const auto same = [&](std::complex<double> other) {
-            return std::abs(other - root.omega) <= 1e-7 * std::abs(root.omega);
-        };
-        if (root.found && std::none_of(roots.begin(), roots.end(), same))
-            roots.push_back(root.omega);
-    }
-    return roots;
-}
-
 /// Guesses for the roots of a magnetized plasma: as without a field, and between the harmonics.
 inline std::vector<std::complex<double>> guesses_in_field(
     const std::vector<common::PlasmaSpecies>& plasma, const WaveVector& k,
@@ -363,7 +348,7 @@ inline Theory theory_of_wave(const Case& parameters, long mode_x, long mode_z,
     for (const common::PlasmaSpecies& s : plasma) warm = warm && s.temperature_along > 0;
     if (rate > (warm ? -HUGE_VAL : 0)) {
         const auto growing = responses_of(parameters, k, magnetized, true);
-        if (!common::may_grow_faster(relation(growing), rate, guesses)) return theory;
+        if (!may_grow_faster(relation(growing), rate, guesses)) return theory;
     }
     const auto responses = responses_of(parameters, k, magnetized);
     const auto D = relation(responses);
@@ -376,7 +361,7 @@ inline Theory theory_of_wave(const Case& parameters, long mode_x, long mode_z,
                         : parameters.gauss_sign > 0 ? "kinetic dispersion relation"
                                                     : "dispersion relation with div E = -rho";
         const common::DispersionRoot root = parameters.near != 0
-                                                ? common::nearest_root(D, guesses, parameters.near)
+                                                ? nearest_root(D, guesses, parameters.near)
                                                 : common::fastest_growing_root(D, guesses);
         if (!root.found) {
             const bool table_only = std::any_of(responses.begin(), responses.end(),
