@@ -203,6 +203,8 @@ cic line wave theory.model=mesh theory.mode_x=0
     theory.model = "plasma": name a mode
 cic line wave theory.mode_x=0 grid.cells_x=2048
     theory.mode_x = 0 looks for the fastest growing of 1023 modes
+cic ring.toml theory.mode_x=0 grid.cells_x=2048
+    times the length 1/k across the field, more than the 100 to which harmonics are summed
 cic line wave theory.mode_x=0 grid.cells_x=2
     theory.mode_x = 0 looks for the fastest growing of 0 modes
 cic line wave no_charge

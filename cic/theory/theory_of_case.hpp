@@ -403,6 +403,7 @@ inline Theory theory_of_wave(const Case& parameters) {
                 theory_of_wave(parameters, m, 0, best.mode_x == 0 ? -HUGE_VAL : best.omega.imag());
             if (theory.mode_x == 0) continue;
             if (best.mode_x == 0 || theory.omega.imag() > best.omega.imag()) best = theory;
+            if (!best.others.empty()) break;  // Bernstein modes do not grow
         } catch (const DampedWave&) {
             // It does not grow fastest; one at least is known.
             if (best.mode_x == 0 && 2 * m + 2 >= parameters.grid.x.cells) throw;
