@@ -4,6 +4,8 @@
 #include <doctest/doctest.h>
 #include <gsl/gsl_sf_bessel.h>
 
+#include <chrono>
+
 #include "cic/setup/check_case.hpp"
 #include "cic/setup/describe_case.hpp"
 #include "tests/support/any_summary.hpp"
@@ -337,6 +339,62 @@ TEST_CASE("a distribution that its series does not have keeps the theory of its 
               .find("is for waves that grow faster") != std::string::npos);
     CHECK(theory_of_wave(beams).mode_x == 2);
     CHECK(theory_of_wave(beams).omega.imag() > 0.2);
+}
+
+TEST_CASE("theory.near takes the nearest of all roots") {
+    // Two cold beams of density 1/2 and velocity +-u: omega^2 = u^2 + 1/2 +- (2 u^2 + 1/4)^(1/2) at k = 1.
+    for (const double u : {0.6, 1.1}) {
+        const std::string half = "density = 0.5\ndrift_x = ";
+        Case parameters = read(electrons(half + facts::text(u) + "\namplitude = 1e-3",
+                                         "[species.back]\n" + half + facts::text(-u)) +
+                               wave);
+        std::vector<Complex> roots;
+        for (const double sign : {-1, 1}) {
+            const double square = u * u + 0.5 + sign * std::sqrt(2 * u * u + 0.25);
+            roots.push_back(std::sqrt(Complex(square))), roots.push_back(-roots.back());
+        }
+        for (double near = -3; near < 3; near += 0.07) {
+            double least = 10;
+            for (const Complex root : roots) least = std::min(least, std::abs(root - near));
+            parameters.near = near;
+            CAPTURE(near);
+            CHECK(std::fabs(std::abs(theory_of_wave(parameters).omega - near) - least) <= 1e-9);
+        }
+    }
+}
+
+TEST_CASE("theory.mode_x = 0 finds the fastest of all modes in the time of a few") {
+    const std::string long_box = "[grid]\nlength_x = 400\ncells_x = 1024\n",
+                      ions = "[species.ions]\ncharge = 1\nmotion = \"fixed\"\n",
+                      ends = wave + "mode_x = 0\n";
+    const std::vector<std::string> plasmas{
+        "[species.a]\ndensity = 0.5\ndrift_x = 1\n[species.b]\ndensity = 0.5\ndrift_x = -1\n",
+        "[species.a]\ndensity = 0.95\ntemperature_x = 1\n[species.b]\ndensity = 0.05\n"
+        "drift_x = 4.5\ntemperature_x = 0.25\n",
+        "[species.a]\ndistribution_x = \"exp(-(v-2)^2) + exp(-(v+2)^2)\"\ndistribution_max = 8\n"};
+    for (const std::string& plasma : plasmas) {
+        CAPTURE(plasma);
+        const auto seconds = [](const auto& work) {
+            const auto start = std::chrono::steady_clock::now();
+            work();
+            return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        };
+        Case parameters;
+        const double all = seconds([&] { parameters = read(long_box + ions + plasma + ends); });
+        const Theory found = theory_of_wave(parameters);
+        CHECK(found.omega.imag() > 0.1);
+        // None is faster; of a mode that is damped the search takes longest.
+        double slowest = 0, fastest = 0;
+        for (long m = 1; m < 512; m += m < 64 ? 1 : 64) try {
+                slowest = std::max(slowest, seconds([&] {
+                                       fastest = std::max(
+                                           fastest, theory_of_wave(parameters, m, 0).omega.imag());
+                                   }));
+            } catch (const common::InputError&) {
+            }
+        CHECK(fastest == found.omega.imag());
+        CHECK(all <= 100 * slowest);
+    }
 }
 
 TEST_CASE("particles have the density and the distributions of the formulas") {

@@ -275,6 +275,14 @@ TEST_CASE("a seeded wave at an angle obeys both constraints of the mesh") {
     const State same = initial_state(opposite);
     CHECK((same.field.B.all - state.field.B.all).norm() <= 1e-13 * state.field.B.all.norm());
     CHECK((same.field.E.all - state.field.E.all).norm() <= 1e-13 * state.field.E.all.norm());
+    // Half a turn but for round-off: 179.99999999999997 degrees.
+    Case rounded = opposite;
+    rounded.uniform.phase_B_x = 256.1, rounded.uniform.phase_B_z = 76.1;
+    rounded.uniform.phase_E_x = 76.4, rounded.uniform.phase_E_z = 256.4;
+    CHECK(256.1 - 76.1 != 180);
+    CHECK_NOTHROW(validate(rounded));
+    rounded.uniform.phase_B_x += 1e-6;
+    CHECK_THROWS_AS(validate(rounded), common::InputError);
     opposite.uniform.phase_B_x = 0;
     CHECK_THROWS_AS(validate(opposite), common::InputError);
     w.uniform.phase_E_x = 90;

@@ -421,6 +421,11 @@ TEST_CASE("a bond breaks when the bar pulls with its strength" * doctest::descri
     }
 }
 
+TEST_CASE("the time when a bond breaks is known to half the time between rows" *
+          doctest::description("physics")) {
+    facts::check_breaking_times("mpm_explicit");
+}
+
 TEST_CASE("a disk that yields leaves slowly and its budget closes" *
           doctest::description("physics")) {
     const Run r = run("yield", "yielding_disk", "");

@@ -411,7 +411,8 @@ TEST_CASE("a block that yields bears the limit of plane strain" * doctest::descr
 TEST_CASE("a bond breaks when the bar pulls with its strength by the theta scheme" *
           doctest::description("physics")) {
     for (const char* strength : {"0.3", "0.5", "0.65"}) {
-        const Run r = run("breaks", "bonded_bar", "bond.joint.tension=" + std::string(strength));
+        const Run r = run("breaks", "bonded_bar",
+                          "time.alpha=0.2 bond.joint.tension=" + std::string(strength));
         check_results(r, 3);
         check_theorem(r);
         const auto& broken = r.column("broken_bonds");
@@ -422,6 +423,11 @@ TEST_CASE("a bond breaks when the bar pulls with its strength by the theta schem
     check_results(holds, 5);
     check_theorem(holds);
     CHECK(largest(holds.column("broken_bonds")) == 0);
+}
+
+TEST_CASE("the time when a bond breaks is known to half the time between rows by the theta scheme" *
+          doctest::description("physics")) {
+    facts::check_breaking_times("mpm_implicit");
 }
 
 TEST_CASE("a disk that yields keeps to its yield surface and its budget closes" *

@@ -74,7 +74,7 @@ const std::vector<Mutation> electrostatic{
     {"cic", "ring", "theory.near=0.4 time.dt=0.2 species.electrons.particles_per_cell=1024",
      "omega_over_theory"},
     {"cic", "ring", long_step, "energy_change"},
-    {"cic", "sheath", "grid.cells_x=24 time.end=300", "collector_potential plasma_potential"},
+    {"cic", "sheath", "grid.cells_x=8 time.end=1200", "collector_potential plasma_potential"},
     {"cic", "thermal_heating", "", ""},
     {"cic", "thermal_heating", "time.dt=1", "field_over_kinetic energy_change"},
     {"cic", "two_stream", "", ""},

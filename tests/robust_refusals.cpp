@@ -203,12 +203,13 @@ cic line wave theory.model=mesh theory.mode_x=0
     theory.model = "plasma": name a mode
 cic line wave theory.mode_x=0 grid.cells_x=2048
     theory.mode_x = 0 looks for the fastest growing of 1023 modes
+cic ring.toml theory.mode_x=0 grid.cells_x=2048
+    times the length 1/k across the field, more than the 100 to which harmonics are summed
 cic line wave theory.mode_x=0 grid.cells_x=2
     theory.mode_x = 0 looks for the fastest growing of 0 modes
-cic line wave theory.near=1e30
-    no root of the dispersion relation was found for mode (1, 0) near theory.near = 1e+30: change
-    it or take it out, or set theory.compare = "none"
-cic line wave no_charge -> no root of the dispersion relation was found for mode (1, 0)
+cic line wave no_charge
+    no root of the dispersion relation was found for mode (1, 0): give theory.near a frequency to
+    look at, or set theory.compare = "none"
 cic line wave theory.model=mesh theory.mode_x=8
     no root of the dispersion relation was found for mode (8, 0)
 cic between_walls traveling -> species.electrons.wave = "traveling" needs periodic boundaries
@@ -879,6 +880,11 @@ implicit_moment beam uniform.mode_z=-33
     the seeded mode (1, -33) has more than one wavelength per two cells
 plasmas uniform uniform.wave_B_x=1e-3
     the seeded B is not divergence-free: k . B must be 0, so keep uniform.wave_B across
+plasmas uniform uniform.mode_z=1 uniform.wave_B_x=1e-3 uniform.wave_B_z=-1e-3 uniform.phase_B_z=180
+    k . B must be 0, so keep uniform.wave_B across the mode; phases 180 apart turn the sign of one
+    component
+plasmas uniform uniform.mode_z=1 uniform.wave_E_x=1e-3 uniform.wave_E_z=-1e-3 uniform.phase_E_z=180
+    seed it with the species' wave_x and wave_z; phases 180 apart turn the sign of one component
 plasmas uniform uniform.wave_E_x=1e-3
     the seeded E has a part along k: that part follows from the charge, so seed it with
 plasmas beam particles.relativistic=false species.beam.drift_x=0.8 species.beam.drift_z=0.8

@@ -104,6 +104,25 @@ flip sod theory.compare=riemann boundary.x_low=open left.velocity=0.3
 flip sod theory.compare=riemann boundary.x_low=open
     warning: boundary.pressure_x_low = 0, where the gas has 1, sends a wave into the mesh that the
     exact solution does not know: take that
+flip toro_4.toml -> no warning
+pic toro_4.toml -> no warning
+fluids toro_4.toml right.gamma=1.6667 inflow.x_high.material=left
+    warning: inflow.x_high brings material.left, gamma = 1.4 and p_infinity = 0, and region.right at
+    that end is material.right, gamma = 1.667 and p_infinity = 0: set inflow.x_high.material =
+    "right", where that is not meant
+fluids toro_4.toml inflow.x_low.material=right
+    warning: inflow.x_low brings material.right, gamma = 1.4 and p_infinity = 0, and region.left at
+fluids toro_4.toml inflow.x_low.pressure=400
+    warning: inflow.x_low with density 5.999, pressure 400, velocity 19.6, where the gas has
+    density 5.999, pressure 460.9, velocity 19.6, sends a wave into the mesh that the exact solution
+    does not know: take that
+flip box gas material.air.gamma=1.4 material.water.gamma=4.4 material.water.p_infinity=600 \
+    region.gas.material=air boundary.z_high=inflow inflow.velocity_z=-1 inflow.material=water
+    warning: inflow.z_high brings material.water, gamma = 4.4 and p_infinity = 600, and region.gas at
+    that end is material.air, gamma = 1.4 and p_infinity = 0
+flip box gas material.air.gamma=1.4 material.smoke.gamma=1.4 region.gas.material=air \
+    boundary.z_high=inflow inflow.velocity_z=-1 inflow.material=smoke
+    no warning
 flip sod theory.compare=riemann time.end=0.4
     warning: at time.end the waves are at x = 0.02671 and 1.201, beyond the ends
 fluids sod theory.compare=riemann left.velocity=-2 left.pressure=0.4 right.density=1 \

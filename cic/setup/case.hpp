@@ -117,6 +117,7 @@ struct Case {
     std::string compare = "none";  // see theory/comparisons.hpp
     std::string model = "plasma";  // or mesh
     long mode_x = 1, mode_z = 0;
+    long fastest_x = 0;  // that mode_x = mode_z = 0 stands for; found by validate()
     double near = 0;
     double growth_tolerance = 0.01, frequency_tolerance = 0.005;
 

@@ -13,8 +13,8 @@
 namespace cic {
 
 /// Refuses what cannot run. errors: InputError, one sentence with the numbers and the cure.
-/// in/out: the mesh of the case gets its boundaries, in one dimension one cell of height 1, and its
-///         formulas their tables.
+/// in/out: the mesh of the case gets its boundaries, in one dimension one cell of height 1, its
+///         formulas their tables, and theory.mode_x = 0 the mode that it stands for.
 inline void validate(Case& parameters) {
     common::require_formats(parameters.also);
     refuse(common::rank_count() > common::block_count, common::rank_count(),
@@ -129,6 +129,9 @@ inline void validate(Case& parameters) {
             theory_of_wave(parameters, p.mode_x, p.mode_z);  // throws where there is no such wave
         }
     validate_comparison(parameters);
+    const bool follows = comparison_of(parameters).follows_mode;
+    if (follows && parameters.mode_x == 0 && parameters.mode_z == 0)
+        parameters.fastest_x = comparison_of(parameters).recorded_mode_x(parameters);
 }
 
 }  // namespace cic

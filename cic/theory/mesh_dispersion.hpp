@@ -184,14 +184,12 @@ inline common::Complex mesh_dispersion(std::span<const common::PlasmaSpecies> pl
     return D;
 }
 
-/// The fastest growing (or least damped) wave of the mesh mode k.
+/// Guesses for the roots of the mesh mode k.
 ///   1. the roots of D with few aliases, from common::fan_of_guesses and from around the resonances
 ///      k_p u_s +- omega_p of drifting species
 ///   2. brought to the frequencies under which samples in time show them, |Re omega| <= pi / dt
-///   3. as guesses for the roots of D
-/// out:    not found where there is no wave: at k = pi / dx, where kappa = 0
-inline common::DispersionRoot fastest_growing_on_mesh(std::span<const common::PlasmaSpecies> plasma,
-                                                      double k, const MeshScheme& scheme) {
+inline std::vector<common::Complex> guesses_on_mesh(std::span<const common::PlasmaSpecies> plasma,
+                                                    double k, const MeshScheme& scheme) {
     using common::Complex;
     const auto rough_D = [&](Complex omega) {
         Complex D = 1.0;
@@ -218,8 +216,15 @@ inline common::DispersionRoot fastest_growing_on_mesh(std::span<const common::Pl
             roots.back().real(
                 std::remainder(root.omega.real(), 2.0 * std::numbers::pi / scheme.dt));
     }
-    const auto D = [&](Complex omega) { return mesh_dispersion(plasma, k, scheme, omega); };
-    return common::fastest_growing_root(D, roots);
+    return roots;
+}
+
+/// The fastest growing (or least damped) wave of the mesh mode k.
+/// out:    not found where there is no wave: at k = pi / dx, where kappa = 0
+inline common::DispersionRoot fastest_growing_on_mesh(std::span<const common::PlasmaSpecies> plasma,
+                                                      double k, const MeshScheme& scheme) {
+    const auto D = [&](common::Complex omega) { return mesh_dispersion(plasma, k, scheme, omega); };
+    return common::fastest_growing_root(D, guesses_on_mesh(plasma, k, scheme));
 }
 
 /// The drift u / (omega_p dx) below which the energy-conserving scheme makes a cold beam unstable.

@@ -145,24 +145,44 @@ inline const SpeciesCase& electrons_of(const Case& parameters) {
     return parameters.species[parameters.species[0].charge < 0 ? 0 : 1];
 }
 
+inline const SpeciesCase& ions_of(const Case& parameters) {
+    return parameters.species[parameters.species[0].charge < 0 ? 1 : 0];
+}
+
 /// The sheath of a case with two such species. errors: InputError where there is none
 inline Sheath sheath_of(const Case& parameters) {
-    const SpeciesCase& electrons = electrons_of(parameters);
-    const SpeciesCase& ions = parameters.species[&electrons == &parameters.species[0] ? 1 : 0];
+    const SpeciesCase &electrons = electrons_of(parameters), &ions = ions_of(parameters);
     return collector_sheath(ions.mass / electrons.mass,
                             ions.emission_temperature / electrons.emission_temperature);
 }
 
-/// Potentials of a floating wall in front of a plasma from a source, mean of the last half.
+/// Potentials of a floating wall in front of a plasma from a source, mean of the last half. Their error
+/// is by how much the last quarter differs from the one before: it tells where they still settle.
 inline void compare_sheath(const Case& parameters, const History& history, Summary& summary) {
     const SpeciesCase& electrons = electrons_of(parameters);
     const Sheath sheath = sheath_of(parameters);
+    const double e_over_T = std::fabs(electrons.charge) / electrons.emission_temperature,
+                 crossing = parameters.grid.x.length *
+                            std::sqrt(ions_of(parameters).mass / electrons.emission_temperature),
+                 settled = 5 * crossing;
+    summary.hint(
+        parameters.end < settled
+            ? sentence(
+                  "the sheath has not settled: ions cross the box in L (m_i/T_e)^1/2 = ", crossing,
+                  ", and potentials come to rest in three such times or more: "
+                  "raise time.end, ",
+                  parameters.end, ", above ", settled)
+            : "the noise of particles and the Debye length are the most likely causes: raise "
+              "particles_per_cell, grid.cells_x or time.end");
     const auto compare = [&](const char* name, const char* column, double expected) {
-        const double e_phi =
-            std::fabs(electrons.charge) * mean_of_last_half(history.column(column));
-        summary.result(name, e_phi / electrons.emission_temperature, "T_e/e", expected,
-                       parameters.growth_tolerance * std::fabs(expected),
-                       "Schwager and Birdsall 1990, solved here");
+        auto e_phi = history.column(column);
+        for (double& value : e_phi) value *= e_over_T;
+        const double mean = mean_of_last_half(e_phi);
+        e_phi.erase(e_phi.begin(), e_phi.begin() + std::ptrdiff_t(e_phi.size() / 2));
+        summary.result(name, {mean, 2 * std::fabs(mean_of_last_half(e_phi) - mean)}, "T_e/e",
+                       expected, parameters.growth_tolerance * std::fabs(expected),
+                       "Schwager and Birdsall 1990, solved here; mean of the last half, and by how "
+                       "much its halves differ");
     };
     compare("collector_potential", "potential_x_high", sheath.collector_potential);
     compare("plasma_potential", "potential_middle", sheath.plasma_potential);

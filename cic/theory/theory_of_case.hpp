@@ -12,6 +12,7 @@
 #include "cic/setup/case.hpp"
 #include "cic/theory/magnetized_dispersion.hpp"
 #include "cic/theory/mesh_dispersion.hpp"
+#include "cic/theory/search_roots.hpp"
 #include "cic/theory/smooth_distribution.hpp"
 #include "common/theory/kinetic_dispersion.hpp"
 
@@ -130,9 +131,11 @@ inline const Distribution& table_along(const SpeciesCase& s, const WaveVector& k
 }
 
 /// The responses of all mobile species to the waves of one wave vector.
-/// in:     magnetized, the same species in a magnetic field; empty without one
+/// in:     magnetized, the same species in a magnetic field, empty without one; grows, whether only
+///         growing waves are asked for, which tables have as they are
 inline std::vector<SpeciesResponse> responses_of(const Case& parameters, const WaveVector& k,
-                                                 const std::vector<MagnetizedSpecies>& magnetized) {
+                                                 const std::vector<MagnetizedSpecies>& magnetized,
+                                                 bool grows = false) {
     const auto plasma = theory_species(parameters, k);
     std::vector<SpeciesResponse> all;
     for (const SpeciesCase& s : parameters.species) {
@@ -146,17 +149,18 @@ inline std::vector<SpeciesResponse> responses_of(const Case& parameters, const W
         } else if (const Distribution& f = table_along(s, k); f.given()) {
             const double omega2 = s.mean_density() * s.charge * s.charge / s.mass,
                          drift = p.drift * size / along;
-            const SmoothDistribution smooth(f, along < 0);
-            if (smooth.holds())
-                all.push_back(smooth_response(smooth, omega2, size, p.drift));
-            else
-                all.push_back({[&f, omega2, along, drift](auto omega) {
-                                   return tabulated_susceptibility(f, omega2, along, drift, omega);
-                               },
-                               [&f, along, drift](auto omega) {
-                                   return tabulated_free_response(f, along, drift, omega);
-                               },
-                               true});
+            const SpeciesResponse of_table{
+                [&f, omega2, along, drift](auto omega) {
+                    return tabulated_susceptibility(f, omega2, along, drift, omega);
+                },
+                [&f, along, drift](auto omega) {
+                    return tabulated_free_response(f, along, drift, omega);
+                },
+                true};
+            all.push_back(of_table);
+            if (grows) continue;
+            if (const SmoothDistribution smooth(f, along < 0); smooth.holds())
+                all.back() = smooth_response(smooth, omega2, size, p.drift);
         } else {
             const double kv = std::numbers::sqrt2 * size * p.speed_along();
             all.push_back({[p, size](auto omega) {
@@ -211,19 +215,18 @@ double seeded_field(const Case& parameters, const Theory& theory,
     return std::abs(charge / slope) / k;
 }
 
-/// The roots that are reached from all guesses, without repetition.
-template <class Dispersion>
-std::vector<std::complex<double>> all_roots(const Dispersion& D,
-                                            const std::vector<std::complex<double>>& guesses) {
-    std::vector<std::complex<double>> roots;
-    for (const std::complex<double> guess : guesses) {
-        const common::DispersionRoot root = common::root_near(D, guess);
-        const auto same = [&](std::complex<double> other) {
-            return std::abs(other - root.omega) <= 1e-7 * std::abs(root.omega);
-        };
-        if (root.found && std::ranges::none_of(roots, same)) roots.push_back(root.omega);
-    }
-    return roots;
+/// Guesses for the roots of a magnetized plasma: as without a field, and between the harmonics.
+inline std::vector<std::complex<double>> guesses_in_field(
+    const std::vector<common::PlasmaSpecies>& plasma, const WaveVector& k,
+    const std::vector<MagnetizedSpecies>& magnetized) {
+    auto guesses = common::fan_of_guesses(plasma, k.size());
+    for (const MagnetizedSpecies& s : magnetized)
+        for (int n = 0; n <= 8; ++n)
+            for (const double part : {0.02, 0.3, 0.6, 0.9})
+                for (const double growth : {-0.02, 0.1, 0.5})
+                    guesses.push_back(s.k_along * s.drift +
+                                      std::fabs(s.Omega) * std::complex<double>(n + part, growth));
+    return guesses;
 }
 
 /// The waves of a magnetized plasma. Which of its many roots the run is compared with:
@@ -236,7 +239,7 @@ template <class Dispersion>
 void find_magnetized_wave(const Case& parameters, const WaveVector& k,
                           const std::vector<MagnetizedSpecies>& plasma,
                           const std::vector<SpeciesResponse>& responses, const Dispersion& D,
-                          Theory& theory) {
+                          const std::vector<std::complex<double>>& guesses, Theory& theory) {
     bool bernstein = std::fabs(plasma.front().k_along) <= 1e-12 * k.size();
     for (const SpeciesCase& s : parameters.species)
         bernstein = bernstein && !s.tables.speed.given();
@@ -244,15 +247,6 @@ void find_magnetized_wave(const Case& parameters, const WaveVector& k,
     if (bernstein) {
         for (const double omega : bernstein_roots(plasma)) roots.push_back(omega);
     } else {
-        auto guesses = common::fan_of_guesses(theory_species(parameters, k), k.size());
-        for (const MagnetizedSpecies& s : plasma)
-            for (int n = 0; n <= 8; ++n)
-                for (const double part : {0.02, 0.3, 0.6, 0.9})
-                    for (const double growth : {-0.02, 0.1, 0.5})
-                        guesses.push_back(s.k_along * s.drift +
-                                          std::fabs(s.Omega) *
-                                              std::complex<double>(n + part, growth));
-        if (parameters.near != 0) guesses.push_back({parameters.near, 1e-3 * parameters.near});
         roots = all_roots(D, guesses);
     }
     refuse(roots.empty(), "no root of the dispersion relation was found for ",
@@ -319,51 +313,66 @@ inline void refuse_resonance(const Case& parameters, const WaveVector& k, const 
 }
 
 /// The root of the dispersion relation for one mode.
+/// in:     rate; a root is wanted that grows faster
+/// out:    mode_x = mode_z = 0 where it is known that none does
 /// errors: InputError when no root is found
 /// note:   with the law as the slide prints it, gauss_sign = -1, omega_s^2 changes its sign.
-inline Theory theory_of_wave(const Case& parameters, long mode_x, long mode_z) {
+inline Theory theory_of_wave(const Case& parameters, long mode_x, long mode_z,
+                             double rate = -HUGE_VAL) {
     const WaveVector k = wave_vector(parameters, mode_x, mode_z);
     const auto plasma = theory_species(parameters, k);
     std::vector<MagnetizedSpecies> magnetized;
     for (const SpeciesCase& s : parameters.species)
         if (parameters.magnetized() && s.mobile())
             magnetized.push_back(magnetized_species(parameters, s, k));
-    const auto responses = responses_of(parameters, k, magnetized);
     const common::Axis& axis = mode_x != 0 ? parameters.grid.x : parameters.grid.z;
     const MeshScheme scheme{axis.spacing(), parameters.dt, parameters.scheme().order,
                             parameters.scheme().energy_conserving};
     const bool on_mesh = parameters.model == "mesh";
-    const auto D = [&](std::complex<double> omega) {
-        if (on_mesh) return mesh_dispersion(plasma, k.size(), scheme, omega);
-        // 1 + chi, and 1 - chi where like charges attract.
-        std::complex<double> chi = 0;
-        for (const SpeciesResponse& s : responses) chi += s.chi(omega);
-        return 1.0 + parameters.gauss_sign * chi;
+    const auto relation = [&](const std::vector<SpeciesResponse>& all) {
+        return [&](std::complex<double> omega) {
+            if (on_mesh) return mesh_dispersion(plasma, k.size(), scheme, omega);
+            // 1 + chi, and 1 - chi where like charges attract.
+            std::complex<double> chi = 0;
+            for (const SpeciesResponse& s : all) chi += s.chi(omega);
+            return 1.0 + parameters.gauss_sign * chi;
+        };
     };
+    auto guesses = on_mesh ? guesses_on_mesh(plasma, k.size(), scheme)
+                           : guesses_in_field(plasma, k, magnetized);
+    if (parameters.near != 0) guesses.push_back({parameters.near, 1e-3 * parameters.near});
 
     Theory theory;
+    // Below the real axis only warm Maxwellians have no poles.
+    bool warm = !parameters.magnetized() && !parameters.has_distributions();
+    for (const common::PlasmaSpecies& s : plasma) warm = warm && s.temperature_along > 0;
+    if (rate > (warm ? -HUGE_VAL : 0)) {
+        const auto growing = responses_of(parameters, k, magnetized, true);
+        if (!may_grow_faster(relation(growing), rate, guesses)) return theory;
+    }
+    const auto responses = responses_of(parameters, k, magnetized);
+    const auto D = relation(responses);
     theory.mode_x = mode_x, theory.mode_z = mode_z;
     if (parameters.magnetized()) {
-        find_magnetized_wave(parameters, k, magnetized, responses, D, theory);
+        find_magnetized_wave(parameters, k, magnetized, responses, D, guesses, theory);
     } else {
         theory.source = on_mesh ? "dispersion relation on this mesh, " + parameters.weighting +
                                       ", " + parameters.conserving + "-conserving"
                         : parameters.gauss_sign > 0 ? "kinetic dispersion relation"
                                                     : "dispersion relation with div E = -rho";
-        const common::DispersionRoot root =
-            parameters.near != 0 ? common::root_near(D, {parameters.near, 1e-3 * parameters.near})
-            : on_mesh            ? fastest_growing_on_mesh(plasma, k.size(), scheme)
-                      : common::fastest_growing_root(D, common::fan_of_guesses(plasma, k.size()));
+        const common::DispersionRoot root = parameters.near != 0
+                                                ? nearest_root(D, guesses, parameters.near)
+                                                : common::fastest_growing_root(D, guesses);
         if (!root.found) {
             const bool table_only = std::ranges::any_of(responses, &SpeciesResponse::table_only);
             const std::string why = sentence(
                 "no root of the dispersion relation was found for ", mode_text(mode_x, mode_z),
-                table_only ? ", and where a distribution by formula has steps or steep slopes, or "
-                             "is cut before it is 1e-8 of its largest, none that is damped is "
-                             "known: raise distribution_max where it is cut"
-                : parameters.near != 0 ? sentence(" near theory.near = ", parameters.near,
-                                                  ": change it or take it out")
-                                       : ": give theory.near a frequency to look at",
+                table_only
+                    ? ", and where a distribution by formula has steps or steep slopes, or is "
+                      "cut before it is 1e-8 of its largest, none that is damped is known: "
+                      "raise distribution_max where it is cut"
+                    : sentence(": give theory.near ", parameters.near != 0 ? "another" : "a",
+                               " frequency to look at"),
                 ", or set theory.compare = \"none\"");
             if (parameters.has_distributions() && !table_only) throw DampedWave(why);
             throw common::InputError(why);
@@ -384,12 +393,16 @@ inline Theory theory_of_wave(const Case& parameters, long mode_x, long mode_z) {
 
 /// The same for the followed mode of the case; mode (0, 0) is the fastest growing along x.
 inline Theory theory_of_wave(const Case& parameters) {
-    if (parameters.mode_x != 0 || parameters.mode_z != 0)
-        return theory_of_wave(parameters, parameters.mode_x, parameters.mode_z);
+    if (parameters.mode_x != 0 || parameters.mode_z != 0 || parameters.fastest_x != 0)
+        return theory_of_wave(parameters, parameters.mode_x + parameters.fastest_x,
+                              parameters.mode_z);
     Theory best;
     for (long m = 1; 2 * m < parameters.grid.x.cells; ++m) try {
-            const Theory theory = theory_of_wave(parameters, m, 0);
+            const Theory theory =
+                theory_of_wave(parameters, m, 0, best.mode_x == 0 ? -HUGE_VAL : best.omega.imag());
+            if (theory.mode_x == 0) continue;
             if (best.mode_x == 0 || theory.omega.imag() > best.omega.imag()) best = theory;
+            if (!best.others.empty()) break;  // Bernstein modes do not grow
         } catch (const DampedWave&) {
             // It does not grow fastest; one at least is known.
             if (best.mode_x == 0 && 2 * m + 2 >= parameters.grid.x.cells) throw;

@@ -46,7 +46,7 @@ inline void refuse_magnetized(const Case& parameters, const SpeciesCase& s, cons
            "' has none: make it fixed or take it out");
     refuse(orbit > 100, what, ": the orbits of '", s.name, "' are ", orbit,
            " times the length 1/k across the field, more than the 100 to which harmonics are "
-           "summed: raise the magnetic field, or take it out");
+           "summed: raise the magnetic field or take it out, or name a lower mode");
 }
 
 /// Refuses a case for which the dispersion relations of theory_of_case.hpp do not hold.
@@ -296,9 +296,10 @@ inline constexpr Comparison wave_comparison{
     .follows_mode = true,
     .validate =
         [](const Case& parameters) {
-            refuse_wave(parameters, asked_for(parameters), parameters.mode_x, parameters.mode_z);
             const bool search = parameters.mode_x == 0 && parameters.mode_z == 0;
             const long modes = (parameters.grid.x.cells - 1) / 2;
+            refuse_wave(parameters, asked_for(parameters), search ? modes : parameters.mode_x,
+                        parameters.mode_z);
             refuse(search && (modes < 1 || modes > 512 || parameters.model == "mesh"),
                    "theory.mode_x = 0 looks for the fastest growing of ", modes,
                    " modes, and that is for 1 to 512 and theory.model = \"plasma\": name a mode");

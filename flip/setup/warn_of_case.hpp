@@ -47,6 +47,36 @@ inline void warn_of_regions(const Case& parameters, const Scales& scales,
          " particles per cell of the start");
 }
 
+// Ends that let in another gas than the one that begins there; where nothing is compared, it may be the
+// same gas by another name.
+inline void warn_of_inflow(const Case& parameters, std::vector<std::string>& out) {
+    const auto gas = [](const Material& a) {
+        return sentence("material.", a.name, ", gamma = ", a.gamma,
+                        " and p_infinity = ", a.p_infinity);
+    };
+    for (const Side side : all_sides) {
+        const BoundaryCase& end = parameters.boundaries[side];
+        if (end.kind != "inflow") continue;
+        const bool along_x = is_x_side(side);
+        const common::Axis &across = along_x ? parameters.grid.x : parameters.grid.z,
+                           &beside = along_x ? parameters.grid.z : parameters.grid.x;
+        const double at = across.at(is_low_side(side) ? 0.5 : double(across.cells) - 0.5);
+        const Material& in = parameters.materials[material_index(parameters, end.inflow.material)];
+        for (long n = 0; n < beside.cells; ++n) {
+            const double on = beside.at(double(n) + 0.5);
+            const long r = along_x ? region_at(parameters, at, on) : region_at(parameters, on, at);
+            if (r < 0) continue;
+            const Material& here = material_of(parameters, parameters.regions[r]);
+            const bool same = here.gamma == in.gamma && here.p_infinity == in.p_infinity;
+            if (same && (parameters.compare == "none" || here.name == in.name)) continue;
+            warn(out, true, "inflow.", side_names[side], " brings ", gas(in), ", and region.",
+                 parameters.regions[r].name, " at that end is ", gas(here), ": set inflow.",
+                 side_names[side], ".material = \"", here.name, "\", where that is not meant");
+            break;
+        }
+    }
+}
+
 // Whether nothing but the flow itself moves the fluid: no jump of pressure, no energy set free.
 inline bool is_gentle(const Case& parameters, const Scales& scales) {
     double low = 1e300, high = 0;
@@ -145,6 +175,7 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
              ".tension = ", a.tension, " means nothing to pic, whose cells hold none");
     detail::warn_of_idleness(parameters, scales, warnings);
     detail::warn_of_regions(parameters, scales, program, warnings);
+    detail::warn_of_inflow(parameters, warnings);
     detail::warn_of_speeds(parameters, scales, program, warnings);
     const Comparison& comparison = comparison_of(parameters);
     if (comparison.warn != nullptr) comparison.warn(parameters, warnings);

@@ -58,17 +58,30 @@ inline WaveEnds wave_ends(const Case& parameters, double t) {
 }
 
 /// Warns of an end of the mesh that sends a wave into a gas: a wall where the gas moves, an open end
-/// where it comes in, and one where it leaves slower than sound towards another pressure.
+/// where it comes in, one where it leaves slower than sound towards another pressure, and an inflow
+/// that brings another state.
 inline void warn_of_end(const Case& parameters, bool low, std::vector<std::string>& warnings) {
     const SideCase& s = low ? parameters.left : parameters.right;
     const BoundaryCase& end = parameters.boundaries[low ? x_low : x_high];
-    if (s.density == 0 || end.kind == "inflow") return;
+    if (s.density == 0) return;
     const double c = theory::sound_speed(
                      {s.density, s.velocity, s.pressure, s.gamma, s.p_infinity}),
                  outward = low ? -s.velocity : s.velocity, much = 1e-3;
-    const bool open = end.kind == "open", comes_in = outward < -much * c;
+    const GasCase& in = end.inflow;
+    const bool open = end.kind == "open", flows = end.kind == "inflow",
+               comes_in = outward < -much * c,
+               same = std::fabs(in.density - s.density) <= much * s.density &&
+                      std::fabs(in.pressure - s.pressure) <= much * s.density * c * c &&
+                      std::fabs(in.velocity_x - s.velocity) <= much * c;
     const std::string name = low ? "x_low" : "x_high",
                       wave = ", sends a wave into the mesh that the exact solution does not know: ";
+    const auto state = [](double density, double pressure, double velocity) {
+        return sentence("density ", density, ", pressure ", pressure, ", velocity ", velocity);
+    };
+    if (flows)
+        return warn(warnings, !same, "inflow.", name, " with ",
+                    state(in.density, in.pressure, in.velocity_x), ", where the gas has ",
+                    state(s.density, s.pressure, s.velocity), wave, "take that");
     warn(warnings, open ? comes_in : std::fabs(outward) > much * c, "boundary.", name, " = \"",
          end.kind, "\", where the gas moves with ", s.velocity, wave,
          comes_in ? sentence("take \"inflow\" with the gas of ", low ? "left" : "right")

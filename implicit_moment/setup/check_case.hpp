@@ -189,7 +189,12 @@ inline void validate_uniform(const Case& w) {
     // Components in the plane that have one phase, or opposite ones: the sign of the second. Else 0.
     const auto in_step = [](double a, double b, double phase_a, double phase_b) {
         const double apart = std::fabs(std::remainder(phase_a - phase_b, 360));
-        return a == 0 || b == 0 || apart == 0 ? 1 : apart == 180 ? -1 : 0;
+        const double round_off = 1e-9;
+        if (a == 0 || b == 0 || apart < round_off) return 1;
+        return apart > 180 - round_off ? -1 : 0;
+    };
+    const auto turned = [](int sign) {
+        return std::string(sign < 0 ? "; phases 180 apart turn the sign of one component" : "");
     };
     const int sign_B = in_step(u.wave_B_x, u.wave_B_z, u.phase_B_x, u.phase_B_z),
               sign_E = in_step(u.wave_E_x, u.wave_E_z, u.phase_E_x, u.phase_E_z);
@@ -200,11 +205,13 @@ inline void validate_uniform(const Case& w) {
     const double size_B = std::hypot(u.wave_B_x, u.wave_B_z) * std::hypot(k_x, k_z);
     refuse(std::fabs(k_x * u.wave_B_x + sign_B * k_z * u.wave_B_z) > 1e-9 * size_B,
            "the seeded B is not divergence-free: k . B must be 0, so keep uniform.wave_B across "
-           "the mode");
+           "the mode" +
+               turned(sign_B));
     const double size_E = std::hypot(u.wave_E_x, u.wave_E_z) * std::hypot(k_x, k_z);
     refuse(std::fabs(k_x * u.wave_E_x + sign_E * k_z * u.wave_E_z) > 1e-9 * size_E,
            "the seeded E has a part along k: that part follows from the charge, so seed it with "
-           "the species' wave_x and wave_z");
+           "the species' wave_x and wave_z" +
+               turned(sign_E));
     for (const SpeciesCase& s : u.species) {
         const double T = std::max({s.temperature_x, s.temperature_y, s.temperature_z});
         const double drift = std::hypot(s.drift_x, s.drift_y, s.drift_z);

@@ -374,8 +374,11 @@ inline void compare_bond(const FinishedRun& run, common::Summary& summary) {
                  " cells long and its stress is that of whole cells: refine the mesh, or lower "
                  "time.alpha; bond.*.tension decides when it breaks");
     if (std::isfinite(expected)) {
-        const double breaks = common::time_at_level(times, broken, 0.5);
-        const double tolerance = part * expected;
+        // Of the step that breaks it, the row before and the row after are known.
+        const double per_row = run.scales.dt * double(run.parameters.history_steps),
+                     breaks = common::time_at_level(times, broken, 0.5) +
+                              run.planned.scheme.bond_level * run.scales.dt,
+                     tolerance = part * expected;
         if (!(bar_breaking_time(bar, joint, (1 + part) * strength) <= (1 + 5 * part) * expected))
             return summary.not_measured(
                 "bond_breaks", "the stress at the joint hardly grows when it breaks, at t = " +
@@ -385,8 +388,11 @@ inline void compare_bond(const FinishedRun& run, common::Summary& summary) {
                 "bond_breaks",
                 "theory has it break at t = " + format(expected) + ": raise time.end above that");
         const bool holds = std::isnan(breaks);
-        summary.result("bond_breaks", holds ? times.back() : breaks, "time", expected, tolerance,
-                       holds ? "it held to the end" : "stress of the bar at the joint");
+        summary.result(
+            "bond_breaks", {holds ? times.back() : breaks, holds ? 0 : 0.5 * per_row}, "time",
+            expected, tolerance,
+            holds ? "it held to the end"
+                  : "stress of the bar at the joint, between rows " + format(per_row) + " apart");
     } else {
         compare_bar(run, summary);
         const double peak = bar_stress(bar, joint, bar.swing().first_turn()) / stiffer;

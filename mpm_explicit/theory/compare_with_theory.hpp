@@ -62,7 +62,7 @@ inline void compare_oscillator(const theory::FinishedRun& run, common::Summary& 
 
 /// The properties of the leapfrog that comparisons use: how far its energy strays at alpha = 1/4.
 inline constexpr theory::SchemeFacts leapfrog{
-    .rebound_tolerance = 0.006, .bar_tolerance = 0.01, .damps_first = true};
+    .rebound_tolerance = 0.006, .bar_tolerance = 0.01, .bond_level = 0.5, .damps_first = true};
 
 /// What a run of mpm_explicit can be compared with.
 inline constexpr theory::Comparison comparisons[] = {

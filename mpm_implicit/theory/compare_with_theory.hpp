@@ -26,8 +26,10 @@ inline bool keeps_energy(const Case& parameters, const theory::SchemeFacts& sche
 
 /// The properties of the theta scheme that comparisons use.
 inline theory::SchemeFacts facts_of(const Case& parameters, const ThetaScheme& scheme) {
-    theory::SchemeFacts facts{
-        .theta = scheme.theta, .force_level = scheme.theta, .consistent_mass = scheme.consistent()};
+    theory::SchemeFacts facts{.theta = scheme.theta,
+                              .force_level = scheme.theta,
+                              .bond_level = scheme.theta - 1,
+                              .consistent_mass = scheme.consistent()};
     facts.volumes_change = !scheme.keeps_volumes();
     const bool keeps = keeps_energy(parameters, facts) && !parameters.problem.has_friction();
     facts.bar_tolerance = keeps ? 1e-8 : std::numeric_limits<double>::infinity();

@@ -44,6 +44,25 @@ inline void check_two_blocks(const std::string& program, double tolerance) {
     }
 }
 
+/// A bond breaks between two rows, and the error of the time says so: where steps are too long for the
+/// tolerance it is not measured. The strength is 2^-1/2 of the largest stress, so that w t = pi/4.
+inline void check_breaking_times(const std::string& program) {
+    for (const std::string more :
+         {"time.alpha=0.2", "time.alpha=0.5", "time.alpha=0.6", "time.alpha=0.66",
+          "time.alpha=0.68", "time.alpha=0.7", "time.alpha=0.1 output.history_steps=4",
+          "time.alpha=0.2 output.history_steps=4"}) {
+        const Run r = run_mpm(program, "breaks_between",
+                              program + "/cases/bonded_bar.toml --threads 1 " + more);
+        const auto& breaks = r.summary["results"]["bond_breaks"];
+        const auto& time = r.column("time");
+        INFO(more << ": " << breaks.dump());
+        const double error = breaks.value("error", 0.0), exact = 1.25, within = 0.03 * exact;
+        CHECK(error == doctest::Approx(0.5 * (time[1] - time[0])));
+        CHECK(breaks["verdict"] == (error <= within ? "PASS" : "NOT MEASURED"));
+        CHECK(std::fabs(breaks["value"].get<double>() - exact) <= error + 0.01 * exact);
+    }
+}
+
 /// A cylinder of four cells in radius that rolls: what it may lose while its hops are expected.
 inline void check_rolling(const Run& r) {
     check_results(r, 3);
