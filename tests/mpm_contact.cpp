@@ -793,28 +793,29 @@ TEST_CASE("an even stress is in equilibrium with rigid plates wherever they are 
 TEST_CASE("the lowest point of a parabola has the same gap wherever it is between columns") {
     const double separation = 0.02, lowest = 0.013;
     for (const double radius : {2.0, 4.0, 6.0, 8.0}) {  // in cells
-        for (const double place : {2.0001, 2.1, 2.37, 2.5, 2.9, 2.9999}) {
-            std::vector<ContactColumn> columns(6);
-            for (int k = 0; k < 6; ++k)
+        for (const double place : {2.0, 2.1, 2.37, 2.4999, 2.5001, 2.9, 3.0}) {
+            std::vector<ContactColumn> columns(7), mirrored(7);
+            for (int k = 0; k < 7; ++k) {
                 columns[k] = {lowest + (k - place) * (k - place) / (2 * radius), k - 1,
-                              k == 5 ? -1 : k + 1};
+                              k == 6 ? -1 : k + 1};
+                mirrored[6 - k] = {columns[k].gap, 5 - k, k == 0 ? -1 : 7 - k};
+            }
             int found = 0;
-            for (int k = 0; k < 6; ++k) {
-                const LowestPoint point = lowest_point(columns, k, separation);
-                if (!point.exists) continue;
+            for (int k = 0; k < 7; ++k) {
+                const LowestPoint point = lowest_point(columns, k, separation),
+                                  image = lowest_point(mirrored, 6 - k, separation);
+                CHECK((point.with < 0) == (image.with < 0));
+                if (point.with < 0) continue;
                 ++found;
-                CHECK(k == 2);
                 CHECK(point.gap == doctest::Approx(lowest).epsilon(1e-12));
-                CHECK(point.part == doctest::Approx(place - 2).epsilon(1e-8));
+                CHECK(k + (point.with - k) * point.part == doctest::Approx(place).epsilon(1e-12));
+                CHECK(image.gap == doctest::Approx(point.gap).epsilon(1e-12));
+                CHECK(image.part == doctest::Approx(point.part).epsilon(1e-12));
+                if (point.part > 1e-9) CHECK(image.with == 6 - point.with);
             }
             // With the fall between columns, 1/8R, below the separation, both columns touch.
             CHECK(found == (radius < 6.25 ? 1 : 0));
-            CHECK(!lowest_point(columns, 2, 0).exists);
-            // The mirror image.
-            for (int k = 0; k < 6; ++k) std::swap(columns[k].before, columns[k].next);
-            const LowestPoint mirrored = lowest_point(columns, 3, separation);
-            CHECK(mirrored.exists == (radius < 6.25));
-            if (mirrored.exists) CHECK(mirrored.part == doctest::Approx(3 - place).epsilon(1e-8));
+            CHECK(lowest_point(columns, 2, 0).with == -1);
         }
     }
 }
@@ -845,6 +846,28 @@ TEST_CASE("a disk on a plate presses once and as much wherever it is on the mesh
                 CHECK(run.sums.contact.nodes == 1);
                 CHECK(run.sums.contact.impulse > 0);
             }
+        }
+    }
+}
+
+TEST_CASE("a disk that is thrown on a wall and its mirror image mirror each other") {
+    for (const double cells : {0.03, 0.1, 0.4, 0.47}) {
+        for (const double radius : {0.1, 0.17}) {
+            CAPTURE(cells);
+            CAPTURE(radius);
+            const auto thrown = [&](double side) {
+                Case c = case_on(32, 24, 1.6);
+                c.problem.contact.friction = 0.3, c.problem.walls[y_low] = "frictional";
+                c.problem.grains = {
+                    disk_at("disk", 0.8 + side * 0.05 * cells, radius + 0.001, radius, 0, -0.3)};
+                return Run(c);
+            };
+            Run right = thrown(1), left = thrown(-1);
+            for (int step = 0; step < 200; ++step) {
+                right.advance(), left.advance();
+                CHECK(std::fabs(right.sums.contact.impulse - left.sums.contact.impulse) <= 1e-9);
+            }
+            CHECK(right.budget().momenta[0].y > 0);
         }
     }
 }

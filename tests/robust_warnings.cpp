@@ -200,8 +200,9 @@ mpm_explicit plates grain.top.swing_y=-0.01
 mpm_explicit plates grain.top.velocity_x=-0.1 -> no warning
 grains rolling_cylinder.toml
     warning: a disk has a radius of 4 cells, below 12: where it rolls on a rigid surface it loses
-    speed to vibration, over eight radii 5 to 22 per cent with 4 cells and 4 to 10 with 8, least
-    with method.transfer = "spin"; in mpm_implicit 1 to 6 per cent
+    speed to vibration, at U^2 = g R over eight radii 5 to 22 per cent with 4 cells and 4 to 10
+    with 8, least with method.transfer = "spin", in mpm_implicit 1 to 6; a slow one loses a larger
+    part
 grains rolling_cylinder.toml grid.cells_x=220 grid.cells_y=44
     warning: a disk has a radius of 11 cells, below 12
 grains rolling_cylinder.toml grid.cells_x=240 grid.cells_y=48 -> no warning

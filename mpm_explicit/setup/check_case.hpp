@@ -192,9 +192,10 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
     if (g > 0 && has_surface && problem.has_friction() && least < 12 * (1 - 1e-9))
         warnings.push_back(
             "a disk has a radius of " + format(least) +
-            " cells, below 12: where it rolls on a rigid surface it loses speed to vibration, over "
-            "eight radii 5 to 22 per cent with 4 cells and 4 to 10 with 8, least with "
-            "method.transfer = \"spin\"; in mpm_implicit 1 to 6 per cent");
+            " cells, below 12: where it rolls on a rigid surface it loses speed to vibration, at "
+            "U^2 = g R over eight radii 5 to 22 per cent with 4 cells and 4 to 10 with 8, least "
+            "with "
+            "method.transfer = \"spin\", in mpm_implicit 1 to 6; a slow one loses a larger part");
     return warnings;
 }
 
