@@ -3,15 +3,13 @@
 //
 //      column i        i + 1         Nodes see the outline within a cell to both sides. Where it is
 //     ----\-----------/------        round, and touches between two columns, both see gaps that are
-//          \ _     _ /               open: at its lowest point it is nearer than at either. With k the
-//     o-- s ----------- o            second difference of the gaps of column i, which is lower than those
-//                                    beside it, and of these,
-//         s = (g_i-1 - g_i+1)/2k,   g(s) = g_i - k s^2/2.
-// There the runs of column i and of the one on that side make one contact, in which they have the parts
-// 1 - |s| and |s|: the lowest point of a circle has the same gap wherever it is, and no velocity where the
-// circle rolls. Were each column for itself, the circle would fall by h^2/8R = k/8 from one to the next,
-// and what rolls would hop. Where that is less than the separation at which surfaces touch, both columns
-// do, and each is for itself.
+//          \ _     _ /               open: at its lowest point it is nearer than at either,
+//     o--------  s ------ o              g(s) = (1 - s) g_i + s g_i+1 - s (1 - s) k/2,
+//                                    with k the second difference of the gaps of four columns. There
+// the two runs make one contact, in which they have the parts 1 - s and s: the lowest point of a circle
+// has the same gap wherever it is, and no velocity where the circle rolls. Were each column for itself,
+// the circle would fall by h^2/8R = k/8 from one to the next, and what rolls would hop. Where that is less
+// than the separation at which surfaces touch, both columns do, and each is for itself.
 #pragma once
 
 #include <algorithm>
@@ -29,24 +27,35 @@ struct ContactColumn {
     int before = -1, next = -1;
 };
 
-/// The lowest point beside a column, between it and one of the columns beside it; none: -1.
+/// The lowest point between a column and the next one; none: contact is at the columns.
 struct LowestPoint {
-    int with = -1;             // the other column
-    double gap = 0, part = 0;  // part, s, of the other column: half at most
+    bool exists = false;
+    double gap = 0, part = 0;  // part, s, of the next column
 };
-/// in:     n, number of a column; separation, at which surfaces touch [length]; 0: wherever grains
-///         approach, at every column
-/// out:    none where a column beside it is lower, where one is missing, and where the fall between
-///         columns, k/8, is less than the separation: both of them touch then
-/// exact:  for a parabola, wherever its lowest point is; mirror images mirror each other
-inline LowestPoint lowest_point(const std::vector<ContactColumn>& columns, int n,
-                                double separation) {
-    if (!(separation > 0) || n < 0 || columns[n].before < 0 || columns[n].next < 0) return {};
-    const double g = columns[n].gap, g_before = columns[columns[n].before].gap,
-                 g_next = columns[columns[n].next].gap, k = g_before - 2 * g + g_next;
-    if (!(g < g_before && g <= g_next && k > 8 * separation && std::isfinite(k))) return {};
-    const double s = 0.5 * (g_before - g_next) / k;
-    return {s < 0 ? columns[n].before : columns[n].next, g - 0.5 * k * s * s, std::fabs(s)};
+/// in:     n, number of the first column; separation, at which surfaces touch [length]; 0: wherever
+///         grains approach, at every column; h, width of a cell
+/// exact:  for a parabola, wherever its lowest point is
+/// note:   Below 3.3 cells of radius, k = 0.3 h, a disk would rock on the point under it, and gain by it.
+inline LowestPoint lowest_point(const std::vector<ContactColumn>& columns, int n, double separation,
+                                double h) {
+    constexpr double sharpest = 0.3;
+    const auto gap_at = [&](int at) {
+        return at < 0 ? std::numeric_limits<double>::infinity() : columns[at].gap;
+    };
+    if (!(separation > 0) || n < 0 || columns[n].next < 0) return {};
+    const int to = columns[n].next;
+    const double g = columns[n].gap, g_to = columns[to].gap;
+    // Second differences at both columns, where there is a column beyond.
+    double k = 0, count = 0;
+    for (const double one :
+         {gap_at(columns[n].before) - 2 * g + g_to, g - 2 * g_to + gap_at(columns[to].next)})
+        if (std::isfinite(one)) k += one, count += 1;
+    // Where the fall between the columns is less than the separation, k/8, both of them touch.
+    if (!(count > 0 && k / count > 8 * separation && k / count < sharpest * h)) return {};
+    k /= count;
+    const double part = 0.5 - (g_to - g) / k,
+                 gap = g + part * (g_to - g) - 0.5 * k * part * (1 - part);
+    return {part > 0 && part < 1, gap, part};
 }
 
 /// The rigid surfaces of one step.
@@ -82,22 +91,19 @@ class ContactColumns {
     bool is_inside(long n) const { return meetings_[n].axis == Meeting::inside; }
     bool empty() const { return meetings_.empty(); }
 
-    /// The contacts of the run that begins at fixed node n, or of it and one beside it: none where no
+    /// The contacts of the run that begins at fixed node n, or of it and the next one: none where no
     /// run begins, where it is part of another contact, or where surfaces do not touch.
     SurfaceRun contacts_at(int n, ContactStorage& storage) const {
-        const ContactColumn& column = columns_[n];
         const double near = bodies_.rule().separation * h();
-        if (!std::isfinite(column.gap) || point_at(column.before).with == n ||
-            point_at(column.next).with == n)
-            return {};
-        const LowestPoint point = point_at(n);
-        if (near > 0 && !((point.with < 0 ? column.gap : point.gap) <= near)) return {};
+        if (!std::isfinite(columns_[n].gap) || point_after(columns_[n].before).exists) return {};
+        const LowestPoint point = point_after(n);
+        if (near > 0 && !((point.exists ? point.gap : columns_[n].gap) <= near)) return {};
         SurfaceRun run = gather_run(n, storage);
         run.weigh();
-        if (point.with >= 0) {
-            SurfaceRun other = gather_run(point.with, storage);
-            other.weigh();
-            run.join(other, point.part);
+        if (point.exists) {
+            SurfaceRun next = gather_run(columns_[n].next, storage);
+            next.weigh();
+            run.join(next, point.part);
         }
         return run;
     }
@@ -128,14 +134,15 @@ class ContactColumns {
         return node.pairs.empty() || node.pairs[0].bond < 0 ? meeting_of(node, h()) : Meeting{};
     }
 
-    // The lowest point beside a column; none where two points have the same other column.
-    LowestPoint point_at(int n) const {
+    // The lowest point between a column and the next one, where there is none beside it: no column is in
+    // two contacts, and mirror images mirror each other.
+    LowestPoint point_after(int n) const {
+        if (n < 0) return {};
         const double near = bodies_.rule().separation * h();
-        const LowestPoint point = lowest_point(columns_, n, near);
-        if (point.with < 0) return {};
-        const ContactColumn& other = columns_[point.with];
-        const int beyond = other.before == n ? other.next : other.before;
-        return lowest_point(columns_, beyond, near).with == point.with ? LowestPoint{} : point;
+        const ContactColumn& column = columns_[n];
+        const bool beside = lowest_point(columns_, column.before, near, h()).exists ||
+                            lowest_point(columns_, column.next, near, h()).exists;
+        return beside ? LowestPoint{} : lowest_point(columns_, n, near, h());
     }
 
     // The run that begins at fixed node n: empty where none does.

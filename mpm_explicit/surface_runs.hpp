@@ -90,15 +90,15 @@ class SurfaceRun {
     const ContactBody& seen(std::size_t who) const { return seen_[who]; }
     const ContactPair& pair() const { return pair_; }
 
-    /// Makes one contact of this run and of one in a column beside it, at a point between them.
-    /// in:     part, the share of the other one
-    void join(const SurfaceRun& other, double part) {
+    /// Makes one contact of this run and of that in the next column, at a point between them.
+    /// in:     part, the share of the next one
+    void join(const SurfaceRun& next, double part) {
         for (std::size_t k = 0; k < links_; ++k) weight_[k] *= 1 - part;
-        for (std::size_t k = 0; k < other.links_; ++k, ++links_) {
-            bodies_[2 * links_] = other.bodies_[2 * k],
-                        bodies_[2 * links_ + 1] = other.bodies_[2 * k + 1];
-            keys_[links_] = other.keys_[k], weight_[links_] = part * other.weight_[k];
-            is_light_[links_] = other.is_light_[k];
+        for (std::size_t k = 0; k < next.links_; ++k, ++links_) {
+            bodies_[2 * links_] = next.bodies_[2 * k],
+                        bodies_[2 * links_ + 1] = next.bodies_[2 * k + 1];
+            keys_[links_] = next.keys_[k], weight_[links_] = part * next.weight_[k];
+            is_light_[links_] = next.is_light_[k];
         }
         left_ = 1 + links_;
     }
