@@ -44,6 +44,8 @@ inline LowestPoint lowest_point(const std::vector<ContactColumn>& columns, int n
     };
     if (!(separation > 0) || n < 0 || columns[n].next < 0) return {};
     const int to = columns[n].next;
+    if (columns[to].before != n)
+        return {};  // beside a curved surface they may not be one another's
     const double g = columns[n].gap, g_to = columns[to].gap;
     // Second differences at both columns, where there is a column beyond.
     double k = 0, count = 0;
@@ -95,7 +97,7 @@ class ContactColumns {
     /// run begins, where it is part of another contact, or where surfaces do not touch.
     SurfaceRun contacts_at(int n, ContactStorage& storage) const {
         const double near = bodies_.rule().separation * h();
-        if (!std::isfinite(columns_[n].gap) || point_after(columns_[n].before).exists) return {};
+        if (!std::isfinite(columns_[n].gap) || ends_point(n)) return {};
         const LowestPoint point = point_after(n);
         if (near > 0 && !((point.exists ? point.gap : columns_[n].gap) <= near)) return {};
         SurfaceRun run = gather_run(n, storage);
@@ -140,9 +142,16 @@ class ContactColumns {
         if (n < 0) return {};
         const double near = bodies_.rule().separation * h();
         const ContactColumn& column = columns_[n];
-        const bool beside = lowest_point(columns_, column.before, near, h()).exists ||
+        const bool beside = (next_of(column.before) == n &&
+                             lowest_point(columns_, column.before, near, h()).exists) ||
                             lowest_point(columns_, column.next, near, h()).exists;
         return beside ? LowestPoint{} : lowest_point(columns_, n, near, h());
+    }
+
+    int next_of(int n) const { return n < 0 ? -1 : columns_[n].next; }
+    // Whether the column is the second one of a point.
+    bool ends_point(int n) const {
+        return next_of(columns_[n].before) == n && point_after(columns_[n].before).exists;
     }
 
     // The run that begins at fixed node n: empty where none does.
