@@ -189,35 +189,6 @@ inline void constrain_small_mass_nodes(const std::vector<GridRow>& rows,
     constrain_nodes(all, nodes);
 }
 
-/// Dofs at nodes where a grain meets another body.
-inline std::vector<bool> joint_dofs(std::size_t grains, const std::vector<Bond>& bonds,
-                                    const GrainNodes& nodes) {
-    static const int mode = std::getenv("HOLD") ? std::atoi(std::getenv("HOLD")) : 1;
-    std::vector<bool> is_bonded(grains, false), found;
-    bool any = false;
-    for (const Bond& bond : bonds)
-        if (!bond.broken) is_bonded[bond.a] = is_bonded[bond.b] = any = true;
-    if (!any && mode < 2) return found;
-    found.assign(static_cast<std::size_t>(nodes.size()), mode == 4);
-    for (long n = 0; n < nodes.shared_count(); ++n) {
-        const std::span members(nodes.members().data() + nodes.shared_begin()[n],
-                                nodes.members().data() + nodes.shared_begin()[n + 1]);
-        const auto has_mass = [&](const Member& one) {
-            return one.is_wall() || nodes.sums[one.dof].m > 0;
-        };
-        if (std::count_if(members.begin(), members.end(), has_mass) < 2) continue;
-        const bool fixed =
-            mode == 3 && std::any_of(members.begin(), members.end(), [&](const Member& one) {
-                return one.is_wall() ||
-                       (nodes.is_free()[one.dof] == 0 && nodes.sums[one.dof].m > 0);
-            });
-        for (const Member& one : members)
-            if (!one.is_wall() && (mode == 2 || mode == 4 || fixed || is_bonded[one.grain]))
-                found[one.dof] = true;
-    }
-    return found;
-}
-
 /// Holds nodes with less than 1/64 of the mass of their neighbor, as an estimate of what the explicit
 /// step is too long for: particles that have just crossed a line of nodes move those beyond it with
 /// all their stress, and where these have the mass m_i, the neighbor m,

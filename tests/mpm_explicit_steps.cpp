@@ -1076,7 +1076,7 @@ TEST_CASE("a velocity of one cell per step changes nothing but any other does") 
     for (const std::string& shape : shapes) {
         CAPTURE(shape);
         Case c = case_on(32, 24, 0.8);
-        // Whoever moves by more than half a cell counts as one that has not crossed.
+        // Strain of both cells is not for particles that move by more than half a cell in a step.
         c.crossing = 0;
         c.shape = shape, c.problem.contact.friction = 0.2, c.problem.periodic_x = true;
         c.problem.grains = {disk_at("a", 0.2, 0.3, 0.12, 0.4, 0.05),
