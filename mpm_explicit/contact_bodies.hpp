@@ -11,6 +11,7 @@
 
 namespace mpm {
 
+/// Who meets at a node, with what contact knows of them.
 class ContactBodies {
    public:
     ContactBodies(const ContactRule& rule, const std::vector<Grain>& grains,

@@ -32,6 +32,7 @@ struct LowestPoint {
     bool exists = false;
     double gap = 0, part = 0;  // part, s, of the next column
 };
+/// The lowest point between column n and the next one.
 /// in:     n, number of the first column; separation, at which surfaces touch [length]; 0: wherever
 ///         grains approach, at every column; h, width of a cell
 /// exact:  for a parabola, wherever its lowest point is
@@ -44,8 +45,8 @@ inline LowestPoint lowest_point(const std::vector<ContactColumn>& columns, int n
     };
     if (!(separation > 0) || n < 0 || columns[n].next < 0) return {};
     const int to = columns[n].next;
-    if (columns[to].before != n)
-        return {};  // beside a curved surface they may not be one another's
+    // Beside a curved surface, two columns may not be one another's.
+    if (columns[to].before != n) return {};
     const double g = columns[n].gap, g_to = columns[to].gap;
     // Second differences at both columns, where there is a column beyond.
     double k = 0, count = 0;
@@ -73,8 +74,16 @@ class ContactColumns {
           meetings_(only_bonded ? 0 : nodes.fixed_nodes().size()),
           columns_(meetings_.size()),
           table_(nodes, meetings_) {
+        // No node is in two contacts: beyond two lines at once, as at a corner, it bears nothing.
+        std::vector<long> beyond;
         for (const GhostNode& one : nodes.constraints())
-            if (one.along != 0) held_.push_back(one);
+            if (one.along != 0) beyond.push_back(one.beyond);
+        std::sort(beyond.begin(), beyond.end());
+        for (const GhostNode& one : nodes.constraints()) {
+            if (one.along == 0 || !(nodes.mass[one.beyond] > nodes.least_mass())) continue;
+            const auto [from, to] = std::equal_range(beyond.begin(), beyond.end(), one.beyond);
+            if (to - from == 1) held_.push_back(one);
+        }
         std::stable_sort(held_.begin(), held_.end(), ByMaster{});
         for_each_fixed_node(
             [&](long n, ContactStorage& storage) { meetings_[n] = meet(n, storage); });

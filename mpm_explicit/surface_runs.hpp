@@ -36,7 +36,8 @@ class SurfaceRun {
             gx_ += x, gy_ += y;
         }
         // Moments about the first node.
-        const double away = static_cast<double>(k) * h, dx = axis == Meeting::along_x ? away : 0,
+        const double away = static_cast<double>(nodes_++) * h,
+                     dx = axis == Meeting::along_x ? away : 0,
                      dy = axis == Meeting::along_x ? 0 : away;
         for (const std::size_t who : {0, 1}) {
             if (k == 0) seen_[who] = bodies_[who];
@@ -147,6 +148,7 @@ class SurfaceRun {
 
     ContactPair pair_{};
     std::size_t links_ = 0, left_ = 0;  // left_, turns of next()
+    std::size_t nodes_ = 0;             // that follow each other across the surface
     std::array<ContactBody, 2 * ContactPair::max_links> bodies_;
     std::array<long, ContactPair::max_links> keys_{};
     std::array<double, ContactPair::max_links> weight_{};

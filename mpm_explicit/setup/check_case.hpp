@@ -193,9 +193,9 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
         warnings.push_back(
             "a disk has a radius of " + format(least) +
             " cells, below 12: where it rolls on a rigid surface it loses speed to vibration, at "
-            "U^2 = g R over eight radii 5 to 22 per cent with 4 cells and 4 to 10 with 8, least "
-            "with "
-            "method.transfer = \"spin\", in mpm_implicit 1 to 6; a slow one loses a larger part");
+            "U^2 = g R over eight radii 5 to 22 per cent with 4 cells and 4 to 10 with 8, "
+            "least with method.transfer = \"spin\", in mpm_implicit 1 to 6; a slow one loses a "
+            "larger part");
     return warnings;
 }
 
