@@ -748,6 +748,8 @@ grains body theory.compare=block load.gravity_x=1 load.gravity_y=-1
 grains incline_block.toml load.gravity_x=0
     theory.compare = "block" needs one grain, a rigid plate, and an inclined gravity: load.gravity_x
     not 0, load.gravity_y below 0
+grains rolling_cylinder.toml grain.plate.y=0.35
+    theory.compare = "rolling" needs a rigid plate below the grain: turn the case, so that x is along the plate
 grains rolling_cylinder.toml load.gravity_y=1
     theory.compare = "rolling" needs one grain, a rigid plate, and an inclined gravity:
     load.gravity_x not 0, load.gravity_y below 0

@@ -116,7 +116,9 @@ class LeapfrogRecorder {
             put_in = std::max(put_in, energy[0] + std::fabs(external[n]));
         }
         const std::string source = "of pairs that press, over the energy";
-        run.summary.hint("take contact.levels = 2, and less friction where sweeps end early");
+        run.summary.hint(levels_ == 2
+                             ? "take less friction: where sweeps end early, pairs do not settle"
+                             : "take contact.levels = 2");
         if (frictionless_ && levels_ == 2)
             run.summary.result_at_most("contact_works", works, "1", 1e-10, source + ": exact");
         else  // exact as well, but where sweeps end early (solve_contact_node.hpp)

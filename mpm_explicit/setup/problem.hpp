@@ -257,7 +257,7 @@ inline void describe_problem(common::ParameterTable& table, Problem& problem) {
     table.real("load.gravity_x", problem.gravity_x, "acceleration", anything(), "along x");
     table.real("load.gravity_y", problem.gravity_y, "acceleration", anything(), "along y");
     table.real("load.damping", problem.damping, "1/time", at_least(0),
-               "c: all velocities fall by exp(-c t)");
+               "c: velocities fall by exp(-c t), in mpm_explicit those of nodes");
     table.real("load.rise", problem.rise, "time", at_least(0),
                "gravity and rigid grains reach their full value smoothly in this time");
 

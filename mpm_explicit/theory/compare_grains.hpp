@@ -34,6 +34,14 @@ inline void need_incline(const PlannedCase& planned) {
             !(problem.gravity_y < 0),
         " needs one grain, a rigid plate, and an inclined gravity: load.gravity_x not 0, "
         "load.gravity_y below 0");
+    const Bounds grain = bounds(planned.plans[planned.target()].outline);
+    const bool below = std::ranges::any_of(planned.plans, [&](const auto& plan) {
+        return planned.is_rigid(plan) &&
+               bounds(plan.outline).y_high < 0.5 * (grain.y_low + grain.y_high);
+    });
+    planned.refuse(
+        !below,
+        " needs a rigid plate below the grain: turn the case, so that x is along the plate");
 }
 
 /// Friction between the target grain and theory.plate, or the first rigid grain.
