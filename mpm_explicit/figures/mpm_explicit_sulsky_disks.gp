@@ -42,5 +42,5 @@ set title 'force of contact / (E L/100)'
 set yrange [0:8]; set ytics 2
 set key top left horizontal maxrows 2
 unit = 1000.0 / 100
-plot near using 1:(column(force) / unit) with lines lt 4 title 'where nearer than 0.8 h', early using 1:(column(force) / unit) with lines lt 4 lw 1.5 dt 2 title 'on approach'
+plot near using 1:(column(force) / unit) with lines lt 4 title 'where surfaces touch', early using 1:(column(force) / unit) with lines lt 4 lw 1.5 dt 2 title 'on approach'
 unset multiplot
