@@ -26,15 +26,15 @@ using namespace mpm;
 struct PairUpdate {
     double friction = 0;  // lambda_t that the next solution is to have, if the pair slips
     double target = 0;    // what friction ought to be by this solution
-    double lambda_before = 0, target_before = 0;  // lambda_t and target of the solution before
+    int changes = 0;      // of the state, in this step
 };
 
 /// Impulses of the pairs are those on v^theta: theta times what particles feel.
 class ActiveSet {
    public:
     ContactList list;
-    std::vector<PairUpdate> updates;  // one per pair
-    bool same_before = false;         // the last two solutions had the same set
+    std::vector<PairUpdate> updates;                  // one per pair
+    std::vector<Eigen::VectorXd> frictions, targets;  // of all pairs, since the set last changed
 
     /// Detects contact, and guesses the set: the states of the last step, and pairs that approach.
     /// in:     where, with v_0 to judge approach by; last, the closed pairs of the last step,
@@ -42,7 +42,7 @@ class ActiveSet {
     void find(const Contact& contact, const GrainNodes& where, const std::vector<Bond>& bonds,
               const std::vector<ForceControl>& controls, const std::vector<ActivePair>& last) {
         list.find(contact.detection(), where, bonds, [](ContactNode&) {});
-        same_before = false;
+        frictions.clear(), targets.clear();
         updates.clear();
         ContactStorage storage;
         for (const ContactList::Node& range : list.nodes) {
@@ -83,6 +83,24 @@ class ActiveSet {
             return name(list.pairs[pair].a) + " and " + name(list.pairs[pair].b);
         }
         return "no grains";
+    }
+
+    /// The bodies of the pair that is pressed hardest, for a message.
+    std::string hardest_pressed(const std::vector<Grain>& grains) const {
+        const auto hardest = std::max_element(
+            list.pairs.begin(), list.pairs.end(),
+            [](const ContactPair& a, const ContactPair& b) { return a.lambda_n < b.lambda_n; });
+        return names(static_cast<std::size_t>(hardest - list.pairs.begin()), grains);
+    }
+
+    /// What to change where the iterations do not get there, for a message.
+    std::string advice() const {
+        double mu = 0;
+        for (const ContactPair& pair : list.pairs) mu = std::max(mu, pair.mu);
+        return std::string("reduce time.alpha, or raise solver.max_outer_iterations") +
+               (mu > 2 ? ", or take less friction: above 2 a grain can wedge itself, and no set of "
+                         "pairs that stick and slip may be found"
+                       : "");
     }
 
     /// The closed pairs, sorted, for the guess of the next step.

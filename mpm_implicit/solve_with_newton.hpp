@@ -37,15 +37,15 @@ class NewtonSolver {
         const auto J_of = [&](const Vector& r, Vector& z) { precondition(r, step, z); };
         common::NewtonOptions options;
         options.first_forcing = 1e-4, options.smallest_forcing = 1e-6, options.convex = true;
-        double unit = 0;
         common::NewtonResult result;
+        double unit = 0;
         // One Newton step at a time, each with the pairs that are closed then.
         for (report.loops = 0; report.loops <= scheme.max_outer_iterations; ++report.loops) {
             step.updating = true;
             F_of(x_, F_);
             step.updating = false;
             if (report.loops == 0)
-                unit = std::max({common::safe_norm(F_), common::safe_norm(x_),
+                unit = std::max({common::safe_norm(F_), common::safe_norm(x_), missing_,
                                  std::numeric_limits<double>::min()});
             // What round-off of R leaves in F.
             const double tolerance =
@@ -61,7 +61,12 @@ class NewtonSolver {
             report.krylov += result.linear_iterations;
             if (result.newton_iterations == 0) break;
         }
-        if (!result.converged) fail(result, scheme, state.assembly.grains, solver.set);
+        if (!result.converged)
+            throw common::NumericalError(
+                "Newton's iteration did not converge: " + result.reason + "; residual " +
+                common::format(result.residual) + ", asked for " +
+                common::format(scheme.tolerance) + "; hardest pressed are " +
+                solver.set.hardest_pressed(state.assembly.grains) + ": " + solver.set.advice());
         return end(shape, step, state);
     }
 
@@ -155,6 +160,13 @@ class NewtonSolver {
         const std::vector<ForceControl>& controls = step.solver.force_controls;
         const long n = nodes.size();
         add_missing_momentum(shape, x, step);
+        if (step.updating) {
+            for_each_dof(n, [&](long i) {
+                part_[i] = root_[i] * nodes.motion[i].vx_1 - x[i];
+                part_[n + i] = root_[n + i] * nodes.motion[i].vy_1 - x[n + i];
+            });
+            missing_ = common::safe_norm(part_);
+        }
         std::array<std::vector<double>, common::block_count> impulses;
         for (auto& block : impulses) block.assign(controls.size(), 0.0);
         step.solver.set.list.for_each(nodes, [&](int number, ContactNode& node, std::size_t first) {
@@ -227,20 +239,8 @@ class NewtonSolver {
         return did;
     }
 
-    [[noreturn]] static void fail(const common::NewtonResult& result, const ThetaScheme& scheme,
-                                  const std::vector<Grain>& grains, const ActiveSet& set) {
-        std::size_t hardest = 0;
-        for (std::size_t k = 0; k < set.list.pairs.size(); ++k)
-            if (set.list.pairs[k].lambda_n > set.list.pairs[hardest].lambda_n) hardest = k;
-        const std::string who =
-            set.list.pairs.empty() ? "" : "; hardest pressed are " + set.names(hardest, grains);
-        throw common::NumericalError("Newton's iteration did not converge: " + result.reason +
-                                     "; residual " + common::format(result.residual) +
-                                     ", asked for " + common::format(scheme.tolerance) + who +
-                                     ": reduce time.alpha, or raise solver.max_outer_iterations");
-    }
-
     Vector root_, x_, F_, v_, Mv_, part_, rest_;
+    double missing_ = 0;  // |D^{-1/2} R|: what impulses have to make up for, too
     Constraints allowed_;
     CgWorkspace cg_;
     common::NewtonWorkspace newton_;

@@ -24,30 +24,40 @@ struct ActiveSetChange {
 };
 
 /// The friction x of slipping pairs that the next solution is to have. Friction makes pressure, and
-/// pressure the friction g(x) that ought to be; where two solutions in turn have the same set, the
-/// next x is taken where a secant through both says g(x) = x.
-///   x_2 = g_1 - s (g_1 - g_0),  s = f_1 . (f_1 - f_0)/|f_1 - f_0|^2,  f = g - x
+/// pressure the friction g(x) that ought to be, linear in x while the set stays the same. From the
+/// solutions since then the next x is taken where their hyperplane is nearest to g(x) = x:
+///   x = g_k - sum_j gamma_j (g_j+1 - g_j), the gamma_j that make f_k - sum_j gamma_j (f_j+1 - f_j)
+///   smallest, f = g - x
 /// in:     same, the set of the solution just made is that of the next
-/// source: Anderson, J. ACM 12, 547 (1965), with one step back.
+/// source: Anderson, J. ACM 12, 547 (1965).
 inline void extrapolate_friction(bool same, ActiveSet& set) {
-    const auto for_each_slipping = [&](const auto& work) {
-        for (std::size_t k = 0; k < set.list.pairs.size(); ++k)
-            if (set.list.pairs[k].state == ContactState::slip)
-                work(set.list.pairs[k], set.updates[k]);
-    };
-    double along = 0, squared = 0;
-    for_each_slipping([&](const ContactPair& pair, const PairUpdate& update) {
-        const double f_1 = update.target - pair.lambda_t,
-                     f_0 = update.target_before - update.lambda_before;
-        along += f_1 * (f_1 - f_0), squared += (f_1 - f_0) * (f_1 - f_0);
-    });
-    const double s = same && set.same_before && squared > 0 ? along / squared : 0;
-    for_each_slipping([&](const ContactPair& pair, PairUpdate& update) {
-        const double next = update.target - s * (update.target - update.target_before);
-        if (same && next * update.target > 0) update.friction = next;
-        update.lambda_before = pair.lambda_t, update.target_before = update.target;
-    });
-    set.same_before = same;
+    constexpr std::size_t most = 8;
+    if (!same) return set.frictions.clear(), set.targets.clear();
+    const std::size_t count = set.list.pairs.size();
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(long(count)), g = x;
+    for (std::size_t k = 0; k < count; ++k)
+        if (set.list.pairs[k].state == ContactState::slip)
+            x[long(k)] = set.list.pairs[k].lambda_t, g[long(k)] = set.updates[k].target;
+    set.frictions.push_back(x), set.targets.push_back(g);
+    if (set.frictions.size() > most)
+        set.frictions.erase(set.frictions.begin()), set.targets.erase(set.targets.begin());
+    const long steps = long(set.frictions.size()) - 1;
+    Eigen::VectorXd next = g;
+    if (steps > 0) {
+        Eigen::MatrixXd df(long(count), steps), dg(long(count), steps);
+        for (long j = 0; j < steps; ++j) {
+            dg.col(j) = set.targets[j + 1] - set.targets[j];
+            df.col(j) = dg.col(j) - (set.frictions[j + 1] - set.frictions[j]);
+        }
+        next -= dg * df.colPivHouseholderQr().solve(g - x);
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+        if (set.list.pairs[k].state != ContactState::slip) continue;
+        const double now = next[long(k)], is = x[long(k)], to = g[long(k)];
+        // Below zero there is no friction; where more makes more, it grows until the pair sticks.
+        const bool more = std::fabs(to) > std::fabs(is) && to * is >= 0;
+        set.updates[k].friction = now * (is != 0 ? is : to) > 0 ? now : more ? 2 * to : 0;
+    }
 }
 
 /// Changes the states of pairs that do not do what is asked of them.
@@ -58,7 +68,9 @@ inline ActiveSetChange update_active_set(const Vector& v, const std::vector<doub
                                          const GrainNodes& nodes, double accuracy, ActiveSet& set) {
     const long size = nodes.size();
     const double nearly = 1e3 * accuracy, friction_error = 1e5 * accuracy;
-    double largest = 0, fastest = 0;
+    // Impulses far below the momentum of a node are round-off, and velocities far below what an
+    // impulse would give to a node: all that stick to what is at rest have no others.
+    double largest = 0, fastest = 0, heaviest = 0;
     for (const ContactPair& pair : set.list.pairs)
         largest = std::max({largest, std::fabs(pair.lambda_n), std::fabs(pair.lambda_t)});
     const auto velocity = [&](const ContactBody& body, double& x, double& y) {
@@ -71,10 +83,12 @@ inline ActiveSetChange update_active_set(const Vector& v, const std::vector<doub
         double x, y;
         velocity(body, x, y);
         fastest = std::max({fastest, std::fabs(x), std::fabs(y)});
-        // Impulses far below the momentum of a node are round-off.
-        if (!body.is_fixed())
-            largest = std::max(largest, 1e-4 * nodes.sums[body.dof].m * std::hypot(x, y));
+        if (body.is_fixed()) continue;
+        const double m = nodes.sums[body.dof].m;
+        largest = std::max(largest, 1e-4 * m * std::hypot(x, y));
+        heaviest = std::max(heaviest, m);
     }
+    if (heaviest > 0) fastest = std::max(fastest, 1e-4 * largest / heaviest);
     ActiveSetChange change;
     for (const ContactList::Node& node : set.list.nodes) {
         for (std::size_t k = node.pair_begin; k < node.pair_end; ++k) {
@@ -90,15 +104,19 @@ inline ActiveSetChange update_active_set(const Vector& v, const std::vector<doub
             }
             const double parting = x * pair.nx + y * pair.ny, slip = x * pair.tx() + y * pair.ty();
             const ContactState before = pair.state;
+            // A pair that has gone back and forth changes its friction before its state.
+            const bool patient = pair.state == ContactState::slip && update.changes > 1;
             if (!pair.closed()) {
                 if (parting < -nearly * fastest) {
                     pair.state = ContactState::slip;
                     update.friction = 0;
                 }
-            } else if (pair.lambda_n < -nearly * largest) {
+            } else if (pair.lambda_n < -nearly * largest &&
+                       !(patient && std::fabs(pair.lambda_t) > nearly * largest)) {
                 pair.state = ContactState::open;
             } else if (pair.mu > 0) {
-                const double most = pair.mu * std::max(0.0, pair.lambda_n);
+                // Below zero where a pair is to give up its friction before it opens again.
+                const double most = pair.mu * pair.lambda_n;
                 // Where a grain cannot stick to all who hold it, a pair slips all the same.
                 const bool slips = std::fabs(slip) > nearly * fastest;
                 if (pair.state == ContactState::stick &&
@@ -106,19 +124,23 @@ inline ActiveSetChange update_active_set(const Vector& v, const std::vector<doub
                     pair.state = ContactState::slip;
                     update.friction = std::copysign(most, slips ? -slip : pair.lambda_t);
                 } else if (pair.state == ContactState::slip) {
-                    if (pair.lambda_t * slip > nearly * largest * fastest) {
+                    if (pair.lambda_t * slip > nearly * largest * fastest &&
+                        !(patient && std::fabs(pair.lambda_t) - most > nearly * largest)) {
                         pair.state = ContactState::stick;
                     } else {
-                        const double now =
-                            std::copysign(most, pair.lambda_t == 0 ? -slip : pair.lambda_t);
+                        const double against = pair.lambda_t == 0 ? -slip : pair.lambda_t;
+                        const double now = most * std::copysign(1.0, against);
                         const double by_now = std::fabs(now - pair.lambda_t);
                         if (by_now > change.friction * largest && change.settled) change.pair = k;
                         change.friction = std::max(change.friction, by_now / largest);
-                        update.friction = update.target = now;
+                        update.target = now;
+                        const double next =
+                            patient ? pair.lambda_t + (now - pair.lambda_t) / update.changes : now;
+                        update.friction = next * against > 0 ? next : 0;
                     }
                 }
             }
-            if (pair.state != before) change.settled = false, change.pair = k;
+            if (pair.state != before) change.settled = false, change.pair = k, ++update.changes;
         }
     }
     extrapolate_friction(change.settled, set);
@@ -179,8 +201,7 @@ inline double impulse_on(const ForceControl& control, const ContactNode& node,
     throw common::NumericalError("contact did not settle in " + std::to_string(loops) +
                                  " loops: " + set.names(change.pair, grains) +
                                  " changed last, friction by " + common::format(change.friction) +
-                                 " of the largest impulse; reduce time.alpha, or raise "
-                                 "solver.max_outer_iterations");
+                                 " of the largest impulse; " + set.advice());
 }
 
 }  // namespace mpm_implicit

@@ -370,6 +370,34 @@ TEST_CASE("contact settles with much friction in long steps" * doctest::descript
     }
 }
 
+TEST_CASE("a soft block comes down on a rigid disk and on the seam of two plates" *
+          doctest::description("physics")) {
+    // All that sticks to the disk has a velocity of round-off, which is not to be taken for sliding. At
+    // the seam friction of 3 makes and takes away the pressure that makes it.
+    const std::string
+        on_disk =
+            "grid.cells_y=40 grain.disk.x=0.5 grain.disk.y=0.35 grain.disk.radius=0.2 "
+            "grain.disk.material=plate grain.block.x=0.513 grain.block.y=0.66 "
+            "load.gravity_x=0 material.default.E=1e5 contact.friction=",
+        on_seam =
+            "grid.cells_y=20 grain.plate.x=0.25 grain.plate.width=0.5 "
+            "grain.right.shape=box grain.right.x=1.25 grain.right.y=0.075 "
+            "grain.right.width=1.5 grain.right.height=0.15 grain.right.material=plate "
+            "grain.block.x=0.4 grain.block.y=0.255 load.gravity_x=1 "
+            "material.default.E=2e4 contact.friction=";
+    for (const char* solver : {"projected_cg", "newton_krylov"})
+        for (const std::string& change :
+             {on_disk + "0.3", on_disk + "1", on_seam + "1", on_seam + "3"}) {
+            if (change.ends_with("3") && change.starts_with(on_seam) && solver[0] == 'n') continue;
+            const Run r = run("comes_down", "incline_block",
+                              "grid.cells_x=80 theory.compare=none load.rise=0 method.theta=0.5 "
+                              "time.end=0.25 solver.kind=" +
+                                  std::string(solver) + " " + change);
+            check_theorem(r);
+            CHECK(largest(r.column("contact_force")) > 0);
+        }
+}
+
 TEST_CASE("two blocks on one incline slide each with the friction of its material" *
           doctest::description("physics")) {
     facts::check_two_blocks("mpm_implicit", 0.003);

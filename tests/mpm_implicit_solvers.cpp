@@ -817,6 +817,32 @@ TEST_CASE("a pull far below the largest impulse is round-off and opens no pair")
     });
 }
 
+TEST_CASE(
+    "friction that changes the pressure that makes it is found in one more solution than pairs") {
+    Random random(7);
+    for (int again = 0; again < 20; ++again) {
+        constexpr int count = 5;
+        ActiveSet set;
+        set.list.pairs.resize(count), set.updates.resize(count);
+        // g(x) = x* + G (x - x*): the plain iteration x <- g(x) grows by a half and more.
+        Eigen::MatrixXd G = -1.5 * Eigen::MatrixXd::Identity(count, count);
+        Eigen::VectorXd exact(count), x = Eigen::VectorXd::Zero(count);
+        for (int k = 0; k < count; ++k) {
+            exact[k] = random(1, 2);
+            for (int j = 0; j < count; ++j) G(k, j) += random(-0.1, 0.1);
+            set.list.pairs[k].state = ContactState::slip;
+        }
+        for (int solution = 0; solution <= count + 1; ++solution) {
+            const Eigen::VectorXd g = exact + G * (x - exact);
+            for (int k = 0; k < count; ++k)
+                set.list.pairs[k].lambda_t = x[k], set.updates[k].target = g[k];
+            extrapolate_friction(true, set);
+            for (int k = 0; k < count; ++k) x[k] = set.updates[k].friction;
+        }
+        CHECK((x - exact).norm() <= 1e-9);
+    }
+}
+
 TEST_CASE("a plate that a force drives takes along whom it presses") {
     double off = 0;
     long plates = 0;
