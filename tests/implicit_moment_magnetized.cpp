@@ -11,6 +11,7 @@
 #include "cic/theory/magnetized_dispersion.hpp"
 #include "common/theory/kinetic_dispersion.hpp"
 #include "implicit_moment/setup/check_case.hpp"
+#include "implicit_moment/theory/cold_plasma.hpp"
 #include "implicit_moment/theory/magnetized_plasma.hpp"
 #include "implicit_moment/theory/transverse_dispersion.hpp"
 #include "tests/support/any_program.hpp"
@@ -151,10 +152,9 @@ TEST_CASE("along the field the determinant on the mesh is the product of its thr
             w.uniform.species = {ions, electrons};
             for (const Complex omega : frequencies) {
                 CAPTURE(omega);
-                const Complex product = omega * omega *
-                                        detail::longitudinal_dispersion_on_mesh(w, omega) *
-                                        detail::transverse_dispersion_on_mesh(w, +1, omega) *
-                                        detail::transverse_dispersion_on_mesh(w, -1, omega);
+                const Complex product = omega * omega * longitudinal_dispersion_on_mesh(w, omega) *
+                                        transverse_dispersion_on_mesh(w, +1, omega) *
+                                        transverse_dispersion_on_mesh(w, -1, omega);
                 CHECK(apart(magnetized_dispersion_on_mesh(w, omega), product) <= 1e-11);
             }
         }

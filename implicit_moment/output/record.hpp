@@ -11,18 +11,12 @@
 #include "common/run/run.hpp"
 #include "common/run/sentence.hpp"
 #include "implicit_moment/deposit_moments.hpp"
+#include "implicit_moment/output/columns.hpp"
 #include "implicit_moment/output/sheet_diagnostics.hpp"
 #include "implicit_moment/output/unit_flux_profile.hpp"
 #include "implicit_moment/output/write_output.hpp"
 #include "implicit_moment/solve_field.hpp"
-#include "implicit_moment/theory/compare_current_sheet.hpp"
-#include "implicit_moment/theory/compare_drift.hpp"
-#include "implicit_moment/theory/compare_energy.hpp"
-#include "implicit_moment/theory/compare_equilibrium.hpp"
-#include "implicit_moment/theory/compare_kink.hpp"
-#include "implicit_moment/theory/compare_reconnection.hpp"
-#include "implicit_moment/theory/compare_tail.hpp"
-#include "implicit_moment/theory/compare_wave.hpp"
+#include "implicit_moment/theory/compare_with_theory.hpp"
 
 namespace implicit_moment {
 
@@ -111,25 +105,9 @@ class Recorder {
         const Case& w = parameters_;
         const common::History& history = run.history;
         common::Summary& summary = run.summary;
-        if (w.is_tail()) {
-            if (w.harris.perturbation != 0)
-                compare_tail_flux(w, history, summary);
-            else
-                compare_tail_at_rest(w, history, state.plasma, plasma_moments_(state), summary);
-        } else if (w.is_across_current()) {
-            if (w.harris.perturbation != 0)
-                compare_reconnection(w, history, profile, summary);
-            else
-                compare_equilibrium(w, state.plasma, plasma_moments_(state), summary);
+        compare_with_theory(w, state, plasma_moments_, profile, history, summary);
+        if (w.is_across_current() && !w.is_tail())
             write_profile(run.path("profile.dat"), profile, w.grid, harris_sheet(w.harris).B0);
-        } else if (sheet_) {
-            compare_current_sheet(w, history, summary);
-            compare_kink(w, history, summary);
-        } else {
-            compare_wave(w, history, summary);
-            if (has_uniform_E(w)) compare_drift(w, history, summary);
-        }
-        compare_energy(w, history, summary);
         const auto conserved = [&](const std::string& name, const std::string& unit) {
             summary.conservation("largest_" + name, history.largest(name), unit);
         };

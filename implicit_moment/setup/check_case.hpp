@@ -6,11 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "implicit_moment/output/sheet_diagnostics.hpp"
 #include "implicit_moment/setup/case.hpp"
 #include "implicit_moment/setup/cost.hpp"
 #include "implicit_moment/setup/initial_state.hpp"
-#include "implicit_moment/theory/compare_current_sheet.hpp"
-#include "implicit_moment/theory/compare_reconnection.hpp"
 #include "implicit_moment/theory/wave_theory.hpp"
 
 namespace implicit_moment {
@@ -134,6 +133,18 @@ inline void refuse_tail(const Case& w) {
     refuse(thick > 0.25 * w.grid.z.length, "the tail is ", thick,
            " d_i thick at one end and does not fit between walls ", w.grid.z.length,
            " d_i apart: lower harris.normal_field, grid.length_x or harris.thickness");
+}
+
+// The modes along the current have to fit.
+inline void refuse_current_sheet(const Case& w) {
+    refuse(w.grid.x.cells < least_cells_along_current, "grid.cells_x = ", w.grid.x.cells,
+           ": the first 4 modes along the current are compared, so take ",
+           least_cells_along_current, " or more");
+}
+
+inline void refuse_reconnection(const Case& w) {
+    refuse(w.grid.z.cells % 2 != 0, "grid.cells_z = ", w.grid.z.cells,
+           " is odd: the flux is measured on the row z = 0, so make it even");
 }
 
 inline void validate_sheet(const Case& w) {

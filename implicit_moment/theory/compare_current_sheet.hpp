@@ -15,13 +15,6 @@
 
 namespace implicit_moment {
 
-/// Refuses a mesh on which the modes along the current do not fit. errors: InputError with the cure.
-inline void refuse_current_sheet(const Case& w) {
-    refuse(w.grid.x.cells < least_cells_along_current, "grid.cells_x = ", w.grid.x.cells,
-           ": the first 4 modes along the current are compared, so take ",
-           least_cells_along_current, " or more");
-}
-
 /// The sheet as local theory wants it: lengths in L, times in 1/Omega_ci; guiding centers drift in
 /// grad B.
 ///     omega_pe/Omega_ce = (c/v_A) (m_e/m_i)^(1/2)

@@ -8,21 +8,10 @@
 #include <vector>
 
 #include "common/run/run.hpp"
-#include "implicit_moment/output/diagnostics.hpp"
+#include "implicit_moment/output/columns.hpp"
 #include "implicit_moment/theory/cold_plasma.hpp"
 
 namespace implicit_moment {
-
-inline bool has_uniform_E(const Case& w) {
-    return w.uniform.E_x != 0 || w.uniform.E_y != 0 || w.uniform.E_z != 0;
-}
-
-/// The columns of a uniform plasma with a uniform E: the mean of E.
-inline void add_mean_field(const Grid& grid, const FieldState& field, common::Row& row) {
-    for (long a = 0; a < 3; ++a)
-        row.add(std::string("mean_E_") + "xyz"[a], "m_i*c*omega_pi/e",
-                interior(grid, field.E.all.data() + a * grid.size()).mean());
-}
 
 /// Mean E of the scheme after each of so many steps.
 ///     dE/dt = -4 pi sum n q u,   du/dt = q/m (E + u x B/c)

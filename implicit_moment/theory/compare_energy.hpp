@@ -57,15 +57,6 @@ inline EnergyWindow energy_window(const Case& w, double by_theta) {
     return window;
 }
 
-/// What of an energy is not that of the uniform magnetic field, which nothing can use.
-inline double usable_energy(const Case& w, double energy) {
-    if (!w.is_uniform()) return energy;
-    const UniformCase& u = w.uniform;
-    const double usable = energy - 0.5 * (u.B_x * u.B_x + u.B_y * u.B_y + u.B_z * u.B_z) *
-                                       w.grid.x.length * w.grid.z.length;
-    return usable > 1e-9 * energy ? usable : energy;
-}
-
 /// The largest change of the momentum of a plasma that drifts as a whole, over that momentum: nothing can
 /// change it, and no energy forbids it. out: NaN where a case has walls, fields or no such drift
 inline double momentum_change(const Case& w, const common::History& history) {

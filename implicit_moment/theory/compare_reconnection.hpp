@@ -6,27 +6,11 @@
 #include <vector>
 
 #include "common/run/run.hpp"
-#include "implicit_moment/output/diagnostics.hpp"
+#include "implicit_moment/output/columns.hpp"
 #include "implicit_moment/output/unit_flux_profile.hpp"
 #include "implicit_moment/setup/load_plasma.hpp"
 
 namespace implicit_moment {
-
-/// Refuses a mesh on which the flux cannot be measured. errors: InputError with the cure.
-inline void refuse_reconnection(const Case& w) {
-    refuse(w.grid.z.cells % 2 != 0, "grid.cells_z = ", w.grid.z.cells,
-           " is odd: the flux is measured on the row z = 0, so make it even");
-}
-
-/// The columns of a sheet across its current: reconnected flux and quadrupole of B_y.
-/// out:    the flux [B0 d_i]
-inline double add_reconnection(const Case& w, const FieldState& field, common::Row& row) {
-    const double B0 = harris_sheet(w.harris).B0;
-    const MiddleRow middle = middle_row(w.grid, field.B);
-    row.add("flux", "B0*d_i", middle.flux / B0);
-    row.add("quadrupole", "B0", quadrupole(w.grid, field.B, middle.X_point) / B0);
-    return middle.flux / B0;
-}
 
 namespace detail {
 

@@ -10,46 +10,12 @@
 
 #include "common/run/run.hpp"
 #include "implicit_moment/moments.hpp"
-#include "implicit_moment/output/diagnostics.hpp"
+#include "implicit_moment/output/columns.hpp"
 #include "implicit_moment/setup/load_plasma.hpp"
 #include "implicit_moment/theory/compare_reconnection.hpp"
 #include "implicit_moment/theory/spline_average.hpp"
 
 namespace implicit_moment {
-
-/// A_y along the middle row of a tail, where it grows with x as long as nothing reconnects.
-struct TailRow {
-    double flux =
-        0;  // of field lines that are closed in an O-line: the largest fall of A_y along x
-    double X_line = 0;  // where that fall ends, from the middle [d_i]; 0 where there is none
-    double shift = 0;   // rms of what is not A_y of the equilibrium, epsilon B0 x
-};
-
-/// in:     B; an even number of cells in z; B_z in the middle of the equilibrium
-inline TailRow tail_row(const Grid& grid, const VectorField& B, double B_z) {
-    const double* of_row = B.z() + grid.index(0, grid.z.cells / 2);
-    TailRow row;
-    double A_y = 0, high = 0, squares = 0;
-    for (long i = 1; i <= grid.x.cells; ++i) {
-        A_y += grid.x.spacing() * of_row[i - 1];
-        high = std::max(high, A_y);
-        if (high - A_y > row.flux)
-            row.flux = high - A_y,
-            row.X_line = grid.x.at(double(i)) - 0.5 * (grid.x.low + grid.x.high());
-        squares += std::pow(A_y - B_z * grid.x.spacing() * double(i), 2);
-    }
-    row.shift = std::sqrt(squares / double(grid.x.cells));
-    return row;
-}
-
-/// The columns of a tail.
-inline void add_tail(const Case& w, const FieldState& field, common::Row& row) {
-    const double B0 = harris_sheet(w.harris).B0;
-    const TailRow middle = tail_row(w.grid, field.B, w.harris.normal_field * B0);
-    row.add("flux", "B0*d_i", middle.flux / B0);
-    row.add("X_line", "d_i", middle.X_line);
-    row.add("flux_shift", "B0*d_i", middle.shift / B0);
-}
 
 /// The noise of A_y along the middle row that particles make in thermal equilibrium [B0 d_i].
 struct ThermalFlux {

@@ -9,16 +9,10 @@
 
 #include "common/run/run.hpp"
 #include "common/theory/measure_modes.hpp"
-#include "implicit_moment/output/diagnostics.hpp"
+#include "implicit_moment/output/columns.hpp"
 #include "implicit_moment/theory/wave_theory.hpp"
 
 namespace implicit_moment {
-
-/// The columns of a uniform plasma: the complex amplitude of the seeded mode in one component.
-inline void add_mode(const Case& w, const FieldState& field, common::Row& row) {
-    row.add("mode", w.component,
-            mode_amplitude(w.grid, field, w.component, w.uniform.mode_x, w.uniform.mode_z));
-}
 
 /// How far particles of a seeded wave swing, in cells.
 ///     u/omega,   u of the seed, or (q/m) E/omega or the drift c E/B of its E, whatever is less

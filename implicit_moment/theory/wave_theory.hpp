@@ -2,21 +2,12 @@
 // and what theory expects of the seeded mode.
 #pragma once
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <complex>
 #include <string>
-#include <vector>
 
-#include "common/run/run.hpp"
 #include "common/theory/kinetic_dispersion.hpp"
-#include "implicit_moment/explicit_em/yee_field.hpp"
 #include "implicit_moment/setup/case.hpp"
-#include "implicit_moment/theory/cold_plasma.hpp"
-#include "implicit_moment/theory/magnetized_plasma.hpp"
-#include "implicit_moment/theory/theta_light_wave.hpp"
-#include "implicit_moment/theory/transverse_dispersion.hpp"
 
 namespace implicit_moment {
 
@@ -36,334 +27,29 @@ struct Wave {
     Theory (*expect)(const Case&);
 };
 
-namespace detail {
-
-// Whether it is E_y, with B in the plane, that is followed.
-inline bool has_E_along_y(const Case& w) {
-    return w.component == "E_y" || w.component == "B_x" || w.component == "B_z";
-}
-
-// The species of a uniform case as the dispersion relation wants them, with k along a mode.
-//     T_k = T_x k_x^2/k^2 + T_z k_z^2/k^2
-inline std::vector<common::PlasmaSpecies> theory_species(const Case& w, WaveVector k) {
-    const UniformCase& u = w.uniform;
-    const double along_x = k.x / k.size(), along_z = k.z / k.size();
-    const bool across_is_y = has_E_along_y(w);
-    std::vector<common::PlasmaSpecies> plasma;
-    for (const SpeciesCase& s : u.species) {
-        common::PlasmaSpecies p;
-        p.density = n0 * s.density, p.charge = s.charge, p.mass = s.mass;
-        p.drift = s.drift_x * along_x + s.drift_z * along_z;
-        p.temperature_along =
-            s.temperature_x * along_x * along_x + s.temperature_z * along_z * along_z;
-        const double T_plane =
-            s.temperature_x * along_z * along_z + s.temperature_z * along_x * along_x;
-        const double u_plane = s.drift_z * along_x - s.drift_x * along_z;
-        p.temperature_across = across_is_y ? s.temperature_y + s.mass * s.drift_y * s.drift_y
-                                           : T_plane + s.mass * u_plane * u_plane;
-        p.gyrofrequency = s.charge * (u.B_x * along_x + u.B_z * along_z) / (s.mass * c);
-        plasma.push_back(p);
-    }
-    return plasma;
-}
-
-// The same for a wave with E along k where drifts are those of u = gamma v:
-//     d v_k = (1 - v_k^2/c^2) d u_k / gamma,   as of a mass gamma m / (1 - v_k^2/c^2) that drifts with v_k.
-// exact: for species that are cold; a spread of u much smaller than c is a spread of v.
-inline std::vector<common::PlasmaSpecies> longitudinal_species(const Case& w, WaveVector k) {
-    std::vector<common::PlasmaSpecies> plasma = theory_species(w, k);
-    if (!w.is_relativistic()) return plasma;
-    for (std::size_t n = 0; n < plasma.size(); ++n) {
-        const SpeciesCase& s = w.uniform.species[n];
-        const double gamma = std::sqrt(
-            1 + (s.drift_x * s.drift_x + s.drift_y * s.drift_y + s.drift_z * s.drift_z) / (c * c));
-        plasma[n].drift /= gamma;
-        const double part = (1 - plasma[n].drift * plasma[n].drift / (c * c)) / gamma;
-        plasma[n].mass /= part;
-        plasma[n].temperature_along *= part;
-    }
-    return plasma;
-}
-
-// Of the theta scheme: omega from the complex factor of one step.
-inline Theory of_factor(const Case& w, std::complex<double> g) {
-    return {std::complex<double>(std::fabs(std::arg(g)), std::log(std::abs(g))) / w.dt,
-            "exact factor per step of the theta scheme", true};
-}
-
-inline void refuse_light(const Case& w, const std::string& name) {
-    refuse(!w.uniform.species.empty(), "theory.wave = \"", name,
-           "\" is a wave in vacuum: take out the species or choose \"transverse\"");
-}
-inline Theory expect_light(const Case& w) {
-    const WaveVector k = wave_vector(w);
-    if (w.leapfrog.chosen)
-        return {yee_frequency(w.grid, w.dt, k.x, k.z), "exact dispersion on Yee's mesh", true};
-    return of_factor(w, theta_light_wave(w.field.theta, c * w.dt * mesh_wave_vector(w).size()));
-}
-
-inline void refuse_kinetic(const Case& w, const std::string& name) {
-    const UniformCase& u = w.uniform;
-    const WaveVector k = wave_vector(w);
-    refuse(u.species.empty(), "theory.wave = \"", name, "\" needs a [species.<name>]");
-    refuse(u.B_y != 0 ||
-               std::fabs(u.B_x * k.z - u.B_z * k.x) > 1e-9 * std::hypot(u.B_x, u.B_z) * k.size(),
-           "the dispersion relation is solved for B along k or zero: take out the part of "
-           "uniform.B across the mode, or choose \"magnetized\" or \"cold\" for theory.wave");
-}
-
-inline void refuse_uncharged(const Case& w, const std::string& wave) {
-    const auto& species = w.uniform.species;
-    refuse(std::ranges::all_of(species, [](const SpeciesCase& s) { return s.charge == 0; }), wave,
-           " needs charges: ",
-           (species.empty() ? "it needs a [species.<name>]" : "give a species a charge"));
-}
-
-inline void refuse_langmuir(const Case& w, const std::string& name) {
-    const std::string wave = "theory.wave = \"" + name + "\"";
-    refuse_uncharged(w, wave);
-    refuse_warm(w, wave);
-    refuse_kinetic(w, name);
-}
-// The wave of the cold plasma with E along k; of two that are overdamped, the one that stays.
-inline Theory expect_langmuir(const Case& w) {
-    const auto waves = cold_waves(w);
-    const auto value = [](const ColdWave& one) {
-        return one.along > 0.5 ? one.omega.imag() : -HUGE_VAL;
-    };
-    return {std::ranges::max_element(waves, {}, value)->omega,
-            "cold plasma, exact for the step of the program", true};
-}
-
-// The waves of the cold plasma that the component which is followed has a part in.
-inline std::vector<ColdWave> followed_waves(const Case& w) {
-    std::vector<ColdWave> waves = cold_waves(w);
-    std::erase_if(waves, [](const ColdWave& one) { return !(one.followed > 1e-9); });
-    return waves;
-}
-
-inline void refuse_without_near(const Case& w, const std::string& wave) {
-    if (w.near > 0) return;
-    std::string found;
-    double last = 0;
-    for (const ColdWave& one : followed_waves(w)) {
-        if (one.omega.real() > (1 + 1e-7) * last)
-            found += (found.empty() ? "" : ", ") + format(one.omega.real());
-        last = one.omega.real();
-    }
-    refuse(true, wave, " needs theory.near: without temperatures this plasma has waves at omega = ",
-           (found.empty() ? "none in theory.component" : found));
-}
-
-// The wave of the cold plasma that is nearest to theory.near.
-inline Theory expect_cold(const Case& w) {
-    const auto waves = followed_waves(w);
-    const auto distance = [&](const ColdWave& one) { return std::fabs(one.omega.real() - w.near); };
-    return {std::ranges::min_element(waves, {}, distance)->omega,
-            "cold plasma, exact for the step of the program", true};
-}
-inline void refuse_cold(const Case& w, const std::string& name) {
-    const std::string wave = "theory.wave = \"" + name + "\"";
-    refuse_uncharged(w, wave);
-    refuse_warm(w, wave);
-    refuse(followed_waves(w).empty(),
-           "no wave of the seeded mode has a part in theory.component = \"", w.component,
-           "\": choose another one");
-    refuse_without_near(w, wave);
-}
-
-// The root of D on the mesh that is next to theory.near, or to the one of D without a mesh.
-// errors: InputError when no root was found.
-template <class Dispersion>
-Theory kinetic(const Case& w, const common::DispersionRoot& without, const Dispersion& on_mesh) {
-    common::DispersionRoot root;
-    if (w.near != 0 || without.found)
-        root = common::root_near(on_mesh, w.near != 0 ? w.near : without.omega);
-    refuse(!root.found, "no root of the ", w.wave, " dispersion relation was found",
-           (w.near != 0 ? " near " + format(w.near) : std::string()),
-           ": change theory.near, or set theory.wave = \"none\"");
-    return {root.omega, "root of the kinetic dispersion relation on this mesh", false, without};
-}
-
-// D = 1 + S^2 sum_m |weight(m) K|^2/K^2 chi(k_m).
-inline common::Complex longitudinal_dispersion_on_mesh(const Case& w, common::Complex omega) {
-    const WaveVector K = mesh_wave_vector(w);
-    const double S = smoothing_of_mode(w);
-    common::Complex D = 1;
-    for (const ImageOfMode& image : images_of_mode(w)) {
-        const double weight =
-            S * image.weight.cwiseProduct(Eigen::Vector3d(K.x, 0, K.z)).norm() / K.size();
-        D += weight * weight *
-             (common::longitudinal_dispersion(longitudinal_species(w, image.k), image.k.size(),
-                                              omega) -
-              1.0);
-    }
-    return D;
-}
-inline Theory expect_longitudinal(const Case& w) {
-    const auto plasma = longitudinal_species(w, wave_vector(w));
-    const double k = wave_vector(w).size();
-    const auto D = [&](common::Complex omega) {
-        return common::longitudinal_dispersion(plasma, k, omega);
-    };
-    return kinetic(w,
-                   w.near != 0 ? common::root_near(D, w.near)
-                               : common::fastest_growing_longitudinal(plasma, k),
-                   [&](auto omega) { return longitudinal_dispersion_on_mesh(w, omega); });
-}
-
-// D = omega^2 - c^2 K^2 + S sum_m |weight(m) e|^2 omega^2 chi(k_m), e across K.
-// note:   an image at an angle to k answers as one along it.
-inline common::Complex transverse_dispersion_on_mesh(const Case& w, int sense,
-                                                     common::Complex omega) {
-    const WaveVector k = wave_vector(w), K = mesh_wave_vector(w);
-    const auto plasma = theory_species(w, k);
-    const double S = smoothing_of_mode(w);
-    const Eigen::Vector3d e =
-        has_E_along_y(w) ? Eigen::Vector3d(0, 1, 0) : Eigen::Vector3d(K.z, 0, -K.x) / K.size();
-    common::Complex D = omega * omega - c * c * K.size() * K.size();
-    for (const ImageOfMode& image : images_of_mode(w)) {
-        const double k_m = std::copysign(image.k.size(), k.x * image.k.x + k.z * image.k.z),
-                     weight = S * image.weight.cwiseProduct(e).squaredNorm();
-        for (const auto& s : plasma) D += weight * transverse_response(s, k_m, sense, omega, S);
-    }
-    return D;
-}
-inline Theory expect_transverse(const Case& w) {
-    const double k = wave_vector(w).size();
-    const auto plasma = theory_species(w, wave_vector(w));
-    common::DispersionRoot root;
-    int sense_of_root = 1;
-    for (const int sense : {+1, -1}) {
-        const auto D = [&](common::Complex omega) {
-            return transverse_dispersion(plasma, k, c, sense, omega);
-        };
-        const auto found = w.near != 0 ? common::root_near(D, w.near)
-                                       : fastest_growing_transverse(plasma, k, c, sense);
-        const bool better = w.near != 0
-                                ? std::abs(found.omega - w.near) < std::abs(root.omega - w.near)
-                                : found.omega.imag() > root.omega.imag() + 1e-12;
-        if (found.found && (!root.found || better)) root = found, sense_of_root = sense;
-    }
-    return kinetic(w, root, [&](auto omega) {
-        return transverse_dispersion_on_mesh(w, sense_of_root, omega);
-    });
-}
-
-inline Theory expect_magnetized(const Case& w) {
-    const auto plasma = magnetized_species(w);
-    const MagnetizedWave k = magnetized_wave(w, wave_vector(w));
-    const auto D = [&](common::Complex omega) {
-        return magnetized_dispersion(plasma, k, c, omega);
-    };
-    return kinetic(w, common::root_near(D, w.near),
-                   [&](auto omega) { return magnetized_dispersion_on_mesh(w, omega); });
-}
-
-// These need a root, too.
-inline void refuse_magnetized(const Case& w, const std::string& name) {
-    const std::string wave = "theory.wave = \"" + name + "\"";
-    const UniformCase& u = w.uniform;
-    const Eigen::Vector3d B(u.B_x, u.B_y, u.B_z), b = B.normalized();
-    refuse_uncharged(w, wave);
-    refuse(B.norm() == 0, wave,
-           " needs a field: give uniform.B_x, B_y or B_z, or choose \"longitudinal\" or "
-           "\"transverse\"");
-    for (const SpeciesCase& s : u.species) {
-        const Eigen::Vector3d T(s.temperature_x, s.temperature_y, s.temperature_z),
-            drift(s.drift_x, s.drift_y, s.drift_z);
-        const double along = T.dot(b.cwiseAbs2()), across = 0.5 * (T.sum() - along);
-        const Eigen::Matrix3d turned =
-            across * Eigen::Matrix3d::Identity() + (along - across) * b * b.transpose();
-        refuse((turned - Eigen::Matrix3d(T.asDiagonal())).norm() > 1e-9 * T.norm(), "species '",
-               s.name, "' has two temperatures across uniform.B: ", wave,
-               " wants one across it and one along it");
-        refuse(drift.cross(b).norm() > 1e-9 * drift.norm(), "species '", s.name,
-               "' drifts across uniform.B: ", wave, " wants drifts along it");
-    }
-    for (const MagnetizedSpecies& s : magnetized_species(w)) {
-        const double gyrations = std::sqrt(gyration_squared(s, magnetized_wave(w, wave_vector(w))));
-        refuse(!(gyrations <= 1000), wave,
-               " sums over the harmonics of the gyration, and k times its radius is ", gyrations,
-               ", above 1000: take a stronger uniform.B, or none and \"longitudinal\" or ",
-               "\"transverse\"");
-    }
-    refuse_without_near(w, wave);
-    expect_magnetized(w);
-}
-inline void refuse_longitudinal(const Case& w, const std::string& name) {
-    refuse_kinetic(w, name);
-    expect_longitudinal(w);
-}
-inline void refuse_transverse(const Case& w, const std::string& name) {
-    refuse_kinetic(w, name);
-    const WaveVector k = wave_vector(w);
-    for (const SpeciesCase& s : w.uniform.species) {
-        const double drift = std::hypot(s.drift_x, s.drift_y, s.drift_z);
-        refuse(w.mover.relativistic && drift > 0.1 * c, "species '", s.name,
-               "' drifts with u = ", drift,
-               " c: theory.wave = \"transverse\" takes drifts below 0.1 c where particles are "
-               "relativistic");
-        refuse(k.x * k.z != 0 && s.temperature_x != s.temperature_z, "species '", s.name,
-               "' has another temperature along x than along z, and a wave at an angle to both is "
-               "not transverse: make them equal, or the mode along x or z");
-    }
-    expect_transverse(w);
-}
-
-}  // namespace detail
-
 /// All that theory.wave can name, beside "none".
-inline const std::array<Wave, 6>& waves() {
-    static const std::array<Wave, 6> all{
-        {{"light", detail::refuse_light, detail::expect_light},
-         {"langmuir", detail::refuse_langmuir, detail::expect_langmuir},
-         {"cold", detail::refuse_cold, detail::expect_cold},
-         {"magnetized", detail::refuse_magnetized, detail::expect_magnetized},
-         {"longitudinal", detail::refuse_longitudinal, detail::expect_longitudinal},
-         {"transverse", detail::refuse_transverse, detail::expect_transverse}}};
-    return all;
-}
+const std::array<Wave, 6>& waves();
 
 /// The wave that a case is compared with, or none. in: parameters of a case
-inline const Wave* wave_of(const Case& w) {
-    const auto& all = waves();
-    const auto* wave = std::ranges::find(all, w.wave, &Wave::name);
-    return wave == all.end() ? nullptr : wave;
-}
+const Wave* wave_of(const Case& w);
 
 /// Refuses a case that the wave it names cannot be compared with.
 /// errors: InputError with the cure, also where its dispersion relation has no root.
-inline void refuse_wave(const Case& w) {
-    const Wave* wave = wave_of(w);
-    if (wave == nullptr) return;
-    refuse(w.end < 10 * w.dt,
-           "theory.wave needs at least 10 steps to measure: raise time.end above ", 10 * w.dt);
-    refuse(w.uniform.mode_x == 0 && w.uniform.mode_z == 0,
-           "theory.wave needs a mode: set uniform.mode_x or uniform.mode_z");
-    wave->refuse(w, wave->name);
-    const WaveVector k = wave_vector(w);
-    const char axis = w.component.back();
-    const bool is_longitudinal = wave->name == "longitudinal" || wave->name == "langmuir",
-               has_k = (axis == 'x' && k.x != 0) || (axis == 'z' && k.z != 0),
-               only_k = (axis == 'x' && k.z == 0) || (axis == 'z' && k.x == 0);
-    refuse(is_longitudinal && (w.component.front() != 'E' || !has_k), "theory.wave = \"",
-           wave->name, "\" has E along the mode, and theory.component = \"", w.component,
-           "\" has no part along it: choose E_", (k.x != 0 ? "x" : "z"));
-    refuse((wave->name == "light" || wave->name == "transverse") && only_k, "theory.wave = \"",
-           wave->name, "\" has its fields across the mode, and theory.component = \"", w.component,
-           "\" is along it: choose another one");
-}
+void refuse_wave(const Case& w);
 
 /// How exact a wave is for which theory is the scheme: without particles to what the solver leaves, and with them
 /// to what their unevenness within a cell does, which falls as 1/particles_per_cell in a quiet start.
 /// note:   the field of linear splines jumps between cells, so that a wave is linear only while its particles move
 ///         by less than a hundredth of a cell.
-inline double exact_to(const Case& w) {
-    if (w.wave == "light")
-        return w.leapfrog.chosen ? 1e-9 : std::min(0.005, 100 * w.field.solved_to());
-    if (w.loading != "quiet" || has_linear_splines(w)) return 0.005;
-    return std::min(0.005, 0.001 + 0.03 / double(w.uniform.particles_per_cell));
-}
+double exact_to(const Case& w);
+
+/// The kinetic dispersion relation of longitudinal waves on the mesh of a case.
+///     D = 1 + S^2 sum_m |weight(m) K|^2/K^2 chi(k_m)
+common::Complex longitudinal_dispersion_on_mesh(const Case& w, common::Complex omega);
+
+/// That of transverse waves, of one sense of rotation about B.
+///     D = omega^2 - c^2 K^2 + S sum_m |weight(m) e|^2 omega^2 chi(k_m), e across K
+/// note:   an image at an angle to k answers as one along it.
+common::Complex transverse_dispersion_on_mesh(const Case& w, int sense, common::Complex omega);
 
 }  // namespace implicit_moment

@@ -179,16 +179,19 @@ refuse)
     mpi=$many many=$scratch program=poor
     refused 3 2 'memory, and there is' implicit_moment/cases/gem_explicit.toml harris.particles=3e7 --force
     many=$mpi program=explicit_em
-    # One fails later, when no more memory is to be had: it leaves the summary that the first cannot write.
-    MALLOC_MMAP_THRESHOLD_=4096
-    export MALLOC_MMAP_THRESHOLD_
-    (
-        for _ in $(seq 100); do ls "$scratch"/refused/checkpoint_* > /dev/null 2>&1 && break; sleep 0.1; done
-        prlimit --as=1000000 --pid "$(pgrep -f "^$many/$program.*$scratch/refused" | sed -n 2p)"
-    ) &
-    # shellcheck disable=SC2086
-    refused 3 2 'not enough memory for this case' $short_sheet --force time.end=1e6 output.checkpoint_steps=20
-    grep -q '"message": "not enough memory' "$scratch/refused/summary.json" || complain "no summary of the one that failed alone"
+    # One fails later, when no more memory is to be had: it leaves the summary that the first cannot write. With MPICH the
+    # library may be the first that wants memory, and ends the run without a word.
+    if ! mpirun --version 2>&1 | grep -qi hydra; then
+        MALLOC_MMAP_THRESHOLD_=4096
+        export MALLOC_MMAP_THRESHOLD_
+        (
+            for _ in $(seq 100); do ls "$scratch"/refused/checkpoint_* > /dev/null 2>&1 && break; sleep 0.1; done
+            prlimit --as=1000000 --pid "$(pgrep -f "^$many/$program.*$scratch/refused" | sed -n 2p)"
+        ) &
+        # shellcheck disable=SC2086
+        refused 3 2 'not enough memory for this case' $short_sheet --force time.end=1e6 output.checkpoint_steps=20
+        grep -q '"message": "not enough memory' "$scratch/refused/summary.json" || complain "no summary of the one that failed alone"
+    fi
     unset MALLOC_MMAP_THRESHOLD_
     (sleep 4; mv "$scratch/refused" "$scratch/gone") &
     refused 3 2 'cannot be opened for writing' "$@" --force time.end=1e6
