@@ -207,6 +207,7 @@ inline StepReport move_mesh(const Problem& problem, double& dt, const Particles&
     if (consistent) stop_at_walls(problem, M, g);
     for (;; dt *= 0.5) {
         find_known_forces(grid, boundaries, problem.viscosity, mesh);
+        if (problem.swirl) add_centrifugal_force(problem, dt, particles, mesh);
         if (problem.scheme.implicit) {
             report = solve_pressure(problem, dt, mesh);
         } else {
@@ -220,6 +221,7 @@ inline StepReport move_mesh(const Problem& problem, double& dt, const Particles&
             break;
     }
     work_on_cells(problem, dt, mesh, budget);
+    if (problem.swirl) work_on_swirl(grid, dt, particles, mesh);
     detail::filter_nodes(problem, M, g);
     return report;
 }

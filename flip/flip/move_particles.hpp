@@ -140,7 +140,8 @@ RowMoved move_row(const Problem& problem, const WeightScale& scale, const Mesh& 
 ///   x_p += dt sum_g S v_g^L; with an implicit pressure v_g^theta                  [FLIP-7]
 ///          on conservative paths with what that lacks of the divergence of the cell
 ///   e_p += sum_c R (de_c + e_p relative_de_c) + sum_g S dissipated_g - |sum_g S dv_g|^2/2
-///   and what another transfer than flip makes of v_p: apply_transfer()
+///   and what another transfer than flip makes of v_p: apply_transfer(); where the fluid turns about
+///   the axis, what the move leaves of the energy of that: take_swirl()
 /// in:     nodes.increment, dissipated, filtered; cells.de, relative_de
 /// in/out: particles in rows; afterwards perhaps not
 /// out:    how many are beyond a boundary now
@@ -166,6 +167,9 @@ inline long move_particles(const Problem& problem, double dt, const Mesh& mesh,
                                                 particles.first_of_row[j + 1], particles);
             left += moved.left;
             if (moved.inverted >= 0) inverted = moved.inverted;
+            if (particles.swirl)
+                take_swirl(mesh, particles.first_of_row[j], particles.first_of_row[j + 1],
+                           particles);
         },
         particles.count());
     if (const long k = inverted; k >= 0)
@@ -187,6 +191,7 @@ inline void apply_particle_boundaries(const Problem& problem, double t, double d
     const auto enter = [&](long k, double sign) {
         const double m = sign * p.m_p[k];
         budget.enter(m, p.vx_p[k], p.vz_p[k], p.e_p[k]);
+        if (has(p.L_p)) budget.enter_swirl(m, p.L_p[k], p.x_p[k]);
         if (!has(p.Cxx_p)) return;
         const double C[4] = {p.Cxx_p[k], p.Cxz_p[k], p.Czx_p[k], p.Czz_p[k]};
         budget.energy += m * affine_energy(problem.grid, weights_at(scale, p.x_p[k], p.z_p[k]), C);

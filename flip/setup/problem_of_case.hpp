@@ -25,7 +25,15 @@ inline Inflow inflow_of(const Case& w, const GasCase& in) {
     const Material& a = w.materials[k];
     const double rho = in.density, e = internal_energy(a, rho, in.pressure),
                  p = pressure(a, rho, e);
-    return {k, rho, p, std::sqrt(stiffness(a, p) / rho), e, in.velocity_x, in.velocity_z};
+    return {k,
+            rho,
+            p,
+            std::sqrt(stiffness(a, p) / rho),
+            e,
+            in.velocity_x,
+            in.velocity_z,
+            in.velocity_theta,
+            in.angular_velocity};
 }
 
 }  // namespace detail
@@ -43,6 +51,7 @@ inline Problem problem_of(const Case& w) {
     problem.body_force = {w.gravity_x, w.gravity_z, w.trap};
     problem.q = {w.q_linear, w.q_quadratic};
     problem.viscosity = w.viscosity;
+    problem.swirl = w.swirls();
     problem.limits = {w.cfl, w.dt, w.end};
     problem.per_cell_x = w.per_cell_x;
     problem.per_cell_z = w.per_cell_z;

@@ -19,8 +19,9 @@ struct RegionScales {
     double particles = 0;
     double mass = 0;
     double sound_speed = 0;  // the smallest
-    double speed = 0;        // the largest
-    double mach = 0;         // the largest; 0 where there is no sound
+    double speed = 0;        // the largest, in the plane (x, z)
+    double swirl = 0;        // the largest velocity about the axis
+    double mach = 0;         // the largest of speed; 0 where there is no sound
     double lightest = 0;     // the smallest density
     double least_pressure = 0, most_pressure = 0;
 };
@@ -71,6 +72,7 @@ inline double bytes_of(const Case& parameters, const std::string& program, doubl
         if (parameters.density == "particles") per_particle += sizeof(double);
         if (parameters.transfer == "apic") per_particle += 4 * sizeof(double);
     }
+    if (parameters.swirls()) per_particle += 2 * sizeof(double);  // and what a step needs
     const double fields = 40 + 2 * double(parameters.materials.size()) +
                           (parameters.implicit() || parameters.mass == "consistent" ? 60 : 0);
     return per_particle * particles + fields * sizeof(double) * double(parameters.grid.size());
@@ -102,12 +104,15 @@ inline Scales scales_of(const Case& parameters, const std::string& program = "fl
         r.least_pressure = first ? p : std::min(r.least_pressure, p);
         r.most_pressure = first ? p : std::max(r.most_pressure, p);
         r.speed = std::max(r.speed, speed);
+        r.swirl = std::max(r.swirl, std::fabs(fluid.v_theta));
         if (c > 0) r.mach = std::max(r.mach, speed / c);
         r.particles += weight;
         r.mass += weight * fluid.density * place * (parameters.grid.axisymmetric ? 2 * pi * x : 1);
         s.sound_speed = std::max(s.sound_speed, c);
-        s.rate = std::max(s.rate, std::fabs(fluid.vx) * per_dx + std::fabs(fluid.vz) * per_dz +
-                                      (parameters.implicit() ? 0 : c * both));
+        s.rate = std::max(
+            s.rate, std::fabs(fluid.vx) * per_dx + std::fabs(fluid.vz) * per_dz +
+                        (parameters.implicit() ? 0 : c * both) +
+                        std::fabs(fluid.v_theta) / std::max(x, 0.5 * parameters.grid.x.spacing()));
     });
     for (std::size_t n = 0; n < parameters.regions.size(); ++n) {
         // A region that an energy has been set free in: c^2 = gamma (gamma - 1) e.
@@ -181,7 +186,8 @@ inline std::string describe_scales(const Case& parameters, const Scales& scales,
     for (const RegionScales& r : scales.regions)
         if (!r.vacuum)
             line(r.name, "about ", r.particles, " particles, sound speed ", r.sound_speed,
-                 ", speed up to ", r.speed, (r.mach > 0 ? ", Mach " + format(r.mach) : ""));
+                 ", speed up to ", r.speed, (r.mach > 0 ? ", Mach " + format(r.mach) : ""),
+                 (r.swirl > 0 ? ", about the axis up to " + format(r.swirl) : ""));
     line("particles", "about ", scales.particles);
     line("steps", (parameters.dt > 0 ? "" : "about "), scales.steps,
          (parameters.dt > 0 ? " of " : "; the first of "), scales.dt);

@@ -19,8 +19,12 @@
 
 namespace flip {
 
-inline constexpr Comparison no_comparison{
-    .name = "none", .frame = Frame::moves, .axisymmetric = true, .formulas = true, .vacuum = true};
+inline constexpr Comparison no_comparison{.name = "none",
+                                          .frame = Frame::moves,
+                                          .axisymmetric = true,
+                                          .formulas = true,
+                                          .vacuum = true,
+                                          .swirl = true};
 
 /// Every value of theory.compare.
 inline constexpr std::array comparisons{
@@ -49,6 +53,9 @@ inline void validate_comparison(const Case& parameters) {
     refuse((parameters.frame_x != 0 && c.frame == Frame::at_rest) ||
                (parameters.frame_z != 0 && c.frame != Frame::moves),
            " is stated in the frame of the mesh: take out theory.frame_x and frame_z");
+    refuse(!c.swirl && parameters.swirls(),
+           " is stated for fluid that does not turn about the axis: take out velocity_theta and "
+           "angular_velocity, or theory.compare = \"none\"");
     for (const RegionCase& r : parameters.regions)
         refuse(!c.formulas && r.has_formula(), " needs numbers, and region.", r.name,
                " has a formula: write numbers, or theory.compare = \"none\"");
