@@ -210,7 +210,7 @@ inline common::ParameterTable describe(Case& parameters) {
                "velocity of the frame in which theory is stated");
     table.real("theory.frame_z", parameters.frame_z, "velocity", anything(), "along z");
     table.whole("theory.mode", parameters.mode, "", between(1, 4096),
-                "tracked wavelengths in length_x");
+                "tracked wavelengths in length_x; of inertial_wave, half wavelengths in length_z");
 
     table.group("output");
     table.real("output.fields_interval", parameters.fields_interval, "time", at_least(0),

@@ -60,9 +60,10 @@ inline Problem problem_of(const Case& w) {
     const double part = w.transfer == "flip" ? 0 : (w.transfer == "blend" ? 1 - w.blend : 1);
     const Transfer transfer{w.transfer == "flip", part,         w.transfer == "apic",
                             w.transfer == "xpic", w.xpic_order, w.heats()};
-    // Under gravity particles must not fall together within a cell, where no pressure feels it.
+    // Under gravity, and the centrifugal force, particles must not fall together within a cell, where no
+    // pressure feels it.
     const bool falls = w.gravity_x != 0 || w.gravity_z != 0,
-               conservative = w.confined || (falls && w.plane() && !w.grid.axisymmetric);
+               conservative = w.confined || ((falls || w.swirls()) && w.plane());
     problem.scheme = {transfer,         consistent,     w.density == "particles",
                       w.filling,        w.confined,     conservative,
                       w.implicit(),     w.theta,        w.tolerance,

@@ -8,6 +8,7 @@
 #include "flip/theory/compare_dam_break.hpp"
 #include "flip/theory/compare_diffusion.hpp"
 #include "flip/theory/compare_impact.hpp"
+#include "flip/theory/compare_inertial_wave.hpp"
 #include "flip/theory/compare_instability.hpp"
 #include "flip/theory/compare_noh.hpp"
 #include "flip/theory/compare_rest.hpp"
@@ -28,11 +29,11 @@ inline constexpr Comparison no_comparison{.name = "none",
 
 /// Every value of theory.compare.
 inline constexpr std::array comparisons{
-    no_comparison,        riemann_comparison,   wall_shock_comparison, piston_comparison,
-    diffusion_comparison, rotation_comparison,  sedov_comparison,      noh_comparison,
-    gresho_comparison,    wave_comparison,      ringing_comparison,    interface_comparison,
-    shear_comparison,     dam_break_comparison, cavity_comparison,     impact_comparison,
-    rest_comparison,      collapse_comparison};
+    no_comparison,        riemann_comparison,   wall_shock_comparison,   piston_comparison,
+    diffusion_comparison, rotation_comparison,  sedov_comparison,        noh_comparison,
+    gresho_comparison,    wave_comparison,      ringing_comparison,      interface_comparison,
+    shear_comparison,     dam_break_comparison, cavity_comparison,       impact_comparison,
+    rest_comparison,      collapse_comparison,  inertial_wave_comparison};
 
 /// The comparison that a case asks for.
 inline const Comparison& comparison_of(const Case& parameters) {
