@@ -2,8 +2,10 @@
 // force and the energy of the rotation, balances, and waves.
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
+#include <gsl/gsl_sf_bessel.h>
 
 #include "flip/setup/balance_at_rest.hpp"
+#include "flip/theory/rotating_column.hpp"
 #include "tests/support/any_fluid.hpp"
 
 namespace {
@@ -341,7 +343,7 @@ TEST_CASE("a case without a rotation has no column for it and one with it the sa
 
 TEST_CASE("the number of threads does not change a bit of fluid that turns") {
     std::vector<Particles> of_flip, of_pic;
-    Case w = column(80, 80);
+    Case w = column(48, 48);
     w.regions = {turning(1, 1, 1), turning(-3, 2, 0.1)};
     w.regions[1].shape = "disk", w.regions[1].radius = 0.4, w.regions[1].center_z = 0.5;
     for (const int threads : {1, 2}) {
@@ -395,4 +397,71 @@ TEST_CASE("on conservative paths a ring has the divergence of its cell everywher
             CHECK(std::fabs(here - cell) <= 1e-6 * (1 + std::fabs(cell)));
         }
     });
+}
+
+TEST_CASE("particles of a column at rest boil within their cells but on conservative paths") {
+    // As water under gravity does, exp(0.17 t sqrt(g/dz)), with Omega^2 R for g: 0.83 here.
+    const auto growth = [](bool conservative) {
+        Case w = column(24, 12);
+        w.grid.z.length = 0.5;
+        w.regions = {turning(1, 1, 3)};
+        w.regions[0].hydrostatic = true, w.regions[0].noise = 1e-7;
+        w.per_cell_x = w.per_cell_z = 3;
+        w.density = "particles", w.q_linear = w.q_quadratic = 0;
+        FlipRun r(w);
+        r.problem.scheme.conservative_paths = conservative;
+        balance_at_rest(r.problem, r.particles(), r.scratch.mesh);
+        const auto speed = [&](double end) {
+            while (r.state.time < end) r.step();
+            return fastest(r.particles());
+        };
+        const double early = speed(6), late = speed(12);
+        return std::log(late / early) / 6;
+    };
+    const double bilinear = growth(false), conservative = growth(true);
+    CAPTURE(bilinear);
+    CAPTURE(conservative);
+    CHECK(bilinear >= 0.5);
+    CHECK(conservative <= 0.5 * bilinear);
+}
+
+TEST_CASE("the waves of a column are those of Kelvin where sound is fast") {
+    theory::RotatingColumn s;
+    s.sound_2 = [](double) { return 1e12; };
+    for (const double R : {0.5, 2.0}) {
+        for (const double k : {0.7, 3.0, 20.0}) {
+            for (const double Omega : {0.3, -2.0}) {
+                s.radius = R, s.k = k;
+                s.v_theta = [Omega](double r) { return Omega * r; };
+                const double j = gsl_sf_bessel_zero_J1(1) / R,
+                             exact = 4 * Omega * Omega * k * k / (k * k + j * j);
+                CHECK(std::fabs(theory::inertial_frequency_2(s) / exact - 1) <= 1e-5);
+            }
+        }
+    }
+    // Sound that is slow takes part, and slows them.
+    s.radius = 1, s.k = pi, s.v_theta = [](double r) { return r; };
+    double before = theory::inertial_frequency_2(s);
+    for (const double c2 : {100.0, 10.0, 3.0}) {
+        s.sound_2 = [c2](double r) { return c2 + 0.7 * r * r; };
+        const double now = theory::inertial_frequency_2(s);
+        CHECK(now < before);
+        CHECK(now > 0.8 * before);
+        before = now;
+    }
+}
+
+TEST_CASE("a column grows where its angular momentum falls outward and nowhere else") {
+    theory::RotatingColumn s;
+    s.radius = 1, s.k = pi, s.sound_2 = [](double) { return 1e12; };
+    const auto square = [&](const std::function<double(double)>& v) {
+        s.v_theta = v;
+        return theory::inertial_frequency_2(s);
+    };
+    CHECK(square([](double r) { return r; }) > 0);
+    CHECK(square([](double r) { return r / (1 + r * r); }) > 0);  // L rises to 1/2
+    CHECK(square([](double r) { return 2 * r * std::exp(-4 * r * r); }) < 0);
+    CHECK(square([](double r) { return -2 * r * std::exp(-4 * r * r); }) < 0);
+    CHECK(square([](double r) { return 0.3 / r; }) == 0);  // L is one number
+    CHECK(square([](double) { return 0; }) == 0);
 }

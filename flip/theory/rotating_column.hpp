@@ -69,7 +69,9 @@ inline double inertial_frequency_2(const RotatingColumn& s) {
     double least = 0, most = 0;
     constexpr int places = 200, tries = 200;
     for (int n = 1; n <= places; ++n) {
-        const double kappa_2 = epicyclic_2(s, s.radius * (n - 0.5) / places);
+        const double r = s.radius * (n - 0.5) / places, kappa_2 = epicyclic_2(s, r),
+                     turns = s.v_theta(r) / r;
+        if (std::fabs(kappa_2) < 1e-4 * turns * turns) continue;  // differences of one number
         least = std::min(least, kappa_2), most = std::max(most, kappa_2);
     }
     for (const double first : {least, most}) {
