@@ -49,12 +49,14 @@ inline double centrifugal_force(double L, double r, double r_new) {
 /// note:   energy and force then differ by a part of f step/2, which internal energy lends and gets
 ///         back; what is too cold to lend it looks a whole step ahead, which only makes heat, and
 ///         damps
+// [force]
 [[gnu::always_inline]] inline double force_of_step(double L, double r, double step, double ahead,
                                                    double e) {
     const double here = centrifugal_force(L, r, r);
     if (e < here * std::fabs(step)) ahead = 1;
     return ahead == 0 ? here : centrifugal_force(L, r, std::max(r + ahead * step, 0.5 * r));
 }
+// [/force]
 
 /// What the particles have of the rotation together.
 struct SwirlTotals {
