@@ -72,11 +72,6 @@ const std::vector<Mutation> fluids{
      "collapse_time radius_difference"},
     {"flip", "rotating_column", "grid.cells_x=12 grid.cells_z=12 flip.transfer=pic",
      "frequency_over_theory"},
-    // Where the angular momentum falls outward the wave grows.
-    {"flip", "rotating_column",
-     "grid.cells_x=12 grid.cells_z=12 flip.transfer=pic region.gas.angular_velocity=0 "
-     "region.gas.velocity_theta=2*x*exp(-4*x^2) constant.A.value=1e-4",
-     "growth_over_theory"},
     {"pic", "sod", "viscosity.linear=30 viscosity.quadratic=30 particles.per_cell_x=1",
      tube + left_fan + right_shock},
     {"pic", "free_expansion", "particles.per_cell_x=1", "L1_density left_fan_tail " + left},

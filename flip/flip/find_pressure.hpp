@@ -169,11 +169,15 @@ inline double step_allowed(const Problem& problem, const Mesh& mesh, double last
                     c.surface[n] != 0 || no_sound
                         ? 0
                         : faster * sound_speed(rho, c.compressibility[n]) * std::sqrt(per_dx2);
-                const double turns = c.swirl.empty() ? 0 : rate_of_swirl(grid, c, i, n);
+                double turns = 0, outward = 0;
+                if (!c.swirl.empty()) {
+                    turns = rate_of_swirl(grid, c, i, n);
+                    outward = std::sqrt(c.swirl[n].force / (c.M[n] * limits.cfl) * per_dx);
+                }
                 double rate = (vx * per_dx + vz * per_dz + sound + turns) / limits.cfl;
                 if (problem.viscosity > 0)
                     rate = std::max(rate, 4 * problem.viscosity / rho * per_dx2);
-                most = std::max(most, rate);
+                most = std::max({most, rate, outward});
             }
             of_row[j] = most;
         },

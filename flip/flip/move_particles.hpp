@@ -130,10 +130,12 @@ RowMoved move_row(const Problem& problem, const WeightScale& scale, const Mesh& 
             gained += work_on_volume(problem, scale, at, mesh.cells, k, p);
             if (!(p.V_p[k] > 0)) moved.inverted = k;
         }
-        if (conservative) {
-            const Velocity missing = grid.axisymmetric
-                                         ? missing_velocity_of_ring(grid, scale, at, increment)
-                                         : missing_velocity(grid, scale, at, increment);
+        if (conservative && !grid.axisymmetric) {
+            const Velocity missing = missing_velocity(grid, scale, at, increment);
+            sum[2] += missing.x;
+            sum[3] += missing.z;
+        } else if (conservative) {
+            const Velocity missing = missing_velocity_of_ring(grid, scale, at, increment);
             sum[2] += missing.x;
             sum[3] += missing.z;
         }

@@ -140,7 +140,7 @@ class Recorder {
         row.add("momentum_x", "momentum" + per_length, now.momentum_x);
         if (plane) row.add("momentum_z", "momentum" + per_length, now.momentum_z);
         if (plane || swirl)
-            row.add("angular_momentum", rings ? "momentum length" : "momentum",
+            row.add("angular_momentum", swirl ? "momentum length" : "momentum",
                     now.angular_momentum);
         row.add("mass_error", "1", relative(now.mass - budget.mass - mass, mass, budget.mass));
         row.add("momentum_x_error", "1",

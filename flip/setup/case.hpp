@@ -33,8 +33,8 @@ using GasCase = GasOf<double>;
 struct InflowCase {
     std::string name;  // of the end
     std::string material;
-    std::optional<double> density, pressure, velocity_x, velocity_z, velocity_theta,
-        angular_velocity;
+    std::optional<double> density, pressure, velocity_x, velocity_z;
+    std::optional<double> velocity_theta = {}, angular_velocity = {};
 };
 
 /// One side of a Riemann problem, with a material of its own.

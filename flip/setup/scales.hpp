@@ -33,6 +33,7 @@ struct Scales {
     double sound_speed = 0;  // the largest
     double speed = 0;        // the largest
     double mach = 0;         // the largest
+    double outward = 0;      // the largest centrifugal force per mass
     double rate = 0;         // at which the fastest signal crosses cells [1/time]
     double dt = 0;           // the first time step
     double steps = 0;        // of the run, if all are as long as the first
@@ -105,6 +106,9 @@ inline Scales scales_of(const Case& parameters, const std::string& program = "fl
         r.most_pressure = first ? p : std::max(r.most_pressure, p);
         r.speed = std::max(r.speed, speed);
         r.swirl = std::max(r.swirl, std::fabs(fluid.v_theta));
+        const double from_axis = std::max(x, 0.5 * parameters.grid.x.spacing());
+        if (fluid.v_theta != 0)
+            s.outward = std::max(s.outward, fluid.v_theta * fluid.v_theta / from_axis);
         if (c > 0) r.mach = std::max(r.mach, speed / c);
         r.particles += weight;
         r.mass += weight * fluid.density * place * (parameters.grid.axisymmetric ? 2 * pi * x : 1);
@@ -138,7 +142,7 @@ inline Scales scales_of(const Case& parameters, const std::string& program = "fl
 
     // A fluid at rest is limited by how fast it can begin to move; without gravity a pressure that
     // is not even soon moves the heaviest of it with (p/rho)^1/2.
-    const double pull = std::hypot(parameters.gravity_x, parameters.gravity_z);
+    const double pull = std::hypot(parameters.gravity_x, parameters.gravity_z) + s.outward;
     if (s.rate == 0 && pull == 0)
         for (const RegionScales& r : s.regions) {
             const double soon = r.particles > 0 ? std::sqrt(r.most_pressure / r.lightest) : 0;
