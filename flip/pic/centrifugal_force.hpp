@@ -75,6 +75,15 @@ inline void find_centrifugal_force(const Problem& problem, double dt, const Stat
     cells.fastest_swirl2 = detail::largest_force(problem.grid, cells, 1);
 }
 
+/// The cells are accelerated by it.
+///   u~ += dt sum m f_p/M
+inline void add_centrifugal_force(const Grid& grid, double dt, PicCells& cells) {
+    for_each_row_of_cells(grid, [&](long j) {
+        for (long i = 0; i < grid.x.cells; ++i)
+            cells.v_tilde[grid.index(i, j)].x += dt * cells.centrifugal[grid.index(i, j)];
+    });
+}
+
 /// What is left of the energy of the rotation when the force has done its work.
 ///   E(r) - dt f_p ubar,  ubar = (u + u~)/2 of the cell
 /// in:     v_tilde; cells.swirl, f_p; particles where they were

@@ -40,13 +40,13 @@ struct Contribution {
 // out: cells restored. Energy below zero by less than 1e-10 of the kinetic energy is round-off, and by
 // less than 1e-13 of that of the rotation about the axis. Where that leaves a cold gas with less than
 // nothing, its motion along r lends it, whose momentum no ring keeps.
-template <class What>
+template <bool swirl = false, class What>
 void sum_contributions(const Problem& problem, const What& contribution, State& state,
                        PicCells& cells) {
     const Grid& grid = problem.grid;
     const Particles& particles = state.particles;
     const long nx = grid.x.cells;
-    const double round_off = 1e-200 + 1e-13 * cells.fastest_swirl2;
+    const double round_off = swirl ? 1e-200 + 1e-13 * cells.fastest_swirl2 : 1e-200;
     const std::size_t K = cells.materials, width = 3 + 2 * K;
     const double* m_p = particles.m_p.data();
     const int* material = particles.material.data();
@@ -81,19 +81,20 @@ void sum_contributions(const Problem& problem, const What& contribution, State& 
                          kinetic = cell[2] * per_mass;
             const double heat = kinetic - 0.5 * (vx * vx + vz * vz);
             // [/mix]
-            double lent = 0;  // by the motion along r
             bool sound = mass >= 0 && std::isfinite(mass + kinetic);
+            double lent = 0;  // by the motion along r
             for (std::size_t k = 0; k < K; ++k) {
                 double e = M[k] > 0 ? cell[4 + 2 * k] / M[k] + heat : 0.0;
-                if (e < 0 && cells.swirl.size() > 0 &&
-                    lent - e * M[k] * per_mass <= 0.5 * vx * vx) {
-                    lent -= e * M[k] * per_mass;
-                    e = 0;
+                if constexpr (swirl) {
+                    const double lacks = -e * M[k] * per_mass;
+                    if (e < 0 && lent + lacks <= 0.5 * vx * vx) lent += lacks, e = 0;
                 }
                 state.cells.e[k][n] = e;
                 sound = sound && e >= -1e-10 * kinetic - round_off && std::isfinite(e);
             }
-            state.cells.vx[n] = lent > 0 ? std::copysign(std::sqrt(vx * vx - 2 * lent), vx) : vx;
+            state.cells.vx[n] = vx;
+            if constexpr (swirl)
+                if (lent > 0) state.cells.vx[n] = std::copysign(std::sqrt(vx * vx - 2 * lent), vx);
             state.cells.vz[n] = vz;
             cells.mass[n] = mass;
             if (!sound && refused < 0) refused = double(n);
@@ -143,7 +144,7 @@ inline void repartition(const Problem& problem, State& state, PicCells& cells) {
     };
     if (!problem.swirl) return detail::sum_contributions(problem, from_donor, state, cells);
     const double* swirl = cells.swirl.data();
-    detail::sum_contributions(
+    detail::sum_contributions<true>(
         problem,
         [=](long p) {
             detail::Contribution brought = from_donor(p);

@@ -131,9 +131,9 @@ inline void accelerate_cells(const Problem& problem, double dt, State& state, Pi
             v_tilde.x = v.x - dt_per_M * A_x * (P_x(n + 1) - P_x(n)) + dt_here * g.x(i);
             v_tilde.z = v.z + dt_here * g.z(j);
             if (plane) v_tilde.z -= dt_per_M * A_z * (P_z(n + stride) - P_z(n));
-            if (problem.swirl) v_tilde.x += dt_here * cells.centrifugal[n];
         }
     });
+    if (problem.swirl) add_centrifugal_force(grid, dt, cells);
     fill_ghosts(grid, boundaries, cells.v_tilde);
 
     Budget& budget = state.budget;
