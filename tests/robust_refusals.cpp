@@ -360,7 +360,7 @@ flip box rings region.gas.angular_velocity=1 flip.viscosity=0.1
 flip box rings region.gas.angular_velocity=1 boundary.x_high=no_slip
     boundary.x_high = "no_slip" would stop fluid that turns about the axis
 fluids box rings region.gas.angular_velocity=1e50 -> is not between 1e-40 and 1e40 in size
-fluids box rings region.gas.velocity_theta=1/(x-x) -> is inf at x =
+fluids box rings region.gas.velocity_theta=x/0 -> is inf at x =
 fluids box rings radial region.gas.angular_velocity=1 theory.compare=noh
     theory.compare = "noh" is stated for fluid that does not turn about the axis
 fluids box region.gas.velocity_teta=1 -> did you mean 'region.gas.velocity_theta'?
