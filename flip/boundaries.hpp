@@ -101,6 +101,7 @@ inline std::array<long, 4> add_inflow(const Problem& problem, double t, double d
                 for (auto* C :
                      {&particles.Cxx_p, &particles.Cxz_p, &particles.Czx_p, &particles.Czz_p})
                     add(*C, problem.scheme.transfer.affine && moving, 0.0);
+                add(particles.L_p, problem.swirl, beside * (in.v_theta + in.Omega * beside));
                 particles.x_p.push_back(along_x ? at : beside);
                 particles.z_p.push_back(along_x ? beside : at);
                 particles.m_p.push_back(in.rho * step * width * ring);

@@ -18,7 +18,7 @@ using common::Grid;
 
 /// Structure of arrays, per unit length along y; in memory row of cells by row of cells, nearly: see
 /// keep_in_rows().
-/// In `pic` only position, mass and material; the rest is empty there.
+/// In `pic` only position, mass and material, and L_p; the rest is empty there.
 struct Particles {
     std::vector<double> x_p, z_p;    // position
     std::vector<double> m_p;         // mass
@@ -27,24 +27,28 @@ struct Particles {
     std::vector<double> e_p;         // specific internal energy
     std::vector<double> V_p;         // volume, where the scheme has particles carry it
     std::vector<double> Cxx_p, Cxz_p, Czx_p,
-        Czz_p;  // apic: gradient of the velocity, C_ij = dv_i/dx_j
+        Czz_p;                // apic: gradient of the velocity, C_ij = dv_i/dx_j
+    bool swirl = false;       // whether they turn about the axis
+    std::vector<double> L_p;  // then, angular momentum per mass, r v_theta
     // Row j of cells, or one beside it, has particles [first_of_row[j], [j + 1]); empty: out of order.
     std::vector<int> first_of_row;
 
     long count() const { return long(x_p.size()); }
     /// Every column of numbers, in use or not.
-    std::array<std::vector<double>*, 11> all() {
-        return {&x_p, &z_p, &m_p, &vx_p, &vz_p, &e_p, &V_p, &Cxx_p, &Cxz_p, &Czx_p, &Czz_p};
+    std::array<std::vector<double>*, 12> all() {
+        return {&x_p, &z_p, &m_p, &vx_p, &vz_p, &e_p, &V_p, &Cxx_p, &Cxz_p, &Czx_p, &Czz_p, &L_p};
     }
 };
 
-/// Names the columns, for writing and for reading a checkpoint alike.
+/// Names the columns, for writing and for reading a checkpoint alike; L_p where the case has it.
 template <class Archive>
 void archive(Archive& a, Particles& particles) {
-    static constexpr std::array<const char*, 11> names{
-        "x_p", "z_p", "m_p", "vx_p", "vz_p", "e_p", "V_p", "Cxx_p", "Cxz_p", "Czx_p", "Czz_p"};
+    static constexpr std::array<const char*, 12> names{"x_p",   "z_p",   "m_p",   "vx_p",
+                                                       "vz_p",  "e_p",   "V_p",   "Cxx_p",
+                                                       "Cxz_p", "Czx_p", "Czz_p", "L_p"};
     const auto all = particles.all();
-    for (std::size_t k = 0; k < all.size(); ++k) a(names[k], *all[k]);
+    const std::size_t used = all.size() - (particles.swirl ? 0 : 1);
+    for (std::size_t k = 0; k < used; ++k) a(names[k], *all[k]);
     a("material", particles.material);
     a("first_of_row", particles.first_of_row);
 }

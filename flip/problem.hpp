@@ -45,6 +45,7 @@ struct Inflow {
     double rho = 0, p = 0, c = 0,
            e = 0;  // density, pressure, sound speed, specific internal energy
     double vx = 0, vz = 0;
+    double v_theta = 0, Omega = 0;  // about the axis, v_theta + Omega r
 };
 
 /// The boundary condition on one side.
@@ -130,6 +131,7 @@ struct Problem {
     BodyForce body_force;
     ArtificialViscosity q;
     double viscosity = 0;  // dynamic viscosity of the fluid [mass/(length time)]
+    bool swirl = false;    // whether particles turn about the axis; see swirl.hpp
     StepLimits limits;
     long per_cell_x = 4, per_cell_z = 4;  // particles of a cell at the start
     Scheme scheme;

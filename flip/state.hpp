@@ -9,6 +9,7 @@
 #include "common/run/parameters.hpp"
 #include "flip/particles.hpp"
 #include "flip/problem.hpp"
+#include "flip/swirl.hpp"
 
 namespace flip {
 
@@ -17,6 +18,7 @@ namespace flip {
 /// exact: what the particles have now, minus this, does not change
 struct Budget {
     double mass = 0, momentum_x = 0, momentum_z = 0, energy = 0;
+    double angular_momentum = 0;  // about the axis
 
     /// Adds what comes in with the mass m, negative for what leaves; e per mass.
     void enter(double m, double vx, double vz, double e) {
@@ -24,6 +26,11 @@ struct Budget {
         momentum_x += m * vx;
         momentum_z += m * vz;
         energy += m * (0.5 * (vx * vx + vz * vz) + e);
+    }
+    /// Adds what it brings of the rotation about the axis, at the distance r from it.
+    void enter_swirl(double m, double L, double r) {
+        angular_momentum += m * L;
+        energy += m * swirl_energy(L, r);
     }
 };
 
@@ -60,6 +67,7 @@ void archive(Archive& a, State& s) {
     a("momentum_x_in", s.budget.momentum_x);
     a("momentum_z_in", s.budget.momentum_z);
     a("energy_in", s.budget.energy);
+    if (s.particles.swirl) a("angular_momentum_in", s.budget.angular_momentum);
     a("time", s.time);
     a("dt", s.dt);
     a("iterations", s.report.iterations);
@@ -69,7 +77,9 @@ void archive(Archive& a, State& s) {
 /// Sums over the fluid; in flip over particles, in pic over cells.
 struct Totals {
     double mass = 0, momentum_x = 0, momentum_z = 0;
-    double angular_momentum = 0;  // about the middle of the mesh, counterclockwise from x to z
+    // About the middle of the mesh, counterclockwise from x to z; where the fluid turns about the
+    // axis, about that, and its energy is kinetic.
+    double angular_momentum = 0;
     double kinetic = 0, internal = 0;
 };
 
@@ -77,6 +87,7 @@ struct Totals {
 struct CellFields {
     Field rho, vx, vz, p, e;
     std::vector<Field> rho_of;  // of each material
+    Field v_theta;              // about the axis; empty where nothing turns
 };
 
 /// Where and when a cell is, for messages.

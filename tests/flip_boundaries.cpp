@@ -463,7 +463,8 @@ TEST_CASE("sorting keeps every particle whole and finds its row") {
     Case w = flip_case(6, 5, "slip", "slip");
     w.density = "particles", w.transfer = "apic";
     w.materials = {{"a", 1.4, 0}, {"b", 1.6, 0}, {"c", 1.2, 0}};
-    const Particles p = any_cloud(w, 0.5, 4);
+    Particles p = any_cloud(w, 0.5, 4);
+    for (std::size_t k = 0; k < p.m_p.size(); ++k) p.L_p.push_back(real(k));
     const FlipRun r(w, p);
     const Particles& q = r.state.particles;
     CHECK(q.first_of_row.size() == 6);

@@ -301,6 +301,30 @@ TEST_CASE("the radius of a blast in the middle and of one in a corner is found")
     }
 }
 
+TEST_CASE("an inertial wave of the frequency of theory passes and one too slow fails") {
+    for (const bool grows : {false, true}) {
+        for (const double slow : {1.0, 1.05}) {
+            const std::string text =
+                compare("inertial_wave") + walls +
+                "grid.geometry = \"axisymmetric\"\ngrid.cells_x = 16\ngrid.cells_z = 16\n"
+                "time.end = 15\ntheory.tolerance = 0.02\n[region.gas]\npressure = 11\n" +
+                (grows ? "velocity_theta = \"2*x*exp(-4*x^2)\"\n" : "angular_velocity = 1\n");
+            const auto run = recorded(text, "flip", 400, [&](const Case& w, double t, Fluid& f) {
+                const double omega = std::abs(inertial_frequency_of(w)) / slow,
+                             now = 1e-4 * (grows ? std::cosh(omega * t) : std::cos(omega * t));
+                f.cells.v_theta = Field::Zero(w.grid.size());
+                visit_cells(w.grid, [&](long n, double x, double z) {
+                    f.cells.vx[n] = now * x * (1 - x * x) * std::cos(pi * z);
+                });
+            });
+            const std::string name = grows ? "growth_over_theory" : "frequency_over_theory";
+            CAPTURE(name);
+            CHECK(run.value(name) == doctest::Approx(1 / slow).epsilon(1e-3));
+            CHECK((run.summary["results"][name]["verdict"] == "PASS") == (slow == 1));
+        }
+    }
+}
+
 TEST_CASE("a cavity that closes as Rayleigh says passes and one that is late fails") {
     for (const double late : {1.0, 1.02, 1.17}) {
         const std::string text =

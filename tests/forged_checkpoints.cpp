@@ -113,6 +113,7 @@ cic floating time.end=4
 cic plane_streams time.end=2
 pic shock_tube time.end=0.05
 pic channel time.end=0.05
+fluids swirling time.end=0.08
 flip rezoned time.end=0.05 shock_tube
 flip falling time.end=0.3 flip.transfer=apic flip.density=particles
 mpm_explicit rebound time.end=0.3

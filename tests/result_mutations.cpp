@@ -70,6 +70,8 @@ const std::vector<Mutation> fluids{
      "grid.cells_x=40 grid.cells_z=40 particles.per_cell_x=1 particles.per_cell_z=1 "
      "particles.loading=random",
      "collapse_time radius_difference"},
+    {"flip", "rotating_column", "grid.cells_x=12 grid.cells_z=12 flip.transfer=pic",
+     "frequency_over_theory"},
     {"pic", "sod", "viscosity.linear=30 viscosity.quadratic=30 particles.per_cell_x=1",
      tube + left_fan + right_shock},
     {"pic", "free_expansion", "particles.per_cell_x=1", "L1_density left_fan_tail " + left},

@@ -53,6 +53,9 @@ flip vortex flip.transfer=apic
 flip rezoned_vortex
 flip held
 flip held implicit -> 7
+fluids swirling
+flip swirling flip.transfer=apic time.cfl=0.1
+flip swirling flip.pressure=implicit flip.theta=0.6 viscosity.linear=0 viscosity.quadratic=0 -> 5
 mpm_explicit rebound
 mpm_explicit rebound method.shape=gimp contact.friction=0.3
 mpm_explicit rebound method.shape=quadratic method.flip=0.95

@@ -346,6 +346,43 @@ fluids box inflow.velocity_x=1
 )");
 }
 
+TEST_CASE("a rotation about an axis is refused where there is none or something would change it" *
+          doctest::description("robust")) {
+    check_refused(R"(
+fluids box region.gas.velocity_theta=1
+    velocity_theta and angular_velocity need an axis: set grid.geometry = "axisymmetric"; in the
+    plane take a region with flow = "rotation"
+fluids box boundary.z_low=inflow boundary.z_high=open inflow.velocity_z=1 inflow.angular_velocity=1
+    velocity_theta and angular_velocity need an axis
+flip box rings region.gas.angular_velocity=1 flip.viscosity=0.1
+    flip.viscosity = 0.1 has a torque, and particles that turn about the axis keep their angular
+    momentum
+flip box rings region.gas.angular_velocity=1 boundary.x_high=no_slip
+    boundary.x_high = "no_slip" would stop fluid that turns about the axis
+fluids box rings region.gas.angular_velocity=1e50 -> is not between 1e-40 and 1e40 in size
+fluids box rings region.gas.velocity_theta=x/0 -> is inf at x =
+fluids box rings radial region.gas.angular_velocity=1 theory.compare=noh
+    theory.compare = "noh" is stated for fluid that does not turn about the axis
+fluids box region.gas.velocity_teta=1 -> did you mean 'region.gas.velocity_theta'?
+fluids box theory.compare=inertial_wave
+    theory.compare = "inertial_wave" is a wave about an axis: set grid.geometry = "axisymmetric"
+fluids box rings theory.compare=inertial_wave
+    theory.compare = "inertial_wave" needs fluid that turns: give region.gas.angular_velocity
+fluids box rings region.gas.angular_velocity=1 theory.compare=inertial_wave gravity.z=-1
+    theory.compare = "inertial_wave" is without gravity: take out gravity.z
+fluids box rings region.gas.angular_velocity=1 theory.compare=inertial_wave boundary.z_high=open \
+    boundary.z_low=open
+    theory.compare = "inertial_wave" needs walls that slip: set boundary.z_low = "slip"
+fluids box rings region.gas.velocity_theta=x*z theory.compare=inertial_wave
+    theory.compare = "inertial_wave" needs a rotation that is the same at each z
+fluids box rings region.gas.velocity_theta=1/x theory.compare=inertial_wave
+    theory.compare = "inertial_wave" has no wave: the angular momentum is the same everywhere
+fluids box rings region.gas.angular_velocity=1 theory.compare=inertial_wave theory.mode=20
+    theory.compare = "inertial_wave" follows theory.mode = 20 half wavelengths along z, and 32 cells
+    have no more than 16
+)");
+}
+
 TEST_CASE("materials and pressures that cannot be are refused with the number" *
           doctest::description("robust")) {
     check_refused(R"(

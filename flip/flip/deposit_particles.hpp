@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "flip/flip/mesh.hpp"
+#include "flip/flip/centrifugal_force.hpp"
 
 namespace flip {
 
@@ -118,6 +118,7 @@ inline void deposit_particles(const Grid& grid, std::span<const Material> materi
         for (long k = 0; k < count; ++k) M += c.sum[n * count + k].M;
         c.M[n] = M;
     });
+    if (particles.swirl) deposit_swirl(grid, particles, mesh);
 }
 
 }  // namespace flip

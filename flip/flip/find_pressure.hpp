@@ -8,6 +8,7 @@
 #include <span>
 
 #include "common/run/sentence.hpp"
+#include "flip/flip/centrifugal_force.hpp"
 #include "flip/flip/mesh.hpp"
 #include "flip/state.hpp"
 
@@ -63,6 +64,8 @@ inline void find_pressure(const Grid& grid, std::span<const Material> materials,
         double speed2 = 0;
         for (const long corner : corners_of(grid, n))
             speed2 = std::max(speed2, g.vx[corner] * g.vx[corner] + g.vz[corner] * g.vz[corner]);
+        if (!c.swirl.empty() && c.M[n] > 0)
+            speed2 += c.swirl[n].force * grid.x.at(double(i) + 0.5) / c.M[n];
         double M[most_materials], U[most_materials];
         bool sound = true, gas = false;
         for (long k = 0; k < count; ++k) {
@@ -128,7 +131,7 @@ inline double density_of(const Cells& c, long i, long n) {
 
 /// The longest step that the flow allows.
 ///   dt = cfl min 1/(|v_x|/dx + |v_z|/dz + c sqrt(1/dx^2 + 1/dz^2)),  c fastest_consistent for c
-///   with the consistent mass and the density of cells;
+///   with the consistent mass and the density of cells, and where the fluid turns beside them the rate of that;
 /// after the first step without the sound of the gas when the pressure is implicit; with viscosity
 /// nu also dt <= 1/(4 nu (1/dx^2 + 1/dz^2)); at most sqrt(cfl dx/g), in which a fluid at rest begins
 /// to move, cfl/sqrt(trap), and 1.2 times the last step
@@ -166,10 +169,15 @@ inline double step_allowed(const Problem& problem, const Mesh& mesh, double last
                     c.surface[n] != 0 || no_sound
                         ? 0
                         : faster * sound_speed(rho, c.compressibility[n]) * std::sqrt(per_dx2);
-                double rate = (vx * per_dx + vz * per_dz + sound) / limits.cfl;
+                double turns = 0, outward = 0;
+                if (!c.swirl.empty()) {
+                    turns = rate_of_swirl(grid, c, i, n);
+                    outward = std::sqrt(c.swirl[n].force / (c.M[n] * limits.cfl) * per_dx);
+                }
+                double rate = (vx * per_dx + vz * per_dz + sound + turns) / limits.cfl;
                 if (problem.viscosity > 0)
                     rate = std::max(rate, 4 * problem.viscosity / rho * per_dx2);
-                most = std::max(most, rate);
+                most = std::max({most, rate, outward});
             }
             of_row[j] = most;
         },

@@ -33,6 +33,10 @@ struct CellSum {
 struct SoftSum {
     double C = 0, Cp = 0, CK = 0;
 };
+/// What the particles that turn about the axis bring to a cell: m v_theta, and m L^2/r^3.
+struct SwirlSum {
+    double momentum = 0, force = 0;
+};
 
 /// A symmetric tensor of a cell: xx, zz, xz, and around the axis.
 struct CellTensor {
@@ -54,6 +58,7 @@ struct Nodes {
     std::vector<Four> increment;   // of the velocity, x and z; velocity that moves particles
     std::vector<Four> filtered;    // velocity that replaces the particles' own, not in flip: v, v^L
     Field dissipated;              // specific energy that leaves the motion of the nodes
+    Field centrifugal;             // force, only where the fluid turns about the axis
     Field reaction_x, reaction_z;  // consistent mass matrix: impulse of the walls,
     Field wall_dissipation;        //     and the specific energy that they dissipate
 };
@@ -75,7 +80,8 @@ struct Cells {
     Field volume, C, strain, work, q_work, room;
     std::vector<SoftSum> soft;
     std::vector<double> excess;
-    bool one_fluid = false;  // explicit, and all materials have one equation of state
+    std::vector<SwirlSum> swirl;  // only where the fluid turns about the axis
+    bool one_fluid = false;       // explicit, and all materials have one equation of state
 };
 
 /// The scratch pad.
@@ -83,6 +89,8 @@ struct Mesh {
     Nodes nodes;
     Cells cells;
     long materials = 1;
+    // Of each particle that turns: its force in this step, then the energy that it leaves.
+    std::vector<double> swirl;
 };
 
 /// What the particles of the lattice, each with its volume, bring to a cell of each column.
@@ -134,6 +142,10 @@ inline Mesh mesh_of(const Problem& problem) {
                 return a.gamma == first.gamma && a.p_infinity == first.p_infinity;
             });
         c.excess.assign(size * mesh.materials, 0);
+    }
+    if (problem.swirl) {
+        c.swirl.assign(size, {});
+        g.centrifugal.setZero(size);
     }
     return mesh;
 }

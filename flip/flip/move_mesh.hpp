@@ -173,8 +173,9 @@ inline double most_cells_crossed(const Grid& grid, const Nodes& g, bool conserva
             const auto crossed = [&](const Field& v, const Field& w, double per_v, double per_w) {
                 double fastest = 0;
                 for (const long corner : at) fastest = std::max(fastest, std::fabs(v[corner]));
-                return per_v * fastest +
-                       0.5 * per_w * std::fabs(w[at[0]] - w[at[1]] - w[at[2]] + w[at[3]]);
+                const double turned = std::fabs(w[at[0]] - w[at[1]] - w[at[2]] + w[at[3]]);
+                return per_v * fastest * (grid.axisymmetric ? 1.25 : 1) +
+                       (grid.axisymmetric ? 0.75 : 0.5) * per_w * turned;
             };
             most = std::max({most, crossed(g.vxL, g.vzL, per_dx, per_dz),
                              crossed(g.vzL, g.vxL, per_dz, per_dx)});
@@ -207,6 +208,7 @@ inline StepReport move_mesh(const Problem& problem, double& dt, const Particles&
     if (consistent) stop_at_walls(problem, M, g);
     for (;; dt *= 0.5) {
         find_known_forces(grid, boundaries, problem.viscosity, mesh);
+        if (problem.swirl) add_centrifugal_force(problem, dt, particles, mesh);
         if (problem.scheme.implicit) {
             report = solve_pressure(problem, dt, mesh);
         } else {
@@ -220,6 +222,7 @@ inline StepReport move_mesh(const Problem& problem, double& dt, const Particles&
             break;
     }
     work_on_cells(problem, dt, mesh, budget);
+    if (problem.swirl) work_on_swirl(grid, dt, particles, mesh);
     detail::filter_nodes(problem, M, g);
     return report;
 }

@@ -71,6 +71,28 @@ inline Velocity missing_velocity(const Grid& grid, const WeightScale& scale, con
 }
 // [/conservative]
 
+// [ring_paths]
+// The same in a ring from r_1 to r_2, whose divergence is (1/r) d(r v_r)/dr + dv_z/dz. With v_r = p + q r
+// in the middle of the cell, p_1 and q_1 their differences from bottom to top, and dv_z/dz = c + e r:
+//   v_r += S_x0 S_x1 dr^2/(r_1 + r_2) [(e/3)(r_1 + r_2 + r_1 r_2/r) - p/r]
+//   v_z += (dz/2) S_z0 S_z1 (p_1/r + 2 q_1)
+// On the axis v_r = 0 and p = 0.
+inline Velocity missing_velocity_of_ring(const Grid& grid, const WeightScale& scale,
+                                         const Weights& w, const Four* v) {
+    const Four &a = v[w.node], &b = v[w.node + 1], &c = v[w.node + scale.stride],
+               &d = v[w.node + scale.stride + 1];
+    const double dr = grid.x.spacing(), dz = grid.z.spacing(),
+                 r_1 = dr * double(column_of(grid, w.node)), r_2 = r_1 + dr,
+                 r = std::max(r_1 + w.S_x[1] * dr, 1e-9 * dr);
+    const double q_low = (b[2] - a[2]) / dr, q_high = (d[2] - c[2]) / dr,
+                 p_low = a[2] - q_low * r_1, p_high = c[2] - q_high * r_1,
+                 e = (a[3] - b[3] - c[3] + d[3]) / (dr * dz);
+    return {w.S_x[0] * w.S_x[1] * dr * dr / (r_1 + r_2) *
+                (e / 3 * (r_1 + r_2 + r_1 * r_2 / r) - 0.5 * (p_low + p_high) / r),
+            0.5 * dz * w.S_z[0] * w.S_z[1] * ((p_high - p_low) / r + 2 * (q_high - q_low))};
+}
+// [/ring_paths]
+
 // What came of a row: how many particles left the mesh, and one without volume, -1: none.
 struct RowMoved {
     long left = 0, inverted = -1;
@@ -108,8 +130,12 @@ RowMoved move_row(const Problem& problem, const WeightScale& scale, const Mesh& 
             gained += work_on_volume(problem, scale, at, mesh.cells, k, p);
             if (!(p.V_p[k] > 0)) moved.inverted = k;
         }
-        if (conservative) {
+        if (conservative && !grid.axisymmetric) {
             const Velocity missing = missing_velocity(grid, scale, at, increment);
+            sum[2] += missing.x;
+            sum[3] += missing.z;
+        } else if (conservative) {
+            const Velocity missing = missing_velocity_of_ring(grid, scale, at, increment);
             sum[2] += missing.x;
             sum[3] += missing.z;
         }
@@ -140,7 +166,8 @@ RowMoved move_row(const Problem& problem, const WeightScale& scale, const Mesh& 
 ///   x_p += dt sum_g S v_g^L; with an implicit pressure v_g^theta                  [FLIP-7]
 ///          on conservative paths with what that lacks of the divergence of the cell
 ///   e_p += sum_c R (de_c + e_p relative_de_c) + sum_g S dissipated_g - |sum_g S dv_g|^2/2
-///   and what another transfer than flip makes of v_p: apply_transfer()
+///   and what another transfer than flip makes of v_p: apply_transfer(); where the fluid turns about
+///   the axis, what the move leaves of the energy of that: take_swirl()
 /// in:     nodes.increment, dissipated, filtered; cells.de, relative_de
 /// in/out: particles in rows; afterwards perhaps not
 /// out:    how many are beyond a boundary now
@@ -166,6 +193,9 @@ inline long move_particles(const Problem& problem, double dt, const Mesh& mesh,
                                                 particles.first_of_row[j + 1], particles);
             left += moved.left;
             if (moved.inverted >= 0) inverted = moved.inverted;
+            if (particles.swirl)
+                take_swirl(mesh, particles.first_of_row[j], particles.first_of_row[j + 1],
+                           particles);
         },
         particles.count());
     if (const long k = inverted; k >= 0)
@@ -187,6 +217,7 @@ inline void apply_particle_boundaries(const Problem& problem, double t, double d
     const auto enter = [&](long k, double sign) {
         const double m = sign * p.m_p[k];
         budget.enter(m, p.vx_p[k], p.vz_p[k], p.e_p[k]);
+        if (has(p.L_p)) budget.enter_swirl(m, p.L_p[k], p.x_p[k]);
         if (!has(p.Cxx_p)) return;
         const double C[4] = {p.Cxx_p[k], p.Cxz_p[k], p.Czx_p[k], p.Czz_p[k]};
         budget.energy += m * affine_energy(problem.grid, weights_at(scale, p.x_p[k], p.z_p[k]), C);

@@ -47,6 +47,11 @@ inline Totals particle_totals(const Grid& grid, const Particles& p) {
         all.kinetic += part.kinetic;
         all.internal += part.internal;
     }
+    if (p.swirl) {
+        const SwirlTotals swirl = swirl_totals(p);
+        all.angular_momentum = swirl.angular_momentum;
+        all.kinetic += swirl.energy;
+    }
     return all;
 }
 
@@ -57,6 +62,8 @@ inline CellFields cell_fields(const Grid& grid, const Mesh& mesh) {
     CellFields f;
     for (Field* field : {&f.rho, &f.vx, &f.vz, &f.p, &f.e}) field->setZero(grid.size());
     f.rho_of.assign(mesh.materials, Field::Zero(grid.size()));
+    const bool swirl = !mesh.cells.swirl.empty();
+    if (swirl) f.v_theta.setZero(grid.size());
     for_each_cell(grid, [&](long i, long, long n) {
         const double M = mesh.cells.M[n], per_V = 1 / mesh.cells.V_of_column[i];
         if (M <= 0) return;
@@ -72,6 +79,7 @@ inline CellFields cell_fields(const Grid& grid, const Mesh& mesh) {
         f.vz[n] = 0.25 * (g.vz[n] + g.vz[n + 1] + g.vz[up] + g.vz[up + 1]);
         f.p[n] = mesh.cells.p[n];
         f.e[n] = U / M;
+        if (swirl) f.v_theta[n] = mesh.cells.swirl[n].momentum / M;
     });
     return f;
 }

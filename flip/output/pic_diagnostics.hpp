@@ -1,7 +1,7 @@
 // Diagnostics of pic: sums over the cells, and the fluid on the cells.
 #pragma once
 
-#include "flip/pic/pic_cells.hpp"
+#include "flip/pic/eulerian_phase.hpp"
 
 namespace flip {
 
@@ -36,6 +36,11 @@ inline Totals totals_of(const Grid& grid, const State& state, PicCells& cells) {
             U += cells.M[n * cells.materials + k] * state.cells.e[k][n];
         return U;
     });
+    if (state.particles.swirl) {
+        const SwirlTotals swirl = swirl_totals(state.particles);
+        t.angular_momentum = swirl.angular_momentum;
+        t.kinetic += swirl.energy;
+    }
     return t;
 }
 
@@ -66,6 +71,14 @@ inline void fields_of(const Grid& grid, const State& state, const PicCells& cell
             }
             fields.e[n] = U * cells.per_mass[n];
         }
+    });
+    const Particles& particles = state.particles;
+    if (!particles.swirl) return;
+    fields.v_theta.setZero(grid.size());
+    detail::for_each_in_cell(grid, particles, [&](long p, long at) {
+        const long n = grid.index(at % grid.x.cells, at / grid.x.cells);
+        fields.v_theta[n] +=
+            particles.m_p[p] * cells.per_mass[n] * particles.L_p[p] / particles.x_p[p];
     });
 }
 

@@ -30,7 +30,8 @@ inline Extremes extremes(const Case& parameters, const CellFields& cells) {
         std::size_t main = 0;
         for (std::size_t k = 1; k < cells.rho_of.size(); ++k)
             if (cells.rho_of[k][c] > cells.rho_of[main][c]) main = k;
-        const double speed = std::hypot(cells.vx[c], cells.vz[c]);
+        double speed = std::hypot(cells.vx[c], cells.vz[c]);
+        if (cells.v_theta.size() > 0) speed = std::hypot(speed, cells.v_theta[c]);
         const double sound2 = stiffness(parameters.materials[main], cells.p[c]) / cells.rho[c];
         most.speed = std::max(most.speed, speed);
         if (sound2 > 0) most.mach = std::max(most.mach, speed / std::sqrt(sound2));
@@ -43,6 +44,7 @@ inline Extremes extremes(const Case& parameters, const CellFields& cells) {
 ///   mass_error:     (mass - budget.mass - first) / first
 ///   momentum_error: (momentum - budget.momentum - first) / (sqrt(2 kinetic mass) + mass c), with
 ///                   kinetic energy and mass of the start, c its largest sound speed
+///   angular_momentum_error: the same about the axis, over that times the radius of the mesh
 ///   energy_error:   (energy - budget.energy - first) / first
 /// note:   where the start has nothing to compare with, what has come in since then takes its place
 class Recorder {
@@ -58,6 +60,7 @@ class Recorder {
         CellFields empty;
         for (Field* f : {&empty.rho, &empty.vx, &empty.vz, &empty.p, &empty.e})
             *f = Field::Zero(parameters.grid.size());
+        if (parameters.swirls()) empty.v_theta = empty.rho;
         empty.rho_of.assign(parameters.materials.size(), empty.rho);
         history.columns(row_of({}, {}, empty, history));
     }
@@ -96,6 +99,7 @@ class Recorder {
         if (history.rows() > 1) judge_energy(history, summary);
         std::vector<std::string> errors{"mass_error", "momentum_x_error", "energy_error"};
         if (parameters_.moves_along_z()) errors.insert(errors.begin() + 2, "momentum_z_error");
+        if (parameters_.swirls()) errors.insert(errors.end() - 1, "angular_momentum_error");
         for (const std::string& name : errors)
             summary.conservation("largest_" + name, history.largest(name), "1");
         summary.performance("particles", double(state.particles.count()));
@@ -113,9 +117,11 @@ class Recorder {
             return scale > 0 ? change / scale : 0.0;
         };
         Budget budget = state.budget;
-        // Around an axis momenta that point outward cancel, and nothing turns.
-        const bool rings = parameters_.grid.axisymmetric, plane = parameters_.moves_along_z();
-        if (rings) now.momentum_x = now.angular_momentum = budget.momentum_x = 0;
+        // Around an axis momenta that point outward cancel.
+        const bool rings = parameters_.grid.axisymmetric, plane = parameters_.moves_along_z(),
+                   swirl = parameters_.swirls();
+        if (rings) now.momentum_x = budget.momentum_x = 0;
+        if (rings && !swirl) now.angular_momentum = 0;
         const std::string per_length = rings ? "" : "/length";
         const double mass = first("mass", now.mass), kinetic = first("kinetic", now.kinetic);
         const double energy = now.kinetic + now.internal, gross = first("energy", energy);
@@ -133,13 +139,20 @@ class Recorder {
         row.add("mass", "mass" + per_length, now.mass);
         row.add("momentum_x", "momentum" + per_length, now.momentum_x);
         if (plane) row.add("momentum_z", "momentum" + per_length, now.momentum_z);
-        if (plane) row.add("angular_momentum", "momentum", now.angular_momentum);
+        if (plane || swirl)
+            row.add("angular_momentum", swirl ? "momentum length" : "momentum",
+                    now.angular_momentum);
         row.add("mass_error", "1", relative(now.mass - budget.mass - mass, mass, budget.mass));
         row.add("momentum_x_error", "1",
                 momentum_error("momentum_x", now.momentum_x, budget.momentum_x));
         if (plane)
             row.add("momentum_z_error", "1",
                     momentum_error("momentum_z", now.momentum_z, budget.momentum_z));
+        if (swirl)
+            row.add("angular_momentum_error", "1",
+                    relative(now.angular_momentum - budget.angular_momentum -
+                                 first("angular_momentum", now.angular_momentum),
+                             momentum * parameters_.grid.x.length, budget.angular_momentum));
         row.add("energy_error", "1",
                 relative(energy - budget.energy - gross, gross, budget.energy));
         row.add("largest_speed", "velocity", most.speed);

@@ -36,31 +36,17 @@ struct Contribution {
                  ": use a smaller time.cfl, more particles per cell, or more viscosity");
 }
 
-// Calls add(p, cell) for every particle, on as many threads as share no cell.
-template <class Add>
-void for_each_in_cell(const Grid& grid, const Particles& particles, const Add& add) {
-    const CellAlong column(grid.x), row(grid.z);
-    const double *x_p = particles.x_p.data(), *z_p = particles.z_p.data();
-    const int* first = particles.first_of_row.data();
-    const long nx = grid.x.cells;
-    // Three rows apart: a particle may be in the row beside its own.
-    common::for_each_row_colored(
-        3, grid.z.cells,
-        [&](long j) {
-            for (long p = first[j]; p < first[j + 1]; ++p)
-                add(p, row(z_p[p]) * nx + column(x_p[p]));
-        },
-        grid.x.cells * grid.z.cells);
-}
-
 // Sums over all particles, cell by cell; contribution(p) says what particle p brings.
-// out: cells restored. Energy below zero by less than 1e-10 of the kinetic energy is round-off.
-template <class What>
+// out: cells restored. Energy below zero by less than 1e-10 of the kinetic energy is round-off, and by
+// less than 1e-13 of that of the rotation about the axis. Where that leaves a cold gas with less than
+// nothing, its motion along r lends it, whose momentum no ring keeps.
+template <bool swirl = false, class What>
 void sum_contributions(const Problem& problem, const What& contribution, State& state,
                        PicCells& cells) {
     const Grid& grid = problem.grid;
     const Particles& particles = state.particles;
     const long nx = grid.x.cells;
+    const double round_off = swirl ? 1e-200 + 1e-13 * cells.fastest_swirl2 : 1e-200;
     const std::size_t K = cells.materials, width = 3 + 2 * K;
     const double* m_p = particles.m_p.data();
     const int* material = particles.material.data();
@@ -96,12 +82,19 @@ void sum_contributions(const Problem& problem, const What& contribution, State& 
             const double heat = kinetic - 0.5 * (vx * vx + vz * vz);
             // [/mix]
             bool sound = mass >= 0 && std::isfinite(mass + kinetic);
+            double lent = 0;  // by the motion along r
             for (std::size_t k = 0; k < K; ++k) {
-                const double e = M[k] > 0 ? cell[4 + 2 * k] / M[k] + heat : 0.0;
+                double e = M[k] > 0 ? cell[4 + 2 * k] / M[k] + heat : 0.0;
+                if constexpr (swirl) {
+                    const double lacks = -e * M[k] * per_mass;
+                    if (e < 0 && lent + lacks <= 0.5 * vx * vx) lent += lacks, e = 0;
+                }
                 state.cells.e[k][n] = e;
-                sound = sound && e >= -1e-10 * kinetic - 1e-200 && std::isfinite(e);
+                sound = sound && e >= -1e-10 * kinetic - round_off && std::isfinite(e);
             }
             state.cells.vx[n] = vx;
+            if constexpr (swirl)
+                if (lent > 0) state.cells.vx[n] = std::copysign(std::sqrt(vx * vx - 2 * lent), vx);
             state.cells.vz[n] = vz;
             cells.mass[n] = mass;
             if (!sound && refused < 0) refused = double(n);
@@ -112,11 +105,17 @@ void sum_contributions(const Problem& problem, const What& contribution, State& 
         if (refused >= 0) refuse_cell(problem, state, cells, long(refused));
 }
 
+// What the particles have brought with them follows them to their places in the order of the rows.
+inline void carry_with_particles(PicCells& cells) {
+    common::carry_to_place(cells.donor, cells.sort.numbers.target, cells.sort.labels);
+    if (!cells.swirl.empty()) common::carry_to_place(cells.swirl, cells.sort.numbers);
+}
+
 // Particles in rows of cells, with the donor cells where they have some.
 inline void keep_in_rows_with_donors(const Grid& grid, Particles& particles, PicCells& cells) {
     if (is_plane(grid)) {
         if (keep_in_rows(grid, cells.sort, particles) && !cells.donor.empty())
-            common::carry_to_place(cells.donor, cells.sort.numbers.target, cells.sort.labels);
+            carry_with_particles(cells);
     } else {
         particles.first_of_row = {0, int(particles.count())};
     }
@@ -126,7 +125,8 @@ inline void keep_in_rows_with_donors(const Grid& grid, Particles& particles, Pic
 
 /// The Eulerian mesh is restored from what particles bring: mass, momentum and energy.
 ///   M' = sum m     u' = sum m u~_A / M'     I'_k = sum_k m I~_Ak / M'_k + H/M'
-/// where H = sum m u~_A^2/2 - M' u'^2/2 >= 0 is the heat of mixing, shared by mass.
+/// where H = sum m u~_A^2/2 - M' u'^2/2 >= 0 is the heat of mixing, shared by mass; a particle that
+/// turns about the axis brings beside I~ what its move leaves of the energy of that.
 /// in:     donor and positions; v_tilde, e_tilde
 /// out:    particles in rows; velocity and internal energy in the state; M and mass of the cells
 /// exact:  mass, momentum, total energy; a cell without particles is empty to the last bit
@@ -138,11 +138,18 @@ inline void repartition(const Problem& problem, State& state, PicCells& cells) {
     const CellVelocity* v_tilde = cells.v_tilde.data();
     const double* e_tilde = cells.e_tilde.data();
     const long K = cells.materials;
-    detail::sum_contributions(
+    const auto from_donor = [=](long p) -> detail::Contribution {
+        const CellVelocity& v = v_tilde[donor[p]];
+        return {v.x, v.z, e_tilde[donor[p] * K + material[p]]};
+    };
+    if (!problem.swirl) return detail::sum_contributions(problem, from_donor, state, cells);
+    const double* swirl = cells.swirl.data();
+    detail::sum_contributions<true>(
         problem,
-        [=](long p) -> detail::Contribution {
-            const CellVelocity& v = v_tilde[donor[p]];
-            return {v.x, v.z, e_tilde[donor[p] * K + material[p]]};
+        [=](long p) {
+            detail::Contribution brought = from_donor(p);
+            brought.e += swirl[p];
+            return brought;
         },
         state, cells);
 }

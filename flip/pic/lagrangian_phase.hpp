@@ -63,6 +63,11 @@ inline void add_weight_on_walls(const Problem& problem, PicCells& cells) {
             q[low ? inside : ghost] +=
                 ((a < 0) == low ? 1 : -1) *
                 std::min(0.5 * h * std::fabs(a) * cells.rho[inside], cells.p[inside]);
+            // About the axis the centrifugal force falls to zero within the cell there.
+            if (!problem.swirl || !along_x) return;
+            q[low ? inside : ghost] +=
+                (low ? -0.25 : 0.5) *
+                std::min(h * cells.centrifugal[inside] * cells.rho[inside], cells.p[inside]);
         });
     }
 }
@@ -91,7 +96,7 @@ double sum_over_faces(const Grid& grid, const PicCells& cells, Side side, const 
 }  // namespace detail
 
 /// The momentum equation.
-///   u~ = u - (dt A/M) (P_right - P_left) + dt g
+///   u~ = u - (dt A/M) (P_right - P_left) + dt g, and where the fluid turns about the axis + dt f
 /// in:     cells after find_pressure()
 /// out:    v_tilde with ghosts, zero in empty cells; q_x, q_z; what boundaries, gravity and trap give
 ///         to the momentum, in the budget
@@ -108,6 +113,7 @@ inline void accelerate_cells(const Problem& problem, double dt, State& state, Pi
         detail::viscous_pressure(grid, problem.q, j, cells);
         if (j == nz - 1) detail::viscous_pressure(grid, problem.q, nz, cells);
     });
+    if (problem.swirl) find_centrifugal_force(problem, dt, state, cells);
     if (cells.falls) detail::add_weight_on_walls(problem, cells);
     for_each_row_of_cells(grid, [&](long j) {
         const auto P_x = [&](long m) {
@@ -127,6 +133,7 @@ inline void accelerate_cells(const Problem& problem, double dt, State& state, Pi
             if (plane) v_tilde.z -= dt_per_M * A_z * (P_z(n + stride) - P_z(n));
         }
     });
+    if (problem.swirl) add_centrifugal_force(grid, dt, cells);
     fill_ghosts(grid, boundaries, cells.v_tilde);
 
     Budget& budget = state.budget;
@@ -230,6 +237,7 @@ inline void do_work(const Problem& problem, double dt, State& state, PicCells& c
             }
             return sum;
         });
+    if (problem.swirl) work_on_swirl(grid, dt, state.particles, cells);
 }
 
 }  // namespace flip

@@ -5,7 +5,7 @@
 #include <array>
 
 #include "common/run/sentence.hpp"
-#include "flip/pic/pic_cells.hpp"
+#include "flip/pic/centrifugal_force.hpp"
 
 namespace flip {
 
@@ -137,8 +137,10 @@ inline double rate_of_viscosity(const Grid& grid, const ArtificialViscosity& vis
 }  // namespace detail
 
 /// The next time step.
-///   dt = cfl / max over cells of [|vx|/dx + |vz|/dz + c sqrt(1/dx^2 + 1/dz^2)]
-/// no longer than it takes viscosity to bring two cells together or gravity to move a body at rest
+///   dt = cfl / max over cells of [|vx|/dx + |vz|/dz + c sqrt(1/dx^2 + 1/dz^2)], and where the fluid
+///        turns about the axis beside it the largest rate of that,
+/// no longer than it takes viscosity to bring two cells together or gravity, and the centrifugal force,
+/// to move a body at rest
 /// by cfl^2 dx, or than 1.2 times the last step. A fixed limits.dt overrules all of them.
 /// in:     cells after find_pressure(); the step and time of the state
 /// errors: NumericalError when the step gets so short that the run would never end
@@ -149,8 +151,11 @@ inline double largest_step(const Problem& problem, const State& state, PicCells&
     const Grid& grid = problem.grid;
     const double least_spacing =
         is_plane(grid) ? std::min(grid.x.spacing(), grid.z.spacing()) : grid.x.spacing();
-    const double falling = std::sqrt(CellAcceleration(problem).largest(grid) / least_spacing),
-                 fastest = std::max(falling, detail::rate_of_signals(grid, cells)),
+    const double turns = problem.swirl ? rate_of_swirl(problem, state.particles, cells) : 0,
+                 outward = problem.swirl ? detail::largest_force(grid, cells, 0) : 0,
+                 pull = CellAcceleration(problem).largest(grid) + outward,
+                 falling = std::sqrt(pull / least_spacing),
+                 fastest = std::max(falling, detail::rate_of_signals(grid, cells) + turns),
                  viscous = detail::rate_of_viscosity(grid, problem.q, cells);
     double dt = fastest > 0 ? limits.cfl / fastest : limits.end / 100;
     if (viscous > 0) dt = std::min(dt, 1 / viscous);

@@ -15,7 +15,7 @@
 #pragma once
 
 #include "flip/boundaries.hpp"
-#include "flip/pic/pic_cells.hpp"
+#include "flip/pic/centrifugal_force.hpp"
 
 namespace flip {
 
@@ -94,7 +94,8 @@ inline bool has_holes(const Grid& grid, const Field& filled, long j) {
 
 }  // namespace detail
 
-/// Harlow's particles know their mass and material, and where they are: clears all other columns.
+/// Harlow's particles know their mass and material, where they are, and how they turn about the axis:
+/// clears all other columns.
 inline void clear_motion(Particles& particles) {
     for (auto* column : {&particles.vx_p, &particles.vz_p, &particles.e_p, &particles.V_p,
                          &particles.Cxx_p, &particles.Cxz_p, &particles.Czx_p, &particles.Czz_p})
@@ -112,10 +113,20 @@ inline void apply_particle_boundaries(const Problem& problem, double dt, State& 
     remove_outflow(problem, state.time + dt, particles, [&](long p) {
         const long A = cells.donor[p];
         const CellVelocity& v = cells.v_tilde[A];
-        state.budget.enter(-particles.m_p[p], v.x, v.z,
-                           cells.e_tilde[A * cells.materials + particles.material[p]]);
+        double e = cells.e_tilde[A * cells.materials + particles.material[p]];
+        if (problem.swirl) {
+            e += cells.swirl[p];
+            state.budget.enter_swirl(-particles.m_p[p], particles.L_p[p], particles.x_p[p]);
+        }
+        state.budget.enter(-particles.m_p[p], v.x, v.z, e);
         cells.donor[p] = -1;
     });
+    if (problem.swirl) {
+        std::size_t kept = 0;
+        for (std::size_t p = 0; p < cells.donor.size(); ++p)
+            if (cells.donor[p] >= 0) cells.swirl[kept++] = cells.swirl[p];
+        cells.swirl.resize(kept);
+    }
     std::erase(cells.donor, -1);
 
     const std::array<long, 4> added = add_inflow(problem, state.time, dt, particles);
@@ -128,7 +139,12 @@ inline void apply_particle_boundaries(const Problem& problem, double dt, State& 
         for (long k = 0; k < cells.materials; ++k)
             cells.e_tilde[corner * cells.materials + k] = in.e;
         for (long k = 0; k < added[side]; ++k) {
-            state.budget.enter(particles.m_p[cells.donor.size()], in.vx, in.vz, in.e);
+            const std::size_t p = cells.donor.size();
+            state.budget.enter(particles.m_p[p], in.vx, in.vz, in.e);
+            if (problem.swirl) {
+                state.budget.enter_swirl(particles.m_p[p], particles.L_p[p], particles.x_p[p]);
+                cells.swirl.push_back(0);
+            }
             cells.donor.push_back(int(corner));
         }
     }
@@ -158,6 +174,7 @@ inline void move_particles(const Problem& problem, double dt, State& state, PicC
             count += move(grid, dt, p, std::min(end, p + detail::batch_size), particles, cells);
         return double(count);
     });
+    if (problem.swirl) take_swirl(particles, cells);
     if (outside > 0 || problem.boundaries.has(BoundaryKind::inflow))
         apply_particle_boundaries(problem, dt, state, cells);
 }

@@ -25,7 +25,7 @@ struct CellVelocity {
 /// The scratch pad. Of several materials, those of one cell lie together: [cell * materials + k].
 struct PicCells {
     long materials = 1;
-    bool falls = false;                  // gravity acts
+    bool falls = false;                  // gravity acts, or the centrifugal force
     std::vector<double> M;               // mass of each material
     Field mass, per_mass, rho;           // of all; 1/mass, 0 in an empty cell; density
     Field filled;                        // 1, or 0 in an empty cell
@@ -37,14 +37,18 @@ struct PicCells {
     std::vector<CellVelocity> v_tilde;   // u~
     std::vector<double> e_tilde;         // I~ of each material
 
-    std::vector<int> donor;    // of each particle, the cell that it comes from
-    std::vector<double> sums;  // what particles bring to a cell
-    std::vector<double> row;   // one number per row of cells
+    Field centrifugal;          // force per mass, where the fluid turns about the axis
+    std::vector<double> swirl;  // of each particle: that force, then the energy that it leaves
+    double fastest_swirl2 = 0;  // the largest (L/r)^2 of a cell
+    std::vector<int> donor;     // of each particle, the cell that it comes from
+    std::vector<double> sums;   // what particles bring to a cell
+    std::vector<double> row;    // one number per row of cells
     SortScratch sort;
 
     explicit PicCells(const Problem& problem)
         : materials(long(problem.materials.size())),
-          falls(problem.body_force.gravity_x != 0 || problem.body_force.gravity_z != 0) {
+          falls(problem.body_force.gravity_x != 0 || problem.body_force.gravity_z != 0 ||
+                problem.swirl) {
         const Grid& grid = problem.grid;
         for (Field* f : {&mass, &per_mass, &rho, &filled, &p, &c, &q_x, &q_z})
             f->setZero(grid.size());
@@ -53,6 +57,7 @@ struct PicCells {
         ring.front() = ring[1], ring.back() = ring[grid.x.cells];
         for (const double length : ring) per_ring.push_back(1 / length);
         for (auto* f : {&M, &share, &e_tilde}) f->assign(grid.size() * materials, 0.0);
+        if (problem.swirl) centrifugal.setZero(grid.size());
         v.assign(grid.size(), {});
         v_tilde.assign(grid.size(), {});
         row.assign(grid.z.cells, 0.0);
@@ -78,6 +83,27 @@ double sum_over_rows(const Grid& grid, PicCells& cells, const SumOfRow& sum_of_r
     for (const double part : cells.row) sum += part;
     return sum;
 }
+
+namespace detail {
+
+// Calls add(p, cell) for every particle, on as many threads as share no cell.
+template <class Add>
+void for_each_in_cell(const Grid& grid, const Particles& particles, const Add& add) {
+    const CellAlong column(grid.x), row(grid.z);
+    const double *x_p = particles.x_p.data(), *z_p = particles.z_p.data();
+    const int* first = particles.first_of_row.data();
+    const long nx = grid.x.cells;
+    // Three rows apart: a particle may be in the row beside its own.
+    common::for_each_row_colored(
+        3, grid.z.cells,
+        [&](long j) {
+            for (long p = first[j]; p < first[j + 1]; ++p)
+                add(p, row(z_p[p]) * nx + column(x_p[p]));
+        },
+        grid.x.cells * grid.z.cells);
+}
+
+}  // namespace detail
 
 /// Calls visit(ghost, inside) for every ghost cell beyond one side, with the cell whose image it is.
 /// note:   first the sides along x, then those along z, which take the corners with them

@@ -1,9 +1,11 @@
-// A fluid at rest under gravity: particles whose pressure the mesh balances, to round-off.
+// A fluid at rest under gravity, or that turns about the axis: particles whose pressure the mesh
+// balances, to round-off.
 //
 // The formula p + rho g z is right between the cells and not on them: a cell at a wall, or one that
 // two fluids share, averages over particles that do not lie around its middle. What is wrong there
 // would run away as sound and never end. So the start is the pressure with which nothing moves:
-//     D M^-1 (D^T p + m g) = 0         D: dilation of the cells, D^T: force on the nodes
+//     D M^-1 (D^T p + m g) = 0         D: dilation of the cells, D^T: force on the nodes; where the fluid
+//                                      turns, beside m g the centrifugal force
 #pragma once
 
 #include <algorithm>
@@ -18,7 +20,7 @@ namespace detail {
 // The change of pressure that leaves every cell without an acceleration of its volume.
 // in:  the mesh after find_pressure()
 // out: on the cells, 0 where p = 0 whatever happens
-inline Field change_to_balance(const Problem& problem, Mesh& mesh) {
+inline Field change_to_balance(const Problem& problem, const Particles& particles, Mesh& mesh) {
     const Grid& grid = problem.grid;
     Nodes& g = mesh.nodes;
     Cells& c = mesh.cells;
@@ -30,6 +32,7 @@ inline Field change_to_balance(const Problem& problem, Mesh& mesh) {
     c.q.assign(grid.size(), {});
     c.p_step = c.p;
     find_known_forces(grid, problem.boundaries, 0, mesh);
+    if (problem.swirl) add_centrifugal_force(problem, 0, particles, mesh);
     accelerate_nodes(problem, 1, mesh);
     fill_nodes(grid, g.vxL.data());
     fill_nodes(grid, g.vzL.data());
@@ -96,7 +99,8 @@ inline std::vector<double> particle_changes(const Problem& problem, const Partic
 
 }  // namespace detail
 
-/// Gives the particles the internal energies with which the mesh balances gravity.
+/// Gives the particles the internal energies with which the mesh balances gravity and the centrifugal
+/// force.
 ///   e_p += dp_p V_p / ((gamma - 1) m_p)
 /// in:     particles at the start, sorted by row; mesh, whose contents are lost
 /// in/out: particles.e_p; as they were where the balance would need more than the weight of a cell:
@@ -114,7 +118,11 @@ inline void balance_at_rest(const Problem& problem, Particles& particles, Mesh& 
             V_p.push_back(A_p * (grid.axisymmetric ? 2 * pi * x : 1));
     }
     const BodyForce& force = problem.body_force;
-    const double step = std::fabs(force.gravity_x) * grid.x.spacing() +
+    double outward = 0;  // the largest centrifugal force per mass
+    for (std::size_t k = 0; k < particles.L_p.size(); ++k)
+        outward = std::max(outward,
+                           centrifugal_force(particles.L_p[k], particles.x_p[k], particles.x_p[k]));
+    const double step = (std::fabs(force.gravity_x) + outward) * grid.x.spacing() +
                         std::fabs(force.gravity_z) * grid.z.spacing();
     Field target;
     double apart_before = 0;
@@ -122,7 +130,7 @@ inline void balance_at_rest(const Problem& problem, Particles& particles, Mesh& 
         deposit_particles(grid, problem.materials, particles, mesh);
         find_pressure(grid, problem.materials, 0, mesh);
         if (n == 0) {
-            const Field change = detail::change_to_balance(problem, mesh);
+            const Field change = detail::change_to_balance(problem, particles, mesh);
             const double heaviest = c.M.maxCoeff() / grid.cell_area();
             if (change.cwiseAbs().maxCoeff() > heaviest * step) return;
             target = c.p + change;

@@ -23,6 +23,8 @@ template <class Number>
 struct GasOf {
     std::string material;  // empty: the first
     Number density = 1, pressure = 1, velocity_x = 0, velocity_z = 0;
+    Number velocity_theta = 0;    // about the axis, beside the rigid rotation
+    double angular_velocity = 0;  // of that
     bool operator==(const GasOf&) const = default;
 };
 using GasCase = GasOf<double>;
@@ -32,6 +34,7 @@ struct InflowCase {
     std::string name;  // of the end
     std::string material;
     std::optional<double> density, pressure, velocity_x, velocity_z;
+    std::optional<double> velocity_theta = {}, angular_velocity = {};
 };
 
 /// One side of a Riemann problem, with a material of its own.
@@ -58,7 +61,13 @@ struct RegionCase {
     bool is_vacuum() const { return gas.density.is_number() && double(gas.density) == 0; }
     bool has_formula() const {
         return !(gas.density.is_number() && gas.pressure.is_number() &&
-                 gas.velocity_x.is_number() && gas.velocity_z.is_number());
+                 gas.velocity_x.is_number() && gas.velocity_z.is_number() &&
+                 gas.velocity_theta.is_number());
+    }
+    /// Whether the fluid turns about the axis.
+    bool turns() const {
+        return gas.angular_velocity != 0 || !gas.velocity_theta.is_number() ||
+               double(gas.velocity_theta) != 0;
     }
 };
 
@@ -135,6 +144,17 @@ struct Case {
         };
         return plane() || inflow.velocity_z != 0 || std::ranges::any_of(boundaries, at_end) ||
                std::ranges::any_of(inflows, at_inflow) || std::ranges::any_of(regions, in_region);
+    }
+    /// Whether something turns about the axis: only then particles carry angular momentum.
+    bool swirls() const {
+        const auto of_inflow = [](const GasCase& g) {
+            return g.velocity_theta != 0 || g.angular_velocity != 0;
+        };
+        const auto at_end = [](const InflowCase& i) {
+            return i.velocity_theta.value_or(0) != 0 || i.angular_velocity.value_or(0) != 0;
+        };
+        return of_inflow(inflow) || std::ranges::any_of(inflows, at_end) ||
+               std::ranges::any_of(regions, &RegionCase::turns);
     }
     bool is(Side e, const char* kind) const { return boundaries[e].kind == kind; }
 };

@@ -69,6 +69,7 @@ inline void validate(const Case& parameters, const std::string& program) {
     refuse_sizes(parameters);
     refuse_boundaries(parameters);
     refuse_around_axis(parameters);
+    refuse_swirl(parameters);
     refuse_materials(parameters, program);
     for (const RegionCase& r : parameters.regions) refuse_region(parameters, r);
     refuse_methods(parameters, program);

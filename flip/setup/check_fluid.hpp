@@ -21,11 +21,13 @@ inline void refuse_extreme(const std::string& name, double value) {
 /// The same for a state of the gas, and its numbers are all.
 template <class Number>
 void refuse_extreme(const std::string& prefix, const GasOf<Number>& gas) {
-    const std::array<std::pair<const char*, const Number*>, 4> all{
+    refuse_extreme(prefix + ".angular_velocity", gas.angular_velocity);
+    const std::array<std::pair<const char*, const Number*>, 5> all{
         {{".density", &gas.density},
          {".pressure", &gas.pressure},
          {".velocity_x", &gas.velocity_x},
-         {".velocity_z", &gas.velocity_z}}};
+         {".velocity_z", &gas.velocity_z},
+         {".velocity_theta", &gas.velocity_theta}}};
     for (const auto& [name, value] : all)
         if (common::Formula(*value).is_number()) refuse_extreme(prefix + name, double(*value));
 }
@@ -101,6 +103,25 @@ inline void refuse_boundaries(const Case& parameters) {
     }
     refuse(!parameters.plane() && parameters.gravity_z != 0, "gravity.z = ", parameters.gravity_z,
            " needs grid.cells_z of at least 2");
+}
+
+/// Refuses a rotation about the axis where there is none, and what would change the angular momentum that
+/// particles keep.
+inline void refuse_swirl(const Case& parameters) {
+    if (!parameters.swirls()) return;
+    refuse(
+        !parameters.grid.axisymmetric,
+        "velocity_theta and angular_velocity need an axis: set grid.geometry = \"axisymmetric\"; "
+        "in the plane take a region with flow = \"rotation\"");
+    refuse(
+        parameters.viscosity > 0, "flip.viscosity = ", parameters.viscosity,
+        " has a torque, and particles that turn about the axis keep their angular momentum: take "
+        "out the viscosity, or velocity_theta and angular_velocity");
+    for (const Side s : all_sides)
+        refuse(
+            parameters.is(s, "no_slip"), "boundary.", side_names[s],
+            " = \"no_slip\" would stop fluid that turns about the axis, and nothing here hands its "
+            "angular momentum to the wall: take \"slip\"");
 }
 
 /// Refuses what has no meaning around an axis.

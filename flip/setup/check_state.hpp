@@ -20,7 +20,7 @@ inline void validate_state(const Problem& problem, const common::History& histor
     const bool moving = state.cells.e.empty(), volumes = moving && problem.scheme.particle_volumes,
                affine = moving && problem.scheme.transfer.affine;
     const bool used[] = {true,    true,   true,   moving, moving, moving,
-                         volumes, affine, affine, affine, affine};
+                         volumes, affine, affine, affine, affine, problem.swirl};
     bool equal = p.material.size() == p.x_p.size();
     for (std::size_t k = 0; k < std::size(used); ++k)
         equal = equal && p.all()[k]->size() == (used[k] ? p.x_p.size() : 0);
@@ -47,6 +47,9 @@ inline void validate_state(const Problem& problem, const common::History& histor
     refuse(!common::all_within(p.vx_p, -fastest, fastest) ||
                !common::all_within(p.vz_p, -fastest, fastest),
            "a particle is faster than 1e6 lengths of the mesh in a step");
+    for (std::size_t k = 0; k < p.L_p.size(); ++k)
+        refuse(!(p.x_p[k] > 0 && std::fabs(p.L_p[k]) <= fastest * p.x_p[k]),
+               "a particle turns about the axis faster than 1e6 lengths of the mesh in a step");
     refuse(state.report.iterations < 0 || state.report.iterations > 1000000000,
            "the iterations of its last step cannot be");
     double mass = 0;

@@ -24,6 +24,10 @@ void describe_gas(common::ParameterTable& table, const std::string& prefix, Gas&
                "pressure; of dust, gamma = 1, internal energy per volume");
     table.real(prefix + ".velocity_x", g.velocity_x, "velocity", anything(), "along x");
     table.real(prefix + ".velocity_z", g.velocity_z, "velocity", anything(), "along z");
+    table.real(prefix + ".velocity_theta", g.velocity_theta, "velocity", anything(),
+               "about the axis, where grid.geometry is axisymmetric: swirl");
+    table.real(prefix + ".angular_velocity", g.angular_velocity, "1/time", anything(),
+               "of a rigid rotation about the axis, added to that");
 }
 
 template <class Gas>
@@ -69,7 +73,8 @@ inline void describe_region(common::ParameterTable& table, const std::string& pr
                "added to the internal energy, shared by the mass of the region");
     table.flag(
         prefix + ".hydrostatic", r.hydrostatic,
-        "pressure is that at center_x, center_z, and changes with depth by density times gravity");
+        "pressure is that at center_x, center_z, and changes with depth by density times gravity, "
+        "and away from the axis by density times the centrifugal force");
     table.real(prefix + ".noise", r.noise, "velocity", at_least(0),
                "largest random velocity of a particle along x");
 }
@@ -205,7 +210,7 @@ inline common::ParameterTable describe(Case& parameters) {
                "velocity of the frame in which theory is stated");
     table.real("theory.frame_z", parameters.frame_z, "velocity", anything(), "along z");
     table.whole("theory.mode", parameters.mode, "", between(1, 4096),
-                "tracked wavelengths in length_x");
+                "tracked wavelengths in length_x; of inertial_wave, half wavelengths in length_z");
 
     table.group("output");
     table.real("output.fields_interval", parameters.fields_interval, "time", at_least(0),

@@ -51,9 +51,13 @@ inline Case completed(Case parameters) {
         const auto end = std::ranges::find(side_names, in.name);
         if (end == side_names.end()) continue;  // refuse_boundaries() says so
         GasCase& gas = parameters.boundaries[end - side_names.begin()].inflow;
-        gas = {in.material.empty() ? gas.material : in.material, in.density.value_or(gas.density),
-               in.pressure.value_or(gas.pressure), in.velocity_x.value_or(gas.velocity_x),
-               in.velocity_z.value_or(gas.velocity_z)};
+        gas = {in.material.empty() ? gas.material : in.material,
+               in.density.value_or(gas.density),
+               in.pressure.value_or(gas.pressure),
+               in.velocity_x.value_or(gas.velocity_x),
+               in.velocity_z.value_or(gas.velocity_z),
+               in.velocity_theta.value_or(gas.velocity_theta),
+               in.angular_velocity.value_or(gas.angular_velocity)};
     }
     // Of a tube with two gases the end brings its own.
     for (const Side s : {x_low, x_high}) {
@@ -62,8 +66,8 @@ inline Case completed(Case parameters) {
             material = s == x_low ? "left" : "right";
     }
     for (RegionCase& r : parameters.regions)
-        for (common::Formula* f :
-             {&r.gas.density, &r.gas.pressure, &r.gas.velocity_x, &r.gas.velocity_z})
+        for (common::Formula* f : {&r.gas.density, &r.gas.pressure, &r.gas.velocity_x,
+                                   &r.gas.velocity_z, &r.gas.velocity_theta})
             f->read(parameters.constants);
     return parameters;
 }
@@ -103,6 +107,7 @@ inline bool all_hydrostatic(const Case& parameters) {
 struct FluidState {
     int material = 0;
     double density = 0, vx = 0, vz = 0, e = 0;
+    double v_theta = 0;  // about the axis
 };
 
 namespace detail {
@@ -127,6 +132,28 @@ inline void overturn(double k, double x, double z, double depth, double amplitud
     vx += (z > 0 ? 1 : -1) * amplitude * std::sin(k * x) * std::cosh(k * distance) / wall;
 }
 
+// The velocity about the axis at (x, z).
+inline double swirl_of(const RegionCase& r, double x, double z, double distance) {
+    return r.gas.velocity_theta.at(x, z, distance) + r.gas.angular_velocity * x;
+}
+
+// The integral of the centrifugal force per mass, v_theta^2/x, from the center of the region to x, by
+// Gauss's rule of five points in each of eight parts.
+inline double centrifugal_potential(const RegionCase& r, double x, double z) {
+    constexpr double at[] = {0, 0.5384693101056831, 0.9061798459386640};
+    constexpr double weight[] = {0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
+    const double dz = z - r.center_z, part = (x - r.center_x) / 8;
+    double sum = 0;
+    for (int n = 0; n < 8; ++n)
+        for (const int k : {-2, -1, 0, 1, 2}) {
+            const std::size_t m = std::size_t(std::abs(k));
+            const double here = r.center_x + part * (n + 0.5 + (k < 0 ? -0.5 : 0.5) * at[m]),
+                         v = swirl_of(r, here, z, std::hypot(here - r.center_x, dz));
+            sum += 0.5 * part * weight[m] * v * v / here;
+        }
+    return sum;
+}
+
 }  // namespace detail
 
 /// Index of the region at (x, z), the last that contains it; -1 in a vacuum.
@@ -146,6 +173,7 @@ inline FluidState fluid_of(const Case& parameters, const RegionCase& r, double x
     double rho = at(r.gas.density), p = at(r.gas.pressure), heat = 1;
     double vx = at(r.gas.velocity_x), vz = at(r.gas.velocity_z);
     if (r.hydrostatic) p += rho * (parameters.gravity_x * dx + parameters.gravity_z * dz);
+    if (r.hydrostatic && r.turns()) p += rho * detail::centrifugal_potential(r, x, z);
     if (r.flow == "rotation") {
         vx -= r.speed * dz / r.width;
         vz += r.speed * dx / r.width;
@@ -178,12 +206,13 @@ inline FluidState fluid_of(const Case& parameters, const RegionCase& r, double x
             dz > 0 ? parameters.grid.z.high() - r.center_z : r.center_z - parameters.grid.z.low;
         detail::overturn(k, dx, dz, depth, r.amplitude, vx, vz);
     }
-    return {index, rho, vx, vz, heat * internal_energy(a, rho, p)};
+    return {
+        index, rho, vx, vz, heat * internal_energy(a, rho, p), detail::swirl_of(r, x, z, distance)};
 }
 
 /// Particles of the start, cell by cell on a lattice of equal volumes.
 /// in:     a completed case that check_case has not refused
-/// out:    all columns that FLIP needs; unsorted
+/// out:    all columns that FLIP needs; unsorted; L_p = r v_theta where something turns
 /// exact:  m_p is density times volume, so uniform fluid has equal masses; a particle of apic begins
 ///         with the gradient of the flow of its region
 inline Particles load_particles(const Case& parameters) {
@@ -195,6 +224,7 @@ inline Particles load_particles(const Case& parameters) {
     const long columns = grid.x.cells * parameters.per_cell_x,
                rows = grid.z.cells * parameters.per_cell_z;
     const auto seed = std::uint64_t(parameters.seed);
+    particles.swirl = parameters.swirls();
     std::vector<double> region_mass(parameters.regions.size(), 0.0);
     std::vector<long> region_of;
     for (long j = 0; j < rows; ++j) {
@@ -216,6 +246,7 @@ inline Particles load_particles(const Case& parameters) {
             particles.vx_p.push_back(fluid.vx + (region.noise > 0 ? noise : 0.0));
             particles.vz_p.push_back(fluid.vz);
             particles.e_p.push_back(fluid.e);
+            if (particles.swirl) particles.L_p.push_back(x * fluid.v_theta);
             particles.material.push_back(fluid.material);
             if (parameters.density == "particles") particles.V_p.push_back(dx * dz * ring);
             region_mass[n] += fluid.density * dx * dz * ring;

@@ -25,7 +25,15 @@ inline Inflow inflow_of(const Case& w, const GasCase& in) {
     const Material& a = w.materials[k];
     const double rho = in.density, e = internal_energy(a, rho, in.pressure),
                  p = pressure(a, rho, e);
-    return {k, rho, p, std::sqrt(stiffness(a, p) / rho), e, in.velocity_x, in.velocity_z};
+    return {k,
+            rho,
+            p,
+            std::sqrt(stiffness(a, p) / rho),
+            e,
+            in.velocity_x,
+            in.velocity_z,
+            in.velocity_theta,
+            in.angular_velocity};
 }
 
 }  // namespace detail
@@ -43,6 +51,7 @@ inline Problem problem_of(const Case& w) {
     problem.body_force = {w.gravity_x, w.gravity_z, w.trap};
     problem.q = {w.q_linear, w.q_quadratic};
     problem.viscosity = w.viscosity;
+    problem.swirl = w.swirls();
     problem.limits = {w.cfl, w.dt, w.end};
     problem.per_cell_x = w.per_cell_x;
     problem.per_cell_z = w.per_cell_z;
@@ -51,9 +60,10 @@ inline Problem problem_of(const Case& w) {
     const double part = w.transfer == "flip" ? 0 : (w.transfer == "blend" ? 1 - w.blend : 1);
     const Transfer transfer{w.transfer == "flip", part,         w.transfer == "apic",
                             w.transfer == "xpic", w.xpic_order, w.heats()};
-    // Under gravity particles must not fall together within a cell, where no pressure feels it.
+    // Under gravity, and the centrifugal force, particles must not fall together within a cell, where no
+    // pressure feels it.
     const bool falls = w.gravity_x != 0 || w.gravity_z != 0,
-               conservative = w.confined || (falls && w.plane() && !w.grid.axisymmetric);
+               conservative = w.confined || ((falls || w.swirls()) && w.plane());
     problem.scheme = {transfer,         consistent,     w.density == "particles",
                       w.filling,        w.confined,     conservative,
                       w.implicit(),     w.theta,        w.tolerance,

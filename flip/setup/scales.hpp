@@ -19,8 +19,9 @@ struct RegionScales {
     double particles = 0;
     double mass = 0;
     double sound_speed = 0;  // the smallest
-    double speed = 0;        // the largest
-    double mach = 0;         // the largest; 0 where there is no sound
+    double speed = 0;        // the largest, in the plane (x, z)
+    double swirl = 0;        // the largest velocity about the axis
+    double mach = 0;         // the largest of speed; 0 where there is no sound
     double lightest = 0;     // the smallest density
     double least_pressure = 0, most_pressure = 0;
 };
@@ -32,6 +33,7 @@ struct Scales {
     double sound_speed = 0;  // the largest
     double speed = 0;        // the largest
     double mach = 0;         // the largest
+    double outward = 0;      // the largest centrifugal force per mass
     double rate = 0;         // at which the fastest signal crosses cells [1/time]
     double dt = 0;           // the first time step
     double steps = 0;        // of the run, if all are as long as the first
@@ -71,6 +73,7 @@ inline double bytes_of(const Case& parameters, const std::string& program, doubl
         if (parameters.density == "particles") per_particle += sizeof(double);
         if (parameters.transfer == "apic") per_particle += 4 * sizeof(double);
     }
+    if (parameters.swirls()) per_particle += 2 * sizeof(double);  // and what a step needs
     const double fields = 40 + 2 * double(parameters.materials.size()) +
                           (parameters.implicit() || parameters.mass == "consistent" ? 60 : 0);
     return per_particle * particles + fields * sizeof(double) * double(parameters.grid.size());
@@ -102,12 +105,18 @@ inline Scales scales_of(const Case& parameters, const std::string& program = "fl
         r.least_pressure = first ? p : std::min(r.least_pressure, p);
         r.most_pressure = first ? p : std::max(r.most_pressure, p);
         r.speed = std::max(r.speed, speed);
+        r.swirl = std::max(r.swirl, std::fabs(fluid.v_theta));
+        const double from_axis = std::max(x, 0.5 * parameters.grid.x.spacing());
+        if (fluid.v_theta != 0)
+            s.outward = std::max(s.outward, fluid.v_theta * fluid.v_theta / from_axis);
         if (c > 0) r.mach = std::max(r.mach, speed / c);
         r.particles += weight;
         r.mass += weight * fluid.density * place * (parameters.grid.axisymmetric ? 2 * pi * x : 1);
         s.sound_speed = std::max(s.sound_speed, c);
-        s.rate = std::max(s.rate, std::fabs(fluid.vx) * per_dx + std::fabs(fluid.vz) * per_dz +
-                                      (parameters.implicit() ? 0 : c * both));
+        s.rate = std::max(
+            s.rate, std::fabs(fluid.vx) * per_dx + std::fabs(fluid.vz) * per_dz +
+                        (parameters.implicit() ? 0 : c * both) +
+                        std::fabs(fluid.v_theta) / std::max(x, 0.5 * parameters.grid.x.spacing()));
     });
     for (std::size_t n = 0; n < parameters.regions.size(); ++n) {
         // A region that an energy has been set free in: c^2 = gamma (gamma - 1) e.
@@ -133,7 +142,7 @@ inline Scales scales_of(const Case& parameters, const std::string& program = "fl
 
     // A fluid at rest is limited by how fast it can begin to move; without gravity a pressure that
     // is not even soon moves the heaviest of it with (p/rho)^1/2.
-    const double pull = std::hypot(parameters.gravity_x, parameters.gravity_z);
+    const double pull = std::hypot(parameters.gravity_x, parameters.gravity_z) + s.outward;
     if (s.rate == 0 && pull == 0)
         for (const RegionScales& r : s.regions) {
             const double soon = r.particles > 0 ? std::sqrt(r.most_pressure / r.lightest) : 0;
@@ -181,7 +190,8 @@ inline std::string describe_scales(const Case& parameters, const Scales& scales,
     for (const RegionScales& r : scales.regions)
         if (!r.vacuum)
             line(r.name, "about ", r.particles, " particles, sound speed ", r.sound_speed,
-                 ", speed up to ", r.speed, (r.mach > 0 ? ", Mach " + format(r.mach) : ""));
+                 ", speed up to ", r.speed, (r.mach > 0 ? ", Mach " + format(r.mach) : ""),
+                 (r.swirl > 0 ? ", about the axis up to " + format(r.swirl) : ""));
     line("particles", "about ", scales.particles);
     line("steps", (parameters.dt > 0 ? "" : "about "), scales.steps,
          (parameters.dt > 0 ? " of " : "; the first of "), scales.dt);

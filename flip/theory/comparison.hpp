@@ -91,6 +91,7 @@ struct Comparison {
     bool axisymmetric = false;  // stated for rings too
     bool formulas = false;      // whether regions may have them
     bool vacuum = false;        // whether a region may be one
+    bool swirl = false;         // whether the fluid may turn about the axis
 };
 
 /// Refuses a case without a region that has a flow.

@@ -8,6 +8,7 @@
 #include "flip/theory/compare_dam_break.hpp"
 #include "flip/theory/compare_diffusion.hpp"
 #include "flip/theory/compare_impact.hpp"
+#include "flip/theory/compare_inertial_wave.hpp"
 #include "flip/theory/compare_instability.hpp"
 #include "flip/theory/compare_noh.hpp"
 #include "flip/theory/compare_rest.hpp"
@@ -19,16 +20,20 @@
 
 namespace flip {
 
-inline constexpr Comparison no_comparison{
-    .name = "none", .frame = Frame::moves, .axisymmetric = true, .formulas = true, .vacuum = true};
+inline constexpr Comparison no_comparison{.name = "none",
+                                          .frame = Frame::moves,
+                                          .axisymmetric = true,
+                                          .formulas = true,
+                                          .vacuum = true,
+                                          .swirl = true};
 
 /// Every value of theory.compare.
 inline constexpr std::array comparisons{
-    no_comparison,        riemann_comparison,   wall_shock_comparison, piston_comparison,
-    diffusion_comparison, rotation_comparison,  sedov_comparison,      noh_comparison,
-    gresho_comparison,    wave_comparison,      ringing_comparison,    interface_comparison,
-    shear_comparison,     dam_break_comparison, cavity_comparison,     impact_comparison,
-    rest_comparison,      collapse_comparison};
+    no_comparison,        riemann_comparison,   wall_shock_comparison,   piston_comparison,
+    diffusion_comparison, rotation_comparison,  sedov_comparison,        noh_comparison,
+    gresho_comparison,    wave_comparison,      ringing_comparison,      interface_comparison,
+    shear_comparison,     dam_break_comparison, cavity_comparison,       impact_comparison,
+    rest_comparison,      collapse_comparison,  inertial_wave_comparison};
 
 /// The comparison that a case asks for.
 inline const Comparison& comparison_of(const Case& parameters) {
@@ -49,6 +54,9 @@ inline void validate_comparison(const Case& parameters) {
     refuse((parameters.frame_x != 0 && c.frame == Frame::at_rest) ||
                (parameters.frame_z != 0 && c.frame != Frame::moves),
            " is stated in the frame of the mesh: take out theory.frame_x and frame_z");
+    refuse(!c.swirl && parameters.swirls(),
+           " is stated for fluid that does not turn about the axis: take out velocity_theta and "
+           "angular_velocity, or theory.compare = \"none\"");
     for (const RegionCase& r : parameters.regions)
         refuse(!c.formulas && r.has_formula(), " needs numbers, and region.", r.name,
                " has a formula: write numbers, or theory.compare = \"none\"");

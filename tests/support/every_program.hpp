@@ -88,6 +88,7 @@ gas time.end=0.1 region.gas.density=1
 tube walls_x gas
 around grid.cells_x=32 grid.cells_z=32 gas
 box around walls_x walls_z
+rings grid.geometry=axisymmetric
 sod walls_x time.end=0.1 setup.kind=riemann
 dust material.dust.gamma=1
 water material.water.gamma=4.4 material.water.p_infinity=600
@@ -121,6 +122,9 @@ rezoned_vortex vortex flip.density=cells rezone.steps=5 rezone.min_particles=10 
     rezone.max_particles=20
 held layers boundary.z_low=no_slip boundary.z_high=no_slip boundary.slide_z_high=0.5 \
     flip.viscosity=0.01
+swirling rotating_column.toml theory.compare=none grid.cells_x=10 grid.cells_z=12 constant.A.value=0.3 \
+    boundary.z_low=inflow boundary.z_high=open boundary.pressure_z_high=11 inflow.pressure=11.4 \
+    inflow.velocity_z=0.3 inflow.angular_velocity=2 time.end=0.3
 run shock_tube
 )";
 
