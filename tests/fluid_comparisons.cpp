@@ -12,6 +12,12 @@
 
 #include "flip/output/record.hpp"
 #include "flip/setup/check_case.hpp"
+#include "flip/theory/compare_collapse.hpp"
+#include "flip/theory/compare_inertial_wave.hpp"
+#include "flip/theory/compare_instability.hpp"
+#include "flip/theory/compare_riemann.hpp"
+#include "flip/theory/compare_sedov.hpp"
+#include "flip/theory/compare_struck_wall.hpp"
 #include "tests/support/any_numbers.hpp"
 #include "tests/support/any_summary.hpp"
 #include "tests/support/folder_of_test.hpp"

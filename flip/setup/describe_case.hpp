@@ -202,7 +202,7 @@ inline common::ParameterTable describe(Case& parameters) {
 
     table.group("comparison with theory");
     std::vector<std::string> names;
-    for (const Comparison& c : comparisons) names.push_back(c.name);
+    for (const Comparison& c : comparisons()) names.push_back(c.name);
     table.choice("theory.compare", parameters.compare, names, "what the run is compared with");
     table.real("theory.tolerance", parameters.theory_tolerance, "", above(0),
                "allowed difference; of riemann, between the waves, as the mesh sets the others");

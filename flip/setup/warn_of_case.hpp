@@ -9,6 +9,7 @@
 
 #include "flip/setup/keys_of_flip.hpp"
 #include "flip/setup/scales.hpp"
+#include "flip/theory/compare_sound.hpp"
 
 namespace flip {
 

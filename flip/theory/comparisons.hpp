@@ -1,69 +1,21 @@
 // All comparisons with theory, and the one that a case asks for.
 #pragma once
 
-#include <array>
+#include <span>
 
-#include "flip/theory/compare_cavity.hpp"
-#include "flip/theory/compare_collapse.hpp"
-#include "flip/theory/compare_dam_break.hpp"
-#include "flip/theory/compare_diffusion.hpp"
-#include "flip/theory/compare_impact.hpp"
-#include "flip/theory/compare_inertial_wave.hpp"
-#include "flip/theory/compare_instability.hpp"
-#include "flip/theory/compare_noh.hpp"
-#include "flip/theory/compare_rest.hpp"
-#include "flip/theory/compare_riemann.hpp"
-#include "flip/theory/compare_sedov.hpp"
-#include "flip/theory/compare_sound.hpp"
-#include "flip/theory/compare_struck_wall.hpp"
-#include "flip/theory/compare_vortex.hpp"
+#include "flip/theory/comparison.hpp"
 
 namespace flip {
 
-inline constexpr Comparison no_comparison{.name = "none",
-                                          .frame = Frame::moves,
-                                          .axisymmetric = true,
-                                          .formulas = true,
-                                          .vacuum = true,
-                                          .swirl = true};
-
-/// Every value of theory.compare.
-inline constexpr std::array comparisons{
-    no_comparison,        riemann_comparison,   wall_shock_comparison,   piston_comparison,
-    diffusion_comparison, rotation_comparison,  sedov_comparison,        noh_comparison,
-    gresho_comparison,    wave_comparison,      ringing_comparison,      interface_comparison,
-    shear_comparison,     dam_break_comparison, cavity_comparison,       impact_comparison,
-    rest_comparison,      collapse_comparison,  inertial_wave_comparison};
+/// Every value of theory.compare, "none" among them.
+std::span<const Comparison> comparisons();
 
 /// The comparison that a case asks for.
-inline const Comparison& comparison_of(const Case& parameters) {
-    for (const Comparison& c : comparisons)
-        if (parameters.compare == c.name) return c;
-    return no_comparison;
-}
+const Comparison& comparison_of(const Case& parameters);
 
 /// Refuses what the comparison of a case cannot be made with.
 /// in:     a completed case that runs
 /// errors: InputError, one sentence
-inline void validate_comparison(const Case& parameters) {
-    const Comparison& c = comparison_of(parameters);
-    const Refusal refuse{sentence("theory.compare = \"", c.name, "\"")};
-    refuse(c.rows == Rows::several && !parameters.plane(), " needs grid.cells_z of at least 2");
-    refuse(parameters.grid.axisymmetric && !c.axisymmetric,
-           " is stated for grid.geometry = \"plane\": take that, or another comparison");
-    refuse((parameters.frame_x != 0 && c.frame == Frame::at_rest) ||
-               (parameters.frame_z != 0 && c.frame != Frame::moves),
-           " is stated in the frame of the mesh: take out theory.frame_x and frame_z");
-    refuse(!c.swirl && parameters.swirls(),
-           " is stated for fluid that does not turn about the axis: take out velocity_theta and "
-           "angular_velocity, or theory.compare = \"none\"");
-    for (const RegionCase& r : parameters.regions)
-        refuse(!c.formulas && r.has_formula(), " needs numbers, and region.", r.name,
-               " has a formula: write numbers, or theory.compare = \"none\"");
-    for (const RegionCase& r : parameters.regions)
-        refuse(!c.vacuum && r.is_vacuum(), " needs fluid, and region.", r.name,
-               ".density = 0 is a vacuum: take the region out, or theory.compare = \"none\"");
-    if (c.validate != nullptr) c.validate(parameters, refuse);
-}
+void validate_comparison(const Case& parameters);
 
 }  // namespace flip
