@@ -269,7 +269,8 @@ inline const std::vector<Program>& every_program() {
             "material.beam.gamma=1.5 constant.beam.value=1 region.beam.density=beam "
             "boundary.x_low=inflow boundary.x_high=slip inflow.x_low.density=1 "
             "inflow.x_low.pressure=1 inflow.x_low.velocity_x=1 "
-            "inflow.x_low.velocity_z=0",
+            "inflow.x_low.velocity_z=0 inflow.x_low.velocity_theta=0 "
+            "inflow.x_low.angular_velocity=0",
         density = "density";
     static const std::vector<Program> all{
         {"cic", "cic", compare, "species", density, one_species, beam_of_cic, words_of_cic},
