@@ -259,7 +259,7 @@ stop)
     }
     # What mpirun says when it is told to stop, and when a rank is killed: Open MPI and MPICH have statuses of their own.
     told='1 130 143' killed=137
-    if mpirun --version 2>&1 | grep -qi hydra; then told='2 130 143' killed='9 137'; fi
+    if mpirun --version 2>&1 | grep -qi hydra; then told='0 2 130 143' killed='9 137'; fi
     # Two seconds for each signal, as fast as this machine is now.
     long="$long output.checkpoint_steps=20 output.fields_interval=0 --threads 1"
     since=$(date +%s%N)
