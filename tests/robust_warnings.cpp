@@ -178,6 +178,9 @@ mpm_implicit rebound.toml material.default.viscosity=0.05 -> no warning
 mpm_explicit disks grain.left.velocity_x=0.3669
     warning: |v|/c_p = 0.1 is above 0.05: an impact strains the grains by more than the small
     strains of the material laws
+mpm_explicit disks grain.left.velocity_x=18
+    warning: |v|/c_p = 4.906 is above 0.05: an impact strains the grains by more than the small
+    strains of the material laws, and faster than sound a grain passes into what it hits
 mpm_explicit mesh end left grain.left.velocity_x=0.3669 -> no warning
 mpm_explicit disks load.gravity_y=-2.25
     warning: g H/c_p^2 = 0.1003 is above 0.05: grains at the bottom are crushed by the weight of

@@ -150,7 +150,10 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
     if (scales.speed > 0.05 * scales.sound_speed && scales.grains > 1)
         warnings.push_back("|v|/c_p = " + format(scales.speed / scales.sound_speed) +
                            " is above 0.05: an impact strains the grains by more than the small "
-                           "strains of the material laws");
+                           "strains of the material laws" +
+                           (scales.speed > scales.sound_speed
+                                ? ", and faster than sound a grain passes into what it hits"
+                                : ""));
     const double height = mesh.y_high() - mesh.y_low,
                  strain = g * height / (scales.sound_speed * scales.sound_speed);
     if (strain > 0.05)
