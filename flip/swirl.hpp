@@ -1,6 +1,6 @@
 // Fluid that turns about the axis. A particle is a ring, and keeps the angular momentum per mass that
-// it begins with, L = r v_theta: where nothing depends on the angle, pressure has no torque. The plane
-// (r, z) knows of it by a force and an energy,
+// it begins with, L = r v_theta: where nothing depends on the angle, pressure has no torque. On the
+// motion along r and z the rotation acts by the centrifugal force f, and it has the energy E per mass:
 //
 //     f = L^2/r^3                E = L^2/(2 r^2),   dE/dr = -f
 //
