@@ -2,11 +2,11 @@
 // descriptors, full disks, damaged files, a second run in the same folder.
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -80,14 +80,28 @@ const std::vector<std::string> programs{
 
 }  // namespace
 
-TEST_CASE("beside busy work a program is as fast as with threads that sleep while they wait" *
+// Threads that spin while they wait for one that has no core make a run fifty times longer, in one
+// run of three. The time by the clock depends on what else the machine does, that of its
+// processors does not.
+TEST_CASE("beside busy work a program takes no more than with threads that sleep while they wait" *
           doctest::description("robust")) {
     const Room room;
-    const auto seconds = [&](const std::string& policy) {
-        const auto start = std::chrono::steady_clock::now();
-        CHECK(room.run(policy + short_run(room.path("run"), 300) + "--threads 2 --quiet --force")
-                  .status == 0);
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const auto seconds_of_children = [] {
+        rusage used;
+        getrusage(RUSAGE_CHILDREN, &used);
+        return static_cast<double>(used.ru_utime.tv_sec + used.ru_stime.tv_sec) +
+               1e-6 * static_cast<double>(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
+    };
+    const auto longest_of = [&](int runs, const std::string& policy) {
+        double longest = 0;
+        for (int k = 0; k < runs; ++k) {
+            const double before = seconds_of_children();
+            CHECK(
+                room.run(policy + short_run(room.path("run"), 300) + "--threads 2 --quiet --force")
+                    .status == 0);
+            longest = std::max(longest, seconds_of_children() - before);
+        }
+        return longest;
     };
     std::vector<pid_t> busy;
     for (long core = 0; core < sysconf(_SC_NPROCESSORS_ONLN); ++core) {
@@ -95,17 +109,13 @@ TEST_CASE("beside busy work a program is as fast as with threads that sleep whil
         if (child == 0) execlp("sh", "sh", "-c", "while :; do :; done", nullptr);
         busy.push_back(child);
     }
-    double passive = 1e9, own = 1e9;
-    for (int k = 0; k < 3; ++k) {
-        passive = std::min(passive, seconds("OMP_WAIT_POLICY=passive "));
-        own = std::min(own, seconds(""));
-    }
+    const double passive = longest_of(4, "OMP_WAIT_POLICY=passive "), own = longest_of(8, "");
     for (const pid_t child : busy) {
         kill(child, SIGKILL);
         waitpid(child, nullptr, 0);
     }
-    INFO("passive " << passive << " s, as a user starts it " << own << " s");
-    CHECK(own <= 2.0 * passive + 0.5);
+    INFO("passive " << passive << " s of processors, as a user starts it " << own << " s");
+    CHECK(own <= 2.0 * passive + 1.0);
 }
 
 TEST_CASE("what is meant for a closed terminal does not get into a file" *
