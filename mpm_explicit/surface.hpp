@@ -100,12 +100,13 @@ void carry_surface(const Shape& shape, const std::vector<Grain>& grains, const G
 
         // Noise of the nodes would stretch a part without limit, however small the strain stays: F of
         // many steps do not commute. None is longer than two cells, or farther than a cell away.
-        const double h = nodes.mesh().h, A = std::hypot(s.ax[k], s.ay[k]),
-                     M = std::sqrt(s.xx[k] * s.xx[k] + s.xy[k] * s.xy[k] + s.yx[k] * s.yx[k] +
-                                   s.yy[k] * s.yy[k]);
-        const double part_A = A > 2 * h ? 2 * h / A : 1, part_M = M > 2 * h * h ? 2 * h * h / M : 1;
+        const double h = nodes.mesh().h, A_2 = s.ax[k] * s.ax[k] + s.ay[k] * s.ay[k],
+                     M_2 = s.xx[k] * s.xx[k] + s.xy[k] * s.xy[k] + s.yx[k] * s.yx[k] +
+                           s.yy[k] * s.yy[k];
+        const double part_A = A_2 > 4 * h * h ? 2 * h / std::sqrt(A_2) : 1,
+                     part_M = M_2 > 4 * h * h * h * h ? 2 * h * h / std::sqrt(M_2) : 1;
         s.ax[k] *= part_A, s.ay[k] *= part_A;
-        for (std::vector<double>* m : {&s.xx, &s.xy, &s.yx, &s.yy}) (*m)[k] *= part_M;
+        s.xx[k] *= part_M, s.xy[k] *= part_M, s.yx[k] *= part_M, s.yy[k] *= part_M;
     });
 }
 
