@@ -375,8 +375,16 @@ fluids box rings region.gas.angular_velocity=1 theory.compare=inertial_wave boun
     theory.compare = "inertial_wave" needs walls that slip: set boundary.z_low = "slip"
 fluids box rings region.gas.velocity_theta=x*z theory.compare=inertial_wave
     theory.compare = "inertial_wave" needs a rotation that is the same at each z
+fluids box rings region.gas.velocity_theta=x*z-x*z*z theory.compare=inertial_wave
+    theory.compare = "inertial_wave" needs a rotation that is the same at each z
 fluids box rings region.gas.velocity_theta=1/x theory.compare=inertial_wave
+    theory.compare = "inertial_wave" needs a pressure that holds the column together
+fluids box rings region.gas.velocity_theta=0*x theory.compare=inertial_wave
     theory.compare = "inertial_wave" has no wave: the angular momentum is the same everywhere
+fluids box rings region.gas.velocity_theta=.1/x region.gas.hydrostatic=true
+    region.gas.velocity_theta is
+fluids box rings region.gas.velocity_theta=r region.gas.hydrostatic=true
+    in formulas x is the distance from the axis, r that from the center of the region
 fluids box rings region.gas.angular_velocity=1 theory.compare=inertial_wave theory.mode=20
     theory.compare = "inertial_wave" follows theory.mode = 20 half wavelengths along z, and 32 cells
     have no more than 16

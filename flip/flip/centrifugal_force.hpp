@@ -15,7 +15,7 @@
 namespace flip {
 
 /// What the rotation brings to the cells, for the step that it allows and for pictures.
-///   sum_p m_p (L/r) R,  sum_p m_p (L^2/r^3) R
+///   sum_p m_p L R,  sum_p m_p r^2 R,  sum_p m_p (L^2/r^3) R
 /// in:     particles in rows, every position on the mesh
 /// out:    cells.swirl
 inline void deposit_swirl(const Grid& grid, const Particles& p, Mesh& mesh) {
@@ -24,15 +24,15 @@ inline void deposit_swirl(const Grid& grid, const Particles& p, Mesh& mesh) {
     const WeightScale scale(grid);
     for_each_band(grid, p, [&](long begin, long end) {
         for (long k = begin; k < end; ++k) {
-            const double r = p.x_p[k], L = p.L_p[k], m = p.m_p[k],
-                         v = L / std::max(r, detail::least_radius), f = centrifugal_force(L, r, r);
+            const double r = p.x_p[k], L = p.L_p[k], m = p.m_p[k], f = centrifugal_force(L, r, r);
             for_cells(scale, weights_at(scale, r, p.z_p[k]), [&](long c, double R) {
-                sum[c].momentum += R * m * v;
+                sum[c].L += R * m * L;
+                sum[c].inertia += R * m * r * r;
                 sum[c].force += R * m * f;
             });
         }
     });
-    fold_cells(grid, &sum[0].momentum, 2);
+    fold_cells(grid, &sum[0].L, 3);
 }
 
 /// The rate at which the fluid of a cell turns, (F/(M r))^1/2: with the force that grows as it comes

@@ -114,9 +114,12 @@ inline void find_pressure(const Grid& grid, std::span<const Material> materials,
         if (surface) c.p[n] = 0;
     });
     if (bad < 0) return;
-    common::fail("density or internal energy is negative ", cell_and_time(grid, bad, time),
-                 ": reduce time.cfl, raise viscosity.linear, or take more particles per cell",
-                 (volumes ? "; where cold gas meets hot gas, flip.density = \"cells\"" : ""));
+    const char* cure =
+        time > 0 ? "reduce time.cfl, raise viscosity.linear, or take more particles per cell"
+                 : "the balance of the mesh needs less pressure than there is: refine the "
+                   "mesh, raise region.pressure, or take hydrostatic = false";
+    common::fail("density or internal energy is negative ", cell_and_time(grid, bad, time), ": ",
+                 cure, (volumes ? "; where cold gas meets hot gas, flip.density = \"cells\"" : ""));
 }
 
 /// Sound speed of a cell, c^2 = 1/(rho x compressibility); of a mixture, Wood's.

@@ -33,9 +33,9 @@ struct CellSum {
 struct SoftSum {
     double C = 0, Cp = 0, CK = 0;
 };
-/// What the particles that turn about the axis bring to a cell: m v_theta, and m L^2/r^3.
+/// What the particles that turn about the axis bring to a cell: m L, m r^2 and m L^2/r^3.
 struct SwirlSum {
-    double momentum = 0, force = 0;
+    double L = 0, inertia = 0, force = 0;
 };
 
 /// A symmetric tensor of a cell: xx, zz, xz, and around the axis.

@@ -79,7 +79,9 @@ inline CellFields cell_fields(const Grid& grid, const Mesh& mesh) {
         f.vz[n] = 0.25 * (g.vz[n] + g.vz[n + 1] + g.vz[up] + g.vz[up + 1]);
         f.p[n] = mesh.cells.p[n];
         f.e[n] = U / M;
-        if (swirl) f.v_theta[n] = mesh.cells.swirl[n].momentum / M;
+        if (!swirl || !(mesh.cells.swirl[n].inertia > 0)) return;
+        const SwirlSum& turns = mesh.cells.swirl[n];
+        f.v_theta[n] = turns.L / turns.inertia * grid.x.at(double(i) + 0.5);
     });
     return f;
 }

@@ -75,11 +75,15 @@ inline void fields_of(const Grid& grid, const State& state, const PicCells& cell
     const Particles& particles = state.particles;
     if (!particles.swirl) return;
     fields.v_theta.setZero(grid.size());
+    Field inertia = fields.v_theta;
     detail::for_each_in_cell(grid, particles, [&](long p, long at) {
         const long n = grid.index(at % grid.x.cells, at / grid.x.cells);
-        fields.v_theta[n] +=
-            particles.m_p[p] * cells.per_mass[n] * particles.L_p[p] / particles.x_p[p];
+        const double r = particles.x_p[p], m = particles.m_p[p];
+        fields.v_theta[n] += m * particles.L_p[p] * grid.x.at(double(at % grid.x.cells) + 0.5);
+        inertia[n] += m * r * r;
     });
+    for (long n = 0; n < grid.size(); ++n)
+        if (inertia[n] > 0) fields.v_theta[n] /= inertia[n];
 }
 
 }  // namespace flip

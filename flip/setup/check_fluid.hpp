@@ -122,6 +122,24 @@ inline void refuse_swirl(const Case& parameters) {
             parameters.is(s, "no_slip"), "boundary.", side_names[s],
             " = \"no_slip\" would stop fluid that turns about the axis, and nothing here hands its "
             "angular momentum to the wall: take \"slip\"");
+    const common::Axis& z = parameters.grid.z;
+    const double dx = parameters.grid.x.spacing(), axis = 1e-6 * dx;
+    for (long n = 0; n < long(parameters.regions.size()); ++n) {
+        const RegionCase& r = parameters.regions[n];
+        for (long j = 0; r.hydrostatic && r.turns() && j < z.cells; ++j) {
+            const double at = z.at(double(j) + 0.5);
+            if (r.center_x > axis && region_at(parameters, axis, at) != n) continue;
+            const auto swirl = [&](double x) {
+                return std::fabs(
+                    detail::swirl_of(r, x, at, std::hypot(x - r.center_x, at - r.center_z)));
+            };
+            refuse(swirl(axis) > 1e-3 * swirl(0.5 * dx), "region.", r.name, ".velocity_theta is ",
+                   swirl(axis),
+                   " on the axis, and hydrostatic = true needs 0 "
+                   "there: in formulas x is the distance from the axis, r that from the center of "
+                   "the region");
+        }
+    }
 }
 
 /// Refuses what has no meaning around an axis.

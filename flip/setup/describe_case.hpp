@@ -25,7 +25,7 @@ void describe_gas(common::ParameterTable& table, const std::string& prefix, Gas&
     table.real(prefix + ".velocity_x", g.velocity_x, "velocity", anything(), "along x");
     table.real(prefix + ".velocity_z", g.velocity_z, "velocity", anything(), "along z");
     table.real(prefix + ".velocity_theta", g.velocity_theta, "velocity", anything(),
-               "about the axis, where grid.geometry is axisymmetric: swirl");
+               "about the axis, where grid.geometry is axisymmetric: swirl; the axis is x = 0");
     table.real(prefix + ".angular_velocity", g.angular_velocity, "1/time", anything(),
                "of a rigid rotation about the axis, added to that");
 }

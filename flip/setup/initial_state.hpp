@@ -138,20 +138,26 @@ inline double swirl_of(const RegionCase& r, double x, double z, double distance)
 }
 
 // The integral of the centrifugal force per mass, v_theta^2/x, from the center of the region to x, by
-// Gauss's rule of five points in each of eight parts.
+// Gauss's rule of five points in each of 8, 16, ... 128 parts, until it changes by 1e-6 or less.
 inline double centrifugal_potential(const RegionCase& r, double x, double z) {
     constexpr double at[] = {0, 0.5384693101056831, 0.9061798459386640};
     constexpr double weight[] = {0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
-    const double dz = z - r.center_z, part = (x - r.center_x) / 8;
-    double sum = 0;
-    for (int n = 0; n < 8; ++n)
-        for (const int k : {-2, -1, 0, 1, 2}) {
-            const std::size_t m = std::size_t(std::abs(k));
-            const double here = r.center_x + part * (n + 0.5 + (k < 0 ? -0.5 : 0.5) * at[m]),
-                         v = swirl_of(r, here, z, std::hypot(here - r.center_x, dz));
-            sum += 0.5 * part * weight[m] * v * v / here;
-        }
-    return sum;
+    const double dz = z - r.center_z;
+    double before = 0;
+    for (int parts = 8;; parts *= 2) {
+        const double part = (x - r.center_x) / parts;
+        double sum = 0;
+        for (int n = 0; n < parts; ++n)
+            for (const int k : {-2, -1, 0, 1, 2}) {
+                const std::size_t m = std::size_t(std::abs(k));
+                const double here = r.center_x + part * (n + 0.5 + (k < 0 ? -0.5 : 0.5) * at[m]),
+                             v = swirl_of(r, here, z, std::hypot(here - r.center_x, dz));
+                sum += 0.5 * part * weight[m] * v * v / here;
+            }
+        if (parts == 128 || (parts > 8 && std::fabs(sum - before) <= 1e-6 * std::fabs(sum)))
+            return sum;
+        before = sum;
+    }
 }
 
 }  // namespace detail

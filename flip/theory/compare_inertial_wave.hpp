@@ -12,19 +12,24 @@
 
 namespace flip {
 
+/// The pressure of a fluid.
+inline double pressure_of(const Case& parameters, const FluidState& fluid) {
+    return pressure(parameters.materials[fluid.material], fluid.density, fluid.e);
+}
+
 /// The column of a case, and the wave with theory.mode half wavelengths between its ends.
 inline theory::RotatingColumn column_of(const Case& parameters) {
     const common::Axis &x = parameters.grid.x, &z = parameters.grid.z;
     const auto at = [&parameters, middle = z.low + 0.5 * z.length](double r) {
         return fluid_of(parameters, parameters.regions.front(), r, middle);
     };
-    return {x.length, pi * double(parameters.mode) / z.length,
-            [at](double r) { return at(r).v_theta; },
-            [at, &parameters](double r) {
-                const FluidState fluid = at(r);
-                const Material& a = parameters.materials[fluid.material];
-                return stiffness(a, pressure(a, fluid.density, fluid.e)) / fluid.density;
-            }};
+    return {
+        x.length, pi * double(parameters.mode) / z.length, [at](double r) { return at(r).v_theta; },
+        [at, &parameters](double r) {
+            const FluidState fluid = at(r);
+            return stiffness(parameters.materials[fluid.material], pressure_of(parameters, fluid)) /
+                   fluid.density;
+        }};
 }
 
 /// omega of the wave: real, or imaginary where it grows.
@@ -51,13 +56,33 @@ inline void validate_inertial_wave(const Case& parameters, const Refusal& refuse
            parameters.grid.z.cells, " cells have no more than ", parameters.grid.z.cells / 2,
            ": refine the mesh or lower it");
     const common::Axis &x = parameters.grid.x, &z = parameters.grid.z;
+    const auto column = [&](double at, double height) {
+        return fluid_of(parameters, r, at, height);
+    };
+    const double middle = z.low + 0.5 * z.length;
     for (const double part : {0.25, 0.5, 0.75}) {
-        const double at = x.length * part, low = fluid_of(parameters, r, at, z.at(0.5)).v_theta,
-                     high = fluid_of(parameters, r, at, z.at(double(z.cells) - 0.5)).v_theta;
-        refuse(!(std::fabs(low - high) <= 1e-9 * std::fabs(low)),
-               " needs a rotation that is the same at each z, and region.", r.name,
-               ".velocity_theta changes");
+        const double at = x.length * part;
+        const FluidState fluid = column(at, middle);
+        for (long j = 0; j < z.cells; ++j)
+            refuse(
+                std::fabs(column(at, z.at(double(j) + 0.5)).v_theta - fluid.v_theta) >
+                    1e-9 * std::fabs(fluid.v_theta),
+                " needs a rotation that is the same at each z, and region.", r.name,
+                ".velocity_theta changes: in formulas x is the distance from the axis, r that from "
+                "the center of the region");
+        const double h = 1e-3 * x.length,
+                     rise = (pressure_of(parameters, column(at + h, middle)) -
+                             pressure_of(parameters, column(at - h, middle))) /
+                            (2 * h),
+                     push = fluid.density * fluid.v_theta * fluid.v_theta / at;
+        refuse(std::fabs(rise - push) > 0.01 * push,
+               " needs a pressure that holds the column together: set region.", r.name,
+               ".hydrostatic = true");
     }
+    refuse(std::fabs(column(1e-6 * x.length, middle).v_theta) >
+               1e-3 * std::fabs(column(0.5 * x.length, middle).v_theta),
+           " needs a rotation about the axis, and region.", r.name,
+           ".velocity_theta is not 0 there");
     refuse(inertial_frequency_of(parameters) == 0.0,
            " has no wave: the angular momentum is the same everywhere");
 }

@@ -6,9 +6,11 @@
 // inertial waves, and Rayleigh's criterion is the sign of kappa^2.
 #pragma once
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <vector>
 
 namespace flip::theory {
 
@@ -19,44 +21,113 @@ struct RotatingColumn {
     std::function<double(double)> sound_2;  // of r, square of the speed of sound
 };
 
-/// kappa^2 = (2 v/r^2) d(r v)/dr, by differences.
+/// kappa^2 = (2 v/r^2) d(r v)/dr, by differences; 0 where these are round-off.
 inline double epicyclic_2(const RotatingColumn& s, double r) {
-    const double h = 1e-5 * s.radius, a = std::max(r - h, 0.1 * h), b = r + h;
+    const double h = 1e-5 * s.radius, a = std::max(r - h, 0.1 * h), b = r + h, v = s.v_theta(r);
     const double slope = (b * s.v_theta(b) - a * s.v_theta(a)) / (b - a);
-    return 2 * s.v_theta(r) / (r * r) * slope;
+    return std::fabs(r * slope) < 1e-6 * std::fabs(r * v) ? 0 : 2 * v / (r * r) * slope;
 }
 
-/// The displacement at the wall of a wave with omega^2 = lambda that begins as xi = r on the axis; a
-/// wave of the column has none there.
-///   (r xi)'/r = P (k^2/lambda - 1/c^2) - xi g/c^2,   g = v_theta^2/r
-///   P' = (lambda - kappa^2) xi + g (P + g xi)/c^2,   P = p/density
+/// The column at the borders of rings of equal width, j even, and in their middles, j odd.
+struct Rings {
+    static constexpr int count = 128;
+    double h, k;
+    std::vector<double> r, g, kappa_2, sound_2;  // g = v_theta^2/r
+
+    explicit Rings(const RotatingColumn& s) : h(s.radius / count), k(s.k) {
+        for (int j = 0; j <= 2 * count; ++j) {
+            const double at = 0.5 * h * std::max(j, 1), v = s.v_theta(at);
+            r.push_back(0.5 * h * j), g.push_back(v * v / at);
+            kappa_2.push_back(epicyclic_2(s, at)), sound_2.push_back(s.sound_2(at));
+        }
+    }
+    double largest_kappa_2() const {
+        double largest = 0;
+        for (const double each : kappa_2) largest = std::max(largest, std::fabs(each));
+        return largest;
+    }
+};
+
+/// omega^2 of the wave that is nearest to that of a fluid that keeps its volume, from the energy of
+/// displacements xi along r, on the borders of the rings, and zeta along z, within them:
+///   omega^2 sum r (xi^2 + zeta^2) = sum r (c^2 D^2 + 2 g xi D + kappa^2 xi^2)
+///   D = (r xi)'/r + k zeta,   0 in a fluid that keeps its volume
+/// of which the slowest, which grows the fastest, where that fluid has a wave that grows; else of all
+/// waves, sound among them, the one that moves most like its fastest.
+/// exact:  second order in the width of the rings
 /// source: the linear equations of motion, continuity and constant entropy, with v_theta' of constant
-///         angular momentum; fourth-order Runge-Kutta steps
-inline double displacement_at_wall(const RotatingColumn& s, double lambda, int steps = 200) {
+///         angular momentum, multiplied by the displacement
+inline double coarse_frequency_2(const Rings& s) {
+    constexpr int n = Rings::count, borders = n - 1;
+    const double scale = s.largest_kappa_2(), R = n * s.h,
+                 // Sound so fast changes nothing, and leaves digits for the others.
+        fast = 1e5 * scale * (R * R + 1 / (s.k * s.k));
+    Eigen::VectorXd mass(borders + n);
+    Eigen::MatrixXd W = Eigen::MatrixXd::Zero(borders + n, borders + n),
+                    incompressible = Eigen::MatrixXd::Zero(borders + n, borders);
+    for (int i = 1; i < n; ++i) {
+        mass[i - 1] = s.r[2 * i];
+        W(i - 1, i - 1) = s.r[2 * i] * s.kappa_2[2 * i];
+        incompressible(i - 1, i - 1) = 1;
+    }
+    for (int c = 0; c < n; ++c) {
+        const int middle = 2 * c + 1, along = borders + c;
+        const double r = mass[along] = s.r[middle], c_2 = std::min(s.sound_2[middle], fast);
+        // D and xi as sums over the displacements of this ring.
+        const int at[] = {c - 1, c, along};
+        const double D[] = {-s.r[middle - 1] / (r * s.h), s.r[middle + 1] / (r * s.h), s.k},
+                     xi[] = {0.5, 0.5, 0};
+        const auto is_wall = [&](int a) { return at[a] < 0 || (a == 1 && c == n - 1); };
+        for (int a = 0; a < 3; ++a) {
+            if (is_wall(a)) continue;
+            if (a < 2) incompressible(along, at[a]) = -D[a] / s.k;
+            for (int b = 0; b < 3; ++b)
+                if (!is_wall(b))
+                    W(at[a], at[b]) +=
+                        r * (c_2 * D[a] * D[b] + s.g[middle] * (xi[a] * D[b] + D[a] * xi[b]));
+        }
+    }
+    const Eigen::MatrixXd weighted = mass.asDiagonal() * incompressible;
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> stiff(
+        incompressible.transpose() * W * incompressible, incompressible.transpose() * weighted);
+    const Eigen::VectorXd per_root = mass.cwiseSqrt().cwiseInverse();
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> all(per_root.asDiagonal() * W *
+                                                             per_root.asDiagonal());
+    if (stiff.eigenvalues()[0] < -1e-5 * scale) return all.eigenvalues()[0];
+    const Eigen::VectorXd alike =
+        (all.eigenvectors().transpose() *
+         (per_root.cwiseInverse().asDiagonal() * incompressible * stiff.eigenvectors().col(n - 2)))
+            .cwiseAbs();
+    Eigen::Index most = 0;
+    alike.maxCoeff(&most);
+    return all.eigenvalues()[most];
+}
+
+/// r times the displacement at the wall of a wave with omega^2 = lambda that begins as xi ~ r on the
+/// axis; a wave of the column has none there.
+///   (r xi)'/r = P (k^2/lambda - 1/c^2) - xi g/c^2
+///   P' = (lambda - kappa^2) xi + g (P + g xi)/c^2,   P = p/density
+/// source: as above; fourth-order Runge-Kutta steps
+inline double displacement_at_wall(const Rings& s, double lambda) {
     struct State {
         double flux, P;  // r xi and P
     };
-    const auto slope = [&](double r, const State& y) -> State {
-        const double v = s.v_theta(r), g = v * v / r, per_c2 = 1 / s.sound_2(r), xi = y.flux / r;
-        return {r * (y.P * (s.k * s.k / lambda - per_c2) - xi * g * per_c2),
-                (lambda - epicyclic_2(s, r)) * xi + g * (y.P + g * xi) * per_c2};
+    const auto slope = [&](int j, const State& y) -> State {
+        const double per_c2 = 1 / s.sound_2[j], g = s.g[j], xi = y.flux / s.r[j];
+        return {s.r[j] * (y.P * (s.k * s.k / lambda - per_c2) - xi * g * per_c2),
+                (lambda - s.kappa_2[j]) * xi + g * (y.P + g * xi) * per_c2};
     };
-    const double h = s.radius / steps;
-    double r = 0.01 * h;
-    State y{r * r, 2 / (s.k * s.k / lambda - 1 / s.sound_2(r))};
     const auto moved = [](const State& a, double by, const State& d) {
         return State{a.flux + by * d.flux, a.P + by * d.P};
     };
-    for (int n = 0; n < steps; ++n) {
-        const double end = n + 1 == steps ? s.radius : (n + 1) * h, step = end - r;
-        const State a = slope(r, y), b = slope(r + 0.5 * step, moved(y, 0.5 * step, a)),
-                    c = slope(r + 0.5 * step, moved(y, 0.5 * step, b)),
-                    d = slope(end, moved(y, step, c));
-        y = moved(y, step / 6,
+    State y{s.h * s.h * (s.k * s.k / lambda - 1 / s.sound_2[1]), 2};
+    for (int j = 2; j < 2 * Rings::count; j += 2) {
+        const State a = slope(j, y), b = slope(j + 1, moved(y, 0.5 * s.h, a)),
+                    c = slope(j + 1, moved(y, 0.5 * s.h, b)), d = slope(j + 2, moved(y, s.h, c));
+        y = moved(y, s.h / 6,
                   {a.flux + 2 * b.flux + 2 * c.flux + d.flux, a.P + 2 * b.P + 2 * c.P + d.P});
-        r = end;
     }
-    return y.flux / s.radius;
+    return y.flux;
 }
 
 /// omega^2 of the wave without a node between axis and wall: of the fastest that grows, below 0, where
@@ -65,33 +136,21 @@ inline double displacement_at_wall(const RotatingColumn& s, double lambda, int s
 /// exact:  of rigid rotation in a fluid that keeps its volume (2 Omega)^2 k^2/(k^2 + (j_1/R)^2),
 ///         J_1(j_1) = 0
 /// source: Kelvin, Phil. Mag. 10, 155 (1880); Rayleigh, Proc. R. Soc. A 93, 148 (1917)
-inline double inertial_frequency_2(const RotatingColumn& s) {
-    double least = 0, most = 0;
-    constexpr int places = 200, tries = 200;
-    for (int n = 1; n <= places; ++n) {
-        const double r = s.radius * (n - 0.5) / places, kappa_2 = epicyclic_2(s, r),
-                     turns = s.v_theta(r) / r;
-        if (std::fabs(kappa_2) < 1e-4 * turns * turns) continue;  // differences of one number
-        least = std::min(least, kappa_2), most = std::max(most, kappa_2);
-    }
-    for (const double first : {least, most}) {
-        if (first == 0) continue;
-        double a = first, at_a = displacement_at_wall(s, a);
-        for (int n = 1; n < tries; ++n) {
-            double b = first * (1 - double(n) / tries);
-            const double at_b = displacement_at_wall(s, b);
-            if ((at_a < 0) == (at_b < 0)) {
-                a = b, at_a = at_b;
-                continue;
-            }
-            for (int halving = 0; halving < 60; ++halving) {
-                const double middle = 0.5 * (a + b);
-                ((displacement_at_wall(s, middle) < 0) == (at_a < 0) ? a : b) = middle;
-            }
-            return 0.5 * (a + b);
+inline double inertial_frequency_2(const RotatingColumn& column) {
+    const Rings s(column);
+    if (s.largest_kappa_2() == 0) return 0;
+    const double near = coarse_frequency_2(s);
+    for (double width = 1e-4; width < 0.1; width *= 2) {
+        double a = near * (1 - width), b = near * (1 + width);
+        const bool at_a = displacement_at_wall(s, a) < 0;
+        if (at_a == (displacement_at_wall(s, b) < 0)) continue;
+        for (int halving = 0; halving < 50; ++halving) {
+            const double middle = 0.5 * (a + b);
+            ((displacement_at_wall(s, middle) < 0) == at_a ? a : b) = middle;
         }
+        return 0.5 * (a + b);
     }
-    return 0;
+    return near;
 }
 
 }  // namespace flip::theory

@@ -106,6 +106,7 @@ inline Files content(const fs::path& folder) {
 inline Outcome start(const Program& program, const fs::path& folder, const std::string& arguments,
                      const std::string& before = "") {
     const std::string out = folder.string() + ".stdout", err = folder.string() + ".stderr";
+    fs::remove(out), fs::remove(err);
     Outcome outcome;
     outcome.status = shell("cd '" + folder.string() + "' && exec timeout 60 " + before + " '" +
                            path_of(program).string() + "' " + arguments + " </dev/null >'" + out +
