@@ -74,6 +74,10 @@ pic tube -> warning: the flow has Mach 0, below 0.05: cells feel a particle only
 flip tube region.gas.velocity_x=0.12
     warning: region.gas flows over the mesh at Mach 0.1014, between 0.07 and 0.19, where
     explicit FLIP rings
+flip tube viscosity.linear=0 flip.transfer=apic time.end=20
+    warning: explicit steps of apic make the shortest sound waves grow where viscosity.linear = 0
+flip tube viscosity.linear=0 flip.transfer=apic time.end=0.1 -> no warning
+flip tube viscosity.linear=0 time.end=20 -> no warning
 flip sod viscosity.linear=0 viscosity.quadratic=0
     warning: without artificial viscosity particles pile up at shocks
 pic sod viscosity.linear=0 viscosity.quadratic=0

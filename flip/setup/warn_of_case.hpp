@@ -136,6 +136,15 @@ inline void warn_of_speeds(const Case& parameters, const Scales& scales, const s
                             "rests: behind a shock at a wall, density scatters by tens of percent"
                           : "without artificial viscosity particles pile up at shocks: set "
                             "viscosity.linear = 0.5 and viscosity.quadratic = 1");
+    // As measured, of gas that is nearly at rest.
+    const double cells = scales.sound_speed / parameters.grid.x.spacing(),
+                 foldings = 0.25 * std::pow(cells * scales.dt, 2) * cells * parameters.end;
+    warn(out,
+         program == "flip" && parameters.transfer == "apic" && !parameters.implicit() &&
+             parameters.q_linear == 0 && foldings > 5,
+         "explicit steps of apic make the shortest sound waves grow where viscosity.linear = 0, by "
+         "about exp(",
+         foldings, ") until time.end: set it to 0.05, or flip.pressure = \"implicit\"");
     const bool held = std::ranges::count(parameters.boundaries, "no_slip", &BoundaryCase::kind) > 0;
     warn(out, held && parameters.viscosity == 0,
          "a no_slip wall holds fluid without viscosity only through the mesh: set flip.viscosity, "
