@@ -147,6 +147,25 @@ TEST_CASE("a quiet start is quieter than random numbers and another seed another
     }
 }
 
+TEST_CASE("quiet velocities are alike in every part of the box") {
+    const Case parameters = uniform_case("quiet");
+    const Particles ions = initial_state(parameters).plasma.species[0];
+    const SpeciesCase& s = parameters.uniform.species[0];
+    const Vector drift(s.drift_x, s.drift_y, s.drift_z);
+    const Eigen::Array3d thermal(std::sqrt(s.temperature_x), std::sqrt(s.temperature_y),
+                                 std::sqrt(s.temperature_z));
+    const auto &x = parameters.grid.x, &z = parameters.grid.z;
+    // Quarters along x and thirds along z are the first digits of the two places.
+    std::vector<Eigen::Array3d> sums(12, Eigen::Array3d::Zero());
+    for (std::size_t p = 0; p < ions.x_p.size(); ++p) {
+        const auto i = std::size_t(4 * (ions.x_p[p] - x.low) / x.length),
+                   j = std::size_t(3 * (ions.z_p[p] - z.low) / z.length);
+        sums[3 * i + j] += (velocity(ions, p) - drift).array() / thermal;
+    }
+    // Of random numbers 1024^(-1/2) = 0.03.
+    for (const Eigen::Array3d& sum : sums) CHECK((sum / 1024).abs().maxCoeff() <= 0.015);
+}
+
 TEST_CASE("the field at the start obeys the law of Gauss with conducting walls") {
     Random random;
     for (const Grid& grid : meshes()) {

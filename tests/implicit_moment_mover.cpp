@@ -239,6 +239,22 @@ TEST_CASE("without fields particles bounce between walls like light between mirr
     }
 }
 
+TEST_CASE("who comes to a wall is reflected and who has turned back already is not") {
+    const common::Axis axis{8, -1, 2, false};
+    for (const double side : {-1.0, 1.0}) {
+        for (const double speed : {0.3, 2.0}) {
+            double x = side > 0 ? axis.high() + 1e-14 : axis.low - 1e-14, v = side * speed;
+            detail::arrive(axis, true, x, v);
+            CHECK(x == (side > 0 ? axis.high() : axis.low));
+            CHECK(v == -side * speed);
+            detail::arrive(axis, true, x, v);
+            CHECK(v == -side * speed);
+            detail::arrive(axis, false, x, v = side * speed);
+            CHECK(v == side * speed);
+        }
+    }
+}
+
 TEST_CASE("a particle that lies on a wall and is pressed against it stays there") {
     const Grid grid = meshes()[3];
     for (const double depth : {0.0, 1e-15, 1e-9, 1e-3}) {
