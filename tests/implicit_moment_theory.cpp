@@ -13,6 +13,7 @@
 #include "implicit_moment/explicit_em/setup/leapfrog_state.hpp"
 #include "implicit_moment/setup/check_case.hpp"
 #include "implicit_moment/step.hpp"
+#include "implicit_moment/theory/cold_plasma.hpp"
 #include "implicit_moment/theory/compare_drift.hpp"
 #include "implicit_moment/theory/compare_energy.hpp"
 #include "implicit_moment/theory/compare_reconnection.hpp"

@@ -9,31 +9,9 @@
 
 #include "common/run/run.hpp"
 #include "implicit_moment/output/columns.hpp"
-#include "implicit_moment/theory/cold_plasma.hpp"
+#include "implicit_moment/theory/wave_theory.hpp"
 
 namespace implicit_moment {
-
-/// Mean E of the scheme after each of so many steps.
-///     dE/dt = -4 pi sum n q u,   du/dt = q/m (E + u x B/c)
-/// exact:  whatever the temperatures: the mean of all forces of a uniform field is that on the mean
-inline std::vector<Eigen::Vector3d> mean_field(const Case& w, long steps) {
-    Case still = w;
-    still.uniform.mode_x = still.uniform.mode_z = 0;
-    const Eigen::MatrixXcd step = cold_step(still);
-    Eigen::VectorXcd state = Eigen::VectorXcd::Zero(step.rows());
-    state.head(3) << w.uniform.E_x, w.uniform.E_y, w.uniform.E_z;
-    for (std::size_t s = 0; s < w.uniform.species.size(); ++s) {
-        const SpeciesCase& one = w.uniform.species[s];
-        state.segment(place_of(s, 0), 3) << one.drift_x, one.drift_y, one.drift_z;
-    }
-    if (w.leapfrog.chosen) take_half_step_back(still, state);
-    std::vector<Eigen::Vector3d> means{state.head(3).real()};
-    for (long n = 0; n < steps; ++n) {
-        state = step * state;
-        means.push_back(state.head(3).real());
-    }
-    return means;
-}
 
 /// The mean of E against that of the scheme, and the mean velocity over the run against c E x B/B^2.
 ///     E is shared out: the plasma answers with currents, and of E_0 across a strong B is left

@@ -10,6 +10,7 @@
 #include "common/run/run.hpp"
 #include "common/theory/measure_modes.hpp"
 #include "implicit_moment/output/columns.hpp"
+#include "implicit_moment/theory/images_of_mode.hpp"
 #include "implicit_moment/theory/wave_theory.hpp"
 
 namespace implicit_moment {

@@ -334,4 +334,23 @@ double exact_to(const Case& w) {
     return std::min(0.005, 0.001 + 0.03 / double(w.uniform.particles_per_cell));
 }
 
+std::vector<Eigen::Vector3d> mean_field(const Case& w, long steps) {
+    Case still = w;
+    still.uniform.mode_x = still.uniform.mode_z = 0;
+    const Eigen::MatrixXcd step = cold_step(still);
+    Eigen::VectorXcd state = Eigen::VectorXcd::Zero(step.rows());
+    state.head(3) << w.uniform.E_x, w.uniform.E_y, w.uniform.E_z;
+    for (std::size_t s = 0; s < w.uniform.species.size(); ++s) {
+        const SpeciesCase& one = w.uniform.species[s];
+        state.segment(place_of(s, 0), 3) << one.drift_x, one.drift_y, one.drift_z;
+    }
+    if (w.leapfrog.chosen) take_half_step_back(still, state);
+    std::vector<Eigen::Vector3d> means{state.head(3).real()};
+    for (long n = 0; n < steps; ++n) {
+        state = step * state;
+        means.push_back(state.head(3).real());
+    }
+    return means;
+}
+
 }  // namespace implicit_moment

@@ -2,9 +2,11 @@
 // and what theory expects of the seeded mode.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <complex>
 #include <string>
+#include <vector>
 
 #include "common/theory/kinetic_dispersion.hpp"
 #include "implicit_moment/setup/case.hpp"
@@ -51,5 +53,10 @@ common::Complex longitudinal_dispersion_on_mesh(const Case& w, common::Complex o
 ///     D = omega^2 - c^2 K^2 + S sum_m |weight(m) e|^2 omega^2 chi(k_m), e across K
 /// note:   an image at an angle to k answers as one along it.
 common::Complex transverse_dispersion_on_mesh(const Case& w, int sense, common::Complex omega);
+
+/// Mean E of the scheme after each of so many steps.
+///     dE/dt = -4 pi sum n q u,   du/dt = q/m (E + u x B/c)
+/// exact:  whatever the temperatures: the mean of all forces of a uniform field is that on the mean
+std::vector<Eigen::Vector3d> mean_field(const Case& w, long steps);
 
 }  // namespace implicit_moment
