@@ -244,6 +244,10 @@ TEST_CASE("what cannot be measured says why") {
     CHECK(says(reason(record_of({"", both(1.0), {1, 1}, 400, 0.1, {}}, 0, 0), 0.1,
                       {.expected = both(1.0), .begin = 39.5}),
                "rows of the history are between"));
+    // Growth so fast that its eight e-foldings are less than the eight rows that it takes.
+    std::vector<Complex> fast;
+    for (int n = 0; n < 60; ++n) fast.push_back(std::exp(std::min(12.0, 2.0 * n)));
+    CHECK(says(reason(fast, 1, {.expected = {{0, 2}}, .below_maximum = 0.1}), "only 5 rows"));
     // Growth that ends in a tenth of the run, and one that goes on.
     std::vector<Complex> saturated;
     for (int n = 0; n < 1500; ++n) saturated.push_back(1 / (1 + std::exp(-0.3 * (0.1 * n - 15))));

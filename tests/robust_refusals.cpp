@@ -971,8 +971,19 @@ plasmas magnetized species.electrons.charge=-1 uniform.B_z=1e-9 species.electron
 plasmas magnetized species.electrons.charge=-1 uniform.B_z=0.1 grid.cells_x=64 grid.cells_z=64
     theory.wave = "magnetized" needs theory.near: without temperatures this plasma has waves at
 plasmas transverse species.electrons.charge=-1 uniform.mode_z=1 species.electrons.temperature_z=0.1
+plasmas longitudinal species.electrons.charge=-1 uniform.mode_z=1 species.electrons.temperature_z=0.1
     species 'electrons' has another temperature along x than along z, and a wave at an angle to both
-    is not transverse: make them equal, or the mode along x or z
+    is neither longitudinal nor transverse: make them equal, or the mode along x or z
+plasmas longitudinal species.electrons.charge=-1 species.electrons.drift_x=0.1
+plasmas transverse species.electrons.charge=-1 species.electrons.drift_x=0.05
+    is stated for a plasma without current, and along the mode it has
+plasmas longitudinal species.electrons.charge=-1 species.electrons.drift_y=0.1
+plasmas transverse species.electrons.charge=-1 species.electrons.drift_y=0.1
+    species 'electrons' drifts across the mode with 0.1 c, and no other one like it the other way
+plasmas longitudinal species.electrons.charge=-1 species.electrons.drift_y=0.01 uniform.B_x=0.1
+    species 'electrons' drifts across uniform.B: theory.wave = "longitudinal" wants drifts along it
+plasmas transverse species.electrons.charge=-1 species.electrons.temperature_y=0.01 uniform.B_x=0.1
+    species 'electrons' has two temperatures across uniform.B
 plasmas uniform
     an empty uniform plasma: add a [species.<name>] or seed a field with uniform.wave_E_y
 implicit_moment light wave_E_y time.end=2.9

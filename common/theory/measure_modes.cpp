@@ -381,10 +381,9 @@ Rows window_of(std::span<const double> times, std::span<const Complex> z, const 
         if (start > 5 * noise && noise > 1.5 * left) rows.end = end;
     }
     const double e_folding = 1 / (std::abs(wanted.growth) * dt), radian = 1 / (wanted.size * dt);
-    if (8 * e_folding < double(rows.count())) {
-        const long enough = std::lround(std::ceil(std::max(8 * e_folding, 8.0)));
+    const long enough = std::lround(std::ceil(std::min(std::max(8 * e_folding, 8.0), 1e9)));
+    if (enough < rows.count())
         (grows ? rows.begin : rows.end) = grows ? rows.end - enough : rows.begin + enough;
-    }
     block = std::max(1L, std::min(long(0.8 * radian), rows.count() / 64));
     const long longer = (rows.count() + most_samples - 1) / most_samples;
     block = std::max(block, std::min(longer, long(0.8 * radian)));

@@ -34,9 +34,6 @@ inline double swing_in_cells(const Case& w, double omega) {
 
 /// Why a wave may differ from theory, and what to change.
 inline std::string likely_cause(const Case& w, const Theory& theory, bool grows, bool over) {
-    if (over)
-        return "growth is over before it tells enough: lower the seed, and where that is below the "
-               "noise raise the particles per cell";
     double heat = 0;
     for (const SpeciesCase& s : w.uniform.species)
         heat = std::max(
@@ -46,6 +43,9 @@ inline std::string likely_cause(const Case& w, const Theory& theory, bool grows,
         return "theory is without Lorentz factor, and particles with thermal speeds of " +
                format(std::sqrt(heat)) + " c are heavier by some " + format(heat) +
                " of their mass: set particles.relativistic = false, or lower the temperatures";
+    if (over)
+        return "growth is over before it tells enough: lower the seed, and where that is below the "
+               "noise raise the particles per cell";
     const double damping =
         w.leapfrog.chosen ? 0 : 0.5 * (w.field.theta - 0.5) * std::norm(theory.omega) * w.dt;
     if (!theory.of_scheme && damping > 1e-3 * std::abs(theory.omega))
@@ -92,8 +92,14 @@ inline void compare_wave(const Case& w, const common::History& history, common::
         common::measure_mode(times, history.complex_column("mode"), search);
     const std::string where = theory.source + "; measured " + seen.window;
     summary.hint(likely_cause(w, theory, grows, seen.over));
+    const double apart = times.size() > 1 ? times[1] - times[0] : 0;
+    const bool rare = frequency * apart > 0.9 * pi;
     const auto report = [&](const std::string& name, common::Measured value) {
-        if (seen.found)
+        if (rare)
+            summary.not_measured(name, "cannot be measured, because rows of the history are " +
+                                           format(apart) + " apart, and half a period is " +
+                                           format(pi / frequency) + ": lower output.history_steps");
+        else if (seen.found)
             summary.result(name, value, "", 1, tolerance, where);
         else
             summary.not_measured(name, seen.reason + (seen.over ? ": lower the seed" : ""));

@@ -90,6 +90,59 @@ void refuse_kinetic(const Case& w, const std::string& name) {
            "uniform.B across the mode, or choose \"magnetized\" or \"cold\" for theory.wave");
 }
 
+// A current along k begins to oscillate with the plasma frequency, and what moved on the average rests on the
+// average: no wave keeps its frequency.
+void refuse_current(const Case& w, const std::string& wave) {
+    const WaveVector k = wave_vector(w);
+    double current = 0, charges = 0, frequency_2 = 0;
+    for (const SpeciesCase& s : w.uniform.species) {
+        current += s.density * s.charge * (s.drift_x * k.x + s.drift_z * k.z) / k.size();
+        charges = std::max(charges, s.density * std::fabs(s.charge));
+        frequency_2 += 4 * pi * n0 * s.density * s.charge * s.charge / s.mass;
+    }
+    refuse(std::fabs(current) * k.size() > 0.003 * charges * std::sqrt(frequency_2), wave,
+           " is stated for a plasma without current, and along the mode it has ", current,
+           " e n0 c: choose drifts so that the sum of density, charge and drift is 0");
+}
+
+// Where E along k and across it are not apart, neither dispersion relation holds: drifts across k that do
+// not come in pairs, and temperatures that differ along x and z. A drift across B is no equilibrium.
+void refuse_coupled(const Case& w, const std::string& wave) {
+    const UniformCase& u = w.uniform;
+    const WaveVector k = wave_vector(w);
+    const Eigen::Vector3d along(k.x / k.size(), 0, k.z / k.size()), B(u.B_x, u.B_y, u.B_z);
+    const auto drift = [&](const SpeciesCase& s) {
+        return Eigen::Vector3d(s.drift_x, s.drift_y, s.drift_z);
+    };
+    const auto across = [&](const SpeciesCase& s) -> Eigen::Vector3d {
+        return drift(s) - along * along.dot(drift(s));
+    };
+    const auto alike = [](double a, double b) {
+        return std::fabs(a - b) <= 1e-9 * (std::fabs(a) + std::fabs(b));
+    };
+    const auto are_pair = [&](const SpeciesCase& a, const SpeciesCase& b) {
+        return alike(a.density * a.charge * a.charge * b.mass,
+                     b.density * b.charge * b.charge * a.mass) &&
+               alike(a.temperature_x * b.mass, b.temperature_x * a.mass) &&
+               alike(a.temperature_z * b.mass, b.temperature_z * a.mass) &&
+               std::fabs(along.dot(drift(a) - drift(b))) <= 1e-9 &&
+               (across(a) + across(b)).norm() <= 1e-9;
+    };
+    for (const SpeciesCase& s : u.species) {
+        if (s.charge == 0) continue;
+        refuse(B.norm() > 0 && across(s).norm() > 1e-9, "species '", s.name,
+               "' drifts across uniform.B: ", wave, " wants drifts along it");
+        refuse(k.x * k.z != 0 && s.temperature_x != s.temperature_z, "species '", s.name,
+               "' has another temperature along x than along z, and a wave at an angle to both is "
+               "neither longitudinal nor transverse: make them equal, or the mode along x or z");
+        const auto is_partner = [&](const SpeciesCase& one) { return are_pair(s, one); };
+        refuse(across(s).norm() > 0.02 * c && std::ranges::none_of(u.species, is_partner),
+               "species '", s.name, "' drifts across the mode with ", across(s).norm(),
+               " c, and no other one like it the other way: its waves are neither longitudinal nor "
+               "transverse; take that below 0.02 c, or give it a partner");
+    }
+}
+
 void refuse_uncharged(const Case& w, const std::string& wave) {
     const auto& species = w.uniform.species;
     refuse(std::ranges::all_of(species, [](const SpeciesCase& s) { return s.charge == 0; }), wave,
@@ -150,13 +203,38 @@ void refuse_cold(const Case& w, const std::string& name) {
     refuse_without_near(w, wave);
 }
 
-// The root of D on the mesh that is next to theory.near, or to the one of D without a mesh.
+// Of the roots that Newton's method reaches from places around a frequency the one that is nearest to it. Some
+// of these are where Re D changes its sign: a root beside a harmonic of the gyration is reached from nowhere else.
+template <class Dispersion>
+common::DispersionRoot nearest_root(const Dispersion& D, double frequency) {
+    std::vector<common::Complex> guesses;
+    for (const double part : {1.0, 0.97, 1.03, 0.9, 1.1, 0.8, 1.25, 0.6, 1.6, 0.4, 0.2})
+        for (const double damped : {0.0, 0.05, 0.3})
+            guesses.push_back(frequency * common::Complex(part, -damped * part));
+    constexpr int places = 240;
+    double last = 0;
+    for (int n = 0; n <= places; ++n) {
+        const double at = frequency * (0.7 + 0.7 * n / places), here = D(at).real();
+        if (n > 0 && here * last < 0) guesses.push_back(at - 0.35 * frequency / places);
+        last = here;
+    }
+    common::DispersionRoot best;
+    for (const common::Complex& guess : guesses) {
+        const auto root = common::root_near(D, guess);
+        const bool nearer =
+            !best.found || std::abs(root.omega - frequency) < std::abs(best.omega - frequency);
+        if (root.found && root.omega.real() >= 0 && nearer) best = root;
+    }
+    return best;
+}
+
+// The root of D on the mesh that is next to the one of D without a mesh, or without that to theory.near.
 // errors: InputError when no root was found.
 template <class Dispersion>
 Theory kinetic(const Case& w, const common::DispersionRoot& without, const Dispersion& on_mesh) {
     common::DispersionRoot root;
-    if (w.near != 0 || without.found)
-        root = common::root_near(on_mesh, w.near != 0 ? w.near : without.omega);
+    if (without.found) root = common::root_near(on_mesh, without.omega);
+    if (!root.found && w.near != 0) root = nearest_root(on_mesh, w.near);
     refuse(!root.found, "no root of the ", w.wave, " dispersion relation was found",
            (w.near != 0 ? " near " + format(w.near) : std::string()),
            ": change theory.near, or set theory.wave = \"none\"");
@@ -169,10 +247,9 @@ Theory expect_longitudinal(const Case& w) {
     const auto D = [&](common::Complex omega) {
         return common::longitudinal_dispersion(plasma, k, omega);
     };
-    return kinetic(w,
-                   w.near != 0 ? common::root_near(D, w.near)
-                               : common::fastest_growing_longitudinal(plasma, k),
-                   [&](auto omega) { return longitudinal_dispersion_on_mesh(w, omega); });
+    return kinetic(
+        w, w.near != 0 ? nearest_root(D, w.near) : common::fastest_growing_longitudinal(plasma, k),
+        [&](auto omega) { return longitudinal_dispersion_on_mesh(w, omega); });
 }
 
 Theory expect_transverse(const Case& w) {
@@ -184,8 +261,8 @@ Theory expect_transverse(const Case& w) {
         const auto D = [&](common::Complex omega) {
             return transverse_dispersion(plasma, k, c, sense, omega);
         };
-        const auto found = w.near != 0 ? common::root_near(D, w.near)
-                                       : fastest_growing_transverse(plasma, k, c, sense);
+        const auto found =
+            w.near != 0 ? nearest_root(D, w.near) : fastest_growing_transverse(plasma, k, c, sense);
         const bool better = w.near != 0
                                 ? std::abs(found.omega - w.near) < std::abs(root.omega - w.near)
                                 : found.omega.imag() > root.omega.imag() + 1e-12;
@@ -202,7 +279,7 @@ Theory expect_magnetized(const Case& w) {
     const auto D = [&](common::Complex omega) {
         return magnetized_dispersion(plasma, k, c, omega);
     };
-    return kinetic(w, common::root_near(D, w.near),
+    return kinetic(w, nearest_root(D, w.near),
                    [&](auto omega) { return magnetized_dispersion_on_mesh(w, omega); });
 }
 
@@ -234,26 +311,33 @@ void refuse_magnetized(const Case& w, const std::string& name) {
                ", above 1000: take a stronger uniform.B, or none and \"longitudinal\" or ",
                "\"transverse\"");
     }
+    refuse_current(w, wave);
     refuse_without_near(w, wave);
     expect_magnetized(w);
 }
 void refuse_longitudinal(const Case& w, const std::string& name) {
     refuse_kinetic(w, name);
+    refuse_current(w, "theory.wave = \"" + name + "\"");
+    refuse_coupled(w, "theory.wave = \"" + name + "\"");
     expect_longitudinal(w);
 }
 void refuse_transverse(const Case& w, const std::string& name) {
     refuse_kinetic(w, name);
+    const UniformCase& u = w.uniform;
     const WaveVector k = wave_vector(w);
-    for (const SpeciesCase& s : w.uniform.species) {
+    for (const SpeciesCase& s : u.species) {
+        const double T_plane = k.z == 0 ? s.temperature_z : s.temperature_x;
+        refuse((u.B_x != 0 || u.B_z != 0) && s.temperature_y != T_plane, "species '", s.name,
+               "' has two temperatures across uniform.B, and turns into another one: make them "
+               "equal");
         const double drift = std::hypot(s.drift_x, s.drift_y, s.drift_z);
         refuse(w.mover.relativistic && drift > 0.1 * c, "species '", s.name,
                "' drifts with u = ", drift,
                " c: theory.wave = \"transverse\" takes drifts below 0.1 c where particles are "
                "relativistic");
-        refuse(k.x * k.z != 0 && s.temperature_x != s.temperature_z, "species '", s.name,
-               "' has another temperature along x than along z, and a wave at an angle to both is "
-               "not transverse: make them equal, or the mode along x or z");
     }
+    refuse_current(w, "theory.wave = \"" + name + "\"");
+    refuse_coupled(w, "theory.wave = \"" + name + "\"");
     expect_transverse(w);
 }
 
