@@ -246,7 +246,7 @@ TEST_CASE("gas that turns in balance stays at rest with errors of its order") {
     }
 }
 
-TEST_CASE("a rigid rotation is shown as one in every cell, also beside the axis") {
+TEST_CASE("a rigid rotation is shown as one in every cell and beside the axis") {
     Case w = column(8, 4);
     w.regions = {turning(2, 1.5, 4)};
     FlipRun flip(w);
