@@ -87,7 +87,7 @@ struct Totals {
 struct CellFields {
     Field rho, vx, vz, p, e;
     std::vector<Field> rho_of;  // of each material
-    Field v_theta;              // sum m L/sum m r^2, times r of the middle; empty where nothing turns
+    Field v_theta;              // r sum m L/sum m r^2; empty where nothing turns
 };
 
 /// Where and when a cell is, for messages.
