@@ -456,6 +456,41 @@ TEST_CASE("what theta takes from a wave and from noise is no failure" *
     check_results(run_into("damped", "implicit_moment", run), 3);
 }
 
+TEST_CASE("a wave turned by nearly pi in a step is measured and one seen too rarely is not" *
+          doctest::description("physics")) {
+    // The field is solved to the round-off that such a step leaves.
+    check_results(run_into("long_steps", "implicit_moment",
+                           "implicit_moment/cases/langmuir.toml field.response=mass_matrix "
+                           "time.dt=20 time.end=2000 --threads 1"),
+                  3);
+    const Run rare = run_into("rare", "explicit_em",
+                              "implicit_moment/cases/explicit_langmuir.toml "
+                              "output.history_steps=20 --threads 1");
+    const auto& result = rare.summary["results"]["omega_over_theory"];
+    CHECK(result["verdict"] == "NOT MEASURED");
+    CHECK(holds(result.dump(), "lower output.history_steps"));
+}
+
+TEST_CASE("the root nearest to theory.near is taken and also beside a harmonic of the gyration") {
+    Case w;
+    w.setup = "uniform", w.wave = "magnetized", w.component = "E_x";
+    w.grid = {{32, 0, 1.2, true}, {4, 0, 0.15, true}};
+    w.dt = 0.05, w.uniform.mode_x = 1, w.uniform.B_y = 0.5, w.field.smoothing.passes = 0;
+    SpeciesCase electrons;
+    electrons.name = "electrons", electrons.charge = -1, electrons.mass = 1;
+    electrons.temperature_x = electrons.temperature_y = electrons.temperature_z = 0.01;
+    w.uniform.species = {electrons};
+    // Bernstein's waves, by the zeros of 1 = sum over harmonics, computed apart.
+    for (const auto& [near, omega] :
+         {std::pair{1.2, 1.204}, {1.5, 1.586}, {1.7, 1.586}, {1.9, 2.013}, {2.05, 2.013}}) {
+        CAPTURE(near);
+        w.near = near;
+        const Theory theory = wave_of(w)->expect(w);
+        CHECK(theory.without_mesh.omega.real() == doctest::Approx(omega).epsilon(1e-3));
+        CHECK(theory.omega.real() == doctest::Approx(omega).epsilon(3e-3));
+    }
+}
+
 TEST_CASE("a whistler and an ion cyclotron wave at an angle have the frequencies of the scheme" *
           doctest::description("physics")) {
     const std::string whistler = "implicit_moment/cases/oblique_whistler.toml --threads 1";

@@ -93,7 +93,7 @@ inline void compare_wave(const Case& w, const common::History& history, common::
     const std::string where = theory.source + "; measured " + seen.window;
     summary.hint(likely_cause(w, theory, grows, seen.over));
     const double apart = times.size() > 1 ? times[1] - times[0] : 0;
-    const bool rare = frequency * apart > 0.9 * pi;
+    const bool rare = frequency * apart >= pi;
     const auto report = [&](const std::string& name, common::Measured value) {
         if (rare)
             summary.not_measured(name, "cannot be measured, because rows of the history are " +
