@@ -35,10 +35,17 @@ inline void compare_drift(const Case& w, const common::History& history, common:
         off = std::max(off, (E[n] - theory).norm());
         largest = std::max(largest, theory.norm());
     }
-    summary.hint("few particles per cell shift the frequencies: raise uniform.particles_per_cell");
+    const Eigen::Vector3d B(w.uniform.B_x, w.uniform.B_y, w.uniform.B_z),
+        E_0(w.uniform.E_x, w.uniform.E_y, w.uniform.E_z);
+    const double fast = B.norm() > 0 ? E_0.cross(B).norm() / B.squaredNorm() : 0;
+    summary.hint(w.is_relativistic() && fast > 0.1
+                     ? "the drift c E/B would be " + format(fast) +
+                           " c, and theory has no Lorentz factor: lower uniform.E, or set "
+                           "particles.relativistic = false"
+                     : "few particles per cell shift the frequencies: raise "
+                       "uniform.particles_per_cell");
     summary.result_at_most("mean_E_error", off / largest, "", 0.01, "exact for the scheme");
 
-    const Eigen::Vector3d B(w.uniform.B_x, w.uniform.B_y, w.uniform.B_z);
     double mass = 0, slowest = HUGE_VAL;  // of what has a charge
     Eigen::Vector3d of_neutrals = Eigen::Vector3d::Zero();
     for (const SpeciesCase& s : w.uniform.species) {
