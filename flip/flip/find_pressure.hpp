@@ -116,8 +116,8 @@ inline void find_pressure(const Grid& grid, std::span<const Material> materials,
     if (bad < 0) return;
     const char* cure =
         time > 0 ? "reduce time.cfl, raise viscosity.linear, or take more particles per cell"
-                 : "the balance of the mesh needs less pressure than there is: refine the "
-                   "mesh, raise region.pressure, or take hydrostatic = false";
+                 : "with hydrostatic = true the balance of the mesh takes more pressure from a "
+                   "cell than it has: refine the mesh, or raise region.pressure";
     common::fail("density or internal energy is negative ", cell_and_time(grid, bad, time), ": ",
                  cure, (volumes ? "; where cold gas meets hot gas, flip.density = \"cells\"" : ""));
 }

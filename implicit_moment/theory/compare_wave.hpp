@@ -96,9 +96,10 @@ inline void compare_wave(const Case& w, const common::History& history, common::
     const bool rare = frequency * apart >= pi;
     const auto report = [&](const std::string& name, common::Measured value) {
         if (rare)
-            summary.not_measured(name, "cannot be measured, because rows of the history are " +
-                                           format(apart) + " apart, and half a period is " +
-                                           format(pi / frequency) + ": lower output.history_steps");
+            summary.not_measured(
+                name, "cannot be measured, because rows of the history are " + format(apart) +
+                          " apart, and half a period is " + format(pi / frequency) + ": lower " +
+                          (w.leapfrog.chosen ? "output.history_steps" : "time.dt"));
         else if (seen.found)
             summary.result(name, value, "", 1, tolerance, where);
         else

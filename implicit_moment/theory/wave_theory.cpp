@@ -105,28 +105,28 @@ void refuse_current(const Case& w, const std::string& wave) {
            " e n0 c: choose drifts so that the sum of density, charge and drift is 0");
 }
 
-// Where E along k and across it are not apart, neither dispersion relation holds: drifts across k that do
-// not come in pairs, and temperatures that differ along x and z. A drift across B is no equilibrium.
-void refuse_coupled(const Case& w, const std::string& wave) {
+// Where E along k and across it are not apart, neither dispersion relation holds: temperatures that differ along
+// x and z, and drifts u across k of species that answer alike along it, but where sum omega_s^2 u is 0 for
+// these, as of beams that go opposite ways. What is transverse needs the products of the two parts of u to
+// cancel, too. A drift across B is no equilibrium.
+void refuse_coupled(const Case& w, const std::string& wave, bool transverse) {
     const UniformCase& u = w.uniform;
     const WaveVector k = wave_vector(w);
     const Eigen::Vector3d along(k.x / k.size(), 0, k.z / k.size()), B(u.B_x, u.B_y, u.B_z);
     const auto drift = [&](const SpeciesCase& s) {
         return Eigen::Vector3d(s.drift_x, s.drift_y, s.drift_z);
     };
-    const auto across = [&](const SpeciesCase& s) -> Eigen::Vector3d {
-        return drift(s) - along * along.dot(drift(s));
+    // Along y and in the plane.
+    const auto across = [&](const SpeciesCase& s) {
+        return Eigen::Vector2d(s.drift_y, s.drift_z * along[0] - s.drift_x * along[2]);
     };
-    const auto alike = [](double a, double b) {
-        return std::fabs(a - b) <= 1e-9 * (std::fabs(a) + std::fabs(b));
-    };
-    const auto are_pair = [&](const SpeciesCase& a, const SpeciesCase& b) {
-        return alike(a.density * a.charge * a.charge * b.mass,
-                     b.density * b.charge * b.charge * a.mass) &&
-               alike(a.temperature_x * b.mass, b.temperature_x * a.mass) &&
+    const auto answer_alike = [&](const SpeciesCase& a, const SpeciesCase& b) {
+        const auto alike = [](double one, double other) {
+            return std::fabs(one - other) <= 1e-9 * (std::fabs(one) + std::fabs(other));
+        };
+        return alike(a.temperature_x * b.mass, b.temperature_x * a.mass) &&
                alike(a.temperature_z * b.mass, b.temperature_z * a.mass) &&
-               std::fabs(along.dot(drift(a) - drift(b))) <= 1e-9 &&
-               (across(a) + across(b)).norm() <= 1e-9;
+               std::fabs(along.dot(drift(a) - drift(b))) <= 1e-9;
     };
     for (const SpeciesCase& s : u.species) {
         if (s.charge == 0) continue;
@@ -135,11 +135,19 @@ void refuse_coupled(const Case& w, const std::string& wave) {
         refuse(k.x * k.z != 0 && s.temperature_x != s.temperature_z, "species '", s.name,
                "' has another temperature along x than along z, and a wave at an angle to both is "
                "neither longitudinal nor transverse: make them equal, or the mode along x or z");
-        const auto is_partner = [&](const SpeciesCase& one) { return are_pair(s, one); };
-        refuse(across(s).norm() > 0.02 * c && std::ranges::none_of(u.species, is_partner),
-               "species '", s.name, "' drifts across the mode with ", across(s).norm(),
+        Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+        double product = 0, all = 0;
+        for (const SpeciesCase& other : u.species) {
+            if (!answer_alike(s, other)) continue;
+            const double weight = other.density * other.charge * other.charge / other.mass;
+            sum += weight * across(other), product += weight * across(other).prod(), all += weight;
+        }
+        const bool mixed = transverse && std::fabs(product) > 4e-4 * c * c * all;
+        refuse(mixed || sum.norm() > 0.02 * c * all, "species '", s.name,
+               "' drifts across the mode with ", across(s).norm(),
                " c, and no other one like it the other way: its waves are neither longitudinal nor "
-               "transverse; take that below 0.02 c, or give it a partner");
+               "transverse; take that below 0.02 c, or give it a partner",
+               (mixed ? ", and drifts along y or in the plane, not both" : ""));
     }
 }
 
@@ -234,7 +242,10 @@ template <class Dispersion>
 Theory kinetic(const Case& w, const common::DispersionRoot& without, const Dispersion& on_mesh) {
     common::DispersionRoot root;
     if (without.found) root = common::root_near(on_mesh, without.omega);
-    if (!root.found && w.near != 0) root = nearest_root(on_mesh, w.near);
+    // Newton's method may leap from one to another.
+    const double size = std::abs(without.omega);
+    if (w.near != 0 && !(root.found && std::abs(root.omega - without.omega) < 0.2 * size))
+        root = nearest_root(on_mesh, without.found ? size : w.near);
     refuse(!root.found, "no root of the ", w.wave, " dispersion relation was found",
            (w.near != 0 ? " near " + format(w.near) : std::string()),
            ": change theory.near, or set theory.wave = \"none\"");
@@ -318,7 +329,7 @@ void refuse_magnetized(const Case& w, const std::string& name) {
 void refuse_longitudinal(const Case& w, const std::string& name) {
     refuse_kinetic(w, name);
     refuse_current(w, "theory.wave = \"" + name + "\"");
-    refuse_coupled(w, "theory.wave = \"" + name + "\"");
+    refuse_coupled(w, "theory.wave = \"" + name + "\"", false);
     expect_longitudinal(w);
 }
 void refuse_transverse(const Case& w, const std::string& name) {
@@ -337,7 +348,7 @@ void refuse_transverse(const Case& w, const std::string& name) {
                "relativistic");
     }
     refuse_current(w, "theory.wave = \"" + name + "\"");
-    refuse_coupled(w, "theory.wave = \"" + name + "\"");
+    refuse_coupled(w, "theory.wave = \"" + name + "\"", true);
     expect_transverse(w);
 }
 
