@@ -219,6 +219,46 @@ TEST_CASE("a cold species is the limit of a warm one") {
     }
 }
 
+TEST_CASE("a slow stream answers as a species without Lorentz factor") {
+    PlasmaSpecies species = electrons(1.3);
+    species.drift = 0.4, species.temperature_across = 0.09;
+    for (const double spread : {0.0, 0.1}) {
+        species.temperature_along = spread * spread;
+        const implicit_moment::Stream stream{1.69, 0.4, 0.3, spread};
+        for (const double part_of_E : {1.0, 0.7})
+            for (const Complex w : {Complex(0.7, 0.2), Complex(-1.3, 0.1)})
+                CHECK(distance(implicit_moment::stream_response(stream, 0.8, 1e5, w, part_of_E),
+                               implicit_moment::transverse_response(species, 0.8, 1, w,
+                                                                    part_of_E)) <= 1e-9);
+    }
+}
+
+TEST_CASE("a cold stream answers a transverse wave alike in all frames that move along it") {
+    // omega_s^2 counts n/gamma, and the response relates J to A across k: no frame changes them.
+    const double k = 0.9, V = 0.7, gamma = 1 / std::sqrt(1 - V * V), v_k = 0.5, v_E = 0.6;
+    const implicit_moment::Stream here{1.3, v_k, v_E, 0},
+        there{1.3, (v_k - V) / (1 - v_k * V), v_E / (gamma * (1 - v_k * V)), 0};
+    for (const double w : {0.4, 1.7})
+        CHECK(distance(implicit_moment::stream_response(here, k, 1, w),
+                       implicit_moment::stream_response(there, gamma * (k - V * w), 1,
+                                                        gamma * (w - V * k))) <= 1e-12);
+}
+
+TEST_CASE("short filaments of two cold beams grow at beta omega_p over gamma to the half") {
+    const double gamma = 3, beta = std::sqrt(1 - 1 / (gamma * gamma)), k = 300;
+    const std::vector<implicit_moment::Stream> beams{{0.5 / gamma, 0, beta, 0},
+                                                     {0.5 / gamma, 0, -beta, 0}};
+    const auto root = common::root_near(
+        [&](Complex w) {
+            Complex D = w * w - k * k;
+            for (const auto& beam : beams) D += implicit_moment::stream_response(beam, k, 1, w);
+            return D;
+        },
+        Complex(0, 0.5));
+    CHECK(root.found);
+    CHECK(distance(root.omega, Complex(0, beta / std::sqrt(gamma))) <= 1e-5);
+}
+
 TEST_CASE("a dispersion relation moves with the plasma") {
     std::vector<PlasmaSpecies> plasma{electrons(1.0), electrons(0.4)};
     plasma[0].temperature_along = 0.04;

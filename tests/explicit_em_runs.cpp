@@ -76,6 +76,20 @@ TEST_CASE("two cold streams grow at the rate of linear theory" * doctest::descri
 TEST_CASE("Weibel filaments grow at the rate of linear theory" * doctest::description("physics")) {
     passing("weibel", cases + "weibel.toml", 2);
     passing("weibel", cases + "weibel.toml particles.order=2", 2);
+    // Electrons of half the speed of light, and beams of gamma = 5^(1/2).
+    passing("heavy",
+            cases + "weibel.toml particles.relativistic=true species.electrons.temperature_y=0.3",
+            2);
+    std::string beams =
+        "two_stream.toml particles.relativistic=true time.dt=0.04 time.end=30"
+        " grid.length_x=4.189 grid.length_z=0.262 uniform.particles_per_cell=256"
+        " theory.wave=transverse theory.component=B_z uniform.wave_B_z=3e-5";
+    for (const auto& [name, drift] : {std::pair{"right", "2"}, {"left", "-2"}}) {
+        const std::string one = std::string(" species.") + name;
+        beams += one + ".drift_x=0" + one + ".drift_y=" + drift + one + ".temperature_y=0.09" +
+                 one + ".temperature_x=4e-4" + one + ".wave_x=0";
+    }
+    passing("beams", cases + beams, 2);
 }
 
 TEST_CASE("a small GEM challenge keeps its energy and its constraints" *

@@ -297,13 +297,16 @@ TEST_CASE("a dam breaks with the air that it had and a pond under air lies still
     const Run dam = run("flip", "dam_with_air", "dam_break_air");
     check_results(dam, 1);
     check_conserved(dam);
-    for (const char* pressure : {"explicit", "implicit"}) {
-        CAPTURE(std::string(pressure));
-        const Run pond =
-            run("flip", "pond", "pond", "grid.cells_x=6 flip.pressure=" + std::string(pressure));
-        check_results(pond, 1);
-        CHECK(pond.value("kinetic_energy") <= 1e-20);
-    }
+    for (const char* pressure : {"explicit", "implicit"})
+        for (const char* geometry : {"plane", "axisymmetric"}) {
+            CAPTURE(std::string(pressure));
+            CAPTURE(std::string(geometry));
+            const Run pond = run("flip", "pond", "pond",
+                                 "grid.cells_x=6 flip.pressure=" + std::string(pressure) +
+                                     " grid.geometry=" + geometry);
+            check_results(pond, 1);
+            CHECK(pond.value("kinetic_energy") <= 1e-20);
+        }
     const Run of_pic = run("pic", "pond", "pond", "grid.cells_x=6");
     check_results(of_pic, 1);
     CHECK(of_pic.value("kinetic_energy") <= 1e-20);

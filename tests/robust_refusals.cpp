@@ -943,8 +943,8 @@ implicit_moment beam particles.relativistic=true field.rotation=mesh
 implicit_moment beam particles.relativistic=true field.solver=newton_krylov
     field.solver = "newton_krylov" turns moments by one angle, and relativistic particles
 implicit_moment beam particles.relativistic=true species.beam.drift_x=2 theory.wave=transverse \
-    theory.component=B_z
-    species 'beam' drifts with u = 2 c: theory.wave = "transverse" takes drifts below 0.1 c
+    theory.component=B_z uniform.B_x=1
+    species 'beam' drifts with u = 2 c: with uniform.B theory.wave = "transverse" takes drifts below
 plasmas uniform uniform.E_x=1e-3 grid.boundary_x=wall
     seeded fields need periodic boundaries: take out uniform.E_*
 plasmas uniform uniform.mode_z=1 uniform.wave_B_x=1e-3 uniform.wave_B_z=-5e-4 uniform.phase_B_z=9

@@ -56,7 +56,10 @@ inline void compare_rest(const FinishedRun& run) {
                                largest_kinetic_at_rest, "the pressure balances gravity");
 }
 
-inline constexpr Comparison rest_comparison{"rest",       validate_rest, nullptr,
-                                            warn_of_rest, nullptr,       compare_rest};
+inline constexpr Comparison rest_comparison{.name = "rest",
+                                            .validate = validate_rest,
+                                            .warn = warn_of_rest,
+                                            .compare = compare_rest,
+                                            .axisymmetric = true};
 
 }  // namespace flip

@@ -32,15 +32,26 @@ inline double swing_in_cells(const Case& w, double omega) {
     return cells;
 }
 
+/// The largest T/m for which theory has no Lorentz factor: by it an electron of mass gamma m answers less. That of
+/// transverse waves without B has it for all that moves across k.
+inline double heat_without_gamma(const Case& w) {
+    const UniformCase& u = w.uniform;
+    const WaveVector k = wave_vector(w);
+    const bool along = w.wave == "transverse" && u.B_x == 0 && u.B_y == 0 && u.B_z == 0;
+    double heat = 0;
+    for (const SpeciesCase& s : u.species)
+        heat = std::max({heat, along && k.x == 0 ? 0 : s.temperature_x / s.mass,
+                         along ? 0 : s.temperature_y / s.mass,
+                         along && k.z == 0 ? 0 : s.temperature_z / s.mass});
+    return heat;
+}
+
 /// Why a wave may differ from theory, and what to change.
 inline std::string likely_cause(const Case& w, const Theory& theory, bool grows, bool over) {
-    double heat = 0;
-    for (const SpeciesCase& s : w.uniform.species)
-        heat = std::max(
-            {heat, s.temperature_x / s.mass, s.temperature_y / s.mass, s.temperature_z / s.mass});
-    // An electron of mass gamma m answers less, by the same part.
+    const double heat = heat_without_gamma(w);
     if (!theory.of_scheme && w.is_relativistic() && heat > 0.003)
-        return "theory is without Lorentz factor, and particles with thermal speeds of " +
+        return "theory is without the Lorentz factor of this heat, and particles with thermal "
+               "speeds of " +
                format(std::sqrt(heat)) + " c are heavier by some " + format(heat) +
                " of their mass: set particles.relativistic = false, or lower the temperatures";
     if (over)

@@ -50,6 +50,36 @@ inline common::Complex transverse_dispersion(std::span<const common::PlasmaSpeci
     return D;
 }
 
+/// The part of a species whose particles have one velocity across k, where masses are gamma m.
+struct Stream {
+    double frequency_squared = 0;  // 4 pi n q^2 / (gamma m)
+    double along = 0, across = 0;  // mean velocities v_k along k and v_E along E
+    double spread = 0;             // thermal speed along k
+};
+
+/// What a stream adds to D below, without B_0, from d v = (d u - v (v . d u)/c^2)/gamma and its continuity
+/// equation; S is the part of E that particles feel, and < > the mean over velocities v along k.
+///     -omega_s^2 { (1 - v_E^2/c^2) <f> + k^2 v_E^2 (1 - v_k^2/c^2) <1/w^2> - k v_k v_E^2/c^2 <(1 + f)/w> },
+///     w = omega - k v,   f = 1 - (1 - S) omega/w
+/// exact: for spread << c. Where streams answer E along k, too, others have to cancel that.
+inline common::Complex stream_response(const Stream& s, double k, double light,
+                                       common::Complex omega, double part_of_E = 1) {
+    const common::Complex doppler = omega - k * s.along;
+    const double kv = std::abs(k) * s.spread;
+    common::Complex by_w = 1.0 / doppler, by_w_squared = by_w * by_w;
+    if (kv > 0) {
+        const auto f =
+            common::plasma_dispersion_detail::values(doppler / (std::numbers::sqrt2 * kv));
+        by_w = -f.Z / (std::numbers::sqrt2 * kv);
+        by_w_squared = -f.one_plus_zeta_Z / (kv * kv);
+    }
+    const double v_k = s.along / light, v_E = s.across / light;
+    const common::Complex lost = (1 - part_of_E) * omega;
+    return -s.frequency_squared * ((1 - v_E * v_E) * (1.0 - lost * by_w) +
+                                   std::pow(k * s.across, 2) * (1 - v_k * v_k) * by_w_squared -
+                                   k * s.along * v_E * v_E * (2.0 * by_w - lost * by_w_squared));
+}
+
 /// The fastest growing (or least damped) transverse wave of wave number k.
 inline common::DispersionRoot fastest_growing_transverse(
     std::span<const common::PlasmaSpecies> plasma, double k, double light, int sense) {

@@ -1,8 +1,11 @@
 // What wave_theory.hpp declares: what each wave needs of a case, and the root of its dispersion relation.
 #include "implicit_moment/theory/wave_theory.hpp"
 
+#include <gsl/gsl_integration.h>
+
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <vector>
 
 #include "common/theory/kinetic_dispersion.hpp"
@@ -63,6 +66,79 @@ std::vector<common::PlasmaSpecies> longitudinal_species(const Case& w, WaveVecto
     return plasma;
 }
 
+// A part of a Maxwellian of one component of u: its value there, and its share.
+struct ShareOfMaxwellian {
+    double u = 0, share = 1;
+};
+
+// Gauss and Hermite's points of a Maxwellian with mean u and variance T/m.
+// exact: for polynomials of u to the 23rd power
+std::vector<ShareOfMaxwellian> shares_of_maxwellian(double u, double variance) {
+    if (variance == 0) return {{u, 1}};
+    constexpr std::size_t count = 12;
+    const std::unique_ptr<gsl_integration_fixed_workspace, decltype(&gsl_integration_fixed_free)>
+        points(gsl_integration_fixed_alloc(gsl_integration_fixed_hermite, count, u, 0.5 / variance,
+                                           0, 0),
+               gsl_integration_fixed_free);
+    std::vector<ShareOfMaxwellian> shares;
+    for (std::size_t n = 0; n < count; ++n)
+        shares.push_back(
+            {gsl_integration_fixed_nodes(points.get())[n],
+             gsl_integration_fixed_weights(points.get())[n] / std::sqrt(2 * pi * variance)});
+    return shares;
+}
+
+// The species of a uniform case where u = gamma v, as streams for a wave across k.
+// note:  gamma counts the mean square of u along k.
+std::vector<Stream> streams_of(const Case& w, WaveVector k) {
+    const double along_x = k.x / k.size(), along_z = k.z / k.size();
+    std::vector<Stream> streams;
+    for (const SpeciesCase& s : w.uniform.species) {
+        double T_E = s.temperature_y, u_E = s.drift_y,
+               T_other = s.temperature_x * along_z * along_z + s.temperature_z * along_x * along_x,
+               u_other = s.drift_z * along_x - s.drift_x * along_z;
+        if (!has_E_along_y(w)) std::swap(T_E, T_other), std::swap(u_E, u_other);
+        const double u_k = s.drift_x * along_x + s.drift_z * along_z,
+                     variance = (s.temperature_x * along_x * along_x +
+                                 s.temperature_z * along_z * along_z) /
+                                s.mass;
+        for (const auto& one : shares_of_maxwellian(u_E, T_E / s.mass))
+            for (const auto& other : shares_of_maxwellian(u_other, T_other / s.mass)) {
+                const double gamma = std::sqrt(
+                                 1 + (u_k * u_k + variance + one.u * one.u + other.u * other.u) /
+                                         (c * c)),
+                             v_k = u_k / gamma;
+                streams.push_back({4 * pi * n0 * s.density * one.share * other.share * s.charge *
+                                       s.charge / (s.mass * gamma),
+                                   v_k, one.u / gamma,
+                                   std::sqrt(variance) * (1 - v_k * v_k / (c * c)) / gamma});
+            }
+    }
+    return streams;
+}
+
+// All that answers a transverse wave: species, or streams where particles weigh gamma m and nothing turns them.
+struct TransverseAnswer {
+    std::vector<common::PlasmaSpecies> plasma;
+    std::vector<Stream> streams;
+    common::Complex operator()(double k, int sense, common::Complex omega,
+                               double part_of_E = 1) const {
+        common::Complex sum = 0;
+        for (const Stream& s : streams) sum += stream_response(s, k, c, omega, part_of_E);
+        if (!streams.empty()) return sum;
+        for (const auto& s : plasma) sum += transverse_response(s, k, sense, omega, part_of_E);
+        return sum;
+    }
+};
+TransverseAnswer transverse_answer(const Case& w) {
+    const UniformCase& u = w.uniform;
+    const WaveVector k = wave_vector(w);
+    TransverseAnswer answer{theory_species(w, k), {}};
+    if (w.is_relativistic() && u.B_x == 0 && u.B_y == 0 && u.B_z == 0)
+        answer.streams = streams_of(w, k);
+    return answer;
+}
+
 // Of the theta scheme: omega from the complex factor of one step.
 Theory of_factor(const Case& w, std::complex<double> g) {
     return {std::complex<double>(std::fabs(std::arg(g)), std::log(std::abs(g))) / w.dt,
@@ -90,13 +166,20 @@ void refuse_kinetic(const Case& w, const std::string& name) {
            "uniform.B across the mode, or choose \"magnetized\" or \"cold\" for theory.wave");
 }
 
+// The mean velocity of a species.
+Eigen::Vector3d mean_velocity(const Case& w, const SpeciesCase& s) {
+    const Eigen::Vector3d u(s.drift_x, s.drift_y, s.drift_z);
+    return w.is_relativistic() ? Eigen::Vector3d(u / std::sqrt(1 + u.squaredNorm() / (c * c))) : u;
+}
+
 // A current along k begins to oscillate with the plasma frequency, and what moved on the average rests on the
 // average: no wave keeps its frequency.
 void refuse_current(const Case& w, const std::string& wave) {
     const WaveVector k = wave_vector(w);
     double current = 0, charges = 0, frequency_2 = 0;
     for (const SpeciesCase& s : w.uniform.species) {
-        current += s.density * s.charge * (s.drift_x * k.x + s.drift_z * k.z) / k.size();
+        const Eigen::Vector3d v = mean_velocity(w, s);
+        current += s.density * s.charge * (v[0] * k.x + v[2] * k.z) / k.size();
         charges = std::max(charges, s.density * std::fabs(s.charge));
         frequency_2 += 4 * pi * n0 * s.density * s.charge * s.charge / s.mass;
     }
@@ -126,7 +209,10 @@ void refuse_coupled(const Case& w, const std::string& wave, bool transverse) {
         };
         return alike(a.temperature_x * b.mass, b.temperature_x * a.mass) &&
                alike(a.temperature_z * b.mass, b.temperature_z * a.mass) &&
-               std::fabs(along.dot(drift(a) - drift(b))) <= 1e-9;
+               std::fabs(along.dot(drift(a) - drift(b))) <= 1e-9 &&
+               // What weighs gamma m answers as gamma says.
+               (!w.is_relativistic() ||
+                std::fabs(drift(a).squaredNorm() - drift(b).squaredNorm()) <= 0.01 * c * c);
     };
     for (const SpeciesCase& s : u.species) {
         if (s.charge == 0) continue;
@@ -265,15 +351,16 @@ Theory expect_longitudinal(const Case& w) {
 
 Theory expect_transverse(const Case& w) {
     const double k = wave_vector(w).size();
-    const auto plasma = theory_species(w, wave_vector(w));
+    const TransverseAnswer answer = transverse_answer(w);
     common::DispersionRoot root;
     int sense_of_root = 1;
     for (const int sense : {+1, -1}) {
         const auto D = [&](common::Complex omega) {
-            return transverse_dispersion(plasma, k, c, sense, omega);
+            return omega * omega - c * c * k * k + answer(k, sense, omega);
         };
-        const auto found =
-            w.near != 0 ? nearest_root(D, w.near) : fastest_growing_transverse(plasma, k, c, sense);
+        const auto found = w.near != 0 ? nearest_root(D, w.near)
+                                       : common::fastest_growing_root(
+                                             D, common::fan_of_guesses(answer.plasma, k, c));
         const bool better = w.near != 0
                                 ? std::abs(found.omega - w.near) < std::abs(root.omega - w.near)
                                 : found.omega.imag() > root.omega.imag() + 1e-12;
@@ -342,10 +429,10 @@ void refuse_transverse(const Case& w, const std::string& name) {
                "' has two temperatures across uniform.B, and turns into another one: make them "
                "equal");
         const double drift = std::hypot(s.drift_x, s.drift_y, s.drift_z);
-        refuse(w.mover.relativistic && drift > 0.1 * c, "species '", s.name,
-               "' drifts with u = ", drift,
-               " c: theory.wave = \"transverse\" takes drifts below 0.1 c where particles are "
-               "relativistic");
+        refuse(w.is_relativistic() && (u.B_x != 0 || u.B_z != 0) && drift > 0.1 * c, "species '",
+               s.name, "' drifts with u = ", drift,
+               " c: with uniform.B theory.wave = \"transverse\" takes drifts below 0.1 c where "
+               "particles are relativistic");
     }
     refuse_current(w, "theory.wave = \"" + name + "\"");
     refuse_coupled(w, "theory.wave = \"" + name + "\"", true);
@@ -371,7 +458,7 @@ common::Complex longitudinal_dispersion_on_mesh(const Case& w, common::Complex o
 
 common::Complex transverse_dispersion_on_mesh(const Case& w, int sense, common::Complex omega) {
     const WaveVector k = wave_vector(w), K = mesh_wave_vector(w);
-    const auto plasma = theory_species(w, k);
+    const TransverseAnswer answer = transverse_answer(w);
     const double S = smoothing_of_mode(w);
     const Eigen::Vector3d e =
         has_E_along_y(w) ? Eigen::Vector3d(0, 1, 0) : Eigen::Vector3d(K.z, 0, -K.x) / K.size();
@@ -379,7 +466,7 @@ common::Complex transverse_dispersion_on_mesh(const Case& w, int sense, common::
     for (const ImageOfMode& image : images_of_mode(w)) {
         const double k_m = std::copysign(image.k.size(), k.x * image.k.x + k.z * image.k.z),
                      weight = S * image.weight.cwiseProduct(e).squaredNorm();
-        for (const auto& s : plasma) D += weight * transverse_response(s, k_m, sense, omega, S);
+        D += weight * answer(k_m, sense, omega, S);
     }
     return D;
 }
