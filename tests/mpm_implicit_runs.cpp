@@ -291,6 +291,33 @@ TEST_CASE("what plates hold keeps pressing or the run says that it does not" *
     CHECK(rings.value("held_force") < 0.1);
 }
 
+TEST_CASE("a column under its weight stays at rest or the run says that it does not" *
+          doctest::description("physics")) {
+    const std::string column =
+        "grid.cells_x=8 grid.cells_y=24 grid.length_x=0.4 boundary.y_high=open"
+        " material.default.E=2e5 material.default.nu=0.3 material.default.density=1000"
+        " grain.body.profile=none grain.body.amplitude=0 grain.body.x=0.2 grain.body.y=0.5"
+        " grain.body.width=0.4 grain.body.height=1 load.gravity_y=-10 load.rise=4"
+        " method.shape=quadratic time.alpha=4 time.end=9 theory.compare=none method.theta=";
+    const Run moves = run("column", "standing_wave", column + "0.5"),
+              rests = run("column", "standing_wave", column + "0.51");
+    CHECK(moves.summary["results"]["kinetic_after_rest"]["verdict"] == "FAIL");
+    CHECK(moves.summary["warnings"].dump().find("under weight noise may grow") !=
+          std::string::npos);
+    CHECK(rests.value("kinetic_after_rest") <= 1e-6);
+    CHECK(rests.summary["warnings"].empty());
+}
+
+TEST_CASE("disks that meet along y keep their momentum as along x" *
+          doctest::description("physics")) {
+    const Run r = run("upward", "rebound",
+                      "grid.cells_x=24 grid.cells_y=48 grid.length_x=0.6 grain.left.x=0.3"
+                      " grain.left.y=0.35 grain.right.x=0.3 grain.right.y=0.85"
+                      " grain.left.velocity_x=0 grain.right.velocity_x=0"
+                      " grain.left.velocity_y=0.1 grain.right.velocity_y=-0.1");
+    check_results(r, 8);
+}
+
 TEST_CASE("a bar swings and decays as the exact factor of a step says" *
           doctest::description("physics")) {
     double slowest = 0;

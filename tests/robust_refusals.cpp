@@ -798,6 +798,23 @@ grains rolling_cylinder.toml grain.plate.y=0.35
 grains rolling_cylinder.toml load.gravity_y=1
     theory.compare = "rolling" needs one grain, a rigid plate, and an inclined gravity:
     load.gravity_x not 0, load.gravity_y below 0
+grains incline_block.toml grain.block.velocity_x=1
+    theory.compare = "block" is of a grain that starts at rest: take out velocity_x, velocity_y,
+    spin and amplitude of 'block'
+grains rolling_cylinder.toml grain.cylinder.spin=5
+    theory.compare = "rolling" is of a grain that starts at rest: take out velocity_x, velocity_y,
+    spin and amplitude of 'cylinder'
+grains incline_block.toml grain.block.y=0.3
+    theory.compare = "block" needs a grain on its plate, and 'block' begins 0.05 above: lower it
+grains incline_block.toml grain.block.height=0.3 grain.block.y=0.3 grain.block.width=0.1 contact.friction=0.5
+    theory.compare = "block" is of a block that does not topple, and friction turns this one over
+    its lower edge: make it wider than 0.15
+grains vibrating_bar.toml grain.bar.mode=10 material.default.nu=0.3
+    theory.compare = "bar" is of a thin bar, and this one, whose height is 3.125
+mpm_implicit billet.toml grain.top.velocity_y=1e-3
+    theory.compare = "billet": plate 'top' moves away from
+grains disks time.energy_limit=0.5
+    time.energy_limit = 0.5 is what a run begins with: raise it above 1, or set 0 for none
 grains incline_block.toml theory.compare=rolling -> theory.compare = "rolling" needs a disk
 grains mesh left theory.compare=disk
 grains disks theory.compare=disk

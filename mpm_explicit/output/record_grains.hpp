@@ -115,6 +115,7 @@ class Recorder {
                                         double(step) * scales_.dt};
         theory::judge_free_grains(ended, run.summary);
         theory::judge_held_grain(ended, run.summary);
+        theory::judge_weight(ended, run.summary);
         if (comparison_ != nullptr && comparison_->result != nullptr)
             comparison_->result(ended, run.summary);
     }

@@ -82,6 +82,9 @@ inline void validate(const Case& parameters) {
     common::require_formats(parameters.also);
     const Problem& problem = parameters.problem;
     const Mesh mesh = problem.mesh();
+    refuse(parameters.energy_limit > 0 && parameters.energy_limit <= 1,
+           "time.energy_limit = " + format(parameters.energy_limit) +
+               " is what a run begins with: raise it above 1, or set 0 for none");
     const double far = std::max(std::fabs(mesh.x_low), std::fabs(mesh.y_low)) / mesh.h;
     refuse(far > 1e9, "the mesh begins " + format(far) +
                           " cells from the origin, more than 1e9, where places are lost to "

@@ -173,7 +173,8 @@ inline void describe_grain(common::ParameterTable& table, const std::string& pre
                "rigid: file with a time, a travel along x and, if any, one along y in each line");
     table.choice(at + "control", g.control, {"velocity", "force_x", "force_y"},
                  "rigid: prescribed velocity, or force control in one direction");
-    table.real(at + "force", g.force, "force", anything(), "force control: on the grain");
+    table.real(at + "force", g.force, "force", anything(),
+               "force control: on the grain, besides which no gravity acts on it");
     table.real(at + "damping", g.damping, "force/velocity", at_least(0), "force control: dashpot");
 }
 

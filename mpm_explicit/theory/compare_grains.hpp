@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,20 @@ inline void need_incline(const PlannedCase& planned) {
     planned.refuse(
         !below,
         " needs a rigid plate below the grain: turn the case, so that x is along the plate");
+    const GrainCase& from = planned.plans[planned.target()].from;
+    planned.refuse(
+        from.velocity_x != 0 || from.velocity_y != 0 || from.spin != 0 || from.amplitude != 0,
+        " is of a grain that starts at rest: take out velocity_x, velocity_y, spin and "
+        "amplitude of '" +
+            from.name + "'");
+    double top = -std::numeric_limits<double>::infinity();
+    for (const PlannedGrain& plan : planned.plans)
+        if (const Bounds plate = bounds(plan.outline);
+            planned.is_rigid(plan) && plate.y_high < 0.5 * (grain.y_low + grain.y_high))
+            top = std::max(top, plate.y_high);
+    planned.refuse(grain.y_low - top > 0.1 * problem.mesh().h,
+                   " needs a grain on its plate, and '" + from.name + "' begins " +
+                       format(grain.y_low - top) + " above: lower it");
 }
 
 /// Friction between the target grain and theory.plate, or the first rigid grain.
@@ -96,6 +111,20 @@ inline void compare_incline(const FinishedRun& run,
         if (times[n] >= from) rows += 1, touching += pressed[n] > 0 ? 1 : 0;
     summary.result_info("contact_time_share", touching / rows, "1",
                         "share of the rows in which the plate presses; below 1 the grain hops");
+}
+
+/// Needs what an incline needs, and a block that does not topple: friction, min(mu, tan) of its weight,
+/// pulls at the bottom, half a height below the center.
+inline void need_block(const PlannedCase& planned) {
+    need_incline(planned);
+    const Problem& problem = planned.parameters.problem;
+    const Bounds block = bounds(planned.plans[planned.target()].outline);
+    const double slope =
+        std::min(friction_on_plate(planned), std::fabs(problem.gravity_x / problem.gravity_y));
+    planned.refuse(slope * (block.y_high - block.y_low) >= block.x_high - block.x_low,
+                   " is of a block that does not topple, and friction turns this one over its "
+                   "lower edge: make it wider than " +
+                       format(slope * (block.y_high - block.y_low)));
 }
 
 /// A block slides, or friction holds it.
@@ -159,9 +188,17 @@ inline void compare_rolling(const FinishedRun& run, common::Summary& summary) {
 // ---- a grain at rest on a rigid plate -----------------------------------------------------------
 
 /// What moves a grain that should rest.
-inline constexpr const char* rest_hint =
-    "what presses comes to rest with contact.levels = 2, method.shape = \"linear\", surfaces on "
-    "lines of nodes, and a load.rise of many periods of the block: lengthen load.rise";
+inline std::string rest_hint(const FinishedRun& run) {
+    const Case& w = run.parameters;
+    if (run.planned.scheme.implicit)
+        return "stress that is held turns into noise of the mesh where nothing damps what rings: "
+               "set method.theta = 0.51, or material.<name>.viscosity = " +
+               format(0.1 * run.scales.dt) + ", a tenth of a step, and lengthen load.rise";
+    std::string hint = "lengthen load.rise to many periods of the block";
+    if (w.problem.contact.levels != 2) hint += ", take contact.levels = 2";
+    if (w.shape != "linear") hint += ", take method.shape = \"linear\"";
+    return hint + ", and put surfaces on lines of nodes";
+}
 
 /// Needs one grain, a rigid plate, and gravity towards it.
 inline void need_rest(const PlannedCase& planned) {
@@ -185,7 +222,7 @@ inline void compare_rest(const FinishedRun& run, common::Summary& summary) {
         double& quarter = times[n] < 0.75 * run.end ? third : last;
         quarter = std::max(quarter, kinetic[n]);
     }
-    summary.hint(rest_hint);
+    summary.hint(rest_hint(run));
     summary.result_at_most("kinetic_over_weight", std::max(third, last) / weight, "1", 1e-6,
                            "at rest, over m g h, in the second half of the run");
     summary.result_at_most("kinetic_grows", (last - third) / weight, "1", 1e-8,

@@ -52,6 +52,9 @@ inline void need_press(const PlannedCase& planned) {
         const Bounds plate = bounds(plan.outline);
         const double gap =
             std::min(std::fabs(plate.y_low - box.y_high), std::fabs(plate.y_high - box.y_low));
+        planned.refuse(plan.from.velocity_y * (plate.y_low - box.y_low) > 0,
+                       ": plate '" + plan.name + "' moves away from '" + block.name +
+                           "': turn its velocity_y");
         planned.refuse(
             plate.x_low > box.x_low || plate.x_high < box.x_high || gap > 1e-6 * problem.mesh().h,
             ": plate '" + plan.name + "' does not cover a whole side of '" + block.name +
@@ -204,7 +207,7 @@ inline void compare_hold(const FinishedRun& run, common::Summary& summary) {
     summary.result("modulus", stress / rows / press.strain.back(), "stress", press.modulus,
                    run.parameters.tolerance * press.modulus,
                    press.source + ": mean stress on the plate over strain");
-    summary.hint(rest_hint);
+    summary.hint(rest_hint(run));
     summary.result_at_most("kinetic_over_elastic", std::max(third, last), "1", 1e-6,
                            "at rest, in the second half of the run");
     summary.result_at_most("kinetic_grows", last - third, "1", 1e-8,
@@ -258,6 +261,41 @@ inline void judge_held_grain(const FinishedRun& run, common::Summary& summary) {
         ", a tenth of a step, or in mpm_implicit method.theta = 0.55");
     summary.result("held_force", last / first, "1", 1, 0.02,
                    "on plates at rest: in the last tenth of that time, over the first");
+}
+
+// ---- any run of grains that come to rest under their weight -------------------------------------
+
+/// Whether grains that have come to rest under their weight stay at rest: their largest kinetic energy
+/// after a twentieth of the run in which it was below 1e-4 of the elastic energy, over that. It needs
+/// plates at rest, and twentieths of three times the way there and back of sound through the mesh.
+inline void judge_weight(const FinishedRun& run, common::Summary& summary) {
+    const PlannedCase& planned = run.planned;
+    const Problem& problem = planned.parameters.problem;
+    if (problem.gravity_x == 0 && problem.gravity_y == 0) return;
+    for (const PlannedGrain& plan : planned.plans)
+        if (planned.is_rigid(plan) &&
+            (plan.from.control != "velocity" || plan.from.velocity_x != 0 ||
+             plan.from.velocity_y != 0 || plan.from.swing_x != 0 || plan.from.swing_y != 0 ||
+             !plan.table.empty()))
+            return;
+    const auto times = run.history.column("time"), kinetic = run.history.column("kinetic"),
+               elastic = run.history.column("elastic");
+    const Mesh mesh = problem.mesh();
+    const std::size_t part = times.size() / 20;
+    if (part < 8 || times[part] < 6 * (mesh.y_high() - mesh.y_low) / run.scales.sound_speed) return;
+    double rest = 0, after = 0;  // elastic energy of the part at rest; kinetic energy since
+    for (std::size_t n = 0; n + part <= times.size(); n += part) {
+        const auto largest = *std::max_element(&kinetic[n], &kinetic[n] + part);
+        if (rest > 0)
+            after = std::max(after, largest);
+        else if (times[n] >= problem.rise && largest < 1e-4 * elastic[n])
+            rest = elastic[n];
+    }
+    if (after == 0) return;
+    summary.hint(rest_hint(run));
+    summary.result_at_most("kinetic_after_rest", after / rest, "1", 1e-3,
+                           "kinetic energy since grains have come to rest under their weight, over "
+                           "the elastic energy");
 }
 
 // ---- pressed in cycles --------------------------------------------------------------------------

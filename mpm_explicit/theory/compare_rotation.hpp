@@ -129,9 +129,14 @@ inline void judge_free_grains(const FinishedRun& run, common::Summary& summary) 
     for (const double now : L) off = std::fmax(off, std::fabs(now - L.front()));
     warn_of_travel(run, m, summary);
     const double size = std::sqrt(2 * run.history.largest("kinetic") * squares);
-    summary.hint(
-        "lumped masses and PIC lose it: set method.transfer = \"spin\" in mpm_explicit, or "
-        "method.mass = \"consistent\" in mpm_implicit, or refine the mesh");
+    const SchemeFacts& scheme = planned.scheme;
+    summary.hint(!scheme.implicit ? "lumped masses and PIC lose it: set method.transfer = "
+                                    "\"spin\", or refine the mesh"
+                 : scheme.theta > 0.5
+                     ? "method.theta = " + format(scheme.theta) +
+                           " damps what turns in a step: set it to 0.5, or lower time.alpha"
+                     : "lumped masses and PIC lose it: set method.mass = \"consistent\" and "
+                       "method.flip = 1, or refine the mesh, or lower time.alpha");
     if (size > 0)
         summary.result_at_most("angular_momentum_strays", off / size, "1", 0.05,
                                "largest change, over the largest that the energy allows");

@@ -70,7 +70,7 @@ inline constexpr theory::Comparison comparisons[] = {
     {"bar", theory::need_bar, theory::compare_bar},
     {"standing_wave", theory::need_wave, theory::compare_standing_wave},
     {"oscillator", theory::need_oscillator, compare_oscillator},
-    {"block", theory::need_incline, theory::compare_block},
+    {"block", theory::need_block, theory::compare_block},
     {"rest", theory::need_rest, theory::compare_rest},
     {"spin", theory::need_spin, theory::compare_spin, theory::inertia_columns},
     {"rolling", theory::need_rolling, theory::compare_rolling, theory::turning_column},

@@ -28,7 +28,7 @@ struct SchemeFacts {
     double theta = 0.5;      // level of velocities and stresses in the step
     double force_level = 1;  // in a step of a plate, of the travel whose stress it works against
     double bond_level = 0;   // of the stress of bonds in a row, in steps from its time
-    bool consistent_mass = false;
+    bool implicit = false, consistent_mass = false;
     bool damps_first = false;    // load.damping, before forces act: then waves see a stiffer body
     bool volumes_change = true;  // in forces, with the strain
 };
