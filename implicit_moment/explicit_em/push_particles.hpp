@@ -6,8 +6,9 @@
 //
 // Fields are gathered with the splines that deposit J: then, in short steps, E does on particles the
 // work that J takes from the mesh, and a mesh that does not resolve the Debye length does not by
-// itself heat a plasma at rest. Particles that share a cell go several at a time; the trajectories of the few that leave it
-// are cut into segments one by one (deposit_current.hpp), and they are taken out (crossings.hpp).
+// itself heat a plasma at rest. Particles that share a cell go several at a time; the trajectories of
+// the few that leave it are cut into segments one by one (deposit_current.hpp), and they are taken out
+// (crossings.hpp).
 #pragma once
 
 #include <vector>
