@@ -4,10 +4,11 @@
 //     u^{n+1/2} - u^{n-1/2} = q dt/m [ E^n + u/(gamma c) x B^n ],   u = gamma v
 //     x^{n+1} - x^n = dt v^{n+1/2}
 //
-// Fields are gathered with the splines that deposit J: then E does on particles the work that J
-// takes from the mesh, and a plasma at rest is not heated by a mesh that does not resolve its Debye
-// length. Particles that share a cell go several at a time; the trajectories of the few that leave it
-// are cut into segments one by one (deposit_current.hpp), and they are taken out (crossings.hpp).
+// Fields are gathered with the splines that deposit J: then, in short steps, E does on particles the
+// work that J takes from the mesh, and a mesh that does not resolve the Debye length does not by
+// itself heat a plasma at rest. Particles that share a cell go several at a time; the trajectories of
+// the few that leave it are cut into segments one by one (deposit_current.hpp), and they are taken out
+// (crossings.hpp).
 #pragma once
 
 #include <vector>
