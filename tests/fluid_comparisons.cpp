@@ -516,8 +516,9 @@ TEST_CASE("what cannot be measured is said with its reason and what fails fails"
     CHECK(noise("2", 0.04).starts_with("FAIL: "));
     CHECK(noise("2", 0.004).starts_with("PASS: "));
     const std::string disk = compare("rotation") +
-                             "grid.cells_z = 10\n[region.gas]\nflow = \"rotation\"\n"
-                             "speed = 1\nwidth = 1\n";
+                             "grid.cells_z = 10\ngravity.trap = 1\nmaterial.dust.gamma = 1\n"
+                             "[region.gas]\nflow = \"rotation\"\nspeed = 1\nwidth = 1\n"
+                             "center_x = 0.5\ncenter_z = 0.5\n";
     const auto slowed = recorded(disk, "pic", 3, [&](const Case& w, double t, Fluid& f) {
         still(w, t, f);
         f.totals.angular_momentum = 1 - t;

@@ -532,6 +532,16 @@ fluids around theory.compare=gresho gresho region.gas.velocity_x=1 region.gas.pr
     the vortex moves with 1, 0: set theory.frame_x and frame_z to that
 fluids box theory.compare=rotation
     theory.compare = "rotation" needs a region with flow = "rotation"
+fluids rotating_disk.toml gravity.trap=0
+    theory.compare = "rotation" needs a trap that bends all paths to circles: set gravity.trap =
+    (speed/width)^2 = 1
+fluids rotating_disk.toml region.disk.speed=0.15 -> set gravity.trap = (speed/width)^2 = 0.25
+fluids rotating_disk.toml gravity.x=0.1
+    theory.compare = "rotation" is without gravity: take out gravity.x and gravity.z
+fluids rotating_disk.toml material.dust.gamma=1.4 region.disk.pressure=0.1
+    theory.compare = "rotation" is for dust, and region.disk has a pressure, which drives it apart
+fluids rotating_disk.toml region.disk.center_x=0.1
+    theory.compare = "rotation" needs a disk that stays in the middle of the mesh
 )");
 }
 
