@@ -431,8 +431,10 @@ TEST_CASE("the growth of an interface is found from a start in motion and from o
     const std::string text = compare("rayleigh_taylor") + channel +
                              "grid.cells_x = 32\ngrid.cells_z = 64\ngrid.length_z = 2\n"
                              "gravity.z = -0.1\ntime.end = 12\ntheory.tolerance = 0.01\n"
-                             "[region.light]\n[region.heavy]\nshape = \"above\"\ndensity = 2\n"
-                             "center_z = 1\nflow = \"overturn\"\namplitude = 1e-3\n";
+                             "[region.light]\nhydrostatic = true\npressure = 1e3\ncenter_z = 1\n"
+                             "[region.heavy]\nhydrostatic = true\npressure = 1e3\ncenter_z = 1\n"
+                             "shape = \"above\"\ndensity = 2\nflow = \"overturn\"\n"
+                             "amplitude = 1e-3\n";
     for (const bool in_motion : {true, false}) {
         const auto run = recorded(text, "flip", 400, [&](const Case& w, double t, Fluid& f) {
             const double g = interface_growth_of(w);
@@ -476,7 +478,8 @@ TEST_CASE("what cannot be measured is said with its reason and what fails fails"
     };
     const std::string layers = compare("rayleigh_taylor") + channel +
                                "grid.cells_x = 32\ngrid.cells_z = 64\ngrid.length_z = 2\n"
-                               "gravity.z = -0.1\n[region.light]\n[region.heavy]\n"
+                               "gravity.z = -0.1\n[region.light]\nhydrostatic = true\n"
+                               "center_z = 1\n[region.heavy]\nhydrostatic = true\n"
                                "shape = \"above\"\ndensity = 2\ncenter_z = 1\nripple = 0.2\n";
     const auto rippled = recorded(layers, "flip", 10, [](const Case& w, double, Fluid& f) {
         visit_cells(w.grid, [&](long n, double x, double z) {

@@ -501,12 +501,32 @@ fluids box heavy theory.compare=rayleigh_taylor around_x
     density 2 above 1 with gravity.z = 0 does not overturn: turn one around
 fluids box heavy theory.compare=rayleigh_taylor around_x gravity.z=-1 region.heavy.flow=overturn \
     region.heavy.mode=2 -> follows theory.mode = 1, and region.heavy.mode = 2: make them the same
+fluids rayleigh_taylor.toml gravity.x=0.1
+    theory.compare = "rayleigh_taylor" is for gravity along z alone: take out gravity.x and
+    gravity.trap
+fluids rayleigh_taylor.toml gravity.trap=1 -> is for gravity along z alone
+fluids rayleigh_taylor.toml region.upper.hydrostatic=false
+    theory.compare = "rayleigh_taylor" needs fluid that begins at rest: set region.upper.hydrostatic
+    = true
+fluids rayleigh_taylor.toml region.upper.pressure=11
+    theory.compare = "rayleigh_taylor" needs one pressure at the interface: region.lower has 10
+    there, and region.upper has 11
+fluids rayleigh_taylor.toml region.lower.pressure=2 region.upper.pressure=2
+    theory.compare = "rayleigh_taylor" needs a pressure that carries the fluid up to the wall, and
+    there it is 0: raise that of both regions
 fluids box heavy theory.compare=rayleigh_taylor around_x gravity.z=-1 theory.mode=16
     follows theory.mode = 16, and 32 cells have no waves above 15
 fluids box theory.compare=kelvin_helmholtz around_x shear region.gas.center_z=0.25
     needs the layer half-way between the walls, at center_z = 0.5
 fluids box theory.compare=kelvin_helmholtz around_x shear region.gas.width=0.3
     mode 1 of a layer of half-width 0.3 does not grow: make it thinner, or lower theory.mode
+fluids box theory.compare=kelvin_helmholtz around_x shear gravity.z=-1
+    theory.compare = "kelvin_helmholtz" is for fluid without gravity or trap
+fluids kelvin_helmholtz.toml region.upper.density=2
+    theory.compare = "kelvin_helmholtz" is for streams of one density and pressure in one layer of
+    shear, and region.upper is not like region.lower: give both the same density
+fluids kelvin_helmholtz.toml gravity.trap=1 -> is for fluid without gravity or trap
+fluids kelvin_helmholtz.toml region.upper.width=0.1 -> region.upper is not like region.lower
 fluids box theory.compare=kelvin_helmholtz around_x
     theory.compare = "kelvin_helmholtz" needs a region with flow = "shear"
 fluids box theory.compare=wave sound -> theory.compare = "wave" needs periodic ends in x
