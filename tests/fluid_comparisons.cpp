@@ -427,6 +427,30 @@ TEST_CASE("a wave that each step turns and grows as theory says has those rates"
     }
 }
 
+TEST_CASE("a wave in steps that grow is compared with each of them") {
+    const std::string text = compare("wave") + "grid.cells_x = 64\ntheory.tolerance = 0.001\n" +
+                             "time.end = 2\nflip.pressure = \"implicit\"\n[region.gas]\n" +
+                             "flow = \"wave\"\namplitude = 0.01\n";
+    // Steps of t = 2 (n/50)^2, the last thirty times as long as the first: of the same wave, each
+    // turned and damped as it is.
+    Spiral wave{{0}, {0}};
+    const auto run = recorded(text, "flip", 50, [&](const Case& w, double, Fluid& f) {
+        const auto at = [](double n) { return 2 * n * n / 2500; };
+        const auto n = double(wave.phase.size()) - 1;
+        f.state.time = at(n);
+        visit_cells(w.grid, [&](long c, double x, double) {
+            const double crest =
+                0.01 * std::exp(wave.log_size.back()) * std::cos(2 * pi * x - wave.phase.back());
+            f.cells.rho[c] = 1, f.cells.vx[c] = crest, f.cells.p[c] = 1 + 1.4 * crest;
+        });
+        const SoundWave s = sound_wave_of(w, "flip", at(n + 1) - at(n));
+        wave.phase.push_back(wave.phase.back() + s.phase);
+        wave.log_size.push_back(wave.log_size.back() + std::log(s.amplification));
+    });
+    facts::check_results(run.summary, 2);
+    CHECK(run.value("amplitude_per_period") < 0.9);
+}
+
 TEST_CASE("the growth of an interface is found from a start in motion and from one in shape") {
     const std::string text = compare("rayleigh_taylor") + channel +
                              "grid.cells_x = 32\ngrid.cells_z = 64\ngrid.length_z = 2\n"

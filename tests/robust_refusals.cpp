@@ -534,6 +534,15 @@ fluids around theory.compare=wave region.gas.flow=wave region.gas.amplitude=0
     theory.compare = "wave" needs a wave: give region.gas.amplitude
 fluids around theory.compare=wave sound region.gas.pressure=0
     theory.compare = "wave" needs a gas with sound: give region.gas.pressure
+fluids around theory.compare=wave sound gravity.x=0.1
+    theory.compare = "wave" is for fluid without gravity or trap
+flip around theory.compare=wave sound flip.viscosity=0.001
+    theory.compare = "wave" is for sound that nothing damps: take out flip.viscosity
+fluids around theory.compare=rest gravity.x=1 region.gas.hydrostatic=true region.gas.pressure=9
+    theory.compare = "rest" needs walls that hold the fluid, and it falls for ever along a periodic
+    direction
+fluids box theory.compare=rest boundary.z_high=open
+    theory.compare = "rest" needs ends that hold the fluid: set boundary.z_high = "slip"
 fluids around theory.compare=wave sound region.gas.velocity_x=1
     theory.compare = "wave": the gas moves with 1: set theory.frame_x to that
 fluids around theory.compare=diffusion gaussian dust time.dt=0
