@@ -451,6 +451,17 @@ fluids sod theory.compare=riemann around_x
     theory.compare = "riemann" needs ends in x, and they are periodic
 fluids sod theory.compare=riemann gravity.x=1
     theory.compare = "riemann" is for fluid without gravity or trap
+fluids piston.toml time.end=1.6
+    theory.compare = "piston": the other end of the mesh is felt behind the shock from t = 1.305 on:
+    lower time.end below that
+fluids wall_shock.toml inflow.pressure=0.5 region.stream.pressure=0.5
+    the other end of the mesh is felt behind the shock from t = 1.
+fluids noh.toml time.end=0.9
+    theory.compare = "noh": all gas has passed the shock at t = 0.75: lower time.end below that, or
+    lengthen the mesh
+fluids sedov.toml region.cold.pressure=0.01
+    theory.compare = "sedov" is for a blast that does not feel the gas in front of it: at time.end
+    the shock has the pressure
 fluids tube theory.compare=wall_shock
     theory.compare = "wall_shock" needs gas that runs into a wall: give region.gas.velocity_x
 fluids tube theory.compare=piston region.gas.velocity_x=-1 boundary.x_low=open
