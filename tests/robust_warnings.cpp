@@ -318,6 +318,7 @@ flip sod theory.compare=riemann boundary.x_high=open
     theory              pressure 0\.3031 and velocity 0\.9275 at the contact
     memory              about .*
     time                about .*
+flip sod flip.viscosity=0.1 -> .*steps               about 3200; the first of 3\.125e-05.*
 pic tube theory.compare=wall_shock region.gas.velocity_x=-1 time.dt=1e-3
     .*velocity and energy on the cells
     steps               100 of 0\.001
