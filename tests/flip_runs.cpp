@@ -452,10 +452,13 @@ TEST_CASE("refine runs a case on finer meshes and shows the order of its errors"
 
 TEST_CASE("heavy fluid falls at the rate of Rayleigh and Taylor and better on finer meshes" *
           doctest::description("physics")) {
-    const Run r = run("flip", "layers", "rayleigh_taylor", "time.end=1.5");
+    // With half the amplitude of the case, and not long: large crests slow the wave by nearly a per cent.
+    const std::string small =
+        "time.end=1.5 region.lower.amplitude=0.01 region.upper.amplitude=0.01 ";
+    const Run r = run("flip", "layers", "rayleigh_taylor", small);
     check_results(r, 3);
     check_conserved(r);
-    const std::string on_half = "time.end=1.5 grid.cells_x=32 grid.cells_z=64";
+    const std::string on_half = small + "grid.cells_x=32 grid.cells_z=64";
     const Run coarse = run("flip", "layers", "rayleigh_taylor", on_half),
               consistent = run("flip", "layers", "rayleigh_taylor",
                                on_half +

@@ -173,6 +173,36 @@ TEST_CASE("a run that is resumed after a signal gives the same bytes and a compl
     CHECK(read_all(parts + "/history.dat").size() > read_all(whole + "/history.dat").size());
 }
 
+TEST_CASE("resuming does not replace a stopped run of another input and names damage" *
+          doctest::description("robust")) {
+    const Room room;
+    const std::string out = room.path("run");
+    const Outcome part = room.run("timeout --foreground --preserve-status -s TERM 0.5 " +
+                                  short_run(out, 1000000) + "--quiet");
+    REQUIRE(part.status == 143);
+    const std::string kept = newest_checkpoint(out), bytes = read_all(kept);
+    REQUIRE(!kept.empty());
+    const std::string other = short_run(out, 6) + "output.checkpoint_steps=3 --quiet --resume ";
+    const Outcome refused = room.run(other);
+    CHECK(refused.status == 2);
+    CHECK(holds(refused.err, "holds a run of another input, which was stopped: --restart " + kept));
+    CHECK(read_all(kept) == bytes);
+    CHECK(room.run(other + "--force").status == 0);
+    CHECK(!fs::exists(kept));
+
+    // A complete one may be made again.
+    const Outcome replaced = room.run(other + "time.dt=0.025");
+    CHECK(replaced.status == 0);
+    CHECK(holds(replaced.err, "cic: replaces the run of another input in " + out));
+    fs::remove(out + "/summary.json");
+    const std::string newest = newest_checkpoint(out), whole = read_all(newest);
+    write_all(newest, whole.substr(0, whole.size() - 1));
+    const Outcome damaged = room.run(other + "time.dt=0.025");
+    CHECK(damaged.status == 0);
+    CHECK(holds(damaged.err, "warning: " + newest + ": "));
+    CHECK(holds(damaged.err, "; --resume begins before it"));
+}
+
 TEST_CASE("a checkpoint with flipped bits or of another length is refused" *
           doctest::description("robust")) {
     const Room room;

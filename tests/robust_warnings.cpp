@@ -84,6 +84,14 @@ pic sod viscosity.linear=0 viscosity.quadratic=0
     warning: without artificial viscosity the method has none where the fluid rests
 flip tube flip.pressure=implicit region.gas.velocity_x=1
     warning: the flow has Mach 0.8452, above 0.5, and time.cfl with implicit pressure
+flip tube flip.pressure=implicit region.gas.velocity_x=1 time.dt=0.005 -> no warning
+flip tube flip.pressure=implicit region.gas.velocity_x=1 time.dt=0.009
+    warning: the flow has Mach 0.8452, above 0.5, and sound crosses 1.065 cells in time.dt, above 1
+flip acoustic.toml flip.pressure=explicit flip.theta=1 flip.tolerance=1e-8 time.dt=0 \
+    region.gas.velocity_x=0.7 theory.frame_x=0.7 flip.mass=consistent
+    no warning
+flip around sound theory.compare=wave time.end=1
+    warning: viscosity.linear = 0.5 damps the wave, and theory is of sound that nothing damps
 flip tube boundary.x_low=no_slip
     warning: a no_slip wall holds fluid without viscosity only through the mesh
 flip tube particles.per_cell_x=2 particles.per_cell_z=1
@@ -142,6 +150,7 @@ flip around region.gas.velocity_x=1 time.end=1e-6 region.gas.pressure=1e10
     no warning
 flip around theory.compare=wave sound
     warning: the wave has the period 0.8452, longer than time.end = 0.1
+    warning: viscosity.linear = 0.5 damps the wave
 pic around sound
     warning: the flow has Mach 0.01002, below 0.05
     warning: the wave of region.gas takes 0.2037 particles across a border of cells, below 2: cells
@@ -309,6 +318,7 @@ flip sod theory.compare=riemann boundary.x_high=open
     theory              pressure 0\.3031 and velocity 0\.9275 at the contact
     memory              about .*
     time                about .*
+flip sod flip.viscosity=0.1 -> .*steps               about 3200; the first of 3\.125e-05.*
 pic tube theory.compare=wall_shock region.gas.velocity_x=-1 time.dt=1e-3
     .*velocity and energy on the cells
     steps               100 of 0\.001

@@ -82,7 +82,9 @@ void refuse_case_of_another_method(const ProgramInfo& info, const std::string& p
 }
 
 // What a run that is to be resumed has left in its folder: all, a checkpoint, or nothing that counts. What is
-// older than the program or belongs to another input does not.
+// older than the program or belongs to another input does not; but a run of another input that was
+// stopped, and could go on, is not replaced without --force.
+// errors: InputError for that
 void look_for_earlier_run(const ProgramInfo& info, const ParameterTable& table,
                           CommandLine& command) {
     std::error_code error;
@@ -91,18 +93,21 @@ void look_for_earlier_run(const ProgramInfo& info, const ParameterTable& table,
         std::error_code missing;
         return fs::is_regular_file(file, missing) && fs::last_write_time(file, missing) > built;
     };
-    command.force = true;
     const fs::path folder = command.out_dir, summary = folder / "summary.json";
-    const std::string effective_case = table.effective_case();
-    if (counts(summary) && counts(folder / "case.toml") &&
-        read_file(folder / "case.toml").ends_with("\n" + effective_case)) {
-        const std::string text = read_file(summary);
+    const std::string effective_case = table.effective_case(),
+                      text = counts(summary) ? read_file(summary) : "";
+    const bool there = counts(folder / "case.toml"),
+               ours = there && read_file(folder / "case.toml").ends_with("\n" + effective_case);
+    if (ours && !text.empty()) {
         command.complete = text.find("\n  \"status\": 0,") != std::string::npos;
         command.fell_short = text.find("\"verdict\": \"FAIL\"") != std::string::npos ||
                              text.find("\"verdict\": \"NOT MEASURED\"") != std::string::npos;
         // --strict asks for the verdicts, so the run ends once more.
         command.complete = command.complete && !(command.strict && command.fell_short);
-        if (command.complete) return;
+    }
+    if (command.complete) {
+        command.force = true;
+        return;
     }
     std::vector<fs::path> checkpoints;
     for (const auto& entry : fs::directory_iterator(folder, error)) {
@@ -111,6 +116,18 @@ void look_for_earlier_run(const ProgramInfo& info, const ParameterTable& table,
             checkpoints.push_back(entry.path());
     }
     std::sort(checkpoints.rbegin(), checkpoints.rend());
+    const bool other = there && !ours,
+               stopped = text.empty() || text.find("continue with: ") != std::string::npos;
+    if (other && stopped && !checkpoints.empty() && !command.force)
+        throw InputError(command.out_dir +
+                         ": holds a run of another input, which was stopped: --restart " +
+                         checkpoints.front().string() +
+                         " goes on with it, --force replaces it, --out DIR puts the results "
+                         "elsewhere");
+    if (other && is_first_rank() && !command.dry_run)
+        std::fprintf(stderr, "%s: replaces the run of another input in %s\n", info.program.c_str(),
+                     command.out_dir.c_str());
+    command.force = true;
     for (const fs::path& path : checkpoints) {
         try {
             CheckpointReader checkpoint(info, path);
@@ -118,8 +135,10 @@ void look_for_earlier_run(const ProgramInfo& info, const ParameterTable& table,
             if (checkpoint.effective_case() != effective_case) continue;
             command.restart_path = path;
             return;
-        } catch (const InputError&) {
+        } catch (const InputError& damaged) {
             // Damaged, or of another version: the one before may do.
+            if (is_first_rank())
+                std::fprintf(stderr, "warning: %s; --resume begins before it\n", damaged.what());
         }
     }
     command.restart_step = 0;
@@ -237,7 +256,8 @@ void print_help(const ProgramInfo& info, const ParameterTable& table) {
         "  --out DIR       folder of the results; default out/%s/<case name>\n"
         "  --force         replace an earlier run in that folder\n"
         "  --resume        go on with an earlier run of the same input in that folder; if there\n"
-        "                  is none, or the program is newer, begin; if complete, do nothing\n"
+        "                  is none, or the program is newer, begin; if complete, do nothing;\n"
+        "                  replace a run of another input, unless that was stopped\n"
         "  --restart FILE  continue from a checkpoint\n"
         "  --verify FILE   say whether a checkpoint is whole, and of what it is\n"
         "  --refine N      run the case on N meshes, each of twice the cells, in DIR/1, 2 ...,\n"

@@ -197,8 +197,9 @@ inline double step_allowed(const Problem& problem, const Mesh& mesh, double last
     if (last > 0) dt = std::min(dt, 1.2 * last);
     if (!(dt > 1e-10 * limits.end))
         common::fail("the time step has fallen to ", dt,
-                     ": some cell has become very fast, hot or light; use more particles per cell "
-                     "or more viscosity");
+                     ": some cell has become very fast, hot or light; use more particles per cell, "
+                     "or ",
+                     problem.viscosity > 0 ? "less flip.viscosity" : "more viscosity.linear");
     return dt;
 }
 

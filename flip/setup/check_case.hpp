@@ -60,6 +60,8 @@ inline void reject_unused(const Case& parameters) {
 /// errors: InputError, one sentence with the numbers and the cure
 inline void validate(const Case& parameters, const std::string& program) {
     common::require_formats(parameters.also);
+    refuse(parameters.regions.empty() && parameters.setup == "riemann",
+           "there is no fluid: left.density and right.density are 0; give one of them");
     refuse(parameters.regions.empty(),
            "there is no fluid: add a [region.<name>], or set setup.kind = \"riemann\"");
     const bool between = parameters.interface > parameters.grid.x.low &&

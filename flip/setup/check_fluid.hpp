@@ -225,8 +225,10 @@ inline void refuse_region(const Case& parameters, const RegionCase& r) {
 }
 
 /// Refuses densities of 0 and pressures that the equation of state does not have, at the places of
-/// the particles.
+/// the particles: the lowest of them.
 inline void refuse_tension(const Case& parameters) {
+    double lowest = 0;
+    std::string said;
     for_each_place(parameters, [&](long n, const FluidState& fluid, double x, double z, double) {
         const Material& a = parameters.materials[fluid.material];
         refuse(!(fluid.density > 0), "region.", parameters.regions[n].name, " has the density ",
@@ -235,10 +237,13 @@ inline void refuse_tension(const Case& parameters) {
         if (a.gamma == 1) return;
         const double stiff = a.gamma * a.p_infinity,
                      p = (a.gamma - 1) * fluid.density * fluid.e - stiff;
-        refuse(!(p >= -1e-9 * (stiff + std::fabs(p))), "region.", parameters.regions[n].name,
-               " has the pressure ", p, " at x = ", x, ", z = ", z,
-               ", and fluids here hold no tension: raise its pressure by that much");
+        if (p >= -1e-9 * (stiff + std::fabs(p)) || p >= lowest) return;
+        lowest = p;
+        said = sentence("region.", parameters.regions[n].name, " has the pressure ", p,
+                        " at x = ", x, ", z = ", z,
+                        ", and fluids here hold no tension: raise its pressure by more than that");
     });
+    refuse(!said.empty(), said);
 }
 
 /// Refuses a run without particles, and a time step that is too long.
@@ -248,8 +253,8 @@ inline void refuse_steps(const Case& parameters, const Scales& s) {
            "no region contains a particle, so nothing can happen: put one on the mesh, from x = ",
            parameters.grid.x.low, " to ", parameters.grid.x.high());
     refuse(s.steps > 1e9, "time.end = ", parameters.end, " is ", s.steps, " steps of ", s.dt,
-           ", more than 1e9: lower time.end or ",
-           (parameters.dt > 0 ? "raise time.dt" : "take larger cells"));
+           ", more than 1e9: lower time.end", (parameters.viscosity > 0 ? ", flip.viscosity" : ""),
+           (parameters.dt > 0 ? " or raise time.dt" : " or take larger cells"));
     if (parameters.dt > 0 && s.rate > 0)
         refuse(parameters.dt * s.rate > 1, "time.dt = ", parameters.dt, ": ",
                (parameters.implicit() ? "the flow crosses " : "sound and flow cross "),

@@ -152,6 +152,10 @@ inline Scales scales_of(const Case& parameters, const std::string& program = "fl
     if (pull > 0)
         s.dt = std::min(s.dt, std::sqrt(parameters.cfl / (pull * std::max(per_dx, per_dz))));
     if (parameters.trap > 0) s.dt = std::min(s.dt, parameters.cfl / std::sqrt(parameters.trap));
+    for (const RegionScales& r : s.regions)
+        if (parameters.viscosity > 0 && r.particles > 0)
+            s.dt = std::min(s.dt, 0.25 * r.lightest /
+                                      (parameters.viscosity * (per_dx * per_dx + per_dz * per_dz)));
     if (parameters.dt > 0) s.dt = parameters.dt;
     s.dt = std::min(s.dt, parameters.end);
     s.steps = s.dt > 0 ? std::max(1.0, std::ceil(parameters.end / s.dt * (1 - 1e-12))) : 0;

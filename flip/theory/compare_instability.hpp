@@ -23,9 +23,21 @@ inline theory::TwoLayers layers_of(const Case& parameters) {
     return s;
 }
 
+/// The pressure of a region that carries its own weight, at the interface.
+inline double pressure_at_interface(const Case& parameters, const RegionCase& r) {
+    return r.gas.pressure +
+           r.gas.density * parameters.gravity_z * (parameters.regions.back().center_z - r.center_z);
+}
+
 /// Growth rate of the tracked mode of the interface.
 inline double interface_growth_of(const Case& parameters) {
-    return theory::interface_growth(layers_of(parameters), tracked_wave_number(parameters));
+    const auto stiffness_of = [&](const RegionCase& r) -> theory::LayerStiffness {
+        const Material& a = material_of(parameters, r);
+        return {stiffness(a, pressure_at_interface(parameters, r)), a.gamma};
+    };
+    return theory::compressible_interface_growth(
+        layers_of(parameters), stiffness_of(parameters.regions.front()),
+        stiffness_of(parameters.regions.back()), tracked_wave_number(parameters));
 }
 
 /// Growth rate of the tracked mode of the layer of shear, half-way between the ends in z.
@@ -114,9 +126,10 @@ inline void warn_of_growth(const Case& parameters, double growth,
 }
 
 /// The growth from the start on, while the mode is smaller than `most`; and beside that of theory on
-/// the mesh, where it is known, else 0.
+/// the mesh, where it is known, else 0. Slowed_by ends the hint.
 inline void compare_growth(const FinishedRun& run, double expected, double most,
-                           const std::string& source, double on_mesh = 0) {
+                           const std::string& source, const std::string& slowed_by,
+                           double on_mesh = 0) {
     const auto times = run.history.column("time");
     const std::vector<std::complex<double>> mode = run.history.complex_column("mode");
     std::size_t count = 0;
@@ -142,7 +155,8 @@ inline void compare_growth(const FinishedRun& run, double expected, double most,
     run.hint("the wave has ", run.parameters.grid.x.cells / run.parameters.mode,
              " cells, which cost it a part 2/cells, and ", expected * t.back(),
              " e-foldings within the fit: refine the mesh, and raise time.end or lower the "
-             "amplitude until there are 4; a large Mach number or viscosity slows it, too");
+             "amplitude until there are 4; ",
+             slowed_by);
     run.summary.result_info("growth", rate, "1/time", where);
     run.summary.result(name, {rate.value / expected, rate.error / expected}, "", 1,
                        run.parameters.theory_tolerance,
@@ -156,19 +170,34 @@ inline void compare_growth(const FinishedRun& run, double expected, double most,
     run.info("e_foldings", expected * t.back(), "", "within the fit");
 }
 
-/// Needs heavy fluid above light fluid between walls.
+/// Needs heavy fluid above light fluid between walls, and pressures that carry both.
 inline void validate_interface(const Case& parameters, const Refusal& refuse) {
     refuse(parameters.regions.size() != 2 || parameters.regions[0].shape != "everywhere" ||
                parameters.regions[1].shape != "above",
            " needs two regions, one everywhere and one above it");
     validate_mode(parameters, refuse, "overturn");
     refuse(parameters.grid.z.periodic, " needs walls in z");
-    const RegionCase& upper = parameters.regions[1];
+    refuse(parameters.gravity_x != 0 || parameters.trap != 0,
+           " is for gravity along z alone: take out gravity.x and gravity.trap");
+    const RegionCase &lower = parameters.regions[0], &upper = parameters.regions[1];
     refuse(!(upper.center_z > parameters.grid.z.low && upper.center_z < parameters.grid.z.high()),
            ": the interface at center_z = ", upper.center_z, " is not on the mesh");
-    refuse(!(interface_growth_of(parameters) > 0), ": density ", upper.gas.density, " above ",
-           parameters.regions[0].gas.density, " with gravity.z = ", parameters.gravity_z,
-           " does not overturn: turn one around");
+    const double wave = theory::interface_growth(layers_of(parameters), 1);
+    refuse(!(wave > 0), ": density ", upper.gas.density, " above ", lower.gas.density,
+           " with gravity.z = ", parameters.gravity_z, " does not overturn: turn one around");
+    for (const RegionCase& r : parameters.regions)
+        refuse(!r.hydrostatic, " needs fluid that begins at rest: set region.", r.name,
+               ".hydrostatic = true");
+    const double below = pressure_at_interface(parameters, lower),
+                 above = pressure_at_interface(parameters, upper);
+    refuse(std::fabs(above - below) > 1e-6 * std::fabs(below),
+           " needs one pressure at the interface: region.", lower.name, " has ", below,
+           " there, and region.", upper.name, " has ", above);
+    const double at_wall =
+        above + upper.gas.density * parameters.gravity_z * layers_of(parameters).upper_depth;
+    refuse(!(stiffness(material_of(parameters, upper), at_wall) > 0),
+           " needs a pressure that carries ", "the fluid up to the wall, and there it is ", at_wall,
+           ": raise that of both regions");
 }
 
 /// The growth rate of the interface.
@@ -202,9 +231,17 @@ inline void compare_interface(const FinishedRun& run) {
     const bool known = run.program == "flip" && w.transfer == "flip" && w.density == "particles" &&
                        !w.implicit() && w.grid.z.cells <= 1024 &&
                        std::fabs(rows - std::round(rows)) < 1e-6;
-    compare_growth(run, interface_growth_of(w), 0.3 / k, "two layers between walls",
-                   known ? theory::interface_growth_on_mesh(layers, k, w.grid.x.spacing(), dz,
-                                                            w.mass == "consistent")
+    const double growth = interface_growth_of(w), far_below = theory::interface_growth(layers, k);
+    run.info("incompressible_growth", far_below, "1/time", "of fluids whose sound is much faster");
+    std::string slowed_by = "viscosity slows it, too";
+    if (w.density == "cells")
+        slowed_by +=
+            ", and flip.density = \"cells\" rings, which tears the interface: take "
+            "\"particles\"";
+    compare_growth(run, growth, 0.3 / k, "two gases between walls, each of one density", slowed_by,
+                   known ? growth / far_below *
+                               theory::interface_growth_on_mesh(layers, k, w.grid.x.spacing(), dz,
+                                                                w.mass == "consistent")
                          : 0);
 }
 
@@ -214,6 +251,14 @@ inline void validate_shear(const Case& parameters, const Refusal& refuse) {
     validate_mode(parameters, refuse, "shear");
     const RegionCase& r = region_with_flow(parameters, "shear");
     refuse(parameters.grid.z.periodic, " needs walls in z");
+    refuse(parameters.gravity_x != 0 || parameters.gravity_z != 0 || parameters.trap != 0,
+           " is for fluid without gravity or trap");
+    for (const RegionCase& other : parameters.regions)
+        refuse(other.gas.density != r.gas.density || other.gas.pressure != r.gas.pressure ||
+                   other.flow != r.flow || other.speed != r.speed || other.width != r.width,
+               " is for streams of one density and pressure in one layer of shear, and region.",
+               other.name, " is not like region.", r.name,
+               ": give both the same density, pressure, flow, speed and width");
     const double half_way = parameters.grid.z.low + 0.5 * parameters.grid.z.length;
     refuse(std::fabs(r.center_z - half_way) > 1e-6 * parameters.grid.z.length,
            " needs the layer half-way between the walls, at center_z = ", half_way);
@@ -254,7 +299,8 @@ inline void track_shear(const Snapshot& now, common::Row& row) {
 inline void compare_shear(const FinishedRun& run) {
     const double growth = shear_growth_of(run.parameters);
     compare_growth(run, growth, 0.3 / tracked_wave_number(run.parameters) * growth,
-                   "layer of constant shear between walls");
+                   "layer of constant shear between walls",
+                   "a large Mach number or viscosity slows it, too");
 }
 
 inline constexpr Comparison interface_comparison{

@@ -1,6 +1,8 @@
 // Cold gas that falls into a plane, a line or a point, against Noh's solution.
 #pragma once
 
+#include <limits>
+
 #include "flip/theory/comparison.hpp"
 #include "flip/theory/shocks.hpp"
 
@@ -15,7 +17,24 @@ inline theory::NohProblem noh_of(const Case& parameters) {
             r.speed};
 }
 
-/// Needs cold gas that falls inward.
+/// How far from the middle the gas comes from that nothing follows: to the nearest end of the mesh that
+/// is no mirror in the middle, or to the edge of a disk; in a row an inflow brings more.
+inline double reach_of_noh(const Case& parameters) {
+    const RegionCase& r = region_with_flow(parameters, "radial");
+    double reach = r.shape == "disk" ? r.radius : std::numeric_limits<double>::infinity();
+    for (const Side side : all_sides) {
+        const bool along_x = is_x_side(side), row = !parameters.plane();
+        if ((row && !along_x) || (parameters.grid.axisymmetric && side == x_low)) continue;
+        if (row && !parameters.grid.axisymmetric && parameters.is(side, "inflow")) continue;
+        const common::Axis& axis = along_x ? parameters.grid.x : parameters.grid.z;
+        const double way = std::fabs((is_low_side(side) ? axis.low : axis.high()) -
+                                     (along_x ? r.center_x : r.center_z));
+        if (!parameters.is(side, "slip") || way > axis.spacing()) reach = std::min(reach, way);
+    }
+    return reach;
+}
+
+/// Needs cold gas that falls inward, and enough of it.
 inline void validate_noh(const Case& parameters, const Refusal& refuse) {
     validate_flow(parameters, refuse, "radial");
     const RegionCase& r = region_with_flow(parameters, "radial");
@@ -25,6 +44,10 @@ inline void validate_noh(const Case& parameters, const Refusal& refuse) {
     refuse(r.gas.pressure > 0.01 * r.gas.density * r.speed * r.speed,
            " is for cold gas, and region.", r.name, ".pressure = ", r.gas.pressure,
            " is above a hundredth of density speed^2, ", most);
+    const double used_up =
+        reach_of_noh(parameters) / (r.speed + theory::noh_shock_radius(noh_of(parameters), 1));
+    refuse(parameters.end > used_up, ": all gas has passed the shock at t = ", used_up,
+           ": lower time.end below that, or lengthen the mesh");
 }
 
 /// The radius of the shock at the end.

@@ -15,6 +15,14 @@ inline constexpr double largest_mach_at_rest = 1e-10, largest_kinetic_at_rest = 
 inline void validate_rest(const Case& parameters, const Refusal& refuse) {
     const bool falls = parameters.gravity_x != 0 || parameters.gravity_z != 0;
     refuse(parameters.trap != 0, " is for fluid without trap");
+    refuse(
+        (parameters.gravity_x != 0 && parameters.grid.x.periodic) ||
+            (parameters.gravity_z != 0 && parameters.grid.z.periodic),
+        " needs walls that hold the fluid, and it falls for ever along a periodic direction: set "
+        "both its ends to \"slip\"");
+    for (const Side side : all_sides)
+        refuse(parameters.is(side, "open") || parameters.is(side, "inflow"),
+               " needs ends that hold the fluid: set boundary.", side_names[side], " = \"slip\"");
     for (const RegionCase& r : parameters.regions) {
         refuse(r.gas.velocity_x != 0 || r.gas.velocity_z != 0 || r.flow != "uniform" || r.noise > 0,
                " needs fluid at rest, and region.", r.name, " moves");
@@ -44,7 +52,11 @@ inline void compare_rest(const FinishedRun& run) {
                                      parameters.gravity_z * parameters.grid.z.length);
     run.hint(
         "something is out of balance: begin with pressures that balance across interfaces, put "
-        "them between cells, and take flip.density = \"particles\" for liquids");
+        "them between cells, and take flip.density = \"particles\" for liquids",
+        parameters.loading == "random" ? "; particles.loading = \"random\" puts more of them into "
+                                         "some cells than into others: "
+                                         "take \"lattice\""
+                                       : "");
     const double fastest = run.history.largest("largest_speed") / sound;
     if (!(weight > 0)) {
         run.summary.result_at_most("largest_speed", fastest, "c", largest_mach_at_rest,

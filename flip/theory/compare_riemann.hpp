@@ -106,11 +106,12 @@ inline void warn_of_riemann(const Case& parameters, std::vector<std::string>& wa
     const theory::RiemannSolution s = riemann_of(parameters);
     const double left = s.left_of_contact.density / parameters.left.density,
                  right = s.right_of_contact.density / parameters.right.density,
-                 along = double(parameters.per_cell_x) * std::min(left, right);
+                 along = double(parameters.per_cell_x) * std::min(left, right),
+                 enough = double(parameters.per_cell_x) / along;
     warn(warnings, !s.has_void && along < 1, "between the waves a cell will have ", along,
-         " particles along x, and one without any has no pressure: raise particles.per_cell_x "
-         "above ",
-         double(parameters.per_cell_x) / along);
+         " particles along x, and one without any has no pressure: ",
+         enough < 64 ? sentence("raise particles.per_cell_x above ", enough)
+                     : std::string("take sides that part more slowly"));
 }
 
 /// A wave of the exact solution, and the gas that it has swept.
@@ -231,8 +232,13 @@ inline void compare_riemann(const FinishedRun& run) {
     run.hint(cells_swept,
              ": below 15 raise time.end or refine the mesh; else take viscosity.linear = 0.5 and "
              "viscosity.quadratic = 1, which are ",
-             parameters.q_linear, " and ", parameters.q_quadratic, ", and more than ",
-             parameters.per_cell_x, " particles per cell along x");
+             parameters.q_linear, " and ", parameters.q_quadratic,
+             parameters.per_cell_x < 64 ? sentence(", and more than ", parameters.per_cell_x,
+                                                   " particles per cell along x")
+                                        : std::string(),
+             parameters.viscosity > 0
+                 ? "; flip.viscosity smears the waves, and theory has none: take it out"
+                 : "");
     const auto judge_L1 = [&](const std::string& name, double value, double allowed,
                               const std::string& what) {
         if (allowed < 0.5) return run.summary.result("L1_" + name, value, "", 0, allowed, what);

@@ -40,6 +40,10 @@ inline Blast blast_of(const Case& parameters) {
             energy, cold.gas.density, hot.center_x, hot.center_z};
 }
 
+/// How many times the pressure of the cold gas that of the shock must be. As measured, at 100 the radius
+/// is 0.2 per cent larger than without that pressure.
+inline constexpr double least_pressure_ratio = 100;
+
 /// Needs one region with an energy in cold gas, and room for the shock until the end.
 inline void validate_sedov(const Case& parameters, const Refusal& refuse) {
     const RegionCase& cold = parameters.regions.front();
@@ -63,6 +67,14 @@ inline void validate_sedov(const Case& parameters, const Refusal& refuse) {
     refuse(blast.radius(parameters.end) > most,
            ": at time.end the shock is at r = ", blast.radius(parameters.end),
            ", and the mesh ends at ", most, ": lower time.end");
+    const double U = theory::blast_speed(blast.wave, blast.energy, blast.density,
+                                         std::max(parameters.end, 1e-300)),
+                 shock = 2 * blast.density * U * U / (gamma + 1),
+                 cold_pressure = cold.gas.pressure + material_of(parameters, cold).p_infinity;
+    refuse(shock < least_pressure_ratio * cold_pressure, " is for a blast that does not feel the ",
+           "gas in front of it: at time.end the shock has the pressure ", shock,
+           ", and that of region.", cold.name, " is ", cold_pressure, ", more than 1/",
+           least_pressure_ratio, " of it: lower it, or time.end");
 }
 
 /// The radius of the shock at the end.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <complex>
+#include <span>
 
 #include "flip/theory/acoustics.hpp"
 #include "flip/theory/modes.hpp"
@@ -70,6 +71,9 @@ inline void validate_wave(const Case& parameters, const Refusal& refuse) {
     refuse(parameters.regions.size() != 1, " needs a single region");
     refuse(sound_speed_of(parameters, r) == 0, " needs a gas with sound: give region.", r.name,
            ".pressure");
+    refuse(parameters.gravity_x != 0 || parameters.gravity_z != 0 || parameters.trap != 0,
+           " is for fluid without gravity or trap");
+    refuse(parameters.viscosity > 0, " is for sound that nothing damps: take out flip.viscosity");
     refuse(r.gas.velocity_x != parameters.frame_x, ": the gas moves with ", r.gas.velocity_x,
            ": set theory.frame_x to that");
 }
@@ -81,12 +85,14 @@ inline std::string predict_wave(const Case& parameters, const std::string& progr
                     " multiplies the wave by 1 + ", s.amplification - 1);
 }
 
-/// Warns of a run shorter than one period.
+/// Warns of a run shorter than one period, and of a viscosity that damps the wave.
 inline void warn_of_wave(const Case& parameters, std::vector<std::string>& warnings) {
     const double c = sound_speed_of(parameters, region_with_flow(parameters, "wave")),
                  period = 2 * pi / (c * tracked_wave_number(parameters));
     warn(warnings, period > parameters.end, "the wave has the period ", period,
          ", longer than time.end = ", parameters.end, ": its frequency cannot be measured well");
+    warn(warnings, parameters.q_linear > 0, "viscosity.linear = ", parameters.q_linear,
+         " damps the wave, and theory is of sound that nothing damps: set it to 0");
 }
 
 /// The mode of velocity and pressure, in the frame of theory.
@@ -115,7 +121,19 @@ inline Spiral unwound(const std::vector<std::complex<double>>& mode) {
     return s;
 }
 
-/// Frequency, and the change of the amplitude in a period.
+/// What the steps of a run make of a wave, one by one: steps of implicit pressure may grow.
+inline Spiral spiral_of_theory(const Case& parameters, const std::string& program,
+                               std::span<const double> times) {
+    Spiral s{{0}, {0}};
+    for (std::size_t n = 1; n < times.size(); ++n) {
+        const SoundWave step = sound_wave_of(parameters, program, times[n] - times[n - 1]);
+        s.phase.push_back(s.phase.back() + step.phase);
+        s.log_size.push_back(s.log_size.back() + std::log(step.amplification));
+    }
+    return s;
+}
+
+/// Frequency, and the change of the amplitude in a period, both from slopes as those of theory.
 inline void compare_wave(const FinishedRun& run) {
     const Case& parameters = run.parameters;
     const auto times = run.history.column("time");
@@ -124,7 +142,8 @@ inline void compare_wave(const FinishedRun& run) {
     const double dt = times.back() / double(times.size() - 1);
     const SoundWave wave = sound_wave_of(parameters, run.program, dt);
     const Spiral velocity = unwound(run.history.complex_column("mode")),
-                 pressure = unwound(run.history.complex_column("pressure"));
+                 pressure = unwound(run.history.complex_column("pressure")),
+                 theory = spiral_of_theory(parameters, run.program, times);
     const double frequency = -common::slope(times, velocity.phase);
     const double period = 2 * pi / wave.frequency, steps = period / dt;
     const auto per_period = [&](const Spiral& mode) {
@@ -153,12 +172,11 @@ inline void compare_wave(const FinishedRun& run) {
             1 / (pi * (material_of(parameters, r).gamma + 1) * std::fabs(r.amplitude)), " periods");
     run.info("theory_frequency", wave.frequency, "1/time", "c k");
     run.result("frequency_over_ck", frequency / wave.frequency, "",
-               wave.phase / (wave.frequency * dt), scheme);
+               common::slope(times, theory.phase) / wave.frequency, scheme);
     if (run.program == "pic" && parameters.frame_x != 0)
         run.info("amplitude_per_period", per_period(velocity), "", "the flow diffuses it");
     else
-        run.absolute_result("amplitude_per_period", per_period(velocity), "",
-                            std::pow(wave.amplification, steps),
+        run.absolute_result("amplitude_per_period", per_period(velocity), "", per_period(theory),
                             sentence(scheme, "; in a step 1 + ", wave.amplification - 1));
     run.info("pressure_amplitude_per_period", per_period(pressure), "", "measured");
     run.info("periods", times.back() / period, "", "of c k");

@@ -100,11 +100,27 @@ inline void compare_gresho(const FinishedRun& run) {
                                       {"v_exact", "velocity", exact}});
 }
 
-/// Needs a region that turns rigidly.
+/// Needs dust that turns rigidly about the middle of the trap, which alone holds it on its circles.
 inline void validate_rotation(const Case& parameters, const Refusal& refuse) {
     validate_flow(parameters, refuse, "rotation");
     const RegionCase& r = region_with_flow(parameters, "rotation");
     refuse(r.speed == 0, " needs a flow: give region.", r.name, ".speed");
+    refuse(material_of(parameters, r).gamma > 1 && sound_speed_of(parameters, r) > 0,
+           " is for dust, and region.", r.name,
+           " has a pressure, which drives it apart: take a material of gamma = 1");
+    const double rate = r.speed / r.width;
+    refuse(!(std::fabs(parameters.trap - rate * rate) <= 1e-9 * rate * rate),
+           " needs a trap that bends all paths to circles: set gravity.trap = (speed/width)^2 = ",
+           common::number_text(rate * rate));
+    refuse(parameters.gravity_x != 0 || parameters.gravity_z != 0,
+           " is without gravity: take out gravity.x and gravity.z");
+    const auto off = [](const common::Axis& axis, double center) {
+        return std::fabs(center - axis.low - 0.5 * axis.length) > 1e-9 * axis.length;
+    };
+    refuse(off(parameters.grid.x, r.center_x) || off(parameters.grid.z, r.center_z) ||
+               r.gas.velocity_x != 0 || r.gas.velocity_z != 0,
+           " needs a disk that stays in the middle of the mesh, where the trap is: set region.",
+           r.name, ".center_x, center_z and its velocity to that");
 }
 
 /// note:   PIC's transfer loses 2 h^2/(3 R^2) in each step; blends lose their part of that
@@ -119,10 +135,11 @@ inline void compare_rotation(const FinishedRun& run) {
     if (std::fabs(turns) < 0.1)
         return run.not_measured("angular_momentum_kept", "the disk has made ", turns,
                                 " turns, and theory is tried by a tenth at least: raise time.end");
-    run.hint("what the transfer takes in each step adds up over ",
-             run.history.column("time").size() - 1, " steps, with ", region.width / h,
-             " cells in the radius: refine the mesh, raise time.cfl, or take flip.transfer = "
-             "\"flip\" in flip");
+    run.hint(
+        "what the transfer takes in each step adds up over ", run.history.column("time").size() - 1,
+        " steps, with ", region.width / h,
+        " cells in the radius: refine the mesh, take longer steps, or flip.transfer = \"flip\" "
+        "in flip");
     std::string source = "exact: rigid rotation for ever";
     if (run.program == "flip" && parameters.transfer == "pic" && region.shape == "disk") {
         const double steps = double(run.history.column("time").size()) - 1;

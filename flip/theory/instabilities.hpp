@@ -1,10 +1,11 @@
-// Waves that grow at the interface of two fluids and in a shear layer, at small amplitude and far
-// below the speed of sound.
+// Waves that grow at the interface of two fluids and in a shear layer, at small amplitude; where nothing
+// else is said, far below the speed of sound.
 //
 // z points up and gravity down. Waves vary like exp(i k x - i omega t): Im omega is a growth rate.
 #pragma once
 
 #include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -85,6 +86,63 @@ inline double interface_growth_on_mesh(const TwoLayers& s, double k, double dx, 
     const Eigen::MatrixXd A = D_u * R_u * D_u.transpose() + D_w * R_w * D_w.transpose();
     const Eigen::VectorXd p = A.ldlt().solve(D_w * (R_w * f));
     return std::sqrt(std::max(0.0, f.dot(R_w * (f - D_w.transpose() * p))));
+}
+
+/// rho c^2 = gamma (p + p_infinity) of a layer at the interface; it falls with the pressure above.
+struct LayerStiffness {
+    double at_interface, gamma;
+};
+
+/// The growth rate of waves at the interface of layers that sound crosses in some time: each has one
+/// density and the pressure of its weight, and would overturn by itself, as N^2 = -g^2/c^2.
+/// With the displacement xi along z and the pressure q of the displaced fluid less that at rest,
+///   sigma^2 rho xi = -dp'/dz - g rho',  p' = q + rho g xi,  c^2 rho' = q,
+///   rho' = -rho (dxi/dz - k^2 p'/(rho sigma^2))
+/// become, both continuous at the interface and xi = 0 at the walls,
+///   dxi/dz = -a xi - b q,  dq/dz = d xi + a q
+///   a = g k^2/sigma^2,  b = 1/(rho c^2) + k^2/(rho sigma^2),  d = rho (a g - sigma^2)
+/// The fastest wave has no node between the walls; from the lower wall upward, xi of a slower sigma
+/// comes to one, and that of a faster one to none.
+/// in:    k > 0; heavy fluid at rest above, between walls; pressure + p_infinity above 0 everywhere
+/// exact: interface_growth() for rho c^2 -> infinity, and never below it, as fluid that is free to
+///        change its volume finds what does not change it, too
+inline double compressible_interface_growth(const TwoLayers& s, const LayerStiffness& lower,
+                                            const LayerStiffness& upper, double k) {
+    const auto has_node = [&](double sigma) {
+        double xi = 0, q = -1;
+        const auto cross = [&](double rho, const LayerStiffness& layer, double from, double to) {
+            const double a = s.gravity * k * k / (sigma * sigma),
+                         d = rho * (a * s.gravity - sigma * sigma);
+            const auto slope = [&](double z, const Eigen::Vector2d& y) -> Eigen::Vector2d {
+                const double rho_c2 = layer.at_interface - layer.gamma * rho * s.gravity * z,
+                             b = 1 / rho_c2 + k * k / (rho * sigma * sigma);
+                return {-a * y[0] - b * y[1], d * y[0] + a * y[1]};
+            };
+            const int steps = 100 + int(20 * k * (to - from));
+            const double h = (to - from) / steps;
+            Eigen::Vector2d y(xi, q);
+            for (int n = 0; n < steps; ++n) {
+                const double z = from + n * h;
+                const Eigen::Vector2d k1 = slope(z, y), k2 = slope(z + 0.5 * h, y + 0.5 * h * k1),
+                                      k3 = slope(z + 0.5 * h, y + 0.5 * h * k2),
+                                      k4 = slope(z + h, y + h * k3);
+                y += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+                if (!(y[0] > 0)) return true;
+                y /= y.norm();
+            }
+            xi = y[0], q = y[1];
+            return false;
+        };
+        return cross(s.lower_density, lower, -s.lower_depth, 0) ||
+               cross(s.upper_density, upper, 0, s.upper_depth);
+    };
+    double low = interface_growth(s, k), high = 1.1 * low;
+    while (has_node(high)) low = high, high *= 1.1;
+    for (int n = 0; n < 50; ++n) {
+        const double middle = 0.5 * (low + high);
+        (has_node(middle) ? low : high) = middle;
+    }
+    return 0.5 * (low + high);
 }
 
 /// A fluid of one density with U(z) = velocity_difference / 2 times z / half_width, clamped to
