@@ -27,6 +27,34 @@ Run run(const std::string& name, const std::string& file, const std::string& ove
                                "output.fields_interval=0");
 }
 
+// What it says of its results on standard error.
+std::string said(const std::string& file, const std::string& overrides) {
+    const std::string room = facts::folder_of_test(),
+                      command = std::string(BUILD_FOLDER) + "/cic " + file + " " + overrides +
+                                " output.phase_interval=0 output.particles_interval=0 "
+                                "output.fields_interval=0 --out " +
+                                room + "/told --force --quiet 2> " + room + "/words";
+    std::filesystem::create_directories(room);
+    REQUIRE(std::system(command.c_str()) == 0);
+    std::ifstream words(room + "/words");
+    return {std::istreambuf_iterator<char>(words), {}};
+}
+bool says(const std::string& text, const std::string& part) {
+    CAPTURE(text);
+    CAPTURE(part);
+    const bool found = text.find(part) != std::string::npos;
+    CHECK(found);
+    return found;
+}
+
+// A case of electrons before fixed ions, in a file of the test's own.
+std::string case_file(const std::string& text) {
+    const std::string room = facts::folder_of_test(), path = room + "/own.toml";
+    std::filesystem::create_directories(room);
+    std::ofstream(path) << text;
+    return path;
+}
+
 const double pi = std::acos(-1.0);
 std::string length_of(double k) { return " grid.length_x=" + text(2 * pi / k); }
 
@@ -316,14 +344,8 @@ TEST_CASE("a floating wall reaches the potential of theory" * doctest::descripti
 
 TEST_CASE("a sheath that has not settled is not measured and says what it needs" *
           doctest::description("physics")) {
-    const std::string room = facts::folder_of_test(), said = room + "/said",
-                      command = std::string(BUILD_FOLDER) +
-                                "/cic cic/cases/sheath.toml time.end=600 output.phase_interval=0 "
-                                "output.particles_interval=0 output.fields_interval=0 --out " +
-                                room + "/settling --force --quiet 2> " + said;
-    std::filesystem::create_directories(room);
-    REQUIRE(std::system(command.c_str()) == 0);
-    const Run r = facts::finished_run(room + "/settling");
+    const std::string sentence = said("cic/cases/sheath.toml", "time.end=600");
+    const Run r = facts::finished_run(facts::folder_of_test() + "/told");
     const auto& plasma = r.summary["results"]["plasma_potential"];
     INFO(plasma.dump());
     CHECK(plasma["verdict"] == "NOT MEASURED");
@@ -331,8 +353,6 @@ TEST_CASE("a sheath that has not settled is not measured and says what it needs"
     CHECK(std::fabs(plasma.value("error", 0.0) - 0.05) <= 0.015);
     CHECK(r.summary["results"]["collector_potential"]["verdict"] != "FAIL");
     // L (m_i/T_e)^(1/2) = 24 * 10.
-    std::ifstream file(said);
-    const std::string sentence{std::istreambuf_iterator<char>(file), {}};
     CAPTURE(sentence);
     CHECK(sentence.find("has not settled: ions cross the box in L (m_i/T_e)^1/2 = 240") !=
           std::string::npos);
@@ -362,4 +382,23 @@ TEST_CASE("two streams in the plane grow obliquely" * doctest::description("phys
                           "time.end=30 grid.cells_x=64 grid.cells_z=32 method.stencil=" + stencil);
         check_results(r, 2);
     }
+}
+
+TEST_CASE("a particles file says of what time its velocities are" *
+          doctest::description("physics")) {
+    // Half of the first kick lies before: v = dt/2 E_x at t = 0, q/m = -1.
+    const std::string folder = facts::folder_of_test() + "/times",
+                      command = std::string(BUILD_FOLDER) +
+                                "/cic cic/cases/plasma_wave.toml time.end=2 "
+                                "output.particles_interval=2 --out " +
+                                folder + " --force --quiet 2> /dev/null";
+    REQUIRE(std::system(command.c_str()) == 0);
+    const auto third_line = [&](const std::string& name) {
+        std::ifstream file(folder + name);
+        std::string line;
+        for (int n = 0; n < 3; ++n) std::getline(file, line);
+        return line;
+    };
+    says(third_line("/particles_000000.dat"), "# time 0 step 0 particles 2048 velocities at -0.1");
+    says(third_line("/particles_000010.dat"), "# time 2 step 10 particles 2048 velocities at 1.9");
 }
