@@ -384,6 +384,26 @@ TEST_CASE("two streams in the plane grow obliquely" * doctest::description("phys
     }
 }
 
+TEST_CASE("a start at E across B has the temperature of the species" *
+          doctest::description("physics")) {
+    const auto start = [](const char* temperature) {
+        return run("across", "diocotron",
+                   std::string(
+                       "time.end=0.5 theory.compare=none species.electrons.temperature_x=") +
+                       temperature + " species.electrons.temperature_z=" + temperature)
+            .column("kinetic")
+            .front();
+    };
+    // 32 electrons, T/2 for each of two directions.
+    CHECK(std::fabs((start("100") - start("0")) / 3200 - 1) <= 1e-3);
+    // Orbits of a tenth of the half width leave the rate as it is.
+    check_results(run("warm", "diocotron",
+                      "time.end=600 grid.cells_x=64 grid.cells_z=96 "
+                      "species.electrons.particles_per_cell=36 species.electrons.temperature_x=4 "
+                      "species.electrons.temperature_z=4"),
+                  1);
+}
+
 TEST_CASE("a particles file says of what time its velocities are" *
           doctest::description("physics")) {
     // Half of the first kick lies before: v = dt/2 E_x at t = 0, q/m = -1.
