@@ -404,6 +404,47 @@ TEST_CASE("a start at E across B has the temperature of the species" *
                   1);
 }
 
+TEST_CASE("thermal noise is that of the charges of all species without their drift" *
+          doctest::description("physics")) {
+    const std::string all =
+        "grid.cells_x=40 grid.length_x=10 time.dt=0.1 time.end=400 "
+        "species.electrons.loading=random species.electrons.particles_per_cell=200 ";
+    const auto expected = [&](const std::string& others, double value) {
+        CAPTURE(others);
+        const Run r = run("noise", "thermal_heating", all + others);
+        check_results(r, 1);
+        const double theory = r.summary["results"]["field_over_kinetic"]["expected"];
+        CHECK(std::fabs(theory / value - 1) <= 0.02);
+    };
+    // One Maxwellian in two parts: sum (n_s q_s)^2/N_s is 3.025 times 1 / sum N_s.
+    expected(
+        "species.electrons.density=0.5 species.b.density=0.5 species.b.temperature_x=1 "
+        "species.b.loading=random species.b.particles_per_cell=2000",
+        3.025 * 4.11e-5);
+    const std::string ions =
+        "species.ions.motion=mobile species.ions.mass=4 species.ions.temperature_x=1 "
+        "species.ions.loading=random species.ions.particles_per_cell=";
+    expected(ions + "2000", 2.31e-4);
+    // As many of both: 400 in a cell, the Debye length less by 2^1/2.
+    const double l = 4 / std::sqrt(2.0);
+    double equal = 0;
+    for (int m = 1; m < 40; ++m) {
+        const double C = std::cos(2 * pi * m / 40), A = (2 + C) / 3;
+        equal += A / (A + (2 - 2 * C) * l * l) / (400 * 40);
+    }
+    expected(ions + "200", equal);
+    const Run moving = run("moving", "thermal_heating", "species.electrons.drift_x=1");
+    check_results(moving, 1);
+    CHECK(std::fabs(moving.value("debye_length_over_dx") - 1) <= 0.01);
+}
+
+TEST_CASE("noise that is not thermal says why" * doctest::description("physics")) {
+    const std::string heating = "cic/cases/thermal_heating.toml";
+    says(said(heating, "time.end=100"), "takes long to come to it: raise time.end");
+    says(said(heating, "time.end=100 species.electrons.loading=random"),
+         "keep it: take loading = \"quiet\"");
+}
+
 TEST_CASE("a particles file says of what time its velocities are" *
           doctest::description("physics")) {
     // Half of the first kick lies before: v = dt/2 E_x at t = 0, q/m = -1.
