@@ -445,6 +445,85 @@ TEST_CASE("noise that is not thermal says why" * doctest::description("physics")
          "keep it: take loading = \"quiet\"");
 }
 
+TEST_CASE("a wave that grows slowly and long is one that grows" * doctest::description("physics")) {
+    const std::string file = case_file(
+        "[grid]\ncells_x = 128\nlength_x = 6.283185307179586\n[time]\ndt = 0.1\nend = 5400\n"
+        "[species.ions]\ncharge = 1\ndensity = 1.0000000014\nmotion = \"fixed\"\n"
+        "[species.e]\nloading = \"lattice\"\nparticles_per_cell = 2\namplitude = 1e-8\n"
+        "[species.b]\ndensity = 1.4e-9\ndrift_x = 1\nloading = \"lattice\"\n"
+        "particles_per_cell = 2\n[theory]\ncompare = \"wave\"\n");
+    const Run r = facts::run_into("slow", "cic", file);
+    // A weak cold beam in resonance: 3^1/2 / 2^4/3 n_b^1/3
+    CHECK(std::fabs(r.value("theory_growth") / (0.687365 * std::cbrt(1.4e-9)) - 1) <= 1e-3);
+    CHECK(!r.summary["results"].contains("largest_over_start"));
+    CHECK(r.summary["results"]["onset"]["verdict"] == "PASS");
+    CHECK(r.summary["results"]["omega_over_theory"]["verdict"] == "PASS");
+    // In a time in which it could grow to exp(1.15) it may.
+    const Run early = facts::run_into("slow_early", "cic", file + " time.end=1500");
+    CHECK(std::fabs(early.summary["results"]["largest_over_start"].value("at_most", 0.0) /
+                        (1.2 * std::exp(1500 * r.value("theory_growth"))) -
+                    1) <= 1e-6);
+}
+
+TEST_CASE("an onset that noise brings or the perturbation hides is not measured" *
+          doctest::description("physics")) {
+    const auto onset = [](const std::string& file, const std::string& overrides) {
+        return run("onset", file, overrides).summary["results"]["onset"].dump();
+    };
+    const auto streams = [&](const std::string& A) {
+        return onset("warm_two_stream",
+                     "time.end=60 species.right.particles_per_cell=256 "
+                     "species.left.particles_per_cell=256 species.right.amplitude=" +
+                         A + " species.left.amplitude=" + A);
+    };
+    says(streams("1e-8"), "noise starts the wave: it begins with");
+    says(streams("1e-3"), "PASS");
+    says(onset("bump_on_tail", "time.end=60 species.bulk.amplitude=0.003"),
+         "of it is the growing wave: lower the amplitude 1.26 times or more");
+}
+
+TEST_CASE("what round-off and noise alone begin is no wave" * doctest::description("physics")) {
+    const std::string rest =
+        "[grid]\nlength_x = 6.283185307179586\ncells_x = 64\n[time]\nend = 400\n"
+        "[species.ions]\ncharge = 1\nmotion = \"fixed\"\n[species.e]\n"
+        "loading = \"lattice\"\n[theory]\ncompare = \"wave\"\n";
+    for (const std::string warm :
+         {"",
+          " grid.length_x=12.566370614359172 time.end=40 species.e.loading=quiet "
+          "species.e.temperature_x=1 species.e.particles_per_cell=1024"}) {
+        const Run r = facts::run_into("rest", "cic", case_file(rest) + warm);
+        for (const char* name : {"largest_over_start", "omega_over_theory"})
+            says(r.summary["results"][name].dump(), "no species is perturbed in this mode");
+        CHECK(!r.summary["results"].contains("omega"));
+    }
+}
+
+TEST_CASE("what falls short names what cures it" * doctest::description("physics")) {
+    says(said("cic/cases/plasma_wave.toml",
+              "theory.model=plasma theory.frequency_tolerance=0.005 grid.cells_x=64 time.dt=0.02"),
+         "k dx is 0.3927, and the mesh changes the wave by 1 - cos(k dx/2) = 0.01921");
+    // 8 (T_e / n_P e^2)^1/2 of the plasma, n_P = 0.1353 / 0.579.
+    says(said("cic/cases/sheath.toml", "grid.length_x=6 grid.cells_x=24 time.end=1000"),
+         "raise grid.length_x, 6, above 8 Debye lengths of the plasma, 16.55");
+    const std::string landau = said("cic/cases/landau.toml",
+                                    "species.electrons.particles_per_cell=256 "
+                                    "species.electrons.amplitude=1e-3");
+    says(landau, "what hides it is noise: raise the amplitude or particles_per_cell");
+    says(landau, "the error, 1.447, is larger than the tolerance, 0.03;");
+    says(said("cic/cases/warm_two_stream.toml",
+              "species.right.amplitude=0 species.left.amplitude=0 species.right.loading=random "
+              "species.right.particles_per_cell=256 species.left.particles_per_cell=256"),
+         "growth is over then: raise particles_per_cell, so that noise starts it lower");
+}
+
+TEST_CASE("a wave that runs backward has a negative frequency" * doctest::description("physics")) {
+    const Run r = run("backward", "plasma_wave",
+                      "species.electrons.drift_x=-3 theory.model=plasma time.end=40 "
+                      "theory.frequency_tolerance=0.1");
+    CHECK(r.value("theory_omega") < 0);
+    CHECK(std::fabs(r.value("omega") / r.value("theory_omega") - 1) <= 0.1);
+}
+
 TEST_CASE("a particles file says of what time its velocities are" *
           doctest::description("physics")) {
     // Half of the first kick lies before: v = dt/2 E_x at t = 0, q/m = -1.
