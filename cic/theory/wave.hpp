@@ -261,8 +261,11 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
         // What the perturbation has by search.begin, a growth time, without noise.
         const double own = std::max(amplitude.front(), std::exp(1.0) * theory.seed),
                      reached = std::isnan(at) ? times.back() : at;
+        const bool grows_right =
+            seen.found && std::fabs(seen.growth() - growth) <=
+                              seen.growth_error() + parameters.growth_tolerance * growth;
         const bool quiet_noise = noise_field(parameters, theory) > 0 && early > 1.05 * own &&
-                                 std::fabs(reached - onset) > allowed;
+                                 grows_right && std::fabs(reached - onset) > allowed;
         if (noise > 0.3 * theory.seed || quiet_noise)
             summary.not_measured("onset", sentence("noise starts the wave: it begins with ", early,
                                                    ", and the seed is ", theory.seed,
