@@ -89,10 +89,7 @@ inline void begin_table(OutputFile& file, const std::vector<ScalarColumn>& colum
     file.number(at->time);
     file.text(" step ");
     file.number(at->step);
-    if (at->particles > 0) {
-        file.text(" particles ");
-        file.number(at->particles);
-    }
+    if (at->particles > 0) file.text(" particles " + std::to_string(at->particles));
     file.text(at->note + "\n");
 }
 
