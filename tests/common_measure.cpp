@@ -255,6 +255,11 @@ TEST_CASE("what cannot be measured says why") {
     CHECK(says(reason(saturated, 0.1, growing), "growth is over then"));
     CHECK(
         says(reason({saturated.begin(), saturated.begin() + 150}, 0.1, growing), "raise time.end"));
+    // In most of its record a wave that decays within a period is noise.
+    const std::vector<Complex> decaying = both({1, -0.3});
+    CHECK(says(reason(record_of({"", decaying, {1, 1}, 180, 0.5, {}}, 0.1, 3), 0.5,
+                      {.expected = decaying}),
+               "it is lost in noise then: raise its amplitude"));
     std::vector<Complex> broken = record_of({"", both(1.0), {1, 1}, 400, 0.1, {}}, 0, 0);
     broken[200] = std::numeric_limits<double>::quiet_NaN();
     CHECK(says(reason(broken, 0.1, wave), "not finite"));

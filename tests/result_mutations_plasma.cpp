@@ -71,7 +71,9 @@ const std::vector<Mutation> electrostatic{
      "largest_over_start"},
     {"cic", "ring", "", ""},
     {"cic", "ring", "time.dt=1.2", "growth_over_theory"},
-    {"cic", "ring", "theory.near=0.4 time.dt=0.2 species.electrons.particles_per_cell=1024",
+    {"cic", "ring",
+     "theory.near=0.4 time.dt=0.2 species.electrons.particles_per_cell=1024 "
+     "species.electrons.amplitude=1e-3",
      "omega_over_theory"},
     {"cic", "ring", long_step, "energy_change"},
     {"cic", "sheath", "grid.cells_x=8 time.end=1200", "collector_potential plasma_potential"},

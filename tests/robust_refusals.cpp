@@ -112,6 +112,8 @@ cic line species.electrons.temperature_z=1
     magnetic field: take out drift_z, temperature_z, distribution_z and distribution_across
 cic line species.electrons.start=ExB
     species.electrons.start = "ExB" needs a magnetic field: set plasma.B_x, B_y or B_z
+cic line species.electrons.start=ExB plasma.B_y=1 species.electrons.drift_x=1
+    species.electrons.start = "ExB" replaces the drift: take out drift_x, drift_y and drift_z
 cic line species.electrons.amplitude=0.1 species.electrons.mode_x=0
     species.electrons: the perturbed mode has no wave number: set mode_x
 cic plane species.electrons.amplitude=0.1 species.electrons.mode_x=0
@@ -222,6 +224,9 @@ cic diocotron.toml grid.boundary_x=wall
 cic diocotron.toml plasma.B_x=1
     theory.compare = "diocotron" needs one species with profile = "layer" and no other, plasma.B_y
     alone, and walls in z only
+cic diocotron.toml species.electrons.temperature_x=100
+    theory.compare = "diocotron" is for cold particles, and the orbits of 'electrons' have the
+    radius 0.5, above a tenth of its half_width of 1: lower its temperature, or raise plasma.B_y
 cic diocotron.toml gauss.sign=-1 -> theory.compare = "diocotron" is for gauss.sign = 1
 cic diocotron.toml theory.mode_x=0
     theory.compare = "diocotron" follows theory.mode_x, and not mode (0, 0)
@@ -268,6 +273,16 @@ cic plane theory.compare=heating species.electrons.temperature_x=1
 cic line theory.compare=heating
     theory.compare = "heating" needs uniform, charged, warm species, and 'electrons' has profile
     "uniform", charge -1 and temperature_x 0
+cic thermal_heating.toml plasma.B_y=1
+    theory.compare = "heating" needs the energy of v_x alone, and with a magnetic field the history
+    has that of all directions: take out plasma.B_x, B_y and B_z
+cic thermal_heating.toml species.ions.motion=mobile species.ions.temperature_x=1 \
+    species.ions.drift_x=1
+    theory.compare = "heating" needs species that drift together, and 'ions' has drift_x = 1,
+    another 0
+cic thermal_heating.toml species.electrons.amplitude=0.1
+    theory.compare = "heating" is for the noise of particles, and the perturbation of 'electrons' is
+    a wave beside it: take it out
 )");
 }
 

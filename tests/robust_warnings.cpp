@@ -45,6 +45,9 @@ cic line output.fields_interval=0.01 output.particles_interval=1 output.phase_in
 cic between_walls boundary.particles_x_low=source
     warning: boundary.particles_x_low = "source", and every emission is 0: the wall only gives
     back what reaches it, with emission_temperature
+cic sheath.toml grid.length_x=6
+    warning: grid.length_x = 6 is below 8 Debye lengths of the plasma, 16.55: the sheaths of
+    both walls overlap
 cic line wave species.electrons.amplitude=0.01
     warning: the wave of theory has the period 6.283, longer than time.end = 2: its frequency
     cannot be measured well

@@ -88,6 +88,7 @@ inline void write_particles(const common::Snapshot& at_time, const Case& paramet
     if (magnetized || plane) columns.push_back({"v_z", "velocity", data[5]});
     common::Snapshot sample = at_time;
     sample.particles = state.count();
+    sample.note = sentence(" velocities at ", at_time.time - 0.5 * parameters.dt);
     common::write_table(sample, "particles", columns);
     if (at_time.also.vtk) {
         const std::vector<double> zero(data[0].size(), 0.0);

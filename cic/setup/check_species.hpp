@@ -135,6 +135,8 @@ inline void refuse_species(const Case& parameters, const SpeciesCase& s) {
            "field: take out drift_z, temperature_z, distribution_z and distribution_across");
     refuse(s.start == "ExB" && !parameters.magnetized(), name,
            ".start = \"ExB\" needs a magnetic field: set plasma.B_x, B_y or B_z");
+    refuse(s.start == "ExB" && !s.at_rest(), name,
+           ".start = \"ExB\" replaces the drift: take out drift_x, drift_y and drift_z");
     const auto refuse_above_cut_off = [&](const std::string& where, long mode_x, long mode_z) {
         refuse(is_above_cut_off(parameters, mode_x, mode_z), where, ": ", mode_text(mode_x, mode_z),
                " has more than one wavelength per two cells, the cut-off of the mesh: refine it or "

@@ -53,8 +53,7 @@ inline void describe_species(common::ParameterTable& table, const std::string& p
             "of the speed v across B, per area of the plane of velocities; without B, in (x, z)");
     real("distribution_max", s.distribution_max, "velocity", at_least(0),
          "distributions end at this speed");
-    choice("start", s.start, {"drift", "ExB"},
-           "ExB: replaces the drift by E x B/B^2 in the field at t = 0");
+    choice("start", s.start, {"drift", "ExB"}, "ExB: the drift is E x B/B^2 in the field at t = 0");
     table.whole(prefix + ".mode_x", s.mode_x, "", between(-2048, 2048),
                 "perturbed wavelengths in length_x");
     table.whole(prefix + ".mode_z", s.mode_z, "", between(-2048, 2048), "in length_z");
@@ -172,7 +171,7 @@ inline common::ParameterTable describe(Case& parameters) {
     table.real("output.fields_interval", parameters.fields_interval, "1/omega_p", at_least(0),
                "time between fields files; 0: none");
     table.real("output.particles_interval", parameters.particles_interval, "1/omega_p", at_least(0),
-               "time between particles files; 0: none");
+               "time between particles files, velocities half a step before; 0: none");
     table.real("output.phase_interval", parameters.phase_interval, "1/omega_p", at_least(0),
                "time between files of f(x, v_x) and f(v_x); 0: none");
     table.whole("output.phase_bins_x", parameters.phase_bins_x, "", between(1, 4096),

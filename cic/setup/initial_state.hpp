@@ -88,23 +88,27 @@ inline ParticleBoundaries particle_boundaries(const Case& parameters,
     return conditions;
 }
 
-/// Replaces the velocities of a species by the drift in E and B,
-///   v_p = E_p x B / B^2
-/// note:   At t = -1/2 dt as at t = 0: accelerate() leaves this velocity as it is.
-inline void start_drifting(const MeshField& E_g, const Case& parameters, Particles& particles) {
+/// Velocities of a species half a step before t = 0.
+///   v^(-1/2) = R^(-1/2) v^0 - h,  or with start = "ExB"
+///   v^(-1/2) = R^(-1/2) v^0 + E_p x B / B^2,  v^0 without a drift
+/// note:   At t = -1/2 dt as at t = 0: accelerate() leaves the drift across B as it is.
+inline void start_velocities(const MeshField& E_g, const Case& parameters, const SpeciesCase& s,
+                             Particles& particles) {
     const Eigen::Vector3d B(parameters.B.x, parameters.B.y, parameters.B.z);
     std::vector<Particles> one(1);
     one[0] = std::move(particles);
     for_each_batch(one, [&](ParticleBatch& batch) {
         FieldAtParticles E_p;
         gather_field(E_g, parameters.grid, parameters.scheme(), batch, E_p);
+        if (s.start != "ExB") return start_leapfrog(E_p, parameters.B, parameters.dt, batch);
+        start_leapfrog(FieldAtParticles{}, parameters.B, parameters.dt, batch);
         for (long p = 0; p < batch.count; ++p) {
             const Eigen::Vector3d E(double(E_p.x[p]), 0,
                                     batch.z_p == nullptr ? 0 : double(E_p.z[p]));
             const Eigen::Vector3d v = E.cross(B) / B.squaredNorm();
-            batch.vx_p[p] = Real(v[0]);
-            batch.vy_p[p] = Real(v[1]);
-            batch.vz_p[p] = Real(v[2]);
+            batch.vx_p[p] += Real(v[0]);
+            batch.vy_p[p] += Real(v[1]);
+            batch.vz_p[p] += Real(v[2]);
         }
     });
     particles = std::move(one[0]);
@@ -126,17 +130,9 @@ inline State initial_state(const Case& parameters, FieldSolver& solver) {
     deposit_charge(state.species, parameters.grid, parameters.scheme(),
                    fixed_background(parameters), scratch, rho_g);
     solve_field(solver, rho_g, field);
-    for_each_batch(state.species, [&](ParticleBatch& batch) {
-        FieldAtParticles E_p;
-        gather_field(field.E_g, parameters.grid, parameters.scheme(), batch, E_p);
-        start_leapfrog(E_p, parameters.B, parameters.dt, batch);
-    });
     std::size_t mobile = 0;
-    for (const SpeciesCase& s : parameters.species) {
-        if (!s.mobile()) continue;
-        if (s.start == "ExB") start_drifting(field.E_g, parameters, state.species[mobile]);
-        ++mobile;
-    }
+    for (const SpeciesCase& s : parameters.species)
+        if (s.mobile()) start_velocities(field.E_g, parameters, s, state.species[mobile++]);
     return state;
 }
 

@@ -96,6 +96,13 @@ inline void validate_diocotron(const Case& parameters) {
            " needs grounded walls of the same potential, and the layer half-way between them, at "
            "center_z = ",
            0.5 * parameters.grid.z.length);
+    const double orbit =
+        std::sqrt(std::max(layer.temperature_x, layer.temperature_z) * layer.mass) /
+        std::fabs(layer.charge * parameters.B.y);
+    refuse(orbit > 0.1 * layer.half_width, asked_for(parameters),
+           " is for cold particles, and the orbits of '", layer.name, "' have the radius ", orbit,
+           ", above a tenth of its half_width of ", layer.half_width,
+           ": lower its temperature, or raise plasma.B_y");
     refuse(diocotron_growth(parameters) == 0, asked_for(parameters), ": mode ", parameters.mode_x,
            " of a layer of half_width ", layer.half_width, " and charge ", layer.charge,
            " does not grow: make it thinner, or change theory.mode_x");

@@ -156,6 +156,16 @@ inline Sheath sheath_of(const Case& parameters) {
                             ions.emission_temperature / electrons.emission_temperature);
 }
 
+/// The length in which the two sheaths and a plasma between them have room, eight Debye lengths of
+/// this plasma, whose density is emission (m_e/T_e)^1/2 over that of the theory.
+/// note:   Measured: with 6 of them phi_P is 4 % too low, with 8 1 %, with 3 17 %.
+inline double least_length(const Case& parameters) {
+    const SpeciesCase& e = electrons_of(parameters);
+    const double n_P =
+        e.emission * std::sqrt(e.mass / e.emission_temperature) / sheath_of(parameters).emission;
+    return 8 * std::sqrt(e.emission_temperature / (n_P * e.charge * e.charge));
+}
+
 /// Potentials of a floating wall in front of a plasma from a source, mean of the last half. Their error
 /// is by how much the last quarter differs from the one before: it tells where they still settle.
 inline void compare_sheath(const Case& parameters, const History& history, Summary& summary) {
@@ -164,9 +174,12 @@ inline void compare_sheath(const Case& parameters, const History& history, Summa
     const double e_over_T = std::fabs(electrons.charge) / electrons.emission_temperature,
                  crossing = parameters.grid.x.length *
                             std::sqrt(ions_of(parameters).mass / electrons.emission_temperature),
-                 settled = 5 * crossing;
+                 settled = 5 * crossing, least = least_length(parameters);
     summary.hint(
-        parameters.end < settled
+        parameters.grid.x.length < least
+            ? sentence("the sheaths of both walls overlap: raise grid.length_x, ",
+                       parameters.grid.x.length, ", above 8 Debye lengths of the plasma, ", least)
+        : parameters.end < settled
             ? sentence(
                   "the sheath has not settled: ions cross the box in L (m_i/T_e)^1/2 = ", crossing,
                   ", and potentials come to rest in three such times or more: "
@@ -208,6 +221,15 @@ inline void validate_sheath(const Case& parameters) {
 
 /// The comparison of a floating wall.
 inline constexpr Comparison sheath_comparison{
-    .name = "sheath", .validate = validate_sheath, .add_results = compare_sheath};
+    .name = "sheath",
+    .validate = validate_sheath,
+    .add_warnings =
+        [](const Case& parameters, std::vector<std::string>& warnings) {
+            const double length = parameters.grid.x.length, least = least_length(parameters);
+            common::warn(warnings, length < least, "grid.length_x = ", length,
+                         " is below 8 Debye lengths of the plasma, ", least,
+                         ": the sheaths of both walls overlap");
+        },
+    .add_results = compare_sheath};
 
 }  // namespace cic

@@ -121,6 +121,15 @@ inline double noise_field(const Case& parameters, const Theory& theory) {
     return std::sqrt(squares);
 }
 
+/// Whether some species is perturbed in the followed mode, in either direction.
+inline bool is_seeded(const Case& parameters, const Theory& theory) {
+    for (const SpeciesCase& s : parameters.species)
+        for (const PerturbationCase& p : perturbations_of(parameters, s))
+            if (p.is_of(theory.mode_x, theory.mode_z) || p.is_of(-theory.mode_x, -theory.mode_z))
+                return true;
+    return false;
+}
+
 /// What a wave that is not as in theory is most likely due to, and what to change.
 /// in:     field, the amplitude of the wave without noise; noise of random numbers in it
 inline std::string likely_cause(const Case& parameters, const Theory& theory, double field,
@@ -137,6 +146,9 @@ inline std::string likely_cause(const Case& parameters, const Theory& theory, do
                             parameters.gauss_sign > 0 &&
                             (theory.mode_x == 0 || theory.mode_z == 0) &&
                             (parameters.mode_x != 0 || parameters.mode_z != 0);
+    const double tolerance = theory.omega.real() == 0 ? parameters.growth_tolerance
+                                                      : parameters.frequency_tolerance,
+                 theta = std::max(k_dx, k_dz);
     const char* exact = takes_mesh ? ", or take theory.model = \"mesh\"" : "";
     if (noise > 0.1 * field)
         return sentence("random particles have up to ", noise / field,
@@ -146,17 +158,23 @@ inline std::string likely_cause(const Case& parameters, const Theory& theory, do
         return sentence("particles bounce in the wave with ", bounce, ", faster than the rate ",
                         rate, ", and linear theory does not hold: lower the amplitude ",
                         format(rate * rate / (bounce * bounce)), " times");
-    if (parameters.model != "mesh" && std::max(k_dx, k_dz) > 0.5)
-        return sentence(k_dx > k_dz ? "k dx is " : "k dz is ", std::max(k_dx, k_dz),
-                        ", and the mesh changes the wave: raise grid.cells_",
-                        k_dx > k_dz ? "x" : "z", exact);
+    if (parameters.model != "mesh" && (theta > 0.5 || 1 - std::cos(theta / 2) > tolerance))
+        return sentence(
+            k_dx > k_dz ? "k dx is " : "k dz is ", theta,
+            ", and the mesh changes the wave by 1 - cos(k dx/2) = ", 1 - std::cos(theta / 2),
+            " or so: raise grid.cells_", k_dx > k_dz ? "x" : "z", exact);
     if (parameters.model != "mesh" && step > 0.3)
         return sentence("|omega| dt is ", step,
                         ", and the leapfrog changes the wave: lower time.dt", exact);
-    return noise > 0 ? "the noise of particles is the most likely cause: raise particles_per_cell, "
-                       "or take loading = \"quiet\""
-                     : "another wave beside it, or too short a record, is the most likely cause: "
-                       "raise time.end, or particles_per_cell where the start is quiet";
+    if (noise > 0)
+        return "the noise of particles is the most likely cause: raise particles_per_cell, or take "
+               "loading = \"quiet\"";
+    if (const double left = std::exp(theory.omega.imag() * parameters.end); left < 0.05)
+        return sentence("by the end ", left,
+                        " of the wave is left, and what hides it is noise: "
+                        "raise the amplitude or particles_per_cell");
+    return "another wave beside it, or too short a record, is the most likely cause: raise "
+           "time.end, or particles_per_cell where the start is quiet";
 }
 
 /// A wave or an instability against the dispersion relation: frequency, growth or damping by
@@ -176,7 +194,8 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
     const double start = *std::max_element(
         amplitude.begin(),
         amplitude.begin() + static_cast<std::ptrdiff_t>(1 + amplitude.size() / 10));
-    const bool grows = growth > 1e-3 * std::abs(theory.omega);
+    const bool grows = growth > 1e-3 * std::abs(theory.omega) || growth * times.back() > 3,
+               seeded = is_seeded(parameters, theory);
     common::ModeSearch search;
     search.expected = {theory.omega};
     if (theory.mirrored) search.expected.push_back(-std::conj(theory.omega));
@@ -198,6 +217,21 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
             2 * noise / seed * std::max(std::fabs(growth), 1 / (seen.end - seen.begin));
         seen.error = {std::hypot(seen.error.real(), moved), std::hypot(seen.error.imag(), moved)};
     }
+    const double level = onset_field(parameters, theory), folds = growth * (seen.end - seen.begin);
+    double early = noise;
+    for (std::size_t n = 0; n < times.size() && times[n] < search.begin; ++n)
+        early = std::max(early, amplitude[n]);
+    const std::string too_high =
+        sentence("the perturbation begins with ", early, ", above the field of the onset, ", level,
+                 ", and only ", theory.seed, " of it is the growing wave: lower the amplitude ",
+                 early / level, " times or more");
+    if (grows && theory.seed > 0 && early > level && noise < level)
+        summary.hint(too_high);
+    else if (grows && seen.found && folds < 1)
+        summary.hint(sentence("the wave grows only by exp(", folds, ") in the ",
+                              frequency * (seen.end - seen.begin) / (2 * pi),
+                              " periods that are measured at a time: raise "
+                              "theory.growth_tolerance, or look at the onset"));
     const std::string where = theory.source + "; measured " + seen.window;
     const auto report = [&](const std::string& name, double value, double error, double expected,
                             double tolerance) {
@@ -205,10 +239,14 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
             summary.result(name, {value / expected, error / std::fabs(expected)}, "", 1, tolerance,
                            where);
         else
-            summary.not_measured(name, seen.reason + (seen.over ? ": lower the amplitude" : ""));
+            summary.not_measured(name,
+                                 seen.reason + (!seen.over ? ""
+                                                : seeded   ? ": lower the amplitude"
+                                                           : ": raise particles_per_cell, so that "
+                                                             "noise starts it lower"));
     };
-    if (seen.found) {
-        summary.result_info("omega", {seen.frequency(), seen.frequency_error()}, omega_p_unit,
+    if (seen.found && (grows || seeded)) {
+        summary.result_info("omega", {seen.omega.real(), seen.frequency_error()}, omega_p_unit,
                             where);
         summary.result_info("growth", {seen.growth(), seen.growth_error()}, omega_p_unit, where);
     }
@@ -218,37 +256,53 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
         if (frequency > 0.1 * growth)
             report("omega_over_theory", seen.omega.real(), seen.frequency_error(),
                    theory.omega.real(), parameters.frequency_tolerance);
-        const double allowed = 0.5 / growth,
-                     at = common::time_at_level(times, amplitude, onset_field(parameters, theory));
-        double early = noise;
-        for (std::size_t n = 0; n < times.size() && times[n] < search.begin; ++n)
-            early = std::max(early, amplitude[n]);
-        if (onset > 0 && times.back() > onset + allowed &&
-            (noise > 0.3 * theory.seed || early > onset_field(parameters, theory)))
-            summary.not_measured(
-                "onset", sentence("noise or another wave begins with ", early,
-                                  ", and the seed of the growing one is ", theory.seed,
-                                  ": lower the others, or raise the seed or particles_per_cell"));
-        else if (onset > 0 && times.back() > onset + allowed)
-            summary.result("onset", std::isnan(at) ? times.back() : at, "1/omega_p", onset, allowed,
-                           onset_meaning);
+        const double allowed = 0.5 / growth, at = common::time_at_level(times, amplitude, level);
+        if (onset == 0 || times.back() <= onset + allowed) return;
+        // What the perturbation has by search.begin, a growth time, without noise.
+        const double own = std::max(amplitude.front(), std::exp(1.0) * theory.seed),
+                     reached = std::isnan(at) ? times.back() : at;
+        const bool grows_right =
+            seen.found && std::fabs(seen.growth() - growth) <=
+                              seen.growth_error() + parameters.growth_tolerance * growth;
+        const bool quiet_noise = noise_field(parameters, theory) > 0 && early > 1.05 * own &&
+                                 grows_right && std::fabs(reached - onset) > allowed;
+        if (noise > 0.3 * theory.seed || quiet_noise)
+            summary.not_measured("onset", sentence("noise starts the wave: it begins with ", early,
+                                                   ", and the seed is ", theory.seed,
+                                                   ": raise the amplitude or particles_per_cell"));
+        else if (early > level)
+            summary.not_measured("onset", too_high);
+        else
+            summary.result("onset", reached, "1/omega_p", onset, allowed, onset_meaning);
         return;
     }
 
+    const bool damped = growth < -1e-3 * frequency;
+    if (!seeded) {
+        for (const char* name : {"largest_over_start", "omega_over_theory", "damping_over_theory"})
+            if (damped || name[0] != 'd')
+                summary.not_measured(name,
+                                     "no species is perturbed in this mode, and noise and "
+                                     "round-off alone are no wave to measure: give one an "
+                                     "amplitude");
+        return;
+    }
     // Where nothing should grow, nothing may; but a quiet start does not stay quieter than noise.
     const double largest = std::ranges::max(amplitude) / start,
-                 level = noise_field(parameters, theory) / start;
+                 part = noise_field(parameters, theory) / start,
+                 allowed = 1.2 * std::exp(std::max(0.0, growth) * times.back());
     if (!(start > 0))
         summary.not_measured("largest_over_start",
                              "cannot be measured, because the record begins with zero");
-    else if (largest > 1.2 && largest < 1.2 + 3 * level)
+    else if (largest > allowed && largest < allowed + 3 * part)
         summary.not_measured(
             "largest_over_start",
             sentence(
                 "the noise of particles, of which a quiet start shows more and more, may become ",
-                level, " of the wave: raise amplitude or particles_per_cell"));
+                part, " of the wave: raise amplitude or particles_per_cell"));
     else
-        summary.result_at_most("largest_over_start", largest, "", 1.2, "no growing root");
+        summary.result_at_most("largest_over_start", largest, "", allowed,
+                               growth > 0 ? "the growth of theory" : "no growing root");
     if (!swings) {
         summary.not_measured("omega_over_theory",
                              "the mode of theory is too damped to swing: take a smaller "
@@ -257,19 +311,9 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
     }
     report("omega_over_theory", seen.frequency(), seen.frequency_error(), frequency,
            parameters.frequency_tolerance);
-    if (!(growth < -1e-3 * frequency)) return;
-    bool seeded = false;
-    for (const SpeciesCase& s : parameters.species)
-        for (const PerturbationCase& p : perturbations_of(parameters, s))
-            seeded = seeded || p.is_of(theory.mode_x, theory.mode_z) ||
-                     p.is_of(-theory.mode_x, -theory.mode_z);
-    if (seeded)
+    if (damped)
         report("damping_over_theory", seen.growth(), seen.growth_error(), growth,
                parameters.growth_tolerance);
-    else
-        summary.not_measured("damping_over_theory",
-                             "no species is perturbed in this mode, and the noise of particles "
-                             "keeps a damped wave up: give one an amplitude");
 }
 
 /// Frequency, growth and onset of the followed mode in words, before the run.

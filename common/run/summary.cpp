@@ -164,7 +164,8 @@ std::vector<std::string> Summary::shortfalls() const {
         if (word == "NOT MEASURED")
             sentences.push_back(entry.kind == Kind::not_measured
                                     ? start + ": " + entry.source
-                                    : start + value + ": the error is larger than the tolerance, " +
+                                    : start + value + ": the error, " + format(entry.value.error) +
+                                          ", is larger than the tolerance, " +
                                           format(entry.tolerance) + hint);
         else if (word == "FAIL")
             sentences.push_back(start + value + ", and " + entry.wanted() + " is expected (" +

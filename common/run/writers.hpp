@@ -28,7 +28,8 @@ struct Snapshot {
     long step = 0;
     double time = 0;  // as in the history
     FileFormats also = {};
-    long particles = 0;  // of the run, of which a file of particles may hold a sample
+    long particles = 0;     // of the run, of which a file of particles may hold a sample
+    std::string note = {};  // the end of the line of the time
 
     /// Where a kind of file of this time is, e.g. ("fields", "dat").
     std::string path(const std::string& kind, const std::string& ending) const;
@@ -79,7 +80,7 @@ inline void require_length(std::span<const double> values, long count, const std
 }
 
 /// The first lines of a table: names_and_units(), and for a snapshot "# time 40 step 400", followed
-/// by "particles 65536", how many the run has, in a file that holds a sample of them.
+/// by "particles 65536", how many the run has, in a file that holds a sample of them, and by its note.
 inline void begin_table(OutputFile& file, const std::vector<ScalarColumn>& columns,
                         const Snapshot* at = nullptr) {
     file.text(names_and_units(columns));
@@ -88,11 +89,8 @@ inline void begin_table(OutputFile& file, const std::vector<ScalarColumn>& colum
     file.number(at->time);
     file.text(" step ");
     file.number(at->step);
-    if (at->particles > 0) {
-        file.text(" particles ");
-        file.number(at->particles);
-    }
-    file.text("\n");
+    if (at->particles > 0) file.text(" particles " + std::to_string(at->particles));
+    file.text(at->note + "\n");
 }
 
 /// Text with the four letters that mean something in XML spelled out.
