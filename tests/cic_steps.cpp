@@ -910,7 +910,9 @@ TEST_CASE("who starts with the drift in E and B keeps it") {
     Particles s;
     s.q_p = -1, s.m_p = 0.5;
     resize(2, true, true, s);
-    start_drifting(E_g, parameters, s);
+    SpeciesCase species;
+    species.start = "ExB";
+    start_velocities(E_g, parameters, species, s);
     const Eigen::Vector3d B(0.3, -2, 0.4),
         v = Eigen::Vector3d(0.3, 0, -0.2).cross(B) / B.squaredNorm();
     for (const std::size_t p : {0u, 1u})
