@@ -185,7 +185,7 @@ TEST_CASE("resuming does not replace a stopped run of another input and names da
     const std::string other = short_run(out, 6) + "output.checkpoint_steps=3 --quiet --resume ";
     const Outcome refused = room.run(other);
     CHECK(refused.status == 2);
-    CHECK(holds(refused.err, "holds a run of another input, which was stopped: --restart " + kept));
+    CHECK(holds(refused.err, "holds a stopped run of another input: --restart " + kept));
     CHECK(read_all(kept) == bytes);
     CHECK(room.run(other + "--force").status == 0);
     CHECK(!fs::exists(kept));

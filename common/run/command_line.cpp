@@ -14,6 +14,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "common/ranks.hpp"
 #include "common/run/checkpoint.hpp"
@@ -93,6 +94,7 @@ void look_for_earlier_run(const ProgramInfo& info, const ParameterTable& table,
         std::error_code missing;
         return fs::is_regular_file(file, missing) && fs::last_write_time(file, missing) > built;
     };
+    const bool forced = std::exchange(command.force, true);
     const fs::path folder = command.out_dir, summary = folder / "summary.json";
     const std::string effective_case = table.effective_case(),
                       text = counts(summary) ? read_file(summary) : "";
@@ -105,10 +107,7 @@ void look_for_earlier_run(const ProgramInfo& info, const ParameterTable& table,
         // --strict asks for the verdicts, so the run ends once more.
         command.complete = command.complete && !(command.strict && command.fell_short);
     }
-    if (command.complete) {
-        command.force = true;
-        return;
-    }
+    if (command.complete) return;
     std::vector<fs::path> checkpoints;
     for (const auto& entry : fs::directory_iterator(folder, error)) {
         const bool named = entry.path().filename().string().starts_with("checkpoint_");
@@ -118,16 +117,13 @@ void look_for_earlier_run(const ProgramInfo& info, const ParameterTable& table,
     std::sort(checkpoints.rbegin(), checkpoints.rend());
     const bool other = there && !ours,
                stopped = text.empty() || text.find("continue with: ") != std::string::npos;
-    if (other && stopped && !checkpoints.empty() && !command.force)
-        throw InputError(command.out_dir +
-                         ": holds a run of another input, which was stopped: --restart " +
+    if (other && stopped && !checkpoints.empty() && !forced)
+        throw InputError(command.out_dir + ": holds a stopped run of another input: --restart " +
                          checkpoints.front().string() +
-                         " goes on with it, --force replaces it, --out DIR puts the results "
-                         "elsewhere");
+                         " goes on with it, --force replaces it, --out DIR begins elsewhere");
     if (other && is_first_rank() && !command.dry_run)
         std::fprintf(stderr, "%s: replaces the run of another input in %s\n", info.program.c_str(),
                      command.out_dir.c_str());
-    command.force = true;
     for (const fs::path& path : checkpoints) {
         try {
             CheckpointReader checkpoint(info, path);
