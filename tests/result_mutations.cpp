@@ -87,7 +87,7 @@ const std::vector<Mutation> fluids{
 };
 
 const std::string at_once =
-    "grid.cells_x=20 grid.cells_y=20 load.rise=0.01 load.damping=0 time.end=0.2";
+    "grid.cells_x=20 grid.cells_y=20 load.rise=0.01 load.damping=0 time.end=0.15";
 
 const std::vector<Mutation> grains{
     {"mpm_explicit", "rebound", "contact.separation=0", "contact_begins"},
