@@ -219,8 +219,6 @@ const std::vector<Mutation> explicit_rival{
     {"explicit_em", "explicit_langmuir",
      "plasma.loading=random uniform.particles_per_cell=1 time.end=3000", "energy_drift"},
     {"explicit_em", "explicit_light_wave", "", ""},
-    // Recorded once in ten steps, longer than half a period.
-    {"explicit_em", "explicit_light_wave", "output.history_steps=10", "omega_over_theory"},
     {"explicit_em", "explicit_two_stream", "", ""},
     {"explicit_em", "explicit_two_stream",
      "grid.length_x=256 grid.length_z=16 time.dt=1.5 time.end=1000",
@@ -237,7 +235,7 @@ const std::vector<Mutation> explicit_rival{
      "peak_reconnection_rate quadrupole_at_unit_flux energy_drift"},
     {"explicit_em", "gem_explicit",
      "grid.cells_x=64 grid.cells_z=16 harris.particles=1e4 time.dt=0.2",
-     "electron_outflow density_at_X_line energy_drift"},
+     "electron_outflow energy_drift"},
 };
 
 // ---- what is done with the tables ---------------------------------------------------------------
@@ -246,7 +244,9 @@ const std::vector<Mutation> explicit_rival{
 const std::map<std::string, std::string> still_open{
     // Theory is the scheme itself, with the same mesh and step: linear, without particles. Only
     // another program can be wrong.
-    {"explicit_em explicit_light_wave", "damping energy_drift"},
+    {"explicit_em explicit_light_wave", "omega_over_theory damping energy_drift"},
+    // Runs of too few particles have 0.21 to 0.43 with their seed, and theirs is the window from 0.25 to 0.5.
+    {"explicit_em gem_explicit", "density_at_X_line"},
     // The same; a loose solver errs in the energy, and its tolerance is allowed for.
     {"implicit_moment light_wave", "omega_over_theory damping"},
     // The same with particles: what parameters make wrong is noise, in which damping is not measured.
