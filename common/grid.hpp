@@ -90,9 +90,8 @@ inline void fill_ghosts(const Grid& grid, Place place, Parity parity, double* f)
         ghosts_along(grid.x, place.half_x, parity.x,
                      [&](long to, long from, int sign) { row[to] = sign * row[from]; });
     }
-    if (!grid.z.periodic && !place.half_z && parity.z < 0) {
+    if (!grid.z.periodic && !place.half_z && parity.z < 0)
         for (const long j : {0L, nz}) std::fill_n(f + grid.index(-1, j), stride, 0.0);
-    }
     ghosts_along(grid.z, place.half_z, parity.z, [&](long to, long from, int sign) {
         const double* source = f + grid.index(-1, from);
         double* target = f + grid.index(-1, to);
@@ -121,9 +120,8 @@ inline void fold_ghosts(const Grid& grid, Place place, Parity parity, double* f)
         double* row = f + grid.index(0, j);
         ghosts_along(grid.x, place.half_x, parity.x,
                      [&](long from, long to, int sign) { row[to] += sign * row[from]; });
-        if (!grid.x.periodic && !place.half_x) {
+        if (!grid.x.periodic && !place.half_x)
             for (const long i : {0L, nx}) row[i] += parity.x * row[i];
-        }
     }
     fill_ghosts(grid, place, parity, f);
 }

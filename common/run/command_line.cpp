@@ -24,7 +24,6 @@
 namespace common {
 
 namespace {
-
 namespace fs = std::filesystem;
 
 constexpr std::array<const char*, 12> option_names{
@@ -74,25 +73,20 @@ std::string list_cases(const ProgramInfo& info, const std::string& wrong) {
 void refuse_case_of_another_method(const ProgramInfo& info, const std::string& path) {
     const fs::path folder = fs::weakly_canonical(path).parent_path();
     const std::string method = folder.parent_path().filename().string();
-    const std::string own = fs::path(info.default_case).begin()->string();
     const bool is_method = fs::exists(find_in_project(method + "/cases")) && !method.empty();
-    if (folder.filename() == "cases" && method != own && is_method) {
+    if (folder.filename() == "cases" && method != *fs::path(info.default_case).begin() && is_method)
         throw InputError(path + ": is a case of " + method + ", not of " + info.program +
                          "; the programs of a case are named in " + method + "/README.md");
-    }
 }
 
 // What a run that is to be resumed has left in its folder: all, a checkpoint, or nothing that counts. What is
-// older than the program or belongs to another input does not; but a run of another input that was
-// stopped, and could go on, is not replaced without --force.
-// errors: InputError for that
+// older than the program or of another input does not. errors: InputError for one of those that could go on
 void look_for_earlier_run(const ProgramInfo& info, const ParameterTable& table,
                           CommandLine& command) {
     std::error_code error;
     const auto built = fs::last_write_time("/proc/self/exe", error);
     const auto counts = [&](const fs::path& file) {
-        std::error_code missing;
-        return fs::is_regular_file(file, missing) && fs::last_write_time(file, missing) > built;
+        return fs::is_regular_file(file, error) && fs::last_write_time(file, error) > built;
     };
     const bool forced = std::exchange(command.force, true);
     const fs::path folder = command.out_dir, summary = folder / "summary.json";
@@ -101,11 +95,11 @@ void look_for_earlier_run(const ProgramInfo& info, const ParameterTable& table,
     const bool there = counts(folder / "case.toml"),
                ours = there && read_file(folder / "case.toml").ends_with("\n" + effective_case);
     if (ours && !text.empty()) {
-        command.complete = text.find("\n  \"status\": 0,") != std::string::npos;
         command.fell_short = text.find("\"verdict\": \"FAIL\"") != std::string::npos ||
                              text.find("\"verdict\": \"NOT MEASURED\"") != std::string::npos;
         // --strict asks for the verdicts, so the run ends once more.
-        command.complete = command.complete && !(command.strict && command.fell_short);
+        command.complete = text.find("\n  \"status\": 0,") != std::string::npos &&
+                           !(command.strict && command.fell_short);
     }
     if (command.complete) return;
     std::vector<fs::path> checkpoints;
@@ -119,8 +113,7 @@ void look_for_earlier_run(const ProgramInfo& info, const ParameterTable& table,
                stopped = text.empty() || text.find("continue with: ") != std::string::npos;
     if (other && stopped && !checkpoints.empty() && !forced)
         throw InputError(command.out_dir + ": holds a stopped run of another input: --restart " +
-                         checkpoints.front().string() +
-                         " goes on with it, --force replaces it, --out DIR begins elsewhere");
+                         checkpoints.front().string() + " goes on with it, --force replaces it");
     if (other && is_first_rank() && !command.dry_run)
         std::fprintf(stderr, "%s: replaces the run of another input in %s\n", info.program.c_str(),
                      command.out_dir.c_str());
@@ -128,11 +121,9 @@ void look_for_earlier_run(const ProgramInfo& info, const ParameterTable& table,
         try {
             CheckpointReader checkpoint(info, path);
             checkpoint("step", command.restart_step);
-            if (checkpoint.effective_case() != effective_case) continue;
-            command.restart_path = path;
-            return;
-        } catch (const InputError& damaged) {
-            // Damaged, or of another version: the one before may do.
+            if (checkpoint.effective_case() == effective_case)
+                return void(command.restart_path = path);
+        } catch (const InputError& damaged) {  // or of another version
             if (is_first_rank())
                 std::fprintf(stderr, "warning: %s; --resume begins before it\n", damaged.what());
         }
@@ -252,8 +243,7 @@ void print_help(const ProgramInfo& info, const ParameterTable& table) {
         "  --out DIR       folder of the results; default out/%s/<case name>\n"
         "  --force         replace an earlier run in that folder\n"
         "  --resume        go on with an earlier run of the same input in that folder; if there\n"
-        "                  is none, or the program is newer, begin; if complete, do nothing;\n"
-        "                  replace a run of another input, unless that was stopped\n"
+        "                  is none, or the program is newer, begin; if complete, do nothing\n"
         "  --restart FILE  continue from a checkpoint\n"
         "  --verify FILE   say whether a checkpoint is whole, and of what it is\n"
         "  --refine N      run the case on N meshes, each of twice the cells, in DIR/1, 2 ...,\n"

@@ -80,9 +80,8 @@ class History {
 
     /// The first value of a column. errors: logic_error for a name that is not a column, or no row.
     double first(const std::string& name) const {
-        for (std::size_t k = 0; k < columns_.size() && k < values_.size(); ++k) {
+        for (std::size_t k = 0; k < columns_.size() && k < values_.size(); ++k)
             if (columns_[k].name == name) return values_[k];
-        }
         throw std::logic_error("history: no value in '" + name + "'");
     }
 
@@ -116,9 +115,8 @@ class History {
 
     /// Sends what is buffered to the file. errors: InputError when the disk is full.
     void flush() {
-        if (file_ != nullptr && (std::fflush(file_) != 0 || std::ferror(file_) != 0)) {
+        if (file_ != nullptr && (std::fflush(file_) != 0 || std::ferror(file_) != 0))
             throw InputError(path_ + ": cannot be written; is the disk full?");
-        }
         flushed_ = std::chrono::steady_clock::now();
     }
 

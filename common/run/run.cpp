@@ -98,9 +98,8 @@ bool is_ours(std::string name) {
         const std::size_t ending =
             std::min(name.find_first_not_of("0123456789", digits), name.size());
         if (ending < digits + 6) return false;
-        for (const char* known : {".dat", ".vti", ".vtp", ".h5", ".bin"}) {
+        for (const char* known : {".dat", ".vti", ".vtp", ".h5", ".bin"})
             if (name.compare(ending, std::string::npos, known) == 0) return true;
-        }
     }
     return false;
 }

@@ -156,10 +156,10 @@ inline void compare_rebound(const FinishedRun& run, common::Summary& summary) {
     report_contact(run, impact.peak_half_width, summary);
     const std::string source = "momentum of a grain, after over before";
     if (knows && slow)
-        summary.result("rebound", -after / before, "1", 0.98, 0.035,
+        summary.result("rebound", -after / before, "1", 0.97, 0.025,
                        source +
-                           "; on fine meshes with quadratic shapes 4 % of the energy stay as "
-                           "vibration");
+                           "; 0.98 with quadratic shapes on fine meshes, and linear ones leave "
+                           "more in vibration");
     else
         summary.result_info("rebound", -after / before, "1", source);
     if (keeps_energy) compare_energy(run, (slow ? 1 : 5) * energy_tolerance, summary);
