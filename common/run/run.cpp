@@ -226,13 +226,13 @@ void Run::prepare_folder() {
         restarting() &&
         fs::equivalent(folder, fs::absolute(command_.restart_path).parent_path(), error);
     const bool as_it_is = own_restart || (ours.empty() && !foreign);
-    if (!as_it_is && !command_.force) {
-        throw InputError(
-            command_.out_dir + (ours.empty() ? ": is not empty" : ": holds an earlier run") +
-            "; --force replaces it, --out DIR puts the results elsewhere" +
-            (ours.empty() ? ""
-                          : ", --restart " + command_.out_dir + "/checkpoint_... continues it"));
-    }
+    const bool stopped =
+        std::ranges::any_of(ours, [](const fs::path& file) { return file.extension() == ".bin"; });
+    if (!as_it_is && !command_.force)
+        throw InputError(command_.out_dir +
+                         (ours.empty() ? ": is not empty" : ": holds an earlier run") +
+                         "; --force replaces it, --out DIR puts the results elsewhere" +
+                         (stopped ? ", --resume continues a run of the same input" : ""));
     lock_folder();
     if (as_it_is) return;
     // A checkpoint that we are about to read stays.

@@ -38,7 +38,7 @@ made() {
         fell "is not built: $(tail -1 "$folder/built")"
 }
 whole() { $run "$folder/whole" > /dev/null 2>&1; }  # the run that nobody disturbs
-# in_contract STATUS: is it one that the README names? 137 only where somebody killed.
+# in_contract STATUS: is it one that the notes name? 137 only where somebody killed.
 in_contract() { case $1 in 0 | 2 | 3 | 129 | 130 | 143) ;; *) false ;; esac; }
 
 # nothing_half FOLDER WHAT: no file is there in part.
