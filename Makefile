@@ -390,6 +390,7 @@ $(eval $(call fluid_series,flip_sedov,sedov,out/flip/blasts))
 $(eval $(call fluid_series,flip_noh,noh,out/flip/falling))
 $(eval $(call fluid_series,flip_collapsing_cavity,collapsing_cavity,out/flip/cavities))
 $(eval $(call fluid_series,flip_rotating_column,rotating_column,out/flip/columns))
+$(eval $(call fluid_series,flip_gravity_wave,gravity_wave,out/flip/water))
 # A script that both share.
 out/figures/flip_sedov.png out/figures/flip_noh.png: flip/figures/radial.gp
 

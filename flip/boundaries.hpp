@@ -53,7 +53,9 @@ void remove_outflow(const Problem& problem, double time, Particles& particles, c
         const BoundaryKind kind = problem.boundaries.side[side].kind;
         if ((kind != BoundaryKind::open && kind != BoundaryKind::inflow) || !std::isfinite(x + z))
             common::fail("a particle has gone through the wall to x = ", x, ", z = ", z,
-                         " at t = ", time, ": reduce time.cfl");
+                         " at t = ", time,
+                         ": reduce time.cfl, or time.dt where it is set; viscosity in pic, and "
+                         "flip.transfer = \"xpic\" in flip, calm what particles do within a cell");
         left(p);
         return true;
     });

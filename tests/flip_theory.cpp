@@ -834,12 +834,37 @@ TEST_CASE("layers between walls grow as on a fine mesh") {
         }
 }
 
+TEST_CASE("on the mesh of flip water swings more slowly and of first order so") {
+    const double k = 2 * pi;
+    const TwoLayers s{1.0, 0.001, 1.0, 0.0, 0.0, 1.0, 1.0};
+    const auto lost = [&](double cells) {
+        return 1 - interface_rate_on_mesh(s, k, 1 / cells, 1 / cells, false) /
+                       interface_frequency(s, k).real();
+    };
+    CHECK(lost(16) > 0);
+    CHECK(std::abs(lost(32) - 0.0124) <= 0.0002);
+    CHECK(lost(32) / lost(64) > 1.8);
+}
+
+TEST_CASE("steps of theta turn and stretch a swinging wave as their matrix does") {
+    for (const double theta : {0.5, 0.6, 1.0}) {
+        const double omega = 2.5, dt = 0.1, a2 = omega * omega * dt * dt;
+        // (eta, v) of the next step.
+        Eigen::Matrix2d step;
+        step << 1 - theta * a2, dt, -omega * omega * dt, 1;
+        const std::complex<double> lambda = step.eigenvalues()[0];
+        const SwingingStep found = swinging_step(omega, theta, dt);
+        CHECK(std::abs(found.amplification - std::abs(lambda)) <= 1e-14);
+        CHECK(std::abs(found.phase - std::abs(std::arg(lambda))) <= 1e-12);
+    }
+}
+
 TEST_CASE("on the mesh of flip an interface grows more slowly and of first order so") {
     for (const bool consistent : {false, true}) {
         const double k = 2 * pi;
         const TwoLayers s{1.0, 2.0, 1.0, 0.0, 0.0, 1.0, 1.0};
         const auto lost = [&](double cells) {
-            return 1 - interface_growth_on_mesh(s, k, 1 / cells, 1 / cells, consistent) /
+            return 1 - interface_rate_on_mesh(s, k, 1 / cells, 1 / cells, consistent) /
                            interface_growth(s, k);
         };
         CHECK(lost(16) > 0);

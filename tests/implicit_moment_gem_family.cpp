@@ -12,6 +12,7 @@
 
 #include "implicit_moment/output/diagnostics.hpp"
 #include "implicit_moment/output/unit_flux_profile.hpp"
+#include "implicit_moment/theory/compare_reconnection.hpp"
 #include "tests/support/any_fields.hpp"
 #include "tests/support/any_run.hpp"
 #include "tests/support/any_summary.hpp"
@@ -160,6 +161,20 @@ TEST_CASE("a profile is centered on the X-line and its B_z integrates to the flu
     CHECK(std::fabs(left + 1) <= 64 * eps);
     CHECK(std::fabs(right - 1) <= 64 * eps);
     CHECK(off <= 16 * eps);
+}
+
+TEST_CASE("a second island is one whose field turns back beside the X-line") {
+    const Grid grid = Case().grid;
+    ProfileColumns columns;
+    for (double x = -0.5 * grid.x.length; x <= 0.5 * grid.x.length; x += 0.1) {
+        columns.x.push_back(x);
+        columns.B_z.push_back(std::copysign(0.1, x));
+    }
+    CHECK(field_of_second_island(columns, grid) == 0);
+    for (std::size_t k = 0; k < columns.x.size(); ++k)
+        if (columns.x[k] > -0.24 * grid.x.length && columns.x[k] < -0.2 * grid.x.length)
+            columns.B_z[k] = 0.18;
+    CHECK(field_of_second_island(columns, grid) == 0.18);
 }
 
 TEST_CASE("a run without unit flux writes no profile" * doctest::description("robust")) {

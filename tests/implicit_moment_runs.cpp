@@ -196,8 +196,25 @@ TEST_CASE("an ion cyclotron wave has the frequency of the cold dispersion relati
 TEST_CASE("a Harris sheet at rest keeps its profiles within noise" *
           doctest::description("physics")) {
     const Json summary = run("harris_equilibrium", "implicit_moment/cases/harris_equilibrium.toml");
-    check_results(summary, 3);
+    check_results(summary, 5);
     CHECK(std::fabs(value(summary, "energy_drift")) <= 0.005);
+}
+
+TEST_CASE("a sheet that cools is seen whatever guide field it has and however high its box is" *
+          doctest::description("physics")) {
+    const std::string at_rest =
+        "implicit_moment/cases/gem.toml harris.perturbation=0 output.fields_interval=0 ";
+    const Json guide = run("guide", at_rest +
+                                        "harris.particles=2000 harris.guide_field=16 "
+                                        "field.theta=1 time.end=60");
+    for (const std::string name : {"energy_drift", "kinetic_over_initial_electrons"})
+        CHECK(guide["results"][name]["verdict"] == "FAIL");
+    const Json high = run("high", at_rest +
+                                      "harris.particles=2000 grid.cells_x=4 grid.cells_z=1440 "
+                                      "grid.length_x=1.6 grid.length_z=720 time.end=0.6");
+    CHECK(high["status"] == 0);
+    const Json no_step = run("no_step", at_rest + "harris.particles=2000 time.end=0");
+    CHECK(no_step["results"]["energy_drift"]["verdict"] == "NOT MEASURED");
 }
 
 TEST_CASE(

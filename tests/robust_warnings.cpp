@@ -288,6 +288,9 @@ explicit_em beam particles.relativistic=false species.beam.temperature_x=0.09 gr
     the push is not relativistic
 explicit_em beam species.beam.temperature_x=0.09 grid.cells_x=512
     warning: beam: about 7198 of 8.389e+06 particles, 0.08581 %, are loaded with u = gamma v above c
+implicit_moment harris.particles=20000 grid.length_z=60
+    warning: the sheet has 1.067 cells across its whole thickness, below 2, and is not resolved:
+    raise grid.cells_z, or lower grid.length_z
 implicit_moment beam species.beam.temperature_y=0.09
     warning: beam: about 225 of 2.621e+05 particles
 )");

@@ -6,7 +6,6 @@
 
 #include <complex>
 
-#include "common/theory/measure_modes.hpp"
 #include "flip/theory/compare_instability.hpp"
 #include "flip/theory/rotating_column.hpp"
 
@@ -128,19 +127,9 @@ inline void track_inertial_wave(const Snapshot& now, common::Row& row) {
 inline void compare_inertial_frequency(const FinishedRun& run, double expected,
                                        const std::vector<double>& times,
                                        const std::vector<double>& mode) {
-    // Read at even times, between neighbors.
-    std::vector<double> even_times, even;
-    const std::size_t samples = std::min<std::size_t>(times.size(), 2000);
-    for (std::size_t n = 0, at = 0; n < samples; ++n) {
-        const double t = times.back() * double(n) / double(samples - 1);
-        while (at + 2 < times.size() && times[at + 1] < t) ++at;
-        const double part = (t - times[at]) / (times[at + 1] - times[at]);
-        even_times.push_back(t);
-        even.push_back(mode[at] + part * (mode[at + 1] - mode[at]));
-    }
     common::ModeSearch search{.expected = {expected, -expected}};
     search.periods = 2;
-    const common::MeasuredMode seen = common::measure_mode(even_times, even, search);
+    const common::MeasuredMode seen = measure_between_steps(times, mode, search);
     if (!seen.found) return run.not_measured("frequency_over_theory", seen.reason);
     run.summary.result("frequency_over_theory",
                        {seen.frequency() / expected, seen.frequency_error() / expected}, "", 1,

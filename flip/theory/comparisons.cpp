@@ -7,6 +7,7 @@
 #include "flip/theory/compare_collapse.hpp"
 #include "flip/theory/compare_dam_break.hpp"
 #include "flip/theory/compare_diffusion.hpp"
+#include "flip/theory/compare_gravity_wave.hpp"
 #include "flip/theory/compare_impact.hpp"
 #include "flip/theory/compare_inertial_wave.hpp"
 #include "flip/theory/compare_instability.hpp"
@@ -34,7 +35,8 @@ constexpr std::array all_comparisons{
     diffusion_comparison, rotation_comparison,  sedov_comparison,        noh_comparison,
     gresho_comparison,    wave_comparison,      ringing_comparison,      interface_comparison,
     shear_comparison,     dam_break_comparison, cavity_comparison,       impact_comparison,
-    rest_comparison,      collapse_comparison,  inertial_wave_comparison};
+    rest_comparison,      collapse_comparison,  inertial_wave_comparison,
+    gravity_wave_comparison};
 
 }  // namespace
 

@@ -47,16 +47,27 @@ inline double interface_growth(const TwoLayers& s, double k) {
     return interface_frequency(s, k).imag();
 }
 
+/// What the steps of flip make of a wave of the frequency omega.
+///   v^1 = v^0 - dt omega^2 eta^0,  eta^1 = eta^0 + dt [(1 - theta) v^0 + theta v^1]
+/// exact: in the limit of fine meshes and small waves; theta = 1, explicit steps too, is neutral
+struct SwingingStep {
+    double phase, amplification;
+};
+inline SwingingStep swinging_step(double omega, double theta, double dt) {
+    const double a2 = omega * omega * dt * dt, growth = std::sqrt(1 + (1 - theta) * a2);
+    return {std::acos(std::clamp((1 - 0.5 * theta * a2) / growth, -1.0, 1.0)), growth};
+}
+
 /// The growth rate of an interface between rows of cells as the mesh of flip has it, in short steps and
-/// far below the speed of sound: nodes have the velocities u sin k x and w cos k x, cells keep their
+/// far below the speed of sound, or its frequency, where the heavy fluid is below: nodes have the velocities u sin k x and w cos k x, cells keep their
 /// volume, and the particles are as sharp as the interface.
-///   D a = 0,  a = R (f - D^T p),  rate^2 = f . a,  f = [g (rho_2 - rho_1) mu]^1/2 at its nodes
+///   D a = 0,  a = R (f - D^T p),  rate^2 = f . a,  f = |g (rho_2 - rho_1) mu|^1/2 at its nodes
 ///   R = M^-1 of consistent masses; M_L^-1 M M_L^-1 of lumped ones, as an increment of velocity goes to
 ///   the particles and comes back smoothed;  mu = (2 + cos k dx)/3, the part of M along x
 /// in:    k dx < pi; finite depths of whole cells
-/// exact: interface_growth() for dx, dz -> 0, of first order, as u cannot jump at the interface
-inline double interface_growth_on_mesh(const TwoLayers& s, double k, double dx, double dz,
-                                       bool consistent) {
+/// exact: |interface_frequency()| for dx, dz -> 0, of first order, as u cannot jump at the interface
+inline double interface_rate_on_mesh(const TwoLayers& s, double k, double dx, double dz,
+                                     bool consistent) {
     const double mu = (2 + std::cos(k * dx)) / 3;
     const long below = std::lround(s.lower_depth / dz),
                cells = below + std::lround(s.upper_depth / dz), inside = cells - 1;
@@ -81,8 +92,7 @@ inline double interface_growth_on_mesh(const TwoLayers& s, double k, double dx, 
     const Eigen::MatrixXd D_u = U.topRows(cells), D_w = W.block(0, 1, cells, inside),
                           R_u = response(0, cells + 1), R_w = response(1, inside);
     const double pull = s.gravity * (s.upper_density - s.lower_density) * mu;
-    const Eigen::VectorXd f =
-        std::sqrt(std::max(0.0, pull)) * Eigen::VectorXd::Unit(inside, below - 1);
+    const Eigen::VectorXd f = std::sqrt(std::fabs(pull)) * Eigen::VectorXd::Unit(inside, below - 1);
     const Eigen::MatrixXd A = D_u * R_u * D_u.transpose() + D_w * R_w * D_w.transpose();
     const Eigen::VectorXd p = A.ldlt().solve(D_w * (R_w * f));
     return std::sqrt(std::max(0.0, f.dot(R_w * (f - D_w.transpose() * p))));

@@ -3,6 +3,7 @@
 
 #include <complex>
 
+#include "common/theory/measure_modes.hpp"
 #include "flip/theory/comparison.hpp"
 
 namespace flip {
@@ -37,6 +38,26 @@ inline std::complex<double> mode_of(const Case& parameters, const Field& f, long
             sum += f[parameters.grid.index(i, j)] *
                    std::polar(1.0, -k * (middle(parameters.grid.x, i) - from));
     return 2.0 / double(parameters.grid.x.cells * (j_high - j_low)) * sum;
+}
+
+/// Measures a mode from a record at the times of the steps, which follow the flow: it is read at even
+/// times, between neighbors.
+/// in:     at least two rows
+template <class Value>
+common::MeasuredMode measure_between_steps(const std::vector<double>& times,
+                                           const std::vector<Value>& mode,
+                                           const common::ModeSearch& search) {
+    std::vector<double> even_times;
+    std::vector<Value> even;
+    const std::size_t samples = std::min<std::size_t>(times.size(), 2000);
+    for (std::size_t n = 0, at = 0; n < samples; ++n) {
+        const double t = times.back() * double(n) / double(samples - 1);
+        while (at + 2 < times.size() && times[at + 1] < t) ++at;
+        const double part = (t - times[at]) / (times[at + 1] - times[at]);
+        even_times.push_back(t);
+        even.push_back(mode[at] + part * (mode[at + 1] - mode[at]));
+    }
+    return common::measure_mode(even_times, even, search);
 }
 
 }  // namespace flip

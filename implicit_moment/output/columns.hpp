@@ -74,12 +74,14 @@ inline void add_mean_field(const Grid& grid, const FieldState& field, common::Ro
                 interior(grid, field.E.all.data() + a * grid.size()).mean());
 }
 
-/// What of an energy is not that of the uniform magnetic field, which nothing can use.
+/// What of an energy is not that of the uniform magnetic field, or of the guide field of a sheet, which
+/// nothing can use.
 inline double usable_energy(const Case& w, double energy) {
-    if (!w.is_uniform()) return energy;
     const UniformCase& u = w.uniform;
-    const double usable = energy - 0.5 * (u.B_x * u.B_x + u.B_y * u.B_y + u.B_z * u.B_z) *
-                                       w.grid.x.length * w.grid.z.length;
+    const HarrisCase h = harris_of(w);
+    const double B2 = w.is_uniform() ? u.B_x * u.B_x + u.B_y * u.B_y + u.B_z * u.B_z
+                                     : std::pow(h.guide_field / h.light_over_alfven, 2);
+    const double usable = energy - 0.5 * B2 * w.grid.x.length * w.grid.z.length;
     return usable > 1e-9 * energy ? usable : energy;
 }
 

@@ -344,6 +344,10 @@ inline std::vector<std::string> closure_warnings(const Case& w, const Scales& sc
     if (w.is_along_current()) {
         for (const std::string& warning : sheet_warnings(w)) warnings.push_back(warning);
     }
+    const double across = w.is_uniform() ? 2 : harris_of(w).thickness / dz;
+    warn(warnings, across < 1, "the sheet has ", 2 * across,
+         " cells across its whole thickness, below 2, and is not resolved: raise grid.cells_z, or "
+         "lower grid.length_z");
     for (const SpeciesScales& s : scales.species) {
         warn(warnings, s.Omega_c_dt > 2 * pi, s.name, ": Omega_c dt = ", s.Omega_c_dt,
              " is above 2 pi, gyration is not followed");

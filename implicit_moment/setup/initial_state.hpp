@@ -35,7 +35,7 @@ inline void harris_field(const Case& parameters, FieldState& field) {
                                       : h.perturbation * B0 * std::cos(2 * pi * x / grid.x.length) *
                                             std::cos(pi * z / grid.z.length);
             double& A = A_y[grid.index(i, j)];
-            A = -B0 * h.thickness * std::log(std::cosh(z / h.thickness)) - island;
+            A = -B0 * h.thickness * log_cosh(z / h.thickness) - island;
             if (h.normal_field != 0) A = B0 * h.thickness * tail_of(h).A_y(x, z) - island;
         }
     }
@@ -52,7 +52,7 @@ inline void current_sheet_field(const Case& parameters, FieldState& field) {
     const HarrisCase h = harris_of(parameters);
     const auto potential = [&](long j) {
         const double z = grid.z.at(double(j)) - (grid.z.low + 0.5 * grid.z.length);
-        return -harris_sheet(h).B0 * h.thickness * std::log(std::cosh(z / h.thickness));
+        return -harris_sheet(h).B0 * h.thickness * log_cosh(z / h.thickness);
     };
     for (long j = 0; j < grid.z.cells; ++j) {
         const double B_y = (potential(j + 1) - potential(j)) / grid.z.spacing();

@@ -67,6 +67,12 @@ inline void compare_current_sheet(const Case& w, const common::History& history,
         if (*at <= largest) continue;
         largest = *at, dominant = m, top = at - a.begin();
     }
+    // Beside the first half of 1/Omega_ci, when it has hardly grown.
+    const auto of_dominant = EdgeWave(history, dominant).amplitude;
+    double early = 0, rows = 0;
+    for (std::size_t n = 0; n < times.size() && times[n] <= 0.5; ++n)
+        early += of_dominant[n] * of_dominant[n], rows += 1;
+    const double above_noise = largest / std::sqrt(early / rows);
     const double k = 2 * pi * double(dominant) / w.current_sheet.length_x;
     const CurrentSheetCase& s = w.current_sheet;
     const double all = s.length_x / 4;  // figure 12 has 4 L
@@ -78,6 +84,11 @@ inline void compare_current_sheet(const Case& w, const common::History& history,
             std::to_string(followed) + " modes along the current are followed, " +
                 "and the talk's may be beyond: " +
                 (followed < 16 ? "raise grid.cells_x" : "lower current_sheet.length_x"));
+    else if (of_the_talk && !(above_noise > 3))
+        summary.not_measured("dominant_mode",
+                             "the largest wave is " + format(above_noise) +
+                                 " times the noise that it began with, below 3: raise "
+                                 "current_sheet.particles or time.end");
     else if (of_the_talk)
         summary.result_within("dominant_mode", double(dominant), "", 7 * all, 11 * all, talk);
     else

@@ -127,12 +127,15 @@ inline void compare_energy(const Case& w, const common::History& history,
     if (w.field.uses_mass_matrix()) compare_theorem(w, history, summary);
     compare_momentum(w, history, summary);
     const auto drift = history.column("energy_drift");
+    if (drift.size() < 2)
+        return summary.not_measured("energy_drift", "no step was taken: raise time.end");
     const bool damps = w.field.theta > 0.5 && !w.leapfrog.chosen;
     const EnergyWindow window =
         energy_window(w, damps && (w.wave == "langmuir" || w.wave == "cold")
                              ? drift.back() - history.column("energy_residual").back()
                              : 0);
-    summary.hint(damps ? "field.theta above 0.5 damps fast waves and noise: set it to 0.5"
+    summary.hint(damps ? "field.theta above 0.5 damps fast waves and noise: set it to 0.5, or "
+                         "raise the number of particles"
                        : "noise of few particles, or scales that are not resolved, heat or cool: "
                          "raise the number of particles, lower time.dt, or refine the mesh");
     if (std::fabs(window.change) > 1e-3)

@@ -14,7 +14,8 @@ namespace implicit_moment {
 /// Harris sheet without perturbation: profiles against n0 sech^2(z/lambda) + n_inf, in units of
 /// their own particle noise.
 inline void compare_equilibrium(const Case& w, const Plasma& plasma,
-                                const std::vector<Moments>& moments, common::Summary& summary) {
+                                const std::vector<Moments>& moments, const common::History& history,
+                                common::Summary& summary) {
     const Grid& grid = w.grid;
     const HarrisSheet sheet = harris_sheet(w.harris);
     const double weight = plasma.species[0].q_p;
@@ -38,6 +39,14 @@ inline void compare_equilibrium(const Case& w, const Plasma& plasma,
         const double J_noise =
             n * std::sqrt((sheet.T_i + sheet.T_e * w.harris.mass_ratio) / in_row);
         current_y += std::pow((row(moments[0].J_y) + row(moments[1].J_y) - J) / J_noise, 2);
+    }
+    summary.hint(
+        "the mesh heats what it does not resolve, and few particles exchange heat: refine the "
+        "mesh, or raise harris.particles");
+    for (const Particles& s : plasma.species) {
+        const auto kinetic = history.column("kinetic_" + s.name);
+        summary.result("kinetic_over_initial_" + s.name, kinetic.back() / kinetic.front(), "", 1,
+                       0.1, "equilibrium: neither heats nor cools");
     }
     const double rows = double(grid.z.cells - 1);
     summary.result_at_most("density_over_noise", std::sqrt(density / (2 * rows)), "", 1.2,

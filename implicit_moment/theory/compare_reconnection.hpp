@@ -81,7 +81,9 @@ inline void judge_reconnection(const std::string& name, double value, double mas
         "noise decides when the sheet lets go, and the mesh how: try plasma.seed, "
         "harris.particles, or another mesh and time.dt");
     if (!std::isfinite(value))
-        summary.not_measured(name, "no cell lies there: take more cells along x");
+        summary.not_measured(name,
+                             "no particles are there, or no nodes: raise harris.particles, or "
+                             "grid.cells_x");
     else if (mass_ratio == 25)
         summary.result_within(name, value, window.unit, window.low, window.high, window.source);
     else if (name == "peak_reconnection_rate")
@@ -100,6 +102,18 @@ inline double outflow(const ProfileColumns& columns, const std::vector<double>& 
         sum += v_x[k] * std::copysign(1.0, columns.x[k]), count += 1;
     }
     return sum / count;
+}
+
+/// B_z that turns back between 1.5 d_i from the X-line and half-way to the O-line, at its largest: there
+/// a second island lies [B0].
+inline double field_of_second_island(const ProfileColumns& columns, const Grid& grid) {
+    double largest = 0;
+    for (std::size_t k = 0; k < columns.x.size(); ++k) {
+        const double from_X = std::fabs(columns.x[k]);
+        if (from_X > 1.5 && from_X < 0.25 * grid.x.length)
+            largest = std::max(largest, -columns.B_z[k] * std::copysign(1.0, columns.x[k]));
+    }
+    return largest;
 }
 
 /// The profile of the GEM challenge at unit flux: the plasma leaves the X-line, electrons first, and
@@ -122,8 +136,19 @@ inline void compare_profile(const UnitFluxProfile& profile, const Grid& grid,
     const auto judge = [&](const std::string& name, double value) {
         judge_reconnection(name, value, sheet.mass_ratio, summary);
     };
-    judge("electron_outflow", electrons);
-    judge("ion_outflow", ions);
+    // Of fifteen runs with other seeds, responses and fewer particles five have 0.18 to 0.27 and too
+    // slow a flow, the others 0.08 at most.
+    const double turned = field_of_second_island(columns, grid);
+    if (turned > 0.12 && sheet.mass_ratio == 25) {
+        for (const char* name : {"electron_outflow", "ion_outflow"})
+            summary.not_measured(
+                name, "beside the X-line lies a second island, with B_z = " + format(turned) +
+                          " B0 of its own, which holds the flow back: try another "
+                          "plasma.seed, or more harris.particles");
+    } else {
+        judge("electron_outflow", electrons);
+        judge("ion_outflow", ions);
+    }
     judge("ion_over_electron_outflow", outflow(columns, columns.v_x_ions, 1) / electrons);
     judge("density_at_X_line", density);
 }

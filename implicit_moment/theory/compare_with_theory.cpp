@@ -25,7 +25,7 @@ void compare_with_theory(const Case& w, const State& state,
         if (w.harris.perturbation != 0)
             compare_reconnection(w, history, profile, summary);
         else
-            compare_equilibrium(w, state.plasma, plasma_moments(state), summary);
+            compare_equilibrium(w, state.plasma, plasma_moments(state), history, summary);
     } else if (w.is_along_current()) {
         compare_current_sheet(w, history, summary);
         compare_kink(w, history, summary);
