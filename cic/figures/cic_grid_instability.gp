@@ -14,7 +14,7 @@ particles(n, k) = (run = scheme(n), files = times_of('particles', 1000), file_at
 t = col(file(1), 'time'); energy = col(file(1), 'energy'); kinetic = col(file(1), 'kinetic'); momentum = col(file(1), 'momentum_x')
 run = scheme(1); L = parameter('length_x'); end = real(given('time.end'))
 v_th(K, P) = sqrt(abs(2 * K / L - (P / L)**2))
-set multiplot title 'A cold beam heated by the mesh, v_0 = 0.1 ω_p Δx' font ',24'
+set multiplot title 'A cold beam heated by the mesh, v_0 = 0.1 ω_p Δx (gray: at the end)' font ',24'
 set border 15; set tics front; unset key
 set bmargin at screen 0.545; set tmargin at screen 0.865
 set xrange [0:12]; set yrange [-0.6:0.7]
@@ -39,7 +39,7 @@ set label 5 'at the end' at graph 0.97, 0.42 right font ',17'
 do for [n = 1:4] { set label 5 + n sprintf('%s %.2f', word(titles, n), at_end(n)) at graph 0.97, 0.42 - 0.085 * n right textcolor rgb word(tint, n) font ',17' }
 do for [n = 2:4] { run = scheme(n); rate[n] = result('theory_growth'); since[n] = passes(n) }
 set lmargin at screen 0.085; set rmargin at screen 0.325
-set logscale y; set format y '10^{%T}'; set yrange [1e-7:10]; set ytics 100
+set logscale y; set format y '10^{%T}'; set yrange [1e-7:10]; set ytics 100; set mytics 1
 set ylabel 'v_{th} / (ω_p Δx)' offset 1, 0
 plot for [n = 1:4] file(n) using t:(v_th(column(kinetic), column(momentum))) with lines lc rgb word(tint, n), \
      for [n = 2:4] 1e-3 * exp(rate[n] * (x - since[n])) with lines dt 2 lw 2 lc rgb ink
@@ -48,7 +48,7 @@ set lmargin at screen 0.42; set rmargin at screen 0.65
 set format y '%g'; set yrange [0.7:100]; set ytics (1, 2, 5, 10, 20, 50, 100)
 set ylabel 'total energy / initial' offset 1, 0
 plot for [n = 1:4] file(n) using t:(column(energy) / 0.32) with lines lc rgb word(tint, n)
-unset logscale y
+unset logscale y; set mytics default
 set lmargin at screen 0.75; set rmargin at screen 0.975
 set yrange [-0.4:1.2]; set ytics 0.4
 set ylabel 'momentum / initial' offset 1, 0

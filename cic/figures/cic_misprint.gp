@@ -11,6 +11,6 @@ x_low = -pi; x_of = '($2 > pi ? $2 - 2 * pi : $2)'
 colors_of_species = blue
 field_label = '|E_k| / (m ω_p²/e k)'
 growth_floor = 2e-10; growth_top = 100
-growth_key = 'at graph 0.98, 0.56 top right'; energy_key = 'inside top left'
+growth_key = "at graph 0.98, 0.53 top right samplen 1.5 font ',17'"; energy_key = 'inside top left'
 energy_unit = parameter('length_x'); energy_label = 'energy / (n_0 m ω_p^2 L/k^2)'; energy_low = -0.7; energy_high = 0.7
 load 'cic/figures/instability.gp'

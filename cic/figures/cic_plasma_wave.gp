@@ -10,7 +10,7 @@ largest = real(system("LC_ALL=C awk '$1 + 0 == $1 && $2^2 * $3 > m { m = $2^2 * 
 set multiplot
 set bmargin at screen 0.145; set tmargin at screen 0.89
 set lmargin at screen 0.085; set rmargin at screen 0.475
-set title 'waves of a cold plasma on the mesh'
+set title 'cold plasma: runs and theory (lines)'
 set xlabel 'k Δx'; set ylabel 'ω / ω_p' offset 1.2, 0
 set xrange [0:pi]; set yrange [0:1.12]; set samples 400
 set xtics ('0' 0, 'π/4' pi/4, 'π/2' pi/2, '3π/4' 3*pi/4, 'π' pi)
@@ -19,7 +19,7 @@ file(name) = run.'/'.name.'.dat'
 K(m) = 2 * pi / 32 * m
 plot leapfrog(1) with lines lt 3 notitle, leapfrog(sqrt((1 + 2 * c(x)**2) / 3)) with lines lt 4 notitle, \
      leapfrog(c(x)) with lines lt 1 notitle, leapfrog(c(x) * sqrt((2 + c(x)**2) / 3)) with lines lt 2 notitle, \
-     file('cic_energy') using (K($1)):2 with linespoints lt 3 ps 1.6 title 'cic, energy-conserving', \
+     file('cic_energy') using (K($1)):2 with points lt 3 ps 1.6 title 'cic, energy-conserving', \
      file('tsc_energy') using (K($1)):2 with points lt 4 ps 1.7 title 'tsc, energy-conserving', \
      file('cic_momentum') using (K($1)):2 with points lt 1 ps 1.6 title 'cic, momentum-conserving', \
      file('tsc_momentum') using (K($1)):2 with points lt 2 ps 1.4 title 'tsc, momentum-conserving'

@@ -13,13 +13,14 @@ set xrange [0:1]; set yrange [0:1]; set xtics 0.5; set ytics 0.5; set xlabel 'x 
 side = 0.33
 set lmargin at screen 0.085; set rmargin at screen 0.085 + side; set bmargin at screen 0.15; set tmargin at screen 0.15 + side * wide / high
 set colorbox user origin 0.428, 0.15 size 0.012, side * wide / high
+set label 10 'circle: center of the vortex by Ghia et al.' at 0.5, 0.1 center front textcolor rgb orange font ',17'
 set label 9 '|v| / U' at screen 0.48, 0.15 + side * wide / high right offset 0, 1
 even(x) = int(x * n) % 2 == 0
 reach = 0.045
 plot last using 1:2:(speed(column(vx), column(vz))) with image, \
      last skip 1 using (even($1) && even($2) ? $1 : NaN):2:(reach * column(vx) / speed(column(vx), column(vz))**0.5):(reach * column(vz) / speed(column(vx), column(vz))**0.5) with vectors head size 0.01, 20 lw 1.2 lc rgb '#40ffffff', \
      '+' using (0.6172):(0.7344) every ::0::0 with points pt 6 ps 2.2 lw 2.5 lc rgb orange
-unset label 9; unset colorbox; set border 3; set grid; set size noratio
+unset label 9; unset label 10; unset colorbox; set border 3; set grid; set size noratio
 set tmargin at screen 0.84
 profile = run.'/profile.dat'
 # The mean of the two columns, and of the two rows, of cells beside the middle.

@@ -10,7 +10,7 @@ tint = blue.' '.orange.' '.green.' '.pink.' '.amber.' '.ink
 growth(n, m) = (run = folder.'/'.word(cures, n).'-'.word(machs, m), result('growth'))
 set multiplot title 'Ringing of a uniform flow' font ',24'
 set bmargin at screen 0.14; set tmargin at screen 0.87
-set lmargin at screen 0.105; set rmargin at screen 0.53
+set lmargin at screen 0.105; set rmargin at screen 0.51
 set xrange [0:0.4]; set xtics 0.1; set xlabel 'Mach number'
 set yrange [-0.005:0.2]; set ytics 0.05; set ylabel 'growth / (c/Δx)' offset 0.5, 0
 set key top right
@@ -19,7 +19,7 @@ set lmargin at screen 0.62; set rmargin at screen 0.97
 file(n) = folder.'/'.word(cures, n).'-0.14/history.dat'
 noise = col(file(1), 'noise')
 set xrange [0:600]; set xtics 200; set xlabel 't c / Δx'
-set logscale y; set yrange [1e-11:1]; set ytics 100; set format y '10^{%T}'; set ylabel 'rms noise / c' offset 0.5, 0
+set logscale y; set yrange [1e-11:1]; set ytics 100; set mytics 1; set format y '10^{%T}'; set ylabel 'rms noise / c' offset 0.5, 0
 unset key
 plot for [n = 1:6] file(n) using 1:(column(noise)) every 20 with lines lc rgb word(tint, n)
 unset multiplot

@@ -7,17 +7,17 @@ highs = '0.5 0.75 1 1.5 2'
 mode_of(name) = col(folder.'/'.name.'/history.dat', 'mode')
 set multiplot title 'A column of gas that turns: inertial waves, and Rayleigh''s criterion' font ',24'
 set bmargin at screen 0.16; set tmargin at screen 0.82
-set lmargin at screen 0.075; set rmargin at screen 0.35
+set lmargin at screen 0.07; set rmargin at screen 0.325
 run = folder.'/high-1'; omega = result('theory_frequency')
 m = mode_of('high-1'); first = real(system(sprintf("awk 'NR == 3 { print $%d }' '%s/history.dat'", m, run)))
 set title 'rigid rotation' offset 0, -0.5
 set xrange [0:15]; set yrange [-1.3:2.9]; set xtics 5; set ytics 1
 set xlabel 't Ω'; set ylabel 'v_r / start' offset 1, 0
-set key at graph 0.99, 1.03 top right samplen 1.5
+set key at graph 1.09, 1.03 top right samplen 1.5
 plot folder.'/high-1/history.dat' using 1:(column(m) / first) every 10 with lines lt 1 title 'flip', \
      folder.'/pic/history.dat' using 1:(column(m) / first) every 10 with lines lt 3 title 'pic transfer', \
      [0:15] cos(omega * x) with lines lt 2 dt 2 title sprintf('theory, ω = %.3f Ω', omega)
-set lmargin at screen 0.425; set rmargin at screen 0.665
+set lmargin at screen 0.415; set rmargin at screen 0.645
 set title 'columns of height H' offset 0, -0.5
 set xrange [0:7]; set yrange [0:2]; set xtics 2; set ytics 0.5
 set xlabel 'k R = π R / H'; set ylabel 'ω / Ω' offset 1, 0

@@ -4,7 +4,7 @@ wide = 1500; high = 860
 load 'common/style.gp'
 head = 'Sedov: a blast in cold gas'
 x_top = 1; rho_step = 1; colors_top = 6
-bottoms = '0 -0.6 0'; tops = '6.3 1.2 0.4'; steps = '1 0.4 0.1'
+bottoms = '0 -1.4 0'; tops = '6.3 1.4 0.4'; steps = '1 0.4 0.1'
 exact(k) = column(4 + k)
 R = real(system(sprintf("LC_ALL=C awk -v key=results.shock_radius.expected -f common/json_lines.awk '%s'/flip/summary.json", run)))
 load 'flip/figures/radial.gp'

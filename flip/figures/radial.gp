@@ -5,12 +5,12 @@ file(p) = folder(p).'/profile.dat'
 map = system(sprintf('ls "%s"/flip/fields_*.dat | tail -1', run))
 set multiplot title head font ',24'
 set bmargin at screen 0.1; set tmargin at screen 0.87
-set lmargin at screen 0.06; set rmargin at screen 0.44
+set lmargin at screen 0.075; set rmargin at screen 0.44
 eval colors(viridis); set cbrange [0:colors_top]; set cbtics rho_step
 set colorbox user origin 0.455, 0.1 size 0.012, 0.77
 unset grid; set border 15; set size ratio -1; set tics out
 set xrange [0:x_top]; set yrange [0:x_top]; set xtics 0.2; set ytics 0.2
-set xlabel 'x' offset 0, 0.5; set ylabel 'z' offset 1, 0
+set xlabel 'x' offset 0, 0.5; set ylabel 'z' offset 1.4, 0
 set title 'density, flip' offset 0, -0.6
 set parametric; set trange [0:pi / 2]
 plot map using 1:2:3 with image notitle, R * cos(t), R * sin(t) with lines lw 1.6 dt 2 lc rgb 'white' title ''

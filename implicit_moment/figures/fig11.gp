@@ -26,13 +26,13 @@ set lmargin at screen 0.345; set rmargin at screen 0.605
 unset ylabel; set format y ''
 set xrange [-1:time_max + 1]; set xtics 0, 20, 120
 set title sprintf('the run, to t Ω_{ci} = %.0f', time_max) offset 0, -0.6
-set colorbox user origin 0.613, 0.15 size 0.01, 0.71; set cblabel 'J_y / J_0' offset -1, 0
+set colorbox user origin 0.613, 0.15 size 0.01, 0.71; set cblabel 'J_y / J_0' offset 0.3, 0
 plot every(2, time_max) using 1:2:3 with image notitle
 
-unset colorbox; set border 3; set grid; set format y '%g'; unset title
+unset colorbox; set border 3; set grid; set format y '%g'
 set lmargin at screen 0.745; set rmargin at screen 0.985
 set xrange [-3:3]; set yrange [-0.1:*]; set xtics -3, 1, 3; set ytics 0.2
-set xlabel 'z / L'; set ylabel 'J_y / J_0' offset 1, 0
+set xlabel 'z / L'; set title 'J_y / J_0'
 set key top right samplen 1.2 title 't Ω_{ci}'
 mean(t) = sprintf("< awk -F, '!/^#/ && $1 >= %g && $1 <= %g { sum[$2] += $3; ++count[$2] } END { for (z in sum) print z \",\" sum[z] / count[z] }' %s | sort -t, -k1g", t - 0.51, t + (t < 12 ? 0.51 : 0.01), data)
 plot [-3:3] 1 / cosh(x)**2 with lines lt 7 dt 2 title '0', \

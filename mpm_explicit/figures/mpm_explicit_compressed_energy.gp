@@ -20,7 +20,7 @@ plot one using @travel:(column(energy) / unit) with lines lt 1 title 'total', on
      one using @travel:(column(kinetic) / unit) with lines lt 6 title 'kinetic', one using @travel:(column(work) / unit) with lines lt 8 dt 2 lw 2 title 'work of the plate'
 set lmargin at screen 0.585; set rmargin at screen 0.98
 set title 'energy less work of the plate / (10^{−4} E L^2)'
-set yrange [-0.1:0.025]; set ytics 0.025
+set yrange [-0.05:0.025]; set ytics 0.025
 set key bottom left
 plot one using @travel:((column(energy_14) - column(work)) / unit) with lines lt 8 title 'all', one using @travel:(column(contact) / unit) with lines lt 2 title 'contact', \
      one using @travel:(column(remap) / unit) with lines lt 4 title 'from cell to cell', one using @travel:(column(squeeze) / unit) with lines lt 5 title 'change of volume'

@@ -10,7 +10,7 @@ set multiplot title 'Sliding with friction flutters; viscosity ends it' font ',2
 set bmargin at screen 0.16; set tmargin at screen 0.82
 array left[2] = [0.085, 0.39]
 set logscale y; set format y '10^{%L}'
-set xrange [0:0.5]; set yrange [1e-8:1e3]; set xtics 0.1; set ytics 100
+set xrange [0:0.5]; set yrange [1e-8:1e3]; set xtics 0.1; set ytics 100; set mytics 1
 set xlabel 't [s]'
 unset key
 set label 1 'μ = 0.55' at 0.495, 30 right textcolor rgb orange; set label 2 'μ = 0.3' at 0.495, 0.006 right textcolor rgb blue
@@ -27,7 +27,7 @@ do for [k = 1:2] {
          (x > 0.12 && x < 0.23 ? 3e-3 * exp(2 * 40.2 * (x - 0.15)) : NaN) with lines lw 2 dt 3 lc rgb ink, \
          (x > 0.12 && x < 0.33 ? 3e-4 * exp(2 * 23.1 * (x - 0.15)) : NaN) with lines lw 2 dt 3 lc rgb ink
 }
-unset logscale y; set format y '%g'
+unset logscale y; set format y '%g'; set mytics default
 unset label 1; unset label 2; unset label 3; unset label 4
 set lmargin at screen 0.725; set rmargin at screen 0.985
 set title 'acceleration' offset 0, -0.3

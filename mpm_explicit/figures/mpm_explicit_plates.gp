@@ -6,7 +6,9 @@ file(name) = run.'/'.name.'/history.dat'
 E = 1e5; nu = 0.3; Y = 100; height = 0.4; low = 0.002; high_e = 0.007
 G = E / (2 * (1 + nu)); K = E / (3 * (1 - 2 * nu)); M = K + 4 * G / 3
 force = col(file('yields'), 'force_y_top'); way = col(file('yields'), 'travel_y_top')
-set multiplot layout 1, 2 title 'A block below a plate, explicit'
+set multiplot title 'A block below a plate, explicit' font ',24'
+set tmargin at screen 0.87; set bmargin at screen 0.15
+set lmargin at screen 0.085; set rmargin at screen 0.465
 set key top left
 set xlabel 'strain [%]'; set ylabel 'stress / Y'
 set xrange [0:0.75]; set yrange [0:10]
@@ -20,9 +22,10 @@ plot file('elastic') using (-100 * column(way) / height):(column(force) / Y) wit
      (x >= 100 * low && x <= 100 * up ? (K * x / 100 - 2 * Y / 3) / Y : NaN) with lines lc rgb ink lw 1.5 dt 2 notitle, \
      (x >= 100 * low && x <= 100 * down ? (K * low - 2 * Y / 3 + M * (x / 100 - low)) / Y : NaN) with lines lc rgb ink lw 1.5 dt 2 notitle
 kinetic = col(file('both'), 'kinetic'); elastic = col(file('both'), 'elastic')
+set lmargin at screen 0.6; set rmargin at screen 0.97
 set xlabel 't'; set ylabel 'kinetic / elastic energy'
-set xrange [0:15]; set logscale y; set format y '10^{%T}'; set yrange [1e-9:10]
-set key at graph 0.98, 0.75 right
+set xrange [0:15]; set logscale y; set format y '10^{%T}'; set yrange [1e-9:10]; set ytics 100; set mytics 1
+set key at graph 1.04, 0.98 right top samplen 1.5
 set arrow from 0, 1e-6 to 15, 1e-6 nohead lc rgb ink lw 1.5 dt 2
 set label 'at rest: below' at 10, 2.6e-6
 plot file('both') using 1:(column(kinetic) / column(elastic)) with lines lt 1 title 'contact on v^0 and v^1', file('new') using 1:(column(kinetic) / column(elastic)) with lines lt 2 title 'on v^1 alone'

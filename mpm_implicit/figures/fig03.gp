@@ -23,7 +23,7 @@ set lmargin at screen 0.085; set rmargin at screen 0.48
 set tmargin at screen 0.87; set bmargin at screen 0.57
 set title 'total energy / initial' offset 0, -0.6
 set yrange [0.9:1.3]; set ytics 0.1
-set key at graph 1.02, 1 right top
+set key at graph 1.02, 1 right top samplen 1.5
 plot for [n = 1:4] file(n) using 1:(column(energy[n]) / E_0) with lines lc rgb word(tint, n) dt dash[n] lw width[n] title name[n]
 unset key
 set lmargin at screen 0.585; set rmargin at screen 0.98

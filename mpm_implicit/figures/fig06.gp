@@ -1,5 +1,5 @@
 # Figure 6 of the talk: energy of the compressed grains, implicit with a CFL number of 4 and explicit with 0.25, and beside each the work of its plate (dashed). Below, the part of the work that the energy lacks or
-# has too much: implicit, theorem [MPM-13] says none, and round-off is what is left; explicit, some per cent, made and lost where grains touch and particles cross from cell to cell.
+# has too much: implicit, theorem [MPM-13] says none, and round-off is what is left; explicit, some tenths of a per cent, made and lost where grains touch and particles cross from cell to cell.
 wide = 1500; high = 1120
 load 'common/style.gp'
 E = 1e5; unit = 1e-4 * E   # E L^2, L = 1
@@ -27,12 +27,12 @@ set tmargin at screen 0.4; set bmargin at screen 0.115
 last(n, what) = real(system(sprintf("LC_ALL=C awk 'END { print $%d }' '%s'", what, file(n))))
 set lmargin at screen 0.085; set rmargin at screen 0.48
 set title 'energy less work / final work'
-set yrange [-0.06:0.06]; set ytics 0.02
-set label 1 'explicit' at 2.05, -0.033 center textcolor rgb orange; set label 2 'implicit' at 2.05, 0.008 center textcolor rgb blue
+set yrange [-0.01:0.01]; set ytics 0.005
+set label 1 'explicit' at 2.05, -0.0045 center textcolor rgb orange; set label 2 'implicit' at 2.05, 0.0013 center textcolor rgb blue
 plot for [n = 1:2] file(n) using (-100 * column(travel[n])):((column(energy[n]) - column(work[n])) / last(n, work[n])) with lines lt n
 unset label 1; unset label 2
 set lmargin at screen 0.585; set rmargin at screen 0.98
 set title '|energy less work| / final work'
-set logscale y; set yrange [1e-17:1]; set format y '10^{%T}'; set ytics 1e-16, 1e4, 1
+set logscale y; set yrange [1e-17:1]; set format y '10^{%T}'; set ytics 1e-16, 1e4, 1; set mytics 1
 plot for [n = 1:2] file(n) using (-100 * column(travel[n])):(abs(column(energy[n]) - column(work[n])) / last(n, work[n]) + 1e-17) with lines lt n
 unset multiplot

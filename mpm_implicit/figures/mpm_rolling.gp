@@ -3,7 +3,7 @@
 wide = 1500; high = 620
 load 'common/style.gp'
 file(name) = run.'/'.name.'.dat'
-set multiplot layout 1, 3 title 'A cylinder rolls down 30 degrees: radius over cells' font ',24'
+set multiplot layout 1, 3 title 'A cylinder rolls down 30 degrees: radius R in cells of width h' font ',24'
 set logscale x 2; set xrange [3.2:20]; set xtics (4, 8, 16); set xlabel "R/h" offset 0, 0.3
 set style fill solid 0.15 noborder
 set samples 100

@@ -16,13 +16,16 @@ do for [k = 1:7] {
     angular_0[k] = first(word(names, k), angular[of(k)])
     inertia_0[k] = first(word(names, k), inertia[of(k)])
 }
-set multiplot layout 2, 1 title 'A free disk spins, 16 cells across: over the values at the start'
+set multiplot title 'A free disk spins, 16 cells across' font ',24'
+set lmargin at screen 0.125; set rmargin at screen 0.68
+set tmargin at screen 0.92; set bmargin at screen 0.56
 set xrange [0:5]
-set key outside right
-set ylabel 'angular momentum'; set yrange [0.84:1.02]
+set key at screen 0.7, 0.92 left top
+set ylabel 'angular momentum / initial'; set yrange [0.9:1.02]; set format x ''
 plot for [k = 1:7] file(word(names, k)) using (column(1) / turn):(column(angular[of(k)]) / angular_0[k]) with lines lt k lw 2 title word(titles, k)
-set xlabel 'turns'; set ylabel 'moment of inertia'; set yrange [0.98:1.1]
-unset key
+set tmargin at screen 0.49; set bmargin at screen 0.11
+set xlabel 'turns'; set ylabel 'moment of inertia / initial'; set yrange [0.98:1.08]; set format x '%g'
+unset key; set label 1 "dashes: a steady spin" at screen 0.715, 0.47 left textcolor rgb ink
 set arrow from 0, 1.00206 to 5, 1.00206 nohead lc rgb ink lw 1.5 dt 2 front
 plot for [k = 1:7] file(word(names, k)) using (column(1) / turn):(column(inertia[of(k)]) / inertia_0[k]) with lines lt k lw 2 title word(titles, k)
 unset multiplot
