@@ -125,7 +125,7 @@ The particle-in-cell family in running code
   make test-long         every figure at full length, its numbers checked
   make torture           half an hour of kills, failing disks, forged files and fuzzing; resumable
   make mutate            the changes in a program that no fact notices: PROGRAM=cic N=50 SEED=1; resumable
-  make exercises         the exercises of the lecture notes, each with its title and its time
+  make exercises         the exercises of the lecture notes, each with its title and the time of its runs
   make exercise E=1-3    its question, its runs, and whether they give what is expected
                          (with ANSWER=0.9239: is the answer right?)
   make bench             particle-steps per second on 1 and 2 threads, and where the time goes; MPI=1: on 1 and 2 ranks
@@ -536,9 +536,11 @@ test-long: all tests figures $(quoted) $(BUILD)/CTestTestfile.cmake | $(packages
 # ---- exercises -----------------------------------------------------------------------------------
 
 # With an answer nothing is run; else the programs of the exercise are built, with what the student changed in them.
-exercise: $(if $(E),$(if $(ANSWER),,$(addprefix $(BUILD)/,$(shell sh common/exercise.sh programs '$(E)' 2>/dev/null))))
+# The answer goes through the environment, whatever quotes it has.
+answered := $(filter-out undefined,$(origin ANSWER))
+exercise: $(if $(E),$(if $(answered),,$(addprefix $(BUILD)/,$(shell sh common/exercise.sh programs '$(E)' 2>/dev/null))))
 	@$(if $(E),,echo "which one? make exercise E=1-3; 'make exercises' lists them" >&2; exit 2;) \
-	    BUILD=$(BUILD) sh common/exercise.sh $(if $(ANSWER),answer '$(E)' '$(ANSWER)',run '$(E)')
+	    BUILD=$(BUILD) sh common/exercise.sh $(if $(answered),answer '$(E)' "$$ANSWER",run '$(E)')
 exercises:
 	@sh common/exercise.sh list
 

@@ -26,7 +26,9 @@ exercises=lecture_notes/exercises
 solutions=lecture_notes/solutions
 build=${BUILD:-build}
 
-stop() { echo "$*" >&2; exit 2; }
+number='^[-+]?([0-9]+[.]?[0-9]*|[.][0-9]+)([eE][-+]?[0-9]+)?$'
+
+stop() { printf '%s\n' "$*" >&2; exit 2; }
 
 block() {  # the lines of the block of this kind in a file
     awk -v kind="$1" '$0 == "```" kind { on = 1; next } /^```/ { on = 0 } on' "$2"
@@ -92,7 +94,7 @@ holds() {
     awk -v value="$1" -v relation="$2" -v expected="$3" 'BEGIN {
         tolerance = 0
         if (split(expected, part, / *\+- */) == 2) { expected = part[1]; tolerance = part[2] }
-        number = "^[-+]?([0-9]+[.]?[0-9]*|[.][0-9]+)([eE][-+]?[0-9]+)?$"
+        number = "'"$number"'"
         if (expected !~ number || value !~ number) exit !(relation == "=" && value "" == expected "")
         if (tolerance ~ /%$/) {
             sub(/%$/, "", tolerance)
@@ -102,6 +104,22 @@ holds() {
         if (relation == "=") exit !(difference <= tolerance + 0 && -difference <= tolerance + 0)
         exit !(relation == "<=" ? difference <= 0 : difference >= 0)
     }'
+}
+
+asks_for() { awk '/^```exercise/ { exit } /^Your answer:/' "$question" | grep -q "$1"; }
+
+# The answer without blanks around it; what is no number is refused.
+number_of_answer() {
+    value=$(printf '%s' "$1" | tr '\n' ' ' | sed 's/^[[:space:]]*//; s/[[:space:]]*$//')
+    [ -n "$value" ] || stop "the answer is empty: give a number, like ANSWER=0.9239"
+    case $value in
+    *%*)
+        asks_for 'per cent' && stop "the answer is asked for in per cent: write 92 for 92 %"
+        stop "write 0.92 for 92 %"
+        ;;
+    esac
+    printf '%s\n' "$value" | grep -qE "$number" ||
+        stop "'$value' is no number: a number looks like 0.9239, .9239 or 9.239e-1"
 }
 
 # ---- the runs and their numbers --------------------------------------------------------------------
@@ -178,6 +196,7 @@ list:1)
         sed -n '1s/^# *//p' "$exercises/$question" | awk -v time="${time:--}" \
             '{ id = $1; sub(/^[^ ]+ +/, ""); printf "  %-6s %-8s %s\n", id, time, $0 }'
     done
+    echo "The time is that of the runs. A program that is missing or that you have changed is compiled before, up to a minute or two."
     ;;
 programs:2)
     find_exercise "$2"
@@ -193,6 +212,8 @@ run:2)
     judge "out/exercises/$id" no
     if [ -n "$patch" ] && [ "$wrong" = 1 ] && applies . "$PWD/$patch" --check > /dev/null; then
         echo "The lines that this exercise is about are as they came: change them first."
+    elif [ -n "$patch" ]; then
+        echo "The change is undone with: git checkout$(sed -n 's|^+++ b/| |p' "$patch" | tr -d '\n')"
     fi
     grep -q '^answer:' "$scratch/answer" && echo "Your answer: make exercise E=$id ANSWER=..."
     exit "$wrong"
@@ -201,20 +222,22 @@ answer:3)
     find_exercise "$2"
     expected=$(sed -n 's/^answer: *//p' "$scratch/answer")
     [ -n "$expected" ] || stop "exercise $id does not ask for a number"
-    if holds "$3" = "$expected"; then
+    number_of_answer "$3"
+    if holds "$value" = "$expected"; then
         echo "$expected" | awk -F' *[+]- *' '
             $1 == 0 || $2 + 0 == 0 { print "right"; exit }
-            $2 ~ /%$/ { print "right: it may be off by " $2; exit }
-            { printf "right: it may be off by %.2g %%\n", 100 * $2 / ($1 < 0 ? -$1 : $1) }'
-    elif ! holds "$3" = "$3 +- 0" || ! echo "$3" | grep -q '[0-9]'; then
-        stop "an answer is a number, like ANSWER=0.6"
-    elif holds "$3" ">=" "${expected%% *}"; then
+            $2 ~ /%$/ { sub(/ *%/, "", $2); print "right (within " $2 " %)"; exit }
+            { printf "right (within %.2g %%)\n", 100 * $2 / ($1 < 0 ? -$1 : $1) }'
+        exit
+    fi
+    if asks_for 'power of ten' && holds "$value" ">=" 0 && holds "$value" "<=" 1; then
+        echo "not right; the exponent is asked for, as -2 for 1e-2"
+    elif holds "$value" ">=" "${expected%% *}"; then
         echo "not right; too large"
-        exit 1
     else
         echo "not right; too small"
-        exit 1
     fi
+    exit 1
     ;;
 test:2)
     find_exercise "$2"

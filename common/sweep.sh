@@ -16,7 +16,8 @@ cd "$(dirname "$0")/.."
 fail() { echo "$*" >&2; exit 2; }
 
 case=${1:-}
-[ -f "$case" ] && [ $# -ge 2 ] || fail "which case, and which values? make sweep CASE=cic/cases/thermal_heating.toml KEYS='method.weighting=ngp,cic,tsc seed=1,2,3'"
+[ -z "$case" ] || [ -f "$case" ] || fail "no such case: $case"
+[ -n "$case" ] && [ $# -ge 2 ] || fail "which case, and which values? make sweep CASE=cic/cases/thermal_heating.toml KEYS='method.weighting=ngp,cic,tsc seed=1,2,3'"
 shift
 program=${PROGRAM:-${case%%/*}}
 [ "${program##*/}" != "$program" ] || program=${BUILD:-build}/$program
@@ -27,7 +28,8 @@ mkdir -p "$folder"
 full_name() {  # of a key without its section
     case $1 in *.*) echo "$1"; return ;; esac
     full=$("$program" --help | sed -n "s/^  \([a-z_.]*\.$1\) .*/\1/p")
-    [ "$(echo "$full" | grep -c .)" = 1 ] || fail "'$1' is the key of several parameters of $program, or of none: $(echo $full)"
+    [ -n "$full" ] || fail "'$1' is no parameter of $program"
+    [ "$(echo "$full" | grep -c .)" = 1 ] || fail "'$1' is the key of several parameters of $program: $(echo $full)"
     echo "$full"
 }
 
@@ -35,6 +37,7 @@ lists="" fixed=""
 while [ $# -gt 0 ]; do
     case $1 in
     --) shift; fixed=$*; break ;;
+    *= | *=,* | *,,* | *,) fail "'$1' lacks a value: KEY=VALUE,VALUE" ;;
     *=*) lists="$lists $(full_name "${1%%=*}")=${1#*=}" ;;
     *) fail "'$1' is not KEY=VALUE,VALUE" ;;
     esac
@@ -120,8 +123,8 @@ done | awk -v lists="$lists" '
         }
     }' > "$folder/results.dat.$$"
 mv "$folder/results.dat.$$" "$folder/results.dat"
-[ -n "${SWEEP_NAME:-}" ] || echo "table: $folder/results.dat, $(($(grep -c . "$folder/results.dat") - 1)) runs; this call has $(echo "$names" | grep -c .)"
 [ "$(grep -c . "$folder/results.dat")" -gt 1 ] || fail "no run has left results: there is no figure"
+[ -n "${SWEEP_NAME:-}" ] || echo "table: $folder/results.dat, $(($(grep -c . "$folder/results.dat") - 1)) runs; this call has $(echo "$names" | grep -c .)"
 if [ -z "${SWEEP_NAME:-}" ] && command -v gnuplot >/dev/null; then
     mkdir -p out/figures
     picture=out/figures/sweep_$(basename "$folder").png

@@ -116,6 +116,8 @@ endforeach()
 # Each that runs something. Those with a patch build in one and the same copy of the sources.
 add_test(exercises.each_has_a_solution sh common/exercise.sh check)
 describe_test(exercises.each_has_a_solution notes)
+add_test(exercises.answers_are_judged_or_refused sh tests/support/exercises.sh)
+describe_test(exercises.answers_are_judged_or_refused exercise)
 file(GLOB exercises "${root}/lecture_notes/exercises/[0-9]*.md")
 foreach(exercise IN LISTS exercises)
     get_filename_component(id "${exercise}" NAME_WE)

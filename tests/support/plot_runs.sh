@@ -236,6 +236,12 @@ tools)
     awk -f common/figures/sweep.awk "$folder/sweep/results.dat" | grep -q "energy.*, 7 of 7 PASS'" || complain "the figure of a sweep shows no verdicts"
     rm -f out/figures/sweep_sweep.png
     sweep cells_x=20,0 && complain "a run that failed was not told"
+    # What cannot be swept is refused with its name.
+    refuses() { sweep "$1"; [ $? = 2 ] && [ "$(cat "$folder/told")" = "$2" ] || complain "sweep $1: $(cat "$folder/told")"; }
+    for list in cells_x= cells_x=,20 cells_x=20, cells_x=20,,30; do refuses "$list" "'$list' lacks a value: KEY=VALUE,VALUE"; done
+    refuses sead=1 "'sead' is no parameter of $build/flip"
+    said=$(sh common/sweep.sh nix.toml seed=1 2>&1)
+    [ "$said" = "no such case: nix.toml" ] || complain "sweep of a missing case: $said"
     ;;
 esac
 exit $status
