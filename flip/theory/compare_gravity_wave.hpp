@@ -89,7 +89,8 @@ inline void compare_gravity_wave(const FinishedRun& run) {
         "the wave has ", w.grid.x.cells / w.mode,
         " cells, and the fluids cannot slip within one, which costs most where their densities "
         "are alike: refine the mesh, raise particles.per_cell_x and per_cell_z, and take "
-        "flip.transfer = \"xpic\" where particles make more noise than the wave");
+        "flip.transfer = \"xpic\" where particles make more noise than the wave; viscosity damps "
+        "it");
     run.summary.result(names[0], {seen.frequency() / of_steps, seen.frequency_error() / of_steps},
                        "", 1, w.theory_tolerance, "layers and steps; " + seen.window);
     if (by_mesh > 0)

@@ -182,9 +182,14 @@ inline void validate_layers(const Case& parameters, const Refusal& refuse) {
     const RegionCase &lower = parameters.regions[0], &upper = parameters.regions[1];
     refuse(!(upper.center_z > parameters.grid.z.low && upper.center_z < parameters.grid.z.high()),
            ": the interface at center_z = ", upper.center_z, " is not on the mesh");
-    for (const RegionCase& r : parameters.regions)
+    for (const RegionCase& r : parameters.regions) {
         refuse(!r.hydrostatic, " needs fluid that begins at rest: set region.", r.name,
                ".hydrostatic = true");
+        refuse(r.gas.velocity_x != 0 || r.gas.velocity_z != 0 ||
+                   (r.flow != "uniform" && r.flow != "overturn"),
+               " is of fluids that do not stream: take out the velocities and the flow of region.",
+               r.name, ", or take flow = \"overturn\"");
+    }
     const double below = pressure_at_interface(parameters, lower),
                  above = pressure_at_interface(parameters, upper);
     refuse(std::fabs(above - below) > 1e-6 * std::fabs(below),
