@@ -482,6 +482,17 @@ TEST_CASE("an onset that noise brings or the perturbation hides is not measured"
          "of it is the growing wave: lower the amplitude 1.26 times or more");
 }
 
+TEST_CASE("a damped wave in which particles bounce is to be made smaller" *
+          doctest::description("physics")) {
+    const std::string told = run("bounce", "landau",
+                                 "species.electrons.particles_per_cell=1024 "
+                                 "species.electrons.amplitude=0.2")
+                                 .summary["results"]["damping_over_theory"]
+                                 .dump();
+    says(told, "faster than the rate 0.1534, and linear theory does not hold: lower the amplitude");
+    says(told, "of it");
+}
+
 TEST_CASE("what round-off and noise alone begin is no wave" * doctest::description("physics")) {
     const std::string rest =
         "[grid]\nlength_x = 6.283185307179586\ncells_x = 64\n[time]\nend = 400\n"

@@ -260,6 +260,9 @@ TEST_CASE("what cannot be measured says why") {
     CHECK(says(reason(record_of({"", decaying, {1, 1}, 180, 0.5, {}}, 0.1, 3), 0.5,
                       {.expected = decaying}),
                "it is lost in noise then: raise its amplitude"));
+    CHECK(says(reason(record_of({"", decaying, {1, 1}, 180, 0.5, {}}, 0.1, 3), 0.5,
+                      {.expected = decaying, .faded = "lower it"}),
+               "; lower it"));
     std::vector<Complex> broken = record_of({"", both(1.0), {1, 1}, 400, 0.1, {}}, 0, 0);
     broken[200] = std::numeric_limits<double>::quiet_NaN();
     CHECK(says(reason(broken, 0.1, wave), "not finite"));

@@ -835,9 +835,10 @@ grains disks theory.compare=rebound time.end=0.4
     theory.compare = "rebound": the disks meet at t = 0.5, and the run ends at 0.4: raise time.end
 mpm_explicit disks theory.compare=collapse time.end=0.02
     theory.compare = "collapse" needs at least 10 rows of history, and there would be 7: raise
-    time.end or lower output.history_steps
+    time.end or lower time.alpha
 mpm_explicit disks theory.compare=collapse output.history_steps=10
-    theory.compare = "collapse" needs at least 10 rows of history, and there would be 3
+    theory.compare = "collapse" needs at least 10 rows of history, and there would be 3: raise
+    time.end or lower output.history_steps
 grains body theory.compare=bar boundary.x_low=slip
 grains body theory.compare=bar bar
 grains body theory.compare=bar boundary.x_low=frictional bar

@@ -21,6 +21,8 @@ cic line species.electrons.temperature_x=0.01
 cic line method.weighting=ngp species.electrons.temperature_x=0.01
     warning: the Debye length is 0.2667 cells, below 0.6 for ngp
 cic line method.weighting=tsc species.electrons.temperature_x=0.01 -> no warning
+# At the limit, to the digits that are shown.
+cic thermal_heating.toml grid.length_x=201.06193 theory.compare=none -> no warning
 cic line method.scheme=energy species.electrons.temperature_x=0.01 -> no warning
 cic plane grid.length_z=60 species.electrons.temperature_x=0.01
     warning: the Debye length is 0.01333 cells, below 0.3183 for cic
@@ -73,6 +75,10 @@ TEST_CASE("what may mislead in a fluid is a warning with the number and the limi
     check_warnings(R"(
 flip tube
 fluids sod -> no warning
+fluids sod particles.seed=2
+    warning: particles.seed changes nothing: particles of loading = "lattice" have no random
+    places, and no region has noise
+fluids sod particles.seed=2 particles.loading=random -> no warning
 pic tube -> warning: the flow has Mach 0, below 0.05: cells feel a particle only when it enters them
 flip tube region.gas.velocity_x=0.12
     warning: region.gas flows over the mesh at Mach 0.1014, between 0.07 and 0.19, where

@@ -198,7 +198,9 @@ class Recorder {
         if (std::isfinite(now.sum()) && !exceeded) return;
         common::fail("the energy is ", now.sum(), " and was ", now.sum() - now.change,
                      " at the start, at step ", step, ", t = ", double(step) * parameters_.dt,
-                     ": reduce time.dt, refine the mesh, or allow more with time.energy_limit");
+                     ": reduce time.dt, refine the mesh, ",
+                     parameters_.weighting == "ngp" ? "take method.weighting = \"cic\", " : "",
+                     "or allow more with time.energy_limit");
     }
 
     void record_positions(const State& state) {

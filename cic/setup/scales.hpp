@@ -138,7 +138,7 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
     const double least =
         parameters.weighting == "ngp" ? 0.6 : (parameters.weighting == "cic" ? 1 / pi : 0.15);
     if (parameters.conserving == "momentum" && scales.debye_length > 0 &&
-        scales.debye_length < least * dx)
+        scales.debye_length < (1 - 1e-4) * least * dx)
         warn("the Debye length is ", scales.debye_length / dx, " cells, below ", least, " for ",
              parameters.weighting, ": the mesh will heat the plasma; refine it to cells of ",
              scales.debye_length / least);

@@ -130,13 +130,22 @@ inline bool is_seeded(const Case& parameters, const Theory& theory) {
     return false;
 }
 
+/// Where particles bounce faster in this field than the wave of theory grows or decays: that, and
+/// what to change; else nothing.
+inline std::string likely_bouncing(const Case& parameters, const Theory& theory, double field) {
+    const double bounce = bounce_frequency(parameters, theory, field),
+                 rate = std::fabs(theory.omega.imag());
+    if (!(bounce > rate && rate > 1e-3 * std::abs(theory.omega))) return "";
+    return sentence("particles bounce in the wave with ", bounce, ", faster than the rate ", rate,
+                    ", and linear theory does not hold: lower the amplitude to ",
+                    format(rate * rate / (bounce * bounce)), " of it");
+}
+
 /// What a wave that is not as in theory is most likely due to, and what to change.
 /// in:     field, the amplitude of the wave without noise; noise of random numbers in it
 inline std::string likely_cause(const Case& parameters, const Theory& theory, double field,
                                 double noise) {
-    const double bounce = bounce_frequency(parameters, theory, field),
-                 rate = std::fabs(theory.omega.imag()),
-                 step = std::abs(theory.omega) * parameters.dt,
+    const double step = std::abs(theory.omega) * parameters.dt,
                  k_dx =
                      wave_vector(parameters, theory.mode_x, 0).size() * parameters.grid.x.spacing(),
                  k_dz =
@@ -154,10 +163,8 @@ inline std::string likely_cause(const Case& parameters, const Theory& theory, do
         return sentence("random particles have up to ", noise / field,
                         " of the seeded field in this mode: raise amplitude or particles_per_cell, "
                         "or take loading = \"quiet\"");
-    if (bounce > rate && rate > 1e-3 * std::abs(theory.omega))
-        return sentence("particles bounce in the wave with ", bounce, ", faster than the rate ",
-                        rate, ", and linear theory does not hold: lower the amplitude ",
-                        format(rate * rate / (bounce * bounce)), " times");
+    const std::string bouncing = likely_bouncing(parameters, theory, field);
+    if (!bouncing.empty()) return bouncing;
     if (parameters.model != "mesh" && (theta > 0.5 || 1 - std::cos(theta / 2) > tolerance))
         return sentence(
             k_dx > k_dz ? "k dx is " : "k dz is ", theta,
@@ -204,7 +211,10 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
     for (const SpeciesCase& s : parameters.species) random = random || s.loading == "random";
     const double noise = random ? noise_field(parameters, theory) : 0;
     const double seed = theory.seed * (theory.mirrored ? 2 : 1);
-    summary.hint(likely_cause(parameters, theory, seed > 0 ? seed : start, noise));
+    const double field = seed > 0 ? seed : start;
+    summary.hint(likely_cause(parameters, theory, field, noise));
+    const std::string bouncing = likely_bouncing(parameters, theory, field);
+    if (!bouncing.empty()) search.faded = bouncing;
     search.begin = grows ? 1 / growth : 2 * pi / frequency;
     search.below_maximum = 0.1;
     if (onset > search.begin) search.end = onset;

@@ -421,7 +421,7 @@ MeasuredMode measure_mode(std::span<const double> times, std::span<const Complex
     const double left = times.back() - times[std::size_t(std::max(0L, rows.end - 1))];
     result.over = wanted.growth * left > -1.5 * std::log(search.below_maximum);
     std::string cure = result.over ? "; growth is over then" : ": raise time.end";
-    if (wanted.growth < 0 && left > 0) cure = "; it is lost in noise then: raise its amplitude";
+    if (wanted.growth < 0 && left > 0) cure = "; " + search.faded;
     if (rows.count() < 8 * block)
         return cannot("only " + std::to_string(std::max(0L, rows.count())) +
                       " rows of the history are between the transient of the start and the end of "

@@ -50,8 +50,8 @@ struct ModeSearch {
     double begin = 0;                            // when the transient of the start is over
     double end = 1e300;                          // when the linear phase is
     double below_maximum = 1;  // a growing record ends where it reaches this part of its maximum
-    double e_foldings = 3;     // of growth or damping that are enough
-    double periods = 3;        // or of these
+    double e_foldings = 3, periods = 3;  // of growth or damping, or of swinging: either is enough
+    std::string faded = "it is lost in noise then: raise its amplitude";  // of what decays, a cure
 };
 
 /// The mode of a record that is nearest to theory.

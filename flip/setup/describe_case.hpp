@@ -154,7 +154,7 @@ inline common::ParameterTable describe(Case& parameters) {
     table.choice("particles.loading", parameters.loading, {"lattice", "random"},
                  "random: each particle anywhere in its share of the cell");
     table.whole("particles.seed", parameters.seed, "", between(0, 1e9),
-                "another number, another noise");
+                "another number, another noise: of loading = \"random\" and of region.*.noise");
 
     table.group("forces");
     table.real("viscosity.linear", parameters.q_linear, "", at_least(0),

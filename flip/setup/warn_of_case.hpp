@@ -47,6 +47,11 @@ inline void warn_of_regions(const Case& parameters, const Scales& scales,
     warn(out, parameters.rezone_steps > 0 && per_cell > parameters.max_particles,
          "rezone.max_particles = ", parameters.max_particles, " is below the ", per_cell,
          " particles per cell of the start");
+    warn(out,
+         parameters.seed != Case{}.seed && parameters.loading == "lattice" &&
+             std::ranges::none_of(parameters.regions, [](auto& r) { return r.noise > 0; }),
+         "particles.seed changes nothing: particles of loading = \"lattice\" have no random "
+         "places, and no region has noise");
 }
 
 // Ends that let in another gas than the one that begins there; where nothing is compared, it may be the

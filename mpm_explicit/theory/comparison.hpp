@@ -149,9 +149,10 @@ inline void validate_comparison(const PlannedCase& planned, const Scales& scales
     }
     if (comparison->needs != nullptr) comparison->needs(planned);
     const long rows = scales.steps / parameters.history_steps;
-    planned.refuse(rows < 10, " needs at least 10 rows of history, and there would be " +
-                                  std::to_string(rows) +
-                                  ": raise time.end or lower output.history_steps");
+    planned.refuse(rows < 10,
+                   " needs at least 10 rows of history, and there would be " +
+                       std::to_string(rows) + ": raise time.end or lower " +
+                       (parameters.history_steps > 1 ? "output.history_steps" : "time.alpha"));
 }
 
 }  // namespace mpm::theory
