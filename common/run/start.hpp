@@ -58,12 +58,10 @@ inline bool start_run(const ProgramInfo& info, const CommandLine& command,
     for (const std::string& warning : prepared.warnings)
         std::fprintf(stderr, "warning: %s\n", warning.c_str());
     if (!command.quiet) std::printf("%s", prepared.description.c_str());
-    // OMP_NUM_THREADS is obeyed, and so is --threads before it; a rank beside others has one thread, and
-    // so have steps of less than 0.2 ms, which on a busy machine last as long as one thread waits.
+    // One thread have ranks beside others, and steps so short that a busy machine would make threads wait.
     const bool unsaid = command.threads == 0 && std::getenv("OMP_NUM_THREADS") == nullptr,
-               brief = prepared.seconds < 2e-4 * double(prepared.steps);
-    const int unsaid_threads = ranks_here() > 1 || brief ? 1 : free_cores();
-    set_thread_count(unsaid ? unsaid_threads : command.threads);
+               one = ranks_here() > 1 || prepared.seconds < 2e-4 * double(prepared.steps);
+    set_thread_count(!unsaid ? command.threads : one ? 1 : free_cores());
     if (rank_count() > 1 && !command.quiet) {
         const double cores = std::min({double(thread_count()), double(free_cores()),
                                        double(sysconf(_SC_NPROCESSORS_ONLN)) / ranks_here()});
