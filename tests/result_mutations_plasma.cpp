@@ -132,6 +132,8 @@ const std::vector<Mutation> implicit{
      "peak_reconnection_rate energy_drift"},
     {"implicit_moment", "harris_equilibrium", "grid.cells_x=8 grid.cells_z=6 harris.particles=2e4",
      "density_over_noise current_over_noise energy_drift"},
+    {"implicit_moment", "harris_equilibrium", "harris.particles=2000 field.theta=1",
+     "kinetic_over_initial_ions kinetic_over_initial_electrons"},
     {"implicit_moment", "kink_quick",
      "grid.cells_x=33 grid.cells_z=24 current_sheet.particles=2e4 time.dt=0.3 time.end=1640 "
      "field.smoothing_passes=60 field.response=moments field.theta=0.52",

@@ -526,8 +526,8 @@ fluids box theory.compare=rayleigh_taylor
     theory.compare = "rayleigh_taylor" needs two regions, one everywhere and one above it
 fluids box heavy theory.compare=rayleigh_taylor
     theory.compare = "rayleigh_taylor" needs periodic ends in x
-fluids box heavy theory.compare=rayleigh_taylor around_x
-    density 2 above 1 with gravity.z = 0 does not overturn: turn one around
+fluids rayleigh_taylor.toml gravity.z=1
+    density 2 above 1 with gravity.z = 1 does not overturn: turn one around
 fluids box heavy theory.compare=rayleigh_taylor around_x gravity.z=-1 region.heavy.flow=overturn \
     region.heavy.mode=2 -> follows theory.mode = 1, and region.heavy.mode = 2: make them the same
 fluids rayleigh_taylor.toml gravity.x=0.1

@@ -268,6 +268,7 @@ implicit_moment time.dt=30
 implicit_moment few
     warning: electrons: v_th dt/dx = 0.006766 is below 0.05 and the Debye length is 0.004511
     cells: finite-grid heating is possible, watch the energy
+    warning: the sheet has 0.3125 cells across its whole thickness, below 2
 explicit_em -> no warning
 plasmas time.dt=1e-9 time.end=1e-6
     warning: omega_p time.end = 5.099e-06 and Omega_c time.end = 1.25e-06 are below 0.1: fields have
