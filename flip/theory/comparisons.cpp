@@ -31,12 +31,11 @@ constexpr Comparison no_comparison{.name = "none",
                                    .swirl = true};
 
 constexpr std::array all_comparisons{
-    no_comparison,        riemann_comparison,   wall_shock_comparison,   piston_comparison,
-    diffusion_comparison, rotation_comparison,  sedov_comparison,        noh_comparison,
-    gresho_comparison,    wave_comparison,      ringing_comparison,      interface_comparison,
-    shear_comparison,     dam_break_comparison, cavity_comparison,       impact_comparison,
-    rest_comparison,      collapse_comparison,  inertial_wave_comparison,
-    gravity_wave_comparison};
+    no_comparison,        riemann_comparison,   wall_shock_comparison,    piston_comparison,
+    diffusion_comparison, rotation_comparison,  sedov_comparison,         noh_comparison,
+    gresho_comparison,    wave_comparison,      ringing_comparison,       interface_comparison,
+    shear_comparison,     dam_break_comparison, cavity_comparison,        impact_comparison,
+    rest_comparison,      collapse_comparison,  inertial_wave_comparison, gravity_wave_comparison};
 
 }  // namespace
 
