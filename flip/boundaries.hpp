@@ -52,10 +52,10 @@ void remove_outflow(const Problem& problem, double time, Particles& particles, c
         if (side < 0) return false;
         const BoundaryKind kind = problem.boundaries.side[side].kind;
         if ((kind != BoundaryKind::open && kind != BoundaryKind::inflow) || !std::isfinite(x + z))
-            common::fail("a particle has gone through the wall to x = ", x, ", z = ", z,
-                         " at t = ", time,
-                         ": reduce time.cfl, or time.dt where it is set; viscosity in pic, and "
-                         "flip.transfer = \"xpic\" in flip, calm what particles do within a cell");
+            common::fail(
+                "a particle has gone through the wall to x = ", x, ", z = ", z, " at t = ", time,
+                ": reduce time.cfl, or time.dt where it is set; where that does not help, ",
+                "particles make more noise than the flow: raise particles.per_cell_x");
         left(p);
         return true;
     });

@@ -689,8 +689,8 @@ pic sod.toml time.dt=0.008
 fluids falling theory.compare=none gravity.x=100 walls_x
 pic wall_shock.toml time.dt=0.005 viscosity.linear=0 viscosity.quadratic=0
     a particle has gone through the wall to x = NUMBER, z = NUMBER at t = NUMBER: reduce time.cfl,
-    or time.dt where it is set; viscosity in pic, and flip.transfer = "xpic" in flip, calm what
-    particles do within a cell \(in step NUMBER\)
+    or time.dt where it is set; where that does not help, particles make more noise than the flow:
+    raise particles.per_cell_x \(in step NUMBER\)
 flip noh.toml grid.cells_x=24 grid.cells_z=24 time.cfl=1 viscosity.linear=0 viscosity.quadratic=0 flip.mass=consistent theory.compare=none
     density or internal energy is negative in the cell at x = NUMBER, z = NUMBER at t = NUMBER:
     reduce time.cfl, raise viscosity.linear, or take more particles per cell \(in step NUMBER\)

@@ -58,7 +58,7 @@ inline bool start_run(const ProgramInfo& info, const CommandLine& command,
     for (const std::string& warning : prepared.warnings)
         std::fprintf(stderr, "warning: %s\n", warning.c_str());
     if (!command.quiet) std::printf("%s", prepared.description.c_str());
-    // One thread have ranks beside others, and steps so short that a busy machine would make threads wait.
+    // Ranks beside others have one thread, and so have short steps: on a busy machine threads wait.
     const bool unsaid = command.threads == 0 && std::getenv("OMP_NUM_THREADS") == nullptr,
                one = ranks_here() > 1 || prepared.seconds < 2e-4 * double(prepared.steps);
     set_thread_count(!unsaid ? command.threads : one ? 1 : free_cores());

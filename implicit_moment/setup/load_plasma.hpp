@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,11 +36,6 @@ inline HarrisSheet harris_sheet(const HarrisCase& parameters) {
     sheet.v_e = std::sqrt(sheet.T_e * parameters.mass_ratio);
     sheet.Omega_ci = sheet.B0 / c;
     return sheet;
-}
-
-/// ln cosh(u), also where cosh(u) is no number any more.
-inline double log_cosh(double u) {
-    return std::fabs(u) < 300 ? std::log(std::cosh(u)) : std::fabs(u) - std::numbers::ln2;
 }
 
 /// All species of a run.

@@ -25,12 +25,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "common/grid.hpp"
 #include "implicit_moment/setup/case.hpp"
 
 namespace implicit_moment {
+
+/// ln cosh(u), also where cosh(u) is no number any more.
+inline double log_cosh(double u) {
+    return std::fabs(u) < 300 ? std::log(std::cosh(u)) : std::fabs(u) - std::numbers::ln2;
+}
 
 /// The tail around the middle of the box, where F = 1; epsilon = 0 is Harris's sheet.
 struct TailSheet {
@@ -42,9 +48,7 @@ struct TailSheet {
         return epsilon == 0 ? z / L : F(x) * std::sin(epsilon * z / L) / epsilon;
     }
     /// A_y / (B0 L). in: x and z from the middle of the box [d_i]
-    double A_y(double x, double z) const {
-        return epsilon * x / L - std::log(std::cosh(height(x, z)));
-    }
+    double A_y(double x, double z) const { return epsilon * x / L - log_cosh(height(x, z)); }
     /// n/n0 of what drifts.
     double density(double x, double z) const { return std::pow(F(x) / std::cosh(height(x, z)), 2); }
     /// The integral of n/n0 over z from 0 to where tanh(h) = t.

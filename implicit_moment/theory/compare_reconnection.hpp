@@ -137,7 +137,7 @@ inline void compare_profile(const UnitFluxProfile& profile, const Grid& grid,
         judge_reconnection(name, value, sheet.mass_ratio, summary);
     };
     // Of fifteen runs with other seeds, responses and fewer particles five have 0.18 to 0.27 and too
-    // slow a flow, the others 0.08 at most.
+    // slow a flow, the others 0.09 at most.
     const double turned = field_of_second_island(columns, grid);
     if (turned > 0.12 && sheet.mass_ratio == 25) {
         for (const char* name : {"electron_outflow", "ion_outflow"})
