@@ -46,7 +46,7 @@ inline void compare_equilibrium(const Case& w, const Plasma& plasma,
     for (const Particles& s : plasma.species) {
         const auto kinetic = history.column("kinetic_" + s.name);
         summary.result("kinetic_over_initial_" + s.name, kinetic.back() / kinetic.front(), "", 1,
-                       0.1, "equilibrium: neither heats nor cools");
+                       0.05, "equilibrium: neither heats nor cools");
     }
     const double rows = double(grid.z.cells - 1);
     summary.result_at_most("density_over_noise", std::sqrt(density / (2 * rows)), "", 1.2,
