@@ -125,7 +125,7 @@ watch)
         ended=$([ -f "$run/summary.json" ] && [ -z "$(find "$run/history.dat" -newer "$run/summary.json")" ] && echo yes || true)
         if [ "${TEXT:-}" ]; then
             names=$(awk -f common/columns.awk "$run/history.dat" | awk '$2 == "energy" { unit = $3 } { name[NR] = $2; of[NR] = $3 } END { for (i = 2; i <= NR; i++) if (of[i] == unit && n++ < 4) print name[i] }')
-            gnuplot -e "set terminal dumb $(tput cols || echo 100) 30; set title '$run' noenhanced; set key noenhanced; plot for [name in '$names'] '$run/history.dat' using 'time':name with lines title name"
+            gnuplot -e "set terminal dumb $(tput cols || echo 100) 30; set title '$run' noenhanced; set key below noenhanced; plot for [name in '$names'] '$run/history.dat' using 'time':name with lines title name"
         else
             figures | grep '^common/figures/[hfp]' | while read -r script kind; do
                 draw "$script" "$kind" && { [ "${told:-}" ] || echo "figure: $picture"; }
@@ -139,7 +139,7 @@ watch)
 compare)
     [ -n "$other" ] || fail "compare which two runs? A= and B="
     [ "$(sed -n 2p "$run/history.dat")" = "$(sed -n 2p "$other/history.dat")" ] ||
-        echo "note: $program and $(program_of "$other") record other columns, or in other units; the axes have those of $run" >&2
+        echo "note: $run and $other record other columns, or in other units; the axes have those of $run" >&2
     picture=${PLOTS:-out/figures}/compare_$(name_of "$run")_$(name_of "$other").png
     mkdir -p "$(dirname "$picture")"
     gnuplot -e "run='$run'; other='$other'; heading='$run$(ended "$run") (solid) and $other$(ended "$other") (dashed)'; out='$picture'" common/figures/compare.gp

@@ -295,6 +295,12 @@ explicit_em beam particles.relativistic=false species.beam.temperature_x=0.09 gr
     the push is not relativistic
 explicit_em beam species.beam.temperature_x=0.09 grid.cells_x=512
     warning: beam: about 7198 of 8.389e+06 particles, 0.08581 %, are loaded with u = gamma v above c
+# What another set-up reads.
+plasmas uniform.B_x=0.1 current_sheet.drift=2
+    warning: [current_sheet] has no effect with plasma.setup = "harris": take out what is there
+    warning: [uniform] has no effect with plasma.setup = "harris": take out what is there
+plasmas beam harris.guide_field=1
+    warning: [harris] has no effect with plasma.setup = "uniform": take out what is there
 implicit_moment harris.particles=20000 grid.length_z=60
     warning: the sheet has 1.067 cells across its whole thickness, below 2, and is not resolved:
     raise grid.cells_z, or lower grid.length_z

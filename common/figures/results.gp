@@ -5,11 +5,11 @@ table = sprintf("awk -f common/json_lines.awk '%s/summary.json' | awk -f common/
 count = int(system(table." | wc -l")) - 1
 nothing = count < 1
 if (nothing) { count = 1 }
-wide = 1500; high = 170 + 34 * count
+wide = 1500; high = 190 + 34 * count
 heading = run.': results'
 load 'common/style.gp'
 set label 1 heading noenhanced at screen 0.5, screen 1 - 30.0 / high center font ',22'
-set lmargin at screen 0.25; set rmargin at screen 0.55; set tmargin at screen 1 - 60.0 / high; set bmargin at screen 75.0 / high
+set lmargin at screen 0.25; set rmargin at screen 0.55; set tmargin at screen 1 - 60.0 / high; set bmargin at screen 95.0 / high
 set xrange [-2.5:2.5]; set yrange [count + 0.5:0.5]; unset ytics; set grid noytics; set border 1; unset key
 set xlabel '(result − expected) / tolerance' font ',17' offset 0, 0.3; set xtics 1 font ',16'
 set object 1 rectangle from -1, graph 0 to 1, graph 1 fillcolor rgb faint fillstyle solid noborder behind

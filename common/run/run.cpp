@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -354,7 +355,7 @@ int Run::finish(long step, double count) {
 
     int status = 0;
     std::string message = "done", next;
-    const std::vector<std::string> shortfalls = summary.shortfalls();
+    std::vector<std::string> shortfalls = summary.shortfalls();
     if (asked_to_stop() && !complete_) {
         status = 128 + agreed_signal;
         message = "stopped by a signal at step " + std::to_string(step);
@@ -375,6 +376,9 @@ int Run::finish(long step, double count) {
         if (!next.empty()) std::printf("%s\n", next.c_str());
         if (std::error_code unreadable; fs::exists("common/plot.sh", unreadable))
             std::printf("pictures: make plot RUN=%s\n", shell_word(command_.out_dir).c_str());
+        if (std::fflush(stdout) != 0 && errno != EPIPE)
+            shortfalls.push_back("standard output took no results: they are in " +
+                                 path("summary.json"));
     }
     for (const std::string& sentence : shortfalls)
         std::fprintf(stderr, "%s: %s\n", info_.program.c_str(), sentence.c_str());

@@ -78,11 +78,16 @@ inline void validate_wave(const Case& parameters, const Refusal& refuse) {
            ": set theory.frame_x to that");
 }
 
+/// "+ 0.1" or "- 0.1", to stand behind another number.
+inline std::string with_sign(double value) {
+    return sentence(value < 0 ? "- " : "+ ", std::fabs(value));
+}
+
 /// The period, and the factor by which a step multiplies the wave.
 inline std::string predict_wave(const Case& parameters, const std::string& program, double dt) {
     const SoundWave s = sound_wave_of(parameters, program, dt);
     return sentence("period ", 2 * pi / s.frequency, "; a step of ", dt,
-                    " multiplies the wave by 1 + ", s.amplification - 1);
+                    " multiplies the wave by 1 ", with_sign(s.amplification - 1));
 }
 
 /// Warns of a run shorter than one period, and of a viscosity that damps the wave.
@@ -177,7 +182,7 @@ inline void compare_wave(const FinishedRun& run) {
         run.info("amplitude_per_period", per_period(velocity), "", "the flow diffuses it");
     else
         run.absolute_result("amplitude_per_period", per_period(velocity), "", per_period(theory),
-                            sentence(scheme, "; in a step 1 + ", wave.amplification - 1));
+                            sentence(scheme, "; in a step 1 ", with_sign(wave.amplification - 1)));
     run.info("pressure_amplitude_per_period", per_period(pressure), "", "measured");
     run.info("periods", times.back() / period, "", "of c k");
 }

@@ -119,7 +119,7 @@ inline void write_profile(const std::string& path, const UnitFluxProfile& profil
                           double B0) {
     if (profile.steps == 0) return;
     const ProfileColumns columns = profile_columns(profile, grid, B0);
-    common::write_table(path, {{"x", "d_i", columns.x},
+    common::write_table(path, {{"x_from_X_line", "d_i", columns.x},
                                {"v_x_electrons", "v_A", columns.v_x_electrons},
                                {"rho_ions", "e*n0", columns.rho_ions},
                                {"v_x_ions", "v_A", columns.v_x_ions},

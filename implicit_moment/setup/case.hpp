@@ -28,6 +28,7 @@ struct HarrisCase {
     double guide_field = 0;         // B_y/B0, uniform
     double normal_field = 0;        // B_z/B0 in the middle row: a tail, see tail_sheet.hpp
     long particles = 200000;        // of both species together
+    bool operator==(const HarrisCase&) const = default;
 };
 
 /// A thin Harris sheet in the plane of the current, where the lower-hybrid drift instability and
@@ -42,6 +43,7 @@ struct CurrentSheetCase {
     double length_x = 4;            // of the box [L]; these two set the lengths of the grid
     double length_z = 9;            // [L]
     long particles = 800000;        // of both species together
+    bool operator==(const CurrentSheetCase&) const = default;
 };
 
 /// One species of a uniform plasma; the n-th component of a vector is _x, _y, _z.
@@ -54,6 +56,7 @@ struct SpeciesCase {
     double temperature_x = 0, temperature_y = 0, temperature_z = 0;  // [m_i c^2]
     double wave_x = 0, wave_y = 0, wave_z = 0;     // velocity amplitude of the seeded mode [c]
     double phase_x = 0, phase_y = 0, phase_z = 0;  // its phase [degrees]
+    bool operator==(const SpeciesCase&) const = default;
 };
 
 /// A uniform plasma in uniform fields, with one seeded mode cos(k x + phase).
@@ -67,6 +70,7 @@ struct UniformCase {
     double phase_B_x = 0, phase_B_y = 0, phase_B_z = 0;  // [degrees]
     double phase_E_x = 0, phase_E_y = 0, phase_E_z = 0;
     std::vector<SpeciesCase> species;
+    bool operator==(const UniformCase&) const = default;
 };
 
 /// A complete input of implicit_moment or of explicit_em. Lengths in d_i, times in 1/omega_pi,

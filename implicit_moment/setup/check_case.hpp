@@ -265,10 +265,17 @@ inline void validate(Case& w) {
     w.is_uniform() ? detail::validate_uniform(w) : detail::validate_sheet(w);
 }
 
-/// Warnings of runs in which particles fly straight on: no field acts on them for long enough, or
-/// none that they make together; and no wave of light is followed instead.
+/// Warnings of sections that the set-up does not read, and of runs in which particles fly straight on: no
+/// field acts on them for long enough, or none that they make together; and no wave of light is followed instead.
 inline std::vector<std::string> idleness_warnings(const Case& w, const Scales& scales) {
     std::vector<std::string> warnings;
+    const auto unread = [&](const char* section, bool changed) {
+        warn(warnings, w.setup != section && changed, "[", section,
+             "] has no effect with plasma.setup = \"", w.setup, "\": take out what is there");
+    };
+    unread("harris", w.harris != HarrisCase{});
+    unread("current_sheet", w.current_sheet != CurrentSheetCase{});
+    unread("uniform", w.uniform != UniformCase{});
     if (w.end == 0) return warnings;
     double omega_p = 0, Omega_c = 0, inverse_debye = 0;
     for (const SpeciesScales& s : scales.species) {

@@ -96,17 +96,29 @@ inline void compare_theorem(const Case& w, const common::History& history,
     const double all = history.first("energy"), part = all / usable_energy(w, all);
     summary.result_at_most("energy_identity_per_step", largest, "", 1e-11 + 1e-15 * part,
                            "exact: what particles gain the field loses, whatever the step is");
-    const bool follow = w.field.solver == "newton_krylov";
+}
+
+/// The largest rms of div E - 4 pi rho: exact along the paths of the particles, kept nearly otherwise. Mass
+/// matrices promise it; of other runs it is a result where it fell short.
+/// note:   in units of the charge of the densest species of a uniform plasma, e n0 of a sheet
+inline void compare_gauss(const Case& w, const common::History& history, common::Summary& summary) {
+    double charge = w.is_uniform() ? 0 : 1;
+    for (const SpeciesCase& s : w.uniform.species)
+        if (w.is_uniform()) charge = std::max(charge, std::fabs(s.charge) * s.density);
+    if (charge == 0) return;
+    const bool mass_matrix = w.field.uses_mass_matrix();
+    const bool follow = mass_matrix && w.field.solver == "newton_krylov";
+    const double residual = history.largest("gauss_residual") / charge;
+    const double bound = follow ? 1e-9 : mass_matrix && !w.is_uniform() ? 0.01 : 0.05;
+    if (!mass_matrix && residual <= bound) return;
     summary.hint(follow
                      ? "Gauss's law is as exact as the field is solved for: lower field.tolerance"
-                     : "the mass matrix alone does not keep Gauss's law: raise the number of "
-                       "particles, lower time.dt, or take field.solver = \"newton_krylov\"");
-    summary.result_at_most("gauss_residual", history.largest("gauss_residual"), "4pi*e*n0",
-                           follow           ? 1e-9
-                           : w.is_uniform() ? 0.05
-                                            : 0.01,
+                     : "particles move otherwise than the field expects: raise the number of "
+                       "particles, lower time.dt, or take field.response = \"mass_matrix\" and "
+                       "field.solver = \"newton_krylov\"");
+    summary.result_at_most("gauss_residual", residual, "4pi*e*n0", bound,
                            follow ? "exact along the paths of the particles"
-                                  : "a small part of the charge of the ions");
+                                  : "a small part of the charge of a species");
 }
 
 /// What no energy forbids: that the mesh brakes a plasma that drifts.
@@ -125,6 +137,7 @@ inline void compare_momentum(const Case& w, const common::History& history,
 inline void compare_energy(const Case& w, const common::History& history,
                            common::Summary& summary) {
     if (w.field.uses_mass_matrix()) compare_theorem(w, history, summary);
+    compare_gauss(w, history, summary);
     compare_momentum(w, history, summary);
     const auto drift = history.column("energy_drift");
     if (drift.size() < 2)

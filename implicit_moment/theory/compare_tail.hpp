@@ -88,15 +88,15 @@ inline void compare_tail_at_rest(const Case& w, const common::History& history,
                 middle += block(moments[0].rho), expected_middle += n, in_middle += in_block;
         }
     }
+    summary.hint(
+        "noise of few particles moves the field, and so does a sheet that tears by itself or whose "
+        "currents at the ends do not balance: raise harris.particles, or shorten time.end");
     summary.result_at_most("density_over_noise", std::sqrt(density / (2 * count)), "", 1.2,
                            "n0 F^2/cosh^2(h) + n_inf");
     summary.result_at_most("current_over_noise", std::sqrt(current_y / count), "", 1.2,
                            "Lembege and Pellat 1982, made exact");
     summary.result("density_in_the_middle", middle / expected_middle, "n of the equilibrium", 1,
                    3 / std::sqrt(in_middle), "equilibrium, three times the noise of a count");
-    summary.hint(
-        "noise of few particles moves the field, and so does a sheet that tears by itself or whose "
-        "currents at the ends do not balance: raise harris.particles, or shorten time.end");
     const ThermalFlux noise = thermal_flux(w, weight);
     summary.result_at_most("flux_shift", history.column("flux_shift").back(), "B0 d_i", noise.most,
                            "thermal noise of A_y, 99 of 100 seeds");
