@@ -142,8 +142,8 @@ inline bool hand_over(long i, const std::vector<long>& others, const std::vector
     return true;
 }
 
-// Merges the lightest particle of one quarter that can be into others of it: of the nearest few,
-// those who are left with most. out: whether there was one.
+// Merges the lightest particle of one quarter that can be merged into others of it: of the nearest few,
+// into those that leave the largest `worst` of parts_of(). out: whether there was one.
 inline bool merge_one(const std::vector<Quarter>& q, bool plane, std::vector<long>& here,
                       Particles& p) {
     const std::size_t needed = plane ? 4 : 2, candidates = plane ? 7 : 4;
