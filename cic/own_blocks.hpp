@@ -14,8 +14,9 @@
 
 namespace cic {
 
-/// The blocks of a list that a rank has, as many as the others or one more, and where
-/// in a list of so many numbers they begin. in: the rank, or their number for the end
+/// The first block of a rank, and where that begins in a list of `count` numbers.
+/// in:     the rank; the number of ranks for the end
+/// exact:  ranks have equally many blocks, or one more
 inline int first_block(int of_rank) { return common::block_count * of_rank / common::rank_count(); }
 inline long begin_of_rank(long count, int of_rank) {
     return count * first_block(of_rank) / common::block_count;

@@ -15,7 +15,8 @@ namespace cic {
 
 inline constexpr double pi = std::numbers::pi;
 
-/// What particles, weights and the packed field are made of. Sums are always in double precision.
+/// What particles, weights and the packed field are made of, and sums within one batch or block of
+/// particles. Sums over batches and blocks are in double precision.
 using Real = REAL;
 
 }  // namespace cic

@@ -31,7 +31,7 @@ struct KrylovResult {
     std::string reason;  // how it ended, as a phrase for a message
 };
 
-/// What GMRES keeps between calls, so that only the first call allocates.
+/// What GMRES keeps between calls, so that only the first call allocates the long arrays.
 struct GmresWorkspace {
     Eigen::MatrixXd basis;           // orthonormal v_0 .. v_restart, one per column
     Eigen::MatrixXd preconditioned;  // M^-1 v_0 .. M^-1 v_restart-1

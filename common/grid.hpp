@@ -23,7 +23,7 @@ struct Axis {
     bool periodic = true;
     bool mirrors = false;  // its walls mirror the plasma, see felt in implicit_moment
 
-    /// Distance of neighboring nodes.
+    /// Distance between neighboring nodes.
     double spacing() const { return length / double(cells); }
     /// Coordinate of the upper boundary.
     double high() const { return low + length; }

@@ -33,13 +33,13 @@ struct NewtonOptions {
     double first_forcing = 0.1;      // eta of the first step
     double largest_forcing = 0.9;    // bounds of eta; below the lower one the error of the
     double smallest_forcing = 1e-5;  // differences would show
-    int max_halvings = 12;           // attempts of the line search
+    int max_halvings = 12;           // times that the line search shortens a step
     // F is the gradient of something convex, or nearly so, and may have kinks: a step s is shortened
     // where it overshoots, s.F(x + s) > 0, even if |F| falls, and taken where it does not.
     bool convex = false;
 };
 
-/// What Newton keeps between calls, so that only the first call allocates.
+/// What Newton keeps between calls, so that only the first call allocates the long arrays.
 struct NewtonWorkspace {
     GmresWorkspace linear;
     Eigen::VectorXd F, F_trial, x_trial, step, minus_F;

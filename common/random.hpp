@@ -15,7 +15,7 @@ namespace common {
 ///   (floor(u / 2^11) + 1/2) / 2^53, u = 64 bits of Philox4x32-10(counter, key)
 /// in:    seed of the run; purpose, e.g. a species times what is drawn; particle; draw, the count
 ///        of numbers that this particle has drawn for this purpose
-/// exact: never 0, never 1; depends on the four arguments alone
+/// exact: never 0, never 1, to which the largest would be rounded; depends on the arguments alone
 /// source: Salmon, Moraes, Dror and Shaw, Proc. SC11 (2011), 16:1.
 inline double uniform(std::uint64_t seed, std::uint32_t purpose, std::uint64_t particle,
                       std::uint32_t draw) {
@@ -26,7 +26,7 @@ inline double uniform(std::uint64_t seed, std::uint32_t purpose, std::uint64_t p
     const Philox::key_type key = {{low(seed), high(seed)}};
     const Philox::ctr_type words = Philox()(counter, key);
     const std::uint64_t bits = (std::uint64_t{words[1]} << 32) | words[0];
-    return (double(bits >> 11) + 0.5) * 0x1p-53;
+    return std::min((double(bits >> 11) + 0.5) * 0x1p-53, 1 - 0x1p-53);
 }
 
 /// A normal number of mean 0 and variance 1, by inverting the distribution function.

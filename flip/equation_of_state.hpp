@@ -4,9 +4,9 @@
 //
 // With p_infinity = 0 this is the gamma law of a gas. With a large one it is the simplest liquid or
 // metal: stiff, and able to have a surface, because its pressure falls to zero at a density that
-// is not zero. A particle that carries its volume may hold some tension, a pressure down to -tension
-// above -p_infinity. Cells hold none: they cannot tell a liquid that is stretched from one that does
-// not fill them; there p = 0.
+// is not zero. A particle that carries its volume may hold some tension, a pressure down to -tension,
+// which is above -p_infinity. Cells hold none: they cannot tell a liquid that is stretched from one
+// that does not fill them; there p = 0.
 #pragma once
 
 #include <algorithm>
@@ -76,8 +76,8 @@ inline constexpr std::size_t most_materials = 8;
 /// out:    share[k] of a change of the volume of the cell that material k takes at common pressure,
 ///         V_k/(gamma_k (p + p_infinity_k)) relative to their sum
 /// exact:  for gases the sum of partial pressures; shares sum to 1 in a cell that is not empty
-/// source: Newton's method from the largest pressure that one material alone would have: the sum is
-///         convex and falls, so no step goes beyond the root
+/// note:   Newton's method starts from the largest pressure that one material alone would have: the
+///         sum is convex and falls, so no step goes beyond the root
 inline CellState find_equilibrium(std::span<const Material> materials, const double* M,
                                   const double* U, double V, double* share) {
     const std::size_t count = materials.size();

@@ -73,8 +73,9 @@ struct BodyForce {
     double trap = 0;                      // [1/time^2]
 };
 
-/// Coefficients of the artificial viscosity, which presses where velocities du apart approach.
-///   q = rho (-du) (linear c + quadratic (-du)) where du < 0, else 0
+/// Coefficients of the artificial viscosity, a pressure in fluid that is compressed.
+///   q = rho (-du) (linear c + quadratic (-du)) where du < 0, else 0;  du, the difference of the
+///   velocities on two sides, is negative where they approach
 struct ArtificialViscosity {
     double linear = 0, quadratic = 0;
 
@@ -95,7 +96,7 @@ struct StepLimits {
 
 /// With the consistent mass and the density of cells the shortest sound of the mesh is at most this
 /// much faster than all other, as M is (1 - 1/n^2)/3 of the lumped mass there:
-///   c dt/dx [(3/2 gamma)/(1 - 1/n^2) + 1 - 1/gamma]^1/2 <= 1,  n >= 2 particles across a cell
+///   c dt/dx [3/(2 gamma (1 - 1/n^2)) + 1 - 1/gamma]^1/2 <= 1,  n >= 2 particles across a cell
 inline constexpr double fastest_consistent = 1.4142135623730951;
 
 /// How the velocity of a particle follows the mesh; see transfer.hpp.

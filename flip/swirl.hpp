@@ -42,7 +42,7 @@ inline double centrifugal_force(double L, double r, double r_new) {
 }
 
 /// The centrifugal force that acts in a step, known before the ring moves.
-///   that of the move from r to r + ahead step
+///   that of the move from r to r + ahead step, but not nearer to the axis than r/2
 /// in:     step, dt times the velocity before the step; e, internal energy per mass
 /// exact:  with ahead = 2 (1 - theta), particles moved at v^theta, an oscillation about a balance is
 ///         neither damped nor made to grow: its map from step to step keeps areas

@@ -267,7 +267,7 @@ TEST_CASE("the force of the energy scheme is the gradient of the field energy") 
         const double background = closed ? -mean_charge(m, cloud) : 0;
         const auto energy = [&](const Particles& c) {
             const Solved s = solve(m, {c}, background);
-            return field_energy(m.grid, m.scheme, s.rho_g, s.field);
+            return field_energy(m.grid, s.rho_g, s.field);
         };
         const auto E = gathered(m, solve(m, {cloud}, background).field.E_g, cloud);
         for (const std::size_t p : {0UL, 3UL, 8UL, 17UL}) {

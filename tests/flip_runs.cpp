@@ -74,6 +74,12 @@ TEST_CASE("pic keeps mass and momentum and energy to round-off in a shock tube a
     check_conserved(r);
     check_results(r, 3);
     CHECK(r.value("momentum_given") >= 0.1);
+    const std::string row =
+        "grid.geometry=plane grid.low_x=-7 grid.length_x=12 grid.cells_x=120 grid.low_z=-0.05 "
+        "grid.length_z=0.1 grid.cells_z=1 boundary.x_low=open boundary.z_low=slip "
+        "boundary.z_high=slip region.plate.half_x=1 region.ball.center_x=-2.1 "
+        "region.ball.center_z=0 region.ball.velocity_z=0 region.ball.velocity_x=0.6";
+    check_results(run("pic", "pic_impact_row", "sphere_hits_plate", row), 3);
 }
 
 TEST_CASE(

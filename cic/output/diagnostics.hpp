@@ -24,16 +24,15 @@ void for_each_node(const Grid& grid, const Visit& visit) {
 
 /// Energy of the field, (1/2) sum_g rho_g V_g phi_g + (1/2) sum over walls of Q phi.
 /// exact:  this, and not (1/2) sum E_g^2 of the field on nodes, is what the energy scheme trades
-///         with the particles; it equals (1/2) sum E^2 of the differences of phi
-inline double field_energy(const Grid& grid, const Scheme& scheme, const Field& rho_g,
-                           const FieldState& field) {
+///         with the particles; with five points it equals (1/2) sum E^2 of the differences of phi
+inline double field_energy(const Grid& grid, const Field& rho_g, const FieldState& field) {
     double sum = 0;
     for_each_node(grid, [&](long n, double volume) { sum += rho_g[n] * volume * field.phi[n]; });
-    const double area_x = scheme.dimensions == 2 ? grid.z.length : 1, area_z = grid.x.length;
     for (const WallName wall : {x_low, x_high, z_low, z_high}) {
         const bool along_x = wall == x_low || wall == x_high;
         if ((along_x ? grid.x : grid.z).periodic) continue;
-        sum += field.walls[wall].charge * field.walls[wall].potential * (along_x ? area_x : area_z);
+        sum += field.walls[wall].charge * field.walls[wall].potential *
+               (along_x ? grid.z : grid.x).length;
     }
     return 0.5 * sum;
 }

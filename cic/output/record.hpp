@@ -56,7 +56,7 @@ class Recorder {
                 common::Run& run) const {
         Energies now;
         for (const Particles& s : state.species) now.kinetic += s.sums.kinetic;
-        now.field = field_energy(parameters_.grid, parameters_.scheme(), rho_g, field);
+        now.field = field_energy(parameters_.grid, rho_g, field);
         Energies first = now;
         if (!run.history.all().empty())
             first = {run.history.first("kinetic"), run.history.first("field")};

@@ -112,8 +112,8 @@ struct SpeciesResponse {
     bool table_only = false;  // of a distribution by formula that is not smooth: no damped waves
 };
 
-/// The response of a smooth distribution by formula, damped waves included; no value where the series does not
-/// have it to 1e-3.
+/// The response of a smooth distribution by formula, damped waves included; no value where the series
+/// does not have it to 1e-3.
 ///   chi = -(omega_s / k)^2 dH/dc,  G = -H / k,  c = omega / k - u,  k > 0
 inline SpeciesResponse smooth_response(const SmoothDistribution& f, double omega2, double k,
                                        double drift) {

@@ -37,8 +37,8 @@ struct ModeList {
 ///      modes three times what white noise does
 /// in:     z, evenly sampled, dt apart, at most a few hundred; most, how many exponentials at most
 /// out:    errors from the covariance of step 3 and of the noise, which is what the model leaves and
-///         other modes of less than a twentieth of the energy and 100 times the noise; and from how far a mode is in models
-///         of another p that leave at most four times as much
+///         other modes of less than a twentieth of the energy and 100 times the noise; and from how
+///         far a mode is in models of another p that leave at most four times as much
 /// exact:  without noise, to round-off, where omega dt is below pi and modes differ
 /// source: Roy and Kailath, IEEE Trans. ASSP 37, 984 (1989); Hua and Sarkar, ibid. 38, 814 (1990);
 ///         step 4: Schwarz, Ann. Statist. 6, 461 (1978)

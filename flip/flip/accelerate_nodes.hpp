@@ -145,8 +145,8 @@ inline void find_known_forces(const Grid& grid, const Boundaries& boundaries, do
 }
 
 /// Velocities after the Lagrangian phase.
-///   v_g^L = v_g + dt (F_g/m_g + g),  held by the walls
-/// in:     cells.p_step inside, the pressure that acts in this step; known forces
+///   v_g^L = v_g^0 + dt (F_g/m_g + a_g),  a_g of node_acceleration();  held by the walls
+/// in:     nodes.vx0, vz0; cells.p_step inside, the pressure that acts in this step; known forces
 /// in/out: nodes.fx, fz: with the force of pressure
 /// out:    nodes.vxL, vzL, 0 on nodes without mass
 /// exact:  internal forces sum to zero

@@ -46,9 +46,9 @@ inline bool has_bare_node(const Grid& grid, const Nodes& g, long n) {
 /// in:     deposit_particles() has been called
 /// out:    cells.p, compressibility, share, surface (1: p = 0 whatever happens). With volumes also
 ///         excess = (p_kc - p_c)(1 - |p_c|/max_k |p_kc - p_c|), p_kc the mean pressure of material k;
-///         0 in one fluid, and where no difference exceeds p_c, as gravity's within a cell; and room, the part by which
-///         gas would have to grow to fill the cell: in 0 to 1 beside another material, in -1/2 to 1
-///         where it is confined
+///         0 in one fluid, and where no difference exceeds p_c, as gravity's within a cell; and room,
+///         the part by which gas would have to grow to fill the cell, or least_filled of it beside
+///         another material: in -1/2 to 1 where it is confined, else in 0 to 1
 /// exact:  with volumes a state of equal pressure stays one wherever the particles are, as long as
 ///         they fill the cells, or the filling of the scheme is 0
 /// errors: NumericalError for a negative or not finite density or energy, with where and when
@@ -133,11 +133,11 @@ inline double density_of(const Cells& c, long i, long n) {
 }
 
 /// The longest step that the flow allows.
-///   dt = cfl min 1/(|v_x|/dx + |v_z|/dz + c sqrt(1/dx^2 + 1/dz^2)),  c fastest_consistent for c
-///   with the consistent mass and the density of cells, and where the fluid turns beside them the rate of that;
+///   dt = cfl min 1/(|v_x|/dx + |v_z|/dz + c sqrt(1/dx^2 + 1/dz^2)),  fastest_consistent c for c with
+///   the consistent mass and the density of cells; where the fluid turns, rate_of_swirl() is added;
 /// after the first step without the sound of the gas when the pressure is implicit; with viscosity
-/// nu also dt <= 1/(4 nu (1/dx^2 + 1/dz^2)); at most sqrt(cfl dx/g), in which a fluid at rest begins
-/// to move, cfl/sqrt(trap), and 1.2 times the last step
+/// nu also dt <= 1/(4 nu (1/dx^2 + 1/dz^2)); at most sqrt(cfl dx/a), a of gravity and of the
+/// centrifugal force, cfl/sqrt(trap), and 1.2 times the last step
 /// in:     find_pressure() has been called; last, the last step, 0 before the first
 /// out:    a fixed limits.dt where there is one
 /// errors: NumericalError when the step gets so short that the run would never end

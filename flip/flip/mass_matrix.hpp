@@ -138,7 +138,8 @@ inline void solve_mass(const Grid& grid, const MassMatrix& M, const Field& m,
     fill_nodes(grid, x.data());
 }
 
-/// Velocities M^-1 of the momentum that the particles brought, in place of the Favre average.
+/// Velocities of the nodes with the consistent mass, in place of the Favre average.
+///   M v = sum_p m_p v_p S_p
 /// out: nodes.vx, vz
 inline void solve_velocity(const Grid& grid, const MassMatrix& M, Nodes& g) {
     const std::vector<char> none(grid.size(), 0);

@@ -54,7 +54,7 @@ struct Nodes {
     Field fx, fz;                  // force of pressure, q and viscosity
     Field vxL, vzL;                // after the Lagrangian phase
     Field vx_bar, vz_bar;          // mean of v^0 and v^L
-    Field vx_work, vz_work;        // at which pressure works: v_bar, or v^theta when implicit
+    Field vx_work, vz_work;        // at which pressure works, see work_on_cells()
     std::vector<Four> increment;   // of the velocity, x and z; velocity that moves particles
     std::vector<Four> filtered;    // velocity that replaces the particles' own, not in flip: v, v^L
     Field dissipated;              // specific energy that leaves the motion of the nodes
@@ -65,15 +65,15 @@ struct Nodes {
 
 /// The cells; columns of grid.size(), those per material with the materials of a cell together.
 struct Cells {
-    std::vector<CellSum> sum;         // [cell][material]
-    std::vector<double> share, de;    // of a change of volume; change of e in this step
-    std::vector<double> relative_de;  // change of e by pressure, per e
-    Field M;                          // mass
-    Field p;                          // pressure
-    std::vector<CellTensor> q;        // artificial viscosity
-    Field compressibility;            // -(dV/dp)/V; 0 in an empty cell
-    Field p_step;                     // the pressure that acts in this step
-    std::vector<char> surface;        // 1: partly void, p = 0 whatever happens
+    std::vector<CellSum> sum;             // [cell][material]
+    std::vector<double> share;            // of a change of volume
+    std::vector<double> de, relative_de;  // e of a particle changes by de + e relative_de
+    Field M;                              // mass
+    Field p;                              // pressure
+    std::vector<CellTensor> q;            // artificial viscosity
+    Field compressibility;                // -(dV/dp)/V; 0 in an empty cell
+    Field p_step;                         // the pressure that acts in this step
+    std::vector<char> surface;            // 1: partly void, p = 0 whatever happens
     std::vector<double> V_of_column;  // the volume that the lattice of the start fills in a cell
     // Only where particles carry volumes: sums of V_p and C; V_c div v dt, and its work, per C; room for
     // gas; per material, pressure above that of the cell.

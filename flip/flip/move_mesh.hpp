@@ -70,8 +70,8 @@ inline void add_external_work(const Problem& problem, double dt, const Nodes& g,
 ///                                                     mass (v^0 - v) M (v^0 - v)/(2 m_g)
 ///          + (level - 1/2) dt F_g . (v^L - v^0)/m_g   of pressure, v_work = v^0 + level (v^L - v^0)
 ///          + |v^L - v|^2/2                            that the lumped mass owes the particles
-/// level is theta of an implicit pressure, 1/2 of an explicit one, and 1 with the consistent mass:
-/// it would not damp the shortest sound, which work at v_bar makes grow
+/// level is theta of an implicit pressure, 1/2 of an explicit one, and 1 with the consistent mass, where
+/// work at v_bar would make the shortest sound grow: no loss of the transfer damps it there
 /// in:     v, v^0, v^L; p_step, q; forces
 /// out:    cells.de, relative_de, and with volumes strain, work, q_work; nodes.increment, dissipated;
 ///         budget

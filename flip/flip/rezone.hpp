@@ -28,11 +28,6 @@
 
 namespace flip {
 
-/// What a rezoning has done.
-struct RezoneReport {
-    long split = 0, merged = 0;  // particles that are now four (in a row of cells two), and gone
-};
-
 /// Whether particles are split and merged after the step of this number.
 inline bool rezone_is_due(const Scheme& scheme, long step) {
     return scheme.rezone_steps > 0 && (step + 1) % scheme.rezone_steps == 0;
@@ -142,8 +137,8 @@ inline bool hand_over(long i, const std::vector<long>& others, const std::vector
     return true;
 }
 
-// Merges the lightest particle of one quarter that can be into others of it: of the nearest few,
-// those who are left with most. out: whether there was one.
+// Merges the lightest particle of one quarter that can be merged into others of it: of the nearest few,
+// into those that leave the largest `worst` of parts_of(). out: whether there was one.
 inline bool merge_one(const std::vector<Quarter>& q, bool plane, std::vector<long>& here,
                       Particles& p) {
     const std::size_t needed = plane ? 4 : 2, candidates = plane ? 7 : 4;
@@ -187,8 +182,7 @@ inline bool merge_one(const std::vector<Quarter>& q, bool plane, std::vector<lon
 ///         mixing; with volumes their sum
 /// source: the aim is that of Lapenta and Brackbill, Comput. Phys. Commun. 87, 139 (1995); the
 ///         exact merging by weights is ours.
-inline RezoneReport rezone(const Problem& problem, Particles& p) {
-    RezoneReport report;
+inline void rezone(const Problem& problem, Particles& p) {
     const Grid& grid = problem.grid;
     const Scheme& scheme = problem.scheme;
     const long materials = long(problem.materials.size()), count = p.count(),
@@ -215,6 +209,7 @@ inline RezoneReport rezone(const Problem& problem, Particles& p) {
                is_filled(i, j + 1);
     };
     const bool plane = is_plane(grid);
+    bool any_merged = false;
     for (long begin = 0, end = 0; begin < count; begin = end) {
         const long cell = q[order[begin]].cell;
         while (end < count && q[order[end]].cell == cell) ++end;
@@ -226,7 +221,6 @@ inline RezoneReport rezone(const Problem& problem, Particles& p) {
                 if (number >= scheme.min_particles) break;
                 if (!detail::split(problem, q[k], k, p)) continue;
                 number += plane ? 3 : 1;
-                ++report.split;
             }
         }
         if (number <= scheme.max_particles) continue;
@@ -237,13 +231,12 @@ inline RezoneReport rezone(const Problem& problem, Particles& p) {
             auto& fullest = *std::ranges::max_element(quarters, {}, &std::vector<long>::size);
             if (fullest.empty()) break;
             if (detail::merge_one(q, plane, fullest, p))
-                --number, ++report.merged;
+                --number, any_merged = true;
             else
                 fullest.clear();
         }
     }
-    if (report.merged > 0) remove_if(p, [&](long k) { return p.m_p[k] == 0; });
-    return report;
+    if (any_merged) remove_if(p, [&](long k) { return p.m_p[k] == 0; });
 }
 
 }  // namespace flip

@@ -132,7 +132,7 @@ inline Eigen::SparseMatrix<double> pressure_matrix(const Problem& problem, doubl
     return A;
 }
 
-// Solves A x = load by conjugate gradients, from x = 0; A is its own lower half.
+// Solves A x = load by conjugate gradients, from x = 0; of the symmetric A the lower half is given.
 // Preconditioned with z = S F^-1 S r, F the incomplete Cholesky factors of S A S and
 // S = 1/sqrt(diagonal of A). A cell that is nearly empty, or nearly without pressure, gives A
 // entries hundreds of orders of magnitude beyond the others, whose squares no number holds; S A S

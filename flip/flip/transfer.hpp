@@ -3,9 +3,9 @@
 // mesh has made of it.
 //
 //     v_p' = v_p + dv_p + part (sum_g S v_g - v_p)
-//       flip  part 0        blend  part 1 - alpha        pic, apic  part 1
+//       flip  part 0        blend  part 1 - flip.blend        pic, apic  part 1
 //       xpic  part 1, with the filtered velocity of filter_velocity() for v_g
-//     apic    C_p' = gradient of v^L at the particle, which goes to the mesh with it
+//       apic  also C_p' = gradient of v^L at the particle, which goes to the mesh with it
 #pragma once
 
 #include "flip/flip/mesh.hpp"

@@ -58,7 +58,7 @@ inline void fields_of(const Grid& grid, const State& state, const PicCells& cell
     for_each_row_of_cells(grid, [&](long j) {
         for (long i = 0; i < grid.x.cells; ++i) {
             const long n = grid.index(i, j);
-            const double per_V = per_area * cells.per_ring[i + 1];
+            const double per_V = per_area * (1 / cells.ring[i + 1]);
             fields.rho[n] = cells.mass[n] * per_V;
             fields.vx[n] = state.cells.vx[n];
             fields.vz[n] = state.cells.vz[n];

@@ -51,8 +51,8 @@ inline void write_fields(const common::Snapshot& at, const Case& parameters,
 }
 
 /// Writes particles_NNNNNN.dat (and .vtp): position, material and, where particles carry them,
-/// velocity, also about the axis, and internal energy. One particle, drawn at random, stands for each group of neighbors
-/// in memory, so that there are at most most_particles_written.
+/// velocity, also about the axis, and internal energy. One particle, drawn at random, stands for each
+/// group of neighbors in memory, so that there are at most most_particles_written.
 inline void write_particles(const common::Snapshot& at, const Case& parameters,
                             const Particles& particles) {
     const bool plane = parameters.moves_along_z();

@@ -37,9 +37,9 @@ struct Contribution {
 }
 
 // Sums over all particles, cell by cell; contribution(p) says what particle p brings.
-// out: cells restored. Energy below zero by less than 1e-10 of the kinetic energy is round-off, and by
-// less than 1e-13 of that of the rotation about the axis. Where that leaves a cold gas with less than
-// nothing, its motion along r lends it, whose momentum no ring keeps.
+// out: cells restored. Internal energy below zero by less than 1e-10 of the kinetic energy, or 1e-13 of
+// that of the rotation about the axis, is round-off. Where fluid turns, a cold gas with less than none
+// takes what it lacks from the motion along r, as far as that has it: no ring conserves its momentum.
 template <bool swirl = false, class What>
 void sum_contributions(const Problem& problem, const What& contribution, State& state,
                        PicCells& cells) {
@@ -82,7 +82,7 @@ void sum_contributions(const Problem& problem, const What& contribution, State& 
             const double heat = kinetic - 0.5 * (vx * vx + vz * vz);
             // [/mix]
             bool sound = mass >= 0 && std::isfinite(mass + kinetic);
-            double lent = 0;  // by the motion along r
+            double lent = 0;  // by the motion along r, per mass of the cell
             for (std::size_t k = 0; k < K; ++k) {
                 double e = M[k] > 0 ? cell[4 + 2 * k] / M[k] + heat : 0.0;
                 if constexpr (swirl) {

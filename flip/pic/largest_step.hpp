@@ -137,11 +137,11 @@ inline double rate_of_viscosity(const Grid& grid, const ArtificialViscosity& vis
 }  // namespace detail
 
 /// The next time step.
-///   dt = cfl / max over cells of [|vx|/dx + |vz|/dz + c sqrt(1/dx^2 + 1/dz^2)], and where the fluid
-///        turns about the axis beside it the largest rate of that,
-/// no longer than it takes viscosity to bring two cells together or gravity, and the centrifugal force,
-/// to move a body at rest
-/// by cfl^2 dx, or than 1.2 times the last step. A fixed limits.dt overrules all of them.
+///   dt = cfl / max over cells of [|vx|/dx + |vz|/dz + c sqrt(1/dx^2 + 1/dz^2)], to which the largest
+///        rate_of_swirl() is added where the fluid turns about the axis;
+/// at most cfl sqrt(dx/a), a the largest acceleration by gravity and trap plus that of the centrifugal
+/// force; 1/rate_of_viscosity(), in which viscosity brings two cells to one velocity; and 1.2 times the
+/// last step. A fixed limits.dt overrules all of them.
 /// in:     cells after find_pressure(); the step and time of the state
 /// errors: NumericalError when the step gets so short that the run would never end
 inline double largest_step(const Problem& problem, const State& state, PicCells& cells) {

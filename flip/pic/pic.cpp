@@ -1,6 +1,6 @@
 // The classical particle-in-cell method of Harlow: compressible fluids, several at a time, with free
 // surfaces and with slip at the walls. Cells hold velocity and energy; particles are mass and a
-// label, and carry it from cell to cell.
+// label, and carry both from cell to cell.
 //
 // The default case is the showpiece of 1955: a sphere of iron hits a plate of aluminum.
 // Run:   build/pic

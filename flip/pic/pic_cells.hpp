@@ -25,17 +25,17 @@ struct CellVelocity {
 /// The scratch pad. Of several materials, those of one cell lie together: [cell * materials + k].
 struct PicCells {
     long materials = 1;
-    bool falls = false;                  // gravity acts, or the centrifugal force
-    std::vector<double> M;               // mass of each material
-    Field mass, per_mass, rho;           // of all; 1/mass, 0 in an empty cell; density
-    Field filled;                        // 1, or 0 in an empty cell
-    Field p, c;                          // pressure, speed of sound
-    std::vector<double> share;           // of the work of the pressure, that each material takes
-    Field q_x, q_z;                      // viscous pressure on the faces before the cell
-    std::vector<double> ring, per_ring;  // ring_length() of column i at [i + 1], ghosts like inside
-    std::vector<CellVelocity> v;         // u
-    std::vector<CellVelocity> v_tilde;   // u~
-    std::vector<double> e_tilde;         // I~ of each material
+    bool falls = false;                 // gravity acts, or the centrifugal force
+    std::vector<double> M;              // mass of each material
+    Field mass, per_mass, rho;          // of all; 1/mass, 0 in an empty cell; density
+    Field filled;                       // 1, or 0 in an empty cell
+    Field p, c;                         // pressure, speed of sound
+    std::vector<double> share;          // of the work of the pressure, that each material takes
+    Field q_x, q_z;                     // viscous pressure on the faces before the cell
+    std::vector<double> ring;           // ring_length() of column i at [i + 1], ghosts like inside
+    std::vector<CellVelocity> v;        // u
+    std::vector<CellVelocity> v_tilde;  // u~
+    std::vector<double> e_tilde;        // I~ of each material
 
     Field centrifugal;          // force per mass, where the fluid turns about the axis
     std::vector<double> swirl;  // of each particle: that force, then the energy that it leaves
@@ -55,7 +55,6 @@ struct PicCells {
         ring.assign(grid.x.cells + 2, 1.0);
         for (long i = 0; i < grid.x.cells; ++i) ring[i + 1] = ring_length(grid, double(i) + 0.5);
         ring.front() = ring[1], ring.back() = ring[grid.x.cells];
-        for (const double length : ring) per_ring.push_back(1 / length);
         for (auto* f : {&M, &share, &e_tilde}) f->assign(grid.size() * materials, 0.0);
         if (problem.swirl) centrifugal.setZero(grid.size());
         v.assign(grid.size(), {});
@@ -68,11 +67,7 @@ struct PicCells {
 /// Calls work(j) for every row of cells, in parallel where that pays.
 template <class Work>
 void for_each_row_of_cells(const Grid& grid, const Work& work) {
-    if (grid.x.cells * grid.z.cells < common::parallel_threshold) {
-        for (long j = 0; j < grid.z.cells; ++j) work(j);
-    } else {
-        common::for_each_row(grid.z.cells, work);
-    }
+    common::for_each_row(grid.z.cells, work, grid.x.cells * grid.z.cells);
 }
 
 /// Sum over rows of cells, added in the order of the rows.

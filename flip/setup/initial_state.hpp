@@ -217,7 +217,7 @@ inline FluidState fluid_of(const Case& parameters, const RegionCase& r, double x
 }
 
 /// Particles of the start, cell by cell on a lattice of equal volumes.
-/// in:     a completed case that check_case has not refused
+/// in:     a completed case that validate() has not refused
 /// out:    all columns that FLIP needs; unsorted; L_p = r v_theta where something turns
 /// exact:  m_p is density times volume, so uniform fluid has equal masses; a particle of apic begins
 ///         with the gradient of the flow of its region

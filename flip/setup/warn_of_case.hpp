@@ -153,8 +153,8 @@ inline void warn_of_speeds(const Case& parameters, const Scales& scales, const s
          "explicit steps of apic make the shortest sound waves grow where viscosity.linear = 0, by "
          "about exp(",
          foldings, ") until time.end: set it to 0.05, or flip.pressure = \"implicit\"");
-    // As measured, of water at rest, on any mesh: blend, apic and xpic let grow a fifth as fast, or less than
-    // a third. A start at rest has round-off alone to grow from.
+    // As measured, of water at rest, on any mesh: with blend, apic and xpic it grows a fifth to a third as
+    // fast as with flip. A start at rest has round-off alone to grow from.
     const bool flips = parameters.transfer == "flip";
     const double across = double(std::min(parameters.per_cell_x, parameters.per_cell_z)),
                  fallen = (flips ? 0.2 : 0.05) / across * parameters.end *

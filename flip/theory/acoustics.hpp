@@ -31,8 +31,8 @@ struct WaveTransfer {
 /// exact: where nothing is lost, the factor of the scheme on the mesh alone: of the theta scheme
 ///          [1 + i (1 - theta) a] / (1 - i theta a),
 ///        explicit, the root of lambda^2 - (2 - w a^2) lambda + 1 + (1 - w) a^2 = 0 with
-///        w = 1 - (1 - level) (1 - 1/gamma), which grows unless level = 1. Where flip loses the same of all changes,
-///        1 - s + s lambda: what the mesh does not see stays, even if lambda = 0
+///        w = 1 - (1 - level) (1 - 1/gamma), which grows unless level = 1. Where flip loses the same
+///        of all changes, 1 - s + s lambda: what the mesh does not see stays, even if lambda = 0
 inline std::complex<double> carried_factor(double theta, double gamma, double a,
                                            const WaveTransfer& part) {
     const std::complex<double> i(0.0, 1.0);

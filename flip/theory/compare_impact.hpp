@@ -61,8 +61,9 @@ inline void track_impact(const Snapshot& now, common::Row& row) {
     double foremost = -std::numeric_limits<double>::infinity();
     for (std::size_t p = 0; p < positions.size(); ++p)
         if (particles.material[p] == material) foremost = std::max(foremost, sign * positions[p]);
-    row.add("target_momentum_x", "momentum/length", px);
-    row.add("target_momentum_z", "momentum/length", pz);
+    const char* const unit = grid.axisymmetric ? "momentum" : "momentum/length";
+    row.add("target_momentum_x", unit, px);
+    row.add("target_momentum_z", unit, pz);
     row.add("depth", "length", std::isfinite(foremost) ? foremost - face : 0.0);
 }
 
@@ -70,8 +71,9 @@ inline void track_impact(const Snapshot& now, common::Row& row) {
 /// target has taken.
 inline void compare_impact(const FinishedRun& run) {
     const double round_off = 1e-12;
-    std::vector<std::string> kept{"mass_error", "momentum_z_error"};
-    if (!run.parameters.grid.axisymmetric) kept.insert(kept.begin() + 1, "momentum_x_error");
+    std::vector<std::string> kept{"mass_error"};
+    if (!run.parameters.grid.axisymmetric) kept.push_back("momentum_x_error");
+    if (run.parameters.moves_along_z()) kept.push_back("momentum_z_error");
     run.hint(
         "every step keeps it with what ends and gravity give, so that the run has gone astray: "
         "lower time.cfl; if that does not help, the program is wrong");

@@ -58,9 +58,10 @@ inline SwingingStep swinging_step(double omega, double theta, double dt) {
     return {std::acos(std::clamp((1 - 0.5 * theta * a2) / growth, -1.0, 1.0)), growth};
 }
 
-/// The growth rate of an interface between rows of cells as the mesh of flip has it, in short steps and
-/// far below the speed of sound, or its frequency, where the heavy fluid is below: nodes have the velocities u sin k x and w cos k x, cells keep their
-/// volume, and the particles are as sharp as the interface.
+/// The growth rate of an interface between rows of cells as the mesh of flip has it, or its frequency
+/// where the heavy fluid is below; in short steps and far below the speed of sound. Nodes have the
+/// velocities u sin k x and w cos k x, cells keep their volume, and the particles are as sharp as the
+/// interface.
 ///   D a = 0,  a = R (f - D^T p),  rate^2 = f . a,  f = |g (rho_2 - rho_1) mu|^1/2 at its nodes
 ///   R = M^-1 of consistent masses; M_L^-1 M M_L^-1 of lumped ones, as an increment of velocity goes to
 ///   the particles and comes back smoothed;  mu = (2 + cos k dx)/3, the part of M along x
@@ -107,7 +108,7 @@ struct LayerStiffness {
 /// density and the pressure of its weight, and would overturn by itself, as N^2 = -g^2/c^2.
 /// With the displacement xi along z and the pressure q of the displaced fluid less that at rest,
 ///   sigma^2 rho xi = -dp'/dz - g rho',  p' = q + rho g xi,  c^2 rho' = q,
-///   rho' = -rho (dxi/dz - k^2 p'/(rho sigma^2))
+///   rho' = -rho (dxi/dz + k^2 p'/(rho sigma^2))
 /// become, both continuous at the interface and xi = 0 at the walls,
 ///   dxi/dz = -a xi - b q,  dq/dz = d xi + a q
 ///   a = g k^2/sigma^2,  b = 1/(rho c^2) + k^2/(rho sigma^2),  d = rho (a g - sigma^2)
