@@ -11,7 +11,7 @@
 
 namespace mpm {
 
-/// Who meets at a node, with what contact knows of them.
+/// The bodies at a node, with what contact knows of them.
 class ContactBodies {
    public:
     ContactBodies(const ContactRule& rule, const std::vector<Grain>& grains,
@@ -130,7 +130,7 @@ class ContactBodies {
         return -1;
     }
 
-    // Parts of a node's mass that are too small to turn a normal.
+    // Of two free bodies: the smallest part of their mass at a node with which one of them has contact.
     static constexpr double low_mass = 1e-5;
 
     ContactRule rule_;

@@ -30,7 +30,7 @@ inline void GrainNodes::find_shared_nodes(const std::vector<Grain>& grains,
     };
     std::vector<int> place(static_cast<std::size_t>(width * height) + 1, 0);
     const auto stands = [&](Side side) { return mesh_.has(side, Boundary::frictional); };
-    // Grains first, in their order, then walls; copies of wraps columns and mirrored nodes not.
+    // Grains first, in their order, then walls; but no copies of wrapped columns and no mirrored nodes.
     const auto for_each_member = [&](const auto& visit) {
         for (std::size_t k = 0; k < grains.size(); ++k) {
             const int g = static_cast<int>(k);
@@ -76,7 +76,7 @@ inline void GrainNodes::find_shared_nodes(const std::vector<Grain>& grains,
         --at;
     });
 
-    // Who stands beside whom: place has the number of a fixed node, counted from 1.
+    // Which fixed nodes are neighbors: place has the number of a fixed node, counted from 1.
     std::fill(place.begin(), place.end(), 0);
     fixed_nodes_.clear();
     for (long n = 0; n < shared_count(); ++n)
