@@ -172,6 +172,7 @@ class GrainNodes {
     /// How far a particle may come before it is sorted again.
     static double sorted_within(const Mesh& mesh) { return 0.99 * reach * mesh.h; }
     static constexpr double reach = 0.5;  // how far particles may move between sorts, in cells
+    static constexpr long margin = 4;     // nodes beyond the mesh that a grain may touch
 
     /// Sorts the particles of each grain by row of cells, and lays out the nodes around them.
     void sort(const std::vector<Grain>& grains, Particles& particles, GridLayout& layout);

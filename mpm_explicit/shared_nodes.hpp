@@ -15,7 +15,7 @@ inline void GrainNodes::find_shared_nodes(const std::vector<Grain>& grains,
                                           const GridLayout& layout) {
     members_.clear(), shared_begin_.assign(1, 0);
     // How many have a dof at each node, and where their list begins.
-    const long nx = mesh_.cells_x, ny = mesh_.cells_y, margin = 4, width = nx + 2 * margin,
+    const long nx = mesh_.cells_x, ny = mesh_.cells_y, width = nx + 2 * margin,
                height = ny + 2 * margin;
     const long first_i = mesh_.periodic_x ? 0 : -margin,
                end_i = mesh_.periodic_x ? nx : nx + margin;
