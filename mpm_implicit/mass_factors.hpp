@@ -67,8 +67,7 @@ class MassFactors {
         std::vector<long> first, begin;  // of each row: first column; where column 0 would be
         std::vector<float> L;
         std::vector<double> pivots;  // reciprocals of the diagonal of L; 0 for a node left out
-        std::vector<double>
-            alone;  // 1/M_ii of a node left out, which may have no neighbor to be constrained to
+        std::vector<double> alone;   // 1/M_ii of a node left out: it may have no master
 
         long dof(long i) const { return dofs[i]; }
         long first_of(long i) const { return first[i]; }
