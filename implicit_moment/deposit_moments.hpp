@@ -36,7 +36,7 @@ namespace implicit_moment {
 
 namespace detail {
 
-// The sums of one node's particles over its 3 x 3 surroundings, eight partial sums each.
+// The sums of one node's particles over its 3 x 3 surroundings, a partial sum for each lane.
 struct NodeSums {
     SimdVector rho[3][3]{}, J_y[3][3]{};
     SimdVector J_x[3][2]{}, P_xy[3][2]{};
@@ -105,7 +105,7 @@ inline void deposit(const Particles& particles, const Grid& grid, const Rotation
     const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing();
     const double q = particles.q_p / grid.cell_area();
     const long columns = nodes_x(grid), stride = grid.stride();
-    std::vector<std::array<double, 4>> sums_of_row(nodes_z(grid) + 2);  // of v_x, v_y, v_z, v^2
+    std::vector<std::array<double, 4>> sums_of_row(nodes_z(grid) + 2);  // u, 2 energy/m
 
     deposit_rows(particles.of_ranks, nodes_z(grid), -1, 1, mesh, [&](long row) {
         const double z_node = grid.z.at(double(row));

@@ -53,7 +53,8 @@ struct FieldSolver {
     NodeWaves waves;
     PlasmaResponse response;  // of the moments
     MassMatrix mass;          // of the particles themselves, where the case asks for it
-    Field gauss, scratch;
+    Field gauss;              // G^{n+theta} of solve_field.hpp
+    Field scratch;
     VectorField source, ghosted, curl_E, chi_E;
     FieldWaves field_waves;                     // for the preconditioner,
     std::array<std::vector<float>, 9> inverse;  // the inverse of each of them, by entry,

@@ -13,10 +13,9 @@ namespace implicit_moment {
 /// pressure.
 struct Moments {
     Field rho, J_x, J_y, J_z, P_xx, P_zz, P_xz, P_xy, P_yz;
-    Field plasma_density;  // charge density of the plasma itself, up to the walls
-    std::array<Field, 9>
-        response;               // of relativistic particles to E, sum of (q^2 dt/2m) A S; or empty
-    double kinetic_energy = 0;  // sum of m v^2 / 2, or m c^2 (gamma - 1), over the particles
+    Field plasma_density;              // charge density of the plasma itself, up to the walls
+    std::array<Field, 9> response;     // relativistic: sum of (q^2 dt/2m) A S; else empty
+    double kinetic_energy = 0;         // sum of m v^2 / 2, or m c^2 (gamma - 1), over the particles
     std::array<double, 3> momentum{};  // sum of m u
 
     explicit Moments(const Grid& grid) {

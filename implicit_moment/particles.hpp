@@ -43,7 +43,7 @@ struct Velocity {
 inline long nodes_x(const Grid& grid) { return grid.x.cells + 1; }
 inline long nodes_z(const Grid& grid) { return grid.z.cells + 1; }
 
-/// Brings eight coordinates that have left a periodic direction back to their images.
+/// Brings coordinates that have left a periodic direction back to their images.
 inline void wrap(const common::Axis& axis, SimdVector& x) {
     if (!axis.periodic) return;
     x = x < axis.low ? x + axis.length : x;

@@ -43,8 +43,9 @@ class Acceleration {
 
 /// Solves field and particles together.
 /// in:     solver.mass of the same particles; particles and field at t^n
-/// out:    field.E_theta; enslaved.vbar; enslaved.J, smoothed
-/// exact:  |residual| <= tolerance |source|
+/// out:    field.E_theta; B_theta, at its level; interleaved, both as particles feel them;
+///         enslaved.vbar; enslaved.J, smoothed
+/// exact:  |residual| <= tolerance |source|, or 1e-7 where round-off of the currents leaves more
 /// errors: NumericalError when it does not converge
 inline FieldReport solve_enslaved_field(FieldSolver& solver, double dt,
                                         const MoverSettings& settings,

@@ -1,5 +1,4 @@
-// on the grid: E^{n+theta} from Maxwell's equations and the predicted current, then E and B at n+1.
-// [IMM-10]
+// on the grid: E^{n+theta} from Maxwell's equations and the predicted current.            [IMM-10]
 //
 // Faraday and Ampere at n+theta, with J^{n+1/2} = J_hat + chi E/(4 pi theta dt) and a = c theta dt:
 //
@@ -76,9 +75,8 @@ inline void gauss_residual(const Grid& grid, const VectorField& E, const Field& 
 /// The right-hand side of (i) without J_hat: E^n + a curl B^n + a^2 grad G.
 inline void maxwell_source(FieldSolver& solver, const FieldState& field, double a) {
     const Grid& grid = solver.grid;
-    gauss_residual(grid, field.E, solver.response.rho, solver.gauss);
-    Field& G = solver.scratch;
-    G = solver.gauss;
+    Field& G = solver.gauss;
+    gauss_residual(grid, field.E, solver.response.rho, G);
     solve_helmholtz(grid, solver.waves, a, G);
     VectorField& source = solver.source;
     curl_of_magnetic(grid, field.B.all.data(), source.all.data());
@@ -107,10 +105,9 @@ inline void find_push_B(FieldSolver& solver, double dt, const FieldState& field,
 
 /// Solves for E^{n+theta}.
 /// in:     moments of all species at t^n, E and B at t^n; B_push, of find_push_B
-/// out:    field.E_theta, ghosts filled; B_push, with "newton_krylov" at the level theta;
-///         solver.gauss, the Gauss residual at t^n.
-/// exact:  |residual| <= tolerance |source|; on periodic meshes and inside walls the Gauss residual
-///         obeys (ii) to that tolerance.
+/// out:    field.E_theta, ghosts filled; B_push, with "newton_krylov" at the level theta
+/// exact:  |residual| <= tolerance |source|, or 1e-10 where round-off leaves more than the tolerance;
+///         on periodic meshes and inside walls the Gauss residual obeys (ii) as nearly
 /// errors: NumericalError when the solver does not converge; the field is then not used.
 /// source: [IMM-10..12]
 /// note:   "gmres" rotates the current in B_push, B^n on the slide; "newton_krylov" rotates it in
@@ -134,9 +131,6 @@ inline FieldReport solve_field(FieldSolver& solver, const std::vector<Moments>& 
     prepare_preconditioner(solver, a);
     maxwell_source(solver, field, a);
 
-    const auto precondition = [&](const Eigen::VectorXd& r, Eigen::VectorXd& out) {
-        precondition_field(solver, r, out);
-    };
     Eigen::VectorXd& E = field.E_theta.all;
     keep_unknowns(grid, E.data());
     FieldReport report;
@@ -145,6 +139,9 @@ inline FieldReport solve_field(FieldSolver& solver, const std::vector<Moments>& 
         keep_unknowns(grid, solver.source.all.data());
         report = detail::solve_linear_field(solver, a, settings.solved_to(), E);
     } else {
+        const auto precondition = [&](const Eigen::VectorXd& r, Eigen::VectorXd& out) {
+            precondition_field(solver, r, out);
+        };
         const auto residual = [&](const Eigen::VectorXd& v, Eigen::VectorXd& F) {
             F.resize(v.size());
             solver.ghosted.all = v;
@@ -181,7 +178,7 @@ inline FieldReport solve_field(FieldSolver& solver, const std::vector<Moments>& 
 /// = E^n + a curl B^n - 4 pi theta dt S J_hat.
 /// in:     solver.mass, deposited; E and B at t^n
 /// out:    field.E_theta, ghosts filled
-/// exact:  |residual| <= tolerance |source|
+/// exact:  |residual| as above
 /// errors: NumericalError when the solver does not converge
 /// note:   Gauss's law is not in it: a^2 grad G would do work that nothing accounts for.
 inline FieldReport solve_field(FieldSolver& solver, double dt, FieldState& field,

@@ -24,8 +24,7 @@ struct StepScratch {
     FieldSolver solver;
     VectorField B_push;      // the B in which currents and particles are rotated
     InterleavedField field;  // smoothed E^{n+theta} and B_push, where particles feel them
-    InterleavedField
-        guess;  // the same with E of the step before, about which relativistic vbar are linear
+    InterleavedField guess;  // the same with an earlier E, about which relativistic vbar are linear
     InterleaveScratch interleave;
     SortScratch sort;
     EnslavedParticles enslaved;
@@ -67,12 +66,12 @@ inline void interleave_guess(const Grid& grid, const std::vector<Particles>& spe
                          scratch.guess);
 }
 
-/// A copy of the species where one is relativistic: to go back to where a kick asks for too much.
-inline std::vector<Particles> relativistic_ones(const std::vector<Particles>& species) {
+/// A copy of all species if one is relativistic, to go back to where a kick takes too much energy.
+inline std::vector<Particles> copy_if_relativistic(const std::vector<Particles>& species) {
     return any_relativistic(species) ? species : std::vector<Particles>{};
 }
 
-/// Takes back a kick; the field that it had is the next guess. errors: NumericalError after twenty turns
+/// Takes back a kick, whose field is the next guess. errors: NumericalError after twenty turns
 inline void take_back_kick(const std::vector<Particles>& before, int turn,
                            std::vector<Particles>& species) {
     if (turn == 20)
@@ -96,9 +95,9 @@ FieldReport take_mass_matrix_step(const Grid& grid, double dt, StepScratch& scra
     clock.lap("mover");
     sort_particles(grid, scratch.sort, particles);
     clock.lap("sort");
-    const std::vector<Particles> before = relativistic_ones(particles);
+    const std::vector<Particles> before = copy_if_relativistic(particles);
     FieldReport solved;
-    for (int turn = 0;; ++turn) {  // once, but where relativistic particles nearly stop
+    for (int turn = 0;; ++turn) {  // once, unless relativistic particles nearly stop
         interleave_guess(grid, particles, field.E_theta, scratch.B_push, scratch);
         deposit_mass_matrix(particles, grid, scratch.B_push, scratch.guess, dt,
                             scratch.solver.mass);  // particles -> grid

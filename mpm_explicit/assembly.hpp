@@ -39,6 +39,17 @@ inline std::vector<Momenta> momenta_of(const Assembly& all) {
     return of;
 }
 
+/// The mass of the particles begin ... end - 1, and its center.
+struct MassCenter {
+    double m = 0, x = 0, y = 0;
+};
+inline MassCenter center_of_mass(const Particles& at, long begin, long end) {
+    MassCenter of;
+    for (long p = begin; p < end; ++p)
+        of.m += at.m_p[p], of.x += at.m_p[p] * at.x_p[p], of.y += at.m_p[p] * at.y_p[p];
+    return {of.m, of.x / of.m, of.y / of.m};
+}
+
 /// errors: InputError for the momenta of other grains
 template <class Archive>
 void archive_momenta(Archive& a, std::vector<Momenta>& of) {

@@ -75,37 +75,37 @@ struct Budget {
 };
 
 template <class Archive>
-void archive(Archive& a, Budget& l) {
+void archive(Archive& a, Budget& b) {
     std::vector<double*> numbers{
-        &l.kinetic,  &l.elastic, &l.energy_14,      &l.energy_15,    &l.external, &l.contact,
-        &l.friction, &l.bond,    &l.damping,        &l.plastic,      &l.volume,   &l.pic,
-        &l.remap,    &l.start,   &l.elastic_before, &l.kinetic_next, &l.release,  &l.viscous};
+        &b.kinetic,  &b.elastic, &b.energy_14,      &b.energy_15,    &b.external, &b.contact,
+        &b.friction, &b.bond,    &b.damping,        &b.plastic,      &b.volume,   &b.pic,
+        &b.remap,    &b.start,   &b.elastic_before, &b.kinetic_next, &b.release,  &b.viscous};
     std::vector<double> values;
     for (const double* number : numbers) values.push_back(*number);
     std::span all(values);  // of this length
     a("budget", all);
     for (std::size_t k = 0; k < numbers.size(); ++k) *numbers[k] = values[k];
-    archive_momenta(a, l.momenta_next);
+    archive_momenta(a, b.momenta_next);
 }
 
 /// Kinetic energy and momenta at the start.
 /// in: sums of every tile, the angular momentum of affine motion
 inline void start_budget(const mpm::Assembly& all, const std::vector<mpm::Tile>& where,
-                         const std::vector<TileSums>& sums, Budget& l) {
-    l.momenta_next = mpm::momenta_of(all);
+                         const std::vector<TileSums>& sums, Budget& b) {
+    b.momenta_next = mpm::momenta_of(all);
     for (std::size_t k = 0; k < sums.size(); ++k)
-        l.momenta_next[static_cast<std::size_t>(where[k].grain)].angular += sums[k].spin;
+        b.momenta_next[static_cast<std::size_t>(where[k].grain)].angular += sums[k].spin;
     const mpm::Particles& at = all.particles;
-    l.kinetic_next = 0;
+    b.kinetic_next = 0;
     for (const mpm::Grain& grain : all.grains)
         for (long k = grain.begin; k < grain.end && !grain.rigid; ++k) {
             const auto p = static_cast<std::size_t>(k);
-            l.kinetic_next += 0.5 * at.m_p[p] * (at.vx_p[p] * at.vx_p[p] + at.vy_p[p] * at.vy_p[p]);
+            b.kinetic_next += 0.5 * at.m_p[p] * (at.vx_p[p] * at.vx_p[p] + at.vy_p[p] * at.vy_p[p]);
         }
 }
 
 /// The energies of t^n, [MPM-14] and [MPM-15], when all of its step has been summed up.
-inline void add_energies(long step, const std::vector<TileSums>& tiles, Budget& l) {
+inline void add_energies(long step, const std::vector<TileSums>& tiles, Budget& b) {
     TileSums s;
     for (const TileSums& one : tiles) {
         s.elastic += one.elastic, s.leapfrog += one.leapfrog,
@@ -113,41 +113,41 @@ inline void add_energies(long step, const std::vector<TileSums>& tiles, Budget& 
         s.plastic_old += one.plastic_old, s.volume += one.volume,
             s.kinetic_leapfrog += one.kinetic_leapfrog;
     }
-    l.kinetic = l.kinetic_next;
-    l.momenta = l.momenta_next;
-    l.energy_14 = l.kinetic + s.leapfrog;
-    l.energy_15 = s.kinetic_leapfrog + s.elastic;
+    b.kinetic = b.kinetic_next;
+    b.momenta = b.momenta_next;
+    b.energy_14 = b.kinetic + s.leapfrog;
+    b.energy_15 = s.kinetic_leapfrog + s.elastic;
     if (step == 0) {
-        l.start = l.energy_14;
-        l.elastic_before = s.leapfrog;
+        b.start = b.energy_14;
+        b.elastic_before = s.leapfrog;
     } else {
-        l.remap += s.old_stress_work, l.volume += s.volume, l.plastic += s.plastic_old;
+        b.remap += s.old_stress_work, b.volume += s.volume, b.plastic += s.plastic_old;
     }
-    l.elastic = 0.5 * (l.elastic_before + s.elastic);
-    l.elastic_before = s.elastic;
+    b.elastic = 0.5 * (b.elastic_before + s.elastic);
+    b.elastic_before = s.elastic;
 }
 
 /// The work of the step that leads from t^n to t^{n+1}.
 inline void add_work(const std::vector<mpm::Tile>& where, const std::vector<TileSums>& tiles,
-                     const NodeWork& nodes, const mpm::ContactSums& contact, Budget& l) {
+                     const NodeWork& nodes, const mpm::ContactSums& contact, Budget& b) {
     TileSums s;
-    std::fill(l.momenta_next.begin(), l.momenta_next.end(), mpm::Momenta{});
+    std::fill(b.momenta_next.begin(), b.momenta_next.end(), mpm::Momenta{});
     for (std::size_t k = 0; k < tiles.size(); ++k) {
         s.plastic_new += tiles[k].plastic_new, s.kinetic += tiles[k].kinetic;
         s.kinetic_increment += tiles[k].kinetic_increment, s.pic += tiles[k].pic;
         s.affine += tiles[k].affine, s.stress_work += tiles[k].stress_work;
         s.viscous += tiles[k].viscous;
-        mpm::Momenta& grain = l.momenta_next[static_cast<std::size_t>(where[k].grain)];
+        mpm::Momenta& grain = b.momenta_next[static_cast<std::size_t>(where[k].grain)];
         grain.x += tiles[k].momentum_x, grain.y += tiles[k].momentum_y;
         grain.angular += tiles[k].angular + tiles[k].spin;
     }
-    l.kinetic_next = s.kinetic;
-    l.external += contact.rigid + nodes.gravity;
-    l.contact += contact.normal, l.release += contact.release;
-    l.friction += contact.friction, l.bond += contact.bond;
-    l.damping += nodes.damping, l.viscous -= s.viscous;
-    l.plastic += s.plastic_new, l.pic += s.pic - s.affine;
-    l.remap += nodes.internal_work + s.stress_work + s.viscous -
+    b.kinetic_next = s.kinetic;
+    b.external += contact.rigid + nodes.gravity;
+    b.contact += contact.normal, b.release += contact.release;
+    b.friction += contact.friction, b.bond += contact.bond;
+    b.damping += nodes.damping, b.viscous -= s.viscous;
+    b.plastic += s.plastic_new, b.pic += s.pic - s.affine;
+    b.remap += nodes.internal_work + s.stress_work + s.viscous -
                (nodes.kinetic_increment - s.kinetic_increment);
 }
 

@@ -58,7 +58,7 @@ inline void close_contact_node(ContactNode& node) {
         pair.held_t = std::fabs(pair.lambda_t) < pair.mu * pair.lambda_n;
     }
 
-    // v_i^0, on which these are held and no others approach; who does nothing there is open.
+    // v_i^0, on which these are held and no others approach; pairs without an impulse there are open.
     forget_impulses();
     for (ContactBody& body : node.bodies)
         if (!body.is_fixed()) body.vx = body.vx_0, body.vy = body.vy_0;

@@ -154,8 +154,8 @@ inline void find_masses(const std::vector<Bond>& bonds, GrainNodes& nodes) {
 /// Constrains nodes that have less than a part of the mass of their neighbor.
 /// A particle that has come a small way d into a cell sees the nodes behind it with weights of d
 /// and gradients that some of their motions feel with d only: stress would drive those with 1/d,
-/// and round-off with them. The theorem holds with any constraints: they make a smaller space of
-/// velocities.
+/// and round-off with them. The energy theorem of mpm_implicit holds with any constraints: they make a
+/// smaller space of velocities.
 /// in:     light, that part; bonds, whose grains are held alike where they are joined
 /// in/out: nodes.sums, which move along; nodes.ghosts()
 inline void constrain_small_mass_nodes(const std::vector<GridRow>& rows,

@@ -11,7 +11,7 @@
 
 namespace mpm {
 
-/// Who meets at a node, with what contact knows of them.
+/// The bodies at a node, with what contact knows of them.
 class ContactBodies {
    public:
     ContactBodies(const ContactRule& rule, const std::vector<Grain>& grains,
@@ -80,10 +80,9 @@ class ContactBodies {
         }
         const Mesh& mesh = nodes.mesh();
         const long i = std::lround((node_x - mesh.x_low) / mesh.h),
-                   j = std::lround((node_y - mesh.y_low) / mesh.h),
-                   nx = mesh.cells_x + (mesh.periodic_x ? 0 : 2 * mesh_margin);
-        node.key =
-            (j + mesh_margin) * nx + (mesh.periodic_x ? ((i % nx) + nx) % nx : i + mesh_margin);
+                   j = std::lround((node_y - mesh.y_low) / mesh.h), margin = GrainNodes::margin,
+                   nx = mesh.cells_x + (mesh.periodic_x ? 0 : 2 * margin);
+        node.key = (j + margin) * nx + (mesh.periodic_x ? ((i % nx) + nx) % nx : i + margin);
         return count > 1;
     }
 
@@ -121,8 +120,6 @@ class ContactBodies {
     }
 
    private:
-    static constexpr long mesh_margin = 4;  // nodes beyond the mesh that grains may touch
-
     int bond_of(const std::vector<Bond>& bonds, const ContactBody& one,
                 const ContactBody& two) const {
         for (const auto& [other, number] : bonds_of_[one.grain])
@@ -130,7 +127,7 @@ class ContactBodies {
         return -1;
     }
 
-    // Parts of a node's mass that are too small to turn a normal.
+    // Of two free bodies: the smallest part of their mass at a node with which one of them has contact.
     static constexpr double low_mass = 1e-5;
 
     ContactRule rule_;

@@ -3,13 +3,13 @@
 // A grain's nodes are stored row by row. A row is a stretch of columns, and the node in column i
 // has the dof index origin[row] + i; so a particle finds its nodes with one look at a small table,
 // and memory is proportional to the area that the grains cover. Two grains that touch the same node
-// have two dofs there: what they do to each other is the business of contact.hpp.
+// have two dofs there, and contact.hpp lets them act on each other.
 //
-//      o   o---o---o---o   o        a grain's rows: as long as they need to be, and half a cell wider than
-//    o---o---o---o---o---o---o      the grain, so that they stay good until a particle has moved by that
+//      o   o---o---o---o   o        a grain's rows: half a cell wider than the grain, so that they hold its
+//    o---o---o---o---o---o---o      particles until one of them has moved by that
 //      o   o---o---o---o   o
 //
-// Columns are counted on without end: a grain that straddles the ends of a periodic mesh keeps its
+// Columns are counted on beyond the ends of a periodic mesh: a grain that straddles them keeps its
 // particles together, at positions beyond the end. Only a grain that wraps around the whole mesh
 // has its particles put back into the box, and two copies of the columns where its ends meet.
 #pragma once
@@ -111,11 +111,11 @@ class GrainNodes {
           rows_apart_(shape_width == 2 ? 3 : 5) {}
 
     const Mesh& mesh() const { return mesh_; }
-    /// A node with less mass stays at rest: what it would give to particles is round-off to them.
+    /// Forces do not act on a node with less mass: what it gives to particles is round-off to them.
     double least_mass() const { return least_mass_; }
 
     std::vector<NodeSums> sums;
-    std::vector<double> mass;  // of sums, by itself: most of a step asks for nothing else
+    std::vector<double> mass;  // the m of sums, by itself: most of a step reads nothing else
     std::vector<NodeMotion> motion;
     std::vector<NodeForce> force;
     /// What outlines put on the nodes where bodies can meet: members() in their order, then the ghosts
@@ -172,6 +172,7 @@ class GrainNodes {
     /// How far a particle may come before it is sorted again.
     static double sorted_within(const Mesh& mesh) { return 0.99 * reach * mesh.h; }
     static constexpr double reach = 0.5;  // how far particles may move between sorts, in cells
+    static constexpr long margin = 4;     // nodes beyond the mesh that a grain may touch
 
     /// Sorts the particles of each grain by row of cells, and lays out the nodes around them.
     void sort(const std::vector<Grain>& grains, Particles& particles, GridLayout& layout);
@@ -195,7 +196,7 @@ class GrainNodes {
     void find_shared_nodes(const std::vector<Grain>& grains, const GridLayout& layout);
     void place_surface();
 
-    // Visits all dofs of a grain that are not ghosts: visit(dof, column, row).
+    // Visits all dofs of a grain: visit(dof, column, row).
     template <class Visit>
     void for_each_dof(int grain, const GridLayout& layout, const Visit& visit) const {
         const auto g = static_cast<std::size_t>(grain);

@@ -1,8 +1,8 @@
 // What a material point carries: position, velocity and mass like every particle of the family, and
 // what a solid remembers: its volume, its stress, and how far it has yielded.
 //
-// The talk's storyline in one struct: the particles are the body, the mesh is a scratch pad. All of
-// a grain's particles stand next to each other, row of cells by row of cells.
+// The particles are the body, and the mesh is a scratch pad. A grain's particles stand next to each
+// other, row of cells by row of cells.
 #pragma once
 
 #include <algorithm>
@@ -68,7 +68,8 @@ struct Particles {
     std::vector<double> yield_p;                     // accumulated plastic strain
     std::vector<double> cxx_p, cxy_p, cyx_p, cyy_p;  // affine motion; empty: none is carried
 
-    // Where it came from, if over a line of nodes, from where it is [length]; or empty.
+    // From where it is to where it was before the last step, if it crossed a line of nodes, else 0
+    // [length]; or empty.
     std::vector<double> from_x_p, from_y_p;
 
     Surface surface;  // empty: contact goes by the particles themselves

@@ -15,7 +15,7 @@ inline void GrainNodes::find_shared_nodes(const std::vector<Grain>& grains,
                                           const GridLayout& layout) {
     members_.clear(), shared_begin_.assign(1, 0);
     // How many have a dof at each node, and where their list begins.
-    const long nx = mesh_.cells_x, ny = mesh_.cells_y, margin = 4, width = nx + 2 * margin,
+    const long nx = mesh_.cells_x, ny = mesh_.cells_y, width = nx + 2 * margin,
                height = ny + 2 * margin;
     const long first_i = mesh_.periodic_x ? 0 : -margin,
                end_i = mesh_.periodic_x ? nx : nx + margin;
@@ -30,7 +30,7 @@ inline void GrainNodes::find_shared_nodes(const std::vector<Grain>& grains,
     };
     std::vector<int> place(static_cast<std::size_t>(width * height) + 1, 0);
     const auto stands = [&](Side side) { return mesh_.has(side, Boundary::frictional); };
-    // Grains first, in their order, then walls; copies of wraps columns and mirrored nodes not.
+    // Grains first, in their order, then walls; but no copies of wrapped columns and no mirrored nodes.
     const auto for_each_member = [&](const auto& visit) {
         for (std::size_t k = 0; k < grains.size(); ++k) {
             const int g = static_cast<int>(k);
@@ -76,7 +76,7 @@ inline void GrainNodes::find_shared_nodes(const std::vector<Grain>& grains,
         --at;
     });
 
-    // Who stands beside whom: place has the number of a fixed node, counted from 1.
+    // Which fixed nodes are neighbors: place has the number of a fixed node, counted from 1.
     std::fill(place.begin(), place.end(), 0);
     fixed_nodes_.clear();
     for (long n = 0; n < shared_count(); ++n)

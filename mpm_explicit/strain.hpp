@@ -3,8 +3,8 @@
 //
 //     de_p = 1/2 (grad v_p + grad v_pT) dt,  grad v_p = sum_i grad S_ip v_i       [MPM-3, MPM-11]
 //     f_i = - sum_p V_p sigma_p . grad S_ip                          the force of         [MPM-12]
-// At which time velocity and stress are taken is for the scheme to say. Particles are worked on in
-// batchs, so that what is between the two stays in the cache and a law runs over many at once.
+// The scheme says at which time velocity and stress are taken. Particles are worked on in batches, so
+// that velocity gradients stay in the cache until stress is updated, and a law runs over many at once.
 #pragma once
 
 #include <algorithm>
@@ -77,6 +77,16 @@ void velocity_gradient(const Shape& shape, const Particles& particles, const Gra
 struct BatchStress {
     double xx[ParticleBatch::size], yy[ParticleBatch::size], xy[ParticleBatch::size];
 };
+/// The stress that the particles of a batch carry.
+inline BatchStress carried_stress(const Particles& particles, const ParticleBatch& batch) {
+    const auto b = static_cast<std::size_t>(batch.begin);
+    const double *V_p = &particles.V_p[b], *sxx = &particles.sxx_p[b], *syy = &particles.syy_p[b],
+                 *sxy = &particles.sxy_p[b];
+    BatchStress V_s;
+    for (long k = 0; k < batch.count; ++k)
+        V_s.xx[k] = V_p[k] * sxx[k], V_s.yy[k] = V_p[k] * syy[k], V_s.xy[k] = V_p[k] * sxy[k];
+    return V_s;
+}
 
 /// Force of stresses of a batch on the nodes.                                            [MPM-12]
 ///   f_i -= V_p sigma_p . grad S_ip
@@ -103,17 +113,11 @@ void add_force(const Shape& shape, const Particles& particles, const ParticleBat
 template <class Shape>
 void add_internal_force(const Shape& shape, const Particles& particles, const ParticleBatch& batch,
                         GrainNodes& nodes) {
-    const auto b = static_cast<std::size_t>(batch.begin);
-    const double *V_p = &particles.V_p[b], *sxx = &particles.sxx_p[b], *syy = &particles.syy_p[b],
-                 *sxy = &particles.sxy_p[b];
-    BatchStress V_s;
-    for (long k = 0; k < batch.count; ++k)
-        V_s.xx[k] = V_p[k] * sxx[k], V_s.yy[k] = V_p[k] * syy[k], V_s.xy[k] = V_p[k] * sxy[k];
-    add_force(shape, particles, batch, V_s, nodes);
+    add_force(shape, particles, batch, carried_stress(particles, batch), nodes);
 }
 
-/// Where the particles of a batch were halfway, the gradient of their displacement in the step that
-/// ends where they are.
+/// The gradient of the displacement of a batch's particles, taken at their places halfway, in the step
+/// that ends where they are now.
 ///   G = L (1 - L/2)^-1,  L = dt grad v_p
 /// exact:  no symmetric part for a turn R by any angle, which is L = 1 - R^T where it ends
 /// source: Hughes and Winget, Int. J. Numer. Methods Eng. 15, 1862 (1980).

@@ -134,7 +134,7 @@ class SurfaceRun {
     }
 
    private:
-    // Mass at a node, for the heaviest of its run, below which any step is too long for it: particles
+    // Mass at a node, over that of the heaviest of its run, below which any step is too long: particles
     // that have just crossed have stress, and nearly no mass to work on. A larger part would make
     // layers rigid that slivers of a grain have beyond a line of nodes.
     static constexpr double light = 1.0 / 4096;

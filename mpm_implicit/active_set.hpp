@@ -16,6 +16,7 @@
 
 #include "mpm_explicit/contact.hpp"
 #include "mpm_implicit/apply_loads.hpp"
+#include "mpm_implicit/ghost_vectors.hpp"
 #include "mpm_implicit/state.hpp"
 
 namespace mpm_implicit {
@@ -33,8 +34,8 @@ struct PairUpdate {
 class ActiveSet {
    public:
     ContactList list;
-    std::vector<PairUpdate> updates;                  // one per pair
-    std::vector<Eigen::VectorXd> frictions, targets;  // of all pairs, since the set last changed
+    std::vector<PairUpdate> updates;         // one per pair
+    std::vector<Vector> frictions, targets;  // of all pairs, since the set last changed
 
     /// Detects contact, and guesses the set: the states of the last step, and pairs that approach.
     /// in:     where, with v_0 to judge approach by; last, the closed pairs of the last step,

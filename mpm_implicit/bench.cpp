@@ -98,7 +98,7 @@ Split implicit_steps(const Case& w, const mpm_implicit::ThetaScheme& scheme, lon
     Particles& particles = state.assembly.particles;
     const std::vector<Grain>& grains = state.assembly.grains;
     const std::vector<AnyLaw> laws = laws_of(w.problem);
-    const Contact contact(w.problem.contact, grains, state.assembly.bonds);
+    const Contact contact(contact_rule(w.problem, dt), grains, state.assembly.bonds);
     GrainNodes nodes(w.problem.mesh(), LinearShape::width, scales.least_mass);
     nodes.sort(grains, particles, state.layout);
     mpm_implicit::start_budget(state.assembly, laws, state.budget);

@@ -69,61 +69,61 @@ struct Budget {
 };
 
 template <class Archive>
-void archive(Archive& a, Budget& l) {
+void archive(Archive& a, Budget& b) {
     std::vector<double*> numbers{
-        &l.kinetic,  &l.elastic, &l.theta_velocity, &l.theta_strain,     &l.lumped,  &l.contact,
-        &l.friction, &l.bond,    &l.plate,          &l.gravity,          &l.damping, &l.plastic,
-        &l.volume,   &l.pic,     &l.start,          &l.largest_residual, &l.viscous};
+        &b.kinetic,  &b.elastic, &b.theta_velocity, &b.theta_strain,     &b.lumped,  &b.contact,
+        &b.friction, &b.bond,    &b.plate,          &b.gravity,          &b.damping, &b.plastic,
+        &b.volume,   &b.pic,     &b.start,          &b.largest_residual, &b.viscous};
     std::vector<double> values;
     for (const double* number : numbers) values.push_back(*number);
     std::span all(values);  // of this length
     a("budget", all);
     for (std::size_t k = 0; k < numbers.size(); ++k) *numbers[k] = values[k];
-    archive_momenta(a, l.momenta);
+    archive_momenta(a, b.momenta);
 }
 
 /// Energies and momenta at the start.
-inline void start_budget(const Assembly& all, const std::vector<AnyLaw>& laws, Budget& l) {
-    l = {};
-    l.momenta = momenta_of(all);
+inline void start_budget(const Assembly& all, const std::vector<AnyLaw>& laws, Budget& b) {
+    b = {};
+    b.momenta = momenta_of(all);
     const Particles& at = all.particles;
     for (std::size_t g = 0; g < all.grains.size(); ++g) {
         if (all.grains[g].rigid) continue;
         const Compliance& C = laws[all.grains[g].material].compliance;
         for (long k = all.grains[g].begin; k < all.grains[g].end; ++k) {
             const auto p = static_cast<std::size_t>(k);
-            l.kinetic += 0.5 * at.m_p[p] * (at.vx_p[p] * at.vx_p[p] + at.vy_p[p] * at.vy_p[p]);
-            l.elastic += 0.5 * at.V_p[p] * C(at.stress(p), at.stress(p));
+            b.kinetic += 0.5 * at.m_p[p] * (at.vx_p[p] * at.vx_p[p] + at.vy_p[p] * at.vy_p[p]);
+            b.elastic += 0.5 * at.V_p[p] * C(at.stress(p), at.stress(p));
         }
     }
-    l.start = l.energy();
+    b.start = b.energy();
 }
 
-/// Enters a step.                                                                        [MPM-13]
+/// Adds the terms of a step.                                                             [MPM-13]
 inline void add_step(double theta, bool consistent, const std::vector<Tile>& where,
                      const std::vector<TileSums>& tiles, const NodeWork& nodes,
-                     const ContactSums& contact, Budget& l) {
-    const double energy_before = l.energy(), work_before = l.work();
+                     const ContactSums& contact, Budget& b) {
+    const double energy_before = b.energy(), work_before = b.work();
     TileSums s;
-    std::fill(l.momenta.begin(), l.momenta.end(), Momenta{});
+    std::fill(b.momenta.begin(), b.momenta.end(), Momenta{});
     for (std::size_t k = 0; k < tiles.size(); ++k) {
         const TileSums& one = tiles[k];
         s.elastic += one.elastic, s.theta_strain += one.theta_strain, s.plastic += one.plastic;
         s.volume += one.volume, s.kinetic += one.kinetic, s.twice_increment += one.twice_increment;
         s.pic += one.pic, s.damping += one.damping, s.viscous += one.viscous;
-        Momenta& grain = l.momenta[static_cast<std::size_t>(where[k].grain)];
+        Momenta& grain = b.momenta[static_cast<std::size_t>(where[k].grain)];
         grain.x += one.momentum_x, grain.y += one.momentum_y, grain.angular += one.angular;
     }
-    l.kinetic = s.kinetic, l.elastic = s.elastic;
-    l.theta_velocity += (theta - 0.5) * s.twice_increment,
-        l.theta_strain += (theta - 0.5) * s.theta_strain;
-    if (!consistent) l.lumped += theta * (nodes.twice_increment - s.twice_increment);
-    l.contact += contact.normal, l.friction += contact.friction, l.bond += contact.bond;
-    l.plate += contact.rigid, l.gravity += nodes.gravity;
-    l.damping -= s.damping, l.viscous -= s.viscous, l.plastic += s.plastic, l.volume += s.volume,
-        l.pic += s.pic;
-    const double residual = (l.energy() - energy_before) - (l.work() - work_before);
-    l.largest_residual = std::max(l.largest_residual, std::fabs(residual));
+    b.kinetic = s.kinetic, b.elastic = s.elastic;
+    b.theta_velocity += (theta - 0.5) * s.twice_increment,
+        b.theta_strain += (theta - 0.5) * s.theta_strain;
+    if (!consistent) b.lumped += theta * (nodes.twice_increment - s.twice_increment);
+    b.contact += contact.normal, b.friction += contact.friction, b.bond += contact.bond;
+    b.plate += contact.rigid, b.gravity += nodes.gravity;
+    b.damping -= s.damping, b.viscous -= s.viscous, b.plastic += s.plastic, b.volume += s.volume,
+        b.pic += s.pic;
+    const double residual = (b.energy() - energy_before) - (b.work() - work_before);
+    b.largest_residual = std::max(b.largest_residual, std::fabs(residual));
 }
 
 }  // namespace mpm_implicit

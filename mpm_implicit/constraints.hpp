@@ -10,7 +10,6 @@
 #pragma once
 
 #include "mpm_implicit/active_set.hpp"
-#include "mpm_implicit/grain_matrix.hpp"
 
 namespace mpm_implicit {
 

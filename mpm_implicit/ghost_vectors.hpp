@@ -1,5 +1,5 @@
-// Ghost nodes in vectors of all velocities, first those along x, then those along y: what
-// mpm_explicit/transfer.hpp does for nodes.
+// Vectors of velocities, momenta or impulses at all dofs, x of dof i in [i] and y in [size + i]; and
+// what mpm_explicit/transfer.hpp does for the ghosts of nodes, for theirs.
 #pragma once
 
 #include <Eigen/Core>

@@ -2,7 +2,7 @@
 //
 //     M_ij = sum_p m_p S_ip S_jp                                   consistent mass
 //     K_ij = sum_p V_p grad S_ip . T . grad S_jp                   stiffness, 2 x 2
-//     A    = M + theta dt (theta dt + beta) K                      what v^theta is solved from [MPM-8]
+//     A    = M + theta dt (theta dt + beta) K                      of the system for v^theta [MPM-8]
 // M and A are symmetric, of order 2 n for n dofs, and stored by diagonals of a stencil. No entry
 // couples two grains (contact does):
 //
@@ -20,7 +20,6 @@
 
 namespace mpm_implicit {
 
-/// Velocities, momenta or impulses at all dofs: x at dof i in [i], y in [size + i].
 /// Components of a block: how the force along the first answers to velocity along the second.
 enum Component { xx, xy, yx, yy };
 

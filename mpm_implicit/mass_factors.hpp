@@ -1,9 +1,9 @@
 // The consistent mass matrix of every grain, factorized by itself,  M_g = L L^T.
 //
-// It makes v^0 cheap, and it tells which nodes the particles cannot tell apart: where the motion of
-// a node is, at all particles, nearly that of nodes before it, its pivot is nearly zero, and v^0
-// there would be anything. Such nodes are constrained to a neighbor. Constraints made afterwards,
-// the signs of walls, and single precision make it a preconditioner.
+// It makes v^0 cheap, and it finds the nodes where M_g is rank-deficient: where the motion of a node
+// is, at all particles, nearly that of nodes before it, its pivot is nearly zero, and v^0 there would
+// be anything. Such nodes are constrained to a neighbor. It is a preconditioner and no more: constraints
+// are made afterwards, it leaves out the signs of walls, and it is kept in single precision.
 #pragma once
 
 #include "mpm_implicit/grain_matrix.hpp"
@@ -67,8 +67,7 @@ class MassFactors {
         std::vector<long> first, begin;  // of each row: first column; where column 0 would be
         std::vector<float> L;
         std::vector<double> pivots;  // reciprocals of the diagonal of L; 0 for a node left out
-        std::vector<double>
-            alone;  // 1/M_ii of a node left out, which may have no neighbor to be constrained to
+        std::vector<double> alone;   // 1/M_ii of a node left out: it may have no master
 
         long dof(long i) const { return dofs[i]; }
         long first_of(long i) const { return first[i]; }

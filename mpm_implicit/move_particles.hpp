@@ -2,8 +2,8 @@
 //
 //     v_p^1 = v_p^0 + sum_i S_ip (v_i^1 - v_i^0),  v_i^1 - v_i^0 = (v_i^theta - v_i^0)/theta
 //     x_p^1 = x_p^0 + dt sum_i S_ip v_i^theta
-// A damping c then takes exp(-c dt) of v_p^1, and not a force - c m v^theta: what rings from one step
-// to the next, and is nearly zero in v^theta, is damped as well, at the rate c/2.
+// A damping c then multiplies v_p^1 by exp(-c dt). A force - c m v^theta would not damp what rings from
+// one step to the next and is nearly zero in v^theta; this does, at the rate c/2.
 // Positions and strains go with the same velocity: then the work of gravity is exact, too (but for
 // gimp and quadratic in the cell next to slip and stick walls, where weight is that of m_i).
 #pragma once
@@ -20,7 +20,7 @@ namespace mpm_implicit {
 ///         particles keep their places
 /// in/out: particles; sums of their tiles
 /// exact:  without damping the momentum of the particles changes by that of the nodes, to round-off;
-///         with the consistent mass their angular momentum about the places before, too
+///         with the consistent mass so does sum_p m_p x_p^0 x v_p
 template <class Shape>
 void move_particles(const Shape& shape, const std::vector<Grain>& grains,
                     const std::vector<RigidMotion>& rigid, const GrainNodes& nodes, double theta,

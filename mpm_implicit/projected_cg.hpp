@@ -54,10 +54,10 @@ inline double dot(const Vector& a, const Vector& b) {
 
 /// Solves for v.
 /// in:     multiply(x, y): y = A x, symmetric; precondition(t, work): z from t, both in y;
-///         constraints, built with scale = D^{-1/2}; b; tolerance on |D^{-1/2} (b - A v)| projected on the null
-///         space of the constraints, over |D^{-1/2} b| or, if that is more, what it was with v as given and with the
-///         impulses of the pairs
-/// in/out: v and controlled.V, which obey the constraints
+///         constraints, built with scale = D^{-1/2}; b; tolerance on |D^{-1/2} (b - A v)|, projected
+///         on the null space of the constraints, over the larger of |D^{-1/2} b| and, with v as given
+///         and not projected, |D^{-1/2} (b - A v)|
+/// in/out: v and controlled.V, which satisfy the constraints
 /// out:    work.r = b - A v, which is -H^T lambda when converged
 /// exact:  converged means the residual is that small, or as small as round-off of A v
 template <class Multiply, class Precondition>
@@ -74,7 +74,7 @@ CgResult projected_cg(const Multiply& multiply, const Precondition& precondition
     double *r = work.r.data(), *t = work.t.data();
     const double *q = work.q.data(), *s_D = scale.data();
 
-    double size_r = 0;  // with the impulses of the pairs
+    double size_r = 0;  // squared, not projected: with the impulses of the pairs
     const auto find_residual = [&] {
         multiply(v, work.q);
         const double* from = b.data();

@@ -6,12 +6,13 @@
 // v^theta = v^0 + theta (v^1 - v^0), put in, give a symmetric system for v^theta:
 //     A v^theta = M v^0 + theta dt (f^0 + m g) + H^T lambda,
 //     A = M + theta dt (theta dt + beta) K
-// with f^0 the force of the old stress, beta the viscosity of a material, and impulses lambda of the closed pairs, which are found together with v^theta:
+// with f^0 the force of the old stress, beta the viscosity of a material, and lambda the impulses of
+// the closed pairs, which are found together with v^theta:
 //
 //     active set (open, slip, stick) -> projected conjugate gradients -> v^theta, lambda
 //           ^                                                               |
-//           +---- update where an impulse pulls, a gap closes, or ----------+--> done when no state changes
-//                 friction is not Coulomb's
+//           +---- update where an impulse pulls, a pair approaches, --------+--> done when no state changes
+//                 or friction is not Coulomb's
 #pragma once
 
 #include "mpm_implicit/grain_factors.hpp"
@@ -33,8 +34,7 @@ class NodeSolver {
 
     /// M and A of the step.
     /// in:     nodes.sums
-    /// out:    matrix; small-mass and rank-deficient nodes are constrained to
-    ///         others
+    /// out:    matrix; small-mass and rank-deficient nodes are constrained to others
     template <class Shape>
     void assemble(const Shape& shape, const std::vector<AnyLaw>& laws, const ThetaScheme& scheme,
                   double dt, const State& state, GrainNodes& nodes) {

@@ -153,7 +153,7 @@ class NewtonSolver {
     }
 
     // F(v) = v - C(v + R(v)/D), and of a grain under force control
-    // V - [V_old + (dt F + impulses)/m]/(1 + dt c/m).
+    // V - [V_old + (dt F + impulses/theta)/m]/(1 + dt c/m).
     template <class Shape>
     void residual(const Shape& shape, const Vector& x, Step& step, Vector& F) {
         GrainNodes& nodes = step.nodes;

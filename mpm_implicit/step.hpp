@@ -1,5 +1,4 @@
-// The step of mpm_implicit: the slide, call by call, in three parts, of which take_step() is the
-// whole.
+// The step of mpm_implicit: the slide, call by call. take_step() has three parts.
 #pragma once
 
 #include <vector>

@@ -3,10 +3,10 @@
 //
 //     G_ip = grad S_ip (1 + t_p J)^-1,  t_p = dt/4 (d u_y/dx - d u_x/dy),  u = v^theta
 // with J a quarter turn, counterclockwise: 1 + t_p J carries what is around a particle to the middle
-// of the step. G_ip replaces grad S_ip in strain and in force alike, with the t_p of the steps before,
-// and so the step stays linear, and [MPM-13] holds. It is a mean over some steps, as with theta = 1/2
-// what is stiff rings from one step to the next. Stress is kept as it is in the middle of the next
-// step, turned by half a step's turn.
+// of the step. G_ip replaces grad S_ip in strain and in force alike, with the t_p of the steps before:
+// so the step stays linear, and [MPM-13] holds. t_p is a mean over some steps, since with theta = 1/2
+// stiff modes ring from one step to the next. Stress is kept as it is in the middle of the next step,
+// turned by half a step's turn.
 #pragma once
 
 #include "mpm_explicit/contact.hpp"
@@ -48,7 +48,7 @@ inline void turn_gradient(const Particles& particles, ParticleBatch& batch) {
     }
 }
 
-/// Stress turns with the particles of a batch, and this step enters t_p.
+/// Stress turns with the particles of a batch; their turn in this step enters the mean t_p.
 /// in:     batch, after turn_gradient()
 inline void turn_particles(const ParticleBatch& batch, Particles& particles) {
     rotate_stress(batch, 0.5, particles);

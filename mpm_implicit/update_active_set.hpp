@@ -4,15 +4,15 @@
 //     closed  -> open    where the impulse pulls: lambda < 0
 //     stick   -> slip    where |lambda_t| > mu lambda, or where not all can stick and the pair slides
 //     slip    -> stick   where friction drives: lambda_t (v_b - v_a).t > 0
-// A pair that comes back only slips: otherwise sets can follow each other in a cycle. A pair may
-// change as often as it has to. Where a pair was kept as it was after two or three changes, it pulled
-// or rubbed too much, by up to a third of the largest impulse.
+// A pair that closes again only slips: otherwise sets can follow each other in a cycle. A pair may
+// change as often as it has to: one that is kept as it is after two or three changes pulls or rubs too
+// much, by up to a third of the largest impulse.
 #pragma once
 
+#include <Eigen/Dense>
 #include <cmath>
 
 #include "mpm_implicit/active_set.hpp"
-#include "mpm_implicit/grain_matrix.hpp"
 
 namespace mpm_implicit {
 
@@ -34,7 +34,7 @@ inline void extrapolate_friction(bool same, ActiveSet& set) {
     constexpr std::size_t most = 8;
     if (!same) return set.frictions.clear(), set.targets.clear();
     const std::size_t count = set.list.pairs.size();
-    Eigen::VectorXd x = Eigen::VectorXd::Zero(long(count)), g = x;
+    Vector x = Vector::Zero(long(count)), g = x;
     for (std::size_t k = 0; k < count; ++k)
         if (set.list.pairs[k].state == ContactState::slip)
             x[long(k)] = set.list.pairs[k].lambda_t, g[long(k)] = set.updates[k].target;
@@ -42,7 +42,7 @@ inline void extrapolate_friction(bool same, ActiveSet& set) {
     if (set.frictions.size() > most)
         set.frictions.erase(set.frictions.begin()), set.targets.erase(set.targets.begin());
     const long steps = long(set.frictions.size()) - 1;
-    Eigen::VectorXd next = g;
+    Vector next = g;
     if (steps > 0) {
         Eigen::MatrixXd df(long(count), steps), dg(long(count), steps);
         for (long j = 0; j < steps; ++j) {
@@ -68,8 +68,8 @@ inline ActiveSetChange update_active_set(const Vector& v, const std::vector<doub
                                          const GrainNodes& nodes, double accuracy, ActiveSet& set) {
     const long size = nodes.size();
     const double nearly = 1e3 * accuracy, friction_error = 1e5 * accuracy;
-    // Impulses far below the momentum of a node are round-off, and velocities far below what an
-    // impulse would give to a node: all that stick to what is at rest have no others.
+    // Impulses far below the momentum of a node are round-off. So are velocities far below what an
+    // impulse gives to a node: bodies that stick to one at rest have no larger ones.
     double largest = 0, fastest = 0, heaviest = 0;
     for (const ContactPair& pair : set.list.pairs)
         largest = std::max({largest, std::fabs(pair.lambda_n), std::fabs(pair.lambda_t)});
@@ -117,7 +117,7 @@ inline ActiveSetChange update_active_set(const Vector& v, const std::vector<doub
             } else if (pair.mu > 0) {
                 // Below zero where a pair is to give up its friction before it opens again.
                 const double most = pair.mu * pair.lambda_n;
-                // Where a grain cannot stick to all who hold it, a pair slips all the same.
+                // A pair slips although it is to stick, where a grain cannot stick to all its partners.
                 const bool slips = std::fabs(slip) > nearly * fastest;
                 if (pair.state == ContactState::stick &&
                     (slips || std::fabs(pair.lambda_t) > most * (1 + nearly))) {
@@ -195,7 +195,7 @@ inline double impulse_on(const ForceControl& control, const ContactNode& node,
     return (is(pair.b) ? along : 0) - (is(pair.a) ? along : 0);
 }
 
-/// errors: NumericalError, with who changed last
+/// errors: NumericalError, with the pair that changed last
 [[noreturn]] inline void fail_to_settle(const ActiveSetChange& change, const ActiveSet& set,
                                         const std::vector<Grain>& grains, long loops) {
     throw common::NumericalError("contact did not settle in " + std::to_string(loops) +

@@ -103,14 +103,7 @@ template <class Shape>
 void force_of_stress(const Shape& shape, const std::vector<Grain>& grains,
                      const Particles& particles, GrainNodes& nodes) {
     for_each_batch(grains, nodes, [&](ParticleBatch& batch) {
-        BatchStress V_s;
-        for (long k = 0; k < batch.count; ++k) {
-            const auto p = static_cast<std::size_t>(batch.begin + k);
-            const double V = particles.V_p[p];
-            V_s.xx[k] = V * particles.sxx_p[p], V_s.yy[k] = V * particles.syy_p[p];
-            V_s.xy[k] = V * particles.sxy_p[p];
-        }
-        add_turned_force(shape, particles, batch, V_s, nodes);
+        add_turned_force(shape, particles, batch, carried_stress(particles, batch), nodes);
     });
 }
 

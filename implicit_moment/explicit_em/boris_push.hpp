@@ -1,5 +1,5 @@
-// Boris's push of one particle, or of eight: u = gamma v, the momentum per mass, by one step or by
-// half a step.
+// Boris's push of one particle, or of several at once: u = gamma v, the momentum per mass, by one step
+// or by half a step.
 #pragma once
 
 #include "implicit_moment/mean_velocity.hpp"

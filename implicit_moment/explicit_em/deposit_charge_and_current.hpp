@@ -30,9 +30,8 @@ inline void deposit_charge_and_current(const InterleavedField& field, const Grid
             const long cell = row * columns + column;
             const double x_anchor = grid.x.at(double(column));
             const long corner = grid.index(column + Stencil<l>::first, row + Stencil<l>::first);
-            for (long k = particles.first_of_node[cell]; k < particles.first_of_node[cell + 1];
-                 ++k) {
-                const long p = k;
+            for (long p = particles.first_of_node[cell]; p < particles.first_of_node[cell + 1];
+                 ++p) {
                 const double d_x = (particles.x_p[p] - x_anchor) * per_dx,
                              d_z = (particles.z_p[p] - z_anchor) * per_dz;
                 Velocity<double> u{particles.ux_p[p], particles.uy_p[p], particles.uz_p[p]};
@@ -42,7 +41,7 @@ inline void deposit_charge_and_current(const InterleavedField& field, const Grid
                 const double square = u.x * u.x + u.y * u.y + u.z * u.z,
                              per_gamma = inverse_gamma(u, per_c2);
                 sums[0] += u.x, sums[1] += u.y, sums[2] += u.z;
-                sums[3] += square / (1 + 1 / per_gamma);  // gamma - 1, without cancellation
+                sums[3] += square / (1 + 1 / per_gamma);  // (gamma - 1) c^2, without cancellation
 
                 const StencilWeights<l, double> S_x(d_x), S_z(d_z);
                 const double v_x = q * per_gamma * u.x, v_y = q * per_gamma * u.y,

@@ -6,7 +6,7 @@
 // Run:   build/explicit_em
 // Run:   build/explicit_em implicit_moment/cases/explicit_two_stream.toml particles.order=2
 //
-// Reading order: step.hpp; then home_weights.hpp, push_particles.hpp, deposit_current.hpp, yee_field.hpp. What it
+// Reading order: step.hpp; then stencil.hpp, push_particles.hpp, deposit_current.hpp, yee_field.hpp. What it
 // shares with implicit_moment.cpp: plasma, set-ups, walls, records; `diff` shows the rest.
 #include <optional>
 

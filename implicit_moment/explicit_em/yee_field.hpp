@@ -3,7 +3,6 @@
 
 #include <cmath>
 
-#include "common/parallel.hpp"
 #include "implicit_moment/units.hpp"
 #include "implicit_moment/vector_field.hpp"
 
@@ -30,28 +29,13 @@ inline double leapfrog_frequency(double omega_p, double dt) {
 
 namespace detail {
 
-// Calls work(n) for the points of rows 0..N, block by block of rows.
-template <class Work>
-inline void for_each_point_in_blocks(const Grid& grid, const Work& work) {
-    common::for_each_block(
-        grid.z.cells + 1,
-        [&](int, long first, long last) {
-            for (long j = first; j < last; ++j) {
-                const long begin = grid.index(0, j), end = begin + grid.x.cells + 1;
-#pragma omp simd
-                for (long n = begin; n < end; ++n) work(n);
-            }
-        },
-        grid.size());
-}
-
 // B -= c dt curl E
 inline void advance_magnetic(const Grid& grid, double dt, const VectorField& E, VectorField& B) {
     const long s = grid.stride();
     const double per_x = c * dt / grid.x.spacing(), per_z = c * dt / grid.z.spacing();
     const double *E_x = E.x(), *E_y = E.y(), *E_z = E.z();
     double *B_x = B.x(), *B_y = B.y(), *B_z = B.z();
-    for_each_point_in_blocks(grid, [=](long n) {
+    for_each_point(grid, [=](long n) {
         B_x[n] += per_z * (E_y[n + s] - E_y[n]);
         B_y[n] -= per_z * (E_x[n + s] - E_x[n]) - per_x * (E_z[n + 1] - E_z[n]);
         B_z[n] -= per_x * (E_y[n + 1] - E_y[n]);
@@ -68,7 +52,7 @@ inline void advance_electric(const Grid& grid, double dt, const VectorField& B,
     const double *B_x = B.x(), *B_y = B.y(), *B_z = B.z();
     const double *J_x = J.x(), *J_y = J.y(), *J_z = J.z();
     double *E_x = E.x(), *E_y = E.y(), *E_z = E.z();
-    for_each_point_in_blocks(grid, [=](long n) {
+    for_each_point(grid, [=](long n) {
         E_x[n] -= per_z * (B_y[n] - B_y[n - s]) + per_J * J_x[n];
         E_y[n] += per_z * (B_x[n] - B_x[n - s]) - per_x * (B_z[n] - B_z[n - 1]) - per_J * J_y[n];
         E_z[n] += per_x * (B_y[n] - B_y[n - 1]) - per_J * J_z[n];

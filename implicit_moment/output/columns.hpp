@@ -24,10 +24,9 @@ inline double add_reconnection(const Case& w, const FieldState& field, common::R
 
 /// A_y along the middle row of a tail, where it grows with x as long as nothing reconnects.
 struct TailRow {
-    double flux =
-        0;  // of field lines that are closed in an O-line: the largest fall of A_y along x
+    double flux = 0;    // of field lines around an O-line: the largest fall of A_y along x
     double X_line = 0;  // where that fall ends, from the middle [d_i]; 0 where there is none
-    double shift = 0;   // rms of what is not A_y of the equilibrium, epsilon B0 x
+    double shift = 0;   // rms of A_y less that of the equilibrium, epsilon B0 x
 };
 
 /// in:     B; an even number of cells in z; B_z in the middle of the equilibrium

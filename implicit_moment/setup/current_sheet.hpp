@@ -25,7 +25,7 @@ inline constexpr long least_cells_along_current = 9;
 /// What the waves need to be seen: cells in one of them, particles of a species in a cell.
 inline constexpr double least_cells_in_wave = 6, least_particles_in_cell = 50;
 
-/// The Harris sheet that a thin current sheet is.
+/// A thin current sheet as a Harris sheet.
 ///     u_i = 2 c T_i/(e B0 L) = v_i rho_i/L,  so  L = rho_i/drift = (T_i/T)^(1/2)/drift  [d_i]
 /// with T = T_i + T_e, because n0 T = B0^2/8 pi makes v_i = v_A (T_i/T)^(1/2).
 inline HarrisCase harris_of(const CurrentSheetCase& s) {
@@ -46,7 +46,7 @@ inline HarrisCase harris_of(const Case& parameters) {
 }
 
 /// Sets the lengths of the mesh, which a current sheet gives in units of L.
-/// errors: InputError for lengths in the case file that are others.
+/// errors: InputError for other lengths in the case file
 inline void fit_mesh_to_sheet(Case& parameters) {
     const CurrentSheetCase& s = parameters.current_sheet;
     const double L = harris_of(s).thickness;

@@ -14,24 +14,24 @@
 namespace mpm_explicit {
 
 /// Adds the terms of the budget, energies now and work since the start.
-inline void add_budget(const Budget& l, common::Row& row) {
-    for (const auto& [name, value] : {std::pair("kinetic", l.kinetic),
-                                      {"elastic", l.elastic},
-                                      {"energy", l.kinetic + l.elastic},
-                                      {"energy_14", l.energy_14},
-                                      {"energy_15", l.energy_15},
-                                      {"external", l.external},
-                                      {"contact", l.contact},
-                                      {"release", l.release},
-                                      {"friction", l.friction},
-                                      {"bond", l.bond},
-                                      {"damping", l.damping},
-                                      {"viscous", l.viscous},
-                                      {"plastic", l.plastic},
-                                      {"volume", l.volume},
-                                      {"pic", l.pic},
-                                      {"remap", l.remap},
-                                      {"budget", l.residual()}})
+inline void add_budget(const Budget& b, common::Row& row) {
+    for (const auto& [name, value] : {std::pair("kinetic", b.kinetic),
+                                      {"elastic", b.elastic},
+                                      {"energy", b.kinetic + b.elastic},
+                                      {"energy_14", b.energy_14},
+                                      {"energy_15", b.energy_15},
+                                      {"external", b.external},
+                                      {"contact", b.contact},
+                                      {"release", b.release},
+                                      {"friction", b.friction},
+                                      {"bond", b.bond},
+                                      {"damping", b.damping},
+                                      {"viscous", b.viscous},
+                                      {"plastic", b.plastic},
+                                      {"volume", b.volume},
+                                      {"pic", b.pic},
+                                      {"remap", b.remap},
+                                      {"budget", b.residual()}})
         row.add(name, "energy", value);
 }
 
@@ -60,18 +60,18 @@ class LeapfrogRecorder {
     /// errors: NumericalError as Recorder::refuse_failure, unless the run has ended at t^n
     void record(long step, const StepSums& sums, const GrainNodes& nodes, const State& state,
                 common::Run& run) {
-        const Budget& l = state.budget;
+        const Budget& b = state.budget;
         const bool finite =
             std::all_of(sums.tiles.begin(), sums.tiles.end(), [](const TileSums& s) {
                 return std::isfinite(s.kinetic) && std::isfinite(s.kinetic_leapfrog);
             });
         if (finite && recorder_.row_is_due(step))
-            run.history.row(row(step, l, sums.contact, state.assembly));
+            run.history.row(row(step, b, sums.contact, state.assembly));
         if (recorder_.is_end(step)) return;
         // Elastic energy is that of t^{n-1/2} and t^{n+1/2}: what this step puts in counts.
-        const double external = l.external + sums.contact.rigid + sums.nodes.gravity;
-        recorder_.refuse_failure(step, sums.tiles, nodes, state.assembly, l.start, external,
-                                 l.kinetic + l.elastic, run.history);
+        const double external = b.external + sums.contact.rigid + sums.nodes.gravity;
+        recorder_.refuse_failure(step, sums.tiles, nodes, state.assembly, b.start, external,
+                                 b.kinetic + b.elastic, run.history);
     }
 
     /// The results of the whole run, after its last step.
@@ -84,12 +84,12 @@ class LeapfrogRecorder {
     }
 
    private:
-    common::Row row(long step, const Budget& l, const ContactSums& contact,
+    common::Row row(long step, const Budget& b, const ContactSums& contact,
                     const Assembly& all) const {
         common::Row row;
         row.add("time", "time", double(step) * dt_);
-        add_budget(l, row);
-        recorder_.add_to(row, l.momenta, contact.nodes, contact.impulse, all);
+        add_budget(b, row);
+        recorder_.add_to(row, b.momenta, contact.nodes, contact.impulse, all);
         return row;
     }
 

@@ -70,9 +70,8 @@ class Pieces {
    private:
     static constexpr double nothing = 1e-9;  // area that is round-off of an outline
     static constexpr double even = 1e-7;     // difference of areas that are equal on paper
-    static constexpr double sliver =
-        0.25;  // area below which others of its cell take a piece in ...
-    static constexpr double speck = 0.02;  // ... and below which those of another cell may
+    static constexpr double sliver = 0.25;   // area below which others of its cell take it in,
+    static constexpr double speck = 0.02;    // and below which those of another cell may
 
     long cell(long k) const { return k >= 0 ? k / per_side_ : -((per_side_ - 1 - k) / per_side_); }
     static long whole(double length) { return std::lround(std::floor(length)); }

@@ -49,7 +49,7 @@ inline std::vector<Material> materials_of(const Problem& problem) {
 inline std::vector<AnyLaw> laws_of(const Problem& w) { return laws_of(materials_of(w)); }
 
 /// The rule of contact, with the friction of every pair of materials.
-/// in:     dt, of steps that grains come far in: contact begins in the step that surfaces touch in
+/// in:     dt; surfaces that will touch within half of it press already: for long steps
 /// errors: InputError for a material that is not there, or two whose friction is told twice
 inline ContactRule contact_rule(const Problem& problem, double dt = 0) {
     ContactRule rule = problem.contact;

@@ -137,10 +137,8 @@ inline void compare_block(const FinishedRun& run, common::Summary& summary) {
 inline void turning_column(const PlannedCase& planned, const Assembly& all, common::Row& row) {
     const Particles& at = all.particles;
     const Grain& grain = all.grains[planned.target()];
-    double m = 0, x = 0, y = 0, turns = 0, squares = 0;
-    for (long p = grain.begin; p < grain.end; ++p)
-        m += at.m_p[p], x += at.m_p[p] * at.x_p[p], y += at.m_p[p] * at.y_p[p];
-    x /= m, y /= m;
+    const auto [m, x, y] = center_of_mass(at, grain.begin, grain.end);
+    double turns = 0, squares = 0;
     for (long p = grain.begin; p < grain.end; ++p) {
         const double dx = at.x_p[p] - x, dy = at.y_p[p] - y;
         turns += at.m_p[p] * (dx * at.vy_p[p] - dy * at.vx_p[p]);
@@ -244,10 +242,8 @@ inline void need_pressed_disk(const PlannedCase& planned) {
 inline Stress stress_at_center(const Assembly& all, std::size_t grain, double distance) {
     const Particles& at = all.particles;
     const long begin = all.grains[grain].begin, end = all.grains[grain].end;
-    double x = 0, y = 0, m = 0, V = 0;
-    for (long p = begin; p < end; ++p)
-        x += at.m_p[p] * at.x_p[p], y += at.m_p[p] * at.y_p[p], m += at.m_p[p];
-    x /= m, y /= m;
+    const auto [m, x, y] = center_of_mass(at, begin, end);
+    double V = 0;
     Stress mean;
     for (long p = begin; p < end; ++p) {
         if (std::hypot(at.x_p[p] - x, at.y_p[p] - y) > distance) continue;

@@ -13,25 +13,25 @@
 namespace mpm_implicit {
 
 /// Adds the terms of the budget, energies now and work since the start.
-inline void add_budget(const Budget& l, common::Row& row) {
-    for (const auto& [name, value] : {std::pair("kinetic", l.kinetic),
-                                      {"elastic", l.elastic},
-                                      {"energy", l.energy()},
-                                      {"theta_velocity", l.theta_velocity},
-                                      {"theta_strain", l.theta_strain},
-                                      {"lumped", l.lumped},
-                                      {"contact", l.contact},
-                                      {"friction", l.friction},
-                                      {"bond", l.bond},
-                                      {"plate", l.plate},
-                                      {"gravity", l.gravity},
-                                      {"external", l.plate + l.gravity},
-                                      {"damping", l.damping},
-                                      {"viscous", l.viscous},
-                                      {"plastic", l.plastic},
-                                      {"volume", l.volume},
-                                      {"pic", l.pic},
-                                      {"residual", l.residual()}})
+inline void add_budget(const Budget& b, common::Row& row) {
+    for (const auto& [name, value] : {std::pair("kinetic", b.kinetic),
+                                      {"elastic", b.elastic},
+                                      {"energy", b.energy()},
+                                      {"theta_velocity", b.theta_velocity},
+                                      {"theta_strain", b.theta_strain},
+                                      {"lumped", b.lumped},
+                                      {"contact", b.contact},
+                                      {"friction", b.friction},
+                                      {"bond", b.bond},
+                                      {"plate", b.plate},
+                                      {"gravity", b.gravity},
+                                      {"external", b.plate + b.gravity},
+                                      {"damping", b.damping},
+                                      {"viscous", b.viscous},
+                                      {"plastic", b.plastic},
+                                      {"volume", b.volume},
+                                      {"pic", b.pic},
+                                      {"residual", b.residual()}})
         row.add(name, "energy", value);
 }
 
@@ -59,19 +59,19 @@ class ThetaRecorder {
     /// errors: NumericalError as Recorder::refuse_failure
     void refuse_failure(long step, const StepSums& sums, const GrainNodes& nodes,
                         const State& state, const common::Run& run) {
-        const Budget& l = state.budget;
-        recorder_.refuse_failure(step, sums.tiles, nodes, state.assembly, l.start,
-                                 l.plate + l.gravity, l.energy(), run.history);
+        const Budget& b = state.budget;
+        recorder_.refuse_failure(step, sums.tiles, nodes, state.assembly, b.start,
+                                 b.plate + b.gravity, b.energy(), run.history);
     }
 
     /// The results of the whole run, after its last step.
     void finish(long step, const State& state, common::Run& run) const {
         if (run.history.all().empty()) return;
-        const Budget& l = state.budget;
-        compare_energy_theorem(run.history, scheme_, l, run.summary);
+        const Budget& b = state.budget;
+        compare_energy_theorem(run.history, scheme_, b, run.summary);
         recorder_.compare_with_theory(step, state.assembly, run);
         recorder_.finish_conservation(state.assembly, run);
-        run.summary.conservation("largest_residual_of_a_step", l.largest_residual, "energy");
+        run.summary.conservation("largest_residual_of_a_step", b.largest_residual, "energy");
         const double steps = double(std::max(1L, step));
         const Effort& effort = state.effort;
         run.summary.performance("iterations_per_step", effort.iterations / steps);
@@ -81,14 +81,14 @@ class ThetaRecorder {
     }
 
    private:
-    common::Row row(long step, const Budget& l, const State& state) const {
+    common::Row row(long step, const Budget& b, const State& state) const {
         common::Row row;
         row.add("time", "time", double(step) * scales_.dt);
-        add_budget(l, row);
+        add_budget(b, row);
         const Effort& last = state.effort;
         row.add("iterations", "1", last.last_iterations);
         row.add("loops", "1", last.last_loops);
-        recorder_.add_to(row, l.momenta, last.contacts, last.impulse, state.assembly);
+        recorder_.add_to(row, b.momenta, last.contacts, last.impulse, state.assembly);
         return row;
     }
 

@@ -40,7 +40,7 @@ inline theory::SchemeFacts facts_of(const Case& parameters, const ThetaScheme& s
 
 /// [MPM-13] in every step, and that nothing but loads gives energy.
 inline void compare_energy_theorem(const common::History& history, const ThetaScheme& scheme,
-                                   const Budget& l, common::Summary& summary) {
+                                   const Budget& b, common::Summary& summary) {
     const auto energy = history.column("energy"), external = history.column("external"),
                volume = history.column("volume"), plastic = history.column("plastic");
     double size = std::numeric_limits<double>::min(), growth = 0;
@@ -56,7 +56,7 @@ inline void compare_energy_theorem(const common::History& history, const ThetaSc
         "the theorem is as good as the solution of a step: lower solver.tolerance, which "
         "is " +
         common::format(scheme.tolerance));
-    summary.result_at_most("energy_identity", l.largest_residual / size, "1", 1e-11,
+    summary.result_at_most("energy_identity", b.largest_residual / size, "1", 1e-11,
                            "[MPM-13] with all other work, largest residual of a step over the "
                            "energy");
     if (scheme.keeps_volumes())
