@@ -49,10 +49,13 @@ inline LowestPoint lowest_point(const std::vector<ContactColumn>& columns, int n
     if (columns[to].before != n) return {};
     const double g = columns[n].gap, g_to = columns[to].gap;
     // Second differences at both columns, where there is a column beyond.
-    double k = 0, count = 0;
+    double k = 0, count = 0, least = std::numeric_limits<double>::infinity(), most = 0;
     for (const double one :
          {gap_at(columns[n].before) - 2 * g + g_to, g - 2 * g_to + gap_at(columns[to].next)})
-        if (std::isfinite(one)) k += one, count += 1;
+        if (std::isfinite(one))
+            k += one, count += 1, least = std::min(least, one), most = std::max(most, one);
+    // What is flat on one side and turns on the other is a corner, and stands on it.
+    if (count == 2 && !(least > 0.5 * most)) return {};
     // Where the fall between the columns is less than the separation, k/8, both of them touch.
     if (!(count > 0 && k / count > 8 * separation && k / count < sharpest * h)) return {};
     k /= count;

@@ -23,24 +23,28 @@ struct StrainStep {
 };
 
 /// The outline of grains, as some particles carry it, in their order: of the parts s that a particle
-/// carries, with area vectors A_s out of the grain, at e_s from the particle,
+/// carries on one side of a sharp corner, with area vectors A_s out of the grain, at e_s from the particle,
 ///   A = sum_s A_s,  M = sum_s A_s e_sT
 struct Surface {
     std::vector<int> host;               // the particle
+    std::vector<int> side;               // 0 or 1, another one beyond a sharp corner
     std::vector<double> ax, ay;          // A [length]
     std::vector<double> xx, xy, yx, yy;  // M [length^2]
 
     std::size_t count() const { return host.size(); }
     std::array<std::vector<double>*, 6> all() { return {&ax, &ay, &xx, &xy, &yx, &yy}; }
     /// Adds a part to what a particle carries, which is the last one that carries any, or after it.
-    void add(int particle, double area_x, double area_y, double e_x, double e_y) {
-        if (host.empty() || host.back() != particle) {
-            host.push_back(particle);
+    void add(int particle, int of_side, double area_x, double area_y, double e_x, double e_y) {
+        std::size_t k = count();
+        while (k > 0 && host[k - 1] == particle && side[k - 1] != of_side) --k;
+        if (k == 0 || host[k - 1] != particle) {
+            k = host.size() + 1;
+            host.push_back(particle), side.push_back(of_side);
             for (std::vector<double>* sum : all()) sum->push_back(0);
         }
-        ax.back() += area_x, ay.back() += area_y;
-        xx.back() += area_x * e_x, xy.back() += area_x * e_y;
-        yx.back() += area_y * e_x, yy.back() += area_y * e_y;
+        ax[k - 1] += area_x, ay[k - 1] += area_y;
+        xx[k - 1] += area_x * e_x, xy[k - 1] += area_x * e_y;
+        yx[k - 1] += area_y * e_x, yy[k - 1] += area_y * e_y;
     }
     /// Follows the particles to other places: particle p is now target[p].
     void follow(const std::vector<int>& target) {
@@ -53,7 +57,7 @@ struct Surface {
             const auto from = quantity;
             for (std::size_t k = 0; k < order.size(); ++k) quantity[k] = from[order[k]];
         };
-        carry(host);
+        carry(host), carry(side);
         for (std::vector<double>* quantity : all()) carry(*quantity);
     }
 };
@@ -104,6 +108,7 @@ void archive(Archive& a, Particles& particles) {
     a("from_x_p", particles.from_x_p), a("from_y_p", particles.from_y_p);
     a("turn_p", particles.turn_p);
     a("surface_host", particles.surface.host);
+    a("surface_side", particles.surface.side);
     static constexpr std::array<const char*, 6> parts{"surface_ax", "surface_ay", "surface_xx",
                                                       "surface_xy", "surface_yx", "surface_yy"};
     for (std::size_t k = 0; k < parts.size(); ++k) a(parts[k], *particles.surface.all()[k]);

@@ -15,7 +15,9 @@ namespace mpm {
 /// Whether a body shows an outline at a node, beyond round-off of shape functions; clouds of particles
 /// without one do not. h, the width of a cell.
 inline bool has_outline(const ContactBody& body, double h) {
-    return body.wall || std::fabs(body.surface.x) + std::fabs(body.surface.y) > 1e-6 * h;
+    const auto& [one, two] = body.surface.sides;
+    return body.wall ||
+           std::fabs(one.x) + std::fabs(one.y) + std::fabs(two.x) + std::fabs(two.y) > 1e-6 * h;
 }
 
 /// The gap that is left between the surfaces of two bodies along n, from one to two, after some time,
@@ -23,15 +25,23 @@ inline bool has_outline(const ContactBody& body, double h) {
 /// from n.
 inline double gap_between(const ContactBody& one, const ContactBody& two, double nx, double ny,
                           double ahead, double most) {
-    // Between two that are free, the normal of a corner is a guess.
-    const double facing = one.is_fixed() || two.is_fixed() ? 0 : 0.5;
+    // Between two that are free, the normal of a corner is a guess; beside a corner, a side along n
+    // has no place.
+    const bool free = !one.is_fixed() && !two.is_fixed();
     const auto place = [&](const ContactBody& body, double sign) {
         if (body.wall) return body.x * nx + body.y * ny;
-        const SurfaceSums& s = body.surface;
-        const double area = s.x * nx + s.y * ny;
-        return sign * area > facing * std::sqrt(s.x * s.x + s.y * s.y)
-                   ? (nx * (s.xx * nx + s.xy * ny) + ny * (s.yx * nx + s.yy * ny)) / area
-                   : sign * -std::numeric_limits<double>::infinity();
+        const auto size = [](const SideSums& s) { return std::sqrt(s.x * s.x + s.y * s.y); };
+        const auto& sides = body.surface.sides;
+        const bool corner = size(sides[0]) > 0 && size(sides[1]) > 0;
+        double farthest = -std::numeric_limits<double>::infinity();
+        for (const SideSums& s : sides) {
+            const double area = s.x * nx + s.y * ny;
+            if (sign * area > (free ? 0.5 : corner ? 0.1 : 0.0) * size(s))
+                farthest = std::max(
+                    farthest,
+                    sign * ((nx * (s.xx * nx + s.xy * ny) + ny * (s.yx * nx + s.yy * ny)) / area));
+        }
+        return sign * farthest;
     };
     const double parting = (two.vx_0 - one.vx_0) * nx + (two.vy_0 - one.vy_0) * ny;
     return place(two, -1) - place(one, 1) + std::clamp(ahead * parting, -most, most);

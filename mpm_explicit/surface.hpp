@@ -5,7 +5,9 @@
 //      |  __^__|____   |      them its mass, by S_ip; where the surface is along a normal n is then
 //      | /  s  |    \  |      at every node
 //      o---p---o-----\-o          sum_s S_ip (A_s.n) (x_s.n) / sum_s S_ip (A_s.n)
-//                             in which a side that n is along, or that is turned away, has no part.
+//                             in which a side that n is along has no part.
+// Sides that meet at a sharp corner have sums each for itself, and the farther one along n counts: their mean
+// would lift the corner off what the grain stands on.
 // So of its parts a particle needs no more than the sums A and M of particles.hpp.
 #pragma once
 
@@ -41,12 +43,12 @@ void surface_to_grid(const Shape& shape, const Particles& particles, GrainNodes&
     const Surface& s = particles.surface;
     for_each_host(nodes, s, [&](const Tile& tile, std::size_t p, std::size_t k) {
         const double x = particles.x_p[p], y = particles.y_p[p], a_x = s.ax[k], a_y = s.ay[k];
-        const SurfaceSums carried{
+        const SideSums carried{
             a_x, a_y, a_x * x + s.xx[k], a_x * y + s.xy[k], a_y * x + s.yx[k], a_y * y + s.yy[k]};
         for_each_node(shape, at, nodes.origins(tile.grain), x, y,
                       [&](long dof, double S, double, double) {
                           const int to = nodes.surface_of(dof);
-                          if (to >= 0) nodes.surface[to] += carried.times(S);
+                          if (to >= 0) nodes.surface[to].sides[s.side[k]] += carried.times(S);
                       });
     });
     for (const GhostNode& ghost : nodes.ghosts()) {
@@ -55,10 +57,13 @@ void surface_to_grid(const Shape& shape, const Particles& particles, GrainNodes&
         SurfaceSums &from = nodes.surface[k], &to = nodes.surface[k_to];
         // As in reduce_ghost_sums(): x of a mirror image is offset - x, of a wrapped one x - offset.
         const double side_x = ghost.mirror_x ? -1 : 1, side_y = ghost.mirror_y ? -1 : 1;
-        const SurfaceSums image{side_x * from.x,           side_y * from.y,           from.xx,
-                                side_x * side_y * from.xy, side_x * side_y * from.yx, from.yy};
-        to += moved(image, ghost.mirror_y ? 0 : -side_x * ghost.offset,
-                    ghost.mirror_y ? ghost.offset : 0);
+        for (const std::size_t k_side : {0, 1}) {
+            const SideSums& one = from.sides[k_side];
+            const SideSums image{side_x * one.x,           side_y * one.y,           one.xx,
+                                 side_x * side_y * one.xy, side_x * side_y * one.yx, one.yy};
+            to.sides[k_side] += moved(image, ghost.mirror_y ? 0 : -side_x * ghost.offset,
+                                      ghost.mirror_y ? ghost.offset : 0);
+        }
         from = {};
     }
 }

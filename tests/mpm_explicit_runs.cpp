@@ -352,6 +352,12 @@ TEST_CASE("two blocks on one incline slide each with the friction of its materia
         3);
 }
 
+TEST_CASE("polygons stand on a slope up to that of their base" * doctest::description("physics")) {
+    facts::check_polygon_stands("mpm_explicit", 6, 0.5, 0.65);
+    facts::check_polygon_stands("mpm_explicit", 5, 0.65, 0.8, "method.shape=gimp");
+    facts::check_polygon_stands("mpm_explicit", 8, 0.36, 0.5);
+}
+
 TEST_CASE("a cylinder rolls on a rough incline and slips on a smooth one" *
           doctest::description("physics")) {
     // 2.4 and 2.3 % too slow; it swings on its contact by .06 of its speed and does not part from it.

@@ -229,6 +229,10 @@ TEST_CASE("a block slides down an incline within a part in a thousand or sticks"
     CHECK(std::fabs(sticks.value("speed_at_end")) < 1e-6);
 }
 
+TEST_CASE("a hexagon stands on a slope up to that of its base" * doctest::description("physics")) {
+    facts::check_polygon_stands("mpm_implicit", 6, 0.5, 0.65, "time.alpha=4");
+}
+
 TEST_CASE("a cylinder rolls on a rough incline and slips on a smoother one" *
           doctest::description("physics")) {
     for (const char* rough : {"contact.friction=0.3", "contact.friction=0.6"})

@@ -295,6 +295,26 @@ TEST_CASE("a box along mesh lines is filled to its area") {
     }
 }
 
+TEST_CASE("the sides at a sharp corner are told apart and those of a round outline are not") {
+    for (long n = 3; n <= 40; ++n) {
+        if (n == 36) continue;  // its corners turn by ten degrees
+        CAPTURE(n);
+        const Outline outline = regular_polygon(0, 0, 1, n, 7);
+        const auto sides = number_sides(outline.corners);
+        REQUIRE(long(sides.size()) == n);
+        for (long k = 0; k < n; ++k)
+            CHECK((sides[k][1] != sides[(k + 1) % n][0]) == (360.0 / double(n) > 10));
+        // Of the outline, each half of a side that is both stands on its own half.
+        double of[2] = {0, 0};
+        for (const FilledPlace& p : fill(outline, mesh_of(40, 40, 0.1, -2, -2), 3))
+            for (const OutlinePart& part : p.surface)
+                of[part.side] += std::hypot(part.area_x, part.area_y);
+        const double around = 2 * double(n) * std::sin(std::numbers::pi / double(n));
+        CHECK(std::fabs(of[0] + of[1] - around) <= 1e-9);
+        CHECK(std::fabs(of[1] - (n < 36 ? around / 2 : 0)) <= 1e-9);
+    }
+}
+
 TEST_CASE("the particles of a grain have its area and its center of mass and its outline") {
     const Mesh mesh = mesh_of(40, 40, 0.1, -2, -2);
     for (std::uint64_t k = 0; k < 80; ++k) {

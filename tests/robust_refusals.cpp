@@ -833,12 +833,22 @@ grains disks theory.compare=rebound grain.left.shape=box
     theory.compare = "rebound" needs two equal disks that meet head on
 grains disks theory.compare=rebound time.end=0.4
     theory.compare = "rebound": the disks meet at t = 0.5, and the run ends at 0.4: raise time.end
-mpm_explicit disks theory.compare=collapse time.end=0.02
-    theory.compare = "collapse" needs at least 10 rows of history, and there would be 7: raise
-    time.end or lower time.alpha
-mpm_explicit disks theory.compare=collapse output.history_steps=10
-    theory.compare = "collapse" needs at least 10 rows of history, and there would be 3: raise
-    time.end or lower output.history_steps
+grains block_at_rest.toml time.end=1e-5 output.history_steps=1
+    theory.compare = "rest" needs at least 10 rows of history, and there would be 0: raise time.end
+    or lower time.alpha
+grains block_at_rest.toml time.end=1e-3
+    theory.compare = "rest" needs at least 10 rows of history, and there would be 0: raise time.end
+    or lower output.history_steps
+mpm_explicit block_at_rest.toml theory.compare=collapse
+    theory.compare = "collapse" needs no plate: the floor is the wall boundary.y_low
+mpm_explicit column_collapse.toml pack.g.x=68
+    theory.compare = "collapse" needs a column in the lower left corner of the mesh, at a wall
+    boundary.x_low: it begins at x = 68 and y = 0, and the mesh at 0 and 0
+mpm_explicit column_collapse.toml contact.friction=0
+    theory.compare = "collapse" needs boundary.y_low = "frictional", and boundary.friction and
+    contact.friction above 0
+mpm_explicit column_collapse.toml load.gravity_x=0.3
+    theory.compare = "collapse" needs load.gravity_y below 0 alone, and load.damping = 0
 grains body theory.compare=bar boundary.x_low=slip
 grains body theory.compare=bar bar
 grains body theory.compare=bar boundary.x_low=frictional bar

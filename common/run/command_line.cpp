@@ -70,13 +70,13 @@ std::string list_cases(const ProgramInfo& info, const std::string& wrong) {
 }
 
 // For a case that cannot be read. errors: InputError where it lies in the folder of another method
-void refuse_case_of_another_method(const ProgramInfo& info, const std::string& path) {
+void refuse_foreign_case(const ProgramInfo& info, const std::string& path, const std::string& why) {
     const fs::path folder = fs::weakly_canonical(path).parent_path();
     const std::string method = folder.parent_path().filename().string();
     const bool is_method = fs::exists(find_in_project(method + "/cases")) && !method.empty();
     if (folder.filename() == "cases" && method != *fs::path(info.default_case).begin() && is_method)
         throw InputError(path + ": is a case of " + method + ", not of " + info.program +
-                         "; the programs of a case are named in " + method + "/README.md");
+                         "; the programs of a case are named in " + method + "/README.md; " + why);
 }
 
 // What a run that is to be resumed has left in its folder: all, a checkpoint, or nothing that counts. What is
@@ -173,20 +173,17 @@ void look_for_earlier_run(const ProgramInfo& info, const ParameterTable& table,
             found.push_back(nlohmann::ordered_json::parse(read_file(folder + "/summary.json")));
     }
     if (found.empty()) std::exit(status);
-    std::printf(
-        "error on each mesh, or what is below a bound, and its order: log2 of the one before over "
-        "it\n");
+    std::printf("error on each mesh, or value below a bound, and its order: log2 of before/it\n");
     for (const auto& result : found.back()["results"].items()) {
-        const bool bound = result.value().contains("at_most");
-        if (!bound && !result.value().contains("expected")) continue;
+        const char* const of = result.value().contains("at_most") ? "at_most" : "expected";
+        if (!result.value().contains(of)) continue;
         std::printf("%-26s", result.key().c_str());
         double before = NAN;
         for (const auto& json : found) {
             const auto one = json["results"].value(result.key(), nlohmann::ordered_json::object());
-            if (!one.contains(bound ? "at_most" : "expected")) std::printf(" %11s", "-");
-            if (!one.contains(bound ? "at_most" : "expected")) continue;
-            const double error =
-                std::fabs(double(one["value"]) - (bound ? 0 : double(one["expected"])));
+            if (!one.contains(of)) std::printf(" %11s", "-");
+            if (!one.contains(of)) continue;
+            const double error = std::fabs(double(one["value"]) - one.value("expected", 0.0));
             std::printf(std::isnan(before) ? " %11.4g" : " %11.4g (%5.2f)", error,
                         std::log2(before / error));
             before = error;
@@ -336,11 +333,8 @@ CommandLine read_command_line(int argc, char** argv, const ProgramInfo& info,
             continue;
         } else if (is_option) {
             std::string guess;
-            for (const char* name : option_names) {
-                if (std::strncmp(name, argument.c_str(),
-                                 std::min<std::size_t>(4, argument.size())) == 0)
-                    guess = name;
-            }
+            for (const std::string name : option_names)
+                if (name.starts_with(argument.substr(0, 4))) guess = name;
             throw InputError(
                 "unknown option '" + argument + "'" +
                 (guess.empty() ? "; --help lists all options" : "; did you mean '" + guess + "'?"));
@@ -391,8 +385,8 @@ CommandLine read_command_line(int argc, char** argv, const ProgramInfo& info,
         try {
             for (const Setting& one : read_case(read_file(command.case_path), command.case_path))
                 table.set(one);
-        } catch (const InputError&) {
-            refuse_case_of_another_method(info, command.case_path);
+        } catch (const InputError& error) {
+            refuse_foreign_case(info, command.case_path, error.what());
             throw;
         }
         if (command.out_dir.empty())

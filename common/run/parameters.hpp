@@ -206,10 +206,9 @@ struct CommandLine {
     bool fell_short = false;  // and one of its results is a FAIL
 };
 
-/// Reads case file and overrides into the table. --help and --version print and end the program,
-/// and --refine runs it on one mesh after the other and ends it.
-/// With --restart the case is the one stored in the checkpoint, and only parameters that may change
-/// can be overridden.
+/// Reads case file and overrides into the table. --help and --version print and end the program, and
+/// --refine runs it on one mesh after the other and ends it. With --restart the case is the one stored
+/// in the checkpoint, and only parameters that may change can be overridden with another value.
 /// errors: InputError with the place and the cure; nothing has been written then.
 CommandLine read_command_line(int argc, char** argv, const ProgramInfo& info,
                               ParameterTable& table);

@@ -377,8 +377,7 @@ int Run::finish(long step, double count) {
         if (std::error_code unreadable; fs::exists("common/plot.sh", unreadable))
             std::printf("pictures: make plot RUN=%s\n", shell_word(command_.out_dir).c_str());
         if (std::fflush(stdout) != 0 && errno != EPIPE)
-            shortfalls.push_back("standard output took no results: they are in " +
-                                 path("summary.json"));
+            shortfalls.push_back("no results on standard output: see " + path("summary.json"));
     }
     for (const std::string& sentence : shortfalls)
         std::fprintf(stderr, "%s: %s\n", info_.program.c_str(), sentence.c_str());

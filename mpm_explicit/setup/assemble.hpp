@@ -46,8 +46,8 @@ inline void add_particles(const PlannedGrain& plan, const Stretch& stretch, cons
                                : from.profile == "wave" ? std::sin(n * turn)
                                                         : 0;
         for (const OutlinePart& part : at.surface)
-            particles.surface.add(static_cast<int>(particles.x_p.size()), part.area_x, part.area_y,
-                                  part.x, part.y);
+            particles.surface.add(static_cast<int>(particles.x_p.size()), part.side, part.area_x,
+                                  part.area_y, part.x, part.y);
         particles.x_p.push_back(at.x), particles.y_p.push_back(at.y);
         particles.vx_p.push_back(from.velocity_x + from.amplitude * profile -
                                  from.spin * (at.y - plan.outline.y));

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <set>
 #include <string>
 #include <utility>
@@ -135,6 +136,40 @@ inline void validate(const Case& parameters) {
                " makes rasters of " + format(pixels) + " pixels, more than 5e7: take fewer");
 }
 
+/// Warnings of rollers and clamps that a grain will come to: they hold nodes, and so what touches them.
+inline std::vector<std::string> arrival_warnings(const Problem& problem) {
+    std::vector<std::string> warnings;
+    const Mesh mesh = problem.mesh();
+    const std::vector<Material> materials = materials_of(problem);
+    const std::array<const char*, 4> names{"x_low", "x_high", "y_low", "y_high"};
+    for (const Side side : {x_low, x_high, y_low, y_high}) {
+        if (problem.walls[side] != "slip" && problem.walls[side] != "stick") continue;
+        const bool along_x = side == x_low || side == x_high, low = side == x_low || side == y_low;
+        double farthest = 0;
+        for (const PlannedGrain& plan : plan_grains(problem, materials)) {
+            const Bounds box = bounds(plan.outline);
+            const double away = side == x_low    ? box.x_low - mesh.x_low
+                                : side == x_high ? mesh.x_high() - box.x_high
+                                : side == y_low  ? box.y_low - mesh.y_low
+                                                 : mesh.y_high() - box.y_high,
+                         g = along_x ? problem.gravity_x : problem.gravity_y,
+                         v = along_x ? plan.from.velocity_x : plan.from.velocity_y;
+            if (materials[plan.material].law != Law::rigid &&
+                (low ? g < 0 || v < 0 : g > 0 || v > 0))
+                farthest = std::max(farthest, away / mesh.h);
+        }
+        if (farthest > 0.5)
+            warnings.push_back(std::string("boundary.") + names[side] + " = \"" +
+                               problem.walls[side] +
+                               "\" holds for good what comes near, a cell too early, and a grain "
+                               "begins " +
+                               format(farthest) +
+                               " cells from it: take \"frictional\", "
+                               "with boundary.friction = 0 where it is smooth");
+    }
+    return warnings;
+}
+
 /// Warnings with the number and the limit, for choices that run but may mislead.
 inline std::vector<std::string> resolution_warnings(const Case& parameters, const Scales& scales) {
     std::vector<std::string> warnings;
@@ -195,6 +230,7 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
                                "\" and a velocity or a swing in that direction: it does nothing, "
                                "the grain starts at rest");
     }
+    for (const std::string& warning : arrival_warnings(problem)) warnings.push_back(warning);
     if (g > 0 && has_surface && problem.has_friction() && least < 12 * (1 - 1e-9))
         warnings.push_back(
             "a disk has a radius of " + format(least) +

@@ -120,7 +120,8 @@ inline void validate_state(const Mesh& mesh, int width, bool affine, bool turns,
            "the turns of its particles are not as many as those of the case, or too large");
     const Surface& surface = p.surface;
     bool fits = common::all_within(surface.host, 0, static_cast<int>(count) - 1) &&
-                std::is_sorted(surface.host.begin(), surface.host.end());
+                std::is_sorted(surface.host.begin(), surface.host.end()) &&
+                surface.side.size() == surface.count() && common::all_within(surface.side, 0, 1);
     const double size = mesh.length_x() + mesh.y_high() - mesh.y_low,
                  most_of_M = size * size + size;
     for (const std::vector<double>* column : p.surface.all())

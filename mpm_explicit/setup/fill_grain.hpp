@@ -203,7 +203,7 @@ inline std::vector<FilledPlace> fill(const Outline& outline, const Mesh& mesh, l
         for (const OutlinePart& part : surface) {
             const Point at = round ? from_center(outward, part.x, part.y) : Point{part.x, part.y};
             particle.surface.push_back({spacing * part.area_x, spacing * part.area_y,
-                                        spacing * (at.x - p.x), spacing * (at.y - p.y)});
+                                        spacing * (at.x - p.x), spacing * (at.y - p.y), part.side});
         }
         const double all = double(mesh.cells_x * per_side);
         if (mesh.periodic_x) p.x -= all * std::floor(p.x / all);

@@ -182,7 +182,8 @@ inline void describe_pack(common::ParameterTable& table, const std::string& pref
     using common::above, common::anything, common::at_least, common::between;
     const std::string at = prefix + ".";
     table.choice(at + "kind", p.kind, {"hexagonal", "random", "loose", "file"},
-                 "rows; random sizes, each at rest on others; scattered without touching; a file");
+                 "rows; random sizes, each at rest on others (polygons, in such disks); scattered "
+                 "without touching; a file");
     table.text(at + "file", p.file, "file: of grains, one per line");
     table.real(at + "x", p.x, "length", anything(), "hexagonal: first center; else left of region");
     table.real(at + "y", p.y, "length", anything(), "hexagonal: first center; else its floor");
@@ -241,9 +242,10 @@ inline void describe_problem(common::ParameterTable& table, Problem& problem) {
     table.group("walls, on the outermost lines of nodes");
     const std::array<const char*, 4> ends{"x_low", "x_high", "y_low", "y_high"};
     for (std::size_t k = 0; k < 4; ++k)
-        table.choice("boundary." + std::string(ends[k]), problem.walls[k],
-                     {"open", "slip", "stick", "frictional"},
-                     "nothing; roller; clamp; pushes back and rubs");
+        table.choice(
+            "boundary." + std::string(ends[k]), problem.walls[k],
+            {"open", "slip", "stick", "frictional"},
+            "nothing; roller or clamp of what touches it at the start; pushes back and rubs");
     table.real("boundary.friction", problem.contact.wall_friction, "", at_least(0),
                "Coulomb's coefficient, of frictional walls");
 

@@ -439,6 +439,34 @@ inline void front_column(const PlannedCase&, const Assembly& all, common::Row& r
     row.add("front", "length", front_of(all, share_beyond));
 }
 
+/// Needs a column at the wall x_low, on the floor y_low, that falls to the right: as published ones, it rubs on
+/// itself and on the floor, and nothing else acts.
+inline void need_collapse(const PlannedCase& planned) {
+    const Problem& problem = planned.parameters.problem;
+    const Mesh mesh = problem.mesh();
+    planned.refuse(planned.rigid_grains() > 0,
+                   " needs no plate: the floor is the wall boundary.y_low, and the wall behind the "
+                   "column is boundary.x_low");
+    double x = 1e300, y = 1e300, largest = 0;
+    for (const PlannedGrain& plan : planned.plans) {
+        const Bounds box = bounds(plan.outline);
+        x = std::min(x, box.x_low), y = std::min(y, box.y_low);
+        largest = std::max(largest, 2 * plan.outline.radius);
+    }
+    planned.refuse(mesh.periodic_x || planned.has_wall(x_low, "open") ||
+                       !(x - mesh.x_low < largest) || !(y - mesh.y_low < largest),
+                   " needs a column in the lower left corner of the mesh, at a wall "
+                   "boundary.x_low: it begins at x = " +
+                       format(x) + " and y = " + format(y) + ", and the mesh at " +
+                       format(mesh.x_low) + " and " + format(mesh.y_low));
+    planned.refuse(!planned.has_wall(y_low, "frictional") || !(problem.contact.wall_friction > 0) ||
+                       !(problem.contact.friction > 0),
+                   " needs boundary.y_low = \"frictional\", and boundary.friction and "
+                   "contact.friction above 0: published columns stand on rough floors");
+    planned.refuse(!(problem.gravity_y < 0) || problem.gravity_x != 0 || problem.damping > 0,
+                   " needs load.gravity_y below 0 alone, and load.damping = 0");
+}
+
 /// The run-out, between two published laws.
 inline void compare_collapse(const FinishedRun& run, common::Summary& summary) {
     const auto front = run.history.column("front");

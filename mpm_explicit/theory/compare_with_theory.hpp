@@ -81,6 +81,6 @@ inline constexpr theory::Comparison comparisons[] = {
     {"billet", theory::need_billet, theory::compare_billet},
     {"hold", theory::need_hold, theory::compare_hold},
     {"cycle", theory::need_cycle, theory::compare_cycle},
-    {"collapse", nullptr, theory::compare_collapse, theory::front_column}};
+    {"collapse", theory::need_collapse, theory::compare_collapse, theory::front_column}};
 
 }  // namespace mpm_explicit

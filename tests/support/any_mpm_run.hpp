@@ -44,6 +44,35 @@ inline void check_two_blocks(const std::string& program, double tolerance) {
     }
 }
 
+/// A regular polygon with obtuse corners, eight cells across, stands on a rough plate as long as its weight points
+/// into its base, tan theta < tan(pi/sides), wherever the corners are in their cells.
+inline void check_polygon_stands(const std::string& program, long sides, double tan_below,
+                                 double tan_above, const std::string& more = "") {
+    const double angle = std::numbers::pi / double(sides);
+    REQUIRE((tan_below < std::tan(angle) && std::tan(angle) < tan_above));
+    char text[400];
+    for (const double x : {0.5, 0.5125}) {
+        for (const double slope : {tan_below, tan_above}) {
+            INFO(program << " " << sides << " sides, x = " << x << ", tan theta = " << slope);
+            std::snprintf(text, sizeof text,
+                          " grain.block.sides=%ld grain.block.angle=%g grain.block.x=%g "
+                          "grain.block.y=%.15g load.gravity_x=%g ",
+                          sides, 180 / double(sides) - 90, x, 0.15 + 0.1 * std::cos(angle),
+                          10 * slope);
+            const Run r = run_mpm(program, "stands",
+                                  program +
+                                      "/cases/incline_block.toml theory.compare=none "
+                                      "grid.length_x=1 grid.cells_y=20 grain.block.shape=polygon "
+                                      "grain.block.radius=0.1 grain.plate.x=0.5 "
+                                      "grain.plate.width=1 load.gravity_y=-10 contact.friction=1 "
+                                      "material.default.viscosity=2e-4 load.rise=0.3 time.end=0.6" +
+                                      text + more);
+            const double kinetic = r.column("kinetic").back();
+            CHECK((slope == tan_below ? kinetic <= 1e-3 : kinetic >= 1));
+        }
+    }
+}
+
 /// A bond breaks between two rows, and the error of the time says so: where steps are too long for the
 /// tolerance it is not measured. The strength is 2^-1/2 of the largest stress, so that w t = pi/4.
 inline void check_breaking_times(const std::string& program) {
