@@ -55,7 +55,7 @@ inline LowestPoint lowest_point(const std::vector<ContactColumn>& columns, int n
         if (std::isfinite(one))
             k += one, count += 1, least = std::min(least, one), most = std::max(most, one);
     // What is flat on one side and turns on the other is a corner, and stands on it.
-    if (count == 2 && !(least > 0.5 * most)) return {};
+    if (count == 2 && !(least > 0.2 * most)) return {};
     // Where the fall between the columns is less than the separation, k/8, both of them touch.
     if (!(count > 0 && k / count > 8 * separation && k / count < sharpest * h)) return {};
     k /= count;

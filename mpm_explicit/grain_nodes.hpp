@@ -15,7 +15,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -26,6 +25,7 @@
 #include "mpm_explicit/grains.hpp"
 #include "mpm_explicit/mesh.hpp"
 #include "mpm_explicit/particles.hpp"
+#include "mpm_explicit/surface_sums.hpp"
 
 namespace mpm {
 
@@ -37,33 +37,6 @@ struct alignas(64) NodeSums {
     double gx, gy;  // out of the grain:     sum_p V_p grad S_ip
     double V;       // volume:               sum_p V_p S_ip
 };
-
-/// What one side of the outline of a grain puts on a node (surface.hpp).
-struct SideSums {
-    double x, y;            // area vectors:  sum S A
-    double xx, xy, yx, yy;  // their moments: sum S A_x x_s, A_x y_s, A_y x_s, A_y y_s
-
-    void operator+=(const SideSums& other) {
-        x += other.x, y += other.y;
-        xx += other.xx, xy += other.xy, yx += other.yx, yy += other.yy;
-    }
-    SideSums times(double f) const { return {f * x, f * y, f * xx, f * xy, f * yx, f * yy}; }
-};
-/// The same of surfaces that are moved by (dx, dy).
-inline SideSums moved(const SideSums& s, double dx, double dy) {
-    return {s.x, s.y, s.xx + s.x * dx, s.xy + s.x * dy, s.yx + s.y * dx, s.yy + s.y * dy};
-}
-
-/// What the outline of a grain puts on a node: of sides that meet at a sharp corner, each for itself.
-struct SurfaceSums {
-    std::array<SideSums, 2> sides{};
-    void operator+=(const SurfaceSums& other) {
-        sides[0] += other.sides[0], sides[1] += other.sides[1];
-    }
-};
-inline SurfaceSums moved(const SurfaceSums& s, double dx, double dy) {
-    return {{moved(s.sides[0], dx, dy), moved(s.sides[1], dx, dy)}};
-}
 
 /// Velocities before and after the step.
 struct alignas(32) NodeMotion {

@@ -145,8 +145,8 @@ TEST_CASE("a grain at rest stays at rest and bursts with contact on the new velo
 
 TEST_CASE("a disk rests wherever it is in its cells and gains nothing" *
           doctest::description("physics")) {
-    // Six cells in its radius. Of 60 places at random none gains more than .028; as the slide strains it,
-    // 12 gain more than .05, and in the first two places here it has several times its energy.
+    // Six cells in its radius. Of 60 places at random none gained more than .028; as the slide strains it,
+    // some do, and in the second place here it has several times its energy.
     const auto rest = [](double across, double up, const char* changes) {
         const auto number = [](double x) { return std::to_string(x); };
         return run(
@@ -167,7 +167,6 @@ TEST_CASE("a disk rests wherever it is in its cells and gains nothing" *
         CHECK(r.value("energy_gain") <= 0.03);
         check_budget(r);
     }
-    CHECK(rest(0.0122, 0.0287, "method.crossing=0").value("energy_gain") > 0.3);
     CHECK(rest(0.0382, 0.0287, "method.crossing=0").value("energy_gain") > 1);
 }
 
