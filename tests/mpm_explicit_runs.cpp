@@ -51,6 +51,11 @@ TEST_CASE("at a quarter of the limit two disks rebound" * doctest::description("
     const Run travels = run("travels", "rebound",
                             "grain.left.velocity_x=0.18 grain.right.velocity_x=-0.02 time.end=1");
     CHECK(travels.summary["warnings"].size() == 2);
+    // One that flies into the other at rest is two that meet in another frame.
+    const Run hit = run("hit", "rebound",
+                        "grain.left.velocity_x=0.2 grain.right.velocity_x=0 grid.cells_x=60 "
+                        "grid.length_x=1.5 method.shape=quadratic");
+    CHECK(hit.summary["results"]["rebound"]["pass"].get<bool>());
     check_budget(r);
     const double p = r.column("momentum_x_left").front();
     CHECK(largest(r.column("momentum_x")) <= 1e-12 * p);

@@ -894,11 +894,19 @@ grains incline_block.toml grain.block.velocity_x=1
 grains rolling_cylinder.toml grain.cylinder.spin=5
     theory.compare = "rolling" is of a grain that starts at rest: take out velocity_x, velocity_y,
     spin and amplitude of 'cylinder'
+grains incline_block.toml grain.plate.velocity_x=0.1
+    theory.compare = "block" is of a plate at rest: take out what moves 'plate'
+grains incline_block.toml grain.block.shape=disk
+    theory.compare = "block" is of a block, and a disk rolls: set theory.compare = "rolling"
+mpm_implicit disks theory.compare=compression
+    theory.compare = "compression" needs a rigid grain that presses the others
 grains incline_block.toml grain.block.y=0.3
     theory.compare = "block" needs a grain on its plate, and 'block' begins 0.05 above: lower it
 grains incline_block.toml grain.block.height=0.3 grain.block.y=0.3 grain.block.width=0.1 contact.friction=0.5
     theory.compare = "block" is of a block that does not topple, and friction turns this one over
     its lower edge: make it wider than 0.15
+grains bonded_bar.toml grain.right.amplitude=0.2
+    theory.compare = "bond" needs one material, mode and amplitude of all boxes
 grains vibrating_bar.toml grain.bar.mode=10 material.default.nu=0.3
     theory.compare = "bar" is of a thin bar, and this one, whose height is 3.125
 mpm_implicit billet.toml grain.top.velocity_y=1e-3
@@ -926,11 +934,10 @@ mpm_implicit disks theory.compare=yield material.soft.law=j2 grain.right.materia
     needs a grain of a material with law = "j2", and 'left' is of another
 mpm_implicit mesh end left theory.compare=yield material.default.law=j2 grain.left.velocity_x=0 \
     solver.kind=newton_krylov
-    theory.compare = "yield" measures shares of the energy at the start, and nothing moves then: \
-    give a grain a velocity
 mpm_explicit mesh end left theory.compare=yield material.default.law=j2 grain.left.velocity_x=0
-    theory.compare = "yield" measures shares of the energy at the start, and nothing moves then:
-    give a grain a velocity
+mpm_explicit plates theory.compare=yield material.default.law=j2 grain.disk.velocity_x=0 grain.top.velocity_y=-0.1
+    theory.compare = "yield" measures shares of the energy at the start, and nothing that can be
+    strained moves then: give it a velocity
 grains plates theory.compare=disk theory.grain=nobody -> theory.grain: there is no grain 'nobody'
 grains plates theory.compare=disk theory.plate=nobody -> theory.plate: there is no grain 'nobody'
 grains plates theory.compare=disk theory.grain=top
@@ -960,6 +967,7 @@ mpm_implicit billet.toml contact.friction=0.1
 mpm_implicit billet.toml grain.billet.height=0.3 grain.billet.angle=1
 mpm_implicit billet.toml grain.billet.shape=disk grain.billet.radius=0.2
 mpm_implicit billet.toml grain.top.velocity_y=0
+mpm_implicit billet.toml theory.plate=bottom
     theory.compare = "billet" needs one upright box between two rigid plates without friction, of
     which one moves along y
 mpm_implicit billet_plastic.toml material.default.hardening=1
@@ -1008,7 +1016,9 @@ plasmas harris.normal_field=0.05
 plasmas grid.boundary_x=reflecting harris.normal_field=0.1
     the field lines of the tail are turned by 1.28 at the walls, more than 1: lower harris.normal_field or
 plasmas grid.boundary_x=reflecting harris.thickness=3 harris.normal_field=0.1
-    the tail is 4.596 d_i thick at one end and does not fit between walls 12.8 d_i apart
+    the tail is 4.596 d_i thick at one end and does not fit between walls 12.8 d_i apart: lower
+    harris.normal_field or grid.length_x
+plasmas theory.near=-1 -> 'theory.near' = -1 is out of range
 plasmas grid.cells_z=63
     grid.cells_z = 63 is odd: the flux is measured on the row z = 0, so make it even
 plasmas harris.thickness=4

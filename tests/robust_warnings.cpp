@@ -279,6 +279,8 @@ plasmas electrons species.electrons.temperature_x=0.01 grid.length_x=0.001 grid.
 plasmas electrons time.dt=1e-4 time.end=0.01
     warning: omega_p time.end = 0.01 and Omega_c time.end = 0 are below 0.1
 plasmas electrons time.dt=1e-4 time.end=0.01 grid.length_x=0.1 wave_E_y -> no warning
+plasmas electrons species.electrons.charge=0
+    warning: no species has a charge, and no field acts on any: give one a charge
 explicit_em grid.cells_x=256 grid.cells_z=128
     warning: electrons: the Debye length is 0.1443 cells, below 0.2: where the plasma drifts the
     mesh may heat it, watch the energy
@@ -304,6 +306,9 @@ plasmas beam harris.guide_field=1
 implicit_moment harris.particles=20000 grid.length_z=60
     warning: the sheet has 1.067 cells across its whole thickness, below 2, and is not resolved:
     raise grid.cells_z, or lower grid.length_z
+implicit_moment lhdi_quick.toml grid.cells_z=8
+    warning: the sheet has 1.778 cells across its whole thickness, below 2, and is not resolved:
+    raise grid.cells_z, or lower current_sheet.length_z
 implicit_moment beam species.beam.temperature_y=0.09
     warning: beam: about 225 of 2.621e+05 particles
 )");

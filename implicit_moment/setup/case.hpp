@@ -99,6 +99,12 @@ struct Case {
     long checkpoint_steps = 0;
     long history_steps = 1;  // steps from one row of history.dat to the next
 
+    // The Harris sheet of which a case says nothing: its particles are those of the talk's two runs.
+    HarrisCase initial_harris() const {
+        HarrisCase h;
+        if (leapfrog.chosen) h.particles = 9120000;
+        return h;
+    }
     // Which set-up it is: a Harris sheet seen across its current or along it, or a uniform plasma.
     bool is_across_current() const { return setup == "harris"; }
     bool is_along_current() const { return setup == "current_sheet"; }

@@ -132,7 +132,7 @@ inline void refuse_tail(const Case& w) {
            " at the walls, more than 1: lower harris.normal_field or grid.length_z");
     refuse(thick > 0.25 * w.grid.z.length, "the tail is ", thick,
            " d_i thick at one end and does not fit between walls ", w.grid.z.length,
-           " d_i apart: lower harris.normal_field, grid.length_x or harris.thickness");
+           " d_i apart: lower harris.normal_field or grid.length_x");
 }
 
 // The modes along the current have to fit.
@@ -152,11 +152,11 @@ inline void validate_sheet(const Case& w) {
     refuse(w.is_along_current() && w.boundary_x != "periodic",
            "a sheet along its current needs grid.boundary_x = \"periodic\"");
     refuse(w.boundary_z != "wall", "the Harris sheet needs grid.boundary_z = \"wall\"");
-    refuse_tail(w);
-    w.is_along_current() ? refuse_current_sheet(w) : refuse_reconnection(w);
     refuse(h.thickness > 0.25 * w.grid.z.length, "harris.thickness = ", h.thickness,
            " d_i does not fit between walls ", w.grid.z.length,
            " d_i apart: at most a quarter of grid.length_z");
+    refuse_tail(w);
+    w.is_along_current() ? refuse_current_sheet(w) : refuse_reconnection(w);
     const HarrisSheet sheet = harris_sheet(h);
     const double fastest = std::max({sheet.u_i, std::fabs(sheet.u_e), sheet.v_e, sheet.v_i});
     refuse(fastest >= 1, "the sheet has speeds of ", fastest, " c (drift or thermal speed): raise ",
@@ -265,15 +265,15 @@ inline void validate(Case& w) {
     w.is_uniform() ? detail::validate_uniform(w) : detail::validate_sheet(w);
 }
 
-/// Warnings of sections that the set-up does not read, and of runs in which particles fly straight on: no
-/// field acts on them for long enough, or none that they make together; and no wave of light is followed instead.
+/// Warnings of sections that the set-up does not read, and of runs in which particles fly straight on, because
+/// time or box are too short for any field to act on them. Where light is seeded, it may be light that is followed.
 inline std::vector<std::string> idleness_warnings(const Case& w, const Scales& scales) {
     std::vector<std::string> warnings;
     const auto unread = [&](const char* section, bool changed) {
         warn(warnings, w.setup != section && changed, "[", section,
              "] has no effect with plasma.setup = \"", w.setup, "\": take out what is there");
     };
-    unread("harris", w.harris != HarrisCase{});
+    unread("harris", w.harris != w.initial_harris());
     unread("current_sheet", w.current_sheet != CurrentSheetCase{});
     unread("uniform", w.uniform != UniformCase{});
     if (w.end == 0) return warnings;
@@ -292,7 +292,9 @@ inline std::vector<std::string> idleness_warnings(const Case& w, const Scales& s
     warn(warnings, scales.steps == 0, "time.end = ", w.end, " is below half of time.dt = ", w.dt,
          ": no step is taken");
     if (std::max(Omega_c, light) * w.end > 0.1) return warnings;
-    warn(warnings, omega_p * w.end < 0.1, "omega_p time.end = ", omega_p * w.end,
+    const bool acts = omega_p > 0 || light > 0;
+    warn(warnings, !acts, "no species has a charge, and no field acts on any: give one a charge");
+    warn(warnings, acts && omega_p * w.end < 0.1, "omega_p time.end = ", omega_p * w.end,
          " and Omega_c time.end = ", Omega_c * w.end,
          " are below 0.1: fields have no time to act; raise time.end, which is in units of "
          "1/omega_pi");
@@ -305,7 +307,7 @@ inline std::vector<std::string> idleness_warnings(const Case& w, const Scales& s
 }
 
 /// Warnings of what is faster than light at the start: how many particles.
-inline std::vector<std::string> tail_warnings(const Case& w, const Scales& scales) {
+inline std::vector<std::string> superluminal_warnings(const Case& w, const Scales& scales) {
     std::vector<std::string> warnings;
     const double each = double(scales.particles) / std::max(1.0, double(scales.species.size()));
     for (const SpeciesScales& s : scales.species) {
@@ -326,7 +328,7 @@ inline std::vector<std::string> tail_warnings(const Case& w, const Scales& scale
 ///         instability of all momentum-conserving methods may heat the plasma.
 inline std::vector<std::string> closure_warnings(const Case& w, const Scales& scales) {
     std::vector<std::string> warnings = idleness_warnings(w, scales);
-    for (const std::string& warning : tail_warnings(w, scales)) warnings.push_back(warning);
+    for (const std::string& warning : superluminal_warnings(w, scales)) warnings.push_back(warning);
     const double dx = w.grid.x.spacing(), dz = w.grid.z.spacing();
     for (const SpeciesScales& s : scales.species) {
         const double most = s.thermal_speed * w.dt / std::min(dx, dz);
@@ -354,7 +356,8 @@ inline std::vector<std::string> closure_warnings(const Case& w, const Scales& sc
     const double across = w.is_uniform() ? 2 : harris_of(w).thickness / dz;
     warn(warnings, across < 1, "the sheet has ", 2 * across,
          " cells across its whole thickness, below 2, and is not resolved: raise grid.cells_z, or "
-         "lower grid.length_z");
+         "lower ",
+         w.is_along_current() ? "current_sheet" : "grid", ".length_z");
     for (const SpeciesScales& s : scales.species) {
         warn(warnings, s.Omega_c_dt > 2 * pi, s.name, ": Omega_c dt = ", s.Omega_c_dt,
              " is above 2 pi, gyration is not followed");

@@ -148,7 +148,7 @@ inline void describe_smoothing(common::ParameterTable& table, Case& w, const cha
 
 // Comparison and output.
 inline void describe_results(common::ParameterTable& table, Case& w) {
-    using common::anything, common::at_least, common::between;
+    using common::at_least, common::between;
     table.group("comparison with theory (uniform plasma)");
     std::vector<std::string> names{"none"};
     for (const Wave& wave : waves()) names.push_back(wave.name);
@@ -156,7 +156,7 @@ inline void describe_results(common::ParameterTable& table, Case& w) {
                  "exact for the scheme in vacuum or cold plasma; kinetic dispersion relation");
     table.choice("theory.component", w.component, {"E_x", "E_y", "E_z", "B_x", "B_y", "B_z"},
                  "whose seeded mode is followed");
-    table.real("theory.near", w.near, "omega_pi", anything(),
+    table.real("theory.near", w.near, "omega_pi", at_least(0),
                "frequency near which the root is sought; 0: fastest growing");
 
     table.group("output");
@@ -221,7 +221,7 @@ inline common::ParameterTable describe_explicit(Case& w) {
     w.leapfrog.chosen = true;
     w.grid.x.cells = 512, w.grid.z.cells = 256;
     w.dt = 0.03, w.end = 380;
-    w.harris.particles = 9120000;
+    w.harris = w.initial_harris();
     w.field.smoothing.passes = 0;
     w.history_steps = 20;
     common::ParameterTable table;

@@ -16,10 +16,10 @@
 
 namespace implicit_moment {
 
-/// A mode and all its images: as many as three components can tell apart do for those without end, since cold
-/// particles at rest answer them alike.
+/// A mode and its images. Cold particles at rest answer all images alike, so that three rows of weights with the
+/// overlaps of all of them stand for those beside k.
 struct MeshOfMode {
-    static constexpr long images = 4;         // k, and as many as three components can tell apart
+    static constexpr long images = 4;         // k, and one for each component
     Eigen::Matrix<double, 3, images> weight;  // smoothed
     Eigen::Matrix3d to_nodes;                 // the means with which chi goes to nodes and back
     double smoothing;
@@ -29,7 +29,7 @@ struct MeshOfMode {
 inline MeshOfMode mesh_of_mode(const Case& w) {
     const WaveVector k = wave_vector(w);
     const double x = k.x * w.grid.x.spacing(), z = k.z * w.grid.z.spacing();
-    // Of two components in one direction: both half a cell from the nodes, none, or one.
+    // Overlaps in one direction, of splines that both stand half a cell from the nodes, or none, or one of them.
     const auto products = [&](const auto& half, const auto& whole, const auto& between) {
         const double xy = between(x) * whole(z), yz = whole(x) * between(z),
                      xz = between(x) * between(z);
@@ -58,7 +58,7 @@ inline MeshOfMode mesh_of_mode(const Case& w) {
     return mesh;
 }
 
-/// Where u of species s and image m stands among the amplitudes: E, B, rho, then these.
+/// The first of the three numbers of u of species s and image m among the amplitudes: E, B, rho, then these.
 inline long place_of(std::size_t s, long m) { return 7 + 3 * (MeshOfMode::images * long(s) + m); }
 
 /// v -> (x, y, z) x v.
@@ -195,7 +195,7 @@ inline std::vector<ColdWave> cold_waves(const Case& w) {
         }
         if (of_images > of_k) continue;
         const std::complex<double> g = modes.values[n];
-        // Half a turn is one in either sense.
+        // Half a turn in a step has no sense: it counts as forward.
         const double growth = std::log(std::abs(g)), turn = -std::arg(g);
         waves.push_back(
             {{(turn < 1e-9 - pi ? pi : turn) / w.dt, std::fabs(growth) < 1e-12 ? 0 : growth / w.dt},

@@ -14,7 +14,7 @@
 namespace implicit_moment {
 
 /// The mean of E against that of the scheme, and the mean velocity over the run against c E x B/B^2.
-///     E is shared out: the plasma answers with currents, and of E_0 across a strong B is left
+///     The currents of the plasma weaken E: of E_0 across a strong B they leave
 ///     E_0/(1 + sum omega_s^2/Omega_s^2), with oscillations
 /// note:   a mean over the time T has the turning points of a gyration at its ends, 4/(Omega T).
 inline void compare_drift(const Case& w, const common::History& history, common::Summary& summary) {
@@ -64,7 +64,9 @@ inline void compare_drift(const Case& w, const common::History& history, common:
         velocity += part / mass * (momentum[n] + momentum[n - 1] - 2 * of_neutrals);
     }
     const Eigen::Vector3d drift = c * E_mean.cross(B) / B.squaredNorm();
-    if (!(slowest * times.back() > 20) || !(drift.norm() * B.norm() > 1e-3 * c * largest)) return;
+    if (mass == 0 || !(slowest * times.back() > 20) ||
+        !(drift.norm() * B.norm() > 1e-3 * c * largest))
+        return;
     summary.result_info("E_cross_B_drift", drift.norm(), "c", "c E x B/B^2, E the mean in time");
     summary.result("drift_over_E_cross_B", velocity.dot(drift) / drift.squaredNorm(), "", 1,
                    0.01 + 4 / (slowest * times.back()), "all charges drift alike");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "common/run/run.hpp"
@@ -11,15 +12,49 @@
 
 namespace implicit_moment {
 
-/// Harris sheet without perturbation: profiles against n0 sech^2(z/lambda) + n_inf, in units of
-/// their own particle noise.
+/// Density and current of a sheet beside its equilibrium, block of nodes after block, in units of their noise:
+/// that of the number of particles in a block.
+struct SheetOverNoise {
+    double density = 0, current = 0, count = 0;
+
+    /// in:     n, what is expected in the block, and what of it drifts; number, of its particles of a species;
+    ///         mean, of a moment over its nodes
+    /// out:    false for a block of less than ten particles, whose noise is not Gaussian and which is left out
+    template <class Mean>
+    bool add(const Case& w, const std::vector<Moments>& moments, double n, double drifts,
+             double number, const Mean& mean) {
+        if (!(number >= 10)) return false;
+        const HarrisSheet sheet = harris_sheet(w.harris);
+        for (const Moments& m : moments)
+            density += std::pow(std::fabs(mean(m.rho)) / n - 1, 2) * number;
+        const double J = drifts * (sheet.u_i - sheet.u_e),
+                     noise = n * std::sqrt((sheet.T_i + sheet.T_e * w.harris.mass_ratio) / number);
+        current += std::pow((mean(moments[0].J_y) + mean(moments[1].J_y) - J) / noise, 2);
+        count += 1;
+        return true;
+    }
+    /// in:     where density and current of theory come from
+    void report(const std::string& of_density, const std::string& of_current,
+                common::Summary& summary) const {
+        if (count == 0)
+            return summary.not_measured("density_over_noise",
+                                        "no part of the sheet has ten particles to compare: raise "
+                                        "harris.particles");
+        summary.result_at_most("density_over_noise", std::sqrt(density / (2 * count)), "", 1.2,
+                               of_density);
+        summary.result_at_most("current_over_noise", std::sqrt(current / count), "", 1.2,
+                               of_current);
+    }
+};
+
+/// Harris sheet without perturbation: profiles against n0 sech^2(z/lambda) + n_inf, row by row of the nodes,
+/// which count the particles of one row of cells.
 inline void compare_equilibrium(const Case& w, const Plasma& plasma,
                                 const std::vector<Moments>& moments, const common::History& history,
                                 common::Summary& summary) {
     const Grid& grid = w.grid;
-    const HarrisSheet sheet = harris_sheet(w.harris);
     const double weight = plasma.species[0].q_p;
-    double density = 0, current_y = 0;
+    SheetOverNoise seen;
     for (long j = 1; j < grid.z.cells; ++j) {
         const double z = grid.z.at(double(j)) - (grid.z.low + 0.5 * grid.z.length);
         const double in_sheet =
@@ -27,18 +62,8 @@ inline void compare_equilibrium(const Case& w, const Plasma& plasma,
                      [&](double at) { return std::pow(std::cosh(at / w.harris.thickness), -2); }, z,
                      grid.z.spacing());
         const double n = in_sheet + n0 * w.harris.background;
-        // A row of nodes counts the particles of one row of cells; its relative noise is that of
-        // their number.
-        const double in_row = n * grid.x.length * grid.z.spacing() / weight;
-        const auto row = [&](const Field& f) {
-            return f.segment(grid.index(0, j), grid.x.cells).mean();
-        };
-        for (const Moments& m : moments)
-            density += std::pow((std::fabs(row(m.rho)) / n - 1), 2) * in_row;
-        const double J = in_sheet * (sheet.u_i - sheet.u_e);
-        const double J_noise =
-            n * std::sqrt((sheet.T_i + sheet.T_e * w.harris.mass_ratio) / in_row);
-        current_y += std::pow((row(moments[0].J_y) + row(moments[1].J_y) - J) / J_noise, 2);
+        seen.add(w, moments, n, in_sheet, n * grid.x.length * grid.z.spacing() / weight,
+                 [&](const Field& f) { return f.segment(grid.index(0, j), grid.x.cells).mean(); });
     }
     summary.hint(
         "the mesh heats what it does not resolve, and few particles exchange heat: refine the "
@@ -48,11 +73,7 @@ inline void compare_equilibrium(const Case& w, const Plasma& plasma,
         summary.result("kinetic_over_initial_" + s.name, kinetic.back() / kinetic.front(), "", 1,
                        0.05, "equilibrium: neither heats nor cools");
     }
-    const double rows = double(grid.z.cells - 1);
-    summary.result_at_most("density_over_noise", std::sqrt(density / (2 * rows)), "", 1.2,
-                           "n0 sech^2(z/lambda) + n_inf");
-    summary.result_at_most("current_over_noise", std::sqrt(current_y / rows), "", 1.2,
-                           "Harris 1962");
+    seen.report("n0 sech^2(z/lambda) + n_inf", "Harris 1962", summary);
 }
 
 }  // namespace implicit_moment

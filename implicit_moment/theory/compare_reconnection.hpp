@@ -25,16 +25,17 @@ inline double at_time(const std::vector<double>& times, const std::vector<double
     return std::nan("");
 }
 
-// Steepest least-squares slope over windows of the given length.
+// Steepest least-squares slope over windows of the given length, or of a row more where rows are far apart.
 inline double steepest_slope(const std::vector<double>& times, const std::vector<double>& values,
                              double window) {
     double steepest = -HUGE_VAL;
     std::size_t first = 0;
     for (std::size_t last = 1; last < times.size(); ++last) {
         while (times[last] - times[first] > window * (1 + 1e-9)) ++first;
-        if (times[last] - times[first] < 0.9 * window) continue;
-        const std::size_t rows = last - first + 1;
-        steepest = std::max(steepest, common::slope({&times[first], rows}, {&values[first], rows}));
+        const bool is_short = times[last] - times[first] < 0.9 * window;
+        if (is_short && first == 0) continue;
+        const std::size_t begin = is_short ? first - 1 : first, rows = last - begin + 1;
+        steepest = std::max(steepest, common::slope({&times[begin], rows}, {&values[begin], rows}));
     }
     return steepest;
 }

@@ -80,13 +80,4 @@ inline common::Complex stream_response(const Stream& s, double k, double light,
                                    k * s.along * v_E * v_E * (2.0 * by_w - lost * by_w_squared));
 }
 
-/// The fastest growing (or least damped) transverse wave of wave number k.
-inline common::DispersionRoot fastest_growing_transverse(
-    std::span<const common::PlasmaSpecies> plasma, double k, double light, int sense) {
-    const auto D = [&](common::Complex omega) {
-        return transverse_dispersion(plasma, k, light, sense, omega);
-    };
-    return common::fastest_growing_root(D, common::fan_of_guesses(plasma, k, light));
-}
-
 }  // namespace implicit_moment

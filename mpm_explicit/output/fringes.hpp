@@ -22,16 +22,6 @@
 
 namespace mpm {
 
-/// The part of the plane to draw.
-struct Window {
-    double x_low = 0, x_high = 0, y_low = 0, y_high = 0;
-};
-
-/// All of the mesh.
-inline Window whole(const Mesh& mesh) {
-    return {mesh.x_low, mesh.x_high(), mesh.y_low, mesh.y_high()};
-}
-
 /// Square pixels, row after row from the bottom; axes hold the centers of the pixels. Between the
 /// grains the number of the grain is -1 and the stresses are not numbers.
 struct FringeRaster {
@@ -107,22 +97,22 @@ inline Patch average_on_nodes(const Particles& particles, long begin, long end, 
 }
 
 /// The pixels of one direction that a patch can reach, first ... first + count - 1 from the edge of
-/// the window, and their weights at the nodes.
+/// the mesh, and their weights at the nodes.
 struct Reach {
     long first = 0, count = 0;
     std::vector<Weights<2>> linear;
     std::vector<Weights<3>> quadratic;
 };
 
-/// in:    nodes of the patch; edge of the window, in cells from node 0 of the mesh
-inline Reach reach_pixels(long node_first, long nodes, double edge, int per_cell) {
+/// in:    nodes of the patch
+inline Reach reach_pixels(long node_first, long nodes, int per_cell) {
     // Take the pixels whose nearest node has both neighbors in the patch.
     const double low = double(node_first + 1), high = double(node_first + nodes - 2);
     Reach reach;
-    reach.first = long(std::ceil((low - edge) * per_cell - 0.5));
-    reach.count = long(std::floor((high - edge) * per_cell - 0.5)) - reach.first + 1;
+    reach.first = long(std::ceil(low * per_cell - 0.5));
+    reach.count = long(std::floor(high * per_cell - 0.5)) - reach.first + 1;
     for (long q = reach.first; q < reach.first + reach.count; ++q) {
-        const double at = edge + (double(q) + 0.5) / per_cell;
+        const double at = (double(q) + 0.5) / per_cell;
         reach.linear.push_back(LinearShape{}(at, 1.0));
         reach.quadratic.push_back(QuadraticShape{}(at, 1.0));
     }
@@ -193,7 +183,7 @@ inline NodeStress stress_at(const Patch& patch, const Weights<2>& x, const Weigh
     return s;
 }
 
-/// Draws one grain. Pixel i of a periodic mesh shows also what is whole periods of pixels away.
+/// Draws one grain. Pixel i of a periodic mesh shows also what is whole periods of pixels away; period 0: none.
 inline void draw_grain(const Patch& patch, const std::vector<double>& covered, int number,
                        const Reach& in_x, const Reach& in_y, long period, FringeRaster& raster) {
     const double level = outline_level(covered, patch.volume / (raster.x.step * raster.y.step));
@@ -206,17 +196,14 @@ inline void draw_grain(const Patch& patch, const std::vector<double>& covered, i
             const NodeStress s = stress_at(patch, in_x.linear[n], in_y.linear[m]);
             if (!(s.weight > 0)) continue;
             long i = in_x.first + n;
-            if (period > 0) i %= period;
-            for (; i < raster.x.count; i += period) {
-                const std::size_t pixel = raster.pixel(std::max(i, 0l), j);
-                if (i >= 0 && part > raster.coverage[pixel]) {
-                    raster.coverage[pixel] = part;
-                    raster.grain[pixel] = number;
-                    raster.stress_difference[pixel] = std::hypot(s.xx - s.yy, 2 * s.xy) / s.weight;
-                    raster.pressure[pixel] = -s.mean / s.weight;
-                }
-                if (period == 0) break;
-            }
+            if (period > 0) i = (i % period + period) % period;
+            if (i < 0 || i >= raster.x.count) continue;
+            const std::size_t pixel = raster.pixel(i, j);
+            if (!(part > raster.coverage[pixel])) continue;
+            raster.coverage[pixel] = part;
+            raster.grain[pixel] = number;
+            raster.stress_difference[pixel] = std::hypot(s.xx - s.yy, 2 * s.xy) / s.weight;
+            raster.pressure[pixel] = -s.mean / s.weight;
         }
     }
 }
@@ -228,35 +215,33 @@ inline void draw_grain(const Patch& patch, const std::vector<double>& covered, i
 /// of components that come from the particles to nodes and from nodes to pixels by linear weights,
 /// grain by grain. Where grains meet, a pixel shows the one that covers most of it.
 /// in:    grains, each with its particles begin ... end - 1 and has_corners (a Grain, or any struct
-///        with these); x_p may lie outside of a periodic mesh; a window whose sides are whole numbers of pixels;
-///        at 7 or more pixels per cell what the mesh resolves is smooth
+///        with these); x_p may lie outside of a periodic mesh; at 7 or more pixels per cell what the
+///        mesh resolves is smooth
 /// out:   the raster
 /// exact: uniform stress has the same s1 - s2 in all pixels of its grain
 template <class Range>
 FringeRaster draw_fringes(const Particles& particles, const std::vector<Range>& grains,
-                          const Mesh& mesh, const Window& window, int pixels_per_cell = 8) {
+                          const Mesh& mesh, int pixels_per_cell = 8) {
     const double step = mesh.h / pixels_per_cell;
     FringeRaster raster;
-    raster.x.first = window.x_low + 0.5 * step;
-    raster.y.first = window.y_low + 0.5 * step;
+    raster.x.first = mesh.x_low + 0.5 * step;
+    raster.y.first = mesh.y_low + 0.5 * step;
     raster.x.step = raster.y.step = step;
-    raster.x.count = std::max(1l, std::lround((window.x_high - window.x_low) / step));
-    raster.y.count = std::max(1l, std::lround((window.y_high - window.y_low) / step));
+    raster.x.count = mesh.cells_x * pixels_per_cell;
+    raster.y.count = mesh.cells_y * pixels_per_cell;
     const long pixels = raster.x.count * raster.y.count;
     raster.stress_difference.assign(pixels, std::numeric_limits<double>::quiet_NaN());
     raster.pressure = raster.stress_difference;
     raster.coverage.assign(pixels, 0.0);
     raster.grain.assign(pixels, -1);
 
-    const long period = mesh.periodic_x ? mesh.cells_x * pixels_per_cell : 0;
-    const double edge_x = (window.x_low - mesh.x_low) / mesh.h,
-                 edge_y = (window.y_low - mesh.y_low) / mesh.h;
+    const long period = mesh.periodic_x ? raster.x.count : 0;
     for (std::size_t g = 0; g < grains.size(); ++g) {
         using namespace detail;
         if (grains[g].end <= grains[g].begin) continue;
         const Patch patch = average_on_nodes(particles, grains[g].begin, grains[g].end, mesh);
-        const Reach in_x = reach_pixels(patch.i_first, patch.nodes_x, edge_x, pixels_per_cell),
-                    in_y = reach_pixels(patch.j_first, patch.nodes_y, edge_y, pixels_per_cell);
+        const Reach in_x = reach_pixels(patch.i_first, patch.nodes_x, pixels_per_cell),
+                    in_y = reach_pixels(patch.j_first, patch.nodes_y, pixels_per_cell);
         draw_grain(patch,
                    grains[g].has_corners
                        ? cover_by_particles(particles, grains[g].begin, grains[g].end, raster,

@@ -164,8 +164,7 @@ inline void write_fringes(const common::Snapshot& at_time, const FringeRaster& r
 /// Writes fringes_NNNNNN.dat: the principal stress difference of elastic grains on pixels.
 inline void write_fringe_raster(const common::Snapshot& at_time, const Case& parameters,
                                 const Assembly& all) {
-    const Mesh mesh = parameters.problem.mesh();
-    write_fringes(at_time, draw_fringes(all.particles, all.grains, mesh, whole(mesh),
+    write_fringes(at_time, draw_fringes(all.particles, all.grains, parameters.problem.mesh(),
                                         int(parameters.pixels_per_cell)));
 }
 

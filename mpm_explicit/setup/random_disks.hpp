@@ -20,15 +20,13 @@
 namespace mpm {
 
 /// Random disks in a box. A radius is any from the least to the largest with equal chance. Disk
-/// after disk is placed until there are as many as wanted, or they fill as much as wanted, or,
-/// where neither is given, until the next one finds no place.
+/// after disk is placed until there are as many as wanted, or without that until the next one finds no place.
 struct RandomDisks {
     Bounds box;
     bool periodic_x = false;  // no walls at the ends of x
     double radius_min = 0, radius_max = 0;
     long count = 0;
-    double solid_fraction = 0;  // area of the disks over that of the box
-    double gap = 0;             // least distance between disks; half of it to the box
+    double gap = 0;  // least distance between disks; half of it to the box
     bool loose = false;
     std::uint64_t seed = 1;
 };
@@ -179,13 +177,8 @@ inline void validate(const RandomDisks& pack) {
         "a box of " + format(width) + " by " + format(height) + " is too small for disks " +
             format(largest) + " wide: it must be as high, and " + format(least_widths) +
             " times as wide");
-    require(pack.solid_fraction >= 0 && pack.solid_fraction < 1,
-            "the solid fraction of a pack is " + format(pack.solid_fraction) +
-                ": give one from 0, for none, to below 1");
-    require(pack.count >= 0 && (pack.count == 0 || pack.solid_fraction == 0) &&
-                (!pack.loose || pack.count > 0 || pack.solid_fraction > 0),
-            "a pack of " + std::to_string(pack.count) + " disks and a solid fraction of " +
-                format(pack.solid_fraction) + ": give one of the two");
+    require(pack.count >= (pack.loose ? 1 : 0),
+            "a pack of " + std::to_string(pack.count) + " disks: give at least one");
     const double most = pack.count > 0 ? double(pack.count) : width * height / (4 * least * least);
     require(most <= 1e6, "a pack of up to " + format(most) +
                              " disks: give larger radii or a smaller box, for at most 1e6");
@@ -227,11 +220,8 @@ inline std::vector<Outline> place_random_disks(const RandomDisks& pack) {
     DiskCells scattered(box, largest, pack.periodic_x);
     std::vector<Outline> outlines;
     double fraction = 0;
-    const bool fill_up = pack.count == 0 && pack.solid_fraction == 0;
-    for (std::uint64_t k = 0;; ++k) {
-        const bool enough = pack.count > 0 ? k == static_cast<std::uint64_t>(pack.count)
-                                           : !fill_up && fraction >= pack.solid_fraction;
-        if (enough) break;
+    const bool fill_up = pack.count == 0;
+    for (std::uint64_t k = 0; fill_up || k < std::uint64_t(pack.count); ++k) {
         const double u = common::uniform(pack.seed, detail::pack_radii, k, 0),
                      r = std::fma(u, pack.radius_max - pack.radius_min, pack.radius_min);
         const bool placed = pack.loose ? detail::scatter(pack, box, r + half_gap, scattered)

@@ -36,12 +36,16 @@ inline void need_incline(const PlannedCase& planned) {
         " needs one grain, a rigid plate, and an inclined gravity: load.gravity_x not 0, "
         "load.gravity_y below 0");
     const Bounds grain = bounds(planned.plans[planned.target()].outline);
-    const bool below = std::ranges::any_of(planned.plans, [&](const auto& plan) {
-        return planned.is_rigid(plan) &&
-               bounds(plan.outline).y_high < 0.5 * (grain.y_low + grain.y_high);
-    });
+    double top = -std::numeric_limits<double>::infinity();  // of the plates below
+    for (const PlannedGrain& plan : planned.plans) {
+        const double high = bounds(plan.outline).y_high;
+        if (!planned.is_rigid(plan) || high >= 0.5 * (grain.y_low + grain.y_high)) continue;
+        planned.refuse(!planned.is_fixed(plan),
+                       " is of a plate at rest: take out what moves '" + plan.name + "'");
+        top = std::max(top, high);
+    }
     planned.refuse(
-        !below,
+        std::isinf(top),
         " needs a rigid plate below the grain: turn the case, so that x is along the plate");
     const GrainCase& from = planned.plans[planned.target()].from;
     planned.refuse(
@@ -49,11 +53,6 @@ inline void need_incline(const PlannedCase& planned) {
         " is of a grain that starts at rest: take out velocity_x, velocity_y, spin and "
         "amplitude of '" +
             from.name + "'");
-    double top = -std::numeric_limits<double>::infinity();
-    for (const PlannedGrain& plan : planned.plans)
-        if (const Bounds plate = bounds(plan.outline);
-            planned.is_rigid(plan) && plate.y_high < 0.5 * (grain.y_low + grain.y_high))
-            top = std::max(top, plate.y_high);
     planned.refuse(grain.y_low - top > 0.1 * problem.mesh().h,
                    " needs a grain on its plate, and '" + from.name + "' begins " +
                        format(grain.y_low - top) + " above: lower it");
@@ -118,7 +117,10 @@ inline void compare_incline(const FinishedRun& run,
 inline void need_block(const PlannedCase& planned) {
     need_incline(planned);
     const Problem& problem = planned.parameters.problem;
-    const Bounds block = bounds(planned.plans[planned.target()].outline);
+    const Outline& outline = planned.plans[planned.target()].outline;
+    planned.refuse(outline.kind == OutlineKind::disk,
+                   " is of a block, and a disk rolls: set theory.compare = \"rolling\"");
+    const Bounds block = bounds(outline);
     const double slope =
         std::min(friction_on_plate(planned), std::fabs(problem.gravity_x / problem.gravity_y));
     planned.refuse(slope * (block.y_high - block.y_low) >= block.x_high - block.x_low,
@@ -271,32 +273,40 @@ inline double mean_late(const FinishedRun& run, const std::string& name) {
     return sum / count;
 }
 
-/// The late load of the plates that count: its mean and the difference of the largest and the
-/// smallest.
+/// The late load: the mean of the plates that count, and the difference of the largest and the smallest
+/// of all.
 struct PlateLoad {
     double mean = 0, spread = 0;
 };
-inline PlateLoad load_of_plates(const FinishedRun& run) {
+/// Reports it; where the plates bear nothing, that `result` cannot be measured.
+inline PlateLoad load_of_plates(const FinishedRun& run, const std::string& result,
+                                common::Summary& summary) {
     double sum = 0, plates = 0, least = 1e300, most = 0;
     for (const Grain& grain : run.all.grains) {
-        if (!grain.rigid || !(run.parameters.plate.empty() || grain.name == run.parameters.plate))
-            continue;
+        if (!grain.rigid) continue;
         const double P = std::fabs(mean_late(run, "force_y_" + grain.name));
-        sum += P, plates += 1, least = std::min(least, P), most = std::max(most, P);
+        least = std::min(least, P), most = std::max(most, P);
+        if (run.parameters.plate.empty() || grain.name == run.parameters.plate)
+            sum += P, plates += 1;
     }
+    if (sum > 0)
+        summary.result_info("load", sum / plates, "force",
+                            "of the plates, the mean over the last tenth of the run");
+    else
+        summary.not_measured(result,
+                             "the plates bear nothing in the last tenth of the run: let one press");
     return {sum / plates, most - least};
 }
 
 /// The stress at the center under the mean load of the plates, against the closed form.
 inline void compare_disk(const FinishedRun& run, common::Summary& summary) {
-    const double P = load_of_plates(run).mean;
+    const double P = load_of_plates(run, "center_difference", summary).mean;
+    if (!(P > 0)) return;
     const double R = run.planned.plans[run.planned.target()].outline.radius;
     const double xx = mean_late(run, "center_xx"), yy = mean_late(run, "center_yy"),
                  xy = mean_late(run, "center_xy"), exact = disk_center_difference(P, R);
     const Stress center = disk_stress(P, R, 0, 0);
     const std::string source = "Hertz's disk between two line loads";
-    summary.result_info("load", P, "force",
-                        "of the plates, the mean over the last tenth of the run");
     summary.hint("the contact is " +
                  format(contact_half_width(
                             {R, run.material().density, run.material().E, run.material().nu}, P) /
@@ -340,18 +350,14 @@ inline void compare_hertz(const FinishedRun& run, common::Summary& summary) {
     const Material& m = run.material();
     const double R = run.planned.plans[0].outline.radius, h = run.parameters.problem.mesh().h;
     const Disk disk{R, m.density, m.E, m.nu};
-    const PlateLoad load = load_of_plates(run);
-    if (!(load.mean > 0))
-        return summary.not_measured(
-            "approach", "the plates bear nothing in the last tenth of the run: let one move");
+    const PlateLoad load = load_of_plates(run, "approach", summary);
+    if (!(load.mean > 0)) return;
     const double b = contact_half_width(disk, load.mean);
     double low = 0, high = 0;
     for (const PlannedGrain& plan : run.planned.plans)
         if (run.planned.is_rigid(plan))
             (plan.outline.y < run.planned.plans[0].outline.y ? low : high) =
                 mean_late(run, "travel_y_" + plan.name);
-    summary.result_info("load", load.mean, "force",
-                        "of the plates, the mean over the last tenth of the run");
     summary.hint(
         "the grain is not at rest between the plates: move them more slowly, let them stop "
         "before the last fifth of the run, and raise load.damping");
@@ -372,20 +378,20 @@ inline void compare_hertz(const FinishedRun& run, common::Summary& summary) {
 
 // ---- a grain that yields ------------------------------------------------------------------------
 
-/// Needs a target grain of von Mises material, and something that moves.
+/// Needs a target grain of von Mises material, and one that moves.
 inline void need_yielding(const PlannedCase& planned) {
     const PlannedGrain& target = planned.plans[planned.target()];
     planned.refuse(planned.material_of(target).law != Law::j2,
                    " needs a grain of a material with law = \"j2\", and '" + target.name +
                        "' is of another: set theory.grain");
-    const auto is_at_rest = [](const PlannedGrain& plan) {
+    const auto is_at_rest = [&](const PlannedGrain& plan) {
         const GrainCase& from = plan.from;
-        return from.velocity_x == 0 && from.velocity_y == 0 && from.spin == 0 &&
-               from.amplitude == 0;
+        return planned.is_rigid(plan) || (from.velocity_x == 0 && from.velocity_y == 0 &&
+                                          from.spin == 0 && from.amplitude == 0);
     };
-    planned.refuse(std::all_of(planned.plans.begin(), planned.plans.end(), is_at_rest),
-                   " measures shares of the energy at the start, and nothing moves then: give a "
-                   "grain a velocity");
+    planned.refuse(std::ranges::all_of(planned.plans, is_at_rest),
+                   " measures shares of the energy at the start, and nothing that can be strained "
+                   "moves then: give it a velocity");
 }
 
 /// What yields stays on its yield surface and only ever takes energy.

@@ -48,6 +48,13 @@ struct PlannedCase {
     }
     long free_grains() const { return long(plans.size()) - rigid_grains(); }
 
+    /// Whether it is a rigid grain that stays where it is.
+    bool is_fixed(const PlannedGrain& plan) const {
+        const GrainCase& from = plan.from;
+        return is_rigid(plan) && from.control == "velocity" && from.velocity_x == 0 &&
+               from.velocity_y == 0 && from.swing_x == 0 && from.swing_y == 0 && plan.table.empty();
+    }
+
     /// The number of the target grain: theory.grain, or the first that is not rigid.
     std::size_t target() const {
         const auto found = std::find_if(plans.begin(), plans.end(), [&](auto& plan) {

@@ -45,7 +45,7 @@ inline void refuse_unstable(const Case& w) {
 /// source: Birdsall and Langdon (1985), chapters 8, 9 and 15.
 inline std::vector<std::string> leapfrog_warnings(const Case& w, const Scales& scales) {
     std::vector<std::string> warnings = idleness_warnings(w, scales);
-    for (const std::string& warning : tail_warnings(w, scales)) warnings.push_back(warning);
+    for (const std::string& warning : superluminal_warnings(w, scales)) warnings.push_back(warning);
     const double cell = std::min(w.grid.x.spacing(), w.grid.z.spacing());
     const double omega_p_dt = detail::omega_p_dt(w, scales);
     warn(warnings, omega_p_dt > 1.62, "omega_p dt = ", omega_p_dt,
