@@ -411,13 +411,12 @@ TEST_CASE("a uniform plasma whose energy changes by more than 5 percent fails") 
     // A uniform field with half of the energy is none that a plasma can gain or lose.
     const double of_field = 0.5 * (0.4 * 0.4 + 0.3 * 0.3 + 0.2 * 0.2) * 4 * 5;
     CHECK(std::fabs(usable_energy(w, 2 * of_field) / of_field - 1) <= 1e-12);
-    // Nor is a guide field, or a run without a step kept well.
+    // Nor is a guide field.
     Case sheet;
     sheet.harris.guide_field = 16;
     const double guide = 0.5 * std::pow(16 / sheet.harris.light_over_alfven, 2) *
                          sheet.grid.x.length * sheet.grid.z.length;
     CHECK(std::fabs(usable_energy(sheet, 1.5 * guide) / (0.5 * guide) - 1) <= 1e-12);
-    CHECK(!verdict({0}, w));
     // Light that the scheme must damp fails where it is kept.
     Case light = magnetized(false, 1);
     light.uniform.species.clear(), light.uniform.wave_E_y = 1, light.wave = "light";
