@@ -11,7 +11,7 @@
 
 namespace mpm {
 
-/// The bodies at a node, with what contact knows of them.
+/// The bodies that have mass at a node, with their velocities and surfaces there, and the normals of their pairs.
 class ContactBodies {
    public:
     ContactBodies(const ContactRule& rule, const std::vector<Grain>& grains,

@@ -27,7 +27,7 @@ struct StrainStep {
 ///   A = sum_s A_s,  M = sum_s A_s e_sT
 struct Surface {
     std::vector<int> host;               // the particle
-    std::vector<int> side;               // 0 or 1, another one beyond a sharp corner
+    std::vector<int> side;               // 0 or 1; it changes at a sharp corner
     std::vector<double> ax, ay;          // A [length]
     std::vector<double> xx, xy, yx, yy;  // M [length^2]
 

@@ -57,12 +57,12 @@ void surface_to_grid(const Shape& shape, const Particles& particles, GrainNodes&
         SurfaceSums &from = nodes.surface[k], &to = nodes.surface[k_to];
         // As in reduce_ghost_sums(): x of a mirror image is offset - x, of a wrapped one x - offset.
         const double side_x = ghost.mirror_x ? -1 : 1, side_y = ghost.mirror_y ? -1 : 1;
-        for (const std::size_t k_side : {0, 1}) {
-            const SideSums& one = from.sides[k_side];
+        for (const std::size_t side : {0, 1}) {
+            const SideSums& one = from.sides[side];
             const SideSums image{side_x * one.x,           side_y * one.y,           one.xx,
                                  side_x * side_y * one.xy, side_x * side_y * one.yx, one.yy};
-            to.sides[k_side] += moved(image, ghost.mirror_y ? 0 : -side_x * ghost.offset,
-                                      ghost.mirror_y ? ghost.offset : 0);
+            to.sides[side] += moved(image, ghost.mirror_y ? 0 : -side_x * ghost.offset,
+                                    ghost.mirror_y ? ghost.offset : 0);
         }
         from = {};
     }

@@ -360,6 +360,21 @@ TEST_CASE("polygons stand on a slope up to that of their base" * doctest::descri
     facts::check_polygon_stands("mpm_explicit", 6, 0.5, 0.65);
     facts::check_polygon_stands("mpm_explicit", 5, 0.65, 0.8, "method.shape=gimp");
     facts::check_polygon_stands("mpm_explicit", 8, 0.36, 0.6);
+    // Two hexagons, one upon the other, topple together at half of that.
+    for (const double slope : {2.0, 3.5}) {
+        CAPTURE(slope);
+        const Run two = run("two", "incline_block",
+                            "theory.compare=none grid.length_x=1 grid.cells_y=40 "
+                            "grain.block.shape=polygon grain.block.radius=0.1 grain.block.x=0.5 "
+                            "grain.block.y=0.2366025403784 grain.high.shape=polygon "
+                            "grain.high.radius=0.1 grain.high.x=0.5 grain.high.y=0.4098076211353 "
+                            "grain.plate.x=0.5 grain.plate.width=1 load.gravity_y=-10 "
+                            "contact.friction=0.8 material.default.viscosity=2e-4 load.rise=0.3 "
+                            "time.end=0.6 load.gravity_x=" +
+                                std::to_string(slope));
+        CHECK((slope < 2.886 ? two.column("kinetic").back() <= 0.01
+                             : two.column("kinetic").back() >= 1));
+    }
 }
 
 TEST_CASE("a cylinder rolls on a rough incline and slips on a smooth one" *

@@ -904,7 +904,11 @@ grains incline_block.toml grain.block.y=0.3
     theory.compare = "block" needs a grain on its plate, and 'block' begins 0.05 above: lower it
 grains incline_block.toml grain.block.height=0.3 grain.block.y=0.3 grain.block.width=0.1 contact.friction=0.5
     theory.compare = "block" is of a block that does not topple, and friction turns this one over
-    its lower edge: make it wider than 0.15
+    its lower edge: its base reaches 0.05 beyond its center, and has to reach farther than 0.075
+grains incline_block.toml grain.block.shape=polygon grain.block.sides=6 grain.block.radius=0.2 \
+    grain.block.y=0.32320508075689 contact.friction=0.6 load.gravity_x=7
+    theory.compare = "block" is of a block that does not topple, and friction turns this one over
+    its lower edge: its base reaches 0.1 beyond its center, and has to reach farther than 0.1039
 grains bonded_bar.toml grain.right.amplitude=0.2
     theory.compare = "bond" needs one material, mode and amplitude of all boxes
 grains vibrating_bar.toml grain.bar.mode=10 material.default.nu=0.3

@@ -207,6 +207,13 @@ mpm_explicit mesh end left grain.left.velocity_x=0.3669 -> no warning
 mpm_explicit disks load.gravity_y=-2.25
     warning: g H/c_p^2 = 0.1003 is above 0.05: grains at the bottom are crushed by the weight of
     a full mesh; stiffen the material
+grains incline_block.toml theory.compare=none grain.block.shape=polygon grain.block.sides=8
+    warning: a polygon has a side of 1.531 cells, below 6, beside an obtuse corner: nodes know its
+    ends to half a cell, and standing on it, it topples at a slope that may be 65.33 per cent off;
+    refine the mesh
+grains incline_block.toml boundary.y_low=slip
+    warning: boundary.y_low = "slip" holds for good what comes near, a cell too early, and a grain
+    begins 3 cells from it: take "frictional", with boundary.friction = 0 where it is smooth
 mpm_explicit disks contact.separation=0
     warning: contact.separation = 0: grains meet where they share nodes, up to 1.5 cells too
     early

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
 #include <set>
 #include <string>
 #include <utility>
@@ -136,17 +139,35 @@ inline void validate(const Case& parameters) {
                " makes rasters of " + format(pixels) + " pixels, more than 5e7: take fewer");
 }
 
+/// The shortest side of a polygon that meets another one at an obtuse corner, of 100 to 170 degrees; infinite
+/// without such corners.
+inline double shortest_base(const Outline& outline) {
+    const std::vector<Point>& at = outline.corners;
+    const std::size_t n = at.size();
+    double shortest = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < n; ++k) {
+        const Point &before = at[(k + n - 1) % n], &after = at[(k + 1) % n];
+        const double ax = at[k].x - before.x, ay = at[k].y - before.y, bx = after.x - at[k].x,
+                     by = after.y - at[k].y, a = std::hypot(ax, ay), b = std::hypot(bx, by),
+                     turn = std::fabs(std::atan2(ax * by - ay * bx, ax * bx + ay * by));
+        if (turn > std::numbers::pi / 18 && turn < std::numbers::pi * 8 / 18)
+            shortest = std::min({shortest, a, b});
+    }
+    return shortest;
+}
+
 /// Warnings of rollers and clamps that a grain will come to: they hold nodes, and so what touches them.
-inline std::vector<std::string> arrival_warnings(const Problem& problem) {
+inline std::vector<std::string> arrival_warnings(const Problem& problem,
+                                                 const std::vector<Material>& materials,
+                                                 const std::vector<PlannedGrain>& plans) {
     std::vector<std::string> warnings;
     const Mesh mesh = problem.mesh();
-    const std::vector<Material> materials = materials_of(problem);
     const std::array<const char*, 4> names{"x_low", "x_high", "y_low", "y_high"};
     for (const Side side : {x_low, x_high, y_low, y_high}) {
         if (problem.walls[side] != "slip" && problem.walls[side] != "stick") continue;
         const bool along_x = side == x_low || side == x_high, low = side == x_low || side == y_low;
         double farthest = 0;
-        for (const PlannedGrain& plan : plan_grains(problem, materials)) {
+        for (const PlannedGrain& plan : plans) {
             const Bounds box = bounds(plan.outline);
             const double away = side == x_low    ? box.x_low - mesh.x_low
                                 : side == x_high ? mesh.x_high() - box.x_high
@@ -214,12 +235,16 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
     bool has_surface = mesh.has(y_low, Boundary::frictional) ||
                        mesh.has(x_low, Boundary::frictional) ||
                        mesh.has(x_high, Boundary::frictional);
-    double least = std::numeric_limits<double>::infinity();  // radius of what can roll
-    for (const PlannedGrain& plan : plan_grains(problem, materials)) {
+    double least = std::numeric_limits<double>::infinity(),  // radius of what can roll
+        base = least;                                        // side of what can topple
+    const std::vector<PlannedGrain> plans = plan_grains(problem, materials);
+    for (const PlannedGrain& plan : plans) {
         if (materials[plan.material].law == Law::rigid)
             has_surface = true;
         else if (plan.outline.kind == OutlineKind::disk)
             least = std::min(least, plan.outline.radius / mesh.h);
+        else
+            base = std::min(base, shortest_base(plan.outline) / mesh.h);
         if (plan.from.control == "velocity" && plan.from.force != 0)
             warnings.push_back("grain '" + plan.name +
                                "' has a force and control = \"velocity\": the force does nothing");
@@ -230,7 +255,14 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
                                "\" and a velocity or a swing in that direction: it does nothing, "
                                "the grain starts at rest");
     }
-    for (const std::string& warning : arrival_warnings(problem)) warnings.push_back(warning);
+    for (const std::string& warning : arrival_warnings(problem, materials, plans))
+        warnings.push_back(warning);
+    if (g > 0 && problem.has_friction() && base < 6)
+        warnings.push_back(
+            "a polygon has a side of " + format(base) +
+            " cells, below 6, beside an obtuse corner: nodes know its ends to half a "
+            "cell, and standing on it, it topples at a slope that may be " +
+            format(100 / base) + " per cent off; refine the mesh");
     if (g > 0 && has_surface && problem.has_friction() && least < 12 * (1 - 1e-9))
         warnings.push_back(
             "a disk has a radius of " + format(least) +

@@ -109,9 +109,10 @@ struct OutlinePart {
     int side = 0;
 };
 
-/// The sides of a polygon, 0 or 1, so that the two at a sharp corner are not the same; of an odd number of
-/// sharp corners, the first half of the last side is as the one before it, and the second half the other one.
-/// note:   sharp is what turns by more than ten degrees: the mean of its sides is a thirtieth of a cell off
+/// A number for every half of every side of a polygon, 0 or 1, which changes at each sharp corner. Around a polygon
+/// with an odd number of these it has to change once more: in the middle of the last side.
+/// note:   a corner is sharp that turns by more than ten degrees; the mean of two sides that turn by less is
+///         at most a thirtieth of a cell off
 inline std::vector<std::array<int, 2>> number_sides(const std::vector<Point>& corners) {
     const double sharp = std::cos(std::numbers::pi / 18);
     const std::size_t n = corners.size();

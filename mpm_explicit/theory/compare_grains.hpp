@@ -112,21 +112,26 @@ inline void compare_incline(const FinishedRun& run,
                         "share of the rows in which the plate presses; below 1 the grain hops");
 }
 
-/// Needs what an incline needs, and a block that does not topple: friction, min(mu, tan) of its weight,
-/// pulls at the bottom, half a height below the center.
+/// Needs what an incline needs, and a block that does not topple: friction, min(mu, tan) of its weight, pulls at
+/// the bottom, and the base has to reach farther downhill than that turns the weight.
 inline void need_block(const PlannedCase& planned) {
     need_incline(planned);
     const Problem& problem = planned.parameters.problem;
     const Outline& outline = planned.plans[planned.target()].outline;
     planned.refuse(outline.kind == OutlineKind::disk,
                    " is of a block, and a disk rolls: set theory.compare = \"rolling\"");
-    const Bounds block = bounds(outline);
-    const double slope =
-        std::min(friction_on_plate(planned), std::fabs(problem.gravity_x / problem.gravity_y));
-    planned.refuse(slope * (block.y_high - block.y_low) >= block.x_high - block.x_low,
+    const double slope = std::min(friction_on_plate(planned),
+                                  std::fabs(problem.gravity_x / problem.gravity_y)),
+                 low = bounds(outline).y_low, downhill = std::copysign(1, problem.gravity_x);
+    double reach = -1e300;
+    for (const Point& corner : outline.corners)
+        if (corner.y - low < 1e-6 * outline.radius)
+            reach = std::max(reach, downhill * (corner.x - outline.x));
+    planned.refuse(slope * (outline.y - low) >= reach,
                    " is of a block that does not topple, and friction turns this one over its "
-                   "lower edge: make it wider than " +
-                       format(slope * (block.y_high - block.y_low)));
+                   "lower edge: its base reaches " +
+                       format(reach) + " beyond its center, and has to reach farther than " +
+                       format(slope * (outline.y - low)));
 }
 
 /// A block slides, or friction holds it.
