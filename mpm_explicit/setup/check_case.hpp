@@ -156,7 +156,8 @@ inline double shortest_base(const Outline& outline) {
     return shortest;
 }
 
-/// Warnings of rollers and clamps that a grain will come to: they hold nodes, and so what touches them.
+/// Warnings of rollers and clamps that a grain may come to, unless bonds hold it away: they hold nodes, and so
+/// what touches them.
 inline std::vector<std::string> arrival_warnings(const Problem& problem,
                                                  const std::vector<Material>& materials,
                                                  const std::vector<PlannedGrain>& plans) {
@@ -179,7 +180,7 @@ inline std::vector<std::string> arrival_warnings(const Problem& problem,
                 (low ? g < 0 || v < 0 : g > 0 || v > 0))
                 farthest = std::max(farthest, away / mesh.h);
         }
-        if (farthest > 0.5)
+        if (farthest > 0.5 && problem.bonds.empty())
             warnings.push_back(std::string("boundary.") + names[side] + " = \"" +
                                problem.walls[side] +
                                "\" holds for good what comes near, a cell too early, and a grain "
