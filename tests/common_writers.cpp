@@ -351,6 +351,8 @@ TEST_CASE("an error bar enters the verdict and an expected failure is none") {
     }
     CHECK(results["near"]["error"] == 0.2);
     CHECK(results["low"]["at_most"] == 1.2);
+    CHECK(results["far"]["hint"] == "lower time.dt");
+    for (const char* name : {"certain", "fine", "off"}) CHECK_FALSE(results[name].contains("hint"));
     CHECK(numbers.table().find("<= 1.2") != std::string::npos);
     const std::vector<std::string> said = numbers.shortfalls();
     const auto says = [&](const std::string& text) {

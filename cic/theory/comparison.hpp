@@ -3,6 +3,7 @@
 // list of all is in comparisons.hpp.
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -64,6 +65,20 @@ inline double mean_of_last_half(const std::vector<double>& values) {
     const std::size_t half = values.size() / 2;
     for (std::size_t n = half; n < values.size(); ++n) sum += values[n];
     return sum / double(values.size() - half);
+}
+
+/// The same of what fluctuates, with an error bar: Student's t of the means of three parts, as wide as
+/// a mean and a slow change within the record ask for.
+inline common::Measured fluctuating_mean(const std::vector<double>& values) {
+    const double mean = mean_of_last_half(values);
+    const std::size_t half = values.size() / 2, part = (values.size() - half) / 3;
+    double squares = 0;
+    for (std::size_t n = half; part > 0 && n + part <= values.size(); n += part) {
+        double sum = 0;
+        for (std::size_t m = n; m < n + part; ++m) sum += values[m];
+        squares += std::pow(sum / double(part) - mean, 2);
+    }
+    return {mean, 4.30 * std::sqrt(squares / 6)};  // two degrees of freedom
 }
 
 }  // namespace cic

@@ -98,11 +98,11 @@ inline void compare_heating(const Case& parameters, const History& history, Summ
     const double mean = mean_of_last_half(kinetic),
                  expected =
                      thermal_noise(plasma, x.spacing(), x.cells, parameters.scheme().order) / mean;
-    const double field = mean_of_last_half(history.column("field")),
-                 debye_lengths = x.length * std::sqrt(inverse_debye2);
+    const common::Measured field = fluctuating_mean(history.column("field"));
+    const double debye_lengths = x.length * std::sqrt(inverse_debye2);
     const bool random = std::ranges::any_of(
         parameters.species, [](const SpeciesCase& s) { return s.loading == "random"; });
-    const bool too_low = field < expected * mean;
+    const bool too_low = field.value < expected * mean;
     summary.hint(
         random && !too_low && debye_lengths > 20
             ? "a random start has more noise than equilibrium, and its waves longer than some "
@@ -112,7 +112,7 @@ inline void compare_heating(const Case& parameters, const History& history, Summ
               "time.end"
             : "noise fluctuates, and more of it comes from a mesh that does not resolve the Debye "
               "length: raise time.end or grid.cells_x");
-    summary.result("field_over_kinetic", field / mean, "", expected,
+    summary.result("field_over_kinetic", {field.value / mean, field.error / mean}, "", expected,
                    parameters.growth_tolerance * expected, "thermal noise on this mesh");
 }
 

@@ -110,11 +110,12 @@ inline const std::string onset_meaning = "the seed has grown to a tenth of what 
 
 /// The field that the noise of randomly placed particles has in the mode, rms, before it is screened.
 ///   E_k^2 = sum_s (2 q_s n_s / k)^2 / N_s
-inline double noise_field(const Case& parameters, const Theory& theory) {
+/// in:     later, whether quiet species count, too: their particles become as random
+inline double noise_field(const Case& parameters, const Theory& theory, bool later = true) {
     const double k = wave_vector(parameters, theory.mode_x, theory.mode_z).size();
     double squares = 0;
     for (const SpeciesCase& s : parameters.species)
-        if (s.mobile() && s.loading != "lattice")
+        if (s.mobile() && (s.loading == "random" || (later && s.loading != "lattice")))
             squares += std::pow(2 * s.charge * s.density / k, 2) /
                        (double(s.particles_per_cell) * double(parameters.grid.x.cells) *
                         double(parameters.dimensions == 2 ? parameters.grid.z.cells : 1));
@@ -207,9 +208,7 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
     search.expected = {theory.omega};
     if (theory.mirrored) search.expected.push_back(-std::conj(theory.omega));
     const double onset = predicted_onset(parameters, theory);
-    bool random = false;
-    for (const SpeciesCase& s : parameters.species) random = random || s.loading == "random";
-    const double noise = random ? noise_field(parameters, theory) : 0;
+    const double noise = noise_field(parameters, theory, false);
     const double seed = theory.seed * (theory.mirrored ? 2 : 1);
     const double field = seed > 0 ? seed : start;
     summary.hint(likely_cause(parameters, theory, field, noise));

@@ -433,7 +433,7 @@ int run_and_report_errors(const ProgramInfo& info, char** argv,
         if (is_first_rank()) run.reset();
         beginning.is_all = 0;  // ranks that end first may have the others stopped
         const std::string sentence = info.program + ": " + printable(message);
-        std::fprintf(stderr, "%s\n", sentence.c_str());
+        std::fflush(stdout), std::fprintf(stderr, "%s\n", sentence.c_str());
         return end_ranks(status, sentence, leave_summary);
     };
     try {

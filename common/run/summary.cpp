@@ -122,9 +122,8 @@ void Summary::write(const std::string& path, const ProgramInfo& info, const std:
     json["results"] = Json::object();
     for (const Entry& entry : results_) {
         Json& result = json["results"][entry.name];
-        const bool measured = entry.kind != Kind::not_measured;
-        if (measured) put(result, "value", entry.value.value);
-        if (!measured) result["value"] = nullptr;
+        put(result, "value", entry.value.value);
+        if (entry.kind == Kind::not_measured) result["value"] = nullptr;
         if (entry.value.error > 0) put(result, "error", entry.value.error);
         result["unit"] = entry.unit;
         if (entry.kind == Kind::compared) {
@@ -137,6 +136,7 @@ void Summary::write(const std::string& path, const ProgramInfo& info, const std:
         if (entry.is_judged()) {
             const std::string word = verdict(entry);
             result["pass"] = word == "PASS", result["verdict"] = word;
+            if (word == "FAIL" && !entry.hint.empty()) result["hint"] = entry.hint;
         }
         if (!std::isfinite(entry.value.value)) result["pass"] = false;
     }

@@ -78,8 +78,8 @@ class Summary {
     /// Whether every number is finite; a run with one that is not has failed.
     bool is_finite() const;
 
-    /// Writes the file. Numbers that are not finite are null, with "finite": false and
-    /// "pass": false; so are those that were not measured, whose verdict says so.
+    /// Writes the file. Numbers that are not finite are null, with "finite": false and "pass": false; so are
+    /// those that were not measured, whose verdict says so. What fails has its hint.
     /// in: status 0 done, 3 failed, 129, 130 or 143 stopped by a signal; message, how the run ended.
     void write(const std::string& path, const ProgramInfo& info, const std::string& case_name,
                int status, const std::string& message) const;
