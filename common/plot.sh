@@ -28,7 +28,7 @@ other=${2:+$(absolute "$2")}
 cd "$(dirname "$0")/.."
 here=$(pwd)
 run=${run#"$here"/} other=${other#"$here"/}
-for folder in "$run" $other; do
+for folder in "$run" ${other:+"$other"}; do
     [ -f "$folder/case.toml" ] && [ -f "$folder/history.dat" ] || fail "$folder is not the folder of a run: it needs case.toml and history.dat"
     # The last line may be in the making.
     damage=$(awk 'NR == 1 { columns = NF; if ($1 != "time") { print "does not begin with the names of its columns"; exit } next }
