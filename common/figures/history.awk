@@ -66,7 +66,7 @@ function curve(f, i, p, style,    a, b) {
 
 function draw(p,    of, n, i, k, hidden, top, bottom, long, least, title, label, y, commands) {
     n = split(members[p], of)
-    for (k = 1; k <= n; k++) if (length(name[of[k]]) > 16) long = 1
+    for (k = 1; k <= n; k++) if (length(name[of[k]]) > 14) long = 1
     # Long names stand in one column of the key.
     for (; n > (long ? 4 : 8); n--) {
         k = 1
