@@ -73,7 +73,7 @@ shared    := $(patsubst %.cpp,$(objects)/%.o,$(filter-out %/formula.cpp %/openpm
 theory_of  = $(patsubst %.cpp,$(objects)/%.o,$(wildcard $(1)/theory/*.cpp))
 theory    := $(BUILD)/theory.a
 formula   := $(BUILD)/formula.a
-sources   := $(wildcard */*.hpp */*/*.hpp */*/*/*.hpp */*.cpp */*/*.cpp)
+sources   := $(wildcard */*.hpp */*/*.hpp */*/*/*.hpp */*.cpp */*/*.cpp lecture_notes/page/*/*/*/*.hpp)
 folder_of  = $(patsubst %/,%,$(dir $(filter %/$(1).cpp,$(mains))))
 method_of  = $(firstword $(subst /, ,$(call folder_of,$(1))))
 
