@@ -158,13 +158,14 @@ menu:
 deps:
 	@CXX='$(CXX)' EIGEN='$(EIGEN)' sh common/packages.sh
 
+# One after the other, in this order: apt-get wants its lists and its archives for itself.
 deps-dev: | $(filter deps,$(MAKECMDGOALS))
 	@sh common/packages.sh clang-format locales clang libclang-rt-dev libomp-dev llvm strace libhdf5-dev hdf5-tools
 
-deps-sweep: | $(filter deps,$(MAKECMDGOALS))
+deps-sweep: | $(filter deps deps-dev,$(MAKECMDGOALS))
 	@sh common/packages.sh parallel ffmpeg
 
-deps-mpi: | $(filter deps,$(MAKECMDGOALS))
+deps-mpi: | $(filter deps deps-dev deps-sweep,$(MAKECMDGOALS))
 	@sh common/packages.sh libopenmpi-dev openmpi-bin
 
 # ---- programs ------------------------------------------------------------------------------------
@@ -607,7 +608,7 @@ dist:
 
 # The notes, sources and finished runs as HTML and PDF; and the page of the runs alone, which needs no packages.
 .PHONY: deps-book book validation
-deps-book:
+deps-book: | $(filter deps deps-dev deps-sweep deps-mpi,$(MAKECMDGOALS))
 	@sh common/packages.sh pandoc nodejs libjs-katex chromium
 book: | $(filter deps deps-book,$(MAKECMDGOALS))
 	@sh lecture_notes/book/build.sh
@@ -638,7 +639,7 @@ web_common := $(patsubst %.cpp,$(web)/%.o,$(filter-out %/openpmd.cpp,$(wildcard 
 emscripten := NODE_PATH=/usr/share/nodejs em++
 
 .PHONY: web deps-web test-web
-deps-web: deps
+deps-web: deps | $(filter deps-dev deps-sweep deps-mpi deps-book,$(MAKECMDGOALS))
 	@sh common/packages.sh emscripten chromium
 # With CASES only these, and the programs that they run.
 web_wanted = $(or $(CASES),$(web_cases))
