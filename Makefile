@@ -667,7 +667,7 @@ $(web)/flags: FORCE $(web)/sources/.complete
 $(web)/%.o: %.cpp $(web)/flags
 	@mkdir -p $(@D)
 	$(emscripten) $(web_flags) $(if $(filter $<,$(mains)),-Dmain=program_main) -MMD -MP -c -o $@ $<
-$(web_programs:%=$(web)/%.js): $(web)/%.js: $(web)/$$(call folder_of,$$*)/$$*.o $(web_common) $(wildcard */cases/*.toml)
+$(web_programs:%=$(web)/%.js): $(web)/%.js: $(web)/$$(call folder_of,$$*)/$$*.o $(web_common) $(wildcard */cases/*.toml */data/*)
 	$(emscripten) $(web_link) -o $@ $(filter %.o %.a,$^) $(foreach d,cases data,$(if $(wildcard $(call method_of,$*)/$d),--embed-file $(call method_of,$*)/$d))
 # Script and program as letters, so that a page may take them from a file.
 out/web/programs/%.js: $(web)/%.js $(page)/worker.js
@@ -686,7 +686,7 @@ out/web/index.html: $(page)/head.html $(page)/index.html
 out/web/%: $(page)/%
 	@mkdir -p $(@D)
 	cp $< $@
--include $(patsubst %.cpp,$(web)/%.d,$(mains) $(wildcard common/*/*.cpp) $(page)/glue.cpp)
+-include $(patsubst %.cpp,$(web)/%.d,$(mains) $(wildcard common/run/*.cpp */theory/*.cpp) $(page)/glue.cpp)
 
 # In a real browser, without a window: every page, beside the native programs.
 test-web: web all
