@@ -115,9 +115,7 @@ while read -r note page group; do
     printf '%s\t%s\t%s\n' "$page" "$group" "$(title_of "$note")"
 done < "$work/pages" > "$work/titles"
 
-count=0
 while read -r note page group; do
-    count=$((count + 1))
     chapter=$(echo "$page" | sed -n 's/^00b_.*/P/p; s/^0*\([0-9][0-9]*[ab]*\)_.*/\1/p; s/^exercises_\(.*\)\.html/E\1/p; s/^program_.*/R/p')
     case $note in
     validation) sh common/validation.sh body > "$work/body" ;;
