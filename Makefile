@@ -454,6 +454,10 @@ out/figures/fig06.png: out/mpm_explicit/compressions/.complete
 # Pictures in polarized light.
 $(patsubst %,out/figures/%.png,fig04 fig05 fig07 mpm_explicit_shear mpm_explicit_diametral_disk \
     mpm_implicit_shear_large mpm_implicit_diametral_disk): mpm_explicit/figures/polariscope.gp
+# The implicit side of these is drawn by the script of the explicit one.
+out/figures/fig04.png: mpm_explicit/figures/fig05.gp
+out/figures/fig07.png: mpm_explicit/figures/mpm_explicit_shear.gp
+out/figures/mpm_implicit_diametral_disk.png: mpm_explicit/figures/mpm_explicit_diametral_disk.gp
 
 mpm_figures = $(filter mpm_%,$(figures))
 
