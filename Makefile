@@ -241,7 +241,7 @@ define figure
 figures += $(1)
 $(1): out/figures/$(1).png
 	@echo "figure: out/figures/$(1).png"
-out/figures/$(1).png: $(2)/figures/$(1).gp $(3)/.complete $(wildcard common/*.gp $(2)/*/*.csv) | $(packages_first)
+out/figures/$(1).png: $(2)/figures/$(1).gp $(3)/.complete $(wildcard common/*.gp common/*.awk common/snapshots.sh $(2)/*/*.csv) | $(packages_first)
 	$$(call need,gnuplot)
 	@mkdir -p $$(@D)
 	gnuplot -e "run='$(3)'; out='$$@'" $$<
