@@ -135,7 +135,7 @@ The particle-in-cell family in running code
   make notes             refresh the code and the numbers in the lecture notes
   make book              the notes as out/book/index.html and out/book.pdf   (packages: make deps-book)
   make validation        what the finished runs say beside theory: out/book/validation.html
-  make format            clang-format all sources
+  make format            clang-format all sources   (packages, also for torture: make deps-dev)
   make install           programs and cases to PREFIX=/usr/local   (also DESTDIR=)
   make dist              the sources as an archive, build/particle-in-cell-$(VERSION).tar.gz
   make clean             remove build/ and out/, with all programs, runs and figures
