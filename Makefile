@@ -73,7 +73,7 @@ shared    := $(patsubst %.cpp,$(objects)/%.o,$(filter-out %/formula.cpp %/openpm
 theory_of  = $(patsubst %.cpp,$(objects)/%.o,$(wildcard $(1)/theory/*.cpp))
 theory    := $(BUILD)/theory.a
 formula   := $(BUILD)/formula.a
-sources   := $(wildcard */*.hpp */*/*.hpp */*/*/*.hpp */*.cpp */*/*.cpp)
+sources   := $(wildcard */*.hpp */*/*.hpp */*/*/*.hpp */*.cpp */*/*.cpp lecture_notes/page/*/*/*/*.hpp)
 folder_of  = $(patsubst %/,%,$(dir $(filter %/$(1).cpp,$(mains))))
 method_of  = $(firstword $(subst /, ,$(call folder_of,$(1))))
 
@@ -135,7 +135,7 @@ The particle-in-cell family in running code
   make notes             refresh the code and the numbers in the lecture notes
   make book              the notes as out/book/index.html and out/book.pdf   (packages: make deps-book)
   make validation        what the finished runs say beside theory: out/book/validation.html
-  make format            clang-format all sources
+  make format            clang-format all sources   (packages, also for torture: make deps-dev)
   make install           programs and cases to PREFIX=/usr/local   (also DESTDIR=)
   make dist              the sources as an archive, build/particle-in-cell-$(VERSION).tar.gz
   make clean             remove build/ and out/, with all programs, runs and figures
@@ -158,13 +158,14 @@ menu:
 deps:
 	@CXX='$(CXX)' EIGEN='$(EIGEN)' sh common/packages.sh
 
+# One after the other, in this order: apt-get wants its lists and its archives for itself.
 deps-dev: | $(filter deps,$(MAKECMDGOALS))
 	@sh common/packages.sh clang-format locales clang libclang-rt-dev libomp-dev llvm strace libhdf5-dev hdf5-tools
 
-deps-sweep: | $(filter deps,$(MAKECMDGOALS))
+deps-sweep: | $(filter deps deps-dev,$(MAKECMDGOALS))
 	@sh common/packages.sh parallel ffmpeg
 
-deps-mpi: | $(filter deps,$(MAKECMDGOALS))
+deps-mpi: | $(filter deps deps-dev deps-sweep,$(MAKECMDGOALS))
 	@sh common/packages.sh libopenmpi-dev openmpi-bin
 
 # ---- programs ------------------------------------------------------------------------------------
@@ -240,7 +241,7 @@ define figure
 figures += $(1)
 $(1): out/figures/$(1).png
 	@echo "figure: out/figures/$(1).png"
-out/figures/$(1).png: $(2)/figures/$(1).gp $(3)/.complete $(wildcard common/*.gp $(2)/*/*.csv) | $(packages_first)
+out/figures/$(1).png: $(2)/figures/$(1).gp $(3)/.complete $(wildcard common/*.gp common/*.awk common/snapshots.sh $(2)/*/*.csv) | $(packages_first)
 	$$(call need,gnuplot)
 	@mkdir -p $$(@D)
 	gnuplot -e "run='$(3)'; out='$$@'" $$<
@@ -453,6 +454,10 @@ out/figures/fig06.png: out/mpm_explicit/compressions/.complete
 # Pictures in polarized light.
 $(patsubst %,out/figures/%.png,fig04 fig05 fig07 mpm_explicit_shear mpm_explicit_diametral_disk \
     mpm_implicit_shear_large mpm_implicit_diametral_disk): mpm_explicit/figures/polariscope.gp
+# The implicit side of these is drawn by the script of the explicit one.
+out/figures/fig04.png: mpm_explicit/figures/fig05.gp
+out/figures/fig07.png: mpm_explicit/figures/mpm_explicit_shear.gp
+out/figures/mpm_implicit_diametral_disk.png: mpm_explicit/figures/mpm_explicit_diametral_disk.gp
 
 mpm_figures = $(filter mpm_%,$(figures))
 
@@ -607,7 +612,7 @@ dist:
 
 # The notes, sources and finished runs as HTML and PDF; and the page of the runs alone, which needs no packages.
 .PHONY: deps-book book validation
-deps-book:
+deps-book: | $(filter deps deps-dev deps-sweep deps-mpi,$(MAKECMDGOALS))
 	@sh common/packages.sh pandoc nodejs libjs-katex chromium
 book: | $(filter deps deps-book,$(MAKECMDGOALS))
 	@sh lecture_notes/book/build.sh
@@ -638,7 +643,7 @@ web_common := $(patsubst %.cpp,$(web)/%.o,$(filter-out %/openpmd.cpp,$(wildcard 
 emscripten := NODE_PATH=/usr/share/nodejs em++
 
 .PHONY: web deps-web test-web
-deps-web: deps
+deps-web: deps | $(filter deps-dev deps-sweep deps-mpi deps-book,$(MAKECMDGOALS))
 	@sh common/packages.sh emscripten chromium
 # With CASES only these, and the programs that they run.
 web_wanted = $(or $(CASES),$(web_cases))
@@ -666,7 +671,7 @@ $(web)/flags: FORCE $(web)/sources/.complete
 $(web)/%.o: %.cpp $(web)/flags
 	@mkdir -p $(@D)
 	$(emscripten) $(web_flags) $(if $(filter $<,$(mains)),-Dmain=program_main) -MMD -MP -c -o $@ $<
-$(web_programs:%=$(web)/%.js): $(web)/%.js: $(web)/$$(call folder_of,$$*)/$$*.o $(web_common) $(wildcard */cases/*.toml)
+$(web_programs:%=$(web)/%.js): $(web)/%.js: $(web)/$$(call folder_of,$$*)/$$*.o $(web_common) $(wildcard */cases/*.toml */data/*)
 	$(emscripten) $(web_link) -o $@ $(filter %.o %.a,$^) $(foreach d,cases data,$(if $(wildcard $(call method_of,$*)/$d),--embed-file $(call method_of,$*)/$d))
 # Script and program as letters, so that a page may take them from a file.
 out/web/programs/%.js: $(web)/%.js $(page)/worker.js
@@ -685,7 +690,7 @@ out/web/index.html: $(page)/head.html $(page)/index.html
 out/web/%: $(page)/%
 	@mkdir -p $(@D)
 	cp $< $@
--include $(patsubst %.cpp,$(web)/%.d,$(mains) $(wildcard common/*/*.cpp) $(page)/glue.cpp)
+-include $(patsubst %.cpp,$(web)/%.d,$(mains) $(wildcard common/run/*.cpp */theory/*.cpp) $(page)/glue.cpp)
 
 # In a real browser, without a window: every page, beside the native programs.
 test-web: web all

@@ -28,7 +28,7 @@ other=${2:+$(absolute "$2")}
 cd "$(dirname "$0")/.."
 here=$(pwd)
 run=${run#"$here"/} other=${other#"$here"/}
-for folder in "$run" $other; do
+for folder in "$run" ${other:+"$other"}; do
     [ -f "$folder/case.toml" ] && [ -f "$folder/history.dat" ] || fail "$folder is not the folder of a run: it needs case.toml and history.dat"
     # The last line may be in the making.
     damage=$(awk 'NR == 1 { columns = NF; if ($1 != "time") { print "does not begin with the names of its columns"; exit } next }
@@ -44,6 +44,7 @@ program_of() { sed -n '1s/^# \([a-z_]*\) .*/\1/p' "$1/case.toml"; }
 program=$(program_of "$run")
 name_of() { echo "${1#/}" | sed "s|^out/||; s|^$(program_of "$1")/||; s|[^A-Za-z0-9._+=-]|_|g; s|^|$(program_of "$1")_|"; }
 plots=${PLOTS:-out/figures/$(name_of "$run")}
+partial=$plots/.$$.png
 case $run$other in *[\'\"\`]*) fail "gnuplot cannot read from a folder with quotes in its name: $run $other" ;; esac
 
 entry() { awk -v key="$2" -f common/json_lines.awk "$1/summary.json" 2>/dev/null || true; }
@@ -96,7 +97,6 @@ figures() {
 # draw SCRIPT [KIND]: one picture, under its name only when it is whole.
 draw() {
     picture=$plots/${2:-$(basename "$1" .gp)}.png
-    partial=$plots/.$$.png
     mkdir -p "$plots"
     if gnuplot -e "run='$run'; out='$partial'; ended='$(ended "$run")'${2:+; kind='$2'}" "$1" && [ -s "$partial" ]; then
         mv "$partial" "$picture"
@@ -111,7 +111,7 @@ case $mode in
 list) figures ;;
 draw)
     [ -z "$(ended "$run")" ] || echo "note: $run$(ended "$run"). $(entry "$run" message)" >&2
-    rm -f "$plots"/*.png
+    [ -n "${PLOTS:-}" ] || rm -f "$plots"/*.png  # a folder of the user's may hold other pictures
     figures | {
         status=0
         while read -r script kind; do
@@ -129,7 +129,7 @@ watch)
         else
             figures | grep '^common/figures/[hfp]' | while read -r script kind; do
                 draw "$script" "$kind" && { [ "${told:-}" ] || echo "figure: $picture"; }
-            done
+            done || [ -z "$ended" ]  # while it runs, the next picture may succeed
             told=yes
         fi
         [ -z "$ended" ] || break

@@ -71,15 +71,16 @@ commands=$folder/commands${SWEEP_ONLY:+.${only%/*}}
 echo "$combinations" | awk -v start="$program $case --threads 1 --resume --quiet --out $folder/" -v fixed="$fixed" -v k="${only%/*}" -v n="${only#*/}" \
     '(NR - k) % n == 0 { name = $1; $1 = ""; print start name $0 " " fixed }' > "$commands"
 
-status=0
+status=0 log=
 if command -v parallel >/dev/null; then
+    log=$commands.log
     # shellcheck disable=SC2086
-    parallel --joblog "$commands.log" ${PARALLEL_OPTIONS:-} < "$commands" || status=$?
+    parallel --joblog "$log" ${PARALLEL_OPTIONS:-} < "$commands" || status=$?
 else
     echo "note: GNU parallel is not installed (make deps-sweep): one run follows the other" >&2
     while read -r line; do $line </dev/null || status=$((status + 1)); done < "$commands"
 fi
-[ $status = 0 ] || echo "not all of the $(grep -c . "$commands") runs ended as they should: see $commands.log, and what they said above" >&2
+[ $status = 0 ] || echo "not all of the $(grep -c . "$commands") runs ended as they should: see ${log:+$log, and }what they said above" >&2
 
 # The table, of earlier calls too: the keys of this call and those in which the runs differ, then every result with its error, expected value and verdict; "-" where there is none.
 names=$(echo "$combinations" | sed 's/ .*//')

@@ -2,16 +2,17 @@
 # compare.sh A B: the results of two runs as a table: name, the first's, the second's, what is expected, the verdicts; where the runs differ in these, both.
 set -eu
 export LC_ALL=C.UTF-8
-echo "result $(basename "$1") $(basename "$2") expected verdicts"
-for run; do
-    [ -f "$run/summary.json" ] || { echo "$run has no results yet" >&2; continue; }
-    awk -f common/json_lines.awk "$run/summary.json" | awk -f common/figures/results.awk | sed "s|^|$run |"
-done | awk -v first="$1" '
+echo "result $(basename "$1" | tr ' ' _) $(basename "$2" | tr ' ' _) expected verdicts"
+for which in 1 0; do
+    [ $which = 1 ] || shift
+    [ -f "$1/summary.json" ] || { echo "$1 has no results yet" >&2; continue; }
+    awk -f common/json_lines.awk "$1/summary.json" | awk -f common/figures/results.awk | sed "s/^/$which /"
+done | awk '
     $2 == "name" { next }
     {
         if (!($2 in seen)) order[++count] = $2
         seen[$2] = 1
-        which = $1 == first
+        which = $1
         value[which, $2] = sprintf("%.6g", $3) ($4 == "-" ? "" : "±" sprintf("%.2g", $4))
         verdict[which, $2] = $7
         if ($5 != "-") expected[which, $2] = $5 ~ /^[<>]/ ? substr($5, 1, 1) sprintf("%.4g", substr($5, 2)) : sprintf("%.4g", $5) ($6 == "-" ? "" : "±" sprintf("%.2g", $6))

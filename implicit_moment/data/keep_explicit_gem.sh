@@ -6,6 +6,9 @@ set -eu
 export LC_ALL=C.UTF-8
 run=$1
 folder=$2
+new=$(mktemp -d)
+trap 'rm -rf "$new"' EXIT
+trap 'exit 1' HUP INT TERM
 entry() { awk -v key="$1" -f common/json_lines.awk "$run/summary.json"; }
 where="explicit_em $(entry version), implicit_moment/cases/gem_explicit.toml: 512 x 256 cells, 9.12e6 particles, omega_pe dt = 0.15"
 ends() { awk -F, '!/^#/ { t = $1 } END { print t + 0 }' "$1"; }
@@ -16,13 +19,12 @@ column() { awk -v name="$1" '{ for (k = 1; k <= NF; k++) if ($k == name) print k
     echo '# time_Omega_ci,flux'
     awk -v t="$(column time_Omega_ci)" -v f="$(column flux)" '$1 + 0 == $1 && $t >= next_one - 1e-6 { printf "%.3f,%.5f\n", $t, $f; next_one += 0.5 }
         $1 + 0 == $1 { last = sprintf("%.3f,%.5f", $t, $f) } END { print last }' "$run/history.dat" | uniq
-} > "$folder/new.csv"
-if [ -f "$folder/explicit_gem_flux.csv" ] && awk -v a="$(ends "$folder/new.csv")" -v b="$(ends "$folder/explicit_gem_flux.csv")" 'BEGIN { exit !(a < b) }'; then
+} > "$new/flux.csv"
+if [ -f "$folder/explicit_gem_flux.csv" ] && awk -v a="$(ends "$new/flux.csv")" -v b="$(ends "$folder/explicit_gem_flux.csv")" 'BEGIN { exit !(a < b) }'; then
     echo "keep_explicit_gem.sh: $run is shorter than what $folder has, which stays" >&2
-    rm "$folder/new.csv"
     exit 0
 fi
-mv "$folder/new.csv" "$folder/explicit_gem_flux.csv"
+mv "$new/flux.csv" "$folder/explicit_gem_flux.csv"
 [ -f "$run/profile.dat" ] || exit 0
 {
     echo "# $where"
@@ -30,7 +32,8 @@ mv "$folder/new.csv" "$folder/explicit_gem_flux.csv"
         "$(entry results.profile_begin.value)" "$(entry results.profile_end.value)"
     echo '# x,v_x_electrons,rho_ions,v_x_ions,B_z'
     awk '$1 + 0 == $1 { printf "%.3f,%.4f,%.4f,%.4f,%.5f\n", $1, $2, $3, $4, $5 }' "$run/profile.dat"
-} > "$folder/explicit_gem_profile.csv"
+} > "$new/profile.csv"
+mv "$new/profile.csv" "$folder/explicit_gem_profile.csv"
 # Strips of four rows of cells are what ranks divide. in: the field files of t Omega_ci = 0, 15, 30
 [ -f "$run/fields_020000.dat" ] || exit 0
 for step in 0 10000 20000; do
@@ -42,12 +45,12 @@ for step in 0 10000 20000; do
         END {
             for (j = 0; j < cells; j++) { strip[int(j / 4)] += of_row[j] + of_row[j + 1]; all += of_row[j] + of_row[j + 1] }
             for (k = 0; k < cells / 4; k++) printf "%.6f\n", strip[k] / all
-        }' "$file" > "$folder/strips_$step"
+        }' "$file" > "$new/strips_$step"
 done
 {
     echo "# $where"
     echo '# share of all particles in each strip of four rows of cells, at t Omega_ci = 0, 15, 30'
     echo '# t0,t15,t30'
-    paste -d , "$folder/strips_0" "$folder/strips_10000" "$folder/strips_20000"
-} > "$folder/explicit_gem_strips.csv"
-rm "$folder/strips_0" "$folder/strips_10000" "$folder/strips_20000"
+    paste -d , "$new/strips_0" "$new/strips_10000" "$new/strips_20000"
+} > "$new/strips.csv"
+mv "$new/strips.csv" "$folder/explicit_gem_strips.csv"

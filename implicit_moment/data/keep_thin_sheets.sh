@@ -5,6 +5,10 @@ set -eu
 export LC_ALL=C.UTF-8
 runs=$1
 folder=$2
+# What FOLDER has stays until all is there.
+new=$(mktemp -d)
+trap 'rm -rf "$new"' EXIT
+trap 'exit 1' HUP INT TERM
 entry() { awk -v key="$2" -f common/json_lines.awk "$1/summary.json" || echo nan; }
 given() { awk -v path="$2" '/^\[/ { section = $1; gsub(/[][]/, "", section) } $2 == "=" && section "." $1 == path { print $3; exit }' "$1/case.toml"; }
 first=$runs/ratio_2_seed_1
@@ -22,7 +26,8 @@ where="# implicit_moment $(entry "$first" version), implicit_moment/cases/kink.t
             echo "$ratio,$(given "$run" plasma.seed),$t_end,$(of kink_growth.value),$(of kink_growth.error),$(of kink_growth_begin.value),$(of kink_growth_end.value),$(of kink_growth_of_displacement.value),$(of kink_growth_of_displacement.error),$(of lhdi_level.value),$(of lhdi_level.error),$(of energy_drift_at_end.value)"
         done
     done
-} | awk -F, -v OFS=, '/^#/ { print; next } { for (k = 3; k <= NF; ++k) $k = $k + 0 == $k ? sprintf("%.4g", $k) : "nan"; print }' > "$folder/thin_sheet_runs.csv"
+} > "$new/all"
+awk -F, -v OFS=, '/^#/ { print; next } { for (k = 3; k <= NF; ++k) $k = $k + 0 == $k ? sprintf("%.4g", $k) : "nan"; print }' "$new/all" > "$new/thin_sheet_runs.csv"
 
 # The modes against time.
 {
@@ -36,25 +41,27 @@ where="# implicit_moment $(entry "$first" version), implicit_moment/cases/kink.t
                 $1 + 0 == $1 && $t >= next_one - 1e-6 { printf "%s,%s,%.1f,%.5f,%.6f\n", ratio, seed, $t, $one, $four; next_one += 0.5 }' "$run/history.dat"
         done
     done
-} > "$folder/thin_sheet_modes.csv"
+} > "$new/thin_sheet_modes.csv"
 
 # J_y(z, t), T_i/T_e = 1; and the mean velocities at t Omega_ci = 12.
-profiles() { cat "$runs/ratio_$1_seed_"$2/profile_*.dat; }
+profiles() { cat "$runs/ratio_$1_seed_"$2/profile_*.dat > "$new/all"; }
 {
     echo "$where"
     echo '# T_i/T_e = 1: mean of J_y along the current, in its first value in the middle; times in 1/Omega_ci'
     echo '# t_Omega_ci,z_over_L,J_y'
-    profiles 1 1 | awk '$1 + 0 == $1 && $2 >= -3.05 && $2 <= 3.05 && ($1 < 12.01 ? $1 * 2 - int($1 * 2 + 0.01) < 0.05 : $1 / 2 - int($1 / 2 + 0.01) < 0.02) { printf "%.1f,%.4f,%.4f\n", $1, $2, $4 }'
-} > "$folder/thin_sheet_current.csv"
+    profiles 1 1
+    awk '$1 + 0 == $1 && $2 >= -3.05 && $2 <= 3.05 && ($1 < 12.01 ? $1 * 2 - int($1 * 2 + 0.01) < 0.05 : $1 / 2 - int($1 / 2 + 0.01) < 0.02) { printf "%.1f,%.4f,%.4f\n", $1, $2, $4 }' "$new/all"
+} > "$new/thin_sheet_current.csv"
 {
     echo "$where"
     echo '# means along the current, over t Omega_ci = 11 to 13 and over all seeds, over v_i = (2 T_i/m_i)^(1/2)'
     echo '# T_i/T_e,z_over_L,v_ions,v_electrons'
     for ratio in 10 4 2 1; do
-        profiles "$ratio" "*" | awk -v ratio="$ratio" '$1 + 0 == $1 && $1 > 10.99 && $1 < 13.01 && $2 >= -3.05 && $2 <= 3.05 { ions[$2] += $7; electrons[$2] += $8; ++count[$2] }
-            END { for (z in count) printf "%s,%.4f,%.4f,%.4f\n", ratio, z, ions[z] / count[z], electrons[z] / count[z] }' | sort -t, -k2g
+        profiles "$ratio" "*"
+        awk -v ratio="$ratio" '$1 + 0 == $1 && $1 > 10.99 && $1 < 13.01 && $2 >= -3.05 && $2 <= 3.05 { ions[$2] += $7; electrons[$2] += $8; ++count[$2] }
+            END { for (z in count) printf "%s,%.4f,%.4f,%.4f\n", ratio, z, ions[z] / count[z], electrons[z] / count[z] }' "$new/all" | sort -t, -k2g
     done
-} > "$folder/thin_sheet_velocity.csv"
+} > "$new/thin_sheet_velocity.csv"
 
 # B_x(y, z) at the end, T_i/T_e = 2.
 {
@@ -65,4 +72,5 @@ profiles() { cat "$runs/ratio_$1_seed_"$2/profile_*.dat; }
         /^# time/ { printf "# t Omega_ci = %.0f\n", $3 / b; print "# y_over_L z_over_L B_x" }
         /^x / || $1 == "x" { for (k = 1; k <= NF; ++k) if ($k == "B_y") c = k }
         $1 + 0 == $1 && $2 / L >= -2.1 && $2 / L <= 2.1 { if ($2 != z && z != "") print ""; z = $2; printf "%.4f %.4f %.4f\n", $1 / L, $2 / L, -$c * b }' "$last"
-} > "$folder/thin_sheet_field.dat"
+} > "$new/thin_sheet_field.dat"
+mv "$new"/thin_sheet_* "$folder/"

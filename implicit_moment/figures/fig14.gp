@@ -29,7 +29,7 @@ do for [k = 1:3] {
     height[k] = exp(line_mean)
 }
 
-ends = system(sprintf("awk -F, '!/^#/ { print $3 }' %s | sort -gu | paste -sd, | sed 's/,/, /g'", runs))
+ends = system(sprintf("awk -F, '!/^#/ { print $3 }' %s | sort -gu | paste -sd, - | sed 's/,/, /g'", runs))
 set multiplot title 'Thin current sheet: the kink, and the instability before it' font ',22'
 if (real(system(sprintf("echo '%s' | cut -d, -f1", ends))) < time_max) { set label 9 sprintf('runs end at t Ω_{ci} = %s; the talk''s at 110', ends) at screen 0.53, screen 0.027 center font ',15' textcolor rgb orange }
 set logscale y; set format y '10^{%L}'

@@ -115,9 +115,7 @@ while read -r note page group; do
     printf '%s\t%s\t%s\n' "$page" "$group" "$(title_of "$note")"
 done < "$work/pages" > "$work/titles"
 
-count=0
 while read -r note page group; do
-    count=$((count + 1))
     chapter=$(echo "$page" | sed -n 's/^00b_.*/P/p; s/^0*\([0-9][0-9]*[ab]*\)_.*/\1/p; s/^exercises_\(.*\)\.html/E\1/p; s/^program_.*/R/p')
     case $note in
     validation) sh common/validation.sh body > "$work/body" ;;
@@ -142,6 +140,7 @@ browser=$(command -v chromium || command -v chromium-browser || command -v googl
 [ -n "$browser" ] || { echo "no PDF: 'chromium' is not installed: run 'make deps-book'" >&2; exit 2; }
 profile=$(mktemp -d)
 trap 'rm -rf "$profile"' EXIT
+trap 'exit 1' HUP INT TERM
 print_pdf() {
     "$browser" --headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking \
         --disable-component-update --disable-sync --user-data-dir="$profile" --no-pdf-header-footer \

@@ -31,7 +31,7 @@ function bytes_of(letters) {
 }
 
 async function load(name) {
-    await new Promise((done, fail) => document.head.append(element("script", {src: `programs/${name}.js`, onload: done, onerror: fail})));
+    await new Promise((done, fail) => document.head.append(element("script", {src: `programs/${name}.js`, onload: done, onerror: () => fail(`there is no programs/${name}.js`)})));
     const {script, wasm} = programs[name];
     programs[name] = {
         url: URL.createObjectURL(new Blob([bytes_of(script)], {type: "text/javascript"})),
@@ -244,7 +244,7 @@ function fill_table() {
 function show_results({program, summary}) {
     const number = (value) => typeof value === "number" ? String(+value.toPrecision(6)) : value ?? "";
     const rows = Object.entries(summary.results).map(([name, one]) => {
-        const expected = one.at_most !== undefined ? `≤ ${number(one.at_most)}` : one.expected === undefined ? "" : `${number(one.expected)} ± ${number(one.tolerance ?? 0)}`;
+        const expected = one.at_most !== undefined ? `≤ ${number(one.at_most)}` : one.at_least !== undefined ? `≥ ${number(one.at_least)}` : one.expected === undefined ? "" : `${number(one.expected)} ± ${number(one.tolerance ?? 0)}`;
         const verdict = element("td", {className: one.verdict ?? ""}, one.verdict ?? "");
         return element("tr", {}, element("th", {scope: "row"}, name), element("td", {}, `${number(one.value)} ${one.unit === "1" ? "" : print(one.unit ?? "")}`),
                        element("td", {}, expected), verdict, element("td", {}, one.source ?? ""));

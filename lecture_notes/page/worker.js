@@ -67,6 +67,9 @@ async function run(module, kind, args) {
     if (instance.FS.analyzePath("/out/case.toml").exists) postMessage({effective: read("case.toml")});
 }
 
+// What fails in a promise, the program out of memory for one, is told to the page as any other error.
+addEventListener("unhandledrejection", ({reason}) => { if (reason?.name !== "ExitStatus") throw reason; });
+
 onmessage = async ({data}) => {
     if (data.pace) {
         pace = data.pace;

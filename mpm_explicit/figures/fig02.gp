@@ -1,5 +1,5 @@
 # Figure 2 of the talk: grain positions at t = 2.00, explicit. With a CFL number of 0.25 the disks part as they came. With 1.00 the strains of
-# the contact do not die out but grow, and the grains run away with energy from nowhere: ten times the energy at t = 2. Dashed: disks that were 0.416 in contact, as long as a quasi-static one lasts, and lost nothing.
+# the contact do not die out but grow, and the grains run away with energy from nowhere: thirteen times the energy at t = 2. Dashed: disks that were 0.405 in contact, 0.974 of a contact always in equilibrium, and lost nothing.
 wide = 1500; high = 1000
 load 'common/style.gp'
 folder = run; R = 0.2

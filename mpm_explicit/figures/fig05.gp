@@ -7,9 +7,10 @@ load 'mpm_explicit/figures/polariscope.gp'
 folder = run
 plate = 0.7196   # its lower side at the start
 shapes = 'linear gimp'
+run = folder.'/linear'
 panel_width = 0.405; top_of_grains = 0.73
 panel_height = panel_width * wide / high * top_of_grains
-set multiplot title 'Compressed grains in a polariscope, explicit, α = 0.25' font ',24'
+set multiplot title sprintf('Compressed grains in a polariscope, %s, α = %g', entry('program') eq 'mpm_implicit' ? 'implicit' : 'explicit', parameter('alpha')) font ',24'
 set xrange [0:1]; set yrange [0:top_of_grains]; set xtics 0.2; set ytics 0.2
 do for [row = 1:2] { do for [column = 1:2] {
     run = folder.'/'.word(shapes, column)

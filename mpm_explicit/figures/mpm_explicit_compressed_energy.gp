@@ -1,5 +1,5 @@
-# The explicit half of figure 6 of the talk: energy of the compressed grains. It should be the work of the plate, and nearly is: contact does work of its own, and so does moving particles from cell to
-# cell; with larger CFL numbers the grains hold more than the plate gave, in the end without bound. The ledger that says where the difference comes from closes to round-off.
+# The explicit half of figure 6 of the talk: energy of the compressed grains. It should be the work of the plate, and nearly is: contacts that open take some, moving particles from cell to cell and
+# their change of volume do work of their own; with larger CFL numbers the grains hold more than the plate gave, in the end without bound. The ledger that says where the difference comes from closes to round-off.
 wide = 1500; high = 1080
 load 'common/style.gp'
 folder = run
@@ -7,7 +7,7 @@ E = 1e5; unit = 1e-4 * E   # E L^2, L = 1
 file(name) = folder.'/'.name.'/history.dat'
 one = file('linear')
 kinetic = col(one, 'kinetic'); elastic = col(one, 'elastic'); energy = col(one, 'energy'); work = col(one, 'external'); energy_14 = col(one, 'energy_14')
-contact = col(one, 'contact'); remap = col(one, 'remap'); squeeze = col(one, 'volume'); budget = col(one, 'budget')
+release = col(one, 'release'); remap = col(one, 'remap'); squeeze = col(one, 'volume'); budget = col(one, 'budget')
 travel = sprintf('(-100 * $%d)', col(one, 'travel_y_plate'))
 set multiplot title 'Compressed grains, explicit: energy' font ',24'
 set xrange [0:3]; set xtics 0.5
@@ -22,7 +22,7 @@ set lmargin at screen 0.585; set rmargin at screen 0.98
 set title 'energy less work of the plate / (10^{−4} E L^2)'
 set yrange [-0.05:0.025]; set ytics 0.025
 set key bottom left
-plot one using @travel:((column(energy_14) - column(work)) / unit) with lines lt 8 title 'all', one using @travel:(column(contact) / unit) with lines lt 2 title 'contact', \
+plot one using @travel:((column(energy_14) - column(work)) / unit) with lines lt 8 title 'all', one using @travel:(column(release) / unit) with lines lt 2 title 'contacts that open', \
      one using @travel:(column(remap) / unit) with lines lt 4 title 'from cell to cell', one using @travel:(column(squeeze) / unit) with lines lt 5 title 'change of volume'
 set xlabel 'travel of the plate / (L/100)'
 set lmargin at screen 0.085; set rmargin at screen 0.48

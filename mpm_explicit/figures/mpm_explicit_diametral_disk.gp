@@ -22,7 +22,7 @@ X = '(($1 - x_0) / R)'; Y = '(($2 - y_0) / R)'
 pixel = sprintf('($5 > 0 ? -2 : %s <= 0 ? ($5 < 0 ? -1 : $3) : %s**2 + %s**2 < 1 ? hertz(%s, %s) : -1)', X, X, Y, X, Y)
 light(d) = d == -2 ? 0.3 : d < 0 ? 0 : dark_field(d / f_sigma)
 channel(d, n) = d == -2 ? 140 : d < 0 ? 0 : n == 1 ? white_R[entry_of(d / f_sigma / wider)] : n == 2 ? white_G[entry_of(d / f_sigma / wider)] : white_B[entry_of(d / f_sigma / wider)]
-set multiplot title 'A disk between two plates' font ',24'
+set multiplot title (entry('program') eq 'mpm_implicit' ? sprintf('A disk between two plates, implicit, α = %g, θ = %g', parameter('alpha'), parameter('theta')) : 'A disk between two plates') font ',24'
 side = 0.405; top = 0.935
 set xrange [-1.15:1.15]; set yrange [-1.15:1.15]; set xtics 0.5; set ytics 0.5
 set xlabel 'x / R'

@@ -4,12 +4,12 @@ wide = 1500; high = 1060
 load 'common/style.gp'
 f_sigma = 2500.0
 load 'mpm_explicit/figures/polariscope.gp'
-U = given('pack.top.velocity_x') + 0; L = parameter('length_x'); height = 0.92; rigid_low = 0.1; rigid_high = 0.82
+U = given('pack.top.velocity_x') + 0; L = parameter('length_x'); height = 0.92
 particles = system('ls "'.run.'"/particles_*.dat | tail -n 3'); fringes = system('ls "'.run.'"/fringes_*.dat | tail -n 3')
 with_rigid = "using 1:2:($5 < 0 ? 0 : $5 < 5 || $5 > 19 ? 0.3 : dark_field($3 / f_sigma)) with image"
 panel_width = 0.268; gap = 0.018
 panel_height = panel_width * wide / high * height / L
-set multiplot title sprintf('Equal disks in shear, explicit, α = %g', parameter('alpha')) font ',24'
+set multiplot title sprintf('Equal disks in shear, %s, α = %g', entry('program') eq 'mpm_implicit' ? 'implicit' : 'explicit', parameter('alpha')) font ',24'
 set xrange [0:L]; set yrange [0:height]; set xtics 0, 0.2, 0.9; set ytics 0.2
 unset key
 do for [row = 1:2] { do for [k = 1:3] {

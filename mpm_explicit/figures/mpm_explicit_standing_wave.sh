@@ -1,5 +1,5 @@
 #!/bin/sh
-# mpm_explicit_standing_wave.sh PROGRAM FOLDER: the wave between rollers on meshes of 8 to 128 cells, with three shape functions and with linear ones at a larger amplitude; its error as a table of each.
+# mpm_explicit_standing_wave.sh PROGRAM FOLDER: the wave between rollers on meshes of 8 to 128 cells, with three shape functions; its error as a table of each.
 set -eu
 export LC_ALL=C.UTF-8
 program=$1

@@ -5,9 +5,8 @@ wide = 1500; high = 1060
 load 'common/style.gp'
 R = real(given('grain.*.radius')); v_0 = abs(real(given('grain.*.velocity_x')))
 file = run.'/history.dat'
-kinetic = col(file, 'kinetic'); elastic = col(file, 'elastic'); plastic = col(file, 'plastic'); contact = col(file, 'contact'); p_x = col(file, 'momentum_x')
+kinetic = col(file, 'kinetic'); elastic = col(file, 'elastic'); plastic = col(file, 'plastic'); contact = col(file, 'contact'); release = entry('program') eq 'mpm_explicit' ? col(file, 'release') : 0
 E_0 = real(system(sprintf("LC_ALL=C awk '$1 + 0 == $1 { print $%d; exit }' '%s'", kinetic, file)))
-p_0 = real(system(sprintf("LC_ALL=C awk '$1 + 0 == $1 { print $%d; exit }' '%s'", p_x, file)))
 picture(t) = file_at('particles', t)
 strain = col(picture(0), 'plastic_strain')
 middle(t, axis) = real(system(sprintf("LC_ALL=C awk '$1 + 0 == $1 { s += $%d; n++ } END { print s / n }' '%s'", axis, picture(t))))
@@ -36,9 +35,9 @@ set tmargin at screen 0.39; set bmargin at screen 0.1
 set lmargin at screen 0.095; set rmargin at screen 0.72
 set yrange [0:1.05]; set ytics 0.25
 set ylabel 'energy / initial'
-# The work of contact is negative: what it took.
+# The work of contact is negative: what it took; in the explicit program also where it opens.
 lower(n) = (n > 1 ? column(kinetic) : 0) + (n > 2 ? column(elastic) : 0) + (n > 3 ? column(plastic) : 0)
-upper(n) = lower(n) + (n == 1 ? column(kinetic) : n == 2 ? column(elastic) : n == 3 ? column(plastic) : -column(contact))
+upper(n) = lower(n) + (n == 1 ? column(kinetic) : n == 2 ? column(elastic) : n == 3 ? column(plastic) : -column(contact) - (release ? column(release) : 0))
 tint = blue.' '.green.' '.orange.' '.gray
 array heading[4] = ['kinetic', 'elastic', 'plastic work', 'lost in contact']
 set key at screen 0.98, 0.3 right center

@@ -1,5 +1,5 @@
 # Figure 3 of the talk: total energy, elastic energy and x-momentum of the rebounding disks, implicit (solid) and explicit (dashed). Both keep momentum. Implicit, the energy is the initial one to round-off with
-# CFL numbers of 1 and 5 alike; explicit, it errs by a per cent with 0.25 and bursts with 1.00. Shaded: the time in contact, as long as a quasi-static one lasts.
+# CFL numbers of 1 and 5 alike; explicit, it errs by a per cent with 0.25 and bursts with 1.00. Shaded: the time in contact, 0.974 of a contact always in equilibrium.
 wide = 1500; high = 1120
 load 'common/style.gp'
 folder = run; other = 'out/mpm_explicit/rebounds'

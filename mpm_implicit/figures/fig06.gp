@@ -1,5 +1,5 @@
 # Figure 6 of the talk: energy of the compressed grains, implicit with a CFL number of 4 and explicit with 0.25, and beside each the work of its plate (dashed). Below, the part of the work that the energy lacks or
-# has too much: implicit, theorem [MPM-13] says none, and round-off is what is left; explicit, some tenths of a per cent, made and lost where grains touch and particles cross from cell to cell.
+# has too much: implicit, theorem [MPM-13] says none, and round-off is what is left; explicit, some tenths of a per cent, made and lost where contacts open, particles cross from cell to cell and change their volume.
 wide = 1500; high = 1120
 load 'common/style.gp'
 E = 1e5; unit = 1e-4 * E   # E L^2, L = 1

@@ -8,6 +8,7 @@ export LC_ALL=C.UTF-8
 old=$1 new=$2 seconds=${3:-120}
 room=$(mktemp -d)
 trap 'rm -rf "$room"' EXIT
+trap 'exit 1' HUP INT TERM
 same=0 differ=0 skipped=0
 run() {  # run CHECKOUT PROGRAM CASE: rows of the history to $room/$4, without the names
     rm -rf "$room/out"

@@ -4,6 +4,7 @@ set -eu
 command -v node > /dev/null || exit 77
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
+trap 'exit 1' HUP INT TERM
 printf '%s\n' '7 0 obj' '<</Type /Pages' '/Kids [4 0 R 9 0 R]>>' '4 0 obj' '<</Type /Page' '/Parent 7 0 R>>' '9 0 obj' '<</Type /Page' '/Parent 7 0 R>>' \
     '<</one [4 0 R /XYZ 0 837.4 0]' '/two--part [9 0 R /XYZ 0 460.1 0]>>' > "$scratch/pdf"
 contents='<li><a href="#one">One $a$</a><i></i></li><li><a href="#two--part">Two</a><i></i></li>'

@@ -5,6 +5,7 @@ set -eu
 build=$1
 out=$(mktemp)
 trap 'rm -f "$out"' EXIT
+trap 'exit 1' HUP INT TERM
 # One line for each command: program, case and parameters.
 awk '
     /^    [a-z_]+: \{/ { runs = 0 }

@@ -9,6 +9,7 @@ for program in explicit_em implicit_moment cic; do [ -x "$many/$program" ] || { 
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=none
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
+trap 'exit 1' HUP INT TERM
 status=0
 complain() { echo "$*" >&2; status=1; }
 

@@ -5,6 +5,7 @@ set -eu
 export LC_ALL=C.UTF-8 OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
+trap 'exit 1' HUP INT TERM
 performance() { sed -n "s/.*\"$1\": *\([-+.0-9e]*\).*/\1/p" "$scratch/run/summary.json"; }
 # Of three runs of each number of ranks, in turn, the fastest.
 measure() {

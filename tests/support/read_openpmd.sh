@@ -6,6 +6,7 @@ export LC_ALL=C.UTF-8
 command -v h5dump > /dev/null || { echo "there is no h5dump (make deps-dev): not tested"; exit 77; }
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
+trap 'exit 1' HUP INT TERM
 run=$scratch/run
 "$1/cic" cic/cases/two_stream_2d.toml time.end=2 output.fields_interval=1 output.particles_interval=1 output.openpmd=true theory.compare=none \
     grid.cells_x=16 grid.cells_z=8 --quiet --threads 1 --out "$run" 2> "$scratch/said" || {

@@ -5,6 +5,7 @@ set -eu
 cd "$(dirname "$0")/../.."
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
+trap 'exit 1' HUP INT TERM
 page() { RUN_FOLDER=$scratch sh common/validation.sh body > "$scratch/page"; }
 has() { grep -qF "$1" "$scratch/page" || { echo "the page lacks: $1"; exit 1; }; }
 
