@@ -47,7 +47,8 @@ Case impact(long cells) {
 
 // The largest speed on the mesh.
 double speed_of(const Field& vx, const Field& vz, double stream = 0) {
-    return std::sqrt((vx.array().square() + (vz.array() - stream).square()).maxCoeff());
+    return std::sqrt(
+        (vx.array().square() + (vz.array() - stream).square()).maxCoeff<Eigen::PropagateNaN>());
 }
 
 }  // namespace

@@ -59,7 +59,7 @@ Particles turning_cloud(const Case& w, std::uint64_t seed, double speed, long co
 
 // The largest speed in the plane (r, z).
 double speed_of(const Field& vx, const Field& vz) {
-    return std::sqrt((vx.array().square() + vz.array().square()).maxCoeff());
+    return std::sqrt((vx.array().square() + vz.array().square()).maxCoeff<Eigen::PropagateNaN>());
 }
 double fastest(const Particles& p) {
     double most = 0;

@@ -541,7 +541,7 @@ TEST_CASE("the mass matrix weighs a translation with the mass") {
         for (const NodeSums& sum : run.nodes.sums) nodes += sum.m;
         const double m = total_mass(run.particles());
         off = worst({off, std::fabs(y.head(n).sum() / m - 1), std::fabs(nodes / m - 1),
-                     y.tail(n).cwiseAbs().maxCoeff() / m});
+                     y.tail(n).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() / m});
         // Row by row: sum_j M_ij = m_i.
         for (long i = 0; i < n; ++i)
             off = worst({off, std::fabs(y[i] - run.nodes.sums[static_cast<std::size_t>(i)].m) / m});
@@ -734,7 +734,8 @@ TEST_CASE("the projection is orthogonal and needs to be done once") {
         for (ContactBody& is : at_rest.list.bodies) is.vx = is.vy = 0;
         const Vector v = solver.scale().cwiseProduct(Px);
         const std::vector<double> none(solver.force_controls.size(), 0.0);
-        across = worst({across, forbidden(at_rest, v, none) / v.cwiseAbs().maxCoeff()});
+        across = worst(
+            {across, forbidden(at_rest, v, none) / v.cwiseAbs().maxCoeff<Eigen::PropagateNaN>()});
     });
     CHECK(again <= 1e-14);
     CHECK(across <= 1e-13);
@@ -780,7 +781,7 @@ TEST_CASE("impulses are found whose sum on every node is what is left of its equ
         for (ContactPair& pair : set.list.pairs) pair.lambda_n = pair.lambda_t = 1e3;
         solver.constraints.find_impulses(-Hl, set);
         const Vector found = impulses_on(set, solver.scale(), push);
-        off = worst({off, (found - Hl).cwiseAbs().maxCoeff()});
+        off = worst({off, (found - Hl).cwiseAbs().maxCoeff<Eigen::PropagateNaN>()});
         for (std::size_t k = 0; k < set.list.pairs.size(); ++k) {
             const ContactPair& pair = set.list.pairs[k];
             if (!pair.closed()) CHECK((pair.lambda_n == 0 && pair.lambda_t == 0));
@@ -856,7 +857,7 @@ TEST_CASE("a plate that a force drives takes along whom it presses") {
         Vector with = u, without = u, added = Vector::Zero(u.size());
         allowed.enforce(V, with), allowed.enforce(none, without);
         allowed.add_controlled_motion(V.data(), added);
-        off = worst({off, (with - without - added).cwiseAbs().maxCoeff()});
+        off = worst({off, (with - without - added).cwiseAbs().maxCoeff<Eigen::PropagateNaN>()});
         allowed.controlled_diagonal(weight.data());
         const Vector r = anything(solver.scale(), random);
         allowed.controlled_force(r, felt.data());

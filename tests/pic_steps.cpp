@@ -303,8 +303,8 @@ TEST_CASE("fluids of any density rest on each other under gravity and fall alike
             light.hydrostatic = heavy.hydrostatic = true;
             Run r(w);
             r.steps(300);
-            CHECK(worst({r.state.cells.vx.cwiseAbs().maxCoeff(),
-                         r.state.cells.vz.cwiseAbs().maxCoeff()}) <= 1e-10);
+            CHECK(worst({r.state.cells.vx.cwiseAbs().maxCoeff<Eigen::PropagateNaN>(),
+                         r.state.cells.vz.cwiseAbs().maxCoeff<Eigen::PropagateNaN>()}) <= 1e-10);
             // Where pressure is even it holds nothing: away from walls all fall with g.
             light.hydrostatic = heavy.hydrostatic = false, heavy.gas.pressure = 10;
             Run falling(w);

@@ -214,8 +214,8 @@ TEST_CASE("materials that share a cell come to one pressure volume for volume") 
         double most = 0;
         r.deposit();
         for_each_cell(r.grid(), [&](long, long, long c) {
-            most = std::max(most, std::fabs(r.cells().excess[2 * std::size_t(c)] -
-                                            r.cells().excess[2 * std::size_t(c) + 1]));
+            most = worst({most, std::fabs(r.cells().excess[2 * std::size_t(c)] -
+                                          r.cells().excess[2 * std::size_t(c) + 1])});
         });
         return most;
     };

@@ -137,7 +137,8 @@ struct ThetaRun {
         const double before = given();
         add_step(scheme.theta, scheme.consistent(), nodes.tiles(), sums.tiles, sums.nodes,
                  sums.contact, l);
-        growth = std::max(growth, given() - before);
+        const double grown = given() - before;
+        growth = growth >= grown || std::isnan(growth) ? growth : grown;
         size = worst({size, l.energy(), std::fabs(l.plate + l.gravity)});
         for (const TileSums& s : sums.tiles) least_V = std::min(least_V, s.least_V);
         loops += sums.solver.loops;
