@@ -16,8 +16,6 @@ namespace {
 
 using namespace facts;
 
-const std::array<std::string, 3> shapes{"linear", "gimp", "quadratic"};
-
 // A material called default, with this viscosity.
 void make_viscous(Case& c, double beta, const std::string& law = "elastic") {
     Material m;
@@ -141,7 +139,7 @@ TEST_CASE("viscosity only takes energy and the budget closes to round-off" *
         for (const double beta : {1e-4, 3e-3, 0.1})
             for (const std::string kind : {"hit", "frozen", "plates", "ring"}) {
                 Case c = case_on(30, 24, 1.5);
-                c.shape = shapes[number++ % 3];
+                c.shape = shape_names[number++ % 3];
                 CAPTURE(law);
                 CAPTURE(beta);
                 CAPTURE(kind);

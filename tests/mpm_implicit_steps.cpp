@@ -498,19 +498,7 @@ TEST_CASE("boxes that are bonded move as one box does") {
                 ThetaRun one(whole, theta_scheme(theta, mass, solver), move),
                     two(halves, theta_scheme(theta, mass, solver), move);
                 one.advance(4), two.advance(4);
-                const Particles &p = one.particles(), &q = two.particles();
-                // Each particle has one like it.
-                for (std::size_t k = 0; k < p.x_p.size(); ++k) {
-                    double nearest = 1e300;
-                    for (std::size_t j = 0; j < q.x_p.size(); ++j)
-                        nearest = std::min(
-                            nearest,
-                            worst({std::fabs(p.x_p[k] - q.x_p[j]), std::fabs(p.y_p[k] - q.y_p[j]),
-                                   std::fabs(p.vx_p[k] - q.vx_p[j]),
-                                   std::fabs(p.vy_p[k] - q.vy_p[j]),
-                                   1e-4 * std::fabs(p.sxx_p[k] - q.sxx_p[j])}));
-                    off = worst({off, nearest});
-                }
+                off = worst({off, unlike(one.particles(), two.particles())});
                 CHECK(std::fabs(one.budget().energy() - two.budget().energy()) <= 1e-10 * one.size);
             }
         }
