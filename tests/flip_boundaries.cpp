@@ -245,7 +245,6 @@ TEST_CASE("inflow brings the mass that its density and speed say to one column")
                 Particles p;
                 Budget budget;
                 double t = 0;
-                std::map<double, int> depths;
                 while (t < 0.6) {
                     apply_particle_boundaries(problem, t, dt, p, budget);
                     t += dt;

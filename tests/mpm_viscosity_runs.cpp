@@ -16,10 +16,8 @@ using namespace facts;
 
 const std::vector<std::string> programs{"mpm_explicit", "mpm_implicit"};
 
-Run run(const std::string& program, const std::string& name, const std::string& arguments,
-        int status = 0) {
-    return run_mpm(program, name, program + "/cases/" + name + ".toml --threads 1 " + arguments,
-                   status);
+Run run(const std::string& program, const std::string& name, const std::string& arguments) {
+    return run_mpm(program, name, program + "/cases/" + name + ".toml --threads 1 " + arguments);
 }
 
 }  // namespace

@@ -416,22 +416,6 @@ TEST_CASE("what must not be read or written is refused" * doctest::description("
     }
 }
 
-TEST_CASE("force replaces an earlier run and leaves other files alone" *
-          doctest::description("robust")) {
-    const Files mine{{"notes.txt", "a"}, {"fields_of_wheat.txt", "b"}, {"thesis.partial", "c"}};
-    for (const Program& program : every_program()) {
-        const fs::path folder = fresh_folder(program);
-        write_all(folder / "case.toml", program.short_case);
-        for (const auto& [name, bytes] : mine) write_all(folder / "earlier" / name, bytes);
-        CHECK(start(program, folder, "case.toml --out earlier --force").status == 0);
-        CHECK(read_all(folder / "earlier/summary.json").size() > 10);
-        for (const auto& one : mine) {
-            INFO(one.first);
-            CHECK(read_all(folder / "earlier" / one.first) == one.second);
-        }
-    }
-}
-
 TEST_CASE("unusual but right input is accepted" * doctest::description("robust")) {
     for (const Program& p : every_program()) {
         const std::string plain = description(p, p.short_case), rest = p.short_case.substr(15);

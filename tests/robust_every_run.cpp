@@ -611,7 +611,10 @@ TEST_CASE("closed pipes and closed outputs do not stop a run" * doctest::descrip
         const std::string line = command_line(program.name, arguments_of({&program, "run", {}})) +
                                  " --force --out " + out + " ";
         CHECK(shell(line + "2> /dev/null | true") == 0);
-        CHECK(shell(line + ">&- 2>&-") == 0);
+        const std::string history = read_all(out + "/history.dat");
+        CHECK(shell(line + "0<&- 1>&- 2>&-") == 0);
+        // What is meant for the terminal gets into no file.
+        CHECK(read_all(out + "/history.dat") == history);
         CHECK(shell("(" + line + "2>&1; echo $? > " + status + ") | head -1 > /dev/null") == 0);
         CHECK(read_all(status) == "0\n");
         CHECK(summary(out)["status"] == 0);
@@ -654,9 +657,10 @@ explicit_em sheet time.end=4 output.fields_interval=2 output.particles_interval=
         CHECK(holds(said(out), "holds an earlier run; --force replaces it"));
         CHECK(content(out) == there);
 
-        const std::vector<std::string> mine{"fields_of_gold.dat", "phase_of_the_moon.txt",
+        const std::vector<std::string> mine{"fields_of_gold.dat",     "phase_of_the_moon.txt",
                                             "fringes_of_the_sea.dat", "grains_of_sand.dat",
-                                            "pack.txt.old"};
+                                            "pack.txt.old",           "notes.txt",
+                                            "thesis.partial"};
         for (const std::string& name : mine) write_all(out + "/" + name, "kept");
         REQUIRE(run(plain, out, "--force") == 0);
         REQUIRE(run(plain, fresh) == 0);
