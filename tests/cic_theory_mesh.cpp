@@ -261,8 +261,8 @@ TEST_CASE("a warm species that is kicked at steps answers as the sum of its alia
             CHECK(std::abs(kicked - sum) <= 2e-6 * std::abs(sum));
         }
     }
-    // Landau damping at k lambda_D = 0.4 and omega_p dt = 1, where the leapfrog takes the frequency from
-    // 1.270 to 1.306: a quiet run has 1.3057 +- 0.0016 and -0.0602 +- 0.0017.
+    // Landau damping at k lambda_D = 0.4 and omega_p dt = 1, where the leapfrog takes the frequency
+    // from 1.270 to 1.306: a quiet run has 1.3057 +- 0.0016 and -0.0602 +- 0.0017.
     const MeshScheme scheme{15.707963267948966 / 16, 1.0, 1, false};
     const PlasmaSpecies warm = electrons(0, 1);
     const auto root = cic::fastest_growing_on_mesh({&warm, 1}, 0.4, scheme);

@@ -344,7 +344,8 @@ TEST_CASE("a distribution that its series does not have keeps the theory of its 
 }
 
 TEST_CASE("theory.near takes the nearest of all roots") {
-    // Two cold beams of density 1/2 and velocity +-u: omega^2 = u^2 + 1/2 +- (2 u^2 + 1/4)^(1/2) at k = 1.
+    // Two cold beams of density 1/2 and velocity +-u: omega^2 = u^2 + 1/2 +- (2 u^2 + 1/4)^(1/2) at
+    // k = 1.
     for (const double u : {0.6, 1.1}) {
         const std::string half = "density = 0.5\ndrift_x = ";
         Case parameters = read(electrons(half + facts::text(u) + "\namplitude = 1e-3",

@@ -437,7 +437,8 @@ TEST_CASE("the transforms see every wave of the mesh and the forward difference 
                 keep_unknowns(grid, back.data());
                 CHECK((back - E.all).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= 8 * eps);
 
-                // A wave of the doubled mesh, which vanishes on walls, has its own number and no other.
+                // A wave of the doubled mesh, which vanishes on walls, has its own number and no
+                // other.
                 for (long p = grid.x.periodic ? 0 : 1; p < (n_x + 1) / 2; ++p) {
                     for (long q = grid.z.periodic ? 0 : 1; q < (n_z + 1) / 2; ++q) {
                         const auto phase = [](const AxisWaves& axis, long wave, long node) {

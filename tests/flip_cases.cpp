@@ -227,7 +227,8 @@ TEST_CASE("a sound wave across the mesh given by formulas moves with the speed o
     CHECK(std::fabs(std::abs(turned) - 1) <= 0.03);
 }
 
-// Theory: kinetic energy falls as exp(-4 nu k^2 t), nu = 0.01. The transfer pic alone has 25 times that.
+// Theory: kinetic energy falls as exp(-4 nu k^2 t), nu = 0.01. The transfer pic alone has 25 times
+// that.
 TEST_CASE("eddies of a case file lose the energy that their viscosity takes" *
           doctest::description("physics")) {
     const Case w = read(read_all("flip/cases/taylor_green.toml")).given;
@@ -383,8 +384,8 @@ TEST_CASE("four ends let in four gases and all of them are in the budget") {
 
 namespace {
 
-// The shock tubes of Toro, Riemann Solvers and Numerical Methods for Fluid Dynamics, chapter 4, with
-// ends that fit their streams.
+// The shock tubes of Toro, Riemann Solvers and Numerical Methods for Fluid Dynamics, chapter 4,
+// with ends that fit their streams.
 struct Tube {
     SideCase left, right;
     double interface, end;

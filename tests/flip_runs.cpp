@@ -315,8 +315,8 @@ TEST_CASE("a blast follows Sedov and falling gas is dense but not as dense as No
     const Run blast = run("flip", "blast", "sedov", "grid.cells_x=48 grid.cells_z=48");
     check_results(blast, 1);  // within 1 %
     check_conserved(blast);
-    // With volumes on particles, hot and cold ones in a cell are strained alike: 8 % too small where
-    // the energy starts in less than a cell, 1 % in three.
+    // With volumes on particles, hot and cold ones in a cell are strained alike: 8 % too small
+    // where the energy starts in less than a cell, 1 % in three.
     const std::string volumes = "grid.cells_x=24 grid.cells_z=24 flip.density=particles ";
     const Run apart =
         run("flip", "blast", "sedov", volumes + "theory.tolerance=0.02 region.hot.radius=0.125");
@@ -446,11 +446,12 @@ TEST_CASE("refine runs a case on finer meshes and shows the order of its errors"
     for (std::size_t n = 0; n < 5; ++n) CHECK(std::fabs(found[n] / expected[n] - 1) <= 0.01);
 }
 
-// ---- waves that grow and vortices that stay -------------------------------------------------------
+// ---- waves that grow and vortices that stay -----------------------------------------------------
 
 TEST_CASE("heavy fluid falls at the rate of Rayleigh and Taylor and better on finer meshes" *
           doctest::description("physics")) {
-    // With half the amplitude of the case, and not long: large crests slow the wave by nearly a per cent.
+    // With half the amplitude of the case, and not long: large crests slow the wave by nearly a per
+    // cent.
     const std::string small =
         "time.end=1.5 region.lower.amplitude=0.01 region.upper.amplitude=0.01 ";
     const Run r = run("flip", "layers", "rayleigh_taylor", small);

@@ -181,7 +181,7 @@ double total(const Field& f, const Grid& grid) {
 
 }  // namespace
 
-// ---- particles and the mesh ----------------------------------------------------------------------
+// ---- particles and the mesh ---------------------------------------------------------------------
 
 TEST_CASE("weights are B-splines of order one that sum to one up to the ends of the mesh") {
     Random random(1);
@@ -297,7 +297,7 @@ TEST_CASE("a uniform velocity is uniform on the nodes and their images agree to 
     }
 }
 
-// ---- forces and their work -----------------------------------------------------------------------
+// ---- forces and their work ----------------------------------------------------------------------
 
 TEST_CASE("the force of pressure is the transpose of dilation") {
     for (const char* ends : {"periodic", "slip", "open"}) {
@@ -523,7 +523,7 @@ TEST_CASE("viscosities are those of their formulas in a uniform compression or e
     }
 }
 
-// ---- whole steps ---------------------------------------------------------------------------------
+// ---- whole steps --------------------------------------------------------------------------------
 
 TEST_CASE("every step keeps mass and momentum and energy whatever it holds" *
           doctest::description("physics")) {
@@ -782,7 +782,7 @@ TEST_CASE("an open end feels the pressure outside over its length and no further
     CHECK(std::fabs(z + 1.1) <= 1e-14);
 }
 
-// ---- the heat of transfers, and mass matrices ----------------------------------------------------
+// ---- the heat of transfers, and mass matrices ---------------------------------------------------
 
 TEST_CASE(
     "the heat of lumped masses is never negative and adds up to what the matrices differ by") {
@@ -1048,7 +1048,7 @@ TEST_CASE("an affine motion is exact with apic in a filled box") {
     CHECK(most <= 1e-12);
 }
 
-// ---- materials in one cell -----------------------------------------------------------------------
+// ---- materials in one cell ----------------------------------------------------------------------
 
 TEST_CASE("gases in one cell have the sum of their partial pressures") {
     const std::vector<Material> gases{{"a", 1.4, 0}, {"b", 5.0 / 3, 0}, {"c", 1.1, 0}};
@@ -1165,7 +1165,7 @@ TEST_CASE("cold gas and dust and nothing at all are finite in a cell") {
     }
 }
 
-// ---- the implicit pressure -----------------------------------------------------------------------
+// ---- the implicit pressure ----------------------------------------------------------------------
 
 TEST_CASE("the implicit pressure does what its equation says in every cell") {
     for (const Variant& ends : all_ends()) {
@@ -1317,7 +1317,7 @@ TEST_CASE("an implicit pressure that does not converge ends the run with a word 
     CHECK(said.find("flip.max_iterations") != std::string::npos);
 }
 
-// ---- particles that carry volumes ----------------------------------------------------------------
+// ---- particles that carry volumes ---------------------------------------------------------------
 
 TEST_CASE("with volumes a state of one pressure stays at rest wherever the particles are") {
     for (const char* ends : {"periodic", "slip", "no_slip"}) {
@@ -1454,7 +1454,7 @@ TEST_CASE("gas takes a tenth of the room beside a liquid and the liquid none") {
     }
 }
 
-// ---- what particles keep -------------------------------------------------------------------------
+// ---- what particles keep ------------------------------------------------------------------------
 
 TEST_CASE("a uniform flow carries masses and materials and entropy along unchanged") {
     for (const char* pressure : {"explicit", "implicit"}) {
@@ -1506,7 +1506,7 @@ TEST_CASE("smooth flow changes the entropy of particles in proportion to the ste
     }
 }
 
-// ---- symmetries ----------------------------------------------------------------------------------
+// ---- symmetries ---------------------------------------------------------------------------------
 
 TEST_CASE("a step is the same in a moving frame and some cells further") {
     for (const char* transfer : transfers) {
@@ -1518,7 +1518,8 @@ TEST_CASE("a step is the same in a moving frame and some cells further") {
                 Case w = several_gases(8, 4);
                 w.transfer = transfer, w.pressure = pressure, w.mass = mass;
                 w.viscosity = 0.01, w.tolerance = 1e-14;
-                // The energy of the motion within an apic particle depends on where in its cell it is.
+                // The energy of the motion within an apic particle depends on where in its cell it
+                // is.
                 const bool affine = std::string(transfer) == "apic";
                 const double U = affine ? 0.5 / w.dt : 1.5;
                 const Particles p = any_cloud(w, 0.5, 29);
@@ -1640,7 +1641,7 @@ TEST_CASE("the number of threads does not change a bit") {
     common::set_thread_count(before);
 }
 
-// ---- what ends a run -----------------------------------------------------------------------------
+// ---- what ends a run ----------------------------------------------------------------------------
 
 TEST_CASE("negative or lost density and energy end a run with where and when") {
     const facts::Untrapped calm;

@@ -200,7 +200,8 @@ TEST_CASE("the tubes of Toro's book have the pressures and velocities printed th
 }
 
 TEST_CASE("liquids without tension part at zero pressure as fast as their fans let them") {
-    // Isentropic release from p to 0: c ~ (p + p_infinity)^((gamma - 1)/2 gamma), u +- 2c/(gamma - 1).
+    // Isentropic release from p to 0: c ~ (p + p_infinity)^((gamma - 1)/2 gamma), u +- 2c/(gamma -
+    // 1).
     const GasState left{1000, -20, 1e6, 4.4, 6e8}, right{800, 15, 1e6, 3, 5e8};
     const auto release = [](const GasState& a) {
         const double c = std::sqrt(a.gamma * (a.pressure + a.p_infinity) / a.density),
@@ -997,7 +998,8 @@ TEST_CASE("what the mesh does not see of a sound wave stays on the particles") {
     for (const double density : {0.5, 0.8, 1.0})
         CHECK(std::abs(std::abs(carried_factor(-1, gamma, 0.9, {1, 1, density, s, 1 / s, 1})) -
                        1) <= 1e-14);
-    // Velocity alone is smoothed by pic, so that the wave loses half of it: it lives on pressure, too.
+    // Velocity alone is smoothed by pic, so that the wave loses half of it: it lives on pressure,
+    // too.
     const double a = 1e-5, once = 1 - 1e-9;
     const Complex pic = carried_factor(0.5, gamma, a, {once, once, 1, 1});
     CHECK(std::abs((1 - std::abs(pic)) / (1 - once) - 0.5) <= 1e-3);

@@ -282,7 +282,8 @@ TEST_CASE("a sphere without pressure flies along the axis and keeps its shape") 
 
 TEST_CASE("a Newtonian fluid that expands evenly in space feels its viscosity at the ends alone") {
     // v = (r, z) has the same strain along r, around the axis and along z: no stress at all; and
-    // v = (r, -z) a uniform one, whose force is none. Without the strain around the axis neither is.
+    // v = (r, -z) a uniform one, whose force is none. Without the strain around the axis neither
+    // is.
     Case w = rings(6, 5, "open", "open");
     w.regions = {fluid("", 1, 1)};
     w.viscosity = 0.3;

@@ -1,5 +1,5 @@
-// Fluid that turns about the axis, in flip and pic: the angular momentum that every particle keeps, the
-// force and the energy of the rotation, balances, and waves.
+// Fluid that turns about the axis, in flip and pic: the angular momentum that every particle keeps,
+// the force and the energy of the rotation, balances, and waves.
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 #include <gsl/gsl_sf_bessel.h>
@@ -22,8 +22,8 @@ common::Formula formula(const std::string& text) {
     return common::Formula(text, "region.test", common::anything());
 }
 
-// The leak of a step, without the momentum that points outward; and that of the angular momentum, over
-// sum m |L|.
+// The leak of a step, without the momentum that points outward; and that of the angular momentum,
+// over sum m |L|.
 struct SwirlLeak {
     Leak plane;
     double angular = 0;
@@ -193,8 +193,8 @@ TEST_CASE(
 }
 
 TEST_CASE("gas that turns in balance stays at rest with errors of its order") {
-    // Second order in pic; of first order in flip, whose cells at a wall average over particles that do
-    // not lie around their middle: there hydrostatic = true is for.
+    // Second order in pic; of first order in flip, whose cells at a wall average over particles
+    // that do not lie around their middle: there hydrostatic = true is for.
     // A liquid that keeps its density, p = p_0 + rho Omega^2 r^2/2; a gas of one temperature,
     // rho = exp(Omega^2 r^2/2 T); and a column whose middle turns faster.
     struct Balance {

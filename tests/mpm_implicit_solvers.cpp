@@ -20,7 +20,7 @@ using namespace facts;
 using Dense = Eigen::MatrixXd;
 using Sparse = Eigen::SparseMatrix<double>;
 
-// ---- grains in all positions ---------------------------------------------------------------------
+// ---- grains in all positions --------------------------------------------------------------------
 
 struct Situation {
     std::string name;
@@ -29,8 +29,8 @@ struct Situation {
     bool turns;    // nothing hinders a rigid rotation
 };
 
-// One or two grains on a mesh of h = 0.1: free, at walls, around a periodic mesh, over its ends, and
-// with nodes of small mass.
+// One or two grains on a mesh of h = 0.1: free, at walls, around a periodic mesh, over its ends,
+// and with nodes of small mass.
 std::vector<Situation> situations(const std::string& shape) {
     std::vector<Situation> all;
     const auto add = [&](const std::string& name, bool turns, double shift,
@@ -197,9 +197,10 @@ double total_mass(const Particles& p) {
     return m;
 }
 
-// ---- grains that meet ----------------------------------------------------------------------------
+// ---- grains that meet ---------------------------------------------------------------------------
 
-// Boxes around one place, h = 0.1: two to four grains, a rigid one, walls, grains under force control.
+// Boxes around one place, h = 0.1: two to four grains, a rigid one, walls, grains under force
+// control.
 std::vector<std::pair<std::string, Case>> contact_cases(const std::string& shape) {
     std::vector<std::pair<std::string, Case>> all;
     const auto add = [&](const std::string& name, double y, std::size_t boxes) -> Problem& {
@@ -454,7 +455,7 @@ CgResult find(ThetaRun& run, Solver& solver, const char* preconditioner, const V
 
 }  // namespace
 
-// ---- matrices ------------------------------------------------------------------------------------
+// ---- matrices -----------------------------------------------------------------------------------
 
 TEST_CASE("the product with a stencil is the sum over particles") {
     double worst_A = 0, worst_M = 0, worst_diagonal = 0;
@@ -685,7 +686,7 @@ TEST_CASE("a grain that moves along takes the same step") {
     }
 }
 
-// ---- factors of grains ---------------------------------------------------------------------------
+// ---- factors of grains --------------------------------------------------------------------------
 
 TEST_CASE("the factors of a grain undo its matrix") {
     double off = 0, left = 0;
@@ -714,7 +715,7 @@ TEST_CASE("the factors of a grain undo its matrix") {
     CHECK(left <= 1e-6);
 }
 
-// ---- what closed pairs allow ---------------------------------------------------------------------
+// ---- what closed pairs allow --------------------------------------------------------------------
 
 TEST_CASE("the projection is orthogonal and needs to be done once") {
     double again = 0, across = 0, skew = 0;
@@ -893,7 +894,7 @@ TEST_CASE("a plate that a force drives takes along whom it presses") {
     CHECK(plates >= 10);
 }
 
-// ---- conjugate gradients among them --------------------------------------------------------------
+// ---- conjugate gradients among them -------------------------------------------------------------
 
 TEST_CASE("conjugate gradients among closed pairs solve what a dense solver does") {
     double off = 0, apart = 0, left = 0;

@@ -1,6 +1,6 @@
-// The implicit material point method in whole steps and short runs: the energy theorem term by term,
-// momentum, what contact asks for, both solvers against each other, and what the theta scheme does
-// to an oscillation.
+// The implicit material point method in whole steps and short runs: the energy theorem term by
+// term, momentum, what contact asks for, both solvers against each other, and what the theta scheme
+// does to an oscillation.
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
@@ -153,7 +153,7 @@ void for_each_weight(ThetaRun& run, const Visit& visit) {
 
 }  // namespace
 
-// ---- the energy theorem --------------------------------------------------------------------------
+// ---- the energy theorem -------------------------------------------------------------------------
 
 TEST_CASE("the energy theorem holds in every step whatever it holds" *
           doctest::description("physics")) {
@@ -364,7 +364,7 @@ TEST_CASE("gravity does exactly the work of the way that grains fall") {
     }
 }
 
-// ---- momentum ------------------------------------------------------------------------------------
+// ---- momentum -----------------------------------------------------------------------------------
 
 TEST_CASE("the momentum of all grains stays with contact and friction and bonds") {
     double off = 0;
@@ -506,7 +506,7 @@ TEST_CASE("boxes that are bonded move as one box does") {
     CHECK(off <= 1e-10);
 }
 
-// ---- what contact asks for -----------------------------------------------------------------------
+// ---- what contact asks for ----------------------------------------------------------------------
 
 TEST_CASE("impulses press and gaps stay open and friction is Coulomb's at the solution") {
     long pressed = 0, stuck = 0, slipped = 0, open = 0;
@@ -614,7 +614,7 @@ TEST_CASE("both solvers find the same velocities") {
     CHECK(pressed >= 20);
 }
 
-// ---- the theta scheme ----------------------------------------------------------------------------
+// ---- the theta scheme ---------------------------------------------------------------------------
 
 TEST_CASE("one node between walls swings by the factor of the theta scheme") {
     std::array<double, 2> off{};  // of both solvers

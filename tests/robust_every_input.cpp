@@ -1,6 +1,6 @@
-// What every program makes of a case file, a command line and a folder for its results: one sentence
-// with place and cure for what is wrong, status 2, and nothing written; and what is listed, described
-// and accepted.
+// What every program makes of a case file, a command line and a folder for its results: one
+// sentence with place and cure for what is wrong, status 2, and nothing written; and what is
+// listed, described and accepted.
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 #include <unistd.h>
@@ -94,8 +94,8 @@ std::string items(const Program& program, int count) {
 TEST_CASE("damaged text of a case file is refused with its place" *
           doctest::description("robust")) {
     const std::string not_text = ": not UTF-8 text", control = ": a control character";
-    // Invalid, Latin-1, too long a form, a surrogate, cut off; UTF-16 with its mark and without; NUL,
-    // escape, delete, a lone carriage return; names and values that are nested without end.
+    // Invalid, Latin-1, too long a form, a surrogate, cut off; UTF-16 with its mark and without;
+    // NUL, escape, delete, a lone carriage return; names and values that are nested without end.
     check_texts(
         {{"[time]\nend = 0.3 # \xff\n", "case.toml:2:13: not UTF-8 text; save the file as UTF-8"},
          {"# caf\xe9\n", "case.toml:1:6" + not_text},
@@ -539,7 +539,8 @@ explicit_em particles.order - output.history_steps -
         CHECK(listed.size() == parameters.size());
         CHECK(listed == keys_in(run("beam", program.beam)));
 
-        // The defaults, given as overrides of what the short case leaves to them, make the same case.
+        // The defaults, given as overrides of what the short case leaves to them, make the same
+        // case.
         const std::set<std::string> shortened = keys_in(program.short_case);
         std::string overrides;
         std::map<std::string, std::string> units;

@@ -1,5 +1,5 @@
-// What the tests of flip and pic share: the loops of their mains without files, clouds of particles anywhere on
-// the mesh, and sums that know nothing of the code under test.
+// What the tests of flip and pic share: the loops of their mains without files, clouds of particles
+// anywhere on the mesh, and sums that know nothing of the code under test.
 #pragma once
 
 #include <algorithm>

@@ -146,7 +146,7 @@ struct ThetaRun {
     StepScratch<2> wide_{laws, scheme, contact, parameters.flip, parameters.frozen, {}, {}};
 };
 
-// ---- cases ---------------------------------------------------------------------------------------
+// ---- cases --------------------------------------------------------------------------------------
 
 inline ThetaScheme theta_scheme(double theta, const std::string& mass = "consistent",
                                 const std::string& solver = "projected_cg") {
