@@ -111,7 +111,8 @@ ParticleBatch whole(Particles& s) {
 }
 
 // How far numbers are from filling (0, 1) evenly, each alone and all pairs: the largest mean of a
-// wave as long as the interval, over the numbers, their sums and their differences; 1 with one outside.
+// wave as long as the interval, over the numbers, their sums and their differences; 1 with one
+// outside.
 double unevenness(const std::vector<std::vector<double>>& u) {
     double most = 0;
     const auto mean = [](const std::vector<double>& a, const std::vector<double>& b, double sign) {

@@ -10,6 +10,7 @@
 #include <complex>
 #include <limits>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "cic/theory/cloud_force.hpp"
@@ -108,12 +109,11 @@ double fastest_of_all_modes(const PlasmaSpecies& plasma, const MeshScheme& schem
 //     1                                          energy conserving, cic
 //     [(1 + 2 cos^2(theta)) / 3]^1/2             energy conserving, tsc
 //   omega = (2 / dt) asin(omega_g dt / 2)
-// out:    not a number where the leapfrog is unstable, omega_g dt > 2
+// in:     omega_g dt <= 2
 // exact:  D = 0
 double cold_mesh_frequency(double k, const MeshScheme& scheme, double omega_p) {
     const double omega_g =
         omega_p * std::sqrt(cic::detail::sum_of_alias_weights(scheme, 0.5 * k * scheme.dx));
-    if (scheme.dt * omega_g > 2.0) return std::numeric_limits<double>::quiet_NaN();
     return scheme.dt > 0.0 ? 2.0 / scheme.dt * std::asin(0.5 * scheme.dt * omega_g) : omega_g;
 }
 
@@ -159,18 +159,6 @@ TEST_CASE("the dispersion relation of the mesh is the sum over aliases that defi
     }
 }
 
-TEST_CASE("the closed forms for a cold plasma are the roots of the sum over aliases") {
-    for (const MeshScheme& scheme : schemes())
-        for (const double k : {0.2, 1.0, 2.0, 3.0}) {
-            const double omega = cold_mesh_frequency(k, scheme, 1.0);
-            const std::vector<PlasmaSpecies> plasma{electrons(0.0, 0.0)};
-            const Complex D = dispersion_by_definition(plasma, k, scheme, omega, 20000);
-            // The neglected aliases are 2 / (pi^2 20000) of the largest term, or far fewer.
-            const int power = 2 * scheme.order + (scheme.energy_conserving ? 0 : 1);
-            CHECK(std::abs(D) * omega * omega <= (power <= 2 ? 1.2e-5 : 1e-12));
-        }
-}
-
 TEST_CASE("the closed forms are the fastest growing roots with and without a time step") {
     const PlasmaSpecies plasma = electrons(0.0, 0.0);
     for (MeshScheme scheme : schemes())
@@ -184,7 +172,13 @@ TEST_CASE("the closed forms are the fastest growing roots with and without a tim
         }
 }
 
-TEST_CASE("a cold plasma has the tabulated frequencies on the mesh") {
+TEST_CASE("a cold plasma has the tabulated frequencies on the mesh and of the leapfrog") {
+    const PlasmaSpecies plasma = electrons(0.0, 0.0);
+    const auto root = [&](double k, const MeshScheme& scheme) {
+        const DispersionRoot found = cic::fastest_growing_on_mesh({&plasma, 1}, k, scheme);
+        REQUIRE(found.found);
+        return found.omega;
+    };
     const double table[][5] = {
         // cells per wavelength; cic, tsc, energy-conserving cic and tsc
         {64, 0.998795, 0.998395, 1.0, std::nan("")}, {32, 0.995185, 0.993590, 1.0, 0.996792},
@@ -193,24 +187,22 @@ TEST_CASE("a cold plasma has the tabulated frequencies on the mesh") {
         {3, 0.500000, 0.433013, 1.0, std::nan("")}};
     for (const auto& row : table) {
         const double k = 2.0 * pi / row[0];
-        CHECK(cold_mesh_frequency(k, {1.0, 0.0, 0, false}, 1.0) ==
-              cold_mesh_frequency(k, {1.0, 0.0, 1, false}, 1.0));
+        CHECK(std::abs(root(k, {1.0, 0.0, 0, false}) - root(k, {1.0, 0.0, 1, false})) <= 1e-12);
         for (std::size_t n = 1; n < 5; ++n) {
             const MeshScheme scheme{1.0, 0.0, n % 2 == 1 ? 1 : 2, n > 2};
-            if (!std::isnan(row[n]))
-                CHECK(std::abs(cold_mesh_frequency(k, scheme, 1.0) - row[n]) <= 6e-7);
+            if (!std::isnan(row[n])) CHECK(std::abs(root(k, scheme) - row[n]) <= 6e-7);
         }
     }
-}
-
-TEST_CASE("the leapfrog raises the frequency as tabulated until it is unstable") {
-    const double table[][2] = {{0.1, 1.000417}, {0.2, 1.001674}, {0.5, 1.010721}, {1.0, 1.047198},
-                               {1.5, 1.130749}, {1.9, 1.319196}, {2.0, 1.570796}};
-    for (const auto& row : table)
-        CHECK(std::abs(cold_mesh_frequency(1.0, {1.0, row[0], 1, true}, 1.0) - row[1]) <= 6e-7);
-    CHECK(std::isnan(cold_mesh_frequency(1.0, {1.0, 2.01, 1, true}, 1.0)));
+    for (const auto& [dt, omega] : {std::pair{0.1, 1.000417},
+                                    {0.2, 1.001674},
+                                    {0.5, 1.010721},
+                                    {1.0, 1.047198},
+                                    {1.5, 1.130749},
+                                    {1.9, 1.319196}})
+        CHECK(std::abs(root(1.0, {1.0, dt, 1, true}) - omega) <= 6e-7);
+    CHECK(root(1.0, {1.0, 2.01, 1, true}).imag() > 0.01);
     // On a mesh of 32 cells: mode 4 at a large step.
-    CHECK(std::abs(cold_mesh_frequency(pi / 4.0, {1.0, 0.5, 1, false}, 1.0) - 0.932298) <= 6e-7);
+    CHECK(std::abs(root(pi / 4.0, {1.0, 0.5, 1, false}) - 0.932298) <= 6e-7);
 }
 
 TEST_CASE("with Gauss's law as the slide prints it a cold plasma blows up") {
@@ -225,8 +217,6 @@ TEST_CASE("with Gauss's law as the slide prints it a cold plasma blows up") {
                 CHECK(std::abs(D - 2.0) <= 1e-14);
             }
         }
-    const double canary = cold_growth_as_printed(pi / 16.0, {1.0, 0.1, 1, false});
-    CHECK(std::abs(canary - 0.99477) <= 6e-6);
 }
 
 TEST_CASE("a fine mesh with short steps has the waves of the plasma") {
@@ -271,8 +261,8 @@ TEST_CASE("a warm species that is kicked at steps answers as the sum of its alia
             CHECK(std::abs(kicked - sum) <= 2e-6 * std::abs(sum));
         }
     }
-    // Landau damping at k lambda_D = 0.4 and omega_p dt = 1, where the leapfrog takes the frequency from
-    // 1.270 to 1.306: a quiet run has 1.3057 +- 0.0016 and -0.0602 +- 0.0017.
+    // Landau damping at k lambda_D = 0.4 and omega_p dt = 1, where the leapfrog takes the frequency
+    // from 1.270 to 1.306: a quiet run has 1.3057 +- 0.0016 and -0.0602 +- 0.0017.
     const MeshScheme scheme{15.707963267948966 / 16, 1.0, 1, false};
     const PlasmaSpecies warm = electrons(0, 1);
     const auto root = cic::fastest_growing_on_mesh({&warm, 1}, 0.4, scheme);

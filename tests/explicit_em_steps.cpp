@@ -96,7 +96,7 @@ TEST_CASE("sorted particles lie between the borders of their cells in their old 
                          {Stencil<l>::low_of(grid.x, i) - d_x, d_x - Stencil<l>::high_of(grid.x, i),
                           Stencil<l>::low_of(grid.z, j) - d_z,
                           d_z - Stencil<l>::high_of(grid.z, j)})
-                        outside = std::max(outside, beyond);
+                        outside = worst({outside, beyond});
                 }
             }
             CHECK(wrong == 0);
@@ -346,7 +346,7 @@ TEST_CASE("all species together give the sum of their currents smoothed and with
                     std::vector<Crossings> crossings;
                     move_particles(push, grid, dt, {true, order, true}, smoothing, moved, crossings,
                                    scratch, J);
-                    CHECK((J.all - expected.all).cwiseAbs().maxCoeff() <= 200 * eps);
+                    CHECK(largest(J.all - expected.all) <= 200 * eps);
                 }
             }
         }

@@ -14,7 +14,7 @@
 namespace {
 
 using namespace flip;
-using facts::eps;
+using facts::eps, facts::worst;
 
 // Two materials, particles anywhere and of any mass, in a plane or in a row of cells.
 struct Cloud {
@@ -72,24 +72,24 @@ struct Cloud {
     }
 
     double node_change() const {
-        double worst = 0;
+        double most = 0;
         for (std::size_t n = 0; n < before.nodes.sum.size(); ++n)
-            worst = std::max(worst,
-                             (before.nodes.sum[n] - after.nodes.sum[n]).head<3>().abs().maxCoeff());
-        return worst;
+            for (int k = 0; k < 3; ++k)
+                most = worst({most, std::fabs(before.nodes.sum[n][k] - after.nodes.sum[n][k])});
+        return most;
     }
     double cell_change(bool energy) const {
-        double worst = 0;
+        double most = 0;
         for (long j = 0; j < w.grid.z.cells; ++j) {
             for (long i = 0; i < w.grid.x.cells; ++i) {
                 for (std::size_t k = 0; k < w.materials.size(); ++k) {
                     const auto n = std::size_t(w.grid.index(i, j)) * w.materials.size() + k;
                     const CellSum &a = before.cells.sum[n], &b = after.cells.sum[n];
-                    worst = std::max(worst, std::fabs(energy ? a.U - b.U : a.M - b.M));
+                    most = worst({most, std::fabs(energy ? a.U - b.U : a.M - b.M)});
                 }
             }
         }
-        return worst;
+        return most;
     }
     // Particles of one material in one cell: the fewest and the most of all that are not empty.
     std::array<long, 2> range() const {

@@ -12,7 +12,6 @@
 #include "flip/setup/scales.hpp"
 #include "flip/theory/acoustics.hpp"
 #include "tests/support/any_fluid.hpp"
-#include "tests/support/exact_sound.hpp"
 
 namespace {
 
@@ -182,7 +181,7 @@ double total(const Field& f, const Grid& grid) {
 
 }  // namespace
 
-// ---- particles and the mesh ----------------------------------------------------------------------
+// ---- particles and the mesh ---------------------------------------------------------------------
 
 TEST_CASE("weights are B-splines of order one that sum to one up to the ends of the mesh") {
     Random random(1);
@@ -298,7 +297,7 @@ TEST_CASE("a uniform velocity is uniform on the nodes and their images agree to 
     }
 }
 
-// ---- forces and their work -----------------------------------------------------------------------
+// ---- forces and their work ----------------------------------------------------------------------
 
 TEST_CASE("the force of pressure is the transpose of dilation") {
     for (const char* ends : {"periodic", "slip", "open"}) {
@@ -524,7 +523,7 @@ TEST_CASE("viscosities are those of their formulas in a uniform compression or e
     }
 }
 
-// ---- whole steps ---------------------------------------------------------------------------------
+// ---- whole steps --------------------------------------------------------------------------------
 
 TEST_CASE("every step keeps mass and momentum and energy whatever it holds" *
           doctest::description("physics")) {
@@ -722,7 +721,7 @@ TEST_CASE("sound of the consistent mass neither grows nor bursts up to the large
                 } catch (const common::NumericalError&) {
                     return 1e300;
                 }
-                return r.nodes().vx.cwiseAbs().maxCoeff() / noise;
+                return r.nodes().vx.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() / noise;
             };
             CAPTURE(density);
             CAPTURE(n);
@@ -783,7 +782,7 @@ TEST_CASE("an open end feels the pressure outside over its length and no further
     CHECK(std::fabs(z + 1.1) <= 1e-14);
 }
 
-// ---- the heat of transfers, and mass matrices ----------------------------------------------------
+// ---- the heat of transfers, and mass matrices ---------------------------------------------------
 
 TEST_CASE(
     "the heat of lumped masses is never negative and adds up to what the matrices differ by") {
@@ -862,7 +861,9 @@ TEST_CASE("the mass matrix is that of the particles and a trip to them and back"
                 multiply(r.grid(), sparse, x, y);
                 // To the particles and back.
                 const Eigen::VectorXd there = m_p.cwiseProduct(S * on(nodes, x));
-                CHECK((on(nodes, y) - S.transpose() * there).cwiseAbs().maxCoeff() <= 1e-15);
+                CHECK((on(nodes, y) - S.transpose() * there)
+                          .cwiseAbs()
+                          .maxCoeff<Eigen::PropagateNaN>() <= 1e-15);
                 Field other, back;
                 stir_nodes(r.grid(), random, other);
                 multiply(r.grid(), sparse, other, back);
@@ -871,7 +872,9 @@ TEST_CASE("the mass matrix is that of the particles and a trip to them and back"
                 CHECK(on(nodes, x).dot(on(nodes, y)) > 0);
             }
             multiply(r.grid(), sparse, one, y);
-            CHECK((on(nodes, y) - on(nodes, r.nodes().m)).cwiseAbs().maxCoeff() <= 1e-15);
+            CHECK((on(nodes, y) - on(nodes, r.nodes().m))
+                      .cwiseAbs()
+                      .maxCoeff<Eigen::PropagateNaN>() <= 1e-15);
         }
     }
 }
@@ -889,8 +892,11 @@ TEST_CASE("the consistent mass gives the velocity whose momentum the particles h
         const Eigen::VectorXd P =
             S.transpose() * m_p.cwiseProduct(column(r.particles().vx_p)).matrix();
         r.move_nodes();
-        CHECK((M * on(nodes, r.nodes().vx) - P).cwiseAbs().maxCoeff() <= 1e-13);
-        CHECK((on(nodes, r.nodes().vx) - M.ldlt().solve(P)).cwiseAbs().maxCoeff() <= 1e-10);
+        CHECK((M * on(nodes, r.nodes().vx) - P).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <=
+              1e-13);
+        CHECK((on(nodes, r.nodes().vx) - M.ldlt().solve(P))
+                  .cwiseAbs()
+                  .maxCoeff<Eigen::PropagateNaN>() <= 1e-10);
         // Walls hold, and push nobody but the nodes that they hold.
         const Eigen::VectorXd pushed =
             M * on(nodes, r.nodes().vxL - r.nodes().vx) - r.w.dt * on(nodes, r.nodes().fx);
@@ -914,11 +920,11 @@ TEST_CASE("xpic of order one is pic and many orders give the velocity of the con
     CHECK((once.array() == r.nodes().vx.array()).all());
     filter_velocity(r.grid(), M, r.nodes().m, 4000, r.nodes().vx, many_x, last);
     filter_velocity(r.grid(), M, r.nodes().m, 4000, r.nodes().vz, many_z, last);
-    CHECK(last.cwiseAbs().maxCoeff() <= 1e-12);
+    CHECK(last.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= 1e-12);
     solve_velocity(r.grid(), M, r.nodes());
     const std::vector<long> nodes = own_nodes(r.grid());
-    CHECK((on(nodes, many_x - r.nodes().vx)).cwiseAbs().maxCoeff() <= 1e-9);
-    CHECK((on(nodes, many_z - r.nodes().vz)).cwiseAbs().maxCoeff() <= 1e-9);
+    CHECK((on(nodes, many_x - r.nodes().vx)).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= 1e-9);
+    CHECK((on(nodes, many_z - r.nodes().vz)).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= 1e-9);
 
     // Whole steps: the same as pic, particle by particle.
     for (const char* pressure : {"explicit", "implicit"}) {
@@ -1042,7 +1048,7 @@ TEST_CASE("an affine motion is exact with apic in a filled box") {
     CHECK(most <= 1e-12);
 }
 
-// ---- materials in one cell -----------------------------------------------------------------------
+// ---- materials in one cell ----------------------------------------------------------------------
 
 TEST_CASE("gases in one cell have the sum of their partial pressures") {
     const std::vector<Material> gases{{"a", 1.4, 0}, {"b", 5.0 / 3, 0}, {"c", 1.1, 0}};
@@ -1105,8 +1111,9 @@ TEST_CASE("a mixture has the speed of sound of Wood") {
                              M[1] * internal_energy(all[1], rho[1], p)};
         double share[2];
         const CellState cell = find_equilibrium(all, M, U, 1, share);
-        const auto c = [&](std::size_t k) { return std::sqrt(stiffness(all[k], p) / rho[k]); };
-        const double wood = theory::wood_sound_speed({air, rho[0], c(0)}, {1 - air, rho[1], c(1)}),
+        // Wood, A Textbook of Sound (1930): 1/(rho c^2) = sum phi/(rho_k c_k^2).
+        const double soft = air / stiffness(all[0], p) + (1 - air) / stiffness(all[1], p),
+                     wood = 1 / std::sqrt((M[0] + M[1]) * soft),
                      speed = sound_speed(M[0] + M[1], cell.compressibility);
         CHECK(std::fabs(speed / wood - 1) <= 1e-9);
         if (air == 0.5) CHECK(std::fabs(speed - 23.7) <= 0.2);
@@ -1158,7 +1165,7 @@ TEST_CASE("cold gas and dust and nothing at all are finite in a cell") {
     }
 }
 
-// ---- the implicit pressure -----------------------------------------------------------------------
+// ---- the implicit pressure ----------------------------------------------------------------------
 
 TEST_CASE("the implicit pressure does what its equation says in every cell") {
     for (const Variant& ends : all_ends()) {
@@ -1205,7 +1212,7 @@ TEST_CASE("a step of a small sound wave has the factor of the theta scheme at an
     const double kappa = 2 * std::sin(pi / real(N)) * real(N), small = 1e-6;
     for (const double theta : {0.5, 0.6, 1.0}) {
         for (const double a : {0.1, 1.0, 10.0, 100.0}) {
-            const std::complex<double> factor = theory::theta_factor(theta, a);
+            const std::complex<double> factor = theory::carried_factor(theta, 1.4, a, {});
             Case w = flip_case(N, 1, "periodic", "periodic");
             w.regions = {fluid("", 1, 1)};
             w.pressure = "implicit", w.theta = theta, w.tolerance = 1e-13;
@@ -1240,8 +1247,7 @@ TEST_CASE("a step of a small sound wave has the factor of the theta scheme at an
             CHECK(std::fabs(kept - factor.real()) <= 1e-5);
             CHECK(std::fabs(ratio_p(moving, c0 * u0) + factor.imag()) <= 1e-5);
             // Together: the amplitude.
-            CHECK(std::hypot(kept, u1) ==
-                  doctest::Approx(theory::theta_amplification(theta, a)).epsilon(0.01));
+            CHECK(std::hypot(kept, u1) == doctest::Approx(std::abs(factor)).epsilon(0.01));
         }
     }
 }
@@ -1292,7 +1298,7 @@ TEST_CASE("slow flow becomes that of an incompressible fluid whatever its sound"
         velocities.push_back(r.nodes().vxL);
         if (velocities.size() > 1) {
             const Field change = velocities.back() - velocities[velocities.size() - 2];
-            CHECK(change.cwiseAbs().maxCoeff() <= 2000 / p0);
+            CHECK(change.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= 2000 / p0);
         }
     }
 }
@@ -1311,7 +1317,7 @@ TEST_CASE("an implicit pressure that does not converge ends the run with a word 
     CHECK(said.find("flip.max_iterations") != std::string::npos);
 }
 
-// ---- particles that carry volumes ----------------------------------------------------------------
+// ---- particles that carry volumes ---------------------------------------------------------------
 
 TEST_CASE("with volumes a state of one pressure stays at rest wherever the particles are") {
     for (const char* ends : {"periodic", "slip", "no_slip"}) {
@@ -1448,7 +1454,7 @@ TEST_CASE("gas takes a tenth of the room beside a liquid and the liquid none") {
     }
 }
 
-// ---- what particles keep -------------------------------------------------------------------------
+// ---- what particles keep ------------------------------------------------------------------------
 
 TEST_CASE("a uniform flow carries masses and materials and entropy along unchanged") {
     for (const char* pressure : {"explicit", "implicit"}) {
@@ -1500,7 +1506,7 @@ TEST_CASE("smooth flow changes the entropy of particles in proportion to the ste
     }
 }
 
-// ---- symmetries ----------------------------------------------------------------------------------
+// ---- symmetries ---------------------------------------------------------------------------------
 
 TEST_CASE("a step is the same in a moving frame and some cells further") {
     for (const char* transfer : transfers) {
@@ -1512,7 +1518,8 @@ TEST_CASE("a step is the same in a moving frame and some cells further") {
                 Case w = several_gases(8, 4);
                 w.transfer = transfer, w.pressure = pressure, w.mass = mass;
                 w.viscosity = 0.01, w.tolerance = 1e-14;
-                // The energy of the motion within an apic particle depends on where in its cell it is.
+                // The energy of the motion within an apic particle depends on where in its cell it
+                // is.
                 const bool affine = std::string(transfer) == "apic";
                 const double U = affine ? 0.5 / w.dt : 1.5;
                 const Particles p = any_cloud(w, 0.5, 29);
@@ -1634,7 +1641,7 @@ TEST_CASE("the number of threads does not change a bit") {
     common::set_thread_count(before);
 }
 
-// ---- what ends a run -----------------------------------------------------------------------------
+// ---- what ends a run ----------------------------------------------------------------------------
 
 TEST_CASE("negative or lost density and energy end a run with where and when") {
     const facts::Untrapped calm;

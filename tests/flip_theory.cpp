@@ -22,7 +22,6 @@
 #include "flip/theory/shocks.hpp"
 #include "flip/theory/vortex.hpp"
 #include "tests/support/any_numbers.hpp"
-#include "tests/support/exact_sound.hpp"
 
 namespace {
 
@@ -137,24 +136,9 @@ double shear_growth_on_mesh(const ShearLayer& s, double k, int cells) {
 
 // ---- a disk on a mesh ---------------------------------------------------------------------------
 
-// Weights of linear, order 1, or quadratic, order 2, splines for the nodes from first.
-struct Weights {
-    int first;
-    double w[3];
-};
-Weights spline(double x, int order) {
-    if (order == 1) {
-        const double cell = std::floor(x), f = x - cell;
-        return {int(cell), {1.0 - f, f, 0.0}};
-    }
-    const double node = std::floor(x + 0.5), f = x - node;
-    return {int(node) - 1,
-            {0.5 * (0.5 - f) * (0.5 - f), 0.75 - f * f, 0.5 * (0.5 + f) * (0.5 + f)}};
-}
-
 // The part of its angular momentum that a rigidly turning disk of fine particles loses on the way
 // to the mesh and back; lengths in cells, the middle at (x0, y0).
-double loss_of_disk(double R, int order, double x0, double y0) {
+double loss_of_disk(double R, double x0, double y0) {
     const int size = 2 * int(R) + 10, per_cell = 12;
     Eigen::MatrixXd m = Eigen::MatrixXd::Zero(size, size), px = m, py = m;
     const double middle_x = 0.5 * size + x0, middle_y = 0.5 * size + y0;
@@ -165,13 +149,12 @@ double loss_of_disk(double R, int order, double x0, double y0) {
                 const double x = (i + 0.5) / per_cell, y = (j + 0.5) / per_cell;
                 const double rx = x - middle_x, ry = y - middle_y;
                 if (rx * rx + ry * ry > R * R) continue;
-                const Weights a = spline(x, order), b = spline(y, order);
+                // Linear weights of four nodes.
+                const int first_x = int(std::floor(x)), first_y = int(std::floor(y));
                 double vx = 0.0, vy = 0.0;
-                for (int p = 0; p < 3; ++p)
-                    for (int q = 0; q < 3; ++q) {
-                        const double S = a.w[p] * b.w[q];
-                        const int I = a.first + p, J = b.first + q;
-                        if (S == 0.0) continue;
+                for (const int I : {first_x, first_x + 1})
+                    for (const int J : {first_y, first_y + 1}) {
+                        const double S = (1.0 - std::abs(x - I)) * (1.0 - std::abs(y - J));
                         if (back) {
                             vx += S * px(I, J) / m(I, J);
                             vy += S * py(I, J) / m(I, J);
@@ -217,7 +200,8 @@ TEST_CASE("the tubes of Toro's book have the pressures and velocities printed th
 }
 
 TEST_CASE("liquids without tension part at zero pressure as fast as their fans let them") {
-    // Isentropic release from p to 0: c ~ (p + p_infinity)^((gamma - 1)/2 gamma), u +- 2c/(gamma - 1).
+    // Isentropic release from p to 0: c ~ (p + p_infinity)^((gamma - 1)/2 gamma), u +- 2c/(gamma -
+    // 1).
     const GasState left{1000, -20, 1e6, 4.4, 6e8}, right{800, 15, 1e6, 3, 5e8};
     const auto release = [](const GasState& a) {
         const double c = std::sqrt(a.gamma * (a.pressure + a.p_infinity) / a.density),
@@ -237,24 +221,21 @@ TEST_CASE("liquids without tension part at zero pressure as fast as their fans l
     CHECK(!solve_riemann({1000, -slow, 1e6, 4.4, 6e8}, {800, slow, 1e6, 3, 5e8}, 0).has_void);
 }
 
-TEST_CASE("mass momentum and energy balance across every shock of a Riemann problem") {
+TEST_CASE("every shock of a Riemann problem balances and raises the entropy") {
     int shocks = 0;
+    const auto check = [&](const GasState& front, const GasState& behind, double head,
+                           double tail) {
+        if (head != tail) return;
+        ++shocks;
+        CHECK(imbalance(front, behind, head) <= 1e-12);
+        CHECK(entropy(behind) > entropy(front));
+    };
     for (const auto& p : pairs()) {
         const auto s = solve_riemann(p.left, p.right);
-        if (s.left_head == s.left_tail && ++shocks)
-            CHECK(imbalance(s.left, s.left_of_contact, s.left_head) <= 1e-12);
-        if (s.right_head == s.right_tail && ++shocks)
-            CHECK(imbalance(s.right, s.right_of_contact, s.right_head) <= 1e-12);
+        check(s.left, s.left_of_contact, s.left_head, s.left_tail);
+        check(s.right, s.right_of_contact, s.right_head, s.right_tail);
     }
     CHECK(shocks >= 12);
-}
-
-TEST_CASE("a shock of a Riemann problem raises the entropy") {
-    for (const auto& p : pairs()) {
-        const auto s = solve_riemann(p.left, p.right);
-        if (s.left_head == s.left_tail) CHECK(entropy(s.left_of_contact) > entropy(s.left));
-        if (s.right_head == s.right_tail) CHECK(entropy(s.right_of_contact) > entropy(s.right));
-    }
 }
 
 TEST_CASE("entropy and the Riemann invariant are constant through fans and x over t is u -+ c") {
@@ -721,36 +702,27 @@ namespace {
 
 // The vortex of the paper: peak velocity 1 at r = 0.2, density 1.
 double gresho_velocity(double r) { return gresho_vortex(r / 0.2).velocity; }
-double gresho_pressure(double r, double p_0) { return p_0 + gresho_vortex(r / 0.2).pressure; }
-
-// The pressure in the middle that gives the peak a Mach number: M = 1/c where p = p_0 + 1/2.
-double gresho_middle_pressure(double gamma, double peak_mach) {
-    return 1.0 / (gamma * peak_mach * peak_mach) - 0.5;
-}
+double gresho_pressure(double r) { return gresho_vortex(r / 0.2).pressure; }
 
 }  // namespace
 
 TEST_CASE("Gresho's vortex is in balance and its pressure is continuous") {
-    const double p_0 = gresho_middle_pressure(1.4, 0.1);
     for (const double edge : {0.2, 0.4}) {
-        CHECK(std::abs(gresho_pressure(edge * (1.0 + 1e-15), p_0) -
-                       gresho_pressure(edge * (1.0 - 1e-15), p_0)) <= 1e-12);
+        CHECK(std::abs(gresho_pressure(edge * (1.0 + 1e-15)) -
+                       gresho_pressure(edge * (1.0 - 1e-15))) <= 1e-12);
         CHECK(std::abs(gresho_velocity(edge * (1.0 + 1e-15)) -
                        gresho_velocity(edge * (1.0 - 1e-15))) <= 1e-14);
     }
     for (const double r : {0.05, 0.15, 0.25, 0.3, 0.39, 0.5, 0.7}) {
         const double h = 1e-4, u = gresho_velocity(r);
-        const double slope = (gresho_pressure(r + h, 0.0) - gresho_pressure(r - h, 0.0)) / (2 * h);
+        const double slope = (gresho_pressure(r + h) - gresho_pressure(r - h)) / (2 * h);
         CHECK(std::abs(slope - u * u / r) <= 1e-5);
     }
 }
 
 TEST_CASE("Gresho's vortex has the published pressure energy and angular momentum") {
-    CHECK(std::abs(gresho_middle_pressure(1.4, 0.1) - 70.92857) <= 5e-6);
-    CHECK(std::abs(gresho_middle_pressure(1.4, 0.01) - 7142.357) <= 5e-4);
-    CHECK(std::abs(gresho_middle_pressure(1.4, 0.001) - 714285.2) <= 5e-2);
-    const double p = gresho_pressure(0.2, gresho_middle_pressure(1.4, 0.3));
-    CHECK(relative(gresho_velocity(0.2) / std::sqrt(1.4 * p), 0.3) <= 1e-14);
+    CHECK(gresho_velocity(0.2) == 1.0);
+    CHECK(std::abs(gresho_pressure(0.2) - 0.5) <= 1e-15);
     double K = 0.0, L = 0.0;
     for (const auto& [low, high] : {std::pair{0.0, 0.2}, std::pair{0.2, 0.4}}) {
         K += integral([](double r) { return pi * r * std::pow(gresho_velocity(r), 2); }, low, high);
@@ -760,16 +732,6 @@ TEST_CASE("Gresho's vortex has the published pressure energy and angular momentu
     CHECK(relative(gresho_angular_momentum, L) <= 1e-12);
     CHECK(std::abs(gresho_angular_momentum - 0.058643063) <= 5e-10);
     CHECK(relative(gresho_turnover_time * gresho_velocity(0.1), 2.0 * pi * 0.1) <= 1e-14);
-}
-
-TEST_CASE("a rigid disk has the integrals over its velocity") {
-    const double rho = 2.5, R = 0.3, rate = 1.7, L = 0.5 * pi * rho * rate * std::pow(R, 4);
-    const auto momentum = [&](double r) { return rho * 2.0 * pi * r * r * rate * r; };
-    const auto energy = [&](double r) { return rho * pi * r * std::pow(rate * r, 2); };
-    const auto force = [&](double r) { return rho * std::pow(rate * r, 2) / r; };
-    CHECK(relative(L, integral(momentum, 0.0, R)) <= 1e-13);
-    CHECK(relative(0.5 * rate * L, integral(energy, 0.0, R)) <= 1e-13);
-    CHECK(relative(0.5 * rho * std::pow(rate * R, 2), integral(force, 0.0, R)) <= 1e-13);
 }
 
 // ---- instabilities ------------------------------------------------------------------------------
@@ -785,15 +747,6 @@ double interface_mode(const TwoLayers& s, double k, double z) {
     if (std::isinf(depth)) return std::exp(-k * away);
     return std::exp(-k * away) * std::expm1(-2.0 * k * (depth - away)) /
            std::expm1(-2.0 * k * depth);
-}
-
-// The stream function of a standing wave at the interface, whose vertical velocity at z = 0 is
-// cos(k x).
-//   psi = -w(z) sin(k x) / k,  u = dpsi/dz,  w = -dpsi/dx
-// exact: differences of psi between the nodes of a mesh are fluxes without divergence
-// note:  the wave that grows has the displacement w(0) cos(k x) / Im omega at z = 0.
-double interface_stream_function(const TwoLayers& s, double k, double x, double z) {
-    return -interface_mode(s, k, z) * std::sin(k * x) / k;
 }
 
 // The stream function psi(z) of the wave of shear_layer_frequency, 1 at z = 0.
@@ -917,25 +870,6 @@ TEST_CASE("a vortex sheet grows with half its velocity difference") {
     CHECK(interface_growth({1.0, 0.5, 9.0, -0.1, 0.1}, k) == 0.0);
 }
 
-TEST_CASE("the velocity of a wave at an interface vanishes at walls and is continuous") {
-    const TwoLayers s{1.0, 2.0, 1.0, 0.0, 0.0, 0.3, 0.7}, deep{1.0, 2.0, 1.0};
-    const double k = 5.0;
-    CHECK(interface_mode(s, k, -0.3) == 0.0);
-    CHECK(interface_mode(s, k, 0.7) == 0.0);
-    CHECK(std::abs(interface_mode(s, k, -1e-12) - interface_mode(s, k, 1e-12)) <= 1e-10);
-    CHECK(relative(interface_mode(s, k, 0.2), std::sinh(k * 0.5) / std::sinh(k * 0.7)) <= 1e-13);
-    CHECK(relative(interface_mode(deep, k, -0.2), std::exp(-1.0)) <= 1e-14);
-    // w = -dpsi/dx, and psi is harmonic on either side.
-    const double h = 1e-3, x = 0.2;
-    const auto psi = [&](double a, double z) { return interface_stream_function(s, k, a, z); };
-    for (const double z : {-0.1, 0.3}) {
-        const double w = -(psi(x + h, z) - psi(x - h, z)) / (2.0 * h);
-        CHECK(std::abs(w - interface_mode(s, k, z) * std::cos(k * x)) <= 1e-5);
-        const double sum = psi(x + h, z) + psi(x - h, z) + psi(x, z + h) + psi(x, z - h);
-        CHECK(std::abs((sum - 4.0 * psi(x, z)) / (h * h)) <= 1e-4);
-    }
-}
-
 TEST_CASE("a shear layer without walls has Rayleigh's dispersion") {
     const ShearLayer s{1.4, 0.3};
     for (const double kd : {0.01, 0.1, 0.3, 0.4, 0.6}) {
@@ -1002,10 +936,7 @@ TEST_CASE("the factor of the theta scheme is an eigenvalue of its step") {
             const Eigen::Matrix2cd step = implicit.inverse() * explicitly;
             const auto all = Eigen::ComplexEigenSolver<Eigen::Matrix2cd>(step).eigenvalues();
             const Complex found = all(0).imag() > all(1).imag() ? all(0) : all(1);
-            const Complex factor = theta_factor(theta, a);
-            CHECK(std::abs(found - factor) <= 1e-13);
-            CHECK(std::abs(std::abs(factor) - theta_amplification(theta, a)) <= 1e-14);
-            CHECK(std::abs(std::arg(factor) - theta_phase(theta, a)) <= 1e-14);
+            CHECK(std::abs(found - carried_factor(theta, 1.4, a, {})) <= 1e-13);
         }
 }
 
@@ -1017,7 +948,8 @@ TEST_CASE("the theta scheme damps as in the table") {
                                 {0.995037, 0.707107, 0.099504, 0.010000}};
     for (int i = 0; i < 4; ++i)
         for (int j = 0; j < 4; ++j)
-            CHECK(std::abs(theta_amplification(thetas[i], waves[j]) - table[i][j]) <= 5.1e-7);
+            CHECK(std::abs(std::abs(carried_factor(thetas[i], 1.4, waves[j], {})) - table[i][j]) <=
+                  5.1e-7);
 }
 
 TEST_CASE("the factor of an explicit step is an eigenvalue for density velocity and energy") {
@@ -1034,11 +966,10 @@ TEST_CASE("the factor of an explicit step is an eigenvalue for density velocity 
             };
             for (int n = 0; n < 3; ++n) step.col(n) = advance(Eigen::Vector3cd::Unit(n));
             const auto all = Eigen::ComplexEigenSolver<Eigen::Matrix3cd>(step).eigenvalues();
-            const Complex factor = explicit_factor(gamma, a);
+            const Complex factor = carried_factor(-1, gamma, a, {});
             double nearest = infinity;
             for (int n = 0; n < 3; ++n) nearest = std::min(nearest, std::abs(all(n) - factor));
             CHECK(nearest <= 1e-13);
-            CHECK(std::abs(std::abs(factor) - explicit_amplification(gamma, a)) <= 1e-14);
         }
 }
 
@@ -1050,18 +981,10 @@ TEST_CASE("an explicit sound wave grows by the published factors in one period")
         for (int j = 0; j < 3; ++j) {
             // The table exponentiates the leading order.
             const double a = 2.0 * pi * courant[j] / cells[i], steps = cells[i] / courant[j];
-            const double growth = std::exp(steps * (explicit_amplification(1.4, a) - 1.0));
+            const double growth =
+                std::exp(steps * (std::abs(carried_factor(-1, 1.4, a, {})) - 1.0));
             CHECK(std::abs(growth - table[i][j]) <= 1.5e-4);
         }
-}
-
-TEST_CASE("particles that see all of a sound wave carry it as the mesh does") {
-    const double gamma = 1.4;
-    for (const double a : {0.03, 0.4, 1.1, 1.4}) {
-        CHECK(std::abs(carried_factor(-1, gamma, a, {}) - explicit_factor(gamma, a)) <= 1e-14);
-        for (const double theta : {0.5, 0.55, 1.0})
-            CHECK(std::abs(carried_factor(theta, gamma, a, {}) - theta_factor(theta, a)) <= 1e-14);
-    }
 }
 
 TEST_CASE("what the mesh does not see of a sound wave stays on the particles") {
@@ -1070,25 +993,17 @@ TEST_CASE("what the mesh does not see of a sound wave stays on the particles") {
     for (const double theta : {0.5, 0.7, 1.0})
         for (const double a : {0.2, 3.0, 100.0})
             CHECK(std::abs(carried_factor(theta, gamma, a, part) -
-                           (1 - s + s * theta_factor(theta, a))) <= 1e-12);
+                           (1 - s + s * carried_factor(theta, gamma, a, {}))) <= 1e-12);
     // The consistent mass loses nothing, and with work at the new velocity nothing grows.
     for (const double density : {0.5, 0.8, 1.0})
         CHECK(std::abs(std::abs(carried_factor(-1, gamma, 0.9, {1, 1, density, s, 1 / s, 1})) -
                        1) <= 1e-14);
-    // Velocity alone is smoothed by pic, so that the wave loses half of it: it lives on pressure, too.
+    // Velocity alone is smoothed by pic, so that the wave loses half of it: it lives on pressure,
+    // too.
     const double a = 1e-5, once = 1 - 1e-9;
     const Complex pic = carried_factor(0.5, gamma, a, {once, once, 1, 1});
     CHECK(std::abs((1 - std::abs(pic)) / (1 - once) - 0.5) <= 1e-3);
 }
-
-namespace {
-
-// The viscosity of PIC's transfer, which interpolates all velocities anew in every step.
-//   nu = dx^2 / (6 dt), from the factor (2 + cos k dx) / 3 per step
-// note:  shorter steps make it larger.
-double pic_transfer_viscosity(double dx, double dt) { return dx * dx / (6.0 * dt); }
-
-}  // namespace
 
 TEST_CASE("many particles smooth a wave by the factor of linear weights") {
     for (const double kh : {0.1, 1.0, 2.0, pi}) {
@@ -1101,40 +1016,11 @@ TEST_CASE("many particles smooth a wave by the factor of linear weights") {
         const double node = integral(back, -1.0, 0.0) + integral(back, 0.0, 1.0);
         CHECK(std::abs(node - pic_smoothing(kh, 1.0)) <= 1e-12);
     }
-    // The viscosity is the decay of long waves.
-    const double k = 0.01, h = 1.0, dt = 0.3;
-    const double rate = -std::log(pic_smoothing(k, h)) / dt;
-    CHECK(relative(rate, pic_transfer_viscosity(h, dt) * k * k) <= 1e-4);
-}
-
-TEST_CASE("the sound of a mixture follows from how its parts are compressed") {
-    const double gamma = 1.4, p = 1e5, dp = 1.0, stiff = 6e8;
-    const double air = 1.2, water = 1000.0;
-    const double c_air = std::sqrt(gamma * p / air);
-    const double c_water = std::sqrt(4.4 * (p + stiff) / water);
-    for (const double phi : {0.01, 0.3, 0.9}) {
-        const double rho = phi * air + (1.0 - phi) * water;
-        const auto volume = [&](double P) {
-            return phi * std::pow(p / P, 1.0 / gamma) +
-                   (1.0 - phi) * std::pow((p + stiff) / (P + stiff), 1.0 / 4.4);
-        };
-        const double drho = rho / volume(p + dp) - rho / volume(p - dp);
-        const double c = wood_sound_speed({phi, air, c_air}, {1.0 - phi, water, c_water});
-        CHECK(relative(c, std::sqrt(2.0 * dp / drho)) <= 1e-5);
-        CHECK(c < c_air);
-    }
-    CHECK(relative(wood_sound_speed({1.0, air, c_air}, {0.0, water, c_water}), c_air) <= 1e-14);
+    // Long waves decay as by a viscosity of h^2/6 per step.
+    CHECK(relative(-std::log(pic_smoothing(0.01, 1.0)), 0.01 * 0.01 / 6) <= 1e-4);
 }
 
 // ---- diffusion ----------------------------------------------------------------------------------
-
-namespace {
-
-// What a rigid disk loses in one round trip by quadratic weights.
-//   h^2 / R^2
-double round_trip_loss_quadratic(double h, double R) { return h * h / (R * R); }
-
-}  // namespace
 
 TEST_CASE("particles on a lattice that share cell values diffuse them by Harlow's formula") {
     for (const int n : {2, 4, 10, 64})
@@ -1179,69 +1065,17 @@ TEST_CASE("Harlow's diffusivity has the published values") {
 
 TEST_CASE("a disk loses the predicted angular momentum in one round trip") {
     for (const double R : {10.0, 19.2}) {
-        double linear = 0.0, quadratic = 0.0;
+        double linear = 0.0;
         const int tries = 4;
         for (int n = 0; n < tries; ++n) {
             const double x = 0.25 * n + 0.11, y = 0.5 * n * n / tries + 0.07;
-            linear += loss_of_disk(R, 1, x, y) / tries;
-            quadratic += loss_of_disk(R, 2, x, y) / tries;
+            linear += loss_of_disk(R, x, y) / tries;
         }
         CHECK(relative(linear, round_trip_loss(1.0, R)) <= 0.05);
-        CHECK(relative(quadratic, round_trip_loss_quadratic(1.0, R)) <= 0.08);
     }
 }
 
 // ---- water --------------------------------------------------------------------------------------
-
-namespace {
-
-// Water of depth H at x < 0 on a dry bed; the dam at x = 0 vanishes at t = 0.
-struct DamBreak {
-    double depth, gravity;  // H, g
-};
-
-struct ShallowWater {
-    double depth, velocity;
-};
-
-// The speed of the front.
-//   2 (g H)^1/2
-double dam_front_speed(const DamBreak& d) { return 2.0 * std::sqrt(d.gravity * d.depth); }
-
-// Depth and velocity at x = (x / t) t, while the wave has not reached a wall.
-//   h = (2 c - x / t)^2 / (9 g),  u = 2 (c + x / t) / 3,  c = (g H)^1/2,  for -c < x / t < 2 c
-// exact: at the dam 4 H / 9 and 2 c / 3; the mass and the momentum of water that is shallow
-// source: Ritter, Z. Ver. Dtsch. Ing. 36, 947 (1892).
-ShallowWater dam_break_at(const DamBreak& d, double x_over_t) {
-    const double c = std::sqrt(d.gravity * d.depth);
-    if (x_over_t <= -c) return {d.depth, 0.0};
-    if (x_over_t >= 2.0 * c) return {0.0, 0.0};
-    const double left = 2.0 * c - x_over_t;
-    return {left * left / (9.0 * d.gravity), 2.0 / 3.0 * (c + x_over_t)};
-}
-
-}  // namespace
-
-TEST_CASE("Ritter's wave has four ninths of the depth at the dam and obeys shallow water") {
-    const DamBreak d{0.7, 9.81};
-    const double c = std::sqrt(0.7 * 9.81);
-    CHECK(relative(dam_break_at(d, 0.0).depth, 4.0 / 9.0 * 0.7) <= 1e-14);
-    CHECK(relative(dam_break_at(d, 0.0).velocity, 2.0 / 3.0 * c) <= 1e-14);
-    CHECK(relative(dam_front_speed(d), 2.0 * c) <= 1e-14);
-    CHECK(dam_break_at(d, 2.0 * c).depth == 0.0);
-    CHECK(dam_break_at(d, -1.01 * c).depth == 0.7);
-    for (const double part : {-0.9, -0.3, 0.2, 1.0, 1.9}) {
-        const double xi = part * c, h = 1e-4;
-        const auto a = dam_break_at(d, xi - h), m = dam_break_at(d, xi),
-                   b = dam_break_at(d, xi + h);
-        const double depth_x = (b.depth - a.depth) / (2.0 * h);
-        const double u_x = (b.velocity - a.velocity) / (2.0 * h);
-        CHECK(std::abs((m.velocity - xi) * depth_x + m.depth * u_x) <= 1e-9);
-        CHECK(std::abs((m.velocity - xi) * u_x + 9.81 * depth_x) <= 1e-9);
-    }
-    const auto depth = [&](double xi) { return dam_break_at(d, xi).depth; };
-    CHECK(relative(integral(depth, -c, 2.0 * c), 0.7 * c) <= 1e-12);
-}
 
 TEST_CASE("the laboratory front of Martin and Moyce stays behind Ritter's") {
     const auto table = read_table("flip/data/martin_moyce.csv");
@@ -1257,10 +1091,8 @@ TEST_CASE("the laboratory front of Martin and Moyce stays behind Ritter's") {
     const double speed = (Z[14] - Z[6]) / (T[14] - T[6]);
     CHECK(std::abs(speed - 1.33) <= 0.05);
     // T counts 2 (g H)^1/2 t as 2 widths.
-    const DamBreak d{0.1143, 9.81};
-    const double t = 0.1;
-    CHECK(relative(dam_front_speed(d) * t / 0.05715, 2.0 * column_time(t, 0.05715, 0.1143, 9.81)) <=
-          1e-14);
+    CHECK(relative(2 * std::sqrt(9.81 * 0.1143) * 0.1 / 0.05715,
+                   2 * column_time(0.1, 0.05715, 0.1143, 9.81)) <= 1e-14);
 }
 
 TEST_CASE("the profiles of Ghia Ghia and Shin carry no net flow through the middle") {

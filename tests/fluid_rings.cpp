@@ -9,19 +9,6 @@ namespace {
 
 using namespace facts;
 
-Case rings(long nr, long nz, const char* high = "slip", const char* ends_z = "slip") {
-    Case w = flip_case(nr, nz, "slip", nz > 1 ? ends_z : "periodic");
-    w.boundaries[x_high].kind = high;
-    w.geometry = "axisymmetric";
-    return w;
-}
-
-// The leak of a step, without the momentum that points outward, which no ring keeps.
-Leak leak_along(Totals a, Totals b, Budget before, Budget after) {
-    a.momentum_x = b.momentum_x = before.momentum_x = after.momentum_x = 0;
-    return leak(a, b, before, after);
-}
-
 // Volume of the ring with the straight sides between four corners, counterclockwise: 2 pi times the
 // integral of x over their polygon.
 double volume_of(const std::array<Eigen::Vector2d, 4>& at) {
@@ -43,11 +30,6 @@ Case impact(long cells) {
     w.regions[1].shape = "disk";
     w.regions[1].center_z = 0.75, w.regions[1].radius = 0.2;
     return w;
-}
-
-// The largest speed on the mesh.
-double speed_of(const Field& vx, const Field& vz, double stream = 0) {
-    return std::sqrt((vx.array().square() + (vz.array() - stream).square()).maxCoeff());
 }
 
 }  // namespace
@@ -300,7 +282,8 @@ TEST_CASE("a sphere without pressure flies along the axis and keeps its shape") 
 
 TEST_CASE("a Newtonian fluid that expands evenly in space feels its viscosity at the ends alone") {
     // v = (r, z) has the same strain along r, around the axis and along z: no stress at all; and
-    // v = (r, -z) a uniform one, whose force is none. Without the strain around the axis neither is.
+    // v = (r, -z) a uniform one, whose force is none. Without the strain around the axis neither
+    // is.
     Case w = rings(6, 5, "open", "open");
     w.regions = {fluid("", 1, 1)};
     w.viscosity = 0.3;

@@ -132,7 +132,6 @@ TEST_CASE("the susceptibility never gives energy however fast the plasma rotates
         const double* B = field.B.all.data();
         deposit_moments(plasma.species, grid, field.B, 0.1, false, plasma.moments);
         predict_current(grid, plasma.moments, plasma.charge_over_mass, B, B, 0.1, 0.5, response);
-        double least = HUGE_VAL;
         for (int n = 0; n < 50; ++n) {
             VectorField E(grid), out(grid);
             E.all = any_field(grid, random);
@@ -140,9 +139,8 @@ TEST_CASE("the susceptibility never gives energy however fast the plasma rotates
             fill_ghosts(grid, electric, E);
             apply_tensor(grid, response.chi, E.all.data(), false, response.scratch, out.all.data());
             keep_unknowns(grid, out.all.data());
-            least = std::min(least, unknowns.dot(out.all) / unknowns.squaredNorm());
+            CHECK(unknowns.dot(out.all) > 0);
         }
-        CHECK(least > 0);
     }
 }
 

@@ -266,13 +266,7 @@ TEST_CASE("a sheet with a guide field is in equilibrium" * doctest::description(
     }
 }
 
-TEST_CASE("a guide field is described and warned of and refused where it is no number" *
-          doctest::description("robust")) {
-    check_refused(R"(
-implicit_moment harris.guide_field=nan -> 'harris.guide_field' must be finite, not nan
-implicit_moment harris.guide_field='"y"' -> 'harris.guide_field' takes a number, not text
-implicit_moment harris.guide_feild=1 -> did you mean 'harris.guide_field'?
-)");
+TEST_CASE("a guide field is described and warned of" * doctest::description("robust")) {
     // |B| is largest at the walls.
     check_descriptions(R"(
 implicit_moment harris.guide_field=0.75

@@ -29,8 +29,8 @@ std::string room(const std::string& name) {
     return folder;
 }
 
-// Two phases: noise that grows at `first` until it saturates at 0.01, and from t = 10 on a kink that
-// grows at `second` until it saturates at 0.3. The ripple is a part of the amplitude.
+// Two phases: noise that grows at `first` until it saturates at 0.01, and from t = 10 on a kink
+// that grows at `second` until it saturates at 0.3. The ripple is a part of the amplitude.
 struct Record {
     std::vector<double> times, amplitude;
 

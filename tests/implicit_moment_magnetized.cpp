@@ -1,5 +1,6 @@
-// Facts about the dielectric tensor of a warm magnetized plasma: what it is along the field, without
-// temperatures, without a field, and for slow longitudinal waves, where other formulas are known.
+// Facts about the dielectric tensor of a warm magnetized plasma: what it is along the field,
+// without temperatures, without a field, and for slow longitudinal waves, where other formulas are
+// known.
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
@@ -136,7 +137,8 @@ TEST_CASE("on a coarse mesh the roots of the determinant are the waves of the co
 }
 
 TEST_CASE("along the field the determinant on the mesh is the product of its three relations") {
-    // Smoothed E and B as it is, drifts, two temperatures; the field runs along the wave or against it.
+    // Smoothed E and B as it is, drifts, two temperatures; the field runs along the wave or against
+    // it.
     for (const double B : {0.3, -0.3})
         for (const bool leapfrog : {false, true}) {
             Case w;

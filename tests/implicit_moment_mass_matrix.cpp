@@ -1,5 +1,6 @@
-// Facts about the particles' own current: the mass matrix is the response of the kicks, the energy of
-// particles and field changes by theta alone, and particles that follow the field keep Gauss's law too.
+// Facts about the particles' own current: the mass matrix is the response of the kicks, the energy
+// of particles and field changes by theta alone, and particles that follow the field keep Gauss's
+// law too.
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
@@ -346,7 +347,8 @@ TEST_CASE("a field in which no path ends is refused") {
 
 TEST_CASE(
     "particles in a wave of light are followed to second order with B of the middle of the step") {
-    // Charges too small to be felt, in a wave that travels along x. The light itself is of second order.
+    // Charges too small to be felt, in a wave that travels along x. The light itself is of second
+    // order.
     const Grid grid{{64, 0, 2 * pi, true}, {4, 0, 0.4, true}};
     const auto velocities = [&](const std::string& response, const std::string& level, double dt) {
         FieldState field(grid);
@@ -370,7 +372,8 @@ TEST_CASE(
             find_moments(grid, dt, species, field, scratch);
             take_step(grid, dt, tight, {1.0}, scratch, species, field);
         }
-        // In the order of their velocities along z, which only E_z and B could change: it hardly does.
+        // In the order of their velocities along z, which only E_z and B could change: it hardly
+        // does.
         std::vector<std::pair<double, double>> found;
         for (std::size_t p = 0; p < species[0].x_p.size(); ++p)
             found.emplace_back(species[0].uz_p[p], species[0].ux_p[p]);

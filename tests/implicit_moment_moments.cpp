@@ -212,8 +212,8 @@ TEST_CASE("the work done on particles is the work of the deposited current also 
     for (const Grid& grid : meshes()) {
         const Particles particles = anywhere(grid, 1000, 1, random);
         for (const bool conductor : {false, true}) {
-            // Behind a wall: the mirrored plasma of the slide's moments, or what the field equations
-            // have there.
+            // Behind a wall: the mirrored plasma of the slide's moments, or what the field
+            // equations have there.
             const VectorKind kind = conductor ? felt(grid) : current;
             const VectorField E = random.field(grid, kind, 1);
             const InterleavedField push = pack(grid, E, VectorField(grid));

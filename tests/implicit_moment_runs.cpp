@@ -283,7 +283,8 @@ TEST_CASE("the energy theorem holds for few particles and many and whatever a ca
 
 TEST_CASE("charge that moments lose is a result that falls short" *
           doctest::description("physics")) {
-    // Ions alone between walls blow apart: in steps of half a Debye length they go where E is another.
+    // Ions alone between walls blow apart: in steps of half a Debye length they go where E is
+    // another.
     const std::string ions =
         "implicit_moment/cases/gem.toml plasma.setup=uniform grid.cells_x=32 grid.cells_z=32 "
         "grid.length_x=3.2 grid.length_z=3.2 harris.particles=200000 species.ions.charge=1 "

@@ -93,8 +93,8 @@ std::vector<Amplitudes> amplitudes_of_run(const Case& w) {
     return run;
 }
 
-// The largest difference between them and the powers of the step matrix of a case, in units of the largest
-// amplitude of E.
+// The largest difference between them and the powers of the step matrix of a case, in units of the
+// largest amplitude of E.
 double deviation(const std::vector<Amplitudes>& run, const Case& of_theory) {
     const Eigen::MatrixXcd step = cold_step(of_theory);
     Amplitudes theory = run[0];
@@ -424,7 +424,8 @@ TEST_CASE("a uniform plasma whose energy changes by more than 5 percent fails") 
     CHECK(left < -0.1);
     CHECK(verdict({0, left}, light));
     CHECK(!verdict({0, 0}, light));
-    // A wave that theta damps, and noise beside it that is damped less: what theta took, and no more or less.
+    // A wave that theta damps, and noise beside it that is damped less: what theta took, and no
+    // more or less.
     Case damped = magnetized(false, 1);
     damped.uniform.B_x = damped.uniform.B_y = damped.uniform.B_z = 0;
     damped.end = 60, damped.wave = "langmuir";

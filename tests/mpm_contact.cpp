@@ -235,14 +235,17 @@ TEST_CASE("clouds without outlines press when the centers of their parts are nea
                 });
                 m.meet(rule_of(0, separation));
                 // At the node between them, where both are seen alike.
+                long seen = 0;
                 for (long n = 0; n < m.nodes.shared_count(); ++n) {
                     const auto who = m.members(n);
                     if (who.size() != 2 || who[0].x != 6 || who[0].y != 6) continue;
+                    ++seen;
                     const bool press = separation == 0 || apart < separation;
                     CHECK(m.has_changed(who[0]) == press);
                     CHECK(m.has_changed(who[1]) == press);
                     if (press) CHECK(std::fabs(m.now(who[0]).vx_1) <= 1e-15);
                 }
+                CHECK(seen == 1);
                 // And nowhere when they go apart.
                 m.accelerate([&](int g, NodeMotion& v) {
                     v.vx_1 = (g == 0 ? -1 : 1) * std::cos(angle);
@@ -266,11 +269,14 @@ TEST_CASE("a part that is a hundred thousand times lighter is left alone") {
                                      : two_particles(0.5, 0, 1, ratio / (1 - ratio)));
             m.accelerate([](int g, NodeMotion& v) { v.vx_1 = g == 0 ? 1 : -1; });
             m.meet(rule_of(0));
+            long seen = 0;
             for (long n = 0; n < m.nodes.shared_count(); ++n) {
                 const auto who = m.members(n);
                 if (who.size() != 2 || who[0].x != 6 || who[0].y != 6) continue;
+                ++seen;
                 CHECK(m.has_changed(who[0]) == (ratio > 1e-5));
             }
+            CHECK(seen == 1);
         }
     }
 }
@@ -332,18 +338,17 @@ TEST_CASE("what rigid grains give is the opposite of their push") {
 
 TEST_CASE("no pair that is in contact approaches afterwards and no energy is made") {
     for (const int grains : {3, 4, 6}) {
-        double approach = 0, gained = 0;
+        double approach = 0;
         long nodes = 0;
         for (std::uint64_t seed = 1; seed <= 100; ++seed) {
             ContactProblem m(crowd(seed, grains));
             m.meet(rule_of(0));
             for (long n = 0; n < m.nodes.shared_count(); ++n, ++nodes)
                 approach = worst({approach, approach_at(m, n)});
-            gained = std::max(gained, kinetic(m, true) - kinetic(m, false));
+            CHECK(kinetic(m, true) <= kinetic(m, false));
         }
         CHECK(nodes >= 1000);
         CHECK(approach <= 1e-11);
-        CHECK(gained <= 0);
     }
 }
 
@@ -688,8 +693,6 @@ TEST_CASE("a grain that presses another against a roller moves nothing through i
 
 namespace {
 
-const std::array<std::string, 3> shapes{"linear", "gimp", "quadratic"};
-
 Case halves(const std::string& shape, double tension = 1e30, double shear = 1e30) {
     Case c = case_on(32, 24, 1.6);
     c.shape = shape;
@@ -708,7 +711,7 @@ void move_particles_by(double dx, double dy, Assembly& all) {
 }  // namespace
 
 TEST_CASE("two halves that are bonded move as one block") {
-    for (const std::string& shape : shapes) {
+    for (const std::string& shape : shape_names) {
         // Also where the last particles of a half reach a node by next to nothing.
         for (const double cells : {0.0, 0.13, 0.37, 0.25 + 1e-7, 0.5 - 1e-6, 0.75 + 2e-6}) {
             CAPTURE(shape);
@@ -873,7 +876,7 @@ TEST_CASE("a disk that is thrown on a wall and its mirror image mirror each othe
 }
 
 TEST_CASE("grains press when their surfaces touch whatever the shape and wherever they are") {
-    for (const std::string& shape : shapes) {
+    for (const std::string& shape : shape_names) {
         for (const double cells : {0.0, 0.11, 0.25, 0.5, 0.83}) {
             for (const double gap : {-0.05, 0.0, 0.019, 0.021, 0.3}) {
                 CAPTURE(shape);
@@ -941,7 +944,7 @@ TEST_CASE("the outline of a disk turns with it") {
 }
 
 TEST_CASE("the area of a bond is the length of the interface wherever it lies on the mesh") {
-    for (const std::string& shape : shapes) {
+    for (const std::string& shape : shape_names) {
         for (const bool stacked : {false, true}) {
             for (const double cells : {0.0, 0.1, 0.25 + 1e-7, 0.37, 0.5, 0.75 - 1e-6, 0.9}) {
                 CAPTURE(shape);
@@ -1042,7 +1045,7 @@ TEST_CASE(
 }
 
 TEST_CASE("bonds keep momentum while they hold and when they break") {
-    for (const std::string& shape : shapes) {
+    for (const std::string& shape : shape_names) {
         CAPTURE(shape);
         Case c = halves(shape, 150, 150);
         c.problem.grains[0].velocity_x = -0.1, c.problem.grains[1].velocity_x = 0.1;
@@ -1057,17 +1060,13 @@ TEST_CASE("bonds keep momentum while they hold and when they break") {
         };
         const auto start = all();
         const double of_one = 1000 * 0.16 * 0.1;
-        bool held = false;
         for (int step = 0; step < 60; ++step) {
             run.advance();
-            const bool broken = run.state.assembly.bonds[0].broken;
-            CHECK((held || !broken || step > 0));
-            held = held || !broken;
+            if (step == 0) CHECK(!run.state.assembly.bonds[0].broken);
             const auto now = all();
             CHECK(std::fabs(now[0] - start[0]) <= 1e-12 * of_one);
             CHECK(std::fabs(now[1] - start[1]) <= 1e-12 * of_one);
         }
-        CHECK(held);
         CHECK(run.state.assembly.bonds[0].broken);
     }
 }

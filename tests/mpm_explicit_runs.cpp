@@ -150,8 +150,8 @@ TEST_CASE("a grain at rest stays at rest and bursts with contact on the new velo
 
 TEST_CASE("a disk rests wherever it is in its cells and gains nothing" *
           doctest::description("physics")) {
-    // Six cells in its radius. Of 60 places at random none gained more than .028; as the slide strains it,
-    // some do, and in the second place here it has several times its energy.
+    // Six cells in its radius. Of 60 places at random none gained more than .028; as the slide
+    // strains it, some do, and in the second place here it has several times its energy.
     const auto rest = [](double across, double up, const char* changes) {
         const auto number = [](double x) { return std::to_string(x); };
         return run(
@@ -177,7 +177,8 @@ TEST_CASE("a disk rests wherever it is in its cells and gains nothing" *
 
 TEST_CASE("a pack keeps its energy with the talk's linear shape" *
           doctest::description("physics")) {
-    // As the slide strains them, particles that cross lines do three times the work of the plate at 0.7.
+    // As the slide strains them, particles that cross lines do three times the work of the plate at
+    // 0.7.
     for (const char* alpha : {"0.25", "0.7"}) {
         const Run r =
             run("pack", "compressed", std::string("method.crossing=0.5 time.alpha=") + alpha);
@@ -185,7 +186,8 @@ TEST_CASE("a pack keeps its energy with the talk's linear shape" *
         CHECK(std::fabs(r.column("energy").back() / r.column("external").back() - 1) <= 0.02);
         check_budget(r);
     }
-    // The rebound loses and gains a fifth of a per cent at most, and keeps it where the slide's bursts.
+    // The rebound loses and gains a fifth of a per cent at most, and keeps it where the slide's
+    // bursts.
     for (const auto& [alpha, most] : {std::pair("0.25", 0.002), {"0.7", 0.006}, {"1", 0.03}}) {
         const Run r =
             run("crossing", "rebound", std::string("method.crossing=0.5 time.alpha=") + alpha);
@@ -379,7 +381,8 @@ TEST_CASE("polygons stand on a slope up to that of their base" * doctest::descri
 
 TEST_CASE("a cylinder rolls on a rough incline and slips on a smooth one" *
           doctest::description("physics")) {
-    // 2.4 and 2.3 % too slow; it swings on its contact by .06 of its speed and does not part from it.
+    // 2.4 and 2.3 % too slow; it swings on its contact by .06 of its speed and does not part from
+    // it.
     for (const char* rough : {"contact.friction=0.3", "contact.friction=0.6",
                               "contact.friction=0.3 grid.cells_x=100 grid.cells_y=20"}) {
         const Run rolls = run("cylinder", "rolling_cylinder", rough);

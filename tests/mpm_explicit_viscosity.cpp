@@ -1,5 +1,5 @@
-// Viscosity in the explicit material point method: what it damps and what not, where the energy goes,
-// and how long a step it bears.
+// Viscosity in the explicit material point method: what it damps and what not, where the energy
+// goes, and how long a step it bears.
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
@@ -15,8 +15,6 @@
 namespace {
 
 using namespace facts;
-
-const std::array<std::string, 3> shapes{"linear", "gimp", "quadratic"};
 
 // A material called default, with this viscosity.
 void make_viscous(Case& c, double beta, const std::string& law = "elastic") {
@@ -85,8 +83,8 @@ TEST_CASE("a rigid motion of the nodes feels no viscosity") {
 }
 
 TEST_CASE("one free node with viscosity is multiplied by the exact factor") {
-    // v' = (1 - b - z^2) v - z^2 u, u' = v + u with z = w dt, b = beta w^2 dt: of the matrix the trace
-    // is 2 - b - z^2 and the determinant 1 - b.
+    // v' = (1 - b - z^2) v - z^2 u, u' = v + u with z = w dt, b = beta w^2 dt: of the matrix the
+    // trace is 2 - b - z^2 and the determinant 1 - b.
     for (const long n : {1L, 2L, 3L})
         for (const double beta : {0.0, 0.02, 0.3}) {
             Case c = oscillator(n, beta);
@@ -112,7 +110,8 @@ TEST_CASE("one free node with viscosity is multiplied by the exact factor") {
 
 TEST_CASE("viscosity shortens the step to just what leapfrog bears") {
     // The fastest wave of the mesh is taken to have w = 2 c/h. One free node has w h/c = 1 with one
-    // particle in a cell: it bears up to z^2 + 2 b = 4, so to a step that is twice as long at beta = 0.
+    // particle in a cell: it bears up to z^2 + 2 b = 4, so to a step that is twice as long at beta
+    // = 0.
     const double c_p = sound_speed(Material{}), h = 1;
     for (const double beta : {0.0, 0.1, 1.0}) {
         Material m;
@@ -141,7 +140,7 @@ TEST_CASE("viscosity only takes energy and the budget closes to round-off" *
         for (const double beta : {1e-4, 3e-3, 0.1})
             for (const std::string kind : {"hit", "frozen", "plates", "ring"}) {
                 Case c = case_on(30, 24, 1.5);
-                c.shape = shapes[number++ % 3];
+                c.shape = shape_names[number++ % 3];
                 CAPTURE(law);
                 CAPTURE(beta);
                 CAPTURE(kind);
@@ -183,8 +182,8 @@ TEST_CASE("viscosity only takes energy and the budget closes to round-off" *
 }
 
 TEST_CASE("viscosity does not see how fast a grain flies") {
-    // A wave in a box that flies by one cell per step, and in one at rest: with load.damping the box
-    // slows down, with viscosity it keeps its momentum, and its wave decays alike.
+    // A wave in a box that flies by one cell per step, and in one at rest: with load.damping the
+    // box slows down, with viscosity it keeps its momentum, and its wave decays alike.
     const auto flight = [](double velocity, double beta, double damping, double& kept) {
         Case c = case_on(60, 8, 6);
         c.problem.grains = {box_at("a", 0.6, 0.4, 0.8, 0.4, velocity)};

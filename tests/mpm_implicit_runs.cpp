@@ -403,8 +403,8 @@ TEST_CASE("contact settles with much friction in long steps" * doctest::descript
 
 TEST_CASE("a soft block comes down on a rigid disk and on the seam of two plates" *
           doctest::description("physics")) {
-    // All that sticks to the disk has a velocity of round-off, which is not to be taken for sliding. At
-    // the seam friction of 3 makes and takes away the pressure that makes it.
+    // All that sticks to the disk has a velocity of round-off, which is not to be taken for
+    // sliding. At the seam friction of 3 makes and takes away the pressure that makes it.
     const std::string
         on_disk =
             "grid.cells_y=40 grain.disk.x=0.5 grain.disk.y=0.35 grain.disk.radius=0.2 "

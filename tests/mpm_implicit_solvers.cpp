@@ -20,7 +20,7 @@ using namespace facts;
 using Dense = Eigen::MatrixXd;
 using Sparse = Eigen::SparseMatrix<double>;
 
-// ---- grains in all positions ---------------------------------------------------------------------
+// ---- grains in all positions --------------------------------------------------------------------
 
 struct Situation {
     std::string name;
@@ -29,8 +29,8 @@ struct Situation {
     bool turns;    // nothing hinders a rigid rotation
 };
 
-// One or two grains on a mesh of h = 0.1: free, at walls, around a periodic mesh, over its ends, and
-// with nodes of small mass.
+// One or two grains on a mesh of h = 0.1: free, at walls, around a periodic mesh, over its ends,
+// and with nodes of small mass.
 std::vector<Situation> situations(const std::string& shape) {
     std::vector<Situation> all;
     const auto add = [&](const std::string& name, bool turns, double shift,
@@ -197,9 +197,10 @@ double total_mass(const Particles& p) {
     return m;
 }
 
-// ---- grains that meet ----------------------------------------------------------------------------
+// ---- grains that meet ---------------------------------------------------------------------------
 
-// Boxes around one place, h = 0.1: two to four grains, a rigid one, walls, grains under force control.
+// Boxes around one place, h = 0.1: two to four grains, a rigid one, walls, grains under force
+// control.
 std::vector<std::pair<std::string, Case>> contact_cases(const std::string& shape) {
     std::vector<std::pair<std::string, Case>> all;
     const auto add = [&](const std::string& name, double y, std::size_t boxes) -> Problem& {
@@ -454,7 +455,7 @@ CgResult find(ThetaRun& run, Solver& solver, const char* preconditioner, const V
 
 }  // namespace
 
-// ---- matrices ------------------------------------------------------------------------------------
+// ---- matrices -----------------------------------------------------------------------------------
 
 TEST_CASE("the product with a stencil is the sum over particles") {
     double worst_A = 0, worst_M = 0, worst_diagonal = 0;
@@ -541,7 +542,7 @@ TEST_CASE("the mass matrix weighs a translation with the mass") {
         for (const NodeSums& sum : run.nodes.sums) nodes += sum.m;
         const double m = total_mass(run.particles());
         off = worst({off, std::fabs(y.head(n).sum() / m - 1), std::fabs(nodes / m - 1),
-                     y.tail(n).cwiseAbs().maxCoeff() / m});
+                     y.tail(n).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() / m});
         // Row by row: sum_j M_ij = m_i.
         for (long i = 0; i < n; ++i)
             off = worst({off, std::fabs(y[i] - run.nodes.sums[static_cast<std::size_t>(i)].m) / m});
@@ -685,7 +686,7 @@ TEST_CASE("a grain that moves along takes the same step") {
     }
 }
 
-// ---- factors of grains ---------------------------------------------------------------------------
+// ---- factors of grains --------------------------------------------------------------------------
 
 TEST_CASE("the factors of a grain undo its matrix") {
     double off = 0, left = 0;
@@ -714,7 +715,7 @@ TEST_CASE("the factors of a grain undo its matrix") {
     CHECK(left <= 1e-6);
 }
 
-// ---- what closed pairs allow ---------------------------------------------------------------------
+// ---- what closed pairs allow --------------------------------------------------------------------
 
 TEST_CASE("the projection is orthogonal and needs to be done once") {
     double again = 0, across = 0, skew = 0;
@@ -734,7 +735,8 @@ TEST_CASE("the projection is orthogonal and needs to be done once") {
         for (ContactBody& is : at_rest.list.bodies) is.vx = is.vy = 0;
         const Vector v = solver.scale().cwiseProduct(Px);
         const std::vector<double> none(solver.force_controls.size(), 0.0);
-        across = worst({across, forbidden(at_rest, v, none) / v.cwiseAbs().maxCoeff()});
+        across = worst(
+            {across, forbidden(at_rest, v, none) / v.cwiseAbs().maxCoeff<Eigen::PropagateNaN>()});
     });
     CHECK(again <= 1e-14);
     CHECK(across <= 1e-13);
@@ -780,7 +782,7 @@ TEST_CASE("impulses are found whose sum on every node is what is left of its equ
         for (ContactPair& pair : set.list.pairs) pair.lambda_n = pair.lambda_t = 1e3;
         solver.constraints.find_impulses(-Hl, set);
         const Vector found = impulses_on(set, solver.scale(), push);
-        off = worst({off, (found - Hl).cwiseAbs().maxCoeff()});
+        off = worst({off, (found - Hl).cwiseAbs().maxCoeff<Eigen::PropagateNaN>()});
         for (std::size_t k = 0; k < set.list.pairs.size(); ++k) {
             const ContactPair& pair = set.list.pairs[k];
             if (!pair.closed()) CHECK((pair.lambda_n == 0 && pair.lambda_t == 0));
@@ -856,7 +858,7 @@ TEST_CASE("a plate that a force drives takes along whom it presses") {
         Vector with = u, without = u, added = Vector::Zero(u.size());
         allowed.enforce(V, with), allowed.enforce(none, without);
         allowed.add_controlled_motion(V.data(), added);
-        off = worst({off, (with - without - added).cwiseAbs().maxCoeff()});
+        off = worst({off, (with - without - added).cwiseAbs().maxCoeff<Eigen::PropagateNaN>()});
         allowed.controlled_diagonal(weight.data());
         const Vector r = anything(solver.scale(), random);
         allowed.controlled_force(r, felt.data());
@@ -892,7 +894,7 @@ TEST_CASE("a plate that a force drives takes along whom it presses") {
     CHECK(plates >= 10);
 }
 
-// ---- conjugate gradients among them --------------------------------------------------------------
+// ---- conjugate gradients among them -------------------------------------------------------------
 
 TEST_CASE("conjugate gradients among closed pairs solve what a dense solver does") {
     double off = 0, apart = 0, left = 0;

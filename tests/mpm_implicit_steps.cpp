@@ -1,6 +1,6 @@
-// The implicit material point method in whole steps and short runs: the energy theorem term by term,
-// momentum, what contact asks for, both solvers against each other, and what the theta scheme does
-// to an oscillation.
+// The implicit material point method in whole steps and short runs: the energy theorem term by
+// term, momentum, what contact asks for, both solvers against each other, and what the theta scheme
+// does to an oscillation.
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
@@ -153,7 +153,7 @@ void for_each_weight(ThetaRun& run, const Visit& visit) {
 
 }  // namespace
 
-// ---- the energy theorem --------------------------------------------------------------------------
+// ---- the energy theorem -------------------------------------------------------------------------
 
 TEST_CASE("the energy theorem holds in every step whatever it holds" *
           doctest::description("physics")) {
@@ -364,7 +364,7 @@ TEST_CASE("gravity does exactly the work of the way that grains fall") {
     }
 }
 
-// ---- momentum ------------------------------------------------------------------------------------
+// ---- momentum -----------------------------------------------------------------------------------
 
 TEST_CASE("the momentum of all grains stays with contact and friction and bonds") {
     double off = 0;
@@ -498,19 +498,7 @@ TEST_CASE("boxes that are bonded move as one box does") {
                 ThetaRun one(whole, theta_scheme(theta, mass, solver), move),
                     two(halves, theta_scheme(theta, mass, solver), move);
                 one.advance(4), two.advance(4);
-                const Particles &p = one.particles(), &q = two.particles();
-                // Each particle has one like it.
-                for (std::size_t k = 0; k < p.x_p.size(); ++k) {
-                    double nearest = 1e300;
-                    for (std::size_t j = 0; j < q.x_p.size(); ++j)
-                        nearest = std::min(
-                            nearest,
-                            worst({std::fabs(p.x_p[k] - q.x_p[j]), std::fabs(p.y_p[k] - q.y_p[j]),
-                                   std::fabs(p.vx_p[k] - q.vx_p[j]),
-                                   std::fabs(p.vy_p[k] - q.vy_p[j]),
-                                   1e-4 * std::fabs(p.sxx_p[k] - q.sxx_p[j])}));
-                    off = worst({off, nearest});
-                }
+                off = worst({off, unlike(one.particles(), two.particles())});
                 CHECK(std::fabs(one.budget().energy() - two.budget().energy()) <= 1e-10 * one.size);
             }
         }
@@ -518,7 +506,7 @@ TEST_CASE("boxes that are bonded move as one box does") {
     CHECK(off <= 1e-10);
 }
 
-// ---- what contact asks for -----------------------------------------------------------------------
+// ---- what contact asks for ----------------------------------------------------------------------
 
 TEST_CASE("impulses press and gaps stay open and friction is Coulomb's at the solution") {
     long pressed = 0, stuck = 0, slipped = 0, open = 0;
@@ -626,7 +614,7 @@ TEST_CASE("both solvers find the same velocities") {
     CHECK(pressed >= 20);
 }
 
-// ---- the theta scheme ----------------------------------------------------------------------------
+// ---- the theta scheme ---------------------------------------------------------------------------
 
 TEST_CASE("one node between walls swings by the factor of the theta scheme") {
     std::array<double, 2> off{};  // of both solvers

@@ -1,5 +1,5 @@
-// Viscosity in the implicit material point method: the energy theorem with its term, the exact factor
-// of one node, and that both solvers agree.
+// Viscosity in the implicit material point method: the energy theorem with its term, the exact
+// factor of one node, and that both solvers agree.
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
@@ -78,8 +78,8 @@ TEST_CASE("the energy theorem holds with viscosity whatever else is at work" *
 }
 
 TEST_CASE("one node with viscosity swings by the exact factor however long the step") {
-    // v^theta = v^0 - theta z x^theta - theta b v^theta, x^theta = x^0 + theta z v^theta with z = w dt,
-    // b = beta w^2 dt: of the step's matrix the trace T and the determinant D are below.
+    // v^theta = v^0 - theta z x^theta - theta b v^theta, x^theta = x^0 + theta z v^theta with z = w
+    // dt, b = beta w^2 dt: of the step's matrix the trace T and the determinant D are below.
     for (const double theta : {0.5, 0.75, 1.0})
         for (const double alpha : {0.3, 3.0, 40.0})
             for (const double beta : {0.0, 1e-3, 0.1})

@@ -475,7 +475,8 @@ TEST_CASE("the node between two cells oscillates as its theory says") {
 }
 
 TEST_CASE("the node between two cells follows the theta scheme as its theory says") {
-    // The line of particles of two cells, in full: their velocities and stresses, and one free node.
+    // The line of particles of two cells, in full: their velocities and stresses, and one free
+    // node.
     const double h = 0.7, rho = 3, P = 9;
     int turns = 0, creeps = 0;
     for (const bool consistent : {true, false})

@@ -1,5 +1,5 @@
-// Viscosity and damping in whole runs of both programs: waves that decay, and a block that slides as
-// Coulomb says where it would flutter without viscosity.
+// Viscosity and damping in whole runs of both programs: waves that decay, and a block that slides
+// as Coulomb says where it would flutter without viscosity.
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
@@ -16,17 +16,16 @@ using namespace facts;
 
 const std::vector<std::string> programs{"mpm_explicit", "mpm_implicit"};
 
-Run run(const std::string& program, const std::string& name, const std::string& arguments,
-        int status = 0) {
-    return run_mpm(program, name, program + "/cases/" + name + ".toml --threads 1 " + arguments,
-                   status);
+Run run(const std::string& program, const std::string& name, const std::string& arguments) {
+    return run_mpm(program, name, program + "/cases/" + name + ".toml --threads 1 " + arguments);
 }
 
 }  // namespace
 
 TEST_CASE("a standing wave decays as the viscosity of its frequency says" *
           doctest::description("physics")) {
-    // omega = pi c/L = 11.5: in the run beta omega^2 t/2 = 0.33, and the wave is 0.72 of what it was.
+    // omega = pi c/L = 11.5: in the run beta omega^2 t/2 = 0.33, and the wave is 0.72 of what it
+    // was.
     for (const std::string& program : programs) {
         CAPTURE(program);
         std::vector<double> error;

@@ -104,19 +104,6 @@ void check_conservation(Run& r, int steps, double tolerance) {
     CHECK(std::fabs(b.kinetic + b.internal - in.energy - energy) <= tolerance * energy);
 }
 
-// Sod's problem at t = 0.2.
-double exact_density_of_sod(double x) {
-    const double head = 0.26336, tail = 0.48595, contact = 0.68549, shock = 0.85043;
-    if (x < head) return 1;
-    if (x < tail) {
-        const double c_left = std::sqrt(1.4), u = (c_left + (x - 0.5) / 0.2) / 1.2;
-        return std::pow(1 - 0.2 * u / c_left, 5);
-    }
-    if (x < contact) return 0.42631943;
-    if (x < shock) return 0.26557371;
-    return 0.125;
-}
-
 double density(const Run& r, long i, long j = 0) {
     return r.cells.mass[r.w.grid.index(i, j)] / r.w.grid.cell_area();
 }
@@ -303,8 +290,8 @@ TEST_CASE("fluids of any density rest on each other under gravity and fall alike
             light.hydrostatic = heavy.hydrostatic = true;
             Run r(w);
             r.steps(300);
-            CHECK(worst({r.state.cells.vx.cwiseAbs().maxCoeff(),
-                         r.state.cells.vz.cwiseAbs().maxCoeff()}) <= 1e-10);
+            CHECK(worst({r.state.cells.vx.cwiseAbs().maxCoeff<Eigen::PropagateNaN>(),
+                         r.state.cells.vz.cwiseAbs().maxCoeff<Eigen::PropagateNaN>()}) <= 1e-10);
             // Where pressure is even it holds nothing: away from walls all fall with g.
             light.hydrostatic = heavy.hydrostatic = false, heavy.gas.pressure = 10;
             Run falling(w);
@@ -658,74 +645,6 @@ TEST_CASE("the centered velocity in the work lets sound grow weakly" *
     MESSAGE("growth over four periods: " << std::exp(measured) << ", expected "
                                          << std::exp(expected));
     CHECK(std::fabs(measured - expected) <= 0.15 * expected);
-}
-
-TEST_CASE("gas that runs against a wall is compressed six times" *
-          doctest::description("physics")) {
-    Case w = flip_case(200, 1, "slip", "periodic");
-    w.regions = {fluid("", 1, 1e-4, -1)};
-    w.per_cell_x = 16;
-    w.end = 0.5;
-    double spread = 0;
-    for (const double q : {0.0, 1.0}) {
-        w.q_linear = 0.5 * q, w.q_quadratic = q;
-        Run r(w);
-        r.to_the_end();
-        double sum = 0, squares = 0, e = 0, mass = 0;
-        for (long i = 3; i < 17; ++i) {
-            sum += density(r, i) / 14, squares += density(r, i) * density(r, i) / 14;
-            e += density(r, i) * r.state.cells.e[0][w.grid.index(i, 0)], mass += density(r, i);
-        }
-        // Where the density crosses half of the jump.
-        long front = 0;
-        while (density(r, front) > 3.5) ++front;
-        const double deviation = std::sqrt(std::max(0.0, squares - sum * sum));
-        MESSAGE("q " << q << ": density " << sum << " +- " << deviation << ", energy " << e / mass
-                     << ", wall cell " << density(r, 0) << ", shock at "
-                     << real(front) * w.grid.x.spacing());
-        if (q == 0) {
-            spread = deviation;
-        } else {
-            CHECK(std::fabs(sum - 6) <= 0.1);
-            CHECK(deviation <= 0.2);
-            CHECK(spread >= 3 * deviation);  // without q the shocked gas boils
-            CHECK(std::fabs(e / mass - 0.5) <= 0.02);
-            CHECK(std::fabs(real(front) * w.grid.x.spacing() - 0.1) <= 0.006);
-        }
-    }
-}
-
-TEST_CASE("the shock tube of Sod comes close to its exact solution" *
-          doctest::description("physics")) {
-    for (const double q : {0.0, 1.0}) {
-        Case w = sod();
-        w.q_linear = 0.5 * q, w.q_quadratic = q;
-        Run r(w);
-        r.to_the_end();
-        double error = 0;
-        for (long i = 0; i < 100; ++i)
-            error += std::fabs(density(r, i) - exact_density_of_sod((real(i) + 0.5) / 100)) / 100;
-        MESSAGE("q " << q << ": L1(rho) = " << error);
-        CHECK(error <= 0.02);
-    }
-}
-
-TEST_CASE("gas expands into the void at a good part of five times its speed of sound" *
-          doctest::description("physics")) {
-    Case w = flip_case(400, 1, "slip", "periodic");
-    w.regions = {fluid("", 1, 1 / 1.4)};
-    w.regions[0].shape = "box";
-    w.regions[0].center_x = 0.1, w.regions[0].half_x = 0.1, w.regions[0].half_z = 1;
-    w.per_cell_x = 64;
-    w.end = 0.1;
-    Run r(w);
-    r.to_the_end();
-    double front = 0;
-    for (const double x : r.state.particles.x_p) front = std::max(front, x);
-    const double speed = (front - 0.2) / w.end;
-    MESSAGE("front speed " << speed << " c0");
-    CHECK(speed <= 5.0);
-    CHECK(speed >= 2.5);
 }
 
 TEST_CASE("a uniform stream through both ends stays uniform") {

@@ -1,6 +1,7 @@
 // A verdict is worth what it refuses: for every result of the shipped cases of pic, flip,
-// mpm_explicit and mpm_implicit there is a wrong run that fails it, made of parameters alone: too much
-// viscosity or none, few particles, another transfer, a step too long, noise, a drag, another start.
+// mpm_explicit and mpm_implicit there is a wrong run that fails it, made of parameters alone: too
+// much viscosity or none, few particles, another transfer, a step too long, noise, a drag, another
+// start.
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 

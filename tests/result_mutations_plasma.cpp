@@ -250,7 +250,8 @@ const std::map<std::string, std::string> still_open{
     {"explicit_em explicit_light_wave", "omega_over_theory damping energy_drift"},
     // The same; a loose solver errs in the energy, and its tolerance is allowed for.
     {"implicit_moment light_wave", "omega_over_theory damping"},
-    // The same with particles: what parameters make wrong is noise, in which damping is not measured.
+    // The same with particles: what parameters make wrong is noise, in which damping is not
+    // measured.
     {"implicit_moment langmuir", "damping"},
     {"implicit_moment oblique_whistler", "damping"},
     // The mean of the momentum equation, whatever the step: theory is with the E that was measured.

@@ -1,6 +1,6 @@
-// What every program makes of a case file, a command line and a folder for its results: one sentence
-// with place and cure for what is wrong, status 2, and nothing written; and what is listed, described
-// and accepted.
+// What every program makes of a case file, a command line and a folder for its results: one
+// sentence with place and cure for what is wrong, status 2, and nothing written; and what is
+// listed, described and accepted.
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 #include <unistd.h>
@@ -94,8 +94,8 @@ std::string items(const Program& program, int count) {
 TEST_CASE("damaged text of a case file is refused with its place" *
           doctest::description("robust")) {
     const std::string not_text = ": not UTF-8 text", control = ": a control character";
-    // Invalid, Latin-1, too long a form, a surrogate, cut off; UTF-16 with its mark and without; NUL,
-    // escape, delete, a lone carriage return; names and values that are nested without end.
+    // Invalid, Latin-1, too long a form, a surrogate, cut off; UTF-16 with its mark and without;
+    // NUL, escape, delete, a lone carriage return; names and values that are nested without end.
     check_texts(
         {{"[time]\nend = 0.3 # \xff\n", "case.toml:2:13: not UTF-8 text; save the file as UTF-8"},
          {"# caf\xe9\n", "case.toml:1:6" + not_text},
@@ -416,22 +416,6 @@ TEST_CASE("what must not be read or written is refused" * doctest::description("
     }
 }
 
-TEST_CASE("force replaces an earlier run and leaves other files alone" *
-          doctest::description("robust")) {
-    const Files mine{{"notes.txt", "a"}, {"fields_of_wheat.txt", "b"}, {"thesis.partial", "c"}};
-    for (const Program& program : every_program()) {
-        const fs::path folder = fresh_folder(program);
-        write_all(folder / "case.toml", program.short_case);
-        for (const auto& [name, bytes] : mine) write_all(folder / "earlier" / name, bytes);
-        CHECK(start(program, folder, "case.toml --out earlier --force").status == 0);
-        CHECK(read_all(folder / "earlier/summary.json").size() > 10);
-        for (const auto& one : mine) {
-            INFO(one.first);
-            CHECK(read_all(folder / "earlier" / one.first) == one.second);
-        }
-    }
-}
-
 TEST_CASE("unusual but right input is accepted" * doctest::description("robust")) {
     for (const Program& p : every_program()) {
         const std::string plain = description(p, p.short_case), rest = p.short_case.substr(15);
@@ -555,7 +539,8 @@ explicit_em particles.order - output.history_steps -
         CHECK(listed.size() == parameters.size());
         CHECK(listed == keys_in(run("beam", program.beam)));
 
-        // The defaults, given as overrides of what the short case leaves to them, make the same case.
+        // The defaults, given as overrides of what the short case leaves to them, make the same
+        // case.
         const std::set<std::string> shortened = keys_in(program.short_case);
         std::string overrides;
         std::map<std::string, std::string> units;

@@ -163,8 +163,8 @@ explicit_em explicit_weibel.toml uniform.particles_per_cell=16 time.end=0.8 part
 }
 
 TEST_CASE("the last row and the last files are of the end" * doctest::description("robust")) {
-    // Where the intervals of rows and files do not divide the run; and its last checkpoint, from which
-    // no step is left, leads to the same row.
+    // Where the intervals of rows and files do not divide the run; and its last checkpoint, from
+    // which no step is left, leads to the same row.
     for (const Command& command : commands(R"(
 cic streams time.end=4 output.fields_interval=0.7 output.particles_interval=0.7 \
     output.phase_interval=0.7 -> fields particles phase velocities
@@ -200,8 +200,8 @@ explicit_em sheet time.end=4 output.history_steps=3 output.fields_interval=1.4 \
 
 TEST_CASE("a restart of grains with another end keeps the time step" *
           doctest::description("robust")) {
-    // Without time.dt, the step is what leads to the end. The case that the restart leaves tells the
-    // step, and makes the same run from the start. What does not change may be told again.
+    // Without time.dt, the step is what leads to the end. The case that the restart leaves tells
+    // the step, and makes the same run from the start. What does not change may be told again.
     for (const Command& command : commands("grains rebound time.end=0.1")) {
         INFO(command.program->name);
         const std::string part = folder("part"), rest = folder("rest"), whole = folder("whole");
@@ -611,7 +611,10 @@ TEST_CASE("closed pipes and closed outputs do not stop a run" * doctest::descrip
         const std::string line = command_line(program.name, arguments_of({&program, "run", {}})) +
                                  " --force --out " + out + " ";
         CHECK(shell(line + "2> /dev/null | true") == 0);
-        CHECK(shell(line + ">&- 2>&-") == 0);
+        const std::string history = read_all(out + "/history.dat");
+        CHECK(shell(line + "0<&- 1>&- 2>&-") == 0);
+        // What is meant for the terminal gets into no file.
+        CHECK(read_all(out + "/history.dat") == history);
         CHECK(shell("(" + line + "2>&1; echo $? > " + status + ") | head -1 > /dev/null") == 0);
         CHECK(read_all(status) == "0\n");
         CHECK(summary(out)["status"] == 0);
@@ -654,9 +657,10 @@ explicit_em sheet time.end=4 output.fields_interval=2 output.particles_interval=
         CHECK(holds(said(out), "holds an earlier run; --force replaces it"));
         CHECK(content(out) == there);
 
-        const std::vector<std::string> mine{"fields_of_gold.dat", "phase_of_the_moon.txt",
+        const std::vector<std::string> mine{"fields_of_gold.dat",     "phase_of_the_moon.txt",
                                             "fringes_of_the_sea.dat", "grains_of_sand.dat",
-                                            "pack.txt.old"};
+                                            "pack.txt.old",           "notes.txt",
+                                            "thesis.partial"};
         for (const std::string& name : mine) write_all(out + "/" + name, "kept");
         REQUIRE(run(plain, out, "--force") == 0);
         REQUIRE(run(plain, fresh) == 0);
@@ -985,7 +989,8 @@ TEST_CASE("plates move on with the same bits and want the same tables" *
         const std::string path = checkpoints(folder / "run")[0], good = read_all(path);
         REQUIRE(start(program, folder, "--restart " + path + " --out rest --quiet").status == 0);
         CHECK(read_all(folder / "rest/history.dat") == read_all(folder / "run/history.dat"));
-        // What the plate has gone at the end: velocity times stop, two and a half swings, the table.
+        // What the plate has gone at the end: velocity times stop, two and a half swings, the
+        // table.
         const std::vector<double> x = column(folder / "run", "travel_x_top"),
                                   y = column(folder / "run", "travel_y_top");
         CHECK(std::fabs(x.back() - 2e-3) <= 1e-15);

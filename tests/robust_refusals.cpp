@@ -1,10 +1,10 @@
-// What each program alone refuses, with the number and the cure in one sentence, and nothing written.
-// How files and command lines are read is what all programs share: see robust_every_input.cpp.
+// What each program alone refuses, with the number and the cure in one sentence, and nothing
+// written. How files and command lines are read is what all programs share: see
+// robust_every_input.cpp.
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "tests/support/any_program.hpp"
@@ -1200,84 +1200,43 @@ grains disks grain.left.radius=inf -> 'grain.left.radius' must be finite, not in
 )");
 }
 
-TEST_CASE("damaged files of packs are refused with their line" * doctest::description("robust")) {
-    const std::string good = "# grains\ndisk a 0.3 0.3 0.1\n", zero("disk b\0 1 1 1\n", 14);
-    const std::vector<std::pair<std::string, std::string>> damaged{
-        {"", "pack.txt: holds no grain; write lines like: disk left 0.35 0.3 0.2"},
-        {"# nothing\n\n", "pack.txt: holds no grain"},
-        {good + "ball b 1 1 1\n",
-         "pack.txt:3: unknown word 'ball'; a line begins with disk or polygon"},
-        {good + "disk\n", "pack.txt:3: a disk without a name; write its name and its numbers"},
-        {good + "disk b-c 1 1 1\n",
-         "pack.txt:3: 'b-c' cannot name a grain: use letters, digits and '_', 40 at most"},
-        {good + "disk b 1 1\n", "pack.txt:3: a disk takes 3 numbers, x y radius, not 2"},
-        {good + "disk b 1 1 1 1\n", "pack.txt:3: a disk takes 3 numbers, x y radius, not 4"},
-        {good + "disk b 1 one 1\n",
-         "pack.txt:3: 'one' is not a number: write one like 0.25 or 1e-3"},
-        {good + "disk b 1 0x1 1\n", "pack.txt:3: '0x1' is not a number"},
-        {good + "disk b 1 nan 1\n",
-         "pack.txt:3: 'nan' is no number to compute with: give a finite one"},
-        {good + "disk b 1e999 1 1\n", "pack.txt:3: '1e999' is no number to compute with"},
-        {good + "disk b 1 1 -1\n",
-         "pack.txt:3: 'b': the radius of a disk = -1 must be a length above 0: give one"},
-        {good + "polygon b 0 0 1 0\n",
-         "pack.txt:3: a polygon takes two numbers, x y, for each of 3 or more corners, not 4 "
-         "numbers"},
-        {good + "polygon b 0 0 1 0 1\n", "for each of 3 or more corners, not 5 numbers"},
-        {good + "polygon b 0 0 1 1 1 0 0 1\n",
-         "pack.txt:3: 'b': the side from corner 1 to 2 of a polygon meets the side from corner 3 "
-         "to 4"},
-        {good + "disk a 0.8 0.3 0.1\n",
-         "pack.txt:3: the name 'a' is that of line 2 too: give each grain its own"},
-        {good + "disk \xff 1 1 1\n", "pack.txt:3: not UTF-8 text; save the file as UTF-8"},
-        {good + zero, "pack.txt:3: a control character; this is not a text file, or it is damaged"},
-        {good + "\x1b[2J\n", "pack.txt:3: a control character"},
-        {good + std::string(100001, '#'),
-         "pack.txt:3: the line has more than 100000 letters; this is another kind of file"},
-        {good + "disk b 0.35 0.3 0.1\n",
-         "grains 'p_a' and 'p_b' overlap by 0.15, 3 cells: move them apart"},
+TEST_CASE("damaged files of packs and tables of motion are refused with their line" *
+          doctest::description("robust")) {
+    struct Damaged {
+        std::string bytes, message;
     };
-    for (const Program* program : programs_called("grains")) {
-        for (const auto& [bytes, message] : damaged) {
-            const fs::path folder = fresh_folder(*program);
-            write_all(folder / "pack.txt", bytes);
-            check_refusal(*program, folder,
-                          arguments_of({program, "mesh pack.p.kind=file pack.p.file=pack.txt", {}}),
-                          message);
-        }
-    }
-}
-
-TEST_CASE("damaged tables of motion are refused with their line" * doctest::description("robust")) {
+    const auto check = [](const char* file, const std::string& words,
+                          const std::vector<Damaged>& damaged) {
+        for (const Program* program : programs_called("grains"))
+            for (const auto& [bytes, message] : damaged) {
+                const fs::path folder = fresh_folder(*program);
+                write_all(folder / file, bytes);
+                check_refusal(*program, folder, arguments_of({program, words, {}}), message);
+            }
+    };
+    // What else is no pack: see mpm_packs.cpp.
+    check("pack.txt", "mesh pack.p.kind=file pack.p.file=pack.txt",
+          {{"", "[pack.p]: pack.txt: holds no grain; write lines like: disk left 0.35 0.3 0.2"},
+           {"# grains\ndisk a 0.3 0.3 0.1\ndisk b 0.35 0.3 0.1\n",
+            "grains 'p_a' and 'p_b' overlap by 0.15, 3 cells: move them apart"}});
     const std::string good = "# time travel\n0 0 0\n\n1 0 0.1\n";
-    const std::vector<std::pair<std::string, std::string>> damaged{
-        {"", "[grain.lid]: way.txt: holds no travel; write two lines or more like: 0.5 1e-3"},
-        {"0 0\n", "way.txt: holds no travel"},
-        {"0\n1 0\n", "way.txt:1: 1 numbers for a time and a travel along x: write 2"},
-        {"0 0 0 0\n", "way.txt:1: 4 numbers for a time and a travel along x: write 2"},
-        {good + "2 0\n", "way.txt:5: 2 numbers for a time and a travel along x and y: write 3"},
-        {"0 0\n1 0 0\n", "way.txt:2: 3 numbers for a time and a travel along x: write 2"},
-        {good + "1 0 0\n",
-         "way.txt:5: the time '1' is not after that of the line before: sort the lines by time"},
-        {good + "0.5 0 0\n", "way.txt:5: the time '0.5' is not after"},
-        {good + "2 down 0\n", "way.txt:5: 'down' is not a number: write one like 0.25 or 1e-3"},
-        {good + "2 nan 0\n", "way.txt:5: 'nan' is no number to compute with: give a finite one"},
-        {good + "2 1e999 0\n", "way.txt:5: '1e999' is no number to compute with"},
-        {good + "1.000000000001 1 0\n", "steps, more than 1e9: raise time.alpha or lower time.end"},
-        {good + "2 \xff 0\n", "way.txt:5: not UTF-8 text; save the file as UTF-8"},
-        {good + "\x1b[2J\n", "way.txt:5: a control character"},
-    };
-    for (const Program* program : programs_called("grains")) {
-        for (const auto& [bytes, message] : damaged) {
-            const fs::path folder = fresh_folder(*program);
-            write_all(folder / "way.txt", bytes);
-            check_refusal(*program, folder,
-                          arguments_of({program,
-                                        "mesh grain.disk.x=0.3 grain.disk.y=0.3 "
-                                        "material.plate.law=rigid grain.lid.material=plate "
-                                        "grain.lid.x=0.7 grain.lid.y=0.3 grain.lid.table=way.txt",
-                                        {}}),
-                          message);
-        }
-    }
+    check("way.txt",
+          "mesh grain.disk.x=0.3 grain.disk.y=0.3 material.plate.law=rigid "
+          "grain.lid.material=plate grain.lid.x=0.7 grain.lid.y=0.3 grain.lid.table=way.txt",
+          {{"", "[grain.lid]: way.txt: holds no travel; write two lines or more like: 0.5 1e-3"},
+           {"0 0\n", "way.txt: holds no travel"},
+           {"0\n1 0\n", "way.txt:1: 1 numbers for a time and a travel along x: write 2"},
+           {"0 0 0 0\n", "way.txt:1: 4 numbers for a time and a travel along x: write 2"},
+           {good + "2 0\n", "way.txt:5: 2 numbers for a time and a travel along x and y: write 3"},
+           {"0 0\n1 0 0\n", "way.txt:2: 3 numbers for a time and a travel along x: write 2"},
+           {good + "1 0 0\n",
+            "way.txt:5: the time '1' is not after that of the line before: sort the lines by time"},
+           {good + "0.5 0 0\n", "way.txt:5: the time '0.5' is not after"},
+           {good + "2 down 0\n", "way.txt:5: 'down' is not a number: write one like 0.25 or 1e-3"},
+           {good + "2 nan 0\n", "way.txt:5: 'nan' is no number to compute with: give a finite one"},
+           {good + "2 1e999 0\n", "way.txt:5: '1e999' is no number to compute with"},
+           {good + "1.000000000001 1 0\n",
+            "steps, more than 1e9: raise time.alpha or lower time.end"},
+           {good + "2 \xff 0\n", "way.txt:5: not UTF-8 text; save the file as UTF-8"},
+           {good + "\x1b[2J\n", "way.txt:5: a control character"}});
 }

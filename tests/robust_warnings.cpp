@@ -259,9 +259,9 @@ mpm_implicit rebound.toml grid.particles_per_side=1 method.mass=lumped
 
 TEST_CASE("what may mislead is a warning with the number and the limit" *
           doctest::description("robust")) {
-    // In implicit_moment, v_e = (25/6 B0^2/2)^(1/2) = 0.0722 and dz = 0.2. The default of explicit_em
-    // resolves 0.29 of a cell per Debye length: v_e/omega_pe = 0.0722/5 = 0.01443 d_i; and
-    // Omega_ce dt = 25 * 1.0 * 0.03.
+    // In implicit_moment, v_e = (25/6 B0^2/2)^(1/2) = 0.0722 and dz = 0.2. The default of
+    // explicit_em resolves 0.29 of a cell per Debye length: v_e/omega_pe = 0.0722/5 = 0.01443 d_i;
+    // and Omega_ce dt = 25 * 1.0 * 0.03.
     check_warnings(R"(
 implicit_moment -> no warning
 implicit_moment time.dt=3
@@ -323,8 +323,9 @@ implicit_moment beam species.beam.temperature_y=0.09
 
 TEST_CASE("a dry run shows scales and theory and memory and time" *
           doctest::description("robust")) {
-    // In rebound, c_p^2 = 1.346 E/density, dt = 0.25 h/(c_p + |v|), and 0.4^2 pi/4 (2/h)^2 particles
-    // are in each disk. In the hot disk of a fluid, c^2 = gamma (gamma - 1) E/m = 0.56/(524/16384).
+    // In rebound, c_p^2 = 1.346 E/density, dt = 0.25 h/(c_p + |v|), and 0.4^2 pi/4 (2/h)^2
+    // particles are in each disk. In the hot disk of a fluid, c^2 = gamma (gamma - 1) E/m =
+    // 0.56/(524/16384).
     check_descriptions(R"(
 cic two_stream.toml --threads 2 --out run
     mesh +128 cells of 0\.08016, periodic in x

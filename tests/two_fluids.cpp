@@ -12,8 +12,8 @@ namespace {
 
 using namespace facts;
 
-// Two fluids at the pressure 1: a dense one on the left, of the whole height or a disk; `ratio` times
-// as dense as the gas.
+// Two fluids at the pressure 1: a dense one on the left, of the whole height or a disk; `ratio`
+// times as dense as the gas.
 Case two_at_rest(long rows, double ratio, bool liquid) {
     Case w = flip_case(12, rows, "slip", "slip");
     w.materials = {{"light", 1.4, 0},
@@ -78,8 +78,8 @@ TEST_CASE("a contact at rest stays at rest at any ratio of densities") {
                         }
 }
 
-// The largest speed until sound of the slower fluid has crossed the mesh `crossings` times, in units of
-// that sound.
+// The largest speed until sound of the slower fluid has crossed the mesh `crossings` times, in
+// units of that sound.
 double fastest_at_rest(const Case& w, double crossings) {
     FlipRun r(w);
     const Material& dense = w.materials[1];
@@ -162,9 +162,9 @@ TEST_CASE("a pond under air balances gravity where the formula alone does not" *
 
 TEST_CASE("water under gravity does not begin to boil" * doctest::description("physics")) {
     // On bilinear paths particles fall together within a cell, where no pressure feels it. For
-    // an hourglass a(z) of the nodes the mass of a node changes by a'/3, and a'' = -(g/27) a' of time
-    // grows at up to sqrt(g/(54 dz)), 0.43 here. On conservative paths only sums over few particles are
-    // left of it, with n across a cell 1/n^2 of the force.
+    // an hourglass a(z) of the nodes the mass of a node changes by a'/3, and a'' = -(g/27) a' of
+    // time grows at up to sqrt(g/(54 dz)), 0.43 here. On conservative paths only sums over few
+    // particles are left of it, with n across a cell 1/n^2 of the force.
     const auto kinetic = [](bool conservative, double t) {
         Case w = flip_case(6, 10, "slip", "slip");
         w.grid.z = {10, -1, 1, false}, w.grid.x = {6, 0, 0.6, false};
@@ -214,8 +214,8 @@ TEST_CASE("materials that share a cell come to one pressure volume for volume") 
         double most = 0;
         r.deposit();
         for_each_cell(r.grid(), [&](long, long, long c) {
-            most = std::max(most, std::fabs(r.cells().excess[2 * std::size_t(c)] -
-                                            r.cells().excess[2 * std::size_t(c) + 1]));
+            most = worst({most, std::fabs(r.cells().excess[2 * std::size_t(c)] -
+                                          r.cells().excess[2 * std::size_t(c) + 1])});
         });
         return most;
     };

@@ -2,7 +2,9 @@
 // particles on a mesh, and cases made without files.
 #pragma once
 
-#include <cstdint>
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -15,6 +17,8 @@ namespace facts {
 using namespace mpm;
 
 using Random = UnitRandom;
+
+inline const std::array<std::string, 3> shape_names{"linear", "gimp", "quadratic"};
 
 /// Calls work(shape, name) for every shape function.
 template <class Work>
@@ -73,6 +77,22 @@ struct Cloud {
         return nodes;
     }
 };
+
+/// By how much the particles differ from those most like them among others; stress in units of 1e4.
+inline double unlike(const Particles& some, const Particles& others) {
+    double most = 0;
+    for (std::size_t k = 0; k < some.x_p.size(); ++k) {
+        double nearest = 1e300;
+        for (std::size_t l = 0; l < others.x_p.size(); ++l)
+            nearest = std::min(nearest, worst({std::fabs(some.x_p[k] - others.x_p[l]),
+                                               std::fabs(some.y_p[k] - others.y_p[l]),
+                                               std::fabs(some.vx_p[k] - others.vx_p[l]),
+                                               std::fabs(some.vy_p[k] - others.vy_p[l]),
+                                               1e-4 * std::fabs(some.sxx_p[k] - others.sxx_p[l])}));
+        most = worst({most, nearest});
+    }
+    return most;
+}
 
 inline Mesh mesh_of(long cells_x, long cells_y, double h, double x_low = 0, double y_low = 0) {
     Mesh mesh;

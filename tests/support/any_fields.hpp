@@ -43,8 +43,8 @@ struct Random {
     }
 };
 
-/// E with a potential in the place of E_y, for both live on nodes and vanish on walls, and its gradient in
-/// the plane, E = -grad E_y; and B that is a curl.
+/// E with a potential in the place of E_y, for both live on nodes and vanish on walls, and its
+/// gradient in the plane, E = -grad E_y; and B that is a curl.
 inline std::pair<VectorField, VectorField> gradient_and_curl(const Grid& grid, Random& random) {
     VectorField E = random.field(grid, electric, 1), B(grid);
     const VectorField A = random.field(grid, electric, 1);

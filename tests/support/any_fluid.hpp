@@ -1,5 +1,5 @@
-// What the tests of flip and pic share: the loops of their mains without files, clouds of particles anywhere on
-// the mesh, and sums that know nothing of the code under test.
+// What the tests of flip and pic share: the loops of their mains without files, clouds of particles
+// anywhere on the mesh, and sums that know nothing of the code under test.
 #pragma once
 
 #include <algorithm>
@@ -96,6 +96,14 @@ inline Case flip_case(long nx, long nz, const char* ends_x, const char* ends_z) 
     return w;
 }
 
+/// The same of rings about an axis: x is the radius.
+inline Case rings(long nr, long nz, const char* high = "slip", const char* ends_z = "slip") {
+    Case w = flip_case(nr, nz, "slip", nz > 1 ? ends_z : "periodic");
+    w.boundaries[x_high].kind = high;
+    w.geometry = "axisymmetric";
+    return w;
+}
+
 inline RegionCase fluid(const std::string& material, double density, double p, double vx = 0,
                         double vz = 0) {
     RegionCase r;
@@ -165,6 +173,17 @@ inline Leak leak(const Totals& a, const Totals& b, const Budget& before, const B
                          (after.energy - before.energy)) /
                energy;
     return l;
+}
+/// The same without the momentum that points outward, which no ring keeps.
+inline Leak leak_along(Totals a, Totals b, Budget before, Budget after) {
+    a.momentum_x = b.momentum_x = before.momentum_x = after.momentum_x = 0;
+    return leak(a, b, before, after);
+}
+
+/// The largest speed on the mesh, seen from a stream along z.
+inline double speed_of(const Field& vx, const Field& vz, double stream = 0) {
+    return std::sqrt(
+        (vx.array().square() + (vz.array() - stream).square()).maxCoeff<Eigen::PropagateNaN>());
 }
 
 }  // namespace facts

@@ -20,11 +20,11 @@ inline Run run_mpm(const std::string& program, const std::string& name,
                     status);
 }
 
-/// Blocks of two materials on one incline, each with a friction of its own against the plate, and the
-/// case of the program: g (sin - mu cos).
+/// Blocks of two materials on one incline, each with a friction of its own against the plate, and
+/// the case of the program: g (sin - mu cos).
 inline void check_two_blocks(const std::string& program, double tolerance) {
-    // The names of a pair in either order; what no pair has is friction 0.9, where both would stick.
-    // With more than 0.3, sliding of an elastic block is not steady any more.
+    // The names of a pair in either order; what no pair has is friction 0.9, where both would
+    // stick. With more than 0.3, sliding of an elastic block is not steady any more.
     const Run r = run_mpm(
         program, "pairs",
         program +
@@ -44,8 +44,9 @@ inline void check_two_blocks(const std::string& program, double tolerance) {
     }
 }
 
-/// A regular polygon with obtuse corners, eight cells across, stands on a rough plate as long as its weight points
-/// into its base, tan theta < tan(pi/sides), wherever the corners are in their cells.
+/// A regular polygon with obtuse corners, eight cells across, stands on a rough plate as long as
+/// its weight points into its base, tan theta < tan(pi/sides), wherever the corners are in their
+/// cells.
 inline void check_polygon_stands(const std::string& program, long sides, double tan_below,
                                  double tan_above, const std::string& more = "") {
     const double angle = std::numbers::pi / double(sides);
@@ -73,8 +74,9 @@ inline void check_polygon_stands(const std::string& program, long sides, double 
     }
 }
 
-/// A bond breaks between two rows, and the error of the time says so: where steps are too long for the
-/// tolerance it is not measured. The strength is 2^-1/2 of the largest stress, so that w t = pi/4.
+/// A bond breaks between two rows, and the error of the time says so: where steps are too long for
+/// the tolerance it is not measured. The strength is 2^-1/2 of the largest stress, so that w t =
+/// pi/4.
 inline void check_breaking_times(const std::string& program) {
     for (const std::string more :
          {"time.alpha=0.2", "time.alpha=0.5", "time.alpha=0.6", "time.alpha=0.66",

@@ -42,8 +42,8 @@ double integral(const Function& f, double low, double high, int panels = 2000) {
     return sum * h / 18.0;
 }
 
-/// Where numbers that are not finite are part of a fact: no traps of `make TRAP=1` in this scope, in
-/// threads and programs that start in it.
+/// Where numbers that are not finite are part of a fact: no traps of `make TRAP=1` in this scope,
+/// in threads and programs that start in it.
 class Untrapped {
    public:
     Untrapped() {

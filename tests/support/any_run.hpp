@@ -6,15 +6,12 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
-#include <fstream>
-#include <nlohmann/json.hpp>
-#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "tests/support/any_program.hpp"
-#include "tests/support/folder_of_test.hpp"
+#include "tests/support/any_summary.hpp"
 
 namespace facts {
 
@@ -62,22 +59,10 @@ inline nlohmann::json summary(const std::string& out) {
 
 /// The values of a column of a history.
 inline std::vector<double> column(const std::string& out, const std::string& name) {
-    std::ifstream file(out + "/history.dat");
-    std::string words;
-    std::getline(file, words);
-    std::istringstream names(words);
-    int number = 0;
-    for (std::string one; one != name; ++number) REQUIRE(bool(names >> one));
-    std::vector<double> values;
-    while (std::getline(file, words)) {
-        if (words[0] == '#') continue;
-        std::istringstream row(words);
-        double value = 0;
-        for (int k = 0; k < number; ++k) row >> value;
-        values.push_back(value);
-    }
-    REQUIRE(values.size() > 1);
-    return values;
+    const Columns all = columns_of(out + "/history.dat");
+    REQUIRE(all.contains(name));
+    REQUIRE(all.at(name).size() > 1);
+    return all.at(name);
 }
 
 /// A process that runs a command of the shell; what it says on stderr is kept beside the folder.

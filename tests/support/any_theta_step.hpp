@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 #include <type_traits>
@@ -35,7 +34,6 @@ struct ThetaRun {
     double size = 0;         // largest energy or work of loads, so far
     double growth = -1e300;  // largest of a step, beyond the work of loads and what laws undo
     double least_V = 1;      // smallest V^1/V^0 of a step
-    long loops = 0;
 
     /// in: prepare(assembly), what is changed before the start
     template <class Prepare>
@@ -137,10 +135,10 @@ struct ThetaRun {
         const double before = given();
         add_step(scheme.theta, scheme.consistent(), nodes.tiles(), sums.tiles, sums.nodes,
                  sums.contact, l);
-        growth = std::max(growth, given() - before);
+        const double grown = given() - before;
+        growth = growth >= grown || std::isnan(growth) ? growth : grown;
         size = worst({size, l.energy(), std::fabs(l.plate + l.gravity)});
         for (const TileSums& s : sums.tiles) least_V = std::min(least_V, s.least_V);
-        loops += sums.solver.loops;
         ++step;
     }
 
@@ -148,9 +146,7 @@ struct ThetaRun {
     StepScratch<2> wide_{laws, scheme, contact, parameters.flip, parameters.frozen, {}, {}};
 };
 
-// ---- cases ---------------------------------------------------------------------------------------
-
-inline const std::array<std::string, 3> shape_names{"linear", "gimp", "quadratic"};
+// ---- cases --------------------------------------------------------------------------------------
 
 inline ThetaScheme theta_scheme(double theta, const std::string& mass = "consistent",
                                 const std::string& solver = "projected_cg") {

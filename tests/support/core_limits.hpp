@@ -1,5 +1,5 @@
-// What one core of the machine can do, measured with two small loops, and how much of it a loop over
-// particles uses. The benches print it.
+// What one core of the machine can do, measured with two small loops, and how much of it a loop
+// over particles uses. The benches print it.
 #pragma once
 
 #include <algorithm>
@@ -11,9 +11,9 @@
 
 namespace support {
 
-/// What a loop does for one particle, counted in its code. One flop is a multiplication, an addition, a
-/// division, a root, a rounding or a comparison. Bytes are those of particles, read and written; what
-/// stays in the cache, the mesh above all, is not counted.
+/// What a loop does for one particle, counted in its code. One flop is a multiplication, an
+/// addition, a division, a root, a rounding or a comparison. Bytes are those of particles, read and
+/// written; what stays in the cache, the mesh above all, is not counted.
 struct Count {
     double flops, bytes;
 };
@@ -30,8 +30,8 @@ double fastest(const Work& work) {
     return best;
 }
 
-/// Most multiplications and additions per second: sums s -> a s + b, as many side by side as hide the
-/// latency of one.
+/// Most multiplications and additions per second: sums s -> a s + b, as many side by side as hide
+/// the latency of one.
 template <class Real>
 double peak_flops() {
     using Vector [[gnu::vector_size(implicit_moment::simd_width * sizeof(double))]] = Real;

@@ -36,14 +36,15 @@ struct Arguments {
     std::string options;
 };
 
-// ---- the words -----------------------------------------------------------------------------------
-// Each line names a case file, settings, or other names. What comes later replaces what came before.
+// ---- the words ----------------------------------------------------------------------------------
+// Each line names a case file, settings, or other names. What comes later replaces what came
+// before.
 
-// Electrons and a fixed background on a line and in the plane; electrons and ions between two walls.
-// Then runs: two beams, on a line and in the plane, where particles are sorted every 25 steps; a
-// source and an absorbing wall, both floating; a layer between grounded walls that its field drives
-// apart, against a weak magnetic field; a magnetized box with a source, an absorbing wall and two
-// mirrors.
+// Electrons and a fixed background on a line and in the plane; electrons and ions between two
+// walls. Then runs: two beams, on a line and in the plane, where particles are sorted every 25
+// steps; a source and an absorbing wall, both floating; a layer between grounded walls that its
+// field drives apart, against a weak magnetic field; a magnetized box with a source, an absorbing
+// wall and two mirrors.
 inline const std::string words_of_cic = R"(
 background species.ions.charge=1 species.ions.motion=fixed
 electrons species.electrons.particles_per_cell=8
@@ -129,9 +130,9 @@ swirling rotating_column.toml theory.compare=none grid.cells_x=10 grid.cells_z=1
 run shock_tube
 )";
 
-// Two disks on cells of 0.05 that fly towards each other, the same on a periodic mesh, a disk between
-// a plate that is driven and one that a force drives, and a box that fills its mesh. Then what runs
-// of both programs are made of.
+// Two disks on cells of 0.05 that fly towards each other, the same on a periodic mesh, a disk
+// between a plate that is driven and one that a force drives, and a box that fills its mesh. Then
+// what runs of both programs are made of.
 inline const std::string words_of_grains = R"(
 mesh grid.cells_x=24 grid.cells_y=12 grid.length_x=1.2
 end time.end=0.1
@@ -172,11 +173,11 @@ fast pack.top.velocity_x=2 pack.disk.shear_rate=2.8 material.default.E=1e6
 newton solver.kind=newton_krylov
 )";
 
-// Two disks that meet at t = 0.1 and are in contact at the end; grains between rough plates, so fast
-// that particles are sorted again every 20 steps and grains cross the ends of the periodic mesh; two
-// halves of a bar whose bond breaks at t = 4; a disk between two plates, of which a force drives one;
-// a disk that yields at a wall; a column of sand between rubbing walls, damped; a belt around a
-// periodic mesh, on which a disk lands and rubs.
+// Two disks that meet at t = 0.1 and are in contact at the end; grains between rough plates, so
+// fast that particles are sorted again every 20 steps and grains cross the ends of the periodic
+// mesh; two halves of a bar whose bond breaks at t = 4; a disk between two plates, of which a force
+// drives one; a disk that yields at a wall; a column of sand between rubbing walls, damped; a belt
+// around a periodic mesh, on which a disk lands and rubs.
 inline const std::string words_of_mpm_explicit = words_of_grains + R"(
 rebound rebound.toml theory.compare=none grid.cells_x=24 grid.cells_y=12 grain.left.x=0.39 \
     grain.right.x=0.81 time.end=0.3
@@ -244,7 +245,7 @@ streams explicit_two_stream.toml uniform.particles_per_cell=16 time.end=2 output
 run sheet time.end=4
 )";
 
-// ---- the programs --------------------------------------------------------------------------------
+// ---- the programs -------------------------------------------------------------------------------
 inline const std::string one_species = "[time]\nend = 0\n[species.beam]\ncharge = 0\n",
                          one_region = "[time]\nend = 0\n[region.beam]\n",
                          one_grain = "[time]\nend = 0\n[grain.beam]\nx = 0.6\ny = 0.45\n",
@@ -288,7 +289,7 @@ inline const std::vector<Program>& every_program() {
     return all;
 }
 
-// ---- tables --------------------------------------------------------------------------------------
+// ---- tables -------------------------------------------------------------------------------------
 
 /// Words as a shell separates them, with their quotes.
 inline std::vector<std::string> words_in(const std::string& text) {
@@ -353,9 +354,9 @@ inline std::vector<const Program*> programs_called(const std::string& name) {
 }
 inline const Program& program_called(const std::string& name) { return *programs_called(name)[0]; }
 
-/// The commands of a table. A line that begins with the name of a program, or with "fluids", "grains",
-/// "plasmas" or "every" for several, is a command; what is expected of all commands since the last
-/// expectation follows behind " -> ", or in lines that are indented.
+/// The commands of a table. A line that begins with the name of a program, or with "fluids",
+/// "grains", "plasmas" or "every" for several, is a command; what is expected of all commands since
+/// the last expectation follows behind " -> ", or in lines that are indented.
 inline std::vector<Command> commands(const std::string& table) {
     std::vector<Command> all;
     std::size_t first = 0;  // of those that the next expectation belongs to

@@ -1,13 +1,14 @@
 // The small vibrations of an elastic block that slides steadily on a rigid plane with friction, by
-// finite elements: bilinear quadrilaterals, consistent mass, and nothing of the material point method.
+// finite elements: bilinear quadrilaterals, consistent mass, and nothing of the material point
+// method.
 //
 // While all of the lower side presses and slips forward, friction there is -mu times the pressure:
 //     M u'' + K (u + beta u') = F,  at the lower side u_y = 0 and F_x = -mu F_y, else F = 0
 // With the rows of F_y put into those of F_x, and u_y = 0 left out,
 //     (M_x + mu M_y) u'' + (K_x + mu K_y) (u + beta u') = 0
 // The matrices are not symmetric any more, so u ~ exp(s t) may grow. And how a program is asked the
-// same: its block slides with viscosity until it is at peace, loses the viscosity, gets a kick in the
-// form of one mode, and its momentum across the plate is followed.
+// same: its block slides with viscosity until it is at peace, loses the viscosity, gets a kick in
+// the form of one mode, and its momentum across the plate is followed.
 #pragma once
 
 #include <Eigen/Dense>
