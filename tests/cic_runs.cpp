@@ -3,6 +3,8 @@
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
+#include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <cstdlib>
@@ -406,8 +408,8 @@ TEST_CASE("thermal noise is that of the charges of all species without their dri
     const auto expected = [&](const std::string& others, double value) {
         CAPTURE(others);
         const Run r = run("noise", "thermal_heating", all + others);
-        check_results(r, 1);
         const double theory = r.summary["results"]["field_over_kinetic"]["expected"];
+        CHECK(std::fabs(r.value("field_over_kinetic") / theory - 1) <= 0.15);
         CHECK(std::fabs(theory / value - 1) <= 0.02);
     };
     // One Maxwellian in two parts: sum (n_s q_s)^2/N_s is 3.025 times 1 / sum N_s.
@@ -502,6 +504,35 @@ TEST_CASE("what round-off and noise alone begin is no wave" * doctest::descripti
             says(r.summary["results"][name].dump(), "no species is perturbed in this mode");
         CHECK(!r.summary["results"].contains("omega"));
     }
+}
+
+TEST_CASE("a cold plasma between walls rests in the energy scheme alone" *
+          doctest::description("physics")) {
+    const std::string rest = case_file(
+        "[grid]\nlength_x = 4\ncells_x = 16\nboundary_x = \"wall\"\n[boundary]\n"
+        "particles_x_low = \"reflect\"\nparticles_x_high = \"reflect\"\n[time]\ndt = 0.05\n"
+        "end = 48\n[species.ions]\ncharge = 1\nmotion = \"fixed\"\n[species.e]\n"
+        "loading = \"lattice\"\ndrift_x = 1e-8\nparticles_per_cell = 8\n");
+    // In the momentum scheme displacements x_c of the cells obey  x'' = <x> 1 - K x,  K tridiagonal
+    // with 1/4, 1/2, 1/4 (units of omega_p): one eigenvalue is positive.
+    Eigen::MatrixXd A = Eigen::MatrixXd::Constant(16, 16, 1.0 / 16);
+    for (Eigen::Index c = 0; c < 16; ++c) {
+        A(c, c) -= 0.5;
+        if (c > 0) A(c, c - 1) -= 0.25, A(c - 1, c) -= 0.25;
+    }
+    const double rate =
+        std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(A).eigenvalues().maxCoeff());
+    CHECK(std::fabs(rate / 0.2213126 - 1) <= 1e-6);
+    const Run r = facts::run_into("momentum", "cic", rest);
+    const auto at = [&](double t) {
+        const auto times = r.column("time"), field = r.column("field");
+        return field[std::size_t(std::ranges::lower_bound(times, t - 1e-9) - times.begin())];
+    };
+    CHECK(std::fabs(std::log(at(46) / at(36)) / 20 / rate - 1) <= 0.01);
+    CHECK(r.summary["results"]["energy_change"]["verdict"] == "FAIL");
+    const Run kept = facts::run_into("energy", "cic", rest + " method.scheme=energy");
+    const auto energy = kept.column("energy");
+    CHECK(std::ranges::max(energy) <= 1.01 * energy.front());
 }
 
 TEST_CASE("what falls short names what cures it" * doctest::description("physics")) {

@@ -55,7 +55,8 @@ cic plane species.ions.density=3 -> or add a fixed species with density 2 and ch
 cic between_walls boundary.x_low=floating boundary.x_high=floating species.ions.density=1.5
     the plasma is not neutral: its charge is 3, 20 % of the sum of all charges
 cic plane species.electrons.profile=point species.electrons.density=36 at_1_1
-    the case has 1 particle, and alone it only feels itself: raise particles_per_cell
+    the case has 1 particle, and alone it only feels itself: raise particles_per_cell,
+    or add a species
 cic plane species.electrons.particles_per_cell=1e7 grid.cells_x=64 grid.cells_z=64
     4.096e+10 particles are more than 2e9: lower particles_per_cell
 cic plane species.electrons.profile=disk at_1_1 species.electrons.half_width=1e-3

@@ -67,6 +67,20 @@ cic line time.dt=1.7e-7 time.end=1.7e-4 grid.boundary_x=wall \
     boundary.potential_x_high=1
     no warning
 cic line time.end=0 -> no warning
+cic line grid.boundary_x=wall boundary.particles_x_low=reflect boundary.particles_x_high=reflect \
+    time.end=100
+    warning: a cold plasma that touches walls does not rest in the momentum scheme: the field on
+    the nodes of a wall drives it, and noise grows as exp(
+cic line grid.boundary_x=wall boundary.particles_x_low=reflect boundary.particles_x_high=reflect \
+    time.end=100 method.scheme=energy
+    no warning
+cic line grid.boundary_x=wall boundary.particles_x_low=reflect boundary.particles_x_high=reflect \
+    time.end=100 species.electrons.temperature_x=4
+    no warning
+cic plane plasma.B_y=0.7 time.end=200
+    warning: B_y turns forces of the momentum scheme, which on a mesh are not along k, into growth
+cic plane plasma.B_y=0.7 time.end=200 method.scheme=energy -> no warning
+cic plane plasma.B_z=0.7 time.end=200 -> no warning
 )");
 }
 

@@ -85,9 +85,19 @@ class Recorder {
     }
 
    private:
+    // Whether nothing goes through the ends of the mesh: walls reflect, and are at 0 or floating.
+    bool keeps_energy() const {
+        for (std::size_t k = 0; k < 4; ++k) {
+            const bool there = (k < 2 ? parameters_.boundary_x : parameters_.boundary_z) == "wall";
+            const WallCase& wall = parameters_.walls[k];
+            if (there && (wall.particles != "reflect" || wall.potential != 0)) return false;
+        }
+        return true;
+    }
+
     // Whether energy was kept, of its start or, where that is nothing, of its largest.
     void judge_energy(const common::History& history, common::Summary& summary) const {
-        if (parameters_.has_walls() || parameters_.gauss_sign < 0) return;
+        if (!keeps_energy() || parameters_.gauss_sign < 0) return;
         const auto energy = history.column("energy");
         double change = 0, largest = 0;
         for (const double one : energy) {
@@ -196,11 +206,13 @@ class Recorder {
                               change > (parameters_.energy_limit - 1) * now.at_start &&
                               change > 0.5 * now.size();
         if (std::isfinite(now.sum()) && !exceeded) return;
-        common::fail("the energy is ", now.sum(), " and was ", now.sum() - now.change,
-                     " at the start, at step ", step, ", t = ", double(step) * parameters_.dt,
-                     ": reduce time.dt, refine the mesh, ",
-                     parameters_.weighting == "ngp" ? "take method.weighting = \"cic\", " : "",
-                     "or allow more with time.energy_limit");
+        common::fail(
+            "the energy is ", now.sum(), " and was ", now.sum() - now.change,
+            " at the start, at step ", step, ", t = ", double(step) * parameters_.dt,
+            ": reduce time.dt, refine the mesh, ",
+            parameters_.scheme().energy_conserving ? "" : "take method.scheme = \"energy\", ",
+            parameters_.weighting == "ngp" ? "take method.weighting = \"cic\", " : "",
+            "or allow more with time.energy_limit");
     }
 
     void record_positions(const State& state) {

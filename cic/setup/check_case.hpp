@@ -85,10 +85,14 @@ inline void validate(Case& parameters) {
                common::number_text(std::fabs(total) / (grid.x.length * grid.z.length)),
                " and charge ", (total > 0 ? "-1" : "1"));
     const Scales scales = scales_of(parameters);
-    refuse(scales.particles < 2, "the case has ", scales.particles,
-           " particle, and alone it only feels itself: raise particles_per_cell");
-    refuse(double(scales.particles) > 2e9, double(scales.particles),
-           " particles are more than 2e9: lower particles_per_cell");
+    refuse(scales.particles < 2 && !parameters.has_walls() && !parameters.magnetized(),
+           "the case has ", scales.particles,
+           " particle, and alone it only feels itself: raise particles_per_cell, or add a species");
+    refuse(scales.most > 2e9, scales.most,
+           scales.most > double(scales.particles)
+               ? " particles, with those that the source wall emits, are more than 2e9: lower "
+                 "emission or particles_per_cell, or raise density, which makes them heavier"
+               : " particles are more than 2e9: lower particles_per_cell");
     const double length =
         parameters.dimensions == 2 ? std::max(grid.x.length, grid.z.length) : grid.x.length;
     for (const SpeciesScales& s : scales.species) {

@@ -154,7 +154,7 @@ inline common::ParameterTable describe(Case& parameters) {
     table.choice("theory.model", parameters.model, {"plasma", "mesh"},
                  "waves of the plasma, or of the plasma as mesh and time step see it");
     table.whole("theory.mode_x", parameters.mode_x, "", between(-2048, 2048),
-                "followed wavelengths in length_x; with mode_z = 0 also 0: the fastest growing");
+                "followed wavelengths in length_x; with mode_z = 0 also 0: the fastest along x");
     table.whole("theory.mode_z", parameters.mode_z, "", between(-2048, 2048), "in length_z");
     table.real("theory.near", parameters.near, "omega_p", anything(),
                "of the roots that a search finds, the nearest to this; 0: the fastest growing");

@@ -26,10 +26,21 @@ struct Scales {
     double omega_p = 0;       // of all mobile species together
     double debye_length = 0;  // of all warm ones together; 0 when all are cold
     long steps = 0, particles = 0;
+    double most = 0;     // particles, with those that a source wall emits
     double bytes = 0;    // memory that the run will take, of a rank
     double seconds = 0;  // on one core
     double of_mesh = 0;  // of these, on the mesh
 };
+
+/// How many particles of a species there will be: those loaded or, of a source wall, what comes in
+/// while a thermal particle crosses the box, where that is more.
+inline double most_particles(const Case& parameters, const SpeciesCase& s) {
+    const double loaded = double(particle_count(parameters, s)),
+                 weight = s.mean_density() * filled_volume(parameters, s) / loaded,
+                 crossing = parameters.grid.x.length / std::sqrt(s.emission_temperature / s.mass);
+    return std::max(loaded, s.emission * parameters.grid.z.length *
+                                std::min(crossing, parameters.end) / weight);
+}
 
 /// The scales of a case whose mesh has its boundaries.
 inline Scales scales_of(const Case& parameters) {
@@ -51,6 +62,7 @@ inline Scales scales_of(const Case& parameters) {
         if (scale.debye_length > 0) inverse_debye2 += 1 / std::pow(scale.debye_length, 2);
         if (k.profile != "point") s.omega_p = std::hypot(s.omega_p, scale.omega_p);
         s.particles += scale.particles;
+        s.most += most_particles(parameters, k);
         s.species.push_back(scale);
     }
     s.debye_length = inverse_debye2 > 0 ? 1 / std::sqrt(inverse_debye2) : 0;
@@ -64,7 +76,7 @@ inline Scales scales_of(const Case& parameters) {
     const double share = double(blocks) / common::block_count;
     // The density of every species is deposited once more where fields are written.
     const double meshes = (blocks + 9) + (parameters.fields_interval > 0 ? blocks + 7 : 0);
-    s.bytes = share * double(components * s.particles) * sizeof(Real) +
+    s.bytes = share * double(components) * s.most * sizeof(Real) +
               share * double(sorted) *
                   (sizeof(Real) + sizeof(int) + (ranks > 1 ? 2 * sizeof(double) : 0)) +
               double(parameters.grid.size()) * meshes * sizeof(double) +
@@ -75,7 +87,7 @@ inline Scales scales_of(const Case& parameters) {
         s.bytes += 30 * points * std::log2(points);
     }
     s.of_mesh = double(s.steps) * 30 * double(parameters.grid.size()) / 80e6;
-    s.seconds = s.of_mesh + double(s.steps) * double(s.particles) / 80e6;
+    s.seconds = s.of_mesh + double(s.steps) * s.most / 80e6;
     return s;
 }
 
@@ -119,6 +131,43 @@ inline void warn_of_idleness(const Case& parameters, const Scales& scales,
                  scales.debye_length);
 }
 
+// Cold plasma that the momentum scheme sets in motion, because its force is not the gradient of an energy.
+inline void warn_of_cold_plasma(const Case& parameters, const Scales& scales,
+                                std::vector<std::string>& warnings) {
+    if (parameters.conserving != "momentum" || parameters.gauss_sign < 0) return;
+    const Grid& grid = parameters.grid;
+    const bool plane = parameters.dimensions == 2;
+    const double dx = plane ? std::max(grid.x.spacing(), grid.z.spacing()) : grid.x.spacing();
+    double omega2 = 0, Omega_y = 0;
+    for (const SpeciesScales& s : scales.species) {
+        const auto own = std::ranges::find(parameters.species, s.name, &SpeciesCase::name);
+        // Who crosses a tenth of a cell in 1/omega_p does not see long what grows there; ions are slow.
+        if (own->profile != "uniform" || s.omega_p < 0.5 * scales.omega_p ||
+            s.thermal_speed + s.drift > 0.1 * s.omega_p * dx)
+            continue;
+        omega2 += s.omega_p * s.omega_p;
+        Omega_y = std::max(
+            Omega_y, s.Omega_c * std::fabs(parameters.B.y) / std::max(parameters.B.size(), 1e-300));
+    }
+    const double omega_p = std::sqrt(omega2);
+    // As measured; in one dimension by the matrix of the displacements of cells, (1/N)^1/2 of many.
+    const double at_walls = !parameters.has_walls() || parameters.magnetized() ? 0
+                            : plane
+                                ? 0.5 * omega_p * parameters.end
+                                : std::sqrt(0.8 / double(grid.x.cells)) * omega_p * parameters.end;
+    common::warn(warnings, at_walls > 5,
+                 "a cold plasma that touches walls does not rest in the momentum scheme: the field "
+                 "on the nodes of a wall drives it, and noise grows as exp(",
+                 at_walls, ") by time.end: take method.scheme = \"energy\"");
+    const double in_field = plane && Omega_y > 0.1 * omega_p && Omega_y < 1.5 * omega_p
+                                ? 0.08 * omega_p * parameters.end
+                                : 0;
+    common::warn(warnings, in_field > 10,
+                 "B_y turns forces of the momentum scheme, which on a mesh are not along k, into "
+                 "growth: waves of some cells in a cold plasma grow as up to exp(",
+                 in_field, ") by time.end: take method.scheme = \"energy\"");
+}
+
 }  // namespace detail
 
 /// Warnings with the number and the limit, for choices that run but may mislead.
@@ -126,6 +175,7 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
     std::vector<std::string> warnings;
     const auto warn = [&](const auto&... pieces) { warnings.push_back(sentence(pieces...)); };
     detail::warn_of_idleness(parameters, scales, warnings);
+    detail::warn_of_cold_plasma(parameters, scales, warnings);
     const Grid& grid = parameters.grid;
     const double dx = parameters.dimensions == 2 ? std::max(grid.x.spacing(), grid.z.spacing())
                                                  : grid.x.spacing();

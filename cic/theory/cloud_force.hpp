@@ -145,9 +145,16 @@ inline void compare_clouds(const Case& parameters, const History& history, Summa
     }
     const common::MeasuredMode seen = common::measure_mode(history.column("time"), separation,
                                                            {.expected = {expected, -expected}});
-    summary.hint(
-        "the pair may swing beyond the linear part of the force: bring the clouds closer together, "
-        "or lower time.dt");
+    const double cells = std::max(std::fabs(a.drift_x) / parameters.grid.x.spacing(),
+                                  std::fabs(a.drift_z) / parameters.grid.z.spacing()) *
+                         2 * pi / expected;
+    summary.hint(cells < 1 ? sentence("the pair drifts ", cells,
+                                      " cells in a swing, and a pair that stays at one place of "
+                                      "the mesh has a force of its own: give both the same "
+                                      "drift_x and drift_z, of a cell or more in a swing, ",
+                                      2 * pi / expected)
+                           : "the pair may swing beyond the linear part of the force: bring the "
+                             "clouds closer together, or lower time.dt");
     if (!seen.found) return summary.not_measured("omega_over_theory", seen.reason);
     summary.result("omega_over_theory",
                    {seen.frequency() / expected, seen.frequency_error() / expected}, "", 1,

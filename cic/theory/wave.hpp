@@ -158,7 +158,7 @@ inline std::string likely_cause(const Case& parameters, const Theory& theory, do
                             (parameters.mode_x != 0 || parameters.mode_z != 0);
     const double tolerance = theory.omega.real() == 0 ? parameters.growth_tolerance
                                                       : parameters.frequency_tolerance,
-                 theta = std::max(k_dx, k_dz);
+                 theta = std::max(k_dx, k_dz), slower = 2 - std::cos(k_dx / 2) - std::cos(k_dz / 2);
     const char* exact = takes_mesh ? ", or take theory.model = \"mesh\"" : "";
     if (noise > 0.1 * field)
         return sentence("random particles have up to ", noise / field,
@@ -166,11 +166,15 @@ inline std::string likely_cause(const Case& parameters, const Theory& theory, do
                         "or take loading = \"quiet\"");
     const std::string bouncing = likely_bouncing(parameters, theory, field);
     if (!bouncing.empty()) return bouncing;
-    if (parameters.model != "mesh" && (theta > 0.5 || 1 - std::cos(theta / 2) > tolerance))
-        return sentence(
-            k_dx > k_dz ? "k dx is " : "k dz is ", theta,
-            ", and the mesh changes the wave by 1 - cos(k dx/2) = ", 1 - std::cos(theta / 2),
-            " or so: raise grid.cells_", k_dx > k_dz ? "x" : "z", exact);
+    if (parameters.model != "mesh" && (theta > 0.5 || slower > tolerance))
+        return sentence(k_dx > k_dz ? "k dx is " : "k dz is ", theta,
+                        ", and the mesh changes the wave by 1 - cos(k dx/2)",
+                        k_dx > 0 && k_dz > 0 ? " of both directions = " : " = ", slower,
+                        " or so: raise ",
+                        k_dx > 0 && k_dz > 0 ? "grid.cells_x and cells_z"
+                        : k_dx > k_dz        ? "grid.cells_x"
+                                             : "grid.cells_z",
+                        exact);
     if (parameters.model != "mesh" && step > 0.3)
         return sentence("|omega| dt is ", step,
                         ", and the leapfrog changes the wave: lower time.dt", exact);

@@ -132,7 +132,7 @@ inline void balance_at_rest(const Problem& problem, Particles& particles, Mesh& 
         if (n == 0) {
             const Field change = detail::change_to_balance(problem, particles, mesh);
             const double heaviest = c.M.maxCoeff() / grid.cell_area();
-            if (change.cwiseAbs().maxCoeff() > heaviest * step) return;
+            if (!(change.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= heaviest * step)) return;
             target = c.p + change;
         }
         Field apart = Field::Zero(grid.size());
