@@ -122,6 +122,25 @@ flip tube particles.per_cell_x=2 particles.per_cell_z=1
     its density along
 flip around flip.mass=consistent particles.per_cell_x=2
     warning: flip.mass = "consistent" with 2 particles across a cell, below 3
+flip around flip.mass=consistent particles.per_cell_x=3 viscosity.linear=0 time.end=10
+    warning: with 3 particles across a cell and viscosity.linear = 0 weak flow grows by about
+flip around flip.mass=consistent viscosity.linear=0 time.end=10 -> no warning
+flip around flip.mass=consistent particles.per_cell_x=3 viscosity.linear=0.2 time.end=10
+    no warning
+flip around particles.per_cell_z=3 viscosity.linear=0 time.end=10
+    warning: with 3 particles across a cell and viscosity.linear = 0 weak flow grows by about
+flip around particles.per_cell_x=3 viscosity.linear=0 time.end=10 flip.density=particles
+    no warning
+flip around viscosity.linear=0 time.end=10 -> no warning
+flip around viscosity.linear=0 time.end=100
+    warning: with 4 particles across a cell and viscosity.linear = 0 weak flow grows by about
+flip box rings gas particles.per_cell_x=3 viscosity.linear=0 time.end=10
+    warning: with 3 particles across a cell and viscosity.linear = 0 weak flow grows by about
+flip box no_slip flip.viscosity=0.1 flip.transfer=xpic
+    warning: beside a no_slip wall flip.transfer = "xpic" brakes a viscous flow
+flip box no_slip flip.viscosity=0.1 -> no warning
+pic rings around region.gas.angular_velocity=0.5 boundary.x_low=slip boundary.x_high=slip
+    warning: the flow has Mach 0 beside its swirl, below 0.05
 flip tube rezone.steps=5 rezone.max_particles=12
     warning: rezone.max_particles = 12 is below the 16 particles per cell of the start
 flip tube region.drop.shape=disk region.drop.radius=1e-6

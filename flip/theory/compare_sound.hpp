@@ -167,6 +167,14 @@ inline void compare_wave(const FinishedRun& run) {
                  enough_moved, ", and cells of pic feel no other motion: raise region.", r.name,
                  ".amplitude to ", std::fabs(r.amplitude) * enough_moved / moved,
                  ", or particles.per_cell_x");
+    else if (run.program == "flip" && parameters.mass == "consistent" &&
+             parameters.density == "cells" && parameters.q_linear < 0.06 &&
+             !parameters.implicit() &&
+             (parameters.per_cell_x % 2 == 1 ||
+              (parameters.plane() && parameters.per_cell_z % 2 == 1)))
+        run.hint(
+            "with an odd number of particles across a cell one is at its center, where the "
+            "density of the cell bends, and weak flow grows: take an even number");
     else
         run.hint(
             "the theory is of a weak wave without viscosity on many particles, and this one has ",
