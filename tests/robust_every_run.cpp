@@ -679,7 +679,8 @@ TEST_CASE("a run that fails says what and where and when and leaves a summary" *
     check_failures(R"(
 cic landau.toml time.dt=1.9 time.end=800 species.electrons.amplitude=0.5 \
     species.electrons.temperature_x=0.1 species.electrons.particles_per_cell=100
-    .*: reduce time.dt, refine the mesh, or allow more with time.energy_limit
+    .*: reduce time.dt, refine the mesh, take method.scheme = "energy", or allow more with
+    time.energy_limit
 cic plasma_wave.toml method.weighting=ngp species.electrons.amplitude=0.05
     .*: reduce time.dt, refine the mesh, take method.weighting = "cic", or allow more with
     time.energy_limit

@@ -206,13 +206,13 @@ class Recorder {
                               change > (parameters_.energy_limit - 1) * now.at_start &&
                               change > 0.5 * now.size();
         if (std::isfinite(now.sum()) && !exceeded) return;
-        common::fail(
-            "the energy is ", now.sum(), " and was ", now.sum() - now.change,
-            " at the start, at step ", step, ", t = ", double(step) * parameters_.dt,
-            ": reduce time.dt, refine the mesh, ",
-            parameters_.scheme().energy_conserving ? "" : "take method.scheme = \"energy\", ",
-            parameters_.weighting == "ngp" ? "take method.weighting = \"cic\", " : "",
-            "or allow more with time.energy_limit");
+        common::fail("the energy is ", now.sum(), " and was ", now.sum() - now.change,
+                     " at the start, at step ", step, ", t = ", double(step) * parameters_.dt,
+                     ": reduce time.dt, refine the mesh, ",
+                     parameters_.weighting == "ngp"           ? "take method.weighting = \"cic\", "
+                     : parameters_.scheme().energy_conserving ? ""
+                                                              : "take method.scheme = \"energy\", ",
+                     "or allow more with time.energy_limit");
     }
 
     void record_positions(const State& state) {
