@@ -23,8 +23,7 @@ inline theory::RiemannSolution riemann_of(const Case& parameters) {
 inline void validate_riemann(const Case& parameters, const Refusal& refuse) {
     refuse(parameters.setup != "riemann", " needs setup.kind = \"riemann\"");
     refuse(parameters.grid.x.periodic, " needs ends in x, and they are periodic: make them open");
-    refuse(parameters.gravity_x != 0 || parameters.gravity_z != 0 || parameters.trap != 0,
-           " is for fluid without gravity or trap");
+    validate_no_force(parameters, refuse);
     const double tension = std::min(parameters.left.tension, parameters.right.tension);
     refuse(tension > 0 && riemann_of(parameters).has_void,
            " knows no liquids that break: they part faster than the tension that both hold, ",

@@ -71,8 +71,7 @@ inline void validate_wave(const Case& parameters, const Refusal& refuse) {
     refuse(parameters.regions.size() != 1, " needs a single region");
     refuse(sound_speed_of(parameters, r) == 0, " needs a gas with sound: give region.", r.name,
            ".pressure");
-    refuse(parameters.gravity_x != 0 || parameters.gravity_z != 0 || parameters.trap != 0,
-           " is for fluid without gravity or trap");
+    validate_no_force(parameters, refuse);
     refuse(parameters.viscosity > 0, " is for sound that nothing damps: take out flip.viscosity");
     refuse(r.gas.velocity_x != parameters.frame_x, ": the gas moves with ", r.gas.velocity_x,
            ": set theory.frame_x to that");
