@@ -161,7 +161,11 @@ inline void compare_wave(const FinishedRun& run) {
     const RegionCase& r = region_with_flow(parameters, "wave");
     const double cells = double(parameters.grid.x.cells) / double(parameters.mode),
                  moved = particles_moved(parameters, r);
-    if (run.program == "pic" && moved < enough_moved)
+    if (const double speed = std::fabs(r.amplitude) * sound_speed_of(parameters, r);
+        r.noise > 0.1 * speed)
+        run.hint("region.", r.name, ".noise = ", r.noise, " is not far below ", speed,
+                 ", the velocity in the wave: lower it below a tenth of that, or take it out");
+    else if (run.program == "pic" && moved < enough_moved)
         run.hint("the wave takes ", moved, " particles across a border of cells, below ",
                  enough_moved, ", and cells of pic feel no other motion: raise region.", r.name,
                  ".amplitude to ", std::fabs(r.amplitude) * enough_moved / moved,
