@@ -184,8 +184,11 @@ void look_for_earlier_run(const ProgramInfo& info, const ParameterTable& table,
             if (!one.contains(of)) std::printf(" %11s", "-");
             if (!one.contains(of)) continue;
             const double error = std::fabs(double(one["value"]) - one.value("expected", 0.0));
-            std::printf(std::isnan(before) ? " %11.4g" : " %11.4g (%5.2f)", error,
-                        std::log2(before / error));
+            const bool order = before > 0 && error > 0;
+            std::printf(order         ? " %11.4g (%5.2f)"
+                        : before >= 0 ? " %11.4g (    -)"
+                                      : " %11.4g",
+                        error, std::log2(before / error));
             before = error;
         }
         std::printf("\n");
@@ -214,10 +217,7 @@ void apply_override(const std::string& argument, ParameterTable& table) {
     const std::optional<bool> is_text = table.takes_text(name, value);
     // A name that is none is refused whatever its value; {} may be that of a section.
     if (!is_text && !value.starts_with('{')) return table.set({name, value, place});
-    if (is_text.value_or(false) && !quoted)
-        value = "'" + value + "'";
-    else
-        value = with_leading_zero(value);
+    value = is_text.value_or(false) && !quoted ? "'" + value + "'" : with_leading_zero(value);
     if (value.find('\n') != std::string::npos) throw InputError(place + ": one line, one value");
     for (const Setting& setting : read_case(name + " = " + value, place)) table.set(setting);
 }

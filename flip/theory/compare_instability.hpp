@@ -267,8 +267,7 @@ inline void validate_shear(const Case& parameters, const Refusal& refuse) {
     validate_mode(parameters, refuse, "shear");
     const RegionCase& r = region_with_flow(parameters, "shear");
     refuse(parameters.grid.z.periodic, " needs walls in z");
-    refuse(parameters.gravity_x != 0 || parameters.gravity_z != 0 || parameters.trap != 0,
-           " is for fluid without gravity or trap");
+    validate_no_force(parameters, refuse);
     for (const RegionCase& other : parameters.regions)
         refuse(other.gas.density != r.gas.density || other.gas.pressure != r.gas.pressure ||
                    other.flow != r.flow || other.speed != r.speed || other.width != r.width,

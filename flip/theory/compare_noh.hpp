@@ -27,9 +27,9 @@ inline double reach_of_noh(const Case& parameters) {
         if ((row && !along_x) || (parameters.grid.axisymmetric && side == x_low)) continue;
         if (row && !parameters.grid.axisymmetric && parameters.is(side, "inflow")) continue;
         const common::Axis& axis = along_x ? parameters.grid.x : parameters.grid.z;
-        const double way = std::fabs((is_low_side(side) ? axis.low : axis.high()) -
-                                     (along_x ? r.center_x : r.center_z));
-        if (!parameters.is(side, "slip") || way > axis.spacing()) reach = std::min(reach, way);
+        const double way = way_to(parameters.grid, side, r.center_x, r.center_z);
+        if (!parameters.is(side, "slip") || std::fabs(way) > axis.spacing())
+            reach = std::min(reach, way);
     }
     return reach;
 }
@@ -40,12 +40,23 @@ inline void validate_noh(const Case& parameters, const Refusal& refuse) {
     const RegionCase& r = region_with_flow(parameters, "radial");
     refuse(material_of(parameters, r).gamma == 1, " is for a gas, and gamma = 1 is dust");
     refuse(!(r.speed > 0), " needs region.", r.name, ".speed above 0, inward");
-    const double most = r.gas.density * r.speed * r.speed;
-    refuse(r.gas.pressure > 0.01 * r.gas.density * r.speed * r.speed,
-           " is for cold gas, and region.", r.name, ".pressure = ", r.gas.pressure,
-           " is above a hundredth of density speed^2, ", most);
+    validate_no_force(parameters, refuse);
+    refuse(
+        r.gas.velocity_x != 0 || r.gas.velocity_z != 0,
+        " is of gas that falls to a place at rest: take out velocity_x and velocity_z of region.",
+        r.name);
+    const double most = r.gas.density * r.speed * r.speed,
+                 pressure = r.gas.pressure + material_of(parameters, r).p_infinity;
+    refuse(pressure > 0.01 * most, " is for cold gas, and pressure + p_infinity of region.", r.name,
+           " is ", pressure, ", above a hundredth of density speed^2, ", most, ": lower it");
+    for (const Side end : {x_low, x_high})
+        validate_inflow(parameters, refuse, end, r, end == x_low ? r.speed : -r.speed);
     const double used_up =
         reach_of_noh(parameters) / (r.speed + theory::noh_shock_radius(noh_of(parameters), 1));
+    refuse(used_up <= 0,
+           " needs its middle on the mesh, or on walls that mirror it: move "
+           "region.",
+           r.name, ".center_x or center_z, or set the ends there to \"slip\"");
     refuse(parameters.end > used_up, ": all gas has passed the shock at t = ", used_up,
            ": lower time.end below that, or lengthen the mesh");
 }

@@ -23,8 +23,7 @@ inline theory::RiemannSolution riemann_of(const Case& parameters) {
 inline void validate_riemann(const Case& parameters, const Refusal& refuse) {
     refuse(parameters.setup != "riemann", " needs setup.kind = \"riemann\"");
     refuse(parameters.grid.x.periodic, " needs ends in x, and they are periodic: make them open");
-    refuse(parameters.gravity_x != 0 || parameters.gravity_z != 0 || parameters.trap != 0,
-           " is for fluid without gravity or trap");
+    validate_no_force(parameters, refuse);
     const double tension = std::min(parameters.left.tension, parameters.right.tension);
     refuse(tension > 0 && riemann_of(parameters).has_void,
            " knows no liquids that break: they part faster than the tension that both hold, ",
@@ -229,13 +228,15 @@ inline void compare_riemann(const FinishedRun& run) {
     // is relative to sees nothing.
     const std::string cells_swept = sentence("the waves have swept ", waves[0].swept / dx, " and ",
                                              waves[1].swept / dx, " cells");
-    run.hint(cells_swept,
-             ": below 15 raise time.end or refine the mesh; else take viscosity.linear = 0.5 and "
-             "viscosity.quadratic = 1, which are ",
-             parameters.q_linear, " and ", parameters.q_quadratic,
-             parameters.per_cell_x < 64 ? sentence(", and more than ", parameters.per_cell_x,
-                                                   " particles per cell along x")
-                                        : std::string(),
+    std::string advice = advice_on_viscosity(parameters);
+    if (parameters.per_cell_x < 64)
+        advice += sentence(advice.empty() ? "" : ", and ", "more than ", parameters.per_cell_x,
+                           " particles per cell along x");
+    // Liquids that hold tension need particles that carry their volume, in flip.
+    const bool holds = parameters.left.tension > 0 || parameters.right.tension > 0;
+    if (advice.empty())
+        advice = run.program == "pic" && !holds ? "flip, or finer cells" : "finer cells";
+    run.hint(cells_swept, ": below 15 raise time.end or refine the mesh; else take ", advice,
              parameters.viscosity > 0
                  ? "; flip.viscosity smears the waves, and theory has none: take it out"
                  : "");

@@ -21,20 +21,24 @@ inline const RegionCase& hot_region(const Case& parameters) {
     return parameters.regions.back();
 }
 
+/// Whether an end of the mesh mirrors the blast: a slip wall through its center.
+inline bool mirrors_blast(const Case& parameters, Side end) {
+    const RegionCase& hot = hot_region(parameters);
+    const common::Axis& axis = is_x_side(end) ? parameters.grid.x : parameters.grid.z;
+    return parameters.is(end, "slip") && std::fabs(way_to(parameters.grid, end, hot.center_x,
+                                                          hot.center_z)) <= 0.5 * axis.spacing();
+}
+
 /// The blast of a case.
 inline Blast blast_of(const Case& parameters) {
     const RegionCase &hot = hot_region(parameters), &cold = parameters.regions.front();
     const int around = parameters.grid.axisymmetric ? 1 : 0;
     double energy = hot.energy / (parameters.plane() ? 1 : parameters.grid.z.length);
-    const auto mirrored = [&](Side low, const common::Axis& axis, double center) {
-        const double near = 0.5 * axis.spacing();
-        const bool at_low = parameters.is(low, "slip") && std::fabs(center - axis.low) <= near;
-        const bool at_high =
-            parameters.is(Side(low + 1), "slip") && std::fabs(center - axis.high()) <= near;
-        return at_low || at_high ? 2.0 : 1.0;
+    const auto mirrored = [&](Side low, Side high) {
+        return mirrors_blast(parameters, low) || mirrors_blast(parameters, high) ? 2.0 : 1.0;
     };
-    if (around == 0) energy *= mirrored(x_low, parameters.grid.x, hot.center_x);
-    if (parameters.plane()) energy *= mirrored(z_low, parameters.grid.z, hot.center_z);
+    if (around == 0) energy *= mirrored(x_low, x_high);
+    if (parameters.plane()) energy *= mirrored(z_low, z_high);
     return {theory::blast_wave(material_of(parameters, cold).gamma,
                                (parameters.plane() ? 2 : 1) + around),
             energy, cold.gas.density, hot.center_x, hot.center_z};
@@ -55,26 +59,49 @@ inline void validate_sedov(const Case& parameters, const Refusal& refuse) {
            " needs the blast on the axis: ", hot_region(parameters).center_x, " is not 0");
     const double gamma = material_of(parameters, cold).gamma;
     refuse(!(gamma > 1 && gamma < 2), " is known for gamma between 1 and 2, and it is ", gamma);
-    refuse(hot_region(parameters).gas.density != cold.gas.density,
-           " needs the same density inside and outside: ", hot_region(parameters).gas.density,
-           " and ", cold.gas.density);
+    validate_no_force(parameters, refuse);
+    refuse(cold.shape != "everywhere", " needs cold gas everywhere: set region.", cold.name,
+           ".shape = \"everywhere\"");
+    for (const RegionCase& r : parameters.regions) {
+        refuse(r.flow != "uniform" || r.gas.velocity_x != 0 || r.gas.velocity_z != 0,
+               " needs uniform gas at rest, and region.", r.name,
+               " is not that: take out its flow and velocities");
+        refuse(r.gas.density != cold.gas.density, " needs one density, and region.", r.name,
+               " has ", r.gas.density, " where region.", cold.name, " has ", cold.gas.density,
+               ": give both the same");
+        refuse(!same_gas(material_of(parameters, r), material_of(parameters, cold)),
+               " needs one gas, and region.", r.name, " is another than region.", cold.name,
+               ": give both the same material");
+    }
     const Blast blast = blast_of(parameters);
-    const auto room = [&](const common::Axis& axis, double center) {
-        return std::max(axis.high() - center, center - axis.low);
-    };
-    double most = room(parameters.grid.x, blast.x);
-    if (parameters.plane()) most = std::min(most, room(parameters.grid.z, blast.z));
-    refuse(blast.radius(parameters.end) > most,
-           ": at time.end the shock is at r = ", blast.radius(parameters.end),
-           ", and the mesh ends at ", most, ": lower time.end");
+    const double R = blast.radius(parameters.end);
+    for (const Side end : all_sides) {
+        const bool axis = parameters.grid.axisymmetric && end == x_low;
+        if (axis || (!parameters.plane() && !is_x_side(end)) || mirrors_blast(parameters, end))
+            continue;
+        const std::string name = side_names[end];
+        const bool around = parameters.is(end, "periodic");
+        const double length = (is_x_side(end) ? parameters.grid.x : parameters.grid.z).length,
+                     way = way_to(parameters.grid, end, blast.x, blast.z);
+        refuse(!around && way <= 0,
+               " needs a blast on the mesh or on a wall that mirrors it: set boundary.", name,
+               " = \"slip\" and the center on it, or move the center");
+        refuse(R > (around ? 0.5 * length : way), ": at time.end the shock is at r = ", R,
+               ", and it meets ", around ? "its image beyond " : "", name, " at ",
+               around ? 0.5 * length : way, ": lower time.end, or move region.",
+               hot_region(parameters).name);
+    }
     const double U = theory::blast_speed(blast.wave, blast.energy, blast.density,
                                          std::max(parameters.end, 1e-300)),
-                 shock = 2 * blast.density * U * U / (gamma + 1),
-                 cold_pressure = cold.gas.pressure + material_of(parameters, cold).p_infinity;
-    refuse(shock < least_pressure_ratio * cold_pressure, " is for a blast that does not feel the ",
-           "gas in front of it: at time.end the shock has the pressure ", shock,
-           ", and that of region.", cold.name, " is ", cold_pressure, ", more than 1/",
-           least_pressure_ratio, " of it: lower it, or time.end");
+                 shock = 2 * blast.density * U * U / (gamma + 1);
+    for (const RegionCase& r : parameters.regions) {
+        const double pressure = r.gas.pressure + material_of(parameters, r).p_infinity;
+        refuse(r.energy == 0 && shock < least_pressure_ratio * pressure,
+               " is for a blast that does not feel the gas in front of it: at time.end the shock "
+               "has the pressure ",
+               shock, ", and that of region.", r.name, " is ", pressure, ", more than 1/",
+               least_pressure_ratio, " of it: lower it, or time.end");
+    }
 }
 
 /// The radius of the shock at the end.

@@ -71,8 +71,7 @@ inline void validate_wave(const Case& parameters, const Refusal& refuse) {
     refuse(parameters.regions.size() != 1, " needs a single region");
     refuse(sound_speed_of(parameters, r) == 0, " needs a gas with sound: give region.", r.name,
            ".pressure");
-    refuse(parameters.gravity_x != 0 || parameters.gravity_z != 0 || parameters.trap != 0,
-           " is for fluid without gravity or trap");
+    validate_no_force(parameters, refuse);
     refuse(parameters.viscosity > 0, " is for sound that nothing damps: take out flip.viscosity");
     refuse(r.gas.velocity_x != parameters.frame_x, ": the gas moves with ", r.gas.velocity_x,
            ": set theory.frame_x to that");
@@ -162,7 +161,11 @@ inline void compare_wave(const FinishedRun& run) {
     const RegionCase& r = region_with_flow(parameters, "wave");
     const double cells = double(parameters.grid.x.cells) / double(parameters.mode),
                  moved = particles_moved(parameters, r);
-    if (run.program == "pic" && moved < enough_moved)
+    if (const double speed = std::fabs(r.amplitude) * sound_speed_of(parameters, r);
+        r.noise > 0.1 * speed)
+        run.hint("region.", r.name, ".noise = ", r.noise, " is not far below ", speed,
+                 ", the velocity in the wave: lower it below a tenth of that, or take it out");
+    else if (run.program == "pic" && moved < enough_moved)
         run.hint("the wave takes ", moved, " particles across a border of cells, below ",
                  enough_moved, ", and cells of pic feel no other motion: raise region.", r.name,
                  ".amplitude to ", std::fabs(r.amplitude) * enough_moved / moved,

@@ -33,9 +33,17 @@ inline void validate_wall_shock(const Case& parameters, const Refusal& refuse) {
     refuse(!parameters.is(wall, "slip"), ": the gas runs towards ", name,
            ", which is not a wall: set boundary.", name, " = \"slip\"");
     refuse(material_of(parameters, r).gamma == 1, " is for a gas, and gamma = 1 is dust");
+    validate_no_force(parameters, refuse);
+    for (const Side side : {z_low, z_high})
+        refuse(!parameters.is(side, "periodic") && !parameters.is(side, "slip"),
+               " needs gas that nothing else holds up or lets out: set boundary.", side_names[side],
+               " = \"slip\"");
+    refuse(r.gas.velocity_z != 0 && !parameters.grid.z.periodic,
+           " needs gas that runs straight at the wall: take out region.", r.name, ".velocity_z");
     // An inflow of the same gas is felt where the shock comes to it, another end with the flow and its
     // sound.
     const Side other = wall == x_low ? x_high : x_low;
+    validate_inflow(parameters, refuse, other, r, r.gas.velocity_x);
     const bool fed = parameters.is(other, "inflow");
     const double speed = struck_wall(parameters).shock.speed_from_wall,
                  meeting =
@@ -89,11 +97,11 @@ inline void compare_wall_shock(const FinishedRun& run) {
     const StruckWall wall = struck_wall(parameters);
     const double dx = parameters.grid.x.spacing(), R = wall.shock.speed_from_wall * run.state.time;
     const std::string source = "balance of mass, momentum and energy across the shock";
-    run.hint(
-        "the shock has come ", R / dx,
-        " cells, of which the first six are the wall's heat and four are its width: below 40 raise "
-        "time.end or refine the mesh; else set viscosity.linear = 0.5 and viscosity.quadratic = 1, "
-        "and let in what is there");
+    const std::string advice = advice_on_viscosity(parameters);
+    run.hint("the shock has come ", R / dx,
+             " cells, of which the first six are the wall's heat and four are its width: below 40 "
+             "raise time.end or refine the mesh",
+             advice.empty() ? "" : "; else take " + advice);
     const FromWall profile = from_wall(parameters, run.cells);
     const double from = std::max(0.2 * R, 6 * dx), to = R - std::max(0.15 * R, 5 * dx);
     double count = 0, sum = 0, squares = 0;

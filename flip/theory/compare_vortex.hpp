@@ -20,6 +20,7 @@ inline double turn_of_gresho(const Case& parameters) {
 /// Needs a vortex that moves with the frame of theory.
 inline void validate_gresho(const Case& parameters, const Refusal& refuse) {
     validate_flow(parameters, refuse, "gresho");
+    validate_no_force(parameters, refuse);
     const RegionCase& r = gresho_region(parameters);
     refuse(r.speed == 0, " needs a flow: give region.", r.name, ".speed");
     refuse((parameters.frame_x != 0 && !parameters.grid.x.periodic) ||

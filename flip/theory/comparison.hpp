@@ -101,4 +101,53 @@ inline void validate_flow(const Case& parameters, const Refusal& refuse, const s
     refuse(!found, " needs a region with flow = \"", flow, "\"");
 }
 
+/// Refuses forces.
+inline void validate_no_force(const Case& parameters, const Refusal& refuse) {
+    refuse(parameters.gravity_x != 0 || parameters.gravity_z != 0 || parameters.trap != 0,
+           " is for fluid without gravity or trap: take them out");
+}
+
+/// Whether two materials are the same gas by another name.
+inline bool same_gas(const Material& a, const Material& b) {
+    return a.gamma == b.gamma && a.p_infinity == b.p_infinity;
+}
+
+/// Refuses an inflow, which sends a wave into the mesh unless it brings the gas that a region has
+/// there, with its velocity_x there.
+inline void validate_inflow(const Case& parameters, const Refusal& refuse, Side end,
+                            const RegionCase& r, double velocity_x) {
+    if (!parameters.is(end, "inflow")) return;
+    const GasCase& in = parameters.boundaries[end].inflow;
+    const auto same = [&](const char* what, double brought, double there) {
+        refuse(std::fabs(brought - there) > 1e-3 * std::fabs(there), ": the inflow at ",
+               side_names[end], " has the ", what, " ", brought, ", and region.", r.name, " there ",
+               there, ": give both the same");
+    };
+    same("density", in.density, r.gas.density);
+    same("pressure", in.pressure, r.gas.pressure);
+    same("velocity_x", in.velocity_x, velocity_x);
+    same("velocity_z", in.velocity_z, r.gas.velocity_z);
+    refuse(!same_gas(parameters.materials[material_index(parameters, in.material)],
+                     material_of(parameters, r)),
+           ": the inflow at ", side_names[end], " is another gas than region.", r.name,
+           ": give both the same material");
+}
+
+/// The way from a point to an end of the mesh, negative from beyond it.
+inline double way_to(const Grid& grid, Side end, double x, double z) {
+    const common::Axis& axis = is_x_side(end) ? grid.x : grid.z;
+    const double at = is_x_side(end) ? x : z;
+    return is_low_side(end) ? at - axis.low : axis.high() - at;
+}
+
+/// Which viscosities to take for shocks, and what they are; empty where they are that.
+inline std::string advice_on_viscosity(const Case& parameters) {
+    const Case usual;
+    if (parameters.q_linear == usual.q_linear && parameters.q_quadratic == usual.q_quadratic)
+        return "";
+    return sentence("viscosity.linear = ", usual.q_linear,
+                    " and viscosity.quadratic = ", usual.q_quadratic, ", which are ",
+                    parameters.q_linear, " and ", parameters.q_quadratic);
+}
+
 }  // namespace flip
