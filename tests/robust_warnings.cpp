@@ -123,19 +123,24 @@ flip tube particles.per_cell_x=2 particles.per_cell_z=1
 flip around flip.mass=consistent particles.per_cell_x=2
     warning: flip.mass = "consistent" with 2 particles across a cell, below 3
 flip around flip.mass=consistent particles.per_cell_x=3 viscosity.linear=0 time.end=10
-    warning: with 3 particles across a cell and viscosity.linear = 0 weak flow grows by about
+    warning: with 3 particles across a cell and viscosity.linear = 0 weak flow grows by up to
 flip around flip.mass=consistent viscosity.linear=0 time.end=10 -> no warning
 flip around flip.mass=consistent particles.per_cell_x=3 viscosity.linear=0.2 time.end=10
     no warning
 flip around particles.per_cell_z=3 viscosity.linear=0 time.end=10
-    warning: with 3 particles across a cell and viscosity.linear = 0 weak flow grows by about
+    warning: with 3 particles across a cell and viscosity.linear = 0 weak flow grows by up to
 flip around particles.per_cell_x=3 viscosity.linear=0 time.end=10 flip.density=particles
     no warning
 flip around viscosity.linear=0 time.end=10 -> no warning
+flip around viscosity.linear=0 time.end=100 flip.transfer=xpic -> no warning
+flip around viscosity.linear=0 time.end=100 flip.density=particles
+    warning: with 4 particles across a cell and viscosity.linear = 0 weak flow grows by up to
+flip around flip.mass=consistent viscosity.linear=0 time.end=100
+    warning: with 4 particles across a cell and viscosity.linear = 0 weak flow grows by up to
 flip around viscosity.linear=0 time.end=100
-    warning: with 4 particles across a cell and viscosity.linear = 0 weak flow grows by about
+    warning: with 4 particles across a cell and viscosity.linear = 0 weak flow grows by up to
 flip box rings gas particles.per_cell_x=3 viscosity.linear=0 time.end=10
-    warning: with 3 particles across a cell and viscosity.linear = 0 weak flow grows by about
+    warning: with 3 particles across a cell and viscosity.linear = 0 weak flow grows by up to
 flip box no_slip flip.viscosity=0.1 flip.transfer=xpic
     warning: beside a no_slip wall flip.transfer = "xpic" brakes a viscous flow
 flip box no_slip flip.viscosity=0.1 -> no warning

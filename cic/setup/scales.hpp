@@ -131,7 +131,7 @@ inline void warn_of_idleness(const Case& parameters, const Scales& scales,
                  scales.debye_length);
 }
 
-// Cold plasma that the momentum scheme sets in motion, because its force is not the gradient of an energy.
+// Cold plasma that the momentum scheme sets in motion: its force is not the gradient of an energy.
 inline void warn_of_cold_plasma(const Case& parameters, const Scales& scales,
                                 std::vector<std::string>& warnings) {
     if (parameters.conserving != "momentum" || parameters.gauss_sign < 0) return;

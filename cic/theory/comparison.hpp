@@ -67,8 +67,8 @@ inline double mean_of_last_half(const std::vector<double>& values) {
     return sum / double(values.size() - half);
 }
 
-/// The same of what fluctuates, with an error bar: Student's t of the means of three parts, as wide as
-/// a mean and a slow change within the record ask for.
+/// The same of what fluctuates, with an error bar: Student's t of the means of its three parts, so that
+/// a slow change in it widens the bar.
 inline common::Measured fluctuating_mean(const std::vector<double>& values) {
     const double mean = mean_of_last_half(values);
     const std::size_t half = values.size() / 2, part = (values.size() - half) / 3;

@@ -169,8 +169,8 @@ inline void warn_of_speeds(const Case& parameters, const Scales& scales, const s
          ") until time.end: ", flips ? "set flip.transfer = \"xpic\"" : "lower time.end",
          ", or raise particles.per_cell_x and per_cell_z");
     // As measured, of gas nearly at rest. The density of a cell bends where a particle passes its
-    // center, and an odd number across a cell puts one there: a lattice moved off it is stable.
-    // In a row it grows slowly.
+    // center, and an odd number across a cell puts one there: a lattice moved off it grows as slowly
+    // as others, and so does density = "particles". In a row all is slower.
     const bool consistent = parameters.mass == "consistent";
     const double blended = parameters.transfer == "flip"    ? 1
                            : parameters.transfer == "blend" ? 0.4
@@ -178,8 +178,9 @@ inline void warn_of_speeds(const Case& parameters, const Scales& scales, const s
                  damped = std::max(0.0, 1 - parameters.q_linear / (consistent ? 0.06 : 0.1));
     const auto rate_of = [&](long n) {
         if (n == 1) return 0.0;  // not measured
-        if (n % 2 == 0) return n == 4 && !consistent && parameters.plane() ? 0.002 : 0.0;
-        return consistent
+        const bool bends = parameters.density == "cells" && n % 2 == 1;
+        return !bends ? (parameters.plane() ? 0.002 : 0.0)
+               : consistent
                    ? 0.45 * std::pow(double(n), -1.5)
                    : (0.04 - 0.05 * std::min(parameters.cfl, 0.3)) * std::pow(3 / double(n), 3.5);
     };
@@ -192,15 +193,15 @@ inline void warn_of_speeds(const Case& parameters, const Scales& scales, const s
                  swells = (parameters.plane() ? 1 : 0.05) * rate_of(worst) * blended * damped *
                           scales.sound_speed / apart * parameters.end;
     warn(out,
-         program == "flip" && !parameters.implicit() && parameters.density == "cells" &&
-             parameters.loading == "lattice" && !shocks && swells > 5,
+         program == "flip" && !parameters.implicit() && parameters.loading == "lattice" &&
+             !shocks && swells > 5,
          "with ", worst, " particles across a cell and viscosity.linear = ", parameters.q_linear,
-         " weak flow grows by about exp(", swells, ") until time.end",
-         worst % 2 == 1 ? ", for one of them is at the center, where the density of a cell bends"
-                        : "",
-         ": set viscosity.linear = 0.2, ", consistent ? "" : "flip.transfer = \"xpic\", ",
-         "flip.density = \"particles\", ",
-         worst % 2 == 1 ? "or an even number across" : "or flip.mass = \"consistent\"");
+         " weak flow grows by up to exp(", swells, ") until time.end",
+         rate_of(worst) > 0.002
+             ? ", for one of them is at the center, where the density of a cell bends"
+             : "",
+         ": set viscosity.linear = 0.2",
+         consistent || parameters.density != "cells" ? "" : " or flip.transfer = \"xpic\"");
     const bool held = std::ranges::count(parameters.boundaries, "no_slip", &BoundaryCase::kind) > 0;
     warn(out, held && parameters.viscosity == 0,
          "a no_slip wall holds fluid without viscosity only through the mesh: set flip.viscosity, "
