@@ -170,9 +170,7 @@ inline void refuse_species(const Case& parameters, const SpeciesCase& s) {
            ".emission_temperature = ", s.emission_temperature, ": a particle emitted with ",
            fastest, " crosses the whole box in one step: lower it, or time.dt below ",
            grid.x.length / fastest);
-    const double weight = s.mean_density() * filled_volume(parameters, s) /
-                          double(particle_count(parameters, s)),
-                 emitted = emitted_per_step(parameters, s, weight);
+    const double emitted = emitted_per_step(parameters, s, particle_weight(parameters, s));
     refuse(emitted > 1e6, name, ".emission = ", s.emission, " is ", emitted,
            " particles in a step, more than 1e6: lower it, or raise density, which makes them "
            "heavier");

@@ -26,6 +26,11 @@ inline long particle_count(const Case& parameters, const SpeciesCase& s) {
     return std::lround(double(s.particles_per_cell) * cells);
 }
 
+/// Real particles in each simulation particle of a mobile species.
+inline double particle_weight(const Case& parameters, const SpeciesCase& s) {
+    return s.mean_density() * filled_volume(parameters, s) / double(particle_count(parameters, s));
+}
+
 /// Charge density of all fixed species.
 inline double fixed_background(const Case& parameters) {
     double rho = 0;
@@ -91,7 +96,7 @@ inline Particles load_species(const Case& parameters, const SpeciesCase& s, std:
     const bool plane = parameters.dimensions == 2;
     Particles particles;
     particles.name = s.name;
-    const double weight = s.mean_density() * filled_volume(parameters, s) / double(count);
+    const double weight = particle_weight(parameters, s);
     particles.q_p = weight * s.charge;
     particles.m_p = weight * s.mass;
     const long before = begin_of_rank(count, common::rank()),

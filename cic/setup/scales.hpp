@@ -35,11 +35,10 @@ struct Scales {
 /// How many particles of a species there will be: those loaded or, of a source wall, what comes in
 /// while a thermal particle crosses the box, where that is more.
 inline double most_particles(const Case& parameters, const SpeciesCase& s) {
-    const double loaded = double(particle_count(parameters, s)),
-                 weight = s.mean_density() * filled_volume(parameters, s) / loaded,
-                 crossing = parameters.grid.x.length / std::sqrt(s.emission_temperature / s.mass);
-    return std::max(loaded, s.emission * parameters.grid.z.length *
-                                std::min(crossing, parameters.end) / weight);
+    const double crossing = parameters.grid.x.length / std::sqrt(s.emission_temperature / s.mass);
+    return std::max(double(particle_count(parameters, s)), s.emission * parameters.grid.z.length *
+                                                               std::min(crossing, parameters.end) /
+                                                               particle_weight(parameters, s));
 }
 
 /// The scales of a case whose mesh has its boundaries.
