@@ -15,10 +15,12 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "common/parallel.hpp"
 
@@ -33,25 +35,26 @@ struct KrylovResult {
 
 /// What GMRES keeps between calls, so that only the first call allocates the long arrays.
 struct GmresWorkspace {
-    Eigen::MatrixXd basis;           // orthonormal v_0 .. v_restart, one per column
-    Eigen::MatrixXd preconditioned;  // M^-1 v_0 .. M^-1 v_restart-1
-    Eigen::MatrixXd hessenberg;      // A M^-1 V_k = V_k+1 H, turned into triangular R as it grows
-    Eigen::VectorXd cosine, sine;    // the rotations that make H triangular
+    Eigen::MatrixXd basis;                        // orthonormal v_0 .. v_restart, one per column
+    std::vector<Eigen::VectorXd> preconditioned;  // M^-1 v_0 .. M^-1 v_restart-1
+    Eigen::MatrixXd hessenberg;    // A M^-1 V_k = V_k+1 H, turned into triangular R as it grows
+    Eigen::VectorXd cosine, sine;  // the rotations that make H triangular
     Eigen::VectorXd projected;  // rotated right-hand side |r| e_1; its last entry is the residual
     Eigen::VectorXd y, overlap;
     Eigen::MatrixXd partial;  // sums over the rows of a piece, one per column
-    Eigen::VectorXd r, w, z, x_before;
+    Eigen::VectorXd r, w, x_before;
     double operator_size = 0.0;  // largest |A M^-1 v| seen for a unit vector v
+    int components = 1;          // of a vector field, stored one behind the other
 };
 
-/// |v| that neither overflows nor underflows.
-inline double safe_norm(const Eigen::VectorXd& v) {
-    const double squared = v.squaredNorm();
+/// |v| that neither overflows nor underflows. in: |v|^2, where it is known
+inline double safe_norm(const Eigen::VectorXd& v, double squared) {
     if (squared > 1e-280 && squared < 1e280) return std::sqrt(squared);
     const double largest = v.size() == 0 ? 0.0 : v.cwiseAbs().maxCoeff();
     if (largest == 0.0) return v.array().isNaN().any() ? v.sum() : 0.0;
     return largest * (v / largest).norm();
 }
+inline double safe_norm(const Eigen::VectorXd& v) { return safe_norm(v, v.squaredNorm()); }
 
 namespace gmres_detail {
 
@@ -63,48 +66,59 @@ enum class Growth { grown, complete, dependent, not_finite };
 /// Gives every array of the workspace its size: n unknowns, at most `restart` basis vectors.
 inline void prepare(GmresWorkspace& work, Eigen::Index n, int restart) {
     work.basis.resize(n, restart + 1);
-    work.preconditioned.resize(n, restart);
+    work.preconditioned.resize(std::size_t(restart));
     work.hessenberg.resize(restart + 1, restart);
     for (auto* v : {&work.cosine, &work.sine, &work.y}) v->resize(restart);
     work.projected.resize(restart + 1);
-    for (auto* v : {&work.r, &work.w, &work.z, &work.x_before}) v->resize(n);
+    for (auto* v : {&work.r, &work.w, &work.x_before}) v->resize(n);
     work.operator_size = 0.0;
 }
 
-/// Calls work(part, row, rows) for all parts of a vector of n rows.
-constexpr Eigen::Index part_rows = 2048;
-template <class Work>
-void for_each_part(Eigen::Index n, const Work& work) {
-    for_each_piece((n + part_rows - 1) / part_rows,
-                   [&](long k) { work(k, k * part_rows, std::min(part_rows, n - k * part_rows)); },
-                   n);
-}
+/// How a vector of n rows is cut: each of its components into parts of a length that stays in the cache, and
+/// the same part of all components one after another.
+struct Parts {
+    static constexpr Eigen::Index rows = 512;
+    Eigen::Index components, length;  // of one component
+
+    Parts(const GmresWorkspace& work, Eigen::Index n)
+        : components(n % work.components == 0 ? work.components : 1), length(n / components) {}
+    Eigen::Index count() const { return components * ((length + rows - 1) / rows); }
+
+    /// Calls work(part, its first row, its rows) for all of them.
+    template <class Work>
+    void for_each(const Work& work) const {
+        const auto do_part = [&](long part) {
+            const Eigen::Index first = part / components * rows;
+            work(part, part % components * length + first, std::min(rows, length - first));
+        };
+        for_each_piece(count(), do_part, components * length);
+    }
+};
 
 /// Takes out of w its part in the span of the first k basis vectors, twice.
 ///   h = V^T w;  w <- w - V h;  h' = V^T w;  w <- w - V h'
 /// in:    work.basis (n x k used), work.w
-/// out:   work.w orthogonal to the basis; work.overlap = h + h'
-inline void orthogonalize(GmresWorkspace& work, Eigen::Index k) {
-    constexpr Eigen::Index block = 512;
-    const Eigen::Index n = work.w.size();
-    work.partial.setZero(k, n / part_rows + 1);
-    // Takes V h from w, where there is an h, and adds up V^T w, where that is asked for.
-    const auto sweep = [&](const Eigen::VectorXd* h, bool sums) -> Eigen::VectorXd {
-        for_each_part(n, [&](long part, Eigen::Index first, Eigen::Index size) {
+/// out:   work.w orthogonal to the basis; work.overlap = h + h'; |w| before and after
+inline std::array<double, 2> orthogonalize(GmresWorkspace& work, Eigen::Index k) {
+    const Parts parts(work, work.w.size());
+    work.partial.setZero(k + 1, parts.count());
+    // Takes V h from w, where there is an h, and adds up V^T w, where that is asked for, and |w|^2.
+    const auto sweep = [&](const Eigen::VectorXd& h, bool sums) -> Eigen::VectorXd {
+        parts.for_each([&](long part, Eigen::Index first, Eigen::Index rows) {
+            const auto V = work.basis.block(first, 0, rows, k);
+            auto w = work.w.segment(first, rows);
             auto sum = work.partial.col(part);
-            sum.setZero();
-            for (Eigen::Index row = first; row < first + size; row += block) {
-                const auto V = work.basis.block(row, 0, std::min(block, first + size - row), k);
-                auto w = work.w.segment(row, V.rows());
-                if (h != nullptr) w.noalias() -= V * *h;
-                if (sums) sum.noalias() += V.transpose() * w;
-            }
+            if (h.size() > 0) w.noalias() -= V * h.head(k);
+            if (sums) sum.head(k).noalias() = V.transpose() * w;
+            sum[k] = w.squaredNorm();
         });
         return work.partial.rowwise().sum();
     };
-    const Eigen::VectorXd h = sweep(nullptr, true), again = sweep(&h, true);
-    sweep(&again, false);
-    work.overlap = h + again;
+    const Eigen::VectorXd h = sweep({}, true);
+    const double before = safe_norm(work.w, h[k]);
+    const Eigen::VectorXd again = sweep(h, true), left = sweep(again, false);
+    work.overlap = (h + again).head(k);
+    return {before, safe_norm(work.w, left[k])};
 }
 
 /// Makes column k of the Hessenberg matrix triangular, and rotates the right-hand side with it.
@@ -132,23 +146,19 @@ inline void rotate_column(GmresWorkspace& work, Eigen::Index k) {
 template <class Operator, class Preconditioner>
 Growth grow(const Operator& apply, const Preconditioner& precondition, GmresWorkspace& work,
             Eigen::Index k) {
-    precondition(work.w, work.z);
-    for_each_part(work.z.size(), [&](long, Eigen::Index row, Eigen::Index rows) {
-        work.preconditioned.col(k).segment(row, rows) = work.z.segment(row, rows);
-    });
-    apply(work.z, work.w);
-    const double before = safe_norm(work.w);
+    Eigen::VectorXd& z = work.preconditioned[std::size_t(k)];
+    precondition(work.w, z);
+    apply(z, work.w);
+    auto [before, length] = orthogonalize(work, k + 1);
     if (!std::isfinite(before)) return Growth::not_finite;
     work.operator_size = std::max(work.operator_size, before);
-    orthogonalize(work, k + 1);
-    double length = safe_norm(work.w);
     if (!(length > negligible * before)) length = 0.0;
     work.hessenberg.col(k).head(k + 1) = work.overlap.head(k + 1);
     work.hessenberg(k + 1, k) = length;
     rotate_column(work, k);
     if (!(work.hessenberg(k, k) > negligible * work.operator_size)) return Growth::dependent;
     if (length == 0.0) return Growth::complete;
-    for_each_part(work.w.size(), [&](long, Eigen::Index row, Eigen::Index rows) {
+    Parts(work, work.w.size()).for_each([&](long, Eigen::Index row, Eigen::Index rows) {
         work.w.segment(row, rows) /= length;
         work.basis.col(k + 1).segment(row, rows) = work.w.segment(row, rows);
     });
@@ -247,7 +257,8 @@ KrylovResult gmres(const Operator& apply, const Preconditioner& precondition,
         const Eigen::Index used = gmres_detail::find_correction(work, k, size_r);
         if (used < k) growth = Growth::dependent;
         if (used > 0) {
-            x.noalias() += work.preconditioned.leftCols(used) * work.y.head(used);
+            for (Eigen::Index i = 0; i < used; ++i)
+                x += work.y[i] * work.preconditioned[std::size_t(i)];
             size_r = gmres_detail::find_residual(apply, b, x, work.r);
         }
         const bool finite = std::isfinite(size_r) && growth != Growth::not_finite;

@@ -8,9 +8,12 @@
 
 #include <omp.h>
 
+#include <algorithm>
 #include <array>
+#include <atomic>
 #include <exception>
 #include <numeric>
+#include <vector>
 
 namespace common {
 
@@ -32,16 +35,29 @@ inline constexpr long parallel_threshold = 4096;
 /// Calls work(row) for every row in [0, rows), those at the same time that are `colors` apart: a row that
 /// writes to what it shares with the next one (two colors), or to both its neighbors (three), then meets
 /// nobody else's writes, and every sum on the mesh is added in the same order whatever the number of threads.
+/// A thread takes its own part of the rows, the same one in every loop of as many, so that what it left in
+/// its cache is there when it comes back; then what others have not begun, from the ends of their parts.
 /// in: numbers, how many a loop works on, where it is known to be short
 /// errors: what one of the pieces throws, when all have ended
 template <class Work>
 void for_each_row_colored(long colors, long rows, const Work& work,
                           long numbers = parallel_threshold) {
     std::exception_ptr thrown;
+    std::vector<std::atomic_flag> taken(std::size_t(std::max(rows, 0L)));
+    const auto take = [&](long row) {
+        if (!taken[std::size_t(row)].test_and_set(std::memory_order_relaxed))
+            do_piece(thrown, [&] { work(row); });
+    };
 #pragma omp parallel if (numbers >= parallel_threshold)
     for (long color = 0; color < colors; ++color) {
-#pragma omp for schedule(dynamic, 1)
-        for (long row = color; row < rows; row += colors) do_piece(thrown, [&] { work(row); });
+        const long count = (rows - color + colors - 1) / colors;  // rows of this color
+        const long me = omp_get_thread_num(), threads = omp_get_num_threads();
+        const auto first = [&](long thread) { return count * thread / threads; };
+        for (long k = first(me); k < first(me + 1); ++k) take(color + colors * k);
+        for (long other = me + 1; other < me + threads; ++other)
+            for (long k = first(other % threads + 1); k-- > first(other % threads);)
+                take(color + colors * k);
+#pragma omp barrier
     }
     if (thrown) std::rethrow_exception(thrown);
 }

@@ -74,7 +74,9 @@ struct FieldSolver {
           ghosted(g),
           curl_E(g),
           chi_E(g),
-          field_waves(g) {}
+          field_waves(g) {
+        krylov.components = newton.linear.components = 3;
+    }
 };
 
 /// out = (1 + S chi S) E + a^2 curl curl E on the unknowns of E, zero elsewhere.
@@ -86,28 +88,30 @@ inline void apply_field_operator(FieldSolver& solver, double a, const Eigen::Vec
     const Grid& grid = solver.grid;
     const SmoothingSettings& smoothing = solver.settings.smoothing;
     VectorField &ghosted = solver.ghosted, &curl_E = solver.curl_E, &chi_E = solver.chi_E;
-    ghosted.all = E;
+    const long m = grid.size();
+    const double* e = E.data();
+    double *copy = ghosted.all.data(), *sum = out.data();
+    for_each_point(grid, [=](long n) {
+        copy[n] = e[n], copy[n + m] = e[n + m], copy[n + 2 * m] = e[n + 2 * m];
+    });
     fill_ghosts(grid, electric, ghosted);
     curl_of_electric(grid, ghosted.all.data(), curl_E.all.data());
     fill_ghosts(grid, magnetic, curl_E);
     curl_of_magnetic(grid, curl_E.all.data(), out.data());
     if (mirrors_plasma(grid)) fill_ghosts(grid, felt(grid), ghosted);
-    smooth(grid, felt(grid), smoothing, ghosted.all.data(), solver.scratch);
+    smooth(grid, felt(grid), smoothing, ghosted, solver.scratch);
     if (solver.settings.uses_mass_matrix()) {
         apply_mass_matrix(grid, solver.mass, ghosted.all.data(), chi_E.all.data());
-        chi_E.all *= 4 * pi * a / c;
     } else {
         apply_tensor(grid, solver.response.chi, ghosted.all.data(), false, solver.response.scratch,
                      chi_E.all.data());
         fill_ghosts(grid, felt(grid), chi_E);
     }
-    smooth(grid, felt(grid), smoothing, chi_E.all.data(), solver.scratch);
-    const long m = grid.size();
-    const double *e = E.data(), *driven = chi_E.all.data();
-    double* sum = out.data();
-    for_each_point(grid, [=](long n) {
-        for (long k = n; k < n + 3 * m; k += m) sum[k] = e[k] + driven[k] + a * a * sum[k];
-    });
+    smooth(grid, felt(grid), smoothing, chi_E, solver.scratch);
+    const double by_current = solver.settings.uses_mass_matrix() ? 4 * pi * a / c : 1;
+    const double* driven = chi_E.all.data();
+    const auto add = [=](long n) { sum[n] = e[n] + by_current * driven[n] + a * a * sum[n]; };
+    for_each_point(grid, [=](long n) { add(n), add(n + m), add(n + 2 * m); });
     keep_unknowns(grid, out.data());
 }
 

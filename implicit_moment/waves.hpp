@@ -100,9 +100,9 @@ class MeshWaves {
                 n_k * pieces,
                 [&](long piece) {
                     const Buffer line(x.points());
-                    const long first = piece % pieces * at_once;
+                    const long first = piece / n_k * at_once;
                     for (long j = first; j < std::min(n_z, first + at_once); ++j)
-                        work(std::size_t(piece / pieces), j, line.reals());
+                        work(std::size_t(piece % n_k), j, line.reals());
                 },
                 grid_.size());
         };
