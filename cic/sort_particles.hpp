@@ -24,7 +24,8 @@ inline void sort_particles(const Grid& grid, common::SortScratch<Real>& scratch,
         const auto row = [&](long p) { return int((double(s.z_p[p]) - z_low) * per_dz); };
         common::counting_sort(s.count(), grid.z.cells + 1, row, scratch, &first_of_row);
         for (std::vector<Real>* quantity : s.all())
-            if (!quantity->empty()) common::carry_to_place(*quantity, scratch);
+            if (!quantity->empty())
+                common::carry_to_place(*quantity, scratch.target, scratch.column);
         share_runs(first_of_row, s);
     }
 }

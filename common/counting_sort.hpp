@@ -90,10 +90,4 @@ void carry_to_place(std::vector<Number>& quantity, const std::vector<int>& targe
     });
     quantity.swap(column);
 }
-/// The same through the column of the scratch, for quantities of its type.
-template <class Number>
-void carry_to_place(std::vector<Number>& quantity, SortScratch<Number>& scratch) {
-    carry_to_place(quantity, scratch.target, scratch.column);
-}
-
 }  // namespace common

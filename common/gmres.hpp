@@ -37,8 +37,8 @@ struct KrylovResult {
 struct GmresWorkspace {
     Eigen::MatrixXd basis;                        // orthonormal v_0 .. v_restart, one per column
     std::vector<Eigen::VectorXd> preconditioned;  // M^-1 v_0 .. M^-1 v_restart-1
-    Eigen::MatrixXd hessenberg;    // A M^-1 V_k = V_k+1 H, turned into triangular R as it grows
-    Eigen::VectorXd cosine, sine;  // the rotations that make H triangular
+    Eigen::MatrixXd hessenberg;  // A M^-1 V_k = V_k+1 H, turned into triangular R as it grows
+    std::vector<Eigen::JacobiRotation<double>> rotations;  // which make H triangular
     Eigen::VectorXd projected;  // rotated right-hand side |r| e_1; its last entry is the residual
     Eigen::VectorXd y, overlap;
     Eigen::MatrixXd partial;  // sums over the rows of a piece, one per column
@@ -68,8 +68,9 @@ inline void prepare(GmresWorkspace& work, Eigen::Index n, int restart) {
     work.basis.resize(n, restart + 1);
     work.preconditioned.resize(std::size_t(restart));
     work.hessenberg.resize(restart + 1, restart);
-    for (auto* v : {&work.cosine, &work.sine, &work.y}) v->resize(restart);
+    work.rotations.resize(std::size_t(restart));
     work.projected.resize(restart + 1);
+    for (auto& v : work.preconditioned) v.resize(n);
     for (auto* v : {&work.r, &work.w, &work.x_before}) v->resize(n);
     work.operator_size = 0.0;
 }
@@ -124,18 +125,14 @@ inline std::array<double, 2> orthogonalize(GmresWorkspace& work, Eigen::Index k)
 /// Makes column k of the Hessenberg matrix triangular, and rotates the right-hand side with it.
 inline void rotate_column(GmresWorkspace& work, Eigen::Index k) {
     auto column = work.hessenberg.col(k);
-    for (Eigen::Index i = 0; i < k; ++i) {
-        const double above = column[i], below = column[i + 1];
-        column[i] = work.cosine[i] * above + work.sine[i] * below;
-        column[i + 1] = work.cosine[i] * below - work.sine[i] * above;
-    }
-    const double length = std::hypot(column[k], column[k + 1]);
-    work.cosine[k] = length > 0.0 ? column[k] / length : 1.0;
-    work.sine[k] = length > 0.0 ? column[k + 1] / length : 0.0;
-    column[k] = length;
-    column[k + 1] = 0.0;
-    work.projected[k + 1] = -work.sine[k] * work.projected[k];
-    work.projected[k] *= work.cosine[k];
+    for (Eigen::Index i = 0; i < k; ++i)
+        column.applyOnTheLeft(i, i + 1, work.rotations[std::size_t(i)].adjoint());
+    auto& rotation = work.rotations[std::size_t(k)];
+    rotation.makeGivens(column[k], column[k + 1]);
+    work.projected[k + 1] = 0;
+    column.applyOnTheLeft(k, k + 1, rotation.adjoint());
+    work.projected.applyOnTheLeft(k, k + 1, rotation.adjoint());
+    column[k + 1] = 0;
 }
 
 /// Adds A M^-1 v_k to the Krylov space.
@@ -171,10 +168,9 @@ Growth grow(const Operator& apply, const Preconditioner& precondition, GmresWork
 /// out:   work.y; the number of basis vectors it uses
 inline Eigen::Index find_correction(GmresWorkspace& work, Eigen::Index k, double size_r) {
     for (; k > 0; --k) {
-        auto y = work.y.head(k);
-        y = work.projected.head(k);
-        work.hessenberg.topLeftCorner(k, k).triangularView<Eigen::Upper>().solveInPlace(y);
-        if (y.stableNorm() * work.operator_size * negligible <= size_r) break;
+        work.y = work.projected.head(k);
+        work.hessenberg.topLeftCorner(k, k).triangularView<Eigen::Upper>().solveInPlace(work.y);
+        if (work.y.stableNorm() * work.operator_size * negligible <= size_r) break;
     }
     return k;
 }
@@ -271,18 +267,12 @@ KrylovResult gmres(const Operator& apply, const Preconditioner& precondition,
         if (result.converged) break;
 
         // Give up where another space would bring nothing.
-        if (!finite) {
-            result.reason = "the operator or the preconditioner is not finite";
-            return result;
-        }
-        if (growth == Growth::dependent) {
-            result.reason = "the operator is singular";
-            return result;
-        }
-        if (!(size_r < (1.0 - 1e-9) * size_before)) {
-            result.reason = "no progress in a whole Krylov space";
-            return result;
-        }
+        result.reason = !finite ? "the operator or the preconditioner is not finite"
+                        : growth == Growth::dependent ? "the operator is singular"
+                        : !(size_r < (1.0 - 1e-9) * size_before)
+                            ? "no progress in a whole Krylov space"
+                            : "";
+        if (!result.reason.empty()) return result;
     }
     if (!result.converged) result.reason = "the limit of iterations is reached";
     return result;

@@ -2,7 +2,7 @@
 // lives here.
 //
 // Work is cut into pieces that are fixed by the problem alone. Threads choose which piece they
-// take next, never how the pieces are cut or in which order partial sums are added; so one thread
+// take, never how the pieces are cut or in which order partial sums are added; so one thread
 // and forty give the same bits.
 #pragma once
 

@@ -20,10 +20,9 @@ namespace common {
 inline double uniform(std::uint64_t seed, std::uint32_t purpose, std::uint64_t particle,
                       std::uint32_t draw) {
     using Philox = r123::Philox4x32;
-    const auto low = [](std::uint64_t bits) { return std::uint32_t(bits); };
-    const auto high = [](std::uint64_t bits) { return std::uint32_t(bits >> 32); };
-    const Philox::ctr_type counter = {{low(particle), high(particle), purpose, draw}};
-    const Philox::key_type key = {{low(seed), high(seed)}};
+    using Word = std::uint32_t;
+    const Philox::ctr_type counter = {{Word(particle), Word(particle >> 32), purpose, draw}};
+    const Philox::key_type key = {{Word(seed), Word(seed >> 32)}};
     const Philox::ctr_type words = Philox()(counter, key);
     const std::uint64_t bits = (std::uint64_t{words[1]} << 32) | words[0];
     return std::min((double(bits >> 11) + 0.5) * 0x1p-53, 1 - 0x1p-53);

@@ -16,10 +16,9 @@ namespace common {
 inline double spline(int order, double x) {
     if (order == 0) return x >= -0.5 && x < 0.5 ? 1.0 : 0.0;
     const double r = std::fabs(x);
-    const auto cube = [](double t) { return t * t * t; };
     if (order == 1) return r < 1 ? 1 - r : 0;
     if (order == 2) return r < 0.5 ? 0.75 - r * r : r < 1.5 ? 0.5 * (1.5 - r) * (1.5 - r) : 0;
-    return r < 1 ? 2.0 / 3 - r * r + 0.5 * r * r * r : r < 2 ? cube(2 - r) / 6 : 0;
+    return r < 1 ? 2.0 / 3 - r * r + 0.5 * r * r * r : r < 2 ? (2 - r) * (2 - r) * (2 - r) / 6 : 0;
 }
 
 }  // namespace common

@@ -31,8 +31,7 @@ class StepClock {
     }
     /// Seconds spent in a part so far; 0 for a part that is not known.
     double seconds(const std::string& part) const {
-        const auto found = seconds_.find(part);
-        return found == seconds_.end() ? 0 : found->second;
+        return seconds_.contains(part) ? seconds_.at(part) : 0;
     }
     /// Seconds spent in all parts.
     double total() const {

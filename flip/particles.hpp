@@ -108,7 +108,8 @@ inline void sort_particles(const Grid& grid, SortScratch& scratch, Particles& pa
         particles.count(), grid.z.cells, [=](long p) { return row(z_p[p]); }, scratch.numbers,
         &particles.first_of_row);
     for (std::vector<double>* column : particles.all())
-        if (has(*column)) common::carry_to_place(*column, scratch.numbers);
+        if (has(*column))
+            common::carry_to_place(*column, scratch.numbers.target, scratch.numbers.column);
     common::carry_to_place(particles.material, scratch.numbers.target, scratch.labels);
 }
 

@@ -99,7 +99,7 @@ inline void apply_field_operator(FieldSolver& solver, double a, const Eigen::Vec
     fill_ghosts(grid, magnetic, curl_E);
     curl_of_magnetic(grid, curl_E.all.data(), out.data());
     if (mirrors_plasma(grid)) fill_ghosts(grid, felt(grid), ghosted);
-    smooth(grid, felt(grid), smoothing, ghosted, solver.scratch);
+    smooth(grid, felt(grid), smoothing, ghosted.all.data(), solver.scratch);
     if (solver.settings.uses_mass_matrix()) {
         apply_mass_matrix(grid, solver.mass, ghosted.all.data(), chi_E.all.data());
     } else {
@@ -107,7 +107,7 @@ inline void apply_field_operator(FieldSolver& solver, double a, const Eigen::Vec
                      chi_E.all.data());
         fill_ghosts(grid, felt(grid), chi_E);
     }
-    smooth(grid, felt(grid), smoothing, chi_E, solver.scratch);
+    smooth(grid, felt(grid), smoothing, chi_E.all.data(), solver.scratch);
     const double by_current = solver.settings.uses_mass_matrix() ? 4 * pi * a / c : 1;
     const double* driven = chi_E.all.data();
     const auto add = [=](long n) { sum[n] = e[n] + by_current * driven[n] + a * a * sum[n]; };

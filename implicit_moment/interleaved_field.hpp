@@ -45,7 +45,7 @@ inline void interleave_field(const Grid& grid, const SmoothingSettings& smoothin
     if (changes) {
         scratch.smoothed.all = E_mesh.all;
         if (mirrors_plasma(grid)) fill_ghosts(grid, felt(grid), scratch.smoothed);
-        smooth(grid, felt(grid), smoothing, scratch.smoothed, scratch.pass);
+        smooth(grid, felt(grid), smoothing, scratch.smoothed.all.data(), scratch.pass);
     }
     const VectorField& E = changes ? scratch.smoothed : E_mesh;
     interleaved.resize(grid.size());

@@ -83,7 +83,7 @@ inline FieldReport solve_enslaved_field(FieldSolver& solver, double dt,
         fill_B_ghosts(grid, B_theta);
         interleave_field(grid, smoothing, field.E_theta, B_theta, scratch, interleaved);
         follow_field(interleaved, grid, dt, follow, species, turn, enslaved);
-        smooth(grid, felt(grid), smoothing, enslaved.J, solver.scratch);
+        smooth(grid, felt(grid), smoothing, enslaved.J.all.data(), solver.scratch);
 
         // What is left: source - E + a curl (B_theta - B^n) - 4 pi theta dt J.
         VectorField& left = solver.source;

@@ -125,8 +125,8 @@ inline FieldReport solve_field(FieldSolver& solver, const std::vector<Moments>& 
 
     predict_current(grid, moments, charge_over_mass, rotated_in, B_push.all.data(), dt,
                     settings.theta, response);
-    smooth(grid, felt(grid), settings.smoothing, response.J_hat, solver.scratch);
-    smooth(grid, common::on_nodes, felt_charge(grid), settings.smoothing, response.rho,
+    smooth(grid, felt(grid), settings.smoothing, response.J_hat.all.data(), solver.scratch);
+    smooth(grid, common::on_nodes, felt_charge(grid), settings.smoothing, response.rho.data(),
            solver.scratch);
     prepare_preconditioner(solver, a);
     maxwell_source(solver, field, a);
@@ -151,7 +151,7 @@ inline FieldReport solve_field(FieldSolver& solver, const std::vector<Moments>& 
             fill_B_ghosts(grid, B_push);
             predict_current(grid, moments, charge_over_mass, rotated_in, B_push.all.data(), dt,
                             settings.theta, response);
-            smooth(grid, felt(grid), settings.smoothing, response.J_hat, solver.scratch);
+            smooth(grid, felt(grid), settings.smoothing, response.J_hat.all.data(), solver.scratch);
             apply_field_operator(solver, a, v, F);
             F += by_J * response.J_hat.all - solver.source.all;
             keep_unknowns(grid, F.data());
@@ -186,7 +186,8 @@ inline FieldReport solve_field(FieldSolver& solver, double dt, FieldState& field
     const Grid& grid = solver.grid;
     const double a = c * solver.settings.theta * dt;
     prepare_preconditioner(solver, a);
-    smooth(grid, felt(grid), solver.settings.smoothing, solver.mass.J_hat, solver.scratch);
+    smooth(grid, felt(grid), solver.settings.smoothing, solver.mass.J_hat.all.data(),
+           solver.scratch);
     curl_of_magnetic(grid, field.B.all.data(), solver.source.all.data());
     solver.source.all = field.E.all + a * solver.source.all -
                         4 * pi * solver.settings.theta * dt * solver.mass.J_hat.all;

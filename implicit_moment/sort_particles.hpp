@@ -21,7 +21,8 @@ using SortScratch = common::SortScratch<double>;
 template <class Key>
 inline void sort_by_key(long keys, const Key& key, SortScratch& scratch, Particles& particles) {
     common::counting_sort(particles.count(), keys, key, scratch, &particles.first_of_node);
-    for (auto* quantity : particles.all()) common::carry_to_place(*quantity, scratch);
+    for (auto* quantity : particles.all())
+        common::carry_to_place(*quantity, scratch.target, scratch.column);
 }
 
 namespace detail {

@@ -121,28 +121,22 @@ inline ConstBlock interior(const Grid& grid, const double* f) {
     return {f + grid.index(0, 0), grid.x.cells, grid.z.cells, Eigen::OuterStride<>(grid.stride())};
 }
 
-/// Calls work(first, end) for bands of the rows 0..N: a thread has the same ones in every loop over the mesh,
-/// and what it left of them in its cache.
-template <class Work>
-inline void for_each_band(const Grid& grid, const Work& work) {
-    constexpr long at_once = 2;
-    const long rows = grid.z.cells + 1;
-    common::for_each_piece((rows + at_once - 1) / at_once,
-                           [&](long k) { work(k * at_once, std::min(rows, (k + 1) * at_once)); },
-                           grid.size());
-}
-
 /// Calls work(n) for the storage index n of rows and columns 0..N, of all points whose neighbors
 /// are stored; work(n) writes to point n alone.
 template <class Work>
 inline void for_each_point(const Grid& grid, const Work& work) {
-    for_each_band(grid, [&](long first, long end_row) {
-        for (long j = first; j < end_row; ++j) {
-            const long begin = grid.index(0, j), end = begin + grid.x.cells + 1;
+    constexpr long at_once = 2;
+    const long rows = grid.z.cells + 1;
+    common::for_each_piece(
+        (rows + at_once - 1) / at_once,
+        [&](long piece) {
+            for (long j = piece * at_once; j < std::min(rows, (piece + 1) * at_once); ++j) {
+                const long begin = grid.index(0, j), end = begin + grid.x.cells + 1;
 #pragma omp simd
-            for (long n = begin; n < end; ++n) work(n);
-        }
-    });
+                for (long n = begin; n < end; ++n) work(n);
+            }
+        },
+        grid.size());
 }
 
 /// curl E on the places of B:  x: -dE_y/dz   y: dE_x/dz - dE_z/dx   z: dE_y/dx

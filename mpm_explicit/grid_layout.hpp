@@ -84,14 +84,15 @@ inline void GrainNodes::sort(const std::vector<Grain>& grains, Particles& partic
     common::counting_sort(particles.count(), first_tile[count], tile_of, scratch_,
                           &layout.tile_begin);
     for (std::vector<double>* quantity : particles.all())
-        common::carry_to_place(*quantity, scratch_);
+        common::carry_to_place(*quantity, scratch_.target, scratch_.column);
     particles.surface.follow(scratch_.target);
-    if (!particles.turn_p.empty()) common::carry_to_place(particles.turn_p, scratch_);
+    if (!particles.turn_p.empty())
+        common::carry_to_place(particles.turn_p, scratch_.target, scratch_.column);
     for (std::vector<double>* quantity : particles.from())
-        if (!quantity->empty()) common::carry_to_place(*quantity, scratch_);
+        if (!quantity->empty()) common::carry_to_place(*quantity, scratch_.target, scratch_.column);
     if (particles.has_affine())
         for (std::vector<double>* quantity : particles.affine())
-            common::carry_to_place(*quantity, scratch_);
+            common::carry_to_place(*quantity, scratch_.target, scratch_.column);
 
     // Rows of nodes around the tiles, wide enough for particles that move by the reach.
     layout.first_row.resize(count), layout.rows.resize(count);

@@ -170,13 +170,13 @@ constexpr std::array<SmoothingSettings, 5> smoothings{
 Field smoothed(const Grid& grid, Place place, Parity parity, const SmoothingSettings& settings,
                Field f) {
     Field scratch;
-    smooth(grid, place, parity, settings, f, scratch);
+    smooth(grid, place, parity, settings, f.data(), scratch);
     return f;
 }
 VectorField smoothed(const Grid& grid, const VectorKind& kind, const SmoothingSettings& settings,
                      VectorField f) {
     Field scratch;
-    smooth(grid, kind, settings, f, scratch);
+    smooth(grid, kind, settings, f.all.data(), scratch);
     return f;
 }
 

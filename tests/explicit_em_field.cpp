@@ -58,7 +58,7 @@ struct Loop {
             rho.array() -= total(parameters.grid, on_nodes, rho) / (x.length * z.length);
         common::fill_ghosts(parameters.grid, on_nodes, felt_charge(parameters.grid), rho.data());
         smooth(parameters.grid, on_nodes, felt_charge(parameters.grid), parameters.field.smoothing,
-               rho, pass);
+               rho.data(), pass);
         divergence_of_electric(parameters.grid, state.field.E.all.data(), G);
         G -= 4 * pi * rho;
         common::fill_ghosts(parameters.grid, on_nodes, {-1, -1}, G.data());
@@ -226,7 +226,7 @@ TEST_CASE("particles are pushed by the smoothed E and by B itself") {
             const FieldState before = field;
             const VectorKind kind = implicit_moment::felt(grid);
             fill_ghosts(grid, kind, E);
-            smooth(grid, kind, smoothing, E, room);
+            smooth(grid, kind, smoothing, E.all.data(), room);
             InterleavedField push;
             interleave_field(grid, smoothing, field.E, field.B, scratch, push);
             const InterleavedField expected = pack(grid, E, field.B);

@@ -340,7 +340,7 @@ TEST_CASE("all species together give the sum of their currents smoothed and with
                 }
                 CurrentScratch scratch;
                 Field room;
-                smooth(grid, kind, smoothing, expected, room);
+                smooth(grid, kind, smoothing, expected.all.data(), room);
                 for (int again = 0; again < 2; ++again) {  // what is kept between steps is no state
                     std::vector<Particles> moved = species;
                     std::vector<Crossings> crossings;

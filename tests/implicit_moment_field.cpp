@@ -192,11 +192,11 @@ TEST_CASE("the solution obeys the second-order equation with the predicted charg
             const SmoothingSettings& smoothing = settings.smoothing;
             VectorField J(grid), E = field.E_theta, chi_E(grid);
             fill_ghosts(grid, felt(grid), E);
-            smooth(grid, felt(grid), smoothing, E, solver.scratch);
+            smooth(grid, felt(grid), smoothing, E.all.data(), solver.scratch);
             apply_tensor(grid, solver.response.chi, E.all.data(), false, solver.response.scratch,
                          chi_E.all.data());
             fill_ghosts(grid, felt(grid), chi_E);
-            smooth(grid, felt(grid), smoothing, chi_E, solver.scratch);
+            smooth(grid, felt(grid), smoothing, chi_E.all.data(), solver.scratch);
             J.all = solver.response.J_hat.all + chi_E.all / (4 * pi * theta * dt);
             fill_ghosts(grid, electric, J);
 
@@ -471,7 +471,7 @@ TEST_CASE("Newton solves the equations whose rotation is taken at the theta leve
         predict_current(grid, plasma.moments, plasma.charge_over_mass, other.B.all.data(),
                         B_theta.all.data(), dt, 0.5, check.response);
         VectorField J = check.response.J_hat;
-        smooth(grid, felt(grid), settings.smoothing, J, check.scratch);
+        smooth(grid, felt(grid), settings.smoothing, J.all.data(), check.scratch);
         Vector left(J.all.size()), E = other.E_theta.all;
         keep_unknowns(grid, E.data());
         apply_field_operator(check, 0.5 * dt, E, left);

@@ -73,7 +73,7 @@ struct AnyPlasma {
             deposit_moments(s, grid, field.B, 0, moments);
             rho += moments.rho;
         }
-        smooth(grid, on_nodes, felt_charge(grid), smoothing, rho, scratch);
+        smooth(grid, on_nodes, felt_charge(grid), smoothing, rho.data(), scratch);
         gauss_residual(grid, field.E, rho, G);
         return G;
     }

@@ -182,9 +182,9 @@ TEST_CASE(
             Field scratch;
             const SmoothingSettings smoothing{passes, true};
             deposit_mass_matrix({s}, grid, VectorField(grid), {}, 0, mass);
-            smooth(grid, felt(grid), smoothing, mass.J_hat, scratch);
+            smooth(grid, felt(grid), smoothing, mass.J_hat.all.data(), scratch);
             deposit_moments(s, grid, VectorField(grid), 0, moments);
-            smooth(grid, on_nodes, felt_charge(grid), smoothing, moments.J_y, scratch);
+            smooth(grid, on_nodes, felt_charge(grid), smoothing, moments.J_y.data(), scratch);
             const long beside = grid.index(1, 5);
             for (const double* J_y : {mass.J_hat.y(), moments.J_y.data()}) {
                 const double part = J_y[beside] / J;

@@ -61,8 +61,12 @@ class OutputFile {
         if (buffer_.size() > 1 << 16) flush();
     }
     /// Writes the shortest text that reads back as the same number.
-    void number(double value) { print(value); }
-    void number(long value) { print(value); }
+    template <class Number>
+    void number(Number value) {
+        char digits[32];
+        const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
+        text({digits, std::size_t(end - digits)});
+    }
 
     /// Writes bytes as they are, without a copy.
     void bytes(const void* from, std::size_t count) {
@@ -83,12 +87,6 @@ class OutputFile {
     }
 
    private:
-    template <class Number>
-    void print(Number value) {
-        char digits[32];
-        const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
-        text({digits, std::size_t(end - digits)});
-    }
     void write(const void* from, std::size_t count) {
         if (count > 0 && std::fwrite(from, 1, count, file_) != count) fail("cannot be written");
     }

@@ -22,6 +22,13 @@
 
 namespace common {
 
+/// Name of the n-th file of a kind: fields_000123.dat for step 123.
+inline std::string numbered(const std::string& kind, long step, const std::string& ending) {
+    char digits[32];
+    std::snprintf(digits, sizeof digits, "_%06ld.", step);
+    return kind + digits + ending;
+}
+
 /// A time at which a run is written down: fields_000400.dat of step 400, and what goes with it.
 struct Snapshot {
     std::string folder;
@@ -32,7 +39,9 @@ struct Snapshot {
     std::string note = {};  // the end of the line of the time
 
     /// Where a kind of file of this time is, e.g. ("fields", "dat").
-    std::string path(const std::string& kind, const std::string& ending) const;
+    std::string path(const std::string& kind, const std::string& ending) const {
+        return folder + "/" + numbered(kind, step, ending);
+    }
 };
 
 /// About how many particles a file holds at most; so of so many it holds every n-th.
@@ -123,12 +132,12 @@ inline void write_base64(OutputFile& file, std::span<const std::byte> bytes) {
 template <class Number>
 void write_data_array(OutputFile& file, const std::string& name, int components,
                       const std::vector<Number>& numbers) {
-    constexpr const char* type = std::is_same_v<Number, double> ? "Float64" : "Int64";
     const std::uint64_t size = numbers.size() * sizeof(Number);
     std::vector<std::byte> bytes(sizeof size + size);
     std::memcpy(bytes.data(), &size, sizeof size);
     if (size > 0) std::memcpy(bytes.data() + sizeof size, numbers.data(), size);
-    file.text("<DataArray type=\"" + std::string(type) + "\" Name=\"" + xml_text(name) +
+    const std::string type = std::is_same_v<Number, double> ? "Float64" : "Int64";
+    file.text("<DataArray type=\"" + type + "\" Name=\"" + xml_text(name) +
               "\" NumberOfComponents=\"" + std::to_string(components) + "\" format=\"binary\">\n");
     write_base64(file, bytes);
     file.text("\n</DataArray>\n");
@@ -142,12 +151,8 @@ inline std::string label(const std::string& name, const std::string& unit) {
 /// x0 y0 z0 x1 y1 z1 ..., the order of vectors in VTK files.
 inline std::vector<double> interleave(std::span<const double> x, std::span<const double> y,
                                       std::span<const double> z) {
-    std::vector<double> mixed(3 * x.size());
-    for (std::size_t i = 0; i < x.size(); ++i) {
-        mixed[3 * i] = x[i];
-        mixed[3 * i + 1] = y[i];
-        mixed[3 * i + 2] = z[i];
-    }
+    std::vector<double> mixed;
+    for (std::size_t i = 0; i < x.size(); ++i) mixed.insert(mixed.end(), {x[i], y[i], z[i]});
     return mixed;
 }
 
@@ -170,10 +175,9 @@ inline void write_point_data(OutputFile& file, const std::string& path, long cou
 
 /// The first lines of a VTK file of this type.
 inline void begin_vtk_file(OutputFile& file, const std::string& type) {
-    const bool little = std::endian::native == std::endian::little;
+    const std::string first = std::endian::native == std::endian::little ? "Little" : "Big";
     file.text("<?xml version=\"1.0\"?>\n<VTKFile type=\"" + type +
-              "\" version=\"1.0\" byte_order=\"" + (little ? "LittleEndian" : "BigEndian") +
-              "\" header_type=\"UInt64\">\n");
+              "\" version=\"1.0\" byte_order=\"" + first + "Endian\" header_type=\"UInt64\">\n");
 }
 
 /// The time of a VTK file, under the name that ParaView knows.
@@ -186,17 +190,6 @@ inline void write_time(OutputFile& file, double time) {
 }
 
 }  // namespace writers_detail
-
-/// Name of the n-th file of a kind: fields_000123.dat for step 123.
-inline std::string numbered(const std::string& kind, long step, const std::string& ending) {
-    char digits[32];
-    std::snprintf(digits, sizeof digits, "_%06ld.", step);
-    return kind + digits + ending;
-}
-
-inline std::string Snapshot::path(const std::string& kind, const std::string& ending) const {
-    return folder + "/" + numbered(kind, step, ending);
-}
 
 namespace writers_detail {
 

@@ -108,7 +108,8 @@ void sum_contributions(const Problem& problem, const What& contribution, State& 
 // What the particles have brought with them follows them to their places in the order of the rows.
 inline void carry_with_particles(PicCells& cells) {
     common::carry_to_place(cells.donor, cells.sort.numbers.target, cells.sort.labels);
-    if (!cells.swirl.empty()) common::carry_to_place(cells.swirl, cells.sort.numbers);
+    if (!cells.swirl.empty())
+        common::carry_to_place(cells.swirl, cells.sort.numbers.target, cells.sort.numbers.column);
 }
 
 // Particles in rows of cells, with the donor cells where they have some.

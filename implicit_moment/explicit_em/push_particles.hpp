@@ -233,7 +233,7 @@ inline void move_particles(const InterleavedField& field, const Grid& grid, doub
         common::fold_ghosts(grid, electric.place[a], felt(grid).parity[a],
                             J.all.data() + a * grid.size());
     }
-    smooth(grid, felt(grid), smoothing, J, scratch.smoothed);
+    smooth(grid, felt(grid), smoothing, J.all.data(), scratch.smoothed);
 }
 
 }  // namespace implicit_moment

@@ -145,7 +145,7 @@ class Recorder {
             for (std::size_t a = 0; a < 3; ++a) momentum[a] += m.momentum[a];
             rho += m.rho;
         }
-        smooth(grid, on_nodes, felt_charge(grid), parameters_.field.smoothing, rho, scratch);
+        smooth(grid, on_nodes, felt_charge(grid), parameters_.field.smoothing, rho.data(), scratch);
         gauss_residual(grid, field.E, rho, gauss);
 
         common::Row row;

@@ -168,7 +168,7 @@ inline State initial_state(const Case& parameters) {
         deposit_moments(species, grid, state.field.B, 0, moments);
         rho += moments.rho;
     }
-    smooth(grid, on_nodes, felt_charge(grid), parameters.field.smoothing, rho, moments.rho);
+    smooth(grid, on_nodes, felt_charge(grid), parameters.field.smoothing, rho.data(), moments.rho);
     add_electrostatic_field(grid, rho, state.field);
     state.field.E_theta = state.field.E;
     return state;

@@ -24,7 +24,7 @@ inline State leapfrog_state(const Case& parameters) {
     Field rho = Field::Zero(grid.size()), pass;
     for (const Moments& m : find_moments(grid, 0, settings, species, Images::conductor, scratch))
         rho += m.rho;
-    smooth(grid, on_nodes, felt_charge(grid), parameters.field.smoothing, rho, pass);
+    smooth(grid, on_nodes, felt_charge(grid), parameters.field.smoothing, rho.data(), pass);
     add_electrostatic_field(grid, rho, state.field);
 
     interleave_field(grid, parameters.field.smoothing, state.field, scratch);
