@@ -90,4 +90,5 @@ void carry_to_place(std::vector<Number>& quantity, const std::vector<int>& targe
     });
     quantity.swap(column);
 }
+
 }  // namespace common

@@ -10,7 +10,7 @@
 //
 // The basis of K_k is orthonormalized by classical Gram-Schmidt, done twice, which is as stable as
 // the modified form and runs at the speed of matrix-vector products. Sums over rows are taken in pieces
-// that the length of a vector fixes, so that the result does not depend on the number of threads.
+// that the vector alone fixes, so that the result does not depend on the number of threads.
 #pragma once
 
 #include <Eigen/Dense>
@@ -108,10 +108,9 @@ inline std::array<double, 2> orthogonalize(GmresWorkspace& work, Eigen::Index k)
         parts.for_each([&](long part, Eigen::Index first, Eigen::Index rows) {
             const auto V = work.basis.block(first, 0, rows, k);
             auto w = work.w.segment(first, rows);
-            auto sum = work.partial.col(part);
             if (h.size() > 0) w.noalias() -= V * h.head(k);
-            if (sums) sum.head(k).noalias() = V.transpose() * w;
-            sum[k] = w.squaredNorm();
+            if (sums) work.partial.col(part).head(k).noalias() = V.transpose() * w;
+            work.partial(k, part) = w.squaredNorm();
         });
         return work.partial.rowwise().sum();
     };
@@ -267,12 +266,12 @@ KrylovResult gmres(const Operator& apply, const Preconditioner& precondition,
         if (result.converged) break;
 
         // Give up where another space would bring nothing.
-        result.reason = !finite ? "the operator or the preconditioner is not finite"
-                        : growth == Growth::dependent ? "the operator is singular"
-                        : !(size_r < (1.0 - 1e-9) * size_before)
-                            ? "no progress in a whole Krylov space"
-                            : "";
-        if (!result.reason.empty()) return result;
+        const char* reason = !finite ? "the operator or the preconditioner is not finite"
+                             : growth == Growth::dependent ? "the operator is singular"
+                             : size_r < (1.0 - 1e-9) * size_before
+                                 ? nullptr
+                                 : "no progress in a whole Krylov space";
+        if (reason != nullptr) return {result.iterations, result.residual, false, reason};
     }
     if (!result.converged) result.reason = "the limit of iterations is reached";
     return result;

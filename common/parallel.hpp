@@ -45,7 +45,8 @@ void for_each_row_colored(long colors, long rows, const Work& work,
     std::exception_ptr thrown;
     std::vector<std::atomic_flag> taken(std::size_t(std::max(rows, 0L)));
     const auto take = [&](long row) {
-        if (!taken[std::size_t(row)].test_and_set(std::memory_order_relaxed))
+        std::atomic_flag& flag = taken[std::size_t(row)];
+        if (!flag.test(std::memory_order_relaxed) && !flag.test_and_set(std::memory_order_relaxed))
             do_piece(thrown, [&] { work(row); });
     };
 #pragma omp parallel if (numbers >= parallel_threshold)

@@ -46,7 +46,7 @@ struct FieldSettings {
 };
 
 /// The room in which the field equations are solved: nothing of it is state, or is read before it is
-/// written in the same step.
+/// written in the same step, but for the zeros of places that no loop writes.
 struct FieldSolver {
     Grid grid;
     FieldSettings settings;
