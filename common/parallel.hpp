@@ -17,9 +17,10 @@
 
 namespace common {
 
-/// Does a piece of a parallel loop, and keeps what it throws: no exception may leave the region.
+/// Does a piece of a parallel loop and keeps what it throws, since no exception may leave the region. Never
+/// inlined: two copies of a loop may fuse other products with sums, and round otherwise.
 template <class Work>
-void do_piece(std::exception_ptr& thrown, const Work& work) try {
+[[gnu::noinline, gnu::noclone]] void do_piece(std::exception_ptr& thrown, const Work& work) try {
     work();
 } catch (...) {
 #pragma omp critical
@@ -55,8 +56,8 @@ void for_each_row_colored(long colors, long rows, const Work& work,
         const long me = omp_get_thread_num(), threads = omp_get_num_threads();
         const auto first = [&](long thread) { return count * thread / threads; };
         for (long k = first(me); k < first(me + 1); ++k) take(color + colors * k);
-        for (long other = me + 1; other < me + threads; ++other)
-            for (long k = first(other % threads + 1); k-- > first(other % threads);)
+        for (long thread = me + 1; thread < me + threads; ++thread)
+            for (long k = first(thread % threads + 1); k-- > first(thread % threads);)
                 take(color + colors * k);
 #pragma omp barrier
     }

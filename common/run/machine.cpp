@@ -18,8 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// How often a waiting thread of libgomp looks for work before it sleeps: some microseconds.
-constexpr const char* short_spin = "2000";
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // The number that a file begins with; "max", a negative one and no file are no limit.
@@ -61,9 +59,9 @@ void share_cores(char** argv) {
     std::error_code error;
     const fs::path program = fs::read_symlink("/proc/self/exe", error);
     if (error) return;
-    setenv("GOMP_SPINCOUNT", short_spin, 1);
-    setenv("KMP_BLOCKTIME", "0", 1);  // the same for clang's library, in milliseconds
-    execv(program.c_str(), argv);     // returns where it fails; then it goes on as it is
+    setenv("GOMP_SPINCOUNT", "2000", 1);  // looks for work before libgomp sleeps: some microseconds
+    setenv("KMP_BLOCKTIME", "0", 1);      // the same for clang's library, in milliseconds
+    execv(program.c_str(), argv);         // returns where it fails; then it goes on as it is
 }
 
 int free_cores() {
