@@ -54,11 +54,16 @@ inline void add_external_work(const Problem& problem, double dt, const Nodes& g,
         }
     };
     common::for_each_row(nz + 1, add_row, grid.size());
+    // The budget is rounded once per step; row by row, its errors of rounding added up.
+    Budget of_step;
     for (const Budget& sum : of_row) {
-        budget.momentum_x += sum.momentum_x;
-        budget.momentum_z += sum.momentum_z;
-        budget.energy += sum.energy;
+        of_step.momentum_x += sum.momentum_x;
+        of_step.momentum_z += sum.momentum_z;
+        of_step.energy += sum.energy;
     }
+    budget.momentum_x += of_step.momentum_x;
+    budget.momentum_z += of_step.momentum_z;
+    budget.energy += of_step.energy;
 }
 
 /// The work of pressure and viscosity on the cells, and what the particles need of the nodes.
