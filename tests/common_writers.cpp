@@ -376,6 +376,32 @@ TEST_CASE("a case that exists to show a failure does not fall short by it") {
     CHECK(numbers.fell_short());
 }
 
+TEST_CASE("a failure of another size than the case shows is a failure") {
+    common::Summary numbers;
+    numbers.expectation = {
+        "off from 2 to 4, far from 2 to 4, odd from 2 to 4 m, lost, low from -.4 to 1e-1",
+        "so it is"};
+    numbers.result("off", 3, "m", 1, 0.1, "exact");
+    numbers.result("far", 4.5, "m", 1, 0.1, "exact");
+    numbers.result("odd", 3, "m", 1, 0.1, "exact");
+    numbers.result("lost", std::nan(""), "m", 1, 0.1, "exact");
+    numbers.result_at_least("low", -0.3, "m", 1, "bound");
+    const std::vector<std::string> said = numbers.shortfalls();
+    const auto says = [&](const std::string& text) {
+        return std::ranges::any_of(said, [&](const auto& one) { return one.starts_with(text); });
+    };
+    for (const char* words :
+         {"as expected, off = 3 and not 1 +- 0.1: so it is",
+          "as expected, low = -0.3 and not >= 1: so it is",
+          "FAIL far = 4.5, and 1 +- 0.1 is expected", "FAIL odd = 3", "FAIL lost = nan",
+          "expect.fails names 'far from 2 to 4', and it fails with another value",
+          "expect.fails names 'odd from 2 to 4 m', and this run has no such result"}) {
+        CAPTURE(words);
+        CHECK(says(words));
+    }
+    CHECK(numbers.fell_short());
+}
+
 TEST_CASE("a number that is not finite is never hidden") {
     const Folder folder;
     common::Summary numbers;

@@ -20,6 +20,7 @@
 #include "common/run/checkpoint.hpp"
 #include "common/run/machine.hpp"
 #include "common/run/parameters.hpp"
+#include "common/run/sentence.hpp"
 
 namespace common {
 
@@ -111,9 +112,9 @@ void look_for_earlier_run(const ProgramInfo& info, const ParameterTable& table,
     std::sort(checkpoints.rbegin(), checkpoints.rend());
     const bool other = there && !ours,
                stopped = text.empty() || text.find("continue with: ") != std::string::npos;
-    if (other && stopped && !checkpoints.empty() && !forced)
-        throw InputError(command.out_dir + ": holds a stopped run of another input: --restart " +
-                         checkpoints.front().string() + " goes on with it, --force replaces it");
+    if (other && stopped && !checkpoints.empty())
+        refuse(!forced, command.out_dir, ": holds a stopped run of another input: --restart ",
+               checkpoints.front().string(), " goes on with it, --force replaces it");
     if (other && is_first_rank() && !command.dry_run)
         std::fprintf(stderr, "%s: replaces the run of another input in %s\n", info.program.c_str(),
                      command.out_dir.c_str());
@@ -226,9 +227,8 @@ int whole_number(const std::string& option, const std::string& text, long low, l
     char* end = nullptr;
     errno = 0;
     const long number = std::strtol(text.c_str(), &end, 10);
-    if (text.empty() || *end != '\0' || errno != 0 || number < low || number > high)
-        throw InputError(option + " takes a whole number from " + std::to_string(low) + " to " +
-                         std::to_string(high) + ", not '" + text + "'");
+    refuse(text.empty() || *end != '\0' || errno != 0 || number < low || number > high, option,
+           " takes a whole number from ", low, " to ", high, ", not '", text, "'");
     return int(number);
 }
 
@@ -302,11 +302,9 @@ CommandLine read_command_line(int argc, char** argv, const ProgramInfo& info,
         if (joined) value = argument.substr(equals + 1), argument.resize(equals);
         const auto value_of = [&]() -> std::string {
             if (joined) return value;
-            if (k + 1 >= argc || std::strncmp(argv[k + 1], "--", 2) == 0) {
-                const bool number = argument == "--threads" || argument == "--refine";
-                throw InputError(argument + " needs a value: " + argument +
-                                 (number ? " 2" : " PATH"));
-            }
+            const bool number = argument == "--threads" || argument == "--refine";
+            refuse(k + 1 >= argc || std::strncmp(argv[k + 1], "--", 2) == 0, argument,
+                   " needs a value: ", argument, number ? " 2" : " PATH");
             return argv[++k];
         };
         const auto sets = [&](const char* name, bool& flag) {
@@ -318,14 +316,14 @@ CommandLine read_command_line(int argc, char** argv, const ProgramInfo& info,
                                 : argument == "--restart" ? command.restart_path
                                                           : to_verify;
             path = value_of();
-            if (path.empty()) throw InputError(argument + " needs a path that is not empty");
+            refuse(path.empty(), argument, " needs a path that is not empty");
         } else if (argument == "--threads") {
             command.threads = whole_number(argument, value_of(), 1, 1024);
         } else if (argument == "--refine") {
             command.refine = whole_number(argument, value_of(), 1, 10);
         } else if (is_option && joined) {
-            throw InputError("'" + argument +
-                             "' takes no value, or is unknown; --help lists all options");
+            refuse(true, "'", argument,
+                   "' takes no value, or is unknown; --help lists all options");
         } else if (sets("--dry-run", command.dry_run) || sets("--quiet", command.quiet) ||
                    sets("--force", command.force) || sets("--resume", command.resume) ||
                    sets("--strict", command.strict) || sets("--version", version) ||
@@ -345,32 +343,27 @@ CommandLine read_command_line(int argc, char** argv, const ProgramInfo& info,
         } else if (command.case_path.empty()) {
             command.case_path = is_there(argument) ? argument : find_in_project(argument);
         } else {
-            throw InputError("two case files, '" + command.case_path + "' and '" + argument +
-                             "': give one (overrides are written section.key=value)");
+            refuse(true, "two case files, '", command.case_path, "' and '", argument,
+                   "': give one (overrides are written section.key=value)");
         }
     }
-    if (help || version) {
-        if (help) print_help(info, table);
-        if (!help) std::printf("%s %s\n", info.program.c_str(), info.version.c_str());
-        std::exit(0);
-    }
+    if (help) print_help(info, table);
+    if (version && !help) std::printf("%s %s\n", info.program.c_str(), info.version.c_str());
+    if (help || version) std::exit(0);
     if (!to_verify.empty()) verify_checkpoint(info, to_verify);
 
     const bool restarting = !command.restart_path.empty();
     if (restarting) {
-        if (command.refine > 0)
-            throw InputError("--refine begins runs of its own: leave out --restart, or it");
-        if (!command.case_path.empty())
-            throw InputError("--restart takes its case from the checkpoint: leave out '" +
-                             command.case_path + "'");
-        if (command.resume)
-            throw InputError("--resume finds the checkpoint itself: leave out --restart, or it");
+        refuse(command.refine > 0, "--refine begins runs of its own: leave out --restart, or it");
+        refuse(!command.case_path.empty(),
+               "--restart takes its case from the checkpoint: leave out '", command.case_path, "'");
+        refuse(command.resume, "--resume finds the checkpoint itself: leave out --restart, or it");
         CheckpointReader checkpoint(info, command.restart_path);
         checkpoint("step", command.restart_step);
         for (const Setting& setting : read_case(checkpoint.effective_case(), command.restart_path))
             table.set(setting);
-        if (table.effective_case() != checkpoint.effective_case())
-            throw InputError(command.restart_path + ": the case in it is not one that was run");
+        refuse(table.effective_case() != checkpoint.effective_case(), command.restart_path,
+               ": the case in it is not one that was run");
         command.case_name = checkpoint.case_name();
         if (command.out_dir.empty())
             command.out_dir = fs::path(command.restart_path).parent_path().string();
@@ -396,18 +389,16 @@ CommandLine read_command_line(int argc, char** argv, const ProgramInfo& info,
     std::set<std::string> seen;
     for (const std::string& one : overrides) {
         const std::string name = one.substr(0, one.find('='));
-        if (!seen.insert(name).second) {
-            throw InputError("command line: '" + one + "': '" + name +
-                             "' is given twice; keep one of them");
-        }
+        refuse(!seen.insert(name).second, "command line: '", one, "': '", name,
+               "' is given twice; keep one of them");
         const std::string before = table.effective_case();
         apply_override(one, table);
-        if (restarting && !table.is_changeable(name) && table.effective_case() != before)
-            throw InputError("command line: '" + one + "': '" + name +
-                             "' cannot change on a restart; start a new run with it");
+        refuse(restarting && !table.is_changeable(name) && table.effective_case() != before,
+               "command line: '", one, "': '", name,
+               "' cannot change on a restart; start a new run with it");
     }
-    if (command.refine > 0 && rank_count() > 1)
-        throw InputError("--refine begins programs of its own: leave out mpirun, or it");
+    refuse(command.refine > 0 && rank_count() > 1,
+           "--refine begins programs of its own: leave out mpirun, or it");
     if (command.refine > 0) refine(table, command, overrides);
     table.derive();
     if (command.resume) look_for_earlier_run(info, table, command);

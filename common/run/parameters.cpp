@@ -115,8 +115,8 @@ void ParameterTable::add(Entry entry) {
 void ParameterTable::describe_expectation() {
     group("what the case exists to show");
     text("expect.fails", expectation.fails,
-         "results that may fall short, with commas between them, or \"status 3\": it is said to be "
-         "expected");
+         "results that may fall short, each \"name\" or \"name from low to high\", with commas "
+         "between them, or \"status 3\": it is said to be expected");
     text("expect.because", expectation.because, "why, in a sentence");
 }
 
@@ -236,10 +236,8 @@ void ParameterTable::accept_empty_section(const Setting& setting) {
 }
 
 void ParameterTable::set(const Setting& setting) {
-    if (std::holds_alternative<EmptySection>(setting.value) && find(setting.name) == nullptr) {
-        accept_empty_section(setting);
-        return;
-    }
+    if (std::holds_alternative<EmptySection>(setting.value) && find(setting.name) == nullptr)
+        return accept_empty_section(setting);
     make_item(setting);
     Entry* entry = find(setting.name);
     if (entry == nullptr) {
@@ -264,10 +262,9 @@ void ParameterTable::set(const Setting& setting) {
         if (!right_type) refuse(" takes " + type + ", not " + kind_of(setting));
         if (!is_number) return;
         if (!std::isfinite(value)) refuse(" must be finite, not " + number_text(value));
-        if (!contains(entry->allowed, value)) {
+        if (!contains(entry->allowed, value))
             refuse(" = " + number_text(value) + " is out of range; allowed: " +
                    text_of(entry->allowed) + (entry->unit.empty() ? "" : " " + entry->unit));
-        }
     };
     const auto number_of = [&](const char* type) {
         require(is_number, type);
@@ -306,10 +303,9 @@ void ParameterTable::set(const Setting& setting) {
             refuse(" holds a control character; write plain text");
         if (!choices.empty() && std::ranges::find(choices, *text) == choices.end())
             refuse(" = " + quoted(*text) + " is not one of " + list);
-        if (text->size() > longest_text) {
+        if (text->size() > longest_text)
             refuse(" has " + std::to_string(text->size()) + " letters; write at most " +
                    std::to_string(longest_text));
-        }
         if (formula == nullptr)
             **std::get_if<std::string*>(&entry->target) = *text;
         else if (text->empty())

@@ -5,6 +5,7 @@
 // defaults.
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <optional>
 #include <stdexcept>
@@ -58,10 +59,15 @@ struct Setting {
 
 /// What a case exists to show, from its section [expect].
 struct Expectation {
-    std::string fails;    // names of results, or "status 3", with commas between them
-    std::string because;  // a sentence
-    std::vector<std::string> list() const;
-    bool names(const std::string& result) const;
+    // Results, each with "from low to high" behind it or without, or "status 3", with commas between them;
+    // and a sentence.
+    std::string fails, because;
+    struct Failure {
+        std::string text, name;
+        double low = -HUGE_VAL, high = HUGE_VAL;
+    };
+    std::vector<Failure> list() const;
+    bool names(const std::string& result, double value = 0) const;
 };
 
 class ParameterTable {

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "common/run/machine.hpp"
 #include "common/run/output_file.hpp"
@@ -55,20 +56,25 @@ std::string text_of(const Measured& number) {
 
 }  // namespace
 
-bool Expectation::names(const std::string& result) const {
-    const std::vector<std::string> all = list();
-    return std::ranges::find(all, result) != all.end();
+std::vector<Expectation::Failure> Expectation::list() const {
+    std::vector<Failure> all;
+    std::istringstream parts(fails);
+    for (std::string part; std::getline(parts, part, ',');) {
+        part.erase(0, part.find_first_not_of(' ')), part.erase(part.find_last_not_of(' ') + 1);
+        Failure one{part, ""};
+        std::istringstream words(part);
+        std::string from, to;
+        words >> one.name >> from >> one.low >> to >> one.high;
+        if (!words || !words.eof() || from != "from" || to != "to") one = {part, part};
+        if (!part.empty()) all.push_back(one);
+    }
+    return all;
 }
 
-std::vector<std::string> Expectation::list() const {
-    std::vector<std::string> names;
-    for (std::size_t begin = 0, end = 0; begin < fails.size(); begin = end + 1) {
-        end = std::min(fails.find(',', begin), fails.size());
-        std::string name = fails.substr(begin, end - begin);
-        name.erase(0, name.find_first_not_of(' ')), name.erase(name.find_last_not_of(' ') + 1);
-        if (!name.empty()) names.push_back(name);
-    }
-    return names;
+bool Expectation::names(const std::string& result, double value) const {
+    return std::ranges::any_of(list(), [&](const Failure& one) {
+        return one.name == result && value >= one.low && value <= one.high;
+    });
 }
 
 bool Summary::Entry::is_measured() const {
@@ -96,7 +102,7 @@ std::string Summary::Entry::wanted() const {
 const char* Summary::verdict(const Entry& entry) const {
     if (!entry.is_measured()) return "NOT MEASURED";
     if (entry.meets()) return "PASS";
-    return expectation.names(entry.name) ? "EXPECTED FAILURE" : "FAIL";
+    return expectation.names(entry.name, entry.value.value) ? "EXPECTED FAILURE" : "FAIL";
 }
 
 bool Summary::has_verdict() const { return std::ranges::any_of(results_, &Entry::is_judged); }
@@ -174,12 +180,14 @@ std::vector<std::string> Summary::shortfalls() const {
             sentences.push_back("as expected, " + entry.name + value + " and not " +
                                 entry.wanted() + ": " + expectation.because);
     }
-    for (const std::string& name : expectation.list()) {
+    for (const auto& [text, name, low, high] : expectation.list()) {
         const auto found = std::ranges::find(results_, name, &Entry::name);
-        if (name != "status 3" && (found == results_.end() || found->meets()))
-            sentences.push_back("expect.fails names '" + name +
-                                (found == results_.end() ? "', and this run has no such result"
-                                                         : "', and it passed"));
+        const bool missing = found == results_.end(), passed = !missing && found->meets();
+        if (name != "status 3" && (missing || passed || *verdict(*found) == 'F'))
+            sentences.push_back("expect.fails names '" + text +
+                                (missing  ? "', and this run has no such result"
+                                 : passed ? "', and it passed"
+                                          : "', and it fails with another value"));
     }
     return sentences;
 }
