@@ -601,7 +601,7 @@ install: all
 	install -d '$(DESTDIR)$(PREFIX)/bin'
 	install $(programs:%=$(BUILD)/%) '$(DESTDIR)$(PREFIX)/bin'
 	$(if $(hdf5),install -D -m 644 $(openpmd) '$(DESTDIR)$(PREFIX)/lib/particle-in-cell/openpmd.so')
-	for d in $(wildcard */cases */data); do install -d '$(share)'/$$d && install -m 644 $$d/*.* '$(share)'/$$d || exit; done
+	for f in $(wildcard */cases/*.toml) $(filter-out %.sh,$(wildcard */data/*)); do install -D -m 644 $$f '$(share)'/$$f || exit; done
 	install -m 644 LICENSE README.md CITATION.cff '$(share)'
 
 dist:

@@ -306,7 +306,8 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
                  allowed = 1.2 * std::exp(std::max(0.0, growth) * times.back());
     if (!(start > 0))
         summary.not_measured("largest_over_start",
-                             "cannot be measured, because the record begins with zero");
+                             "cannot be measured, because the charges of the perturbations "
+                             "cancel and the record begins with zero: perturb one species alone");
     else if (largest > allowed && largest < allowed + 3 * part)
         summary.not_measured(
             "largest_over_start",
