@@ -184,14 +184,12 @@ inline void warn_of_speeds(const Case& parameters, const Scales& scales, const s
                    ? 0.45 * std::pow(double(n), -1.5)
                    : (0.04 - 0.05 * std::min(parameters.cfl, 0.3)) * std::pow(3 / double(n), 3.5);
     };
-    const long in_x = parameters.per_cell_x,
-               in_z = parameters.plane() ? parameters.per_cell_z : in_x,
-               worst = rate_of(in_z) > rate_of(in_x) ? in_z : in_x;
-    const double apart = parameters.plane()
-                             ? std::min(parameters.grid.x.spacing(), parameters.grid.z.spacing())
-                             : parameters.grid.x.spacing(),
-                 swells = (parameters.plane() ? 1 : 0.05) * rate_of(worst) * blended * damped *
-                          scales.sound_speed / apart * parameters.end;
+    const long in_x = parameters.per_cell_x, in_z = parameters.per_cell_z;
+    const double of_x = rate_of(in_x) / parameters.grid.x.spacing(),
+                 of_z = parameters.plane() ? rate_of(in_z) / parameters.grid.z.spacing() : 0,
+                 swells = (parameters.plane() ? 1 : 0.05) * std::max(of_x, of_z) * blended *
+                          damped * scales.sound_speed * parameters.end;
+    const long worst = of_z > of_x ? in_z : in_x;
     warn(out,
          program == "flip" && !parameters.implicit() && parameters.loading == "lattice" &&
              !shocks && swells > 5,
