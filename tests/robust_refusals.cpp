@@ -1146,7 +1146,7 @@ plasmas cold wave_E_y -> theory.wave = "cold" needs charges: it needs a [species
 plasmas cold species.electrons.charge=-1 species.electrons.drift_y=0.1
     species 'electrons' is warm or drifts: choose "longitudinal", "transverse" or "magnetized"
 plasmas cold species.electrons.charge=-1 grid.cells_x=64 grid.cells_z=64
-    theory.wave = "cold" needs theory.near: without temperatures this plasma has waves at omega =
+    theory.wave = "cold" needs theory.near: without temperatures and drifts this plasma has waves at
 plasmas cold species.electrons.charge=-1 theory.component=B_x theory.near=1
     no wave of the seeded mode has a part in theory.component = "B_x": choose another one
 plasmas longitudinal species.electrons.charge=-1 uniform.mode_z=1 uniform.B_x=0.1
@@ -1160,7 +1160,9 @@ plasmas magnetized species.electrons.charge=-1 uniform.B_x=0.1 species.electrons
 plasmas magnetized species.electrons.charge=-1 uniform.B_z=1e-9 species.electrons.temperature_x=0.01 species.electrons.temperature_y=0.01
     theory.wave = "magnetized" sums over the harmonics of the gyration, and k times its radius is
 plasmas magnetized species.electrons.charge=-1 uniform.B_z=0.1 grid.cells_x=64 grid.cells_z=64
-    theory.wave = "magnetized" needs theory.near: without temperatures this plasma has waves at
+    theory.wave = "magnetized" needs theory.near: without temperatures and drifts this plasma has
+implicit_moment magnetized species.electrons.charge=-1 uniform.B_x=0.1 particles.relativistic=true species.electrons.drift_x=0.3
+    species 'electrons' drifts with u = 0.3 c: with uniform.B theory.wave = "magnetized" takes drifts below
 plasmas transverse species.electrons.charge=-1 uniform.mode_z=1 species.electrons.temperature_z=0.1
 plasmas longitudinal species.electrons.charge=-1 uniform.mode_z=1 species.electrons.temperature_z=0.1
     species 'electrons' has another temperature along x than along z, and a wave at an angle to both
@@ -1170,7 +1172,7 @@ plasmas transverse species.electrons.charge=-1 species.electrons.drift_x=0.05
     is stated for a plasma without current, and along the mode it has
 plasmas longitudinal species.electrons.charge=-1 species.electrons.drift_y=0.1
 plasmas transverse species.electrons.charge=-1 species.electrons.drift_y=0.1
-    species 'electrons' drifts across the mode with 0.1 c, and no other one like it the other way
+    species 'electrons' drifts across the mode with u = 0.1 c, and no other one like it the other way
 plasmas longitudinal species.electrons.charge=-1 species.electrons.drift_y=0.01 uniform.B_x=0.1
     species 'electrons' drifts across uniform.B: theory.wave = "longitudinal" wants drifts along it
 plasmas transverse species.electrons.charge=-1 species.electrons.temperature_y=0.01 uniform.B_x=0.1

@@ -29,16 +29,22 @@ std::vector<Complex> all_roots(const Dispersion& D, const std::vector<Complex>& 
     return roots;
 }
 
+/// How far a root is from a frequency that is asked for. That a wave grows does not make it another one: it
+/// covers all others.
+inline double apart(Complex omega, double frequency) {
+    return std::hypot(omega.real() - frequency, std::min(omega.imag(), 0.0));
+}
+
 /// Of the roots that are reached from all guesses the one that is nearest to a frequency; of two as near
 /// the one with the larger Im omega.
 template <class Dispersion>
 common::DispersionRoot nearest_root(const Dispersion& D, const std::vector<Complex>& guesses,
-                                    Complex frequency) {
+                                    double frequency) {
     common::DispersionRoot best;
-    const double same = 1e-9 * std::abs(frequency);
+    const double same = 1e-9 * std::fabs(frequency);
     for (const Complex guess : guesses) {
         const common::DispersionRoot root = common::root_near(D, guess);
-        const double lead = std::abs(best.omega - frequency) - std::abs(root.omega - frequency);
+        const double lead = apart(best.omega, frequency) - apart(root.omega, frequency);
         const bool nearer = lead > same, faster = root.omega.imag() > best.omega.imag();
         if (root.found && (nearer || (lead >= -same && faster))) best = root;
     }

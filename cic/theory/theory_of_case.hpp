@@ -261,7 +261,7 @@ void find_magnetized_wave(const Case& parameters, const WaveVector& k,
         grows = grows || is_growing(root);
     }
     const auto merit = [&](std::complex<double> root) {
-        if (parameters.near != 0) return -std::abs(root - parameters.near);
+        if (parameters.near != 0) return -apart(root, parameters.near);
         const double forward = root.real() > 0 ? 1 : 0.999;  // of two that mirror each other
         if (grows) return root.imag() * forward;
         theory.omega = root;

@@ -189,6 +189,16 @@ inline std::string likely_cause(const Case& parameters, const Theory& theory, do
            "time.end, or particles_per_cell where the start is quiet";
 }
 
+/// The fastest growing wave of the mode of theory, whatever theory.near has asked for.
+inline std::complex<double> fastest_of_mode(const Case& parameters, const Theory& theory) try {
+    Case any = parameters;
+    any.near = 0;
+    return parameters.near == 0 ? theory.omega
+                                : theory_of_wave(any, theory.mode_x, theory.mode_z).omega;
+} catch (const common::InputError&) {  // none was found
+    return theory.omega;
+}
+
 /// A wave or an instability against the dispersion relation: frequency, growth or damping by
 /// measure_mode(); of what grows the onset as well.
 ///   the record begins when the transient of the start is over: a growth time, or a period
@@ -215,7 +225,13 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
     const double noise = noise_field(parameters, theory, false);
     const double seed = theory.seed * (theory.mirrored ? 2 : 1);
     const double field = seed > 0 ? seed : start;
-    summary.hint(likely_cause(parameters, theory, field, noise));
+    const std::complex<double> fastest = fastest_of_mode(parameters, theory);
+    const bool covered = !grows && fastest.imag() * times.back() > 1;
+    summary.hint(covered ? sentence("another wave of this mode grows, with ", fastest.imag(),
+                                    " at omega = ", fastest.real(),
+                                    ", and covers this one: lower time.end to ", 1 / fastest.imag(),
+                                    ", or take theory.near = ", std::fabs(fastest.real()))
+                         : likely_cause(parameters, theory, field, noise));
     const std::string bouncing = likely_bouncing(parameters, theory, field);
     if (!bouncing.empty()) search.faded = bouncing;
     search.begin = grows ? 1 / growth : 2 * pi / frequency;
@@ -303,7 +319,7 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
     // Where nothing should grow, nothing may; but a quiet start does not stay quieter than noise.
     const double largest = std::ranges::max(amplitude) / start,
                  part = noise_field(parameters, theory) / start,
-                 allowed = 1.2 * std::exp(std::max(0.0, growth) * times.back());
+                 allowed = 1.2 * std::exp(std::max(0.0, fastest.imag()) * times.back());
     if (!(start > 0))
         summary.not_measured("largest_over_start",
                              "cannot be measured, because the charges of the perturbations "
@@ -316,7 +332,7 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
                 part, " of the wave: raise amplitude or particles_per_cell"));
     else
         summary.result_at_most("largest_over_start", largest, "", allowed,
-                               growth > 0 ? "the growth of theory" : "no growing root");
+                               fastest.imag() > 0 ? "the growth of theory" : "no growing root");
     if (!swings) {
         summary.not_measured("omega_over_theory",
                              "the mode of theory is too damped to swing: take a smaller "

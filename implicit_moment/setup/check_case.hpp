@@ -265,8 +265,9 @@ inline void validate(Case& w) {
     w.is_uniform() ? detail::validate_uniform(w) : detail::validate_sheet(w);
 }
 
-/// Warnings of sections that the set-up does not read, and of runs in which particles fly straight on, because
-/// time or box are too short for any field to act on them. Where light is seeded, it may be light that is followed.
+/// Warnings of sections that the set-up does not read, of seeds that walls do not let be, and of runs in which
+/// particles fly straight on, because time or box are too short for any field to act on them. Where light is
+/// seeded, it may be light that is followed.
 inline std::vector<std::string> idleness_warnings(const Case& w, const Scales& scales) {
     std::vector<std::string> warnings;
     const auto unread = [&](const char* section, bool changed) {
@@ -276,6 +277,17 @@ inline std::vector<std::string> idleness_warnings(const Case& w, const Scales& s
     unread("harris", w.harris != w.initial_harris());
     unread("current_sheet", w.current_sheet != CurrentSheetCase{});
     unread("uniform", w.uniform != UniformCase{});
+    const auto through = [](const common::Axis& axis, long mode, double wave, double phase) {
+        return !axis.periodic && mode != 0 && wave != 0 &&
+               std::fabs(std::cos(phase * pi / 180)) > 0.01;
+    };
+    for (const SpeciesCase& s : w.is_uniform() ? w.uniform.species : std::vector<SpeciesCase>{}) {
+        const bool along_x = through(w.grid.x, w.uniform.mode_x, s.wave_x, s.phase_x);
+        warn(warnings, along_x || through(w.grid.z, w.uniform.mode_z, s.wave_z, s.phase_z),
+             "the seed of species '", s.name,
+             "' moves particles through walls and is no wave between them: set its phase_",
+             along_x ? "x" : "z", " = 90");
+    }
     if (w.end == 0) return warnings;
     double omega_p = 0, Omega_c = 0, inverse_debye = 0;
     for (const SpeciesScales& s : scales.species) {

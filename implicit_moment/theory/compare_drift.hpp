@@ -38,7 +38,8 @@ inline void compare_drift(const Case& w, const common::History& history, common:
     const Eigen::Vector3d B(w.uniform.B_x, w.uniform.B_y, w.uniform.B_z),
         E_0(w.uniform.E_x, w.uniform.E_y, w.uniform.E_z);
     const double fast = B.norm() > 0 ? E_0.cross(B).norm() / B.squaredNorm() : 0;
-    summary.hint(w.is_relativistic() && fast > 0.1
+    // At rest a charge swings to twice the drift, and its mass with it.
+    summary.hint(w.is_relativistic() && fast > 0.02
                      ? "the drift c E/B would be " + format(fast) +
                            " c, and theory has no Lorentz factor: lower uniform.E, or set "
                            "particles.relativistic = false"

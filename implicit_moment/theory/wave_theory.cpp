@@ -230,7 +230,7 @@ void refuse_coupled(const Case& w, const std::string& wave, bool transverse) {
         }
         const bool mixed = transverse && std::fabs(product) > 4e-4 * c * c * all;
         refuse(mixed || sum.norm() > 0.02 * c * all, "species '", s.name,
-               "' drifts across the mode with ", across(s).norm(),
+               "' drifts across the mode with u = ", across(s).norm(),
                " c, and no other one like it the other way: its waves are neither longitudinal nor "
                "transverse; take that below 0.02 c, or give it a partner",
                (mixed ? ", and drifts along y or in the plane, not both" : ""));
@@ -276,8 +276,18 @@ void refuse_without_near(const Case& w, const std::string& wave) {
             found += (found.empty() ? "" : ", ") + format(one.omega.real());
         last = one.omega.real();
     }
-    refuse(true, wave, " needs theory.near: without temperatures this plasma has waves at omega = ",
+    refuse(true, wave,
+           " needs theory.near: without temperatures and drifts this plasma has waves at omega = ",
            (found.empty() ? "none in theory.component" : found));
+}
+
+// The Lorentz factor is not in what turns about B.
+void refuse_fast(const Case& w, const SpeciesCase& s, const std::string& wave) {
+    const double drift = std::hypot(s.drift_x, s.drift_y, s.drift_z);
+    refuse(w.is_relativistic() && drift > 0.1 * c, "species '", s.name, "' drifts with u = ", drift,
+           " c: with uniform.B ", wave,
+           " takes drifts below 0.1 c where particles are relativistic; for E along B and k choose "
+           "\"longitudinal\"");
 }
 
 // The wave of the cold plasma that is nearest to theory.near.
@@ -297,8 +307,14 @@ void refuse_cold(const Case& w, const std::string& name) {
     refuse_without_near(w, wave);
 }
 
+// How far a root is from theory.near. That a wave grows does not make it another one: it covers all others.
+double apart(common::Complex omega, double near) {
+    return std::hypot(omega.real() - near, std::min(omega.imag(), 0.0));
+}
+
 // Of the roots that Newton's method reaches from places around a frequency the one that is nearest to it. Some
 // of these are where Re D changes its sign: a root beside a harmonic of the gyration is reached from nowhere else.
+// What grows and what decays comes in pairs where nothing is warm. omega = 0, which some D have, is no wave.
 template <class Dispersion>
 common::DispersionRoot nearest_root(const Dispersion& D, double frequency) {
     std::vector<common::Complex> guesses;
@@ -313,12 +329,16 @@ common::DispersionRoot nearest_root(const Dispersion& D, double frequency) {
         last = here;
     }
     common::DispersionRoot best;
-    for (const common::Complex& guess : guesses) {
+    const auto look = [&](common::Complex guess) {
         const auto root = common::root_near(D, guess);
         const bool nearer =
-            !best.found || std::abs(root.omega - frequency) < std::abs(best.omega - frequency);
-        if (root.found && root.omega.real() >= 0 && nearer) best = root;
-    }
+            !best.found || apart(root.omega, frequency) < apart(best.omega, frequency);
+        if (root.found && root.omega.real() >= 0 && std::abs(root.omega) > 1e-6 * frequency &&
+            nearer)
+            best = root;
+    };
+    for (const common::Complex& guess : guesses) look(guess);
+    if (best.found && best.omega.imag() < 0) look(std::conj(best.omega));
     return best;
 }
 
@@ -361,9 +381,8 @@ Theory expect_transverse(const Case& w) {
         const auto found = w.near != 0 ? nearest_root(D, w.near)
                                        : common::fastest_growing_root(
                                              D, common::fan_of_guesses(answer.plasma, k, c));
-        const bool better = w.near != 0
-                                ? std::abs(found.omega - w.near) < std::abs(root.omega - w.near)
-                                : found.omega.imag() > root.omega.imag() + 1e-12;
+        const bool better = w.near != 0 ? apart(found.omega, w.near) < apart(root.omega, w.near)
+                                        : found.omega.imag() > root.omega.imag() + 1e-12;
         if (found.found && (!root.found || better)) root = found, sense_of_root = sense;
     }
     return kinetic(w, root, [&](auto omega) {
@@ -401,6 +420,7 @@ void refuse_magnetized(const Case& w, const std::string& name) {
                " wants one across it and one along it");
         refuse(drift.cross(b).norm() > 1e-9 * drift.norm(), "species '", s.name,
                "' drifts across uniform.B: ", wave, " wants drifts along it");
+        refuse_fast(w, s, wave);
     }
     for (const MagnetizedSpecies& s : magnetized_species(w)) {
         const double gyrations = std::sqrt(gyration_squared(s, magnetized_wave(w, wave_vector(w))));
@@ -428,11 +448,7 @@ void refuse_transverse(const Case& w, const std::string& name) {
         refuse((u.B_x != 0 || u.B_z != 0) && s.temperature_y != T_plane, "species '", s.name,
                "' has two temperatures across uniform.B, and turns into another one: make them "
                "equal");
-        const double drift = std::hypot(s.drift_x, s.drift_y, s.drift_z);
-        refuse(w.is_relativistic() && (u.B_x != 0 || u.B_z != 0) && drift > 0.1 * c, "species '",
-               s.name, "' drifts with u = ", drift,
-               " c: with uniform.B theory.wave = \"transverse\" takes drifts below 0.1 c where "
-               "particles are relativistic");
+        if (u.B_x != 0 || u.B_z != 0) refuse_fast(w, s, "theory.wave = \"transverse\"");
     }
     refuse_current(w, "theory.wave = \"" + name + "\"");
     refuse_coupled(w, "theory.wave = \"" + name + "\"", true);
