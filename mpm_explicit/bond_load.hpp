@@ -1,6 +1,7 @@
 // What a bond between two grains bears, over all the nodes that they share.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "mpm_explicit/grains.hpp"
@@ -12,33 +13,38 @@ namespace mpm {
 struct BondLoad {
     int bond = 0;
     double jx = 0, jy = 0;  // impulse on b
-    double ax = 0, ay = 0;  // area of the interface, along its normal from a to b
+    double ax = 0, ay = 0;  // area of the interface, along its normal from a to b, as a has it
+    double bx = 0, by = 0;  // and as b has it
     void operator+=(const BondLoad& other) {
-        jx += other.jx, jy += other.jy, ax += other.ax, ay += other.ay;
+        jx += other.jx, jy += other.jy;
+        ax += other.ax, ay += other.ay, bx += other.bx, by += other.by;
     }
 };
 
 /// A node's share of the load: gradients of volume sum up to the surface, wherever on the mesh it
 /// is.
-///   A n = 1/2 sum_i (g_a - g_b)
-/// exact:  for particles on a lattice and an interface along it
+///   A n = sum_i g_a or -sum_i g_b, the smaller
+/// exact:  for particles on a lattice and an interface along it, of which the whole side of one grain is a part;
+///         where both reach beyond the other, up to a cell too large
 /// note:   The usual sum over nodes of sqrt(2 min(V_a, V_b) (V_a + V_b)) / h is up to 30 % short
 ///         where the interface is not on a line of nodes.
 inline BondLoad bond_load(const ContactNode& node, const ContactPair& pair) {
     const ContactBody &a = node.bodies[pair.a], &b = node.bodies[pair.b];
-    return {pair.bond, pair.impulse_x(), pair.impulse_y(), 0.5 * (a.gx - b.gx),
-            0.5 * (a.gy - b.gy)};
+    return {pair.bond, pair.impulse_x(), pair.impulse_y(), a.gx, a.gy, -b.gx, -b.gy};
 }
 
 /// Mean stress on the interface in this step, and whether the bond breaks.
 ///   (shear/S)^2 + (max(0, tension)/N)^2 >= 1
 inline void update_bond(const BondLoad& load, double dt, Bond& bond) {
-    bond.area = std::hypot(load.ax, load.ay);
+    // At the ends of the shorter side the longer one has a part of its area that bears nothing.
+    const double of_a = std::hypot(load.ax, load.ay), of_b = std::hypot(load.bx, load.by);
+    bond.area = std::min(of_a, of_b);
     if (bond.broken || !(bond.area > 0)) {
         bond.normal_stress = bond.shear_stress = 0;
         return;
     }
-    const double nx = load.ax / bond.area, ny = load.ay / bond.area, per = 1 / (dt * bond.area);
+    const double nx = (of_a < of_b ? load.ax : load.bx) / bond.area,
+                 ny = (of_a < of_b ? load.ay : load.by) / bond.area, per = 1 / (dt * bond.area);
     // b is pulled back towards a where the impulse on it is against the normal.
     bond.normal_stress = -(load.jx * nx + load.jy * ny) * per;
     bond.shear_stress = (load.jy * nx - load.jx * ny) * per;

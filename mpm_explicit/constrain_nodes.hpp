@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -126,26 +127,27 @@ inline void constrain_nodes(std::vector<DofConstraint>& constraints, GrainNodes&
     }
 }
 
-/// nodes.mass, what every grain has at its nodes; bonded grains, all that they have together. Where one
-/// of these has none, its node shows the velocity of the other.
+/// nodes.mass, what every grain has at its nodes; bonded grains, what they would have together if the other were
+/// as dense: what is light compares parts of cells, and not materials. Where one of these has none, its node shows
+/// the velocity of the other.
 inline void find_masses(const std::vector<Bond>& bonds, GrainNodes& nodes) {
     common::for_each_block(nodes.size(), [&](int, long begin, long end) {
         for (long i = begin; i < end; ++i) nodes.mass[i] = nodes.sums[i].m;
     });
-    std::vector<std::pair<int, int>> joined;
+    std::map<std::pair<int, int>, double> joined;  // how many times as dense the second one is
     for (const Bond& bond : bonds)
-        if (!bond.broken) joined.emplace_back(bond.a, bond.b), joined.emplace_back(bond.b, bond.a);
+        if (!bond.broken)
+            joined[{bond.a, bond.b}] = bond.density_ratio,
+                            joined[{bond.b, bond.a}] = 1 / bond.density_ratio;
     if (joined.empty()) return;
-    std::sort(joined.begin(), joined.end());
     for (long n = 0; n < nodes.shared_count(); ++n)
         for (long a = nodes.shared_begin()[n]; a < nodes.shared_begin()[n + 1]; ++a)
             for (long b = nodes.shared_begin()[n]; b < nodes.shared_begin()[n + 1]; ++b) {
                 const Member &one = nodes.members()[a], &two = nodes.members()[b];
-                if (one.is_wall() || two.is_wall() ||
-                    !std::binary_search(joined.begin(), joined.end(),
-                                        std::pair(one.grain, two.grain)))
-                    continue;
-                const double m = nodes.sums[two.dof].m;
+                if (one.is_wall() || two.is_wall()) continue;
+                const auto bond = joined.find({one.grain, two.grain});
+                if (bond == joined.end()) continue;
+                const double m = nodes.sums[two.dof].m / bond->second;
                 if (!(nodes.mass[one.dof] > 0) && m > 0) nodes.constrain(one.dof, two.dof, -1);
                 nodes.mass[one.dof] += m;
             }

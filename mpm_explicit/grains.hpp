@@ -41,6 +41,7 @@ struct RigidMotion {
 /// leaves the ellipse (shear/S)^2 + (tension/N)^2 = 1; then never again.
 struct Bond {
     int a = 0, b = 0;               // grains
+    double density_ratio = 1;       // of the materials of b and a
     double tension = 0, shear = 0;  // strengths N, S [stress]
     bool broken = false;
     double normal_stress = 0, shear_stress = 0;  // of the last step, tension positive

@@ -379,6 +379,11 @@ TEST_CASE("polygons stand on a slope up to that of their base" * doctest::descri
     }
 }
 
+TEST_CASE("what is bonded to plates bears its strain and parts at the strength of the bond" *
+          doctest::description("physics")) {
+    facts::check_pulled_block("mpm_explicit");
+}
+
 TEST_CASE("a cylinder rolls on a rough incline and slips on a smooth one" *
           doctest::description("physics")) {
     // 2.4 and 2.3 % too slow; it swings on its contact by .06 of its speed and does not part from

@@ -233,6 +233,11 @@ TEST_CASE("a hexagon stands on a slope up to that of its base" * doctest::descri
     facts::check_polygon_stands("mpm_implicit", 6, 0.5, 0.65, "time.alpha=4");
 }
 
+TEST_CASE("what is bonded to plates bears its strain and parts at the strength of the bond" *
+          doctest::description("physics")) {
+    facts::check_pulled_block("mpm_implicit");
+}
+
 TEST_CASE("a cylinder rolls on a rough incline and slips on a smoother one" *
           doctest::description("physics")) {
     for (const char* rough : {"contact.friction=0.3", "contact.friction=0.6"})

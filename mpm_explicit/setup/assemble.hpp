@@ -121,6 +121,10 @@ inline std::vector<Bond> bonds_of(const Problem& w, const std::vector<PlannedGra
                 Bond bond;
                 bond.a = static_cast<int>(a), bond.b = static_cast<int>(b);
                 bond.tension = from.tension, bond.shear = from.shear;
+                const auto density = [&](const PlannedGrain& plan) {
+                    return materials[std::size_t(plan.material)].density;
+                };
+                bond.density_ratio = density(plans[b]) / density(plans[a]);
                 bonds.push_back(bond);
             }
         }

@@ -1,7 +1,10 @@
 // Whole runs of a program of the material point method, without files for figures.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <string>
 #include <utility>
 
@@ -91,6 +94,43 @@ inline void check_breaking_times(const std::string& program) {
         CHECK(error == doctest::Approx(0.5 * (time[1] - time[0])));
         CHECK(breaks["verdict"] == (error <= within ? "PASS" : "NOT MEASURED"));
         CHECK(std::fabs(breaks["value"].get<double>() - exact) <= error + 0.01 * exact);
+    }
+}
+
+/// A block between two wider rigid plates to which it is bonded, pulled slowly: the plates bear E times its strain
+/// on its own width, whatever they would weigh and wherever they are on the mesh, and a bond breaks at its strength.
+inline void check_pulled_block(const std::string& program) {
+    std::filesystem::create_directories(folder_of_test());
+    const std::string path = folder_of_test() + "/pulled.toml";
+    std::ofstream(path)
+        << "grid = {cells_x = 16, cells_y = 40, length_x = 0.4}\n"
+           "load = {rise = 0.5, damping = 20}\ntime.end = 1.35\n"
+           "[material]\nglass = {E = 1000, nu = 0, density = 1}\n"
+           "steel = {law = 'rigid'}\n"
+           "[grain]\nfloor = {shape = 'box', material = 'steel', x = 0.2, y = 0.15, "
+           "width = 0.3, height = 0.1}\n"
+           "block = {shape = 'box', material = 'glass', x = 0.2, y = 0.45, "
+           "width = 0.2, height = 0.5}\n"
+           "lid = {shape = 'box', material = 'steel', x = 0.2, y = 0.75, "
+           "width = 0.3, height = 0.1, velocity_y = 0.001}\n"
+           "[bond]\nall = {tension = 2}\n";
+    for (const std::string more : {"", "material.steel.density=1", "grid.low_y=0.0125",
+                                   "grid.low_x=0.006 grain.block.width=0.1"}) {
+        CAPTURE(more);
+        const Run r = run_mpm(program, "pulled", path + " " + more);
+        const double width = more.ends_with("=0.1") ? 0.1 : 0.2;
+        const auto &time = r.column("time"), &force = r.column("force_y_lid"),
+                   &travel = r.column("travel_y_lid");
+        // Plates between lines of nodes hold the half cells beside them, together a twentieth of the block.
+        const double within = more == "grid.low_y=0.0125" ? 0.07 : 0.02;
+        double largest = 0;
+        for (std::size_t n = 0; n < time.size(); ++n) {
+            largest = std::max(largest, -force[n] / width);
+            if (time[n] < 0.5 || time[n] > 1) continue;
+            CHECK(std::fabs(-force[n] / (1000 * width * travel[n] / 0.5) - 1) <= within);
+        }
+        CHECK(std::fabs(largest / 2 - 1) <= 0.01);
+        CHECK(r.column("broken_bonds").back() >= 1);
     }
 }
 
