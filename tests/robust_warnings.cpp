@@ -277,6 +277,9 @@ grains rolling_cylinder.toml grid.cells_x=220 grid.cells_y=44
     warning: a disk has a radius of 11 cells, below 12
 grains rolling_cylinder.toml grid.cells_x=240 grid.cells_y=48 -> no warning
 grains rolling_cylinder.toml contact.friction=0 -> no warning
+mpm_implicit billet.toml theory.compare=none time.alpha=1 time.end=4 method.theta=0.5 grain.top.velocity_y=-0.01
+    warning: method.theta = 0.5 damps nothing that rings, and in what is pressed noise may grow by a
+mpm_implicit billet.toml theory.compare=none time.alpha=1 time.end=4 method.theta=0.6 method.shape=gimp grain.top.velocity_y=-0.01 -> no warning
 mpm_implicit rebound.toml -> no warning
 mpm_implicit rebound.toml time.alpha=15 time.end=6 -> no warning
 mpm_implicit rebound.toml time.alpha=25 time.end=10 output.particles_interval=0
@@ -324,6 +327,9 @@ plasmas electrons species.electrons.temperature_x=0.01 grid.length_x=0.001 grid.
 plasmas electrons time.dt=1e-4 time.end=0.01
     warning: omega_p time.end = 0.01 and Omega_c time.end = 0 are below 0.1
 plasmas electrons time.dt=1e-4 time.end=0.01 grid.length_x=0.1 wave_E_y -> no warning
+plasmas electrons grid.boundary_z=wall uniform.mode_x=0 uniform.mode_z=1 species.electrons.wave_z=1e-4
+    warning: the seed of species 'electrons' moves particles through walls and is no wave between
+plasmas electrons grid.boundary_z=wall uniform.mode_x=0 uniform.mode_z=1 species.electrons.wave_z=1e-4 species.electrons.phase_z=90 -> no warning
 plasmas electrons species.electrons.charge=0
     warning: no species has a charge, and no field acts on any: give one a charge
 explicit_em grid.cells_x=256 grid.cells_z=128

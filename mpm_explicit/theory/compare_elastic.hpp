@@ -48,7 +48,9 @@ inline void compare_energy(const FinishedRun& run, double tolerance, common::Sum
 /// theta scheme, .88, .994 at 2.2, 3.6 with leapfrog.
 inline void report_contact(const FinishedRun& run, double b, common::Summary& summary) {
     const double cells = b / run.parameters.problem.mesh().h;
-    const std::string few = "below 4 cells the approach may be wrong, by a tenth at 2";
+    const std::string few =
+        "below 4 cells the approach may be wrong, by a tenth at 2, and more off lines "
+        "of nodes";
     summary.result_info("contact_half_width", cells, "h",
                         "line contact at its largest load; " + few);
     if (cells < 4)
@@ -126,7 +128,10 @@ inline void compare_rebound(const FinishedRun& run, common::Summary& summary) {
                             0.5 * closing * std::exp(-damping * touch));
     const double cells = a.outline.radius / run.parameters.problem.mesh().h;
     std::string hint = "keep contact.separation = 0.02";
-    if (cells < 8) hint += ", refine the mesh, on which the radius is " + format(cells) + " cells";
+    const double half = impact.peak_half_width / run.parameters.problem.mesh().h;
+    if (cells < 8 || half < 1.5)
+        hint += ", refine the mesh, on which the radius is " + format(cells) +
+                " cells and half of the contact " + format(half) + ", until that is 1.5";
     if (!run.planned.scheme.implicit && run.parameters.alpha > 0.25)
         hint += ", take time.alpha = 0.25";
     if (run.parameters.shape == "linear")

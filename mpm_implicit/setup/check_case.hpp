@@ -27,9 +27,40 @@ inline void validate(const Case& parameters, const ThetaScheme& scheme) {
            "\"newton_krylov\"");
 }
 
-/// By how much noise of grains under their weight grows in a run of theta = 1/2 without anything that damps, as
-/// an exponent: 0.37 (g H/c_p^2) (c_p/h) alpha^(-3/4) t, as measured from alpha = 1 to 8 with columns of 24
-/// and 48 cells, with H the height of all grains. The pressed mesh is not quite symmetric, and flutters.
+/// The part of their height, or width, by which rigid grains press all others together until time.end, where
+/// they move at the speeds that they are told.
+inline double pressed_strain(const Case& parameters, const std::vector<Material>& materials) {
+    const Problem& problem = parameters.problem;
+    double strain = 0;
+    for (const bool along_x : {true, false}) {
+        double low = HUGE_VAL, high = -HUGE_VAL, first = HUGE_VAL, last = -HUGE_VAL, of_first = 0,
+               of_last = 0;
+        for (const PlannedGrain& plan : plan_grains(problem, materials)) {
+            const Bounds box = bounds(plan.outline);
+            const double from = along_x ? box.x_low : box.y_low,
+                         to = along_x ? box.x_high : box.y_high,
+                         v = along_x ? plan.from.velocity_x : plan.from.velocity_y,
+                         end = plan.from.stop > 0 ? std::min(plan.from.stop, parameters.end)
+                                                  : parameters.end,
+                         travel = v * (end > problem.rise ? end - 0.5 * problem.rise
+                                                          : 0.5 * end * end / problem.rise);
+            if (materials[plan.material].law != Law::rigid)
+                low = std::min(low, from), high = std::max(high, to);
+            else if (plan.from.control != (along_x ? "force_x" : "force_y")) {
+                if (from < first) first = from, of_first = travel;
+                if (to > last) last = to, of_last = travel;
+            }
+        }
+        if (first < low && last > high)
+            strain = std::max(strain, (of_first - of_last) / (high - low));
+    }
+    return strain;
+}
+
+/// By how much noise of grains under their weight, or between plates, grows in a run of theta = 1/2 without
+/// anything that damps, as an exponent: 0.37 e (c_p/h) alpha^(-3/4) t, with e = g H/c_p^2, as measured from alpha
+/// = 1 to 8 with columns of 24 and 48 cells, with H the height of all grains. The pressed mesh is not quite
+/// symmetric, and flutters. Between plates e is twice as large in the mean over the grains, and half in time.
 inline double growth_under_weight(const Case& parameters, const Scales& scales) {
     const Problem& problem = parameters.problem;
     const std::vector<Material> materials = materials_of(problem);
@@ -43,9 +74,10 @@ inline double growth_under_weight(const Case& parameters, const Scales& scales) 
         strain = std::max(strain, 1 / std::pow(sound_speed(m), 2));
     }
     strain *= std::fabs(problem.gravity_y) * (high - low);
-    return 0.37 * strain * scales.sound_speed / problem.mesh().h *
+    return 0.37 * scales.sound_speed / problem.mesh().h *
            std::pow(std::max(1.0, parameters.alpha), -0.75) *
-           std::max(0.0, parameters.end - problem.rise);
+           (strain * std::max(0.0, parameters.end - problem.rise) +
+            pressed_strain(parameters, materials) * parameters.end);
 }
 
 /// Warnings with the number and the limit, for choices that run but may mislead.
@@ -58,13 +90,15 @@ inline std::vector<std::string> warnings_of(const Case& parameters, const ThetaS
                            " is above 0.5: grains can pass through each other's surfaces before "
                            "they are seen to touch; reduce time.alpha");
     const double growth = growth_under_weight(parameters, scales);
-    if (growth > 7 && scheme.theta < 0.505 && parameters.flip == 1 &&
+    const bool pressed = pressed_strain(parameters, materials_of(parameters.problem)) > 0;
+    if (growth > (pressed ? 5 : 7) && scheme.theta < 0.505 && parameters.flip == 1 &&
         parameters.problem.damping == 0)
         warnings.push_back(
             "method.theta = " + format(scheme.theta) +
-            " damps nothing that rings, and under weight noise may grow by a factor exp(" +
-            format(growth) + ") until time.end: set method.theta = 0.51, or material.<name>." +
-            "viscosity = " + format(0.1 * scales.dt) + ", a tenth of a step");
+            " damps nothing that rings, and in what is pressed noise may grow by a factor exp(" +
+            format(growth) + ") until time.end: set method.theta = " + (pressed ? "0.6" : "0.51") +
+            ", or material.<name>.viscosity = " + format(0.1 * scales.dt) + ", a tenth of a step" +
+            (pressed ? ", and method.shape = \"gimp\"" : ""));
     if (parameters.flip < 1)
         warnings.push_back("method.flip = " + format(parameters.flip) +
                            " is below 1: [MPM-13] is for FLIP, and the column pic takes the rest");
