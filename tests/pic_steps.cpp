@@ -736,6 +736,31 @@ TEST_CASE("the time step follows flow and sound and not where the run ends") {
     r.problem.limits.dt = 0.07;
     CHECK(largest_step(r.problem, r.state, r.cells) == 0.07);
 
+    // In a row the height of the cells does not count.
+    Case flat = flip_case(10, 1, "periodic", "periodic");
+    flat.regions = {fluid("", 1, 1, 0.3, 0)};
+    flat.q_linear = flat.q_quadratic = 0;
+    Run row(flat);
+    find_pressure(row.problem, row.state, row.cells);
+    CHECK(std::fabs(largest_step(row.problem, row.state, row.cells) * (0.3 + c) * 10 - 0.3) <=
+          1e-14);
+
+    // A light cell between an empty one and one of high pressure, which gives it sqrt(P/rho) at least.
+    Case edge = flip_case(8, 1, "slip", "slip");
+    edge.materials = {{"gas", 1.4, 0}};
+    edge.regions = {fluid("gas", 0, 0), fluid("gas", 1e-6, 1e-6), fluid("gas", 1, 100)};
+    for (const std::size_t k : {1, 2}) {
+        edge.regions[k].shape = "box";
+        edge.regions[k].half_z = 1;
+        edge.regions[k].half_x = k == 1 ? 0.0625 : 0.25;
+        edge.regions[k].center_x = k == 1 ? 0.4375 : 0.75;
+    }
+    edge.q_linear = edge.q_quadratic = 0;
+    Run light(edge);
+    find_pressure(light.problem, light.state, light.cells);
+    const double pushed = std::sqrt(0.5 * (100 + 1e-6) / 1e-6) * 8;
+    CHECK(std::fabs(largest_step(light.problem, light.state, light.cells) * pushed - 0.3) <= 1e-9);
+
     // Dust at rest has no speed to go by.
     Case still = flip_case(10, 5, "periodic", "periodic");
     still.materials = {{"dust", 1, 0}};
