@@ -23,7 +23,7 @@ struct BondLoad {
 
 /// A node's share of the load: gradients of volume sum up to the surface, wherever on the mesh it
 /// is.
-///   A n = sum_i g_a or -sum_i g_b, the smaller
+///   A n = sum_i g_a or -sum_i g_b, the smaller along their sum
 /// exact:  for particles on a lattice and an interface along it, of which the whole side of one grain is a part;
 ///         where both reach beyond the other, up to a cell too large
 /// note:   The usual sum over nodes of sqrt(2 min(V_a, V_b) (V_a + V_b)) / h is up to 30 % short
@@ -37,14 +37,15 @@ inline BondLoad bond_load(const ContactNode& node, const ContactPair& pair) {
 ///   (shear/S)^2 + (max(0, tension)/N)^2 >= 1
 inline void update_bond(const BondLoad& load, double dt, Bond& bond) {
     // At the ends of the shorter side the longer one has a part of its area that bears nothing.
-    const double of_a = std::hypot(load.ax, load.ay), of_b = std::hypot(load.bx, load.by);
-    bond.area = std::min(of_a, of_b);
+    const double sum_x = load.ax + load.bx, sum_y = load.ay + load.by,
+                 sum = std::hypot(sum_x, sum_y), nx = sum > 0 ? sum_x / sum : 0,
+                 ny = sum > 0 ? sum_y / sum : 0;
+    bond.area = std::min(load.ax * nx + load.ay * ny, load.bx * nx + load.by * ny);
     if (bond.broken || !(bond.area > 0)) {
         bond.normal_stress = bond.shear_stress = 0;
         return;
     }
-    const double nx = (of_a < of_b ? load.ax : load.bx) / bond.area,
-                 ny = (of_a < of_b ? load.ay : load.by) / bond.area, per = 1 / (dt * bond.area);
+    const double per = 1 / (dt * bond.area);
     // b is pulled back towards a where the impulse on it is against the normal.
     bond.normal_stress = -(load.jx * nx + load.jy * ny) * per;
     bond.shear_stress = (load.jy * nx - load.jx * ny) * per;

@@ -358,10 +358,14 @@ TEST_CASE("theory.near takes the nearest of all roots") {
         }
         for (double near = -3; near < 3; near += 0.07) {
             double least = 10;
-            for (const Complex root : roots) least = std::min(least, std::abs(root - near));
+            // How fast a wave grows does not count.
+            const auto apart = [&](Complex root) {
+                return std::hypot(root.real() - near, std::min(root.imag(), 0.0));
+            };
+            for (const Complex root : roots) least = std::min(least, apart(root));
             parameters.near = near;
             CAPTURE(near);
-            CHECK(std::fabs(std::abs(theory_of_wave(parameters).omega - near) - least) <= 1e-9);
+            CHECK(std::fabs(apart(theory_of_wave(parameters).omega) - least) <= 1e-9);
         }
     }
 }

@@ -328,7 +328,8 @@ plasmas electrons time.dt=1e-4 time.end=0.01
     warning: omega_p time.end = 0.01 and Omega_c time.end = 0 are below 0.1
 plasmas electrons time.dt=1e-4 time.end=0.01 grid.length_x=0.1 wave_E_y -> no warning
 plasmas electrons grid.boundary_z=wall uniform.mode_x=0 uniform.mode_z=1 species.electrons.wave_z=1e-4
-    warning: the seed of species 'electrons' moves particles through walls and is no wave between
+    warning: the seed of species 'electrons' moves particles through the walls across z and is no
+    wave between them: set its phase_z = 90
 plasmas electrons grid.boundary_z=wall uniform.mode_x=0 uniform.mode_z=1 species.electrons.wave_z=1e-4 species.electrons.phase_z=90 -> no warning
 plasmas electrons species.electrons.charge=0
     warning: no species has a charge, and no field acts on any: give one a charge

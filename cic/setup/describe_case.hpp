@@ -157,7 +157,8 @@ inline common::ParameterTable describe(Case& parameters) {
                 "followed wavelengths in length_x; with mode_z = 0 also 0: the fastest along x");
     table.whole("theory.mode_z", parameters.mode_z, "", between(-2048, 2048), "in length_z");
     table.real("theory.near", parameters.near, "omega_p", anything(),
-               "of the roots that a search finds, the nearest to this; 0: the fastest growing");
+               "of the roots that a search finds, the one of the nearest frequency; 0: the fastest "
+               "growing");
     table.real("theory.growth_tolerance", parameters.growth_tolerance, "", between(0, 1),
                "of rates, sheath potentials and thermal noise, relative");
     table.real("theory.frequency_tolerance", parameters.frequency_tolerance, "", between(0, 1),

@@ -189,7 +189,7 @@ inline std::string likely_cause(const Case& parameters, const Theory& theory, do
            "time.end, or particles_per_cell where the start is quiet";
 }
 
-/// The fastest growing wave of the mode of theory, whatever theory.near has asked for.
+/// The wave of the mode of theory that is followed without theory.near: where one grows, the fastest.
 inline std::complex<double> fastest_of_mode(const Case& parameters, const Theory& theory) try {
     Case any = parameters;
     any.near = 0;
@@ -225,13 +225,13 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
     const double noise = noise_field(parameters, theory, false);
     const double seed = theory.seed * (theory.mirrored ? 2 : 1);
     const double field = seed > 0 ? seed : start;
-    const std::complex<double> fastest = fastest_of_mode(parameters, theory);
+    const std::complex<double> fastest =
+        grows || !seeded ? theory.omega : fastest_of_mode(parameters, theory);
     const bool covered = !grows && fastest.imag() * times.back() > 1;
-    summary.hint(covered ? sentence("another wave of this mode grows, with ", fastest.imag(),
-                                    " at omega = ", fastest.real(),
-                                    ", and covers this one: lower time.end to ", 1 / fastest.imag(),
-                                    ", or take theory.near = ", std::fabs(fastest.real()))
-                         : likely_cause(parameters, theory, field, noise));
+    const std::string covers = sentence(
+        "another wave of this mode grows, with ", fastest.imag(), " at omega = ", fastest.real(),
+        ", and covers this one: take theory.near = ", fastest.real());
+    summary.hint(covered ? covers : likely_cause(parameters, theory, field, noise));
     const std::string bouncing = likely_bouncing(parameters, theory, field);
     if (!bouncing.empty()) search.faded = bouncing;
     search.begin = grows ? 1 / growth : 2 * pi / frequency;
@@ -319,11 +319,13 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
     // Where nothing should grow, nothing may; but a quiet start does not stay quieter than noise.
     const double largest = std::ranges::max(amplitude) / start,
                  part = noise_field(parameters, theory) / start,
-                 allowed = 1.2 * std::exp(std::max(0.0, fastest.imag()) * times.back());
+                 allowed = 1.2 * std::exp(std::max(0.0, growth) * times.back());
     if (!(start > 0))
         summary.not_measured("largest_over_start",
                              "cannot be measured, because the charges of the perturbations "
                              "cancel and the record begins with zero: perturb one species alone");
+    else if (covered)
+        summary.not_measured("largest_over_start", covers);
     else if (largest > allowed && largest < allowed + 3 * part)
         summary.not_measured(
             "largest_over_start",
@@ -332,7 +334,7 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
                 part, " of the wave: raise amplitude or particles_per_cell"));
     else
         summary.result_at_most("largest_over_start", largest, "", allowed,
-                               fastest.imag() > 0 ? "the growth of theory" : "no growing root");
+                               growth > 0 ? "the growth of theory" : "no growing root");
     if (!swings) {
         summary.not_measured("omega_over_theory",
                              "the mode of theory is too damped to swing: take a smaller "

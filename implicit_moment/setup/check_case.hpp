@@ -277,16 +277,20 @@ inline std::vector<std::string> idleness_warnings(const Case& w, const Scales& s
     unread("harris", w.harris != w.initial_harris());
     unread("current_sheet", w.current_sheet != CurrentSheetCase{});
     unread("uniform", w.uniform != UniformCase{});
-    const auto through = [](const common::Axis& axis, long mode, double wave, double phase) {
-        return !axis.periodic && mode != 0 && wave != 0 &&
-               std::fabs(std::cos(phase * pi / 180)) > 0.01;
-    };
     for (const SpeciesCase& s : w.is_uniform() ? w.uniform.species : std::vector<SpeciesCase>{}) {
-        const bool along_x = through(w.grid.x, w.uniform.mode_x, s.wave_x, s.phase_x);
-        warn(warnings, along_x || through(w.grid.z, w.uniform.mode_z, s.wave_z, s.phase_z),
-             "the seed of species '", s.name,
-             "' moves particles through walls and is no wave between them: set its phase_",
-             along_x ? "x" : "z", " = 90");
+        const auto look = [&](const char* name, const common::Axis& axis, long mode, long other,
+                              double wave, double phase) {
+            const bool across = mode != 0 && other == 0,
+                       moves = !across || std::fabs(std::cos(phase * pi / 180)) > 0.01;
+            warn(warnings, !axis.periodic && wave != 0 && moves, "the seed of species '", s.name,
+                 "' moves particles through the walls across ", name,
+                 " and is no wave between them: ",
+                 across
+                     ? sentence("set its phase_", name, " = 90")
+                     : sentence("take a mode along ", name, " alone, or its wave_", name, " = 0"));
+        };
+        look("x", w.grid.x, w.uniform.mode_x, w.uniform.mode_z, s.wave_x, s.phase_x);
+        look("z", w.grid.z, w.uniform.mode_z, w.uniform.mode_x, s.wave_z, s.phase_z);
     }
     if (w.end == 0) return warnings;
     double omega_p = 0, Omega_c = 0, inverse_debye = 0;

@@ -132,16 +132,15 @@ inline void compare_momentum(const Case& w, const common::History& history,
                              common::Summary& summary) {
     const double change = momentum_change(w, history);
     if (std::isnan(change)) return;
-    double fastest = 0;
-    for (const SpeciesCase& s : w.uniform.species)
-        fastest = std::max(fastest, std::hypot(s.drift_x, s.drift_y, s.drift_z));
-    summary.hint(fastest > 0.5 * c
-                     ? "light that the mesh slows down takes from particles near c, which is no "
-                       "physics (numerical Cherenkov): raise field.smoothing_passes"
-                 : w.leapfrog.chosen || w.field.rotates_in_the_middle()
-                     ? "the mesh brakes the drift: resolve the Debye length"
-                     : "the mesh brakes the drift: take B in the middle of the step, field.B_level "
-                       "= \"middle\", or resolve the Debye length");
+    const std::string near_c = drifts_near_c(w) ? "; and light that the mesh slows down takes from "
+                                                  "particles near c (numerical Cherenkov): raise "
+                                                  "field.smoothing_passes"
+                                                : "";
+    summary.hint((w.leapfrog.chosen || w.field.rotates_in_the_middle()
+                      ? "the mesh brakes the drift: resolve the Debye length"
+                      : "the mesh brakes the drift: take B in the middle of the step, "
+                        "field.B_level = \"middle\", or resolve the Debye length") +
+                 near_c);
     summary.result_at_most("momentum_change", change, "", 0.05, "conservation");
 }
 

@@ -69,17 +69,18 @@ inline std::string likely_cause(const Case& w, const Theory& theory, bool grows,
                " of a cell, and the force of linear splines jumps between cells, so that the wave "
                "is not linear: lower the seed to " +
                format(0.01 / swing) + " of it, or take particles.order = 2";
-    double fastest = 0;
-    for (const SpeciesCase& s : w.uniform.species)
-        fastest = std::max(fastest, std::hypot(s.drift_x, s.drift_y, s.drift_z));
-    if (!theory.of_scheme && fastest > 0.5 * c)
-        return "particles near c feed light that the mesh slows down, which is no physics "
-               "(numerical Cherenkov): raise field.smoothing_passes, or the seed";
-    return grows ? "the seed may be below the noise, the run too short, or a step too long: raise "
-                   "the particles per cell or the seed, or time.end, or lower time.dt"
-                 : "noise, a seed so large that the wave is not linear, a step that changes it, or "
-                   "a field that this wave does not have are likely causes: raise the particles "
-                   "per cell, lower the seed or time.dt, or change theory.component";
+    const std::string near_c = drifts_near_c(w)
+                                   ? "; or raise field.smoothing_passes: particles near "
+                                     "c feed light that the mesh slows down (numerical "
+                                     "Cherenkov)"
+                                   : "";
+    return (grows
+                ? "the seed may be below the noise, the run too short, or a step too long: raise "
+                  "the particles per cell or the seed, or time.end, or lower time.dt"
+                : "noise, a seed so large that the wave is not linear, a step that changes it, or "
+                  "a field that this wave does not have are likely causes: raise the particles "
+                  "per cell, lower the seed or time.dt, or change theory.component") +
+           near_c;
 }
 
 /// The seeded mode against theory, by measure_mode(): growth rate of an instability, up to a tenth of

@@ -330,11 +330,15 @@ common::DispersionRoot nearest_root(const Dispersion& D, double frequency) {
     }
     common::DispersionRoot best;
     const auto look = [&](common::Complex guess) {
-        const auto root = common::root_near(D, guess);
-        const bool nearer =
-            !best.found || apart(root.omega, frequency) < apart(best.omega, frequency);
+        auto root = common::root_near(D, guess);
+        // Of what does not travel round-off makes waves either way.
+        if (std::fabs(root.omega.real()) <= 1e-9 * std::abs(root.omega)) root.omega.real(0);
+        const double lead =
+            best.found ? apart(best.omega, frequency) - apart(root.omega, frequency) : HUGE_VAL;
+        const bool faster = root.omega.imag() > best.omega.imag(),
+                   better = lead > 1e-9 * frequency || (lead >= -1e-9 * frequency && faster);
         if (root.found && root.omega.real() >= 0 && std::abs(root.omega) > 1e-6 * frequency &&
-            nearer)
+            better)
             best = root;
     };
     for (const common::Complex& guess : guesses) look(guess);
@@ -523,6 +527,12 @@ void refuse_wave(const Case& w) {
     refuse((wave->name == "light" || wave->name == "transverse") && only_k, "theory.wave = \"",
            wave->name, "\" has its fields across the mode, and theory.component = \"", w.component,
            "\" is along it: choose another one");
+}
+
+bool drifts_near_c(const Case& w) {
+    return std::ranges::any_of(w.uniform.species, [&](const SpeciesCase& s) {
+        return mean_velocity(w, s).norm() > 0.7 * c;
+    });
 }
 
 double exact_to(const Case& w) {

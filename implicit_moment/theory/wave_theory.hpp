@@ -39,6 +39,9 @@ const Wave* wave_of(const Case& w);
 /// errors: InputError with the cure, also where its dispersion relation has no root.
 void refuse_wave(const Case& w);
 
+/// Whether a species drifts with more than 0.7 c.
+bool drifts_near_c(const Case& w);
+
 /// How exact a wave is for which theory is the scheme: without particles to what the solver leaves, and with them
 /// to what their unevenness within a cell does, which falls as 1/particles_per_cell in a quiet start.
 /// note:   the field of linear splines jumps between cells, so that a wave is linear only while its particles move

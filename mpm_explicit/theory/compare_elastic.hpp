@@ -129,9 +129,10 @@ inline void compare_rebound(const FinishedRun& run, common::Summary& summary) {
     const double cells = a.outline.radius / run.parameters.problem.mesh().h;
     std::string hint = "keep contact.separation = 0.02";
     const double half = impact.peak_half_width / run.parameters.problem.mesh().h;
-    if (cells < 8 || half < 1.5)
-        hint += ", refine the mesh, on which the radius is " + format(cells) +
-                " cells and half of the contact " + format(half) + ", until that is 1.5";
+    if (cells < 8) hint += ", refine the mesh, on which the radius is " + format(cells) + " cells";
+    if (half < 1.5)
+        hint += ", refine the mesh, on which half of the contact is " + format(half) +
+                " cells, below 1.5";
     if (!run.planned.scheme.implicit && run.parameters.alpha > 0.25)
         hint += ", take time.alpha = 0.25";
     if (run.parameters.shape == "linear")

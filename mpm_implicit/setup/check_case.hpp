@@ -27,32 +27,47 @@ inline void validate(const Case& parameters, const ThetaScheme& scheme) {
            "\"newton_krylov\"");
 }
 
-/// The part of their height, or width, by which rigid grains press all others together until time.end, where
-/// they move at the speeds that they are told.
+/// The part of their height, or width, by which rigid grains on both sides, or one and a wall, press all others
+/// together until time.end. Swings, tables and forces are not counted.
 inline double pressed_strain(const Case& parameters, const std::vector<Material>& materials) {
     const Problem& problem = parameters.problem;
+    const Mesh mesh = problem.mesh();
+    const std::vector<PlannedGrain> plans = plan_grains(problem, materials);
+    const auto travel_in = [&](double t) {
+        return t > problem.rise ? t - 0.5 * problem.rise : 0.5 * t * t / problem.rise;
+    };
     double strain = 0;
     for (const bool along_x : {true, false}) {
-        double low = HUGE_VAL, high = -HUGE_VAL, first = HUGE_VAL, last = -HUGE_VAL, of_first = 0,
-               of_last = 0;
-        for (const PlannedGrain& plan : plan_grains(problem, materials)) {
-            const Bounds box = bounds(plan.outline);
-            const double from = along_x ? box.x_low : box.y_low,
-                         to = along_x ? box.x_high : box.y_high,
-                         v = along_x ? plan.from.velocity_x : plan.from.velocity_y,
-                         end = plan.from.stop > 0 ? std::min(plan.from.stop, parameters.end)
-                                                  : parameters.end,
-                         travel = v * (end > problem.rise ? end - 0.5 * problem.rise
-                                                          : 0.5 * end * end / problem.rise);
+        const auto from = [&](const Bounds& box) { return along_x ? box.x_low : box.y_low; };
+        const auto to = [&](const Bounds& box) { return along_x ? box.x_high : box.y_high; };
+        double low = HUGE_VAL, high = -HUGE_VAL;
+        for (const PlannedGrain& plan : plans)
             if (materials[plan.material].law != Law::rigid)
-                low = std::min(low, from), high = std::max(high, to);
-            else if (plan.from.control != (along_x ? "force_x" : "force_y")) {
-                if (from < first) first = from, of_first = travel;
-                if (to > last) last = to, of_last = travel;
-            }
+                low = std::min(low, from(bounds(plan.outline))),
+                high = std::max(high, to(bounds(plan.outline)));
+        // What is nearest on either side, and how far it goes.
+        const auto wall = [&](Side side, double at) {
+            return problem.walls[side] == "open" || (along_x && problem.periodic_x) ? HUGE_VAL : at;
+        };
+        const double at_low = wall(along_x ? x_low : y_low, along_x ? mesh.x_low : mesh.y_low);
+        double below = at_low < HUGE_VAL ? at_low : -HUGE_VAL,
+               above = wall(along_x ? x_high : y_high, along_x ? mesh.x_high() : mesh.y_high()),
+               of_below = 0, of_above = 0;
+        for (const PlannedGrain& plan : plans) {
+            const GrainCase& is = plan.from;
+            if (materials[plan.material].law != Law::rigid ||
+                is.control == (along_x ? "force_x" : "force_y"))
+                continue;
+            const bool stops = is.stop > 0 && is.stop + problem.rise <= parameters.end;
+            const double way = (along_x ? is.velocity_x : is.velocity_y) *
+                               (stops ? is.stop : travel_in(parameters.end));
+            const Bounds box = bounds(plan.outline);
+            if (to(box) <= low + 0.5 * mesh.h && to(box) >= below) below = to(box), of_below = way;
+            if (from(box) >= high - 0.5 * mesh.h && from(box) <= above)
+                above = from(box), of_above = way;
         }
-        if (first < low && last > high)
-            strain = std::max(strain, (of_first - of_last) / (high - low));
+        const double gaps = std::max(0.0, low - below) + std::max(0.0, above - high);
+        strain = std::max(strain, (of_below - of_above - gaps) / (high - low));
     }
     return strain;
 }
@@ -61,23 +76,27 @@ inline double pressed_strain(const Case& parameters, const std::vector<Material>
 /// anything that damps, as an exponent: 0.37 e (c_p/h) alpha^(-3/4) t, with e = g H/c_p^2, as measured from alpha
 /// = 1 to 8 with columns of 24 and 48 cells, with H the height of all grains. The pressed mesh is not quite
 /// symmetric, and flutters. Between plates e is twice as large in the mean over the grains, and half in time.
-inline double growth_under_weight(const Case& parameters, const Scales& scales) {
+/// out:    both parts
+struct NoiseGrowth {
+    double under_weight = 0, between_plates = 0;
+};
+inline NoiseGrowth growth_of_noise(const Case& parameters, const Scales& scales) {
     const Problem& problem = parameters.problem;
     const std::vector<Material> materials = materials_of(problem);
     double low = HUGE_VAL, high = -HUGE_VAL, strain = 0;
     for (const PlannedGrain& plan : plan_grains(problem, materials)) {
         const Material& m = materials[plan.material];
         if (m.law == Law::rigid) continue;
-        if (m.viscosity > 0) return 0;
+        if (m.viscosity > 0) return {};
         const Bounds box = bounds(plan.outline);
         low = std::min(low, box.y_low), high = std::max(high, box.y_high);
         strain = std::max(strain, 1 / std::pow(sound_speed(m), 2));
     }
     strain *= std::fabs(problem.gravity_y) * (high - low);
-    return 0.37 * scales.sound_speed / problem.mesh().h *
-           std::pow(std::max(1.0, parameters.alpha), -0.75) *
-           (strain * std::max(0.0, parameters.end - problem.rise) +
-            pressed_strain(parameters, materials) * parameters.end);
+    const double rate = 0.37 * scales.sound_speed / problem.mesh().h *
+                        std::pow(std::max(1.0, parameters.alpha), -0.75);
+    return {rate * strain * std::max(0.0, parameters.end - problem.rise),
+            rate * pressed_strain(parameters, materials) * parameters.end};
 }
 
 /// Warnings with the number and the limit, for choices that run but may mislead.
@@ -89,16 +108,18 @@ inline std::vector<std::string> warnings_of(const Case& parameters, const ThetaS
         warnings.push_back("|v| dt/h = " + format(cells) +
                            " is above 0.5: grains can pass through each other's surfaces before "
                            "they are seen to touch; reduce time.alpha");
-    const double growth = growth_under_weight(parameters, scales);
-    const bool pressed = pressed_strain(parameters, materials_of(parameters.problem)) > 0;
+    const auto [under_weight, between_plates] = growth_of_noise(parameters, scales);
+    const double growth = under_weight + between_plates;
+    const bool pressed = between_plates > under_weight;
     if (growth > (pressed ? 5 : 7) && scheme.theta < 0.505 && parameters.flip == 1 &&
         parameters.problem.damping == 0)
         warnings.push_back(
             "method.theta = " + format(scheme.theta) +
             " damps nothing that rings, and in what is pressed noise may grow by a factor exp(" +
-            format(growth) + ") until time.end: set method.theta = " + (pressed ? "0.6" : "0.51") +
-            ", or material.<name>.viscosity = " + format(0.1 * scales.dt) + ", a tenth of a step" +
-            (pressed ? ", and method.shape = \"gimp\"" : ""));
+            format(growth) + ") until time.end: set " +
+            (pressed && parameters.shape == "linear" ? "method.shape = \"gimp\", and " : "") +
+            "method.theta = " + (pressed ? "0.6" : "0.51") +
+            " or material.<name>.viscosity = " + format(0.1 * scales.dt) + ", a tenth of a step");
     if (parameters.flip < 1)
         warnings.push_back("method.flip = " + format(parameters.flip) +
                            " is below 1: [MPM-13] is for FLIP, and the column pic takes the rest");
