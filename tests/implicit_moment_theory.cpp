@@ -502,6 +502,31 @@ TEST_CASE("the root nearest to theory.near is taken and also beside a harmonic o
     }
 }
 
+TEST_CASE("near a wave that grows and its twin that decays theory takes the one that grows") {
+    // Two cold beams of half the density and +-0.2 c: with x = (k u)^2, omega^2 = x + 1/2 -+ (2 x + 1/4)^1/2.
+    Case w;
+    w.setup = "uniform", w.wave = "longitudinal", w.component = "E_x";
+    w.grid = {{64, 0, 2 * pi / 3, true}, {4, 0, 0.13, true}};
+    w.dt = 0.05, w.uniform.mode_x = 1, w.field.smoothing.passes = 0;
+    for (const double drift : {0.2, -0.2}) {
+        SpeciesCase beam;
+        beam.name = "beam", beam.charge = -1, beam.mass = 1, beam.density = 0.5;
+        beam.drift_x = drift;
+        w.uniform.species.push_back(beam);
+    }
+    const double x = std::pow(3 * 0.2, 2), growth = std::sqrt(std::sqrt(2 * x + 0.25) - x - 0.5),
+                 fast = std::sqrt(std::sqrt(2 * x + 0.25) + x + 0.5);
+    for (const double near : {0.05, 0.2, 0.3, 0.35, 0.4, 0.45, 0.5, 0.6, 0.65}) {
+        CAPTURE(near);
+        w.near = near;
+        const auto omega = wave_of(w)->expect(w).without_mesh.omega;
+        CHECK(std::fabs(omega.real()) <= 1e-9);
+        CHECK(omega.imag() == doctest::Approx(growth).epsilon(1e-9));
+    }
+    w.near = 1.2;
+    CHECK(wave_of(w)->expect(w).without_mesh.omega.real() == doctest::Approx(fast).epsilon(1e-9));
+}
+
 TEST_CASE("a whistler and an ion cyclotron wave at an angle have the frequencies of the scheme" *
           doctest::description("physics")) {
     const std::string whistler = "implicit_moment/cases/oblique_whistler.toml --threads 1";
