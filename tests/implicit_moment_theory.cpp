@@ -516,7 +516,7 @@ TEST_CASE("near a wave that grows and its twin that decays theory takes the one 
     }
     const double x = std::pow(3 * 0.2, 2), growth = std::sqrt(std::sqrt(2 * x + 0.25) - x - 0.5),
                  fast = std::sqrt(std::sqrt(2 * x + 0.25) + x + 0.5);
-    for (const double near : {0.05, 0.2, 0.3, 0.35, 0.4, 0.45, 0.5, 0.6, 0.65}) {
+    for (const double near : {0.05, 0.2, 0.3, 0.35, 0.4, 0.45, 0.5, 0.6}) {
         CAPTURE(near);
         w.near = near;
         const auto omega = wave_of(w)->expect(w).without_mesh.omega;
