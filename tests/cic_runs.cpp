@@ -462,6 +462,24 @@ TEST_CASE("a wave that grows slowly and long is one that grows" * doctest::descr
                     1) <= 1e-6);
 }
 
+TEST_CASE("a wave that another one of its mode covers is not measured" *
+          doctest::description("physics")) {
+    const std::string file = case_file(
+        "[grid]\ncells_x = 64\nlength_x = 6.283185307179586\n[time]\ndt = 0.05\nend = 40\n"
+        "[species.a]\ndensity = 0.5\ndrift_x = 0.6\namplitude = 1e-6\n"
+        "[species.b]\ndensity = 0.5\ndrift_x = -0.6\n"
+        "[species.ions]\ncharge = 1\nmotion = \"fixed\"\n[theory]\ncompare = \"wave\"\n");
+    const Run covered = facts::run_into("covered", "cic", file + " theory.near=1.36");
+    CHECK(std::fabs(covered.value("theory_omega") - 1.3583) <= 1e-3);
+    const auto& result = covered.summary["results"]["largest_over_start"];
+    CHECK(result["verdict"] == "NOT MEASURED");
+    CHECK(result["source"].get<std::string>().starts_with(
+        "another wave of this mode grows, with 0.35"));
+    const Run grows = facts::run_into("grows", "cic", file + " theory.near=0.1");
+    CHECK(std::fabs(grows.value("theory_growth") - 0.3534) <= 1e-3);
+    CHECK(!grows.summary["results"].contains("largest_over_start"));
+}
+
 TEST_CASE("an onset that noise brings or the perturbation hides is not measured" *
           doctest::description("physics")) {
     const auto onset = [](const std::string& file, const std::string& overrides) {

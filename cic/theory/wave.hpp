@@ -227,7 +227,8 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
     const double field = seed > 0 ? seed : start;
     const std::complex<double> fastest =
         grows || !seeded ? theory.omega : fastest_of_mode(parameters, theory);
-    const bool covered = !grows && fastest.imag() * times.back() > 1;
+    const bool other = std::abs(fastest - theory.omega) > 1e-6 * std::abs(fastest),
+               covered = !grows && other && fastest.imag() * times.back() > 1;
     const std::string covers = sentence(
         "another wave of this mode grows, with ", fastest.imag(), " at omega = ", fastest.real(),
         ", and covers this one: take theory.near = ", fastest.real());
