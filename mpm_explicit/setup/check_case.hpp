@@ -258,6 +258,18 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
     }
     for (const std::string& warning : arrival_warnings(problem, materials, plans))
         warnings.push_back(warning);
+    // As measured: a block of 20 and 40 cells bears 8.5 and 4 per cent too much between two such plates.
+    const auto grips = [&](const Bond& bond) {
+        return materials[plans[bond.a].material].law == Law::rigid ||
+               materials[plans[bond.b].material].law == Law::rigid;
+    };
+    if (parameters.shape == "quadratic" &&
+        std::ranges::any_of(bonds_of(problem, plans, materials), grips))
+        warnings.push_back(
+            "method.shape = \"quadratic\" sees a rigid grain that is bonded to another one from "
+            "three "
+            "quarters of a cell away, and what lies there does not strain: take \"linear\" or "
+            "\"gimp\"");
     if (g > 0 && problem.has_friction() && base < 6)
         warnings.push_back(
             "a polygon has a side of " + format(base) +

@@ -49,8 +49,7 @@ inline void compare_energy(const FinishedRun& run, double tolerance, common::Sum
 inline void report_contact(const FinishedRun& run, double b, common::Summary& summary) {
     const double cells = b / run.parameters.problem.mesh().h;
     const std::string few =
-        "below 4 cells the approach may be wrong, by a tenth at 2, and more off lines "
-        "of nodes";
+        "below 4 cells the approach may be wrong, by a tenth at 2, and more off lines of nodes";
     summary.result_info("contact_half_width", cells, "h",
                         "line contact at its largest load; " + few);
     if (cells < 4)

@@ -372,8 +372,7 @@ inline void compare_hertz(const FinishedRun& run, common::Summary& summary) {
         "the contact is " + format(b / h) +
         " cells wide at each side, and the nodes see it coarsely: refine the mesh until it "
         "has four or more, and take method.shape = \"gimp\" where it is another one, since noise "
-        "of "
-        "cell crossing softens; in mpm_implicit method.theta = 0.6 damps it");
+        "of cell crossing softens; in mpm_implicit method.theta = 0.6 damps it");
     summary.result("approach", (low - high) / contact_approach(disk, load.mean), "1", 1,
                    run.parameters.tolerance,
                    "over 2 P (1 - nu^2) / (pi E) (2 ln(4 R/b) - 1), Johnson's eq. 5.57, at both "

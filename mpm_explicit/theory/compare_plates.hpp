@@ -94,10 +94,9 @@ inline Press press_of(const FinishedRun& run) {
 /// What a wrong stress on a plate is due to.
 inline constexpr const char* press_hint =
     "plates are exact on lines of nodes: move them by less than a hundredth of the block, over "
-    "many "
-    "periods of its sound, with its surfaces on lines of nodes, and lower time.alpha; where "
-    "particles "
-    "cross lines of nodes take method.shape = \"gimp\", in mpm_implicit with method.theta = 0.6";
+    "many periods of its sound, with its surfaces on lines of nodes, and lower time.alpha; where "
+    "particles cross lines of nodes take method.shape = \"gimp\", in mpm_implicit with "
+    "method.theta = 0.6";
 
 // ---- pressed slowly -----------------------------------------------------------------------------
 

@@ -72,14 +72,15 @@ inline double pressed_strain(const Case& parameters, const std::vector<Material>
     return strain;
 }
 
+/// Exponents of what noise grows by, from either cause.
+struct NoiseGrowth {
+    double under_weight = 0, between_plates = 0;
+};
+
 /// By how much noise of grains under their weight, or between plates, grows in a run of theta = 1/2 without
 /// anything that damps, as an exponent: 0.37 e (c_p/h) alpha^(-3/4) t, with e = g H/c_p^2, as measured from alpha
 /// = 1 to 8 with columns of 24 and 48 cells, with H the height of all grains. The pressed mesh is not quite
 /// symmetric, and flutters. Between plates e is twice as large in the mean over the grains, and half in time.
-/// out:    both parts
-struct NoiseGrowth {
-    double under_weight = 0, between_plates = 0;
-};
 inline NoiseGrowth growth_of_noise(const Case& parameters, const Scales& scales) {
     const Problem& problem = parameters.problem;
     const std::vector<Material> materials = materials_of(problem);
