@@ -322,6 +322,18 @@ TEST_CASE("the difference equation holds on every node") {
                 }
             }
             CHECK(most <= 1e-12);
+            // The field on nodes away from walls: what phi falls by over two cells.
+            most = 0;
+            for (long j = m.scheme.dimensions == 2 ? 1 : 0; j < m.grid.z.cells; ++j) {
+                for (long i = 1; i < m.grid.x.cells; ++i) {
+                    const long n = m.grid.index(i, j);
+                    const NodeField& E = s.field.E_g[n];
+                    most = worst({most, E.x - (phi[n - 1] - phi[n + 1]) / (2 * dx)});
+                    if (m.scheme.dimensions == 2 && j + 1 < m.grid.z.cells)
+                        most = worst({most, E.z - (phi[n - row] - phi[n + row]) / (2 * dz)});
+                }
+            }
+            CHECK(most <= 1e-12);
             if (!m.grid.x.periodic) {
                 for (long j = 0; j < m.grid.z.cells; ++j) {
                     CHECK(std::fabs(phi[m.grid.index(0, j)] - 0.7) <= 1e-14);
@@ -454,6 +466,8 @@ TEST_CASE("the rotation keeps the speed and its angle is twice the arc tangent")
     const double angle = std::atan2(before_across.cross(across).dot(b), before_across.dot(across));
     CHECK(std::fabs(angle + 2 * std::atan(0.5 * Omega_dt)) <= 8 * eps);
     CHECK(std::fabs(batch.sums.kinetic - 0.5 * 0.25 * v.squaredNorm()) <= 4 * eps);
+    for (int a = 0; a < 3; ++a)
+        CHECK(std::fabs(batch.sums.momentum[std::size_t(a)] - 0.25 * after[a]) <= 4 * eps);
 }
 
 TEST_CASE("the drift in E and B is exact for any time step") {
@@ -538,11 +552,12 @@ TEST_CASE("walls take charge reflect speed and lose nothing") {
 TEST_CASE("a source emits its rate with the flux of a half Maxwellian") {
     Case parameters;
     parameters.grid.x = {8, 0, 1e6, false};
+    parameters.grid.z.length = 2;
     parameters.boundary_x = "wall";
     parameters.dt = 0.25;
     parameters.walls[x_low] = {"floating", "source", 0};
     SpeciesCase from;
-    from.name = "electrons", from.mass = 4, from.emission = 2.5, from.emission_temperature = 9;
+    from.name = "electrons", from.mass = 4, from.emission = 1.25, from.emission_temperature = 9;
     parameters.species = {from};
     State state;
     state.walls = walls_of(parameters);
@@ -557,8 +572,8 @@ TEST_CASE("a source emits its rate with the flux of a half Maxwellian") {
                                   state.emitted_again);
     const Particles& after = state.species[0];
     const double N = double(after.count());
-    CHECK(after.count() == 125000);  // 2.5 / 0.001 per unit of time for 50
-    CHECK(std::fabs(state.walls[x_low].charge - 0.001 * N) <= 1e-9);
+    CHECK(after.count() == 125000);  // 1.25 / 0.001 on a length of 2 per unit of time for 50
+    CHECK(std::fabs(state.walls[x_low].charge - 0.001 * N / 2) <= 1e-9);
     // <v> = (pi T / 2 m)^1/2 and <v^2> = 2 T/m, within four standard errors of N numbers.
     double v = 0, v2 = 0;
     for (const double u : after.vx_p) v += u / N, v2 += u * u / N;
@@ -582,8 +597,29 @@ TEST_CASE("sorting by row moves whole particles") {
     }
     CHECK(std::fabs(after - sum) <= 1e-9);
     CHECK(sort_is_due(25, 50));
+    CHECK(sort_is_due(1, 7));
     CHECK(!sort_is_due(25, 51));
     CHECK(!sort_is_due(0, 50));
+}
+
+TEST_CASE("a table of a distribution has its moments and its inverse that of its integral") {
+    // Constant in four pieces of a quarter between 1 and 2, as 1 : 2 : 3 : 2.
+    const Distribution line = tabulate(1, 2, 4, false, [](double v) {
+        return v < 1.25 ? 1.0 : v < 1.5 || v > 1.75 ? 2.0 : 3.0;
+    });
+    CHECK(line.mean() == doctest::Approx((1.125 + 2 * 1.375 + 3 * 1.625 + 2 * 1.875) / 8));
+    double mean_square = 0;  // about 1, of each piece that of its middle and 1/12 of its width
+    for (const auto& [part, middle] : {std::pair(1, 0.125), {2, 0.375}, {3, 0.625}, {2, 0.875}})
+        mean_square += part / 8.0 * (middle * middle + 0.0625 / 12);
+    CHECK(line.mean_square(1) == doctest::Approx(mean_square));
+    for (const auto& [u, v] : {std::pair(0.0, 1.0), {0.0625, 1.125}, {0.25, 1.375}, {1.0, 2.0}})
+        CHECK(line.inverse(u) == doctest::Approx(v));
+    CHECK(line.inverse(1.5) == 2);
+    CHECK(line.inverse(-1) == 1);
+    // Speeds in a plane have 2 pi v f(v): of a uniform disk a quarter is within half of its radius.
+    const Distribution disk = tabulate(0, 3, 600, true, [](double) { return 1.0; });
+    CHECK(disk.inverse(0.25) == doctest::Approx(1.5));
+    CHECK(disk.mean() == doctest::Approx(2).epsilon(1e-5));
 }
 
 TEST_CASE("a perturbed species has the density that the case asks for") {

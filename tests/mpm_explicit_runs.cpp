@@ -175,6 +175,29 @@ TEST_CASE("a disk rests wherever it is in its cells and gains nothing" *
     CHECK(rest(0.0382, 0.0287, "method.crossing=0").value("energy_gain") > 1);
 }
 
+TEST_CASE("a block that is pressed by a quarter is called too soft with linear shapes" *
+          doctest::description("physics")) {
+    std::filesystem::create_directories(facts::folder_of_test());
+    const std::string path = facts::folder_of_test() + "/pressed.toml";
+    std::ofstream(path)
+        << "grid = {cells_x = 40, cells_y = 40, length_x = 1}\ntime = {alpha = 0.25, end = 1}\n"
+           "[material]\ndefault = {E = 1e5, nu = 0, density = 1000}\nplate.law = 'rigid'\n"
+           "[grain]\nblock = {shape = 'box', x = 0.5, y = 0.4, width = 0.4, height = 0.4}\n"
+           "[grain.top]\nshape = 'box'\nx = 0.5\ny = 0.65\nwidth = 0.8\nheight = 0.1\n"
+           "velocity_y = -0.1\nmaterial = 'plate'\n[grain.bottom]\nshape = 'box'\nx = 0.5\n"
+           "y = 0.15\nwidth = 0.8\nheight = 0.1\nmaterial = 'plate'\n";
+    for (const bool linear : {true, false}) {
+        const Run r = facts::run_mpm("mpm_explicit", linear ? "linear" : "gimp",
+                                     path + (linear ? "" : " method.shape=gimp"));
+        // sigma = E ln(1 - e) on the width of the block, and its energy over that of all the block.
+        const double ln = std::log1p(-0.25), exact = 0.5 * 1e5 * 0.16 * 0.75 * ln * ln;
+        CAPTURE(r.value("energy_lost"));
+        CHECK((std::fabs(r.column("elastic").back() / exact - 1) <= 0.02) == !linear);
+        CHECK((r.value("energy_lost") <= 0.001) == !linear);
+        CHECK(r.summary["results"]["energy_lost"]["verdict"] == (linear ? "FAIL" : "PASS"));
+    }
+}
+
 TEST_CASE("a pack keeps its energy with the talk's linear shape" *
           doctest::description("physics")) {
     // As the slide strains them, particles that cross lines do three times the work of the plate at

@@ -45,6 +45,8 @@ class LeapfrogRecorder {
           most_gain_(0.05 + swing_of_frozen(parameters, scales)),
           levels_(parameters.problem.contact.levels),
           frictionless_(!parameters.problem.has_friction()),
+          linear_(parameters.shape == "linear"),
+          passes_all_(parameters.transfer == "flip" && parameters.flip == 1),
           recorder_(parameters, leapfrog, scales, state.assembly, comparisons, "budget") {
         Budget none;
         none.momenta.resize(state.assembly.grains.size());
@@ -104,7 +106,7 @@ class LeapfrogRecorder {
                    external = run.history.column("external"), remap = run.history.column("remap"),
                    volume = run.history.column("volume"), rest = run.history.column("budget");
         const double size = run.history.largest("kinetic") + run.history.largest("elastic");
-        double works = 0, gives = 0, gain = 0, put_in = 0;
+        double works = 0, gives = 0, gain = 0, lost = 0, put_in = 0;
         for (std::size_t n = 0; n < contact.size() && size > 0; ++n) {
             works = std::max(works, std::fabs(contact[n]) / size);
             const double together = contact[n] + release[n] + friction[n];
@@ -113,6 +115,7 @@ class LeapfrogRecorder {
             const double beyond = energy[n] - e14[n] - (energy[0] - e14[0]),
                          got = remap[n] + volume[n] + rest[n] + beyond;
             gain = std::max(gain, got + std::max(together, 0.0));
+            lost = std::max(lost, -remap[n]);
             put_in = std::max(put_in, energy[0] + std::fabs(external[n]));
         }
         const std::string source = "of pairs that press, over the energy";
@@ -134,6 +137,14 @@ class LeapfrogRecorder {
             "energy_gain", gain / (put_in > 0 ? put_in : 1), "1", most_gain_,
             "beyond all work, largest, over the energy put in: moving through "
             "cells should give none");
+        const std::string by_cells = "by moving through cells, largest, over the energy put in";
+        lost /= put_in > 0 ? put_in : 1;
+        if (!passes_all_) return run.summary.result_info("energy_lost", lost, "1", by_cells);
+        run.summary.hint(
+            linear_ ? "particles of linear shapes lose force when they are pressed across lines of "
+                      "nodes, and more of them on finer meshes: take method.shape = \"gimp\""
+                    : gain_hint_);
+        run.summary.result_at_most("energy_lost", lost, "1", most_gain_, by_cells);
     }
 
     // By how much the energy of frozen particles swings above energy_14, which is then exact: that of
@@ -151,6 +162,8 @@ class LeapfrogRecorder {
     double most_gain_;
     long levels_;
     bool frictionless_;
+    bool linear_;      // shapes
+    bool passes_all_;  // to the particles, of what the nodes have got: FLIP
     Recorder recorder_;
 };
 
