@@ -640,7 +640,12 @@ TEST_CASE("a perturbed species has the density that the case asks for") {
         // The displacement is linear in the amplitude: 3/8 of its square remains.
         const double noise = loading == "random" ? 4 * std::sqrt(2.0 / 128000) : 1e-5;
         CHECK(std::abs(mode - 0.02) <= noise);
+        const auto [least, most] = std::ranges::minmax(particles.x_p);
+        CHECK((least >= 0 && most < 2));  // who is moved across the seam comes in again
     }
+    const PerturbationCase standing{"wave", "electrons", 2, 3, 0.1};
+    CHECK((standing.is_of(2, 3) && standing.is_of(-2, -3)));
+    CHECK((!standing.is_of(-2, 3) && !standing.is_of(2, -3)));
 }
 
 TEST_CASE("simulation particles have together the charge and the mass of all that they stand for") {
