@@ -76,8 +76,8 @@ struct Cells {
     std::vector<char> surface;            // 1: partly void, p = 0 whatever happens
     std::vector<double> V_of_column;  // the volume that the lattice of the start fills in a cell
     // Only where particles carry volumes: sums of V_p and C; V_c div v dt, and its work, per C; room for
-    // gas; per material, pressure above that of the cell.
-    Field volume, C, strain, work, q_work, room;
+    // gas, and what liquid has too much of; per material, pressure above that of the cell.
+    Field volume, C, strain, work, q_work, room, crowding;
     std::vector<SoftSum> soft;
     std::vector<double> excess;
     std::vector<SwirlSum> swirl;  // only where the fluid turns about the axis
@@ -134,7 +134,8 @@ inline Mesh mesh_of(const Problem& problem) {
     for (Field* f : {&c.M, &c.p, &c.compressibility, &c.p_step}) f->setZero(size);
     c.q.assign(size, {});
     if (scheme.particle_volumes) {
-        for (Field* f : {&c.volume, &c.C, &c.strain, &c.work, &c.q_work, &c.room}) f->setZero(size);
+        for (Field* f : {&c.volume, &c.C, &c.strain, &c.work, &c.q_work, &c.room, &c.crowding})
+            f->setZero(size);
         c.soft.assign(size * mesh.materials, {});
         const Material& first = problem.materials.front();
         c.one_fluid =

@@ -125,7 +125,8 @@ inline void work_on_cells(const Problem& problem, double dt, Mesh& mesh, Budget&
             // Particles know their own pressure; the viscous heat goes by mass.
             const bool yields = c.surface[n] == 0 && c.C[n] > 0;
             const double per_C = yields ? dt / c.C[n] : 0;
-            c.strain[n] = per_C * dilation(grid, move_x, move_z, n);
+            c.strain[n] =
+                per_C * (dilation(grid, move_x, move_z, n) - (implicit ? spread_of(c, n, dt) : 0));
             c.work[n] = per_C * work;
             c.q_work[n] = per_C * (q_power + (c.p_step[n] - c.p[n]) * work);
         } else {

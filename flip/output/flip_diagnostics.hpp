@@ -55,6 +55,18 @@ inline Totals particle_totals(const Grid& grid, const Particles& p) {
     return all;
 }
 
+/// The part of the volume of all particles that is more than their cells have; 0 where particles
+/// carry none.
+inline double overfull(const Grid& grid, const Cells& c) {
+    double all = 0, beyond = 0;
+    for (long j = 0; j < grid.z.cells && c.volume.size() > 0; ++j)
+        for (long i = 0; i < grid.x.cells; ++i) {
+            const double V = c.volume[grid.index(i, j)];
+            all += V, beyond += std::max(0.0, V - c.V_of_column[i]);
+        }
+    return all > 0 ? beyond / all : 0;
+}
+
 /// The fluid on the cells.
 /// in:     deposit_particles() and find_pressure() have been called
 inline CellFields cell_fields(const Grid& grid, const Mesh& mesh) {
@@ -64,6 +76,7 @@ inline CellFields cell_fields(const Grid& grid, const Mesh& mesh) {
     f.rho_of.assign(mesh.materials, Field::Zero(grid.size()));
     const bool swirl = !mesh.cells.swirl.empty();
     if (swirl) f.v_theta.setZero(grid.size());
+    f.overfull = overfull(grid, mesh.cells);
     for_each_cell(grid, [&](long i, long, long n) {
         const double M = mesh.cells.M[n], per_V = 1 / mesh.cells.V_of_column[i];
         if (M <= 0) return;

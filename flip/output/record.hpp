@@ -97,6 +97,7 @@ class Recorder {
         if (comparison.compare != nullptr && !summary.has_verdict())
             summary.not_measured(comparison.name, "the run is too short for it: raise time.end");
         if (history.rows() > 1) judge_energy(history, summary);
+        if (history.rows() > 1) judge_volume(history, summary);
         std::vector<std::string> errors{"mass_error", "momentum_x_error", "energy_error"};
         if (parameters_.moves_along_z()) errors.insert(errors.begin() + 2, "momentum_z_error");
         if (parameters_.swirls()) errors.insert(errors.end() - 1, "angular_momentum_error");
@@ -156,6 +157,8 @@ class Recorder {
         row.add("energy_error", "1",
                 relative(energy - budget.energy - gross, gross, budget.energy));
         row.add("largest_speed", "velocity", most.speed);
+        if (parameters_.density == "particles" && program_ == "flip")
+            row.add("overfull", "1", cells.overfull);
         row.add("largest_mach", "1", most.mach);
         row.add("iterations", "1", double(state.report.iterations));
         row.add("divergence", "speed/dx", state.report.divergence);
@@ -184,6 +187,23 @@ class Recorder {
                                "largest, over the start: the transfer to particles only takes");
         summary.result_info("energy_lost", -least, "",
                             "what the transfer takes, for flip.deficit_to_heat = false");
+    }
+
+    // Liquid that lies where other liquid is takes no room, and its level sinks: a twentieth is seen.
+    void judge_volume(const common::History& history, common::Summary& summary) const {
+        if (parameters_.density != "particles" || program_ != "flip") return;
+        const std::string source = "largest part of the volume that lies in cells which are full";
+        const bool liquid = std::ranges::any_of(parameters_.materials,
+                                                [](const Material& m) { return m.p_infinity > 0; });
+        if (!liquid)
+            return summary.result_info("overfull", history.largest("overfull"), "", source);
+        summary.hint(
+            parameters_.implicit()
+                ? "particles gather, and what is full takes more of them only where gas is in it: "
+                  "take flip.transfer = \"xpic\" or \"pic\", or more particles per cell"
+                : "nothing in an explicit step brings particles back to their volumes: take "
+                  "flip.pressure = \"implicit\"");
+        summary.result_at_most("overfull", history.largest("overfull"), "", 0.05, source);
     }
 
     // An energy that is many times what the start and the work done account for is no result.
