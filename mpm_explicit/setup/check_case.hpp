@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "mpm_explicit/setup/case.hpp"
+#include "mpm_explicit/setup/plate_strain.hpp"
 #include "mpm_explicit/setup/scales.hpp"
 
 namespace mpm {
@@ -312,6 +313,21 @@ inline std::vector<std::string> warnings_of(const Case& parameters, const Scales
                         "time.alpha = " + format(parameters.alpha) +
                             " is above 0.7: nothing bounds the energy of explicit solutions, and "
                             "grains that meet will burst");
+    const std::vector<Material> materials = materials_of(parameters.problem);
+    const PlateStrain strain = plate_strain(parameters, materials);
+    if (parameters.shape == "linear" && strain.pressed > 0.1)
+        warnings.push_back("grains are pressed by " + format(strain.pressed) +
+                           ", above 0.1: particles of linear shapes that cross lines of nodes make "
+                           "them too soft, and finer meshes more so; set method.shape = \"gimp\"");
+    const bool viscous =
+        std::ranges::any_of(materials, [](const Material& m) { return m.viscosity > 0; });
+    if (strain.stretched > 0.05 && parameters.transfer != "apic" && parameters.flip > 0 && !viscous)
+        warnings.push_back("grains are stretched by " + format(strain.stretched) +
+                           ", above 0.05: motion of particles that nodes do not see grows under "
+                           "tension, and tears "
+                           "them; set method.shape = \"gimp\" and method.transfer = \"apic\" or "
+                           "material.<name>.viscosity = " +
+                           format(2 * scales.dt));
     if (scales.shortening > 10)
         warnings.push_back("viscosity makes the steps " + format(scales.shortening) +
                            " times shorter, more than 10: mpm_implicit needs no shorter ones");

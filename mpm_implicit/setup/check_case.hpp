@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "mpm_explicit/setup/check_case.hpp"
+#include "mpm_explicit/setup/plate_strain.hpp"
 #include "mpm_implicit/setup/case.hpp"
 
 namespace mpm_implicit {
@@ -25,51 +26,6 @@ inline void validate(const Case& parameters, const ThetaScheme& scheme) {
     refuse(!scheme.newton() && !scheme.keeps_volumes(),
            "method.volumes = \"updated\" makes the step nonlinear: set solver.kind = "
            "\"newton_krylov\"");
-}
-
-/// The part of their height, or width, by which rigid grains on both sides, or one and a wall, press all others
-/// together until time.end. Swings, tables and forces are not counted.
-inline double pressed_strain(const Case& parameters, const std::vector<Material>& materials) {
-    const Problem& problem = parameters.problem;
-    const Mesh mesh = problem.mesh();
-    const std::vector<PlannedGrain> plans = plan_grains(problem, materials);
-    const auto travel_in = [&](double t) {
-        return t > problem.rise ? t - 0.5 * problem.rise : 0.5 * t * t / problem.rise;
-    };
-    double strain = 0;
-    for (const bool along_x : {true, false}) {
-        const auto from = [&](const Bounds& box) { return along_x ? box.x_low : box.y_low; };
-        const auto to = [&](const Bounds& box) { return along_x ? box.x_high : box.y_high; };
-        double low = HUGE_VAL, high = -HUGE_VAL;
-        for (const PlannedGrain& plan : plans)
-            if (materials[plan.material].law != Law::rigid)
-                low = std::min(low, from(bounds(plan.outline))),
-                high = std::max(high, to(bounds(plan.outline)));
-        // What is nearest on either side, and how far it goes.
-        const auto wall = [&](Side side, double at) {
-            return problem.walls[side] == "open" || (along_x && problem.periodic_x) ? HUGE_VAL : at;
-        };
-        const double at_low = wall(along_x ? x_low : y_low, along_x ? mesh.x_low : mesh.y_low);
-        double below = at_low < HUGE_VAL ? at_low : -HUGE_VAL,
-               above = wall(along_x ? x_high : y_high, along_x ? mesh.x_high() : mesh.y_high()),
-               of_below = 0, of_above = 0;
-        for (const PlannedGrain& plan : plans) {
-            const GrainCase& is = plan.from;
-            if (materials[plan.material].law != Law::rigid ||
-                is.control == (along_x ? "force_x" : "force_y"))
-                continue;
-            const bool stops = is.stop > 0 && is.stop + problem.rise <= parameters.end;
-            const double way = (along_x ? is.velocity_x : is.velocity_y) *
-                               (stops ? is.stop : travel_in(parameters.end));
-            const Bounds box = bounds(plan.outline);
-            if (to(box) <= low + 0.5 * mesh.h && to(box) >= below) below = to(box), of_below = way;
-            if (from(box) >= high - 0.5 * mesh.h && from(box) <= above)
-                above = from(box), of_above = way;
-        }
-        const double gaps = std::max(0.0, low - below) + std::max(0.0, above - high);
-        strain = std::max(strain, (of_below - of_above - gaps) / (high - low));
-    }
-    return strain;
 }
 
 /// Exponents of what noise grows by, from either cause.
@@ -97,7 +53,7 @@ inline NoiseGrowth growth_of_noise(const Case& parameters, const Scales& scales)
     const double rate = 0.37 * scales.sound_speed / problem.mesh().h *
                         std::pow(std::max(1.0, parameters.alpha), -0.75);
     return {rate * strain * std::max(0.0, parameters.end - problem.rise),
-            rate * pressed_strain(parameters, materials) * parameters.end};
+            rate * plate_strain(parameters, materials).pressed * parameters.end};
 }
 
 /// Warnings with the number and the limit, for choices that run but may mislead.
@@ -121,6 +77,18 @@ inline std::vector<std::string> warnings_of(const Case& parameters, const ThetaS
             (pressed && parameters.shape == "linear" ? "method.shape = \"gimp\", and " : "") +
             "method.theta = " + (pressed ? "0.6" : "0.51") +
             " or material.<name>.viscosity = " + format(0.1 * scales.dt) + ", a tenth of a step");
+    const PlateStrain strain = plate_strain(parameters, materials_of(parameters.problem));
+    const double most = std::max(strain.pressed, strain.stretched);
+    if (parameters.shape == "linear" && most > 0.05)
+        warnings.push_back(
+            "grains are strained by " + format(most) +
+            ", above 0.05: particles of linear shapes that cross lines of nodes make "
+            "them too soft, by a tenth or more, and finer meshes more so; set "
+            "method.shape = \"gimp\"");
+    if (scheme.keeps_volumes() && most > 0.1)
+        warnings.push_back("method.volumes = \"kept\", and grains are strained by " + format(most) +
+                           ", above 0.1: forces are those of the first shape; take "
+                           "\"updated\"");
     if (parameters.flip < 1)
         warnings.push_back("method.flip = " + format(parameters.flip) +
                            " is below 1: [MPM-13] is for FLIP, and the column pic takes the rest");
