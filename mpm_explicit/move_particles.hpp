@@ -46,10 +46,12 @@ void move_particles(const Shape& shape, const std::vector<Grain>& grains,
                           });
             const double m = m_p[p], vx = vx_p[p], vy = vy_p[p];
             const double flip_x = vx + ax, flip_y = vy + ay;  // [FLIP-6]
-            const double new_x = flip_x + pic * (ux - flip_x), new_y = flip_y + pic * (uy - flip_y);
+            double new_x = flip_x + pic * (ux - flip_x), new_y = flip_y + pic * (uy - flip_y);
+            const double to_x = x_p[p] + dt_move * ux, to_y = y_p[p] + dt_move * uy;  // [FLIP-7]
+            const double x = clamp.x(to_x), y = clamp.y(to_y);
+            if (x != to_x) new_x = clamp.stopped(new_x, x - to_x);
+            if (y != to_y) new_y = clamp.stopped(new_y, y - to_y);
             vx_p[p] = new_x, vy_p[p] = new_y;
-            const double x = clamp.x(x_p[p] + dt_move * ux),
-                         y = clamp.y(y_p[p] + dt_move * uy);  // [FLIP-7]
             if (crossing) remember_crossing(at, x_p[p] - x, y_p[p] - y, x, y, from_x[p], from_y[p]);
             x_p[p] = x, y_p[p] = y;
 

@@ -49,12 +49,14 @@ void move_particles(const Shape& shape, const std::vector<Grain>& grains,
                           });
             const double m = m_p[p], ax = per_theta * (wx - ux), ay = per_theta * (wy - uy);
             const double flip_x = vx_p[p] + ax, flip_y = vy_p[p] + ay;  // [FLIP-6]
-            const double free_x = flip_x + pic * (ux + ax - flip_x),
-                         free_y = flip_y + pic * (uy + ay - flip_y);
+            double free_x = flip_x + pic * (ux + ax - flip_x),
+                   free_y = flip_y + pic * (uy + ay - flip_y);
+            const double to_x = x_p[p] + dt_move * wx, to_y = y_p[p] + dt_move * wy;  // [FLIP-7]
+            const double x = clamp.x(to_x), y = clamp.y(to_y);
+            if (x != to_x) free_x = clamp.stopped(free_x, x - to_x);
+            if (y != to_y) free_y = clamp.stopped(free_y, y - to_y);
             const double new_x = keeps * free_x, new_y = keeps * free_y;
             vx_p[p] = new_x, vy_p[p] = new_y;
-            const double x = clamp.x(x_p[p] + dt_move * wx),
-                         y = clamp.y(y_p[p] + dt_move * wy);  // [FLIP-7]
             x_p[p] = x, y_p[p] = y;
 
             const double now = free_x * free_x + free_y * free_y;

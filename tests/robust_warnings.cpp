@@ -283,6 +283,15 @@ mpm_implicit billet.toml theory.compare=none time.alpha=1 time.end=4 method.thet
 grains bonded_bar.toml theory.compare=none grain.left.profile=none material.steel.law=rigid grain.left.material=steel method.shape=quadratic
     warning: method.shape = "quadratic" sees a rigid grain that is bonded to another one from three
 grains bonded_bar.toml theory.compare=none method.shape=quadratic -> no warning
+mpm_explicit plate_holds.toml theory.compare=none time.end=10 grain.top.stop=0 grain.top.velocity_y=-0.01
+    warning: grains are pressed by 0.2375, above 0.1: particles of linear shapes that cross lines
+mpm_explicit plate_holds.toml theory.compare=none time.end=10 grain.top.stop=0 grain.top.velocity_y=-0.01 method.shape=gimp -> no warning
+mpm_explicit plate_holds.toml theory.compare=none time.end=5 grain.top.stop=0 grain.top.velocity_y=0.01 bond.all.tension=1e9
+    warning: grains are stretched by 0.1125, above 0.05: motion of particles that nodes do not see
+mpm_explicit plate_holds.toml theory.compare=none time.end=5 grain.top.stop=0 grain.top.velocity_y=0.01 -> no warning
+mpm_implicit billet.toml theory.compare=none time.alpha=1 time.end=10 method.theta=1 grain.top.velocity_y=-0.01 method.shape=linear
+    warning: grains are strained by
+    warning: method.volumes = "kept", and grains are strained by
 mpm_implicit rebound.toml -> no warning
 mpm_implicit rebound.toml time.alpha=15 time.end=6 -> no warning
 mpm_implicit rebound.toml time.alpha=25 time.end=10 output.particles_interval=0
