@@ -258,7 +258,7 @@ grains rebound.toml material.defualt.viscosity=0.1
 grains rebound.toml material.soft.E=1e3 pair.p.b=soft pair.p.friction=0.1
     warning: material.soft is nowhere: no grain is of it
     warning: pair.p is nowhere: no grain is of material 'soft'
-grains rebound.toml material.soft.E=1e4 grain.left.material=soft pair.p.a=soft pair.p.friction=0.1
+grains rebound.toml theory.compare=none material.soft.E=1e4 grain.left.material=soft pair.p.a=soft pair.p.friction=0.1
     no warning
 mpm_explicit disks contact.separation=0
     warning: contact.separation = 0: grains meet where they share nodes, up to 1.5 cells too
