@@ -124,7 +124,7 @@ inline void apply_at_walls(const Grid& grid, const ParticleBoundaries& condition
     const std::vector<Boundary> boundaries = boundaries_around(grid, s);
     const std::vector<long> outside = particles_outside(grid, s);
     std::vector<long> absorbed;
-    // The order of the list is that of the charges on the walls and of the emissions: ranks take turns.
+    // Charges are added to the walls, and particles emitted, in the order of the list: ranks take turns.
     struct {
         Walls walls;
         long emitted_again;

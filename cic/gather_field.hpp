@@ -19,7 +19,8 @@ using MeshField = std::vector<NodeField>;
 /// The field at every particle of a batch.
 ///   E_p = sum_g E_g S(x_g - x_p)
 /// and in the energy-conserving scheme, per component a,
-///   E_a,p = sum_e E_a,e S'(x_e - x_p),  S' of one order less than S along a, and equal to S across
+///   E_a,p = sum_e E_a,e S'(x_e - x_p)
+/// For E_x, S' is the next lower spline in x and the same spline in z; for E_z the other way round.
 /// in:     E_g, grid.size() values, ghosts filled; positions on the mesh
 /// out:    E_p, z only in two dimensions
 /// exact:  momentum-conserving: the transpose of deposit_charge, so that

@@ -25,8 +25,8 @@ struct MagneticField {
 ///   R = rotation by -2 atan(Omega dt/2) about B,  Omega = q B/m
 /// in:     part of a step: 1, or -1/2 for half a step backwards
 /// exact:  the drift E x B/B^2 in a uniform field, for any Omega dt; |v| without E
-/// note:   The price of the exact drift is the angle, 1 - (Omega dt)^2/12 of the true one. Rotating
-///         by Omega dt would have the drift wrong by (Omega dt/2) / tan(Omega dt/2).
+/// note:   The drift is exact, but the angle is 1 - (Omega dt)^2/12 of the true one. With a rotation
+///         by Omega dt the drift would be (Omega dt/2) / tan(Omega dt/2) of the true one.
 /// source: Boris, Proc. 4th Conf. Num. Sim. Plasmas (1970).
 inline Eigen::Matrix3d rotation_of_step(const MagneticField& B, double charge_over_mass, double dt,
                                         double part) {
@@ -88,10 +88,10 @@ inline std::array<ComponentSums, 3> accelerate_and_turn(Real half_kick,
 ///   v^(n+1/2) = v^(n-1/2) + (q/m) dt E_p,  and with B
 ///   v^(n+1/2) = R [v^(n-1/2) + h] + h,  h = (q/m) (dt/2) E_p,  R the rotation of one step
 /// in/out: velocities of the batch; in one dimension only vx without B
-/// out:    batch.sums: momentum at n+1/2, and the kinetic energy at n that energy theorems want,
-///           (1/2) m v^(n-1/2) . v^(n+1/2)
-///         written (1/2) m (|v^(n-1/2) + h|^2 - |h|^2), which is the same without B and does not
-///         see the rotation with it
+/// out:    batch.sums: the momentum at n+1/2, and the kinetic energy at n, without B
+///           (1/2) m v^(n-1/2) . v^(n+1/2),
+///         for which energy theorems hold. It is computed as (1/2) m (|v^(n-1/2) + h|^2 - |h|^2):
+///         without B the same, and with B the rotation does not enter
 /// source: [CIC-4]
 inline void accelerate(const FieldAtParticles& E_p, const MagneticField& B, double dt,
                        ParticleBatch& batch) {

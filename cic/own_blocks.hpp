@@ -54,8 +54,8 @@ inline std::vector<double> gather_with_all(const std::vector<double>& own) {
     return all;
 }
 
-/// Calls work(row) for the rows of a mesh, of each on one rank after the other; in the end all have the
-/// numbers. It is done in pieces so short that the next rank soon has its turn.
+/// Every rank calls work(row) for every row of a mesh, one rank after the other; in the end all ranks
+/// have the same numbers. They take turns at a few rows at a time, so that none waits for long.
 template <class Work>
 void for_each_row_in_turn(long rows, long stride, double* numbers, const Work& work) {
     const long pieces = common::rank_count() > 1 ? std::clamp(rows * stride / 4096, 1L, rows) : 1;

@@ -20,8 +20,8 @@
 
 namespace cic {
 
-/// Gives every rank its range of the list of all, in which runs with the same key follow each other
-/// in the order of the ranks that have them, and come before those of the next key.
+/// Gives every rank its part of the list of all particles. In that list particles are sorted by key, and
+/// those of one key stand in the order of the ranks that have had them.
 /// in:     first, where the runs of this rank begin, one for each key and one more for the end
 /// in/out: particles
 inline void share_runs(const std::vector<int>& first, Particles& particles) {

@@ -86,8 +86,8 @@ inline double surface_charge(double phi_wall, double phi_next, double rho_wall, 
     return (phi_wall - phi_next) / dx - 0.5 * dx * rho_wall;
 }
 
-/// Fills the ghost places of the packed field: periodic images, or mirror images behind walls, such
-/// that gather_field stays the transpose of deposit_charge.
+/// Fills the places around the mesh with copies of the field, periodic ones or mirror images behind
+/// walls, so that gather_field stays the transpose of deposit_charge.
 inline void fill_ghosts(const Grid& grid, bool on_edges, MeshField& E_g) {
     const auto at = [&](long i, long j) -> NodeField& { return E_g[grid.index(i, j)]; };
     const long nx = grid.x.cells, nz = grid.z.cells;

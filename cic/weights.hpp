@@ -15,8 +15,8 @@ namespace cic {
 
 /// Weights of S^(order) at s, a position in cells measured from a node (or, for a field that lives
 /// half-way between nodes, from the first such place).
-/// in:     s >= -1/2; first = first_at(s), the first place touched; d, how far s is beyond the place
-///         first + order/2
+/// in:     s >= -1/2; first = first_at(s), the first place that has a weight; d = s - first, and of
+///         order 2, whose weights have a middle, d = s - first - 1
 /// out:    the weights of the first place and the next ones
 /// exact:  the weights sum to 1 to round-off
 template <int order>

@@ -118,6 +118,12 @@ number_of_answer() {
         stop "write 0.92 for 92 %"
         ;;
     esac
+    case $value in
+    *,*)
+        point=$(printf '%s' "$value" | tr , .)
+        printf '%s\n' "$point" | grep -qE "$number" && stop "'$value' is no number: write a point, $point"
+        ;;
+    esac
     printf '%s\n' "$value" | grep -qE "$number" ||
         stop "'$value' is no number: a number looks like 0.9239, .9239 or 9.239e-1"
 }
@@ -232,10 +238,13 @@ answer:3)
     fi
     if asks_for 'power of ten' && holds "$value" ">=" 0 && holds "$value" "<=" 1; then
         echo "not right; the exponent is asked for, as -2 for 1e-2"
-    elif holds "$value" ">=" "${expected%% *}"; then
-        echo "not right; too large"
     else
-        echo "not right; too small"
+        holds "$value" ">=" "${expected%% *}" && side=large || side=small
+        if holds "$value" = "${expected%% *} +- 2%"; then
+            echo "not right, but near; give more digits: it is too $side"
+        else
+            echo "not right; too $side"
+        fi
     fi
     exit 1
     ;;

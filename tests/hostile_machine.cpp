@@ -377,6 +377,13 @@ TEST_CASE("a slip in a case or on the command line is answered with what was mea
     CHECK(holds(answer("", "two_stream"), "did you mean cic/cases/two_stream.toml?"));
     CHECK(holds(answer("", "tow_stream"), "there are: "));
     CHECK(holds(answer("", "flip/cases/sod.toml"), "is a case of flip, not of cic"));
+    // A folder of someone's own is no method of the project.
+    write_all(room.path("mine/cases/slip.toml"), "[specie.x]\n");
+    const Outcome own =
+        room.run("cd " + room.path("") + "; " + fs::absolute(program("cic")).string() +
+                 " mine/cases/slip.toml --dry-run");
+    CHECK(own.status == 2);
+    CHECK(!holds(own.err, "is a case of"));
     CHECK(holds(answer("[specie.x]\n", ""), "did you mean [species.x]?"));
     CHECK(holds(answer("[specie.x]\ndensity = 1\n", ""), "did you mean 'species.x.density'?"));
     CHECK(holds(answer("[time]\nend = 1é\n", ""), "slip.toml:2:8: 'é' may stand in text"));

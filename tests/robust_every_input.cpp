@@ -379,7 +379,7 @@ case.toml --out /dev/null -> /dev/null: is a file
 case.toml --out a_file/run -> a_file/run: cannot be created: Not a directory; choose another --out
 case.toml --out /proc/nowhere/run -> /proc/nowhere/run: cannot be created:
 case.toml --out dangling -> dangling: cannot be created:
-case.toml --out foreign -> foreign: is not empty; --force replaces it, --out DIR puts the results
+case.toml --out foreign -> foreign: is not empty; --force writes into it, and leaves what is not of a run
 case.toml --out earlier -> earlier: holds an earlier run; --force replaces it, --out DIR puts the
 case.toml --out foreign/../earlier -> foreign/../earlier: holds an earlier run; --force replaces it
 case.toml --out . -> --force replaces it

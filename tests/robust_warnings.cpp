@@ -252,6 +252,14 @@ grains incline_block.toml theory.compare=none grain.block.shape=polygon grain.bl
 grains incline_block.toml boundary.y_low=slip
     warning: boundary.y_low = "slip" holds for good what comes near, a cell too early, and a grain
     begins 3 cells from it: take "frictional", with boundary.friction = 0 where it is smooth
+# A name that no grain has, as one that is misspelt.
+grains rebound.toml material.defualt.viscosity=0.1
+    warning: material.defualt is nowhere: no grain is of it
+grains rebound.toml material.soft.E=1e3 pair.p.b=soft pair.p.friction=0.1
+    warning: material.soft is nowhere: no grain is of it
+    warning: pair.p is nowhere: no grain is of material 'soft'
+grains rebound.toml theory.compare=none material.soft.E=1e4 grain.left.material=soft pair.p.a=soft pair.p.friction=0.1
+    no warning
 mpm_explicit disks contact.separation=0
     warning: contact.separation = 0: grains meet where they share nodes, up to 1.5 cells too
     early

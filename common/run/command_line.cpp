@@ -73,11 +73,11 @@ std::string list_cases(const ProgramInfo& info, const std::string& wrong) {
 // For a case that cannot be read. errors: InputError where it lies in the folder of another method
 void refuse_foreign_case(const ProgramInfo& info, const std::string& path, const std::string& why) {
     const fs::path folder = fs::weakly_canonical(path).parent_path();
-    const std::string method = folder.parent_path().filename().string();
-    const bool is_method = fs::exists(find_in_project(method + "/cases")) && !method.empty();
+    const std::string method = folder.parent_path().filename(), readme = method + "/README.md";
+    const bool is_method = !method.empty() && fs::exists(find_in_project(readme));
     if (folder.filename() == "cases" && method != *fs::path(info.default_case).begin() && is_method)
         throw InputError(path + ": is a case of " + method + ", not of " + info.program +
-                         "; the programs of a case are named in " + method + "/README.md; " + why);
+                         "; its programs are named in " + readme + "; " + why);
 }
 
 // What a run that is to be resumed has left in its folder: all, a checkpoint, or nothing that counts. What is
@@ -243,8 +243,8 @@ void print_help(const ProgramInfo& info, const ParameterTable& table) {
         "                  is none, or the program is newer, begin; if complete, do nothing\n"
         "  --restart FILE  continue from a checkpoint\n"
         "  --verify FILE   say whether a checkpoint is whole, and of what it is\n"
-        "  --refine N      run the case on N meshes, each of twice the cells, in DIR/1, 2 ...,\n"
-        "                  and show the order at which the errors of its results fall\n"
+        "  --refine N      run the case on N meshes, each of twice the cells and half time.dt if\n"
+        "                  set, in DIR/1, 2 ..., and show the order at which their errors fall\n"
         "  --threads N     number of threads, else the free cores, or one for short steps\n"
         "  --dry-run       show scales, memory and time, and write nothing\n"
         "  --quiet         no progress, no report; what fell short is still said\n"

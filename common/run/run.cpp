@@ -19,6 +19,7 @@
 #include "common/parallel.hpp"
 #include "common/run/machine.hpp"
 #include "common/run/output_file.hpp"
+#include "common/run/sentence.hpp"
 
 namespace common {
 
@@ -229,11 +230,11 @@ void Run::prepare_folder() {
     const bool as_it_is = own_restart || (ours.empty() && !foreign);
     const bool stopped =
         std::ranges::any_of(ours, [](const fs::path& file) { return file.extension() == ".bin"; });
-    if (!as_it_is && !command_.force)
-        throw InputError(command_.out_dir +
-                         (ours.empty() ? ": is not empty" : ": holds an earlier run") +
-                         "; --force replaces it, --out DIR puts the results elsewhere" +
-                         (stopped ? ", --resume continues a run of the same input" : ""));
+    refuse(!as_it_is && !command_.force, command_.out_dir,
+           ours.empty() ? ": is not empty; --force writes into it, and leaves what is not of a run"
+                        : ": holds an earlier run; --force replaces it",
+           ", --out DIR puts the results elsewhere",
+           stopped ? ", --resume continues a run of the same input" : "");
     lock_folder();
     if (as_it_is) return;
     // A checkpoint that we are about to read stays.
@@ -251,9 +252,8 @@ void Run::lock_folder() {
         std::shared_ptr<std::FILE> lock(file < 0 ? nullptr : fdopen(file, "r+"), [](std::FILE* f) {
             if (f != nullptr) std::fclose(f);
         });
-        if (lock == nullptr)
-            throw InputError(command_.out_dir + ": cannot be written to: " + std::strerror(errno) +
-                             "; choose another --out");
+        refuse(lock == nullptr, command_.out_dir, ": cannot be written to: ", std::strerror(errno),
+               "; choose another --out");
         if (flock(file, LOCK_EX | LOCK_NB) != 0) {
             // A file system without locks goes without.
             if (errno != EWOULDBLOCK) return;

@@ -193,6 +193,25 @@ inline std::vector<std::string> arrival_warnings(const Problem& problem,
     return warnings;
 }
 
+/// Warnings of materials and pairs that no grain is of: their names may be misspelt.
+inline std::vector<std::string> unused_warnings(const Problem& problem,
+                                                const std::vector<Material>& materials,
+                                                const std::vector<PlannedGrain>& plans) {
+    std::vector<std::string> warnings;
+    const auto is_used = [&](const std::string& name) {
+        return std::ranges::any_of(
+            plans, [&](const PlannedGrain& plan) { return materials[plan.material].name == name; });
+    };
+    for (const MaterialCase& m : problem.materials)
+        if (!is_used(m.name))
+            warnings.push_back("material." + m.name + " is nowhere: no grain is of it");
+    for (const PairCase& pair : problem.pairs)
+        if (!is_used(pair.a) || !is_used(pair.b))
+            warnings.push_back("pair." + pair.name + " is nowhere: no grain is of material '" +
+                               (is_used(pair.a) ? pair.b : pair.a) + "'");
+    return warnings;
+}
+
 /// Warnings with the number and the limit, for choices that run but may mislead.
 inline std::vector<std::string> resolution_warnings(const Case& parameters, const Scales& scales) {
     std::vector<std::string> warnings;
@@ -257,6 +276,8 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
                                "\" and a velocity or a swing in that direction: it does nothing, "
                                "the grain starts at rest");
     }
+    for (const std::string& warning : unused_warnings(problem, materials, plans))
+        warnings.push_back(warning);
     for (const std::string& warning : arrival_warnings(problem, materials, plans))
         warnings.push_back(warning);
     // As measured: a block of 20 and 40 cells bears 8.5 and 4 per cent too much between two such plates.

@@ -27,10 +27,13 @@ answer 2-4 16 0 right
 answer 1-3 0.9 1 "not right; too small"
 answer 1-3 -0.9239 1 "not right; too small"
 answer 1-3 1 1 "not right; too large"
+answer 1-3 0.92 1 "not right, but near; give more digits: it is too small"
+answer 1-3 0.93 1 "not right, but near; give more digits: it is too large"
 answer 4b-6 1e-4 1 "not right; the exponent is asked for, as -2 for 1e-2"
 answer 4b-6 -6 1 "not right; too small"
 
-for none in 0,9239 'cos(pi/8)' 1/2 '0.9239 omega_p' '−0.9239' 5e .5. . + 0x1 nan inf '*'; do
+answer 1-3 0,9239 2 "'0,9239' is no number: write a point, 0.9239"
+for none in 1,2,3 'cos(pi/8)' 1/2 '0.9239 omega_p' '−0.9239' 5e .5. . + 0x1 nan inf '*'; do
     answer 1-3 "$none" 2 "'$none' is no number: a number looks like 0.9239, .9239 or 9.239e-1"
 done
 for none in "it's" '"' ';'; do
