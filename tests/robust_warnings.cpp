@@ -287,6 +287,7 @@ grains rolling_cylinder.toml grid.cells_x=240 grid.cells_y=48 -> no warning
 grains rolling_cylinder.toml contact.friction=0 -> no warning
 mpm_implicit billet.toml theory.compare=none time.alpha=1 time.end=4 method.theta=0.5 grain.top.velocity_y=-0.01
     warning: method.theta = 0.5 damps nothing that rings, and in what is pressed noise may grow by a
+    warning: grains are strained by 0.1, above 0.05
 mpm_implicit billet.toml theory.compare=none time.alpha=1 time.end=4 method.theta=0.6 method.shape=gimp grain.top.velocity_y=-0.01 -> no warning
 grains bonded_bar.toml theory.compare=none grain.left.profile=none material.steel.law=rigid grain.left.material=steel method.shape=quadratic
     warning: method.shape = "quadratic" sees a rigid grain that is bonded to another one from three
