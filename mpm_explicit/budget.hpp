@@ -36,7 +36,7 @@ struct TileSums {
     double kinetic = 0;            // 1/2 m v^{n+1} v^{n+1}
     double kinetic_leapfrog = 0;   // 1/2 m v^n v^{n+1}
     double kinetic_increment = 0;  // 1/2 m (S_ip (v_i^1 - v_i^0))^2
-    double pic = 0;                // what a FLIP fraction below one takes
+    double pic = 0;                // what a FLIP fraction below one takes, and walls from particles
     double affine = 0;             // the work of affine motion
     double momentum_x = 0, momentum_y = 0, angular = 0, spin = 0;  // spin: of affine motion
     double x_least = 0, x_most = 0, y_least = 0, y_most = 0;

@@ -37,7 +37,7 @@ struct TileSums {
     // after particles have moved
     double kinetic = 0;          // 1/2 m v^1 v^1
     double twice_increment = 0;  // m dv dv
-    double pic = 0;              // what a FLIP fraction below one takes
+    double pic = 0;              // what a FLIP fraction below one takes, and walls from particles
     double damping = 0;          // what load.damping takes
     double momentum_x = 0, momentum_y = 0, angular = 0;
     double x_least = 0, x_most = 0, y_least = 0, y_most = 0;

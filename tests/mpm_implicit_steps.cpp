@@ -202,7 +202,12 @@ TEST_CASE("the energy theorem holds in every step whatever it holds" *
         CHECK((plate > 0) == (name == "moving plate" || name == "force control"));
         CHECK((gravity != 0) == (name == "gravity and damping"));
         CHECK((damping > 0) == (name == "gravity and damping"));
-        CHECK((pic > 1e-6) == (name == "pic"));
+        // Frictional walls take the velocity into them from particles that they stop.
+        const auto& walls = each.second.problem.walls;
+        if (std::ranges::count(walls, "frictional") == 0)
+            CHECK((pic > 1e-6) == (name == "pic"));
+        else
+            CHECK(pic >= -1e-15);
         if (name == "bonds that break") CHECK(broken >= 5);
         if (name == "bonds that hold") CHECK(broken == 0);
         if (name == "bonds that hold") CHECK(bond <= 1e-10);
