@@ -141,6 +141,11 @@ flip around viscosity.linear=0 time.end=100
     warning: with 4 particles across a cell and viscosity.linear = 0 weak flow grows by up to
 flip box rings gas particles.per_cell_x=3 viscosity.linear=0 time.end=10
     warning: with 3 particles across a cell and viscosity.linear = 0 weak flow grows by up to
+flip pond.toml flip.pressure=implicit flip.transfer=apic time.end=120
+    warning: particles that gather within a cell fall, no pressure feels it, and the transfer of apic
+    lets it grow by about exp(26.83) until time.end: set flip.transfer = "xpic"
+flip pond.toml flip.pressure=implicit flip.transfer=xpic time.end=300 -> no warning
+flip pond.toml flip.pressure=implicit flip.transfer=apic time.end=60 -> no warning
 flip box no_slip flip.viscosity=0.1 flip.transfer=xpic
     warning: beside a no_slip wall flip.transfer = "xpic" brakes a viscous flow
 flip box no_slip flip.viscosity=0.1 -> no warning
