@@ -97,6 +97,23 @@ pic tube -> warning: the flow has Mach 0, below 0.05: cells feel a particle only
 flip tube region.gas.velocity_x=0.12
     warning: region.gas flows over the mesh at Mach 0.1014, between 0.07 and 0.19, where
     explicit FLIP rings
+flip around region.gas.velocity_z=-0.12
+    warning: region.gas flows over the mesh at Mach 0.1014, between 0.07 and 0.19
+flip around region.gas.velocity_x=0.12 flip.density=particles -> no warning
+flip taylor_green.toml flip.density=cells
+    warning: region.gas flows at Mach 0.09996, below 0.19, where explicit FLIP with flip.density =
+    "cells" rings and slow flow gains energy: set flip.density = "particles"
+flip taylor_green.toml flip.density=cells flip.pressure=implicit -> no warning
+flip taylor_green.toml particles.per_cell_x=2 particles.per_cell_z=2
+    warning: with 2 particles across a cell, below 3, the flow of region.gas draws voids between them
+flip taylor_green.toml particles.per_cell_x=3 particles.per_cell_z=3 -> no warning
+flip taylor_green.toml flip.confined=true flip.viscosity=0 time.end=2
+    warning: flip.confined with explicit pressure fills the room that particles leave
+flip taylor_green.toml flip.confined=true flip.pressure=implicit -> no warning
+flip tube boundary.x_low=inflow boundary.x_high=open boundary.pressure_x_high=1 inflow.density=1 \
+    inflow.pressure=1 inflow.velocity_x=0.05 region.gas.velocity_x=0.05
+    warning: region.gas flows at Mach 0.04226, below 0.19, where explicit FLIP with flip.density =
+    "cells" rings behind an inflow
 flip tube viscosity.linear=0 flip.transfer=apic time.end=20
     warning: explicit steps of apic make the shortest sound waves grow where viscosity.linear = 0
 flip tube viscosity.linear=0 flip.transfer=apic time.end=0.1 -> no warning
