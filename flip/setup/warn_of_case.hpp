@@ -161,6 +161,12 @@ inline void warn_of_speeds(const Case& parameters, const Scales& scales, const s
              "above ",
              std::fabs(wave.amplitude) * enough_moved / moved, ", or particles.per_cell_x");
     }
+    const double slower =
+        parameters.compare == wave_comparison.name ? slowed_by_mesh(parameters, program) : 0;
+    warn(out, slower > 0.05, "the mesh slows this wave by ", 100 * slower,
+         " %, and the comparison expects that: a wavelength has ",
+         double(parameters.grid.x.cells) / double(parameters.mode),
+         " cells; refine the mesh for sound of the gas");
     const double grown =
         parameters.compare != wave_comparison.name || parameters.q_linear > 0
             ? 1
