@@ -574,6 +574,13 @@ TEST_CASE("a layer of shear winds up at the rate of Rayleigh" * doctest::descrip
         run("flip", "shear", "kelvin_helmholtz", "time.end=1.4 grid.cells_x=48 grid.cells_z=48");
     check_results(r, 2);
     check_conserved(r);
+    // On a train, too.
+    const Run moving = run("flip", "shear", "kelvin_helmholtz",
+                           "time.end=1.4 grid.cells_x=48 grid.cells_z=48 theory.frame_x=0.7 "
+                           "region.lower.velocity_x=0.7 region.upper.velocity_x=0.7");
+    check_results(moving, 2);
+    CHECK(std::fabs(moving.value("growth_over_theory") / r.value("growth_over_theory") - 1) <=
+          0.002);
 }
 
 TEST_CASE("the vortex of Gresho does not feel how slow it is" * doctest::description("physics")) {

@@ -130,6 +130,17 @@ flip tube flip.pressure=implicit region.gas.velocity_x=1 time.dt=0.009
 flip acoustic.toml flip.pressure=explicit flip.theta=1 flip.tolerance=1e-8 time.dt=0 \
     region.gas.velocity_x=0.7 theory.frame_x=0.7 flip.mass=consistent
     no warning
+flip acoustic.toml grid.cells_x=6 -> warning: the mesh slows this wave by
+flip acoustic.toml grid.cells_x=16 -> no warning
+pic acoustic.toml flip.density=cells flip.pressure=explicit flip.theta=1 flip.tolerance=1e-8 \
+    time.dt=0 region.gas.amplitude=0.1 grid.cells_x=8
+    warning: the mesh slows this wave by 9.968 %, and the comparison expects that: a wavelength has
+    8 cells
+    warning: explicit steps make sound grow
+flip kelvin_helmholtz.toml flip.viscosity=0.001
+    warning: flip.viscosity = 0.001 changes this wave by up to about 1.261 %, and theory is of fluids
+    without it
+flip rayleigh_taylor.toml flip.viscosity=1e-6 -> no warning
 flip around sound theory.compare=wave time.end=1
     warning: viscosity.linear = 0.5 damps the wave, and theory is of sound that nothing damps
 flip tube boundary.x_low=no_slip
