@@ -39,6 +39,15 @@ namespace flip {
     return position < axis.high() ? position : std::max(position - axis.length, axis.low);
 }
 
+/// Whether particles that gather within a cell fall, and the transfer lets that grow.
+inline bool gathers(const Problem& problem) {
+    const Transfer& t = problem.scheme.transfer;
+    return problem.scheme.particle_volumes && !t.filtered && t.part < 1 &&
+           problem.body_force.gravity_x * problem.body_force.gravity_x +
+                   problem.body_force.gravity_z * problem.body_force.gravity_z >
+               0;
+}
+
 /// Removes every particle that has left through an open or an inflow boundary.
 /// in:     time, for the message
 /// in/out: particles, already wrapped; first_of_row is void afterwards
@@ -55,7 +64,10 @@ void remove_outflow(const Problem& problem, double time, Particles& particles, c
             common::fail(
                 "a particle has gone through the wall to x = ", x, ", z = ", z, " at t = ", time,
                 ": reduce time.cfl, or time.dt where it is set; where that does not help, ",
-                "particles make more noise than the flow: raise particles.per_cell_x");
+                "particles make more noise than the flow: raise particles.per_cell_x",
+                gathers(problem) ? ", or take flip.transfer = \"xpic\", with which fewer gather "
+                                   "within cells and fall"
+                                 : "");
         left(p);
         return true;
     });

@@ -310,6 +310,85 @@ TEST_CASE("a dam breaks with the air that it had and a pond under air lies still
     CHECK(of_pic.value("kinetic_energy") <= 1e-20);
 }
 
+TEST_CASE("water that falls back upon itself keeps its volume" * doctest::description("physics")) {
+    for (const char* mesh :
+         {"grid.cells_x=40 grid.cells_z=20", "grid.cells_x=80 grid.cells_z=40"}) {
+        CAPTURE(std::string(mesh));
+        const Run dam = run("flip", "fallen", "dam_break",
+                            mesh + std::string(" time.end=20 theory.compare=none"));
+        check_results(dam, 2);  // energy_error and overfull
+        check_conserved(dam);
+        CHECK(largest(dam.column("overfull")) <= 0.05);
+    }
+}
+
+// Water in a tank, half as deep as long, that swings in its lowest mode.
+const char* const tank = R"toml(
+[grid]
+cells_x = 32
+cells_z = 24
+length_x = 1
+length_z = 0.75
+[boundary]
+x_low = "slip"
+x_high = "slip"
+z_low = "slip"
+z_high = "slip"
+[time]
+cfl = 0.3
+dt = 0.02
+end = 20
+[gravity]
+z = -1
+[material.water]
+gamma = 7
+p_infinity = 300
+[constant.k]
+value = 3.141592653589793
+[region.pool]
+density = 1
+pressure = 0.25
+hydrostatic = true
+shape = "box"
+center_x = 0.5
+center_z = 0.25
+half_x = 0.5
+half_z = 0.25
+velocity_x = "-0.02*sin(k*x)*cosh(k*z)/sinh(k/2)"
+velocity_z = "0.02*cos(k*x)*sinh(k*z)/sinh(k/2)"
+[particles]
+per_cell_x = 3
+per_cell_z = 3
+[viscosity]
+linear = 0
+quadratic = 0
+[flip]
+transfer = "xpic"
+density = "particles"
+pressure = "implicit"
+theta = 0.6
+)toml";
+
+TEST_CASE("water in a tank swings at the frequency of its length and depth" *
+          doctest::description("physics")) {
+    const std::string file = folder_of("tank.toml");
+    std::filesystem::create_directories(facts::folder_of_test());
+    std::ofstream(file) << tank;
+    const Run r = facts::run_into("fluid_tank", "flip", file);
+    check_results(r, 2);
+    check_conserved(r);
+    // omega^2 = g k tanh(k h); all water stands still twice in a period.
+    const std::vector<double>&t = r.column("time"), &kinetic = r.column("kinetic");
+    std::vector<double> still;
+    for (std::size_t n = 2; n + 2 < t.size(); ++n)
+        if (kinetic[n] == *std::min_element(&kinetic[n - 2], &kinetic[n + 3]))
+            still.push_back(t[n]);
+    REQUIRE(still.size() >= 10);
+    const double half = (still.back() - still.front()) / double(still.size() - 1),
+                 pi = std::acos(-1.0);
+    CHECK(std::fabs(half * std::sqrt(pi * std::tanh(0.5 * pi)) / pi - 1) <= 0.02);
+}
+
 TEST_CASE("a blast follows Sedov and falling gas is dense but not as dense as Noh's" *
           doctest::description("physics")) {
     const Run blast = run("flip", "blast", "sedov", "grid.cells_x=48 grid.cells_z=48");
@@ -495,6 +574,13 @@ TEST_CASE("a layer of shear winds up at the rate of Rayleigh" * doctest::descrip
         run("flip", "shear", "kelvin_helmholtz", "time.end=1.4 grid.cells_x=48 grid.cells_z=48");
     check_results(r, 2);
     check_conserved(r);
+    // On a train, too.
+    const Run moving = run("flip", "shear", "kelvin_helmholtz",
+                           "time.end=1.4 grid.cells_x=48 grid.cells_z=48 theory.frame_x=0.7 "
+                           "region.lower.velocity_x=0.7 region.upper.velocity_x=0.7");
+    check_results(moving, 2);
+    CHECK(std::fabs(moving.value("growth_over_theory") / r.value("growth_over_theory") - 1) <=
+          0.002);
 }
 
 TEST_CASE("the vortex of Gresho does not feel how slow it is" * doctest::description("physics")) {

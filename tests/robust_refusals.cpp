@@ -636,6 +636,9 @@ fluids kelvin_helmholtz.toml region.upper.density=2
     theory.compare = "kelvin_helmholtz" is for streams of one density and pressure in one layer of
     shear, and region.upper is not like region.lower: give both the same density
 fluids kelvin_helmholtz.toml gravity.trap=1 -> is for fluid without gravity or trap
+fluids kelvin_helmholtz.toml region.upper.velocity_x=1
+    theory.compare = "kelvin_helmholtz": region.upper moves with 1, 0 beside its layer of shear: set
+    theory.frame_x to the first, and the second to 0
 fluids kelvin_helmholtz.toml region.upper.width=0.1 -> region.upper is not like region.lower
 fluids box theory.compare=kelvin_helmholtz around_x
     theory.compare = "kelvin_helmholtz" needs a region with flow = "shear"

@@ -49,11 +49,6 @@ inline double dilation(const Grid& grid, const Field& vx, const Field& vz, long 
            0.5 * grid.x.spacing() * (vz[up] + vz[up + 1] - vz[n] - vz[n + 1]);
 }
 
-/// V_c div v that a crowded cell of liquid is given in an implicit step (solve_pressure.hpp).
-inline double spread_of(const Cells& c, long n, double dt) {
-    return c.crowding.size() > 0 ? 0.1 / dt * c.crowding[n] : 0;
-}
-
 /// Force of the pressures of the four cells around a node; the transpose of dilation().
 /// exact:  differences come first, so that a pressure equal to round-off pushes by that of itself alone
 inline Eigen::Vector2d pressure_force(const Grid& grid, const Field& p, long n) {
@@ -63,6 +58,11 @@ inline Eigen::Vector2d pressure_force(const Grid& grid, const Field& p, long n) 
             0.5 * grid.x.spacing() * (p[down - 1] - p[n - 1] + (p[down] - p[n]))};
 }
 // [/transpose]
+
+/// V_c div v that a crowded cell of liquid is given in an implicit step (solve_pressure.hpp).
+inline double spread_of(const Cells& c, long n, double dt) {
+    return c.crowding.size() > 0 ? 0.1 / dt * c.crowding[n] : 0;
+}
 
 /// The velocity gradient of a cell, mean times volume: xz is dv_x/dz; and v_r/r about the axis.
 /// exact:  its trace is dilation()

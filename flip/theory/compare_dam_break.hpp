@@ -61,7 +61,8 @@ inline void track_dam_break(const Snapshot& now, common::Row& row) {
     const double beyond = inside > outside ? (inside - 0.5) / (inside - outside) : 0.5;
     double height = 0;
     for (long j = 0; j < grid.z.cells; ++j) height += filled(0, j) * grid.z.spacing();
-    row.add("front_x", "length", grid.x.at(std::max(0.0, double(i) - 0.5 + beyond)));
+    row.add("front_x", "length",
+            grid.x.at(std::clamp(double(i) - 0.5 + beyond, 0.0, double(grid.x.cells))));
     row.add("wall_height", "length", height);
 }
 

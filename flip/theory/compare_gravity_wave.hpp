@@ -52,6 +52,7 @@ inline void warn_of_gravity_wave(const Case& parameters, std::vector<std::string
          parameters.theory_tolerance, ": refine the mesh");
     warn(warnings, parameters.end < 2 * period, "time.end = ", parameters.end,
          " is less than two periods, ", 2 * period, ": the frequency cannot be measured well");
+    warn_of_viscous_wave(parameters, gravity_wave_frequency(parameters), warnings);
 }
 
 /// Frequency and amplitude of the wave, both directions of travel.
@@ -61,8 +62,11 @@ inline void compare_gravity_wave(const FinishedRun& run) {
     const auto times = run.history.column("time");
     const std::vector<std::complex<double>> mode = run.history.complex_column("mode");
     run.info("theory_frequency", omega, "1/time", "two layers between walls");
-    double steepest = 0;
-    for (const auto& one : mode) steepest = std::max(steepest, k * std::abs(one));
+    double steepest = 0, first = 0;  // of all, and of the first period
+    for (std::size_t n = 0; n < mode.size(); ++n) {
+        steepest = std::max(steepest, k * std::abs(mode[n]));
+        if (omega * times[n] < 2 * pi) first = steepest;
+    }
     run.info("steepness", steepest, "", "largest height times wave number");
     const char* const names[] = {"frequency_over_theory", "amplitude_per_period"};
     const auto give_up = [&](const std::string& why) {
@@ -71,8 +75,14 @@ inline void compare_gravity_wave(const FinishedRun& run) {
     if (steepest < 1e-9)
         return give_up("there is no wave: give a region an amplitude, or a ripple");
     if (steepest > 0.4)
-        return give_up(sentence("the wave has the steepness ", steepest,
-                                ", and theory is of small ones, below 0.4: lower the amplitude"));
+        return give_up(sentence(
+            "the wave has the steepness ", steepest, ", and theory is of small ones, below 0.4: ",
+            first > 0.3 ? "lower the amplitude"
+                        : sentence("in the first period it was ", first,
+                                   ", and the rest is what steps and particles made: lower "
+                                   "time.end, raise particles.per_cell_x and per_cell_z",
+                                   w.transfer == "flip" ? ", take flip.transfer = \"xpic\"" : "",
+                                   w.implicit() && w.theta < 1 ? ", or flip.theta = 1" : "")));
     common::ModeSearch search{.expected = {omega, -omega}};
     search.periods = 1.5;
     const common::MeasuredMode seen = measure_between_steps(times, mode, search);

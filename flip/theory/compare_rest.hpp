@@ -50,15 +50,21 @@ inline void compare_rest(const FinishedRun& run) {
     const double weight =
         run.totals.mass * std::hypot(parameters.gravity_x * parameters.grid.x.length,
                                      parameters.gravity_z * parameters.grid.z.length);
+    const bool falls = weight > 0;
     run.hint(
         "something is out of balance: begin with pressures that balance across interfaces, put "
         "them between cells, and take flip.density = \"particles\" for liquids",
         parameters.loading == "random" ? "; particles.loading = \"random\" puts more of them into "
                                          "some cells than into others: "
                                          "take \"lattice\""
-                                       : "");
+                                       : "",
+        run.program == "flip" && falls && parameters.transfer != "pic" &&
+                parameters.transfer != "xpic"
+            ? sentence("; particles gather within cells and fall with flip.transfer = \"",
+                       parameters.transfer, "\": take \"xpic\" where that is what moves")
+            : "");
     const double fastest = run.history.largest("largest_speed") / sound;
-    if (!(weight > 0)) {
+    if (!falls) {
         run.summary.result_at_most("largest_speed", fastest, "c", largest_mach_at_rest,
                                    "equal pressures balance; c of the slowest sound");
         return;

@@ -239,6 +239,10 @@ inline void compare_riemann(const FinishedRun& run) {
     else if (run.program == "pic" && !holds)
         advice +=
             ", or flip: pic converges on finer meshes only with more particles in their cells";
+    if (run.program == "pic" && holds)
+        advice +=
+            ", or flip with flip.density = \"particles\": a liquid under tension needs particles "
+            "that carry their volume";
     run.hint(cells_swept, ": below 15 raise time.end or refine the mesh; else take ", advice,
              parameters.viscosity > 0
                  ? "; flip.viscosity smears the waves, and theory has none: take it out"

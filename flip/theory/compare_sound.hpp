@@ -52,6 +52,12 @@ inline SoundWave sound_wave_of(const Case& parameters, const std::string& progra
     return {c * k, std::arg(factor), std::abs(factor)};
 }
 
+/// The part of its frequency that the mesh alone takes from the wave of a case.
+inline double slowed_by_mesh(const Case& parameters, const std::string& program) {
+    const double short_dt = 1e-3 / sound_wave_of(parameters, program, 1).frequency;
+    return 1 - sound_wave_of(parameters, program, short_dt).phase / 1e-3;
+}
+
 /// How many particles a sound wave takes across a border of cells: its displacement, amplitude/k, over
 /// the distance of particles. Where that is below 1/2 no cell of pic gains or loses one.
 inline double particles_moved(const Case& parameters, const RegionCase& r) {
@@ -153,10 +159,9 @@ inline void compare_wave(const FinishedRun& run) {
     const auto per_period = [&](const Spiral& mode) {
         return std::exp(common::slope(times, mode.log_size) * period);
     };
-    const std::string scheme = parameters.implicit() ? "theta scheme"
-                               : wave.amplification > 1 + 1e-12
-                                   ? "explicit step, which makes sound grow"
-                                   : "explicit step";
+    const std::string scheme = sentence(
+        parameters.implicit() ? "theta scheme" : "explicit step", " on this mesh",
+        parameters.implicit() || wave.amplification <= 1 + 1e-12 ? "" : ", which makes sound grow");
     run.info("frequency", frequency, "1/time", "of velocity");
     const RegionCase& r = region_with_flow(parameters, "wave");
     const double cells = double(parameters.grid.x.cells) / double(parameters.mode),

@@ -79,10 +79,23 @@ inline void compare_gresho(const FinishedRun& run) {
         const double ratio = values.back() / values.front();
         return ratio > 0 ? std::pow(ratio, turn / times.back()) : 0.0;
     };
-    run.hint("the core is ", region.width / parameters.grid.x.spacing(),
-             " cells wide, and an explicit step makes noise at low Mach numbers: refine the mesh, "
-             "or take flip.pressure = \"implicit\", flip.density = \"particles\", flip.transfer = "
-             "\"flip\", and no viscosity");
+    const bool flip = run.program == "flip", noisy = flip && !parameters.implicit(),
+               confined = flip && parameters.confined;
+    std::string cures;
+    const auto advise = [&](bool missing, const char* cure) {
+        if (missing) cures += sentence(cures.empty() ? ", or take " : ", ", cure);
+    };
+    advise(!flip, "flip");
+    advise(confined, "flip.confined = false");
+    advise(noisy, "flip.pressure = \"implicit\"");
+    advise(flip && parameters.density != "particles", "flip.density = \"particles\"");
+    advise(flip && parameters.transfer != "flip", "flip.transfer = \"flip\"");
+    advise(parameters.q_linear > 0, "viscosity.linear = 0");
+    advise(parameters.viscosity > 0, "flip.viscosity = 0");
+    run.hint("the core is ", region.width / parameters.grid.x.spacing(), " cells wide",
+             noisy ? ", and an explicit step makes noise at low Mach numbers" : "",
+             confined ? ", and paths that are confined change its energy" : "", ": refine the mesh",
+             cures.empty() ? ", or raise particles.per_cell_x and per_cell_z" : cures);
     run.result("kinetic_energy_kept", kept("kinetic_in_frame"), "", 1, source);
     run.result("angular_momentum_kept", kept("swirl"), "", 1, source);
     run.info("turns", t / turn, "", "of the core");
@@ -136,11 +149,15 @@ inline void compare_rotation(const FinishedRun& run) {
     if (std::fabs(turns) < 0.1)
         return run.not_measured("angular_momentum_kept", "the disk has made ", turns,
                                 " turns, and theory is tried by a tenth at least: raise time.end");
-    run.hint(
-        "what the transfer takes in each step adds up over ", run.history.column("time").size() - 1,
-        " steps, with ", region.width / h,
-        " cells in the radius: refine the mesh, take longer steps, or flip.transfer = \"flip\" "
-        "in flip");
+    if (std::max(L, K) > 1)
+        run.hint(
+            "steps of finite length carry particles outward, and both rise with them: lower "
+            "time.cfl, or time.dt where it is set");
+    else
+        run.hint("what the transfer takes in each step adds up over ",
+                 run.history.column("time").size() - 1, " steps, with ", region.width / h,
+                 " cells in the radius: refine the mesh, take longer steps, or flip.transfer = "
+                 "\"flip\" in flip");
     std::string source = "exact: rigid rotation for ever";
     if (run.program == "flip" && parameters.transfer == "pic" && region.shape == "disk") {
         const double steps = double(run.history.column("time").size()) - 1;
