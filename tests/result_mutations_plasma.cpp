@@ -78,7 +78,7 @@ const std::vector<Mutation> electrostatic{
     {"cic", "ring", long_step, "energy_change"},
     {"cic", "sheath", "grid.cells_x=8 time.end=1200", "collector_potential plasma_potential"},
     {"cic", "thermal_heating", "", ""},
-    {"cic", "thermal_heating", "time.dt=1", "energy_change"},
+    {"cic", "thermal_heating", "time.dt=1", "energy_change kinetic_over_initial_electrons"},
     {"cic", "thermal_heating", "method.weighting=ngp", "field_over_kinetic"},
     {"cic", "two_stream", "", ""},
     {"cic", "two_stream", "grid.cells_x=8", fails_growth},
