@@ -29,6 +29,15 @@ cic plane grid.length_z=60 species.electrons.temperature_x=0.01
 cic line method.scheme=energy species.electrons.drift_x=0.1
     warning: electrons: a cold beam at 0.2667 omega_p dx is below 0.2887, where the
     energy-conserving mesh stops it; refine the mesh
+cic line method.scheme=energy species.electrons.drift_x=0.1 species.electrons.temperature_x=0.01
+    warning: electrons: the Debye length is 0.2667 cells, not above 1: in some hundred 1/omega_p
+    the energy-conserving mesh brakes the drift; refine it, or take method.scheme = "momentum"
+cic line method.scheme=energy species.electrons.drift_x=0.1 species.electrons.temperature_x=1
+    no warning
+cic line species.electrons.temperature_x=1 species.ions.motion=mobile species.ions.mass=100 \
+    species.ions.temperature_x=0.01 species.ions.particles_per_cell=4
+    warning: the Debye length of ions is 0.2667 cells, below 0.3183 for cic: the mesh will heat
+    ions; refine it to cells of 0.3142
 cic line species.electrons.drift_x=10
     warning: electrons: particles move 2.667 cells in a step; below 2 they see the field they
     cross
