@@ -311,6 +311,30 @@ TEST_CASE("a plasma that moves keeps its momentum where B is taken in the middle
     CHECK(fast["results"]["energy_drift"]["verdict"] == "PASS");
 }
 
+TEST_CASE("momentum along a uniform field is kept and the field takes no verdict away" *
+          doctest::description("physics")) {
+    const std::string along =
+        "implicit_moment/cases/moving_plasma.toml time.end=150 uniform.B_x=0.05";
+    CHECK(value(run("along", along), "momentum_change") <= 0.01);
+    CHECK(value(run("along_braked", along + " field.B_level=start"), "momentum_change") >= 0.05);
+    // Across it a plasma gyrates.
+    CHECK(!run("across",
+               "implicit_moment/cases/moving_plasma.toml time.end=3 uniform.B_z=0.05")["results"]
+               .contains("momentum_change"));
+}
+
+TEST_CASE("what a species at rest gains or loses is a result where two may exchange it" *
+          doctest::description("physics")) {
+    const std::string rest = "implicit_moment/cases/plasma_at_rest.toml field.response=moments ";
+    const Json few = run("few", rest + "uniform.particles_per_cell=1 time.end=400");
+    for (const char* name : {"kinetic_over_initial_ions", "kinetic_over_initial_electrons"})
+        CHECK(few["results"][name]["verdict"] == "FAIL");
+    for (const std::string moves :
+         {"uniform.E_x=1e-4", "species.ions.drift_x=0.01", "species.ions.temperature_x=1e-3"})
+        CHECK(!run("moves", rest + "time.end=4 " + moves)["results"].contains(
+            "kinetic_over_initial_ions"));
+}
+
 TEST_CASE("sums turned on the mesh heat a plasma that particles turned one by one do not" *
           doctest::description("physics")) {
     const std::string hot = "implicit_moment/cases/mesh_rotation.toml";

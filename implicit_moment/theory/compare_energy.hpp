@@ -59,29 +59,35 @@ inline EnergyWindow energy_window(const Case& w, double by_theta) {
     return window;
 }
 
-/// The largest change of the momentum of a plasma that drifts as a whole, over that momentum, which is conserved.
-/// out:    NaN where a case has walls, fields or no such drift
+/// The largest change of the momentum of a plasma that drifts as a whole, over that momentum, which is conserved;
+/// in a uniform magnetic field of its component along the field.
+/// out:    NaN where a case has walls, an electric field, a charged background or no such drift
 inline double momentum_change(const Case& w, const common::History& history) {
     const UniformCase& u = w.uniform;
-    if (!w.is_uniform() || !w.grid.x.periodic || !w.grid.z.periodic || has_uniform_E(w) ||
-        u.B_x != 0 || u.B_y != 0 || u.B_z != 0)
+    if (!w.is_uniform() || !w.grid.x.periodic || !w.grid.z.periodic || has_uniform_E(w))
         return std::nan("");
+    const Eigen::Vector3d B(u.B_x, u.B_y, u.B_z);
+    const auto kept = [&](double x, double y, double z) {
+        const Eigen::Vector3d all(x, y, z);
+        return B.norm() > 0 ? Eigen::Vector3d(all.dot(B) / B.squaredNorm() * B) : all;
+    };
     // In units of n0: of the drifts together, and of all that moves.
-    Eigen::Array3d drift = Eigen::Array3d::Zero();
-    double all = 0;
+    Eigen::Vector3d drift = Eigen::Vector3d::Zero();
+    double all = 0, charge = 0;
     for (const SpeciesCase& s : u.species) {
-        const Eigen::Array3d each(s.drift_x, s.drift_y, s.drift_z);
+        const Eigen::Vector3d each = kept(s.drift_x, s.drift_y, s.drift_z);
         const double T = std::max({s.temperature_x, s.temperature_y, s.temperature_z});
         drift += s.density * s.mass * each;
-        all += s.density * s.mass * (each.matrix().norm() + std::sqrt(T / s.mass));
+        all += s.density * s.mass * (each.norm() + std::sqrt(T / s.mass));
+        charge += s.density * s.charge;
     }
-    const double together = drift.matrix().norm();
-    if (together <= 0.3 * all) return std::nan("");
+    const double together = drift.norm();
+    if (together <= 0.3 * all || std::fabs(charge) > 1e-9) return std::nan("");
     const auto x = history.column("momentum_x"), y = history.column("momentum_y"),
                z = history.column("momentum_z");
     double change = 0;
     for (std::size_t n = 0; n < x.size(); ++n)
-        change = std::max(change, std::hypot(x[n] - x[0], y[n] - y[0], z[n] - z[0]));
+        change = std::max(change, kept(x[n] - x[0], y[n] - y[0], z[n] - z[0]).norm());
     return change / (together * w.grid.x.length * w.grid.z.length);
 }
 
