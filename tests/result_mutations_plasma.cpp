@@ -193,7 +193,11 @@ const std::vector<Mutation> implicit{
     // Thicker, but not thicker than an ion gyrates.
     {"implicit_moment", "thin_tail",
      "harris.thickness=0.9 grid.cells_z=64 harris.particles=4e4 time.dt=0.6 time.end=400",
-     "flux_over_normal_flux energy_drift"},
+     "flux_over_normal_flux"},
+    {"implicit_moment", "thin_tail",
+     "harris.thickness=0.9 grid.cells_z=64 harris.particles=1e4 time.dt=0.6 time.end=200 "
+     "field.theta=1",
+     "energy_drift"},
     {"implicit_moment", "magnetotail", few_random + "grid.cells_x=32 grid.cells_z=32 time.dt=0.6",
      "energy_drift"},
     {"implicit_moment", "oblique_whistler", "", ""},
