@@ -591,6 +591,8 @@ TEST_CASE("what falls short names what cures it" * doctest::description("physics
                                     "species.electrons.amplitude=1e-3");
     says(landau, "what hides it is noise: raise the amplitude or particles_per_cell");
     says(landau, "the error, 1.447, is larger than the tolerance, 0.03;");
+    says(said("cic/cases/plasma_wave.toml", "time.dt=0.02 method.weighting=ngp"),
+         "displaced by less than their distance keep their nearest node");
     says(said("cic/cases/warm_two_stream.toml",
               "species.right.amplitude=0 species.left.amplitude=0 species.right.loading=random "
               "species.right.particles_per_cell=256 species.left.particles_per_cell=256"),
