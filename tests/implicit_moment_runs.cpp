@@ -200,6 +200,14 @@ TEST_CASE("a Harris sheet at rest keeps its profiles within noise" *
     CHECK(std::fabs(value(summary, "energy_drift")) <= 0.005);
 }
 
+TEST_CASE("a sheet at rest that tears says so" * doctest::description("physics")) {
+    const Json torn = run("torn",
+                          "implicit_moment/cases/harris_equilibrium.toml harris.particles=40000 "
+                          "grid.cells_x=32 grid.cells_z=32 time.end=600");
+    CHECK(torn["results"]["current_over_noise"].dump().find("the sheet tears by itself") !=
+          std::string::npos);
+}
+
 TEST_CASE("a sheet that cools is seen whatever guide field it has and however high its box is" *
           doctest::description("physics")) {
     const std::string at_rest =

@@ -356,6 +356,11 @@ explicit_em time.dt=0.3 grid.cells_x=48 grid.cells_z=24
 explicit_em harris.light_over_alfven=10 harris.guide_field=10
     warning: electrons: Omega_c dt = 0.7537 is above 0.5, gyration is too slow by more than 2 %:
     lower time.dt to 0.0199
+    warning: temperatures are up to 0.02083 of m c^2, above 0.02, where drifting Maxwellians of
+    gamma v do not balance the field and the sheet is no exact equilibrium: set
+    particles.relativistic = false
+explicit_em harris.light_over_alfven=10 harris.guide_field=0 particles.relativistic=false time.dt=0.01
+    no warning
 explicit_em beam particles.relativistic=false species.beam.temperature_x=0.09 grid.cells_x=512
     warning: beam: about 7198 of 8.389e+06 particles, 0.08581 %, are loaded faster than light, and
     the push is not relativistic

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "common/run/run.hpp"
+#include "implicit_moment/setup/load_plasma.hpp"
 #include "implicit_moment/theory/compare_drift.hpp"
 #include "implicit_moment/theory/wave_theory.hpp"
 
@@ -171,10 +172,12 @@ inline void compare_energy(const Case& w, const common::History& history,
         energy_window(w, damps && (w.wave == "langmuir" || w.wave == "cold")
                              ? drift.back() - history.column("energy_residual").back()
                              : 0);
-    summary.hint(damps ? "field.theta above 0.5 damps fast waves and noise: set it to 0.5, or "
-                         "raise the number of particles"
-                       : "noise of few particles, or scales that are not resolved, heat or cool: "
-                         "raise the number of particles, lower time.dt, or refine the mesh");
+    const double heat = relativistic_heat(w);
+    summary.hint(heat > 0 && w.harris.perturbation == 0 ? hot_sheet(heat)
+                 : damps ? "field.theta above 0.5 damps fast waves and noise: set it to 0.5, or "
+                           "raise the number of particles"
+                         : "noise of few particles, or scales that are not resolved, heat or cool: "
+                           "raise the number of particles, lower time.dt, or refine the mesh");
     if (std::fabs(window.change) > std::min(1e-3, 0.1 * window.tolerance))
         return summary.result("energy_drift", drift.back(), "", window.change, window.tolerance,
                               window.source);
