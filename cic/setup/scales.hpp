@@ -197,6 +197,28 @@ inline void warn_of_heating(const Case& parameters, const Scales& scales, double
                  length / least);
 }
 
+// A diode whose source emits more than its own charge lets through: what returns is emitted again.
+// source: Child, Phys. Rev. 32, 492 (1911); Langmuir, Phys. Rev. 2, 450 (1913).
+inline void warn_of_space_charge(const Case& parameters, std::vector<std::string>& warnings) {
+    const WallCase &low = parameters.walls[x_low], &high = parameters.walls[x_high];
+    const auto emits = [](const SpeciesCase& s) { return s.emission > 0; };
+    if (parameters.dimensions != 1 || parameters.magnetized() || !parameters.has_walls() ||
+        low.particles != "source" || low.field != "grounded" || high.field != "grounded" ||
+        std::ranges::count_if(parameters.species, emits) != 1)
+        return;
+    const SpeciesCase& s = *std::ranges::find_if(parameters.species, emits);
+    const double q = std::fabs(s.charge), V = (low.potential - high.potential) * s.charge / q;
+    if (q == 0 || !(q * V > 10 * s.emission_temperature)) return;
+    const double most = 4.0 / 9 * std::sqrt(2 * q / s.mass) * std::pow(V, 1.5) /
+                        (q * std::pow(parameters.grid.x.length, 2));
+    common::warn(warnings, s.emission > 1.1 * most, s.name, ".emission = ", s.emission,
+                 " is above the space-charge limit of Child and Langmuir, "
+                 "4/9 (2 q/m)^1/2 V^3/2/(q d^2) = ",
+                 most,
+                 ": what returns to the source is emitted again, and particles pile up there "
+                 "without end; lower the emission, or raise the potential");
+}
+
 }  // namespace detail
 
 /// Warnings with the number and the limit, for choices that run but may mislead.
@@ -214,6 +236,7 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
              100 * (2 / omega_dt * std::asin(0.5 * omega_dt) - 1),
              " % too high; at 2 the leapfrog blows up");
     detail::warn_of_heating(parameters, scales, dx, warnings);
+    detail::warn_of_space_charge(parameters, warnings);
     for (const SpeciesScales& s : scales.species) {
         const auto own = std::ranges::find(parameters.species, s.name, &SpeciesCase::name);
         const double through = parameters.dimensions == 2 ? std::hypot(own->drift_x, own->drift_z)
