@@ -155,8 +155,8 @@ cic between_walls boundary.x_high=floating boundary.potential_x_high=-5
 cic between_walls boundary.x_low=floating gauss.sign=-1
     gauss.sign = -1 is not for floating walls: set boundary.x_low = "grounded"
 cic plane boundary.z_low=floating box
-    floating walls that meet grounded ones at a corner are not supported: make all walls grounded,
-    or one direction periodic
+    a floating wall that meets others at the corners of a box is not supported: make all walls
+    grounded, or one direction periodic
 cic between_walls species.electrons.emission=1
     species.electrons.emission needs boundary.particles_x_low = "source" and grid.boundary_x =
     "wall"
