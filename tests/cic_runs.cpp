@@ -591,6 +591,9 @@ TEST_CASE("what falls short names what cures it" * doctest::description("physics
                                     "species.electrons.amplitude=1e-3");
     says(landau, "what hides it is noise: raise the amplitude or particles_per_cell");
     says(landau, "the error, 1.447, is larger than the tolerance, 0.03;");
+    says(said("cic/cases/sheath.toml", "time.dt=1.8 time.end=1800"),
+         "omega_p dt of the electrons is 0.87, and thermal ones cross 7.2 cells in it: lower "
+         "time.dt");
     says(said("cic/cases/plasma_wave.toml", "time.dt=0.02 method.weighting=ngp"),
          "displaced by less than their distance keep their nearest node");
     says(said("cic/cases/warm_two_stream.toml",
