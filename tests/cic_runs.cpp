@@ -553,6 +553,32 @@ TEST_CASE("a cold plasma between walls rests in the energy scheme alone" *
     CHECK(std::ranges::max(energy) <= 1.01 * energy.front());
 }
 
+TEST_CASE("a mesh that brakes or heats a plasma in which nothing happens is a result" *
+          doctest::description("physics")) {
+    const std::string drifting = case_file(
+        "[grid]\nlength_x = 64\ncells_x = 64\n[time]\ndt = 0.1\nend = 200\n"
+        "[species.ions]\ncharge = 1\nmotion = \"fixed\"\n[species.e]\n"
+        "temperature_x = 0.01\ndrift_x = 0.2\nloading = \"random\"\n");
+    const std::string braked = said(drifting, "method.scheme=energy");
+    says(braked, "FAIL momentum_change");
+    says(braked, "the energy-conserving mesh brakes what moves through it");
+    says(braked, "FAIL kinetic_over_initial_e");
+    says(braked, "a random start has more noise than equilibrium");
+    const Run kept = facts::run_into("kept", "cic", drifting);
+    CHECK(!kept.summary["results"].contains("momentum_change"));
+    // Ions that the mesh heats, beside electrons that it resolves.
+    const std::string cold_ions = case_file(
+        "[grid]\nlength_x = 64\ncells_x = 64\n[time]\ndt = 0.2\nend = 400\n[species.e]\n"
+        "temperature_x = 1\n[species.ions]\ncharge = 1\nmass = 100\ntemperature_x = 0.01\n");
+    const Run heated = facts::run_into("heated", "cic", cold_ions);
+    const auto verdict = [&](const std::string& name) {
+        return heated.summary["results"][name]["verdict"];
+    };
+    CHECK(verdict("kinetic_over_initial_e") == "PASS");
+    CHECK(verdict("kinetic_over_initial_ions") == "FAIL");
+    CHECK(verdict("energy_change") == "PASS");
+}
+
 TEST_CASE("what falls short names what cures it" * doctest::description("physics")) {
     says(said("cic/cases/plasma_wave.toml",
               "theory.model=plasma theory.frequency_tolerance=0.005 grid.cells_x=64 time.dt=0.02"),
@@ -565,6 +591,11 @@ TEST_CASE("what falls short names what cures it" * doctest::description("physics
                                     "species.electrons.amplitude=1e-3");
     says(landau, "what hides it is noise: raise the amplitude or particles_per_cell");
     says(landau, "the error, 1.447, is larger than the tolerance, 0.03;");
+    says(said("cic/cases/sheath.toml", "time.dt=1.8 time.end=1800"),
+         "omega_p dt of the electrons is 0.87, and thermal ones cross 7.2 cells in it: lower "
+         "time.dt");
+    says(said("cic/cases/plasma_wave.toml", "time.dt=0.02 method.weighting=ngp"),
+         "displaced by less than their distance keep their nearest node");
     says(said("cic/cases/warm_two_stream.toml",
               "species.right.amplitude=0 species.left.amplitude=0 species.right.loading=random "
               "species.right.particles_per_cell=256 species.left.particles_per_cell=256"),

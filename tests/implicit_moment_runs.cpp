@@ -200,6 +200,14 @@ TEST_CASE("a Harris sheet at rest keeps its profiles within noise" *
     CHECK(std::fabs(value(summary, "energy_drift")) <= 0.005);
 }
 
+TEST_CASE("a sheet at rest that tears says so" * doctest::description("physics")) {
+    const Json torn = run("torn",
+                          "implicit_moment/cases/harris_equilibrium.toml harris.particles=40000 "
+                          "grid.cells_x=32 grid.cells_z=32 time.end=600");
+    CHECK(torn["results"]["current_over_noise"].dump().find("the sheet tears by itself") !=
+          std::string::npos);
+}
+
 TEST_CASE("a sheet that cools is seen whatever guide field it has and however high its box is" *
           doctest::description("physics")) {
     const std::string at_rest =
@@ -309,6 +317,30 @@ TEST_CASE("a plasma that moves keeps its momentum where B is taken in the middle
                           "species.electrons.drift_x=0.2");
     CHECK(value(fast, "momentum_change") >= 0.1);
     CHECK(fast["results"]["energy_drift"]["verdict"] == "PASS");
+}
+
+TEST_CASE("momentum along a uniform field is kept and the field takes no verdict away" *
+          doctest::description("physics")) {
+    const std::string along =
+        "implicit_moment/cases/moving_plasma.toml time.end=150 uniform.B_x=0.05";
+    CHECK(value(run("along", along), "momentum_change") <= 0.01);
+    CHECK(value(run("along_braked", along + " field.B_level=start"), "momentum_change") >= 0.05);
+    // Across it a plasma gyrates.
+    CHECK(!run("across",
+               "implicit_moment/cases/moving_plasma.toml time.end=3 uniform.B_z=0.05")["results"]
+               .contains("momentum_change"));
+}
+
+TEST_CASE("what a species at rest gains or loses is a result where two may exchange it" *
+          doctest::description("physics")) {
+    const std::string rest = "implicit_moment/cases/plasma_at_rest.toml field.response=moments ";
+    const Json few = run("few", rest + "uniform.particles_per_cell=1 time.end=400");
+    for (const char* name : {"kinetic_over_initial_ions", "kinetic_over_initial_electrons"})
+        CHECK(few["results"][name]["verdict"] == "FAIL");
+    for (const std::string moves :
+         {"uniform.E_x=1e-4", "species.ions.drift_x=0.01", "species.ions.temperature_x=1e-3"})
+        CHECK(!run("moves", rest + "time.end=4 " + moves)["results"].contains(
+            "kinetic_over_initial_ions"));
 }
 
 TEST_CASE("sums turned on the mesh heat a plasma that particles turned one by one do not" *

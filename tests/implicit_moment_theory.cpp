@@ -436,6 +436,14 @@ TEST_CASE("a uniform plasma whose energy changes by more than 5 percent fails") 
     Case gem;
     CHECK(verdict({0, -0.005}, gem));
     CHECK(!verdict({0, -0.007}, gem));
+    // Which is known of that sheet alone.
+    for (double HarrisCase::*number : {&HarrisCase::thickness, &HarrisCase::temperature_ratio,
+                                       &HarrisCase::background, &HarrisCase::guide_field}) {
+        Case other;
+        other.harris.*number += 0.1;
+        CHECK(verdict({0, -0.029}, other));
+        CHECK(!verdict({0, -0.031}, other));
+    }
 }
 
 TEST_CASE("a plasma in crossed uniform fields drifts with both and shares out the field" *

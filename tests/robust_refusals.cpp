@@ -155,8 +155,8 @@ cic between_walls boundary.x_high=floating boundary.potential_x_high=-5
 cic between_walls boundary.x_low=floating gauss.sign=-1
     gauss.sign = -1 is not for floating walls: set boundary.x_low = "grounded"
 cic plane boundary.z_low=floating box
-    floating walls that meet grounded ones at a corner are not supported: make all walls grounded,
-    or one direction periodic
+    a floating wall that meets others at the corners of a box is not supported: make all walls
+    grounded, or one direction periodic
 cic between_walls species.electrons.emission=1
     species.electrons.emission needs boundary.particles_x_low = "source" and grid.boundary_x =
     "wall"
@@ -202,8 +202,8 @@ cic plane wave theory.model=mesh theory.mode_z=1
 cic line wave theory.model=mesh plasma.B_y=1
     theory.model = "mesh" has neither a magnetic field nor gauss.sign = -1: take "plasma"
 cic line wave theory.model=mesh theory.mode_x=0
-    theory.mode_x = 0 looks for the fastest growing of 7 modes, and that is for 1 to 512 and
-    theory.model = "plasma": name a mode
+    theory.mode_x = 0 looks for the fastest growing mode with theory.model = "plasma", and not
+    "mesh": name a mode, or take "plasma"
 cic line wave theory.mode_x=0 grid.cells_x=2048
     theory.mode_x = 0 looks for the fastest growing of 1023 modes
 cic ring.toml theory.mode_x=0 grid.cells_x=2048

@@ -29,6 +29,15 @@ cic plane grid.length_z=60 species.electrons.temperature_x=0.01
 cic line method.scheme=energy species.electrons.drift_x=0.1
     warning: electrons: a cold beam at 0.2667 omega_p dx is below 0.2887, where the
     energy-conserving mesh stops it; refine the mesh
+cic line method.scheme=energy species.electrons.drift_x=0.1 species.electrons.temperature_x=0.01
+    warning: electrons: the Debye length is 0.2667 cells, not above 1: in some hundred 1/omega_p
+    the energy-conserving mesh brakes the drift; refine it, or take method.scheme = "momentum"
+cic line method.scheme=energy species.electrons.drift_x=0.1 species.electrons.temperature_x=1
+    no warning
+cic line species.electrons.temperature_x=1 species.ions.motion=mobile species.ions.mass=100 \
+    species.ions.temperature_x=0.01 species.ions.particles_per_cell=4
+    warning: the Debye length of ions is 0.2667 cells, below 0.3183 for cic: the mesh will heat
+    ions; refine it to cells of 0.3142
 cic line species.electrons.drift_x=10
     warning: electrons: particles move 2.667 cells in a step; below 2 they see the field they
     cross
@@ -47,6 +56,14 @@ cic line output.fields_interval=0.01 output.particles_interval=1 output.phase_in
 cic between_walls boundary.particles_x_low=source
     warning: boundary.particles_x_low = "source", and every emission is 0: the wall only gives
     back what reaches it, with emission_temperature
+# 4/9 2^1/2 V^3/2/d^2 of d = 24.
+cic between_walls grid.length_x=24 boundary.particles_x_low=source boundary.potential_x_high=4 \
+    species.electrons.emission=0.01 species.electrons.emission_temperature=0.01
+    warning: electrons.emission = 0.01 is above the space-charge limit of Child and Langmuir,
+    4/9 (2 q/m)^1/2 V^3/2/(q d^2) = 0.00873: what returns to the source is emitted again
+cic between_walls grid.length_x=24 boundary.particles_x_low=source boundary.potential_x_high=4 \
+    species.electrons.emission=0.008 species.electrons.emission_temperature=0.01
+    no warning
 cic sheath.toml grid.length_x=6
     warning: grid.length_x = 6 is below 8 Debye lengths of the plasma, 16.55: the sheaths of
     both walls overlap
@@ -399,6 +416,11 @@ explicit_em time.dt=0.3 grid.cells_x=48 grid.cells_z=24
 explicit_em harris.light_over_alfven=10 harris.guide_field=10
     warning: electrons: Omega_c dt = 0.7537 is above 0.5, gyration is too slow by more than 2 %:
     lower time.dt to 0.0199
+    warning: temperatures are up to 0.02083 of m c^2, above 0.02, where drifting Maxwellians of
+    gamma v do not balance the field and the sheet is no exact equilibrium: set
+    particles.relativistic = false
+explicit_em harris.light_over_alfven=10 harris.guide_field=0 particles.relativistic=false time.dt=0.01
+    no warning
 explicit_em beam particles.relativistic=false species.beam.temperature_x=0.09 grid.cells_x=512
     warning: beam: about 7198 of 8.389e+06 particles, 0.08581 %, are loaded faster than light, and
     the push is not relativistic

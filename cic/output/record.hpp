@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cic/output/diagnostics.hpp"
+#include "cic/output/judge_conservation.hpp"
 #include "cic/output/write_output.hpp"
 #include "cic/theory/comparisons.hpp"
 #include "common/run/run.hpp"
@@ -75,6 +76,8 @@ class Recorder {
             summary.not_measured(parameters_.compare,
                                  "the run is too short for it: raise time.end");
         judge_energy(history, summary);
+        judge_momentum(parameters_, least_energy_, history, summary);
+        judge_rest(parameters_, history, summary);
         summary.conservation("largest_energy_drift", history.largest("energy_drift"), "1");
         summary.conservation("largest_charge_error", history.largest("charge_error"), "1");
         const auto p_x = history.column("momentum_x");

@@ -55,8 +55,8 @@ inline void validate(Case& parameters) {
     };
     const bool box = parameters.is_box();
     refuse(box && (mixed(x_low) || mixed(z_low)),
-           "floating walls that meet grounded ones at a corner are not supported: make all walls "
-           "grounded, or one direction periodic");
+           "a floating wall that meets others at the corners of a box is not supported: make all "
+           "walls grounded, or one direction periodic");
     refuse(box && (grid.x.cells < 3 || grid.z.cells < 3), "a box needs at least 3 x 3 cells");
     refuse(box && grid.x.cells * grid.z.cells > 4000000, "a box between four walls of ",
            grid.x.cells, " x ", grid.z.cells,

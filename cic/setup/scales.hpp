@@ -167,6 +167,58 @@ inline void warn_of_cold_plasma(const Case& parameters, const Scales& scales,
                  in_field, ") by time.end: take method.scheme = \"energy\"");
 }
 
+// A mesh of the momentum scheme that does not resolve the Debye lengths: of all species, or of those that
+// it will heat while others are resolved.
+inline void warn_of_heating(const Case& parameters, const Scales& scales, double dx,
+                            std::vector<std::string>& warnings) {
+    // Where each kind of weighting stops heating.
+    const double least =
+        parameters.weighting == "ngp" ? 0.6 : (parameters.weighting == "cic" ? 1 / pi : 0.15);
+    const auto too_short = [&](double length) {
+        return length > 0 && length < (1 - 1e-4) * least * dx;
+    };
+    if (parameters.conserving != "momentum" || !too_short(scales.debye_length)) return;
+    std::string names;
+    double length = scales.debye_length, shortest = HUGE_VAL;
+    bool resolves_one = false;
+    for (const SpeciesScales& s : scales.species) {
+        if (s.debye_length == 0) continue;
+        if (!too_short(s.debye_length))
+            resolves_one = true;
+        else
+            names += (names.empty() ? "" : " and ") + s.name,
+                shortest = std::min(shortest, s.debye_length);
+    }
+    const bool some = resolves_one && !names.empty();
+    if (some) length = shortest;
+    common::warn(warnings, true, "the Debye length ", some ? "of " + names + " " : "", "is ",
+                 length / dx, " cells, below ", least, " for ", parameters.weighting,
+                 ": the mesh will heat ", some ? names : "the plasma", "; refine it to cells of ",
+                 length / least);
+}
+
+// A diode whose source emits more than its own charge lets through: what returns is emitted again.
+// source: Child, Phys. Rev. 32, 492 (1911); Langmuir, Phys. Rev. 2, 450 (1913).
+inline void warn_of_space_charge(const Case& parameters, std::vector<std::string>& warnings) {
+    const WallCase &low = parameters.walls[x_low], &high = parameters.walls[x_high];
+    const auto emits = [](const SpeciesCase& s) { return s.emission > 0; };
+    if (parameters.dimensions != 1 || parameters.magnetized() || !parameters.has_walls() ||
+        low.particles != "source" || low.field != "grounded" || high.field != "grounded" ||
+        std::ranges::count_if(parameters.species, emits) != 1)
+        return;
+    const SpeciesCase& s = *std::ranges::find_if(parameters.species, emits);
+    const double q = std::fabs(s.charge), V = (low.potential - high.potential) * s.charge / q;
+    if (q == 0 || !(q * V > 10 * s.emission_temperature)) return;
+    const double most = 4.0 / 9 * std::sqrt(2 * q / s.mass) * std::pow(V, 1.5) /
+                        (q * std::pow(parameters.grid.x.length, 2));
+    common::warn(warnings, s.emission > 1.1 * most, s.name, ".emission = ", s.emission,
+                 " is above the space-charge limit of Child and Langmuir, "
+                 "4/9 (2 q/m)^1/2 V^3/2/(q d^2) = ",
+                 most,
+                 ": what returns to the source is emitted again, and particles pile up there "
+                 "without end; lower the emission, or raise the potential");
+}
+
 }  // namespace detail
 
 /// Warnings with the number and the limit, for choices that run but may mislead.
@@ -183,15 +235,12 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
         warn("omega_p dt = ", omega_dt, " is above 0.5: frequencies are ",
              100 * (2 / omega_dt * std::asin(0.5 * omega_dt) - 1),
              " % too high; at 2 the leapfrog blows up");
-    // Where each kind of weighting stops heating.
-    const double least =
-        parameters.weighting == "ngp" ? 0.6 : (parameters.weighting == "cic" ? 1 / pi : 0.15);
-    if (parameters.conserving == "momentum" && scales.debye_length > 0 &&
-        scales.debye_length < (1 - 1e-4) * least * dx)
-        warn("the Debye length is ", scales.debye_length / dx, " cells, below ", least, " for ",
-             parameters.weighting, ": the mesh will heat the plasma; refine it to cells of ",
-             scales.debye_length / least);
+    detail::warn_of_heating(parameters, scales, dx, warnings);
+    detail::warn_of_space_charge(parameters, warnings);
     for (const SpeciesScales& s : scales.species) {
+        const auto own = std::ranges::find(parameters.species, s.name, &SpeciesCase::name);
+        const double through = parameters.dimensions == 2 ? std::hypot(own->drift_x, own->drift_z)
+                                                          : std::fabs(own->drift_x);
         if (s.thermal_speed == 0 && s.drift > 0 && scales.omega_p > 0) {
             const double u = s.drift / (scales.omega_p * dx);
             const double safe = cold_beam_threshold(parameters.weighting == "tsc" ? 2 : 1);
@@ -199,6 +248,12 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
                 warn(s.name, ": a cold beam at ", u, " omega_p dx is below ", safe,
                      ", where the energy-conserving mesh stops it; refine the mesh");
         }
+        // As measured: in 1000/omega_p 13 % of the drift with one cell, 85 % with 0.2.
+        if (parameters.conserving == "energy" && s.debye_length > 0 &&
+            s.debye_length < (1 + 1e-4) * dx && through > 0.05 * s.thermal_speed)
+            warn(s.name, ": the Debye length is ", s.debye_length / dx,
+                 " cells, not above 1: in some hundred 1/omega_p the energy-conserving mesh brakes "
+                 "the drift; refine it, or take method.scheme = \"momentum\"");
         if (s.drift + s.thermal_speed > 2 * dx / parameters.dt)
             warn(s.name, ": particles move ", (s.drift + s.thermal_speed) * parameters.dt / dx,
                  " cells in a step; below 2 they see the field they cross");

@@ -183,7 +183,8 @@ struct Theory {
     long mode_x = 0, mode_z = 0;
     double seed = 0;        // amplitude with which the field of this root starts; 0: not known
     bool mirrored = false;  // -conj(omega) is a root as well, of the wave that goes the other way
-    std::vector<double> others;  // frequencies of other undamped waves, where they are known
+    std::vector<double> others;       // frequencies of other undamped waves, where they are known
+    std::complex<double> hidden = 0;  // a root that decays hardly faster than a damped one; 0: none
 };
 
 /// The part of the seeded field that belongs to one root of D: the residue of the initial-value
@@ -280,6 +281,23 @@ void find_magnetized_wave(const Case& parameters, const WaveVector& k,
     if (bernstein)
         for (const std::complex<double> root : roots)
             if (root != best) theory.others.push_back(root.real());
+}
+
+/// Of other roots of a damped wave the one that decays most slowly, where that is less than 1.5 times as fast;
+/// a mirror image is no other. out: 0 where there is none
+inline std::complex<double> decays_hardly_faster(const std::vector<std::complex<double>>& roots,
+                                                 std::complex<double> omega) {
+    std::complex<double> slowest = 0;
+    for (const std::complex<double> root : roots) {
+        const std::complex<double> here(std::fabs(root.real()), root.imag());
+        const bool same =
+            std::abs(here - std::complex<double>(std::fabs(omega.real()), omega.imag())) <
+            1e-6 * std::abs(omega);
+        if (!same && here.imag() > 1.5 * omega.imag() &&
+            (slowest == 0.0 || here.imag() > slowest.imag()))
+            slowest = here;
+    }
+    return slowest;
 }
 
 /// No root is known of a mode whose distributions by formula are smooth: it is damped, and too much for
@@ -386,6 +404,8 @@ inline Theory theory_of_wave(const Case& parameters, long mode_x, long mode_z,
     const std::complex<double> mirror = -std::conj(theory.omega);
     const common::DispersionRoot other = common::root_near(D, mirror);
     theory.mirrored = other.found && std::abs(other.omega - mirror) < 1e-6 * std::abs(mirror);
+    if (!parameters.magnetized() && theory.omega.imag() < -1e-3 * std::abs(theory.omega))
+        theory.hidden = decays_hardly_faster(all_roots(D, guesses), theory.omega);
     if (!on_mesh) refuse_resonance(parameters, k, theory, responses);
     if (!on_mesh) theory.seed = seeded_field(parameters, theory, responses, D);
     return theory;

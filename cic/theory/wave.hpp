@@ -178,6 +178,11 @@ inline std::string likely_cause(const Case& parameters, const Theory& theory, do
     if (parameters.model != "mesh" && step > 0.3)
         return sentence("|omega| dt is ", step,
                         ", and the leapfrog changes the wave: lower time.dt", exact);
+    if (theory.hidden != 0.0)
+        return sentence("another wave of this mode, omega = ", theory.hidden.real(),
+                        ", growth = ", theory.hidden.imag(),
+                        ", decays hardly faster, and the record has both: take another mode, or a "
+                        "perturbation that has less of it");
     if (noise > 0)
         return "the noise of particles is the most likely cause: raise particles_per_cell, or take "
                "loading = \"quiet\"";
@@ -322,9 +327,14 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
                  part = noise_field(parameters, theory) / start,
                  allowed = 1.2 * std::exp(std::max(0.0, growth) * times.back());
     if (!(start > 0))
-        summary.not_measured("largest_over_start",
-                             "cannot be measured, because the charges of the perturbations "
-                             "cancel and the record begins with zero: perturb one species alone");
+        summary.not_measured(
+            "largest_over_start",
+            parameters.weighting == "ngp"
+                ? "cannot be measured, because with method.weighting = \"ngp\" particles that are "
+                  "displaced by less than their distance keep their nearest node, and the record "
+                  "begins with zero: raise the amplitude or particles_per_cell, or take \"cic\""
+                : "cannot be measured, because the charges of the perturbations cancel and the "
+                  "record begins with zero: perturb one species alone");
     else if (covered)
         summary.not_measured("largest_over_start", covers);
     else if (largest > allowed && largest < allowed + 3 * part)
@@ -377,9 +387,12 @@ inline constexpr Comparison wave_comparison{
             const long modes = (parameters.grid.x.cells - 1) / 2;
             refuse_wave(parameters, asked_for(parameters), search ? modes : parameters.mode_x,
                         parameters.mode_z);
-            refuse(search && (modes < 1 || modes > 512 || parameters.model == "mesh"),
+            refuse(search && parameters.model == "mesh",
+                   "theory.mode_x = 0 looks for the fastest growing mode with theory.model = "
+                   "\"plasma\", and not \"mesh\": name a mode, or take \"plasma\"");
+            refuse(search && (modes < 1 || modes > 512),
                    "theory.mode_x = 0 looks for the fastest growing of ", modes,
-                   " modes, and that is for 1 to 512 and theory.model = \"plasma\": name a mode");
+                   " modes, and that is for 1 to 512: name a mode");
         },
     .recorded_mode_x = [](const Case& parameters) { return theory_of_wave(parameters).mode_x; },
     .describe = describe_wave,

@@ -483,8 +483,8 @@ MeasuredMode measure_mode(std::span<const double> times, std::span<const Complex
                  folds = std::abs(result.growth()) * length;
     if (turns < search.periods && folds < search.e_foldings)
         return cannot("it has " + format(turns) + " periods and " + format(folds) +
-                      " e-foldings, and " + format(search.periods) + " or " +
-                      format(search.e_foldings) + " are needed, " + result.window + cure);
+                      " e-foldings, below " + format(search.periods) + " and " +
+                      format(search.e_foldings) + ", " + result.window + cure);
     result.found = true;
     return result;
 }

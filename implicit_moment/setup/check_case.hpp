@@ -322,7 +322,7 @@ inline std::vector<std::string> idleness_warnings(const Case& w, const Scales& s
     return warnings;
 }
 
-/// Warnings of what is faster than light at the start: how many particles.
+/// Warnings of what is faster than light at the start, how many particles, and of sheets whose heat is relativistic.
 inline std::vector<std::string> superluminal_warnings(const Case& w, const Scales& scales) {
     std::vector<std::string> warnings;
     const double each = double(scales.particles) / std::max(1.0, double(scales.species.size()));
@@ -333,6 +333,7 @@ inline std::vector<std::string> superluminal_warnings(const Case& w, const Scale
                  ? "with u = gamma v above c: temperatures and drifts are those of u"
                  : "faster than light, and the push is not relativistic");
     }
+    if (const double heat = relativistic_heat(w); heat > 0) warnings.push_back(hot_sheet(heat));
     return warnings;
 }
 

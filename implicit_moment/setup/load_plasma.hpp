@@ -38,6 +38,22 @@ inline HarrisSheet harris_sheet(const HarrisCase& parameters) {
     return sheet;
 }
 
+/// The largest T/mc^2 of a sheet of relativistic particles, where it is so large that a drifting Maxwellian of
+/// gamma v does not balance the field. out: 0 elsewhere
+inline double relativistic_heat(const Case& w) {
+    if (w.is_uniform() || !w.is_relativistic()) return 0;
+    const HarrisSheet sheet = harris_sheet(harris_of(w));
+    const double heat = std::pow(std::max(sheet.v_i, sheet.v_e) / c, 2);
+    return heat > 0.02 ? heat : 0;
+}
+/// The same in words.
+inline std::string hot_sheet(double heat) {
+    return sentence("temperatures are up to ", heat,
+                    " of m c^2, above 0.02, where drifting Maxwellians of gamma v do not balance "
+                    "the field and the sheet is no exact equilibrium: set particles.relativistic = "
+                    "false");
+}
+
 /// All species of a run.
 struct Plasma {
     std::vector<Particles> species;

@@ -65,9 +65,17 @@ inline void compare_equilibrium(const Case& w, const Plasma& plasma,
         seen.add(w, moments, n, in_sheet, n * grid.x.length * grid.z.spacing() / weight,
                  [&](const Field& f) { return f.segment(grid.index(0, j), grid.x.cells).mean(); });
     }
+    // Noise alone makes a tenth of this flux.
+    const double flux = history.column("flux").back(), tears = 2 * pi * w.harris.thickness,
+                 heat = relativistic_heat(w);
     summary.hint(
-        "the mesh heats what it does not resolve, and few particles exchange heat: refine the "
-        "mesh, or raise harris.particles");
+        heat > 0 ? hot_sheet(heat)
+        : flux > 0.1 * w.harris.thickness && grid.x.length > tears
+            ? sentence("the sheet tears by itself, for the box is longer than 2 pi lambda = ",
+                       tears, ", and has reconnected ", flux,
+                       " B0 d_i: shorten time.end or grid.length_x, or raise harris.particles")
+            : "the mesh heats what it does not resolve, and few particles exchange heat: refine "
+              "the mesh, or raise harris.particles");
     for (const Particles& s : plasma.species) {
         const auto kinetic = history.column("kinetic_" + s.name);
         summary.result("kinetic_over_initial_" + s.name, kinetic.back() / kinetic.front(), "", 1,

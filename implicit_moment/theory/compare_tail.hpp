@@ -79,9 +79,12 @@ inline void compare_tail_at_rest(const Case& w, const common::History& history,
                 middle += block(moments[0].rho), expected_middle += n, in_middle += in_block;
         }
     }
-    summary.hint(
-        "noise of few particles moves the field, and so does a sheet that tears by itself or whose "
-        "currents at the ends do not balance: raise harris.particles, or shorten time.end");
+    const double heat = relativistic_heat(w);
+    summary.hint(heat > 0
+                     ? hot_sheet(heat)
+                     : "noise of few particles moves the field, and so does a sheet that tears "
+                       "by itself or whose currents at the ends do not balance: raise "
+                       "harris.particles, or shorten time.end");
     seen.report("n0 F^2/cosh^2(h) + n_inf", "Lembege and Pellat 1982, made exact", summary);
     if (in_middle > 0)
         summary.result("density_in_the_middle", middle / expected_middle, "n of the equilibrium", 1,

@@ -7,6 +7,7 @@
 #include "implicit_moment/theory/compare_equilibrium.hpp"
 #include "implicit_moment/theory/compare_kink.hpp"
 #include "implicit_moment/theory/compare_reconnection.hpp"
+#include "implicit_moment/theory/compare_rest.hpp"
 #include "implicit_moment/theory/compare_tail.hpp"
 #include "implicit_moment/theory/compare_wave.hpp"
 
@@ -35,6 +36,7 @@ void compare_with_theory(const Case& w, const State& state,
     } else {
         compare_wave(w, history, summary);
         if (has_uniform_E(w)) compare_drift(w, history, summary);
+        compare_rest(w, history, summary);
     }
     compare_energy(w, history, summary);
 }

@@ -1,0 +1,105 @@
+// What a run keeps, whatever it is compared with: its momentum, and where nothing happens the energy
+// of each species.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "cic/setup/scales.hpp"
+
+namespace cic {
+
+/// The largest change of the momentum, of sum (2 K M)^1/2 of all species, K kinetic energy, M mass, at the
+/// start or, where that is nothing, at its largest. The momentum scheme keeps it to round-off, and is judged only where it did not.
+/// in:     least_energy, below which all energy is round-off
+inline void judge_momentum(const Case& parameters, double least_energy, const History& history,
+                           Summary& summary) {
+    if (parameters.has_walls() || parameters.magnetized()) return;
+    const auto kinetic = history.column("kinetic"), x = history.column("momentum_x"),
+               z = parameters.dimensions == 2 ? history.column("momentum_z")
+                                              : std::vector<double>(x.size(), 0.0);
+    std::vector<double> scale(x.size(), 0.0);
+    for (const SpeciesCase& s : parameters.species) {
+        if (!s.mobile()) continue;
+        const auto own = history.column("kinetic_" + s.name);
+        const double mass = s.mass * s.mean_density() * filled_volume(parameters, s);
+        for (std::size_t n = 0; n < own.size(); ++n)
+            scale[n] += std::sqrt(2 * std::max(0.0, own[n]) * mass);
+    }
+    double change = 0;
+    for (std::size_t n = 0; n < x.size(); ++n)
+        change = std::max(change, std::hypot(x[n] - x[0], z[n] - z[0]));
+    const double most = std::ranges::max(scale);
+    change /= scale.front() > 0.1 * most ? scale.front() : most;
+    const bool energy = parameters.scheme().energy_conserving;
+    if (!(std::ranges::max(kinetic) > least_energy) || (!energy && change <= 0.05)) return;
+    summary.hint(energy ? "the energy-conserving mesh brakes what moves through it: take "
+                          "method.scheme = \"momentum\", or refine the mesh to the Debye length"
+                        : "the forces of this scheme are equal and opposite to round-off: compile "
+                          "with REAL=double");
+    summary.result_at_most("momentum_change", change, "", 0.05,
+                           "momentum is conserved, but for the energy-conserving mesh");
+}
+
+/// Whether nothing can happen: a periodic, uniform plasma of Maxwellians that move together, if at all.
+inline bool is_at_rest(const Case& parameters) {
+    if (parameters.has_walls() || parameters.gauss_sign < 0) return false;
+    const SpeciesCase* first = nullptr;
+    for (const SpeciesCase& s : parameters.species) {
+        if (!s.mobile()) continue;
+        if (!first) first = &s;
+        const std::array<double, 3> T = s.temperatures(parameters.axis());
+        const bool isotropic = parameters.magnetized() ? T[0] == T[1] && T[0] == T[2]
+                                                       : parameters.dimensions == 1 || T[0] == T[2];
+        if (s.profile != "uniform" || !s.density.is_number() || s.has_distribution() ||
+            !isotropic || !perturbations_of(parameters, s).empty() || s.ripple != 0 ||
+            s.drift() != first->drift() || (parameters.magnetized() && !s.at_rest()))
+            return false;
+    }
+    return true;
+}
+
+/// What a plasma at rest has of the energy of each species at the end, without a common drift. Energy as
+/// a whole does not tell what species exchange, nor what they take from the noise of a random start.
+inline void judge_rest(const Case& parameters, const History& history, Summary& summary) {
+    if (!is_at_rest(parameters)) return;
+    const Scales scales = scales_of(parameters);
+    const Grid& grid = parameters.grid;
+    const double volume = grid.x.length * grid.z.length, field = history.first("field");
+    double mass = 0;  // per volume
+    for (const SpeciesCase& s : parameters.species)
+        if (s.mobile()) mass += s.mass * s.mean_density();
+    std::vector<double> drift2(history.column("time").size(), 0.0);
+    for (const char* component : {"momentum_x", "momentum_z"}) {
+        if (component[9] == 'z' && parameters.dimensions == 1) continue;
+        const auto momentum = history.column(component);
+        for (std::size_t n = 0; n < drift2.size(); ++n)
+            drift2[n] += std::pow(momentum[n] / (mass * volume), 2);
+    }
+    const double dx = parameters.dimensions == 2 ? std::max(grid.x.spacing(), grid.z.spacing())
+                                                 : grid.x.spacing();
+    for (const SpeciesScales& scale : scales.species) {
+        const SpeciesCase& s =
+            *std::ranges::find(parameters.species, scale.name, &SpeciesCase::name);
+        auto kinetic = history.column("kinetic_" + s.name);
+        for (std::size_t n = 0; n < kinetic.size(); ++n)
+            kinetic[n] -= 0.5 * s.mass * s.mean_density() * volume * drift2[n];
+        if (scale.thermal_speed == 0 || s.charge == 0 || !(kinetic.front() > 0)) continue;
+        summary.hint(
+            s.loading == "random" && field > 0.1 * kinetic.front()
+                ? sentence("a random start has more noise than equilibrium, its field ",
+                           field / kinetic.front(),
+                           " of this energy, and gives it to particles: "
+                           "take loading = \"quiet\", or raise particles_per_cell")
+                : sentence("the Debye length of ", s.name, " is ", scale.debye_length / dx,
+                           " cells: the mesh heats what it does not resolve, and few particles "
+                           "exchange heat: refine the mesh, or raise particles_per_cell, ",
+                           s.particles_per_cell));
+        summary.result("kinetic_over_initial_" + s.name, kinetic.back() / kinetic.front(), "", 1,
+                       0.1, "a plasma at rest: neither heats nor cools");
+    }
+}
+
+}  // namespace cic
