@@ -514,6 +514,23 @@ TEST_CASE("what cannot be measured is said with its reason and what fails fails"
     });
     CHECK(
         verdict(rippled, "growth_over_theory").starts_with("NOT MEASURED: the wave begins with "));
+    const std::string water = compare("gravity_wave") + channel +
+                              "grid.cells_x = 32\ngrid.cells_z = 64\ngrid.length_z = 2\n"
+                              "gravity.z = -0.1\ntime.end = 20\n[region.water]\n"
+                              "hydrostatic = true\ndensity = 2\npressure = 10\ncenter_z = 1\n"
+                              "[region.air]\nhydrostatic = true\nshape = \"above\"\n"
+                              "pressure = 10\ncenter_z = 1\nripple = 0.02\n";
+    const auto wave = [&](double at_first, double later) {
+        const auto run = recorded(water, "flip", 20, [&](const Case& w, double t, Fluid& f) {
+            const double height = t < 15 ? at_first : later;
+            visit_cells(w.grid, [&](long n, double x, double z) {
+                f.cells.rho[n] = z - 1 > height * std::cos(2 * pi * x) ? 1 : 2;
+            });
+        });
+        return verdict(run, "frequency_over_theory");
+    };
+    CHECK(wave(0.02, 0.2).find("the rest is what steps and particles made") != std::string::npos);
+    CHECK(wave(0.2, 0.2).ends_with("lower the amplitude"));
     const std::string shear = compare("kelvin_helmholtz") + channel +
                               "grid.cells_x = 32\ngrid.cells_z = 32\ntime.end = 0.1\n"
                               "[region.gas]\nflow = \"shear\"\nspeed = 0.1\nwidth = 0.05\n"

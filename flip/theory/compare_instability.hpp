@@ -171,7 +171,7 @@ inline void compare_growth(const FinishedRun& run, double expected, double most,
                                 " of that of theory, at the end of the search, with a misfit of ",
                                 fit.misfit,
                                 ": the wave is not seen to grow; refine the mesh, raise the "
-                                "amplitude above the noise, or take out what else moves");
+                                "amplitude above the noise, or take out viscosity");
     const common::Measured rate(fit.rate, growth_error(t, z, expected));
     const std::string where =
         sentence(source, "; fitted up to t = ", t.back(), ", misfit ", fit.misfit);
