@@ -591,6 +591,15 @@ TEST_CASE("what falls short names what cures it" * doctest::description("physics
                                     "species.electrons.amplitude=1e-3");
     says(landau, "what hides it is noise: raise the amplitude or particles_per_cell");
     says(landau, "the error, 1.447, is larger than the tolerance, 0.03;");
+    // Electrons of two temperatures have two waves.
+    says(said(case_file("[grid]\ncells_x = 128\nlength_x = 20\n[time]\nend = 40\n"
+                        "[species.cold]\ndensity = 0.8\ntemperature_x = 0.04\n"
+                        "particles_per_cell = 2000\n[species.hot]\ndensity = 0.2\n"
+                        "temperature_x = 4\nparticles_per_cell = 2000\namplitude = 0.02\n"
+                        "[species.ions]\nmotion = \"fixed\"\ncharge = 1\n"
+                        "[theory]\ncompare = \"wave\"\n"),
+              ""),
+         "another wave of this mode, omega = 0.3666, growth = -0.2803, decays hardly faster");
     says(said("cic/cases/sheath.toml", "time.dt=1.8 time.end=1800"),
          "omega_p dt of the electrons is 0.87, and thermal ones cross 7.2 cells in it: lower "
          "time.dt");
