@@ -88,7 +88,7 @@ struct CellFields {
     Field rho, vx, vz, p, e;
     std::vector<Field> rho_of;  // of each material
     Field v_theta;              // r sum m L/sum m r^2; empty where nothing turns
-    double overfull = 0;        // part of the volume of particles that their cells do not have
+    double overfull = 0;        // part of the volume of liquid beyond what its cells have
 };
 
 /// Where and when a cell is, for messages.

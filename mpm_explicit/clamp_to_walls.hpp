@@ -25,9 +25,9 @@ struct ClampToWalls {
         y_most = mesh.has(y_high, Boundary::frictional) ? before(mesh.y_high()) : far;
     }
     double x(double at) const { return at < x_least ? x_least : at > x_most ? x_most : at; }
+    double y(double at) const { return at < y_least ? y_least : at > y_most ? y_most : at; }
     // A velocity that led on into a wall, from which it was put back by so much.
     static double stopped(double v, double back) { return v * back < 0 ? 0 : v; }
-    double y(double at) const { return at < y_least ? y_least : at > y_most ? y_most : at; }
 };
 
 }  // namespace mpm

@@ -100,9 +100,6 @@ class ContactBodies {
                 // A bond holds however little of a grain is here.
                 const bool light = std::min(one.m, two.m) < low_mass * (one.m + two.m);
                 if (free && bond < 0 && light) continue;
-                // But of a rigid grain that reaches a little beyond a line of nodes a bond would hold the
-                // other grain as far as the next line.
-                if (!free && bond >= 0 && sliver(bonds[bond], one, two)) continue;
                 ContactPair& pair = storage.pairs[count];
                 const double least = bond < 0 ? 1e-6 * h : 0;
                 if (!normal_between(one, two, least, pair.nx, pair.ny)) continue;
@@ -128,13 +125,6 @@ class ContactBodies {
         for (const auto& [other, number] : bonds_of_[one.grain])
             if (other == two.grain && !bonds[number].broken) return number;
         return -1;
-    }
-
-    // Whether the volume of the rigid one of two bonded bodies is small beside that of the other.
-    static bool sliver(const Bond& bond, const ContactBody& one, const ContactBody& two) {
-        const double of_two = one.grain == bond.a ? bond.density_ratio : 1 / bond.density_ratio,
-                     V_one = one.m, V_two = two.m / of_two;
-        return one.rigid ? V_one < V_two / 64 : V_two < V_one / 64;
     }
 
     // Of two free bodies: the smallest part of their mass at a node with which one of them has contact.

@@ -17,7 +17,7 @@ using namespace mpm;
 
 /// in:     flip, the FLIP fraction; frozen particles keep their places
 /// in/out: particles; sums of their tiles
-/// exact:  the momentum of the particles changes by that of the nodes, to round-off
+/// exact:  the momentum of the particles changes by that of the nodes, but for what walls stop
 template <class Shape>
 void move_particles(const Shape& shape, const std::vector<Grain>& grains,
                     const std::vector<RigidMotion>& rigid, const GrainNodes& nodes, double flip,

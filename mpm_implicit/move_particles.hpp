@@ -19,7 +19,7 @@ namespace mpm_implicit {
 /// in:     nodes.motion, v^0 and v^theta; flip, the FLIP fraction; damping of the velocity; frozen
 ///         particles keep their places
 /// in/out: particles; sums of their tiles
-/// exact:  without damping the momentum of the particles changes by that of the nodes, to round-off;
+/// exact:  without damping the momentum of the particles changes by that of the nodes, but for what walls stop;
 ///         with the consistent mass so does sum_p m_p x_p^0 x v_p
 template <class Shape>
 void move_particles(const Shape& shape, const std::vector<Grain>& grains,

@@ -426,7 +426,6 @@ TEST_CASE("polygons stand on a slope up to that of their base" * doctest::descri
 TEST_CASE("what is bonded to plates bears its strain and parts at the strength of the bond" *
           doctest::description("physics")) {
     facts::check_pulled_block("mpm_explicit");
-    facts::check_loaded_column("mpm_explicit");
 }
 
 TEST_CASE("a cylinder rolls on a rough incline and slips on a smooth one" *

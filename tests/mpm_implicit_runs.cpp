@@ -236,7 +236,6 @@ TEST_CASE("a hexagon stands on a slope up to that of its base" * doctest::descri
 TEST_CASE("what is bonded to plates bears its strain and parts at the strength of the bond" *
           doctest::description("physics")) {
     facts::check_pulled_block("mpm_implicit");
-    facts::check_loaded_column("mpm_implicit");
 }
 
 TEST_CASE("a cylinder rolls on a rough incline and slips on a smoother one" *

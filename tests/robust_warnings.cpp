@@ -342,6 +342,8 @@ mpm_implicit billet.toml theory.compare=none time.alpha=1 time.end=4 method.thet
 mpm_implicit billet.toml theory.compare=none time.alpha=1 time.end=4 method.theta=0.6 method.shape=gimp grain.top.velocity_y=-0.01 -> no warning
 grains bonded_bar.toml theory.compare=none grain.left.profile=none material.steel.law=rigid grain.left.material=steel method.shape=quadratic
     warning: method.shape = "quadratic" sees a rigid grain that is bonded to another one from three
+grains bonded_bar.toml theory.compare=none grain.left.profile=none material.steel.law=rigid grain.left.material=steel method.shape=gimp
+    warning: method.shape = "gimp" sees a rigid grain that is bonded to another one from a cell
 grains bonded_bar.toml theory.compare=none method.shape=quadratic -> no warning
 mpm_explicit plate_holds.toml theory.compare=none time.end=10 grain.top.stop=0 grain.top.velocity_y=-0.01
     warning: grains are pressed by 0.2375, above 0.1: particles of linear shapes that cross lines

@@ -21,12 +21,14 @@ inline void judge_momentum(const Case& parameters, double least_energy, const Hi
                z = parameters.dimensions == 2 ? history.column("momentum_z")
                                               : std::vector<double>(x.size(), 0.0);
     std::vector<double> scale(x.size(), 0.0);
+    double drifting = 0;
     for (const SpeciesCase& s : parameters.species) {
         if (!s.mobile()) continue;
         const auto own = history.column("kinetic_" + s.name);
         const double mass = s.mass * s.mean_density() * filled_volume(parameters, s);
         for (std::size_t n = 0; n < own.size(); ++n)
             scale[n] += std::sqrt(2 * std::max(0.0, own[n]) * mass);
+        drifting += mass * std::hypot(s.drift_x, parameters.dimensions == 2 ? s.drift_z : 0.0);
     }
     double change = 0;
     for (std::size_t n = 0; n < x.size(); ++n)
@@ -34,6 +36,8 @@ inline void judge_momentum(const Case& parameters, double least_energy, const Hi
     const double most = std::ranges::max(scale);
     change /= scale.front() > 0.1 * most ? scale.front() : most;
     const bool energy = parameters.scheme().energy_conserving;
+    // What does not drift has nothing to lose.
+    if (energy && !(drifting > 0.01 * most)) return;
     if (!(std::ranges::max(kinetic) > least_energy) || (!energy && change <= 0.05)) return;
     summary.hint(energy ? "the energy-conserving mesh brakes what moves through it: take "
                           "method.scheme = \"momentum\", or refine the mesh to the Debye length"

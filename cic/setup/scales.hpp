@@ -204,7 +204,9 @@ inline void warn_of_space_charge(const Case& parameters, std::vector<std::string
     const auto emits = [](const SpeciesCase& s) { return s.emission > 0; };
     if (parameters.dimensions != 1 || parameters.magnetized() || !parameters.has_walls() ||
         low.particles != "source" || low.field != "grounded" || high.field != "grounded" ||
-        std::ranges::count_if(parameters.species, emits) != 1)
+        std::ranges::count_if(parameters.species, emits) != 1 ||
+        std::ranges::any_of(parameters.species,
+                            [&](const SpeciesCase& s) { return !emits(s) && s.charge != 0; }))
         return;
     const SpeciesCase& s = *std::ranges::find_if(parameters.species, emits);
     const double q = std::fabs(s.charge), V = (low.potential - high.potential) * s.charge / q;

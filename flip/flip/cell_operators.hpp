@@ -59,11 +59,6 @@ inline Eigen::Vector2d pressure_force(const Grid& grid, const Field& p, long n) 
 }
 // [/transpose]
 
-/// V_c div v that a crowded cell of liquid is given in an implicit step (solve_pressure.hpp).
-inline double spread_of(const Cells& c, long n, double dt) {
-    return c.crowding.size() > 0 ? 0.1 / dt * c.crowding[n] : 0;
-}
-
 /// The velocity gradient of a cell, mean times volume: xz is dv_x/dz; and v_r/r about the axis.
 /// exact:  its trace is dilation()
 struct CellGradient {

@@ -17,9 +17,6 @@ namespace flip {
 /// With particles that carry volumes, a cell of liquid that is filled to less than this part is
 /// surface: p = 0. A gas has room to grow there.
 inline constexpr double least_filled = 0.7;
-/// Above this part of its volume a cell of liquid is crowded. Rings at the axis have few particles, whose
-/// volumes in a cell fluctuate by more.
-inline constexpr double crowded = 1.05, crowded_ring = 1.2;
 
 /// A cell has neither pressure nor viscosity if the barest of its nodes has less than this part of the
 /// particles of another: an impulse on a node without mass would leave the budget. Their number
@@ -51,8 +48,8 @@ inline bool has_bare_node(const Grid& grid, const Nodes& g, long n) {
 ///         excess = (p_kc - p_c)(1 - |p_c|/max_k |p_kc - p_c|), p_kc the mean pressure of material k;
 ///         0 in one fluid, and where no difference exceeds p_c, as gravity's within a cell; and room,
 ///         the part by which gas would have to grow to fill the cell, or least_filled of it beside
-///         another material: in -1/2 to 1 where it is confined, else in 0 to 1; and crowding, what cells
-///         of liquid hold beyond `crowded` times their volume, at most that volume
+///         another material: in -1/2 to 1 where it is confined, else in 0 to 1; and crowding, what
+///         cells of liquid hold beyond their volume, at most that volume
 /// exact:  with volumes a state of equal pressure stays one wherever the particles are, as long as
 ///         they fill the cells, or the filling of the scheme is 0
 /// errors: NumericalError for a negative or not finite density or energy, with where and when
@@ -61,7 +58,6 @@ inline void find_pressure(const Grid& grid, std::span<const Material> materials,
     const Nodes& g = mesh.nodes;
     Cells& c = mesh.cells;
     const bool volumes = c.volume.size() > 0;
-    const double most = grid.axisymmetric ? crowded_ring : crowded;
     const long count = mesh.materials;
     std::atomic<long> bad{-1};
     for_each_cell(grid, [&](long i, long, long n) {
@@ -115,8 +111,7 @@ inline void find_pressure(const Grid& grid, std::span<const Material> materials,
                             : 0;
         }
         surface = surface || has_bare_node(grid, g, n);
-        if (volumes)
-            c.crowding[n] = surface || gas ? 0 : std::clamp(c.volume[n] - most * V_c, 0.0, V_c);
+        if (volumes) c.crowding[n] = gas ? 0 : std::clamp(c.volume[n] - V_c, 0.0, V_c);
         c.surface[n] = surface ? 1 : 0;
         if (surface) c.p[n] = 0;
     });

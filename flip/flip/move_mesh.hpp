@@ -10,7 +10,7 @@
 #pragma once
 
 #include "flip/flip/mass_matrix.hpp"
-#include "flip/flip/solve_pressure.hpp"
+#include "flip/flip/spread_crowded.hpp"
 
 namespace flip {
 
@@ -125,8 +125,7 @@ inline void work_on_cells(const Problem& problem, double dt, Mesh& mesh, Budget&
             // Particles know their own pressure; the viscous heat goes by mass.
             const bool yields = c.surface[n] == 0 && c.C[n] > 0;
             const double per_C = yields ? dt / c.C[n] : 0;
-            c.strain[n] =
-                per_C * (dilation(grid, move_x, move_z, n) - (implicit ? spread_of(c, n, dt) : 0));
+            c.strain[n] = per_C * dilation(grid, move_x, move_z, n);
             c.work[n] = per_C * work;
             c.q_work[n] = per_C * (q_power + (c.p_step[n] - c.p[n]) * work);
         } else {
@@ -229,6 +228,7 @@ inline StepReport move_mesh(const Problem& problem, double& dt, const Particles&
     }
     work_on_cells(problem, dt, mesh, budget);
     if (problem.swirl) work_on_swirl(grid, dt, particles, mesh);
+    if (problem.scheme.implicit) spread_crowded(problem, dt, mesh);
     detail::filter_nodes(problem, M, g);
     return report;
 }

@@ -11,12 +11,6 @@
 // an incompressible fluid. The matrix is assembled node by node, because M is diagonal: a node
 // couples the four cells around it, and a cell so meets its eight neighbors.
 //
-// Nothing in that brings the places of particles back to their volumes. Where water falls back upon
-// itself, or particles gather bit by bit, cells come to hold more of it than their volume, and its surface
-// sinks. So a cell that is crowded by more than a twentieth (in rings a fifth) is given a divergence, a tenth
-// of its excess in a step: there D v^theta = spread takes the place of 0, and the particles keep their
-// volumes.
-//
 //     2 | 3      cells 0 to 3 around a node o; a pressure p of cell 0 pushes it with
 //     --o--      p dz/2 along x and p dx/2 along z, of cell 3 with the opposite; in rings, times
 //     0 | 1      their lengths; a component that a boundary gives is not pushed at all
@@ -195,7 +189,7 @@ inline StepReport solve_pressure(const Problem& problem, double dt, Mesh& mesh) 
     for (long r = 0; r < count; ++r) {
         const long n = cells.index[r];
         inertia[r] = cell_volume(grid, column_of(grid, n)) * c.compressibility[n];
-        load[r] = -theta * dt * (dilation(grid, vx, vz, n) - spread_of(c, n, dt));
+        load[r] = -theta * dt * dilation(grid, vx, vz, n);
     }
 
     // Conjugate gradients for the change of pressure.
@@ -225,9 +219,8 @@ inline StepReport solve_pressure(const Problem& problem, double dt, Mesh& mesh) 
     find_v_theta();
     double sum = 0;
     for (long r = 0; r < count; ++r) {
-        const double left = dilation(grid, vx, vz, cells.index[r]) -
-                            spread_of(c, cells.index[r], dt) +
-                            inertia[r] * change[r] / (theta * dt);
+        const double left =
+            dilation(grid, vx, vz, cells.index[r]) + inertia[r] * change[r] / (theta * dt);
         sum += left * left;
     }
     return {solved.iterations, theta * dt * std::sqrt(sum) / scale};

@@ -55,16 +55,11 @@ inline Totals particle_totals(const Grid& grid, const Particles& p) {
     return all;
 }
 
-/// The part of the volume of all particles that is more than their cells have; 0 where particles
-/// carry none.
-inline double overfull(const Grid& grid, const Cells& c) {
-    double all = 0, beyond = 0;
-    for (long j = 0; j < grid.z.cells && c.volume.size() > 0; ++j)
-        for (long i = 0; i < grid.x.cells; ++i) {
-            const double V = c.volume[grid.index(i, j)];
-            all += V, beyond += std::max(0.0, V - c.V_of_column[i]);
-        }
-    return all > 0 ? beyond / all : 0;
+/// The sum of a field over the cells.
+inline double sum_of_cells(const Grid& grid, const Field& f) {
+    double sum = 0;
+    for (long j = 0; j < grid.z.cells; ++j) sum += f.segment(grid.index(0, j), grid.x.cells).sum();
+    return sum;
 }
 
 /// The fluid on the cells.
@@ -76,7 +71,9 @@ inline CellFields cell_fields(const Grid& grid, const Mesh& mesh) {
     f.rho_of.assign(mesh.materials, Field::Zero(grid.size()));
     const bool swirl = !mesh.cells.swirl.empty();
     if (swirl) f.v_theta.setZero(grid.size());
-    f.overfull = overfull(grid, mesh.cells);
+    if (mesh.cells.volume.size() > 0)
+        f.overfull = sum_of_cells(grid, mesh.cells.crowding) /
+                     std::max(sum_of_cells(grid, mesh.cells.volume), 1e-300);
     for_each_cell(grid, [&](long i, long, long n) {
         const double M = mesh.cells.M[n], per_V = 1 / mesh.cells.V_of_column[i];
         if (M <= 0) return;

@@ -157,8 +157,7 @@ class Recorder {
         row.add("energy_error", "1",
                 relative(energy - budget.energy - gross, gross, budget.energy));
         row.add("largest_speed", "velocity", most.speed);
-        if (parameters_.density == "particles" && program_ == "flip")
-            row.add("overfull", "1", cells.overfull);
+        if (judges_volume()) row.add("overfull", "1", cells.overfull);
         row.add("largest_mach", "1", most.mach);
         row.add("iterations", "1", double(state.report.iterations));
         row.add("divergence", "speed/dx", state.report.divergence);
@@ -189,21 +188,27 @@ class Recorder {
                             "what the transfer takes, for flip.deficit_to_heat = false");
     }
 
+    bool judges_volume() const {
+        return program_ == "flip" && parameters_.density == "particles" &&
+               std::ranges::any_of(parameters_.materials,
+                                   [](const Material& m) { return m.p_infinity > 0; });
+    }
+
     // Liquid that lies where other liquid is takes no room, and its level sinks: a twentieth is seen.
     void judge_volume(const common::History& history, common::Summary& summary) const {
-        if (parameters_.density != "particles" || program_ != "flip") return;
-        const std::string source = "largest part of the volume that lies in cells which are full";
-        const bool liquid = std::ranges::any_of(parameters_.materials,
-                                                [](const Material& m) { return m.p_infinity > 0; });
-        if (!liquid)
-            return summary.result_info("overfull", history.largest("overfull"), "", source);
-        summary.hint(
-            parameters_.implicit()
-                ? "particles gather, and what is full takes more of them only where gas is in it: "
-                  "take flip.transfer = \"xpic\" or \"pic\", or more particles per cell"
-                : "nothing in an explicit step brings particles back to their volumes: take "
-                  "flip.pressure = \"implicit\"");
-        summary.result_at_most("overfull", history.largest("overfull"), "", 0.05, source);
+        if (!judges_volume()) return;
+        summary.hint(!parameters_.implicit()
+                         ? "nothing in an explicit step brings particles back to their volumes: "
+                           "take flip.pressure = \"implicit\""
+                     : parameters_.transfer == "xpic"
+                         ? "particles gather faster than they are spread: raise "
+                           "particles.per_cell_x and per_cell_z"
+                         : "particles gather faster than they are spread: take flip.transfer = "
+                           "\"xpic\", or raise particles.per_cell_x and per_cell_z");
+        summary.result_at_most("overfull", history.largest("overfull") - history.first("overfull"),
+                               "", 0.05,
+                               "part of all volume that liquid has beyond its cells, largest, over "
+                               "that of the start");
     }
 
     // An energy that is many times what the start and the work done account for is no result.

@@ -128,8 +128,8 @@ inline void warn_of_slow_flow(const Case& parameters, const Scales& scales,
              ", below 0.19, where explicit FLIP with flip.density = \"cells\" rings",
              fed ? " behind an inflow" : " and slow flow gains energy",
              ": set flip.density = \"particles\", or flip.pressure = \"implicit\"");
-        warn(out, cells && !kicked && M > 0.07, "region.", r.name, " flows over the mesh at Mach ",
-             M,
+        warn(out, cells && flips && !kicked && M > 0.07, "region.", r.name,
+             " flows over the mesh at Mach ", M,
              ", between 0.07 and 0.19, where explicit FLIP rings: try flip.pressure = "
              "\"implicit\", or a frame of reference that moves along");
         const bool weak = parameters.density == "particles" && turns && parameters.q_linear < 0.2;

@@ -167,11 +167,13 @@ inline void compare_growth(const FinishedRun& run, double expected, double most,
         return run.not_measured(name, "there is no wave: give a region an amplitude, or a ripple");
     const HyperbolicFit fit = fit_hyperbolic(t, z, expected);
     if (std::fabs(std::log(fit.rate / expected)) > 0.98 * std::log(widest))
-        return run.not_measured(name, "the growth that fits best is ", fit.rate / expected,
-                                " of that of theory, at the end of the search, with a misfit of ",
-                                fit.misfit,
-                                ": the wave is not seen to grow; refine the mesh, raise the "
-                                "amplitude above the noise, or take out viscosity");
+        return run.not_measured(
+            name, "the growth that fits best is ", fit.rate / expected,
+            " of that of theory, at the end of the search, with a misfit of ", fit.misfit,
+            fit.rate < expected ? ": the wave is not seen to grow; refine the mesh, raise the "
+                                  "amplitude above the noise, or take out viscosity"
+                                : ": something grows faster than this wave; refine the mesh, "
+                                  "or raise the amplitude above the noise");
     const common::Measured rate(fit.rate, growth_error(t, z, expected));
     const std::string where =
         sentence(source, "; fitted up to t = ", t.back(), ", misfit ", fit.misfit);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "mpm_explicit/setup/assemble.hpp"
 #include "mpm_explicit/setup/case.hpp"
 #include "mpm_explicit/setup/plan_grains.hpp"
 
@@ -25,6 +26,7 @@ inline PlateStrain plate_strain(const Case& parameters, const std::vector<Materi
     const auto travel_in = [&](double t) {
         return t > problem.rise ? t - 0.5 * problem.rise : 0.5 * t * t / problem.rise;
     };
+    const std::vector<Bond> bonds = bonds_of(problem, plans, materials);
     PlateStrain strain;
     for (const bool along_x : {true, false}) {
         const auto from = [&](const Bounds& box) { return along_x ? box.x_low : box.y_low; };
@@ -46,6 +48,12 @@ inline PlateStrain plate_strain(const Case& parameters, const std::vector<Materi
         double below = at_low < HUGE_VAL ? at_low : -HUGE_VAL,
                above = wall(along_x ? x_high : y_high, along_x ? mesh.x_high() : mesh.y_high()),
                of_below = 0, of_above = 0, force = 0;
+        // Whether what is nearest holds the grains when it goes away.
+        const auto holds = [&](Side side) {
+            return problem.walls[side] == "stick" || problem.walls[side] == "slip";
+        };
+        bool held_below = at_low < HUGE_VAL && holds(along_x ? x_low : y_low),
+             held_above = above < HUGE_VAL && holds(along_x ? x_high : y_high);
         for (const PlannedGrain& plan : plans) {
             const GrainCase& is = plan.from;
             if (materials[plan.material].law != Law::rigid) continue;
@@ -59,13 +67,17 @@ inline PlateStrain plate_strain(const Case& parameters, const std::vector<Materi
             const bool stops = is.stop > 0 && is.stop + problem.rise <= parameters.end;
             const double way = (along_x ? is.velocity_x : is.velocity_y) *
                                (stops ? is.stop : travel_in(parameters.end));
-            if (is_below && to(box) >= below) below = to(box), of_below = way;
-            if (is_above && from(box) <= above) above = from(box), of_above = way;
+            const bool bonded = std::ranges::any_of(bonds, [&](const Bond& bond) {
+                return &plans[bond.a] == &plan || &plans[bond.b] == &plan;
+            });
+            if (is_below && to(box) >= below) below = to(box), of_below = way, held_below = bonded;
+            if (is_above && from(box) <= above)
+                above = from(box), of_above = way, held_above = bonded;
         }
         const double gaps = std::max(0.0, low - below) + std::max(0.0, above - high);
         strain.pressed = std::max({strain.pressed, (of_below - of_above - gaps) / (high - low),
                                    force / (E * (right - left))});
-        if (!problem.bonds.empty() && below > -HUGE_VAL && above < HUGE_VAL)
+        if (held_below && held_above)
             strain.stretched = std::max(strain.stretched, (of_above - of_below) / (high - low));
     }
     return strain;

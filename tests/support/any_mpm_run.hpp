@@ -97,28 +97,6 @@ inline void check_breaking_times(const std::string& program) {
     }
 }
 
-/// A column bonded below a rigid plate that a force presses into it settles by F L/(M A), also with shapes by
-/// which the plate, once it has sunk, reaches the next line of nodes.
-inline void check_loaded_column(const std::string& program) {
-    std::filesystem::create_directories(folder_of_test());
-    const std::string path = folder_of_test() + "/loaded.toml";
-    std::ofstream(path)
-        << "grid = {cells_x = 8, cells_y = 20, length_x = 0.8, periodic_x = true}\n"
-           "boundary = {y_low = 'slip'}\ntime.end = 3\n"
-           "[material]\ndefault = {E = 1e4, nu = 0.3, density = 1}\n"
-           "steel = {law = 'rigid', density = 200}\n"
-           "[grain]\na = {shape = 'box', x = 0.4, y = 0.4, width = 0.8, height = 0.8}\n"
-           "[grain.lid]\nshape = 'box'\nmaterial = 'steel'\nx = 0.4\ny = 0.95\n"
-           "width = 0.8\nheight = 0.3\ncontrol = 'force_y'\nforce = -10\n"
-           "damping = 3000\n[bond.b]\na = 'a'\nb = 'lid'\n";
-    const double M = 1e4 * 0.7 / (1.3 * 0.4);
-    for (const std::string shape : {"linear", "gimp"}) {
-        CAPTURE(shape);
-        const Run r = run_mpm(program, "loaded", path + " method.shape=" + shape);
-        CHECK(std::fabs(r.column("travel_y_lid").back() / (-10 * 0.8 / (M * 0.8)) - 1) <= 0.005);
-    }
-}
-
 /// A block between two wider rigid plates to which it is bonded, pulled slowly: the plates bear E times its strain
 /// on its own width, whatever they would weigh and wherever they are on the mesh, and a bond breaks at its strength.
 inline void check_pulled_block(const std::string& program) {
