@@ -318,7 +318,7 @@ TEST_CASE("water that falls back upon itself keeps its volume" * doctest::descri
                             mesh + std::string(" time.end=20 theory.compare=none"));
         check_results(dam, 2);  // energy_error and overfull
         check_conserved(dam);
-        CHECK(largest(dam.column("overfull")) <= 0.03);
+        CHECK(largest(dam.column("overfull")) <= 0.04);  // 0.26 and 0.24 without
     }
 }
 

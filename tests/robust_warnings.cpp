@@ -56,13 +56,18 @@ cic line output.fields_interval=0.01 output.particles_interval=1 output.phase_in
 cic between_walls boundary.particles_x_low=source
     warning: boundary.particles_x_low = "source", and every emission is 0: the wall only gives
     back what reaches it, with emission_temperature
-# 4/9 2^1/2 V^3/2/d^2 of d = 24.
+# 4/9 2^1/2 V^3/2/d^2 of d = 24, in a vacuum.
 cic between_walls grid.length_x=24 boundary.particles_x_low=source boundary.potential_x_high=4 \
-    species.electrons.emission=0.01 species.electrons.emission_temperature=0.01
+    species.ions.charge=0 species.electrons.density=0.001 species.electrons.emission=0.01 \
+    species.electrons.emission_temperature=0.01
     warning: electrons.emission = 0.01 is above the space-charge limit of Child and Langmuir,
     4/9 (2 q/m)^1/2 V^3/2/(q d^2) = 0.00873: what returns to the source is emitted again
 cic between_walls grid.length_x=24 boundary.particles_x_low=source boundary.potential_x_high=4 \
-    species.electrons.emission=0.008 species.electrons.emission_temperature=0.01
+    species.ions.charge=0 species.electrons.density=0.001 species.electrons.emission=0.008 \
+    species.electrons.emission_temperature=0.01
+    no warning
+cic between_walls grid.length_x=24 boundary.particles_x_low=source boundary.potential_x_high=4 \
+    species.electrons.emission=0.01 species.electrons.emission_temperature=0.01
     no warning
 cic sheath.toml grid.length_x=6
     warning: grid.length_x = 6 is below 8 Debye lengths of the plasma, 16.55: the sheaths of

@@ -46,7 +46,8 @@ class LeapfrogRecorder {
           levels_(parameters.problem.contact.levels),
           frictionless_(!parameters.problem.has_friction()),
           linear_(parameters.shape == "linear"),
-          passes_all_(parameters.transfer == "flip" && parameters.flip == 1),
+          passes_all_(parameters.transfer == "flip" && parameters.flip == 1 &&
+                      parameters.problem.damping == 0 && !any_viscous(parameters)),
           recorder_(parameters, leapfrog, scales, state.assembly, comparisons, "budget") {
         Budget none;
         none.momenta.resize(state.assembly.grains.size());
@@ -147,6 +148,11 @@ class LeapfrogRecorder {
         run.summary.result_at_most("energy_lost", lost, "1", most_gain_, by_cells);
     }
 
+    static bool any_viscous(const Case& parameters) {
+        return std::ranges::any_of(materials_of(parameters.problem),
+                                   [](const Material& m) { return m.viscosity > 0; });
+    }
+
     // By how much the energy of frozen particles swings above energy_14, which is then exact: that of
     // the smallest oscillator.
     static double swing_of_frozen(const Case& parameters, const Scales& scales) {
@@ -163,7 +169,7 @@ class LeapfrogRecorder {
     long levels_;
     bool frictionless_;
     bool linear_;      // shapes
-    bool passes_all_;  // to the particles, of what the nodes have got: FLIP
+    bool passes_all_;  // to the particles, of what the nodes have got: FLIP, and nothing that damps
     Recorder recorder_;
 };
 
