@@ -389,6 +389,33 @@ TEST_CASE("water in a tank swings at the frequency of its length and depth" *
     CHECK(std::fabs(half * std::sqrt(pi * std::tanh(0.5 * pi)) / pi - 1) <= 0.02);
 }
 
+TEST_CASE("moving crowded particles apart gives no speed however short the steps are" *
+          doctest::description("physics")) {
+    // A column of water in a tube, places at random, and a closed box of it without weight: crowded cells
+    // are spread, and what is at rest stays so.
+    const std::string path = folder_of("column.toml");
+    std::filesystem::create_directories(facts::folder_of_test());
+    std::ofstream(path)
+        << "grid = {cells_x = 4, cells_z = 100, length_x = 1, length_z = 25}\ntime.end = 0.2\n"
+           "boundary = {x_low = 'slip', x_high = 'slip', z_low = 'slip', z_high = 'open'}\n"
+           "material.water = {gamma = 4.4, p_infinity = 61000}\n"
+           "[region.pond]\nmaterial = 'water'\ndensity = 1\npressure = 0\nshape = 'box'\n"
+           "center_x = 0.5\ncenter_z = 5\nhalf_x = 0.5\nhalf_z = 5\n"
+           "[particles]\nper_cell_x = 2\nper_cell_z = 2\nloading = 'random'\n"
+           "[flip]\ndensity = 'particles'\npressure = 'implicit'\n[theory]\ncompare = 'none'\n";
+    for (const std::string keys : {"gravity.z=-1 time.dt=0.01", "gravity.z=-1 time.dt=0.001",
+                                   "time.dt=0.01", "time.dt=0.01 grid.length_z=10"}) {
+        CAPTURE(keys);
+        const Run r = facts::run_into("fluid_column", "flip", path + " " + keys);
+        const auto overfull = r.column("overfull");
+        CHECK(overfull.front() > 0.01);
+        CHECK(overfull.back() < 0.95 * overfull.front());
+        // Of 50 that the column would give by falling as far as it is high.
+        CHECK(largest(r.column("kinetic")) <= 0.02);
+        CHECK(largest(r.column("energy_error")) <= 1e-12);
+    }
+}
+
 TEST_CASE("a blast follows Sedov and falling gas is dense but not as dense as Noh's" *
           doctest::description("physics")) {
     const Run blast = run("flip", "blast", "sedov", "grid.cells_x=48 grid.cells_z=48");

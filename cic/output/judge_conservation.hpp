@@ -12,7 +12,8 @@
 namespace cic {
 
 /// The largest change of the momentum, of sum (2 K M)^1/2 of all species, K kinetic energy, M mass, at the
-/// start or, where that is nothing, at its largest. The momentum scheme keeps it to round-off, and is judged only where it did not.
+/// start or, where that is nothing, at its largest. The momentum scheme keeps it to round-off, and is judged
+/// only where it did not; the energy scheme where a species drifts.
 /// in:     least_energy, below which all energy is round-off
 inline void judge_momentum(const Case& parameters, double least_energy, const History& history,
                            Summary& summary) {
@@ -76,8 +77,9 @@ inline void judge_rest(const Case& parameters, const History& history, Summary& 
     for (const SpeciesCase& s : parameters.species)
         if (s.mobile()) mass += s.mass * s.mean_density();
     std::vector<double> drift2(history.column("time").size(), 0.0);
-    for (const char* component : {"momentum_x", "momentum_z"}) {
-        if (component[9] == 'z' && parameters.dimensions == 1) continue;
+    std::vector<std::string> components{"momentum_x"};
+    if (parameters.dimensions == 2) components.push_back("momentum_z");
+    for (const std::string& component : components) {
         const auto momentum = history.column(component);
         for (std::size_t n = 0; n < drift2.size(); ++n)
             drift2[n] += std::pow(momentum[n] / (mass * volume), 2);
