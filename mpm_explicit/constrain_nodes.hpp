@@ -45,6 +45,7 @@ inline std::vector<GridRow> grid_rows(const std::vector<Grain>& grains, const Gr
 struct DofConstraint {
     long dof, master, beyond;
     signed char along = 0;  // 1, 2: gradients are shared along x, along y, as forces are
+    long lowest = 0;        // row of its grain
 };
 
 /// Which neighbors a node may be constrained to: also those across a corner of a cell, or only those
@@ -66,7 +67,8 @@ inline DofConstraint constraint_of(const std::vector<GridRow>& rows, long r, lon
                            nodes.is_fixed_y(other) == nodes.is_fixed_y(dof);
         return alike && mass(other) > times * mass(dof) ? other : -1L;
     };
-    DofConstraint found{dof, dof, -1};
+    const DofConstraint none{dof, dof, -1, 0, row.lowest};
+    DofConstraint found = none;
     bool tie = false;
     for (long b = -1; b <= 1; ++b) {
         for (long a = -1; a <= 1; ++a) {
@@ -85,21 +87,24 @@ inline DofConstraint constraint_of(const std::vector<GridRow>& rows, long r, lon
                 found = {dof, master, beyond,
                          static_cast<signed char>(!on_line ? 0
                                                   : a != 0 ? 1
-                                                           : 2)};
+                                                           : 2),
+                         row.lowest};
         }
     }
     // Which of two that weigh the same would break a symmetry; and across a corner nothing is driven.
-    return tie && neighbors == Neighbors::along_lines ? DofConstraint{dof, dof, -1} : found;
+    return tie && neighbors == Neighbors::along_lines ? none : found;
 }
 
-/// Constrains dofs, the lightest first: a master may be constrained as well.
+/// Constrains dofs, the lightest of a grain first: a master may be constrained as well.
 /// in/out: nodes.sums and nodes.mass, which move along; nodes.ghosts()
 /// exact:  total mass and momentum of a grain stay
 inline void constrain_nodes(std::vector<DofConstraint>& constraints, GrainNodes& nodes) {
     const auto mass = [&](long dof) { return nodes.mass[dof]; };
-    std::stable_sort(
-        constraints.begin(), constraints.end(),
-        [&](const DofConstraint& a, const DofConstraint& b) { return mass(a.dof) < mass(b.dof); });
+    std::stable_sort(constraints.begin(), constraints.end(),
+                     [&](const DofConstraint& a, const DofConstraint& b) {
+                         return a.lowest != b.lowest ? a.lowest < b.lowest
+                                                     : mass(a.dof) < mass(b.dof);
+                     });
     for (DofConstraint one : constraints) {
         NodeSums& from = nodes.sums[one.dof];
         // Others may have taken mass from it, or it may have become a ghost.
@@ -118,10 +123,11 @@ inline void constrain_nodes(std::vector<DofConstraint>& constraints, GrainNodes&
         to.V += from.V;
         if (one.along == 0) to.gx += from.gx, to.gy += from.gy;
         from = {}, nodes.mass[one.dof] = 0;
-        if (const int k = nodes.surface_of(one.dof); k >= 0) {
-            if (const int to_k = nodes.surface_of(one.master); to_k >= 0)
-                nodes.surface[to_k] += nodes.surface[k];
-            nodes.surface[k] = {};
+        const int k = nodes.surface_of(one.dof), to_k = nodes.surface_of(one.master);
+        for (std::vector<SideSums>& side : nodes.surface) {
+            if (k < 0 || side.empty()) continue;
+            if (to_k >= 0) side[to_k] += side[k];
+            side[k] = {};
         }
         nodes.constrain(one.dof, one.master, one.beyond, one.along);
     }

@@ -68,7 +68,10 @@ class ContactBodies {
             fixed_x = fixed_x || nodes.is_fixed_x(member.dof);
             fixed_y = fixed_y || nodes.is_fixed_y(member.dof);
             body.vx_0 = nodes.motion[member.dof].vx_0, body.vy_0 = nodes.motion[member.dof].vy_0;
-            body.surface = moved(nodes.surface[l], -member.x, -member.y);
+            const int at = nodes.surface_of(member.dof);
+            const auto& [one, two] = nodes.surface;
+            body.surface = {moved(one[at], -member.x, -member.y),
+                            two.empty() ? SideSums{} : moved(two[at], -member.x, -member.y)};
             node_x = member.x, node_y = member.y;
             ++count;
         }

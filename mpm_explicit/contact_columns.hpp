@@ -34,11 +34,12 @@ struct LowestPoint {
 };
 /// The lowest point between column n and the next one.
 /// in:     n, number of the first column; separation, at which surfaces touch [length]; 0: wherever
-///         grains approach, at every column; h, width of a cell
+///         grains approach, at every column; h, width of a cell; long_steps, the columns beyond say where
+///         it is: those that bear the load would be pushed to and fro by what their own gaps make of it
 /// exact:  for a parabola, wherever its lowest point is
 /// note:   Below 3.3 cells of radius, k = 0.3 h, a disk would rock on the point under it, and gain by it.
 inline LowestPoint lowest_point(const std::vector<ContactColumn>& columns, int n, double separation,
-                                double h) {
+                                double h, bool long_steps = false) {
     constexpr double sharpest = 0.3;
     const auto gap_at = [&](int at) {
         return at < 0 ? std::numeric_limits<double>::infinity() : columns[at].gap;
@@ -48,6 +49,9 @@ inline LowestPoint lowest_point(const std::vector<ContactColumn>& columns, int n
     // Beside a curved surface, two columns may not be one another's.
     if (columns[to].before != n) return {};
     const double g = columns[n].gap, g_to = columns[to].gap;
+    // What is pressed at both columns is held at both: turning about a point between them, it would take in
+    // what nothing has pressed, and lose its load.
+    if (g <= 0 && g_to <= 0) return {};
     // Second differences at both columns, where there is a column beyond.
     double k = 0, count = 0, least = std::numeric_limits<double>::infinity(), most = 0;
     for (const double one :
@@ -59,8 +63,10 @@ inline LowestPoint lowest_point(const std::vector<ContactColumn>& columns, int n
     // Where the fall between the columns is less than the separation, k/8, both of them touch.
     if (!(count > 0 && k / count > 8 * separation && k / count < sharpest * h)) return {};
     k /= count;
-    const double part = 0.5 - (g_to - g) / k,
-                 gap = g + part * (g_to - g) - 0.5 * k * part * (1 - part);
+    const double fall = long_steps && count == 2
+                            ? (gap_at(columns[to].next) - gap_at(columns[n].before)) / 3
+                            : g_to - g;
+    const double part = 0.5 - fall / k, gap = g + part * (g_to - g) - 0.5 * k * part * (1 - part);
     return {part > 0 && part < 1, gap, part};
 }
 
@@ -153,11 +159,12 @@ class ContactColumns {
     LowestPoint point_after(int n) const {
         if (n < 0) return {};
         const double near = bodies_.rule().separation * h();
+        const bool long_steps = bodies_.rule().ahead > 0;
         const ContactColumn& column = columns_[n];
         const bool beside = (next_of(column.before) == n &&
-                             lowest_point(columns_, column.before, near, h()).exists) ||
-                            lowest_point(columns_, column.next, near, h()).exists;
-        return beside ? LowestPoint{} : lowest_point(columns_, n, near, h());
+                             lowest_point(columns_, column.before, near, h(), long_steps).exists) ||
+                            lowest_point(columns_, column.next, near, h(), long_steps).exists;
+        return beside ? LowestPoint{} : lowest_point(columns_, n, near, h(), long_steps);
     }
 
     int next_of(int n) const { return n < 0 ? -1 : columns_[n].next; }
@@ -189,11 +196,8 @@ class ContactColumns {
     }
 
     bool meets_others(long dof) const {
-        const long l = nodes_.surface_of(dof);
-        if (l < 0 || l >= std::ssize(nodes_.members())) return false;
-        const std::vector<long>& begin = nodes_.shared_begin();
-        return bodies_.meet_at(std::upper_bound(begin.begin(), begin.end(), l) - begin.begin() - 1,
-                               nodes_);
+        const int n = nodes_.shared_of(dof);
+        return n >= 0 && bodies_.meet_at(n, nodes_);
     }
     // The body of a node at which the grain is alone.
     ContactBody inner_body(long dof, const ContactBody& of) const {

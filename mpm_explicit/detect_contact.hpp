@@ -84,6 +84,7 @@ class ContactDetection {
             if (member.is_wall()) continue;
             __builtin_prefetch(&nodes.sums[member.dof]);
             __builtin_prefetch(&nodes.motion[member.dof], 1);
+            __builtin_prefetch(&nodes.surface[0][nodes.surface_of(member.dof)]);
         }
     }
 

@@ -15,6 +15,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -103,11 +104,13 @@ class GrainNodes {
     std::vector<double> mass;  // the m of sums, by itself: most of a step reads nothing else
     std::vector<NodeMotion> motion;
     std::vector<NodeForce> force;
-    /// What outlines put on the nodes where bodies can meet: members() in their order, then the ghosts
-    /// of these.
-    std::vector<SurfaceSums> surface;
+    /// What outlines put on the nodes where bodies can meet, and on ghosts of these, by side: the second
+    /// one is empty where no outline has a sharp corner.
+    std::array<std::vector<SideSums>, 2> surface;
     /// Where in surface a dof has its place; -1: nowhere.
     int surface_of(long dof) const { return surface_of_[dof]; }
+    /// The number of the shared node that a dof is at; -1: none.
+    int shared_of(long dof) const { return shared_of_[dof]; }
 
     /// Dof of the node in column 0 of a grain's row j; column i is that plus i.
     long origin(int grain, long j) const { return origin_[first_of_grain_[grain] + j]; }
@@ -215,7 +218,7 @@ class GrainNodes {
     std::vector<Member> members_;
     std::vector<long> shared_begin_{0};
     std::vector<FixedNode> fixed_nodes_;
-    std::vector<int> surface_of_;
+    std::vector<int> shared_of_, surface_of_;
     common::SortScratch<double> scratch_;
 };
 

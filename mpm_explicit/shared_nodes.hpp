@@ -103,19 +103,20 @@ inline void GrainNodes::find_shared_nodes(const std::vector<Grain>& grains,
     });
 }
 
-/// Where outlines are summed up: at the members of shared nodes, and at ghosts that give to these,
-/// each after its master.
+/// Where outlines are summed up: at the members of shared nodes, and at ghosts that give to these, in the order
+/// of their dofs. What particles of a grain give to lies together.
 inline void GrainNodes::place_surface() {
-    surface_of_.assign(sums.size(), -1);
-    int count = 0;
-    for (const Member& member : members_) {
-        if (!member.is_wall()) surface_of_[member.dof] = count;
-        ++count;
-    }
+    shared_of_.assign(sums.size(), -1);
+    for (long n = 0; n < shared_count(); ++n)
+        for (long l = shared_begin_[n]; l < shared_begin_[n + 1]; ++l)
+            if (!members_[l].is_wall()) shared_of_[members_[l].dof] = static_cast<int>(n);
+    surface_of_ = shared_of_;
     for (auto ghost = ghosts_.rbegin(); ghost != ghosts_.rend(); ++ghost)
-        if (surface_of_[ghost->master] >= 0 && surface_of_[ghost->dof] < 0)
-            surface_of_[ghost->dof] = count++;
-    surface.assign(static_cast<std::size_t>(count), {});
+        if (surface_of_[ghost->master] >= 0) surface_of_[ghost->dof] = surface_of_[ghost->master];
+    int count = 0;
+    for (int& place : surface_of_)
+        if (place >= 0) place = count++;
+    surface[0].resize(static_cast<std::size_t>(count));
 }
 
 }  // namespace mpm

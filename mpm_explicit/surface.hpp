@@ -36,11 +36,15 @@ void for_each_host(const GrainNodes& nodes, const Surface& surface, const Work& 
 /// exact:  where every node has one, sums over nodes are those over all parts
 template <class Shape>
 void surface_to_grid(const Shape& shape, const Particles& particles, GrainNodes& nodes) {
-    common::for_each_block(static_cast<long>(nodes.surface.size()), [&](int, long begin, long end) {
-        std::fill(nodes.surface.begin() + begin, nodes.surface.begin() + end, SurfaceSums{});
-    });
-    const Locator at(nodes.mesh());
     const Surface& s = particles.surface;
+    const bool corners =
+        std::any_of(s.side.begin(), s.side.end(), [](int side) { return side > 0; });
+    nodes.surface[1].resize(corners ? nodes.surface[0].size() : 0);
+    for (std::vector<SideSums>& side : nodes.surface)
+        common::for_each_block(std::ssize(side), [&](int, long begin, long end) {
+            std::fill(side.begin() + begin, side.begin() + end, SideSums{});
+        });
+    const Locator at(nodes.mesh());
     for_each_host(nodes, s, [&](const Tile& tile, std::size_t p, std::size_t k) {
         const double x = particles.x_p[p], y = particles.y_p[p], a_x = s.ax[k], a_y = s.ay[k];
         const SideSums carried{
@@ -48,30 +52,31 @@ void surface_to_grid(const Shape& shape, const Particles& particles, GrainNodes&
         for_each_node(shape, at, nodes.origins(tile.grain), x, y,
                       [&](long dof, double S, double, double) {
                           const int to = nodes.surface_of(dof);
-                          if (to >= 0) nodes.surface[to].sides[s.side[k]] += carried.times(S);
+                          if (to >= 0) nodes.surface[s.side[k]][to] += carried.times(S);
                       });
     });
     for (const GhostNode& ghost : nodes.ghosts()) {
         const int k = nodes.surface_of(ghost.dof), k_to = nodes.surface_of(ghost.master);
         if (k < 0 || k_to < 0) continue;
-        SurfaceSums &from = nodes.surface[k], &to = nodes.surface[k_to];
         // As in reduce_ghost_sums(): x of a mirror image is offset - x, of a wrapped one x - offset.
         const double side_x = ghost.mirror_x ? -1 : 1, side_y = ghost.mirror_y ? -1 : 1;
-        for (const std::size_t side : {0, 1}) {
-            const SideSums& one = from.sides[side];
+        for (std::vector<SideSums>& side : nodes.surface) {
+            if (side.empty()) continue;
+            SideSums& one = side[k];
             const SideSums image{side_x * one.x,           side_y * one.y,           one.xx,
                                  side_x * side_y * one.xy, side_x * side_y * one.yx, one.yy};
-            to.sides[side] += moved(image, ghost.mirror_y ? 0 : -side_x * ghost.offset,
-                                    ghost.mirror_y ? ghost.offset : 0);
+            side[k_to] += moved(image, ghost.mirror_y ? 0 : -side_x * ghost.offset,
+                                ghost.mirror_y ? ghost.offset : 0);
+            one = {};
         }
-        from = {};
     }
 }
 
 /// The parts of the outline turn and stretch with the particles that carry them, before these move.
-///   e <- F e,  A <- C A,  M <- C M FT,  C = det F F^-T,  F = (1 - L/2)^-1 (1 + L/2),  L = dt grad v_p
+///   e <- F e,  A <- C A,  M <- C M FT,  C = det F F^-T,  F = 1 + dt grad v_p
 /// in:     nodes.motion, v_1, with which particles move
-/// exact:  a turn of the nodes is a turn of the parts, by 2 atan of half of what L says
+/// exact:  F is the gradient of that move. Where it turns the nodes, by v_i = (R - 1) x_i/dt, it turns
+///         the parts, R of any angle, and the outline keeps its area; so it does where it strains them evenly.
 /// note:   |A| <= 2 h and |M| <= 2 h^2, which no part of a particle has at the start
 template <class Shape>
 void carry_surface(const Shape& shape, const std::vector<Grain>& grains, const GrainNodes& nodes,
@@ -87,10 +92,7 @@ void carry_surface(const Shape& shape, const std::vector<Grain>& grains, const G
                           xx += Gx * v.vx_1, xy += Gy * v.vx_1;
                           yx += Gx * v.vy_1, yy += Gy * v.vy_1;
                       });
-        xx *= 0.5 * dt, xy *= 0.5 * dt, yx *= 0.5 * dt, yy *= 0.5 * dt;
-        const double per = 1 / ((1 - xx) * (1 - yy) - xy * yx), both = xx * yy - xy * yx;
-        const double F_xx = per * (1 + xx - yy - both), F_xy = per * 2 * xy, F_yx = per * 2 * yx,
-                     F_yy = per * (1 - xx + yy - both);
+        const double F_xx = 1 + dt * xx, F_xy = dt * xy, F_yx = dt * yx, F_yy = 1 + dt * yy;
         const auto turn_area = [&](double& a_x, double& a_y) {
             const double was = a_x;
             a_x = F_yy * a_x - F_yx * a_y, a_y = F_xx * a_y - F_xy * was;

@@ -797,28 +797,36 @@ TEST_CASE("the lowest point of a parabola has the same gap wherever it is betwee
     const double separation = 0.02, lowest = 0.013;
     for (const double radius : {2.0, 4.0, 6.0, 8.0}) {  // in cells
         for (const double place : {2.0001, 2.1, 2.37, 2.5, 2.9, 2.9999}) {
-            std::vector<ContactColumn> columns(6), mirrored(6);
-            for (int k = 0; k < 6; ++k) {
-                columns[k] = {lowest + (k - place) * (k - place) / (2 * radius), k - 1,
-                              k == 5 ? -1 : k + 1};
-                mirrored[5 - k] = {columns[k].gap, 4 - k, k == 0 ? -1 : 6 - k};
+            for (const bool long_steps : {false, true}) {
+                std::vector<ContactColumn> columns(6), mirrored(6);
+                for (int k = 0; k < 6; ++k) {
+                    columns[k] = {lowest + (k - place) * (k - place) / (2 * radius), k - 1,
+                                  k == 5 ? -1 : k + 1};
+                    mirrored[5 - k] = {columns[k].gap, 4 - k, k == 0 ? -1 : 6 - k};
+                }
+                int found = 0;
+                for (int k = 0; k < 5; ++k) {
+                    const LowestPoint point = lowest_point(columns, k, separation, 1, long_steps),
+                                      image =
+                                          lowest_point(mirrored, 4 - k, separation, 1, long_steps);
+                    CHECK(point.exists == image.exists);
+                    if (!point.exists) continue;
+                    ++found;
+                    CHECK(k == 2);
+                    CHECK(point.gap == doctest::Approx(lowest).epsilon(1e-12));
+                    CHECK(point.part == doctest::Approx(place - 2).epsilon(1e-8));
+                    CHECK(image.gap == doctest::Approx(lowest).epsilon(1e-12));
+                    CHECK(image.part == doctest::Approx(1 - point.part).epsilon(1e-8));
+                }
+                // With the fall between columns, 1/8R, below the separation, both columns touch.
+                CHECK(found == (radius > 3.3 && radius < 6.25 ? 1 : 0));
+                CHECK(!lowest_point(columns, 2, 0, 1, long_steps).exists);
+                // Pressed so far that both columns touch, it is held at both: no point between them that it
+                // could turn about without a force.
+                const double nearer = std::max(columns[2].gap, columns[3].gap);
+                for (ContactColumn& column : columns) column.gap -= nearer + 1e-9;
+                CHECK(!lowest_point(columns, 2, separation, 1, long_steps).exists);
             }
-            int found = 0;
-            for (int k = 0; k < 5; ++k) {
-                const LowestPoint point = lowest_point(columns, k, separation, 1),
-                                  image = lowest_point(mirrored, 4 - k, separation, 1);
-                CHECK(point.exists == image.exists);
-                if (!point.exists) continue;
-                ++found;
-                CHECK(k == 2);
-                CHECK(point.gap == doctest::Approx(lowest).epsilon(1e-12));
-                CHECK(point.part == doctest::Approx(place - 2).epsilon(1e-8));
-                CHECK(image.gap == doctest::Approx(lowest).epsilon(1e-12));
-                CHECK(image.part == doctest::Approx(1 - point.part).epsilon(1e-8));
-            }
-            // With the fall between columns, 1/8R, below the separation, both columns touch.
-            CHECK(found == (radius > 3.3 && radius < 6.25 ? 1 : 0));
-            CHECK(!lowest_point(columns, 2, 0, 1).exists);
         }
     }
 }
@@ -941,6 +949,54 @@ TEST_CASE("the outline of a disk turns with it") {
     const std::size_t first = run.by_number()[0];
     CHECK(std::hypot(run.particles().x_p[first] - 0.8 - x, run.particles().y_p[first] - 0.6 - y) >
           0.2);
+}
+
+TEST_CASE("the outline moves by the gradient of the move of the particles") {
+    // A turn by a third, and a turn with a strain: F x - x over dt is the velocity of the nodes.
+    const double c = std::cos(1.0 / 3), s = std::sin(1.0 / 3);
+    for (const std::array<double, 4>& F :
+         {std::array{c, -s, s, c}, std::array{1.1, 0.2, -0.3, 0.95}}) {
+        const auto check = [&](const auto& shape, const std::string& name) {
+            CAPTURE(name);
+            Case one = halves(name);
+            one.problem.bonds.clear();
+            GrainCase disk;
+            disk.name = "disk", disk.x = 0.8, disk.y = 0.6, disk.radius = 0.2;
+            one.problem.grains = {disk};
+            Run run(one, [](Assembly&) {});
+            Particles& p = run.particles();
+            for (std::size_t k = 0; k < p.x_p.size(); ++k)
+                for_each_link(shape, Locator(run.nodes.mesh()), run.nodes.origins(0), p.x_p[k],
+                              p.y_p[k], [&](long dof, double, double dx, double dy) {
+                                  const double x = p.x_p[k] + dx, y = p.y_p[k] + dy;
+                                  NodeMotion& v = run.nodes.motion[dof];
+                                  v.vx_1 = ((F[0] - 1) * x + F[1] * y) / run.dt;
+                                  v.vy_1 = (F[2] * x + (F[3] - 1) * y) / run.dt;
+                              });
+            const Surface before = p.surface;
+            carry_surface(shape, run.state.assembly.grains, run.nodes, run.dt, p);
+            // A side from a to b, with A = (b_y - a_y, a_x - b_x), is one from F a to F b.
+            const double J = F[0] * F[3] - F[1] * F[2];
+            double most = 0, was = 0, is = 0;
+            for (std::size_t k = 0; k < before.count(); ++k) {
+                const double ax = F[3] * before.ax[k] - F[2] * before.ay[k],
+                             ay = F[0] * before.ay[k] - F[1] * before.ax[k];
+                most =
+                    worst({most, std::fabs(p.surface.ax[k] - ax), std::fabs(p.surface.ay[k] - ay)});
+                const double x = p.x_p[static_cast<std::size_t>(before.host[k])],
+                             y = p.y_p[static_cast<std::size_t>(before.host[k])];
+                was += before.ax[k] * x + before.ay[k] * y + before.xx[k] + before.yy[k];
+                is += p.surface.ax[k] * (F[0] * x + F[1] * y) +
+                      p.surface.ay[k] * (F[2] * x + F[3] * y) + p.surface.xx[k] + p.surface.yy[k];
+            }
+            CHECK(before.count() > 40);
+            CHECK(most <= 1e-14);
+            CHECK(is == doctest::Approx(J * was).epsilon(1e-12));  // twice the area
+        };
+        check(LinearShape{}, "linear");
+        check(GimpShape{}, "gimp");
+        check(QuadraticShape{}, "quadratic");
+    }
 }
 
 TEST_CASE("the area of a bond is the length of the interface wherever it lies on the mesh") {

@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -518,5 +521,35 @@ TEST_CASE("iterations grow no faster than the square root of the step" *
     for (std::size_t k = 1; k < iterations.size(); ++k) {
         CAPTURE(iterations[k]);
         CHECK(iterations[k] <= 2.3 * iterations[k - 1]);
+    }
+}
+
+TEST_CASE("a disk that plates press bears its load wherever it stands between lines of nodes" *
+          doctest::description("physics")) {
+    std::filesystem::create_directories(facts::folder_of_test());
+    const std::string path = facts::folder_of_test() + "/pressed_disk.toml";
+    std::ofstream(path)
+        << "grid = {cells_x = 40, cells_y = 18, length_x = 0.8}\n"
+           "time = {alpha = 16, end = 6}\nload.rise = 0.5\nmethod.shape = 'gimp'\n"
+           "[material]\ndefault = {E = 1e5, nu = 0.3, density = 1000}\nplate.law = 'rigid'\n"
+           "[grain]\ndisk = {x = 0.4, y = 0.18, radius = 0.12}\n"
+           "[grain.top]\nshape = 'box'\nx = 0.4\ny = 0.32\nwidth = 0.4\nheight = 0.04\n"
+           "velocity_y = -0.001\nmaterial = 'plate'\n"
+           "[grain.bottom]\nshape = 'box'\nx = 0.4\ny = 0.04\nwidth = 0.4\nheight = 0.04\n"
+           "velocity_y = 0.001\nmaterial = 'plate'\n";
+    // Each side comes nearer by P/(pi E') (2 ln(4 R/b) - 1), with b^2 = 4 P R/(pi E'), E' = E/(1 - nu^2).
+    const double R = 0.12, E = 1e5 / (1 - 0.3 * 0.3), pi = std::numbers::pi, way = 0.00575;
+    double P = 300;
+    for (int k = 0; k < 50; ++k)
+        P = way * pi * E / (2 * std::log(4 * R / std::sqrt(4 * P * R / (pi * E))) - 1);
+    for (const char* x : {"0.4", "0.405", "0.41"}) {
+        for (const char* theta : {"0.6", "1"}) {
+            CAPTURE(x);
+            CAPTURE(theta);
+            const Run r =
+                run("pressed_disk", path + " method.theta=" + theta + " grain.disk.x=" + x);
+            // On a contact of 1.2 cells; on the mesh beside it by 0.94 to 1.02.
+            CHECK(std::fabs(r.column("force_y_top").back() / P - 1) <= 0.15);
+        }
     }
 }

@@ -385,12 +385,12 @@ TEST_CASE("what may mislead is a warning with the number and the limit" *
     check_warnings(R"(
 implicit_moment -> no warning
 implicit_moment time.dt=3
-    warning: electrons: v_th dt/dx = 1.083 is above 1, where the moment closure fails [IMM-13]:
-    lower time.dt to 2.771
+    warning: electrons: v_th dt (1/dx^2 + 1/dz^2)^1/2 = 1.21 is above 0.9, where the moment closure
+    fails [IMM-13]: lower time.dt to 2.231 or take fewer cells
 implicit_moment time.dt=30
-    warning: ions: v_th dt/dx = 4.841 is above 1, where the moment closure fails [IMM-13]: lower
-    time.dt to 6.197
-    warning: electrons: v_th dt/dx = 10.83 is above 1
+    warning: ions: v_th dt (1/dx^2 + 1/dz^2)^1/2 = 5.413 is above 0.9, where the moment closure
+    fails [IMM-13]: lower time.dt to 4.988 or take fewer cells
+    warning: electrons: v_th dt (1/dx^2 + 1/dz^2)^1/2 = 12.1 is above 0.9
     warning: electrons: Omega_c dt = 37.5 is above 2 pi, gyration is not followed
 implicit_moment few
     warning: electrons: v_th dt/dx = 0.006766 is below 0.05 and the Debye length is 0.004511

@@ -62,8 +62,8 @@ inline double work_on_volume(const Problem& problem, const WeightScale& scale, c
 // it is.
 //   v_x += (dx/2 dz) S_x0 S_x1 t_z,  v_z += (dz/2 dx) S_z0 S_z1 t_x,  t = v_00 - v_10 - v_01 + v_11
 // source: Wang, Agrusta and van Hunen, Geochem. Geophys. Geosyst. 16, 2015 (2015).
-inline Velocity missing_velocity(const Grid& grid, const WeightScale& scale, const Weights& w,
-                                 const Four* v) {
+[[gnu::always_inline]] inline Velocity missing_velocity(const Grid& grid, const WeightScale& scale,
+                                                        const Weights& w, const Four* v) {
     const Four t =
         v[w.node] - v[w.node + 1] - v[w.node + scale.stride] + v[w.node + scale.stride + 1];
     const double aspect = grid.x.spacing() / grid.z.spacing();
@@ -77,8 +77,9 @@ inline Velocity missing_velocity(const Grid& grid, const WeightScale& scale, con
 //   v_r += S_x0 S_x1 dr^2/(r_1 + r_2) [(e/3)(r_1 + r_2 + r_1 r_2/r) - p/r]
 //   v_z += (dz/2) S_z0 S_z1 (p_1/r + 2 q_1)
 // On the axis v_r = 0 and p = 0.
-inline Velocity missing_velocity_of_ring(const Grid& grid, const WeightScale& scale,
-                                         const Weights& w, const Four* v) {
+[[gnu::noinline]] inline Velocity missing_velocity_of_ring(const Grid& grid,
+                                                           const WeightScale& scale,
+                                                           const Weights& w, const Four* v) {
     const Four &a = v[w.node], &b = v[w.node + 1], &c = v[w.node + scale.stride],
                &d = v[w.node + scale.stride + 1];
     const double dr = grid.x.spacing(), dz = grid.z.spacing(),

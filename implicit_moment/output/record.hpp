@@ -82,7 +82,7 @@ class Recorder {
                      initial = step == 0 ? energy : run.history.first("energy");
         if (!std::isfinite(energy) || (initial > 0 && !(energy / initial <= 10))) {
             common::fail("the energy is ", energy / initial, " times the initial energy at step ",
-                         step, ", t = ", time, ": reduce time.dt or refine the mesh");
+                         step, ", t = ", time, ": reduce time.dt");
         }
         run.history.row(row_of(time, field, state.plasma, moments, initial));
 
