@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "flip/setup/initial_state.hpp"
 #include "flip/theory/acoustics.hpp"
 #include "flip/theory/collapse.hpp"
 #include "flip/theory/compare_dam_break.hpp"
@@ -858,6 +859,42 @@ TEST_CASE("the pressure is the same on both sides of a wave at an interface that
         const Complex upper =
             s.upper_density * ((s.upper_velocity - c) * (s.upper_velocity - c) * above - s.gravity);
         CHECK(std::abs(lower - upper) <= 1e-4 * (std::abs(lower) + 1.0));
+    }
+}
+
+TEST_CASE("layers start to overturn and to shear with a ripple that is a potential flow") {
+    for (const bool shear : {false, true}) {
+        flip::Case w;
+        w.grid = {{8, 0, 2, true}, {8, -1, 1.5, false}};
+        w.boundaries[flip::z_low].kind = w.boundaries[flip::z_high].kind = "slip";
+        flip::RegionCase r;
+        r.flow = shear ? "shear" : "overturn";
+        r.amplitude = 0.01, r.mode = 3, r.center_x = 0.3, r.center_z = 0.1;
+        r.speed = 0.7, r.width = 0.05;
+        w.regions = {r};
+        w = flip::completed(w);
+        const double k = 3.0 * pi, h = 1e-4;
+        TwoLayers s;
+        if (!shear) s.lower_depth = 1.1, s.upper_depth = 0.4;
+        const auto at = [&](double x, double z) { return flip::fluid_of(w, w.regions[0], x, z); };
+        for (const double x : {0.1, 0.37, 1.6}) {
+            for (const double z : {-0.9, -0.2, 0.0, 0.2, 0.45}) {
+                CAPTURE(shear);
+                CAPTURE(z);
+                CHECK(std::abs(at(x, z).vz - 0.01 * interface_mode(s, k, z - 0.1) *
+                                                 std::cos(k * (x - 0.3))) <= 1e-16);
+                const double xx = at(x + h, z).vx - at(x - h, z).vx,
+                             zz = at(x, z + h).vz - at(x, z - h).vz,
+                             xz = at(x, z + h).vx - at(x, z - h).vx,
+                             zx = at(x + h, z).vz - at(x - h, z).vz;
+                CHECK(std::abs(xx + zz) / (2 * h) <= 1e-6);
+                CHECK(std::abs(xz - zx) / (2 * h) <= 1e-6);
+            }
+            CHECK(std::abs(at(x, 0.1 + 1e-12).vz - at(x, 0.1 - 1e-12).vz) <= 1e-12);
+        }
+        const double most = shear ? 0.7 : 0;
+        CHECK(std::abs(at(0.3, 0.4).vx - most) <= 1e-14);
+        CHECK(std::abs(at(0.3, -0.2).vx + most) <= 1e-14);
     }
 }
 

@@ -252,6 +252,31 @@ TEST_CASE("a rigid rotation is shown as one in every cell and beside the axis") 
     });
 }
 
+TEST_CASE(
+    "hydrostatic pressure has the integral of the centrifugal force from the center of its "
+    "region") {
+    // v_theta = 0.7 x^2 + 1.3 x: the integral of v_theta^2/x.
+    const auto of_powers = [](double x) { return x * x * (0.1225 * x * x + 1.82 / 3 * x + 0.845); };
+    const auto of_vortex = [](double x) { return -0.5 / (1 + x * x); };
+    for (const double center : {0.0, 0.4, 1.0}) {
+        Case w = rings(4, 2);
+        w.regions = {turning(1.3, 2, 5), turning(0, 2, 5)};
+        w.regions[0].gas.velocity_theta = formula("0.7*x*x");
+        w.regions[1].gas.velocity_theta = formula("x/(1 + x*x)");
+        for (RegionCase& r : w.regions) r.hydrostatic = true, r.center_x = center;
+        w = completed(w);
+        const auto pressure_at = [&](const RegionCase& r, double x) {
+            return flip::pressure(w.materials[0], 2, fluid_of(w, r, x, 0.3).e);
+        };
+        for (const double x : {0.05, 0.3, 0.95}) {
+            CHECK(std::fabs(pressure_at(w.regions[0], x) - 5 -
+                            2 * (of_powers(x) - of_powers(center))) <= 1e-13);
+            CHECK(std::fabs(pressure_at(w.regions[1], x) - 5 -
+                            2 * (of_vortex(x) - of_vortex(center))) <= 1e-12);
+        }
+    }
+}
+
 TEST_CASE("a column in hydrostatic balance turns at rest to round-off") {
     for (const char* density : {"cells", "particles"}) {
         for (const char* pressure : {"explicit", "implicit"}) {

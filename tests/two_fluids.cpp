@@ -160,6 +160,24 @@ TEST_CASE("a pond under air balances gravity where the formula alone does not" *
     }
 }
 
+TEST_CASE("a pond in balance is the same at all places of one height") {
+    for (const char* density : {"cells", "particles"}) {
+        FlipRun r(pond(density, "explicit"));
+        const std::vector<double> before = r.particles().e_p;
+        balance_at_rest(r.problem, r.particles(), r.scratch.mesh);
+        const Particles& p = r.particles();
+        double apart = 0, changed = 0;
+        for (std::size_t k = 0; k < p.x_p.size(); ++k) {
+            const auto first =
+                std::size_t(std::find(p.z_p.begin(), p.z_p.end(), p.z_p[k]) - p.z_p.begin());
+            apart = worst({apart, std::fabs(p.e_p[k] / p.e_p[first] - 1)});
+            changed = worst({changed, std::fabs(p.e_p[k] / before[k] - 1)});
+        }
+        CHECK(apart <= 1e-12);
+        CHECK(changed >= 1e-6);
+    }
+}
+
 TEST_CASE("water under gravity does not begin to boil" * doctest::description("physics")) {
     // On bilinear paths particles fall together within a cell, where no pressure feels it. For
     // an hourglass a(z) of the nodes the mass of a node changes by a'/3, and a'' = -(g/27) a' of
