@@ -66,6 +66,23 @@ TEST_CASE("the Harris sheet balances pressure and current and its field is free 
     }
 }
 
+TEST_CASE("only relativistic sheets above a fiftieth of m c^2 are too hot for their balance") {
+    // v_e^2 = m_i/m_e T/6 and v_i^2 = 5 T/6, T = (v_A/c)^2/2: the larger counts.
+    struct Sheet {
+        double light, mass, heat;
+    };
+    for (const auto& [light, mass, heat] : {Sheet{20, 25, 0}, Sheet{10.5, 25, 0},
+                                            Sheet{10, 25, 25 / 1200.0}, Sheet{4, 2, 5 / 192.0}}) {
+        Case sheet;
+        sheet.harris.light_over_alfven = light, sheet.harris.mass_ratio = mass;
+        CHECK(relativistic_heat(sheet) <= 0);
+        sheet.mover.relativistic = true;
+        CHECK(std::fabs(relativistic_heat(sheet) - heat) <= 4 * eps);
+        sheet.setup = "uniform";
+        CHECK(relativistic_heat(sheet) <= 0);
+    }
+}
+
 TEST_CASE("particles of a Harris sheet have equal weights and start with no charge") {
     for (const char* loading : {"quiet", "random"}) {
         Case parameters;
