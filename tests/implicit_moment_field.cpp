@@ -172,6 +172,42 @@ TEST_CASE("the rotation on the mesh is the rotation of a particle in each sense"
     }
 }
 
+TEST_CASE("a tensor acts on each component in its place and from one to another through nodes") {
+    Random random;
+    for (const Grid& grid : meshes()) {
+        Tensor T(grid);
+        for (Field& f : T.entry) f = random.field(grid);
+        VectorField v(grid), scratch(grid);
+        for (double& value : v.all) value = random();
+        const VectorField before = random.field(grid, current);
+        const long s = grid.stride();
+        const auto at = [&](std::size_t a, long n) { return T.entry[a][n]; };
+        // What the nodes give to x, y and z; of x and z all but their own part.
+        const auto on_node = [&](long n) -> Eigen::Vector3d {
+            Eigen::Matrix3d M;
+            M << 0, at(1, n), at(2, n), at(3, n), at(4, n), at(5, n), at(6, n), at(7, n), 0;
+            return M * Eigen::Vector3d((v.x()[n - 1] + v.x()[n]) / 2, v.y()[n],
+                                       (v.z()[n - s] + v.z()[n]) / 2);
+        };
+        for (const bool add : {false, true}) {
+            VectorField out = before;
+            apply_tensor(grid, T, v.all.data(), add, scratch, out.all.data());
+            if (add) out.all -= before.all;
+            for (long j = 0; j < grid.z.cells; ++j)
+                for (long i = 0; i < grid.x.cells; ++i) {
+                    const long n = grid.index(i, j), right = n + 1, up = n + s;
+                    const double x = (at(0, n) + at(0, right)) / 2 * v.x()[n] +
+                                     (on_node(n)[0] + on_node(right)[0]) / 2,
+                                 z = (at(8, n) + at(8, up)) / 2 * v.z()[n] +
+                                     (on_node(n)[2] + on_node(up)[2]) / 2;
+                    CHECK(std::fabs(out.x()[n] - x) <= 1e-14);
+                    CHECK(std::fabs(out.y()[n] - on_node(n)[1]) <= 1e-14);
+                    CHECK(std::fabs(out.z()[n] - z) <= 1e-14);
+                }
+        }
+    }
+}
+
 TEST_CASE("the solution obeys the second-order equation with the predicted charge") {
     // E + chi E - a^2 lap E = E^n + a curl B - 4 pi theta dt J_hat - 4 pi a^2 grad rho_theta,
     // written with curl curl E = grad div E - lap E; and Gauss's law at n + theta decays by (ii).

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "implicit_moment/setup/initial_state.hpp"
 #include "implicit_moment/theory/spline_average.hpp"
@@ -66,6 +67,23 @@ TEST_CASE("the Harris sheet balances pressure and current and its field is free 
     }
 }
 
+TEST_CASE("only relativistic sheets above a fiftieth of m c^2 are too hot for their balance") {
+    // v_e^2 = m_i/m_e T/6 and v_i^2 = 5 T/6, T = (v_A/c)^2/2: the larger counts.
+    struct Sheet {
+        double light, mass, heat;
+    };
+    for (const auto& [light, mass, heat] : {Sheet{20, 25, 0}, Sheet{10.5, 25, 0},
+                                            Sheet{10, 25, 25 / 1200.0}, Sheet{4, 2, 5 / 192.0}}) {
+        Case sheet;
+        sheet.harris.light_over_alfven = light, sheet.harris.mass_ratio = mass;
+        CHECK(relativistic_heat(sheet) <= 0);
+        sheet.mover.relativistic = true;
+        CHECK(std::fabs(relativistic_heat(sheet) - heat) <= 4 * eps);
+        sheet.setup = "uniform";
+        CHECK(relativistic_heat(sheet) <= 0);
+    }
+}
+
 TEST_CASE("particles of a Harris sheet have equal weights and start with no charge") {
     for (const char* loading : {"quiet", "random"}) {
         Case parameters;
@@ -124,6 +142,57 @@ TEST_CASE("a uniform plasma has the moments that were asked for") {
                 CHECK(std::fabs(square[a] * s.mass / T[a] - 1) <= 4 * std::sqrt(2 / n));
             }
         }
+    }
+}
+
+TEST_CASE("the seeded mode has the waves and amplitudes and phases that were asked for") {
+    for (const auto& [mode_x, mode_z] : {std::pair{2, 0}, std::pair{0, 3}, std::pair{1, -2}}) {
+        Case w = uniform_case("quiet");
+        UniformCase& u = w.uniform;
+        u.mode_x = mode_x, u.mode_z = mode_z;
+        const double dx = w.grid.x.spacing(), dz = w.grid.z.spacing();
+        const double k_x = 2 * pi * mode_x / w.grid.x.length,
+                     k_z = 2 * pi * mode_z / w.grid.z.length;
+        u.E_x = 0.1, u.E_y = 0.2, u.E_z = 0.3, u.B_x = 0.4, u.B_y = 0.5, u.B_z = 0.6;
+        u.wave_E_x = 0.01, u.wave_E_y = 0.02, u.wave_E_z = 0.03, u.wave_B_y = 0.04;
+        u.phase_E_x = 10, u.phase_E_y = 20, u.phase_E_z = 30, u.phase_B_y = 40;
+        u.wave_B_x = mode_x == 0 ? 0.05 : -0.05 * k_z / k_x, u.wave_B_z = mode_x == 0 ? 0 : 0.05;
+        u.phase_B_x = u.phase_B_z = 50;
+        SpeciesCase& s = u.species[0];
+        s.temperature_x = s.temperature_y = s.temperature_z = 0;
+        s.wave_x = 0.001, s.wave_y = 0.002, s.wave_z = 0.003;
+        s.phase_x = 60, s.phase_y = 70, s.phase_z = 80;
+        const State state = loaded_state(w);
+        const auto wave = [&](double x, double z, double degrees) {
+            return std::cos(k_x * x + k_z * z + degrees * pi / 180);
+        };
+        // The mesh takes differences of A_y over a cell.
+        const auto smaller = [](double half) { return half == 0 ? 1 : std::sin(half) / half; };
+        const double B_x = u.wave_B_x * smaller(k_z * dz / 2),
+                     B_z = u.wave_B_z * smaller(k_x * dx / 2);
+        const VectorField &E = state.field.E, &B = state.field.B;
+        double wrong = 0;
+        for (long j = 0; j < w.grid.z.cells; ++j)
+            for (long i = 0; i < w.grid.x.cells; ++i) {
+                const long n = w.grid.index(i, j);
+                const double x = real(i) * dx, z = real(j) * dz, x_half = x + dx / 2,
+                             z_half = z + dz / 2;
+                wrong = worst({wrong, std::fabs(E.x()[n] - 0.1 - 0.01 * wave(x_half, z, 10)),
+                               std::fabs(E.y()[n] - 0.2 - 0.02 * wave(x, z, 20)),
+                               std::fabs(E.z()[n] - 0.3 - 0.03 * wave(x, z_half, 30)),
+                               std::fabs(B.x()[n] - 0.4 - B_x * wave(x, z_half, 50)),
+                               std::fabs(B.y()[n] - 0.5 - 0.04 * wave(x_half, z_half, 40)),
+                               std::fabs(B.z()[n] - 0.6 - B_z * wave(x_half, z, 50))});
+            }
+        CHECK(wrong <= 1e-14);
+        const Particles& ions = state.plasma.species[0];
+        for (std::size_t p = 0; p < ions.x_p.size(); ++p) {
+            const double x = ions.x_p[p] - w.grid.x.low, z = ions.z_p[p] - w.grid.z.low;
+            const Vector v(0.01 + 0.001 * wave(x, z, 60), -0.02 + 0.002 * wave(x, z, 70),
+                           0.03 + 0.003 * wave(x, z, 80));
+            wrong = worst({wrong, (velocity(ions, p) - v).norm()});
+        }
+        CHECK(wrong <= 1e-14);
     }
 }
 

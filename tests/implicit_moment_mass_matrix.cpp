@@ -229,6 +229,26 @@ TEST_CASE("a flight and the flight back leave particles where they were") {
     }
 }
 
+TEST_CASE("a flight over more than 1000 boxes is refused") {
+    const facts::Untrapped calm;
+    for (const Grid& grid : meshes())
+        for (const double away : {1.0, -1.0})
+            for (const double boxes : {999.0, 1001.0, std::nan("")}) {
+                std::vector<Particles> along_x(2, no_particles()), along_z = along_x;
+                for (int p = 0; p < 3; ++p) {
+                    const double way = p == 1 ? away * boxes : 0;
+                    add(along_x[1], grid.x.at(2.3), grid.z.at(3), {way * grid.x.length, 0, 0});
+                    add(along_z[1], grid.x.at(2.3), grid.z.at(3), {0, 0, way * grid.z.length});
+                }
+                for (auto* species : {&along_x, &along_z}) {
+                    if (boxes == 999)
+                        CHECK_NOTHROW(fly(grid, 1, *species));
+                    else
+                        CHECK_THROWS_AS(fly(grid, 1, *species), common::NumericalError);
+                }
+            }
+}
+
 // The theorem, for any step, field, mesh and boundary, and with it what theta takes.
 void check_energy(const std::string& solver, double longest, bool relativistic = false) {
     Random random;

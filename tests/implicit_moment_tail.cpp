@@ -168,6 +168,17 @@ TEST_CASE("particles of the tail are where its density says") {
     }
     CHECK(std::fabs(places.content() / all - 1) <= 1e-4);
     CHECK(std::fabs(left / all - 1.0 / 3) <= 1e-4);
+    // As much of the density is to the left as was asked for, also within a 4096th of the box.
+    const double half_x = 0.5 * w.grid.x.length, half_z = 0.5 * w.grid.z.length;
+    const auto column = [&](double x) {
+        return 2 * tail.content(x, std::tanh(tail.height(x, half_z)));
+    };
+    const double content = integral(column, -half_x, half_x, 200);
+    CHECK(std::fabs(places.content() / content - 1) <= 1e-8);
+    for (const double u_x : {0.00005, 0.001, 0.1234, 0.3, 0.5, 0.77, 0.9999}) {
+        const double x = places.place(u_x, 0.5)[0];
+        CHECK(std::fabs(integral(column, -half_x, x, 200) / content - u_x) <= 1e-7);
+    }
 }
 
 TEST_CASE(
