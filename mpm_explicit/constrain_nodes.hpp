@@ -45,7 +45,7 @@ inline std::vector<GridRow> grid_rows(const std::vector<Grain>& grains, const Gr
 struct DofConstraint {
     long dof, master, beyond;
     signed char along = 0;  // 1, 2: gradients are shared along x, along y, as forces are
-    long lowest = 0;        // row of its grain
+    long lowest = 0;        // the lowest row of its grain
 };
 
 /// Which neighbors a node may be constrained to: also those across a corner of a cell, or only those

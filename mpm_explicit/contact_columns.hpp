@@ -34,8 +34,8 @@ struct LowestPoint {
 };
 /// The lowest point between column n and the next one.
 /// in:     n, number of the first column; separation, at which surfaces touch [length]; 0: wherever
-///         grains approach, at every column; h, width of a cell; long_steps, the columns beyond say where
-///         it is: those that bear the load would be pushed to and fro by what their own gaps make of it
+///         grains approach, at every column; h, width of a cell; long_steps, whether the columns beyond
+///         these two tell where the point is
 /// exact:  for a parabola, wherever its lowest point is
 /// note:   Below 3.3 cells of radius, k = 0.3 h, a disk would rock on the point under it, and gain by it.
 inline LowestPoint lowest_point(const std::vector<ContactColumn>& columns, int n, double separation,
@@ -49,8 +49,8 @@ inline LowestPoint lowest_point(const std::vector<ContactColumn>& columns, int n
     // Beside a curved surface, two columns may not be one another's.
     if (columns[to].before != n) return {};
     const double g = columns[n].gap, g_to = columns[to].gap;
-    // What is pressed at both columns is held at both: turning about a point between them, it would take in
-    // what nothing has pressed, and lose its load.
+    // What is pressed at both columns is held at both: with one contact between them the surface could tilt
+    // about it without resistance, one column sinking in as the other opens.
     if (g <= 0 && g_to <= 0) return {};
     // Second differences at both columns, where there is a column beyond.
     double k = 0, count = 0, least = std::numeric_limits<double>::infinity(), most = 0;

@@ -75,8 +75,8 @@ void surface_to_grid(const Shape& shape, const Particles& particles, GrainNodes&
 /// The parts of the outline turn and stretch with the particles that carry them, before these move.
 ///   e <- F e,  A <- C A,  M <- C M FT,  C = det F F^-T,  F = 1 + dt grad v_p
 /// in:     nodes.motion, v_1, with which particles move
-/// exact:  F is the gradient of that move. Where it turns the nodes, by v_i = (R - 1) x_i/dt, it turns
-///         the parts, R of any angle, and the outline keeps its area; so it does where it strains them evenly.
+/// exact:  F is the gradient of that move. Nodes that turn, by v_i = (R - 1) x_i/dt, turn the parts by
+///         R, whatever the angle; any even F takes the outline to its image, of det F times its area
 /// note:   |A| <= 2 h and |M| <= 2 h^2, which no part of a particle has at the start
 template <class Shape>
 void carry_surface(const Shape& shape, const std::vector<Grain>& grains, const GrainNodes& nodes,

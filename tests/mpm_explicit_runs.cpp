@@ -150,7 +150,7 @@ TEST_CASE("a grain at rest stays at rest and bursts with contact on the new velo
 
 TEST_CASE("a disk rests wherever it is in its cells and gains nothing" *
           doctest::description("physics")) {
-    // Six cells in its radius. Of 60 places at random none gained more than .028; as the slide
+    // Six cells in its radius. Of 100 places at random none gained more than .028; as the slide
     // strains it, some do, and in the second place here it has several times its energy.
     const auto rest = [](double across, double up, const char* changes) {
         const auto number = [](double x) { return std::to_string(x); };
@@ -164,7 +164,7 @@ TEST_CASE("a disk rests wherever it is in its cells and gains nothing" *
                 " grain.plate.y=" + number(0.075 + 0.5 * up) + " " + changes);
     };
     for (const auto& [across, up] : {std::pair(0.0122, 0.0287),
-                                     {0.0382, 0.0287},
+                                     {0.0268, 0.0183},
                                      {0.0263, 0.0438},
                                      {0.0429, 0.0145},
                                      {0.003, 0.0103}}) {
@@ -172,7 +172,7 @@ TEST_CASE("a disk rests wherever it is in its cells and gains nothing" *
         CHECK(r.value("energy_gain") <= 0.03);
         check_budget(r);
     }
-    CHECK(rest(0.0382, 0.0287, "method.crossing=0").value("energy_gain") > 1);
+    CHECK(rest(0.0268, 0.0183, "method.crossing=0").value("energy_gain") > 1);
 }
 
 TEST_CASE("a block that is pressed by a quarter is called too soft with linear shapes" *

@@ -267,13 +267,6 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
                               frequency * (seen.end - seen.begin) / (2 * pi),
                               " periods that are measured at a time: raise "
                               "theory.growth_tolerance, or look at the onset"));
-    else if (!grows && !covered && seen.found &&
-             std::fabs(seen.frequency() - frequency) > 0.1 * frequency)
-        summary.hint(
-            sentence("what swings in this mode has omega = ", seen.omega.real(),
-                     ", and the root of theory nearest to theory.near has ", theory.omega.real(),
-                     ", growth ", growth,
-                     ": where it is another root, take theory.near = ", seen.omega.real()));
     const std::string where = theory.source + "; measured " + seen.window;
     const auto report = [&](const std::string& name, double value, double error, double expected,
                             double tolerance) {
