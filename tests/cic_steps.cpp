@@ -607,19 +607,19 @@ TEST_CASE("a table of a distribution has its moments and its inverse that of its
     const Distribution line = tabulate(1, 2, 4, false, [](double v) {
         return v < 1.25 ? 1.0 : v < 1.5 || v > 1.75 ? 2.0 : 3.0;
     });
-    CHECK(line.mean() == doctest::Approx((1.125 + 2 * 1.375 + 3 * 1.625 + 2 * 1.875) / 8));
+    CHECK(line.mean() == facts::about((1.125 + 2 * 1.375 + 3 * 1.625 + 2 * 1.875) / 8));
     double mean_square = 0;  // about 1, of each piece that of its middle and 1/12 of its width
     for (const auto& [part, middle] : {std::pair(1, 0.125), {2, 0.375}, {3, 0.625}, {2, 0.875}})
         mean_square += part / 8.0 * (middle * middle + 0.0625 / 12);
-    CHECK(line.mean_square(1) == doctest::Approx(mean_square));
+    CHECK(line.mean_square(1) == facts::about(mean_square));
     for (const auto& [u, v] : {std::pair(0.0, 1.0), {0.0625, 1.125}, {0.25, 1.375}, {1.0, 2.0}})
-        CHECK(line.inverse(u) == doctest::Approx(v));
+        CHECK(line.inverse(u) == facts::about(v));
     CHECK(line.inverse(1.5) == 2);
     CHECK(line.inverse(-1) == 1);
     // Speeds in a plane have 2 pi v f(v): of a uniform disk a quarter is within half of its radius.
     const Distribution disk = tabulate(0, 3, 600, true, [](double) { return 1.0; });
-    CHECK(disk.inverse(0.25) == doctest::Approx(1.5));
-    CHECK(disk.mean() == doctest::Approx(2).epsilon(1e-5));
+    CHECK(disk.inverse(0.25) == facts::about(1.5));
+    CHECK(disk.mean() == facts::about(2).epsilon(1e-5));
 }
 
 TEST_CASE("a perturbed species has the density that the case asks for") {

@@ -448,7 +448,7 @@ TEST_CASE("a crowd that leaves its rows is moved as a whole") {
                 CHECK(identical(sorted, particles));
             }
             CHECK(std::accumulate(particles.uy_p.begin(), particles.uy_p.end(), 0.0) ==
-                  doctest::Approx(momentum).epsilon(1e-9));
+                  about(momentum).epsilon(1e-9));
         }
     }
 }

@@ -109,8 +109,8 @@ TEST_CASE("an exact shock tube has no error in either frame") {
         facts::check_results(run.summary, 12);
         CHECK(run.value("L1_density") <= 1e-12);
         CHECK(run.value("L1_velocity_over_jump") <= 1e-12);
-        CHECK(run.value("star_velocity_error") == doctest::Approx(0).epsilon(1e-9));
-        CHECK(run.value("star_pressure") == doctest::Approx(0.30313).epsilon(1e-4));
+        CHECK(std::fabs(run.value("star_velocity_error")) <= 1e-9);
+        CHECK(run.value("star_pressure") == facts::about(0.30313).epsilon(1e-4));
     }
 }
 
@@ -230,7 +230,7 @@ TEST_CASE("the pressure between two strong fans is judged by its own size") {
         if (xi > s.left_tail && xi < s.right_tail)
             c.p[n] = i % 3 ? 0 : 3 * star, c.rho[n] *= i % 3 ? 0 : 3;
     });
-    CHECK(run.value("star_pressure") == doctest::Approx(star));
+    CHECK(run.value("star_pressure") == facts::about(star));
 }
 
 TEST_CASE("a tube whose light gas is scrambled beside a heavy one does not pass") {
@@ -282,8 +282,8 @@ TEST_CASE("the shock at a wall is found on both sides of the mesh") {
             });
         });
         facts::check_results(run.summary, 3);
-        CHECK(run.value("density_behind_shock") == doctest::Approx(6).epsilon(1e-4));
-        CHECK(run.value("shock_speed") == doctest::Approx(0.2).epsilon(0.01));
+        CHECK(run.value("density_behind_shock") == facts::about(6).epsilon(1e-4));
+        CHECK(run.value("shock_speed") == facts::about(0.2).epsilon(0.01));
         CHECK(run.value("density_scatter") <= 1e-6);
     }
 }
@@ -299,7 +299,7 @@ TEST_CASE("the radius of a blast in the middle and of one in a corner is found")
             "\ncenter_z = " + at + "\n";
         const auto run = recorded(text, "flip", 4, [](const Case& w, double t, Fluid& f) {
             const Blast blast = blast_of(w);
-            CHECK(blast.energy == doctest::Approx(1));
+            CHECK(blast.energy == facts::about(1));
             const double R = blast.radius(t);
             visit_cells(w.grid, [&](long n, double x, double z) {
                 const double r = std::hypot(x - blast.x, z - blast.z);
@@ -307,7 +307,7 @@ TEST_CASE("the radius of a blast in the middle and of one in a corner is found")
             });
         });
         facts::check_results(run.summary, 1);
-        CHECK(run.value("shock_radius") == doctest::Approx(0.31749).epsilon(0.02));
+        CHECK(run.value("shock_radius") == facts::about(0.31749).epsilon(0.02));
     }
 }
 
@@ -331,7 +331,7 @@ TEST_CASE("an inertial wave of the frequency of theory passes and one too slow f
             });
             const std::string name = grows ? "growth_over_theory" : "frequency_over_theory";
             CAPTURE(name);
-            CHECK(run.value(name) == doctest::Approx(1 / slow).epsilon(1e-3));
+            CHECK(run.value(name) == facts::about(1 / slow).epsilon(1e-3));
             CHECK((run.summary["results"][name]["verdict"] == "PASS") == (slow == 1));
         }
     }
@@ -380,8 +380,8 @@ TEST_CASE("the plateau of gas that has fallen into a line is found") {
             f.cells.rho[n] = t > 0 ? theory::noh_state(noh_of(w), r, t).density : 1;
         });
     });
-    CHECK(run.value("plateau_density_over_theory") == doctest::Approx(1).epsilon(1e-6));
-    CHECK(run.value("shock_radius_over_theory") == doctest::Approx(1).epsilon(0.03));
+    CHECK(run.value("plateau_density_over_theory") == facts::about(1).epsilon(1e-6));
+    CHECK(run.value("shock_radius_over_theory") == facts::about(1).epsilon(0.03));
 }
 
 TEST_CASE("the diffusivity of a blob is read from its width across a periodic end") {
@@ -403,8 +403,8 @@ TEST_CASE("the diffusivity of a blob is read from its width across a periodic en
     const double expected = theory::harlow_lattice_diffusivity(1, 0.01, 0.002, 4);
     const auto pic = recorded(text, "pic", 50, blob(expected));
     facts::check_results(pic.summary, 1);
-    CHECK(pic.value("diffusivity") == doctest::Approx(expected / 0.01).epsilon(1e-3));
-    CHECK(pic.value("many_particles") == doctest::Approx(0.4));
+    CHECK(pic.value("diffusivity") == facts::about(expected / 0.01).epsilon(1e-3));
+    CHECK(pic.value("many_particles") == facts::about(0.4));
     facts::check_results(recorded(text, "flip", 50, blob(0)).summary, 1);
 }
 
@@ -425,7 +425,7 @@ TEST_CASE("a wave that each step turns and grows as theory says has those rates"
         });
         facts::check_results(run.summary, 2);
         CHECK((run.value("amplitude_per_period") > 1) == (pressure == "explicit"));
-        CHECK(run.value("frequency_over_ck") == doctest::Approx(1).epsilon(0.002));
+        CHECK(run.value("frequency_over_ck") == facts::about(1).epsilon(0.002));
     }
 }
 
@@ -474,7 +474,7 @@ TEST_CASE("the growth of an interface is found from a start in motion and from o
             });
         });
         facts::check_results(run.summary, 1);
-        CHECK(run.value("theory_growth") == doctest::Approx(std::sqrt(0.2 * pi / 3)).epsilon(1e-4));
+        CHECK(run.value("theory_growth") == facts::about(std::sqrt(0.2 * pi / 3)).epsilon(1e-4));
     }
 }
 
@@ -492,7 +492,7 @@ TEST_CASE("the growth of a layer of shear is found") {
         });
     });
     facts::check_results(run.summary, 1);
-    CHECK(run.value("growth_over_theory") == doctest::Approx(1).epsilon(1e-5));
+    CHECK(run.value("growth_over_theory") == facts::about(1).epsilon(1e-5));
 }
 
 TEST_CASE("what cannot be measured is said with its reason and what fails fails") {
@@ -675,10 +675,10 @@ TEST_CASE("a vortex that loses a tenth in two turns has kept its root in one") {
                 f.cells.vz[n] = r > 0 ? u * dx / r : 0;
             });
         });
-        CHECK(run.value("kinetic_energy_kept") == doctest::Approx(std::sqrt(0.9)).epsilon(1e-6));
-        CHECK(run.value("angular_momentum_kept") == doctest::Approx(std::sqrt(0.9)).epsilon(1e-3));
+        CHECK(run.value("kinetic_energy_kept") == facts::about(std::sqrt(0.9)).epsilon(1e-6));
+        CHECK(run.value("angular_momentum_kept") == facts::about(std::sqrt(0.9)).epsilon(1e-3));
         CHECK(run.column("swirl").front() ==
-              doctest::Approx(theory::gresho_angular_momentum).epsilon(0.01));
+              facts::about(theory::gresho_angular_momentum).epsilon(0.01));
     }
 }
 
@@ -705,7 +705,7 @@ TEST_CASE("the front of a dam that breaks as in the laboratory has its speed") {
     });
     facts::check_results(run.summary, 1);
     CHECK(std::fabs(run.value("front_ahead")) <= 0.02);
-    CHECK(run.value("wall_height") == doctest::Approx(0.6));
+    CHECK(run.value("wall_height") == facts::about(0.6));
 }
 
 TEST_CASE("the center of a vortex in a cavity is found between the nodes") {
@@ -725,8 +725,8 @@ TEST_CASE("the center of a vortex in a cavity is found between the nodes") {
             f.cells.vz[n] = 2 * 40 * dx * psi;
         });
     });
-    CHECK(run.value("vortex_x") == doctest::Approx(0.6172).epsilon(0.002));
-    CHECK(run.value("vortex_z") == doctest::Approx(0.7344).epsilon(0.002));
+    CHECK(run.value("vortex_x") == facts::about(0.6172).epsilon(0.002));
+    CHECK(run.value("vortex_z") == facts::about(0.7344).epsilon(0.002));
     CHECK(run.value("unsteadiness") <= 1e-15);
     CHECK(run.value("largest_u_difference") > 0.05);
 }
@@ -740,8 +740,8 @@ TEST_CASE("conservation errors are what has changed less what came in") {
     CHECK(run.conservation("largest_mass_error") <= 1e-15);
     CHECK(run.conservation("largest_momentum_x_error") <= 1e-15);
     CHECK(run.conservation("largest_momentum_z_error") ==
-          doctest::Approx(1 / (2 + 2 * std::sqrt(1.4))));
-    CHECK(run.conservation("largest_energy_error") == doctest::Approx(0.25));
+          facts::about(1 / (2 + 2 * std::sqrt(1.4))));
+    CHECK(run.conservation("largest_energy_error") == facts::about(0.25));
 }
 
 TEST_CASE("every run of pic and flip says whether its energy is accounted for") {

@@ -142,7 +142,7 @@ TEST_CASE(
                 sort(grid, s[0]);
             }
             CHECK(std::fabs(s[0].uz_p[0] - acceleration * end) <= 1e-12 * acceleration * end);
-            CHECK(s[0].uy_p[0] == doctest::Approx(0.5).epsilon(1e-12));
+            CHECK(s[0].uy_p[0] == about(0.5).epsilon(1e-12));
             return std::fabs(s[0].z_p[0] - exact);
         };
         // dt (u + u') / (gamma + gamma') is the change of gamma over a.

@@ -74,7 +74,7 @@ TEST_CASE("a rigid motion of the nodes feels no viscosity") {
         };
         // V = 1 of each: beta (lambda + 2G) e^2 dt in a uniform stretch.
         const double expected = 0.01 * (laws[0].T.lambda + 2 * laws[0].T.G) * 25 * dt * 200;
-        CHECK(taken(0, 5) == doctest::Approx(expected).epsilon(1e-12));
+        CHECK(taken(0, 5) == about(expected).epsilon(1e-12));
         const double force = largest_force();
         CHECK(force > 0);
         CHECK(taken(5, 0) <= 1e-24 * expected);
@@ -117,7 +117,7 @@ TEST_CASE("viscosity shortens the step to just what leapfrog bears") {
         Material m;
         m.viscosity = beta;
         const double dt = h / c_p / viscous_shortening(m, h), w = 2 * c_p / h;
-        CHECK(w * w * dt * dt + 2 * beta * w * w * dt == doctest::Approx(4).epsilon(1e-12));
+        CHECK(w * w * dt * dt + 2 * beta * w * w * dt == about(4).epsilon(1e-12));
         // The node: where the roots of its factor leave the unit circle.
         const double own = c_p / h, limit = (std::sqrt(beta * beta + 4 / (own * own)) - beta) *
                                             c_p / h * viscous_shortening(m, h);
@@ -204,13 +204,13 @@ TEST_CASE("viscosity does not see how fast a grain flies") {
     };
     double kept = 0;
     const std::vector<double> rest = flight(0, 3e-3, 0, kept), moves = flight(50, 3e-3, 0, kept);
-    CHECK(kept == doctest::Approx(1).epsilon(1e-6));
+    CHECK(kept == about(1).epsilon(1e-6));
     double off = 0, size = 0;
     for (std::size_t k = 0; k < rest.size(); ++k)
         off = worst({off, std::fabs(moves[k] - rest[k])}), size = worst({size, std::fabs(rest[k])});
     CHECK(off <= 1e-9 * size);
     (void)flight(50, 0, 5, kept);
-    CHECK(kept == doctest::Approx(std::exp(-0.002 * 5 * 40)).epsilon(1e-6));
+    CHECK(kept == about(std::exp(-0.002 * 5 * 40)).epsilon(1e-6));
 }
 
 TEST_CASE("a block that slides flutters as finite elements say up to lumping" *

@@ -352,7 +352,7 @@ TEST_CASE("gravity does exactly the work of the way that grains fall") {
                 mx /= m, my /= m;
             };
             center(x_before, before);
-            CHECK(before == doctest::Approx(y).epsilon(1e-12));
+            CHECK(before == about(y).epsilon(1e-12));
             run.advance(steps);
             center(x_after, after);
             // All of it moves with v^theta: sum_k dt (v_0 + (k + theta) g dt).

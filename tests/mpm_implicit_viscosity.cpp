@@ -127,8 +127,8 @@ TEST_CASE("both solvers find the same velocities with viscosity") {
         ThetaRun cg(c, theta_scheme(0.75)),
             newton(c, theta_scheme(0.75, "consistent", "newton_krylov"));
         cg.advance(15), newton.advance(15);
-        CHECK(cg.budget().kinetic == doctest::Approx(newton.budget().kinetic).epsilon(1e-7));
-        CHECK(cg.budget().viscous == doctest::Approx(newton.budget().viscous).epsilon(1e-7));
+        CHECK(cg.budget().kinetic == about(newton.budget().kinetic).epsilon(1e-7));
+        CHECK(cg.budget().viscous == about(newton.budget().viscous).epsilon(1e-7));
     }
 }
 

@@ -246,7 +246,7 @@ TEST_CASE("the particle of gimp is as wide as the lattice of its grain") {
     c.shape = "gimp";
     for (const long per_side : {1, 2, 3, 5}) {
         c.problem.per_side = per_side;
-        CHECK(2 * c.scheme().half * real(per_side) == doctest::Approx(1).epsilon(1e-15));
+        CHECK(2 * c.scheme().half * real(per_side) == about(1).epsilon(1e-15));
     }
 }
 

@@ -107,36 +107,35 @@ struct Texts {
 
 TEST_CASE("area and centroid and width of an outline are those of geometry") {
     const Outline round = disk(0.3, -2, 0.5);
-    CHECK(area(round) == doctest::Approx(pi / 4).epsilon(1e-15));
+    CHECK(area(round) == about(pi / 4).epsilon(1e-15));
     CHECK(thinnest(round) == 1);
-    CHECK(bounds(round).x_low == doctest::Approx(-0.2));
+    CHECK(bounds(round).x_low == about(-0.2));
     CHECK(bounds(round).y_high == -1.5);
     for (const double angle : {0.0, 17.0, 45.0, 90.0, 200.0}) {
         const Outline bar = box(5, 6, 3, 0.5, angle);
-        CHECK(area(bar) == doctest::Approx(1.5).epsilon(1e-14));
-        CHECK(thinnest(bar) == doctest::Approx(0.5).epsilon(1e-14));
-        CHECK(centroid(bar).x == doctest::Approx(5).epsilon(1e-14));
-        CHECK(centroid(bar).y == doctest::Approx(6).epsilon(1e-14));
+        CHECK(area(bar) == about(1.5).epsilon(1e-14));
+        CHECK(thinnest(bar) == about(0.5).epsilon(1e-14));
+        CHECK(centroid(bar).x == about(5).epsilon(1e-14));
+        CHECK(centroid(bar).y == about(6).epsilon(1e-14));
         for (const long n : {3L, 4L, 5L, 12L}) {
             const Outline regular = regular_polygon(-1, 2, 0.7, n, angle);
             const double sector = pi / real(n), apothem = 0.7 * std::cos(sector);
-            CHECK(area(regular) ==
-                  doctest::Approx(0.49 * real(n) * std::sin(2 * sector) / 2).epsilon(1e-14));
+            CHECK(area(regular) == about(0.49 * real(n) * std::sin(2 * sector) / 2).epsilon(1e-14));
             CHECK(thinnest(regular) ==
-                  doctest::Approx(n % 2 == 0 ? 2 * apothem : 0.7 + apothem).epsilon(1e-14));
-            CHECK(centroid(regular).x == doctest::Approx(-1).epsilon(1e-14));
-            CHECK(regular.radius == doctest::Approx(0.7).epsilon(1e-14));
+                  about(n % 2 == 0 ? 2 * apothem : 0.7 + apothem).epsilon(1e-14));
+            CHECK(centroid(regular).x == about(-1).epsilon(1e-14));
+            CHECK(regular.radius == about(0.7).epsilon(1e-14));
         }
     }
     const Outline L = letter_L();
-    CHECK(area(L) == doctest::Approx(4).epsilon(1e-14));
-    CHECK(centroid(L).x == doctest::Approx((3 * 1.5 + 0.5) / 4).epsilon(1e-14));
-    CHECK(centroid(L).y == doctest::Approx((3 * 0.5 + 1.5) / 4).epsilon(1e-14));
+    CHECK(area(L) == about(4).epsilon(1e-14));
+    CHECK(centroid(L).x == about((3 * 1.5 + 0.5) / 4).epsilon(1e-14));
+    CHECK(centroid(L).y == about((3 * 0.5 + 1.5) / 4).epsilon(1e-14));
     // The hull of the L is closed by the line from (3, 1) to (1, 2).
-    CHECK(thinnest(L) == doctest::Approx(2).epsilon(1e-14));
+    CHECK(thinnest(L) == about(2).epsilon(1e-14));
     const Outline far = moved(L, 1e3, -1e3);
-    CHECK(area(far) == doctest::Approx(4).epsilon(1e-12));
-    CHECK(centroid(far).y == doctest::Approx(0.75 - 1e3).epsilon(1e-14));
+    CHECK(area(far) == about(4).epsilon(1e-12));
+    CHECK(centroid(far).y == about(0.75 - 1e3).epsilon(1e-14));
 }
 
 TEST_CASE("a polygon is the same whichever way around its corners are given") {
@@ -212,22 +211,22 @@ TEST_CASE("a point is inside an outline that winds around it") {
 
 TEST_CASE("how deep disks and boxes overlap is what geometry says") {
     const double tight = 1e-13;
-    CHECK(overlap_depth(disk(0, 0, 1), disk(1.5, 0, 0.75)) == doctest::Approx(0.25).epsilon(tight));
+    CHECK(overlap_depth(disk(0, 0, 1), disk(1.5, 0, 0.75)) == about(0.25).epsilon(tight));
     CHECK(overlap_depth(disk(0, 0, 1), disk(3, 4, 4)) == 0);
-    CHECK(overlap_depth(disk(0, 0, 1), disk(0.25, 0, 0.1)) == doctest::Approx(0.85).epsilon(tight));
-    CHECK(overlap_depth(box(0, 0, 2, 2), box(1.75, 0.5, 2, 1)) == doctest::Approx(0.25));
+    CHECK(overlap_depth(disk(0, 0, 1), disk(0.25, 0, 0.1)) == about(0.85).epsilon(tight));
+    CHECK(overlap_depth(box(0, 0, 2, 2), box(1.75, 0.5, 2, 1)) == about(0.25));
     CHECK(overlap_depth(box(0, 0, 2, 2), box(2, 0, 2, 2)) == 0);
     CHECK(overlap_depth(box(0, 0, 2, 2), box(2, 2, 2, 2)) == 0);
     // A corner in a side, a disk on a side and on a corner, and one inside.
     CHECK(overlap_depth(box(0, 0, 2, 2), box(1 + std::sqrt(2.0) - 0.1, 0, 2, 2, 45)) ==
-          doctest::Approx(0.1).epsilon(tight));
-    CHECK(overlap_depth(box(0, 0, 2, 2), disk(1.4, 0.3, 0.5)) == doctest::Approx(0.1));
-    CHECK(overlap_depth(disk(4, 5, 5.5), box(0, 0, 2, 2)) == doctest::Approx(0.5));
-    CHECK(overlap_depth(disk(0.5, 0.2, 0.25), box(0, 0, 2, 2)) == doctest::Approx(0.75));
+          about(0.1).epsilon(tight));
+    CHECK(overlap_depth(box(0, 0, 2, 2), disk(1.4, 0.3, 0.5)) == about(0.1));
+    CHECK(overlap_depth(disk(4, 5, 5.5), box(0, 0, 2, 2)) == about(0.5));
+    CHECK(overlap_depth(disk(0.5, 0.2, 0.25), box(0, 0, 2, 2)) == about(0.75));
     // In the notch of an L there is room.
     CHECK(overlap_depth(letter_L(), box(2, 1.5, 2, 1)) == 0);
     CHECK(overlap_depth(letter_L(), disk(1.5, 1.5, 0.5)) == 0);
-    CHECK(overlap_depth(letter_L(), disk(1.45, 1.5, 0.5)) == doctest::Approx(0.05));
+    CHECK(overlap_depth(letter_L(), disk(1.45, 1.5, 0.5)) == about(0.05));
     CHECK(overlap_depth(letter_L(), box(1.95, 1.45, 2, 1)) > 0.04);
     // Grains that only touch, to the round-off of their places.
     CHECK(overlap_depth(disk(0.1, 0, 0.1), disk(0.3, 0, 0.1)) == 0);
@@ -247,7 +246,7 @@ TEST_CASE("the depth of an overlap is the shortest way out") {
         const std::uint64_t first = any_number(k, 8) < 0.5 ? k : 7 * k + 1, second = 3 * k + 2;
         const Outline a = any_outline(first), b = any_outline(second);
         const double depth = overlap_depth(a, b);
-        CHECK(overlap_depth(b, a) == doctest::Approx(depth).epsilon(1e-12));
+        CHECK(overlap_depth(b, a) == about(depth).epsilon(1e-12));
         // Move one outline away in every direction.
         bool out = false, too_early = false;
         for (int m = 0; m < 720; ++m) {
@@ -473,27 +472,27 @@ TEST_CASE("rows of disks make the compressed pack and the sheared one") {
     CHECK(compressed.size() == 18);
     CHECK(compressed.front().name == "g0001");
     CHECK(compressed.back().name == "g0018");
-    CHECK(compressed.back().outline.x == doctest::Approx(0.8));
-    CHECK(compressed.back().outline.y == doctest::Approx(0.1 + 0.3 * std::sqrt(3.0)));
+    CHECK(compressed.back().outline.x == about(0.8));
+    CHECK(compressed.back().outline.y == about(0.1 + 0.3 * std::sqrt(3.0)));
     double right = 0, top = 0;
     for (const PackedGrain& grain : compressed) {
         right = std::max(right, bounds(grain.outline).x_high);
         top = std::max(top, bounds(grain.outline).y_high);
     }
-    CHECK(right == doctest::Approx(1));
-    CHECK(top == doctest::Approx(0.7196).epsilon(1e-4));
+    CHECK(right == about(1));
+    CHECK(top == about(0.7196).epsilon(1e-4));
     CHECK(overlaps(compressed, 0, 0).depth == 0);
     CHECK(overlaps(compressed, 1, 0).depth == 0);
 
     rows.rows = 5, rows.one_less = false, rows.spacing_y = 0.18;
     const auto sheared = hexagonal_rows(rows);
     CHECK(sheared.size() == 25);
-    CHECK(sheared[9].outline.x == doctest::Approx(1));
-    CHECK(sheared[24].outline.y == doctest::Approx(0.1 + 4 * 0.18));
+    CHECK(sheared[9].outline.x == about(1));
+    CHECK(sheared[24].outline.y == about(0.1 + 4 * 0.18));
     CHECK(overlaps(sheared, 1, 0).depth == 0);
     rows.spacing_y = 0.17;
     CHECK(overlaps(hexagonal_rows(rows), 1, 0).depth ==
-          doctest::Approx(0.2 - std::hypot(0.1, 0.17)).epsilon(1e-9));
+          about(0.2 - std::hypot(0.1, 0.17)).epsilon(1e-9));
 }
 
 TEST_CASE("rows without a spacing leave just the gap") {
@@ -641,7 +640,7 @@ TEST_CASE("no place is lower than the one that a deposited disk takes") {
                 }
             }
         }
-        CHECK(taken.y == doctest::Approx(lowest).epsilon(1e-9));
+        CHECK(taken.y == about(lowest).epsilon(1e-9));
     }
 }
 
@@ -683,7 +682,7 @@ TEST_CASE("a random pack depends on its seed and not on its place") {
             CHECK(first[k].outline.x == second[k].outline.x);
             CHECK(first[k].outline.y == second[k].outline.y);
             CHECK(first[k].outline.radius == elsewhere[k].outline.radius);
-            CHECK(elsewhere[k].outline.x - 4 == doctest::Approx(first[k].outline.x).epsilon(1e-9));
+            CHECK(elsewhere[k].outline.x - 4 == about(first[k].outline.x).epsilon(1e-9));
             same += elsewhere[k].outline.radius == other[k].outline.radius ||
                     elsewhere[k].outline.x == other[k].outline.x;
         }
@@ -772,7 +771,7 @@ TEST_CASE("polygons stand in the circles of their disks and are turned at random
             CHECK(static_cast<long>(outline.corners.size()) == sides);
             for (const Point& p : outline.corners)
                 CHECK(std::hypot(p.x - round.x, p.y - round.y) ==
-                      doctest::Approx(round.radius).epsilon(1e-12));
+                      about(round.radius).epsilon(1e-12));
             angles.insert(
                 std::atan2(outline.corners[0].y - round.y, outline.corners[0].x - round.x));
         }
@@ -805,7 +804,7 @@ TEST_CASE("the deepest overlap of a pack is that of all pairs") {
                             all = {grains[a].name, grains[b].name, depth};
                     }
             const Overlap found = overlaps(grains, period, 0);
-            CHECK(found.depth == doctest::Approx(all.depth).epsilon(1e-10));
+            CHECK(found.depth == about(all.depth).epsilon(1e-10));
             CHECK(found.first == all.first);
             CHECK(found.second == all.second);
             CHECK(overlaps(grains, period, all.depth * 1.0001).first.empty());
@@ -820,7 +819,7 @@ TEST_CASE("the deepest overlap of a pack is that of all pairs") {
     CHECK(overlaps(alike, 0, 0).first == "at6");
     CHECK(overlaps(alike, 0, 0).second == "at4");
     CHECK(overlaps({{"long", box(0.3, 0, 1.25, 1)}}, 1, 0).first == "long");
-    CHECK(overlaps({{"long", box(0.3, 0, 1.25, 1)}}, 1, 0).depth == doctest::Approx(0.25));
+    CHECK(overlaps({{"long", box(0.3, 0, 1.25, 1)}}, 1, 0).depth == about(0.25));
     CHECK(overlaps({{"fits", box(0.3, 0, 1, 1)}}, 1, 0).depth == 0);
 }
 
@@ -871,7 +870,7 @@ TEST_CASE("a pack written by a person is read as it is meant") {
     CHECK(grains[0].outline.y == -0.3);
     CHECK(grains[0].outline.radius == 0.25);
     CHECK(grains[1].name == "2nd");
-    CHECK(area(grains[1].outline) == doctest::Approx(0.5));
+    CHECK(area(grains[1].outline) == about(0.5));
     CHECK(grains[1].outline.corners[1].x == 1);
 }
 

@@ -113,10 +113,10 @@ class Recorder {
         };
         conserved("energy_drift", "1");
         conserved("div_B", "B*omega_pi/c");
-        // What each species has been heated by, the mesh and its noise included.
+        // What each species has been heated by, the mesh and its noise included; not of one that rests at first.
         for (const Particles& s : state.plasma.species) {
             const auto kinetic = history.column("kinetic_" + s.name);
-            if (kinetic.front() > 0)
+            if (kinetic.front() > 1e-9 * history.largest("kinetic_" + s.name))
                 summary.conservation("kinetic_change_" + s.name,
                                      kinetic.back() / kinetic.front() - 1, "1");
         }

@@ -59,7 +59,7 @@ inline void compare_rest(const Case& w, const common::History& history, common::
                      format(std::sqrt(s.temperature_x / s.density) / std::fabs(s.charge) / dx) +
                      " cells, and " + number + " particles per cell" +
                      (w.loading == "random" ? ", placed at random," : "") +
-                     " exchange heat through their noise: refine the mesh, raise "
+                     " heat or cool by their noise: refine the mesh, raise "
                      "uniform.particles_per_cell" +
                      (w.loading == "random" ? ", or take plasma.loading = \"quiet\"" : "") +
                      (w.field.uses_mass_matrix() || w.leapfrog.chosen

@@ -33,8 +33,10 @@ inline double swing_in_cells(const Case& w, double omega) {
 }
 
 /// The largest T/m of a direction in which theory has no Lorentz factor: that part of the mass gamma m is missing
-/// there. The theory of transverse waves without B has the factor for all that moves across k.
+/// there. The theory of longitudinal waves has the factor, and that of transverse waves without B for all that
+/// moves across k.
 inline double heat_without_gamma(const Case& w) {
+    if (w.wave == "longitudinal") return 0;
     const UniformCase& u = w.uniform;
     const WaveVector k = wave_vector(w);
     const bool along = w.wave == "transverse" && u.B_x == 0 && u.B_y == 0 && u.B_z == 0;
