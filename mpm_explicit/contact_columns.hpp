@@ -34,12 +34,11 @@ struct LowestPoint {
 };
 /// The lowest point between column n and the next one.
 /// in:     n, number of the first column; separation, at which surfaces touch [length]; 0: wherever
-///         grains approach, at every column; h, width of a cell; long_steps, whether the columns beyond
-///         these two tell where the point is
+///         grains approach, at every column; h, width of a cell
 /// exact:  for a parabola, wherever its lowest point is
 /// note:   Below 3.3 cells of radius, k = 0.3 h, a disk would rock on the point under it, and gain by it.
 inline LowestPoint lowest_point(const std::vector<ContactColumn>& columns, int n, double separation,
-                                double h, bool long_steps = false) {
+                                double h) {
     constexpr double sharpest = 0.3;
     const auto gap_at = [&](int at) {
         return at < 0 ? std::numeric_limits<double>::infinity() : columns[at].gap;
@@ -63,10 +62,8 @@ inline LowestPoint lowest_point(const std::vector<ContactColumn>& columns, int n
     // Where the fall between the columns is less than the separation, k/8, both of them touch.
     if (!(count > 0 && k / count > 8 * separation && k / count < sharpest * h)) return {};
     k /= count;
-    const double fall = long_steps && count == 2
-                            ? (gap_at(columns[to].next) - gap_at(columns[n].before)) / 3
-                            : g_to - g;
-    const double part = 0.5 - fall / k, gap = g + part * (g_to - g) - 0.5 * k * part * (1 - part);
+    const double part = 0.5 - (g_to - g) / k,
+                 gap = g + part * (g_to - g) - 0.5 * k * part * (1 - part);
     return {part > 0 && part < 1, gap, part};
 }
 
@@ -157,14 +154,13 @@ class ContactColumns {
     // The lowest point between a column and the next one, where there is none beside it: no column is in
     // two contacts, and mirror images mirror each other.
     LowestPoint point_after(int n) const {
-        if (n < 0) return {};
+        if (n < 0 || !bodies_.rule().points) return {};
         const double near = bodies_.rule().separation * h();
-        const bool long_steps = bodies_.rule().ahead > 0;
         const ContactColumn& column = columns_[n];
         const bool beside = (next_of(column.before) == n &&
-                             lowest_point(columns_, column.before, near, h(), long_steps).exists) ||
-                            lowest_point(columns_, column.next, near, h(), long_steps).exists;
-        return beside ? LowestPoint{} : lowest_point(columns_, n, near, h(), long_steps);
+                             lowest_point(columns_, column.before, near, h()).exists) ||
+                            lowest_point(columns_, column.next, near, h()).exists;
+        return beside ? LowestPoint{} : lowest_point(columns_, n, near, h());
     }
 
     int next_of(int n) const { return n < 0 ? -1 : columns_[n].next; }

@@ -13,7 +13,8 @@ struct ContactRule {
     // Grains press when their surfaces are nearer than this, in cells; 0: wherever they approach,
     // which is too early. Where a node sees no outline, the centers of their parts around it count.
     double separation = 0.02, center_separation = 0.8;
-    long levels = 2;  // leapfrog: contact acts on v_i^0 and v_i^1; 1: on v_i^1 alone
+    long levels = 2;     // leapfrog: contact acts on v_i^0 and v_i^1; 1: on v_i^1 alone
+    bool points = true;  // whether disks that roll touch a plate between two columns of nodes
     // Surfaces press that will touch so soon [time], and come nearer by so many cells at most.
     double ahead = 0, most_ahead = 0.1;
 };

@@ -103,8 +103,8 @@ inline void GrainNodes::find_shared_nodes(const std::vector<Grain>& grains,
     });
 }
 
-/// Where outlines are summed up: at the members of shared nodes, and at ghosts that give to these, in the order
-/// of their dofs. What particles of a grain give to lies together.
+/// Where outlines are summed up: at the members of shared nodes, and at ghosts that give to these, in
+/// the order of their dofs. What particles of a grain give to lies together.
 inline void GrainNodes::place_surface() {
     shared_of_.assign(sums.size(), -1);
     for (long n = 0; n < shared_count(); ++n)

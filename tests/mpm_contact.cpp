@@ -795,38 +795,69 @@ TEST_CASE("the lowest point of a parabola has the same gap wherever it is betwee
     const double separation = 0.02, lowest = 0.013;
     for (const double radius : {2.0, 4.0, 6.0, 8.0}) {  // in cells
         for (const double place : {2.0001, 2.1, 2.37, 2.5, 2.9, 2.9999}) {
-            for (const bool long_steps : {false, true}) {
-                std::vector<ContactColumn> columns(6), mirrored(6);
-                for (int k = 0; k < 6; ++k) {
-                    columns[k] = {lowest + (k - place) * (k - place) / (2 * radius), k - 1,
-                                  k == 5 ? -1 : k + 1};
-                    mirrored[5 - k] = {columns[k].gap, 4 - k, k == 0 ? -1 : 6 - k};
-                }
-                int found = 0;
-                for (int k = 0; k < 5; ++k) {
-                    const LowestPoint point = lowest_point(columns, k, separation, 1, long_steps),
-                                      image =
-                                          lowest_point(mirrored, 4 - k, separation, 1, long_steps);
-                    CHECK(point.exists == image.exists);
-                    if (!point.exists) continue;
-                    ++found;
-                    CHECK(k == 2);
-                    CHECK(point.gap == about(lowest).epsilon(1e-12));
-                    CHECK(point.part == about(place - 2).epsilon(1e-8));
-                    CHECK(image.gap == about(lowest).epsilon(1e-12));
-                    CHECK(image.part == about(1 - point.part).epsilon(1e-8));
-                }
-                // With the fall between columns, 1/8R, below the separation, both columns touch.
-                CHECK(found == (radius > 3.3 && radius < 6.25 ? 1 : 0));
-                CHECK(!lowest_point(columns, 2, 0, 1, long_steps).exists);
-                // Pressed so far that both columns touch, it is held at both: no point between them that it
-                // could turn about without a force.
-                const double nearer = std::max(columns[2].gap, columns[3].gap);
-                for (ContactColumn& column : columns) column.gap -= nearer + 1e-9;
-                CHECK(!lowest_point(columns, 2, separation, 1, long_steps).exists);
+            std::vector<ContactColumn> columns(6), mirrored(6);
+            for (int k = 0; k < 6; ++k) {
+                columns[k] = {lowest + (k - place) * (k - place) / (2 * radius), k - 1,
+                              k == 5 ? -1 : k + 1};
+                mirrored[5 - k] = {columns[k].gap, 4 - k, k == 0 ? -1 : 6 - k};
             }
+            int found = 0;
+            for (int k = 0; k < 5; ++k) {
+                const LowestPoint point = lowest_point(columns, k, separation, 1),
+                                  image = lowest_point(mirrored, 4 - k, separation, 1);
+                CHECK(point.exists == image.exists);
+                if (!point.exists) continue;
+                ++found;
+                CHECK(k == 2);
+                CHECK(point.gap == about(lowest).epsilon(1e-12));
+                CHECK(point.part == about(place - 2).epsilon(1e-8));
+                CHECK(image.gap == about(lowest).epsilon(1e-12));
+                CHECK(image.part == about(1 - point.part).epsilon(1e-8));
+            }
+            // With the fall between columns, 1/8R, below the separation, both columns touch.
+            CHECK(found == (radius > 3.3 && radius < 6.25 ? 1 : 0));
+            CHECK(!lowest_point(columns, 2, 0, 1).exists);
+            // Pressed so far that both columns touch, it is held at both, and no point is between them.
+            const double nearer = std::max(columns[2].gap, columns[3].gap);
+            for (ContactColumn& column : columns) column.gap -= nearer + 1e-9;
+            CHECK(!lowest_point(columns, 2, separation, 1).exists);
         }
     }
+}
+
+TEST_CASE("in long steps only light disks on plates at rest touch between columns") {
+    Case c = halves("gimp");
+    GrainCase plate = box_at("plate", 0.6, 0.2, 1, 0.1);
+    plate.material = "plate";
+    MaterialCase rigid;
+    rigid.name = "plate", rigid.law = "rigid";
+    GrainCase disk;
+    disk.name = "disk", disk.x = 0.6, disk.y = 0.45, disk.radius = 0.2;  // 4 cells
+    c.problem.materials.push_back(rigid);
+    c.problem.grains = {plate, disk};
+    c.problem.gravity_y = -10;
+    // 2 pi g R^3 dt^2 = h^4.
+    const double dt = 0.05 * 0.05 / std::sqrt(2 * std::numbers::pi * 10 * 0.2 * 0.2 * 0.2);
+    CHECK(contact_rule(c.problem).points);
+    CHECK(contact_rule(c.problem, 0.99 * dt).points);
+    CHECK(!contact_rule(c.problem, 1.01 * dt).points);
+    c.problem.grains[1].radius = 0.32;  // 6.4 cells: it has no such points
+    CHECK(contact_rule(c.problem, dt).points);
+    c.problem.grains[1].radius = 0.2, c.problem.gravity_y = 0;
+    CHECK(contact_rule(c.problem, 100 * dt).points);
+    for (const int what : {0, 1, 2, 3, 4}) {
+        Problem moving = c.problem;
+        GrainCase& is = moving.grains[0];
+        if (what == 0) is.velocity_y = -1e-9;
+        if (what == 1) is.velocity_x = 1;
+        if (what == 2) is.swing_y = 0.01;
+        if (what == 3) is.table = "travel.txt";
+        if (what == 4) is.control = "force_y";
+        CHECK(!contact_rule(moving, dt).points);
+        CHECK(contact_rule(moving).points);
+    }
+    c.problem.grains[1].velocity_x = 1;
+    CHECK(contact_rule(c.problem, dt).points);
 }
 
 TEST_CASE("a disk on a plate presses once and as much wherever it is on the mesh") {

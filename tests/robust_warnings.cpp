@@ -332,10 +332,6 @@ mpm_explicit plates grain.top.swing_y=-0.01
     warning: grain 'top' has control = "force_y" and a velocity or a swing in that direction: it does
     nothing, the grain starts at rest
 mpm_explicit plates grain.top.velocity_x=-0.1 -> no warning
-mpm_implicit hertz.toml grain.cylinder.radius=0.07 grain.bottom.y=0.355 grain.top.y=0.545 theory.compare=none grain.top.velocity_y=-0.005 -> no warning
-mpm_implicit hertz.toml grain.cylinder.radius=0.07 grain.bottom.y=0.355 grain.top.y=0.545 theory.compare=none grain.top.velocity_y=-0.005 method.theta=0.6
-    warning: a disk of 5.6 cells in radius that plates press may stand on one point between two
-    columns of nodes
 grains rolling_cylinder.toml
     warning: a disk has a radius of 4 cells, below 12: where it rolls on a rigid surface it loses
     speed to vibration, at U^2 = g R over eight radii 5 to 22 per cent with 4 cells and 4 to 10

@@ -81,8 +81,10 @@ class Recorder {
         const double energy = total_energy(field, moments),
                      initial = step == 0 ? energy : run.history.first("energy");
         if (!std::isfinite(energy) || (initial > 0 && !(energy / initial <= 10))) {
-            common::fail("the energy is ", energy / initial, " times the initial energy at step ",
-                         step, ", t = ", time, ": reduce time.dt");
+            common::fail(
+                "the energy is ", energy / initial, " times the initial energy at step ", step,
+                ", t = ", time,
+                ": reduce time.dt, or refine a mesh that does not resolve the Debye length");
         }
         run.history.row(row_of(time, field, state.plasma, moments, initial));
 

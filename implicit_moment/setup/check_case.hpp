@@ -343,10 +343,11 @@ inline std::vector<std::string> superluminal_warnings(const Case& w, const Scale
 /// Warnings with the number and the limit, for choices that run but may mislead.
 /// source: [IMM-13] and its lower bound.
 /// note:   the slide asks for v_th dt/dx < 1, so that a particle stays within what the fluid
-///         equations can predict; in the plane, by the shortest wave along both directions. Plasmas at
-///         rest, of omega_p dt = 25, burst from 0.96 on and not at 0.85. Below about 1/20, where omega_p dt > 1/2 and the Debye length is
-///         not resolved, the mesh does not damp what it cannot resolve, and the finite-grid
-///         instability of all momentum-conserving methods may heat the plasma.
+///         equations can predict; in the plane, by the shortest wave along both directions. Plasmas
+///         at rest, of omega_p dt = 25, burst at 0.96 and not at 0.85. Below about 1/20, where
+///         omega_p dt > 1/2 and the Debye length is not resolved, the mesh does not damp what it
+///         cannot resolve, and the finite-grid instability of all momentum-conserving methods may
+///         heat the plasma.
 inline std::vector<std::string> closure_warnings(const Case& w, const Scales& scales) {
     std::vector<std::string> warnings = idleness_warnings(w, scales);
     for (const std::string& warning : superluminal_warnings(w, scales)) warnings.push_back(warning);

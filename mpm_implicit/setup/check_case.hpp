@@ -78,21 +78,6 @@ inline std::vector<std::string> warnings_of(const Case& parameters, const ThetaS
             "method.theta = " + (pressed ? "0.6" : "0.51") +
             " or material.<name>.viscosity = " + format(0.1 * scales.dt) + ", a tenth of a step");
     const PlateStrain strain = plate_strain(parameters, materials_of(parameters.problem));
-    // What lowest_point() of contact_columns.hpp takes for one contact between two columns.
-    const Problem& problem = parameters.problem;
-    const double h = problem.mesh().h, widest = 1 / (8 * problem.contact.separation);
-    for (const PlannedGrain& plan : plan_grains(problem, materials_of(problem))) {
-        const double cells = plan.from.shape == "disk" ? plan.from.radius / h : 0;
-        if (!(strain.pressed > 0 && scheme.theta < 0.95 && cells > 3.3 && cells < widest)) continue;
-        warnings.push_back(
-            "a disk of " + format(cells) +
-            " cells in radius that plates press may stand on one point between two columns of "
-            "nodes, and with method.theta = " +
-            format(scheme.theta) +
-            " lose half of its load there: set method.theta = 1, or more than " + format(widest) +
-            " cells, or contact.separation = 0.05, with which what rolls hops");
-        break;
-    }
     const double most = std::max(strain.pressed, strain.stretched);
     if (parameters.shape == "linear" && most > 0.05)
         warnings.push_back(
