@@ -215,7 +215,7 @@ endef
 $(programs:%=$(BUILD)/%): $(BUILD)/%: $$(objects)/$$(call folder_of,$$*)/$$*.o $$(call theory_of,$$(call method_of,$$*)) $(shared) $(formula) $(BUILD)/flags
 	$(name_revision)
 	$(link) $(objects)/$(@F).revision.o
-$(tests:%=$(BUILD)/tests/%): $(BUILD)/tests/%: $(objects)/tests/%.o $(shared) $(theory) $(formula) $(BUILD)/flags
+$(tests:%=$(BUILD)/tests/%): $(BUILD)/tests/%: $(objects)/tests/%.o $(objects)/tests/support/doctest_main.o $(shared) $(theory) $(formula) $(BUILD)/flags
 	$(link)
 $(bench_programs): $(BUILD)/bench/%: $(objects)/%/bench.o $(shared) $(theory) $(formula) $(BUILD)/flags
 	$(link)

@@ -1,6 +1,5 @@
 // Whole runs of cic against exact and predicted values, by the numbers that the program itself puts
 // into summary.json and history.dat.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <Eigen/Eigenvalues>

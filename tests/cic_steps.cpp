@@ -1,6 +1,5 @@
 // The steps of clouds-in-cells one by one: what is exact in the deposit, the field, the gather and
 // the leapfrog, on periodic meshes and between walls.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -1,6 +1,5 @@
 // Facts about what the mesh does to a plasma of clouds: the waves that it lets pass, the
 // instabilities that it adds, and the force that it leaves between two clouds.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <Eigen/Core>

@@ -1,6 +1,5 @@
 // Facts about the theory of plasmas at walls: the sheaths of a floating collector against
 // quadratures of the distributions, and the diocotron instability against other calculations.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <Eigen/Dense>

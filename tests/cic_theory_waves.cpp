@@ -1,6 +1,5 @@
 // Facts about the waves that cic compares itself with beyond unmagnetized Maxwellians: warm species
 // in a magnetic field, distributions by formula; and about loading what a case says by formula.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 #include <gsl/gsl_sf_bessel.h>
 

@@ -1,6 +1,5 @@
 // Facts about the plasma dispersion function, and about the roots of kinetic dispersion relations
 // against published tables, exact solutions and limits.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <cmath>

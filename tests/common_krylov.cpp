@@ -1,6 +1,5 @@
 // Facts about the solvers of linear and nonlinear systems: every ending of GMRES, of conjugate
 // gradients and of Newton-Krylov is the documented one, and their answers agree with other methods.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <Eigen/Dense>

@@ -1,5 +1,4 @@
 // Facts about the measurement of frequencies, damping and growth from sampled signals.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <cmath>

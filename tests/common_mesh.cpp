@@ -1,6 +1,5 @@
 // Facts about the mesh and what is done on it: splines, ghosts and walls, differences and their
 // modes, smoothing, parallel loops, and the sort by node.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <algorithm>

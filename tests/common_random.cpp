@@ -1,5 +1,4 @@
 // Facts about random and evenly spread numbers.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 #include <gsl/gsl_qrng.h>
 

@@ -1,6 +1,5 @@
 // Facts about the files that gnuplot and ParaView read, and about checkpoints, histories and
 // summaries.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 #include <sys/resource.h>
 #include <unistd.h>

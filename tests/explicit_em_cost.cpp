@@ -1,5 +1,4 @@
 // The cost slide in numbers that no clock is needed for.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <cmath>

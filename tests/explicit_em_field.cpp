@@ -1,5 +1,4 @@
 // Facts about the leapfrogged field of explicit_em, and about its whole loop.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <cmath>

@@ -1,5 +1,4 @@
 // Whole runs of explicit_em against exact and published values.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <cmath>

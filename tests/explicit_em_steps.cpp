@@ -1,6 +1,5 @@
 // Facts about how the particles of explicit_em move, what they feel, and the current of their
 // paths.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <Eigen/Geometry>

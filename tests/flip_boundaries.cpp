@@ -1,6 +1,5 @@
 // What happens at the boundaries of the mesh in flip: images and ghosts, positions wrapped around a
 // periodic direction, what leaves, what enters, and what must not.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <map>

@@ -1,6 +1,5 @@
 // What a case file of pic and flip can say: formulas of the place, an inflow for every end, and
 // shock tubes that every transfer has to bring to the end.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <array>

@@ -1,5 +1,4 @@
 // Splitting and merging particles: what the mesh must not notice, and what it is for.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <cmath>

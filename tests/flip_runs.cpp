@@ -1,6 +1,5 @@
 // Whole runs of pic and flip against exact and predicted values, by the numbers that the programs
 // themselves put into summary.json, history.dat and profile.dat.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <algorithm>

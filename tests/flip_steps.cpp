@@ -1,6 +1,5 @@
 // FLIP step by step: weights, deposits, forces and their work, the transfers and their heat, mass
 // matrices, the implicit pressure; what a whole step keeps, whatever it holds; and its symmetries.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <Eigen/Dense>

@@ -1,6 +1,5 @@
 // Facts about the solutions that runs of compressible PIC and FLIP are compared with: balances
 // across waves, published values, and other calculations of the same numbers.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <Eigen/Dense>

@@ -1,6 +1,5 @@
 // What the recorder of pic and flip makes of fluid that does exactly what theory says, and of fluid
 // that does not: each comparison must find the number that was put in.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 #include <unistd.h>
 

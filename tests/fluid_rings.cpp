@@ -1,6 +1,5 @@
 // Cells that are rings about an axis, in flip and pic: their volumes, forces that are transposes of
 // how the volumes change, and what whole steps keep.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include "tests/support/any_fluid.hpp"

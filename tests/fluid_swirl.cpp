@@ -1,6 +1,5 @@
 // Fluid that turns about the axis, in flip and pic: the angular momentum that every particle keeps,
 // the force and the energy of the rotation, balances, and waves.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 #include <gsl/gsl_sf_bessel.h>
 

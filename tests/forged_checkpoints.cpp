@@ -1,6 +1,5 @@
 // Checkpoints whose contents are forged and whose checksums are right: nothing but the validation
 // of what was read stands between them and the steps.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -1,6 +1,5 @@
 // What happens to a run and is not its doing: other work on the machine, signals, damaged files,
 // links, a second run in the same folder.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 #include <sys/resource.h>
 #include <unistd.h>

@@ -1,6 +1,5 @@
 // Facts about the linear theory of the drift kink of a Harris sheet: its matrix in plasmas whose
 // waves are known, and its kinks where they have a formula.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <Eigen/Dense>

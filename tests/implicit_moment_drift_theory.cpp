@@ -1,6 +1,5 @@
 // Facts about the local theory of the lower-hybrid drift instability of a Harris sheet, and about
 // the instability of the shear layer that it leaves behind.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <Eigen/Dense>

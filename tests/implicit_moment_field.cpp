@@ -1,6 +1,5 @@
 // Facts about the field equations of implicit_moment: the prediction of the current, the
 // second-order equation, Gauss's law by its boundary values, energy and divergence.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <cmath>

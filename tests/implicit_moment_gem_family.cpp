@@ -1,6 +1,5 @@
 // Facts about what the GEM challenge and its relatives add to implicit_moment: the profiles at unit
 // flux, and a guide field.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <array>

@@ -1,6 +1,5 @@
 // Facts about the kink of a thin current sheet and the level of the instability before it: what the
 // program makes of records whose answer is known, and of the quick runs of figure 14.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -1,5 +1,4 @@
 // Facts about the particles and fields with which runs of implicit_moment start.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <cmath>

@@ -1,7 +1,6 @@
 // Facts about the dielectric tensor of a warm magnetized plasma: what it is along the field,
 // without temperatures, without a field, and for slow longitudinal waves, where other formulas are
 // known.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <cmath>

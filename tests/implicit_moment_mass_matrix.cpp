@@ -1,7 +1,6 @@
 // Facts about the particles' own current: the mass matrix is the response of the kicks, the energy
 // of particles and field changes by theta alone, and particles that follow the field keep Gauss's
 // law too.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -1,5 +1,4 @@
 // Facts about what the particles of implicit_moment deposit on the mesh and feel from it.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <array>

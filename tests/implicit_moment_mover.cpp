@@ -1,6 +1,5 @@
 // Facts about how the particles of implicit_moment move: the midpoint rule, sub-steps, walls,
 // seams.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <Eigen/Geometry>

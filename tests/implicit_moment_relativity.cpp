@@ -1,5 +1,4 @@
 // Facts about relativistic particles of implicit_moment: the implicit midpoint rule in u = gamma v.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <Eigen/Eigenvalues>

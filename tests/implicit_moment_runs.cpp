@@ -1,6 +1,5 @@
 // Whole runs of implicit_moment against exact and published values, by the numbers that the program
 // itself puts into summary.json.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <cmath>

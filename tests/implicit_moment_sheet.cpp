@@ -1,6 +1,5 @@
 // Facts about the thin current sheet of figures 11 to 15: its equilibrium, what is measured in it,
 // and the instability that grows out of its noise.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <cmath>

@@ -1,7 +1,6 @@
 // Facts about a current sheet with a field across it, between walls on all sides: an exact
 // equilibrium, walls up to which a plasma goes on and through which flux may pass, and what stays
 // where it is.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <cmath>

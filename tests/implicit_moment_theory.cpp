@@ -1,6 +1,5 @@
 // Facts about what both plasma programs are compared with: cold waves at any angle, uniform fields,
 // tails beyond the speed of light, the windows of reconnection and of the energy.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -1,6 +1,5 @@
 // What grains do to each other where they meet: normal impulses, friction, rigid grains, walls and
 // bonds, at single nodes and in short runs.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -1,6 +1,5 @@
 // The explicit material point method step by step and in short runs: what is exact in strain,
 // stress, forces and motion, what is conserved, where the energy goes, and which symmetries hold.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <array>

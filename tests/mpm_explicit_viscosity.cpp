@@ -1,6 +1,5 @@
 // Viscosity in the explicit material point method: what it damps and what not, where the energy
 // goes, and how long a step it bears.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <array>

@@ -1,6 +1,5 @@
 // The equations of one step of the implicit material point method: matrices of grains and their
 // factors, what closed pairs allow, and conjugate gradients among them.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <Eigen/Dense>

@@ -1,7 +1,6 @@
 // The implicit material point method in whole steps and short runs: the energy theorem term by
 // term, momentum, what contact asks for, both solvers against each other, and what the theta scheme
 // does to an oscillation.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <algorithm>

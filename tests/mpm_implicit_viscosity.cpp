@@ -1,6 +1,5 @@
 // Viscosity in the implicit material point method: the energy theorem with its term, the exact
 // factor of one node, and that both solvers agree.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <array>

@@ -1,6 +1,5 @@
 // Facts about the material laws of plane strain: elasticity and its energy, turning stress with the
 // body, and yielding against closed forms.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -1,6 +1,5 @@
 // Particles and nodes of the material point method: shape functions, the sparse nodes of each
 // grain, and the sums that go back and forth between them.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <array>

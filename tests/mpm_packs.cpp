@@ -1,6 +1,5 @@
 // Facts about outlines of grains, the particles that fill them, packs and their files, and about
 // text among the parameters of a case.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <algorithm>

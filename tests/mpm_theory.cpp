@@ -1,6 +1,5 @@
 // Facts about the theory that the material point method is compared with, each against another
 // derivation: balance of forces, quadratures, other integrators; and about the raster of fringes.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_odeiv2.h>

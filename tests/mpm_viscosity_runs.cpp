@@ -1,6 +1,5 @@
 // Viscosity and damping in whole runs of both programs: waves that decay, and a block that slides
 // as Coulomb says where it would flutter without viscosity.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <cmath>

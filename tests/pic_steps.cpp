@@ -1,6 +1,5 @@
 // The classical particle-in-cell method step by step: what is exact in the Lagrangian phase, in the
 // motion of particles and in the repartition, and what its own diffusion is.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <cmath>

@@ -2,7 +2,6 @@
 // mpm_explicit and mpm_implicit there is a wrong run that fails it, made of parameters alone: too
 // much viscosity or none, few particles, another transfer, a step too long, noise, a drag, another
 // start.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <map>

@@ -1,7 +1,6 @@
 // A verdict is worth what it refuses: for every result of the shipped cases of cic, implicit_moment
 // and explicit_em there is a wrong run that fails it, made of parameters alone: a step too long, a
 // mesh too coarse, few particles, noise, another wave than the one that is looked for.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <map>

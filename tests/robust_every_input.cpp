@@ -1,7 +1,6 @@
 // What every program makes of a case file, a command line and a folder for its results: one
 // sentence with place and cure for what is wrong, status 2, and nothing written; and what is
 // listed, described and accepted.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 #include <unistd.h>
 

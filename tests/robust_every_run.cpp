@@ -1,7 +1,6 @@
 // What every run of every program keeps: the same bits for any number of threads and across a
 // restart; a checkpoint when a signal stops it; refusal of checkpoints that are damaged or foreign;
 // and a sentence and a summary when it fails.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <cmath>

@@ -1,7 +1,6 @@
 // What each program alone refuses, with the number and the cure in one sentence, and nothing
 // written. How files and command lines are read is what all programs share: see
 // robust_every_input.cpp.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <string>

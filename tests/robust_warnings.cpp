@@ -1,5 +1,4 @@
 // What a dry run says of a case and warns of, and cases at the edge of what each program takes.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <string>

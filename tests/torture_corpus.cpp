@@ -1,5 +1,4 @@
 // What the laboratory of tests/torture has ever found is tried again here: forged checkpoints.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -1,6 +1,5 @@
 // Two fluids of very different density beside each other in flip: rest, balance under gravity, what
 // shares a cell, tension, and that nothing is thrown through a wall.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <numeric>
