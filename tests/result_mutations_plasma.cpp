@@ -118,8 +118,8 @@ const std::vector<Mutation> implicit{
     {"implicit_moment", "gem", "grid.cells_z=8 harris.particles=1e4 time.dt=0.6 time.end=500",
      "density_at_X_line energy_drift"},
     {"implicit_moment", "gem",
-     "grid.cells_x=16 grid.cells_z=16 harris.particles=1e4 time.dt=0.4 time.end=500 "
-     "field.smoothing_passes=60",
+     "grid.cells_x=16 grid.cells_z=16 harris.particles=1e4 time.dt=1.2 time.end=500 "
+     "field.smoothing_passes=60 field.theta=1",
      "ion_over_electron_outflow"},
     {"implicit_moment", "gem",
      "plasma.loading=random harris.particles=5e3 grid.cells_x=16 grid.cells_z=32 time.dt=1.2 "
