@@ -319,12 +319,13 @@ TEST_CASE("what particles carry of the motion around them has its angular moment
                     size += p.m_p[k] * std::hypot(p.x_p[k], p.y_p[k]);
             particles_to_grid(shape, p, nodes);
             CHECK(std::fabs(angular_of_nodes() - L) <= 1e-14 * size);
-            // A turn of the nodes: all of it is in v_p and C_p.
-            set_linear({0.1, 0, -0.9, 0.2, 0.9, 0}, cloud, nodes);
+            // A turn of the nodes, and for affine motion a strain: all of it is in v_p and C_p.
+            const double xx = kind == Transfer::affine ? 0.3 : 0;
+            set_linear({0.1, xx, -0.9, 0.2, 0.9, -2 * xx}, cloud, nodes);
             take_affine_motion(shape, cloud.grains, nodes, kind, p, sums);
             double off = 0, spin = 0;
             for (std::size_t k = 0; k < p.x_p.size(); ++k)
-                off = worst({off, std::fabs(p.cxx_p[k]), std::fabs(p.cyy_p[k]),
+                off = worst({off, std::fabs(p.cxx_p[k] - xx), std::fabs(p.cyy_p[k] + 2 * xx),
                              std::fabs(p.cxy_p[k] + 0.9), std::fabs(p.cyx_p[k] - 0.9)});
             CHECK(off <= 1e-9);
             for (const TileSums& one : sums) spin += one.spin;

@@ -747,6 +747,8 @@ TEST_CASE("a random pack that cannot be is refused with its numbers") {
                 "a box of 1 by 2 is too small for disks 1.05 wide"));
     CHECK(
         holds(says([](RandomDisks& p) { p.periodic_x = true, p.gap = 0.16; }), "5 times as wide"));
+    // Just as high as the largest disk, up to round-off.
+    CHECK(says([](RandomDisks& p) { p.count = 1, p.box.y_high = 2.05; }).empty());
     CHECK(holds(says([](RandomDisks& p) { p.count = -1; }), "a pack of -1 disks"));
     CHECK(holds(says([](RandomDisks& p) { p.count = 0, p.loose = true; }), "give at least one"));
     CHECK(holds(says([](RandomDisks& p) { p.count = 2000000; }), "a pack of up to 2e+06 disks"));

@@ -17,9 +17,11 @@ constexpr double eps = std::numeric_limits<double>::epsilon();
 
 inline double real(long n) { return double(n); }
 
-/// A number, not 0, to compare with to a part of its size; doctest's own adds 1 to the size, and lets
-/// every small number pass.
-inline doctest::Approx about(double value) { return doctest::Approx(value).scale(0); }
+/// A number to compare with to a part of its size; doctest's own adds 1 to the size, and lets every small
+/// number pass. 0 is only about 0.
+inline doctest::Approx about(double value) {
+    return doctest::Approx(value).scale(std::numeric_limits<double>::min());
+}
 
 /// The largest of numbers that are not negative; not a number where one of them is not.
 inline double worst(std::initializer_list<double> values) {
