@@ -244,9 +244,8 @@ TEST_CASE("a cylinder rolls on a rough incline and slips on a smoother one" *
           doctest::description("physics")) {
     for (const char* rough : {"contact.friction=0.3", "contact.friction=0.6"})
         facts::check_rolling(run("rolls", "rolling_cylinder", rough));
-    const Run slips = run("slips", "rolling_cylinder",
-                          "contact.friction=0.1 expect.fails= method.theta=1 time.alpha=4");
-    check_results(slips, 3);
+    const Run slips = run("slips", "rolling_cylinder", "contact.friction=0.1 expect.fails=");
+    check_results(slips, 4);
     CHECK(std::fabs(slips.value("acceleration") / 4.13397 - 1) <= 1e-3);
 }
 
@@ -523,6 +522,26 @@ TEST_CASE("iterations grow no faster than the square root of the step" *
     }
 }
 
+TEST_CASE("a disk that hits a plate comes back as fast wherever it is between lines of nodes" *
+          doctest::description("physics")) {
+    std::filesystem::create_directories(facts::folder_of_test());
+    const std::string path = facts::folder_of_test() + "/thrown_disk.toml";
+    std::ofstream(path)
+        << "[grid]\ncells_x = 32\ncells_y = 22\nlength_x = 0.53333333333\n"
+           "[material.default]\nE = 1e7\ndensity = 1000\n[material.plate]\nlaw = \"rigid\"\n"
+           "[contact]\nfriction = 0\n[time]\nend = 0.04\nalpha = 0.5\n[method]\ntheta = 0.5\n"
+           "[grain.a]\ny = 0.15166666667\nradius = 0.1\nvelocity_y = -0.5\n"
+           "[grain.plate]\nshape = \"box\"\nx = 0.26666666667\ny = 0.02166666667\n"
+           "width = 0.53333333333\nheight = 0.04333333333\nmaterial = \"plate\"\n";
+    for (const char* x : {"0.21666666667", "0.22166666667", "0.225"}) {
+        CAPTURE(x);
+        const Run r = run("thrown_disk", path + " grain.a.x=" + x);
+        const auto p = r.column("momentum_y");
+        // About a point between two lines it kept 0.70, and the rest was in its vibrations.
+        CHECK(std::fabs(-p.back() / p.front() - 0.97) <= 0.02);
+    }
+}
+
 TEST_CASE("a disk that plates press bears its load wherever it stands between lines of nodes" *
           doctest::description("physics")) {
     std::filesystem::create_directories(facts::folder_of_test());
@@ -543,8 +562,8 @@ TEST_CASE("a disk that plates press bears its load wherever it stands between li
         double P = 300;
         for (int k = 0; k < 50; ++k)
             P = way * pi * E / (2 * std::log(4 * R / std::sqrt(4 * P * R / (pi * E))) - 1);
-        for (const char* x : {"0.405", "0.4075", "0.41"}) {
-            for (const char* theta : {"0.5", "0.6", "1"}) {
+        for (const char* x : {"0.4", "0.4025", "0.405", "0.4075", "0.41"}) {
+            for (const char* theta : {"0.5", "1"}) {
                 CAPTURE(cells);
                 CAPTURE(x);
                 CAPTURE(theta);
@@ -553,8 +572,8 @@ TEST_CASE("a disk that plates press bears its load wherever it stands between li
                                             " grain.top.y=" + std::to_string(0.2 + R) +
                                             " grain.bottom.y=" + std::to_string(0.16 - R) +
                                             " grain.disk.x=" + x + " method.theta=" + theta);
-                // On a contact of 1.0 to 1.2 cells.
-                CHECK(std::fabs(r.column("force_y_top").back() / P - 1) <= 0.05);
+                // On a contact of 1.0 to 1.2 cells; it has three columns on a line of nodes.
+                CHECK(std::fabs(r.column("force_y_top").back() / P - 1) <= 0.12);
             }
         }
     }
