@@ -861,6 +861,13 @@ TEST_CASE("in long steps one light disk at rest on plates at rest touches betwee
             CHECK(!contact_rule(moving, dt).points);
             CHECK(contact_rule(moving).points);
         }
+    Problem falls = c.problem;
+    for (const double up : {0.004, 0.006}) {  // a tenth of a cell is 0.005
+        falls.grains[1].y = 0.45 + up;
+        CHECK(contact_rule(falls, dt).points == (up < 0.005));
+    }
+    falls.grains = {disk}, falls.grains[0].y = 0.2;  // on a wall
+    CHECK(contact_rule(falls, dt).points);
     Problem two = c.problem, pack = c.problem;
     two.grains.push_back(disk), pack.packs.push_back({});
     CHECK(!contact_rule(two, dt).points);

@@ -50,60 +50,6 @@ inline std::vector<Material> materials_of(const Problem& problem) {
 /// The law of every material.
 inline std::vector<AnyLaw> laws_of(const Problem& w) { return laws_of(materials_of(w)); }
 
-/// Whether disks may touch a plate between two columns of nodes, as they do where they roll.
-/// in:   dt of a long step, or 0
-/// note: A point between two columns shares its load P by their gaps, a step late: a spring 2 P/k, with
-///       k = h^2/R, on the mass rho h^2 of a column. A disk that is pressed or thrown would swing about the
-///       point, and lose its load and its speed. So in long steps there are points for one grain alone
-///       that starts at rest, or across its weight, on plates at rest, where the step is short enough for
-///       its weight.
-inline bool may_touch_between_columns(const Problem& problem, double dt) {
-    if (dt == 0) return true;
-    const double h = problem.mesh().h, weight = std::hypot(problem.gravity_x, problem.gravity_y);
-    const bool down_y = std::fabs(problem.gravity_y) >= std::fabs(problem.gravity_x);
-    long free = 0;
-    double R = 0;
-    for (const GrainCase& g : problem.grains) {
-        const bool rigid = std::ranges::any_of(problem.materials, [&](const MaterialCase& m) {
-            return m.name == g.material && m.law == "rigid";
-        });
-        const bool along = !rigid && weight > 0 && (down_y ? g.velocity_y : g.velocity_x) == 0;
-        if ((!along && (g.velocity_x != 0 || g.velocity_y != 0)) || g.swing_x != 0 ||
-            g.swing_y != 0 || !g.table.empty() || g.control != "velocity")
-            return false;
-        if (rigid) continue;
-        ++free, R = g.radius;
-    }
-    return problem.packs.empty() && free == 1 &&
-           2 * std::numbers::pi * weight * std::pow(R, 3) * dt * dt <= std::pow(h, 4);
-}
-
-/// The rule of contact, with the friction of every pair of materials.
-/// in:     dt, 0 for leapfrog. In long steps surfaces that will touch within half of one press already.
-/// errors: InputError for a material that is not there, or two whose friction is told twice
-inline ContactRule contact_rule(const Problem& problem, double dt = 0) {
-    ContactRule rule = problem.contact;
-    rule.ahead = 0.5 * dt;
-    rule.points = may_touch_between_columns(problem, dt);
-    if (problem.pairs.empty()) return rule;
-    const std::vector<Material> materials = materials_of(problem);
-    for (const PairCase& pair : problem.pairs) {
-        const std::string place = "[pair." + pair.name + "]: ";
-        for (const std::string& name : {pair.a, pair.b})
-            refuse(std::none_of(materials.begin(), materials.end(),
-                                [&](const Material& m) { return m.name == name; }),
-                   place + "there is no [material." + name + "]; add it, or name another material");
-        for (const PairCase* other = problem.pairs.data(); other != &pair; ++other)
-            refuse(std::minmax(other->a, other->b) == std::minmax(pair.a, pair.b),
-                   place + "'" + pair.a + "' and '" + pair.b + "' are in [pair." + other->name +
-                       "], too: take one out");
-    }
-    for (const Material& a : materials)
-        for (const Material& b : materials)
-            rule.between.push_back(problem.friction_between(a.name, b.name));
-    return rule;
-}
-
 namespace detail {
 
 // The corners in a text "x y, x y, ...".
@@ -184,6 +130,72 @@ inline std::vector<PackedGrain> grains_of(const PackCase& p, const Problem& prob
 }
 
 }  // namespace detail
+
+/// Whether disks may touch a plate between two columns of nodes, as they do where they roll.
+/// in:   dt of a long step, or 0
+/// note: A point between two columns shares its load P by their gaps, a step late: a spring 2 P/k, with
+///       k = h^2/R, on the mass rho h^2 of a column. A disk that is pressed or thrown would swing about the
+///       point, and lose its load and its speed. So in long steps there are points for one grain alone
+///       that starts at rest, or across its weight, and on a plate at rest or a wall, where the step is
+///       short enough for its weight.
+inline bool may_touch_between_columns(const Problem& problem, double dt) {
+    if (dt == 0) return true;
+    const double weight = std::hypot(problem.gravity_x, problem.gravity_y);
+    const bool down_y = std::fabs(problem.gravity_y) >= std::fabs(problem.gravity_x);
+    const auto is_rigid = [&](const GrainCase& g) {
+        return std::ranges::any_of(problem.materials, [&](const MaterialCase& m) {
+            return m.name == g.material && m.law == "rigid";
+        });
+    };
+    for (const GrainCase& g : problem.grains) {
+        const bool along =
+            !is_rigid(g) && weight > 0 && (down_y ? g.velocity_y : g.velocity_x) == 0;
+        if ((!along && (g.velocity_x != 0 || g.velocity_y != 0)) || g.swing_x != 0 ||
+            g.swing_y != 0 || !g.table.empty() || g.control != "velocity")
+            return false;
+    }
+    if (!problem.packs.empty() ||
+        std::ranges::count_if(problem.grains, is_rigid) + 1 != std::ssize(problem.grains))
+        return false;
+    GrainCase near = *std::ranges::find_if_not(problem.grains, is_rigid);
+    const Mesh mesh = problem.mesh();
+    const double h = mesh.h, R = near.radius;
+    if (2 * std::numbers::pi * weight * std::pow(R, 3) * dt * dt > std::pow(h, 4)) return false;
+    // What falls on a plate is thrown.
+    near.radius += 0.1 * h;
+    const Outline outline = detail::outline_of(near);
+    const auto [x_low, x_high, y_low, y_high] = bounds(outline);
+    return x_low < mesh.x_low || y_low < mesh.y_low || x_high > mesh.x_high() ||
+           y_high > mesh.y_high() || std::ranges::any_of(problem.grains, [&](const GrainCase& g) {
+               return is_rigid(g) && overlap_depth(outline, detail::outline_of(g)) > 0;
+           });
+}
+
+/// The rule of contact, with the friction of every pair of materials.
+/// in:     dt, 0 for leapfrog. In long steps surfaces that will touch within half of one press already.
+/// errors: InputError for a material that is not there, or two whose friction is told twice
+inline ContactRule contact_rule(const Problem& problem, double dt = 0) {
+    ContactRule rule = problem.contact;
+    rule.ahead = 0.5 * dt;
+    rule.points = may_touch_between_columns(problem, dt);
+    if (problem.pairs.empty()) return rule;
+    const std::vector<Material> materials = materials_of(problem);
+    for (const PairCase& pair : problem.pairs) {
+        const std::string place = "[pair." + pair.name + "]: ";
+        for (const std::string& name : {pair.a, pair.b})
+            refuse(std::none_of(materials.begin(), materials.end(),
+                                [&](const Material& m) { return m.name == name; }),
+                   place + "there is no [material." + name + "]; add it, or name another material");
+        for (const PairCase* other = problem.pairs.data(); other != &pair; ++other)
+            refuse(std::minmax(other->a, other->b) == std::minmax(pair.a, pair.b),
+                   place + "'" + pair.a + "' and '" + pair.b + "' are in [pair." + other->name +
+                       "], too: take one out");
+    }
+    for (const Material& a : materials)
+        for (const Material& b : materials)
+            rule.between.push_back(problem.friction_between(a.name, b.name));
+    return rule;
+}
 
 /// All grains of a case: the named ones, then those of packs, called <pack>_<name>.
 /// errors: InputError for an unknown material, or an outline, a pack or a table that cannot be
