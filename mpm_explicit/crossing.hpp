@@ -19,19 +19,24 @@ namespace mpm_explicit {
 
 using namespace mpm;
 
-/// Keeps where a particle came from, if that is in another cell; otherwise zero.
-/// in:     x, y, where it is; dx, dy, from there to where it was
+/// Keeps where particles came from, if that is in another cell; otherwise zero.
+/// in:     x_p, y_p, where they were; to_x, to_y, where they go; count of them
+/// out:    from_x, from_y, the way back
 /// note:   One that moves by more than half a cell in a step may have come from where its grain has no
 ///         nodes any more, and counts as one that has not crossed.
-inline void remember_crossing(const Locator& at, double dx, double dy, double x, double y,
-                              double& from_x, double& from_y) {
-    const auto crossed = [&](double to, double way, double low) {
-        return std::floor((to - low) * at.per_h) != std::floor((to + way - low) * at.per_h);
-    };
+inline void remember_crossing(const Locator& at, const double* x_p, const double* y_p,
+                              const double* to_x, const double* to_y, long count, double* from_x,
+                              double* from_y) {
     const double most = GrainNodes::reach / at.per_h;
-    const bool crosses = (crossed(x, dx, at.x_low) || crossed(y, dy, at.y_low)) &&
-                         std::fabs(dx) <= most && std::fabs(dy) <= most;
-    from_x = crosses ? dx : 0, from_y = crosses ? dy : 0;
+#pragma omp simd
+    for (long k = 0; k < count; ++k) {
+        const double dx = x_p[k] - to_x[k], dy = y_p[k] - to_y[k];
+        const auto cell = [&](double x, double low) { return std::floor((x - low) * at.per_h); };
+        const bool crosses = (cell(to_x[k], at.x_low) != cell(to_x[k] + dx, at.x_low)) |
+                             (cell(to_y[k], at.y_low) != cell(to_y[k] + dy, at.y_low));
+        const bool near = (std::fabs(dx) <= most) & (std::fabs(dy) <= most);
+        from_x[k] = crosses & near ? dx : 0, from_y[k] = crosses & near ? dy : 0;
+    }
 }
 
 /// The part w of what strains those that have crossed is of the cell that they have left.

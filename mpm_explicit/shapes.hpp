@@ -16,7 +16,7 @@ namespace mpm {
 template <int width_>
 struct Weights {
     static constexpr int width = width_;
-    long first;
+    int first;
     double S[width_];
     double G[width_];  // per length
 };
@@ -28,7 +28,7 @@ struct LinearShape {
     Weights<2> operator()(double x, double per_h) const {
         // On a line of nodes, the node beyond is seen a little: a gradient asks for its velocity.
         const double cell = std::floor(x), way = x - cell, d = way > least ? way : least;
-        return {static_cast<long>(cell), {1 - d, d}, {-per_h, per_h}};
+        return {static_cast<int>(cell), {1 - d, d}, {-per_h, per_h}};
     }
 };
 
@@ -36,7 +36,7 @@ struct QuadraticShape {
     static constexpr int width = 3;
     Weights<3> operator()(double x, double per_h) const {
         const double node = std::floor(x + 0.5), d = x - node;
-        return {static_cast<long>(node) - 1,
+        return {static_cast<int>(node) - 1,
                 {0.5 * (0.5 - d) * (0.5 - d), 0.75 - d * d, 0.5 * (0.5 + d) * (0.5 + d)},
                 {(d - 0.5) * per_h, -2 * d * per_h, (d + 0.5) * per_h}};
     }
@@ -58,7 +58,7 @@ struct GimpShape {
                          0.5 * per_side * (behind_low * behind_low - behind_high * behind_high),
                      S_before =
                          0.5 * per_side * (before_high * before_high - before_low * before_low);
-        return {static_cast<long>(node) - 1,
+        return {static_cast<int>(node) - 1,
                 {S_behind, 1 - S_behind - S_before, S_before},
                 {-share * per_h, (2 * share - 1) * per_h, (1 - share) * per_h}};
     }

@@ -18,7 +18,7 @@ namespace mpm {
 /// Up to ParticleBatch::size particles of one tile that are worked on together, with their velocity
 /// gradients times dt.
 struct ParticleBatch {
-    static constexpr long size = 128;
+    static constexpr long size = 128;  // at most Places::size
     int grain = 0;
     std::size_t tile = 0;
     long begin = 0, count = 0;
@@ -60,16 +60,17 @@ void velocity_gradient(const Shape& shape, const Particles& particles, const Gra
     const NodeMotion* motion = nodes.motion.data();
     const double *x_p = particles.x_p.data() + batch.begin,
                  *y_p = particles.y_p.data() + batch.begin;
+    Places<Shape> places;
+    places.find(shape, at, x_p, y_p, batch.count);
     for (long k = 0; k < batch.count; ++k) {
-        double xx = 0, yy = 0, xy = 0, yx = 0;
-        for_each_node(shape, at, origin, x_p[k], y_p[k],
-                      [&](long dof, double, double Gx, double Gy) {
-                          const NodeMotion& v = motion[dof];
-                          const double vx = velocity.x(v), vy = velocity.y(v);
-                          xx += Gx * vx, xy += Gy * vx;
-                          yx += Gx * vy, yy += Gy * vy;
-                      });
-        batch.xx[k] = dt * xx, batch.xy[k] = dt * xy, batch.yx[k] = dt * yx, batch.yy[k] = dt * yy;
+        Two along_x{}, along_y{};  // of the velocity: its derivatives
+        places.for_each_node(k, origin, [&](long dof, double, double Gx, double Gy) {
+            const Two v = velocity.of(motion[dof]);
+            along_x += Gx * v, along_y += Gy * v;
+        });
+        along_x *= dt, along_y *= dt;
+        batch.xx[k] = along_x[0], batch.yx[k] = along_x[1];
+        batch.xy[k] = along_y[0], batch.yy[k] = along_y[1];
     }
 }
 
@@ -99,13 +100,13 @@ void add_force(const Shape& shape, const Particles& particles, const ParticleBat
     NodeForce* force = nodes.force.data();
     const double *x_p = particles.x_p.data() + batch.begin,
                  *y_p = particles.y_p.data() + batch.begin;
+    Places<Shape> places;
+    places.find(shape, at, x_p, y_p, batch.count);
     for (long k = 0; k < batch.count; ++k) {
-        const double xx = V_s.xx[k], yy = V_s.yy[k], xy = V_s.xy[k];
-        for_each_node(shape, at, origin, x_p[k], y_p[k],
-                      [&](long dof, double, double Gx, double Gy) {
-                          force[dof].x -= xx * Gx + xy * Gy;
-                          force[dof].y -= xy * Gx + yy * Gy;
-                      });
+        const Two minus_x{-V_s.xx[k], -V_s.xy[k]}, minus_y{-V_s.xy[k], -V_s.yy[k]};
+        places.for_each_node(k, origin, [&](long dof, double, double Gx, double Gy) {
+            add(&force[dof].x, Gx * minus_x + Gy * minus_y);
+        });
     }
 }
 

@@ -2,10 +2,11 @@
 // method is made of.
 #pragma once
 
+#include <algorithm>
 #include <cstring>
 
 #include "mpm_explicit/grain_nodes.hpp"
-#include "mpm_explicit/shapes.hpp"
+#include "mpm_explicit/places.hpp"
 
 namespace mpm {
 
@@ -31,70 +32,39 @@ struct Transfer {
     double crossing = 0;                             // mpm_explicit/crossing.hpp
 };
 
+// Numbers that lie side by side and are worked on at once.
+using Two [[gnu::vector_size(2 * sizeof(double))]] = double;
+using Four [[gnu::vector_size(4 * sizeof(double))]] = double;
+template <class Vector>
+[[gnu::always_inline]] inline Vector load(const double* from) {
+    Vector v;
+    std::memcpy(&v, from, sizeof v);
+    return v;
+}
+template <class Vector>
+[[gnu::always_inline]] inline void add(double* to, const Vector& what) {
+    const Vector sum = load<Vector>(to) + what;
+    std::memcpy(to, &sum, sizeof sum);
+}
+
 /// Which velocity of a node is meant: before the step, or after it.
 struct OldVelocity {
-    static double x(const NodeMotion& v) { return v.vx_0; }
-    static double y(const NodeMotion& v) { return v.vy_0; }
+    static Two of(const NodeMotion& v) { return load<Two>(&v.vx_0); }
 };
 struct NewVelocity {
-    static double x(const NodeMotion& v) { return v.vx_1; }
-    static double y(const NodeMotion& v) { return v.vy_1; }
+    static Two of(const NodeMotion& v) { return load<Two>(&v.vx_1); }
 };
-
-/// Where a particle is on the mesh, in cells from node (0, 0).
-struct Locator {
-    double x_low, y_low, per_h;
-    explicit Locator(const Mesh& mesh) : x_low(mesh.x_low), y_low(mesh.y_low), per_h(1 / mesh.h) {}
-};
-
-/// Calls work(dof, S_ip, dS_ip/dx, dS_ip/dy) for the nodes around a particle of one grain.
-/// in: origin, GrainNodes::origins of the grain
-template <class Shape, class Work>
-[[gnu::always_inline]] inline void for_each_node(const Shape& shape, const Locator& at,
-                                                 const long* origin, double x, double y,
-                                                 const Work& work) {
-    const auto w_x = shape((x - at.x_low) * at.per_h, at.per_h);
-    const auto w_y = shape((y - at.y_low) * at.per_h, at.per_h);
-#pragma GCC unroll 3
-    for (int b = 0; b < Shape::width; ++b) {
-        const long dof = origin[w_y.first + b] + w_x.first;
-#pragma GCC unroll 3
-        for (int a = 0; a < Shape::width; ++a)
-            work(dof + a, w_x.S[a] * w_y.S[b], w_x.G[a] * w_y.S[b], w_x.S[a] * w_y.G[b]);
-    }
-}
-
-/// Calls work(dof, S_ip, x_i - x_p, y_i - y_p) for the nodes around a particle of one grain.
-template <class Shape, class Work>
-void for_each_link(const Shape& shape, const Locator& at, const long* origin, double x, double y,
-                   const Work& work) {
-    const double column = (x - at.x_low) * at.per_h, row = (y - at.y_low) * at.per_h,
-                 h = 1 / at.per_h;
-    const auto w_x = shape(column, at.per_h), w_y = shape(row, at.per_h);
-    for (int b = 0; b < Shape::width; ++b)
-        for (int a = 0; a < Shape::width; ++a)
-            work(origin[w_y.first + b] + w_x.first + a, w_x.S[a] * w_y.S[b],
-                 h * (double(w_x.first + a) - column), h * (double(w_y.first + b) - row));
-}
 
 namespace detail {
 
-// Half a line of the cache at once.
-using HalfLine [[gnu::vector_size(4 * sizeof(double))]] = double;
-
 // What a particle adds to a node: m, px, py and mx with S; my, gx, gy and V with S, Gx, Gy and S.
 struct Carried {
-    HalfLine first, second;
+    Four first, second;
 };
 [[gnu::always_inline]] inline void add(NodeSums& node, double S, double Gx, double Gy,
                                        const Carried& carried) {
-    HalfLine first, second;
-    std::memcpy(&first, &node.m, sizeof first);
-    std::memcpy(&second, &node.my, sizeof second);
-    first += S * carried.first;
-    second += HalfLine{S, Gx, Gy, S} * carried.second;
-    std::memcpy(&node.m, &first, sizeof first);
-    std::memcpy(&node.my, &second, sizeof second);
+    mpm::add(&node.m, S * carried.first);
+    mpm::add(&node.my, Four{S, Gx, Gy, S} * carried.second);
 }
 
 }  // namespace detail
@@ -195,17 +165,21 @@ void particles_to_grid(const Shape& shape, const Particles& particles, GrainNode
         const Locator at(nodes.mesh());
         NodeSums* sums = nodes.sums.data();
         NodeForce* force = nodes.force.data();
-        for (long p = tile.begin; p < tile.end; ++p) {
-            const double x = x_p[p], y = y_p[p], m = m_p[p], V = V_p[p];
-            const double Vxx = V * sxx[p], Vxy = V * sxy[p], Vyy = V * syy[p];
-            const detail::Carried carried{{m, m * vx_p[p], m * vy_p[p], m * x}, {m * y, V, V, V}};
-            for_each_node(shape, at, origin, x, y, [&](long dof, double S, double Gx, double Gy) {
-                detail::add(sums[dof], S, Gx, Gy, carried);
-                if constexpr (Force::value) {
-                    force[dof].x -= Vxx * Gx + Vxy * Gy;
-                    force[dof].y -= Vxy * Gx + Vyy * Gy;
-                }
-            });
+        Places<Shape> places;
+        for (long begin = tile.begin; begin < tile.end; begin += places.size) {
+            const long count = std::min(places.size, tile.end - begin);
+            places.find(shape, at, x_p + begin, y_p + begin, count);
+            for (long k = 0; k < count; ++k) {
+                const long p = begin + k;
+                const double x = x_p[p], y = y_p[p], m = m_p[p], V = V_p[p];
+                const Two minus_x = -V * Two{sxx[p], sxy[p]}, minus_y = -V * Two{sxy[p], syy[p]};
+                const detail::Carried carried{{m, m * vx_p[p], m * vy_p[p], m * x},
+                                              {m * y, V, V, V}};
+                places.for_each_node(k, origin, [&](long dof, double S, double Gx, double Gy) {
+                    detail::add(sums[dof], S, Gx, Gy, carried);
+                    if constexpr (Force::value) add(&force[dof].x, Gx * minus_x + Gy * minus_y);
+                });
+            }
         }
     });
     if (particles.has_affine()) add_affine_momentum(shape, particles, nodes);
