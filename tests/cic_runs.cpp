@@ -599,6 +599,18 @@ TEST_CASE("what falls short names what cures it" * doctest::description("physics
                         "[theory]\ncompare = \"wave\"\n"),
               ""),
          "another wave of this mode, omega = 0.3666, growth = -0.2803, decays hardly faster");
+    says(said("cic/cases/bernstein.toml", "theory.near=2.6"),
+         "what was measured is another wave of this mode, omega = 2.012: take theory.near = 2.012");
+    // A cold plasma that moves: right until the mesh drives it, and with the cure.
+    const std::string moves = "species.electrons.drift_x=1";
+    says(said("cic/cases/plasma_wave.toml", moves),
+         "and <= 1.2 is expected (no growing root); aliases "
+         "drive waves of two or three cells");
+    for (const char* cure : {" method.scheme=energy", " time.end=60"}) {
+        const Run run = facts::run_into("moves", "cic", "cic/cases/plasma_wave.toml", moves + cure);
+        CHECK(run.status == 0);
+        CHECK(run.summary["results"]["omega_over_theory"]["verdict"] == "PASS");
+    }
     says(said("cic/cases/sheath.toml", "time.dt=1.8 time.end=1800"),
          "omega_p dt of the electrons is 0.87, and thermal ones cross 7.2 cells in it: lower "
          "time.dt");

@@ -338,11 +338,12 @@ TEST_CASE("energy conservation lets a cold beam pass above a threshold") {
 
 TEST_CASE("momentum conservation makes every cold beam unstable") {
     for (const double drift : {0.05, 0.2, 1.0})
-        for (const int order : {1, 2}) {
+        for (const int order : {0, 1, 2}) {
             const double growth =
                 fastest_of_all_modes(electrons(drift, 0.0), {1.0, 0.0, order, false});
-            CHECK(growth >= (order == 1 ? 0.20 : 0.10));
-            CHECK(growth <= (order == 1 ? 0.23 : 0.12));
+            INFO("drift ", drift, ", order ", order, ": ", growth);
+            CHECK(growth >= (order == 0 ? 0.42 : order == 1 ? 0.20 : 0.10));
+            CHECK(growth <= (order == 0 ? 0.50 : order == 1 ? 0.23 : 0.12));
         }
 }
 

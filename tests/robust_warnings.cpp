@@ -25,6 +25,13 @@ cic thermal_heating.toml grid.length_x=201.06193 theory.compare=none -> no warni
 cic line method.scheme=energy species.electrons.temperature_x=0.01 -> no warning
 cic plane grid.length_z=60 species.electrons.temperature_x=0.01
     warning: the Debye length is 0.01333 cells, below 0.3183 for cic
+cic plasma_wave.toml species.electrons.drift_x=1
+    warning: aliases drive waves of two or three cells through cold plasma that moves, growth = 0.2
+    or so: take method.scheme = "energy", or give it a temperature
+cic plasma_wave.toml species.electrons.drift_x=0.2
+    growth = 0.2 or so: give it a temperature with a Debye length of a third of a cell or more
+cic plasma_wave.toml species.electrons.drift_x=1 method.scheme=energy -> no warning
+cic plasma_wave.toml species.electrons.drift_x=1 time.end=60 -> no warning
 cic line method.scheme=energy species.electrons.drift_x=0.1
     warning: electrons: a cold beam at 0.2667 omega_p dx is below 0.2887, where the
     energy-conserving mesh stops it; refine the mesh

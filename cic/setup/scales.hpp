@@ -239,6 +239,8 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
              " % too high; at 2 the leapfrog blows up");
     detail::warn_of_heating(parameters, scales, dx, warnings);
     detail::warn_of_space_charge(parameters, warnings);
+    if (const std::string driven = likely_driven_by_mesh(parameters); !driven.empty())
+        warnings.push_back(driven);
     for (const SpeciesScales& s : scales.species) {
         const auto own = std::ranges::find(parameters.species, s.name, &SpeciesCase::name);
         const double through = parameters.dimensions == 2 ? std::hypot(own->drift_x, own->drift_z)

@@ -378,9 +378,17 @@ inline Theory theory_of_wave(const Case& parameters, long mode_x, long mode_z,
                                       ", " + parameters.conserving + "-conserving"
                         : parameters.gauss_sign > 0 ? "kinetic dispersion relation"
                                                     : "dispersion relation with div E = -rho";
-        const common::DispersionRoot root = parameters.near != 0
-                                                ? nearest_root(D, guesses, parameters.near)
-                                                : common::fastest_growing_root(D, guesses);
+        common::DispersionRoot root = parameters.near != 0
+                                          ? nearest_root(D, guesses, parameters.near)
+                                          : common::fastest_growing_root(D, guesses);
+        // On a mesh every wave has aliases. Where none grows, the one is meant that is there without it.
+        if (on_mesh && parameters.near == 0 && root.found &&
+            !(root.omega.imag() > 1e-6 * std::abs(root.omega))) {
+            Case without = parameters;
+            without.model = "plasma";
+            const double frequency = theory_of_wave(without, mode_x, mode_z).omega.real();
+            root = nearest_root(D, guesses, frequency);
+        }
         if (!root.found) {
             const bool table_only = std::ranges::any_of(responses, &SpeciesResponse::table_only);
             const std::string why = sentence(

@@ -142,6 +142,36 @@ inline std::string likely_bouncing(const Case& parameters, const Theory& theory,
                     format(rate * rate / (bounce * bounce)), " of it");
 }
 
+/// Cold plasma that moves through its mesh as a whole: aliases of its waves resonate with each other. Where
+/// that comes out of round-off by the end, that, and what to change; else nothing.
+/// note:   The rate is that of mesh_dispersion() at 3/8 (tsc 7/16) of a wavelength in a cell, which hardly
+///         depends on the drift from 0.05 to 5 omega_p dx, or on the step.
+inline std::string likely_driven_by_mesh(const Case& parameters) {
+    double squares = 0, slowest = HUGE_VAL, fastest = -HUGE_VAL, heat = 0;
+    for (const SpeciesCase& s : parameters.species) {
+        if (!s.mobile()) continue;
+        squares += s.charge * s.charge * s.mean_density() / s.mass;
+        slowest = std::min(slowest, s.drift_x), fastest = std::max(fastest, s.drift_x);
+        heat = std::max({heat, s.temperature_x, s.tables.speed.given() ? 1.0 : 0.0});
+    }
+    const double omega_p = std::sqrt(squares), dx = parameters.grid.x.spacing(),
+                 rate = omega_p * (parameters.weighting == "ngp"   ? 0.46
+                                   : parameters.weighting == "cic" ? 0.2
+                                                                   : 0.1),
+                 drift = std::fabs(fastest);
+    if (parameters.conserving != "momentum" || heat > 0 || slowest != fastest ||
+        !(drift > 0.05 * omega_p * dx) || !(rate * parameters.end > 15) ||
+        parameters.gauss_sign < 0 || parameters.magnetized() || !parameters.grid.x.periodic)
+        return "";
+    const bool fast =
+        drift > omega_p * dx * cold_beam_threshold(parameters.weighting == "tsc" ? 2 : 1);
+    return sentence(
+        "aliases drive waves of two or three cells through cold plasma that moves, "
+        "growth = ",
+        rate, " or so: ", fast ? "take method.scheme = \"energy\", or " : "",
+        "give it a temperature with a Debye length of a third of a cell or more");
+}
+
 /// What a wave that is not as in theory is most likely due to, and what to change.
 /// in:     field, the amplitude of the wave without noise; noise of random numbers in it
 inline std::string likely_cause(const Case& parameters, const Theory& theory, double field,
@@ -166,6 +196,8 @@ inline std::string likely_cause(const Case& parameters, const Theory& theory, do
                         "or take loading = \"quiet\"");
     const std::string bouncing = likely_bouncing(parameters, theory, field);
     if (!bouncing.empty()) return bouncing;
+    if (const std::string driven = likely_driven_by_mesh(parameters); !driven.empty())
+        return driven;
     if (parameters.model != "mesh" && (theta > 0.5 || slower > tolerance))
         return sentence(k_dx > k_dz ? "k dx is " : "k dz is ", theta,
                         ", and the mesh changes the wave by 1 - cos(k dx/2)",
@@ -202,6 +234,23 @@ inline std::complex<double> fastest_of_mode(const Case& parameters, const Theory
                                 : theory_of_wave(any, theory.mode_x, theory.mode_z).omega;
 } catch (const common::InputError&) {  // none was found
     return theory.omega;
+}
+
+/// Where a wave of the same mode is much nearer to what was measured than the one that was looked for: which
+/// one; else nothing.
+inline std::string other_wave(const Case& parameters, const Theory& theory,
+                              const common::MeasuredMode& seen) try {
+    if (!seen.found || seen.omega.real() == 0) return "";
+    Case any = parameters;
+    any.near = theory.mirrored ? std::fabs(seen.omega.real()) : seen.omega.real();
+    const double other = theory_of_wave(any, theory.mode_x, theory.mode_z).omega.real(),
+                 off = std::fabs(theory.omega.real() - any.near),
+                 left = std::fabs(other - any.near);
+    if (!(off > 3 * seen.frequency_error() && left < 0.3 * off)) return "";
+    return sentence("what was measured is another wave of this mode, omega = ", other,
+                    ": take theory.near = ", other, ", or a perturbation that has less of it");
+} catch (const common::InputError&) {  // none was found
+    return "";
 }
 
 /// A wave or an instability against the dispersion relation: frequency, growth or damping by
@@ -252,6 +301,8 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
             2 * noise / seed * std::max(std::fabs(growth), 1 / (seen.end - seen.begin));
         seen.error = {std::hypot(seen.error.real(), moved), std::hypot(seen.error.imag(), moved)};
     }
+    if (const std::string other = other_wave(parameters, theory, seen); !grows && !other.empty())
+        summary.hint(other);
     const double level = onset_field(parameters, theory), folds = growth * (seen.end - seen.begin);
     double early = noise;
     for (std::size_t n = 0; n < times.size() && times[n] < search.begin; ++n)
