@@ -60,8 +60,10 @@ struct PicCells {
         v.assign(grid.size(), {});
         v_tilde.assign(grid.size(), {});
         row.assign(grid.z.cells, 0.0);
-        sums.assign(grid.x.cells * grid.z.cells * (3 + 2 * materials), 0.0);
+        sums.assign(grid.x.cells * grid.z.cells * width_of_sums(), 0.0);
     }
+    // How many sums a cell has: four of all particles and two of each material.
+    long width_of_sums() const { return 4 + 2 * materials; }
 };
 
 /// Calls work(j) for every row of cells, in parallel where that pays.
@@ -81,19 +83,28 @@ double sum_over_rows(const Grid& grid, PicCells& cells, const SumOfRow& sum_of_r
 
 namespace detail {
 
+// Loops over particles take so many at a time: what vectorizes is done for all of them first.
+inline constexpr long batch_size = 128;
+
 // Calls add(p, cell) for every particle, on as many threads as share no cell.
 template <class Add>
 void for_each_in_cell(const Grid& grid, const Particles& particles, const Add& add) {
     const CellAlong column(grid.x), row(grid.z);
     const double *x_p = particles.x_p.data(), *z_p = particles.z_p.data();
-    const int* first = particles.first_of_row.data();
-    const long nx = grid.x.cells;
+    const int *first = particles.first_of_row.data(), nx = int(grid.x.cells);
+    const auto add_batch = [=](long begin, long end) {
+        int cell[batch_size];
+#pragma omp simd
+        for (long p = begin; p < end; ++p) cell[p - begin] = row(z_p[p]) * nx + column(x_p[p]);
+        for (long p = begin; p < end; ++p) add(p, long(cell[p - begin]));
+    };
     // Three rows apart: a particle may be in the row beside its own.
     common::for_each_row_colored(
         3, grid.z.cells,
         [&](long j) {
-            for (long p = first[j]; p < first[j + 1]; ++p)
-                add(p, row(z_p[p]) * nx + column(x_p[p]));
+            const auto add_here = add_batch;  // its pointers, which no write to a cell can change
+            for (long p = first[j]; p < first[j + 1]; p += batch_size)
+                add_here(p, std::min(p + batch_size, long(first[j + 1])));
         },
         grid.x.cells * grid.z.cells);
 }
