@@ -8,6 +8,7 @@
 // D = |u| (dx - |u| dt)/2, and what is not conserved as kinetic energy becomes heat.
 #pragma once
 
+#include <array>
 #include <cstring>
 #include <string>
 
@@ -71,6 +72,10 @@ void sum_contributions(const Problem& problem, const What& contribution, State& 
     });
     for_each_row_of_cells(grid, [&](long j) {
         const double* const sums = &cells.sums[j * nx * width];
+        double *const vx_c = state.cells.vx.data(), *const vz_c = state.cells.vz.data(),
+                      *const mass_c = cells.mass.data();
+        std::array<double*, most_materials> e_c{};
+        for (std::size_t k = 0; k < K; ++k) e_c[k] = state.cells.e[k].data();
         double refused = -1;
         for (long i = 0; i < nx; ++i) {
             const long n = grid.index(i, j);
@@ -95,14 +100,14 @@ void sum_contributions(const Problem& problem, const What& contribution, State& 
                     const double lacks = -e * M[k] * per_mass;
                     if (e < 0 && lent + lacks <= 0.5 * vx * vx) lent += lacks, e = 0;
                 }
-                state.cells.e[k][n] = e;
+                e_c[k][n] = e;
                 sound = sound && e >= -1e-10 * kinetic - round_off && std::isfinite(e);
             }
-            state.cells.vx[n] = vx;
+            vx_c[n] = vx;
             if constexpr (swirl)
-                if (lent > 0) state.cells.vx[n] = std::copysign(std::sqrt(vx * vx - 2 * lent), vx);
-            state.cells.vz[n] = vz;
-            cells.mass[n] = mass;
+                if (lent > 0) vx_c[n] = std::copysign(std::sqrt(vx * vx - 2 * lent), vx);
+            vz_c[n] = vz;
+            mass_c[n] = mass;
             if (!sound && refused < 0) refused = double(n);
         }
         cells.row[j] = refused;

@@ -32,6 +32,8 @@ struct PicCells {
     Field p, c;                         // pressure, speed of sound
     std::vector<double> share;          // of the work of the pressure, that each material takes
     Field q_x, q_z;                     // viscous pressure on the faces before the cell
+    Field part_x, part_z;               // of the cell before that face, in its pressure
+    Field work;                         // of the pressure on the cell
     std::vector<double> ring;           // ring_length() of column i at [i + 1], ghosts like inside
     std::vector<CellVelocity> v;        // u
     std::vector<CellVelocity> v_tilde;  // u~
@@ -50,7 +52,8 @@ struct PicCells {
           falls(problem.body_force.gravity_x != 0 || problem.body_force.gravity_z != 0 ||
                 problem.swirl) {
         const Grid& grid = problem.grid;
-        for (Field* f : {&mass, &per_mass, &rho, &filled, &p, &c, &q_x, &q_z})
+        for (Field* f :
+             {&mass, &per_mass, &rho, &filled, &p, &c, &q_x, &q_z, &part_x, &part_z, &work})
             f->setZero(grid.size());
         ring.assign(grid.x.cells + 2, 1.0);
         for (long i = 0; i < grid.x.cells; ++i) ring[i + 1] = ring_length(grid, double(i) + 0.5);
