@@ -70,7 +70,7 @@ inline void add_external_work(const Problem& problem, double dt, const Nodes& g,
 ///   dE_c = -dt (p V div v_work + V q : grad v_bar) + viscous heating
 /// For the particles of material k pressure changes e in proportion to e, as it does at one pressure
 /// when nothing else happens, so that each keeps its entropy; viscosity by mass:
-///   relative_de_ck = -dt share_ck p V div v_work / U_ck,   de_ck = share_ck (rest of dE_c) / M_ck
+///   de_ck[1] = -dt share_ck p V div v_work / U_ck,   de_ck[0] = share_ck (rest of dE_c) / M_ck
 ///   dissipated_g = |v^0 - v|^2/2                      of what walls stop, or with the consistent
 ///                                                     mass (v^0 - v) M (v^0 - v)/(2 m_g)
 ///          + (level - 1/2) dt F_g . (v^L - v^0)/m_g   of pressure, v_work = v^0 + level (v^L - v^0)
@@ -78,7 +78,7 @@ inline void add_external_work(const Problem& problem, double dt, const Nodes& g,
 /// level is theta of an implicit pressure, 1/2 of an explicit one, and 1 with the consistent mass, where
 /// work at v_bar would make the shortest sound grow: no loss of the transfer damps it there
 /// in:     v, v^0, v^L; p_step, q; forces
-/// out:    cells.de, relative_de, and with volumes strain, work, q_work; nodes.increment, dissipated;
+/// out:    cells.de, and with volumes strain, work, q_work; nodes.increment, dissipated;
 ///         budget
 /// exact:  sum_c dE_c + change of (1/2) sum_g m_g v_g^2 + what walls and theta dissipate = what the
 ///         budget has got
@@ -135,12 +135,11 @@ inline void work_on_cells(const Problem& problem, double dt, Mesh& mesh, Budget&
         for (long ck = n * count; ck < (n + 1) * count; ++ck) {
             const double M = c.sum[ck].M, U = c.sum[ck].U;
             const double share = volumes ? (c.M[n] > 0 ? M / c.M[n] : 0) : c.share[ck];
-            c.de[ck] = M > 0 ? share * (U > 0 ? dE : dE + adiabatic) / M : 0;
-            c.relative_de[ck] = U > 0 ? share * adiabatic / U : 0;
+            c.de[ck] = Two(M > 0 ? share * (U > 0 ? dE : dE + adiabatic) / M : 0,
+                           U > 0 ? share * adiabatic / U : 0);
         }
     });
-    fill_cells(grid, c.de.data(), count);
-    fill_cells(grid, c.relative_de.data(), count);
+    fill_cells(grid, c.de[0].data(), 2 * count);
     if (volumes) {
         for (Field* f : {&c.strain, &c.work, &c.q_work, &c.p, &c.room}) fill_cells(grid, f->data());
         fill_cells(grid, c.excess.data(), count);

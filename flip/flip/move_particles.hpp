@@ -77,9 +77,8 @@ inline double work_on_volume(const Problem& problem, const WeightScale& scale, c
 //   v_r += S_x0 S_x1 dr^2/(r_1 + r_2) [(e/3)(r_1 + r_2 + r_1 r_2/r) - p/r]
 //   v_z += (dz/2) S_z0 S_z1 (p_1/r + 2 q_1)
 // On the axis v_r = 0 and p = 0.
-[[gnu::noinline]] inline Velocity missing_velocity_of_ring(const Grid& grid,
-                                                           const WeightScale& scale,
-                                                           const Weights& w, const Four* v) {
+inline Velocity missing_velocity_of_ring(const Grid& grid, const WeightScale& scale,
+                                         const Weights& w, const Four* v) {
     const Four &a = v[w.node], &b = v[w.node + 1], &c = v[w.node + scale.stride],
                &d = v[w.node + scale.stride + 1];
     const double dr = grid.x.spacing(), dz = grid.z.spacing(),
@@ -99,64 +98,101 @@ struct RowMoved {
     long left = 0, inverted = -1;
 };
 
+// Moves a batch of particles, the first of them `begin`: first each fetches what the mesh has for it, then
+// all of them take it, in a loop that vectorizes.
 template <bool pure_flip, bool volumes>
-RowMoved move_row(const Problem& problem, const WeightScale& scale, const Mesh& mesh, double dt,
-                  long begin, long end, Particles& p) {
+void move_batch_of_flip(const Problem& problem, WeightScale scale, const Mesh& mesh, double dt,
+                        long begin, long count, Particles& p, RowMoved& moved) {
     const Grid& grid = problem.grid;
     const Transfer& transfer = problem.scheme.transfer;
     const Four* const increment = mesh.nodes.increment.data();
-    const double *const dissipated = mesh.nodes.dissipated.data(), *const de = mesh.cells.de.data(),
-                        *const relative_de = mesh.cells.relative_de.data();
-    const long count = mesh.materials;
-    const bool conservative = problem.scheme.conservative_paths;
+    const double* const dissipated = mesh.nodes.dissipated.data();
+    const Two* const de = mesh.cells.de.data();
+    const long materials = mesh.materials;
     const double deficit = transfer.dissipates ? 0.5 : 0;
-    RowMoved moved;
+    double *const x_p = p.x_p.data() + begin, *const z_p = p.z_p.data() + begin,
+                  *const vx_p = p.vx_p.data() + begin, *const vz_p = p.vz_p.data() + begin,
+                  *const e_p = p.e_p.data() + begin;
+    const int* const material = p.material.data() + begin;
+    const BatchWeights weights(scale, x_p, z_p, count);
+    Four from_nodes[batch_size];  // increment, and the velocity that moves the particle
+    double gained[batch_size], missing_x[batch_size] = {}, missing_z[batch_size] = {};
     // [move]
-    for (long k = begin; k < end; ++k) {
-        const Weights at = weights_at(scale, p.x_p[k], p.z_p[k]);
+    for (long k = 0; k < count; ++k) {
+        const Weights at = weights[k];
         Four sum = Four::Zero();
-        double gained = 0;
+        double gain = 0;
         for_nodes(scale, at, [&](long n, double S) {
             sum += S * increment[n];
-            gained += S * dissipated[n];
+            gain += S * dissipated[n];
         });
-        const Velocity dv{sum[0], sum[1]};
-        const long material = p.material[k];
-        for_cells(scale, at, [&](long c, double R) {
-            const long ck = c * count + material;
-            gained += R * (de[ck] + p.e_p[k] * relative_de[ck]);
-        });
-        gained -= deficit * dv.square();
+        Two change = Two::Zero();
+        for_cells(scale, at,
+                  [&](long c, double R) { change += R * de[c * materials + material[k]]; });
+        from_nodes[k] = sum;
+        gained[k] = gain + change[0] + e_p[k] * change[1];
         if constexpr (volumes) {
-            gained += work_on_volume(problem, scale, at, mesh.cells, k, p);
-            if (!(p.V_p[k] > 0)) moved.inverted = k;
+            gained[k] += work_on_volume(problem, scale, at, mesh.cells, begin + k, p);
+            if (!(p.V_p[begin + k] > 0)) moved.inverted = begin + k;
         }
-        if (conservative && !grid.axisymmetric) {
-            const Velocity missing = missing_velocity(grid, scale, at, increment);
-            sum[2] += missing.x;
-            sum[3] += missing.z;
-        } else if (conservative) {
-            const Velocity missing = missing_velocity_of_ring(grid, scale, at, increment);
-            sum[2] += missing.x;
-            sum[3] += missing.z;
+    }
+    const auto add_missing = [&](const auto& missing_at) {
+        for (long k = 0; k < count; ++k) {
+            const Velocity missing = missing_at(weights[k]);
+            missing_x[k] = missing.x;
+            missing_z[k] = missing.z;
         }
-        Velocity v{p.vx_p[k] + dv.x, p.vz_p[k] + dv.z};         // [FLIP-6]
-        const double x = wrap(grid.x, p.x_p[k] + dt * sum[2]),  // [FLIP-7]
-            z = wrap(grid.z, p.z_p[k] + dt * sum[3]);
+    };
+    if (problem.scheme.conservative_paths && !grid.axisymmetric)
+        add_missing(
+            [&](const Weights& at) { return missing_velocity(grid, scale, at, increment); });
+    else if (problem.scheme.conservative_paths)
+        add_missing([&](const Weights& at) {
+            return missing_velocity_of_ring(grid, scale, at, increment);
+        });
+    const double low_x = grid.x.low, high_x = grid.x.high(), low_z = grid.z.low,
+                 high_z = grid.z.high();
+    double x[batch_size], z[batch_size];
+    long inside = 0;
+#pragma omp simd reduction(+ : inside)
+    for (long k = 0; k < count; ++k) {
+        const double dvx = from_nodes[k][0], dvz = from_nodes[k][1];
+        gained[k] -= deficit * (dvx * dvx + dvz * dvz);
+        x[k] = x_p[k] + dt * (from_nodes[k][2] + missing_x[k]);  // [FLIP-7]
+        z[k] = z_p[k] + dt * (from_nodes[k][3] + missing_z[k]);
+        inside += x[k] >= low_x && x[k] < high_x && z[k] >= low_z && z[k] < high_z ? 1 : 0;
+    }
+    if (inside < count)
+        for (long k = 0; k < count; ++k) {
+            x[k] = wrap(grid.x, x[k]);
+            z[k] = wrap(grid.z, z[k]);
+            moved.left += side_crossed(grid, x[k], z[k]) >= 0;
+        }
+    for (long k = 0; k < count; ++k) {
+        const Velocity dv{from_nodes[k][0], from_nodes[k][1]};
+        Velocity v{vx_p[k] + dv.x, vz_p[k] + dv.z};  // [FLIP-6]
         if constexpr (!pure_flip) {
-            const bool dust = problem.materials[material].gamma == 1;  // may owe
-            gained += apply_transfer(transfer, grid, scale, at, weights_at(scale, x, z), mesh.nodes,
-                                     {p.vx_p[k], p.vz_p[k]}, dv, dust ? 1e300 : p.e_p[k] + gained,
-                                     k, p, v);
+            const bool dust = problem.materials[material[k]].gamma == 1;  // may owe
+            gained[k] += apply_transfer(
+                transfer, grid, scale, weights[k], weights_at(scale, x[k], z[k]), mesh.nodes,
+                {vx_p[k], vz_p[k]}, dv, dust ? 1e300 : e_p[k] + gained[k], begin + k, p, v);
         }
-        p.vx_p[k] = v.x;
-        p.vz_p[k] = v.z;
-        p.e_p[k] += gained;
-        p.x_p[k] = x;
-        p.z_p[k] = z;
-        moved.left += side_crossed(grid, x, z) >= 0;
+        vx_p[k] = v.x;
+        vz_p[k] = v.z;
+        e_p[k] += gained[k];
+        x_p[k] = x[k];
+        z_p[k] = z[k];
     }
     // [/move]
+}
+
+template <bool pure_flip, bool volumes>
+RowMoved move_row(const Problem& problem, const WeightScale& scale, const Mesh& mesh, double dt,
+                  long begin, long end, Particles& p) {
+    RowMoved moved;
+    for (long k = begin; k < end; k += batch_size)
+        move_batch_of_flip<pure_flip, volumes>(problem, scale, mesh, dt, k,
+                                               std::min(batch_size, end - k), p, moved);
     return moved;
 }
 
@@ -169,7 +205,7 @@ RowMoved move_row(const Problem& problem, const WeightScale& scale, const Mesh& 
 ///   e_p += sum_c R (de_c + e_p relative_de_c) + sum_g S dissipated_g - |sum_g S dv_g|^2/2
 ///   and what another transfer than flip makes of v_p: apply_transfer(); where the fluid turns about
 ///   the axis, what the move leaves of the energy of that: take_swirl()
-/// in:     nodes.increment, dissipated, filtered; cells.de, relative_de
+/// in:     nodes.increment, dissipated, filtered; cells.de
 /// in/out: particles in rows; afterwards perhaps not
 /// out:    how many are beyond a boundary now
 /// errors: NumericalError when the volume of a particle is not positive any more

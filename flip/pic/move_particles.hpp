@@ -197,8 +197,8 @@ inline void move_particles(const Problem& problem, double dt, State& state, PicC
                 : (holes ? detail::move_batch<false, true> : detail::move_batch<false, false>);
         const long begin = particles.first_of_row[j], end = particles.first_of_row[j + 1];
         long count = 0;
-        for (long p = begin; p < end; p += detail::batch_size)
-            count += move(grid, dt, p, std::min(end, p + detail::batch_size), particles, cells);
+        for (long p = begin; p < end; p += batch_size)
+            count += move(grid, dt, p, std::min(end, p + batch_size), particles, cells);
         return double(count);
     });
     if (problem.swirl) take_swirl(particles, cells);

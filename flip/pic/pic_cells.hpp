@@ -86,9 +86,6 @@ double sum_over_rows(const Grid& grid, PicCells& cells, const SumOfRow& sum_of_r
 
 namespace detail {
 
-// Loops over particles take so many at a time: what vectorizes is done for all of them first.
-inline constexpr long batch_size = 128;
-
 // Calls add(p, cell) for every particle, on as many threads as share no cell.
 template <class Add>
 void for_each_in_cell(const Grid& grid, const Particles& particles, const Add& add) {
