@@ -20,6 +20,7 @@ using common::Grid;
 class Values {
    public:
     Values(const Field& column) : data_(column.data()) {}
+    Values(const double* column) : data_(column) {}
     double operator[](long n) const { return data_[n]; }
 
    private:

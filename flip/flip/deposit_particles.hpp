@@ -122,17 +122,19 @@ inline void deposit_particles(const Grid& grid, std::span<const Material> materi
         fold_cells(grid, &c.soft[0].C, 3 * count);
     }
 
-    for_each_node(grid, [&](long, long, long n) {
-        const Four& sum = g.sum[n];
+    double *const m_g = g.m.data(), *const vx_g = g.vx.data(), *const vz_g = g.vz.data(),
+                  *const M_c = c.M.data();
+    for_each_node(grid, [=, sums = g.sum.data()](long, long, long n) {
+        const Four& sum = sums[n];
         const double per_mass = sum[0] > least_mass ? 1 / sum[0] : 0;
-        g.m[n] = per_mass > 0 ? sum[0] : 0;
-        g.vx[n] = sum[1] * per_mass;
-        g.vz[n] = sum[2] * per_mass;
+        m_g[n] = per_mass > 0 ? sum[0] : 0;
+        vx_g[n] = sum[1] * per_mass;
+        vz_g[n] = sum[2] * per_mass;
     });
-    for_each_cell(grid, [&](long, long, long n) {
+    for_each_cell(grid, [=, sum = c.sum.data()](long, long, long n) {
         double M = 0;
-        for (long k = 0; k < count; ++k) M += c.sum[n * count + k].M;
-        c.M[n] = M;
+        for (long k = 0; k < count; ++k) M += sum[n * count + k].M;
+        M_c[n] = M;
     });
     if (particles.swirl) deposit_swirl(grid, particles, mesh);
 }

@@ -220,8 +220,9 @@ void for_each_point(const Grid& grid, long nx, long nz, const Work& work) {
     common::for_each_block(
         nz,
         [&](int, long begin, long end) {
+            const Work own = work;  // what it has captured by value no write can change
             for (long j = begin; j < end; ++j)
-                for (long i = 0; i < nx; ++i) work(i, j, grid.index(i, j));
+                for (long i = 0, n = grid.index(0, j); i < nx; ++i, ++n) own(i, j, n);
         },
         grid.size());
 }

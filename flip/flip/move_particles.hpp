@@ -7,52 +7,12 @@
 #include "common/run/sentence.hpp"
 #include "flip/boundaries.hpp"
 #include "flip/flip/transfer.hpp"
+#include "flip/flip/work_on_volume.hpp"
 #include "flip/state.hpp"
 
 namespace flip {
 
 namespace detail {
-
-// The factor by which a volume grows in a step, 1 + s, if nothing turned inside out. A bubble of gas
-// that shares its cell with a liquid takes all of the change of volume, more than its own perhaps:
-// below one half it is squeezed less and less.
-inline double growth_of_volume(double s) { return s >= -0.5 ? 1 + s : -0.25 / s; }
-
-// How far the materials of a cell come towards one pressure in a step.
-inline constexpr double relaxation = 0.5;
-
-// Work on one particle that carries its volume, which it takes at its own pressure; per mass. Where
-// materials share a cell, the softer takes nearly all of its change of volume, and a liquid would keep
-// the pressure that it came with, to burst with later: so they push each other towards p_c, volume for
-// volume, with the work of p_c: the cell keeps its volume and its energy. A gas also takes a part of
-// the room in its cell, at constant energy: volumes follow the pressure, and where they have drifted
-// from the places of the particles, nothing else would bring them back.
-//   V_p *= growth_of_volume(s) (1 + filling sum_c R room_c)
-//   s = (C_p/V_p) sum_c R (strain_c + relaxation excess_kc),  C_p of weight_in_cell(), excess of
-//   find_pressure()
-// in: cells.strain, work, q_work, excess, p, room; in/out: V_p
-inline double work_on_volume(const Problem& problem, const WeightScale& scale, const Weights& at,
-                             const Cells& cells, long k, Particles& p) {
-    const long count = long(problem.materials.size()), material = p.material[k];
-    const Material& a = problem.materials[material];
-    const double V = p.V_p[k], p_p = pressure(a, p.m_p[k] / V, p.e_p[k]);
-    const double C = weight_in_cell(a, V, p_p, cells.one_fluid);
-    double strain = 0, work = 0, room = 0;
-    for_cells(scale, at, [&](long c, double R) {
-        strain += R * cells.strain[c];
-        work += R * (p_p * cells.work[c] + cells.q_work[c]);
-    });
-    if (!cells.one_fluid)
-        for_cells(scale, at, [&](long c, double R) {
-            const double push = R * relaxation * cells.excess[c * count + material];
-            strain += push;
-            work += push * cells.p[c];
-        });
-    if (a.p_infinity == 0 && (count > 1 || problem.scheme.confined))
-        for_cells(scale, at, [&](long c, double R) { room += R * cells.room[c]; });
-    p.V_p[k] *= growth_of_volume(C * strain / V) * (1 + problem.scheme.filling * room);
-    return -C * work / p.m_p[k];
-}
 
 // [conservative]
 // What bilinear velocities lack for the divergence of their cell to be that of each place in it: else
@@ -77,21 +37,62 @@ inline double work_on_volume(const Problem& problem, const WeightScale& scale, c
 //   v_r += S_x0 S_x1 dr^2/(r_1 + r_2) [(e/3)(r_1 + r_2 + r_1 r_2/r) - p/r]
 //   v_z += (dz/2) S_z0 S_z1 (p_1/r + 2 q_1)
 // On the axis v_r = 0 and p = 0.
-inline Velocity missing_velocity_of_ring(const Grid& grid, const WeightScale& scale,
-                                         const Weights& w, const Four* v) {
+// in: f, g, how far the particle is through the cell
+struct RingFlow {
+    double r[4], turn_z;  // v_r at the nodes, t_z = v_00 - v_10 - v_01 + v_11
+};
+inline RingFlow ring_flow(const WeightScale& scale, const Weights& w, const Four* v) {
     const Four &a = v[w.node], &b = v[w.node + 1], &c = v[w.node + scale.stride],
                &d = v[w.node + scale.stride + 1];
-    const double dr = grid.x.spacing(), dz = grid.z.spacing(),
-                 r_1 = dr * double(column_of(grid, w.node)), r_2 = r_1 + dr,
-                 r = std::max(r_1 + w.S_x[1] * dr, 1e-9 * dr);
-    const double q_low = (b[2] - a[2]) / dr, q_high = (d[2] - c[2]) / dr,
-                 p_low = a[2] - q_low * r_1, p_high = c[2] - q_high * r_1,
-                 e = (a[3] - b[3] - c[3] + d[3]) / (dr * dz);
-    return {w.S_x[0] * w.S_x[1] * dr * dr / (r_1 + r_2) *
+    return {{a[2], b[2], c[2], d[2]}, a[3] - b[3] - c[3] + d[3]};
+}
+[[gnu::always_inline]] inline Velocity missing_velocity_of_ring(double dr, double dz, double r_1,
+                                                                double f, double g,
+                                                                const RingFlow& v) {
+    const double r_2 = r_1 + dr, r = std::max(r_1 + f * dr, 1e-9 * dr);
+    const double q_low = (v.r[1] - v.r[0]) / dr, q_high = (v.r[3] - v.r[2]) / dr,
+                 p_low = v.r[0] - q_low * r_1, p_high = v.r[2] - q_high * r_1,
+                 e = v.turn_z / (dr * dz);
+    return {(1 - f) * f * dr * dr / (r_1 + r_2) *
                 (e / 3 * (r_1 + r_2 + r_1 * r_2 / r) - 0.5 * (p_low + p_high) / r),
-            0.5 * dz * w.S_z[0] * w.S_z[1] * ((p_high - p_low) / r + 2 * (q_high - q_low))};
+            0.5 * dz * (1 - g) * g * ((p_high - p_low) / r + 2 * (q_high - q_low))};
 }
 // [/ring_paths]
+
+inline Velocity missing_velocity_of_ring(const Grid& grid, const WeightScale& scale,
+                                         const Weights& w, const Four* v) {
+    const double dr = grid.x.spacing(), r_1 = dr * double(column_of(grid, w.node));
+    return missing_velocity_of_ring(dr, grid.z.spacing(), r_1, w.S_x[1], w.S_z[1],
+                                    ring_flow(scale, w, v));
+}
+
+// The same for a batch.
+inline void find_missing_velocity(Grid grid, WeightScale scale, const BatchWeights& weights,
+                                  const Four* v, long count, double* missing_x, double* missing_z) {
+    if (!grid.axisymmetric) {
+        for (long k = 0; k < count; ++k) {
+            const Velocity missing = missing_velocity(grid, scale, weights[k], v);
+            missing_x[k] = missing.x, missing_z[k] = missing.z;
+        }
+        return;
+    }
+    const double dr = grid.x.spacing(), dz = grid.z.spacing();
+    double r_1[batch_size], v_r[4][batch_size], turn_z[batch_size];
+    for (long k = 0; k < count; ++k) {
+        const Weights w = weights[k];
+        const RingFlow flow = ring_flow(scale, w, v);
+        for (int corner = 0; corner < 4; ++corner) v_r[corner][k] = flow.r[corner];
+        turn_z[k] = flow.turn_z;
+        r_1[k] = dr * (w.node % scale.stride - 1);
+    }
+#pragma omp simd
+    for (long k = 0; k < count; ++k) {
+        const Weights w = weights[k];
+        const RingFlow flow{{v_r[0][k], v_r[1][k], v_r[2][k], v_r[3][k]}, turn_z[k]};
+        const Velocity missing = missing_velocity_of_ring(dr, dz, r_1[k], w.S_x[1], w.S_z[1], flow);
+        missing_x[k] = missing.x, missing_z[k] = missing.z;
+    }
+}
 
 // What came of a row: how many particles left the mesh, and one without volume, -1: none.
 struct RowMoved {
@@ -136,20 +137,8 @@ void move_batch_of_flip(const Problem& problem, WeightScale scale, const Mesh& m
             if (!(p.V_p[begin + k] > 0)) moved.inverted = begin + k;
         }
     }
-    const auto add_missing = [&](const auto& missing_at) {
-        for (long k = 0; k < count; ++k) {
-            const Velocity missing = missing_at(weights[k]);
-            missing_x[k] = missing.x;
-            missing_z[k] = missing.z;
-        }
-    };
-    if (problem.scheme.conservative_paths && !grid.axisymmetric)
-        add_missing(
-            [&](const Weights& at) { return missing_velocity(grid, scale, at, increment); });
-    else if (problem.scheme.conservative_paths)
-        add_missing([&](const Weights& at) {
-            return missing_velocity_of_ring(grid, scale, at, increment);
-        });
+    if (problem.scheme.conservative_paths)
+        find_missing_velocity(grid, scale, weights, increment, count, missing_x, missing_z);
     const double low_x = grid.x.low, high_x = grid.x.high(), low_z = grid.z.low,
                  high_z = grid.z.high();
     double x[batch_size], z[batch_size];
@@ -160,7 +149,8 @@ void move_batch_of_flip(const Problem& problem, WeightScale scale, const Mesh& m
         gained[k] -= deficit * (dvx * dvx + dvz * dvz);
         x[k] = x_p[k] + dt * (from_nodes[k][2] + missing_x[k]);  // [FLIP-7]
         z[k] = z_p[k] + dt * (from_nodes[k][3] + missing_z[k]);
-        inside += x[k] >= low_x && x[k] < high_x && z[k] >= low_z && z[k] < high_z ? 1 : 0;
+        const bool here = (x[k] >= low_x) & (x[k] < high_x) & (z[k] >= low_z) & (z[k] < high_z);
+        inside += here ? 1 : 0;
     }
     if (inside < count)
         for (long k = 0; k < count; ++k) {

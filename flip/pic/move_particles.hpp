@@ -88,11 +88,11 @@ long move_batch(const Grid& grid, double dt, long begin, long end, Particles& pa
         if constexpr (holes) left /= area[k], right /= area[k];
         const double x = x_p[k] + (left * velocity[k][0] + right * velocity[k][2]);
         x_p[k] = x;
-        bool here = x >= low_x && x < high_x;
+        bool here = (x >= low_x) & (x < high_x);
         if constexpr (plane) {
             const double z = z_p[k] + (left * velocity[k][1] + right * velocity[k][3]);
             z_p[k] = z;
-            here = here && z >= low_z && z < high_z;
+            here = here & (z >= low_z) & (z < high_z);
         }
         inside += here ? 1 : 0;
     }
