@@ -129,8 +129,7 @@ inline Mesh mesh_of(const Problem& problem) {
     Cells& c = mesh.cells;
     mesh.materials = long(problem.materials.size());
     c.sum.assign(size * mesh.materials, {});
-    c.share.assign(size * mesh.materials, 0);
-    c.de.assign(size * mesh.materials, Two::Zero());
+    c.share.assign(size * mesh.materials, 0), c.de.assign(size * mesh.materials, Two::Zero());
     c.surface.assign(size, 0);
     c.V_of_column = lattice_volumes(problem.grid, problem.per_cell_x);
     for (Field* f : {&c.M, &c.p, &c.compressibility, &c.p_step}) f->setZero(size);
