@@ -82,22 +82,25 @@ inline CellState find_equilibrium(std::span<const Material> materials, const dou
                                   const double* U, double V, double* share) {
     const std::size_t count = materials.size();
     CellState cell;
+    const double per_V = 1 / V;
     double p = 0, mass = 0;
+    int sharing = 0;  // materials that have energy
     for (std::size_t k = 0; k < count; ++k) {
         const Material& a = materials[k];
         mass += M[k];
-        p = std::max(p, (a.gamma - 1) * U[k] / V - a.gamma * a.p_infinity);
+        sharing += U[k] > 0 ? 1 : 0;
+        p = std::max(p, (a.gamma - 1) * U[k] * per_V - a.gamma * a.p_infinity);
     }
     const auto volume_of = [&](std::size_t k, double at) {
         const Material& a = materials[k];
         const double stiff = at + a.gamma * a.p_infinity;
-        return stiff > 0 ? (a.gamma - 1) * U[k] / stiff : 0.0;
+        return U[k] != 0 && stiff > 0 ? (a.gamma - 1) * U[k] / stiff : 0.0;
     };
     if (mass <= 0) {
         std::fill(share, share + count, 0.0);
         return cell;
     }
-    if (count > 1) {
+    if (sharing > 1) {
         for (int n = 0; n < 50; ++n) {
             double sum = -V, slope = 0;
             for (std::size_t k = 0; k < count; ++k) {
@@ -117,11 +120,11 @@ inline CellState find_equilibrium(std::span<const Material> materials, const dou
     for (std::size_t k = 0; k < count; ++k) {
         const double V_k = volume_of(k, p), stiff = stiffness(materials[k], p);
         filled += V_k;
-        share[k] = stiff > least_stiffness ? V_k / stiff : 0.0;
+        share[k] = V_k != 0 && stiff > least_stiffness ? V_k / stiff : 0.0;
         sum += share[k];
     }
     cell.surface = p == 0 && filled < V;
-    cell.compressibility = sum / V;
+    cell.compressibility = sum * per_V;
     for (std::size_t k = 0; k < count; ++k) share[k] = sum > 0 ? share[k] / sum : M[k] / mass;
     return cell;
 }

@@ -53,6 +53,9 @@ void archive(Archive& a, Particles& particles) {
     a("first_of_row", particles.first_of_row);
 }
 
+/// Loops over particles take so many at a time: what vectorizes is done for all of them first.
+inline constexpr long batch_size = 128;
+
 /// Whether a column is in use.
 inline bool has(const std::vector<double>& column) { return !column.empty(); }
 

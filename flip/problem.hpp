@@ -15,6 +15,18 @@ namespace flip {
 using common::Field;
 using common::Grid;
 
+/// A column of numbers to be read. Eigen's brackets check every index, and a loop with checks does not
+/// vectorize.
+class Values {
+   public:
+    Values(const Field& column) : data_(column.data()) {}
+    Values(const double* column) : data_(column) {}
+    double operator[](long n) const { return data_[n]; }
+
+   private:
+    const double* data_;
+};
+
 inline constexpr double pi = 3.14159265358979323846;
 
 /// The length of a ring of cells about the axis, 2 pi r; in the plane 1, as all is per length there.
@@ -84,7 +96,8 @@ struct ArtificialViscosity {
         return rho * (linear * c - quadratic * du);
     }
     double operator()(double rho, double c, double du) const {
-        return du < 0 ? -du * slope(rho, c, du) : 0.0;
+        const double approach = std::min(du, 0.0);
+        return -approach * slope(rho, c, approach);
     }
 };
 

@@ -793,8 +793,7 @@ TEST_CASE(
             // Nothing but the increment: what walls stop and work on the cells are not asked for.
             const double dt = r.move_nodes();
             Random random(9);
-            for (double& de : r.cells().de) de = 0;
-            for (double& part : r.cells().relative_de) part = 0;
+            for (Two& de : r.cells().de) de = Two::Zero();
             for_each_node(r.grid(), [&](long, long, long n) {
                 Four& dv = r.nodes().increment[std::size_t(n)];
                 r.nodes().dissipated[n] = 0.5 * (dv[0] * dv[0] + dv[1] * dv[1]);

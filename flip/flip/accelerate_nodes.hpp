@@ -14,15 +14,16 @@ namespace flip {
 ///   a = g + trap (x_middle - x)
 /// note:   the two images of a node at the seam of a periodic direction are as far from the middle
 ///         on either side: there the trap does not accelerate
-inline Eigen::Vector2d node_acceleration(const Grid& grid, const BodyForce& force, long n) {
+inline Eigen::Vector2d node_acceleration(const Grid& grid, const BodyForce& force, long i, long j) {
     const auto along = [&](const common::Axis& axis, double gravity, long k) {
         const bool seam = axis.periodic && (k == 0 || k == axis.cells);
         const double x = axis.at(seam ? 0.5 * double(axis.cells) : double(k));
         return gravity + force.trap * (axis.low + 0.5 * axis.length - x);
     };
-    const long stride = grid.stride();
-    return {along(grid.x, force.gravity_x, n % stride - 1),
-            along(grid.z, force.gravity_z, n / stride - 1)};
+    return {along(grid.x, force.gravity_x, i), along(grid.z, force.gravity_z, j)};
+}
+inline Eigen::Vector2d node_acceleration(const Grid& grid, const BodyForce& force, long n) {
+    return node_acceleration(grid, force, n % grid.stride() - 1, n / grid.stride() - 1);
 }
 
 namespace detail {
@@ -133,14 +134,16 @@ inline double viscous_heating(const Grid& grid, double viscosity, const Nodes& g
 inline void find_known_forces(const Grid& grid, const Boundaries& boundaries, double viscosity,
                               Mesh& mesh) {
     Nodes& g = mesh.nodes;
-    for_each_node(grid, [&](long, long, long n) { g.fx[n] = g.fz[n] = 0; });
+    double *const fx = g.fx.data(), *const fz = g.fz.data();
+    for_each_node(grid, [=](long, long, long n) { fx[n] = fz[n] = 0; });
     add_viscous_force(grid, viscosity, mesh);
     fill_pressure(grid, mesh.cells.q);
-    for_each_node(grid, [&](long i, long j, long n) {
-        const Eigen::Vector2d F =
-            stress_force(grid, mesh.cells.q, n) + boundary_force(grid, boundaries, i, j);
-        g.fx[n] += F[0];
-        g.fz[n] += F[1];
+    for_each_node(grid, [=, &boundaries, &q = mesh.cells.q](long i, long j, long n) {
+        Eigen::Vector2d F = stress_force(grid, q, n);
+        if (i == 0 || j == 0 || i == grid.x.cells || j == grid.z.cells)
+            F += boundary_force(grid, boundaries, i, j);
+        fx[n] += F[0];
+        fz[n] += F[1];
     });
 }
 
@@ -155,14 +158,17 @@ inline void accelerate_nodes(const Problem& problem, double dt, Mesh& mesh) {
     const Grid& grid = problem.grid;
     Nodes& g = mesh.nodes;
     fill_pressure(grid, mesh.cells.p_step);
-    for_each_node(grid, [&](long, long, long n) {
-        const Eigen::Vector2d F = pressure_force(grid, mesh.cells.p_step, n);
-        g.fx[n] += F[0];
-        g.fz[n] += F[1];
-        const double per_mass = g.m[n] > 0 ? 1 / g.m[n] : 0;
-        const Eigen::Vector2d a = node_acceleration(grid, problem.body_force, n);
-        g.vxL[n] = per_mass > 0 ? g.vx0[n] + dt * (per_mass * g.fx[n] + a[0]) : 0;
-        g.vzL[n] = per_mass > 0 ? g.vz0[n] + dt * (per_mass * g.fz[n] + a[1]) : 0;
+    const Values p = mesh.cells.p_step, m = g.m, vx0 = g.vx0, vz0 = g.vz0;
+    double *const fx = g.fx.data(), *const fz = g.fz.data(), *const vxL = g.vxL.data(),
+                  *const vzL = g.vzL.data();
+    for_each_node(grid, [=, force = problem.body_force](long i, long j, long n) {
+        const Eigen::Vector2d F = pressure_force(grid, p, n);
+        fx[n] += F[0];
+        fz[n] += F[1];
+        const double per_mass = m[n] > 0 ? 1 / m[n] : 0;
+        const Eigen::Vector2d a = node_acceleration(grid, force, i, j);
+        vxL[n] = per_mass > 0 ? vx0[n] + dt * (per_mass * fx[n] + a[0]) : 0;
+        vzL[n] = per_mass > 0 ? vz0[n] + dt * (per_mass * fz[n] + a[1]) : 0;
     });
     set_walls(grid, problem.boundaries, g.vxL, g.vzL);
 }

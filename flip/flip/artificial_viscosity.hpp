@@ -46,19 +46,21 @@ inline void find_viscosity(const Grid& grid, const Boundaries& boundaries,
                            const ArtificialViscosity& q, Mesh& mesh) {
     Nodes& g = mesh.nodes;
     Cells& c = mesh.cells;
-    for_each_node(grid, [&](long, long, long n) {
-        g.vx0[n] = g.vx[n];
-        g.vz0[n] = g.vz[n];
+    for_each_node(grid, [vx = Values(g.vx), vz = Values(g.vz), vx0 = g.vx0.data(),
+                         vz0 = g.vz0.data()](long, long, long n) {
+        vx0[n] = vx[n];
+        vz0[n] = vz[n];
     });
     set_walls(grid, boundaries, g.vx0, g.vz0);
-    for_each_cell(grid, [&](long i, long, long n) {
-        c.q[n] = {};
-        CellGradient G = velocity_gradient(grid, g.vx0, g.vz0, n);
+    for_each_cell(grid, [=, &c, vx = Values(g.vx0), vz = Values(g.vz0), M = Values(c.M),
+                         q_c = c.q.data(), surface = c.surface.data()](long i, long, long n) {
+        q_c[n] = {};
+        CellGradient G = velocity_gradient(grid, vx, vz, n);
         if (!is_plane(grid)) G.xz = G.zx = G.zz = 0;
         const double d = (G.xx + G.zz + G.hoop) / cell_volume(grid, i);
-        if (!(d < 0) || c.M[n] <= 0 || c.surface[n] != 0) return;
+        if (!(d < 0) || M[n] <= 0 || surface[n] != 0) return;
         const double rho = density_of(c, i, n), sound = sound_speed(rho, c.compressibility[n]);
-        c.q[n] = viscous_stress_of(grid, q, G, rho, sound, d);
+        q_c[n] = viscous_stress_of(grid, q, G, rho, sound, d);
     });
 }
 
@@ -70,8 +72,9 @@ inline void find_viscosity(const Grid& grid, const Boundaries& boundaries,
 inline void limit_viscosity(const Grid& grid, double dt, Mesh& mesh) {
     const Nodes& g = mesh.nodes;
     const double dx = is_plane(grid) ? grid.x.spacing() : 0;  // in a row nothing moves along z
-    for_each_cell(grid, [&](long i, long, long n) {
-        CellTensor& q = mesh.cells.q[n];
+    for_each_cell(grid, [=, m = Values(g.m), vx = Values(g.vx0), vz = Values(g.vz0),
+                         q_c = mesh.cells.q.data()](long i, long, long n) {
+        CellTensor& q = q_c[n];
         if (q.trace() == 0) return;
         double response = 0;  // D M^-1 D^T, of this cell alone
         for (const long side : {0, 1}) {
@@ -79,9 +82,9 @@ inline void limit_viscosity(const Grid& grid, double dt, Mesh& mesh) {
                          along_r = grid.z.spacing() * ring_length(grid, node + double(side)),
                          along_z = dx * ring_length(grid, node + double(1 + side) / 3);
             for (const long corner : {n + side, n + side + grid.stride()})
-                response += 0.25 * (along_r * along_r + along_z * along_z) / g.m[corner];
+                response += 0.25 * (along_r * along_r + along_z * along_z) / m[corner];
         }
-        q = q * std::min(1.0, -dilation(grid, g.vx0, g.vz0, n) / (dt * response * q.trace()));
+        q = q * std::min(1.0, -dilation(grid, vx, vz, n) / (dt * response * q.trace()));
     });
 }
 

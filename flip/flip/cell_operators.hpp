@@ -15,7 +15,7 @@ namespace detail {
 // The rate of change of the volume of a ring whose sides stay straight: its corners move by v, and
 // L is the length of a ring. What flows through the side between r_1 and r_2 is the integral of
 // 2 pi r v_z dr, with weights (2 r_1 + r_2)/6 and (r_1 + 2 r_2)/6: L at a third and at two thirds.
-inline double dilation_of_ring(const Grid& grid, const Field& vx, const Field& vz, long n) {
+inline double dilation_of_ring(const Grid& grid, Values vx, Values vz, long n) {
     const long up = n + grid.stride();
     const double i = double(column_of(grid, n));
     return 0.5 * grid.z.spacing() *
@@ -27,7 +27,7 @@ inline double dilation_of_ring(const Grid& grid, const Field& vx, const Field& v
 }
 
 // Its transpose. Uniform pressure pushes no node, so that there is no hoop term to balance.
-inline Eigen::Vector2d pressure_force_of_rings(const Grid& grid, const Field& p, long n) {
+inline Eigen::Vector2d pressure_force_of_rings(const Grid& grid, Values p, long n) {
     const long down = n - grid.stride();
     const double i = double(column_of(grid, n));
     return {
@@ -42,7 +42,7 @@ inline Eigen::Vector2d pressure_force_of_rings(const Grid& grid, const Field& p,
 
 // [transpose]
 /// V_c div v of a cell, from its four nodes.
-inline double dilation(const Grid& grid, const Field& vx, const Field& vz, long n) {
+inline double dilation(const Grid& grid, Values vx, Values vz, long n) {
     const long up = n + grid.stride();
     if (grid.axisymmetric) return detail::dilation_of_ring(grid, vx, vz, n);
     return 0.5 * grid.z.spacing() * (vx[n + 1] + vx[up + 1] - vx[n] - vx[up]) +
@@ -51,7 +51,7 @@ inline double dilation(const Grid& grid, const Field& vx, const Field& vz, long 
 
 /// Force of the pressures of the four cells around a node; the transpose of dilation().
 /// exact:  differences come first, so that a pressure equal to round-off pushes by that of itself alone
-inline Eigen::Vector2d pressure_force(const Grid& grid, const Field& p, long n) {
+inline Eigen::Vector2d pressure_force(const Grid& grid, Values p, long n) {
     const long down = n - grid.stride();
     if (grid.axisymmetric) return detail::pressure_force_of_rings(grid, p, n);
     return {0.5 * grid.z.spacing() * (p[down - 1] - p[down] + (p[n - 1] - p[n])),
@@ -64,16 +64,15 @@ inline Eigen::Vector2d pressure_force(const Grid& grid, const Field& p, long n) 
 struct CellGradient {
     double xx, zz, xz, zx, hoop;
 };
-inline CellGradient velocity_gradient(const Grid& grid, const Field& vx, const Field& vz, long n) {
+inline CellGradient velocity_gradient(const Grid& grid, Values vx, Values vz, long n) {
     const long up = n + grid.stride();
-    const double i = double(column_of(grid, n)), dx = 0.5 * grid.x.spacing(),
+    const double i = grid.axisymmetric ? double(column_of(grid, n)) : 0,
+                 dx = 0.5 * grid.x.spacing(),
                  side = 0.5 * grid.z.spacing() * ring_length(grid, i + 0.5),
                  left = dx * ring_length(grid, i + 1. / 3),
                  right = dx * ring_length(grid, i + 2. / 3);
-    const auto along_x = [&](const Field& v) {
-        return side * (v[n + 1] + v[up + 1] - v[n] - v[up]);
-    };
-    const auto along_z = [&](const Field& v) {
+    const auto along_x = [&](Values v) { return side * (v[n + 1] + v[up + 1] - v[n] - v[up]); };
+    const auto along_z = [&](Values v) {
         return left * (v[up] - v[n]) + right * (v[up + 1] - v[n + 1]);
     };
     const double hoop =
@@ -83,11 +82,13 @@ inline CellGradient velocity_gradient(const Grid& grid, const Field& vx, const F
 }
 
 /// Force of the stresses of the four cells around a node; the transpose of velocity_gradient().
-inline Eigen::Vector2d stress_force(const Grid& grid, const std::vector<CellTensor>& q, long n) {
+inline Eigen::Vector2d stress_force(const Grid& grid, const std::vector<CellTensor>& q_c, long n) {
+    const CellTensor* const q = q_c.data();
     const long down = n - grid.stride();
     const CellTensor &a = q[down - 1], &b = q[down], &c = q[n - 1], &d = q[n];
-    const double i = double(column_of(grid, n)), dx = 0.5 * grid.x.spacing(),
-                 dz = 0.5 * grid.z.spacing(), side_left = dz * ring_length(grid, i - 0.5),
+    const double i = grid.axisymmetric ? double(column_of(grid, n)) : 0,
+                 dx = 0.5 * grid.x.spacing(), dz = 0.5 * grid.z.spacing(),
+                 side_left = dz * ring_length(grid, i - 0.5),
                  side_right = dz * ring_length(grid, i + 0.5),
                  left = dx * ring_length(grid, i - 1. / 3),
                  right = dx * ring_length(grid, i + 1. / 3);
@@ -100,8 +101,7 @@ inline Eigen::Vector2d stress_force(const Grid& grid, const std::vector<CellTens
 }
 
 /// Work of a stress on a cell per time, V q : grad v.
-inline double power(const Grid& grid, const CellTensor& q, const Field& vx, const Field& vz,
-                    long n) {
+inline double power(const Grid& grid, const CellTensor& q, Values vx, Values vz, long n) {
     if (q.trace() == 0) return 0;
     const CellGradient G = velocity_gradient(grid, vx, vz, n);
     return q.xx * G.xx + q.zz * G.zz + q.xz * (G.xz + G.zx) + q.hoop * G.hoop;

@@ -13,23 +13,36 @@ inline constexpr double least_mass = 1e-280;
 
 namespace detail {
 
-// What the particles [begin, end) leave on the mesh. A particle of apic brings to each node the velocity
+// What a batch of particles, the first of them `begin`, leaves on the mesh. A particle of apic brings to each node the velocity
 // that its own gradient gives it there.
 template <bool affine, bool volumes>
-void deposit_band(const WeightScale& scale, const Material* materials, const Particles& p,
-                  long begin, long end, const Grid& grid, Mesh& mesh) {
+void deposit_batch(WeightScale scale, const Material* materials, const Particles& p, long begin,
+                   long count_here, const Grid& grid, Mesh& mesh) {
     Four* const node_sum = mesh.nodes.sum.data();
     CellSum* const cell_sum = mesh.cells.sum.data();
     const long count = mesh.materials;
     const double dx = grid.x.spacing(), dz = grid.z.spacing();
+    const double *const m_p = p.m_p.data() + begin, *const vx_p = p.vx_p.data() + begin,
+                        *const vz_p = p.vz_p.data() + begin, *const e_p = p.e_p.data() + begin;
+    const int* const material_p = p.material.data() + begin;
+    const BatchWeights weights(scale, p.x_p.data() + begin, p.z_p.data() + begin, count_here);
     // [deposit]
-    for (long k = begin; k < end; ++k) {
-        const Weights w = weights_at(scale, p.x_p[k], p.z_p[k]);
-        const double m = p.m_p[k];
-        const Four momentum(m, m * p.vx_p[k], m * p.vz_p[k], 1);
+    Four of_particle[batch_size];  // mass, momentum, and one particle
+#pragma omp simd
+    for (long k = 0; k < count_here; ++k) {
+        of_particle[k][0] = m_p[k];
+        of_particle[k][1] = m_p[k] * vx_p[k];
+        of_particle[k][2] = m_p[k] * vz_p[k];
+        of_particle[k][3] = 1;
+    }
+    for (long k = 0; k < count_here; ++k) {
+        const Weights w = weights[k];
+        const double m = m_p[k];
+        const Four& momentum = of_particle[k];
         if constexpr (affine) {
-            const Four along_x(0, m * p.Cxx_p[k] * dx, m * p.Czx_p[k] * dx, 0),
-                along_z(0, m * p.Cxz_p[k] * dz, m * p.Czz_p[k] * dz, 0);
+            const long q = begin + k;
+            const Four along_x(0, m * p.Cxx_p[q] * dx, m * p.Czx_p[q] * dx, 0),
+                along_z(0, m * p.Cxz_p[q] * dz, m * p.Czz_p[q] * dz, 0);
             const double fx = w.S_x[1], fz = w.S_z[1];
             long corner = 0;
             for_nodes(scale, w, [&](long n, double S) {
@@ -40,15 +53,15 @@ void deposit_band(const WeightScale& scale, const Material* materials, const Par
         } else {
             for_nodes(scale, w, [&](long n, double S) { node_sum[n] += S * momentum; });
         }
-        const long material = p.material[k];
-        const double energy = m * p.e_p[k];
+        const long material = material_p[k];
+        const double energy = m * e_p[k];
         for_cells(scale, w, [&](long c, double R) {
             cell_sum[c * count + material].M += R * m;
             cell_sum[c * count + material].U += R * energy;
         });
         if constexpr (volumes) {
             const Material& a = materials[material];
-            const double V = p.V_p[k], p_p = pressure(a, m / V, p.e_p[k]);
+            const double V = p.V_p[begin + k], p_p = pressure(a, m / V, e_p[k]);
             const double C = weight_in_cell(a, V, p_p, mesh.cells.one_fluid),
                          CK = C * stiffness(a, p_p);
             for_cells(scale, w, [&](long c, double R) {
@@ -94,10 +107,13 @@ inline void deposit_particles(const Grid& grid, std::span<const Material> materi
         grid.size());
     const WeightScale scale(grid);
     const auto deposit =
-        affine ? (volumes ? detail::deposit_band<true, true> : detail::deposit_band<true, false>)
-               : (volumes ? detail::deposit_band<false, true> : detail::deposit_band<false, false>);
+        affine
+            ? (volumes ? detail::deposit_batch<true, true> : detail::deposit_batch<true, false>)
+            : (volumes ? detail::deposit_batch<false, true> : detail::deposit_batch<false, false>);
     for_each_band(grid, particles, [&](long begin, long end) {
-        deposit(scale, materials.data(), particles, begin, end, grid, mesh);
+        for (long p = begin; p < end; p += batch_size)
+            deposit(scale, materials.data(), particles, p, std::min(batch_size, end - p), grid,
+                    mesh);
     });
     fold_nodes(grid, g.sum.data());
     fold_cells(grid, &c.sum[0].M, 2 * count);
@@ -106,17 +122,19 @@ inline void deposit_particles(const Grid& grid, std::span<const Material> materi
         fold_cells(grid, &c.soft[0].C, 3 * count);
     }
 
-    for_each_node(grid, [&](long, long, long n) {
-        const Four& sum = g.sum[n];
+    double *const m_g = g.m.data(), *const vx_g = g.vx.data(), *const vz_g = g.vz.data(),
+                  *const M_c = c.M.data();
+    for_each_node(grid, [=, sums = g.sum.data()](long, long, long n) {
+        const Four& sum = sums[n];
         const double per_mass = sum[0] > least_mass ? 1 / sum[0] : 0;
-        g.m[n] = per_mass > 0 ? sum[0] : 0;
-        g.vx[n] = sum[1] * per_mass;
-        g.vz[n] = sum[2] * per_mass;
+        m_g[n] = per_mass > 0 ? sum[0] : 0;
+        vx_g[n] = sum[1] * per_mass;
+        vz_g[n] = sum[2] * per_mass;
     });
-    for_each_cell(grid, [&](long, long, long n) {
+    for_each_cell(grid, [=, sum = c.sum.data()](long, long, long n) {
         double M = 0;
-        for (long k = 0; k < count; ++k) M += c.sum[n * count + k].M;
-        c.M[n] = M;
+        for (long k = 0; k < count; ++k) M += sum[n * count + k].M;
+        M_c[n] = M;
     });
     if (particles.swirl) deposit_swirl(grid, particles, mesh);
 }

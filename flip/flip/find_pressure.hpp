@@ -35,7 +35,7 @@ inline std::array<long, 4> corners_of(const Grid& grid, long n) {
 /// Whether a cell has a node with next to no fluid around it.
 inline bool has_bare_node(const Grid& grid, const Nodes& g, long n) {
     const long up = n + grid.stride();
-    const auto around = [&](long corner) { return g.sum[corner][3]; };
+    const auto around = [sum = g.sum.data()](long corner) { return sum[corner][3]; };
     const auto [least, most] = std::minmax({around(n), around(n + 1), around(up), around(up + 1)});
     return least <= barest_node * most;
 }
@@ -59,18 +59,22 @@ inline void find_pressure(const Grid& grid, std::span<const Material> materials,
     Cells& c = mesh.cells;
     const bool volumes = c.volume.size() > 0;
     const long count = mesh.materials;
+    const bool turns = !c.swirl.empty();
+    const Values vx = g.vx, vz = g.vz, M_c = c.M;
+    double *const p_c = c.p.data(), *const compressibility = c.compressibility.data();
     std::atomic<long> bad{-1};
-    for_each_cell(grid, [&](long i, long, long n) {
-        const double V_c = c.V_of_column[i];
+    for_each_cell(grid, [=, &g, &c, &bad, sum_c = c.sum.data(), share = c.share.data(),
+                         surface_c = c.surface.data(),
+                         V_of_column = c.V_of_column.data()](long i, long, long n) {
+        const double V_c = V_of_column[i];
         double speed2 = 0;
         for (const long corner : corners_of(grid, n))
-            speed2 = std::max(speed2, g.vx[corner] * g.vx[corner] + g.vz[corner] * g.vz[corner]);
-        if (!c.swirl.empty() && c.M[n] > 0)
-            speed2 += c.swirl[n].force * grid.x.at(double(i) + 0.5) / c.M[n];
+            speed2 = std::max(speed2, vx[corner] * vx[corner] + vz[corner] * vz[corner]);
+        if (turns && M_c[n] > 0) speed2 += c.swirl[n].force * grid.x.at(double(i) + 0.5) / M_c[n];
         double M[most_materials], U[most_materials];
         bool sound = true, gas = false;
         for (long k = 0; k < count; ++k) {
-            const CellSum& sum = c.sum[n * count + k];
+            const CellSum& sum = sum_c[n * count + k];
             M[k] = sum.M;
             U[k] = std::max(sum.U, 0.0);
             gas = gas || (sum.M > 0 && materials[k].p_infinity == 0);
@@ -79,9 +83,9 @@ inline void find_pressure(const Grid& grid, std::span<const Material> materials,
                     (dust ? std::isfinite(sum.U) : sum.U >= -cold_enough * sum.M * speed2);
         }
         if (!sound) bad = n;
-        const CellState cell = find_equilibrium(materials, M, U, V_c, &c.share[n * count]);
-        c.p[n] = cell.p;
-        c.compressibility[n] = cell.compressibility;
+        const CellState cell = find_equilibrium(materials, M, U, V_c, share + n * count);
+        p_c[n] = cell.p;
+        compressibility[n] = cell.compressibility;
         bool surface = cell.surface;
         if (volumes) {
             double C = 0, Cp = 0, CK = 0;
@@ -112,8 +116,8 @@ inline void find_pressure(const Grid& grid, std::span<const Material> materials,
         }
         surface = surface || has_bare_node(grid, g, n);
         if (volumes) c.crowding[n] = gas ? 0 : std::clamp(c.volume[n] - V_c, 0.0, V_c);
-        c.surface[n] = surface ? 1 : 0;
-        if (surface) c.p[n] = 0;
+        surface_c[n] = surface ? 1 : 0;
+        if (surface) p_c[n] = 0;
     });
     if (bad < 0) return;
     const char* cure =
@@ -131,7 +135,8 @@ inline double sound_speed(double rho, double compressibility) {
 
 /// Density of a cell in column i: of the volumes that its particles carry, where they do.
 inline double density_of(const Cells& c, long i, long n) {
-    return c.M[n] / (c.volume.size() > 0 ? std::max(c.volume[n], 1e-300) : c.V_of_column[i]);
+    const Values M = c.M, volume = c.volume;
+    return M[n] / (c.volume.size() > 0 ? std::max(volume[n], 1e-300) : c.V_of_column[i]);
 }
 
 /// The longest step that the flow allows.
@@ -156,6 +161,7 @@ inline double step_allowed(const Problem& problem, const Mesh& mesh, double last
                  faster = problem.scheme.consistent_mass && !problem.scheme.particle_volumes
                               ? fastest_consistent
                               : 1;
+    const Values vx_g = g.vx, vz_g = g.vz, M = c.M, compressibility = c.compressibility;
     std::vector<double> of_row(grid.z.cells, 0.0);
     common::for_each_row(
         grid.z.cells,
@@ -163,21 +169,21 @@ inline double step_allowed(const Problem& problem, const Mesh& mesh, double last
             double most = 0;
             for (long i = 0; i < grid.x.cells; ++i) {
                 const long n = grid.index(i, j);
-                if (c.M[n] <= 0) continue;
+                if (M[n] <= 0) continue;
                 double vx = 0, vz = 0;
                 for (const long corner : corners_of(grid, n)) {
-                    vx = std::max(vx, std::fabs(g.vx[corner]));
-                    vz = std::max(vz, std::fabs(g.vz[corner]));
+                    vx = std::max(vx, std::fabs(vx_g[corner]));
+                    vz = std::max(vz, std::fabs(vz_g[corner]));
                 }
                 const double rho = density_of(c, i, n);
                 const double sound =
                     c.surface[n] != 0 || no_sound
                         ? 0
-                        : faster * sound_speed(rho, c.compressibility[n]) * std::sqrt(per_dx2);
+                        : faster * sound_speed(rho, compressibility[n]) * std::sqrt(per_dx2);
                 double turns = 0, outward = 0;
                 if (!c.swirl.empty()) {
                     turns = rate_of_swirl(grid, c, i, n);
-                    outward = std::sqrt(c.swirl[n].force / (c.M[n] * limits.cfl) * per_dx);
+                    outward = std::sqrt(c.swirl[n].force / (M[n] * limits.cfl) * per_dx);
                 }
                 double rate = (vx * per_dx + vz * per_dz + sound + turns) / limits.cfl;
                 if (problem.viscosity > 0)

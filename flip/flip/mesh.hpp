@@ -23,6 +23,7 @@
 
 namespace flip {
 
+using Two = Eigen::Array2d;
 using Four = Eigen::Array4d;
 
 /// What the particles of one material bring to a cell: mass and internal energy, and where they carry
@@ -65,15 +66,15 @@ struct Nodes {
 
 /// The cells; columns of grid.size(), those per material with the materials of a cell together.
 struct Cells {
-    std::vector<CellSum> sum;             // [cell][material]
-    std::vector<double> share;            // of a change of volume
-    std::vector<double> de, relative_de;  // e of a particle changes by de + e relative_de
-    Field M;                              // mass
-    Field p;                              // pressure
-    std::vector<CellTensor> q;            // artificial viscosity
-    Field compressibility;                // -(dV/dp)/V; 0 in an empty cell
-    Field p_step;                         // the pressure that acts in this step
-    std::vector<char> surface;            // 1: partly void, p = 0 whatever happens
+    std::vector<CellSum> sum;         // [cell][material]
+    std::vector<double> share;        // of a change of volume
+    std::vector<Two> de;              // e of a particle changes by de[0] + e de[1]
+    Field M;                          // mass
+    Field p;                          // pressure
+    std::vector<CellTensor> q;        // artificial viscosity
+    Field compressibility;            // -(dV/dp)/V; 0 in an empty cell
+    Field p_step;                     // the pressure that acts in this step
+    std::vector<char> surface;        // 1: partly void, p = 0 whatever happens
     std::vector<double> V_of_column;  // the volume that the lattice of the start fills in a cell
     // Only where particles carry volumes: sums of V_p and C; V_c div v dt, and its work, per C; room for
     // gas, and what liquid has too much of; per material, pressure above that of the cell.
@@ -128,7 +129,7 @@ inline Mesh mesh_of(const Problem& problem) {
     Cells& c = mesh.cells;
     mesh.materials = long(problem.materials.size());
     c.sum.assign(size * mesh.materials, {});
-    for (auto* f : {&c.share, &c.de, &c.relative_de}) f->assign(size * mesh.materials, 0);
+    c.share.assign(size * mesh.materials, 0), c.de.assign(size * mesh.materials, Two::Zero());
     c.surface.assign(size, 0);
     c.V_of_column = lattice_volumes(problem.grid, problem.per_cell_x);
     for (Field* f : {&c.M, &c.p, &c.compressibility, &c.p_step}) f->setZero(size);
@@ -218,8 +219,9 @@ void for_each_point(const Grid& grid, long nx, long nz, const Work& work) {
     common::for_each_block(
         nz,
         [&](int, long begin, long end) {
+            const Work own = work;  // what it has captured by value no write can change
             for (long j = begin; j < end; ++j)
-                for (long i = 0; i < nx; ++i) work(i, j, grid.index(i, j));
+                for (long i = 0, n = grid.index(0, j); i < nx; ++i, ++n) own(i, j, n);
         },
         grid.size());
 }

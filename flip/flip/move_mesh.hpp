@@ -35,7 +35,7 @@ inline void add_external_work(const Problem& problem, double dt, const Nodes& g,
             const bool edge = i == 0 || j == 0 || i == grid.x.cells || j == grid.z.cells;
             if (!falls && !edge) continue;
             const long n = grid.index(i, j);
-            const Eigen::Vector2d weight = dt * g.m[n] * node_acceleration(grid, force, n);
+            const Eigen::Vector2d weight = dt * g.m[n] * node_acceleration(grid, force, i, j);
             add(weight[0], weight[1], g.vx_bar[n], g.vz_bar[n]);
             if (!edge || g.m[n] <= 0) continue;
             const Held held = held_at(grid, problem.boundaries, i, j);
@@ -70,7 +70,7 @@ inline void add_external_work(const Problem& problem, double dt, const Nodes& g,
 ///   dE_c = -dt (p V div v_work + V q : grad v_bar) + viscous heating
 /// For the particles of material k pressure changes e in proportion to e, as it does at one pressure
 /// when nothing else happens, so that each keeps its entropy; viscosity by mass:
-///   relative_de_ck = -dt share_ck p V div v_work / U_ck,   de_ck = share_ck (rest of dE_c) / M_ck
+///   de_ck[1] = -dt share_ck p V div v_work / U_ck,   de_ck[0] = share_ck (rest of dE_c) / M_ck
 ///   dissipated_g = |v^0 - v|^2/2                      of what walls stop, or with the consistent
 ///                                                     mass (v^0 - v) M (v^0 - v)/(2 m_g)
 ///          + (level - 1/2) dt F_g . (v^L - v^0)/m_g   of pressure, v_work = v^0 + level (v^L - v^0)
@@ -78,7 +78,7 @@ inline void add_external_work(const Problem& problem, double dt, const Nodes& g,
 /// level is theta of an implicit pressure, 1/2 of an explicit one, and 1 with the consistent mass, where
 /// work at v_bar would make the shortest sound grow: no loss of the transfer damps it there
 /// in:     v, v^0, v^L; p_step, q; forces
-/// out:    cells.de, relative_de, and with volumes strain, work, q_work; nodes.increment, dissipated;
+/// out:    cells.de, and with volumes strain, work, q_work; nodes.increment, dissipated;
 ///         budget
 /// exact:  sum_c dE_c + change of (1/2) sum_g m_g v_g^2 + what walls and theta dissipate = what the
 ///         budget has got
@@ -89,36 +89,49 @@ inline void work_on_cells(const Problem& problem, double dt, Mesh& mesh, Budget&
     const bool implicit = problem.scheme.implicit,
                late = implicit || problem.scheme.consistent_mass;
     const double level = implicit ? problem.scheme.theta : late ? 1 : 0.5;
-    const Field& move_x = implicit ? g.vx_work : g.vxL;
-    const Field& move_z = implicit ? g.vz_work : g.vzL;
+    const Values move_x = implicit ? g.vx_work : g.vxL, move_z = implicit ? g.vz_work : g.vzL;
 
-    for_each_node(grid, [&](long, long, long n) {
-        const double dvx = g.vxL[n] - g.vx[n], dvz = g.vzL[n] - g.vz[n];
-        const double stop_x = g.vx0[n] - g.vx[n], stop_z = g.vz0[n] - g.vz[n];
-        g.vx_bar[n] = 0.5 * (g.vx0[n] + g.vxL[n]);
-        g.vz_bar[n] = 0.5 * (g.vz0[n] + g.vzL[n]);
-        g.vx_work[n] = (1 - level) * g.vx0[n] + level * g.vxL[n];
-        g.vz_work[n] = (1 - level) * g.vz0[n] + level * g.vzL[n];
-        g.dissipated[n] = g.wall_dissipation.size() > 0 ? g.wall_dissipation[n]
-                                                        : 0.5 * (stop_x * stop_x + stop_z * stop_z);
-        if (problem.scheme.transfer.dissipates) g.dissipated[n] += 0.5 * (dvx * dvx + dvz * dvz);
-        if (late && g.m[n] > 0) {
-            const Eigen::Vector2d F = pressure_force(grid, c.p_step, n);
-            g.dissipated[n] += (level - 0.5) * dt / g.m[n] *
-                               (F[0] * (g.vxL[n] - g.vx0[n]) + F[1] * (g.vzL[n] - g.vz0[n]));
+    const bool dissipates = problem.scheme.transfer.dissipates,
+               walls = g.wall_dissipation.size() > 0;
+    const Values m = g.m, vx = g.vx, vz = g.vz, vx0 = g.vx0, vz0 = g.vz0, vxL = g.vxL, vzL = g.vzL,
+                 p_step = c.p_step, wall_dissipation = g.wall_dissipation;
+    double *const vx_bar = g.vx_bar.data(), *const vz_bar = g.vz_bar.data(),
+                  *const vx_work = g.vx_work.data(), *const vz_work = g.vz_work.data(),
+                  *const dissipated = g.dissipated.data();
+    Four* const increment = g.increment.data();
+    for_each_node(grid, [=](long, long, long n) {
+        const double dvx = vxL[n] - vx[n], dvz = vzL[n] - vz[n];
+        const double stop_x = vx0[n] - vx[n], stop_z = vz0[n] - vz[n];
+        vx_bar[n] = 0.5 * (vx0[n] + vxL[n]);
+        vz_bar[n] = 0.5 * (vz0[n] + vzL[n]);
+        vx_work[n] = (1 - level) * vx0[n] + level * vxL[n];
+        vz_work[n] = (1 - level) * vz0[n] + level * vzL[n];
+        double loss = walls ? wall_dissipation[n] : 0.5 * (stop_x * stop_x + stop_z * stop_z);
+        if (dissipates) loss += 0.5 * (dvx * dvx + dvz * dvz);
+        if (late && m[n] > 0) {
+            const Eigen::Vector2d F = pressure_force(grid, p_step, n);
+            loss +=
+                (level - 0.5) * dt / m[n] * (F[0] * (vxL[n] - vx0[n]) + F[1] * (vzL[n] - vz0[n]));
         }
-        g.increment[n] = g.m[n] > 0 ? Four(dvx, dvz, move_x[n], move_z[n]) : Four::Zero();
+        dissipated[n] = loss;
+        const bool filled = m[n] > 0;
+        increment[n][0] = filled ? dvx : 0;
+        increment[n][1] = filled ? dvz : 0;
+        increment[n][2] = filled ? move_x[n] : 0;
+        increment[n][3] = filled ? move_z[n] : 0;
     });
     add_external_work(problem, dt, g, budget);
 
     const bool volumes = c.volume.size() > 0;
     const long count = mesh.materials;
-    for_each_cell(grid, [&](long, long, long n) {
-        const double work = dilation(grid, g.vx_work, g.vz_work, n),
-                     q_power = power(grid, c.q[n], g.vx_bar, g.vz_bar, n),
-                     viscosity = problem.viscosity;
+    const double viscosity = problem.viscosity;
+    const Values M_c = c.M;
+    for_each_cell(grid, [=, &g, &c, q = c.q.data(), sum = c.sum.data(), share_c = c.share.data(),
+                         de = c.de.data()](long, long, long n) {
+        const double work = dilation(grid, vx_work, vz_work, n),
+                     q_power = power(grid, q[n], vx_bar, vz_bar, n);
         double adiabatic = 0;
-        double dE = viscosity > 0 && c.M[n] > 0
+        double dE = viscosity > 0 && M_c[n] > 0
                         ? dt * viscous_heating(grid, viscosity, g, g.vx_bar, g.vz_bar, n)
                         : 0;
         if (volumes) {
@@ -129,18 +142,17 @@ inline void work_on_cells(const Problem& problem, double dt, Mesh& mesh, Budget&
             c.work[n] = per_C * work;
             c.q_work[n] = per_C * (q_power + (c.p_step[n] - c.p[n]) * work);
         } else {
-            adiabatic = -dt * c.p_step[n] * work;
+            adiabatic = -dt * p_step[n] * work;
             dE -= dt * q_power;
         }
         for (long ck = n * count; ck < (n + 1) * count; ++ck) {
-            const double M = c.sum[ck].M, U = c.sum[ck].U;
-            const double share = volumes ? (c.M[n] > 0 ? M / c.M[n] : 0) : c.share[ck];
-            c.de[ck] = M > 0 ? share * (U > 0 ? dE : dE + adiabatic) / M : 0;
-            c.relative_de[ck] = U > 0 ? share * adiabatic / U : 0;
+            const double M = sum[ck].M, U = sum[ck].U;
+            const double share = volumes ? (M_c[n] > 0 ? M / M_c[n] : 0) : share_c[ck];
+            de[ck] = Two(M > 0 ? share * (U > 0 ? dE : dE + adiabatic) / M : 0,
+                         U > 0 ? share * adiabatic / U : 0);
         }
     });
-    fill_cells(grid, c.de.data(), count);
-    fill_cells(grid, c.relative_de.data(), count);
+    fill_cells(grid, c.de[0].data(), 2 * count);
     if (volumes) {
         for (Field* f : {&c.strain, &c.work, &c.q_work, &c.p, &c.room}) fill_cells(grid, f->data());
         fill_cells(grid, c.excess.data(), count);
@@ -217,8 +229,8 @@ inline StepReport move_mesh(const Problem& problem, double& dt, const Particles&
         if (problem.scheme.implicit) {
             report = solve_pressure(problem, dt, mesh);
         } else {
-            for_each_cell(grid,
-                          [&](long, long, long n) { mesh.cells.p_step[n] = mesh.cells.p[n]; });
+            for_each_cell(grid, [p = Values(mesh.cells.p), p_step = mesh.cells.p_step.data()](
+                                    long, long, long n) { p_step[n] = p[n]; });
             accelerate_nodes(problem, dt, mesh);
         }
         if (consistent) accelerate_consistently(problem, dt, M, g);

@@ -6,53 +6,14 @@
 
 #include "common/run/sentence.hpp"
 #include "flip/boundaries.hpp"
+#include "flip/flip/ring_paths.hpp"
 #include "flip/flip/transfer.hpp"
+#include "flip/flip/work_on_volume.hpp"
 #include "flip/state.hpp"
 
 namespace flip {
 
 namespace detail {
-
-// The factor by which a volume grows in a step, 1 + s, if nothing turned inside out. A bubble of gas
-// that shares its cell with a liquid takes all of the change of volume, more than its own perhaps:
-// below one half it is squeezed less and less.
-inline double growth_of_volume(double s) { return s >= -0.5 ? 1 + s : -0.25 / s; }
-
-// How far the materials of a cell come towards one pressure in a step.
-inline constexpr double relaxation = 0.5;
-
-// Work on one particle that carries its volume, which it takes at its own pressure; per mass. Where
-// materials share a cell, the softer takes nearly all of its change of volume, and a liquid would keep
-// the pressure that it came with, to burst with later: so they push each other towards p_c, volume for
-// volume, with the work of p_c: the cell keeps its volume and its energy. A gas also takes a part of
-// the room in its cell, at constant energy: volumes follow the pressure, and where they have drifted
-// from the places of the particles, nothing else would bring them back.
-//   V_p *= growth_of_volume(s) (1 + filling sum_c R room_c)
-//   s = (C_p/V_p) sum_c R (strain_c + relaxation excess_kc),  C_p of weight_in_cell(), excess of
-//   find_pressure()
-// in: cells.strain, work, q_work, excess, p, room; in/out: V_p
-inline double work_on_volume(const Problem& problem, const WeightScale& scale, const Weights& at,
-                             const Cells& cells, long k, Particles& p) {
-    const long count = long(problem.materials.size()), material = p.material[k];
-    const Material& a = problem.materials[material];
-    const double V = p.V_p[k], p_p = pressure(a, p.m_p[k] / V, p.e_p[k]);
-    const double C = weight_in_cell(a, V, p_p, cells.one_fluid);
-    double strain = 0, work = 0, room = 0;
-    for_cells(scale, at, [&](long c, double R) {
-        strain += R * cells.strain[c];
-        work += R * (p_p * cells.work[c] + cells.q_work[c]);
-    });
-    if (!cells.one_fluid)
-        for_cells(scale, at, [&](long c, double R) {
-            const double push = R * relaxation * cells.excess[c * count + material];
-            strain += push;
-            work += push * cells.p[c];
-        });
-    if (a.p_infinity == 0 && (count > 1 || problem.scheme.confined))
-        for_cells(scale, at, [&](long c, double R) { room += R * cells.room[c]; });
-    p.V_p[k] *= growth_of_volume(C * strain / V) * (1 + problem.scheme.filling * room);
-    return -C * work / p.m_p[k];
-}
 
 // [conservative]
 // What bilinear velocities lack for the divergence of their cell to be that of each place in it: else
@@ -71,92 +32,123 @@ inline double work_on_volume(const Problem& problem, const WeightScale& scale, c
 }
 // [/conservative]
 
-// [ring_paths]
-// The same in a ring from r_1 to r_2, whose divergence is (1/r) d(r v_r)/dr + dv_z/dz. With v_r = p + q r
-// in the middle of the cell, p_1 and q_1 their differences from bottom to top, and dv_z/dz = c + e r:
-//   v_r += S_x0 S_x1 dr^2/(r_1 + r_2) [(e/3)(r_1 + r_2 + r_1 r_2/r) - p/r]
-//   v_z += (dz/2) S_z0 S_z1 (p_1/r + 2 q_1)
-// On the axis v_r = 0 and p = 0.
-[[gnu::noinline]] inline Velocity missing_velocity_of_ring(const Grid& grid,
-                                                           const WeightScale& scale,
-                                                           const Weights& w, const Four* v) {
-    const Four &a = v[w.node], &b = v[w.node + 1], &c = v[w.node + scale.stride],
-               &d = v[w.node + scale.stride + 1];
-    const double dr = grid.x.spacing(), dz = grid.z.spacing(),
-                 r_1 = dr * double(column_of(grid, w.node)), r_2 = r_1 + dr,
-                 r = std::max(r_1 + w.S_x[1] * dr, 1e-9 * dr);
-    const double q_low = (b[2] - a[2]) / dr, q_high = (d[2] - c[2]) / dr,
-                 p_low = a[2] - q_low * r_1, p_high = c[2] - q_high * r_1,
-                 e = (a[3] - b[3] - c[3] + d[3]) / (dr * dz);
-    return {w.S_x[0] * w.S_x[1] * dr * dr / (r_1 + r_2) *
-                (e / 3 * (r_1 + r_2 + r_1 * r_2 / r) - 0.5 * (p_low + p_high) / r),
-            0.5 * dz * w.S_z[0] * w.S_z[1] * ((p_high - p_low) / r + 2 * (q_high - q_low))};
+// The same for a batch, also in rings.
+inline void find_missing_velocity(Grid grid, WeightScale scale, const BatchWeights& weights,
+                                  const Four* v, long count, double* missing_x, double* missing_z) {
+    if (!grid.axisymmetric) {
+        for (long k = 0; k < count; ++k) {
+            const Velocity missing = missing_velocity(grid, scale, weights[k], v);
+            missing_x[k] = missing.x, missing_z[k] = missing.z;
+        }
+        return;
+    }
+    const double dr = grid.x.spacing(), dz = grid.z.spacing();
+    double r_1[batch_size], v_r[4][batch_size], turn_z[batch_size];
+    for (long k = 0; k < count; ++k) {
+        const Weights w = weights[k];
+        const RingFlow flow = ring_flow(scale, w, v);
+        for (int corner = 0; corner < 4; ++corner) v_r[corner][k] = flow.r[corner];
+        turn_z[k] = flow.turn_z;
+        r_1[k] = dr * (w.node % scale.stride - 1);
+    }
+#pragma omp simd
+    for (long k = 0; k < count; ++k) {
+        const Weights w = weights[k];
+        const RingFlow flow{{v_r[0][k], v_r[1][k], v_r[2][k], v_r[3][k]}, turn_z[k]};
+        const Velocity missing = missing_velocity_of_ring(dr, dz, r_1[k], w.S_x[1], w.S_z[1], flow);
+        missing_x[k] = missing.x, missing_z[k] = missing.z;
+    }
 }
-// [/ring_paths]
 
 // What came of a row: how many particles left the mesh, and one without volume, -1: none.
 struct RowMoved {
     long left = 0, inverted = -1;
 };
 
+// Moves a batch of particles, the first of them `begin`: first each fetches what the mesh has for it, then
+// all of them take it, in a loop that vectorizes.
 template <bool pure_flip, bool volumes>
-RowMoved move_row(const Problem& problem, const WeightScale& scale, const Mesh& mesh, double dt,
-                  long begin, long end, Particles& p) {
+void move_batch_of_flip(const Problem& problem, WeightScale scale, const Mesh& mesh, double dt,
+                        long begin, long count, Particles& p, RowMoved& moved) {
     const Grid& grid = problem.grid;
     const Transfer& transfer = problem.scheme.transfer;
     const Four* const increment = mesh.nodes.increment.data();
-    const double *const dissipated = mesh.nodes.dissipated.data(), *const de = mesh.cells.de.data(),
-                        *const relative_de = mesh.cells.relative_de.data();
-    const long count = mesh.materials;
-    const bool conservative = problem.scheme.conservative_paths;
+    const double* const dissipated = mesh.nodes.dissipated.data();
+    const Two* const de = mesh.cells.de.data();
+    const long materials = mesh.materials;
     const double deficit = transfer.dissipates ? 0.5 : 0;
-    RowMoved moved;
+    double *const x_p = p.x_p.data() + begin, *const z_p = p.z_p.data() + begin,
+                  *const vx_p = p.vx_p.data() + begin, *const vz_p = p.vz_p.data() + begin,
+                  *const e_p = p.e_p.data() + begin;
+    const int* const material = p.material.data() + begin;
+    const BatchWeights weights(scale, x_p, z_p, count);
+    Four from_nodes[batch_size];  // increment, and the velocity that moves the particle
+    double gained[batch_size], missing_x[batch_size] = {}, missing_z[batch_size] = {};
     // [move]
-    for (long k = begin; k < end; ++k) {
-        const Weights at = weights_at(scale, p.x_p[k], p.z_p[k]);
+    for (long k = 0; k < count; ++k) {
+        const Weights at = weights[k];
         Four sum = Four::Zero();
-        double gained = 0;
+        double gain = 0;
         for_nodes(scale, at, [&](long n, double S) {
             sum += S * increment[n];
-            gained += S * dissipated[n];
+            gain += S * dissipated[n];
         });
-        const Velocity dv{sum[0], sum[1]};
-        const long material = p.material[k];
-        for_cells(scale, at, [&](long c, double R) {
-            const long ck = c * count + material;
-            gained += R * (de[ck] + p.e_p[k] * relative_de[ck]);
-        });
-        gained -= deficit * dv.square();
+        Two change = Two::Zero();
+        for_cells(scale, at,
+                  [&](long c, double R) { change += R * de[c * materials + material[k]]; });
+        from_nodes[k] = sum;
+        gained[k] = gain + change[0] + e_p[k] * change[1];
         if constexpr (volumes) {
-            gained += work_on_volume(problem, scale, at, mesh.cells, k, p);
-            if (!(p.V_p[k] > 0)) moved.inverted = k;
+            gained[k] += work_on_volume(problem, scale, at, mesh.cells, begin + k, p);
+            if (!(p.V_p[begin + k] > 0)) moved.inverted = begin + k;
         }
-        if (conservative && !grid.axisymmetric) {
-            const Velocity missing = missing_velocity(grid, scale, at, increment);
-            sum[2] += missing.x;
-            sum[3] += missing.z;
-        } else if (conservative) {
-            const Velocity missing = missing_velocity_of_ring(grid, scale, at, increment);
-            sum[2] += missing.x;
-            sum[3] += missing.z;
+    }
+    if (problem.scheme.conservative_paths)
+        find_missing_velocity(grid, scale, weights, increment, count, missing_x, missing_z);
+    const double low_x = grid.x.low, high_x = grid.x.high(), low_z = grid.z.low,
+                 high_z = grid.z.high();
+    double x[batch_size], z[batch_size];
+    long inside = 0;
+#pragma omp simd reduction(+ : inside)
+    for (long k = 0; k < count; ++k) {
+        const double dvx = from_nodes[k][0], dvz = from_nodes[k][1];
+        gained[k] -= deficit * (dvx * dvx + dvz * dvz);
+        x[k] = x_p[k] + dt * (from_nodes[k][2] + missing_x[k]);  // [FLIP-7]
+        z[k] = z_p[k] + dt * (from_nodes[k][3] + missing_z[k]);
+        const bool here = (x[k] >= low_x) & (x[k] < high_x) & (z[k] >= low_z) & (z[k] < high_z);
+        inside += here ? 1 : 0;
+    }
+    if (inside < count)
+        for (long k = 0; k < count; ++k) {
+            x[k] = wrap(grid.x, x[k]);
+            z[k] = wrap(grid.z, z[k]);
+            moved.left += side_crossed(grid, x[k], z[k]) >= 0;
         }
-        Velocity v{p.vx_p[k] + dv.x, p.vz_p[k] + dv.z};         // [FLIP-6]
-        const double x = wrap(grid.x, p.x_p[k] + dt * sum[2]),  // [FLIP-7]
-            z = wrap(grid.z, p.z_p[k] + dt * sum[3]);
+    for (long k = 0; k < count; ++k) {
+        const Velocity dv{from_nodes[k][0], from_nodes[k][1]};
+        Velocity v{vx_p[k] + dv.x, vz_p[k] + dv.z};  // [FLIP-6]
         if constexpr (!pure_flip) {
-            const bool dust = problem.materials[material].gamma == 1;  // may owe
-            gained += apply_transfer(transfer, grid, scale, at, weights_at(scale, x, z), mesh.nodes,
-                                     {p.vx_p[k], p.vz_p[k]}, dv, dust ? 1e300 : p.e_p[k] + gained,
-                                     k, p, v);
+            const bool dust = problem.materials[material[k]].gamma == 1;  // may owe
+            gained[k] += apply_transfer(
+                transfer, grid, scale, weights[k], weights_at(scale, x[k], z[k]), mesh.nodes,
+                {vx_p[k], vz_p[k]}, dv, dust ? 1e300 : e_p[k] + gained[k], begin + k, p, v);
         }
-        p.vx_p[k] = v.x;
-        p.vz_p[k] = v.z;
-        p.e_p[k] += gained;
-        p.x_p[k] = x;
-        p.z_p[k] = z;
-        moved.left += side_crossed(grid, x, z) >= 0;
+        vx_p[k] = v.x;
+        vz_p[k] = v.z;
+        e_p[k] += gained[k];
+        x_p[k] = x[k];
+        z_p[k] = z[k];
     }
     // [/move]
+}
+
+template <bool pure_flip, bool volumes>
+RowMoved move_row(const Problem& problem, const WeightScale& scale, const Mesh& mesh, double dt,
+                  long begin, long end, Particles& p) {
+    RowMoved moved;
+    for (long k = begin; k < end; k += batch_size)
+        move_batch_of_flip<pure_flip, volumes>(problem, scale, mesh, dt, k,
+                                               std::min(batch_size, end - k), p, moved);
     return moved;
 }
 
@@ -169,7 +161,7 @@ RowMoved move_row(const Problem& problem, const WeightScale& scale, const Mesh& 
 ///   e_p += sum_c R (de_c + e_p relative_de_c) + sum_g S dissipated_g - |sum_g S dv_g|^2/2
 ///   and what another transfer than flip makes of v_p: apply_transfer(); where the fluid turns about
 ///   the axis, what the move leaves of the energy of that: take_swirl()
-/// in:     nodes.increment, dissipated, filtered; cells.de, relative_de
+/// in:     nodes.increment, dissipated, filtered; cells.de
 /// in/out: particles in rows; afterwards perhaps not
 /// out:    how many are beyond a boundary now
 /// errors: NumericalError when the volume of a particle is not positive any more

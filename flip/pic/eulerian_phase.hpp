@@ -8,6 +8,8 @@
 // D = |u| (dx - |u| dt)/2, and what is not conserved as kinetic energy becomes heat.
 #pragma once
 
+#include <array>
+#include <cstring>
 #include <string>
 
 #include "common/run/sentence.hpp"
@@ -21,6 +23,10 @@ namespace detail {
 struct Contribution {
     double vx, vz, e;
 };
+// Of what it brings, the sums of a cell and those of one of its materials, each added as one vector.
+using FourSums [[gnu::vector_size(4 * sizeof(double))]] =
+    double;                                                       // vx, vz, kinetic energy, nothing
+using TwoSums [[gnu::vector_size(2 * sizeof(double))]] = double;  // mass, internal energy
 
 [[noreturn]] inline void refuse_cell(const Problem& problem, const State& state,
                                      const PicCells& cells, long n) {
@@ -47,24 +53,29 @@ void sum_contributions(const Problem& problem, const What& contribution, State& 
     const Particles& particles = state.particles;
     const long nx = grid.x.cells;
     const double round_off = swirl ? 1e-200 + 1e-13 * cells.fastest_swirl2 : 1e-200;
-    const std::size_t K = cells.materials, width = 3 + 2 * K;
+    const std::size_t K = cells.materials, width = cells.width_of_sums();
     const double* m_p = particles.m_p.data();
     const int* material = particles.material.data();
     for_each_row_of_cells(
         grid, [&](long j) { std::fill_n(&cells.sums[j * nx * width], nx * width, 0.0); });
-    for_each_in_cell(grid, particles, [&, sums = cells.sums.data()](long p, long at) {
-        const double m = m_p[p];
+    for_each_in_cell(grid, particles, [=, sums = cells.sums.data()](long p, long at) {
         const Contribution b = contribution(p);
         double* const cell = sums + at * width;
-        double* const of_material = cell + 3 + 2 * material[p];
-        cell[0] += m * b.vx;
-        cell[1] += m * b.vz;
-        cell[2] += 0.5 * m * (b.vx * b.vx + b.vz * b.vz);
-        of_material[0] += m;
-        of_material[1] += m * b.e;
+        const auto add = [m = m_p[p]]<class Numbers>(double* to, const Numbers& brought) {
+            Numbers sum;
+            std::memcpy(&sum, to, sizeof sum);
+            sum += m * brought;
+            std::memcpy(to, &sum, sizeof sum);
+        };
+        add(cell, FourSums{b.vx, b.vz, 0.5 * (b.vx * b.vx + b.vz * b.vz), 0});
+        add(cell + 4 + 2 * material[p], TwoSums{1, b.e});
     });
     for_each_row_of_cells(grid, [&](long j) {
         const double* const sums = &cells.sums[j * nx * width];
+        double *const vx_c = state.cells.vx.data(), *const vz_c = state.cells.vz.data(),
+                      *const mass_c = cells.mass.data();
+        std::array<double*, most_materials> e_c{};
+        for (std::size_t k = 0; k < K; ++k) e_c[k] = state.cells.e[k].data();
         double refused = -1;
         for (long i = 0; i < nx; ++i) {
             const long n = grid.index(i, j);
@@ -72,7 +83,7 @@ void sum_contributions(const Problem& problem, const What& contribution, State& 
             double* const M = &cells.M[n * K];
             double mass = 0;
             for (std::size_t k = 0; k < K; ++k) {
-                M[k] = cell[3 + 2 * k];
+                M[k] = cell[4 + 2 * k];
                 mass += M[k];
             }
             // [mix]
@@ -84,19 +95,19 @@ void sum_contributions(const Problem& problem, const What& contribution, State& 
             bool sound = mass >= 0 && std::isfinite(mass + kinetic);
             double lent = 0;  // by the motion along r, per mass of the cell
             for (std::size_t k = 0; k < K; ++k) {
-                double e = M[k] > 0 ? cell[4 + 2 * k] / M[k] + heat : 0.0;
+                double e = M[k] > 0 ? cell[5 + 2 * k] / M[k] + heat : 0.0;
                 if constexpr (swirl) {
                     const double lacks = -e * M[k] * per_mass;
                     if (e < 0 && lent + lacks <= 0.5 * vx * vx) lent += lacks, e = 0;
                 }
-                state.cells.e[k][n] = e;
+                e_c[k][n] = e;
                 sound = sound && e >= -1e-10 * kinetic - round_off && std::isfinite(e);
             }
-            state.cells.vx[n] = vx;
+            vx_c[n] = vx;
             if constexpr (swirl)
-                if (lent > 0) state.cells.vx[n] = std::copysign(std::sqrt(vx * vx - 2 * lent), vx);
-            state.cells.vz[n] = vz;
-            cells.mass[n] = mass;
+                if (lent > 0) vx_c[n] = std::copysign(std::sqrt(vx * vx - 2 * lent), vx);
+            vz_c[n] = vz;
+            mass_c[n] = mass;
             if (!sound && refused < 0) refused = double(n);
         }
         cells.row[j] = refused;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <concepts>
 
 #include "common/run/sentence.hpp"
 #include "flip/pic/centrifugal_force.hpp"
@@ -26,7 +27,7 @@ struct CellAcceleration {
         z_first = plane ? first(grid.z, force.gravity_z) : 0.0;
         z_change = plane ? -force.trap * grid.z.spacing() : 0.0;
     }
-    double x(long i) const { return x_first + x_change * double(i); }
+    double x(std::integral auto i) const { return x_first + x_change * double(i); }
     double z(long j) const { return z_first + z_change * double(j); }
     /// The largest of both, over the mesh.
     double largest(const Grid& grid) const {
@@ -44,16 +45,25 @@ inline void find_pressure(const Problem& problem, const State& state, PicCells& 
     const std::vector<Material>& materials = problem.materials;
     const long K = cells.materials;
     for_each_row_of_cells(grid, [&](long j) {
+        const long first = grid.index(0, j);
         std::array<double, most_materials> U{};
+        std::array<const double*, most_materials> e{};
+        for (long k = 0; k < K; ++k) e[k] = state.cells.e[k].data() + first;
+        const double *const vx = state.cells.vx.data() + first, *const vz =
+                                                                    state.cells.vz.data() + first;
+        const auto row_of = [=](auto& column) { return column.data() + first; };
+        double *const mass_c = row_of(cells.mass), *const per_mass = row_of(cells.per_mass),
+                      *const rho = row_of(cells.rho), *const filled = row_of(cells.filled),
+                      *const p = row_of(cells.p), *const c = row_of(cells.c);
+        CellVelocity* const v = row_of(cells.v);
         for (long i = 0; i < grid.x.cells; ++i) {
-            const long n = grid.index(i, j);
             const double V = grid.cell_area() * cells.ring[i + 1];
-            double* const M = &cells.M[n * K];
-            double* const share = &cells.share[n * K];
+            double* const M = &cells.M[(first + i) * K];
+            double* const share = &cells.share[(first + i) * K];
             double mass = 0;
             for (long k = 0; k < K; ++k) {
                 mass += M[k];
-                U[k] = M[k] * state.cells.e[k][n];
+                U[k] = M[k] * e[k][i];
             }
             const CellState cell = find_equilibrium(materials, M, U.data(), V, share);
             double part = 1;  // of the cell that is not void
@@ -62,15 +72,14 @@ inline void find_pressure(const Problem& problem, const State& state, PicCells& 
                 for (long k = 0; k < K; ++k)
                     part += cell.compressibility * share[k] * stiffness(materials[k], cell.p);
             }
-            cells.mass[n] = mass;
-            cells.per_mass[n] = mass > 0 ? 1 / mass : 0.0;
-            cells.rho[n] = mass / V;
-            cells.filled[n] = mass > 0 ? 1 : 0;
-            cells.p[n] = cell.p;
-            cells.c[n] = cell.compressibility > 0
-                             ? part * std::sqrt(V / (mass * cell.compressibility))
-                             : 0.0;
-            cells.v[n] = {state.cells.vx[n], state.cells.vz[n]};
+            mass_c[i] = mass;
+            per_mass[i] = mass > 0 ? 1 / mass : 0.0;
+            rho[i] = mass / V;
+            filled[i] = mass > 0 ? 1 : 0;
+            p[i] = cell.p;
+            c[i] = cell.compressibility > 0 ? part * std::sqrt(V / (mass * cell.compressibility))
+                                            : 0.0;
+            v[i] = {vx[i], vz[i]};
         }
     });
     fill_ghosts(grid, problem.boundaries, cells);
@@ -82,8 +91,10 @@ namespace detail {
 template <class OfCell>
 double largest_over_cells(const Grid& grid, PicCells& cells, const OfCell& of_cell) {
     for_each_row_of_cells(grid, [&](long j) {
+        const long first = grid.index(0, j), end = first + grid.x.cells;
         double most = 0;
-        for (long i = 0; i < grid.x.cells; ++i) most = std::max(most, of_cell(grid.index(i, j)));
+#pragma omp simd reduction(max : most)
+        for (long n = first; n < end; ++n) most = std::max(most, of_cell(n));
         cells.row[j] = most;
     });
     return std::ranges::max(cells.row);
@@ -96,14 +107,15 @@ inline double rate_of_signals(const Grid& grid, PicCells& cells) {
     const double per_dx = 1 / grid.x.spacing(), per_dz = plane ? 1 / grid.z.spacing() : 0.0,
                  both = std::sqrt(per_dx * per_dx + per_dz * per_dz);
     const long stride = grid.stride();
-    const Field &p = cells.p, &c = cells.c, &filled = cells.filled;
-    return largest_over_cells(grid, cells, [&](long n) {
-        const CellVelocity& v = cells.v[n];
+    const Values p = cells.p, c = cells.c, filled = cells.filled, rho = cells.rho;
+    const CellVelocity* const velocity = cells.v.data();
+    return largest_over_cells(grid, cells, [=](long n) {
+        const CellVelocity& v = velocity[n];
         double P = 0;
         const auto face = [&](long m) { P = std::max(P, filled[m] * 0.5 * (p[n] + p[m])); };
         face(n - 1), face(n + 1);
         if (plane) face(n - stride), face(n + stride);
-        const double c2 = std::max(c[n] * c[n], filled[n] * P / (cells.rho[n] + 1e-300));
+        const double c2 = std::max(c[n] * c[n], filled[n] * P / (rho[n] + 1e-300));
         return filled[n] *
                (std::fabs(v.x) * per_dx + std::fabs(v.z) * per_dz + std::sqrt(c2) * both);
     });
@@ -114,23 +126,23 @@ inline double rate_of_signals(const Grid& grid, PicCells& cells) {
 inline double rate_of_viscosity(const Grid& grid, const ArtificialViscosity& viscosity,
                                 PicCells& cells) {
     const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing();
+    const bool plane = is_plane(grid);
     const long stride = grid.stride();
-    const Field& c = cells.c;
-    const std::vector<CellVelocity>& v = cells.v;
-    return largest_over_cells(grid, cells, [&](long n) {
+    const Values c = cells.c, filled = cells.filled;
+    const CellVelocity* const v = cells.v.data();
+    return largest_over_cells(grid, cells, [=](long n) {
         double rate = 0;
         const auto face = [&](long m, double du, double per_distance) {
-            if (du < 0)
-                rate += 2 * cells.filled[m] * viscosity.slope(1, 0.5 * (c[n] + c[m]), du) *
-                        per_distance;
+            const double closes = du < 0 ? 2 * per_distance : 0.0;
+            rate += closes * filled[m] * viscosity.slope(1, 0.5 * (c[n] + c[m]), du);
         };
         face(n + 1, v[n + 1].x - v[n].x, per_dx);
         face(n - 1, v[n].x - v[n - 1].x, per_dx);
-        if (is_plane(grid)) {
+        if (plane) {
             face(n + stride, v[n + stride].z - v[n].z, per_dz);
             face(n - stride, v[n].z - v[n - stride].z, per_dz);
         }
-        return cells.filled[n] * rate;
+        return filled[n] * rate;
     });
 }
 

@@ -14,6 +14,8 @@
 //     +-------+-------+
 #pragma once
 
+#include <cstring>
+
 #include "flip/boundaries.hpp"
 #include "flip/pic/centrifugal_force.hpp"
 
@@ -21,61 +23,86 @@ namespace flip {
 
 namespace detail {
 
-inline constexpr long batch_size = 512;
+// The velocities of two cells side by side: x and z of the left one, then of the right one.
+using TwoVelocities [[gnu::vector_size(2 * sizeof(CellVelocity))]] = double;
 
-// New positions and donor cells of a batch, the particles [begin, end).
+// New positions and donor cells of a batch, the particles [begin, end). Places and motion are found for
+// all of them in loops that vectorize; between these each particle fetches the velocities of its cells.
 // out: how many are beyond a boundary of the mesh
 template <bool plane, bool holes>
 long move_batch(const Grid& grid, double dt, long begin, long end, Particles& particles,
                 PicCells& cells) {
-    double *const x_p = particles.x_p.data(), *const z_p = particles.z_p.data();
-    int* const donor = cells.donor.data();
+    double *const x_p = particles.x_p.data() + begin, *const z_p = particles.z_p.data() + begin;
+    int* const donor = cells.donor.data() + begin;
     const CellVelocity* const v = cells.v_tilde.data();
     const double* const filled = cells.filled.data();
     const CellAlong column(grid.x), row(grid.z);
+    const long count = end - begin;
     const int stride = int(grid.stride()), first = int(grid.index(0, 0));
+    int lower_left[batch_size];                // of the four cells, or the left one of two
+    double f[batch_size], g[batch_size];       // the parts that the right and the upper ones get
+    TwoVelocities velocity[batch_size];        // of the columns on the left and on the right
+    [[maybe_unused]] double area[batch_size];  // that is not over empty cells
 #pragma omp simd
-    for (long p = begin; p < end; ++p) {
-        const double s = (x_p[p] - column.low) * column.per_cell;
-        const int i = int(s);
-        const int right = int(s + 0.5);  // of the two columns of cells
-        const double f = s + 0.5 - right;
-        donor[p] = first + (i < column.last ? i : column.last);
+    for (long k = 0; k < count; ++k) {
+        const double s = (x_p[k] - column.low) * column.per_cell;
+        const int i = int(s), right = int(s + 0.5);  // of the two columns of cells
+        f[k] = s + 0.5 - right;
+        donor[k] = first + (i < column.last ? i : column.last);
+        lower_left[k] = first + right - 1;
         if constexpr (plane) {
-            const double t = (z_p[p] - row.low) * row.per_cell;
-            const int j = int(t);
-            const int up = int(t + 0.5);  // of the two rows of cells
-            const double g = t + 0.5 - up;
-            donor[p] += (j < row.last ? j : row.last) * stride;
-            const int n = first + (up - 1) * stride + right - 1;
-            double w00 = (1 - f) * (1 - g), w10 = f * (1 - g), w01 = (1 - f) * g, w11 = f * g;
-            if constexpr (holes) {
-                w00 *= filled[n], w10 *= filled[n + 1];
-                w01 *= filled[n + stride], w11 *= filled[n + stride + 1];
-                const double per_area = 1 / (w00 + w10 + w01 + w11);
-                w00 *= per_area, w10 *= per_area, w01 *= per_area, w11 *= per_area;
-            }
-            x_p[p] += dt * (w00 * v[n].x + w10 * v[n + 1].x + w01 * v[n + stride].x +
-                            w11 * v[n + stride + 1].x);
-            z_p[p] += dt * (w00 * v[n].z + w10 * v[n + 1].z + w01 * v[n + stride].z +
-                            w11 * v[n + stride + 1].z);
-        } else {
-            const int n = first + right - 1;
-            double w0 = 1 - f, w1 = f;
-            if constexpr (holes) {
-                w0 *= filled[n], w1 *= filled[n + 1];
-                const double per_area = 1 / (w0 + w1);
-                w0 *= per_area, w1 *= per_area;
-            }
-            x_p[p] += dt * (w0 * v[n].x + w1 * v[n + 1].x);
+            const double t = (z_p[k] - row.low) * row.per_cell;
+            const int j = int(t), up = int(t + 0.5);  // of the two rows of cells
+            g[k] = t + 0.5 - up;
+            donor[k] += (j < row.last ? j : row.last) * stride;
+            lower_left[k] += (up - 1) * stride;
         }
     }
 
+    for (long k = 0; k < count; ++k) {
+        const long n = lower_left[k];
+        TwoVelocities low, high;
+        std::memcpy(&low, v + n, sizeof low);
+        if constexpr (plane) {
+            std::memcpy(&high, v + n + stride, sizeof high);
+            velocity[k] = (1 - g[k]) * low + g[k] * high;
+        } else {
+            velocity[k] = low;
+        }
+        if constexpr (holes) {
+            double left = filled[n], right = filled[n + 1];
+            if constexpr (plane) {
+                left += g[k] * (filled[n + stride] - left);
+                right += g[k] * (filled[n + stride + 1] - right);
+            }
+            area[k] = (1 - f[k]) * left + f[k] * right;
+        }
+    }
+
+    const double low_x = grid.x.low, high_x = grid.x.high(), low_z = grid.z.low,
+                 high_z = grid.z.high();
+    long inside = 0;
+#pragma omp simd reduction(+ : inside)
+    for (long k = 0; k < count; ++k) {
+        double left = dt * (1 - f[k]), right = dt * f[k];
+        if constexpr (holes) left /= area[k], right /= area[k];
+        const double x = x_p[k] + (left * velocity[k][0] + right * velocity[k][2]);
+        x_p[k] = x;
+        bool here = (x >= low_x) & (x < high_x);
+        if constexpr (plane) {
+            const double z = z_p[k] + (left * velocity[k][1] + right * velocity[k][3]);
+            z_p[k] = z;
+            here = here & (z >= low_z) & (z < high_z);
+        }
+        inside += here ? 1 : 0;
+    }
+    if (inside == count) return 0;
+
     const auto count_outside = [&](const common::Axis& axis, double* x) {
         const double low = axis.low, high = axis.high();
-        for (long p = begin; p < end; ++p) x[p] = wrap(axis, x[p]);
+        for (long k = 0; k < count; ++k) x[k] = wrap(axis, x[k]);
         long outside = 0;
-        for (long p = begin; p < end; ++p) outside += x[p] >= low && x[p] <= high ? 0 : 1;
+        for (long k = 0; k < count; ++k) outside += x[k] >= low && x[k] <= high ? 0 : 1;
         return outside;
     };
     return count_outside(grid.x, x_p) + (plane ? count_outside(grid.z, z_p) : 0);
@@ -170,8 +197,8 @@ inline void move_particles(const Problem& problem, double dt, State& state, PicC
                 : (holes ? detail::move_batch<false, true> : detail::move_batch<false, false>);
         const long begin = particles.first_of_row[j], end = particles.first_of_row[j + 1];
         long count = 0;
-        for (long p = begin; p < end; p += detail::batch_size)
-            count += move(grid, dt, p, std::min(end, p + detail::batch_size), particles, cells);
+        for (long p = begin; p < end; p += batch_size)
+            count += move(grid, dt, p, std::min(end, p + batch_size), particles, cells);
         return double(count);
     });
     if (problem.swirl) take_swirl(particles, cells);

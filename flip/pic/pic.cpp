@@ -8,7 +8,7 @@
 // Run:   build/pic flip/cases/advected_blob.toml time.dt=0.001
 //
 // Reading order: step.hpp; then ../particles.hpp, ../problem.hpp, ../equation_of_state.hpp,
-// pic_cells.hpp, largest_step.hpp, lagrangian_phase.hpp, move_particles.hpp, eulerian_phase.hpp.
+// pic_cells.hpp, largest_step.hpp, faces.hpp, lagrangian_phase.hpp, move_particles.hpp, eulerian_phase.hpp.
 #include <climits>
 #include <optional>
 

@@ -32,6 +32,8 @@ struct PicCells {
     Field p, c;                         // pressure, speed of sound
     std::vector<double> share;          // of the work of the pressure, that each material takes
     Field q_x, q_z;                     // viscous pressure on the faces before the cell
+    Field part_x, part_z;               // of the cell before that face, in its pressure
+    Field work;                         // of the pressure on the cell
     std::vector<double> ring;           // ring_length() of column i at [i + 1], ghosts like inside
     std::vector<CellVelocity> v;        // u
     std::vector<CellVelocity> v_tilde;  // u~
@@ -50,7 +52,8 @@ struct PicCells {
           falls(problem.body_force.gravity_x != 0 || problem.body_force.gravity_z != 0 ||
                 problem.swirl) {
         const Grid& grid = problem.grid;
-        for (Field* f : {&mass, &per_mass, &rho, &filled, &p, &c, &q_x, &q_z})
+        for (Field* f :
+             {&mass, &per_mass, &rho, &filled, &p, &c, &q_x, &q_z, &part_x, &part_z, &work})
             f->setZero(grid.size());
         ring.assign(grid.x.cells + 2, 1.0);
         for (long i = 0; i < grid.x.cells; ++i) ring[i + 1] = ring_length(grid, double(i) + 0.5);
@@ -60,8 +63,10 @@ struct PicCells {
         v.assign(grid.size(), {});
         v_tilde.assign(grid.size(), {});
         row.assign(grid.z.cells, 0.0);
-        sums.assign(grid.x.cells * grid.z.cells * (3 + 2 * materials), 0.0);
+        sums.assign(grid.x.cells * grid.z.cells * width_of_sums(), 0.0);
     }
+    // How many sums a cell has: four of all particles and two of each material.
+    long width_of_sums() const { return 4 + 2 * materials; }
 };
 
 /// Calls work(j) for every row of cells, in parallel where that pays.
@@ -86,14 +91,20 @@ template <class Add>
 void for_each_in_cell(const Grid& grid, const Particles& particles, const Add& add) {
     const CellAlong column(grid.x), row(grid.z);
     const double *x_p = particles.x_p.data(), *z_p = particles.z_p.data();
-    const int* first = particles.first_of_row.data();
-    const long nx = grid.x.cells;
+    const int *first = particles.first_of_row.data(), nx = int(grid.x.cells);
+    const auto add_batch = [=](long begin, long end) {
+        int cell[batch_size];
+#pragma omp simd
+        for (long p = begin; p < end; ++p) cell[p - begin] = row(z_p[p]) * nx + column(x_p[p]);
+        for (long p = begin; p < end; ++p) add(p, long(cell[p - begin]));
+    };
     // Three rows apart: a particle may be in the row beside its own.
     common::for_each_row_colored(
         3, grid.z.cells,
         [&](long j) {
-            for (long p = first[j]; p < first[j + 1]; ++p)
-                add(p, row(z_p[p]) * nx + column(x_p[p]));
+            const auto add_here = add_batch;  // its pointers, which no write to a cell can change
+            for (long p = first[j]; p < first[j + 1]; p += batch_size)
+                add_here(p, std::min(p + batch_size, long(first[j + 1])));
         },
         grid.x.cells * grid.z.cells);
 }
