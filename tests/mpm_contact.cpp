@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "mpm_explicit/output/overlap.hpp"
 #include "tests/support/any_grains.hpp"
 
 namespace {
@@ -1192,4 +1193,94 @@ TEST_CASE("a bond to a rigid grain holds the grain to its motion") {
     CHECK(x == about(1.0 - 0.2 * 400 * run.dt).epsilon(0.05));
     CHECK(run.state.assembly.rigid[0].travel_x == about(-0.2 * 400 * run.dt).epsilon(1e-12));
     CHECK(run.largest_budget <= 1e-12 * run.largest_energy);
+}
+
+// ---- how deep bodies are in each other ----------------------------------------------------------
+
+namespace {
+
+// Two grains of a case, the second one moved by (dx, dy) after it has been filled with particles: no case
+// begins with grains in each other. In units of a cell, which is 1.
+double overlap_of(const Case& c, double dx, double dy) {
+    Assembly all = assemble(c.problem);
+    for (long p = all.grains[1].begin; p < all.grains[1].end; ++p)
+        all.particles.x_p[static_cast<std::size_t>(p)] += dx,
+            all.particles.y_p[static_cast<std::size_t>(p)] += dy;
+    return deepest_overlap(all, c.problem.mesh());
+}
+
+}  // namespace
+
+TEST_CASE("how deep grains are in each other is told wherever they are") {
+    for (const double off : {0.0, 0.13, 0.25, 0.5, 0.77})
+        for (const double degrees : {0.0, 20.0, 45.0, 77.0, 90.0, 200.0}) {
+            const double angle = degrees * std::numbers::pi / 180, n_x = std::cos(angle),
+                         n_y = std::sin(angle), x = 24 + off, y = 24 + 0.6 * off;
+            CAPTURE(off);
+            CAPTURE(degrees);
+            for (const double R : {2.0, 4.0, 9.0}) {
+                Case disks = case_on(48, 48, 48), on_box = disks;
+                disks.problem.grains = {disk_at("a", x, y, 4),
+                                        disk_at("b", x + (4 + R) * n_x, y + (4 + R) * n_y, R)};
+                GrainCase box = box_at("a", x, y, 6, 14);
+                box.angle = degrees;
+                on_box.problem.grains = {box,
+                                         disk_at("b", x + (3 + R) * n_x, y + (3 + R) * n_y, R)};
+                CHECK(overlap_of(disks, 0.2 * n_x, 0.2 * n_y) == 0);
+                CHECK(overlap_of(on_box, 0.2 * n_x, 0.2 * n_y) == 0);
+                for (const double depth : {0.1, 0.3, 1.0, 2.5}) {
+                    CAPTURE(R);
+                    CAPTURE(depth);
+                    // Outlines of disks are farther out than they.
+                    const double x_to = -depth * n_x, y_to = -depth * n_y, farther = 1 / (12 * R),
+                                 within = R < 4 ? 0.09 : 0.04;
+                    CHECK(std::fabs(overlap_of(disks, x_to, y_to) - depth - farther - 1.0 / 48) <=
+                          within);
+                    CHECK(std::fabs(overlap_of(on_box, x_to, y_to) - depth - farther) <= within);
+                    std::swap(disks.problem.grains[0], disks.problem.grains[1]);
+                    CHECK(std::fabs(overlap_of(disks, -x_to, -y_to) - depth - farther - 1.0 / 48) <=
+                          within);
+                    std::swap(disks.problem.grains[0], disks.problem.grains[1]);
+                }
+            }
+        }
+}
+
+TEST_CASE("how deep grains are in each other is told across ends and not of rigid or bonded ones") {
+    // Across the ends of a periodic mesh, and on a plate that wraps around it, also where its ends meet.
+    Case c = case_on(40, 24, 40);
+    c.problem.periodic_x = true;
+    for (const double x : {0.1, 2.0, 18.3, 37.0, 39.8}) {
+        CAPTURE(x);
+        c.problem.grains = {disk_at("a", x, 8, 4), disk_at("b", x < 20 ? x + 7 : x - 33, 8, 3)};
+        CHECK(overlap_of(c, 0.1, 0) == 0);
+        CHECK(std::fabs(overlap_of(c, -1, 0) - 1 - 1.0 / 48 - 1.0 / 36) <= 0.04);
+        c.problem.grains = {box_at("a", 20, 4, 40, 6), disk_at("b", x, 11, 4)};
+        CHECK(overlap_of(c, 0, 0.1) == 0);
+        CHECK(std::fabs(overlap_of(c, 0, -1) - 1 - 1.0 / 48) <= 0.03);
+        CHECK(std::fabs(overlap_of(c, 0, -2.5) - 2.5 - 1.0 / 48) <= 0.03);
+    }
+    // A thin plate in the middle of a disk is as deep in it as it can be; a corner but for half a part.
+    c.problem.periodic_x = false;
+    c.problem.grains = {box_at("a", 20, 4, 20, 1), disk_at("b", 20, 9, 4)};
+    CHECK(std::fabs(overlap_of(c, 0, -5) - 3.5) <= 0.1);
+    c.problem.grains = {box_at("a", 20, 4, 20, 6), box_at("b", 20, 11, 6, 6)};
+    c.problem.grains[1].angle = 45, c.problem.grains[1].y = 7 + 3 * std::sqrt(2.0);
+    CHECK(overlap_of(c, 0, 0) == 0);
+    CHECK(overlap_of(c, 0, -1) >= 0.7);
+    CHECK(overlap_of(c, 0, -1) <= 1);
+    // Rigid grains pass through each other, as they are told.
+    add_material(c, "steel", "rigid", {});
+    c.problem.grains[0].material = "steel";
+    CHECK(overlap_of(c, 0, -1) >= 0.7);
+    c.problem.grains[1].material = "steel";
+    CHECK(overlap_of(c, 0, -1) == 0);
+    // Bonded halves share a side, also when they have moved on, and turned.
+    Case glued = halves("gimp");
+    for (GrainCase& half : glued.problem.grains)
+        half.spin = 3, half.velocity_y = 3 * (half.x - 0.8);
+    Run run(glued);
+    CHECK(deepest_overlap(run.state.assembly, run.nodes.mesh()) <= 1e-12);
+    run.advance(200);
+    CHECK(deepest_overlap(run.state.assembly, run.nodes.mesh()) <= 0.1 * 0.05);
 }

@@ -583,3 +583,49 @@ TEST_CASE("a disk that plates press bears its load wherever it stands between li
         }
     }
 }
+
+TEST_CASE(
+    "grains that are in each other after too long steps fail the run and its hint brings them "
+    "apart" *
+    doctest::description("physics")) {
+    std::filesystem::create_directories(facts::folder_of_test());
+    const std::string pressed = facts::folder_of_test() + "/driven_plate.toml",
+                      dropped = facts::folder_of_test() + "/dropped_disk.toml";
+    std::ofstream(pressed)
+        << "grid = {cells_x = 40, cells_y = 20, length_x = 0.8}\n"
+           "time.end = 6\nload.rise = 0.5\nmethod.shape = 'gimp'\n"
+           "[material]\ndefault = {E = 1e5, nu = 0.3, density = 1000}\nplate.law = 'rigid'\n"
+           "[grain]\ndisk = {x = 0.4, y = 0.16, radius = 0.08}\n"
+           "[grain.top]\nshape = 'box'\nx = 0.4\ny = 0.26\nwidth = 0.4\nheight = 0.04\n"
+           "control = 'force_y'\nforce = -300\nmaterial = 'plate'\n"
+           "[grain.bottom]\nshape = 'box'\nx = 0.4\ny = 0.06\nwidth = 0.4\nheight = 0.04\n"
+           "material = 'plate'\n";
+    std::ofstream(dropped)
+        << "grid = {cells_x = 40, cells_y = 24, length_x = 0.8}\n"
+           "time.end = 20\nmethod.theta = 1\nload.gravity_y = -1\n"
+           "[material]\ndefault = {E = 1e5, nu = 0.3, density = 1000}\nplate.law = 'rigid'\n"
+           "[grain]\ndisk = {x = 0.4, y = 0.24, radius = 0.12}\n"
+           "[grain.bottom]\nshape = 'box'\nx = 0.4\ny = 0.05\nwidth = 0.4\nheight = 0.06\n"
+           "material = 'plate'\n";
+    const auto judged = [](const std::string& arguments, const char* verdict) {
+        CAPTURE(arguments);
+        const Run r = run("overlap", arguments);
+        check_theorem(r);
+        const auto& result = r.summary["results"]["overlap"];
+        CHECK(result["verdict"] == verdict);
+        CHECK(r.value("overlap") == largest(r.column("overlap")));
+        return result;
+    };
+    // Plate and disk are deep in each other, and the plate says so by its travel.
+    const auto sunk = judged(pressed + " time.alpha=32 method.theta=0.5", "FAIL");
+    CHECK(sunk["value"].get<double>() >= 2);
+    const std::string hint = sunk["hint"].get<std::string>();
+    CHECK(hint.find("lower time.alpha to 2, or set method.theta = 0.6") != std::string::npos);
+    for (const char* cure : {" time.alpha=2 method.theta=0.5", " time.alpha=32 method.theta=0.6"})
+        CHECK(judged(pressed + cure, "PASS")["value"].get<double>() <= 0.25);
+    const auto fell = judged(dropped + " time.alpha=64", "FAIL");
+    CHECK(fell["value"].get<double>() >= 1);
+    CHECK(fell["hint"].get<std::string>().find("or raise load.rise") != std::string::npos);
+    for (const char* cure : {" time.alpha=10", " time.alpha=64 load.rise=10"})
+        CHECK(judged(dropped + cure, "PASS")["value"].get<double>() <= 0.25);
+}

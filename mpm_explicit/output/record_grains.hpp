@@ -11,9 +11,11 @@
 
 #include "common/run/run.hpp"
 #include "mpm_explicit/contact.hpp"
+#include "mpm_explicit/output/overlap.hpp"
 #include "mpm_explicit/output/write_output.hpp"
 #include "mpm_explicit/theory/compare_plates.hpp"
 #include "mpm_explicit/theory/compare_rotation.hpp"
+#include "mpm_explicit/theory/judge_overlap.hpp"
 
 namespace mpm {
 
@@ -65,6 +67,8 @@ class Recorder {
         row.add("angular_momentum", "momentum*length", sum.angular);
         row.add("contacts", "1", contacts);
         row.add("contact_force", "force", impulse / scales_.dt);
+        const Mesh mesh = parameters_.problem.mesh();
+        if (all.grains.size() > 1) row.add("overlap", "h", deepest_overlap(all, mesh) / mesh.h);
         for (const std::size_t g : tracked_) {
             const std::string& name = all.grains[g].name;
             if (all.grains[g].rigid) {
@@ -118,6 +122,7 @@ class Recorder {
         theory::judge_weight(ended, run.summary);
         if (comparison_ != nullptr && comparison_->result != nullptr)
             comparison_->result(ended, run.summary);
+        theory::judge_overlap(ended, run.summary);
     }
 
     /// What was conserved: the budget of the energy, and momentum.
