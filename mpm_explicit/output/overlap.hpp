@@ -31,23 +31,25 @@ struct CarriedOutline {
     double x_low = HUGE_VAL, x_high = -HUGE_VAL, y_low = HUGE_VAL, y_high = -HUGE_VAL;
     double x = 0, y = 0, radius = 0;  // of the circle
 
-    /// in: period, of the mesh along x, or 0: what wraps around it has no ends
-    void find_bounds(double period) {
+    /// in: wider than the middles, where parts end; period, of the mesh along x, or 0: what wraps around it
+    ///     has no ends
+    void find_bounds(double wider, double period) {
         if (parts.empty()) return;
         for (const PlacedPart& s : parts) {
             x_low = std::min(x_low, s.x), x_high = std::max(x_high, s.x);
             y_low = std::min(y_low, s.y), y_high = std::max(y_high, s.y);
         }
+        x_low -= wider, x_high += wider, y_low -= wider, y_high += wider;
         x = 0.5 * (x_low + x_high), y = 0.5 * (y_low + y_high);
-        for (const PlacedPart& s : parts) radius = std::max(radius, std::hypot(s.x - x, s.y - y));
+        for (const PlacedPart& s : parts)
+            radius = std::max(radius, std::hypot(s.x - x, s.y - y) + wider);
         if (period > 0 && x_high - x_low > 0.9 * period)
             x_low = -HUGE_VAL, x_high = radius = HUGE_VAL;
     }
-    /// Whether a point may be inside, and so deep.
-    bool may_hold(double at_x, double at_y, double deep) const {
-        const double dx = at_x - x, dy = at_y - y, room = radius - deep;
-        return at_x > x_low + deep && at_x < x_high - deep && at_y > y_low + deep &&
-               at_y < y_high - deep && room > 0 && dx * dx + dy * dy < room * room;
+    /// How deep a point can be inside at most: so far is the rectangle, or the circle, away.
+    double room_at(double at_x, double at_y) const {
+        const double beside = std::min({at_x - x_low, x_high - at_x, at_y - y_low, y_high - at_y});
+        return beside > 0 ? std::min(beside, radius - std::hypot(at_x - x, at_y - y)) : 0;
     }
 };
 
@@ -69,14 +71,15 @@ inline std::vector<CarriedOutline> carried_outlines(const Assembly& all, double 
             outlines[g].parts.push_back(
                 {all.particles.x_p[p] + e_x, all.particles.y_p[p] + e_y, s.ax[k], s.ay[k]});
         }
-        outlines[g].find_bounds(period);
+        outlines[g].find_bounds(h / 8, period);
     }
     return outlines;
 }
 
 /// How deep the point (x, y) is in a grain, if it is deeper than that; else the same depth.
-/// in: period, of the mesh along x, or 0: of every part the nearest image counts
-inline double deeper_in(const CarriedOutline& grain, double x, double y, double period,
+/// in: period, of the mesh along x, or 0: of every part the nearest image counts; room, that the grain has
+///     there: parts with noise in their normals would say more
+inline double deeper_in(const CarriedOutline& grain, double x, double y, double period, double room,
                         double depth) {
     const auto away = [&](const PlacedPart& s) {
         const double dx = s.x - x;
@@ -89,8 +92,9 @@ inline double deeper_in(const CarriedOutline& grain, double x, double y, double 
         if (away_2 < nearest_2) nearest_2 = away_2, nearest = &s;
     }
     if (nearest == nullptr) return depth;
-    const double deep = (nearest->ax * away(*nearest) + nearest->ay * (nearest->y - y)) /
-                        std::hypot(nearest->ax, nearest->ay);
+    const double deep =
+        std::min(room, (nearest->ax * away(*nearest) + nearest->ay * (nearest->y - y)) /
+                           std::hypot(nearest->ax, nearest->ay));
     if (!(deep > depth)) return depth;
     // No part is at the point: the nearest is not.
     double around = 0;
@@ -110,9 +114,10 @@ inline double deepest_overlap(const Assembly& all, const Mesh& mesh) {
     const std::vector<CarriedOutline> outlines = carried_outlines(all, mesh.h, period);
     double deepest = 0;
     const auto look = [&](const CarriedOutline& a, const CarriedOutline& b, double shift) {
-        for (const PlacedPart& q : b.parts)
-            if (a.may_hold(q.x + shift, q.y, deepest))
-                deepest = deeper_in(a, q.x, q.y, period, deepest);
+        for (const PlacedPart& q : b.parts) {
+            const double room = a.room_at(q.x + shift, q.y);
+            if (room > deepest) deepest = deeper_in(a, q.x, q.y, period, room, deepest);
+        }
     };
     // From left to right; on a periodic mesh with an image on either side.
     struct Left {
