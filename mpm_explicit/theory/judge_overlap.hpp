@@ -22,8 +22,7 @@ inline std::string overlap_hint(const FinishedRun& run, double overlap, double t
     const std::string deepest = ", deepest at t = " + format(time);
     if (!run.planned.scheme.implicit)
         return "grains burst into each other, or are too soft for what presses them" + deepest +
-               ": " + (w.alpha > 0.25 ? cure + ", or " : "") +
-               "take a stiffer material, or slower grains";
+               ": " + (w.alpha > 0.25 ? cure + ", or " : "") + "take a stiffer material";
     std::string hint =
         "grains that come nearer by a good part of a cell in a step are in each other before a "
         "node sees it, and stay so" +
