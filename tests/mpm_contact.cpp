@@ -954,8 +954,8 @@ TEST_CASE("grains press when their surfaces touch whatever the shape and whereve
     ContactBody disk{}, wall{};
     ContactPair pair{};
     disk.surface.sides[0] = {1, 0, 0.75, 0, 0, 0}, wall.wall = true, wall.x = 1, pair.nx = 1;
-    CHECK(touch({.separation = 0.25}, disk, wall, pair, 1));
-    CHECK(!touch({.separation = std::nextafter(0.25, 0)}, disk, wall, pair, 1));
+    CHECK(touch({.between = {}, .separation = 0.25}, disk, wall, pair, 1));
+    CHECK(!touch({.between = {}, .separation = std::nextafter(0.25, 0)}, disk, wall, pair, 1));
 }
 
 TEST_CASE("the outline of a disk turns with it") {
